@@ -1,0 +1,20 @@
+# Installs the headers and the package, so that find_package(palpate) works. Nothing in it depends on the processor.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/palpate)
+
+if(CMAKE_VERSION VERSION_GREATER_EQUAL 3.23)
+  install(TARGETS palpate EXPORT palpateTargets FILE_SET HEADERS)
+else()
+  install(TARGETS palpate EXPORT palpateTargets)
+  install(DIRECTORY include/palpate DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
+endif()
+install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${package_dir})
+
+configure_package_config_file(cmake/palpateConfig.cmake.in ${PROJECT_BINARY_DIR}/palpateConfig.cmake
+                              INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+install(FILES ${PROJECT_BINARY_DIR}/palpateConfig.cmake ${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake
+        DESTINATION ${package_dir})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/palpate)

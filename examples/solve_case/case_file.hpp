@@ -1,0 +1,172 @@
+// Reads a case file: load cases on one mesh, as JSON. Everything the file may say is listed here; anything else is
+// refused rather than skipped.
+#pragma once
+
+#include <palpate/palpate.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <initializer_list>
+
+namespace solve_case {
+
+using nlohmann::json;
+using palpate::SetupErrorKind;
+using Materials = palpate::RegionMaterials<palpate::LinearElastic>;
+
+/// A case file: the element type, the mesh files beside it, and the load cases as they stand.
+struct CaseFile {
+  std::string title;
+  std::string element;  ///< "tet4", "tet10", "hex8", "hex20"
+  std::string mesh_v22, mesh_v41;
+  std::vector<json> load_cases;
+};
+
+/// Runs `read`; a missing key or a wrong type becomes a SetupError(bad_file).
+template <class Read>
+auto checked(const std::string& where, Read read) {
+  try {
+    return read();
+  } catch (const json::exception& error) {
+    palpate::raise(SetupErrorKind::bad_file, where + ": " + error.what());
+  }
+}
+
+/// Refuses keys that are not in the list.
+inline void allow_keys(const json& object, const std::string& where, std::initializer_list<std::string_view> known) {
+  for (const auto& [key, value] : object.items())
+    if (std::ranges::find(known, key) == known.end())
+      palpate::raise(SetupErrorKind::unsupported, where + " has the unknown key '" + key + "'");
+}
+
+inline palpate::Vector3 read_vector(const json& list) {
+  if (list.size() != 3)
+    palpate::raise(SetupErrorKind::bad_file, "a vector has " + std::to_string(list.size()) + " components");
+  return {list.at(0).get<double>(), list.at(1).get<double>(), list.at(2).get<double>()};
+}
+
+/// Reads the file; one without "load_cases" has none. Throws SetupError(bad_file).
+inline CaseFile read_case_file(const std::string& path) {
+  const std::string text = palpate::io::read_file(path);
+  return checked(path, [&] {
+    const json file = json::parse(text);
+    const auto folder = std::filesystem::path(path).parent_path();
+    CaseFile read;
+    read.title = file.value("title", path);
+    if (!file.contains("load_cases")) return read;
+    const json& mesh = file.at("mesh");
+    const json files = mesh.value("files", json::object());
+    read.element = mesh.at("element").get<std::string>();
+    read.mesh_v22 = (folder / files.value("msh22", "mesh_v22.msh")).string();
+    read.mesh_v41 = (folder / files.value("msh41", "mesh_v41.msh")).string();
+    read.load_cases = file.at("load_cases").get<std::vector<json>>();
+    return read;
+  });
+}
+
+/// Refuses what is not a linear static analysis.
+inline void check_analysis(const json& load_case) {
+  allow_keys(load_case, "the load case",
+             {"name", "title", "analysis", "materials", "boundary_conditions", "loads", "reference", "crosscheck",
+              "closed_form"});
+  const auto analysis = load_case.at("analysis").get<std::string>();
+  if (analysis != "linear static, small strain")
+    palpate::raise(SetupErrorKind::unsupported, "the analysis '" + analysis + "'",
+                   "Only 'linear static, small strain' is solved");
+}
+
+/// The material of each region.
+inline Materials read_materials(const json& load_case) {
+  Materials materials;
+  for (const auto& [region, m] : load_case.at("materials").items()) {
+    const auto model = m.at("model").get<std::string>();
+    if (model != "linear_elastic") palpate::raise(SetupErrorKind::unsupported, "the material model '" + model + "'");
+    allow_keys(m, "material '" + region + "'", {"model", "E", "nu", "rho", "alpha_T"});
+    materials.emplace_back(region, palpate::LinearElastic{.youngs_modulus = m.at("E").get<double>(),
+                                                          .poisson_ratio = m.at("nu").get<double>(),
+                                                          .density = m.value("rho", 0.0)});
+  }
+  return materials;
+}
+
+/// A group of the mesh by its name, or, for `boundary_nodes_at_y=0.5`, the nodes of the boundary with that coordinate.
+template <palpate::Element E>
+palpate::Selection read_selection(const std::string& name, const palpate::Mesh<E>& mesh) {
+  const std::string prefix = "boundary_nodes_at_";
+  if (!name.starts_with(prefix)) return name;
+  double value = 0.0;
+  const std::size_t axis = std::string("xyz").find(name.substr(prefix.size(), 1));
+  if (axis > 2 || name.substr(prefix.size() + 1, 1) != "=" ||
+      palpate::io::parse_decimal(std::string_view(name).substr(prefix.size() + 2), value) != std::errc{})
+    palpate::raise(SetupErrorKind::unknown_group, "'" + name + "' is not like boundary_nodes_at_y=0.5");
+  double size = 0.0;
+  for (const auto& x : mesh.positions) size = std::max(size, x.cwiseAbs().maxCoeff());
+  std::vector<palpate::NodeId> nodes;
+  for (const palpate::NodeId i : palpate::nodes_of(palpate::extract_boundary<E>(mesh)))
+    if (std::abs(mesh.position(i)[static_cast<int>(axis)] - value) <= 1e-9 * size) nodes.push_back(i);
+  return nodes;
+}
+
+/// The initial strain alpha_T of every region: one number for all directions, or three diagonal values.
+inline void read_initial_strain(palpate::Scene& scene, const json& load, const json& materials) {
+  const auto form = load.at("eps0").get<std::string>();
+  for (const auto& [region, m] : materials.items()) {
+    const json& alpha = m.at("alpha_T");
+    if (form != (alpha.is_array() ? "diag(alpha_T)" : "alpha_T*I"))
+      palpate::raise(SetupErrorKind::unsupported, "the initial strain '" + form + "' of region '" + region + "'");
+    palpate::Vector6 strain = palpate::Vector6::Zero();
+    strain.head<3>() = alpha.is_array() ? read_vector(alpha) : palpate::Vector3::Constant(alpha.get<double>());
+    scene.initial_strain(region, strain);
+  }
+}
+
+template <palpate::Element E>
+void read_load(palpate::Scene& scene, const json& load, const json& materials, const palpate::Mesh<E>& mesh) {
+  const auto type = load.at("type").get<std::string>();
+  const auto where = [&] { return read_selection(load.at("group").get<std::string>(), mesh); };
+  if (type == "point") {
+    allow_keys(load, "a point load", {"type", "group", "force"});
+    scene.point_load(where(), read_vector(load.at("force")));
+  } else if (type == "traction") {
+    allow_keys(load, "a traction", {"type", "group", "traction"});
+    scene.traction(where(), read_vector(load.at("traction")));
+  } else if (type == "pressure") {
+    allow_keys(load, "a pressure", {"type", "group", "pressure"});
+    scene.pressure(where(), load.at("pressure").get<double>());
+  } else if (type == "gravity") {
+    allow_keys(load, "gravity", {"type", "g"});
+    for (const auto& [region, m] : materials.items())
+      if (!m.contains("rho"))
+        palpate::raise(SetupErrorKind::bad_density, "gravity acts, but material '" + region + "' has no rho");
+    scene.gravity(read_vector(load.at("g")));
+  } else if (type == "initial_strain") {
+    allow_keys(load, "an initial strain", {"type", "eps0"});
+    read_initial_strain(scene, load, materials);
+  } else {
+    palpate::raise(SetupErrorKind::unsupported, "the load type '" + type + "'");
+  }
+}
+
+/// What is held and loaded. A component that is null stays free.
+template <palpate::Element E>
+palpate::Scene read_scene(const json& load_case, const palpate::Mesh<E>& mesh) {
+  palpate::Scene scene;
+  for (const json& condition : load_case.at("boundary_conditions")) {
+    allow_keys(condition, "a boundary condition", {"group", "u"});
+    const json& u = condition.at("u");
+    if (u.size() != 3) palpate::raise(SetupErrorKind::bad_file, "a boundary condition needs three components");
+    palpate::Components values;
+    for (std::size_t c = 0; c < 3; ++c)
+      if (!u.at(c).is_null()) values[c] = u.at(c).get<double>();
+    scene.prescribe(read_selection(condition.at("group").get<std::string>(), mesh), values);
+  }
+  int gravities = 0;
+  for (const json& load : load_case.at("loads")) {
+    gravities += load.at("type") == "gravity" ? 1 : 0;
+    if (gravities > 1) palpate::raise(SetupErrorKind::unsupported, "gravity twice in one load case");
+    read_load(scene, load, load_case.at("materials"), mesh);
+  }
+  return scene;
+}
+
+}  // namespace solve_case

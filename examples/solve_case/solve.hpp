@@ -1,0 +1,110 @@
+// Solves one load case with elements E and writes what came out.
+#pragma once
+
+#include "case_file.hpp"
+
+#include <chrono>
+#include <iomanip>
+
+namespace solve_case {
+
+/// A mesh and the node ids of its file.
+template <palpate::Element E>
+struct NumberedMesh {
+  palpate::Mesh<E> mesh;
+  palpate::io::GmshNumbering ids;
+};
+
+/// The static state of a load case. Vectors are 3 x nodes of the model, node by node; `node_map` says where the nodes
+/// of the mesh file are among them, -1 for nodes of no element, which the model drops.
+struct Solution {
+  palpate::VectorX displacement, internal_force, reactions;
+  double strain_energy = 0.0;
+  std::vector<palpate::NodeId> node_map;
+  std::vector<palpate::NodeId> held;  ///< nodes of the file with a prescribed component
+  double seconds = 0.0;
+};
+
+/// Sets up the model of a load case, which solves it. Throws SetupError.
+template <palpate::Element E>
+Solution solve(const palpate::Mesh<E>& mesh, const json& load_case) {
+  using Model = palpate::HapticFEModel<E, palpate::LinearElastic, palpate::SparseCholesky>;
+  check_analysis(load_case);
+  const palpate::Scene scene = read_scene(load_case, mesh);
+  const Materials materials = read_materials(load_case);
+
+  const auto start = std::chrono::steady_clock::now();
+  Model model(mesh, scene, materials, palpate::SetupOptions{});
+  Solution s{model.displacement(),
+             model.internal_force(),
+             model.reactions(),
+             model.strain_energy(),
+             model.node_map(),
+             {},
+             0.0};
+  s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  const auto boundary = palpate::extract_boundary<E>(mesh);
+  for (const auto& condition : scene.prescribed())
+    for (const palpate::NodeId i : palpate::resolve_nodes(mesh, boundary, condition.where)) s.held.push_back(i);
+  std::ranges::sort(s.held);
+  s.held.erase(std::unique(s.held.begin(), s.held.end()), s.held.end());
+  return s;
+}
+
+/// Opens DIR/<name> for writing numbers with 16 significant digits.
+inline std::ofstream open_csv(const std::filesystem::path& path, const char* header) {
+  std::ofstream file(path);
+  if (!file) palpate::raise(SetupErrorKind::bad_file, path.string() + ": cannot be opened for writing");
+  file << header << '\n' << std::scientific << std::setprecision(15);
+  return file;
+}
+
+/// Writes <name>_u.csv and <name>_reactions.csv with the node ids of the mesh file.
+template <palpate::Element E>
+void write_csv(const std::filesystem::path& folder, const std::string& name, const NumberedMesh<E>& numbered,
+               const Solution& s) {
+  const auto triple = [](std::ostream& out, const auto& v) { out << ',' << v[0] << ',' << v[1] << ',' << v[2]; };
+  const auto at = [](const std::vector<palpate::NodeId>& map, palpate::Index i) {
+    return map[static_cast<std::size_t>(i)];
+  };
+  const auto& tags = numbered.ids.node_tags;
+
+  std::ofstream u = open_csv(folder / (name + "_u.csv"), "node,x,y,z,ux,uy,uz");
+  for (palpate::Index i = 0; i < numbered.mesh.node_count(); ++i) {
+    const palpate::Index k = at(s.node_map, i);
+    if (k < 0) continue;
+    u << tags[static_cast<std::size_t>(i)];
+    triple(u, numbered.mesh.position(i));
+    triple(u, s.displacement.segment<3>(3 * k));
+    u << '\n';
+  }
+  std::ofstream r = open_csv(folder / (name + "_reactions.csv"), "node,rx,ry,rz,ix,iy,iz");
+  for (const palpate::NodeId i : s.held) {
+    const palpate::Index k = at(s.node_map, i);
+    if (k < 0) continue;
+    r << tags[static_cast<std::size_t>(i)];
+    triple(r, s.reactions.segment<3>(3 * k));
+    triple(r, s.internal_force.segment<3>(3 * k));
+    r << '\n';
+  }
+  if (!u.flush() || !r.flush()) palpate::raise(SetupErrorKind::bad_file, folder.string() + ": writing failed");
+}
+
+/// The line printed for a solved load case.
+inline nlohmann::ordered_json summary(const std::string& name, const std::string& element, const Solution& s) {
+  double largest = 0.0;
+  palpate::Vector3 sum = palpate::Vector3::Zero();
+  for (palpate::Index i = 0; i < s.displacement.size() / 3; ++i) {
+    largest = std::max(largest, s.displacement.segment<3>(3 * i).norm());
+    sum += s.reactions.segment<3>(3 * i);
+  }
+  return {{"case", name},
+          {"element", element},
+          {"max_abs_displacement", largest},
+          {"strain_energy", s.strain_energy},
+          {"sum_of_reactions", {sum[0], sum[1], sum[2]}},
+          {"seconds", s.seconds}};
+}
+
+}  // namespace solve_case

@@ -1,0 +1,113 @@
+// A symmetric matrix of 3 x 3 blocks, one block per pair of neighbouring nodes, lower half stored.
+#pragma once
+
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/types.hpp>
+
+#include <algorithm>
+#include <numeric>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Which node pairs share an element: per row (node) the sorted columns <= row, the diagonal last. Computed once per
+/// mesh.
+struct BlockPattern {
+  std::vector<Index> row_start;  ///< rows + 1 offsets
+  std::vector<NodeId> column;
+
+  Index rows() const noexcept { return static_cast<Index>(row_start.size()) - 1; }
+
+  /// Position of block (row, col), col <= row; binary search.
+  Index find(NodeId row, NodeId col) const noexcept {
+    const auto begin = column.begin() + row_start[static_cast<std::size_t>(row)];
+    const auto end = column.begin() + row_start[static_cast<std::size_t>(row) + 1];
+    return std::lower_bound(begin, end, col) - column.begin();
+  }
+};
+
+/// Pattern of a mesh. O(elements x nodes_per_element^2), allocates.
+template <MeshView M>
+BlockPattern block_pattern(const M& mesh) {
+  const Index n = mesh.node_count(), m = mesh.element_count();
+  constexpr int k = M::nodes_per_element;
+  std::vector<Index> start(static_cast<std::size_t>(n) + 1, 0);
+  for (Index e = 0; e < m; ++e)
+    for (int a = 0; a < k; ++a) ++start[static_cast<std::size_t>(mesh.element_node(e, a)) + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<Index> element_of(static_cast<std::size_t>(start.back()));
+  std::vector<Index> fill(start.begin(), start.end() - 1);
+  for (Index e = 0; e < m; ++e)
+    for (int a = 0; a < k; ++a)
+      element_of[static_cast<std::size_t>(fill[static_cast<std::size_t>(mesh.element_node(e, a))]++)] = e;
+
+  BlockPattern pattern;
+  pattern.row_start.reserve(static_cast<std::size_t>(n) + 1);
+  pattern.row_start.push_back(0);
+  std::vector<NodeId> row;
+  for (Index i = 0; i < n; ++i) {
+    row.assign(1, static_cast<NodeId>(i));
+    for (Index p = start[static_cast<std::size_t>(i)]; p < start[static_cast<std::size_t>(i) + 1]; ++p)
+      for (int a = 0; a < k; ++a) {
+        const auto j = static_cast<NodeId>(mesh.element_node(element_of[static_cast<std::size_t>(p)], a));
+        if (j < i) row.push_back(j);
+      }
+    std::ranges::sort(row);
+    row.erase(std::unique(row.begin(), row.end()), row.end());
+    pattern.column.insert(pattern.column.end(), row.begin(), row.end());
+    pattern.row_start.push_back(static_cast<Index>(pattern.column.size()));
+  }
+  return pattern;
+}
+
+/// Values on a BlockPattern. Satisfies StiffnessOperator.
+class BlockMatrix {
+ public:
+  BlockMatrix() = default;
+  explicit BlockMatrix(BlockPattern pattern) : pattern_(std::move(pattern)), values_(pattern_.column.size() * 9, 0.0) {}
+
+  Index size() const noexcept { return 3 * pattern_.rows(); }
+  const BlockPattern& pattern() const noexcept { return pattern_; }
+  std::size_t bytes() const noexcept {
+    return values_.size() * sizeof(double) + pattern_.column.size() * sizeof(NodeId) +
+           pattern_.row_start.size() * sizeof(Index);
+  }
+
+  /// Block at a position given by the pattern.
+  Eigen::Map<Matrix3> block(Index position) noexcept { return Eigen::Map<Matrix3>(values_.data() + 9 * position); }
+  Eigen::Map<const Matrix3> block(Index position) const noexcept {
+    return Eigen::Map<const Matrix3>(values_.data() + 9 * position);
+  }
+
+  void set_zero() noexcept { std::ranges::fill(values_, 0.0); }
+
+  /// y = K x; x and y hold size() entries. No allocation; reads every stored block once.
+  void apply(const VectorX& x, VectorX& y) const noexcept {
+    y.setZero();
+    for (Index i = 0; i < pattern_.rows(); ++i) {
+      const Index last = pattern_.row_start[static_cast<std::size_t>(i) + 1] - 1;
+      const Vector3 xi = x.segment<3>(3 * i);
+      Vector3 yi = block(last) * xi;
+      for (Index p = pattern_.row_start[static_cast<std::size_t>(i)]; p < last; ++p) {
+        const Index j = pattern_.column[static_cast<std::size_t>(p)];
+        const auto k = block(p);
+        yi.noalias() += k * x.segment<3>(3 * j);
+        y.segment<3>(3 * j).noalias() += k.transpose() * xi;
+      }
+      y.segment<3>(3 * i) += yi;
+    }
+  }
+
+  std::vector<Matrix3> diagonal_blocks() const {
+    std::vector<Matrix3> d;
+    d.reserve(static_cast<std::size_t>(pattern_.rows()));
+    for (Index i = 0; i < pattern_.rows(); ++i)
+      d.push_back(block(pattern_.row_start[static_cast<std::size_t>(i) + 1] - 1));
+    return d;
+  }
+
+ private:
+  BlockPattern pattern_;
+  std::vector<double> values_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

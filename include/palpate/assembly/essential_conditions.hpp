@@ -1,0 +1,62 @@
+// Prescribed displacements: which dofs are free, which are given (thesis 3.4.3, BCEssensiell).
+#pragma once
+
+#include <palpate/mesh/selection.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Numbering of the free dofs of a mesh and the values of the others. Dof 3 i + c is component c of node i.
+struct EssentialConditions {
+  std::vector<std::uint8_t> constrained;  ///< per node, bit c set when component c is prescribed
+  VectorX prescribed;                     ///< 3 nodes values [m]; zero on free dofs
+  std::vector<Index> free_dofs;           ///< dof of every free index, ascending
+  std::vector<Index> free_index;          ///< free index of every dof, -1 when prescribed
+
+  bool is_constrained(Index dof) const noexcept { return free_index[static_cast<std::size_t>(dof)] < 0; }
+  Index dof_count() const noexcept { return static_cast<Index>(free_index.size()); }
+  Index free_count() const noexcept { return static_cast<Index>(free_dofs.size()); }
+
+  /// Entries of the free dofs of a full vector. No allocation when `free_part` has its size.
+  void gather(const VectorX& full, VectorX& free_part) const noexcept {
+    for (Index k = 0; k < free_count(); ++k) free_part[k] = full[free_dofs[static_cast<std::size_t>(k)]];
+  }
+  /// Full vector with zeros on prescribed dofs.
+  void scatter(const VectorX& free_part, VectorX& full) const noexcept {
+    full.setZero();
+    for (Index k = 0; k < free_count(); ++k) full[free_dofs[static_cast<std::size_t>(k)]] = free_part[k];
+  }
+};
+
+/// Resolves the prescribed conditions of a scene. Throws unknown_group, empty_group, or conflicting_conditions when one
+/// dof is given two different values.
+template <Element E>
+EssentialConditions resolve_essential(const Mesh<E>& mesh, const std::vector<BoundaryFace<E>>& boundary,
+                                      const Scene& scene) {
+  EssentialConditions c;
+  c.constrained.assign(static_cast<std::size_t>(mesh.node_count()), 0);
+  c.prescribed = VectorX::Zero(3 * mesh.node_count());
+  for (const auto& condition : scene.prescribed())
+    for (NodeId node : resolve_nodes(mesh, boundary, condition.where))
+      for (int i = 0; i < 3; ++i) {
+        const auto& value = condition.values[static_cast<std::size_t>(i)];
+        if (!value) continue;
+        auto& bits = c.constrained[static_cast<std::size_t>(node)];
+        const Index dof = 3 * Index{node} + i;
+        if ((bits & (1u << i)) != 0 && c.prescribed[dof] != *value)
+          raise(SetupErrorKind::conflicting_conditions,
+                "node " + std::to_string(node) + " component " + std::to_string(i) + " is prescribed as " +
+                    number(c.prescribed[dof]) + " and as " + number(*value),
+                "Give each component one value");
+        bits = static_cast<std::uint8_t>(bits | (1u << i));
+        c.prescribed[dof] = *value;
+      }
+  c.free_index.assign(static_cast<std::size_t>(3 * mesh.node_count()), -1);
+  for (Index dof = 0; dof < 3 * mesh.node_count(); ++dof)
+    if ((c.constrained[static_cast<std::size_t>(dof / 3)] & (1u << (dof % 3))) == 0) {
+      c.free_index[static_cast<std::size_t>(dof)] = static_cast<Index>(c.free_dofs.size());
+      c.free_dofs.push_back(dof);
+    }
+  return c;
+}
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,92 @@
+// Assembly policy: the stiffness is applied element by element and never stored.
+#pragma once
+
+#include <palpate/assembly/body.hpp>
+#include <palpate/concepts/assembler.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/local/stiffness.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// K x by gathering each element's displacements, computing its stress and scattering its nodal forces. Keeps gradients
+/// and volumes only.
+template <Element E>
+class MatrixFreeStiffness {
+ public:
+  MatrixFreeStiffness() = default;
+
+  /// Throws as assemble_stiffness does.
+  MatrixFreeStiffness(const Body<E>& body, const SetupLimits& limits)
+      : nodes_(body.mesh.node_count()), connectivity_(body.mesh.elements), elasticity_(body.elasticity) {
+    const Index count = body.mesh.element_count();
+    regions_.reserve(static_cast<std::size_t>(count));
+    points_.reserve(static_cast<std::size_t>(count) * E::Quadrature::points.size());
+    for (Index e = 0; e < count; ++e) {
+      if (e % 8192 == 0) limits.advance("assembly", static_cast<double>(e) / static_cast<double>(count));
+      regions_.push_back(body.region_of(e));
+      const ElementNodes<E> x = element_nodes<E>(body.mesh, e);
+      for (const auto& point : E::Quadrature::points) {
+        points_.push_back(point_geometry<E>(x, reference_point(point), point.weight));
+        if (!points_.back().gradient.allFinite())
+          raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
+      }
+    }
+  }
+
+  Index size() const noexcept { return 3 * nodes_; }
+  std::size_t bytes() const noexcept {
+    return points_.size() * sizeof(points_[0]) + connectivity_.size() * sizeof(connectivity_[0]) +
+           regions_.size() * sizeof(std::size_t);
+  }
+
+  /// y = K x. No allocation.
+  void apply(const VectorX& x, VectorX& y) const noexcept {
+    y.setZero();
+    auto geometry = points_.begin();
+    for (std::size_t e = 0; e < connectivity_.size(); ++e) {
+      ElementNodes<E> u;
+      for (int a = 0; a < E::nodes; ++a)
+        u.row(a) = x.segment<3>(3 * Index{connectivity_[e][static_cast<std::size_t>(a)]}).transpose();
+      ElementNodes<E> f = ElementNodes<E>::Zero();
+      for (std::size_t q = 0; q < E::Quadrature::points.size(); ++q, ++geometry) {
+        const Vector6 stress = elasticity_[regions_[e]] * strain(u, geometry->gradient);
+        f.noalias() += geometry->volume * geometry->gradient * voigt::stress_tensor(stress);
+      }
+      for (int a = 0; a < E::nodes; ++a)
+        y.segment<3>(3 * Index{connectivity_[e][static_cast<std::size_t>(a)]}) += f.row(a).transpose();
+    }
+  }
+
+  std::vector<Matrix3> diagonal_blocks() const {
+    std::vector<Matrix3> d(static_cast<std::size_t>(nodes_), Matrix3::Zero());
+    auto geometry = points_.begin();
+    for (std::size_t e = 0; e < connectivity_.size(); ++e)
+      for (std::size_t q = 0; q < E::Quadrature::points.size(); ++q, ++geometry)
+        for (int a = 0; a < E::nodes; ++a) {
+          const auto b = strain_displacement(geometry->gradient.row(a).transpose());
+          d[static_cast<std::size_t>(connectivity_[e][static_cast<std::size_t>(a)])] +=
+              geometry->volume * b.transpose() * elasticity_[regions_[e]] * b;
+        }
+    return d;
+  }
+
+ private:
+  Index nodes_ = 0;
+  std::vector<typename Mesh<E>::Connectivity> connectivity_;
+  std::vector<std::size_t> regions_;
+  std::vector<PointGeometry<E>> points_;
+  std::vector<Matrix6> elasticity_;
+};
+
+/// Stores no matrix: about a third of the memory of Assembled; for iterative solvers.
+struct MatrixFree {
+  template <Element E>
+  using Operator = MatrixFreeStiffness<E>;
+
+  template <Element E>
+  static MatrixFreeStiffness<E> make(const Body<E>& body, const SetupLimits& limits) {
+    return MatrixFreeStiffness<E>(body, limits);
+  }
+};
+
+}  // namespace palpate::inline PALPATE_ABI

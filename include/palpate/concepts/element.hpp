@@ -1,0 +1,49 @@
+// What a finite element is: shape functions on a reference domain, as a stateless type.
+#pragma once
+
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/types.hpp>
+
+#include <array>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// A surface element: `nodes` shape functions of two reference coordinates.
+/// `shape(xi)` is nodes x 1, `gradient(xi)` nodes x 2, `reference_nodes()` nodes x 2.
+template <class F>
+concept FaceElement = requires(const Eigen::Vector2d& xi) {
+  requires F::nodes > 0;
+  { F::shape(xi) } noexcept -> FixedVector<F::nodes>;
+  { F::gradient(xi) } noexcept -> FixedMatrix<F::nodes, 2>;
+  { F::reference_nodes() } noexcept -> FixedMatrix<F::nodes, 2>;
+  requires Quadrature<typename F::Quadrature>;
+  requires F::Quadrature::dimension == 2;
+};
+
+/// A solid element: `nodes` shape functions of three reference coordinates (thesis 3.3.2).
+/// `shape(xi)` is nodes x 1, `gradient(xi)` nodes x 3 (derivatives by xi), `reference_nodes()` nodes x 3.
+/// `faces` lists the local nodes of every face, outward by the right-hand rule; all faces are of type `Face`.
+/// `order` is the polynomial degree reproduced exactly. `Quadrature` is the default rule for stiffness,
+/// `MassQuadrature` integrates products of two shape functions exactly on straight-sided elements. Laws:
+/// testing/element_laws.hpp.
+template <class E>
+concept Element = requires(const Vector3& xi) {
+  requires E::nodes > 0;
+  requires E::order > 0;
+  { E::shape(xi) } noexcept -> FixedVector<E::nodes>;
+  { E::gradient(xi) } noexcept -> FixedMatrix<E::nodes, 3>;
+  { E::reference_nodes() } noexcept -> FixedMatrix<E::nodes, 3>;
+  requires FaceElement<typename E::Face>;
+  requires std::same_as<std::remove_cvref_t<decltype(E::faces)>,
+                        std::array<std::array<int, E::Face::nodes>, E::faces.size()>>;
+  requires Quadrature<typename E::Quadrature>;
+  requires E::Quadrature::dimension == 3;
+  requires Quadrature<typename E::MassQuadrature>;
+  { E::reference_volume } -> std::convertible_to<double>;
+};
+
+/// Coordinates of one element's nodes, one per row.
+template <class E>
+using ElementNodes = Eigen::Matrix<double, E::nodes, 3>;
+
+}  // namespace palpate::inline PALPATE_ABI

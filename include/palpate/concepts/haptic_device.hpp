@@ -1,0 +1,50 @@
+// What a haptic device is, and what passes between it and the tick. Plain numbers only: these types cross library
+// borders.
+#pragma once
+
+#include <palpate/core/status.hpp>
+#include <palpate/core/types.hpp>
+
+#include <array>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// What a device says about its tool. SI units, the device's own frame.
+struct ToolState {
+  Vector3 position = Vector3::Zero();                                              ///< [m]
+  Vector3 velocity = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());  ///< [m/s]; NaN: not given
+  std::array<double, 4> orientation{1.0, 0.0, 0.0, 0.0};                           ///< unit quaternion w x y z
+  double time = 0.0;  ///< [s] when the state was read, monotonic
+  std::uint32_t buttons = 0;
+  bool valid = true;  ///< false: the device could not be read
+};
+
+/// What a device is told to render.
+struct ToolForce {
+  Vector3 force = Vector3::Zero();   ///< [N]
+  Vector3 torque = Vector3::Zero();  ///< [N m]
+  Status status;
+};
+
+/// What a device can take.
+struct DeviceLimits {
+  double peak_force = 3.3;                          ///< [N]
+  double continuous_force = 0.88;                   ///< [N]
+  double stiffness = 500.0;                         ///< [N/m] the most it renders stably at 1 kHz
+  Vector3 workspace_low = Vector3::Constant(-0.1);  ///< [m]
+  Vector3 workspace_high = Vector3::Constant(0.1);  ///< [m]
+};
+
+/// A device that can be read and written from the haptic thread. `read` and `write` never throw, block, allocate or
+/// lock; `write` limits what it is given to `limits()` and renders zero after `stop()` or an invalid read. Laws:
+/// testing/device_laws.hpp.
+template <class D>
+concept HapticDevice = requires(D& device, const D& constant, const Vector3& v) {
+  { device.read() } noexcept -> std::same_as<ToolState>;
+  { device.write(v, v) } noexcept -> std::same_as<Status>;
+  { constant.limits() } noexcept -> std::same_as<DeviceLimits>;
+  {device.start()};
+  { device.stop() } noexcept;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,33 @@
+// What a linear solver is.
+#pragma once
+
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// What a solve says about itself.
+struct SolveReport {
+  bool converged = true;
+  int iterations = 0;              ///< 0 for direct solvers
+  double relative_residual = 0.0;  ///< |b - K x| / |b|, recomputed, not the recursive one; NaN when not computed
+};
+
+/// A symmetric positive definite operator on vectors of `size()` entries: `apply` computes y = K x without allocating,
+/// `precondition` y = P^-1 x for some cheap P.
+template <class Op>
+concept SpdOperator = requires(const Op& op, const VectorX& x, VectorX& y) {
+  { op.size() } -> std::convertible_to<Index>;
+  { op.apply(x, y) } noexcept;
+  { op.precondition(x, y) } noexcept;
+};
+
+/// A prepared solver: `solve_into` writes x with K x = b. It never allocates once prepared, and is not to be called
+/// from two threads at once (it owns its workspace). Laws: testing/solver_laws.hpp.
+template <class S>
+concept LinearSolver = requires(S& solver, const VectorX& b, VectorX& x) {
+  { solver.size() } -> std::convertible_to<Index>;
+  { solver.solve_into(b, x) } noexcept -> std::same_as<SolveReport>;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

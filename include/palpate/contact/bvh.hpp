@@ -1,0 +1,159 @@
+// A bounding volume hierarchy of axis-aligned boxes over triangles.
+#pragma once
+
+#include <palpate/core/types.hpp>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// An axis-aligned box.
+struct Box {
+  Vector3 low = Vector3::Constant(infinity);
+  Vector3 high = Vector3::Constant(-infinity);
+
+  void include(const Vector3& p) noexcept {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  void include(const Box& b) noexcept {
+    low = low.cwiseMin(b.low);
+    high = high.cwiseMax(b.high);
+  }
+  /// Squared distance of a point, 0 inside.
+  double squared_distance(const Vector3& p) const noexcept {
+    return (low - p).cwiseMax(p - high).cwiseMax(Vector3::Zero()).squaredNorm();
+  }
+};
+
+using Triangle = std::array<int, 3>;
+
+/// Boxes over triangles, split at the median of the longest axis; leaves hold up to four triangles. Queries are O(log n
+/// + hits), do not allocate and visit triangles in a fixed order.
+class Bvh {
+ public:
+  Bvh() = default;
+
+  /// Builds over triangles of `positions`. O(n log n), allocates.
+  Bvh(std::span<const Triangle> triangles, std::span<const Vector3> positions) : order_(triangles.size()) {
+    std::iota(order_.begin(), order_.end(), 0);
+    std::vector<Vector3> centre;
+    centre.reserve(triangles.size());
+    for (const Triangle& t : triangles)
+      centre.push_back(at(positions, t[0]) + at(positions, t[1]) + at(positions, t[2]));
+    nodes_.reserve(2 * triangles.size() + 1);
+    if (!triangles.empty()) build(0, static_cast<int>(triangles.size()), centre);
+    refit(triangles, positions);
+  }
+
+  /// Recomputes all boxes for moved positions. O(n), no allocation.
+  void refit(std::span<const Triangle> triangles, std::span<const Vector3> positions) noexcept {
+    for (std::size_t i = nodes_.size(); i-- > 0;) {
+      Node& node = nodes_[i];
+      node.box = Box{};
+      if (node.count > 0) {
+        for (int k = node.first; k < node.first + node.count; ++k)
+          for (int v : triangles[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])])
+            node.box.include(at(positions, v));
+      } else {
+        node.box.include(nodes_[i + 1].box);
+        node.box.include(nodes_[static_cast<std::size_t>(node.first)].box);
+      }
+    }
+  }
+
+  /// Calls visit(triangle) for every triangle of a leaf whose box comes within `radius` of `centre`.
+  template <class Visit>
+  void visit_near(const Vector3& centre, double radius, Visit&& visit) const noexcept {
+    const double limit = radius * radius;
+    std::array<int, max_depth> stack;
+    int top = 0;
+    if (!nodes_.empty()) stack[static_cast<std::size_t>(top++)] = 0;
+    while (top > 0) {
+      const int i = stack[static_cast<std::size_t>(--top)];
+      const Node& node = nodes_[static_cast<std::size_t>(i)];
+      if (!(node.box.squared_distance(centre) <= limit)) continue;
+      if (node.count > 0) {
+        for (int k = node.first; k < node.first + node.count; ++k) visit(order_[static_cast<std::size_t>(k)]);
+      } else {
+        stack[static_cast<std::size_t>(top++)] = node.first;
+        stack[static_cast<std::size_t>(top++)] = i + 1;
+      }
+    }
+  }
+
+  /// Finds the triangle for which squared_distance(triangle) is smallest; ties go to the lowest number. -1 when empty.
+  template <class SquaredDistance>
+  int nearest(const Vector3& point, SquaredDistance&& squared_distance) const noexcept {
+    double best = infinity;
+    int winner = -1;
+    std::array<int, max_depth> stack;
+    int top = 0;
+    if (!nodes_.empty()) stack[static_cast<std::size_t>(top++)] = 0;
+    while (top > 0) {
+      const int i = stack[static_cast<std::size_t>(--top)];
+      const Node& node = nodes_[static_cast<std::size_t>(i)];
+      if (!(node.box.squared_distance(point) <= best)) continue;
+      if (node.count > 0) {
+        for (int k = node.first; k < node.first + node.count; ++k) {
+          const int t = order_[static_cast<std::size_t>(k)];
+          const double d = squared_distance(t);
+          if (d < best || (d == best && t < winner)) {
+            best = d;
+            winner = t;
+          }
+        }
+      } else {
+        const bool left_first = nodes_[static_cast<std::size_t>(i) + 1].box.squared_distance(point) <=
+                                nodes_[static_cast<std::size_t>(node.first)].box.squared_distance(point);
+        stack[static_cast<std::size_t>(top++)] = left_first ? node.first : i + 1;
+        stack[static_cast<std::size_t>(top++)] = left_first ? i + 1 : node.first;
+      }
+    }
+    return winner;
+  }
+
+  const Box& bounds() const noexcept { return nodes_.front().box; }
+  bool empty() const noexcept { return nodes_.empty(); }
+
+ private:
+  // Median splits halve the count, so depth is at most log2(2^31); two entries per level may wait on the stack.
+  static constexpr int max_depth = 64;
+  struct Node {
+    Box box;
+    int first = 0;  // leaf: first of order_; inner: right child (the left one follows directly)
+    int count = 0;  // 0 for inner nodes
+  };
+
+  static const Vector3& at(std::span<const Vector3> positions, int i) noexcept {
+    return positions[static_cast<std::size_t>(i)];
+  }
+
+  void build(int begin, int end, const std::vector<Vector3>& centre) {
+    const std::size_t self = nodes_.size();
+    nodes_.push_back({Box{}, begin, end - begin});
+    if (end - begin <= 4) return;
+    Box box;
+    for (int k = begin; k < end; ++k) box.include(at(centre, order_[static_cast<std::size_t>(k)]));
+    int axis = 0;
+    (box.high - box.low).maxCoeff(&axis);
+    const int middle = begin + (end - begin) / 2;
+    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int a, int b) {
+      const double x = at(centre, a)[axis], y = at(centre, b)[axis];
+      return x < y || (x == y && a < b);
+    });
+    nodes_[self].count = 0;
+    build(begin, middle, centre);
+    nodes_[self].first = static_cast<int>(nodes_.size());
+    build(middle, end, centre);
+  }
+
+  std::vector<int> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

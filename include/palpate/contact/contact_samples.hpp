@@ -1,0 +1,72 @@
+// The material points of a surface at which contact is enforced.
+#pragma once
+
+#include <palpate/contact/contact_surface.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// A material point of the contact surface: three vertices and the weights by which it reads their displacement and
+/// spreads its force.
+struct ContactSample {
+  Triangle vertices{};
+  std::array<double, 3> weights{};
+};
+
+/// Points spread over all triangles so that no two neighbours are further apart than `spacing`: all vertices, and a
+/// barycentric lattice on edges and faces that are longer. Fixed in the material, so that a ball sliding over them
+/// meets a smooth sequence of constraints. Every sample belongs to one triangle.
+class ContactSamples {
+ public:
+  ContactSamples() = default;
+
+  /// Allocates; for set-up. `maximum_subdivision` bounds the lattice on very coarse triangles.
+  ContactSamples(const ContactSurface& surface, double spacing, int maximum_subdivision = 32) {
+    std::vector<bool> vertex_taken(static_cast<std::size_t>(surface.vertex_count()), false);
+    std::map<std::pair<int, int>, bool> edge_taken;
+    first_.push_back(0);
+    for (const Triangle& t : surface.triangles()) {
+      double longest = 0.0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        longest = std::max(longest, (surface.position(t[i]) - surface.position(t[(i + 1) % 3])).norm());
+        if (!vertex_taken[static_cast<std::size_t>(t[i])])
+          samples_.push_back({{t[i], t[(i + 1) % 3], t[(i + 2) % 3]}, {1.0, 0.0, 0.0}});
+        vertex_taken[static_cast<std::size_t>(t[i])] = true;
+      }
+      for (std::size_t i = 0; i < 3; ++i) add_edge(surface, t, i, spacing, maximum_subdivision, edge_taken);
+      const int n = subdivision(longest, spacing, maximum_subdivision);
+      for (int a = 1; a < n - 1; ++a)
+        for (int b = 1; b < n - a; ++b)
+          samples_.push_back(
+              {t, {static_cast<double>(a) / n, static_cast<double>(b) / n, static_cast<double>(n - a - b) / n}});
+      first_.push_back(static_cast<int>(samples_.size()));
+    }
+  }
+
+  /// The samples that belong to a triangle.
+  std::span<const ContactSample> of_triangle(int t) const noexcept {
+    const auto i = static_cast<std::size_t>(t);
+    return {samples_.data() + first_[i], static_cast<std::size_t>(first_[i + 1] - first_[i])};
+  }
+  int count() const noexcept { return static_cast<int>(samples_.size()); }
+
+ private:
+  static int subdivision(double length, double spacing, int maximum) {
+    return std::clamp(static_cast<int>(std::ceil(length / spacing)), 1, maximum);
+  }
+
+  void add_edge(const ContactSurface& surface, const Triangle& t, std::size_t i, double spacing, int maximum,
+                std::map<std::pair<int, int>, bool>& taken) {
+    const int a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3];
+    bool& done = taken[std::pair(std::min(a, b), std::max(a, b))];
+    if (done) return;
+    done = true;
+    const int n = subdivision((surface.position(a) - surface.position(b)).norm(), spacing, maximum);
+    for (int k = 1; k < n; ++k)
+      samples_.push_back({{a, b, c}, {1.0 - static_cast<double>(k) / n, static_cast<double>(k) / n, 0.0}});
+  }
+
+  std::vector<ContactSample> samples_;
+  std::vector<int> first_;  // per triangle, one past the end last
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,23 @@
+// A spherical tool tip.
+#pragma once
+
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
+
+#include <cmath>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// A rigid ball at the tool's position.
+struct SphereTool {
+  double radius = 4e-3;  ///< [m]
+
+  /// Throws bad_argument when the radius is not finite and positive.
+  void require_valid() const {
+    if (!(std::isfinite(radius) && radius > 0.0))
+      raise(SetupErrorKind::bad_argument, "the radius of a sphere tool is " + number(radius),
+            "It must be finite and positive, in metres");
+  }
+};
+
+}  // namespace palpate::inline PALPATE_ABI

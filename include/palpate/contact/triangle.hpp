@@ -1,0 +1,51 @@
+// Closest point on a triangle.
+#pragma once
+
+#include <palpate/core/types.hpp>
+
+#include <array>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Where on a triangle a closest point lies: inside, on edge (i, i + 1) or at vertex i.
+enum class TriangleFeature : std::uint8_t { face, edge01, edge12, edge20, vertex0, vertex1, vertex2 };
+
+/// A point of a triangle by barycentric weights (they sum to 1 and are not negative).
+struct TrianglePoint {
+  std::array<double, 3> weights;
+  TriangleFeature feature;
+};
+
+/// The point of triangle (a, b, c) closest to p (Ericson, Real-Time Collision Detection, 5.1.5). Degenerate triangles
+/// give a point of one of their edges. About 40 flops, no allocation.
+inline TrianglePoint closest_point(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) noexcept {
+  const Vector3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0.0 && d2 <= 0.0) return {{1.0, 0.0, 0.0}, TriangleFeature::vertex0};
+  const Vector3 bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0.0 && d4 <= d3) return {{0.0, 1.0, 0.0}, TriangleFeature::vertex1};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+    const double v = d1 / (d1 - d3);
+    return {{1.0 - v, v, 0.0}, TriangleFeature::edge01};
+  }
+  const Vector3 cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0.0 && d5 <= d6) return {{0.0, 0.0, 1.0}, TriangleFeature::vertex2};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+    const double w = d2 / (d2 - d6);
+    return {{1.0 - w, 0.0, w}, TriangleFeature::edge20};
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && (d4 - d3) >= 0.0 && (d5 - d6) >= 0.0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {{0.0, 1.0 - w, w}, TriangleFeature::edge12};
+  }
+  const double scale = 1.0 / (va + vb + vc);
+  const double v = vb * scale, w = vc * scale;
+  return {{1.0 - v - w, v, w}, TriangleFeature::face};
+}
+
+}  // namespace palpate::inline PALPATE_ABI

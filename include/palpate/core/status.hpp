@@ -1,0 +1,78 @@
+// The tick error lane: a word of flags that accompanies every force.
+#pragma once
+
+#include <palpate/core/config.hpp>
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <string_view>
+
+namespace palpate::inline PALPATE_ABI {
+
+enum class StatusFlag : std::uint32_t {
+  non_finite_input = 1u << 0,      ///< the device gave NaN, infinity or an impossible rotation
+  saturated = 1u << 1,             ///< force clamped to the limit, direction kept
+  slew_limited = 1u << 2,          ///< change of force per tick limited
+  stale = 1u << 3,                 ///< input older than allowed: force fades to zero
+  deadline_missed = 1u << 4,       ///< the tick came later than its period allows
+  inverted = 1u << 5,              ///< an element is inverted (non-linear models)
+  solver_not_converged = 1u << 6,  ///< contact or linear solver stopped at its iteration limit
+  energy_injected = 1u << 7,       ///< the passivity observer saw energy leave the virtual side
+  degraded_model = 1u << 8,        ///< something was dropped to stay in bounds (contact capacity, late compliance)
+  disconnected = 1u << 9,          ///< the device reports invalid data
+  reacquired = 1u << 10,           ///< the tool jumped: contact was started anew
+  ramping = 1u << 11,              ///< start-up ramp is scaling the force
+  non_finite_force = 1u << 12,     ///< a computed force was not finite and was replaced by zero
+};
+
+/// Number of flags that exist.
+inline constexpr int status_flag_count = 13;
+
+/// A set of StatusFlag. Trivially copyable; no operation allocates.
+class Status {
+ public:
+  constexpr Status() = default;
+  constexpr Status(StatusFlag flag)
+      : bits_(static_cast<std::uint32_t>(flag)) {}  // NOLINT(google-explicit-constructor): a flag is a status
+  constexpr void set(StatusFlag flag) noexcept { bits_ |= static_cast<std::uint32_t>(flag); }
+  constexpr bool has(StatusFlag flag) const noexcept { return (bits_ & static_cast<std::uint32_t>(flag)) != 0; }
+  constexpr bool ok() const noexcept { return bits_ == 0; }
+  constexpr std::uint32_t bits() const noexcept { return bits_; }
+  constexpr Status& operator|=(Status other) noexcept {
+    bits_ |= other.bits_;
+    return *this;
+  }
+  friend constexpr Status operator|(Status a, Status b) noexcept { return a |= b; }
+  friend constexpr bool operator==(Status, Status) = default;
+
+ private:
+  std::uint32_t bits_ = 0;
+};
+
+/// Name of flag number `bit` (0 ... status_flag_count - 1).
+constexpr std::string_view status_flag_name(int bit) {
+  constexpr std::array<std::string_view, status_flag_count> names{
+      "NonFiniteInput",     "Saturated",      "SlewLimited",   "Stale",        "DeadlineMissed", "Inverted",
+      "SolverNotConverged", "EnergyInjected", "DegradedModel", "Disconnected", "Reacquired",     "Ramping",
+      "NonFiniteForce"};
+  return names[static_cast<std::size_t>(bit)];
+}
+
+/// How often each flag was raised; one add per set flag and tick.
+class StatusCounters {
+ public:
+  void count(Status status) noexcept {
+    for (std::uint32_t bits = status.bits(); bits != 0; bits &= bits - 1)
+      ++counts_[static_cast<std::size_t>(std::countr_zero(bits))];
+  }
+  std::uint64_t operator[](StatusFlag flag) const noexcept {
+    return counts_[static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(flag)))];
+  }
+  std::uint64_t at(int bit) const noexcept { return counts_[static_cast<std::size_t>(bit)]; }
+
+ private:
+  std::array<std::uint64_t, status_flag_count> counts_{};
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,41 @@
+// Fixed-size vectors, matrices and index types used everywhere.
+#pragma once
+
+#include <palpate/core/config.hpp>
+
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Counts and offsets. 64 bit: (3 x surface nodes)^2 overflows 32 bits from 15 447 nodes on.
+using Index = std::int64_t;
+/// A node of a mesh, as stored in connectivity.
+using NodeId = std::int32_t;
+
+using Vector2 = Eigen::Vector2d;
+using Vector3 = Eigen::Vector3d;
+using Matrix3 = Eigen::Matrix3d;
+/// Stress or strain in Voigt order (core/voigt.hpp).
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+/// Elasticity matrix in Voigt order.
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using VectorX = Eigen::VectorXd;
+using MatrixX = Eigen::MatrixXd;
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// True for an Eigen matrix type of exactly R x C doubles. `convertible_to<Matrix6>` would also accept a 5 x 5.
+template <class M, int R, int C>
+concept FixedMatrix = requires {
+  requires std::remove_cvref_t<M>::RowsAtCompileTime == R;
+  requires std::remove_cvref_t<M>::ColsAtCompileTime == C;
+  requires std::same_as<typename std::remove_cvref_t<M>::Scalar, double>;
+};
+
+template <class V, int N>
+concept FixedVector = FixedMatrix<V, N, 1>;
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,121 @@
+// A device without hardware: it moves along a given trajectory, can fail on schedule, and remembers what it was told.
+#pragma once
+
+#include <palpate/device/trajectory.hpp>
+#include <palpate/device/virtual_motors.hpp>
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Something that goes wrong with reads number `first` ... `first + count - 1`, counted from 0.
+struct DeviceFault {
+  enum class Kind {
+    invalid_read,       ///< valid = false
+    nan_position,       ///< one coordinate is NaN, valid stays true
+    infinite_position,  ///< one coordinate is infinite, valid stays true
+    teleport,           ///< the position is `offset` away
+    stall,              ///< each read comes `seconds` later than it should
+    frozen,             ///< the last state is repeated, time stamp and all
+  };
+  Kind kind = Kind::invalid_read;
+  std::uint64_t first = 0;
+  std::uint64_t count = 1;
+  Vector3 offset = Vector3::Zero();  ///< [m]
+  double seconds = 0.0;              ///< [s]
+};
+
+enum class DeviceClock {
+  simulated,  ///< every read is one period later: the same in every run, however fast
+  wall,       ///< the steady clock, from construction on; a stall sleeps
+};
+
+struct MockOptions {
+  double rate = 1000.0;  ///< [1/s] reads per simulated second
+  DeviceClock clock = DeviceClock::simulated;
+  DeviceLimits limits{};
+  std::vector<DeviceFault> faults{};
+};
+
+/// A HapticDevice that follows `Path`: any callable Vector3(double t) that does not throw, kept by value. If it has
+/// velocity(t), states carry velocity; else it is NaN (not given). Reads allocate nothing unless the path does.
+template <class Path = Trajectory>
+class MockDevice {
+ public:
+  explicit MockDevice(Path path, MockOptions options = {})
+      : path_(std::move(path)), options_(std::move(options)), motors_(options_.limits) {
+    if (!(options_.rate > 0.0 && std::isfinite(options_.rate)))
+      raise(SetupErrorKind::bad_argument, "a mock device's rate of " + number(options_.rate) + " Hz", "Give 1000");
+  }
+
+  ToolState read() noexcept {
+    const std::uint64_t n = reads_++;
+    bool frozen = false;
+    for (const DeviceFault& f : options_.faults) {
+      if (!hits(f, n)) continue;
+      if (f.kind == DeviceFault::Kind::stall) stall(f.seconds);
+      frozen |= f.kind == DeviceFault::Kind::frozen;
+    }
+    if (!frozen) last_ = state_at(now(n));
+    ToolState state = last_;
+    for (const DeviceFault& f : options_.faults)
+      if (hits(f, n)) corrupt(state, f);
+    if (unplugged_) state.valid = false;
+    motors_.read_was(state.valid);
+    return state;
+  }
+  /// Torque has no motors.
+  Status write(const Vector3& force, const Vector3& /*torque*/) noexcept { return motors_.render(force); }
+  DeviceLimits limits() const noexcept { return motors_.limits(); }
+  void start() noexcept { motors_.start(); }
+  void stop() noexcept { motors_.stop(); }
+
+  /// While unplugged, reads are invalid. Call from the thread that reads.
+  void unplug(bool unplugged = true) noexcept { unplugged_ = unplugged; }
+  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] what is rendered now
+  double peak_force() const noexcept { return motors_.peak(); }           ///< [N] the most that was rendered
+  std::uint64_t reads() const noexcept { return reads_; }
+
+ private:
+  using Steady = std::chrono::steady_clock;
+
+  static bool hits(const DeviceFault& f, std::uint64_t n) noexcept { return n >= f.first && n - f.first < f.count; }
+  double now(std::uint64_t n) const noexcept {
+    if (options_.clock == DeviceClock::simulated) return static_cast<double>(n) / options_.rate + delay_;
+    return std::chrono::duration<double>(Steady::now() - origin_).count();
+  }
+  void stall(double seconds) noexcept {
+    if (options_.clock == DeviceClock::simulated)
+      delay_ += seconds;
+    else
+      std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  }
+  ToolState state_at(double t) const noexcept {
+    ToolState state;
+    state.time = t;
+    state.position = path_(t);
+    if constexpr (requires { path_.velocity(t); }) state.velocity = path_.velocity(t);
+    return state;
+  }
+  static void corrupt(ToolState& state, const DeviceFault& f) noexcept {
+    if (f.kind == DeviceFault::Kind::invalid_read) state.valid = false;
+    if (f.kind == DeviceFault::Kind::nan_position) state.position[1] = std::numeric_limits<double>::quiet_NaN();
+    if (f.kind == DeviceFault::Kind::infinite_position) state.position[1] = infinity;
+    if (f.kind == DeviceFault::Kind::teleport) state.position += f.offset;
+  }
+
+  Path path_;
+  MockOptions options_;
+  VirtualMotors motors_;
+  ToolState last_;
+  Steady::time_point origin_ = Steady::now();
+  double delay_ = 0.0;  ///< [s] sum of simulated stalls
+  std::uint64_t reads_ = 0;
+  bool unplugged_ = false;
+};
+
+static_assert(HapticDevice<MockDevice<>>);
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,42 @@
+// The four-node tetrahedron.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/element/tri3.hpp>
+#include <palpate/quadrature/tetrahedron.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Linear tetrahedron on the unit tetrahedron (0, e1, e2, e3): N = (1 - u - v - w, u, v, w). The thesis (3.3.2) uses a
+/// regular reference tetrahedron instead; the element is the same, its printed shape functions are corrected in
+/// docs/thesis.md. Locks near incompressibility: results above `locking_poisson_ratio` are flagged.
+struct Tet4 {
+  static constexpr int nodes = 4;
+  static constexpr int order = 1;
+  static constexpr double reference_volume = 1.0 / 6.0;
+  static constexpr double locking_poisson_ratio = 0.4;
+  static constexpr std::array<std::array<int, 3>, 4> faces{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+  using Face = Tri3;
+  using Quadrature = TetrahedronRule<1>;
+  using MassQuadrature = TetrahedronRule<2>;
+
+  static Eigen::Vector4d shape(const Vector3& xi) noexcept {
+    return {1.0 - xi[0] - xi[1] - xi[2], xi[0], xi[1], xi[2]};
+  }
+
+  static Eigen::Matrix<double, 4, 3> gradient(const Vector3&) noexcept {
+    Eigen::Matrix<double, 4, 3> g;
+    g << -1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+    return g;
+  }
+
+  static Eigen::Matrix<double, 4, 3> reference_nodes() noexcept {
+    Eigen::Matrix<double, 4, 3> x;
+    x << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+    return x;
+  }
+};
+
+static_assert(Element<Tet4>);
+
+}  // namespace palpate::inline PALPATE_ABI

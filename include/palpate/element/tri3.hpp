@@ -1,0 +1,29 @@
+// The three-node triangle: the face of Tet4.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/quadrature/triangle.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Linear triangle on the unit triangle (0, e1, e2): N = (1 - u - v, u, v).
+struct Tri3 {
+  static constexpr int nodes = 3;
+  using Quadrature = TriangleRule<2>;
+
+  static Eigen::Vector3d shape(const Eigen::Vector2d& xi) noexcept { return {1.0 - xi[0] - xi[1], xi[0], xi[1]}; }
+
+  static Eigen::Matrix<double, 3, 2> gradient(const Eigen::Vector2d&) noexcept {
+    Eigen::Matrix<double, 3, 2> g;
+    g << -1, -1, 1, 0, 0, 1;
+    return g;
+  }
+
+  static Eigen::Matrix<double, 3, 2> reference_nodes() noexcept {
+    Eigen::Matrix<double, 3, 2> x;
+    x << 0, 0, 1, 0, 0, 1;
+    return x;
+  }
+};
+
+}  // namespace palpate::inline PALPATE_ABI

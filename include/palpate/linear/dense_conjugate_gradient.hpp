@@ -1,0 +1,45 @@
+// Conjugate gradients on a stored dense matrix.
+#pragma once
+
+#include <palpate/linear/conjugate_gradient.hpp>
+
+#include <memory>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// A dense SPD matrix with its diagonal as preconditioner. Satisfies SpdOperator. Copies share the matrix.
+class DenseOperator {
+ public:
+  DenseOperator() = default;
+  explicit DenseOperator(MatrixX matrix)
+      : matrix_(std::make_shared<const MatrixX>(std::move(matrix))),
+        inverse_diagonal_(matrix_->diagonal().cwiseInverse()) {}
+  Index size() const noexcept { return inverse_diagonal_.size(); }
+  std::size_t bytes() const noexcept { return static_cast<std::size_t>(size() * size()) * sizeof(double); }
+  void apply(const VectorX& x, VectorX& y) const noexcept {
+    y.noalias() = matrix_->selfadjointView<Eigen::Lower>() * x;
+  }
+  void precondition(const VectorX& x, VectorX& y) const noexcept { y = inverse_diagonal_.cwiseProduct(x); }
+
+ private:
+  std::shared_ptr<const MatrixX> matrix_;
+  VectorX inverse_diagonal_;
+};
+
+/// Solver of the condensed system that keeps the matrix and neither factorises nor inverts it.
+class DenseConjugateGradient {
+ public:
+  DenseConjugateGradient() = default;
+  DenseConjugateGradient(MatrixX matrix, const SetupLimits&) : op_(std::move(matrix)), solver_(op_.size()) {}
+  Index size() const noexcept { return op_.size(); }
+  std::size_t bytes() const noexcept { return op_.bytes() + solver_.bytes(); }
+  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return solver_.solve_into(op_, b, x); }
+
+ private:
+  DenseOperator op_;
+  ConjugateGradientSolver solver_;
+};
+
+static_assert(LinearSolver<DenseConjugateGradient>);
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,36 @@
+// The stored inverse and its selective product (thesis 3.6.2; Bro-Nielsen and Cotin 1996).
+#pragma once
+
+#include <palpate/linear/dense_cholesky.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// The inverse of a dense SPD matrix, built in double and stored as Scalar. `solve_into` multiplies with the columns of
+/// non-zero loads only: n multiply-adds per loaded dof. Copies share the matrix.
+template <std::floating_point Scalar>
+class DenseInverse {
+ public:
+  DenseInverse() = default;
+  DenseInverse(MatrixX matrix, const SetupLimits& limits)
+      : inverse_(std::make_shared<const Matrix>(
+            DenseCholesky(std::move(matrix), limits).inverse().template cast<Scalar>())) {}
+
+  Index size() const noexcept { return inverse_ ? inverse_->rows() : 0; }
+  std::size_t bytes() const noexcept { return static_cast<std::size_t>(size() * size()) * sizeof(Scalar); }
+
+  /// b and x must not be the same vector. No allocation.
+  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept {
+    x.setZero();
+    for (Index j = 0; j < size(); ++j)
+      if (b[j] != 0.0) x.noalias() += b[j] * inverse_->col(j).template cast<double>();
+    return {true, 0, std::numeric_limits<double>::quiet_NaN()};
+  }
+
+ private:
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+  std::shared_ptr<const Matrix> inverse_;
+};
+
+static_assert(LinearSolver<DenseInverse<float>>);
+
+}  // namespace palpate::inline PALPATE_ABI

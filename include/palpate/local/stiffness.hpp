@@ -1,0 +1,28 @@
+// Stiffness of one element.
+#pragma once
+
+#include <palpate/local/geometry.hpp>
+#include <palpate/local/strain_displacement.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Stiffness matrix of an element, node-major (x y z per node).
+template <Element E>
+using ElementStiffness = Eigen::Matrix<double, 3 * E::nodes, 3 * E::nodes>;
+
+/// K_e = sum_q B^T D B dV [N/m] (thesis 3.44) with the element's own rule. `x` holds the nodes [m], `d` the elasticity
+/// matrix [Pa].
+template <Element E>
+ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const Matrix6& d) noexcept {
+  ElementStiffness<E> k = ElementStiffness<E>::Zero();
+  for (const auto& point : E::Quadrature::points) {
+    const PointGeometry<E> g = point_geometry<E>(x, reference_point(point), point.weight);
+    Eigen::Matrix<double, 6, 3 * E::nodes> b;
+    for (int a = 0; a < E::nodes; ++a)
+      b.template middleCols<3>(3 * a) = strain_displacement(g.gradient.row(a).transpose());
+    k.noalias() += b.transpose() * (g.volume * d) * b;
+  }
+  return k;
+}
+
+}  // namespace palpate::inline PALPATE_ABI

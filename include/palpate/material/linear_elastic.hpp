@@ -1,0 +1,68 @@
+// Isotropic linear elasticity (thesis 3.2: eqs. 3.1, 3.2).
+#pragma once
+
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/voigt.hpp>
+
+#include <cmath>
+#include <string>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Isotropic Hooke's law, small strain: sigma = D (epsilon - epsilon_0).
+/// Admissible: youngs_modulus > 0, -1 < poisson_ratio < 0.5, density >= 0, all finite; anything else is refused, never
+/// replaced.
+struct LinearElastic {
+  double youngs_modulus = 0.0;  ///< E [Pa]
+  double poisson_ratio = 0.0;   ///< nu [-]
+  double density = 0.0;         ///< rho [kg/m^3]; needed for gravity only
+
+  /// First Lame parameter lambda [Pa].
+  double lame_lambda() const noexcept {
+    return youngs_modulus * poisson_ratio / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio));
+  }
+  /// Shear modulus mu [Pa].
+  double shear_modulus() const noexcept { return youngs_modulus / (2.0 * (1.0 + poisson_ratio)); }
+
+  /// The matrix D [Pa] of eq. 3.2, 6 x 6, engineering shear.
+  Matrix6 elasticity() const noexcept {
+    const double lambda = lame_lambda(), mu = shear_modulus();
+    Matrix6 d = Matrix6::Zero();
+    d.topLeftCorner<3, 3>().setConstant(lambda);
+    for (int i = 0; i < 3; ++i) d(i, i) += 2.0 * mu;
+    for (int i = 3; i < 6; ++i) d(i, i) = mu;
+    return d;
+  }
+
+  /// The problem with these parameters, or nothing.
+  std::optional<SetupProblem> check() const {
+    const auto problem = [](SetupErrorKind kind, const char* what, double value, double threshold, const char* hint) {
+      SetupProblem p;
+      p.kind = kind;
+      p.what = std::string(what) + " is " + number(value);
+      p.hint = hint;
+      p.value = value;
+      p.threshold = threshold;
+      return p;
+    };
+    // Written so that NaN fails every comparison. 1 - 2 nu and 1 + nu are what the law divides by: they must not vanish
+    // either.
+    if (!(std::isfinite(youngs_modulus) && youngs_modulus > 0.0))
+      return problem(SetupErrorKind::bad_youngs_modulus, "youngs_modulus", youngs_modulus, 0.0,
+                     "It must be finite and positive, in Pa");
+    if (!(poisson_ratio > -1.0 && poisson_ratio < 0.5))
+      return problem(SetupErrorKind::bad_poisson_ratio, "poisson_ratio", poisson_ratio, poisson_ratio < 0 ? -1.0 : 0.5,
+                     "It must lie strictly between -1 and 0.5");
+    if (!(std::isfinite(density) && density >= 0.0))
+      return problem(SetupErrorKind::bad_density, "density", density, 0.0,
+                     "It must be finite and not negative, in kg/m^3");
+    if (!elasticity().allFinite())
+      return problem(SetupErrorKind::not_positive_definite, "the largest modulus", lame_lambda(), 0.0,
+                     "youngs_modulus is too large for double precision");
+    return std::nullopt;
+  }
+};
+
+static_assert(LinearMaterial<LinearElastic>);
+
+}  // namespace palpate::inline PALPATE_ABI

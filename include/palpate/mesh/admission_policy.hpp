@@ -1,0 +1,91 @@
+// What happens to a defective mesh: the decisions a caller can take, and how a refusal is worded.
+#pragma once
+
+#include <palpate/mesh/diagnosis.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// What to do about a defect: refuse the mesh, mend it, or take it as it is. All three report it in the diagnosis.
+enum class Admission { refuse, repair, accept };
+
+/// One decision per defect. Unusable indices, positions that are not finite, empty meshes and slivers below
+/// `thresholds.quality_floor` are always refused. There is no repair for poor_quality, disconnected and units.
+struct AdmissionPolicy {
+  Admission inverted = Admission::refuse;    ///< repair: node order mirrored (Tet4: two nodes swapped)
+  Admission degenerate = Admission::refuse;  ///< repair: element dropped
+  Admission poor_quality = Admission::accept;
+  Admission duplicate_nodes = Admission::refuse;     ///< repair: welded into the lowest of them
+  Admission duplicate_elements = Admission::refuse;  ///< repair: all but the first dropped
+  Admission orphans = Admission::repair;  ///< repair: node dropped. Accepted, it gives the stiffness a zero row
+  Admission disconnected = Admission::accept;
+  Admission units = Admission::accept;
+  MeshThresholds thresholds;
+};
+
+namespace detail {
+
+/// A row of the table below: which finding, which decision, how to say it.
+struct AdmissionRule {
+  SetupErrorKind kind;
+  Finding MeshDiagnosis::*finding;
+  Admission AdmissionPolicy::*decision;  ///< null: always refused
+  bool of_nodes;
+  bool can_repair;
+  const char* what;
+  const char* hint;
+};
+
+inline constexpr std::array<AdmissionRule, 11> admission_rules{{
+    {SetupErrorKind::index_out_of_range, &MeshDiagnosis::index_out_of_range, nullptr, false, false,
+     "elements name a node or region that does not exist", "Ids count from zero; a file may count from one"},
+    {SetupErrorKind::non_finite, &MeshDiagnosis::non_finite, nullptr, true, false,
+     "positions are not finite or beyond 1e100", ""},
+    {SetupErrorKind::duplicate_node, &MeshDiagnosis::duplicate_nodes, &AdmissionPolicy::duplicate_nodes, true, true,
+     "nodes lie on another one (distance / local edge)", "Weld them: duplicate_nodes = Admission::repair"},
+    {SetupErrorKind::duplicate_element, &MeshDiagnosis::duplicate_elements, &AdmissionPolicy::duplicate_elements, false,
+     true, "elements repeat another one", "Drop them: duplicate_elements = Admission::repair"},
+    {SetupErrorKind::degenerate_element, &MeshDiagnosis::degenerate, &AdmissionPolicy::degenerate, false, true,
+     "elements are flat (volume / longest edge^3)", "Drop them: degenerate = Admission::repair"},
+    {SetupErrorKind::inverted_element, &MeshDiagnosis::inverted, &AdmissionPolicy::inverted, false, true,
+     "elements are inverted (volume / longest edge^3)", "Turn them round: inverted = Admission::repair"},
+    {SetupErrorKind::poor_quality, &MeshDiagnosis::slivers, nullptr, false, false, "elements are slivers (mean ratio)",
+     "Mesh anew, or lower thresholds.quality_floor and expect inaccurate forces"},
+    {SetupErrorKind::poor_quality, &MeshDiagnosis::poor_quality, &AdmissionPolicy::poor_quality, false, false,
+     "elements are of poor quality (mean ratio)", "Mesh anew, or poor_quality = Admission::accept"},
+    {SetupErrorKind::orphan_node, &MeshDiagnosis::orphans, &AdmissionPolicy::orphans, true, true,
+     "nodes belong to no element", "Drop them: orphans = Admission::repair"},
+    {SetupErrorKind::disconnected, &MeshDiagnosis::disconnected, &AdmissionPolicy::disconnected, true, false,
+     "components share no node (first node of each)", "Weld coincident nodes, or disconnected = Admission::accept"},
+    {SetupErrorKind::suspicious_units, &MeshDiagnosis::units, &AdmissionPolicy::units, true, false,
+     "mesh is larger than two metres across (diagonal [m])", "Positions are metres; scale millimetres by 0.001"},
+}};
+
+/// A finding as a refusal.
+PALPATE_COLD inline SetupProblem make_problem(const AdmissionRule& rule, const Finding& finding) {
+  SetupProblem p;
+  p.kind = rule.kind;
+  p.what = std::to_string(finding.count) + ' ' + rule.what + ", worst " + number(finding.worst) + ", bound " +
+           number(finding.threshold);
+  p.hint = rule.hint;
+  p.ids = finding.ids;
+  p.count = finding.count;
+  p.value = finding.worst;
+  p.threshold = finding.threshold;
+  return p;
+}
+
+/// Refuses a policy that asks for a repair nobody can make, or whose bounds are no numbers: NaN would let everything
+/// pass.
+inline void require_usable(const AdmissionPolicy& policy) {
+  const MeshThresholds& t = policy.thresholds;
+  for (double bound : {t.degenerate, t.poor_quality, t.quality_floor, t.coincidence, t.millimetres})
+    if (!(bound >= 0.0))
+      raise(SetupErrorKind::bad_argument, "a mesh threshold is " + number(bound), "Give zero or more");
+  for (const AdmissionRule& rule : admission_rules)
+    if (rule.decision != nullptr && !rule.can_repair && policy.*(rule.decision) == Admission::repair)
+      raise(SetupErrorKind::unsupported, "there is no repair for " + std::string(to_string(rule.kind)),
+            "Choose refuse or accept");
+}
+
+}  // namespace detail
+}  // namespace palpate::inline PALPATE_ABI

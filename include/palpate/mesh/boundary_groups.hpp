@@ -1,0 +1,32 @@
+// Groups made of boundary faces.
+#pragma once
+
+#include <palpate/mesh/surface.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+namespace detail {
+
+/// Adds the group of all boundary faces that `choose` accepts, with their nodes. `choose` takes a face, or a node: a
+/// face then needs all its nodes accepted.
+template <Element E, class Choose>
+void add_boundary_group(Mesh<E>& mesh, const std::vector<BoundaryFace<E>>& boundary, std::string_view name,
+                        Choose choose) {
+  const auto chosen = [&](const BoundaryFace<E>& face) {
+    if constexpr (std::predicate<Choose&, NodeId>)
+      return std::ranges::all_of(face.nodes, choose);
+    else
+      return choose(face);
+  };
+  Group& group = mesh.groups.get_or_add(name, 2);
+  for (const BoundaryFace<E>& face : boundary) {
+    if (!chosen(face)) continue;
+    group.faces.emplace_back(face.nodes.begin(), face.nodes.end());
+    group.nodes.insert(group.nodes.end(), face.nodes.begin(), face.nodes.end());
+  }
+  mesh.groups.tidy();
+}
+
+}  // namespace detail
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,67 @@
+// The owning mesh.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/mesh/groups.hpp>
+
+#include <array>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// A mesh of elements E that owns its arrays. A plain aggregate of public arrays: fill it, then hand it to `admit()` or
+/// to a model.
+template <Element E>
+struct Mesh {
+  static constexpr int nodes_per_element = E::nodes;
+  using Connectivity = std::array<NodeId, static_cast<std::size_t>(E::nodes)>;
+
+  std::vector<Vector3> positions;      ///< [m]
+  std::vector<Connectivity> elements;  ///< node ids per element, order of E::reference_nodes()
+  std::vector<int> regions;            ///< region of each element; empty means all 0
+  std::vector<std::string> region_names{"body"};
+  GroupTable groups;
+
+  Index node_count() const noexcept { return static_cast<Index>(positions.size()); }
+  Index element_count() const noexcept { return static_cast<Index>(elements.size()); }
+  const Vector3& position(Index i) const noexcept { return positions[static_cast<std::size_t>(i)]; }
+  NodeId element_node(Index e, int a) const noexcept {
+    return elements[static_cast<std::size_t>(e)][static_cast<std::size_t>(a)];
+  }
+  int region(Index e) const noexcept { return regions.empty() ? 0 : regions[static_cast<std::size_t>(e)]; }
+  int region_count() const noexcept { return static_cast<int>(region_names.size()); }
+  const std::string& region_name(int r) const noexcept { return region_names[static_cast<std::size_t>(r)]; }
+  const Group* find_group(std::string_view name) const noexcept { return groups.find(name); }
+};
+
+/// Coordinates of element e's nodes, one per row [m].
+template <Element E, MeshOf<E> M>
+ElementNodes<E> element_nodes(const M& mesh, Index e) {
+  ElementNodes<E> x;
+  for (int a = 0; a < E::nodes; ++a) x.row(a) = mesh.position(static_cast<Index>(mesh.element_node(e, a))).transpose();
+  return x;
+}
+
+/// Owning copy of any mesh, with the groups named in `group_names`.
+template <Element E, MeshOf<E> M>
+Mesh<E> copy_mesh(const M& view, const std::vector<std::string>& group_names = {}) {
+  Mesh<E> mesh;
+  const Index n = view.node_count(), m = view.element_count();
+  mesh.positions.reserve(static_cast<std::size_t>(n));
+  for (Index i = 0; i < n; ++i) mesh.positions.push_back(view.position(i));
+  mesh.elements.resize(static_cast<std::size_t>(m));
+  mesh.regions.resize(static_cast<std::size_t>(m));
+  for (Index e = 0; e < m; ++e) {
+    for (int a = 0; a < E::nodes; ++a)
+      mesh.elements[static_cast<std::size_t>(e)][static_cast<std::size_t>(a)] =
+          static_cast<NodeId>(view.element_node(e, a));
+    mesh.regions[static_cast<std::size_t>(e)] = static_cast<int>(view.region(e));
+  }
+  mesh.region_names.clear();
+  for (int r = 0; r < view.region_count(); ++r) mesh.region_names.emplace_back(view.region_name(r));
+  for (const std::string& name : group_names)
+    if (const Group* g = view.find_group(name)) mesh.groups.get_or_add(name, g->dimension) = *g;
+  return mesh;
+}
+
+}  // namespace palpate::inline PALPATE_ABI

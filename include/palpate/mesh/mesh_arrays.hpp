@@ -1,0 +1,76 @@
+// A mesh over arrays that somebody else owns.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/mesh/groups.hpp>
+
+#include <span>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Reads a simulator's own arrays as a mesh, without a copy: `positions` holds x y z per node, `connectivity` E::nodes
+/// ids per element (zero based), `regions` one number per element or nothing. Groups are added with `group()`. The
+/// arrays must outlive the view; temporaries are rejected at compile time. Any floating and any integral type will do.
+template <Element E, std::floating_point Real, std::integral Integer>
+class MeshArrays {
+ public:
+  static constexpr int nodes_per_element = E::nodes;
+
+  /// Throws bad_argument when a length is no multiple of 3 or E::nodes, or `regions` has the wrong length.
+  MeshArrays(const std::vector<Real>& positions, const std::vector<Integer>& connectivity)
+      : MeshArrays(std::span<const Real>(positions), std::span<const Integer>(connectivity)) {}
+  MeshArrays(std::vector<Real>&&, const std::vector<Integer>&) = delete;
+  MeshArrays(const std::vector<Real>&, std::vector<Integer>&&) = delete;
+  MeshArrays(std::vector<Real>&&, std::vector<Integer>&&) = delete;
+  MeshArrays(std::span<const Real> positions, std::span<const Integer> connectivity, std::span<const int> regions = {})
+      : positions_(positions), connectivity_(connectivity), regions_(regions) {
+    if (positions.size() % 3 != 0)
+      raise(SetupErrorKind::bad_argument, "positions holds " + std::to_string(positions.size()) + " numbers",
+            "It needs x y z per node");
+    if (connectivity.size() % static_cast<std::size_t>(E::nodes) != 0)
+      raise(SetupErrorKind::bad_argument, "connectivity holds " + std::to_string(connectivity.size()) + " ids",
+            "It needs " + std::to_string(E::nodes) + " per element");
+    if (!regions.empty() && static_cast<Index>(regions.size()) != element_count())
+      raise(SetupErrorKind::bad_argument, "regions holds " + std::to_string(regions.size()) + " numbers",
+            "It needs one per element: " + std::to_string(element_count()));
+    int count = 1;
+    for (int r : regions) count = std::max(count, r + 1);
+    for (int r = 0; r < count; ++r) region_names_.push_back(count == 1 ? "body" : "region " + std::to_string(r));
+  }
+
+  /// Adds or extends a named group of nodes.
+  MeshArrays& group(std::string_view name, std::span<const NodeId> nodes) {
+    Group& g = groups_.get_or_add(name, 0);
+    g.nodes.insert(g.nodes.end(), nodes.begin(), nodes.end());
+    groups_.tidy();
+    return *this;
+  }
+  MeshArrays& name_region(int region, std::string name) {
+    region_names_.at(static_cast<std::size_t>(region)) = std::move(name);
+    return *this;
+  }
+
+  Index node_count() const noexcept { return static_cast<Index>(positions_.size() / 3); }
+  Index element_count() const noexcept { return static_cast<Index>(connectivity_.size()) / E::nodes; }
+  Vector3 position(Index i) const noexcept {
+    const auto* p = positions_.data() + 3 * i;
+    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+  }
+  Index element_node(Index e, int a) const noexcept {
+    return static_cast<Index>(connectivity_[static_cast<std::size_t>(e * E::nodes + a)]);
+  }
+  int region(Index e) const noexcept { return regions_.empty() ? 0 : regions_[static_cast<std::size_t>(e)]; }
+  int region_count() const noexcept { return static_cast<int>(region_names_.size()); }
+  const std::string& region_name(int r) const noexcept { return region_names_[static_cast<std::size_t>(r)]; }
+  const Group* find_group(std::string_view name) const noexcept { return groups_.find(name); }
+
+ private:
+  std::span<const Real> positions_;
+  std::span<const Integer> connectivity_;
+  std::span<const int> regions_;
+  std::vector<std::string> region_names_;
+  GroupTable groups_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,178 @@
+// What holds, loads and touches a body: groups and conditions, no element, no mesh.
+#pragma once
+
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Part of a mesh: the name of a group (or of a region, or "surface"), or a list of nodes.
+using Selection = std::variant<std::string, std::vector<NodeId>>;
+
+/// Selects all elements where a region is asked for.
+inline const std::string everywhere{};
+
+/// Displacement per component [m]; an empty component stays free.
+using Components = std::array<std::optional<double>, 3>;
+
+/// The conditions of a scene. Knows groups by name only; names are resolved, and unknown ones refused, when a model is
+/// made. Every call throws SetupError(non_finite) on NaN or infinity.
+class Scene {
+ public:
+  struct Prescribed {
+    Selection where;
+    Components values;
+  };
+  struct Traction {
+    Selection where;
+    Vector3 traction;
+  };
+  struct Pressure {
+    Selection where;
+    double pressure;
+  };
+  struct PointLoad {
+    Selection where;
+    Vector3 force;
+  };
+  struct BodyLoad {
+    std::string region;
+    Vector3 force_per_volume;
+  };
+  struct InitialStrain {
+    std::string region;
+    Vector6 strain;
+  };
+
+  /// Holds all three components of every node at zero (essential condition).
+  Scene& fix(Selection where) { return prescribe(std::move(where), {0.0, 0.0, 0.0}); }
+
+  /// Prescribes the displacement [m] of the given components (essential condition). Two different values for one
+  /// component are refused when the model is made.
+  Scene& prescribe(Selection where, Components values) {
+    for (const auto& v : values) require_finite(v.value_or(0.0), "a prescribed displacement");
+    prescribed_.push_back({std::move(where), values});
+    return *this;
+  }
+  /// Force per reference area [Pa] on the faces of a group (natural condition, eq. 3.42).
+  Scene& traction(Selection where, const Vector3& value) {
+    require_finite(value.sum(), "a traction");
+    tractions_.push_back({std::move(where), value});
+    return *this;
+  }
+  /// Pressure [Pa] on boundary faces; positive pushes onto the surface. Dead load: it keeps the reference normal.
+  Scene& pressure(Selection where, double value) {
+    require_finite(value, "a pressure");
+    pressures_.push_back({std::move(where), value});
+    return *this;
+  }
+  /// Total force [N], shared equally by the nodes of the group.
+  Scene& point_load(Selection where, const Vector3& force) {
+    require_finite(force.sum(), "a point load");
+    point_loads_.push_back({std::move(where), force});
+    return *this;
+  }
+  /// Acceleration [m/s^2]; the load is density times acceleration (eq. 3.41). Replaces an earlier one.
+  Scene& gravity(const Vector3& acceleration) {
+    require_finite(acceleration.sum(), "gravity");
+    gravity_ = acceleration;
+    return *this;
+  }
+  /// Force per reference volume [N/m^3] on a region, or `everywhere`.
+  Scene& body_load(std::string region, const Vector3& force_per_volume) {
+    require_finite(force_per_volume.sum(), "a body load");
+    body_loads_.push_back({std::move(region), force_per_volume});
+    return *this;
+  }
+  /// Stress-free strain epsilon_0 (Voigt order of core/voigt.hpp, engineering shear) of a region, or `everywhere`:
+  /// swelling, contraction, thermal expansion (eqs. 3.1, 3.47).
+  Scene& initial_strain(std::string region, const Vector6& strain) {
+    require_finite(strain.sum(), "an initial strain");
+    initial_strains_.push_back({std::move(region), strain});
+    return *this;
+  }
+  /// Nodes a tool may touch: their dofs are kept, all others are condensed away.
+  Scene& touch(Selection where) {
+    touched_.push_back(std::move(where));
+    return *this;
+  }
+  /// Nodes somebody looks at: their displacement is recovered at visual rate.
+  Scene& see(Selection where) {
+    seen_.push_back(std::move(where));
+    return *this;
+  }
+
+  const std::vector<Prescribed>& prescribed() const noexcept { return prescribed_; }
+  const std::vector<Traction>& tractions() const noexcept { return tractions_; }
+  const std::vector<Pressure>& pressures() const noexcept { return pressures_; }
+  const std::vector<PointLoad>& point_loads() const noexcept { return point_loads_; }
+  const std::vector<BodyLoad>& body_loads() const noexcept { return body_loads_; }
+  const std::vector<InitialStrain>& initial_strains() const noexcept { return initial_strains_; }
+  const std::vector<Selection>& touched() const noexcept { return touched_; }
+  const std::vector<Selection>& seen() const noexcept { return seen_; }
+  const Vector3& gravity() const noexcept { return gravity_; }
+
+  /// The same scene for renumbered nodes: listed node ids go through `map`, those mapped to -1 are dropped. Throws
+  /// index_out_of_range.
+  Scene mapped(const std::vector<NodeId>& map) const {
+    Scene s = *this;
+    const auto renumber = [&](Selection& where) {
+      auto* nodes = std::get_if<std::vector<NodeId>>(&where);
+      if (nodes == nullptr) return;
+      std::vector<NodeId> mapped_nodes;
+      for (NodeId node : *nodes) {
+        if (node < 0 || static_cast<std::size_t>(node) >= map.size())
+          raise(SetupErrorKind::index_out_of_range,
+                "the scene names node " + std::to_string(node) + ", the mesh has " + std::to_string(map.size()));
+        if (map[static_cast<std::size_t>(node)] >= 0) mapped_nodes.push_back(map[static_cast<std::size_t>(node)]);
+      }
+      *nodes = std::move(mapped_nodes);
+    };
+    for (auto& c : s.prescribed_) renumber(c.where);
+    for (auto& c : s.tractions_) renumber(c.where);
+    for (auto& c : s.pressures_) renumber(c.where);
+    for (auto& c : s.point_loads_) renumber(c.where);
+    for (auto& c : s.touched_) renumber(c);
+    for (auto& c : s.seen_) renumber(c);
+    return s;
+  }
+
+  /// Names of all groups the scene speaks of.
+  std::vector<std::string> group_names() const {
+    std::vector<std::string> names;
+    const auto add = [&](const Selection& s) {
+      if (const auto* name = std::get_if<std::string>(&s)) names.push_back(*name);
+    };
+    for (const auto& c : prescribed_) add(c.where);
+    for (const auto& c : tractions_) add(c.where);
+    for (const auto& c : pressures_) add(c.where);
+    for (const auto& c : point_loads_) add(c.where);
+    for (const auto& c : touched_) add(c);
+    for (const auto& c : seen_) add(c);
+    return names;
+  }
+
+ private:
+  static void require_finite(double value, const char* what) {
+    if (!std::isfinite(value)) raise(SetupErrorKind::non_finite, std::string(what) + " is not finite");
+  }
+
+  std::vector<Prescribed> prescribed_;
+  std::vector<Traction> tractions_;
+  std::vector<Pressure> pressures_;
+  std::vector<PointLoad> point_loads_;
+  std::vector<BodyLoad> body_loads_;
+  std::vector<InitialStrain> initial_strains_;
+  std::vector<Selection> touched_;
+  std::vector<Selection> seen_;
+  Vector3 gravity_ = Vector3::Zero();
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,52 @@
+// What admission and materials have to say in a set-up report.
+#pragma once
+
+#include <palpate/mesh/admission.hpp>
+#include <palpate/model/setup_report.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Sizes, quality and findings of an admitted mesh.
+template <Element E>
+void report_admission(const Admitted<E>& admitted, SetupReport& report) {
+  const MeshDiagnosis& given = admitted.diagnosis;
+  const MeshDiagnosis& left = admitted.admitted;
+  report.nodes = left.node_count;
+  report.elements = left.element_count;
+  report.worst_quality = left.min_quality;
+  report.mean_quality = left.mean_quality;
+  if (left.poor_quality)
+    report.set(SetupFlag::poor_quality, std::to_string(left.poor_quality.count) +
+                                            " elements are of poor quality, worst " + number(left.min_quality));
+  if (left.looks_like_millimetres)
+    report.set(SetupFlag::suspicious_units, "the body is " + number(left.diagonal) + " m across: millimetres?");
+  if (left.component_count > 1)
+    report.set(SetupFlag::disconnected, "the body is in " + std::to_string(left.component_count) + " pieces");
+  const bool repaired = left.node_count != given.node_count || left.element_count != given.element_count ||
+                        left.inverted.count != given.inverted.count;
+  if (repaired)
+    report.set(SetupFlag::repaired, "admission repaired the mesh: " + std::to_string(given.orphans.count) +
+                                        " orphan nodes, " + std::to_string(given.inverted.count) + " inverted and " +
+                                        std::to_string(given.degenerate.count) +
+                                        " flat elements were found; ids are those of mesh(), see node_map()");
+}
+
+template <class E>
+concept SaysWhenItLocks = requires { E::locking_poisson_ratio; };
+template <class M>
+concept HasPoissonRatio = requires(const M& material) { material.poisson_ratio; };
+
+/// Flags an element that locks at the Poisson ratio of one of the materials, where both say enough to know.
+template <Element E, class M>
+void report_locking(const std::vector<M>& materials, SetupReport& report) {
+  if constexpr (SaysWhenItLocks<E> && HasPoissonRatio<M>)
+    for (const M& material : materials)
+      if (material.poisson_ratio > E::locking_poisson_ratio) {
+        report.set(SetupFlag::locking, "this element is too stiff at a Poisson ratio of " +
+                                           number(material.poisson_ratio) + " (above " +
+                                           number(E::locking_poisson_ratio) + ")");
+        return;
+      }
+}
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,218 @@
+// The composition: element, material and solver make a tissue that can be touched.
+#pragma once
+
+#include <palpate/contact/contact_surface.hpp>
+#include <palpate/model/admission_report.hpp>
+#include <palpate/model/contact_compliance.hpp>
+#include <palpate/model/statics.hpp>
+#include <palpate/model/touchable.hpp>
+
+#include <memory>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// What a caller may decide about a model's set-up.
+struct SetupOptions {
+  ProgressCallback progress;  ///< may cancel
+  std::size_t memory_limit =
+      std::numeric_limits<std::size_t>::max();  ///< [bytes]; more is refused as too_large before it is allocated
+  int threads = 1;
+  AdmissionPolicy admission;
+  int compliance_slots = 256;  ///< vertices whose compliance a lazy solver remembers
+};
+
+/// Linear static tissue. `E` is the element, `M` the material, `Solver` a policy of model/policies.hpp; assembly,
+/// quadrature and condensation come with them. The model is prepared once and copies what it needs from mesh and scene.
+/// Afterwards it changes through named calls only (loads, prescribed values, gravity, pose, reset), none of which
+/// refactorises; none may run while a tick does. Satisfies TissueModel.
+///
+/// Frames: nodes, forces and displacements are in the model's frame, which is the mesh's; `set_pose` places it in the
+/// world of the tools.
+template <Element E, LinearMaterial M, SolverPolicy Solver = Condensed<SelectiveInverse>>
+class HapticFEModel {
+ public:
+  static_assert(E::Face::nodes == 3, "touch is implemented for elements with three-node faces");
+  using Traits = SolverTraits<Solver>;
+
+  /// One material everywhere. Throws SetupError; see docs/errors.md for the kinds.
+  template <MeshOf<E> Mesh>
+  HapticFEModel(const Mesh& mesh, const Scene& scene, const M& material, const SetupOptions& options = {})
+      : HapticFEModel(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options) {}
+
+  /// One material per region.
+  template <MeshOf<E> Mesh>
+  HapticFEModel(const Mesh& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                const SetupOptions& options = {})
+      : limits_{options.progress, options.memory_limit, options.threads} {
+    prepare(mesh, scene, materials, options);
+  }
+
+  const SetupReport& report() const noexcept { return report_; }
+  /// The admitted mesh, in the frame of `origin()`.
+  const Mesh<E>& mesh() const noexcept { return statics_->body().mesh; }
+  /// Where the admitted mesh's frame lies in the mesh as given [m].
+  const Vector3& origin() const noexcept { return origin_; }
+  /// New id of every node as given, -1 for those dropped at admission.
+  const std::vector<NodeId>& node_map() const noexcept { return node_map_; }
+  /// Resting position of an admitted node, in the frame of the mesh as given [m].
+  Vector3 rest_position(NodeId node) const noexcept { return origin_ + mesh().position(node); }
+  /// Node of every vertex of the contact surface.
+  const std::vector<NodeId>& touchable_nodes() const noexcept { return touchable_; }
+  const std::vector<NodeId>& seen_nodes() const noexcept { return seen_; }
+  const std::vector<BoundaryFace<E>>& boundary() const noexcept { return statics_->boundary(); }
+  const Body<E>& body() const noexcept { return statics_->body(); }
+
+  /// Displacement under the scene's loads, no tool: 3 per admitted node [m].
+  const VectorX& displacement() const noexcept { return statics_->displacement(); }
+  VectorX internal_force() const { return statics_->internal_force(); }
+  VectorX reactions() const { return statics_->reactions(); }
+  double strain_energy() const { return palpate::strain_energy(statics_->body(), statics_->displacement()); }
+  /// P_u of eq. 3.51 on the free dofs of the touchable nodes; condensing policies only.
+  const MatrixX& condensed_stiffness() const noexcept { return tick_system_.stiffness(); }
+
+  /// Displacement with these forces on the contact surface, for drawing: one back-substitution. u has 3 entries per
+  /// node. No allocation; may run beside a tick, but not twice at once.
+  SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept {
+    nodal_.clear();
+    for (const VertexForce& f : forces)
+      if (nodal_.size() < nodal_.capacity())
+        nodal_.emplace_back(touchable_[static_cast<std::size_t>(f.vertex)], f.force);
+    return statics_->displacement_with(nodal_, u);
+  }
+
+  /// Replaces loads and prescribed values; the set of prescribed components and of touched nodes must stay. Strong
+  /// guarantee.
+  void set_conditions(const Scene& scene) {
+    const Scene mapped = scene.mapped(node_map_);
+    statics_->set_conditions(mapped, pose_.linear().transpose() * scene.gravity());
+    gravity_ = scene.gravity();
+    move_surface();
+  }
+  /// Gravity [m/s^2] in the world's frame.
+  void set_gravity(const Vector3& gravity) {
+    if (!gravity.allFinite()) raise(SetupErrorKind::non_finite, "gravity is not finite");
+    statics_->set_gravity(pose_.linear().transpose() * gravity);
+    gravity_ = gravity;
+    move_surface();
+  }
+  /// Where the organ lies in the world; turns gravity with it. Throws bad_argument unless it is a rigid motion.
+  void set_pose(const Eigen::Isometry3d& pose) {
+    const bool rigid = pose.matrix().allFinite() &&
+                       (pose.linear().transpose() * pose.linear() - Matrix3::Identity()).norm() < 1e-9 &&
+                       pose.linear().determinant() > 0.0;
+    if (!rigid)
+      raise(SetupErrorKind::bad_argument, "the pose is not a rigid motion",
+            "Give a proper rotation and a finite translation");
+    if (!gravity_.isZero(0.0)) statics_->set_gravity(pose.linear().transpose() * gravity_);
+    pose_ = pose;
+    world_ = pose_ * Eigen::Translation3d(origin_);
+    move_surface();
+  }
+  /// Back to the scene and pose of construction.
+  void reset() {
+    pose_.setIdentity();
+    world_ = pose_ * Eigen::Translation3d(origin_);
+    statics_->set_conditions(scene_, scene_.gravity());
+    gravity_ = scene_.gravity();
+    move_surface();
+  }
+
+  // TissueModel
+  const ContactSurface& contact_surface() const noexcept { return surface_; }
+  Status require_columns(std::span<const int> vertices) noexcept { return compliance_.require(tick_system_, vertices); }
+  Matrix3 compliance(int i, int j) const noexcept { return compliance_(i, j); }
+  double compliance_bound(int j) const noexcept { return compliance_.bound(j); }
+  double compliance_floor() const noexcept { return compliance_floor_; }
+  /// Frame of the contact surface in the world.
+  const Eigen::Isometry3d& pose() const noexcept { return world_; }
+
+ private:
+  template <class Mesh>
+  void prepare(const Mesh& mesh, const Scene& scene, const RegionMaterials<M>& materials, const SetupOptions& options) {
+    const std::vector<M> by_region = materials_by_region(mesh, materials);
+    limits_.advance("admission", 0.0);
+    Admitted<E> admitted = [&] {
+      const StageTimer timer(report_, "admission");
+      return admit<E>(mesh, options.admission, scene.group_names());
+    }();
+    report_admission(admitted, report_);
+    node_map_ = std::move(admitted.node_map);
+    scene_ = scene.mapped(node_map_);
+    origin_ = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
+    for (Vector3& x : admitted.mesh.positions) x -= origin_;
+    world_ = pose_ * Eigen::Translation3d(origin_);
+
+    Body<E> body{std::move(admitted.mesh), {}, {}, {}};
+    for (const M& material : by_region) {
+      body.elasticity.push_back(material.elasticity());
+      body.density.push_back(material.density);
+    }
+    body.initial_strain.assign(by_region.size(), Vector6::Zero());
+    report_locking<E>(by_region, report_);
+
+    auto boundary = extract_boundary<E>(body.mesh);
+    const Touchable touchable = resolve_touchable(body.mesh, boundary, scene_);
+    touchable_ = touchable.nodes;
+    seen_ = resolve_seen(body.mesh, boundary, scene_);
+    statics_ = std::make_unique<Statics<E, Solver>>(std::move(body), scene_, std::move(boundary), touchable_, limits_,
+                                                    report_);
+    statics_->set_conditions(scene_, scene_.gravity());
+    gravity_ = scene_.gravity();
+    tick_system_ = statics_->system();
+    prepare_contact(touchable.triangles, options);
+  }
+
+  void prepare_contact(const std::vector<Triangle>& triangles, const SetupOptions& options) {
+    const StageTimer timer(report_, "compliance");
+    const int vertices = static_cast<int>(touchable_.size());
+    std::vector<Index> kept_index(3 * touchable_.size(), -1);
+    Index kept = 0;
+    for (std::size_t i = 0; i < kept_index.size(); ++i)
+      if (!statics_->conditions().is_constrained(3 * Index{touchable_[i / 3]} + static_cast<Index>(i % 3)))
+        kept_index[i] = kept++;
+    compliance_ = ContactCompliance<typename Traits::Scalar>(
+        vertices, std::move(kept_index), kept, Traits::eager ? vertices : options.compliance_slots, limits_);
+    if (Traits::eager)
+      for (int v = 0; v < vertices; ++v) {
+        if (v % 64 == 0) limits_.advance("compliance", static_cast<double>(v) / static_cast<double>(vertices));
+        require_columns({&v, 1});
+      }
+    // A thousandth of a millionth of the tissue's own compliance, or a nanometre per newton where nothing moves.
+    for (int v = 0; v < std::min(vertices, compliance_.slots()); ++v)
+      compliance_floor_ = std::max(compliance_floor_, 1e-9 * compliance_.bound(v));
+    if (compliance_floor_ == 0.0) compliance_floor_ = 1e-9;
+    std::vector<Vector3> positions;
+    for (NodeId node : touchable_) positions.push_back(deformed(node));
+    surface_ = ContactSurface(positions, triangles);
+    moved_ = std::move(positions);
+    nodal_.reserve(4 * 256);
+    report_.touchable_vertices = vertices;
+    report_.seen_nodes = static_cast<Index>(seen_.size());
+    report_.compliance_bytes = compliance_.bytes();
+    limits_.advance("checks", 1.0);
+  }
+
+  Vector3 deformed(NodeId node) const noexcept {
+    return mesh().position(node) + displacement().template segment<3>(3 * Index{node});
+  }
+  void move_surface() noexcept {
+    for (std::size_t v = 0; v < touchable_.size(); ++v) moved_[v] = deformed(touchable_[v]);
+    surface_.move_to(moved_);
+  }
+
+  SetupLimits limits_;
+  SetupReport report_;
+  Scene scene_;
+  std::vector<NodeId> node_map_, touchable_, seen_;
+  Vector3 origin_ = Vector3::Zero(), gravity_ = Vector3::Zero();
+  Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity(), world_ = Eigen::Isometry3d::Identity();
+  std::unique_ptr<Statics<E, Solver>> statics_;
+  typename Statics<E, Solver>::System tick_system_;
+  ContactCompliance<typename Traits::Scalar> compliance_;
+  double compliance_floor_ = 0.0;
+  ContactSurface surface_;
+  std::vector<Vector3> moved_;
+  std::vector<std::pair<NodeId, Vector3>> nodal_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,123 @@
+// The solver policies a model is composed with, and what each stands for.
+#pragma once
+
+#include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/assembly/matrix_free.hpp>
+#include <palpate/condensation/condensed_system.hpp>
+#include <palpate/condensation/uncondensed.hpp>
+#include <palpate/linear/dense_conjugate_gradient.hpp>
+#include <palpate/linear/dense_inverse.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Conjugate gradients; matrix-free unless WithAssembly says otherwise.
+struct ConjugateGradient {};
+
+/// The stored inverse with the selective product. Scalar is what a tick reads; it is always built in double.
+template <std::floating_point Scalar>
+struct BasicSelectiveInverse {};
+using SelectiveInverse = BasicSelectiveInverse<double>;
+using SelectiveInverseFloat = BasicSelectiveInverse<float>;
+
+/// Keeps the touched dofs only and solves the condensed system with `Inner`: SelectiveInverse, SelectiveInverseFloat,
+/// DenseCholesky or ConjugateGradient.
+template <class Inner>
+struct Condensed {
+  static_assert(!std::same_as<Inner, SparseCholesky>,
+                "the condensed stiffness is dense: choose Condensed<SelectiveInverse>, Condensed<DenseCholesky> or "
+                "Condensed<ConjugateGradient>");
+};
+
+/// The same policy on another assembly: WithAssembly<ConjugateGradient, Assembled>.
+template <class Policy, class Assembly>
+struct WithAssembly {};
+
+/// What a policy means: `Assembly`, `Scalar` of the contact compliance, whether it is `eager` (computed at set-up), and
+/// how to make the prepared system from the stiffness. Specialise it for a solver of your own.
+template <class Policy>
+struct SolverTraits;
+
+template <>
+struct SolverTraits<SparseCholesky> {
+  using Assembly = Assembled;
+  using Scalar = double;
+  static constexpr bool eager = false;
+  static Uncondensed<SparseCholesky> make(const BlockMatrix& k, const EssentialConditions& conditions,
+                                          std::vector<Index> kept, const SetupLimits& limits) {
+    return {SparseCholesky(free_matrix(k, conditions), limits), std::move(kept)};
+  }
+};
+
+template <class AssemblyPolicy>
+struct SolverTraits<WithAssembly<ConjugateGradient, AssemblyPolicy>> {
+  using Assembly = AssemblyPolicy;
+  using Scalar = double;
+  static constexpr bool eager = false;
+  template <StiffnessOperator Stiffness>
+  static auto make(const Stiffness& k, const EssentialConditions& conditions, std::vector<Index> kept,
+                   const SetupLimits&) {
+    using Solver = IterativeSolver<FreeStiffness<Stiffness>>;
+    return Uncondensed<Solver>(Solver(FreeStiffness<Stiffness>(k, conditions), {}), std::move(kept));
+  }
+};
+template <>
+struct SolverTraits<ConjugateGradient> : SolverTraits<WithAssembly<ConjugateGradient, MatrixFree>> {};
+
+template <std::floating_point S>
+struct SolverTraits<BasicSelectiveInverse<S>> {
+  using Assembly = Assembled;
+  using Scalar = S;
+  static constexpr bool eager = true;
+  static Uncondensed<DenseInverse<S>> make(const BlockMatrix& k, const EssentialConditions& conditions,
+                                           std::vector<Index> kept, const SetupLimits& limits) {
+    const double n = static_cast<double>(conditions.free_count());
+    limits.require_memory(3.0 * n * n * sizeof(double), "the inverse of the whole stiffness");
+    return {DenseInverse<S>(MatrixX(free_matrix(k, conditions)), limits), std::move(kept)};
+  }
+};
+
+/// Dense solver, scalar and eagerness of a condensed system.
+template <class Inner>
+struct CondensedTraits;
+template <std::floating_point S>
+struct CondensedTraits<BasicSelectiveInverse<S>> {
+  using Solver = DenseInverse<S>;
+  using Scalar = S;
+  static constexpr bool eager = true;
+};
+template <>
+struct CondensedTraits<DenseCholesky> {
+  using Solver = DenseCholesky;
+  using Scalar = double;
+  static constexpr bool eager = false;
+};
+template <>
+struct CondensedTraits<ConjugateGradient> {
+  using Solver = DenseConjugateGradient;
+  using Scalar = double;
+  static constexpr bool eager = false;
+};
+
+template <class Inner>
+struct SolverTraits<Condensed<Inner>> {
+  using Assembly = Assembled;
+  using Scalar = typename CondensedTraits<Inner>::Scalar;
+  static constexpr bool eager = CondensedTraits<Inner>::eager;
+  static CondensedSystem<typename CondensedTraits<Inner>::Solver> make(const BlockMatrix& k,
+                                                                       const EssentialConditions& conditions,
+                                                                       std::vector<Index> kept,
+                                                                       const SetupLimits& limits) {
+    return {condense(free_matrix(k, conditions), kept, limits), limits};
+  }
+};
+
+/// A policy that HapticFEModel can be composed with.
+template <class P>
+concept SolverPolicy = requires {
+  typename SolverTraits<P>::Assembly;
+  typename SolverTraits<P>::Scalar;
+  { SolverTraits<P>::eager } -> std::convertible_to<bool>;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

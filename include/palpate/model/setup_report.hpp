@@ -1,0 +1,62 @@
+// What a set-up did, found and used.
+#pragma once
+
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
+
+#include <ostream>
+#include <utility>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Things a set-up accepts but does not keep quiet about.
+enum class SetupFlag : std::uint32_t {
+  locking = 1u << 0,           ///< the element is too stiff at this Poisson ratio
+  ill_conditioned = 1u << 1,   ///< the probe solve lost more digits than expected
+  poor_quality = 1u << 2,      ///< slivers
+  repaired = 1u << 3,          ///< admission changed the mesh
+  disconnected = 1u << 4,      ///< more than one piece
+  suspicious_units = 1u << 5,  ///< looks like millimetres
+};
+
+/// Sizes, memory, times and findings of a set-up.
+struct SetupReport {
+  Index nodes = 0, elements = 0, free_dofs = 0, condensed_dofs = 0, kept_dofs = 0, touchable_vertices = 0,
+        seen_nodes = 0;
+  std::size_t stiffness_bytes = 0, solver_bytes = 0, compliance_bytes = 0;
+  double worst_quality = 1.0, mean_quality = 1.0;       ///< mean ratio, 1 is a regular element
+  double condition_estimate = 0.0;                      ///< 1-norm; 0 when not estimated (iterative solvers)
+  double probe_error = 0.0;                             ///< relative error of a solve with known answer
+  std::vector<std::pair<std::string, double>> seconds;  ///< per stage
+  std::uint32_t flags = 0;
+  std::vector<std::string> remarks;  ///< one sentence per flag
+
+  void set(SetupFlag flag, std::string remark) {
+    flags |= static_cast<std::uint32_t>(flag);
+    remarks.push_back(std::move(remark));
+  }
+  bool has(SetupFlag flag) const noexcept { return (flags & static_cast<std::uint32_t>(flag)) != 0; }
+  double total_seconds() const noexcept {
+    double sum = 0.0;
+    for (const auto& stage : seconds) sum += stage.second;
+    return sum;
+  }
+};
+
+/// A few lines for a log.
+inline std::ostream& operator<<(std::ostream& out, const SetupReport& r) {
+  out << "set-up: " << r.nodes << " nodes, " << r.elements << " elements, " << r.free_dofs
+      << " free dofs: " << r.kept_dofs << " kept, " << r.condensed_dofs << " condensed; " << r.touchable_vertices
+      << " touchable vertices, " << r.seen_nodes << " seen nodes\n"
+      << "  memory: stiffness " << number(static_cast<double>(r.stiffness_bytes) / 1e6) << " MB, solver "
+      << number(static_cast<double>(r.solver_bytes) / 1e6) << " MB, compliance "
+      << number(static_cast<double>(r.compliance_bytes) / 1e6) << " MB\n  time:";
+  for (const auto& [stage, seconds] : r.seconds) out << ' ' << stage << ' ' << number(1e3 * seconds) << " ms";
+  out << "\n  quality: worst " << number(r.worst_quality) << ", mean " << number(r.mean_quality) << "; condition "
+      << (r.condition_estimate > 0.0 ? number(r.condition_estimate) : std::string("not estimated")) << ", probe error "
+      << number(r.probe_error) << '\n';
+  for (const std::string& remark : r.remarks) out << "  note: " << remark << '\n';
+  return out;
+}
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,216 @@
+// The static problem of one body: prepared once, loads changed at will.
+#pragma once
+
+#include <palpate/assembly/load_vector.hpp>
+#include <palpate/linear/condition.hpp>
+#include <palpate/mesh/rigid_modes.hpp>
+#include <palpate/model/policies.hpp>
+#include <palpate/model/setup_report.hpp>
+
+#include <chrono>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Adds the time since its construction to a report when it goes.
+class StageTimer {
+ public:
+  StageTimer(SetupReport& report, const char* stage)
+      : report_(&report), stage_(stage), start_(std::chrono::steady_clock::now()) {}
+  ~StageTimer() {
+    report_->seconds.emplace_back(stage_,
+                                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
+  }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  SetupReport* report_;
+  const char* stage_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// Stiffness, essential conditions, loads and prepared solver of a body. Neither copied nor moved: the solver refers to
+/// its members.
+template <Element E, SolverPolicy Policy>
+class Statics {
+ public:
+  using Traits = SolverTraits<Policy>;
+  using Stiffness = typename Traits::Assembly::template Operator<E>;
+  using System = decltype(Traits::make(std::declval<const Stiffness&>(), std::declval<const EssentialConditions&>(),
+                                       std::vector<Index>{}, SetupLimits{}));
+  static_assert(StaticSystem<System>);
+
+  /// Prepares everything but the contact. `kept_nodes` are the touchable ones. Throws what assembly, factorisation and
+  /// checks throw: unconstrained, not_positive_definite, ill_conditioned ...
+  Statics(Body<E> given, const Scene& scene, std::vector<BoundaryFace<E>> boundary,
+          const std::vector<NodeId>& kept_nodes, const SetupLimits& limits, SetupReport& report)
+      : body_(std::move(given)),
+        boundary_(std::move(boundary)),
+        conditions_(resolve_essential(body_.mesh, boundary_, scene)) {
+    require_constrained(body_.mesh, conditions_.constrained);
+    {
+      const StageTimer timer(report, "assembly");
+      stiffness_ = Traits::Assembly::make(body_, limits);
+    }
+    std::vector<Index> kept;
+    for (NodeId node : kept_nodes)
+      for (int c = 0; c < 3; ++c)
+        if (const Index free = conditions_.free_index[static_cast<std::size_t>(3 * Index{node} + c)]; free >= 0)
+          kept.push_back(free);
+    report.kept_dofs = static_cast<Index>(kept.size());
+    {
+      const StageTimer timer(report, "factorisation");
+      system_ = Traits::make(stiffness_, conditions_, std::move(kept), limits);
+    }
+    {
+      const StageTimer timer(report, "checks");
+      limits.advance("checks", 0.0);
+      check_solver(report);
+    }
+    free_load_ = VectorX::Zero(conditions_.free_count());
+    free_answer_.resize(conditions_.free_count());
+    scratch_ = full_load_ = displacement_ = VectorX::Zero(conditions_.dof_count());
+    mass_ = nodal_mass(body_);
+    report.stiffness_bytes = stiffness_.bytes();
+    report.solver_bytes = system_.bytes();
+    report.free_dofs = conditions_.free_count();
+    report.condensed_dofs = report.free_dofs - report.kept_dofs;
+  }
+  Statics(const Statics&) = delete;
+  Statics& operator=(const Statics&) = delete;
+
+  /// Loads, prescribed values and initial strains of a scene; `gravity` [m/s^2] in the body's frame. Solves once.
+  /// Strong guarantee.
+  void set_conditions(const Scene& scene, const Vector3& gravity) {
+    EssentialConditions conditions = resolve_essential(body_.mesh, boundary_, scene);
+    if (conditions.constrained != conditions_.constrained)
+      raise(SetupErrorKind::unsupported,
+            "the new scene prescribes other components than the one the model was made for",
+            "Values may change, the set of prescribed components may not: make a new model");
+    std::vector<Vector6> strains = initial_strains_by_region(body_.mesh, scene);
+    VectorX applied = applied_load(body_, boundary_, scene);
+    require_density(gravity);
+    conditions_.prescribed = std::move(conditions.prescribed);
+    body_.initial_strain = std::move(strains);
+    strain_load_ = initial_strain_load(body_);
+    applied_ = std::move(applied);
+    set_gravity(gravity);
+  }
+
+  /// Changes gravity [m/s^2], body frame, and solves once. Throws bad_density when some region has none.
+  void set_gravity(const Vector3& gravity) {
+    require_density(gravity);
+    load_ = applied_;
+    for (Index i = 0; i < mass_.size(); ++i) load_.template segment<3>(3 * i) += mass_[i] * gravity;
+    stiffness_.apply(conditions_.prescribed, scratch_);
+    full_load_ = load_ + strain_load_ - scratch_;
+    const SolveReport solved = solve_free(full_load_, displacement_);
+    displacement_ += conditions_.prescribed;
+    if (!displacement_.allFinite())
+      raise(SetupErrorKind::non_finite, "the static displacement is not finite",
+            "Loads may be too large for the stiffness");
+    if (!solved.converged)
+      raise(SetupErrorKind::not_converged,
+            "the static solve stopped at a relative residual of " + number(solved.relative_residual),
+            "Use a direct solver");
+  }
+
+  /// Displacement under the scene's loads and `forces` on nodes [N], 3 per node [m]. No allocation when u has its size;
+  /// not to be called by two threads at once.
+  template <class Forces>
+  SolveReport displacement_with(const Forces& forces, VectorX& u) noexcept {
+    scratch_.setZero();
+    for (const auto& [node, force] : forces) scratch_.template segment<3>(3 * Index{node}) += force;
+    const SolveReport report = solve_free(scratch_, u);
+    u += displacement_;
+    return report;
+  }
+
+  const Body<E>& body() const noexcept { return body_; }
+  const std::vector<BoundaryFace<E>>& boundary() const noexcept { return boundary_; }
+  const EssentialConditions& conditions() const noexcept { return conditions_; }
+  const VectorX& displacement() const noexcept { return displacement_; }
+  /// A solver with a workspace of its own; factors are shared.
+  System system() const { return system_; }
+
+  /// K u - f_0: forces with which the body answers, 3 per node [N].
+  VectorX internal_force() const {
+    VectorX f(displacement_.size());
+    stiffness_.apply(displacement_, f);
+    return f - strain_load_;
+  }
+  /// Forces of the supports, zero on free dofs, 3 per node [N].
+  VectorX reactions() const {
+    VectorX r = internal_force() - load_;
+    for (Index dof : conditions_.free_dofs) r[dof] = 0.0;
+    return r;
+  }
+
+ private:
+  SolveReport solve_free(const VectorX& load, VectorX& u) noexcept {
+    conditions_.gather(load, free_load_);
+    const SolveReport report = system_.solve_into(free_load_, free_answer_);
+    conditions_.scatter(free_answer_, u);
+    return report;
+  }
+
+  void require_density(const Vector3& gravity) const {
+    if (gravity.isZero(0.0)) return;
+    for (std::size_t r = 0; r < body_.density.size(); ++r)
+      if (!(body_.density[r] > 0.0))
+        raise(SetupErrorKind::bad_density,
+              "there is gravity, but region '" + body_.mesh.region_names[r] + "' has no density",
+              "Give every region a density in kg/m^3");
+  }
+
+  /// Measures what the solver is worth; flags or refuses.
+  void check_solver(SetupReport& report) {
+    const FreeStiffness<Stiffness> k(stiffness_, conditions_);
+    report.probe_error = probe_error(k, system_);
+    if constexpr (std::same_as<Stiffness, BlockMatrix>)
+      if constexpr (!std::same_as<Policy, WithAssembly<ConjugateGradient, Assembled>>)
+        report.condition_estimate = conditioning_norm() * inverse_norm_estimate(system_);
+    if (report.probe_error > refused_probe_error) {
+      SetupProblem p;
+      p.kind = SetupErrorKind::ill_conditioned;
+      p.what = "a solve with a known answer is wrong by " + number(report.probe_error) + " (relative)";
+      p.hint =
+          "Look for slivers, extreme stiffness contrast, or a Poisson ratio at its limit; prefer a direct solver in "
+          "double";
+      p.value = report.probe_error;
+      p.threshold = refused_probe_error;
+      raise(std::move(p));
+    }
+    if (report.probe_error > flagged_probe_error)
+      report.set(SetupFlag::ill_conditioned, "a solve with a known answer is wrong by " + number(report.probe_error) +
+                                                 " (relative): forces keep no more digits than that");
+  }
+
+  /// 1-norm of K over the free dofs.
+  double conditioning_norm() const {
+    if constexpr (std::same_as<Stiffness, BlockMatrix>) {
+      const SparseMatrix lower = free_matrix(stiffness_, conditions_);
+      VectorX sums = VectorX::Zero(lower.rows());
+      for (Index col = 0; col < lower.cols(); ++col)
+        for (SparseMatrix::InnerIterator it(lower, col); it; ++it) {
+          sums[col] += std::abs(it.value());
+          if (it.row() != col) sums[it.row()] += std::abs(it.value());
+        }
+      return sums.size() > 0 ? sums.maxCoeff() : 0.0;
+    }
+    return 0.0;
+  }
+
+  static constexpr double flagged_probe_error = 1e-6;
+  static constexpr double refused_probe_error = 1e-3;
+
+  Body<E> body_;
+  std::vector<BoundaryFace<E>> boundary_;
+  EssentialConditions conditions_;
+  Stiffness stiffness_;
+  System system_;
+  VectorX mass_, applied_, load_, strain_load_, full_load_, displacement_;
+  VectorX free_load_, free_answer_, scratch_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

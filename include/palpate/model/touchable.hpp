@@ -1,0 +1,60 @@
+// Which part of a body can be touched, and which is looked at.
+#pragma once
+
+#include <palpate/contact/bvh.hpp>
+#include <palpate/mesh/selection.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// The touchable surface: its nodes, sorted, and its outward triangles in numbers of those nodes.
+struct Touchable {
+  std::vector<NodeId> nodes;
+  std::vector<Triangle> triangles;
+};
+
+/// Sorts and drops repetitions.
+inline void sort_unique(std::vector<NodeId>& nodes) {
+  std::ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+}
+
+/// Resolves what a scene lets tools touch: the boundary faces of every selection and their nodes. Throws as
+/// resolve_faces does.
+template <Element E>
+Touchable resolve_touchable(const Mesh<E>& mesh, const std::vector<BoundaryFace<E>>& boundary, const Scene& scene) {
+  Touchable touchable;
+  std::vector<BoundaryFace<E>> faces;
+  for (const Selection& selection : scene.touched()) {
+    const std::vector<NodeId> nodes = resolve_nodes(mesh, boundary, selection);
+    touchable.nodes.insert(touchable.nodes.end(), nodes.begin(), nodes.end());
+    const auto selected = resolve_faces(mesh, boundary, selection);
+    faces.insert(faces.end(), selected.begin(), selected.end());
+  }
+  for (const auto& face : faces) touchable.nodes.insert(touchable.nodes.end(), face.nodes.begin(), face.nodes.end());
+  sort_unique(touchable.nodes);
+  const auto same = [](const auto& a, const auto& b) { return a.key() == b.key(); };
+  std::ranges::sort(faces, {}, [](const auto& f) { return f.key(); });
+  faces.erase(std::unique(faces.begin(), faces.end(), same), faces.end());
+  for (const auto& face : faces) {
+    Triangle t;
+    for (std::size_t a = 0; a < t.size(); ++a)
+      t[a] = static_cast<int>(std::ranges::lower_bound(touchable.nodes, face.nodes[a]) - touchable.nodes.begin());
+    touchable.triangles.push_back(t);
+  }
+  return touchable;
+}
+
+/// The nodes somebody looks at, sorted.
+template <Element E>
+std::vector<NodeId> resolve_seen(const Mesh<E>& mesh, const std::vector<BoundaryFace<E>>& boundary,
+                                 const Scene& scene) {
+  std::vector<NodeId> seen;
+  for (const Selection& selection : scene.seen()) {
+    const std::vector<NodeId> nodes = resolve_nodes(mesh, boundary, selection);
+    seen.insert(seen.end(), nodes.begin(), nodes.end());
+  }
+  sort_unique(seen);
+  return seen;
+}
+
+}  // namespace palpate::inline PALPATE_ABI

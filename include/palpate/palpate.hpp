@@ -1,0 +1,18 @@
+// The whole library. Include single headers to compile less.
+#pragma once
+
+#include <palpate/device/mock_device.hpp>
+#include <palpate/device/recorder.hpp>
+#include <palpate/device/replay_device.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/haptic/run_haptic_loop.hpp>
+#include <palpate/io/gmsh.hpp>
+#include <palpate/io/pvd.hpp>
+#include <palpate/io/vtu.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/mesh/generators.hpp>
+#include <palpate/mesh/mesh_arrays.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/version.hpp>

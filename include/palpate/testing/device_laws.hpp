@@ -1,0 +1,164 @@
+// The laws of concepts/haptic_device.hpp.
+#pragma once
+
+#include <palpate/concepts/haptic_device.hpp>
+#include <palpate/testing/violation.hpp>
+
+#include <algorithm>
+#include <functional>
+
+namespace palpate::inline PALPATE_ABI::testing {
+
+/// How to look behind a device. `rendered` tells what its motors get [N]; an adapter of an SDK asks the SDK, or a fake
+/// of it. `break_reads(device, true)` makes reads invalid, `false` mends them; empty: that law is not tested.
+/// `tolerance` is relative; a device that stores floats needs 1e-6.
+template <class Device>
+struct DeviceProbe {
+  std::function<Vector3(const Device&)> rendered;
+  std::function<void(Device&, bool)> break_reads{};
+  double tolerance = 1e-12;
+};
+
+/// Uses last_force() and, where there is one, unplug(bool).
+template <class Device>
+DeviceProbe<Device> default_probe() {
+  DeviceProbe<Device> probe;
+  probe.rendered = [](const Device& device) -> Vector3 { return device.last_force(); };
+  if constexpr (requires(Device& device) { device.unplug(true); })
+    probe.break_reads = [](Device& device, bool broken) { device.unplug(broken); };
+  return probe;
+}
+
+namespace detail {
+
+template <HapticDevice Device>
+class DeviceLaws {
+ public:
+  DeviceLaws(Device& device, const DeviceProbe<Device>& probe)
+      : device_(device), probe_(probe), limits_(device.limits()) {}
+
+  Violations run(int reads) {
+    sane_limits();
+    device_.start();
+    static_cast<void>(device_.read());
+    saturates();
+    rejects_what_is_not_finite();
+    if (probe_.break_reads) zero_after_invalid_read();
+    survives(reads);
+    zero_after_stop();
+    return std::move(violations_);
+  }
+
+ private:
+  Status write(const Vector3& force) { return device_.write(force, Vector3::Zero()); }
+  Vector3 rendered() const { return probe_.rendered(device_); }
+
+  void sane_limits() {
+    expect_above(violations_, "limits are sane", limits_.peak_force, 0.0, "peak force");
+    expect_at_most(violations_, "limits are sane", limits_.peak_force, 1e4, "peak force");
+    expect_at_most(violations_, "limits are sane", limits_.continuous_force, limits_.peak_force, "continuous force");
+    const Vector3 workspace = limits_.workspace_high - limits_.workspace_low;
+    expect_above(violations_, "limits are sane", workspace.minCoeff(), 0.0, "workspace");
+  }
+
+  void saturates() {
+    const double peak = limits_.peak_force;
+    for (const Vector3& direction : {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(1, 2, -3), Vector3(1, 1e-3, 0)})
+      for (double size : {0.0, 1e-3, 0.5, 0.999, 1.001, 2.0, 1e6, 1e300}) {
+        const Vector3 unit = direction.normalized();
+        const Vector3 wanted = unit * (size * peak);
+        const Status status = write(wanted);
+        const Vector3 given = rendered();
+        const std::string detail = number(size) + " times the peak";
+        expect_at_most(violations_, "never above the peak", given.norm(), peak * (1.0 + probe_.tolerance), detail);
+        if (size < 1.0)
+          expect_at_most(violations_, "renders what it can", (given - wanted).norm(), probe_.tolerance * peak, detail);
+        if (size <= 1.0) continue;
+        expect_at_least(violations_, "saturates at the peak", given.norm(), peak * (1.0 - probe_.tolerance), detail);
+        expect_at_least(violations_, "keeps the direction", unit.dot(given.normalized()), 1.0 - 1e-12, detail);
+        expect_true(violations_, "says that it saturates", status.has(StatusFlag::saturated), detail);
+      }
+  }
+
+  void rejects_what_is_not_finite() {
+    for (double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})
+      for (int axis = 0; axis < 3; ++axis) {
+        write(Vector3::Constant(0.1 * limits_.peak_force));
+        Vector3 force = Vector3::Constant(0.2 * limits_.peak_force);
+        force[axis] = bad;
+        const Status status = write(force);
+        expect_at_most(violations_, "not finite renders zero", rendered().norm(), 0.0, number(bad));
+        const bool said = status.has(StatusFlag::non_finite_force);
+        expect_true(violations_, "says that the force is not finite", said, number(bad));
+      }
+  }
+
+  void zero_after_invalid_read() {
+    const Vector3 force = Vector3(0.0, 0.0, 0.5 * limits_.peak_force);
+    write(force);
+    probe_.break_reads(device_, true);
+    const ToolState state = device_.read();
+    expect_true(violations_, "says that a read failed", !state.valid);
+    const Status status = write(force);
+    expect_at_most(violations_, "zero after an invalid read", rendered().norm(), 0.0);
+    expect_true(violations_, "says that it is disconnected", status.has(StatusFlag::disconnected));
+    probe_.break_reads(device_, false);
+    const bool mended = device_.read().valid;
+    write(force);
+    expect_true(violations_, "renders again when reads are valid", mended && rendered().norm() > 0.0);
+  }
+
+  void survives(int reads) {
+    double time = -infinity;
+    std::int64_t bad_states = 0, backwards = 0;
+    for (int i = 0; i < reads; ++i) {
+      const ToolState s = device_.read();
+      if (s.valid && !is_sound(s)) ++bad_states;
+      if (!(s.time >= time)) ++backwards;
+      time = std::max(time, s.time);
+      write(Vector3(0.0, 0.0, 0.1 * limits_.peak_force));
+    }
+    expect_at_most(violations_, "valid states are finite", static_cast<double>(bad_states), 0.0, "states");
+    expect_at_most(violations_, "time does not run backwards", static_cast<double>(backwards), 0.0, "states");
+    expect_at_most(violations_, "never above the peak", rendered().norm(), limits_.peak_force, "after many reads");
+  }
+
+  /// Finite; velocity finite or not given at all; orientation a unit quaternion.
+  static bool is_sound(const ToolState& s) {
+    const bool no_velocity = std::isnan(s.velocity[0]) && std::isnan(s.velocity[1]) && std::isnan(s.velocity[2]);
+    double square = 0.0;
+    for (double q : s.orientation) square += q * q;
+    return s.position.allFinite() && std::isfinite(s.time) && (no_velocity || s.velocity.allFinite()) &&
+           std::abs(square - 1.0) <= 1e-6;
+  }
+
+  void zero_after_stop() {
+    const Vector3 force = Vector3(0.0, 0.5 * limits_.peak_force, 0.0);
+    write(force);
+    device_.stop();
+    expect_at_most(violations_, "zero after stop", rendered().norm(), 0.0, "at once");
+    write(force);
+    expect_at_most(violations_, "zero after stop", rendered().norm(), 0.0, "although written to");
+    device_.stop();
+    expect_at_most(violations_, "zero after stop", rendered().norm(), 0.0, "stopped twice");
+  }
+
+  Device& device_;
+  const DeviceProbe<Device>& probe_;
+  DeviceLimits limits_;
+  Violations violations_;
+};
+
+}  // namespace detail
+
+/// Starts the device, tries the laws, stops it. It must not be connected to anybody's hand: forces up to the peak are
+/// written. Laws: "limits are sane", "never above the peak", "renders what it can", "saturates at the peak", "keeps the
+/// direction", "says that it saturates", "not finite renders zero", "says that the force is not finite", "says that a
+/// read failed", "zero after an invalid read", "says that it is disconnected", "renders again when reads are valid",
+/// "valid states are finite", "time does not run backwards", "zero after stop". The concept checks that nothing throws.
+template <HapticDevice Device>
+Violations device_laws(Device& device, const DeviceProbe<Device>& probe = default_probe<Device>(), int reads = 10'000) {
+  return detail::DeviceLaws<Device>(device, probe).run(reads);
+}
+
+}  // namespace palpate::inline PALPATE_ABI::testing

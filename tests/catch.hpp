@@ -1,0 +1,27 @@
+#pragma once
+
+/// One include for Catch2 v2.13 and v3. Compare numbers with Catch::Matchers::WithinAbs / WithinRel: Approx is spelled
+/// differently in the two. Compare texts with test::contains for the same reason.
+#if __has_include(<catch2/catch_test_macros.hpp>)
+#include <catch2/catch_template_test_macros.hpp>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators_all.hpp>
+#include <catch2/matchers/catch_matchers_all.hpp>
+#else
+#include <catch2/catch.hpp>
+#endif
+
+#include <string>
+
+namespace test {
+
+/// Matcher: the text holds `part`.
+inline auto contains(const std::string& part) {
+#if __has_include(<catch2/catch_test_macros.hpp>)
+  return Catch::Matchers::ContainsSubstring(part);
+#else
+  return Catch::Matchers::Contains(part);
+#endif
+}
+
+}  // namespace test

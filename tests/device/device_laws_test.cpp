@@ -1,0 +1,184 @@
+// The law suite for devices passes good devices and catches each kind of bad one.
+#include <palpate/device/replay_device.hpp>
+#include <palpate/testing/device_laws.hpp>
+
+#include "catch.hpp"
+
+using namespace palpate;
+using palpate::testing::device_laws;
+using palpate::testing::violates;
+
+namespace {
+
+/// A good device of the plainest kind; the bad ones below differ in one thing.
+struct Good {
+  ToolState read() noexcept {
+    ToolState s;
+    s.time = time += 1e-3;
+    s.valid = readable = !unplugged;
+    if (!readable) force.setZero();
+    return s;
+  }
+  Status write(const Vector3& wanted, const Vector3&) noexcept {
+    Status status;
+    force.setZero();
+    if (!readable) status.set(StatusFlag::disconnected);
+    if (!wanted.allFinite()) status.set(StatusFlag::non_finite_force);
+    if (!running || !status.ok()) return status;
+    force = wanted;
+    if (wanted.stableNorm() > 3.3) {
+      force = 3.3 * wanted.stableNormalized();
+      status.set(StatusFlag::saturated);
+    }
+    return status;
+  }
+  DeviceLimits limits() const noexcept { return {}; }
+  void start() noexcept { running = true; }
+  void stop() noexcept {
+    running = false;
+    force.setZero();
+  }
+  void unplug(bool on) noexcept { unplugged = on; }
+  const Vector3& last_force() const noexcept { return force; }
+
+  Vector3 force = Vector3::Zero();
+  double time = 0.0;
+  bool running = false, readable = true, unplugged = false;
+};
+
+struct Unlimited : Good {
+  Status write(const Vector3& wanted, const Vector3&) noexcept {
+    force = wanted;
+    return StatusFlag::saturated;
+  }
+};
+struct ClampsAxes : Good {
+  Status write(const Vector3& wanted, const Vector3& torque) noexcept {
+    return Good::write(wanted.cwiseMax(-1.9).cwiseMin(1.9), torque);
+  }
+};
+struct LetsNanThrough : Good {  // the usual clamp
+  Status write(const Vector3& wanted, const Vector3&) noexcept {
+    force = wanted;
+    if (wanted.norm() > 3.3) force *= 3.3 / wanted.norm();
+    return {};
+  }
+};
+struct KeepsForceAfterStop : Good {
+  void stop() noexcept {}
+};
+struct RendersAfterStop : Good {
+  void stop() noexcept { force.setZero(); }
+};
+struct KeepsForceWhenLost : Good {
+  ToolState read() noexcept {
+    ToolState s = Good::read();
+    readable = true;
+    return s;
+  }
+};
+struct Weak : Good {
+  Status write(const Vector3& wanted, const Vector3& torque) noexcept { return Good::write(0.9 * wanted, torque); }
+};
+struct SaysNothing : Good {
+  Status write(const Vector3& wanted, const Vector3& torque) noexcept {
+    Good::write(wanted, torque);
+    return {};
+  }
+};
+struct NanState : Good {
+  ToolState read() noexcept {
+    ToolState s = Good::read();
+    if (time > 5.0) s.position[2] = std::numeric_limits<double>::quiet_NaN();
+    return s;
+  }
+};
+struct HalfVelocity : Good {
+  ToolState read() noexcept {
+    ToolState s = Good::read();
+    s.velocity[0] = 0.0;  // the others stay NaN
+    return s;
+  }
+};
+struct NoRotation : Good {
+  ToolState read() noexcept {
+    ToolState s = Good::read();
+    s.orientation = {0.0, 0.0, 0.0, 0.0};
+    return s;
+  }
+};
+struct Backwards : Good {
+  ToolState read() noexcept {
+    time -= 2e-3;
+    return Good::read();
+  }
+};
+struct NoWorkspace : Good {
+  DeviceLimits limits() const noexcept {
+    DeviceLimits l;
+    l.workspace_high = l.workspace_low;
+    return l;
+  }
+};
+
+template <class Device>
+bool breaks(const char* law) {
+  Device device;
+  const auto violations = device_laws(device);
+  INFO(testing::describe(violations));
+  return violates(violations, law);
+}
+
+template <class Device>
+std::string broken(Device device) {
+  return testing::describe(device_laws(device));
+}
+
+}  // namespace
+
+TEST_CASE("good devices keep the laws", "[device][laws]") {
+  CHECK(broken(Good{}) == "");
+  CHECK(broken(MockDevice(trajectory::poke())) == "");
+  CHECK(broken(MockDevice(trajectory::press_drag_release())) == "");
+  CHECK(broken(MockDevice([](double t) { return Vector3(std::sin(t), 0.0, 0.0); })) == "");
+  MockOptions options;
+  options.clock = DeviceClock::wall;
+  options.limits.peak_force = 12.0;
+  CHECK(broken(MockDevice(trajectory::poke(), options)) == "");
+}
+
+TEST_CASE("a replay keeps the laws", "[device][laws]") {
+  std::vector<RecordedTick> ticks(20'000);
+  for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].state.time = 1e-3 * static_cast<double>(i);
+  CHECK(broken(ReplayDevice(ticks)) == "");
+  ticks.resize(5000);  // over before the law suite is
+  CHECK(broken(ReplayDevice(ticks)) == "");
+}
+
+TEST_CASE("a recorder keeps the laws of its device", "[device][laws]") {
+  MockDevice stylus(trajectory::poke());
+  Recorder recorder(stylus, 100);
+  testing::DeviceProbe<Recorder<MockDevice<>>> probe;
+  probe.rendered = [&](const auto&) { return stylus.last_force(); };
+  probe.break_reads = [&](auto&, bool broken_now) { stylus.unplug(broken_now); };
+  CHECK(testing::describe(device_laws(recorder, probe)) == "");
+}
+
+TEST_CASE("each kind of bad device is caught", "[device][laws][extreme][D6][D7]") {
+  CHECK(breaks<Unlimited>("never above the peak"));
+  CHECK(breaks<ClampsAxes>("keeps the direction"));
+  CHECK(breaks<LetsNanThrough>("not finite renders zero"));
+  CHECK(breaks<LetsNanThrough>("saturates at the peak"));  // 1e300: its norm is infinite, its force zero
+  CHECK(breaks<KeepsForceAfterStop>("zero after stop"));
+  CHECK(breaks<RendersAfterStop>("zero after stop"));
+  CHECK(breaks<KeepsForceWhenLost>("zero after an invalid read"));
+  CHECK(breaks<Weak>("renders what it can"));
+  CHECK(breaks<SaysNothing>("says that it saturates"));
+  CHECK(breaks<SaysNothing>("says that the force is not finite"));
+  CHECK(breaks<SaysNothing>("says that it is disconnected"));
+  CHECK(breaks<NanState>("valid states are finite"));
+  CHECK(breaks<HalfVelocity>("valid states are finite"));
+  CHECK(breaks<NoRotation>("valid states are finite"));
+  CHECK(breaks<Backwards>("time does not run backwards"));
+  CHECK(breaks<NoWorkspace>("limits are sane"));
+}

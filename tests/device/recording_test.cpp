@@ -1,0 +1,292 @@
+// Record, write, read, replay: the same bits; and everything that can be wrong with a file.
+#include <cfloat>
+#include <clocale>
+#include <cstring>
+#include <filesystem>
+#include <locale>
+#include <palpate/device/replay_device.hpp>
+#include <palpate/haptic/force_gate.hpp>
+#include <palpate/haptic/run_haptic_loop.hpp>
+#include <palpate/testing/random.hpp>
+
+#include "catch.hpp"
+
+using namespace palpate;
+
+namespace {
+
+/// A file name in the temporary folder; the file is removed at the end.
+struct TemporaryFile {
+  explicit TemporaryFile(const std::string& name) {
+    const auto stamp = std::chrono::steady_clock::now().time_since_epoch().count();
+    path = (std::filesystem::temp_directory_path() / ("palpate_" + std::to_string(stamp) + "_" + name)).string();
+  }
+  ~TemporaryFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  std::string text() const {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  }
+  void write(const std::string& content) const { std::ofstream(path, std::ios::binary) << content; }
+
+  std::string path;
+};
+
+struct SpringServo {
+  ForceGate gate;
+  ToolForce force;
+  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
+    const ToolState& s = tools.front();
+    const Vector3 wanted = -700.0 * s.position - 2.0 * (s.velocity.allFinite() ? s.velocity : Vector3(Vector3::Zero()));
+    force = gate.apply(wanted, s.time, s.time, s.valid && s.position.allFinite(), false);
+    return {&force, 1};
+  }
+};
+
+template <class Device>
+void run_recorded(Device& device, const std::string& path, double seconds) {
+  Recorder recorder(device, 100'000);
+  SpringServo servo;
+  LoopOptions options;
+  options.paced = false;
+  options.duration = seconds;
+  run_haptic_loop(recorder, servo, options);
+  recorder.write_csv(path);
+  CHECK(recorder.dropped() == 0);
+}
+
+bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0 || (std::isnan(a) && std::isnan(b)); }
+
+bool same(const RecordedTick& a, const RecordedTick& b) {
+  bool equal = same_bits(a.state.time, b.state.time) && a.state.buttons == b.state.buttons &&
+               a.state.valid == b.state.valid && a.status == b.status;
+  for (int i = 0; i < 3; ++i)
+    equal = equal && same_bits(a.state.position[i], b.state.position[i]) &&
+            same_bits(a.state.velocity[i], b.state.velocity[i]) && same_bits(a.force[i], b.force[i]);
+  for (std::size_t i = 0; i < 4; ++i) equal = equal && same_bits(a.state.orientation[i], b.state.orientation[i]);
+  return equal;
+}
+
+std::vector<RecordedTick> random_ticks(int count) {
+  constexpr double special[] = {0.0,
+                                -0.0,
+                                5e-324,
+                                DBL_MIN,
+                                DBL_MAX,
+                                -DBL_MAX,
+                                0.1,
+                                1.0 / 3.0,
+                                infinity,
+                                -infinity,
+                                std::numeric_limits<double>::quiet_NaN()};
+  testing::Random random(21);
+  const auto value = [&] {
+    if (random.uniform() < 0.2) return special[random.bits() % std::size(special)];
+    return std::ldexp(random.uniform(-1.0, 1.0), static_cast<int>(random.bits() % 2000) - 1000);
+  };
+  std::vector<RecordedTick> ticks(static_cast<std::size_t>(count));
+  for (RecordedTick& t : ticks) {
+    t.state.time = value();
+    for (double& x : t.state.position) x = value();
+    for (double& x : t.state.velocity) x = value();
+    for (double& x : t.state.orientation) x = value();
+    for (double& x : t.force) x = value();
+    t.state.buttons = static_cast<std::uint32_t>(random.bits());
+    t.state.valid = random.uniform() < 0.5;
+    for (int bit = 0; bit < status_flag_count; ++bit)
+      if (random.uniform() < 0.5) t.status.set(static_cast<StatusFlag>(1u << bit));
+  }
+  return ticks;
+}
+
+struct DecimalComma : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+/// A locale with decimal commas and grouped thousands while it lives, for C++ streams and, where installed, for C.
+struct HostileLocale {
+  std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
+  HostileLocale() { std::setlocale(LC_ALL, "de_DE.UTF-8"); }
+  ~HostileLocale() {
+    std::locale::global(before);
+    std::setlocale(LC_ALL, "C");
+  }
+};
+
+const std::string header = std::string(recording_header) + '\n';
+const std::string row = "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n";
+
+}  // namespace
+
+TEST_CASE("recordings read back bit by bit, in any locale", "[device][recording][extreme][C4]") {
+  const auto ticks = random_ticks(5000);
+  const TemporaryFile file("bits.csv");
+  const bool hostile = GENERATE(false, true);
+  {
+    const std::unique_ptr<HostileLocale> locale = hostile ? std::make_unique<HostileLocale>() : nullptr;
+    write_recording(file.path, ticks);
+    const auto back = read_recording(file.path);
+    REQUIRE(back.size() == ticks.size());
+    for (std::size_t i = 0; i < ticks.size(); ++i) REQUIRE(same(ticks[i], back[i]));
+  }
+  CHECK(file.text().starts_with(header));
+}
+
+TEST_CASE("a replay gives the same input and the same forces: equal files", "[device][recording]") {
+  using Kind = DeviceFault::Kind;
+  MockOptions options;
+  options.faults = {{.kind = Kind::invalid_read, .first = 300, .count = 5},
+                    {.kind = Kind::nan_position, .first = 400, .count = 5},
+                    {.kind = Kind::infinite_position, .first = 450},
+                    {.kind = Kind::teleport, .first = 500, .offset = Vector3(1, 2, 3)},
+                    {.kind = Kind::stall, .first = 600, .seconds = 0.05},
+                    {.kind = Kind::frozen, .first = 700, .count = 40}};
+  const TemporaryFile first("first.csv"), second("second.csv"), third("third.csv");
+  MockDevice stylus(trajectory::press_drag_release(), options);
+  run_recorded(stylus, first.path, 5.0);
+  ReplayDevice replay(first.path);
+  run_recorded(replay, second.path, 5.0);
+  CHECK(replay.finished());
+  CHECK(first.text().size() > 100'000);
+  CHECK(first.text() == second.text());
+  replay.rewind();
+  CHECK_FALSE(replay.finished());
+  run_recorded(replay, third.path, 5.0);
+  CHECK(first.text() == third.text());
+}
+
+TEST_CASE("after its end a replay is invalid and renders nothing", "[device][recording][extreme][D6]") {
+  std::vector<RecordedTick> ticks(3);
+  ticks[2].state.position = Vector3(1, 2, 3);
+  ReplayDevice replay(ticks);
+  replay.start();
+  for (int i = 0; i < 3; ++i) CHECK(replay.read().valid);
+  CHECK(replay.finished());
+  replay.write(Vector3(1, 0, 0), Vector3::Zero());
+  CHECK(replay.last_force() == Vector3(1, 0, 0));
+  for (int i = 0; i < 3; ++i) {
+    const ToolState s = replay.read();
+    CHECK_FALSE(s.valid);
+    CHECK(s.position == Vector3(1, 2, 3));
+    CHECK(replay.write(Vector3(1, 0, 0), Vector3::Zero()).has(StatusFlag::disconnected));
+    CHECK(replay.last_force() == Vector3::Zero());
+  }
+  CHECK(replay.recorded().size() == 3);
+  CHECK_THROWS_AS(ReplayDevice(std::vector<RecordedTick>{}), SetupError);
+}
+
+TEST_CASE("a recorder keeps the newest ticks and says how many it dropped", "[device][recording]") {
+  MockDevice stylus(trajectory::poke());
+  Recorder recorder(stylus, 10);
+  recorder.write(Vector3(1, 0, 0), Vector3::Zero());  // before any read: passed on, not recorded
+  recorder.note(StatusFlag::inverted);
+  CHECK(recorder.ticks().empty());
+  recorder.start();
+  for (int i = 0; i < 25; ++i) {
+    recorder.read();
+    recorder.note(StatusFlag::degraded_model);
+    recorder.write(Vector3(0.1 * i, 0, 0), Vector3::Zero());
+    if (i == 6) CHECK(recorder.ticks().size() == 7);
+    if (i == 6) CHECK(recorder.dropped() == 0);
+  }
+  const auto ticks = recorder.ticks();
+  REQUIRE(ticks.size() == 10);
+  CHECK(recorder.dropped() == 15);
+  for (int i = 0; i < 10; ++i) {
+    CHECK(ticks[static_cast<std::size_t>(i)].state.time == (15 + i) / 1000.0);
+    CHECK(ticks[static_cast<std::size_t>(i)].force[0] == 0.1 * (15 + i));
+    CHECK(ticks[static_cast<std::size_t>(i)].status == Status(StatusFlag::degraded_model));
+  }
+  recorder.read();
+  CHECK(recorder.ticks().back().force == Vector3::Zero());  // nothing written yet
+  CHECK_THROWS_AS(Recorder(stylus, 0), SetupError);
+}
+
+TEST_CASE("files that are no recording are refused with file and line",
+          "[device][recording][extreme][C1][C2][C3][C5]") {
+  struct Case {
+    std::string content, line, says;
+  };
+  const std::vector<Case> cases{
+      {"", ":1: ", "header"},
+      {"time,x,y\n" + row, ":1: ", "header"},
+      {header, ":1: ", "at least one tick"},
+      {header + "\n\n", ":3: ", "at least one tick"},
+      {header + row + "0,0,0\n", ":3: ", "a position"},
+      {header + "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0\n", ":2: ", "a status"},
+      {header + row.substr(0, row.size() - 1) + ",1\n", ":2: ", "17 fields"},
+      {header + row.substr(0, row.size() - 1) + ",\n", ":2: ", "17 fields"},
+      {header + "0,1,5,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n", ":2: ", "17 fields"},  // decimal comma
+      {header + "0;0;0;0;nan;nan;nan;1;0;0;0;0;1;0;0;0;0\n", ":2: ", "time as a number"},
+      {header + row + "x,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n", ":3: ", "time as a number, found 'x'"},
+      {header + "1e400,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n", ":2: ", "time"},
+      {header + "0x10,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n", ":2: ", "time"},
+      {header + " 0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n", ":2: ", "time"},
+      {header + "0,,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n", ":2: ", "a position"},
+      {header + "0,0,0,0,nan,nan,nan,1,0,0,0,-1,1,0,0,0,0\n", ":2: ", "buttons"},
+      {header + "0,0,0,0,nan,nan,nan,1,0,0,0,4294967296,1,0,0,0,0\n", ":2: ", "buttons"},
+      {header + "0,0,0,0,nan,nan,nan,1,0,0,0,0,2,0,0,0,0\n", ":2: ", "valid"},
+      {header + "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,8192\n", ":2: ", "a status"},
+      {header + std::string(1000, '\x01') + "\n", ":2: ", "time"},
+  };
+  const TemporaryFile file("bad.csv");
+  for (const Case& c : cases) {
+    file.write(c.content);
+    INFO(c.content.substr(0, 200));
+    try {
+      const std::size_t ticks = read_recording(file.path).size();
+      FAIL("accepted as " << ticks);
+    } catch (const SetupError& error) {
+      CHECK(error.kind() == SetupErrorKind::bad_file);
+      CHECK_THAT(std::string(error.what()), test::contains(file.path + c.line));
+      CHECK_THAT(std::string(error.what()), test::contains(c.says));
+    }
+  }
+}
+
+TEST_CASE("line ends of any kind and a missing last one are read", "[device][recording][extreme][C5]") {
+  const TemporaryFile file("ends.csv");
+  std::string crlf;
+  for (char c : header + row + row) crlf += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  for (const std::string& text :
+       {header + row + row, header + row + row.substr(0, row.size() - 1), crlf, header + row + "\n" + row}) {
+    file.write(text);
+    CHECK(read_recording(file.path).size() == 2);
+  }
+}
+
+TEST_CASE("every truncation is refused or reads whole ticks", "[device][recording][extreme][C1]") {
+  const TemporaryFile file("cut.csv");
+  const std::string whole = header + row + row;
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    file.write(whole.substr(0, size));
+    try {
+      const std::size_t ticks = read_recording(file.path).size();
+      CHECK(ticks <= 2);
+      CHECK(size > header.size());
+    } catch (const SetupError& error) {
+      CHECK(error.kind() == SetupErrorKind::bad_file);
+    }
+  }
+}
+
+TEST_CASE("files that cannot be opened are refused", "[device][recording]") {
+  const std::string nowhere = "/no such folder/recording.csv";
+  for (auto act : {+[](const std::string& p) { static_cast<void>(read_recording(p)); },
+                   +[](const std::string& p) { write_recording(p, {}); }}) {
+    try {
+      act(nowhere);
+      FAIL("accepted");
+    } catch (const SetupError& error) {
+      CHECK(error.kind() == SetupErrorKind::bad_file);
+      CHECK_THAT(std::string(error.what()), test::contains(nowhere));
+    }
+  }
+  CHECK_THROWS_AS(read_recording(std::filesystem::temp_directory_path().string()), SetupError);
+}

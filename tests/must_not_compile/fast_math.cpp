@@ -1,0 +1,5 @@
+// expect: palpate refuses -ffast-math
+#ifndef PALPATE_GOOD_TWIN
+#define __FAST_MATH__ 1
+#endif
+#include <palpate/core/config.hpp>

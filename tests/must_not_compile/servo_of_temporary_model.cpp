@@ -1,0 +1,22 @@
+// expect: no matching
+// The servo refers to its tissue: one that dies at the end of the line is refused.
+#include <palpate/element/tet4.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+
+using namespace palpate;
+
+using Model = HapticFEModel<Tet4, LinearElastic>;
+Model make_model();
+
+void touch() {
+#ifdef PALPATE_GOOD_TWIN
+  Model liver = make_model();
+  HapticServo<Model> servo(liver, SphereTool{4e-3});
+#else
+  HapticServo<Model> servo(make_model(), SphereTool{4e-3});
+#endif
+  const ToolState tool;
+  servo.tick({&tool, 1});
+}
