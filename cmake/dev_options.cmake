@@ -8,6 +8,9 @@ endif()
 
 # clang counts -Wsign-conversion into -Wconversion and g++ does not: off, so that both see the same rules.
 target_compile_options(palpate_dev_options INTERFACE -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(palpate_dev_options INTERFACE -Wno-restrict)  # false alarms on std::string (GCC bug 105651)
+endif()
 if(PALPATE_WERROR)
   target_compile_options(palpate_dev_options INTERFACE -Werror)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # flow analysis after inlining Eigen: too many false alarms to stop a build
@@ -21,5 +24,9 @@ if(PALPATE_NATIVE)
   check_cxx_compiler_flag(-march=native PALPATE_HAS_MARCH_NATIVE)
   if(PALPATE_HAS_MARCH_NATIVE)
     target_compile_options(palpate_dev_options INTERFACE -march=native)
+    # g++ 12 reports its own AVX-512 intrinsics as uninitialised (GCC bug 105593).
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+      target_compile_options(palpate_dev_options INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
+    endif()
   endif()
 endif()

@@ -13,4 +13,6 @@ using Policy = Condensed<SparseCholesky>;
 
 using Model = HapticFEModel<Tet4, LinearElastic, Policy>;
 Policy policy;
-const SetupReport& report(const Model& model) { return model.report(); }
+const SetupReport& report(const Model& model) {
+  return model.report();
+}

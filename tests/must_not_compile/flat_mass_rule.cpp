@@ -1,5 +1,4 @@
-// expect: MassQuadrature of a solid element needs points with three coordinates
-// The concept lets it pass; the laws say what is wrong.
+// expect: Element
 #include <palpate/element/tet4.hpp>
 #include <palpate/testing/element_laws.hpp>
 

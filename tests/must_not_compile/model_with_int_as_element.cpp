@@ -11,4 +11,6 @@ using Model = HapticFEModel<Tet4, LinearElastic>;
 using Model = HapticFEModel<int, LinearElastic>;
 #endif
 
-const SetupReport& report(const Model& model) { return model.report(); }
+const SetupReport& report(const Model& model) {
+  return model.report();
+}

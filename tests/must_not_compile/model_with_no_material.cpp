@@ -16,4 +16,6 @@ using Model = HapticFEModel<Tet4, LinearElastic>;
 using Model = HapticFEModel<Tet4, Spring>;
 #endif
 
-const SetupReport& report(const Model& model) { return model.report(); }
+const SetupReport& report(const Model& model) {
+  return model.report();
+}

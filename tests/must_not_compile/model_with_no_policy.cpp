@@ -11,4 +11,6 @@ using Model = HapticFEModel<Tet4, LinearElastic, SparseCholesky>;
 using Model = HapticFEModel<Tet4, LinearElastic, MatrixFree>;  // an assembly, not a solver
 #endif
 
-const SetupReport& report(const Model& model) { return model.report(); }
+const SetupReport& report(const Model& model) {
+  return model.report();
+}

@@ -1,4 +1,4 @@
-// expect: no matching
+// expect: deleted
 // The servo refers to its tissue: one that dies at the end of the line is refused.
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>

@@ -13,17 +13,21 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-double distance(const Lab& a, const Lab& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+double distance(const Lab& a, const Lab& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
 
 }  // namespace
 
 TEST_CASE("Maps begin and end where they say, and go on no further", "[post]") {
-  const auto [map, low, high] = GENERATE(table<ColourMap, Bytes, Bytes>(
-      {{ColourMap::rose_blue, Bytes{255, 210, 202}, Bytes{0, 57, 139}},
-       {ColourMap::viridis, Bytes{68, 1, 84}, Bytes{253, 231, 37}},
-       {ColourMap::thesis_hue, Bytes{255, 0, 0}, Bytes{0, 0, 255}}}));
-  for (const double t : {0.0, -1e-300, -5.0, -std::numeric_limits<double>::infinity()}) CHECK(to_bytes(colour_at(map, t)) == low);
-  for (const double t : {1.0, 1.0 + 1e-12, 1e300, std::numeric_limits<double>::infinity()}) CHECK(to_bytes(colour_at(map, t)) == high);
+  const auto [map, low, high] =
+      GENERATE(table<ColourMap, Bytes, Bytes>({{ColourMap::rose_blue, Bytes{255, 210, 202}, Bytes{0, 57, 139}},
+                                               {ColourMap::viridis, Bytes{68, 1, 84}, Bytes{253, 231, 37}},
+                                               {ColourMap::thesis_hue, Bytes{255, 0, 0}, Bytes{0, 0, 255}}}));
+  for (const double t : {0.0, -1e-300, -5.0, -std::numeric_limits<double>::infinity()})
+    CHECK(to_bytes(colour_at(map, t)) == low);
+  for (const double t : {1.0, 1.0 + 1e-12, 1e300, std::numeric_limits<double>::infinity()})
+    CHECK(to_bytes(colour_at(map, t)) == high);
   CHECK(colour_at(map, not_a_number) == Rgb{0.5, 0.5, 0.5});
   const auto colours = palette<64>(map);
   CHECK(colours.front() == low);
@@ -33,7 +37,8 @@ TEST_CASE("Maps begin and end where they say, and go on no further", "[post]") {
 TEST_CASE("Lightness falls from rose to blue and rises in viridis; a hue ramp does neither", "[post]") {
   const auto rises = [](ColourMap map) {
     int steps = 0;
-    for (int i = 0; i < 256; ++i) steps += to_lab(colour_at(map, (i + 1) / 256.0))[0] > to_lab(colour_at(map, i / 256.0))[0];
+    for (int i = 0; i < 256; ++i)
+      steps += to_lab(colour_at(map, (i + 1) / 256.0))[0] > to_lab(colour_at(map, i / 256.0))[0];
     return steps;
   };
   CHECK(rises(ColourMap::rose_blue) == 0);
@@ -44,11 +49,15 @@ TEST_CASE("Lightness falls from rose to blue and rises in viridis; a hue ramp do
 }
 
 TEST_CASE("From rose to blue equal steps look equally different", "[post]") {
-  const double whole = distance(to_lab(colour_at(ColourMap::rose_blue, 0.0)), to_lab(colour_at(ColourMap::rose_blue, 1.0)));
+  const double whole =
+      distance(to_lab(colour_at(ColourMap::rose_blue, 0.0)), to_lab(colour_at(ColourMap::rose_blue, 1.0)));
   for (int i = 0; i < 64; ++i) {
-    const double step = distance(to_lab(colour_at(ColourMap::rose_blue, i / 64.0)), to_lab(colour_at(ColourMap::rose_blue, (i + 1) / 64.0)));
+    const double step = distance(to_lab(colour_at(ColourMap::rose_blue, i / 64.0)),
+                                 to_lab(colour_at(ColourMap::rose_blue, (i + 1) / 64.0)));
     CHECK_THAT(64.0 * step / whole, WithinAbs(1.0, 0.02));
   }
+  CHECK(distance(to_lab(colour_at(ColourMap::rose_blue, 0.25)), {72.5, 16.3, -4.8}) < 1.0);
+  CHECK(distance(to_lab(colour_at(ColourMap::rose_blue, 0.75)), {41.6, 17.6, -35.2}) < 1.0);
 }
 
 TEST_CASE("CIELAB there and back, and its fixed points", "[post]") {

@@ -11,7 +11,7 @@ namespace palpate::inline PALPATE_ABI {
 
 static_assert(StiffnessOperator<BlockMatrix>);
 
-/// Sum of all element stiffnesses into the block pattern (thesis 3.38-3.40). Throws inverted_element for a non-positive
+/// Sum of all element stiffnesses into the block pattern (thesis 3.37, 3.46). Throws inverted_element for a non-positive
 /// Jacobian and non_finite for an element whose stiffness is not finite. Allocates the pattern and the values only.
 template <Element E>
 BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {

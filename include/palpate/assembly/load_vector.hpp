@@ -1,4 +1,4 @@
-// Nodal loads of a whole scene (thesis 3.41-3.47; BCNaturlig, EksternLast, InitToyning).
+// Nodal loads of a whole scene (thesis 3.38, 3.47; BCNaturlig, EksternLast, InitToyning).
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -16,7 +16,7 @@ FaceNodes<typename E::Face> face_nodes(const Mesh<E>& mesh, const BoundaryFace<E
   return x;
 }
 
-/// Mass per node [kg] by row sums: the consistent load of a uniform acceleration g is mass times g (3.41). One entry
+/// Mass per node [kg] by row sums: the consistent load of a uniform acceleration g is mass times g (3.44). One entry
 /// per node.
 template <Element E>
 VectorX nodal_mass(const Body<E>& body) {
@@ -63,7 +63,7 @@ VectorX applied_load(const Body<E>& body, const std::vector<BoundaryFace<E>>& bo
   return f;
 }
 
-/// Load f_0 of the initial strains of all regions (3.47): 3 nodes entries [N].
+/// Load f_0 of the initial strains of all regions (3.28, 3.45): 3 nodes entries [N].
 template <Element E>
 VectorX initial_strain_load(const Body<E>& body) {
   VectorX f = VectorX::Zero(3 * body.mesh.node_count());

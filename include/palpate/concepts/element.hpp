@@ -28,6 +28,7 @@ concept FaceElement = requires(const Eigen::Vector2d& xi) {
 /// testing/element_laws.hpp.
 template <class E>
 concept Element = requires(const Vector3& xi) {
+  typename std::integral_constant<int, E::nodes>;
   requires E::nodes > 0;
   requires E::order > 0;
   { E::shape(xi) } noexcept -> FixedVector<E::nodes>;
@@ -39,6 +40,7 @@ concept Element = requires(const Vector3& xi) {
   requires Quadrature<typename E::Quadrature>;
   requires E::Quadrature::dimension == 3;
   requires Quadrature<typename E::MassQuadrature>;
+  requires E::MassQuadrature::dimension == 3;
   { E::reference_volume } -> std::convertible_to<double>;
 };
 

@@ -29,7 +29,7 @@ class CondensedSystem {
   std::size_t bytes() const noexcept {
     return interior_.bytes() + dense_.bytes() + static_cast<std::size_t>(schur_->stiffness.size()) * sizeof(double);
   }
-  /// P_u of eq. 3.51 [N/m].
+  /// P_u of thesis 3.7 [N/m].
   const MatrixX& stiffness() const noexcept { return schur_->stiffness; }
 
   /// x = K^-1 b for a load on any dof, condensed ones included: u_k from f_k + P_f f_c, then u_c = K_cc^-1 (f_c - K_ck

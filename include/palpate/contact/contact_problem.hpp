@@ -5,6 +5,7 @@
 #include <palpate/contact/complementarity.hpp>
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/contact_samples.hpp>
+#include <palpate/core/setup_error.hpp>
 
 #include <vector>
 
@@ -24,8 +25,9 @@ template <int Capacity = 48>
 class ContactProblem {
  public:
   /// Places the contact points for balls of at least `smallest_radius` [m]. Allocates workspaces; for set-up.
+  /// Throws bad_argument unless 0.4 <= sample_spacing <= 1 and there is at least one iteration.
   ContactProblem(const ContactSurface& surface, double smallest_radius, ContactParameters parameters = {})
-      : parameters_(parameters),
+      : parameters_(checked(parameters)),
         samples_(surface, parameters.sample_spacing * smallest_radius),
         displacement_(surface.positions().size()),
         stamp_(displacement_.size(), 0),
@@ -86,9 +88,8 @@ class ContactProblem {
     for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
       const ContactTool& tool = tools[static_cast<std::size_t>(t)];
       if (!tool.active) continue;
-      // A plane further away than the ball can travel in this tick cannot matter; half as much again for the tissue's
-      // own motion.
-      const double margin = 0.02 * tool.radius + 1.5 * tool.motion;
+      // Points this near may be reached while the linearisation settles; leaving one out lets the ball fall through it.
+      const double margin = 0.25 * tool.radius + 1.5 * tool.motion;
       surface.bvh().visit_near(tool.proxy, tool.radius + margin + reach, [&](int triangle) {
         if (!add_candidates(tissue, tool, t, triangle, margin)) status.set(StatusFlag::degraded_model);
       });
@@ -111,7 +112,7 @@ class ContactProblem {
       const Vector3 offset = tool.proxy - c.point;
       const double distance = offset.norm();
       c.gap = distance - tool.radius;
-      if (!(c.gap <= margin && distance > 0.0) || !(offset.dot(surface.normal(triangle)) > 0.0)) continue;
+      if (!(c.gap <= margin && distance > 0.0) || !faces_ball(tissue, triangle, offset)) continue;
       c.tool = t;
       c.vertices = sample.vertices;
       c.weights = sample.weights;
@@ -120,6 +121,19 @@ class ContactProblem {
       kept = keep(c) && kept;
     }
     return kept;
+  }
+
+  /// Whether the ball lies on the outer side of a triangle, as it rests or as it is deformed: in a steep dent only the
+  /// latter holds. What the ball sees through a thin part from behind fails both.
+  template <TissueModel Tissue>
+  bool faces_ball(const Tissue& tissue, int triangle, const Vector3& offset) noexcept {
+    const ContactSurface& surface = tissue.contact_surface();
+    if (offset.dot(surface.normal(triangle)) > 0.0) return true;
+    const Triangle& v = surface.triangle(triangle);
+    const Vector3 x0 = surface.position(v[0]) + displacement(tissue, v[0]);
+    const Vector3 x1 = surface.position(v[1]) + displacement(tissue, v[1]);
+    const Vector3 x2 = surface.position(v[2]) + displacement(tissue, v[2]);
+    return offset.dot((x1 - x0).cross(x2 - x0)) > 0.0;
   }
 
   bool keep(const Contact& c) noexcept {
@@ -157,7 +171,10 @@ class ContactProblem {
       change = std::max(change, (total - tool.force).norm());
       scale = std::max(scale, total.norm());
       tool.force = total;
-      tool.proxy = tool.target + coupling(tissue, tool) * total;
+      // The next linearisation must stay within reach of the points this one knew.
+      const Vector3 step = tool.target + coupling(tissue, tool) * total - tool.proxy;
+      const double longest = 0.25 * tool.radius + tool.motion;
+      tool.proxy += step.norm() <= longest ? step : Vector3((longest / step.norm()) * step);
     }
     return status;
   }
@@ -212,7 +229,16 @@ class ContactProblem {
   }
   std::size_t local(int contact, std::size_t a) const noexcept { return local_[static_cast<std::size_t>(contact)][a]; }
 
-  static constexpr double unsettled = 0.05;  // relative change of force in the last linearisation that is not kept quiet
+  static ContactParameters checked(const ContactParameters& p) {
+    if (!(p.sample_spacing >= 0.4 && p.sample_spacing <= 1.0))
+      raise(SetupErrorKind::bad_argument, "the sample spacing is " + number(p.sample_spacing) + " radii",
+            "Below 0.4 there is no room for all points under a ball, above 1 the ball falls between them");
+    if (p.maximum_iterations < 1) raise(SetupErrorKind::bad_argument, "a tick needs at least one linearisation");
+    return p;
+  }
+
+  static constexpr double unsettled =
+      0.05;  // relative change of force in the last linearisation that is not kept quiet
   static constexpr auto capacity = static_cast<std::size_t>(Capacity);
   ContactParameters parameters_;
   ContactSamples samples_;

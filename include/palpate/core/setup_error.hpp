@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace palpate::inline PALPATE_ABI {
@@ -105,8 +107,13 @@ struct SetupProblem {
 /// A number for a message: nine significant digits, enough to tell 0.4999999 from 0.5.
 inline std::string number(double value) {
   std::array<char, 40> text{};
+#if defined(__cpp_lib_to_chars)
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 9).ptr;
+  return {text.data(), end};
+#else
   std::snprintf(text.data(), text.size(), "%.9g", value);
   return text.data();
+#endif
 }
 
 /// One line: kind, sentence, first ids, hint.

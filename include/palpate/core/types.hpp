@@ -30,6 +30,7 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 /// True for an Eigen matrix type of exactly R x C doubles. `convertible_to<Matrix6>` would also accept a 5 x 5.
 template <class M, int R, int C>
 concept FixedMatrix = requires {
+  requires std::derived_from<std::remove_cvref_t<M>, Eigen::PlainObjectBase<std::remove_cvref_t<M>>>;  // no expressions
   requires std::remove_cvref_t<M>::RowsAtCompileTime == R;
   requires std::remove_cvref_t<M>::ColsAtCompileTime == C;
   requires std::same_as<typename std::remove_cvref_t<M>::Scalar, double>;

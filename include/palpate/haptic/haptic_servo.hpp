@@ -28,6 +28,7 @@ struct ServoOptions {
 template <TissueModel Tissue>
 class HapticServo {
  public:
+  static constexpr std::size_t max_tools = 8;
   static constexpr int contact_capacity =
       48;  ///< contacts of all tools; the nearest are kept when there are more (degraded_model)
 
@@ -35,6 +36,7 @@ class HapticServo {
   struct Snapshot {
     std::array<VertexForce, 3 * contact_capacity> forces;
     std::size_t force_count = 0;
+    std::array<Vector3, max_tools> proxies{};  ///< centre of every tool's ball, world frame [m]
     double time = 0.0;
     std::span<const VertexForce> vertex_forces() const noexcept { return {forces.data(), force_count}; }
   };
@@ -75,6 +77,7 @@ class HapticServo {
     Status shared;
     for (std::size_t i = 0; i < states_.size(); ++i) read(i, i < states.size() ? states[i] : unreadable());
     shared |= problem_.solve(*tissue_, contact_tools_);
+    for (std::size_t i = 0; i < states_.size(); ++i) recover(i);
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const Vector3 wanted =
           contact_tools_[i].active ? Vector3(tissue_->pose().linear() * contact_tools_[i].force) : Vector3::Zero();
@@ -120,7 +123,9 @@ class HapticServo {
   };
 
   static double smallest_radius(const std::vector<SphereTool>& tools) {
-    if (tools.empty()) raise(SetupErrorKind::bad_argument, "a servo needs at least one tool");
+    if (tools.empty() || tools.size() > max_tools)
+      raise(SetupErrorKind::bad_argument, "a servo has one to " + std::to_string(max_tools) + " tools, not " +
+                                              std::to_string(tools.size()));
     for (const SphereTool& tool : tools) tool.require_valid();
     return std::ranges::min_element(tools, {}, &SphereTool::radius)->radius;
   }
@@ -177,11 +182,22 @@ class HapticServo {
     tool.proxy = closest.distance >= tool.radius ? position : Vector3(closest.point + tool.radius * closest.outward);
   }
 
+  /// A ball whose centre is in the body without any contact has lost the surface: it is put back in the next tick, with
+  /// the ramp.
+  void recover(std::size_t i) noexcept {
+    const ContactTool& tool = contact_tools_[i];
+    if (!tool.active || !tool.force.isZero(0.0)) return;
+    if (tissue_->contact_surface().closest(tool.target).distance >= 0.0) return;
+    states_[i].known = false;
+    states_[i].status.set(StatusFlag::reacquired);
+  }
+
   void publish() noexcept {
     Snapshot& s = snapshots_.back();
     const auto forces = problem_.vertex_forces();
     std::ranges::copy(forces, s.forces.begin());
     s.force_count = forces.size();
+    for (std::size_t i = 0; i < contact_tools_.size(); ++i) s.proxies[i] = proxy(i);
     s.time = states_.front().time;
     snapshots_.publish();
   }

@@ -1,4 +1,4 @@
-// Nodal loads of one element or one face (thesis 3.41-3.47, corrected: shape functions are not transformed, the surface
+// Nodal loads of one element or one face (thesis 3.42-3.45, corrected: shape functions are not transformed, the surface
 // measure is the length of the cross product).
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// Integral of every shape function over the element [m^3]: times a body force it is the load f_b (3.41), times density
+/// Integral of every shape function over the element [m^3]: times a body force it is the load f_l (3.44), times density
 /// the row-sum mass.
 template <Element E>
 Eigen::Matrix<double, E::nodes, 1> shape_volumes(const ElementNodes<E>& x) noexcept {
@@ -24,7 +24,7 @@ template <FaceElement F>
 using FaceNodes = Eigen::Matrix<double, F::nodes, 3>;
 
 /// Integral of shape function times outward area vector over a face [m^2], one row per node: times minus the pressure
-/// it is the load of a pressure; the norm of the area vector is the measure of eq. 3.42.
+/// it is the load of a pressure; the norm of the area vector is the measure of eq. 3.40.
 template <FaceElement F>
 FaceNodes<F> shape_area_vectors(const FaceNodes<F>& x) noexcept {
   FaceNodes<F> result = FaceNodes<F>::Zero();
@@ -38,7 +38,7 @@ FaceNodes<F> shape_area_vectors(const FaceNodes<F>& x) noexcept {
   return result;
 }
 
-/// Integral of every shape function over a face [m^2]: times a traction it is the load f_l (3.42).
+/// Integral of every shape function over a face [m^2]: times a traction it is the load f_b (3.42).
 template <FaceElement F>
 Eigen::Matrix<double, F::nodes, 1> shape_areas(const FaceNodes<F>& x) noexcept {
   Eigen::Matrix<double, F::nodes, 1> result = Eigen::Matrix<double, F::nodes, 1>::Zero();
@@ -51,7 +51,7 @@ Eigen::Matrix<double, F::nodes, 1> shape_areas(const FaceNodes<F>& x) noexcept {
   return result;
 }
 
-/// Load of an initial strain [N], one row per node: f_0 = sum_q B^T D epsilon_0 dV (3.47).
+/// Load of an initial strain [N], one row per node: f_0 = sum_q B^T D epsilon_0 dV (3.45).
 template <Element E>
 ElementNodes<E> initial_strain_load(const ElementNodes<E>& x, const Matrix6& d, const Vector6& strain0) noexcept {
   ElementNodes<E> f = ElementNodes<E>::Zero();

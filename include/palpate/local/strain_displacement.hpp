@@ -5,7 +5,7 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// The 6 x 3 block B_a of the strain-displacement matrix for a node with spatial gradient g [1/m] (thesis 3.16, 3.35):
+/// The 6 x 3 block B_a of the strain-displacement matrix for a node with spatial gradient g [1/m] (thesis 3.16, 3.20):
 /// strain = sum B_a u_a, Voigt order of core/voigt.hpp.
 inline Eigen::Matrix<double, 6, 3> strain_displacement(const Vector3& g) noexcept {
   Eigen::Matrix<double, 6, 3> b = Eigen::Matrix<double, 6, 3>::Zero();

@@ -56,9 +56,9 @@ struct LinearElastic {
     if (!(std::isfinite(density) && density >= 0.0))
       return problem(SetupErrorKind::bad_density, "density", density, 0.0,
                      "It must be finite and not negative, in kg/m^3");
-    if (!elasticity().allFinite())
+    if (!elasticity().allFinite() || !std::isnormal(shear_modulus()))
       return problem(SetupErrorKind::not_positive_definite, "the largest modulus", lame_lambda(), 0.0,
-                     "youngs_modulus is too large for double precision");
+                     "youngs_modulus is beyond the range of double precision");
     return std::nullopt;
   }
 };

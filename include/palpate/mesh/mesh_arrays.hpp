@@ -5,9 +5,14 @@
 #include <palpate/concepts/mesh.hpp>
 #include <palpate/mesh/groups.hpp>
 
+#include <ranges>
 #include <span>
 
 namespace palpate::inline PALPATE_ABI {
+
+/// An argument that a view may refer to: an lvalue, or a range that does not own its elements.
+template <class Range>
+concept Outlives = std::is_lvalue_reference_v<Range> || std::ranges::borrowed_range<std::remove_cvref_t<Range>>;
 
 /// Reads a simulator's own arrays as a mesh, without a copy: `positions` holds x y z per node, `connectivity` E::nodes
 /// ids per element (zero based), `regions` one number per element or nothing. Groups are added with `group()`. The
@@ -17,27 +22,19 @@ class MeshArrays {
  public:
   static constexpr int nodes_per_element = E::nodes;
 
-  /// Throws bad_argument when a length is no multiple of 3 or E::nodes, or `regions` has the wrong length.
-  MeshArrays(const std::vector<Real>& positions, const std::vector<Integer>& connectivity)
-      : MeshArrays(std::span<const Real>(positions), std::span<const Integer>(connectivity)) {}
-  MeshArrays(std::vector<Real>&&, const std::vector<Integer>&) = delete;
-  MeshArrays(const std::vector<Real>&, std::vector<Integer>&&) = delete;
-  MeshArrays(std::vector<Real>&&, std::vector<Integer>&&) = delete;
-  MeshArrays(std::span<const Real> positions, std::span<const Integer> connectivity, std::span<const int> regions = {})
+  /// Any contiguous ranges that outlive the view: lvalues, or spans of them. Throws bad_argument when a length is no
+  /// multiple of 3 or E::nodes, or `regions` has the wrong length; index_out_of_range for a region number that is
+  /// negative or larger than the number of elements.
+  template <class Positions, class Connectivity, class Regions = std::span<const int>>
+  requires(Outlives<Positions> && Outlives<Connectivity> && Outlives<Regions>)
+      MeshArrays(Positions&& positions, Connectivity&& connectivity, Regions&& regions = {})
       : positions_(positions), connectivity_(connectivity), regions_(regions) {
-    if (positions.size() % 3 != 0)
-      raise(SetupErrorKind::bad_argument, "positions holds " + std::to_string(positions.size()) + " numbers",
-            "It needs x y z per node");
-    if (connectivity.size() % static_cast<std::size_t>(E::nodes) != 0)
-      raise(SetupErrorKind::bad_argument, "connectivity holds " + std::to_string(connectivity.size()) + " ids",
-            "It needs " + std::to_string(E::nodes) + " per element");
-    if (!regions.empty() && static_cast<Index>(regions.size()) != element_count())
-      raise(SetupErrorKind::bad_argument, "regions holds " + std::to_string(regions.size()) + " numbers",
-            "It needs one per element: " + std::to_string(element_count()));
-    int count = 1;
-    for (int r : regions) count = std::max(count, r + 1);
-    for (int r = 0; r < count; ++r) region_names_.push_back(count == 1 ? "body" : "region " + std::to_string(r));
+    check();
   }
+  template <class Positions, class Connectivity, class Regions = std::span<const int>>
+  requires(!(Outlives<Positions> && Outlives<Connectivity> && Outlives<Regions>))
+      MeshArrays(Positions&&, Connectivity&&, Regions&& = {})
+  = delete;  // a view of a temporary would dangle
 
   /// Adds or extends a named group of nodes.
   MeshArrays& group(std::string_view name, std::span<const NodeId> nodes) {
@@ -66,6 +63,26 @@ class MeshArrays {
   const Group* find_group(std::string_view name) const noexcept { return groups_.find(name); }
 
  private:
+  void check() {
+    if (positions_.size() % 3 != 0)
+      raise(SetupErrorKind::bad_argument, "positions holds " + std::to_string(positions_.size()) + " numbers",
+            "It needs x y z per node");
+    if (connectivity_.size() % static_cast<std::size_t>(E::nodes) != 0)
+      raise(SetupErrorKind::bad_argument, "connectivity holds " + std::to_string(connectivity_.size()) + " ids",
+            "It needs " + std::to_string(E::nodes) + " per element");
+    if (!regions_.empty() && static_cast<Index>(regions_.size()) != element_count())
+      raise(SetupErrorKind::bad_argument, "regions holds " + std::to_string(regions_.size()) + " numbers",
+            "It needs one per element: " + std::to_string(element_count()));
+    Index count = 1;
+    for (int r : regions_) {
+      if (r < 0 || r > element_count())
+        raise(SetupErrorKind::index_out_of_range, "an element is in region " + std::to_string(r),
+              "Number regions from zero");
+      count = std::max(count, Index{r} + 1);
+    }
+    for (Index r = 0; r < count; ++r) region_names_.push_back(count == 1 ? "body" : "region " + std::to_string(r));
+  }
+
   std::span<const Real> positions_;
   std::span<const Integer> connectivity_;
   std::span<const int> regions_;

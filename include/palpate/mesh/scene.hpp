@@ -61,7 +61,7 @@ class Scene {
     prescribed_.push_back({std::move(where), values});
     return *this;
   }
-  /// Force per reference area [Pa] on the faces of a group (natural condition, eq. 3.42).
+  /// Force per reference area [Pa] on the faces of a group (natural condition, eqs. 3.26, 3.42).
   Scene& traction(Selection where, const Vector3& value) {
     require_finite(value.sum(), "a traction");
     tractions_.push_back({std::move(where), value});
@@ -79,7 +79,7 @@ class Scene {
     point_loads_.push_back({std::move(where), force});
     return *this;
   }
-  /// Acceleration [m/s^2]; the load is density times acceleration (eq. 3.41). Replaces an earlier one.
+  /// Acceleration [m/s^2]; the load is density times acceleration (eqs. 3.27, 3.44). Replaces an earlier one.
   Scene& gravity(const Vector3& acceleration) {
     require_finite(acceleration.sum(), "gravity");
     gravity_ = acceleration;
@@ -92,7 +92,7 @@ class Scene {
     return *this;
   }
   /// Stress-free strain epsilon_0 (Voigt order of core/voigt.hpp, engineering shear) of a region, or `everywhere`:
-  /// swelling, contraction, thermal expansion (eqs. 3.1, 3.47).
+  /// swelling, contraction, thermal expansion (eqs. 3.1, 3.28).
   Scene& initial_strain(std::string region, const Vector6& strain) {
     require_finite(strain.sum(), "an initial strain");
     initial_strains_.push_back({std::move(region), strain});

@@ -67,7 +67,7 @@ class HapticFEModel {
   VectorX internal_force() const { return statics_->internal_force(); }
   VectorX reactions() const { return statics_->reactions(); }
   double strain_energy() const { return palpate::strain_energy(statics_->body(), statics_->displacement()); }
-  /// P_u of eq. 3.51 on the free dofs of the touchable nodes; condensing policies only.
+  /// P_u of thesis 3.7 on the free dofs of the touchable nodes; condensing policies only.
   const MatrixX& condensed_stiffness() const noexcept { return tick_system_.stiffness(); }
 
   /// Displacement with these forces on the contact surface, for drawing: one back-substitution. u has 3 entries per

@@ -184,6 +184,10 @@ class Statics {
     if (report.probe_error > flagged_probe_error)
       report.set(SetupFlag::ill_conditioned, "a solve with a known answer is wrong by " + number(report.probe_error) +
                                                  " (relative): forces keep no more digits than that");
+    else if (report.condition_estimate > flagged_condition)
+      report.set(SetupFlag::ill_conditioned, "the condition of the stiffness is about " +
+                                                 number(report.condition_estimate) +
+                                                 ": parameters that differ in the last digits give other forces");
   }
 
   /// 1-norm of K over the free dofs.
@@ -202,6 +206,7 @@ class Statics {
   }
 
   static constexpr double flagged_probe_error = 1e-6;
+  static constexpr double flagged_condition = 1e12;
   static constexpr double refused_probe_error = 1e-3;
 
   Body<E> body_;

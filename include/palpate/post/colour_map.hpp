@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -18,8 +19,8 @@ using Rgb = std::array<double, 3>;
 using Lab = std::array<double, 3>;
 
 /// What a field looks like.
-/// - rose_blue: a straight line in CIELAB from pale rose (low) to dark blue (high). Lightness falls evenly from 88 to 26,
-///   so it reads in print and with any colour vision, and unloaded tissue stays light enough for its shading to show.
+/// - rose_blue: a straight line in CIELAB from pale rose (low) to dark blue (high). Lightness falls evenly from
+///   88 to 26, so it reads in print and with any colour vision, and unloaded tissue stays light enough for its shading.
 /// - viridis: of matplotlib (Smith and van der Walt, CC0), 17 control points, off by less than 6/255.
 /// - thesis_hue: the hue ramp of the thesis, red (low) to blue (high). For comparison: its lightness goes up and down.
 enum class ColourMap { rose_blue, viridis, thesis_hue };
@@ -27,7 +28,8 @@ enum class ColourMap { rose_blue, viridis, thesis_hue };
 /// From sRGB to CIELAB (IEC 61966-2-1, CIE 15; white point D65).
 inline Lab to_lab(const Rgb& c) noexcept {
   std::array<double, 3> linear{}, f{};
-  for (std::size_t i = 0; i < 3; ++i) linear[i] = c[i] <= 0.04045 ? c[i] / 12.92 : std::pow((c[i] + 0.055) / 1.055, 2.4);
+  for (std::size_t i = 0; i < 3; ++i)
+    linear[i] = c[i] <= 0.04045 ? c[i] / 12.92 : std::pow((c[i] + 0.055) / 1.055, 2.4);
   const auto& [r, g, b] = linear;
   const std::array<double, 3> xyz{(0.4124564 * r + 0.3575761 * g + 0.1804375 * b) / 0.9504700,
                                   0.2126729 * r + 0.7151522 * g + 0.0721750 * b,
@@ -43,7 +45,8 @@ inline Rgb to_rgb(const Lab& lab) noexcept {
   const auto inverse = [](double f) {
     return f * f * f > 216.0 / 24389.0 ? f * f * f : (116.0 * f - 16.0) * 27.0 / 24389.0;
   };
-  const double x = 0.9504700 * inverse(fy + lab[1] / 500.0), y = inverse(fy), z = 1.0888300 * inverse(fy - lab[2] / 200.0);
+  const double x = 0.9504700 * inverse(fy + lab[1] / 500.0), y = inverse(fy),
+               z = 1.0888300 * inverse(fy - lab[2] / 200.0);
   Rgb c{3.2404542 * x - 1.5371385 * y - 0.4985314 * z, -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
         0.0556434 * x - 0.2040259 * y + 1.0572252 * z};
   for (double& v : c) v = std::clamp(v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055, 0.0, 1.0);
@@ -52,7 +55,9 @@ inline Rgb to_rgb(const Lab& lab) noexcept {
 
 namespace detail {
 
-inline Rgb from_bytes(const std::array<std::uint8_t, 3>& b) noexcept { return {b[0] / 255.0, b[1] / 255.0, b[2] / 255.0}; }
+inline Rgb from_bytes(const std::array<std::uint8_t, 3>& b) noexcept {
+  return {b[0] / 255.0, b[1] / 255.0, b[2] / 255.0};
+}
 
 inline Rgb mix(const Rgb& from, const Rgb& to, double t) noexcept {
   return {std::lerp(from[0], to[0], t), std::lerp(from[1], to[1], t), std::lerp(from[2], to[2], t)};
@@ -63,12 +68,14 @@ inline Rgb rose_blue(double t) noexcept {
 }
 
 inline Rgb viridis(double t) noexcept {
-  constexpr std::array<std::array<std::uint8_t, 3>, 17> points{{{68, 1, 84}, {72, 24, 106}, {71, 45, 123}, {66, 64, 134},
-      {59, 82, 139}, {51, 99, 141}, {44, 114, 142}, {38, 129, 142}, {33, 144, 140}, {31, 159, 136}, {40, 174, 128},
-      {62, 188, 116}, {93, 201, 99}, {130, 211, 76}, {171, 220, 50}, {213, 226, 26}, {253, 231, 37}}};
-  const double place = t * static_cast<double>(points.size() - 1);
-  const std::size_t i = std::min(static_cast<std::size_t>(place), points.size() - 2);
-  return mix(from_bytes(points[i]), from_bytes(points[i + 1]), place - static_cast<double>(i));
+  constexpr std::array<std::uint8_t, 51> points{68,  1,   84,  72,  24,  106, 71,  45,  123, 66,  64,  134, 59,
+                                                82,  139, 51,  99,  141, 44,  114, 142, 38,  129, 142, 33,  144,
+                                                140, 31,  159, 136, 40,  174, 128, 62,  188, 116, 93,  201, 99,
+                                                130, 211, 76,  171, 220, 50,  213, 226, 26,  253, 231, 37};
+  const auto point = [&](std::size_t i) { return from_bytes({points[3 * i], points[3 * i + 1], points[3 * i + 2]}); };
+  const double place = 16.0 * t;
+  const std::size_t i = std::min(static_cast<std::size_t>(place), std::size_t{15});
+  return mix(point(i), point(i + 1), place - static_cast<double>(i));
 }
 
 /// Full saturation and value, hue from 0 to 240 degrees.
@@ -120,7 +127,8 @@ class ColourScale {
   /// Throws bad_argument unless low < high, both finite; unit of the field.
   ColourScale(double low, double high, ColourMap map = ColourMap::rose_blue) : low_(low), high_(high), map_(map) {
     if (!(std::isfinite(low) && std::isfinite(high) && low < high))
-      raise(SetupErrorKind::bad_argument, "a colour scale from " + number(low) + " to " + number(high), "Give two finite values that rise");
+      raise(SetupErrorKind::bad_argument, "a colour scale from " + number(low) + " to " + number(high),
+            "Give two finite values that rise");
   }
 
   /// Where a value lies in the range, 0 ... 1, cut off at the ends; NaN stays NaN.

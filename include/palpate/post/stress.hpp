@@ -10,8 +10,9 @@ namespace palpate::inline PALPATE_ABI {
 /// One stress per column [Pa], Voigt order of core/voigt.hpp.
 using StressColumns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// Stress [Pa] in the reference point `xi` of an element: sigma = D (epsilon - epsilon_0) (thesis 3.24, with the initial
-/// strain of 3.1). `x` holds the nodes [m], `u` their displacements [m], one per row; `d` the elasticity matrix [Pa].
+/// Stress [Pa] in the reference point `xi` of an element: sigma = D (epsilon - epsilon_0) (thesis 3.24, with the
+/// initial strain of 3.1). `x` holds the nodes [m], `u` their displacements [m], one per row; `d` the elasticity matrix
+/// [Pa].
 template <Element E>
 Vector6 point_stress(const ElementNodes<E>& x, const ElementNodes<E>& u, const Vector3& xi, const Matrix6& d,
                      const Vector6& strain0 = Vector6::Zero()) noexcept {
@@ -49,11 +50,11 @@ inline void von_mises(const StressColumns& stress, VectorX& equivalent) {
 /// enough to draw, but smeared where two materials meet (the stress itself jumps there). Von Mises at a node is that of
 /// its mean stress.
 struct StressField {
-  StressColumns elements;        ///< volume mean of every element [Pa]
-  StressColumns nodes;           ///< recovered at every node [Pa]; zero at a node of no element
-  VectorX von_mises_elements;    ///< [Pa]
-  VectorX von_mises_nodes;       ///< [Pa]
-  VectorX node_volumes;          ///< volume of the elements around every node [m^3], the weights of the mean
+  StressColumns elements;      ///< volume mean of every element [Pa]
+  StressColumns nodes;         ///< recovered at every node [Pa]; zero at a node of no element
+  VectorX von_mises_elements;  ///< [Pa]
+  VectorX von_mises_nodes;     ///< [Pa]
+  VectorX node_volumes;        ///< volume of the elements around every node [m^3], the weights of the mean
 };
 
 /// Fills `field` with the stress under the displacement `u` (3 per node [m]). One pass over the elements, about 0.1 us
@@ -63,16 +64,18 @@ template <Element E>
 void recover_stress(const Body<E>& body, const VectorX& u, StressField& field) {
   const Mesh<E>& mesh = body.mesh;
   if (u.size() != 3 * mesh.node_count())
-    raise(SetupErrorKind::bad_argument, "a displacement of " + std::to_string(u.size()) + " numbers for " +
-                                            std::to_string(mesh.node_count()) + " nodes", "Give three per node");
+    raise(SetupErrorKind::bad_argument,
+          "a displacement of " + std::to_string(u.size()) + " numbers for " + std::to_string(mesh.node_count()) +
+              " nodes",
+          "Give three per node");
   field.elements.resize(6, mesh.element_count());
   field.nodes.setZero(6, mesh.node_count());
   field.node_volumes.setZero(mesh.node_count());
   for (Index e = 0; e < mesh.element_count(); ++e) {
     ElementNodes<E> moved;
     for (int a = 0; a < E::nodes; ++a) moved.row(a) = u.template segment<3>(3 * Index{mesh.element_node(e, a)});
-    const MeanStress mean = mean_stress<E>(element_nodes<E>(mesh, e), moved, body.elasticity_of(e),
-                                           body.initial_strain[body.region_of(e)]);
+    const MeanStress mean =
+        mean_stress<E>(element_nodes<E>(mesh, e), moved, body.elasticity_of(e), body.initial_strain[body.region_of(e)]);
     field.elements.col(e) = mean.stress;
     for (int a = 0; a < E::nodes; ++a) {
       field.nodes.col(mesh.element_node(e, a)) += mean.volume * mean.stress;

@@ -62,11 +62,13 @@ Violations operator_laws(const K& k, const MatrixX& dense) {
   k.apply(x, clean);
   k.apply(x, dirty);
   expect_true(v, "apply overwrites", clean == dirty);
-  expect_at_most(v, "apply is linear", (clean - dense * x).cwiseAbs().maxCoeff(), 1e-13 * scale * static_cast<double>(n));
+  expect_at_most(v, "apply is linear", (clean - dense * x).cwiseAbs().maxCoeff(),
+                 1e-13 * scale * static_cast<double>(n));
   return v;
 }
 
-/// "translation costs nothing" and "rotation costs nothing": K times a rigid motion vanishes against |K| times its size.
+/// "translation costs nothing" and "rotation costs nothing": K times a rigid motion vanishes against |K| times its
+/// size.
 template <Element E, StiffnessOperator K>
 Violations rigid_motion_laws(const Mesh<E>& mesh, const K& k, double scale) {
   Violations v;
@@ -128,15 +130,16 @@ Violations affine_patch_laws(const Body<E>& body, const K& k, double scale) {
     for (const BoundaryFace<E>& face : extract_boundary<E>(body.mesh)) {
       const auto areas = shape_area_vectors<typename E::Face>(face_nodes(body.mesh, face));
       for (int i = 0; i < E::Face::nodes; ++i)
-        force.template segment<3>(3 * Index{face.nodes[static_cast<std::size_t>(i)]}) -= stress * areas.row(i).transpose();
+        force.template segment<3>(3 * Index{face.nodes[static_cast<std::size_t>(i)]}) -=
+            stress * areas.row(i).transpose();
     }
     expect_at_most(v, "affine patch", force.cwiseAbs().maxCoeff(), bound, name);
   }
   return v;
 }
 
-/// Laws of one stiffness of a whole body: size, finiteness, the operator laws, rigid motions, zero modes (six per piece)
-/// and the affine patch test. Builds the dense matrix: for bodies up to a few hundred nodes.
+/// Laws of one stiffness of a whole body: size, finiteness, the operator laws, rigid motions, zero modes (six per
+/// piece) and the affine patch test. Builds the dense matrix: for bodies up to a few hundred nodes.
 template <Element E, StiffnessOperator K>
 Violations stiffness_laws(const Body<E>& body, const K& k, Index pieces = 1) {
   Violations v;

@@ -79,7 +79,8 @@ Violations compliance_laws(const MatrixX& inverse, S& system, std::span<const In
   return v;
 }
 
-/// Laws of a static system with the dofs `kept` (in its order) of the operator it was made from. O(n^3): for small ones.
+/// Laws of a static system with the dofs `kept` (in its order) of the operator it was made from. O(n^3): for small
+/// ones.
 template <SpdOperator Op, StaticSystem S>
 Violations condensation_laws(const Op& op, S& system, std::span<const Index> kept, double tolerance = 1e-11) {
   Violations v;

@@ -41,8 +41,8 @@ double residual(const Op& op, const VectorX& b, const VectorX& x) {
 
 /// "report is truthful" about what was returned: a residual that is stated is the one found, convergence is claimed
 /// only with a finite answer that satisfies the equations, and a direct solver makes no iterations.
-inline Violations report_laws(const SolveReport& report, double relative_residual, bool small, const SolverClaims& claims,
-                              const std::string& name) {
+inline Violations report_laws(const SolveReport& report, double relative_residual, bool small,
+                              const SolverClaims& claims, const std::string& name) {
   Violations v;
   const double rounding = 1e-15;
   if (!std::isnan(report.relative_residual))

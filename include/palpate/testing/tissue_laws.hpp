@@ -76,11 +76,13 @@ Violations tissue_laws(T& tissue, std::span<const int> vertices, TissueClaims cl
   expect_above(v, "something gives way", scale, 0.0);
   expect_at_most(v, "reciprocity", (c - c.transpose()).cwiseAbs().maxCoeff(), claims.tolerance * scale);
   const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(0.5 * (c + c.transpose()), Eigen::EigenvaluesOnly);
-  expect_at_least(v, "positive semidefinite", eigen.eigenvalues()[0], -claims.tolerance * eigen.eigenvalues().tail<1>()[0]);
+  expect_at_least(v, "positive semidefinite", eigen.eigenvalues()[0],
+                  -claims.tolerance * eigen.eigenvalues().tail<1>()[0]);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const VectorX own = c.diagonal().segment<3>(3 * static_cast<Index>(i));
     const MatrixX column = c.middleCols<3>(3 * static_cast<Index>(i));
-    if (!column.isZero(0.0)) expect_at_least(v, "a vertex gives way", own.minCoeff(), 0.0, "vertex " + std::to_string(i));
+    if (!column.isZero(0.0))
+      expect_at_least(v, "a vertex gives way", own.minCoeff(), 0.0, "vertex " + std::to_string(i));
     if (!column.isZero(0.0)) expect_above(v, "a vertex gives way", own.maxCoeff(), 0.0, "vertex " + std::to_string(i));
   }
   append(v, bound_laws(tissue, vertices));

@@ -1,0 +1,91 @@
+// What the two parts of the program share: graded boxes of tissue and a rigidly held ball.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <palpate/element/tet4.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/mesh/generators.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+
+namespace indentation {
+
+using Model = palpate::HapticFEModel<palpate::Tet4, palpate::LinearElastic>;
+
+inline constexpr double ball_radius = 4e-3;     ///< [m]
+inline constexpr double youngs_modulus = 10e3;  ///< [Pa]
+
+/// Part 1: presses into a bonded layer and compares with the exact solution. False when the acceptance fails.
+bool force_converges();
+/// Part 2: slides over a flat block at constant depth and looks at the ripple. False when the acceptance fails.
+bool sliding_is_smooth();
+
+/// Distances from 0 to exactly `total`: steps of about `h` up to `fine`, then each `growth` times the one before.
+inline std::vector<double> graded(double h, double fine, double total, double growth) {
+  std::vector<double> x{0.0};
+  double step = h;
+  std::size_t even = 0;
+  while (x.back() < total * (1.0 - 1e-9)) {
+    if (x.back() < fine - 1e-9 * h)
+      even = x.size();
+    else
+      step *= growth;
+    x.push_back(x.back() + step);
+  }
+  const double kept = even + 1 < x.size() ? x[even] : 0.0, stretch = (total - kept) / (x.back() - kept);
+  for (double& v : x)
+    if (v > kept) v = kept + (v - kept) * stretch;
+  return x;
+}
+
+/// Heights of a block fine at its top.
+inline std::vector<double> graded_down(double h, double fine, double height, double growth) {
+  std::vector<double> z = graded(h, fine, height, growth);
+  for (double& v : z) v = height - v;
+  std::ranges::reverse(z);
+  return z;
+}
+
+/// Nodes of the top side for which near(position) holds.
+template <class Near>
+std::vector<palpate::NodeId> top_nodes(const palpate::Mesh<palpate::Tet4>& mesh, Near near) {
+  std::vector<palpate::NodeId> nodes;
+  for (palpate::NodeId node : mesh.find_group("z1")->nodes)
+    if (near(mesh.position(node))) nodes.push_back(node);
+  return nodes;
+}
+
+/// A tissue and a ball that follows the device exactly; the gate's limits are out of reach.
+struct Session {
+  Model model;
+  palpate::HapticServo<Model> servo;
+  palpate::ToolState state;
+  palpate::Status status;
+
+  Session(const palpate::Mesh<palpate::Tet4>& mesh, const palpate::Scene& scene, double poisson_ratio)
+      : model(mesh, scene, palpate::LinearElastic{.youngs_modulus = youngs_modulus, .poisson_ratio = poisson_ratio}),
+        servo(model, palpate::SphereTool{ball_radius}, options()) {}
+
+  /// One tick with the ball's centre here; the contact force before the gate.
+  palpate::Vector3 tick(const palpate::Vector3& centre) {
+    state.time += 1e-3;
+    state.position = centre;
+    status = servo.tick({&state, 1}).front().status;
+    return servo.contact_force();
+  }
+  int pressing() const {
+    return static_cast<int>(std::ranges::count_if(servo.contacts(), [](const auto& c) { return c.force > 0.0; }));
+  }
+  bool has(palpate::StatusFlag flag) const { return status.has(flag); }
+
+ private:
+  static palpate::ServoOptions options() {
+    palpate::ServoOptions o;
+    o.coupling_stiffness = palpate::infinity;
+    o.force_limits = palpate::ForceLimits{.peak_force = 1e6, .slew_rate = 1e9};
+    return o;
+  }
+};
+
+}  // namespace indentation

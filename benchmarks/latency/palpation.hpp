@@ -1,0 +1,99 @@
+// A ball that moves over a block with a given number of contacts.
+#pragma once
+
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+
+#include "block.hpp"
+#include "sampling.hpp"
+
+namespace latency {
+
+/// A model, a servo with its defaults, and a hand on a small circle: 20 um per tick, off the nodes and edges.
+template <class Policy>
+class Palpation {
+ public:
+  using Model = palpate::HapticFEModel<palpate::Tet4, palpate::LinearElastic, Policy>;
+
+  explicit Palpation(const Block& block, const palpate::SetupOptions& options = {})
+      : mesh_(make_mesh(block)),
+        model_(mesh_, make_scene(mesh_, block), tissue, options),
+        servo_(model_, palpate::SphereTool{radius}) {}
+
+  Model& model() noexcept { return model_; }
+
+  /// Goes down until that many contacts press, on average over the circle.
+  void press_until(int contacts) {
+    for (depth_ = 5e-6; depth_ < radius; depth_ += 5e-6) {
+      int sum = 0;
+      for (int i = 0; i < ticks_around; ++i) {
+        tick();
+        sum += pressing();
+      }
+      if (sum >= (contacts - 0.25) * ticks_around) return;
+    }
+  }
+  /// The same path from the same start for every policy.
+  void press_to(double depth) {
+    depth_ = depth;
+    for (int i = 0; i < ticks_around; ++i) tick();
+  }
+  double depth() const noexcept { return depth_; }
+
+  palpate::Vector3 tick() noexcept {
+    const double angle = 2.0 * 3.14159265358979 * (count_ % ticks_around) / ticks_around;
+    state_.position << 0.23 * cell + orbit * std::cos(angle), 0.41 * cell + orbit * std::sin(angle),
+        height + radius - depth_;
+    return hold();
+  }
+  palpate::Vector3 hold() noexcept {
+    state_.time = 1e-3 * static_cast<double>(++count_);
+    return servo_.tick({&state_, 1}).front().force;
+  }
+  palpate::Vector3 contact_force() const noexcept { return servo_.contact_force(); }
+  int pressing() const noexcept {
+    return static_cast<int>(std::ranges::count_if(servo_.contacts(), [](const auto& c) { return c.force > 0.0; }));
+  }
+
+  /// Holds still, applies the forces to the whole body and measures how far the pressed points then are from the ball,
+  /// per depth. This goes through none of the stored compliance.
+  double gap_error() {
+    for (int i = 0; i < 50; ++i) hold();
+    palpate::VectorX u(3 * model_.mesh().node_count());
+    model_.displacement_with(servo_.read_snapshot().vertex_forces(), u);
+    double worst = pressing() > 0 ? 0.0 : palpate::infinity;
+    for (const palpate::Contact& c : servo_.contacts()) {
+      if (!(c.force > 0.0)) continue;
+      palpate::Vector3 point = palpate::Vector3::Zero();
+      for (std::size_t a = 0; a < 3; ++a) {
+        const palpate::NodeId node = model_.touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];
+        point += c.weights[a] * (model_.rest_position(node) + u.segment<3>(3 * palpate::Index{node}));
+      }
+      worst = std::max(worst, std::abs((servo_.proxy() - point).norm() - radius));
+    }
+    return worst / depth_;
+  }
+
+  /// Sizes beside the times.
+  void describe(benchmark::State& state) const {
+    const palpate::SetupReport& r = model_.report();
+    state.counters["tets"] = static_cast<double>(r.elements);
+    state.counters["kept"] = static_cast<double>(r.touchable_vertices);
+    state.counters["contacts"] = pressing();
+    state.counters["points"] = static_cast<double>(servo_.contacts().size());
+    state.counters["setup_ms"] = 1e3 * r.total_seconds();
+  }
+
+ private:
+  static constexpr double radius = 4e-3, orbit = 0.1e-3;
+  static constexpr int ticks_around = 31;
+
+  palpate::Mesh<palpate::Tet4> mesh_;
+  Model model_;
+  palpate::HapticServo<Model> servo_;
+  palpate::ToolState state_;
+  double depth_ = 0.0;
+  int count_ = 0;
+};
+
+}  // namespace latency

@@ -1,0 +1,76 @@
+// From what a session kept to what is drawn and written: positions, stress, the tool; the series for ParaView.
+#pragma once
+
+#include "chart.hpp"
+#include "session.hpp"
+
+#include <palpate/io/pvd.hpp>
+#include <palpate/post/colour_map.hpp>
+#include <palpate/post/stress.hpp>
+
+#include <filesystem>
+
+namespace touch {
+
+/// A frame with what follows from it.
+struct Picture {
+  double time = 0.0;
+  Vector3 hand, ball, force;   ///< world frame: where the device is, where the ball rests [m]; force on the ball [N]
+  double penetration = 0.0;    ///< of the device into the surface at rest [m]; negative: above it
+  VectorX displacement;        ///< 3 per node [m]
+  VectorX von_mises;           ///< per node [Pa]
+  VectorX von_mises_elements;  ///< per element [Pa]
+};
+
+/// How deep a ball at `position` is in the surface at rest [m].
+inline double penetration(const Organ& organ, const Vector3& position) {
+  return tool.radius - organ.contact_surface().closest(organ.pose().inverse() * position).distance;
+}
+
+inline std::vector<Picture> develop(const Organ& organ, const Session& session) {
+  std::vector<Picture> pictures;
+  StressField stress;
+  for (const Frame& frame : session.frames) {
+    recover_stress(organ.body(), frame.displacement, stress);
+    const auto tick =
+        std::ranges::lower_bound(session.ticks, frame.time, {}, [](const RecordedTick& t) { return t.state.time; });
+    if (tick == session.ticks.end()) continue;
+    const Vector3 hand = tick->state.position;
+    // The hand is coupled to the ball by a spring of the device's stiffness: on the surface the two are apart.
+    const Vector3 ball = hand + frame.force / DeviceLimits{}.stiffness;
+    pictures.push_back({frame.time, hand, ball, frame.force, penetration(organ, hand), frame.displacement,
+                        stress.von_mises_nodes, stress.von_mises_elements});
+  }
+  return pictures;
+}
+
+/// The surface of one region, outward, in node ids.
+inline std::vector<std::array<NodeId, 3>> region_surface(const Organ& organ, std::string_view name) {
+  Mesh<Tet4> part;
+  part.positions = organ.mesh().positions;
+  for (Index e = 0; e < organ.mesh().element_count(); ++e)
+    if (organ.mesh().region_name(organ.mesh().region(e)) == name)
+      part.elements.push_back(organ.mesh().elements[static_cast<std::size_t>(e)]);
+  std::vector<std::array<NodeId, 3>> faces;
+  for (const auto& face : extract_boundary<Tet4>(part)) faces.push_back(face.nodes);
+  return faces;
+}
+
+/// About 50 files for ParaView, evenly spread, and the list that plays them. Returns how many.
+inline Index write_series(const std::filesystem::path& folder, const Organ& organ,
+                          const std::vector<Picture>& pictures) {
+  std::filesystem::create_directories(folder / "vtu");
+  io::PvdSeries series((folder / "touch.pvd").string());
+  const std::size_t step = std::max<std::size_t>(1, (pictures.size() + 25) / 50);
+  for (std::size_t i = 0; i < pictures.size(); i += step) {
+    const std::string file = (folder / "vtu" / text("touch_%03d.vtu", static_cast<int>(i / step))).string();
+    io::VtuFields fields;
+    fields.at_nodes = {{"displacement [m]", pictures[i].displacement}, {"von Mises [Pa]", pictures[i].von_mises}};
+    fields.at_elements = {{"von Mises mean [Pa]", pictures[i].von_mises_elements}};
+    io::write_vtu(file, organ.mesh(), fields);
+    series.add(pictures[i].time, file);
+  }
+  return series.size();
+}
+
+}  // namespace touch

@@ -1,0 +1,132 @@
+// Where contact points lie and what they belong to.
+#include <palpate/contact/contact_samples.hpp>
+#include <palpate/mesh/generators.hpp>
+#include <palpate/testing/random.hpp>
+
+#include <set>
+#include <tuple>
+
+#include "catch.hpp"
+
+using namespace palpate;
+
+namespace {
+
+ContactSurface surface_of(const Mesh<Tet4>& mesh) {
+  std::vector<Triangle> triangles;
+  for (const auto& face : extract_boundary<Tet4>(mesh)) triangles.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
+  return {mesh.positions, triangles};
+}
+
+Vector3 position(const ContactSurface& surface, const ContactSample& s) {
+  Vector3 x = Vector3::Zero();
+  for (std::size_t a = 0; a < 3; ++a) x += s.weights[a] * surface.position(s.vertices[a]);
+  return x;
+}
+
+std::vector<Vector3> all_positions(const ContactSurface& surface, const ContactSamples& samples) {
+  std::vector<Vector3> all;
+  for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t)
+    for (const ContactSample& s : samples.of_triangle(t)) all.push_back(position(surface, s));
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("short edges are sampled at their vertices only", "[contact][samples]") {
+  const ContactSurface surface = surface_of(box_tet4(Vector3(1, 1, 1), {4, 4, 4}, BoxSplit::six));
+  const ContactSamples samples(surface, 0.36);  // diagonals are 0.354
+  CHECK(samples.count() == 5 * 5 * 5 - 3 * 3 * 3);
+}
+
+TEST_CASE("a right triangle gets the lattice of its longest edge, each edge its own", "[contact][samples]") {
+  const ContactSurface one({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+  for (int n : {1, 2, 3, 7}) {
+    const int diagonal = static_cast<int>(std::ceil(std::sqrt(2.0) * n - 1e-9));
+    const ContactSamples samples(one, 1.0 / n);
+    CHECK(samples.count() == 3 + 2 * (n - 1) + (diagonal - 1) + (diagonal - 1) * (diagonal - 2) / 2);
+    CHECK(samples.of_triangle(0).size() == static_cast<std::size_t>(samples.count()));
+  }
+}
+
+TEST_CASE("every sample belongs to one triangle, with weights of its plane", "[contact][samples]") {
+  const ContactSurface surface = surface_of(box_tet4(Vector3(1, 1, 0.5), {3, 2, 2}, BoxSplit::five_mirrored));
+  const ContactSamples samples(surface, 0.1);
+  std::set<std::tuple<long, long, long>> places;
+  int bad_weights = 0, foreign = 0, total = 0;
+  for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t)
+    for (const ContactSample& s : samples.of_triangle(t)) {
+      ++total;
+      double sum = 0.0;
+      for (double w : s.weights) {
+        if (!(w >= 0.0 && w <= 1.0)) ++bad_weights;
+        sum += w;
+      }
+      if (std::abs(sum - 1.0) > 1e-14) ++bad_weights;
+      Triangle mine = s.vertices, whole = surface.triangle(t);
+      std::ranges::sort(mine);
+      std::ranges::sort(whole);
+      if (mine != whole) ++foreign;
+      const Vector3 x = 1e9 * position(surface, s);
+      places.emplace(std::lround(x[0]), std::lround(x[1]), std::lround(x[2]));
+    }
+  CHECK(bad_weights == 0);
+  CHECK(foreign == 0);
+  CHECK(total == samples.count());
+  CHECK(places.size() == static_cast<std::size_t>(samples.count()));  // none twice
+}
+
+TEST_CASE("no point of the surface is further than the spacing from a sample", "[contact][samples]") {
+  testing::Random random(41);
+  for (double spacing : {0.05, 0.13, 0.3, 1.0}) {
+    // Long thin triangles as well: 0.5 x 0.1 cells.
+    const ContactSurface surface = surface_of(box_tet4(Vector3(1, 1, 0.5), {2, 10, 3}, BoxSplit::six));
+    const ContactSamples samples(surface, spacing);
+    const std::vector<Vector3> places = all_positions(surface, samples);
+    double farthest = 0.0;
+    for (int i = 0; i < 3000; ++i) {
+      const Triangle& t = surface.triangle(static_cast<int>(random.bits() % surface.triangles().size()));
+      double u = random.uniform(), v = random.uniform();
+      if (u + v > 1.0) {
+        u = 1.0 - u;
+        v = 1.0 - v;
+      }
+      const Vector3 p = (1.0 - u - v) * surface.position(t[0]) + u * surface.position(t[1]) + v * surface.position(t[2]);
+      double nearest = infinity;
+      for (const Vector3& x : places) nearest = std::min(nearest, (x - p).norm());
+      farthest = std::max(farthest, nearest);
+    }
+    INFO("spacing " << spacing);
+    CHECK(farthest <= spacing);
+  }
+}
+
+TEST_CASE("samples on a line of the mesh are not further apart than the spacing", "[contact][samples]") {
+  const ContactSurface one({{0, 0, 0}, {1, 0, 0}, {0.2, 0.7, 0.1}}, {{0, 1, 2}});
+  for (double spacing : {0.07, 0.2, 0.4, 0.6}) {
+    const ContactSamples samples(one, spacing);
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::vector<double> along;
+      for (const ContactSample& s : samples.of_triangle(0)) {
+        std::array<double, 3> w{};
+        for (std::size_t a = 0; a < 3; ++a) w[static_cast<std::size_t>(s.vertices[a])] = s.weights[a];
+        if (w[i] == 0.0) along.push_back(w[(i + 1) % 3]);
+      }
+      std::ranges::sort(along);
+      REQUIRE(along.size() >= 2);
+      CHECK(along.front() == 0.0);
+      CHECK(along.back() == 1.0);
+      const double length = (one.position(static_cast<int>((i + 1) % 3)) - one.position(static_cast<int>((i + 2) % 3))).norm();
+      for (std::size_t k = 1; k < along.size(); ++k) CHECK((along[k] - along[k - 1]) * length <= spacing * (1.0 + 1e-12));
+    }
+  }
+}
+
+TEST_CASE("the lattice of a huge triangle is bounded", "[contact][samples][extreme]") {
+  const ContactSurface huge({{0, 0, 0}, {1e6, 0, 0}, {0, 1e6, 0}}, {{0, 1, 2}});
+  CHECK(ContactSamples(huge, 1e-3).count() == 33 * 34 / 2);
+  CHECK(ContactSamples(huge, 1e-3, 4).count() == 5 * 6 / 2);
+  CHECK(ContactSamples(huge, 1e-300).count() == 33 * 34 / 2);
+  CHECK(ContactSamples(huge, 1e308).count() == 3);
+  CHECK(ContactSamples(ContactSurface(), 1.0).count() == 0);
+}

@@ -1,0 +1,114 @@
+// Matrices without a trustworthy answer: refused, where the library underneath reports success.
+#include <palpate/linear/dense_inverse.hpp>
+#include <palpate/linear/sparse_cholesky.hpp>
+
+#include "linear/systems.hpp"
+
+using namespace test;
+
+namespace {
+
+/// What Eigen's own factorisations say.
+struct EigenSays {
+  Eigen::ComputationInfo sparse_ldlt, dense_llt, dense_ldlt;
+};
+EigenSays eigen_says(const MatrixX& m) {
+  const SparseMatrix lower = lower_half(m);
+  return {Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>(lower).info(), Eigen::LLT<MatrixX>(m).info(),
+          Eigen::LDLT<MatrixX>(m).info()};
+}
+
+void check_all_refuse(const MatrixX& m) {
+  CHECK_REFUSED(SetupErrorKind::not_positive_definite, SparseCholesky(lower_half(m), {}));
+  CHECK_REFUSED(SetupErrorKind::not_positive_definite, DenseCholesky(m, {}));
+  CHECK_REFUSED(SetupErrorKind::not_positive_definite, DenseInverse<double>(m, {}));
+  CHECK_REFUSED(SetupErrorKind::not_positive_definite, DenseInverse<float>(m, {}));
+}
+
+/// Stiffness of a free body: singular, six rigid motions.
+MatrixX free_body() {
+  const Body<Tet4> body = body_of(ball_tet4(0.05, 2), {liver});
+  return full(free_matrix(assemble_stiffness<Tet4>(body, {}), conditions_of(body.mesh, Scene())));
+}
+
+const MatrixX good = full(ball_stiffness(2));
+
+}  // namespace
+
+TEST_CASE("NaN is refused, Eigen says Success", "[linear][extreme][C3]") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (Index at : {Index{0}, good.rows() / 2, good.rows() - 1}) {
+    MatrixX m = good;
+    m(at, at) = nan;
+    const EigenSays says = eigen_says(m);
+    CHECK(says.sparse_ldlt == Eigen::Success);
+    CHECK(says.dense_llt == Eigen::Success);
+    check_all_refuse(m);
+  }
+  MatrixX m = good;
+  m(20, 3) = m(3, 20) = nan;
+  CHECK(eigen_says(m).sparse_ldlt == Eigen::Success);
+  check_all_refuse(m);
+}
+
+TEST_CASE("infinity is refused", "[linear][extreme][C3]") {
+  MatrixX m = good;
+  m(7, 7) = infinity;
+  check_all_refuse(m);
+  m = good;
+  m(9, 2) = m(2, 9) = infinity;
+  check_all_refuse(m);
+}
+
+TEST_CASE("an indefinite matrix is refused, Eigen's LDLT says Success", "[linear][extreme][A1]") {
+  const MatrixX m = full(ball_stiffness(2, {5e3, 0.6, 0.0}));  // Poisson ratio beyond one half
+  CHECK(eigen_says(m).sparse_ldlt == Eigen::Success);
+  CHECK(eigen_says(m).dense_ldlt == Eigen::Success);
+  check_all_refuse(m);
+  const SetupProblem p = refusal([&] { SparseCholesky(lower_half(m), {}); });
+  CHECK(p.value < 0.0);
+  CHECK(p.count > 0);
+  CHECK(p.ids.size() <= SetupProblem::max_ids);
+}
+
+TEST_CASE("a negative definite matrix is refused, Eigen's LDLT says Success", "[linear][extreme]") {
+  CHECK(eigen_says(-good).sparse_ldlt == Eigen::Success);
+  check_all_refuse(-good);
+  MatrixX one(2, 2);  // a negative pivot on a negative diagonal
+  one << 2, 0, 0, -3;
+  CHECK(eigen_says(one).sparse_ldlt == Eigen::Success);
+  check_all_refuse(one);
+}
+
+TEST_CASE("a free body is refused, Eigen's LDLT says Success", "[linear][extreme][B7]") {
+  const MatrixX m = free_body();
+  CHECK(eigen_says(m).sparse_ldlt == Eigen::Success);
+  CHECK(eigen_says(m).dense_ldlt == Eigen::Success);
+  check_all_refuse(m);
+  check_all_refuse(1e-9 * m);
+  check_all_refuse(1e9 * m);
+}
+
+TEST_CASE("a zero row is refused", "[linear][extreme][B6]") {
+  MatrixX m = good;
+  m.row(11).setZero();
+  m.col(11).setZero();
+  check_all_refuse(m);
+  check_all_refuse(MatrixX::Zero(5, 5));
+}
+
+TEST_CASE("a singular matrix of small integers is refused, Eigen's dense LDLT says Success", "[linear][extreme]") {
+  MatrixX m(3, 3);
+  m << 2, -1, -1, -1, 2, -1, -1, -1, 2;
+  CHECK(eigen_says(m).dense_ldlt == Eigen::Success);
+  check_all_refuse(m);
+}
+
+TEST_CASE("a barely definite matrix is taken", "[linear][extreme]") {
+  const MatrixX m = with_condition(40, 1e12);
+  VectorX x(40);
+  SparseCholesky sparse(lower_half(m), {});
+  sparse.solve_into(m * VectorX::Ones(40), x);
+  CHECK((x - VectorX::Ones(40)).norm() <= 1e-2);
+  CHECK_NOTHROW(DenseCholesky(m, {}));
+}

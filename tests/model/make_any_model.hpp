@@ -1,0 +1,42 @@
+#pragma once
+
+#include "model/any_model.hpp"
+
+namespace test {
+
+/// AnyModel of one policy.
+template <class Policy>
+class ModelOf final : public AnyModel {
+ public:
+  ModelOf(const Mesh<Tet4>& mesh, const Scene& scene, const Materials& materials, const SetupOptions& options)
+      : model_(mesh, scene, materials, options) {}
+
+  const SetupReport& report() const override { return model_.report(); }
+  const Mesh<Tet4>& mesh() const override { return model_.mesh(); }
+  const std::vector<NodeId>& node_map() const override { return model_.node_map(); }
+  const std::vector<NodeId>& touchable_nodes() const override { return model_.touchable_nodes(); }
+  const std::vector<NodeId>& seen_nodes() const override { return model_.seen_nodes(); }
+  Vector3 rest_position(NodeId node) const override { return model_.rest_position(node); }
+  const VectorX& displacement() const override { return model_.displacement(); }
+  VectorX internal_force() const override { return model_.internal_force(); }
+  VectorX reactions() const override { return model_.reactions(); }
+  double strain_energy() const override { return model_.strain_energy(); }
+  SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) override {
+    return model_.displacement_with(forces, u);
+  }
+  void set_conditions(const Scene& scene) override { model_.set_conditions(scene); }
+  void set_gravity(const Vector3& gravity) override { model_.set_gravity(gravity); }
+  void set_pose(const Eigen::Isometry3d& pose) override { model_.set_pose(pose); }
+  void reset() override { model_.reset(); }
+  const ContactSurface& contact_surface() const noexcept override { return model_.contact_surface(); }
+  Status require_columns(std::span<const int> vertices) noexcept override { return model_.require_columns(vertices); }
+  Matrix3 compliance(int i, int j) const noexcept override { return model_.compliance(i, j); }
+  double compliance_bound(int j) const noexcept override { return model_.compliance_bound(j); }
+  double compliance_floor() const noexcept override { return model_.compliance_floor(); }
+  const Eigen::Isometry3d& pose() const noexcept override { return model_.pose(); }
+
+ private:
+  HapticFEModel<Tet4, LinearElastic, Policy> model_;
+};
+
+}  // namespace test

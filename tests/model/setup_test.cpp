@@ -1,0 +1,249 @@
+// Set-up: what it refuses, reports and lets the caller decide.
+#include <palpate/mesh/mesh_arrays.hpp>
+#include <set>
+#include <sstream>
+
+#include "model/any_model.hpp"
+#include "model/reference.hpp"
+
+using namespace test;
+
+namespace {
+
+std::unique_ptr<AnyModel> model_of(const Mesh<Tet4>& mesh, const Scene& scene, const LinearElastic& m = liver,
+                                   const SetupOptions& options = {}) {
+  return make_model(PolicyName::condensed_inverse, mesh, scene, m, options);
+}
+
+}  // namespace
+
+TEST_CASE("the report counts and measures", "[model][report]") {
+  for (PolicyName policy : all_policies) {
+    INFO(name(policy));
+    const auto model = make_model(policy, brick(), brick_scene(), LinearElastic{5e3, 0.3, 1000.0});
+    const SetupReport& r = model->report();
+    CHECK(r.nodes == 36);
+    CHECK(r.elements == 60);
+    CHECK(r.free_dofs == 81);
+    CHECK(r.kept_dofs == 27);  // twelve touched nodes, three of them held
+    CHECK(r.condensed_dofs == 54);
+    CHECK(r.touchable_vertices == 12);
+    CHECK(r.seen_nodes == 34);  // two nodes are inside
+    CHECK(r.stiffness_bytes > 0);
+    CHECK(r.solver_bytes > 0);
+    CHECK(r.compliance_bytes == (policy == PolicyName::condensed_float ? 4u : 8u) * 36 * 36);
+    CHECK(r.worst_quality > 0.1);
+    CHECK(r.worst_quality <= r.mean_quality);
+    CHECK(r.mean_quality <= 1.0);
+    CHECK(r.probe_error <= accuracy(policy));
+    CHECK(r.total_seconds() > 0.0);
+    if (policy != PolicyName::condensed_float) CHECK(r.flags == 0);
+    CHECK(r.remarks.size() == static_cast<std::size_t>(std::popcount(r.flags)));
+    std::ostringstream text;
+    text << r;
+    CHECK_THAT(text.str(), contains("81 free dofs"));
+  }
+}
+
+TEST_CASE("the condition estimate is within a factor of ten", "[model][report]") {
+  const LinearElastic m{5e3, 0.3, 1000.0};
+  const Mesh<Tet4> mesh = brick();
+  const EssentialConditions c = conditions_of(mesh, brick_scene());
+  const MatrixX lower = MatrixX(free_matrix(assemble_stiffness<Tet4>(body_of(mesh, {m}), {}), c));
+  const MatrixX k = lower.selfadjointView<Eigen::Lower>();
+  const MatrixX inverse = Eigen::LLT<MatrixX>(k).solve(MatrixX::Identity(k.rows(), k.rows()));
+  const double exact = k.cwiseAbs().colwise().sum().maxCoeff() * inverse.cwiseAbs().colwise().sum().maxCoeff();
+  for (PolicyName policy : all_policies) {
+    INFO(name(policy));
+    const double estimate = make_model(policy, mesh, brick_scene(), m)->report().condition_estimate;
+    if (policy == PolicyName::conjugate_gradient || policy == PolicyName::assembled_conjugate_gradient) {
+      CHECK(estimate == 0.0);  // not estimated
+      continue;
+    }
+    CHECK(estimate >= 0.1 * exact);
+    CHECK(estimate <= 1.001 * exact);
+  }
+}
+
+TEST_CASE("flags", "[model][report]") {
+  SECTION("locking above a Poisson ratio of 0.4") {
+    CHECK_FALSE(model_of(brick(), brick_scene(), {5e3, 0.4, 0.0})->report().has(SetupFlag::locking));
+    CHECK(model_of(brick(), brick_scene(), {5e3, 0.401, 0.0})->report().has(SetupFlag::locking));
+  }
+  SECTION("one region is enough") {
+    const Scene scene = Scene().fix("fixed").touch("end");
+    const Materials two{{"cube_a", {1e3, 0.3, 0.0}}, {"cube_b", {1e3, 0.45, 0.0}}};
+    const auto model = make_model(PolicyName::sparse_cholesky, two_cubes(), scene, two);
+    CHECK(model->report().has(SetupFlag::locking));
+    std::ostringstream text;
+    text << model->report();
+    CHECK_THAT(text.str(), contains("Poisson ratio of 0.45"));
+  }
+  SECTION("millimetres") {
+    Mesh<Tet4> mesh = brick();
+    for (Vector3& x : mesh.positions) x *= 1000.0;
+    CHECK(model_of(mesh, brick_scene())->report().has(SetupFlag::suspicious_units));
+  }
+  SECTION("pieces") {
+    Mesh<Tet4> mesh = brick();
+    const Mesh<Tet4> one = mesh;
+    for (const Vector3& x : one.positions) mesh.positions.push_back(x + Vector3(1, 0, 0));
+    for (auto e : one.elements) {
+      for (NodeId& i : e) i += 36;
+      mesh.elements.push_back(e);
+    }
+    std::vector<NodeId> held;
+    for (NodeId i = 0; i < 72; ++i)
+      if (i % 4 == 0) held.push_back(i);
+    CHECK(model_of(mesh, Scene().fix(held).touch("z1"))->report().has(SetupFlag::disconnected));
+  }
+  SECTION("slivers") {
+    const Mesh<Tet4> mesh = box_tet4({0.0, 0.1, 0.1001}, {0.0, 0.05}, {0.0, 0.05});
+    const auto model = model_of(mesh, brick_scene());
+    CHECK(model->report().has(SetupFlag::poor_quality));
+    CHECK(model->report().worst_quality < 0.1);
+  }
+}
+
+TEST_CASE("a repaired mesh is flagged and mapped", "[model][report][extreme][B4][B6]") {
+  const Scene scene = brick_scene().gravity({0, 0, -9.81});
+  const auto good = model_of(brick(), scene);
+  CHECK_FALSE(good->report().has(SetupFlag::repaired));
+  SetupOptions mend;
+  mend.admission.inverted = Admission::repair;
+  SECTION("orphan nodes are dropped by default") {
+    Mesh<Tet4> mesh = brick();
+    mesh.positions.insert(mesh.positions.begin(), Vector3(0.05, 0.03, 0.02));
+    for (auto& e : mesh.elements)
+      for (NodeId& i : e) ++i;
+    for (Group& g : mesh.groups.all()) {
+      for (NodeId& i : g.nodes) ++i;
+      for (auto& face : g.faces)
+        for (NodeId& i : face) ++i;
+    }
+    const auto model = model_of(mesh, scene);
+    CHECK(model->report().has(SetupFlag::repaired));
+    CHECK(model->node_map().front() == -1);
+    CHECK(model->node_map().back() == 35);
+    CHECK(relative(model->displacement(), good->displacement()) <= 1e-13);
+  }
+  SECTION("an inverted element is turned when asked") {
+    Mesh<Tet4> mesh = brick();
+    std::swap(mesh.elements[7][0], mesh.elements[7][3]);
+    CHECK_REFUSED(SetupErrorKind::inverted_element, model_of(mesh, scene));
+    const auto model = model_of(mesh, scene, liver, mend);
+    CHECK(model->report().has(SetupFlag::repaired));
+    CHECK(relative(model->displacement(), good->displacement()) <= 1e-13);
+  }
+}
+
+TEST_CASE("set-up can be cancelled at every step and leaves nothing behind", "[model][progress]") {
+  const Scene scene = loaded(brick_scene());
+  for (PolicyName policy : all_policies) {
+    INFO(name(policy));
+    std::set<std::string, std::less<>> stages;
+    int calls = 0, stop_at = -1;
+    SetupOptions options;
+    options.progress = [&](const Progress& p) {
+      CHECK(p.fraction >= 0.0);
+      CHECK(p.fraction <= 1.0);
+      stages.emplace(p.stage);
+      return calls++ != stop_at;
+    };
+    make_model(policy, brick(), scene, liver, options);
+    CHECK(stages.count("admission") == 1);
+    CHECK(stages.count("assembly") == 1);
+    CHECK(stages.count("checks") == 1);
+    const int all = calls;
+    REQUIRE(all >= 3);
+    for (stop_at = 0; stop_at < all; ++stop_at) {
+      calls = 0;
+      CHECK_REFUSED(SetupErrorKind::cancelled, make_model(policy, brick(), scene, liver, options));
+      CHECK(calls == stop_at + 1);
+    }
+  }
+}
+
+TEST_CASE("too large is refused with the number of bytes", "[model][memory][extreme][B10]") {
+  SetupOptions options;
+  options.memory_limit = 2000;
+  for (PolicyName policy : all_policies) {
+    INFO(name(policy));
+    const SetupProblem p = refusal([&] { make_model(policy, brick(), brick_scene(), liver, options); });
+    CHECK(to_string(p.kind) == "too_large");
+    CHECK(p.threshold == 2000.0);
+    CHECK(p.value > 2000.0);
+    CHECK(p.value < 1e6);
+  }
+}
+
+TEST_CASE("the limit holds for the stiffness and its factor as well", "[model][memory][extreme][B10]") {
+  // Nothing is touched: no compliance, but tens of kilobytes of K and of L.
+  SetupOptions options;
+  options.memory_limit = 2000;
+  for (PolicyName policy : {PolicyName::sparse_cholesky, PolicyName::assembled_conjugate_gradient}) {
+    INFO(name(policy));
+    CHECK_REFUSED(SetupErrorKind::too_large, make_model(policy, brick(), Scene().fix("x0"), liver, options));
+  }
+}
+
+TEST_CASE("the memory announced is the memory used", "[model][memory][extreme][B10]") {
+  // With a limit just below what a condensed model reports, set-up is refused; with a generous one it is not.
+  const auto model = model_of(brick(), brick_scene());
+  SetupOptions options;
+  options.memory_limit = model->report().compliance_bytes - 1;
+  CHECK_REFUSED(SetupErrorKind::too_large, model_of(brick(), brick_scene(), liver, options));
+  options.memory_limit = 100 * model->report().compliance_bytes;
+  CHECK_NOTHROW(model_of(brick(), brick_scene(), liver, options));
+}
+
+TEST_CASE("materials by region", "[model][material]") {
+  const Scene scene = Scene().fix("fixed").touch("end").point_load("load_point", {0, 0, -1});
+  const LinearElastic soft{1e3, 0.3, 1.0}, hard{1e4, 0.2, 1.0};
+  const auto answer = [&](const Materials& m) {
+    return make_model(PolicyName::condensed_inverse, two_cubes(), scene, m)->displacement();
+  };
+  CHECK(relative(answer({{"cube_a", soft}, {"cube_b", hard}}),
+                 Reference(two_cubes(), {soft, hard}, scene).displacement) <= 1e-11);
+  CHECK(answer({{everywhere, soft}, {"cube_b", hard}}) == answer({{"cube_a", soft}, {"cube_b", hard}}));
+  CHECK_REFUSED(SetupErrorKind::missing_material, answer({{"cube_a", soft}}));
+  CHECK_REFUSED(SetupErrorKind::missing_material, answer({}));
+  CHECK_REFUSED(SetupErrorKind::unknown_group, answer({{everywhere, soft}, {"cube_z", hard}}));
+  CHECK_REFUSED(SetupErrorKind::bad_youngs_modulus, answer({{everywhere, soft}, {"cube_b", {0.0, 0.3, 1.0}}}));
+}
+
+TEST_CASE("scenes that do not fit the mesh are refused", "[model][scene]") {
+  const auto with = [](Scene scene) { return model_of(brick(), scene); };
+  CHECK_REFUSED(SetupErrorKind::unknown_group, with(brick_scene().fix("liver")));
+  CHECK_REFUSED(SetupErrorKind::unknown_group, with(brick_scene().touch("liver")));
+  CHECK_REFUSED(SetupErrorKind::unknown_group, with(brick_scene().see("liver")));
+  CHECK_REFUSED(SetupErrorKind::index_out_of_range, with(brick_scene().touch(std::vector<NodeId>{36})));
+  CHECK_REFUSED(SetupErrorKind::empty_group, with(brick_scene().touch(std::vector<NodeId>{5})));  // no face
+  CHECK_REFUSED(SetupErrorKind::unconstrained, with(Scene().touch("z1")));
+  CHECK_REFUSED(SetupErrorKind::conflicting_conditions, with(brick_scene().prescribe("x0", {1e-3, 0.0, 0.0})));
+  CHECK_REFUSED(SetupErrorKind::empty_mesh, model_of({}, Scene()));
+}
+
+TEST_CASE("a model without a touchable surface still answers", "[model][scene]") {
+  const Scene scene = Scene().fix("x0").traction("x1", {5, 0, 0});
+  for (PolicyName policy : all_policies) {
+    INFO(name(policy));
+    const auto model = make_model(policy, brick(), scene, liver);
+    CHECK(model->contact_surface().vertex_count() == 0);
+    CHECK(relative(model->displacement(), Reference(brick(), {liver}, scene).displacement) <= accuracy(policy));
+    CHECK(model->require_columns({}).ok());
+  }
+}
+
+TEST_CASE("the frame of the model is the middle of the body", "[model][frame]") {
+  Mesh<Tet4> mesh = brick();
+  for (Vector3& x : mesh.positions) x += Vector3(100.0, -50.0, 7.0);
+  const auto model = model_of(mesh, brick_scene().gravity({0, 0, -9.81}));
+  for (NodeId i = 0; i < 36; ++i) {
+    CHECK(largest(model->rest_position(i) - mesh.position(i)) <= 1e-13);
+    CHECK(model->mesh().position(i).norm() <= 0.1);
+  }
+  const NodeId node = model->touchable_nodes().back();
+  const Vector3 world = model->pose() * model->contact_surface().positions().back();
+  CHECK(largest(world - mesh.position(node) - model->displacement().segment<3>(3 * Index{node})) <= 1e-13);
+}
