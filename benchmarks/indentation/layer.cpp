@@ -70,7 +70,7 @@ void print(const Row& row, const Truth& truth, const Row& before) {
     std::printf(" %+8.2f %%", 100.0 * (row.force / before.force - 1.0));
   else
     std::printf(" %10s", "");
-  std::printf(" %7.1f s%s%s\n", row.seconds, row.dropped ? "  (idle points dropped)" : "",
+  std::printf(" %7.1f s%s%s\n", row.seconds, row.dropped ? "  (points dropped)" : "",
               row.stationary ? "" : "  NOT STATIONARY");
   std::fflush(stdout);
 }

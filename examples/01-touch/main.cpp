@@ -2,8 +2,8 @@
 //
 //   example_01_touch [--out DIR] [--seconds S] [--unpaced] [--mesh FILE]
 //
-// A simulated fingertip is pressed into a liver-like body, dragged across a stiff lesion under its surface and lifted.
-// A thousand times a second palpate is told where the fingertip is and answers with the force on it. That is the whole
+// A simulated probe is pressed into a liver-like body, dragged across a stiff lesion under its surface and lifted.
+// A thousand times a second palpate is told where the probe is and answers with the force on it. That is the whole
 // of a haptic program but for the device, which is a MockDevice here: it follows a path instead of a hand.
 //
 // What happens, and where to read it:

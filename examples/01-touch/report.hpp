@@ -71,7 +71,7 @@ inline std::string make_page(const Organ& organ, const TouchPath& path, const Se
       part("page.html"),
       {{"style", part("page.css")},
        {"script", part("viewer.js")},
-       {"summary", text("A fingertip of %g mm radius is pressed %g mm into a soft organ, dragged %g mm across a "
+       {"summary", text("A ball of %g mm radius is pressed %g mm into a soft organ, dragged %g mm across a "
                         "stiffer lesion hidden %.0f mm below, and lifted. "
                         "palpate computed the force in every millisecond.",
                         1e3 * tool.radius, 1e3 * plan.depth, 1e3 * plan.drag, 1e3 * path.target_depth())},

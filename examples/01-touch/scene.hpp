@@ -36,8 +36,8 @@ inline Scene make_scene(const Mesh<Tet4>& mesh) {
   return scene;
 }
 
-/// A fingertip. It is larger than the triangles of the patch (6 mm): a smaller ball would feel their corners.
-inline constexpr SphereTool tool{.radius = 8e-3};
+/// A 4 mm probe. The triangles of the patch are 6 mm long: their corners can be felt.
+inline constexpr SphereTool tool{.radius = 4e-3};
 
 /// How the tool moves; lengths in [m].
 struct Plan {

@@ -15,7 +15,9 @@ static_assert(StiffnessOperator<BlockMatrix>);
 /// Jacobian and non_finite for an element whose stiffness is not finite. Allocates the pattern and the values only.
 template <Element E>
 BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
-  BlockMatrix k(block_pattern(body.mesh));
+  BlockPattern pattern = block_pattern(body.mesh);
+  limits.require_memory(static_cast<double>(pattern.column.size()) * 9 * sizeof(double), "the stiffness");
+  BlockMatrix k(std::move(pattern));
   const Index count = body.mesh.element_count();
   for (Index e = 0; e < count; ++e) {
     if (e % 8192 == 0) limits.advance("assembly", static_cast<double>(e) / static_cast<double>(count));

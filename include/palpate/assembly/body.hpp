@@ -23,9 +23,6 @@ struct Body {
 
   std::size_t region_of(Index e) const noexcept { return static_cast<std::size_t>(mesh.region(e)); }
   const Matrix6& elasticity_of(Index e) const noexcept { return elasticity[region_of(e)]; }
-  bool has_initial_strain() const noexcept {
-    return std::ranges::any_of(initial_strain, [](const Vector6& s) { return !s.isZero(0.0); });
-  }
 };
 
 /// Refuses with the id of one element.

@@ -63,18 +63,23 @@ VectorX applied_load(const Body<E>& body, const std::vector<BoundaryFace<E>>& bo
   return f;
 }
 
-/// Load f_0 of the initial strains of all regions (3.28, 3.45): 3 nodes entries [N].
+/// Load f_0 of initial strains per region, those of the body if none are given (3.28, 3.45): 3 nodes entries [N].
 template <Element E>
-VectorX initial_strain_load(const Body<E>& body) {
+VectorX initial_strain_load(const Body<E>& body, const std::vector<Vector6>& strains) {
   VectorX f = VectorX::Zero(3 * body.mesh.node_count());
-  if (!body.has_initial_strain()) return f;
+  if (std::ranges::all_of(strains, [](const Vector6& s) { return s.isZero(0.0); })) return f;
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
     const auto fe = initial_strain_load<E>(element_nodes<E>(body.mesh, e), body.elasticity_of(e),
-                                           body.initial_strain[body.region_of(e)]);
+                                           strains[body.region_of(e)]);
     for (int a = 0; a < E::nodes; ++a)
       f.template segment<3>(3 * Index{body.mesh.element_node(e, a)}) += fe.row(a).transpose();
   }
   return f;
+}
+
+template <Element E>
+VectorX initial_strain_load(const Body<E>& body) {
+  return initial_strain_load(body, body.initial_strain);
 }
 
 /// Initial strain per region of a scene; several on one region add up. Throws unknown_group.

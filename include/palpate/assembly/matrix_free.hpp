@@ -19,6 +19,8 @@ class MatrixFreeStiffness {
   MatrixFreeStiffness(const Body<E>& body, const SetupLimits& limits)
       : nodes_(body.mesh.node_count()), connectivity_(body.mesh.elements), elasticity_(body.elasticity) {
     const Index count = body.mesh.element_count();
+    limits.require_memory(static_cast<double>(count) * E::Quadrature::points.size() * sizeof(PointGeometry<E>),
+                          "the element gradients");
     regions_.reserve(static_cast<std::size_t>(count));
     points_.reserve(static_cast<std::size_t>(count) * E::Quadrature::points.size());
     for (Index e = 0; e < count; ++e) {

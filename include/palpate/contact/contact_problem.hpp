@@ -15,7 +15,7 @@ namespace palpate::inline PALPATE_ABI {
 /// lattice on edges longer than `sample_spacing` radii. Points fixed in the material meet a sliding ball one after the
 /// other, each with zero force at first, so the force has no jump at edges. Where edges are shorter than half the
 /// radius the points are the vertices and the answer converges with the mesh; on coarser ones the flat facets cannot
-/// hug the ball and the contact is too stiff (see docs/contact.md for figures). Each tick linearises the distance
+/// hug the ball and the contact is too stiff (README.md has figures). Each tick linearises the distance
 /// between ball and deformed surface at the last proxy position (Ruspini's proxy on a deforming surface), solves the
 /// Signorini problem on the contact compliance J C J^T exactly, and repeats while the force still changes. The coupling
 /// between proxy and device enters as n_i . n_j / k between contacts of one tool: the device never feels more than k,

@@ -16,7 +16,7 @@ inline void require_positive_pivots(const VectorX& pivots, const VectorX& diagon
   double worst = infinity;
   for (Index i = 0; i < pivots.size(); ++i) {
     const double ratio = pivots[i] / diagonal[i];
-    if (!(std::isfinite(pivots[i]) && ratio > relative_threshold)) {
+    if (!(std::isfinite(pivots[i]) && pivots[i] > 0.0 && ratio > relative_threshold)) {
       bad.push_back(i);
       if (!(ratio >= worst)) worst = ratio;
     }
@@ -66,6 +66,7 @@ class SparseCholesky {
     require_positive_pivots(pivots_by_dof, diagonal, pivot_threshold);
     made->l = factor.matrixL().nestedExpression();
     made->l.makeCompressed();
+    limits.require_memory(static_cast<double>(made->l.nonZeros()) * (sizeof(double) + sizeof(Index)), "the sparse factor");
     factor_ = std::move(made);
     work_.resize(n);
     limits.advance("factorisation", 1.0);

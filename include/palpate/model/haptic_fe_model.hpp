@@ -73,11 +73,7 @@ class HapticFEModel {
   /// Displacement with these forces on the contact surface, for drawing: one back-substitution. u has 3 entries per
   /// node. No allocation; may run beside a tick, but not twice at once.
   SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept {
-    nodal_.clear();
-    for (const VertexForce& f : forces)
-      if (nodal_.size() < nodal_.capacity())
-        nodal_.emplace_back(touchable_[static_cast<std::size_t>(f.vertex)], f.force);
-    return statics_->displacement_with(nodal_, u);
+    return statics_->displacement_with(forces, touchable_, u);
   }
 
   /// Replaces loads and prescribed values; the set of prescribed components and of touched nodes must stay. Strong
@@ -127,13 +123,15 @@ class HapticFEModel {
   const Eigen::Isometry3d& pose() const noexcept { return world_; }
 
  private:
-  template <class Mesh>
-  void prepare(const Mesh& mesh, const Scene& scene, const RegionMaterials<M>& materials, const SetupOptions& options) {
+  template <class GivenMesh>
+  void prepare(const GivenMesh& mesh, const Scene& scene, const RegionMaterials<M>& materials, const SetupOptions& options) {
     const std::vector<M> by_region = materials_by_region(mesh, materials);
     limits_.advance("admission", 0.0);
     Admitted<E> admitted = [&] {
       const StageTimer timer(report_, "admission");
-      return admit<E>(mesh, options.admission, scene.group_names());
+      // An owning mesh keeps all its groups, so that later conditions may name any; a view cannot list them.
+      if constexpr (std::same_as<GivenMesh, Mesh<E>>) return admit<E>(mesh, options.admission);
+      else return admit<E>(mesh, options.admission, scene.group_names());
     }();
     report_admission(admitted, report_);
     node_map_ = std::move(admitted.node_map);
@@ -178,14 +176,14 @@ class HapticFEModel {
         require_columns({&v, 1});
       }
     // A thousandth of a millionth of the tissue's own compliance, or a nanometre per newton where nothing moves.
-    for (int v = 0; v < std::min(vertices, compliance_.slots()); ++v)
+    if (!Traits::eager && vertices > 0) require_columns(std::array{0, vertices / 2, vertices - 1});
+    for (int v = 0; v < vertices; ++v)
       compliance_floor_ = std::max(compliance_floor_, 1e-9 * compliance_.bound(v));
     if (compliance_floor_ == 0.0) compliance_floor_ = 1e-9;
     std::vector<Vector3> positions;
     for (NodeId node : touchable_) positions.push_back(deformed(node));
     surface_ = ContactSurface(positions, triangles);
     moved_ = std::move(positions);
-    nodal_.reserve(4 * 256);
     report_.touchable_vertices = vertices;
     report_.seen_nodes = static_cast<Index>(seen_.size());
     report_.compliance_bytes = compliance_.bytes();
@@ -212,7 +210,6 @@ class HapticFEModel {
   double compliance_floor_ = 0.0;
   ContactSurface surface_;
   std::vector<Vector3> moved_;
-  std::vector<std::pair<NodeId, Vector3>> nodal_;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -79,8 +79,8 @@ class Statics {
   Statics(const Statics&) = delete;
   Statics& operator=(const Statics&) = delete;
 
-  /// Loads, prescribed values and initial strains of a scene; `gravity` [m/s^2] in the body's frame. Solves once.
-  /// Strong guarantee.
+  /// Loads, prescribed values and initial strains of a scene; `gravity` [m/s^2] in the body's frame. Solves once. Strong
+  /// guarantee.
   void set_conditions(const Scene& scene, const Vector3& gravity) {
     EssentialConditions conditions = resolve_essential(body_.mesh, boundary_, scene);
     if (conditions.constrained != conditions_.constrained)
@@ -88,39 +88,29 @@ class Statics {
             "the new scene prescribes other components than the one the model was made for",
             "Values may change, the set of prescribed components may not: make a new model");
     std::vector<Vector6> strains = initial_strains_by_region(body_.mesh, scene);
+    VectorX strain_load = initial_strain_load(body_, strains);
     VectorX applied = applied_load(body_, boundary_, scene);
-    require_density(gravity);
-    conditions_.prescribed = std::move(conditions.prescribed);
-    body_.initial_strain = std::move(strains);
-    strain_load_ = initial_strain_load(body_);
-    applied_ = std::move(applied);
-    set_gravity(gravity);
+    Loaded loaded = solve_loads(applied, strain_load, conditions.prescribed, gravity);
+    conditions_.prescribed.swap(conditions.prescribed);
+    body_.initial_strain.swap(strains);
+    strain_load_.swap(strain_load);
+    applied_.swap(applied);
+    accept(loaded);
   }
 
-  /// Changes gravity [m/s^2], body frame, and solves once. Throws bad_density when some region has none.
+  /// Changes gravity [m/s^2], body frame, and solves once. Throws bad_density when some region has none. Strong guarantee.
   void set_gravity(const Vector3& gravity) {
-    require_density(gravity);
-    load_ = applied_;
-    for (Index i = 0; i < mass_.size(); ++i) load_.template segment<3>(3 * i) += mass_[i] * gravity;
-    stiffness_.apply(conditions_.prescribed, scratch_);
-    full_load_ = load_ + strain_load_ - scratch_;
-    const SolveReport solved = solve_free(full_load_, displacement_);
-    displacement_ += conditions_.prescribed;
-    if (!displacement_.allFinite())
-      raise(SetupErrorKind::non_finite, "the static displacement is not finite",
-            "Loads may be too large for the stiffness");
-    if (!solved.converged)
-      raise(SetupErrorKind::not_converged,
-            "the static solve stopped at a relative residual of " + number(solved.relative_residual),
-            "Use a direct solver");
+    Loaded loaded = solve_loads(applied_, strain_load_, conditions_.prescribed, gravity);
+    accept(loaded);
   }
 
-  /// Displacement under the scene's loads and `forces` on nodes [N], 3 per node [m]. No allocation when u has its size;
+  /// Displacement under the scene's loads and `forces` [N] on vertices, 3 per node [m]. No allocation when u has its size;
   /// not to be called by two threads at once.
   template <class Forces>
-  SolveReport displacement_with(const Forces& forces, VectorX& u) noexcept {
+  SolveReport displacement_with(const Forces& forces, const std::vector<NodeId>& node_of_vertex, VectorX& u) noexcept {
     scratch_.setZero();
-    for (const auto& [node, force] : forces) scratch_.template segment<3>(3 * Index{node}) += force;
+    for (const auto& [vertex, force] : forces)
+      scratch_.template segment<3>(3 * Index{node_of_vertex[static_cast<std::size_t>(vertex)]}) += force;
     const SolveReport report = solve_free(scratch_, u);
     u += displacement_;
     return report;
@@ -147,6 +137,31 @@ class Statics {
   }
 
  private:
+  struct Loaded {
+    VectorX load, displacement;
+  };
+
+  /// The answer to given loads; nothing is changed but workspaces. Throws bad_density, non_finite or not_converged.
+  Loaded solve_loads(const VectorX& applied, const VectorX& strain_load, const VectorX& prescribed, const Vector3& gravity) {
+    require_density(gravity);
+    Loaded loaded{applied, VectorX(applied.size())};
+    for (Index i = 0; i < mass_.size(); ++i) loaded.load.template segment<3>(3 * i) += mass_[i] * gravity;
+    stiffness_.apply(prescribed, scratch_);
+    full_load_ = loaded.load + strain_load - scratch_;
+    const SolveReport solved = solve_free(full_load_, loaded.displacement);
+    loaded.displacement += prescribed;
+    if (!loaded.displacement.allFinite() || !full_load_.allFinite())
+      raise(SetupErrorKind::non_finite, "the static displacement is not finite", "Loads may be too large for the stiffness");
+    if (!solved.converged)
+      raise(SetupErrorKind::not_converged,
+            "the static solve stopped at a relative residual of " + number(solved.relative_residual), "Use a direct solver");
+    return loaded;
+  }
+  void accept(Loaded& loaded) noexcept {
+    load_.swap(loaded.load);
+    displacement_.swap(loaded.displacement);
+  }
+
   SolveReport solve_free(const VectorX& load, VectorX& u) noexcept {
     conditions_.gather(load, free_load_);
     const SolveReport report = system_.solve_into(free_load_, free_answer_);
