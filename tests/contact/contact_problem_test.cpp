@@ -14,12 +14,8 @@ namespace {
 
 constexpr double radius = 4e-3;
 
-/// Contact at the vertices alone, as the closed form has it.
-ContactParameters vertices_only() {
-  ContactParameters p;
-  p.sample_spacing = 1e3;
-  return p;
-}
+/// Spacing of contact points for balls this large: they are at the vertices alone, as the closed form has it.
+constexpr double vertices_only = 1e3 * radius;
 
 /// One or more balls that are moved in steps, like a servo does.
 template <int Capacity = 48>
@@ -29,8 +25,9 @@ struct Session {
   std::vector<ContactTool> tools;
   Status status;
 
-  Session(AnalyticTissue& t, const std::vector<Vector3>& start, double coupling_compliance, ContactParameters parameters = vertices_only())
-      : tissue(t), problem(t.contact_surface(), radius, parameters), tools(start.size()) {
+  Session(AnalyticTissue& t, const std::vector<Vector3>& start, double coupling_compliance, double sampled_for = vertices_only,
+          const ContactParameters& parameters = {})
+      : tissue(t), problem(t.contact_surface(), sampled_for, parameters), tools(start.size()) {
     for (std::size_t i = 0; i < tools.size(); ++i) {
       tools[i].radius = radius;
       tools[i].compliance = coupling_compliance;
@@ -158,7 +155,7 @@ TEST_CASE("the rendered stiffness never exceeds the coupling, however many conta
       std::size_t most = 0;
       for (int i = 0; i < 10; ++i) {
         const Vector3 start(random.uniform(-3e-3, 3e-3), random.uniform(-3e-3, 3e-3), radius + 1e-4);
-        Session<> s(tissue, {start}, 1.0 / k, {});
+        Session<> s(tissue, {start}, 1.0 / k, radius);
         Vector3 before = Vector3::Zero();
         for (int n = 0; n < 60; ++n) {
           s.tick(0, start - Vector3(0, 0, 2e-5 * n));
@@ -180,16 +177,14 @@ TEST_CASE("the rendered stiffness never exceeds the coupling, however many conta
 
 TEST_CASE("the ball sinks into no contact point and is pushed out, not in", "[contact][problem]") {
   testing::Random random(63);
-  for (double spacing : {0.5, 1e3}) {
-    ContactParameters parameters;
-    parameters.sample_spacing = spacing;
+  for (double sampled_for : {radius, vertices_only}) {
     AnalyticTissue tissue(8, 0.02, 1e-2, 1e-3);  // 2.5 mm apart: the lattice matters
-    const ContactSamples samples(tissue.contact_surface(), spacing * radius);
+    const ContactSamples samples(tissue.contact_surface(), 0.5 * sampled_for);
     double deepest = infinity;
     int inward = 0, pulling = 0, touching = 0;
     for (int i = 0; i < 60; ++i) {
       const Vector3 start(random.uniform(-5e-3, 5e-3), random.uniform(-5e-3, 5e-3), radius + 1e-4);
-      Session<> s(tissue, {start}, i % 2 == 0 ? 0.0 : 2e-3, parameters);
+      Session<> s(tissue, {start}, i % 2 == 0 ? 0.0 : 2e-3, sampled_for);
       s.move(0, start + Vector3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), -random.uniform(2e-4, 1.2e-3)));
       s.settle();
       if (s.force().norm() > 0.0) ++touching;
@@ -198,7 +193,7 @@ TEST_CASE("the ball sinks into no contact point and is pushed out, not in", "[co
       for (const Contact& c : s.problem.contacts())
         if (!(c.force >= 0.0) || !(c.force * c.normal[2] >= 0.0)) ++pulling;
     }
-    INFO("spacing " << spacing);
+    INFO("contact points for a radius of " << sampled_for);
     CHECK(touching >= 50);
     CHECK(deepest >= -1e-5 * radius);
     CHECK(inward == 0);
@@ -208,7 +203,7 @@ TEST_CASE("the ball sinks into no contact point and is pushed out, not in", "[co
 
 TEST_CASE("forces on the tissue are the forces on the balls, and balance them", "[contact][problem]") {
   AnalyticTissue tissue(16, 0.02, 1e-2, 1e-3);
-  Session<> s(tissue, {Vector3(-3e-3, 0, radius + 1e-4), Vector3(4e-3, 1e-3, radius + 1e-4)}, 1e-3, {});
+  Session<> s(tissue, {Vector3(-3e-3, 0, radius + 1e-4), Vector3(4e-3, 1e-3, radius + 1e-4)}, 1e-3, radius);
   s.move(0, Vector3(-2.9e-3, 1e-4, radius - 8e-4));
   s.move(1, Vector3(4.1e-3, 1e-3, radius - 4e-4));
   Vector3 on_tissue = Vector3::Zero(), on_contacts = Vector3::Zero();
@@ -226,9 +221,9 @@ namespace {
 
 /// Work of the tissue on a rigidly coupled ball that is pressed in, slid, released and taken back through the air, over the work of the
 /// press. Trapezoid rule.
-double work_of_loop(const ContactParameters& parameters, int cells, double step) {
+double work_of_loop(const ContactParameters& parameters, double sampled_for, int cells, double step) {
   AnalyticTissue tissue(cells, 0.02, 2e-2);
-  Session<> s(tissue, {Vector3(-1.3e-3, -4e-4, radius + 1e-4)}, 0.0, parameters);
+  Session<> s(tissue, {Vector3(-1.3e-3, -4e-4, radius + 1e-4)}, 0.0, sampled_for, parameters);
   double work = 0.0;
   const auto go = [&](const Vector3& by) {
     const Vector3 from = s.tools[0].target;
@@ -253,20 +248,20 @@ double work_of_loop(const ContactParameters& parameters, int cells, double step)
 TEST_CASE("a closed loop under rigid coupling gives no work", "[contact][problem][energy]") {
   for (int cells : {20, 8}) {  // every contact point a vertex; points on edges and faces too
     INFO(cells << " cells");
-    const ContactParameters parameters = cells == 20 ? vertices_only() : ContactParameters{};
+    const double sampled_for = cells == 20 ? vertices_only : radius;
     // As a servo has it: linearisation stops when the force changes by a thousandth. What is missing then is the turn of the normals of
     // one step: a drag, never a push.
     for (double step : {2e-5, 1e-5, 2.5e-6}) {
-      const double work = work_of_loop(parameters, cells, step);
+      const double work = work_of_loop({}, sampled_for, cells, step);
       INFO(cells << " cells, steps of " << 1e6 * step << " um: work of the loop over work of the press " << work);
       CHECK(work <= 1e-4);
       CHECK(work >= -2e-2);
     }
-    ContactParameters strict = parameters;
+    ContactParameters strict;
     strict.force_tolerance = 1e-7;
-    const double coarse = work_of_loop(strict, cells, 2e-5), fine = work_of_loop(strict, cells, 5e-6);
+    const double coarse = work_of_loop(strict, sampled_for, cells, 2e-5), fine = work_of_loop(strict, sampled_for, cells, 5e-6);
     strict.maximum_iterations = 30;
-    const double converged = work_of_loop(strict, cells, 2e-5);
+    const double converged = work_of_loop(strict, sampled_for, cells, 2e-5);
     INFO(cells << " cells, four linearisations always: " << coarse << " in 20 um steps, " << fine << " in 5 um steps; to convergence: " << converged);
     CHECK(std::abs(coarse) <= 5e-3);
     CHECK(std::abs(fine) <= 0.4 * std::abs(coarse));
@@ -289,7 +284,7 @@ TEST_CASE("the work of a press is the stored energy", "[contact][problem][energy
 
 TEST_CASE("more contacts than fit: flagged, the nearest kept, still finite", "[contact][problem][extreme][D4]") {
   AnalyticTissue tissue(60, 0.02, 2e-2);  // a third of a millimetre apart
-  Session<8> s(tissue, {Vector3(0, 0, radius + 1e-4)}, 2e-3, vertices_only());
+  Session<8> s(tissue, {Vector3(0, 0, radius + 1e-4)}, 2e-3);
   s.move(0, Vector3(0, 0, radius - 1e-3));
   CHECK(s.status.has(StatusFlag::degraded_model));
   CHECK(s.problem.contacts().size() == 8);
@@ -300,7 +295,7 @@ TEST_CASE("more contacts than fit: flagged, the nearest kept, still finite", "[c
 
 TEST_CASE("a ball in the air has exactly no force and no contacts", "[contact][problem]") {
   AnalyticTissue tissue(20, 0.02, 2e-2);
-  Session<> s(tissue, {Vector3(0, 0, 0.05)}, 2e-3, {});
+  Session<> s(tissue, {Vector3(0, 0, 0.05)}, 2e-3, radius);
   s.move(0, Vector3(3e-3, 0, 0.02), 1e-3);
   s.settle(3);
   CHECK(s.force() == Vector3::Zero());

@@ -73,6 +73,18 @@ TEST_CASE("points straight off corners and edges have the right sign", "[contact
       }
 }
 
+TEST_CASE("on the surface the outward direction is the normal, not rounding", "[contact][surface][extreme][D3]") {
+  const ContactSurface surface = surface_of(box_tet4(Vector3(0.03, 0.03, 0.02), {6, 6, 4}, BoxSplit::six));
+  testing::Random random(34);
+  for (int i = 0; i < 1000; ++i) {
+    const Vector3 p(random.uniform(1e-4, 0.0299), random.uniform(1e-4, 0.0299), 0.02 + 1e-17 * static_cast<double>(i % 3 - 1));
+    const auto closest = surface.closest(p);
+    if (!(closest.outward[2] > 0.999)) FAIL(p.transpose() << ": outward " << closest.outward.transpose());
+    if (!(std::abs(closest.distance) <= 1e-15)) FAIL(p.transpose() << ": distance " << closest.distance);
+  }
+  SUCCEED();
+}
+
 TEST_CASE("ties go to the same triangle every time", "[contact][surface]") {
   const ContactSurface surface = surface_of(box_tet4(Vector3(1, 1, 1), {4, 4, 4}, BoxSplit::five_mirrored));
   const ContactSurface again = surface_of(box_tet4(Vector3(1, 1, 1), {4, 4, 4}, BoxSplit::five_mirrored));
