@@ -59,7 +59,7 @@ Case ball_case(testing::Random& random, int n, double own) {
 
 void load(Problem& problem, const Case& c) {
   problem.resize(static_cast<int>(c.b.size()));
-  problem.w = c.w;
+  problem.w.topLeftCorner(c.b.size(), c.b.size()) = c.w;
   problem.b = c.b;
   problem.lambda.setZero();
 }

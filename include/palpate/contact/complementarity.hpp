@@ -3,123 +3,174 @@
 
 #include <palpate/core/types.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace palpate::inline PALPATE_ABI {
 
 /// Solves lambda >= 0, g = b + W lambda >= 0, lambda . g = 0 for a symmetric positive (semi)definite W of at most
-/// `Capacity` rows, exactly, by block principal pivoting (Kostreva 1978; Judice and Pires 1994): whole sets of rows
-/// change side while that helps, single rows in Murty's order otherwise, which ends after finitely many steps. No
-/// allocation; work bounded by `maximum_pivots`.
+/// `Capacity` rows, exactly. First by block principal pivoting (Kostreva 1978; Judice and Pires 1994): whole sets of
+/// rows change side while that helps, which from a good start is one or two solves. Where it does not, by a primal
+/// active set (Lawson and Hanson 1974, ch. 23), one row at a time: lambda stays >= 0 and the energy falls in every step,
+/// so that it ends, and wherever it is cut off the forces are ones that a smaller push would have made. The factor is
+/// updated when a row joins (O(m^2)) and recomputed from the row that leaves. No allocation; work bounded by
+/// `maximum_pivots`.
 template <int Capacity>
 class ComplementarityProblem {
  public:
   static constexpr int maximum_pivots = 4 * Capacity;
+  /// More points than dofs make W singular. With this much more on the diagonal (relative) the problem is strictly
+  /// convex: its answer is unique and gaps are off by a millionth of the indentation.
+  static constexpr double relaxation = 1e-6;
 
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, Capacity, Capacity>;
+  using Matrix = Eigen::Matrix<double, Capacity, Capacity, Eigen::RowMajor>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, Capacity, 1>;
 
-  Matrix w;        ///< compliance [m/N]
+  Matrix w;        ///< compliance [m/N], of the first `b.size()` rows
   Vector b;        ///< gap without contact force [m]
   Vector lambda;   ///< contact force [N], the answer; start: any sign pattern, positive rows start active
   int pivots = 0;  ///< how many sets were tried
 
+  /// Keeps the values of rows that stay.
   void resize(int rows) noexcept {
-    w.resize(rows, rows);
-    b.resize(rows);
-    lambda.resize(rows);
+    b.conservativeResize(rows);
+    lambda.conservativeResize(rows);
   }
 
-  /// False when the pivot limit was reached; lambda is then the last iterate with negative entries cut off.
+  /// False when the pivot limit was reached; lambda is then >= 0 and of less energy than no force, but some gaps are
+  /// still negative. False with no force when W or b is not finite.
   bool solve() noexcept {
-    const int n = static_cast<int>(b.size());
-    // More points than dofs make W singular. With a millionth on the diagonal the problem is strictly convex: its
-    // answer is unique, pivoting ends, and the gaps are off by a millionth of the indentation.
-    w.diagonal() *= 1.0 + 1e-6;
-    for (int i = 0; i < n; ++i) active_[static_cast<std::size_t>(i)] = lambda[i] > 0.0;
-    int best = n + 1, patience = 3;
-    for (pivots = 0; pivots < maximum_pivots; ++pivots) {
-      solve_active(n);
-      int wrong = 0, last = -1;
-      for (int i = 0; i < n; ++i)
-        if (is_wrong(i)) {
-          ++wrong;
-          last = i;
-        }
-      if (wrong == 0) return true;
-      if (wrong < best) {
-        best = wrong;
-        patience = 3;
-      } else {
-        --patience;
-      }
-      for (int i = 0; i < n; ++i)
-        if (is_wrong(i) && (patience > 0 || i == last)) flip_[static_cast<std::size_t>(i)] = true;
-      for (int i = 0; i < n; ++i) {
-        auto& flip = flip_[static_cast<std::size_t>(i)];
-        if (flip) active_[static_cast<std::size_t>(i)] = !active_[static_cast<std::size_t>(i)];
-        flip = false;
-      }
-    }
-    lambda = lambda.cwiseMax(0.0);
+    rows_ = static_cast<int>(b.size());
+    gap_.resize(rows_);
+    tolerance_ = 1e-12 * (rows_ > 0 ? b.cwiseAbs().maxCoeff() : 0.0);
+    pivots = 0;
+    const bool solved = std::isfinite(tolerance_) && (pivot_blocks() || descend());
+    if (solved && lambda.allFinite()) return true;
+    if (!std::isfinite(tolerance_) || !lambda.allFinite()) lambda.setZero();
     return false;
   }
 
  private:
-  bool is_wrong(int i) const noexcept {
-    return active_[static_cast<std::size_t>(i)] ? lambda[i] < 0.0 : gap_[i] < -tolerance_;
+  /// Block principal pivoting while the number of wrong rows falls.
+  bool pivot_blocks() noexcept {
+    order_count_ = factored_ = 0;
+    for (int i = 0; i < rows_; ++i) {
+      active_[at(i)] = lambda[i] > 0.0;
+      if (active_[at(i)]) order_[at(order_count_++)] = i;
+    }
+    int best = rows_ + 1, patience = 3;
+    while (patience > 0) {
+      ++pivots;
+      solve_active();
+      for (int i = 0; i < rows_; ++i) lambda[i] = 0.0;
+      for (int p = 0; p < order_count_; ++p) lambda[order_[at(p)]] = answer_[p];
+      update_gaps();
+      int wrong = 0;
+      for (int i = 0; i < rows_; ++i) wrong += flip_[at(i)] = active_[at(i)] ? lambda[i] < 0.0 : gap_[i] < -tolerance_;
+      if (wrong == 0) return true;
+      patience = wrong < best ? 3 : patience - 1;
+      best = std::min(best, wrong);
+      for (int p = order_count_ - 1; p >= 0; --p)
+        if (flip_[at(order_[at(p)])]) remove(p);
+      for (int i = 0; i < rows_; ++i)
+        if (flip_[at(i)] && !active_[at(i)]) add(i);
+        else if (flip_[at(i)]) active_[at(i)] = false;
+    }
+    return false;
   }
 
-  /// lambda on the active rows from W_aa lambda = -b_a, zero elsewhere; gaps of all rows.
-  void solve_active(int n) noexcept {
-    int m = 0;
-    for (int i = 0; i < n; ++i)
-      if (active_[static_cast<std::size_t>(i)]) index_[static_cast<std::size_t>(m++)] = i;
-    factor_.resize(m, m);
-    rhs_.resize(m);
-    for (int p = 0; p < m; ++p) {
-      const int i = index_[static_cast<std::size_t>(p)];
-      for (int q = 0; q <= p; ++q) factor_(p, q) = w(i, index_[static_cast<std::size_t>(q)]);
-      rhs_[p] = -b[i];
-    }
-    cholesky_in_place(m);
+  /// Minimises 1/2 lambda . W lambda + b . lambda over lambda >= 0 from lambda = 0.
+  bool descend() noexcept {
+    order_count_ = factored_ = 0;
+    active_.fill(false);
     lambda.setZero();
-    for (int p = 0; p < m; ++p) lambda[index_[static_cast<std::size_t>(p)]] = rhs_[p];
     gap_ = b;
-    gap_.noalias() += w * lambda;
-    tolerance_ = 1e-12 * (b.size() > 0 ? b.cwiseAbs().maxCoeff() : 0.0);
+    for (; pivots < maximum_pivots; ++pivots) {
+      int deepest = -1;
+      for (int i = 0; i < rows_; ++i)
+        if (!active_[at(i)] && gap_[i] < -tolerance_ && (deepest < 0 || gap_[i] < gap_[deepest])) deepest = i;
+      if (deepest < 0) return true;
+      add(deepest);
+      while (!step() && pivots < maximum_pivots) ++pivots;
+      update_gaps();
+    }
+    return false;
   }
 
-  /// Solves factor_ x = rhs_ in place; a pivot lost to rounding drops its row (the point is a copy of another).
-  void cholesky_in_place(int m) noexcept {
-    for (int j = 0; j < m; ++j) {
-      double pivot = factor_(j, j);
-      const double diagonal = pivot;
-      for (int k = 0; k < j; ++k) pivot -= factor_(j, k) * factor_(j, k);
-      const bool lost = !(pivot > 1e-13 * diagonal);
-      const double inverse = lost ? 0.0 : 1.0 / std::sqrt(pivot);
-      factor_(j, j) = inverse;
-      for (int i = j + 1; i < m; ++i) {
-        double value = factor_(i, j);
-        for (int k = 0; k < j; ++k) value -= factor_(i, k) * factor_(j, k);
-        factor_(i, j) = value * inverse;
-      }
+  /// Goes from lambda towards the answer of the active rows; true if all of the way, else to where the first forces
+  /// vanish, and those rows leave.
+  bool step() noexcept {
+    solve_active();
+    double length = 1.0;
+    for (int p = 0; p < order_count_; ++p) {
+      const double from = lambda[order_[at(p)]];
+      if (answer_[p] < 0.0) length = std::min(length, from / (from - answer_[p]));
     }
-    for (int i = 0; i < m; ++i) {
-      for (int k = 0; k < i; ++k) rhs_[i] -= factor_(i, k) * rhs_[k];
-      rhs_[i] *= factor_(i, i);
+    bool whole = true;
+    for (int p = order_count_ - 1; p >= 0; --p) {
+      const int i = order_[at(p)];
+      const double from = lambda[i];
+      const bool leaves = answer_[p] < 0.0 && from <= length * (from - answer_[p]);
+      lambda[i] = leaves ? 0.0 : from + length * (answer_[p] - from);
+      if (!leaves) continue;
+      active_[at(i)] = whole = false;
+      remove(p);
     }
-    for (int i = m - 1; i >= 0; --i) {
-      for (int k = i + 1; k < m; ++k) rhs_[i] -= factor_(k, i) * rhs_[k];
-      rhs_[i] *= factor_(i, i);
+    return whole;
+  }
+
+  void add(int row) noexcept {
+    active_[at(row)] = true;
+    order_[at(order_count_++)] = row;
+  }
+  void remove(int p) noexcept {
+    std::copy(order_.begin() + p + 1, order_.begin() + order_count_, order_.begin() + p);
+    --order_count_;
+    factored_ = std::min(factored_, p);
+  }
+
+  void update_gaps() noexcept {
+    gap_ = b;
+    for (int p = 0; p < order_count_; ++p) {
+      const int j = order_[at(p)];
+      gap_.noalias() += lambda[j] * w.row(j).head(rows_).transpose();
+      gap_[j] += relaxation * w(j, j) * lambda[j];
     }
   }
+
+  /// answer_ from W_aa answer = -b_a, in the order of order_. A pivot lost to rounding drops its row (the point is a
+  /// copy of another).
+  void solve_active() noexcept {
+    const int m = order_count_;
+    for (; factored_ < m; ++factored_) factor_row(factored_);
+    answer_.resize(m);
+    for (int p = 0; p < m; ++p)
+      answer_[p] = (-b[order_[at(p)]] - factor_.row(p).head(p).dot(answer_.head(p))) * factor_(p, p);
+    for (int p = m - 1; p >= 0; --p) {
+      answer_[p] *= factor_(p, p);
+      answer_.head(p).noalias() -= answer_[p] * factor_.row(p).head(p).transpose();
+    }
+  }
+
+  /// Row p of the Cholesky factor from the rows before it; the diagonal holds its inverse.
+  void factor_row(int p) noexcept {
+    const int i = order_[at(p)];
+    for (int q = 0; q < p; ++q)
+      factor_(p, q) =
+          (w(i, order_[at(q)]) - factor_.row(p).head(q).dot(factor_.row(q).head(q))) * factor_(q, q);
+    const double diagonal = (1.0 + relaxation) * w(i, i);
+    const double pivot = diagonal - factor_.row(p).head(p).squaredNorm();
+    factor_(p, p) = pivot > 1e-13 * diagonal ? 1.0 / std::sqrt(pivot) : 0.0;
+  }
+
+  static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
   Matrix factor_;
-  Vector rhs_, gap_;
+  Vector answer_, gap_;
   std::array<bool, static_cast<std::size_t>(Capacity)> active_{}, flip_{};
-  std::array<int, static_cast<std::size_t>(Capacity)> index_{};
+  std::array<int, static_cast<std::size_t>(Capacity)> order_{};  // active rows in the order they joined
+  int rows_ = 0, order_count_ = 0, factored_ = 0;
   double tolerance_ = 0.0;
 };
 

@@ -12,6 +12,9 @@ struct ContactParameters {
   double sample_spacing = 0.5;    ///< of contact points on the surface, in radii of the smallest tool
 };
 
+/// Tools of one contact problem.
+inline constexpr std::size_t maximum_tools = 8;
+
 /// A ball as the contact problem knows it, in the model's frame.
 struct ContactTool {
   Vector3 target = Vector3::Zero();  ///< where the device is [m]
@@ -21,6 +24,11 @@ struct ContactTool {
   double compliance = 0.0;           ///< of the coupling between proxy and device [m/N]; 0 is rigid
   double motion = 0.0;               ///< how far the device moved since the last tick [m]
   bool active = false;               ///< takes part in this tick
+
+  /// The proxy that a rigid tissue pushing back with `force` would allow.
+  Vector3 goal(double floor) const noexcept { return target + (compliance + floor) * force; }
+  /// The longest way of the proxy in one linearisation: points that far off are known.
+  double longest_step() const noexcept { return 0.25 * radius + motion; }
 };
 
 /// One contact of one tool: a point of the deformed surface with the three vertices that carry it. The barycentric
@@ -31,7 +39,7 @@ struct Contact {
   Triangle vertices{};
   std::array<double, 3> weights{};
   Vector3 normal = Vector3::Zero();  ///< unit, from the surface to the ball's centre
-  double rest_offset = 0.0;          ///< normal . resting point [m]
+  Vector3 rest = Vector3::Zero();    ///< the point when nothing touches [m]
   double gap = 0.0;                  ///< at the last linearisation [m]
   double force = 0.0;                ///< normal force [N], >= 0
   Vector3 point = Vector3::Zero();   ///< on the deformed surface [m]

@@ -1,234 +1,261 @@
 // Rigid balls against a deformable surface, solved exactly in every tick.
 #pragma once
 
-#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/contact/candidates.hpp>
 #include <palpate/contact/complementarity.hpp>
-#include <palpate/contact/contact.hpp>
-#include <palpate/contact/contact_samples.hpp>
 #include <palpate/core/setup_error.hpp>
-
-#include <vector>
 
 namespace palpate::inline PALPATE_ABI {
 
 /// All contacts of all tools with one tissue. The surface is held off the ball at material points: vertices, and a
 /// lattice on edges longer than `sample_spacing` radii. Points fixed in the material meet a sliding ball one after the
-/// other, each with zero force at first, so the force has no jump at edges. Where edges are shorter than half the
-/// radius the points are the vertices and the answer converges with the mesh; on coarser ones the flat facets cannot
-/// hug the ball and the contact is too stiff (README.md has figures). Each tick linearises the distance
-/// between ball and deformed surface at the last proxy position (Ruspini's proxy on a deforming surface), solves the
-/// Signorini problem on the contact compliance J C J^T exactly, and repeats while the force still changes. The coupling
+/// other, each with zero force at first, so the force has no jump at edges. Each tick linearises the distance between
+/// ball and deformed surface at the last proxy position (Ruspini's proxy on a deforming surface), solves the Signorini
+/// problem on the contact compliance J C J^T exactly, and repeats while the force still changes. Rows of that problem
+/// are the points that pressed last and those the answer would let sink in, added until there are none. The coupling
 /// between proxy and device enters as n_i . n_j / k between contacts of one tool: the device never feels more than k,
-/// however many contacts there are, and the proxy never sinks in. Work is bounded by `Capacity`, iterations and
-/// candidates.
-template <int Capacity = 48>
+/// however many contacts there are, and the proxy never sinks in. docs/contact.md has the law, its limits and figures.
+/// Work is bounded by `Capacity`, iterations, rounds and candidates.
+template <int Capacity = 64>
 class ContactProblem {
  public:
   /// Places the contact points for balls of at least `smallest_radius` [m]. Allocates workspaces; for set-up.
   /// Throws bad_argument unless 0.4 <= sample_spacing <= 1 and there is at least one iteration.
   ContactProblem(const ContactSurface& surface, double smallest_radius, ContactParameters parameters = {})
       : parameters_(checked(parameters)),
-        samples_(surface, parameters.sample_spacing * smallest_radius),
-        displacement_(surface.positions().size()),
-        stamp_(displacement_.size(), 0),
-        number_(displacement_.size(), 0) {}
+        displacement_(surface.vertex_count()),
+        candidates_(surface, parameters.sample_spacing * smallest_radius),
+        slot_(static_cast<std::size_t>(surface.vertex_count()), -1) {}
 
-  /// Finds the forces for the tools' new targets; updates proxy and force of every active tool. Never allocates.
+  /// Finds the forces for the tools' new targets; updates proxy and force of every active tool. At most
+  /// `maximum_tools` tools. Never allocates.
   template <TissueModel Tissue>
   Status solve(Tissue& tissue, std::span<ContactTool> tools) noexcept {
     Status status;
+    floor_ = tissue.compliance_floor();
+    rounds_left_ = maximum_rounds;
+    candidates_.begin_tick(tissue.contact_surface(), tools);
+    candidates_.look_round(tissue, tools, displacement_);
+    double change = 0.0, before = 0.0;
     for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
-      status |= collect(tissue, tools);
-      double change = 0.0, scale = 0.0;
-      status |= solve_linearised(tissue, tools, change, scale);
-      if (change <= parameters_.force_tolerance * scale) return status;
-      if (iteration + 1 == parameters_.maximum_iterations && change > unsettled * scale)
-        status.set(StatusFlag::solver_not_converged);
+      for (std::size_t t = 0; t < tools.size(); ++t) start_force_[t] = tools[t].force;
+      status |= candidates_.update(tissue, tools, displacement_);
+      status |= solve_linearised(tissue, tools);
+      const bool arrived = follow(tools);
+      change = relative_change(tools);
+      // Newton's steps shrink quadratically: the next one is smaller than this one as this one is than the last.
+      const double expected = iteration > 0 && change < before ? change * (change / before) : change;
+      if (arrived && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) return status;
+      before = change;
     }
+    if (change > unsettled) status.set(StatusFlag::solver_not_converged);
     return status;
   }
 
   /// Forgets all contact forces, as when every tool was lifted.
   void clear() noexcept {
-    contact_count_ = 0;
-    force_count_ = 0;
+    displacement_.clear();
+    for (Candidate& c : candidates_.items()) c.force = 0.0;
+    candidates_.forget();
+    row_count_ = 0;
   }
 
-  /// Contacts of the last tick, those without force included.
-  std::span<const Contact> contacts() const noexcept {
-    return {contacts_.data(), static_cast<std::size_t>(contact_count_)};
-  }
+  /// Rows of the last linearisation: what presses, and what would have sunk in without; some without force.
+  std::span<const Contact> contacts() const noexcept { return {rows_.data(), static_cast<std::size_t>(row_count_)}; }
   /// The forces of the last tick on the vertices.
-  std::span<const VertexForce> vertex_forces() const noexcept {
-    return {forces_.data(), static_cast<std::size_t>(force_count_)};
-  }
+  std::span<const VertexForce> vertex_forces() const noexcept { return displacement_.forces(); }
+  /// Whether a contact point is near a tool's ball.
+  bool is_near(int tool) const noexcept { return candidates_.has_any(tool); }
 
  private:
-  template <TissueModel Tissue>
-  const Vector3& displacement(const Tissue& tissue, int v) noexcept {
-    const auto i = static_cast<std::size_t>(v);
-    if (stamp_[i] != generation_) {
-      stamp_[i] = generation_;
-      displacement_[i].setZero();
-      for (const VertexForce& f : vertex_forces())
-        displacement_[i].noalias() += tissue.compliance(v, f.vertex) * f.force;
-    }
-    return displacement_[i];
-  }
+  using Tools = std::span<ContactTool>;
 
-  /// Fills contacts_ with the points of the deformed surface near each proxy.
+  /// One Signorini problem at the present proxies; updates the forces of points, vertices and tools. Rows are added
+  /// until no point sinks in.
   template <TissueModel Tissue>
-  Status collect(const Tissue& tissue, std::span<ContactTool> tools) noexcept {
+  Status solve_linearised(Tissue& tissue, Tools tools) noexcept {
     Status status;
-    ++generation_;
-    contact_count_ = 0;
-    double reach = 0.0;
-    for (const VertexForce& f : vertex_forces()) reach += tissue.compliance_bound(f.vertex) * f.force.norm();
-    const ContactSurface& surface = tissue.contact_surface();
-    for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
-      const ContactTool& tool = tools[static_cast<std::size_t>(t)];
-      if (!tool.active) continue;
-      // Points this near may be reached while the linearisation settles; leaving one out lets the ball fall through it.
-      const double margin = 0.25 * tool.radius + 1.5 * tool.motion;
-      surface.bvh().visit_near(tool.proxy, tool.radius + margin + reach, [&](int triangle) {
-        if (!add_candidates(tissue, tool, t, triangle, margin)) status.set(StatusFlag::degraded_model);
-      });
+    row_count_ = 0;
+    for (Candidate& c : candidates_.items()) {
+      c.row = -1;
+      if (c.force <= 0.0) continue;
+      candidates_.place(c, c.point, tools[at(c.tool)]);
+      add_row(tissue.contact_surface(), c);
     }
-    return status;
-  }
-
-  /// Adds the samples of one triangle that are near and face the ball; false when a contact had to be dropped for lack
-  /// of room.
-  template <TissueModel Tissue>
-  bool add_candidates(const Tissue& tissue, const ContactTool& tool, int t, int triangle, double margin) noexcept {
-    const ContactSurface& surface = tissue.contact_surface();
-    bool kept = true;
-    for (const ContactSample& sample : samples_.of_triangle(triangle)) {
-      Contact c;
-      for (std::size_t a = 0; a < 3; ++a)
-        if (sample.weights[a] > 0.0)
-          c.point +=
-              sample.weights[a] * (surface.position(sample.vertices[a]) + displacement(tissue, sample.vertices[a]));
-      const Vector3 offset = tool.proxy - c.point;
-      const double distance = offset.norm();
-      c.gap = distance - tool.radius;
-      if (!(c.gap <= margin && distance > 0.0) || !faces_ball(tissue, triangle, offset)) continue;
-      c.tool = t;
-      c.vertices = sample.vertices;
-      c.weights = sample.weights;
-      c.normal = offset / distance;
-      for (std::size_t a = 0; a < 3; ++a) c.rest_offset += c.weights[a] * c.normal.dot(surface.position(c.vertices[a]));
-      kept = keep(c) && kept;
-    }
-    return kept;
-  }
-
-  /// Whether the ball lies on the outer side of a triangle, as it rests or as it is deformed: in a steep dent only the
-  /// latter holds. What the ball sees through a thin part from behind fails both.
-  template <TissueModel Tissue>
-  bool faces_ball(const Tissue& tissue, int triangle, const Vector3& offset) noexcept {
-    const ContactSurface& surface = tissue.contact_surface();
-    if (offset.dot(surface.normal(triangle)) > 0.0) return true;
-    const Triangle& v = surface.triangle(triangle);
-    const Vector3 x0 = surface.position(v[0]) + displacement(tissue, v[0]);
-    const Vector3 x1 = surface.position(v[1]) + displacement(tissue, v[1]);
-    const Vector3 x2 = surface.position(v[2]) + displacement(tissue, v[2]);
-    return offset.dot((x1 - x0).cross(x2 - x0)) > 0.0;
-  }
-
-  bool keep(const Contact& c) noexcept {
-    if (contact_count_ < Capacity) {
-      contacts_[static_cast<std::size_t>(contact_count_++)] = c;
-      return true;
-    }
-    const auto farthest = std::ranges::max_element(contacts_, {}, &Contact::gap);
-    if (c.gap < farthest->gap) *farthest = c;
-    return false;
-  }
-
-  /// One Signorini problem for the contacts found; updates forces, proxies and the change of the tools' forces.
-  template <TissueModel Tissue>
-  Status solve_linearised(Tissue& tissue, std::span<ContactTool> tools, double& change, double& scale) noexcept {
-    Status status = number_vertices(tissue);
-    build(tissue, tools);
-    if (!problem_.solve()) status.set(StatusFlag::solver_not_converged);
-    for (int i = 0; i < force_count_; ++i) forces_[static_cast<std::size_t>(i)].force.setZero();
-    for (int i = 0; i < contact_count_; ++i) {
-      Contact& c = contacts_[static_cast<std::size_t>(i)];
-      c.force = problem_.lambda[i];
-      for (std::size_t a = 0; a < 3; ++a)
-        if (c.weights[a] > 0.0) forces_[local(i, a)].force -= (c.force * c.weights[a]) * c.normal;
-    }
-    const auto loaded = std::remove_if(forces_.begin(), forces_.begin() + force_count_,
-                                       [](const VertexForce& f) { return f.force.isZero(0.0); });
-    force_count_ = static_cast<int>(loaded - forces_.begin());
-    for (int t = 0; t < static_cast<int>(tools.size()); ++t) {
-      ContactTool& tool = tools[static_cast<std::size_t>(t)];
-      if (!tool.active) continue;
-      Vector3 total = Vector3::Zero();
-      for (const Contact& c : contacts())
-        if (c.tool == t) total += c.force * c.normal;
-      change = std::max(change, (total - tool.force).norm());
-      scale = std::max(scale, total.norm());
-      tool.force = total;
-      // The next linearisation must stay within reach of the points this one knew.
-      const Vector3 step = tool.target + coupling(tissue, tool) * total - tool.proxy;
-      const double longest = 0.25 * tool.radius + tool.motion;
-      tool.proxy += step.norm() <= longest ? step : Vector3((longest / step.norm()) * step);
-    }
-    return status;
-  }
-
-  /// Numbers the vertices that carry contacts and asks for their compliance columns.
-  template <TissueModel Tissue>
-  Status number_vertices(Tissue& tissue) noexcept {
-    ++generation_;
-    force_count_ = 0;
-    for (int i = 0; i < contact_count_; ++i)
-      for (std::size_t a = 0; a < 3; ++a) {
-        if (contacts_[static_cast<std::size_t>(i)].weights[a] == 0.0) continue;
-        const int v = contacts_[static_cast<std::size_t>(i)].vertices[a];
-        if (stamp_[static_cast<std::size_t>(v)] != generation_) {
-          stamp_[static_cast<std::size_t>(v)] = generation_;
-          number_[static_cast<std::size_t>(v)] = force_count_;
-          vertices_[static_cast<std::size_t>(force_count_)] = v;
-          forces_[static_cast<std::size_t>(force_count_++)] = {v, Vector3::Zero()};
-        }
-        local_[static_cast<std::size_t>(i)][a] = static_cast<std::size_t>(number_[static_cast<std::size_t>(v)]);
+    for (int built = 0;; built = row_count_) {
+      if (built > 0 || row_count_ == 0)
+        if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);
+      if (row_count_ == built) {
+        if (built == 0) apply(tools);
+        break;
       }
-    return tissue.require_columns({vertices_.data(), static_cast<std::size_t>(force_count_)});
+      if (rounds_left_-- <= 0) {
+        status.set(StatusFlag::solver_not_converged);
+        break;
+      }
+      status |= require_columns(tissue);
+      build(tissue, tools, built);
+      if (!problem_.solve()) status.set(StatusFlag::solver_not_converged);
+      apply(tools);
+    }
+    return status;
   }
 
-  /// W = J C J^T plus the coupling, b = gap at the target without contact force.
+  /// Makes rows of the points that would sink in deepest with the present forces; false when there is no room.
   template <TissueModel Tissue>
-  void build(const Tissue& tissue, std::span<const ContactTool> tools) noexcept {
-    problem_.resize(contact_count_);
-    for (int i = 0; i < contact_count_; ++i) {
-      const Contact& ci = contacts_[static_cast<std::size_t>(i)];
-      const ContactTool& tool = tools[static_cast<std::size_t>(ci.tool)];
-      problem_.b[i] = ci.normal.dot(tool.target) - ci.rest_offset - tool.radius;
-      problem_.lambda[i] = ci.gap < 0.01 * tool.radius ? 1.0 : 0.0;  // touching now: likely touching still
+  bool add_violated(const Tissue& tissue, Tools tools, int& built) noexcept {
+    violated_count_ = 0;
+    const double allowed = built > 0 ? violation * std::max(0.0, -problem_.b.minCoeff()) : 0.0;
+    for (Candidate& c : candidates_.items()) {
+      if (c.row >= 0) continue;
+      const ContactTool& tool = tools[at(c.tool)];
+      const Vector3 ahead = tool.goal(floor_) - tool.proxy;
+      if (candidates_.least_gap(c) > ahead.norm()) continue;
+      if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
+      const double gap = c.gap + c.normal.dot(ahead);
+      if (c.facing && gap < -allowed) violated_[at(violated_count_++)] = {gap, &c};
+    }
+    const auto wanted = std::min(violated_count_, added_per_round);
+    std::partial_sort(violated_.begin(), violated_.begin() + wanted, violated_.begin() + violated_count_,
+                      [](const Violated& a, const Violated& b) { return a.gap < b.gap; });
+    if (row_count_ + wanted > Capacity) built = drop_idle_rows();
+    const int room = std::min(wanted, Capacity - row_count_);
+    for (int i = 0; i < room; ++i) add_row(tissue.contact_surface(), *violated_[at(i)].candidate);
+    return room > 0 || wanted == 0;
+  }
+
+  /// There is always room: the caller has seen to it.
+  void add_row(const ContactSurface& surface, Candidate& c) noexcept {
+    c.row = row_count_;
+    const ContactSample& sample = candidates_.samples()[c.sample];
+    candidate_[at(row_count_)] = &c;
+    Contact& row = rows_[at(row_count_++)];
+    row.tool = c.tool;
+    row.vertices = sample.vertices;
+    row.weights = sample.weights;
+    row.normal = c.normal;
+    row.rest = candidates_.rest(surface, c.sample);
+    row.point = c.point;
+    row.gap = c.gap;
+    row.force = c.force;
+  }
+
+  /// Rows without force make room; the number of rows whose compliance is built is then none.
+  int drop_idle_rows() noexcept {
+    int kept = 0;
+    for (int i = 0; i < row_count_; ++i) {
+      Candidate& c = *candidate_[at(i)];
+      c.row = rows_[at(i)].force > 0.0 ? kept : -1;
+      if (c.row < 0) continue;
+      candidate_[at(kept)] = &c;
+      rows_[at(kept++)] = rows_[at(i)];
+    }
+    row_count_ = kept;
+    return 0;
+  }
+
+  /// Asks for the compliance columns of all vertices that carry rows.
+  template <TissueModel Tissue>
+  Status require_columns(Tissue& tissue) noexcept {
+    int count = 0;
+    for (const Contact& row : contacts())
+      for (std::size_t a = 0; a < 3; ++a) {
+        int& slot = slot_[at(row.vertices[a])];
+        if (row.weights[a] == 0.0 || slot >= 0) continue;
+        slot = count;
+        vertices_[at(count++)] = row.vertices[a];
+      }
+    for (int i = 0; i < count; ++i) slot_[at(vertices_[at(i)])] = -1;
+    return tissue.require_columns({vertices_.data(), at(count)});
+  }
+
+  /// Rows `first` and later of W = J C J^T plus the coupling, and of b = gap at the target without contact force.
+  template <TissueModel Tissue>
+  void build(const Tissue& tissue, Tools tools, int first) noexcept {
+    problem_.resize(row_count_);
+    for (int i = first; i < row_count_; ++i) {
+      problem_.lambda[i] = 1.0;  // it presses, or would sink in
+      const Contact& ci = rows_[at(i)];
+      const ContactTool& tool = tools[at(ci.tool)];
+      problem_.b[i] = ci.normal.dot(tool.target - ci.rest) - tool.radius;
       for (int j = 0; j <= i; ++j) {
-        const Contact& cj = contacts_[static_cast<std::size_t>(j)];
-        Vector3 response = Vector3::Zero();
-        for (std::size_t a = 0; a < 3; ++a)
-          for (std::size_t b = 0; b < 3; ++b)
-            if (ci.weights[a] * cj.weights[b] > 0.0)
-              response.noalias() +=
-                  (ci.weights[a] * cj.weights[b]) * (tissue.compliance(ci.vertices[a], cj.vertices[b]) * cj.normal);
-        double w = ci.normal.dot(response);
-        if (ci.tool == cj.tool) w += coupling(tissue, tool) * ci.normal.dot(cj.normal);
+        const Contact& cj = rows_[at(j)];
+        const Matrix3 c = compliance(tissue, ci, cj);
+        response_[at(i)][at(j)].noalias() = c * cj.normal;
+        response_[at(j)][at(i)].noalias() = c.transpose() * ci.normal;
+        double w = ci.normal.dot(response_[at(i)][at(j)]);
+        if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
         problem_.w(i, j) = problem_.w(j, i) = w;
       }
     }
   }
 
+  /// J C J^T of two rows: displacement of one's point per force on the other's.
   template <TissueModel Tissue>
-  static double coupling(const Tissue& tissue, const ContactTool& tool) noexcept {
-    return tool.compliance + tissue.compliance_floor();
+  static Matrix3 compliance(const Tissue& tissue, const Contact& ci, const Contact& cj) noexcept {
+    if (ci.weights[0] == 1.0 && cj.weights[0] == 1.0) return tissue.compliance(ci.vertices[0], cj.vertices[0]);
+    Matrix3 sum = Matrix3::Zero();
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b)
+        if (ci.weights[a] * cj.weights[b] > 0.0)
+          sum += (ci.weights[a] * cj.weights[b]) * tissue.compliance(ci.vertices[a], cj.vertices[b]);
+    return sum;
   }
-  std::size_t local(int contact, std::size_t a) const noexcept { return local_[static_cast<std::size_t>(contact)][a]; }
 
+  /// Hands the answer to points, vertices and tools.
+  void apply(Tools tools) noexcept {
+    displacement_.clear();
+    for (ContactTool& tool : tools) tool.force.setZero();
+    double largest = 0.0;
+    for (int i = 0; i < row_count_; ++i) {
+      Contact& row = rows_[at(i)];
+      row.force = problem_.lambda[i];
+      Vector3 point = row.rest;
+      for (int j = 0; j < row_count_; ++j) point.noalias() -= problem_.lambda[j] * response_[at(i)][at(j)];
+      largest = std::max(largest, (point - row.point).squaredNorm());
+      row.point = point;
+      if (row.force == 0.0) continue;
+      tools[at(row.tool)].force += row.force * row.normal;
+      for (std::size_t a = 0; a < 3; ++a)
+        if (row.weights[a] > 0.0)
+          displacement_.add(row.vertices[a], -(row.force * row.weights[a]) * row.normal, slot_[at(row.vertices[a])]);
+    }
+    for (const VertexForce& f : displacement_.forces()) slot_[at(f.vertex)] = -1;
+    candidates_.move_surface(2.0 * std::sqrt(largest));
+    for (int i = 0; i < row_count_; ++i) {
+      Candidate& c = *candidate_[at(i)];
+      candidates_.place(c, rows_[at(i)].point, tools[at(c.tool)]);
+      c.force = rows_[at(i)].force;
+      rows_[at(i)].gap = c.gap;
+    }
+  }
+
+  /// Moves the proxies to where the answer has them; false when that was too far for one linearisation.
+  bool follow(Tools tools) noexcept {
+    bool arrived = true;
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+      ContactTool& tool = tools[t];
+      if (!tool.active) continue;
+      const Vector3 step = tool.goal(floor_) - tool.proxy;
+      const double length = step.norm(), longest = tool.longest_step();
+      tool.proxy += length <= longest ? step : Vector3((longest / length) * step);
+      arrived = arrived && length <= longest;
+      candidates_.move_ball(t, tool.proxy);
+    }
+    return arrived;
+  }
+
+  /// Of the tools' forces in this linearisation.
+  double relative_change(Tools tools) const noexcept {
+    double change = 0.0, scale = 0.0;
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+      change = std::max(change, (tools[t].force - start_force_[t]).norm());
+      scale = std::max(scale, tools[t].force.norm());
+    }
+    return change > 0.0 ? change / scale : 0.0;
+  }
+
+  static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static ContactParameters checked(const ContactParameters& p) {
     if (!(p.sample_spacing >= 0.4 && p.sample_spacing <= 1.0))
       raise(SetupErrorKind::bad_argument, "the sample spacing is " + number(p.sample_spacing) + " radii",
@@ -237,22 +264,29 @@ class ContactProblem {
     return p;
   }
 
-  static constexpr double unsettled =
-      0.05;  // relative change of force in the last linearisation that is not kept quiet
   static constexpr auto capacity = static_cast<std::size_t>(Capacity);
+  static constexpr int maximum_rounds = 12;   // solutions of the contact problem per tick
+  static constexpr int added_per_round = 16;  // rows, the deepest ones
+  static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
+  static constexpr double violation = 1e-5;   // how far a point may sink in, of the deepest push
+  struct Violated {
+    double gap;
+    Candidate* candidate;
+  };
+
   ContactParameters parameters_;
-  ContactSamples samples_;
+  SurfaceDisplacement<3 * Capacity> displacement_;
+  Candidates<Capacity> candidates_;
   ComplementarityProblem<Capacity> problem_;
-  std::array<Contact, capacity> contacts_{};
-  std::array<std::array<std::size_t, 3>, capacity> local_{};
-  std::array<VertexForce, 3 * capacity> forces_{};
+  std::array<Contact, capacity> rows_{};
+  std::array<Candidate*, capacity> candidate_{};
+  std::array<std::array<Vector3, capacity>, capacity> response_{};  // of a row's point to unit force on another
   std::array<int, 3 * capacity> vertices_{};
-  int contact_count_ = 0;
-  int force_count_ = 0;
-  std::vector<Vector3> displacement_;  // of vertices looked at in this generation
-  std::vector<std::uint64_t> stamp_;
-  std::vector<int> number_;
-  std::uint64_t generation_ = 0;
+  std::vector<int> slot_;  // scratch per vertex: -1 between calls
+  std::array<Violated, static_cast<std::size_t>(Candidates<Capacity>::maximum)> violated_{};
+  std::array<Vector3, maximum_tools> start_force_{};
+  int row_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
+  double floor_ = 0.0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -48,6 +48,9 @@ class ContactSamples {
     return {samples_.data() + first_[i], static_cast<std::size_t>(first_[i + 1] - first_[i])};
   }
   int count() const noexcept { return static_cast<int>(samples_.size()); }
+  const ContactSample& operator[](int sample) const noexcept { return samples_[static_cast<std::size_t>(sample)]; }
+  /// Number of the first sample of a triangle; those of triangle t end where those of t + 1 begin.
+  int first_of(int t) const noexcept { return first_[static_cast<std::size_t>(t)]; }
 
  private:
   static int subdivision(double length, double spacing, int maximum) {

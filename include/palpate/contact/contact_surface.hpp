@@ -42,11 +42,14 @@ class ContactSurface {
   /// Unit outward normal of a triangle.
   const Vector3& normal(int t) const noexcept { return normals_[static_cast<std::size_t>(t)]; }
   const Bvh& bvh() const noexcept { return bvh_; }
+  /// Changes whenever the resting surface moves.
+  std::uint64_t revision() const noexcept { return revision_; }
   int vertex_count() const noexcept { return static_cast<int>(positions_.size()); }
 
   /// Moves the resting surface (new loads, new pose of the loads). No allocation; not while a tick runs.
   void move_to(std::span<const Vector3> positions) noexcept {
     std::ranges::copy(positions, positions_.begin());
+    ++revision_;
     bvh_.refit(triangles_, positions_);
     update_normals();
   }
@@ -111,6 +114,7 @@ class ContactSurface {
   std::vector<Triangle> triangles_;
   Bvh bvh_;
   std::vector<Vector3> normals_, vertex_normals_;
+  std::uint64_t revision_ = 0;
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20; -1 at the rim
 };
 

@@ -28,9 +28,8 @@ struct ServoOptions {
 template <TissueModel Tissue>
 class HapticServo {
  public:
-  static constexpr std::size_t max_tools = 8;
-  static constexpr int contact_capacity =
-      48;  ///< contacts of all tools; the nearest are kept when there are more (degraded_model)
+  static constexpr std::size_t max_tools = maximum_tools;
+  static constexpr int contact_capacity = 64;  ///< contacts of all tools; more are left out (degraded_model)
 
   /// What a renderer needs of a tick: forces on the contact surface, proxies of the tools in the world.
   struct Snapshot {
@@ -187,6 +186,8 @@ class HapticServo {
   void recover(std::size_t i) noexcept {
     const ContactTool& tool = contact_tools_[i];
     if (!tool.active || !tool.force.isZero(0.0)) return;
+    // Far from all contact points nothing changes fast: one look in a while is enough.
+    if (!problem_.is_near(static_cast<int>(i)) && ++ticks_ % 16 != 0) return;
     if (tissue_->contact_surface().closest(tool.target).distance >= 0.0) return;
     states_[i].known = false;
     states_[i].status.set(StatusFlag::reacquired);
@@ -209,6 +210,7 @@ class HapticServo {
   std::vector<ForceGate> gates_;
   std::vector<ToolForce> forces_;
   TripleBuffer<Snapshot> snapshots_;
+  unsigned ticks_ = 0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,229 @@
+// The contact points near the balls, remembered from tick to tick.
+#pragma once
+
+#include <palpate/contact/contact.hpp>
+#include <palpate/contact/contact_samples.hpp>
+#include <palpate/contact/surface_displacement.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// A contact point near the ball of one tool, as it was when last looked at.
+struct Candidate {
+  int sample = 0;
+  int triangle = 0;
+  int tool = 0;
+  int row = -1;                      ///< of the contact problem, -1 when it has none
+  bool facing = true;                ///< the ball is on the outer side
+  double gap = 0.0;                  ///< [m]
+  double seen = 0.0;                 ///< travel of ball and surface until then [m]
+  double force = 0.0;                ///< of the last solution [N]
+  Vector3 point = Vector3::Zero();   ///< on the deformed surface [m]
+  Vector3 normal = Vector3::Zero();  ///< unit, from the point to the ball's centre
+};
+
+/// All contact points that a ball can reach within a tick, and some more, so that the list holds for a while: the way
+/// of ball and surface since then is summed up and the list made anew when the margin is used up (as neighbour lists in
+/// molecular dynamics, Verlet 1967). A point is evaluated again only when that way could have closed its gap. The
+/// search on the resting surface reaches as far as the surface has moved (SurfaceDisplacement::reach); a round over all
+/// vertices, a few per tick, finds what moved farther. No allocation; work bounded by `maximum` and the triangles in
+/// reach. `Capacity` is that of the contact problem.
+template <int Capacity>
+class Candidates {
+ public:
+  static constexpr int maximum = 4 * Capacity;
+  using Displacement = SurfaceDisplacement<3 * Capacity>;
+
+  /// Places the samples `spacing` [m] apart. Allocates; for set-up.
+  Candidates(const ContactSurface& surface, double spacing) : samples_(surface, spacing) { proxy_.fill(Vector3::Zero()); }
+
+  const ContactSamples& samples() const noexcept { return samples_; }
+  std::span<Candidate> items() noexcept { return {items_.data(), static_cast<std::size_t>(count_)}; }
+  bool has_any(int tool) const noexcept {
+    return std::any_of(items_.begin(), items_.begin() + count_, [tool](const Candidate& c) { return c.tool == tool; });
+  }
+  void forget() noexcept { valid_ = false; }
+  /// Whether the last list has no place for a force of the one before: its tool was lifted. The surface then springs
+  /// back by an unknown amount, and the next update makes another list.
+  bool has_lost_forces() const noexcept { return lost_forces_; }
+
+  /// Takes in what happened since the last tick: tools put elsewhere, lifted or set down, a moved resting surface.
+  void begin_tick(const ContactSurface& surface, std::span<const ContactTool> tools) noexcept {
+    if (revision_ != surface.revision()) forget();
+    revision_ = surface.revision();
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+      if (tools[t].active != was_active_[t]) forget();
+      was_active_[t] = tools[t].active;
+      if (tools[t].active) move_ball(t, tools[t].proxy);
+    }
+  }
+  /// The ball of a tool is here now.
+  void move_ball(std::size_t tool, const Vector3& proxy) noexcept {
+    travel_[tool] += (proxy - proxy_[tool]).norm();
+    proxy_[tool] = proxy;
+  }
+  /// No point of the surface has moved farther than this.
+  void move_surface(double distance) noexcept { surface_travel_ += distance; }
+
+  /// Makes the list anew unless it still holds for another linearisation. degraded_model when there is no room for all
+  /// that a ball may reach.
+  template <TissueModel Tissue>
+  Status update(const Tissue& tissue, std::span<const ContactTool> tools, Displacement& displacement) noexcept {
+    Status status;
+    bool holds = valid_;
+    for (std::size_t t = 0; t < tools.size() && holds; ++t)
+      holds = !tools[t].active || needed(tools[t]) <= range_[t] - (travel(t) - built_[t]);
+    if (!holds) build(tissue, tools, displacement);
+    for (std::size_t t = 0; t < tools.size(); ++t)
+      if (tools[t].active && range_[t] < needed(tools[t])) status.set(StatusFlag::degraded_model);
+    return status;
+  }
+
+  /// Whether ball or surface may have moved since a candidate was looked at.
+  bool is_stale(const Candidate& c) const noexcept { return travel(static_cast<std::size_t>(c.tool)) != c.seen; }
+  /// At least the gap of a candidate now.
+  double least_gap(const Candidate& c) const noexcept {
+    return c.gap - (travel(static_cast<std::size_t>(c.tool)) - c.seen);
+  }
+
+  /// Evaluates a candidate at the present deformation and proxy.
+  template <TissueModel Tissue>
+  void evaluate(const Tissue& tissue, const ContactTool& tool, Displacement& displacement, Candidate& c) noexcept {
+    const ContactSample& sample = samples_[c.sample];
+    Vector3 point = Vector3::Zero();
+    for (std::size_t a = 0; a < 3; ++a)
+      if (sample.weights[a] > 0.0) point += sample.weights[a] * displacement.position(tissue, sample.vertices[a]);
+    place(c, point, tool);
+    c.facing = faces_ball(tissue, displacement, c);
+  }
+  /// Sets where a candidate's point is.
+  void place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept {
+    c.point = point;
+    const Vector3 offset = tool.proxy - point;
+    const double distance = offset.norm();
+    c.normal = distance > 0.0 ? Vector3(offset / distance) : Vector3::UnitZ();
+    c.gap = distance - tool.radius;
+    c.seen = travel(static_cast<std::size_t>(c.tool));
+  }
+
+  /// Looks at the next few vertices of the round.
+  template <TissueModel Tissue>
+  void look_round(const Tissue& tissue, std::span<const ContactTool> tools, Displacement& displacement) noexcept {
+    const ContactSurface& surface = tissue.contact_surface();
+    for (int k = 0; k < per_tick && k < surface.vertex_count(); ++k) {
+      if (++next_ >= surface.vertex_count()) {
+        next_ = 0;
+        far_last_round_ = far_;
+        far_ = 0.0;
+      }
+      const double moved = displacement.at(tissue, next_).norm();
+      if (moved <= reach_) continue;
+      const Vector3 x = displacement.position(tissue, next_);
+      for (std::size_t t = 0; t < tools.size(); ++t)
+        if (tools[t].active && (x - tools[t].proxy).norm() < tools[t].radius + range_[t]) {
+          far_ = std::max(far_, 1.1 * moved);
+          forget();
+        }
+    }
+  }
+
+  /// Resting place of a sample [m].
+  Vector3 rest(const ContactSurface& surface, int s) const noexcept {
+    const ContactSample& sample = samples_[s];
+    return sample.weights[0] * surface.position(sample.vertices[0]) +
+           sample.weights[1] * surface.position(sample.vertices[1]) +
+           sample.weights[2] * surface.position(sample.vertices[2]);
+  }
+
+ private:
+  static constexpr int per_tick = 4;
+
+  /// Points this near may be reached while the linearisation settles; leaving one out lets the ball fall through it.
+  static double needed(const ContactTool& tool) noexcept { return tool.longest_step() + 0.5 * tool.motion; }
+  double travel(std::size_t tool) const noexcept { return travel_[tool] + surface_travel_; }
+
+  template <TissueModel Tissue>
+  void build(const Tissue& tissue, std::span<const ContactTool> tools, Displacement& displacement) noexcept {
+    loaded_count_ = 0;
+    for (const Candidate& c : items())
+      if (c.force > 0.0) loaded_[static_cast<std::size_t>(loaded_count_++)] = c;
+    count_ = 0;
+    reach_ = std::max({displacement.reach(tissue), far_, far_last_round_});
+    const ContactSurface& surface = tissue.contact_surface();
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+      const ContactTool& tool = tools[t];
+      if (!tool.active) continue;
+      range_[t] = needed(tool) + 0.25 * tool.radius;
+      built_[t] = travel(t);
+      const double far = tool.radius + range_[t] + reach_;
+      surface.bvh().visit_near(tool.proxy, far, [&](int triangle) {
+        for (int s = samples_.first_of(triangle); s < samples_.first_of(triangle + 1); ++s)
+          if ((rest(surface, s) - tool.proxy).squaredNorm() <= far * far)
+            consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
+      });
+    }
+    restore_forces();
+    valid_ = !lost_forces_;
+  }
+
+  /// Gives the candidates of a new list the forces they had in the old one.
+  void restore_forces() noexcept {
+    lost_forces_ = false;
+    for (int i = 0; i < loaded_count_; ++i) {
+      const Candidate& old = loaded_[static_cast<std::size_t>(i)];
+      const auto found = std::find_if(items_.begin(), items_.begin() + count_, [&](const Candidate& c) {
+        return c.sample == old.sample && c.tool == old.tool;
+      });
+      if (found == items_.begin() + count_) lost_forces_ = true;
+      else found->force = old.force;
+    }
+  }
+
+  /// Takes a sample into the list if it is near; when the list is full, it holds as far as the nearest one left out.
+  template <TissueModel Tissue>
+  void consider(const Tissue& tissue, const ContactTool& tool, int t, int triangle, int sample,
+                Displacement& displacement) noexcept {
+    Candidate c;
+    c.sample = sample;
+    c.triangle = triangle;
+    c.tool = t;
+    evaluate(tissue, tool, displacement, c);
+    double& range = range_[static_cast<std::size_t>(t)];
+    if (!(c.gap <= range)) return;
+    if (count_ < maximum) {
+      items_[static_cast<std::size_t>(count_++)] = c;
+      return;
+    }
+    Candidate& farthest = *std::ranges::max_element(items_, {}, &Candidate::gap);
+    double& lost = range_[static_cast<std::size_t>(farthest.gap > c.gap ? farthest.tool : t)];
+    lost = std::min(lost, std::max(c.gap, farthest.gap));
+    if (farthest.gap > c.gap) farthest = c;
+  }
+
+  /// Whether the ball lies on the outer side of the triangle, as it rests or as it is deformed: in a steep dent only
+  /// the latter holds. What the ball sees through a thin part from behind fails both.
+  template <TissueModel Tissue>
+  static bool faces_ball(const Tissue& tissue, Displacement& displacement, const Candidate& c) noexcept {
+    const ContactSurface& surface = tissue.contact_surface();
+    if (c.normal.dot(surface.normal(c.triangle)) > 0.0) return true;
+    const Triangle& v = surface.triangle(c.triangle);
+    const Vector3 x0 = displacement.position(tissue, v[0]);
+    const Vector3 x1 = displacement.position(tissue, v[1]);
+    const Vector3 x2 = displacement.position(tissue, v[2]);
+    return c.normal.dot((x1 - x0).cross(x2 - x0)) > 0.0;
+  }
+
+  ContactSamples samples_;
+  std::array<Candidate, static_cast<std::size_t>(maximum)> items_{};
+  std::array<Candidate, static_cast<std::size_t>(Capacity)> loaded_{};  // of the list before
+  int count_ = 0, loaded_count_ = 0;
+  bool valid_ = false, lost_forces_ = false;
+  std::uint64_t revision_ = 0;
+  std::array<Vector3, maximum_tools> proxy_{};
+  std::array<bool, maximum_tools> was_active_{};
+  std::array<double, maximum_tools> range_{}, built_{}, travel_{};  // range: gaps up to which the list was complete
+  double surface_travel_ = 0.0;
+  double reach_ = 0.0, far_ = 0.0, far_last_round_ = 0.0;
+  int next_ = 0;  // vertex of the round
+};
+
+}  // namespace palpate::inline PALPATE_ABI
