@@ -207,6 +207,7 @@ TEST_CASE("a session that starts in the tissue ramps from zero to an outward for
     const char* where;
     Vector3 position;
     Vector3 outward;  // the force must have a share along it; zero: anything
+    double fall = 1e-3;  // relative loss of force allowed in a tick while it ramps
   };
   const Vector3 up = Vector3::UnitZ();
   const std::vector<Start> starts{{"half a ball deep", Vector3(0.0137, 0.0159, pad_height + 0.5 * radius), up},
@@ -217,7 +218,7 @@ TEST_CASE("a session that starts in the tissue ramps from zero to an outward for
                                   {"on a node", Vector3(0.015, 0.015, pad_height), up},
                                   {"on an edge of a triangle", Vector3(0.0125, 0.015, pad_height), up},
                                   {"on an edge of the body", Vector3(0.0, 0.0137, pad_height), Vector3(-1, 0, 1)},
-                                  {"on a corner of the body", Vector3(0.03, 0.03, pad_height), Vector3(1, 1, 1)},
+                                  {"on a corner of the body", Vector3(0.03, 0.03, pad_height), Vector3(1, 1, 1), 0.05},  // it balances, then slides off
                                   {"inside, at the side", Vector3(0.002, 0.0137, 0.011), -Vector3::UnitX()},
                                   {"in the very middle", Vector3(0.015, 0.015, 0.01), Vector3::Zero()},
                                   {"on a fixed face", Vector3(0.0137, 0.0159, 0.0), -up},
@@ -236,7 +237,7 @@ TEST_CASE("a session that starts in the tissue ramps from zero to an outward for
       const Vector3& f = runs[0][i];
       if (!f.allFinite()) ++not_finite;
       if (!test::same(f, runs[1][i])) ++different;
-      if (f.norm() < before * (1.0 - 1e-3) - 1e-6) ++falls;
+      if (f.norm() < before * (1.0 - start.fall) - 1e-6) ++falls;
       before = f.norm();
     }
     CHECK(runs[0][0].isZero(0.0));
@@ -438,7 +439,7 @@ TEST_CASE("a saturated force keeps its direction", "[haptic][servo][extreme][D7]
 
 TEST_CASE("a missing compliance column softens nothing into stone", "[haptic][servo][extreme][D4]") {
   SetupOptions few;
-  few.compliance_slots = 3;
+  few.compliance_slots = 2;
   auto pad = test::make_pad<HapticFEModel<Tet4, LinearElastic, SparseCholesky>>("z1", 1e4, {6, 6, 4}, few);
   auto whole = test::make_pad<HapticFEModel<Tet4, LinearElastic, SparseCholesky>>();
   ServoSession session(pad), reference(whole);

@@ -7,6 +7,12 @@
 
 namespace palpate::inline PALPATE_ABI {
 
+/// What a row was linearised with and what came of it, of the last linearisation and the one before.
+struct NormalHistory {
+  Vector3 used = Vector3::Zero(), used_before = Vector3::Zero(), made_before = Vector3::Zero();
+  int known = 0;  ///< how many linearisations in a row, at most 2
+};
+
 /// A contact point near the ball of one tool, as it was when last looked at.
 struct Candidate {
   int sample = 0;
@@ -19,6 +25,7 @@ struct Candidate {
   double force = 0.0;                ///< of the last solution [N]
   Vector3 point = Vector3::Zero();   ///< on the deformed surface [m]
   Vector3 normal = Vector3::Zero();  ///< unit, from the point to the ball's centre
+  NormalHistory history;
 };
 
 /// All contact points that a ball can reach within a tick, and some more, so that the list holds for a while: the way
@@ -161,20 +168,28 @@ class Candidates {
             consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
       });
     }
-    restore_forces();
+    restore_forces(tissue, tools, displacement);
     valid_ = !lost_forces_;
   }
 
-  /// Gives the candidates of a new list the forces they had in the old one.
-  void restore_forces() noexcept {
+  /// Gives the candidates of a new list the forces they had in the old one. Those that press stay in the list however
+  /// far the ball is still from where it goes.
+  template <TissueModel Tissue>
+  void restore_forces(const Tissue& tissue, std::span<const ContactTool> tools, Displacement& displacement) noexcept {
     lost_forces_ = false;
     for (int i = 0; i < loaded_count_; ++i) {
       const Candidate& old = loaded_[static_cast<std::size_t>(i)];
       const auto found = std::find_if(items_.begin(), items_.begin() + count_, [&](const Candidate& c) {
         return c.sample == old.sample && c.tool == old.tool;
       });
-      if (found == items_.begin() + count_) lost_forces_ = true;
-      else found->force = old.force;
+      if (found != items_.begin() + count_) {
+        found->force = old.force;
+      } else if (count_ < maximum && tools[static_cast<std::size_t>(old.tool)].active) {
+        Candidate& c = items_[static_cast<std::size_t>(count_++)] = old;
+        evaluate(tissue, tools[static_cast<std::size_t>(c.tool)], displacement, c);
+      } else {
+        lost_forces_ = true;
+      }
     }
   }
 
@@ -199,12 +214,19 @@ class Candidates {
     if (farthest.gap > c.gap) farthest = c;
   }
 
-  /// Whether the ball lies on the outer side of the triangle, as it rests or as it is deformed: in a steep dent only
-  /// the latter holds. What the ball sees through a thin part from behind fails both.
+  /// Whether the ball lies on the outer side of a triangle that the point belongs to, as it rests or as it is deformed:
+  /// in a steep dent only the latter holds. What the ball sees through a thin part from behind fails both.
   template <TissueModel Tissue>
-  static bool faces_ball(const Tissue& tissue, Displacement& displacement, const Candidate& c) noexcept {
+  bool faces_ball(const Tissue& tissue, Displacement& displacement, const Candidate& c) const noexcept {
     const ContactSurface& surface = tissue.contact_surface();
     if (c.normal.dot(surface.normal(c.triangle)) > 0.0) return true;
+    const ContactSample& sample = samples_[c.sample];
+    for (int t : surface.triangles_at(sample.vertices[0])) {
+      bool contains = true;
+      for (std::size_t a = 1; a < 3; ++a)
+        contains = contains && (sample.weights[a] == 0.0 || std::ranges::count(surface.triangle(t), sample.vertices[a]) > 0);
+      if (contains && c.normal.dot(surface.normal(t)) > 0.0) return true;
+    }
     const Triangle& v = surface.triangle(c.triangle);
     const Vector3 x0 = displacement.position(tissue, v[0]);
     const Vector3 x1 = displacement.position(tissue, v[1]);

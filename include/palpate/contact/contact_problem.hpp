@@ -40,12 +40,13 @@ class ContactProblem {
     for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
       for (std::size_t t = 0; t < tools.size(); ++t) start_force_[t] = tools[t].force;
       status |= candidates_.update(tissue, tools, displacement_);
-      status |= solve_linearised(tissue, tools);
-      const bool arrived = follow(tools);
+      status |= solve_linearised(tissue, tools, iteration);
+      follow(tools);
       change = relative_change(tools);
-      // Newton's steps shrink quadratically: the next one is smaller than this one as this one is than the last.
-      const double expected = iteration > 0 && change < before ? change * (change / before) : change;
-      if (arrived && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) return status;
+      // Each step is smaller than the last by about the same ratio (the curvature of the ball is left out of the
+      // linearisation), so that the steps still to come sum to this.
+      const double expected = iteration > 0 && change < before ? change * change / (before - change) : change;
+      if (arrived_ && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) return status;
       before = change;
     }
     if (change > unsettled) status.set(StatusFlag::solver_not_converged);
@@ -73,15 +74,17 @@ class ContactProblem {
   /// One Signorini problem at the present proxies; updates the forces of points, vertices and tools. Rows are added
   /// until no point sinks in.
   template <TissueModel Tissue>
-  Status solve_linearised(Tissue& tissue, Tools tools) noexcept {
+  Status solve_linearised(Tissue& tissue, Tools tools, int iteration) noexcept {
     Status status;
     row_count_ = 0;
     for (Candidate& c : candidates_.items()) {
       c.row = -1;
-      if (c.force <= 0.0) continue;
-      candidates_.place(c, c.point, tools[at(c.tool)]);
-      add_row(tissue.contact_surface(), c);
+      if (c.force <= 0.0 || !arrived_) c.history.known = 0;
+      if (c.force > 0.0) candidates_.place(c, c.point, tools[at(c.tool)]);
     }
+    predict_normals(iteration);
+    for (Candidate& c : candidates_.items())
+      if (c.force > 0.0) add_row(tissue.contact_surface(), c);
     for (int built = 0;; built = row_count_) {
       if (built > 0 || row_count_ == 0)
         if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);
@@ -99,6 +102,27 @@ class ContactProblem {
       apply(tools);
     }
     return status;
+  }
+
+  /// The normals of a linearisation come of the forces of the one before, which come of its normals. `feedback_` is how
+  /// much of a change of normals comes back; a step of Newton's method on that scalar leads on to where they settle.
+  void predict_normals(int iteration) noexcept {
+    double back = 0.0, changed = 0.0;
+    if (iteration >= 2)
+      for (const Candidate& c : candidates_.items()) {
+        if (c.force <= 0.0 || c.history.known < 2) continue;
+        const Vector3 before = c.history.used - c.history.used_before;
+        back += c.force * before.dot(c.normal - c.history.made_before);
+        changed += c.force * before.squaredNorm();
+      }
+    if (changed > 1e-16) feedback_ = std::clamp(back / changed, 0.0, 0.75);
+    for (Candidate& c : candidates_.items()) {
+      if (c.force <= 0.0) continue;
+      const Vector3 made = c.normal;
+      if (c.history.known > 0)
+        c.normal = (made + feedback_ / (1.0 - feedback_) * (made - c.history.used)).normalized();
+      c.history = {c.normal, c.history.used, made, std::min(c.history.known + 1, 2)};
+    }
   }
 
   /// Makes rows of the points that would sink in deepest with the present forces; false when there is no room.
@@ -230,19 +254,18 @@ class ContactProblem {
     }
   }
 
-  /// Moves the proxies to where the answer has them; false when that was too far for one linearisation.
-  bool follow(Tools tools) noexcept {
-    bool arrived = true;
+  /// Moves the proxies to where the answer has them, as far as one linearisation may go.
+  void follow(Tools tools) noexcept {
+    arrived_ = true;
     for (std::size_t t = 0; t < tools.size(); ++t) {
       ContactTool& tool = tools[t];
       if (!tool.active) continue;
       const Vector3 step = tool.goal(floor_) - tool.proxy;
       const double length = step.norm(), longest = tool.longest_step();
       tool.proxy += length <= longest ? step : Vector3((longest / length) * step);
-      arrived = arrived && length <= longest;
+      arrived_ = arrived_ && length <= longest;
       candidates_.move_ball(t, tool.proxy);
     }
-    return arrived;
   }
 
   /// Of the tools' forces in this linearisation.
@@ -286,6 +309,8 @@ class ContactProblem {
   std::array<Violated, static_cast<std::size_t>(Candidates<Capacity>::maximum)> violated_{};
   std::array<Vector3, maximum_tools> start_force_{};
   int row_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
+  bool arrived_ = true;  // at the answer of the last linearisation
+  double feedback_ = 0.0;
   double floor_ = 0.0;
 };
 

@@ -54,7 +54,7 @@ class ContactSamples {
 
  private:
   static int subdivision(double length, double spacing, int maximum) {
-    return std::clamp(static_cast<int>(std::ceil(length / spacing)), 1, maximum);
+    return static_cast<int>(std::clamp(std::ceil(length / spacing), 1.0, static_cast<double>(maximum)));
   }
 
   void add_edge(const ContactSurface& surface, const Triangle& t, std::size_t i, double spacing, int maximum,

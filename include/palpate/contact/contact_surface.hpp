@@ -26,12 +26,16 @@ class ContactSurface {
       for (std::size_t i = 0; i < 3; ++i)
         edges[std::minmax(triangles_[t][i], triangles_[t][(i + 1) % 3])].push_back(static_cast<int>(t));
     neighbour_.resize(triangles_.size());
+    rim_vertex_.resize(positions_.size(), false);
     for (std::size_t t = 0; t < triangles_.size(); ++t)
       for (std::size_t i = 0; i < 3; ++i) {
         const auto& sharing = edges[std::minmax(triangles_[t][i], triangles_[t][(i + 1) % 3])];
         neighbour_[t][i] = sharing.size() != 2 ? -1 : sharing[0] == static_cast<int>(t) ? sharing[1] : sharing[0];
+        if (sharing.size() == 1)
+          for (std::size_t end : {i, (i + 1) % 3}) rim_vertex_[static_cast<std::size_t>(triangles_[t][end])] = true;
       }
     vertex_normals_.resize(positions_.size());
+    list_triangles();
     update_normals();
   }
 
@@ -42,6 +46,11 @@ class ContactSurface {
   /// Unit outward normal of a triangle.
   const Vector3& normal(int t) const noexcept { return normals_[static_cast<std::size_t>(t)]; }
   const Bvh& bvh() const noexcept { return bvh_; }
+  /// Numbers of the triangles at a vertex.
+  std::span<const int> triangles_at(int v) const noexcept {
+    const auto i = static_cast<std::size_t>(v);
+    return {triangles_at_.data() + first_at_[i], static_cast<std::size_t>(first_at_[i + 1] - first_at_[i])};
+  }
   /// Changes whenever the resting surface moves.
   std::uint64_t revision() const noexcept { return revision_; }
   int vertex_count() const noexcept { return static_cast<int>(positions_.size()); }
@@ -55,7 +64,8 @@ class ContactSurface {
   }
 
   /// The closest point of the resting surface: triangle, point, and signed distance (negative inside) by the
-  /// angle-weighted pseudo-normal of the feature it lies on (Baerentzen and Aanaes 2005).
+  /// angle-weighted pseudo-normal of the feature it lies on (Baerentzen and Aanaes 2005). Beside the rim of an open
+  /// surface nothing is inside.
   struct Closest {
     int triangle = -1;
     Vector3 point = Vector3::Zero();
@@ -70,9 +80,11 @@ class ContactSurface {
     result.point = point_on(result.triangle, on);
     const Vector3 offset = p - result.point, normal = feature_normal(result.triangle, on.feature);
     const double length = offset.norm();
-    const bool outside = offset.dot(normal) >= 0.0;
+    const bool outside = offset.dot(normal) >= 0.0 || is_rim(result.triangle, on.feature);
     result.distance = outside ? length : -length;
-    result.outward = length > 0.0 ? Vector3(offset / result.distance) : normal;
+    // Nearer than the rounding of positions the offset points anywhere.
+    const bool on_surface = length <= 1e-12 * (bvh_.bounds().high - bvh_.bounds().low).norm();
+    result.outward = on_surface ? normal : Vector3(offset / result.distance);
     return result;
   }
 
@@ -96,6 +108,25 @@ class ContactSurface {
         neighbour_[static_cast<std::size_t>(t)][index - static_cast<std::size_t>(TriangleFeature::edge01)];
     return other < 0 ? own : (own + normals_[static_cast<std::size_t>(other)]).normalized();
   }
+  bool is_rim(int t, TriangleFeature feature) const noexcept {
+    const auto index = static_cast<std::size_t>(feature);
+    if (feature == TriangleFeature::face) return false;
+    if (index >= static_cast<std::size_t>(TriangleFeature::vertex0))
+      return rim_vertex_[static_cast<std::size_t>(
+          triangle(t)[index - static_cast<std::size_t>(TriangleFeature::vertex0)])];
+    return neighbour_[static_cast<std::size_t>(t)][index - static_cast<std::size_t>(TriangleFeature::edge01)] < 0;
+  }
+  void list_triangles() {
+    first_at_.assign(positions_.size() + 1, 0);
+    for (const Triangle& t : triangles_)
+      for (int v : t) ++first_at_[static_cast<std::size_t>(v) + 1];
+    std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
+    triangles_at_.resize(3 * triangles_.size());
+    std::vector<int> next(first_at_.begin(), first_at_.end() - 1);
+    for (std::size_t t = 0; t < triangles_.size(); ++t)
+      for (int v : triangles_[t])
+        triangles_at_[static_cast<std::size_t>(next[static_cast<std::size_t>(v)]++)] = static_cast<int>(t);
+  }
   void update_normals() noexcept {
     for (Vector3& n : vertex_normals_) n.setZero();
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
@@ -114,6 +145,8 @@ class ContactSurface {
   std::vector<Triangle> triangles_;
   Bvh bvh_;
   std::vector<Vector3> normals_, vertex_normals_;
+  std::vector<bool> rim_vertex_;
+  std::vector<int> first_at_, triangles_at_;  // triangles of every vertex
   std::uint64_t revision_ = 0;
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20; -1 at the rim
 };

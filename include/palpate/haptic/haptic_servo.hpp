@@ -92,7 +92,10 @@ class HapticServo {
   void reset() noexcept {
     problem_.clear();
     for (Input& input : states_) input = Input{};
-    for (ContactTool& tool : contact_tools_) tool.active = false;
+    for (ContactTool& tool : contact_tools_) {
+      tool.active = false;
+      tool.force.setZero();
+    }
     for (ForceGate& gate : gates_) gate.reset();
   }
 
