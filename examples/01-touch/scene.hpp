@@ -36,13 +36,13 @@ inline Scene make_scene(const Mesh<Tet4>& mesh) {
   return scene;
 }
 
-/// A 4 mm probe. The triangles of the patch are 6 mm long: their corners can be felt.
+/// A 4 mm probe. The triangles of the patch are 4 mm long: their corners can be felt a little.
 inline constexpr SphereTool tool{.radius = 4e-3};
 
 /// How the tool moves; lengths in [m].
 struct Plan {
   double seconds = 10.0;
-  double depth = 7e-3;    ///< how far it is pressed in
+  double depth = 5e-3;    ///< how far it is pressed in
   double drag = 30e-3;    ///< how far it is dragged, half of it on either side of the lesion
   double height = 12e-3;  ///< of the ball over the surface before and after
 };

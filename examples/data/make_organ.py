@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Make organ.msh: the two-lobed, liver-like soft body that ships with palpate.
 
-    python3 make_organ.py [output.msh]      (needs numpy only; about 70 seconds)
+    python3 make_organ.py [output.msh]      (needs numpy only; about two minutes)
 
 The shape is not taken from any scan or atlas: it is a handful of ellipsoids,
 blended together smoothly (see `shape`).  The mesher is self-contained too:
@@ -28,8 +28,8 @@ import sys
 import numpy as np
 
 # ----------------------------------------------------------------- parameters
-H_LATTICE = 7.0                 # lattice cell at the patch centre [mm]
-GRADING = 108.0                 # distance of the inversion centre from the patch
+H_LATTICE = 4.5                 # lattice cell at the patch centre [mm]
+GRADING = 80.0                  # distance of the inversion centre from the patch
 TILT = np.array([0.20, 0.0, 0.0])   # ... leaning over the (thin) left lobe
 PATCH_DIR = np.array([0.0, -0.62, 0.78])      # where the patch is, seen from
 PATCH_FROM = np.array([-31.0, 0.0, 0.0])      # ... this inner point

@@ -3,6 +3,8 @@
 
 #include <palpate/linear/node_graph.hpp>
 
+#include <numeric>
+
 namespace palpate::inline PALPATE_ABI::detail {
 
 /// Nodes in a postorder of the elimination tree, so that every subtree is contiguous.

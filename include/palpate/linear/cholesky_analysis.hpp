@@ -1,0 +1,80 @@
+// The part of a sparse Cholesky factorisation that depends on the pattern of the matrix only.
+#pragma once
+
+#include <palpate/core/setup_options.hpp>
+#include <palpate/linear/front_tree.hpp>
+#include <palpate/linear/nested_dissection.hpp>
+
+#include <memory>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Elimination order, fronts and memory of a factorisation, for any values on one pattern. Copies share everything.
+class CholeskyAnalysis {
+ public:
+  CholeskyAnalysis() = default;
+
+  /// Analyses the pattern of the lower half of a matrix. O(nonzeros + nodes log nodes), a few per cent of the
+  /// factorisation. Throws bad_argument when the layout does not fit, or cancelled.
+  explicit CholeskyAnalysis(const SparseLower& lower, const DofLayout& layout = {}, const SetupLimits& limits = {}) {
+    limits.advance("factorisation", 0.0);
+    const NodeGraph graph = node_graph(lower, layout);
+    const detail::EliminationTree tree = detail::elimination_tree(graph, nested_dissection(graph));
+    const detail::Supernodes supernodes = detail::SupernodeBuilder(graph, tree).build();
+    auto made = std::make_shared<Data>();
+    made->tree = detail::FrontTreeBuilder(graph, supernodes, lower).take();
+    made->kept = layout.kept;
+    made->pattern = fingerprint(lower);
+    data_ = std::move(made);
+  }
+
+  Index size() const noexcept { return data_ ? data_->tree.place_of_dof.size() : 0; }
+  /// Dofs eliminated last, as given in the layout.
+  const std::vector<Index>& kept() const noexcept {
+    static const std::vector<Index> none;
+    return data_ ? data_->kept : none;
+  }
+  Index front_count() const noexcept { return data_ ? data_->tree.fronts.size() : 0; }
+  /// Stored entries of L, zeros from merging included.
+  double nonzeros() const noexcept { return data_ ? data_->tree.nonzeros : 0.0; }
+  /// Multiplications and additions of a factorisation: sum of squares of the column lengths of L.
+  double flops() const noexcept { return data_ ? data_->tree.flops : 0.0; }
+  /// What a finished factor holds [bytes].
+  double factor_bytes() const noexcept {
+    return data_ ? sizeof(double) * static_cast<double>(data_->tree.factor_size) : 0.0;
+  }
+  /// Largest memory held during a factorisation, the factor included [bytes].
+  double peak_bytes() const noexcept {
+    if (!data_) return 0.0;
+    return factor_bytes() +
+           sizeof(double) * static_cast<double>(data_->tree.workspace_size + pack_size() + 3 * size());
+  }
+  /// True when the matrix has the pattern that was analysed.
+  bool fits(const SparseLower& lower) const noexcept { return data_ && data_->pattern == fingerprint(lower); }
+
+  const detail::FrontTree& tree() const noexcept { return data_->tree; }
+  /// Doubles that a factorisation needs to pack operands.
+  Index pack_size() const noexcept {
+    return 2 * (data_->tree.largest_front + 64) * detail::LowerPanels::width;
+  }
+
+ private:
+  struct Data {
+    detail::FrontTree tree;
+    std::vector<Index> kept;
+    std::uint64_t pattern = 0;
+  };
+
+  static std::uint64_t fingerprint(const SparseLower& m) noexcept {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    const auto mix = [&](Index x) { hash = (hash ^ static_cast<std::uint64_t>(x)) * 0x100000001b3u; };
+    mix(m.rows());
+    for (Index j = 0; j <= m.cols(); ++j) mix(m.outerIndexPtr()[j]);
+    for (Index p = 0; p < m.outerIndexPtr()[m.cols()]; ++p) mix(m.innerIndexPtr()[p]);
+    return hash;
+  }
+
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,73 @@
+// The innermost loop of the direct solver: a small block of a matrix product held in registers.
+#pragma once
+
+#include <palpate/core/types.hpp>
+
+namespace palpate::inline PALPATE_ABI::detail {
+
+/// A few doubles in one register, as many as the flags of the compiler allow.
+using Packet = Eigen::internal::packet_traits<double>::type;
+inline constexpr int packet_size = Eigen::internal::packet_traits<double>::size;
+/// Tile shape: three packets by as many columns as leave registers for the operands.
+inline constexpr int tile_packets = 3;
+inline constexpr int tile_rows = tile_packets * packet_size;
+inline constexpr int tile_columns = packet_size == 8 ? 8 : 4;
+
+inline Packet load(const double* p) noexcept { return Eigen::internal::ploadu<Packet>(p); }
+inline void store(double* p, const Packet& x) noexcept { Eigen::internal::pstoreu(p, x); }
+inline Packet broadcast(double x) noexcept { return Eigen::internal::pset1<Packet>(x); }
+/// a b + c
+inline Packet multiply_add(const Packet& a, const Packet& b, const Packet& c) noexcept {
+  return Eigen::internal::pmadd(a, b, c);
+}
+
+/// How a tile changes its target.
+enum class Into { empty, full };
+
+/// A matrix seen step by step: step s starts at data + s * step.
+struct Steps {
+  const double* data;
+  Index step;
+};
+
+/// c = c - A B (Into::full) or -A B (Into::empty), where step s of A is a column of `V` packets and step s of B a row of
+/// which entry j lies at j * `b_apart`. Only the first `valid` columns of c are written; all of B is read.
+template <int V, int Columns, Into Mode>
+inline void subtract_tile(Index steps, Steps a, Steps b, Index b_apart, double* c, Index c_stride, Index valid) noexcept {
+  Packet sum[Columns][V];
+  for (auto& column : sum)
+    for (Packet& x : column) x = broadcast(0.0);
+  for (Index s = 0; s < steps; ++s) {
+    Packet x[V];
+    for (int v = 0; v < V; ++v) x[v] = load(a.data + v * packet_size);
+    for (int j = 0; j < Columns; ++j) {
+      const Packet y = broadcast(b.data[j * b_apart]);
+      for (int v = 0; v < V; ++v) sum[j][v] = multiply_add(x[v], y, sum[j][v]);
+    }
+    a.data += a.step;
+    b.data += b.step;
+  }
+  for (int j = 0; j < Columns; ++j) {
+    if (j == valid) return;
+    for (int v = 0; v < V; ++v) {
+      double* const to = c + j * c_stride + v * packet_size;
+      if constexpr (Mode == Into::full)
+        store(to, Eigen::internal::psub(load(to), sum[j][v]));
+      else
+        store(to, Eigen::internal::pnegate(sum[j][v]));
+    }
+  }
+}
+
+/// The same with the number of packets, up to tile_packets, known at run time.
+template <Into Mode>
+inline void subtract_tile(Index packets, Index steps, Steps a, Steps b, double* c, Index c_stride, Index valid) noexcept {
+  if (packets >= 3)
+    subtract_tile<3, tile_columns, Mode>(steps, a, b, 1, c, c_stride, valid);
+  else if (packets == 2)
+    subtract_tile<2, tile_columns, Mode>(steps, a, b, 1, c, c_stride, valid);
+  else if (packets == 1)
+    subtract_tile<1, tile_columns, Mode>(steps, a, b, 1, c, c_stride, valid);
+}
+
+}  // namespace palpate::inline PALPATE_ABI::detail
