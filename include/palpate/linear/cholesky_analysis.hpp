@@ -65,12 +65,14 @@ class CholeskyAnalysis {
     std::uint64_t pattern = 0;
   };
 
+  static std::uint64_t weight(Index i) noexcept { return (static_cast<std::uint64_t>(i) + 1) * 0x9e3779b97f4a7c15u | 1u; }
   static std::uint64_t fingerprint(const SparseLower& m) noexcept {
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    const auto mix = [&](Index x) { hash = (hash ^ static_cast<std::uint64_t>(x)) * 0x100000001b3u; };
-    mix(m.rows());
-    for (Index j = 0; j <= m.cols(); ++j) mix(m.outerIndexPtr()[j]);
-    for (Index p = 0; p < m.outerIndexPtr()[m.cols()]; ++p) mix(m.innerIndexPtr()[p]);
+    const Index* start = m.outerIndexPtr();
+    const Index* row = m.innerIndexPtr();
+    std::uint64_t hash = static_cast<std::uint64_t>(m.rows());  // a weighted sum: quick, and order counts
+    for (Index j = 0; j <= m.cols(); ++j) hash += static_cast<std::uint64_t>(start[j]) * weight(j);
+    hash *= 0xbf58476d1ce4e5b9u;
+    for (Index p = 0; p < start[m.cols()]; ++p) hash += static_cast<std::uint64_t>(row[p] + 1) * weight(p);
     return hash;
   }
 

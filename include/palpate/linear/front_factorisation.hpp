@@ -50,7 +50,7 @@ class FrontFactorisation {
     const LowerPanels shape = front.panels();
     std::fill(columns, columns + shape.size(), 0.0);
     number_rows(front);
-    for (Index e = front.entry_begin; e < front.entry_end; ++e) {
+    for (NodeId e = front.first_entry; e >= 0; e = tree_.entries[e].next) {
       const EntryRun& run = tree_.entries[e];
       const double* value = values_ + run.source;
       if (run.count > 0) {

@@ -16,6 +16,7 @@ struct EntryRun {
   Index source = 0;
   NodeId column = 0, row = 0;  ///< places in the elimination order of the first
   NodeId count = 0;
+  NodeId next = -1;  ///< further entries of the same front
 };
 
 /// One dense front: `pivots` columns are eliminated, `rows` more are updated.
@@ -25,7 +26,7 @@ struct Front {
   Index factor = 0;                    ///< where its columns of L start [doubles]
   Index update = 0;                    ///< where its update of later fronts starts in the workspace [doubles]
   Index run_begin = 0, run_end = 0;    ///< its rows
-  Index entry_begin = 0, entry_end = 0;  ///< its entries of the matrix
+  NodeId first_entry = -1;             ///< its entries of the matrix, a chain
   NodeId parent = -1, first_child = -1, next_sibling = -1;
 
   Index size() const noexcept { return pivots + rows; }
@@ -150,23 +151,20 @@ class FrontTreeBuilder {
           ++p;
         const auto count = static_cast<NodeId>(p - begin);
         if (place >= column)
-          visit(tree_.front_of_dof[j], EntryRun{begin, column, place, count});
+          visit(tree_.front_of_dof[j], EntryRun{begin, column, place, count, -1});
         else
-          visit(front_of_position_[position_[node]], EntryRun{begin, place, column, static_cast<NodeId>(-count)});
+          visit(front_of_position_[position_[node]], EntryRun{begin, place, column, static_cast<NodeId>(-count), -1});
       }
     }
   }
 
   void distribute_entries() {
-    OffsetVector fill(tree_.fronts.size() + 1, 0);
-    visit_entries([&](NodeId f, const EntryRun&) { ++fill[f + 1]; });
-    accumulate_offsets(fill);
-    for (Index f = 0; f < tree_.fronts.size(); ++f) {
-      tree_.fronts[f].entry_begin = fill[f];
-      tree_.fronts[f].entry_end = fill[f + 1];
-    }
-    tree_.entries.resize(fill.back());
-    visit_entries([&](NodeId f, const EntryRun& e) { tree_.entries[fill[f]++] = e; });
+    tree_.entries.reserve(lower_.nonZeros() / 2);
+    visit_entries([&](NodeId f, EntryRun e) {
+      e.next = tree_.fronts[f].first_entry;
+      tree_.fronts[f].first_entry = static_cast<NodeId>(tree_.entries.size());
+      tree_.entries.push_back(e);
+    });
   }
 
   /// Updates live in one workspace as two stacks that grow towards each other: those of odd and of even depth, so that

@@ -38,7 +38,7 @@ class LeafOrder {
   }
 
  private:
-  static constexpr std::size_t words = 6;
+  static constexpr std::size_t words = 4;
   using Bits = std::array<std::uint64_t, words>;
 
   static void set(Bits& b, Index i) noexcept { b[static_cast<std::size_t>(i >> 6)] |= std::uint64_t{1} << (i & 63); }

@@ -47,7 +47,7 @@ class LevelOrder {
       const NodeId v = listed[head++];
       for (Index p = g.start[v]; p < g.start[v + 1]; ++p) {
         const NodeId u = g.neighbour[p];
-        if (lists_.label[u] != part.label || distance[u] >= 0) continue;
+        if (lists_.place[u].label != part.label || distance[u] >= 0) continue;
         distance[u] = distance[v] + 1;
         listed[tail++] = u;
       }

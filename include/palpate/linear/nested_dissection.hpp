@@ -32,7 +32,7 @@ class NestedDissection {
   /// Lists the nodes that are not kept, along the axes where there are coordinates.
   static PartLists& prepare(const NodeGraph& graph, PartLists& lists) {
     lists.graph = &graph;
-    lists.label.assign(graph.nodes(), -1);
+    lists.place.assign(graph.nodes(), NodePlace());
     lists.side.assign(graph.nodes(), side_first);
     std::vector<std::pair<double, NodeId>> keys;
     for (int axis = 0; axis < dissection_axes; ++axis) {
@@ -45,7 +45,7 @@ class NestedDissection {
       NodeVector& sorted = lists.sorted[static_cast<std::size_t>(axis)];
       for (const auto& [key, v] : keys) {
         sorted.push_back(v);
-        lists.label[v] = 0;
+        lists.place[v].label = 0;
       }
     }
     return lists;
@@ -59,10 +59,10 @@ class NestedDissection {
     for (NodeVector& sorted : lists_.sorted) split(sorted, part, sizes);
     const Part first{part.begin, part.begin + sizes[0], part.label};
     const Part second{first.end, first.end + sizes[1], ++labels_};
-    for (Index i = second.begin; i < second.end; ++i) lists_.label[lists_.sorted[0][i]] = second.label;
+    for (Index i = second.begin; i < second.end; ++i) lists_.place[lists_.sorted[0][i]].label = second.label;
     for (Index i = second.end; i < part.end; ++i) {
       order_[i] = lists_.sorted[0][i];
-      lists_.label[order_[i]] = later;
+      lists_.place[order_[i]].label = later;
     }
     dissect(first);
     dissect(second);
@@ -80,8 +80,8 @@ class NestedDissection {
   void finish(const Part& part) {
     for (Index i = part.begin; i < part.end; ++i) order_[i] = lists_.sorted[0][i];
     if (part.size() <= LeafOrder::max_nodes)
-      leaf_.order(order_.data() + part.begin, part.size(), [&](NodeId u) { return lists_.label[u] == later || graph_.kept[u] != 0; });
-    for (Index i = part.begin; i < part.end; ++i) lists_.label[order_[i]] = gone;
+      leaf_.order(order_.data() + part.begin, part.size(), [&](NodeId u) { return lists_.place[u].label == later || graph_.kept[u] != 0; });
+    for (Index i = part.begin; i < part.end; ++i) lists_.place[order_[i]].label = gone;
   }
 
   static constexpr NodeId later = -2, gone = -3;  // labels of nodes in separators and in leaves
