@@ -1,7 +1,7 @@
 // Assembly policy: the stiffness is stored.
 #pragma once
 
-#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/assemble_rows.hpp>
 #include <palpate/assembly/body.hpp>
 #include <palpate/concepts/assembler.hpp>
 #include <palpate/core/setup_options.hpp>
@@ -11,13 +11,9 @@ namespace palpate::inline PALPATE_ABI {
 
 static_assert(StiffnessOperator<BlockMatrix>);
 
-/// Sum of all element stiffnesses into the block pattern (thesis 3.37, 3.46). Throws inverted_element for a non-positive
-/// Jacobian and non_finite for an element whose stiffness is not finite. Allocates the pattern and the values only.
+/// Fills `k` element by element, for elements and laws of any kind.
 template <Element E>
-BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
-  BlockPattern pattern = block_pattern(body.mesh);
-  limits.require_memory(static_cast<double>(pattern.column.size()) * 9 * sizeof(double), "the stiffness");
-  BlockMatrix k(std::move(pattern));
+void assemble_elements(const Body<E>& body, BlockMatrix& k, const SetupLimits& limits) {
   const Index count = body.mesh.element_count();
   for (Index e = 0; e < count; ++e) {
     if (e % 8192 == 0) limits.advance("assembly", static_cast<double>(e) / static_cast<double>(count));
@@ -30,6 +26,34 @@ BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
         if (j <= i) k.block(k.pattern().find(i, j)) += ke.template block<3, 3>(3 * a, 3 * b);
       }
   }
+}
+
+/// Lame's constants of all regions, if all are isotropic.
+inline std::optional<std::vector<LameConstants>> all_isotropic(const std::vector<Matrix6>& elasticity) {
+  std::vector<LameConstants> constants;
+  for (const Matrix6& d : elasticity) {
+    const auto c = lame_constants(d);
+    if (!c) return std::nullopt;
+    constants.push_back(*c);
+  }
+  return constants;
+}
+
+/// Sum of all element stiffnesses into the block pattern (thesis 3.37, 3.46). Throws inverted_element for a negative
+/// Jacobian and non_finite for an element whose stiffness is not finite. Allocates the pattern, the values and what
+/// assemble_rows needs.
+template <Element E>
+BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
+  const NodeElements around(body.mesh);
+  BlockPattern pattern = block_pattern(body.mesh, around);
+  limits.require_memory(static_cast<double>(pattern.column.size()) * 9 * sizeof(double), "the stiffness");
+  BlockMatrix k(std::move(pattern));
+  if constexpr (ConstantGradient<E>)
+    if (const auto constants = all_isotropic(body.elasticity)) {
+      assemble_rows<E>(body.mesh, around, *constants, k, limits);
+      return k;
+    }
+  assemble_elements(body, k, limits);
   return k;
 }
 

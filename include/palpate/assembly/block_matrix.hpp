@@ -1,11 +1,10 @@
 // A symmetric matrix of 3 x 3 blocks, one block per pair of neighbouring nodes, lower half stored.
 #pragma once
 
-#include <palpate/concepts/mesh.hpp>
+#include <palpate/assembly/node_elements.hpp>
 #include <palpate/core/types.hpp>
 
 #include <algorithm>
-#include <numeric>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -25,38 +24,33 @@ struct BlockPattern {
   }
 };
 
-/// Pattern of a mesh. O(elements x nodes_per_element^2), allocates.
+/// Pattern of a mesh with the elements around its nodes. O(elements x nodes_per_element^2), allocates.
 template <MeshView M>
-BlockPattern block_pattern(const M& mesh) {
-  const Index n = mesh.node_count(), m = mesh.element_count();
-  constexpr int k = M::nodes_per_element;
-  std::vector<Index> start(static_cast<std::size_t>(n) + 1, 0);
-  for (Index e = 0; e < m; ++e)
-    for (int a = 0; a < k; ++a) ++start[static_cast<std::size_t>(mesh.element_node(e, a)) + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<Index> element_of(static_cast<std::size_t>(start.back()));
-  std::vector<Index> fill(start.begin(), start.end() - 1);
-  for (Index e = 0; e < m; ++e)
-    for (int a = 0; a < k; ++a)
-      element_of[static_cast<std::size_t>(fill[static_cast<std::size_t>(mesh.element_node(e, a))]++)] = e;
-
+BlockPattern block_pattern(const M& mesh, const NodeElements& around) {
+  const Index n = mesh.node_count();
   BlockPattern pattern;
   pattern.row_start.reserve(static_cast<std::size_t>(n) + 1);
+  pattern.column.reserve(8 * static_cast<std::size_t>(n));
   pattern.row_start.push_back(0);
-  std::vector<NodeId> row;
+  std::vector<NodeId> seen_by(static_cast<std::size_t>(n), -1);  // the last row that has the column
   for (Index i = 0; i < n; ++i) {
-    row.assign(1, static_cast<NodeId>(i));
-    for (Index p = start[static_cast<std::size_t>(i)]; p < start[static_cast<std::size_t>(i) + 1]; ++p)
-      for (int a = 0; a < k; ++a) {
-        const auto j = static_cast<NodeId>(mesh.element_node(element_of[static_cast<std::size_t>(p)], a));
-        if (j < i) row.push_back(j);
+    const auto begin = static_cast<std::ptrdiff_t>(pattern.column.size());
+    for (const NodeId e : around.of(i))
+      for (int a = 0; a < M::nodes_per_element; ++a) {
+        const Index j = mesh.element_node(e, a);
+        if (j >= i || seen_by[static_cast<std::size_t>(j)] == i) continue;
+        seen_by[static_cast<std::size_t>(j)] = static_cast<NodeId>(i);
+        pattern.column.push_back(static_cast<NodeId>(j));
       }
-    std::ranges::sort(row);
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-    pattern.column.insert(pattern.column.end(), row.begin(), row.end());
+    std::sort(pattern.column.begin() + begin, pattern.column.end());
+    pattern.column.push_back(static_cast<NodeId>(i));
     pattern.row_start.push_back(static_cast<Index>(pattern.column.size()));
   }
   return pattern;
+}
+template <MeshView M>
+BlockPattern block_pattern(const M& mesh) {
+  return block_pattern(mesh, NodeElements(mesh));
 }
 
 /// Values on a BlockPattern. Satisfies StiffnessOperator.

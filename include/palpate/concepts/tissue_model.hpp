@@ -19,7 +19,8 @@ struct VertexForce {
 /// A tissue that can be touched. Vertices are those of `contact_surface()`, the surface as it rests without tools.
 /// - `require_columns(vertices)` makes the compliance columns of these vertices available; what it could not do is in
 /// the status.
-/// - `compliance(i, j)` is the 3 x 3 displacement [m/N] of vertex i per force on vertex j, whose column was required.
+/// - `compliance(i, j)` is the 3 x 3 displacement [m/N] of vertex i per force on vertex j, whose column was required: a
+/// matrix, or an Eigen expression that stays valid until the next `require_columns`.
 /// - `compliance_bound(j)` is at least the largest displacement [m/N] of any vertex per unit force on j.
 /// - `compliance_floor()` is a tiny compliance that keeps a fixed vertex from dividing by zero.
 /// - `pose()` maps the model's frame to the world's.
@@ -28,7 +29,7 @@ template <class T>
 concept TissueModel = requires(T& tissue, const T& constant, int i, std::span<const int> vertices) {
   { constant.contact_surface().vertex_count() } noexcept -> std::convertible_to<int>;
   { tissue.require_columns(vertices) } noexcept -> std::same_as<Status>;
-  { constant.compliance(i, i) } noexcept -> FixedMatrix<3, 3>;
+  { constant.compliance(i, i) } noexcept -> FixedExpression<3, 3>;
   { constant.compliance_bound(i) } noexcept -> std::convertible_to<double>;
   { constant.compliance_floor() } noexcept -> std::convertible_to<double>;
   { constant.pose() } noexcept -> std::same_as<const Eigen::Isometry3d&>;

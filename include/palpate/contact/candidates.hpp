@@ -49,6 +49,8 @@ class Candidates {
     return std::any_of(items_.begin(), items_.begin() + count_, [tool](const Candidate& c) { return c.tool == tool; });
   }
   void forget() noexcept { valid_ = false; }
+  /// Whether the last update made another list: candidates are elsewhere in memory.
+  bool is_new() const noexcept { return is_new_; }
   /// Whether the last list has no place for a force of the one before: its tool was lifted. The surface then springs
   /// back by an unknown amount, and the next update makes another list.
   bool has_lost_forces() const noexcept { return lost_forces_; }
@@ -76,6 +78,7 @@ class Candidates {
   template <TissueModel Tissue>
   Status update(const Tissue& tissue, std::span<const ContactTool> tools, Displacement& displacement) noexcept {
     Status status;
+    is_new_ = false;
     bool holds = valid_;
     for (std::size_t t = 0; t < tools.size() && holds; ++t)
       holds = !tools[t].active || needed(tools[t]) <= range_[t] - (travel(t) - built_[t]);
@@ -154,6 +157,7 @@ class Candidates {
     for (const Candidate& c : items())
       if (c.force > 0.0) loaded_[static_cast<std::size_t>(loaded_count_++)] = c;
     count_ = 0;
+    is_new_ = true;
     reach_ = std::max({displacement.reach(tissue), far_, far_last_round_});
     const ContactSurface& surface = tissue.contact_surface();
     for (std::size_t t = 0; t < tools.size(); ++t) {
@@ -238,7 +242,7 @@ class Candidates {
   std::array<Candidate, static_cast<std::size_t>(maximum)> items_{};
   std::array<Candidate, static_cast<std::size_t>(Capacity)> loaded_{};  // of the list before
   int count_ = 0, loaded_count_ = 0;
-  bool valid_ = false, lost_forces_ = false;
+  bool valid_ = false, is_new_ = false, lost_forces_ = false;
   std::uint64_t revision_ = 0;
   std::array<Vector3, maximum_tools> proxy_{};
   std::array<bool, maximum_tools> was_active_{};

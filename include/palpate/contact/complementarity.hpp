@@ -24,7 +24,7 @@ class ComplementarityProblem {
   /// convex: its answer is unique and gaps are off by a millionth of the indentation.
   static constexpr double relaxation = 1e-6;
 
-  using Matrix = Eigen::Matrix<double, Capacity, Capacity, Eigen::RowMajor>;
+  using Matrix = Eigen::Matrix<double, Capacity, Capacity>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, Capacity, 1>;
 
   Matrix w;        ///< compliance [m/N], of the first `b.size()` rows
@@ -134,8 +134,9 @@ class ComplementarityProblem {
     gap_ = b;
     for (int p = 0; p < order_count_; ++p) {
       const int j = order_[at(p)];
-      gap_.noalias() += lambda[j] * w.row(j).head(rows_).transpose();
-      gap_[j] += relaxation * w(j, j) * lambda[j];
+      const double force = lambda[j];
+      for (int i = 0; i < rows_; ++i) gap_[i] += force * w(i, j);
+      gap_[j] += relaxation * w(j, j) * force;
     }
   }
 
@@ -145,22 +146,31 @@ class ComplementarityProblem {
     const int m = order_count_;
     for (; factored_ < m; ++factored_) factor_row(factored_);
     answer_.resize(m);
-    for (int p = 0; p < m; ++p)
-      answer_[p] = (-b[order_[at(p)]] - factor_.row(p).head(p).dot(answer_.head(p))) * factor_(p, p);
+    for (int p = 0; p < m; ++p) answer_[p] = -b[order_[at(p)]];
+    for (int q = 0; q < m; ++q) {
+      answer_[q] *= factor_(q, q);
+      for (int p = q + 1; p < m; ++p) answer_[p] -= answer_[q] * factor_(p, q);
+    }
     for (int p = m - 1; p >= 0; --p) {
-      answer_[p] *= factor_(p, p);
-      answer_.head(p).noalias() -= answer_[p] * factor_.row(p).head(p).transpose();
+      double sum = answer_[p];
+      for (int k = p + 1; k < m; ++k) sum -= factor_(k, p) * answer_[k];
+      answer_[p] = sum * factor_(p, p);
     }
   }
 
   /// Row p of the Cholesky factor from the rows before it; the diagonal holds its inverse.
   void factor_row(int p) noexcept {
     const int i = order_[at(p)];
-    for (int q = 0; q < p; ++q)
-      factor_(p, q) =
-          (w(i, order_[at(q)]) - factor_.row(p).head(q).dot(factor_.row(q).head(q))) * factor_(q, q);
+    std::array<double, static_cast<std::size_t>(Capacity)> row;
+    for (int q = 0; q < p; ++q) row[at(q)] = w(order_[at(q)], i);
     const double diagonal = (1.0 + relaxation) * w(i, i);
-    const double pivot = diagonal - factor_.row(p).head(p).squaredNorm();
+    double pivot = diagonal;
+    for (int q = 0; q < p; ++q) {
+      const double value = row[at(q)] *= factor_(q, q);
+      pivot -= value * value;
+      for (int k = q + 1; k < p; ++k) row[at(k)] -= value * factor_(k, q);
+    }
+    for (int q = 0; q < p; ++q) factor_(p, q) = row[at(q)];
     factor_(p, p) = pivot > 1e-13 * diagonal ? 1.0 / std::sqrt(pivot) : 0.0;
   }
 

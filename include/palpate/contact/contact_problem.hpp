@@ -76,15 +76,10 @@ class ContactProblem {
   template <TissueModel Tissue>
   Status solve_linearised(Tissue& tissue, Tools tools, int iteration) noexcept {
     Status status;
-    row_count_ = 0;
-    for (Candidate& c : candidates_.items()) {
-      c.row = -1;
-      if (c.force <= 0.0 || !arrived_) c.history.known = 0;
-      if (c.force > 0.0) candidates_.place(c, c.point, tools[at(c.tool)]);
-    }
+    gather_pressing(tools);
     predict_normals(iteration);
-    for (Candidate& c : candidates_.items())
-      if (c.force > 0.0) add_row(tissue.contact_surface(), c);
+    row_count_ = 0;
+    for (int i = 0; i < pressing_count_; ++i) add_row(tissue.contact_surface(), *pressing_[at(i)]);
     for (int built = 0;; built = row_count_) {
       if (built > 0 || row_count_ == 0)
         if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);
@@ -104,20 +99,39 @@ class ContactProblem {
     return status;
   }
 
+  /// Lists the candidates that press and puts them where ball and surface are now.
+  void gather_pressing(Tools tools) noexcept {
+    pressing_count_ = 0;
+    if (candidates_.is_new()) {
+      for (Candidate& c : candidates_.items())
+        if (c.force > 0.0) pressing_[at(pressing_count_++)] = &c;
+    } else {
+      for (int i = 0; i < row_count_; ++i) {
+        candidate_[at(i)]->row = -1;
+        if (candidate_[at(i)]->force > 0.0) pressing_[at(pressing_count_++)] = candidate_[at(i)];
+      }
+    }
+    for (int i = 0; i < pressing_count_; ++i) {
+      Candidate& c = *pressing_[at(i)];
+      if (!arrived_) c.history.known = 0;
+      candidates_.place(c, c.point, tools[at(c.tool)]);
+    }
+  }
+
   /// The normals of a linearisation come of the forces of the one before, which come of its normals. `feedback_` is how
   /// much of a change of normals comes back; a step of Newton's method on that scalar leads on to where they settle.
   void predict_normals(int iteration) noexcept {
     double back = 0.0, changed = 0.0;
-    if (iteration >= 2)
-      for (const Candidate& c : candidates_.items()) {
-        if (c.force <= 0.0 || c.history.known < 2) continue;
-        const Vector3 before = c.history.used - c.history.used_before;
-        back += c.force * before.dot(c.normal - c.history.made_before);
-        changed += c.force * before.squaredNorm();
-      }
+    for (int i = 0; i < pressing_count_ && iteration >= 2; ++i) {
+      const Candidate& c = *pressing_[at(i)];
+      if (c.history.known < 2) continue;
+      const Vector3 before = c.history.used - c.history.used_before;
+      back += c.force * before.dot(c.normal - c.history.made_before);
+      changed += c.force * before.squaredNorm();
+    }
     if (changed > 1e-16) feedback_ = std::clamp(back / changed, 0.0, 0.75);
-    for (Candidate& c : candidates_.items()) {
-      if (c.force <= 0.0) continue;
+    for (int i = 0; i < pressing_count_; ++i) {
+      Candidate& c = *pressing_[at(i)];
       const Vector3 made = c.normal;
       if (c.history.known > 0)
         c.normal = (made + feedback_ / (1.0 - feedback_) * (made - c.history.used)).normalized();
@@ -204,9 +218,11 @@ class ContactProblem {
       problem_.b[i] = ci.normal.dot(tool.target - ci.rest) - tool.radius;
       for (int j = 0; j <= i; ++j) {
         const Contact& cj = rows_[at(j)];
-        const Matrix3 c = compliance(tissue, ci, cj);
-        response_[at(i)][at(j)].noalias() = c * cj.normal;
-        response_[at(j)][at(i)].noalias() = c.transpose() * ci.normal;
+        if (ci.weights[0] == 1.0 && cj.weights[0] == 1.0) {
+          set_responses(tissue.compliance(ci.vertices[0], cj.vertices[0]), i, j);
+        } else {
+          set_responses(weighted_compliance(tissue, ci, cj), i, j);
+        }
         double w = ci.normal.dot(response_[at(i)][at(j)]);
         if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
         problem_.w(i, j) = problem_.w(j, i) = w;
@@ -214,10 +230,14 @@ class ContactProblem {
     }
   }
 
-  /// J C J^T of two rows: displacement of one's point per force on the other's.
+  /// Displacement of two rows' points per force on the other, `c` = J C J^T.
+  template <class Compliance>
+  void set_responses(const Compliance& c, int i, int j) noexcept {
+    response_[at(i)][at(j)].noalias() = c * rows_[at(j)].normal;
+    response_[at(j)][at(i)].noalias() = c.transpose() * rows_[at(i)].normal;
+  }
   template <TissueModel Tissue>
-  static Matrix3 compliance(const Tissue& tissue, const Contact& ci, const Contact& cj) noexcept {
-    if (ci.weights[0] == 1.0 && cj.weights[0] == 1.0) return tissue.compliance(ci.vertices[0], cj.vertices[0]);
+  static Matrix3 weighted_compliance(const Tissue& tissue, const Contact& ci, const Contact& cj) noexcept {
     Matrix3 sum = Matrix3::Zero();
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b)
@@ -235,7 +255,8 @@ class ContactProblem {
       Contact& row = rows_[at(i)];
       row.force = problem_.lambda[i];
       Vector3 point = row.rest;
-      for (int j = 0; j < row_count_; ++j) point.noalias() -= problem_.lambda[j] * response_[at(i)][at(j)];
+      for (int j = 0; j < row_count_; ++j)
+        if (problem_.lambda[j] > 0.0) point.noalias() -= problem_.lambda[j] * response_[at(i)][at(j)];
       largest = std::max(largest, (point - row.point).squaredNorm());
       row.point = point;
       if (row.force == 0.0) continue;
@@ -250,6 +271,7 @@ class ContactProblem {
       Candidate& c = *candidate_[at(i)];
       candidates_.place(c, rows_[at(i)].point, tools[at(c.tool)]);
       c.force = rows_[at(i)].force;
+      if (c.force == 0.0) c.history.known = 0;
       rows_[at(i)].gap = c.gap;
     }
   }
@@ -302,13 +324,13 @@ class ContactProblem {
   Candidates<Capacity> candidates_;
   ComplementarityProblem<Capacity> problem_;
   std::array<Contact, capacity> rows_{};
-  std::array<Candidate*, capacity> candidate_{};
+  std::array<Candidate*, capacity> candidate_{}, pressing_{};  // of the rows; of the last linearisation
   std::array<std::array<Vector3, capacity>, capacity> response_{};  // of a row's point to unit force on another
   std::array<int, 3 * capacity> vertices_{};
   std::vector<int> slot_;  // scratch per vertex: -1 between calls
   std::array<Violated, static_cast<std::size_t>(Candidates<Capacity>::maximum)> violated_{};
   std::array<Vector3, maximum_tools> start_force_{};
-  int row_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
+  int row_count_ = 0, pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   bool arrived_ = true;  // at the answer of the last linearisation
   double feedback_ = 0.0;
   double floor_ = 0.0;

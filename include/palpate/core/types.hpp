@@ -36,6 +36,15 @@ concept FixedMatrix = requires {
   requires std::same_as<typename std::remove_cvref_t<M>::Scalar, double>;
 };
 
+/// As FixedMatrix, or an Eigen expression of that shape: one that is read where it lies, without a copy.
+template <class M, int R, int C>
+concept FixedExpression = requires {
+  requires std::derived_from<std::remove_cvref_t<M>, Eigen::MatrixBase<std::remove_cvref_t<M>>>;
+  requires std::remove_cvref_t<M>::RowsAtCompileTime == R;
+  requires std::remove_cvref_t<M>::ColsAtCompileTime == C;
+  requires std::same_as<typename std::remove_cvref_t<M>::Scalar, double>;
+};
+
 template <class V, int N>
 concept FixedVector = FixedMatrix<V, N, 1>;
 

@@ -46,19 +46,27 @@ class CholeskyAnalysis {
   /// Largest memory held during a factorisation, the factor included [bytes].
   double peak_bytes() const noexcept {
     if (!data_) return 0.0;
-    return factor_bytes() +
-           sizeof(double) * static_cast<double>(data_->tree.workspace_size + pack_size() + 3 * size());
+    return factor_bytes() + sizeof(double) * static_cast<double>(data_->tree.workspace_size + side_size());
+  }
+  /// The same when the last front is handed out as a Schur complement, that included [bytes].
+  double interior_peak_bytes() const noexcept {
+    if (!data_ || data_->kept.empty()) return peak_bytes();
+    const auto k = static_cast<Index>(data_->kept.size());
+    const Index last = std::max(data_->tree.workspace_size, k * k);
+    return factor_bytes() + sizeof(double) * static_cast<double>(last + side_size());
   }
   /// True when the matrix has the pattern that was analysed.
   bool fits(const SparseLower& lower) const noexcept { return data_ && data_->pattern == fingerprint(lower); }
 
   const detail::FrontTree& tree() const noexcept { return data_->tree; }
-  /// Doubles that a factorisation needs to pack operands.
+  /// Doubles that a factorisation needs to pack operands; zero rows at the end included.
   Index pack_size() const noexcept {
     return 2 * (data_->tree.largest_front + 64) * detail::LowerPanels::width;
   }
 
  private:
+  Index side_size() const noexcept { return pack_size() + 3 * size(); }
+
   struct Data {
     detail::FrontTree tree;
     std::vector<Index> kept;

@@ -64,15 +64,21 @@ class FrontFactorisation {
     add_children(front, [&](Index j) { return columns + shape.at(0, j); }, 0, front.pivots);
   }
 
-  /// The last front before its elimination: the Schur complement of the kept dofs in the order given.
+  /// By place in the elimination order: pivots before their roots, and the diagonal of the matrix.
+  const VectorX& pivots() const noexcept { return pivots_; }
+  const VectorX& diagonal() const noexcept { return diagonal_; }
+
+  /// The last front before its elimination: the Schur complement of the kept dofs in the order given. Nothing can be
+  /// eliminated any more.
   MatrixX schur(const std::vector<Index>& kept) {
     const auto k = static_cast<Index>(kept.size());
-    MatrixX s(k, k);
-    if (k == 0) return s;
+    if (k == 0) return {};
     const Front& front = tree_.fronts.back();
     const LowerPanels shape = front.panels();
     BigArray columns(shape.size());
     assemble(front, columns.data());
+    workspace_ = BigArray();
+    MatrixX s(k, k);
     for (Index j = 0; j < k; ++j)
       for (Index i = j; i < k; ++i) {
         const Index a = local_[tree_.place_of_dof[kept[static_cast<std::size_t>(i)]]];

@@ -66,22 +66,19 @@ inline void backward_columns(const double* a, Index stride, Index top, double* v
   }
 }
 
-/// Calls `visit(width, column)` for columns 0 ... count in groups of 8, then 4, 2, 1. Groups of 8 stay aligned.
+/// Calls `visit(width)` with the number of columns, 1 to 7, as a constant.
 template <class Visit>
-inline void groups_forward(Index count, Visit&& visit) noexcept {
-  Index j = 0;
-  for (; j + 8 <= count; j += 8) visit(std::integral_constant<int, 8>(), j);
-  if ((count & 4) != 0) visit(std::integral_constant<int, 4>(), j), j += 4;
-  if ((count & 2) != 0) visit(std::integral_constant<int, 2>(), j), j += 2;
-  if ((count & 1) != 0) visit(std::integral_constant<int, 1>(), j);
-}
-template <class Visit>
-inline void groups_backward(Index count, Visit&& visit) noexcept {
-  Index j = count;
-  if ((count & 1) != 0) visit(std::integral_constant<int, 1>(), j -= 1);
-  if ((count & 2) != 0) visit(std::integral_constant<int, 2>(), j -= 2);
-  if ((count & 4) != 0) visit(std::integral_constant<int, 4>(), j -= 4);
-  while (j > 0) visit(std::integral_constant<int, 8>(), j -= 8);
+inline void with_width(Index width, Visit&& visit) noexcept {
+  switch (width) {
+    case 1: return visit(std::integral_constant<int, 1>());
+    case 2: return visit(std::integral_constant<int, 2>());
+    case 3: return visit(std::integral_constant<int, 3>());
+    case 4: return visit(std::integral_constant<int, 4>());
+    case 5: return visit(std::integral_constant<int, 5>());
+    case 6: return visit(std::integral_constant<int, 6>());
+    case 7: return visit(std::integral_constant<int, 7>());
+    default: return;
+  }
 }
 
 /// One right-hand side: v holds the pivots' loads and zeros for the rows below, padded to the height; out come L11^-1
@@ -89,19 +86,24 @@ inline void groups_backward(Index count, Visit&& visit) noexcept {
 inline void forward_front(const double* l, const LowerPanels& shape, double* v) noexcept {
   for (Index p = 0; p < shape.panels(); ++p) {
     const double* const panel = l + shape.offset(p);
-    const Index stride = shape.stride(p);
-    groups_forward(shape.panel_width(p), [&](auto width, Index j) {
-      forward_columns<decltype(width)::value>(panel + j * stride, stride, j, v + shape.panel_begin(p));
+    const Index stride = shape.stride(p), columns = shape.panel_width(p), whole = columns / 8 * 8;
+    double* const at = v + shape.panel_begin(p);
+    for (Index j = 0; j < whole; j += 8) forward_columns<8>(panel + j * stride, stride, j, at);
+    with_width(columns - whole, [&](auto width) {
+      forward_columns<decltype(width)::value>(panel + whole * stride, stride, whole, at);
     });
   }
 }
+/// The reverse: v holds the pivots' values and the answers in the rows below; out comes L11^-T (v - L21^T v below).
 inline void backward_front(const double* l, const LowerPanels& shape, double* v) noexcept {
   for (Index p = shape.panels() - 1; p >= 0; --p) {
     const double* const panel = l + shape.offset(p);
-    const Index stride = shape.stride(p);
-    groups_backward(shape.panel_width(p), [&](auto width, Index j) {
-      backward_columns<decltype(width)::value>(panel + j * stride, stride, j, v + shape.panel_begin(p));
+    const Index stride = shape.stride(p), columns = shape.panel_width(p), whole = columns / 8 * 8;
+    double* const at = v + shape.panel_begin(p);
+    with_width(columns - whole, [&](auto width) {
+      backward_columns<decltype(width)::value>(panel + whole * stride, stride, whole, at);
     });
+    for (Index j = whole - 8; j >= 0; j -= 8) backward_columns<8>(panel + j * stride, stride, j, at);
   }
 }
 

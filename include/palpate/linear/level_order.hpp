@@ -1,7 +1,7 @@
 // Orders of the nodes of a graph that has no coordinates: by distance from its ends.
 #pragma once
 
-#include <palpate/linear/separator.hpp>
+#include <palpate/linear/part_lists.hpp>
 
 namespace palpate::inline PALPATE_ABI::detail {
 

@@ -3,6 +3,7 @@
 
 #include <palpate/linear/leaf_order.hpp>
 #include <palpate/linear/level_order.hpp>
+#include <palpate/linear/separator.hpp>
 
 #include <numeric>
 

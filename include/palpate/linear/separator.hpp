@@ -2,59 +2,33 @@
 #pragma once
 
 #include <palpate/linear/bipartite_cover.hpp>
-#include <palpate/linear/node_graph.hpp>
-
-#include <array>
+#include <palpate/linear/separator_refinement.hpp>
 
 namespace palpate::inline PALPATE_ABI::detail {
-
-/// A part of the graph: the nodes with `label`, listed in several orders between `begin` and `end`.
-struct Part {
-  Index begin = 0, end = 0;
-  NodeId label = 0;
-  Index size() const noexcept { return end - begin; }
-};
-
-inline constexpr int dissection_axes = 3;
-enum Side : unsigned char { side_first, side_second, side_separator };
-
-/// Where a node is: its place in the lists of its part, and that part.
-struct NodePlace {
-  std::array<NodeId, dissection_axes> rank{};  ///< per axis, from the beginning of the part
-  NodeId label = -1;                           ///< of the part; negative once ordered
-};
-
-/// Nodes of all parts, sorted along each axis within their part.
-struct PartLists {
-  const NodeGraph* graph = nullptr;
-  IndexedVector<NodePlace> place;                  ///< per node
-  std::array<NodeVector, dissection_axes> sorted;  ///< per axis
-  IndexedVector<Side> side;                        ///< per node, of the last cut
-};
 
 /// Cuts a part after one of its sorted lists: looks at every position of every list at once, then replaces the layer of
 /// nodes at the best ones by a minimum vertex cover of the edges cut. O(edges) and the matching.
 class SeparatorFinder {
  public:
   explicit SeparatorFinder(PartLists& lists)
-      : lists_(lists), reach_(lists.graph->nodes()), number_(lists.graph->nodes(), -1) {}
+      : lists_(lists), refinement_(lists), reach_(lists.graph->nodes()), number_(lists.graph->nodes(), -1) {}
 
   /// Fills `side` for the part and returns the number of nodes on the first side, on the second and between.
   std::array<Index, 3> cut(const Part& part) {
     sweep(part);
-    std::vector<Cut>& cuts = promising(part);
+    std::array<Cut, dissection_axes> cuts = promising(part);
     Cut best;
     double thinnest = infinity;
     for (const Cut& c : cuts) thinnest = std::min(thinnest, c.score);
     for (Cut& c : cuts) {
       if (c.score > worth_a_look * thinnest) continue;
-      c.score = score(cover(part, c), part);
+      c.score = separator_score(cover(part, c), part.size());
       if (c.score < best.score) best = c;
     }
     if (best.position <= 0) return {part.size(), 0, 0};
     const std::array<Index, 3> sizes = cover(part, best);
     mark(part, best);
-    return sizes;
+    return part.size() < worth_refining ? sizes : refinement_.refine(part, sizes);
   }
 
  private:
@@ -65,15 +39,8 @@ class SeparatorFinder {
   };
   using Ranks = std::array<NodeId, dissection_axes>;
   static constexpr double worth_a_look = 1.5;   // a cover is hardly ever thinner than its layer by more
+  static constexpr Index worth_refining = 1500;
   static constexpr double largest_bias = 0.2;   // cuts from 0.3 : 0.7 to 0.7 : 0.3
-
-  /// Cost of a separator of s nodes: size first, balance second. In three dimensions halves of 0.4 and 0.6 cost about
-  /// as much as a separator larger by 2 %.
-  static double weigh(double s, double bias) noexcept { return (s + 0.5) * (1.0 + 2.0 * bias * bias); }
-  static double score(const std::array<Index, 3>& sizes, const Part& part) noexcept {
-    const double bias = 0.5 * static_cast<double>(sizes[0] - sizes[1]) / static_cast<double>(part.size());
-    return weigh(static_cast<double>(sizes[2]), bias);
-  }
 
   /// For every axis and every cut position, the nodes before the cut with a neighbour behind it, and the reverse.
   void sweep(const Part& part) {
@@ -104,11 +71,10 @@ class SeparatorFinder {
     }
   }
 
-  /// The best positions along every axis, by the layer on the thinner side.
-  std::vector<Cut>& promising(const Part& part) {
+  /// The best position along every axis, by the layer on the thinner side.
+  std::array<Cut, dissection_axes> promising(const Part& part) const noexcept {
     const Index n = part.size();
-    const int strips = n > large_part ? 7 : 1;  // where it pays, one position in each of several strips
-    cuts_.assign(static_cast<std::size_t>(dissection_axes * strips), Cut());
+    std::array<Cut, dissection_axes> cuts;
     for (std::size_t axis = 0; axis < dissection_axes; ++axis) {
       Index before = 0, behind = 0;
       for (Index t = 1; t < n; ++t) {
@@ -116,13 +82,11 @@ class SeparatorFinder {
         behind += behind_[axis][t];
         const double bias = static_cast<double>(t) / static_cast<double>(n) - 0.5;
         if (bias <= -largest_bias || bias >= largest_bias) continue;
-        const auto strip = static_cast<std::size_t>((0.5 + 0.5 * bias / largest_bias) * strips);
-        Cut& best = cuts_[axis * static_cast<std::size_t>(strips) + strip];
-        const double score = weigh(static_cast<double>(std::min(before, behind)), bias);
-        if (score < best.score) best = {static_cast<int>(axis), t, score};
+        const double score = separator_cost(static_cast<double>(std::min(before, behind)), bias);
+        if (score < cuts[axis].score) cuts[axis] = {static_cast<int>(axis), t, score};
       }
     }
-    return cuts_;
+    return cuts;
   }
 
   /// Smallest set of nodes that meets every edge across a cut; returns what is left on either side, and its size.
@@ -173,11 +137,10 @@ class SeparatorFinder {
     }
   }
 
-  static constexpr Index large_part = 400;
   PartLists& lists_;
+  SeparatorRefinement refinement_;
   IndexedVector<Ranks> reach_;  // per node the greatest rank among itself and its neighbours
   std::array<NodeVector, dissection_axes> before_, behind_;
-  std::vector<Cut> cuts_;
   BipartiteCover cover_;
   NodeVector left_, right_, number_;
 };

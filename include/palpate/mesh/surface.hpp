@@ -6,6 +6,7 @@
 #include <palpate/mesh/mesh.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 
 namespace palpate::inline PALPATE_ABI {
@@ -24,42 +25,64 @@ struct BoundaryFace {
   }
 };
 
+/// A face of an element with the name all elements give it.
+template <Element E>
+struct KeyedFace {
+  std::array<NodeId, static_cast<std::size_t>(E::Face::nodes)> key;  ///< sorted nodes
+  int local = 0;
+  Index element = 0;
+};
+
+/// All faces of all elements, equal keys side by side and ordered by element. O(faces), allocates.
+template <Element E, MeshOf<E> M>
+std::vector<KeyedFace<E>> sorted_faces(const M& mesh) {
+  // By lowest node first: what is left to sort are the few faces around a node.
+  std::vector<Index> start(static_cast<std::size_t>(mesh.node_count()) + 1, 0);
+  const auto each_face = [&](auto&& visit) {
+    for (Index e = 0; e < mesh.element_count(); ++e)
+      for (std::size_t f = 0; f < E::faces.size(); ++f) {
+        KeyedFace<E> face{{}, static_cast<int>(f), e};
+        for (std::size_t a = 0; a < face.key.size(); ++a)
+          face.key[a] = static_cast<NodeId>(mesh.element_node(e, E::faces[f][a]));
+        std::ranges::sort(face.key);
+        if (face.key.front() < 0 || face.key.back() >= mesh.node_count())
+          raise(SetupErrorKind::index_out_of_range, "element " + std::to_string(e) + " names a node that does not exist");
+        visit(face);
+      }
+  };
+  each_face([&](const KeyedFace<E>& face) { ++start[static_cast<std::size_t>(face.key[0]) + 1]; });
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<KeyedFace<E>> faces(static_cast<std::size_t>(start.back()));
+  std::vector<Index> next(start.begin(), start.end() - 1);
+  each_face([&](const KeyedFace<E>& face) {
+    faces[static_cast<std::size_t>(next[static_cast<std::size_t>(face.key[0])]++)] = face;
+  });
+  for (std::size_t i = 0; i + 1 < start.size(); ++i)
+    std::sort(faces.begin() + start[i], faces.begin() + start[i + 1], [](const KeyedFace<E>& a, const KeyedFace<E>& b) {
+      return std::tie(a.key, a.element) < std::tie(b.key, b.element);
+    });
+  return faces;
+}
+
 /// All faces that belong to exactly one element, ordered by element. Node order is that of the element, hence outward
-/// when the element is positively oriented. A face shared by three or more elements is refused as non_manifold. O(faces
-/// log faces), allocates.
+/// when the element is positively oriented. A face shared by three or more elements is refused as non_manifold.
+/// O(faces), allocates.
 template <Element E, MeshOf<E> M>
 std::vector<BoundaryFace<E>> extract_boundary(const M& mesh) {
-  using Face = BoundaryFace<E>;
-  struct Keyed {
-    decltype(Face{}.nodes) key;
-    Index element;
-    int local;
-  };
-  std::vector<Keyed> keyed;
-  keyed.reserve(static_cast<std::size_t>(mesh.element_count()) * E::faces.size());
-  for (Index e = 0; e < mesh.element_count(); ++e)
-    for (std::size_t f = 0; f < E::faces.size(); ++f) {
-      Keyed k{{}, e, static_cast<int>(f)};
-      for (std::size_t a = 0; a < k.key.size(); ++a)
-        k.key[a] = static_cast<NodeId>(mesh.element_node(e, E::faces[f][a]));
-      std::ranges::sort(k.key);
-      keyed.push_back(k);
-    }
-  std::ranges::sort(
-      keyed, [](const Keyed& a, const Keyed& b) { return std::tie(a.key, a.element) < std::tie(b.key, b.element); });
-  std::vector<Face> boundary;
+  const std::vector<KeyedFace<E>> faces = sorted_faces<E>(mesh);
+  std::vector<BoundaryFace<E>> boundary;
   std::vector<Index> bad;
-  for (std::size_t i = 0; i < keyed.size();) {
+  for (std::size_t i = 0; i < faces.size();) {
     std::size_t j = i + 1;
-    while (j < keyed.size() && keyed[j].key == keyed[i].key) ++j;
+    while (j < faces.size() && faces[j].key == faces[i].key) ++j;
     if (j - i == 1) {
-      Face face{{}, keyed[i].element};
-      const auto& local = E::faces[static_cast<std::size_t>(keyed[i].local)];
+      BoundaryFace<E> face{{}, faces[i].element};
+      const auto& local = E::faces[static_cast<std::size_t>(faces[i].local)];
       for (std::size_t a = 0; a < local.size(); ++a)
         face.nodes[a] = static_cast<NodeId>(mesh.element_node(face.element, local[a]));
       boundary.push_back(face);
     } else if (j - i > 2) {
-      bad.push_back(keyed[i].element);
+      bad.push_back(faces[i].element);
     }
     i = j;
   }
@@ -71,7 +94,7 @@ std::vector<BoundaryFace<E>> extract_boundary(const M& mesh) {
     p.set_ids(bad);
     raise(std::move(p));
   }
-  std::ranges::stable_sort(boundary, {}, &Face::element);
+  std::ranges::stable_sort(boundary, {}, &BoundaryFace<E>::element);
   return boundary;
 }
 

@@ -4,6 +4,7 @@
 #include <palpate/concepts/condensation.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 
+#include <array>
 #include <vector>
 
 namespace palpate::inline PALPATE_ABI {
@@ -22,14 +23,14 @@ class ContactCompliance {
       : kept_index_(std::move(kept_index)), slot_of_(static_cast<std::size_t>(vertices), -1) {
     slots = std::min(slots, vertices);
     limits.require_memory(9.0 * vertices * static_cast<double>(slots) * sizeof(Scalar), "the contact compliance");
-    values_.setZero(3 * Index{vertices}, 3 * Index{slots});
+    values_.assign(9 * static_cast<std::size_t>(vertices) * static_cast<std::size_t>(slots), Scalar(0));
     vertex_of_.assign(static_cast<std::size_t>(slots), -1);
     last_used_.assign(static_cast<std::size_t>(slots), 0);
     bound_.assign(static_cast<std::size_t>(slots), 0.0);
     column_.resize(kept);
   }
 
-  std::size_t bytes() const noexcept { return static_cast<std::size_t>(values_.size()) * sizeof(Scalar); }
+  std::size_t bytes() const noexcept { return values_.size() * sizeof(Scalar); }
   int slots() const noexcept { return static_cast<int>(vertex_of_.size()); }
   bool has(int vertex) const noexcept { return slot_of_[static_cast<std::size_t>(vertex)] >= 0; }
 
@@ -56,11 +57,15 @@ class ContactCompliance {
     return status;
   }
 
-  /// Displacement of vertex i per force on vertex j [m/N].
-  Matrix3 operator()(int i, int j) const noexcept {
+  /// Displacement of vertex i per force on vertex j [m/N], 3 x 3, read where it is stored.
+  auto operator()(int i, int j) const noexcept {
+    using Block = Eigen::Matrix<Scalar, 3, 3>;
     const int s = slot_of_[static_cast<std::size_t>(j)];
-    if (s < 0) return Matrix3::Zero();
-    return values_.template block<3, 3>(3 * Index{i}, 3 * Index{s}).template cast<double>();
+    const Eigen::Map<const Block> stored(s < 0 ? missing.data() : block(i, s));
+    if constexpr (std::same_as<Scalar, double>)
+      return stored;
+    else
+      return stored.template cast<double>();
   }
   /// Upper bound of |displacement| of any vertex per unit force on vertex j [m/N].
   double bound(int j) const noexcept { return has(j) ? bound_[slot(j)] : 0.0; }
@@ -70,34 +75,39 @@ class ContactCompliance {
     return static_cast<std::size_t>(slot_of_[static_cast<std::size_t>(vertex)]);
   }
 
+  /// The nine values of a vertex in a slot; a column of blocks lies in one piece, as a tick reads single blocks of it.
+  const Scalar* block(int i, int s) const noexcept {
+    return values_.data() + 9 * (static_cast<std::size_t>(s) * slot_of_.size() + static_cast<std::size_t>(i));
+  }
+  Scalar* block(int i, int s) noexcept {
+    return values_.data() + 9 * (static_cast<std::size_t>(s) * slot_of_.size() + static_cast<std::size_t>(i));
+  }
+
   template <StaticSystem System>
   bool fill(System& system, int vertex, std::size_t s) noexcept {
     if (vertex_of_[s] >= 0) slot_of_[static_cast<std::size_t>(vertex_of_[s])] = -1;
     vertex_of_[s] = vertex;
     slot_of_[static_cast<std::size_t>(vertex)] = static_cast<int>(s);
     bool converged = true;
+    const int vertices = static_cast<int>(slot_of_.size());
     for (int c = 0; c < 3; ++c) {
-      auto target = values_.col(3 * static_cast<Index>(s) + c);
       const Index j = kept_index_[static_cast<std::size_t>(3 * vertex + c)];
-      if (j < 0) {
-        target.setZero();
-        continue;
-      }
-      converged = system.compliance_column(j, column_).converged && converged;
-      for (Index i = 0; i < target.size(); ++i) {
-        const Index k = kept_index_[static_cast<std::size_t>(i)];
-        target[i] = k < 0 ? Scalar(0) : static_cast<Scalar>(column_[k]);
-      }
+      if (j >= 0) converged = system.compliance_column(j, column_).converged && converged;
+      for (int i = 0; i < vertices; ++i)
+        for (int r = 0; r < 3; ++r) {
+          const Index k = kept_index_[static_cast<std::size_t>(3 * i + r)];
+          block(i, static_cast<int>(s))[3 * c + r] = j < 0 || k < 0 ? Scalar(0) : static_cast<Scalar>(column_[k]);
+        }
     }
     double largest = 0.0;
-    for (int i = 0; i < static_cast<int>(slot_of_.size()); ++i)
-      largest = std::max(largest, (*this)(i, vertex).squaredNorm());
+    for (int i = 0; i < vertices; ++i) largest = std::max(largest, (*this)(i, vertex).squaredNorm());
     bound_[s] = std::sqrt(largest);
     return converged;
   }
 
+  static constexpr std::array<Scalar, 9> missing{};  // what a column that is not there reads as
   std::vector<Index> kept_index_;
-  Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> values_;
+  std::vector<Scalar> values_;
   std::vector<int> slot_of_, vertex_of_;
   std::vector<std::uint64_t> last_used_;
   std::vector<double> bound_;

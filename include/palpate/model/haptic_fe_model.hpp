@@ -116,7 +116,7 @@ class HapticFEModel {
   // TissueModel
   const ContactSurface& contact_surface() const noexcept { return surface_; }
   Status require_columns(std::span<const int> vertices) noexcept { return compliance_.require(tick_system_, vertices); }
-  Matrix3 compliance(int i, int j) const noexcept { return compliance_(i, j); }
+  auto compliance(int i, int j) const noexcept { return compliance_(i, j); }
   double compliance_bound(int j) const noexcept { return compliance_.bound(j); }
   double compliance_floor() const noexcept { return compliance_floor_; }
   /// Frame of the contact surface in the world.

@@ -1,0 +1,97 @@
+// The stiffness of elements with constant gradients, assembled row by row.
+#pragma once
+
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/local/geometry.hpp>
+
+#include <optional>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// The two constants of an isotropic law [Pa].
+struct LameConstants {
+  double lambda = 0.0, mu = 0.0;
+};
+
+/// The constants of an elasticity matrix if it is exactly isotropic.
+inline std::optional<LameConstants> lame_constants(const Matrix6& d) noexcept {
+  const LameConstants c{d(0, 1), d(3, 3)};
+  Matrix6 same = Matrix6::Zero();
+  same.topLeftCorner<3, 3>().setConstant(c.lambda);
+  for (int i = 0; i < 3; ++i) same(i, i) += 2.0 * c.mu;
+  for (int i = 3; i < 6; ++i) same(i, i) = c.mu;
+  if ((d - same).cwiseAbs().maxCoeff() <= 1e-14 * d.cwiseAbs().maxCoeff()) return c;
+  return std::nullopt;
+}
+
+/// Elements with one integration point: their gradients are constant (Tet4).
+template <class E>
+concept ConstantGradient = Element<E> && E::Quadrature::points.size() == 1;
+
+/// Spatial gradients of all elements, times the root of the volume: what K_ab is a sum of products of.
+template <ConstantGradient E>
+class ScaledGradients {
+ public:
+  using Gradient = Eigen::Matrix<double, 3, E::nodes>;
+
+  /// Throws inverted_element for a volume that is not positive, non_finite for one that is not finite.
+  explicit ScaledGradients(const Mesh<E>& mesh) : values_(static_cast<std::size_t>(mesh.element_count())) {
+    constexpr auto point = E::Quadrature::points[0];
+    for (Index e = 0; e < mesh.element_count(); ++e) {
+      const PointGeometry<E> g = point_geometry<E>(element_nodes<E>(mesh, e), reference_point(point), point.weight);
+      auto& scaled = values_[static_cast<std::size_t>(e)];
+      scaled.noalias() = std::sqrt(g.volume) * g.gradient.transpose();
+      if (!(g.volume > 0.0) || !scaled.allFinite())
+        raise_element(g.volume < 0.0 ? SetupErrorKind::inverted_element : SetupErrorKind::non_finite, e,
+                      g.volume < 0.0 ? "has a negative volume" : "has a stiffness that is not finite");
+    }
+  }
+  const Gradient& operator[](Index e) const noexcept { return values_[static_cast<std::size_t>(e)]; }
+
+ private:
+  std::vector<Gradient> values_;
+};
+
+/// Adds the isotropic block of two nodes, V (lambda g_a g_b^T + mu g_b g_a^T + mu g_a . g_b I), to `k` (column-major).
+inline void add_isotropic_block(const LameConstants& c, const Vector3& a, const Vector3& b, double* k) noexcept {
+  const Vector3 lambda_a = c.lambda * a, mu_b = c.mu * b;
+  const double trace = mu_b.dot(a);
+  for (int col = 0; col < 3; ++col) {
+    for (int row = 0; row < 3; ++row) k[3 * col + row] += lambda_a[row] * b[col] + mu_b[row] * a[col];
+    k[4 * col] += trace;
+  }
+}
+
+/// Fills `k` with the stiffness of isotropic elements. Every block is finished while its row is in cache; no element
+/// matrix is formed. About E::nodes^2 / 2 blocks of 25 multiplications per element; allocates the gradients.
+template <ConstantGradient E>
+void assemble_rows(const Mesh<E>& mesh, const NodeElements& around, const std::vector<LameConstants>& region,
+                   BlockMatrix& k, const SetupLimits& limits) {
+  limits.require_memory(static_cast<double>(mesh.element_count()) * sizeof(typename ScaledGradients<E>::Gradient),
+                        "the gradients of all elements");
+  const ScaledGradients<E> gradients(mesh);
+  const BlockPattern& pattern = k.pattern();
+  std::vector<Index> place(static_cast<std::size_t>(pattern.rows()), -1);  // of a column in the present row
+  for (Index i = 0; i < pattern.rows(); ++i) {
+    if (i % 8192 == 0) limits.advance("assembly", static_cast<double>(i) / static_cast<double>(pattern.rows()));
+    for (Index p = pattern.row_start[static_cast<std::size_t>(i)]; p < pattern.row_start[static_cast<std::size_t>(i) + 1];
+         ++p)
+      place[static_cast<std::size_t>(pattern.column[static_cast<std::size_t>(p)])] = p;
+    for (const NodeId e : around.of(i)) {
+      const auto& nodes = mesh.elements[static_cast<std::size_t>(e)];
+      const auto& g = gradients[e];
+      const LameConstants& c = region[static_cast<std::size_t>(mesh.region(e))];
+      Vector3 own = g.col(0);
+      for (int a = 1; a < E::nodes; ++a)
+        if (nodes[static_cast<std::size_t>(a)] == i) own = g.col(a);
+      for (int b = 0; b < E::nodes; ++b) {
+        const Index j = nodes[static_cast<std::size_t>(b)];
+        if (j <= i) add_isotropic_block(c, own, g.col(b), k.block(place[static_cast<std::size_t>(j)]).data());
+      }
+    }
+  }
+}
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,203 @@
+// Elimination orders, separators and trees against their definitions.
+#include <palpate/linear/cholesky_analysis.hpp>
+
+#include <Eigen/SparseCholesky>
+
+#include "linear/sparse_cases.hpp"
+
+using namespace test;
+
+namespace {
+
+bool is_permutation(const detail::NodeVector& order, Index n) {
+  detail::IndexedVector<char> seen(n, 0);
+  for (NodeId v : order) {
+    if (v < 0 || v >= n || seen[v] != 0) return false;
+    seen[v] = 1;
+  }
+  return order.size() == n;
+}
+
+/// Rows of every column of the factor, by elimination on a dense pattern.
+std::vector<Index> dense_counts(const NodeGraph& g, const detail::NodeVector& order) {
+  const Index n = order.size();
+  detail::NodeVector position(n);
+  for (Index i = 0; i < n; ++i) position[order[i]] = static_cast<NodeId>(i);
+  Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> a(n, n);
+  a.setConstant(false);
+  for (Index v = 0; v < n; ++v)
+    for (Index p = g.start[v]; p < g.start[v + 1]; ++p) a(position[v], position[g.neighbour[p]]) = true;
+  std::vector<Index> counts;
+  for (Index j = 0; j < n; ++j) {
+    Index count = g.weight(order[j]);
+    for (Index i = j + 1; i < n; ++i) {
+      if (!a(i, j)) continue;
+      count += g.weight(order[i]);
+      for (Index k = j + 1; k < n; ++k) a(i, k) = a(i, k) || a(k, j);
+    }
+    counts.push_back(count);
+  }
+  return counts;
+}
+
+}  // namespace
+
+TEST_CASE("nested dissection orders every node once, kept ones last", "[linear][ordering]") {
+  for (const SparseCase& c : sparse_cases()) {
+    INFO(c.name);
+    const NodeGraph g = node_graph(c.lower, c.layout);
+    CHECK(is_permutation(nested_dissection(g), g.nodes()));
+    DofLayout layout = c.layout;
+    for (Index dof = 0; dof < c.lower.rows(); dof += 7) layout.kept.push_back(dof);
+    const NodeGraph with_kept = node_graph(c.lower, layout);
+    const detail::NodeVector order = nested_dissection(with_kept);
+    REQUIRE(is_permutation(order, with_kept.nodes()));
+    bool in_kept = false, sorted = true;
+    for (NodeId v : order) {
+      sorted = sorted && (with_kept.kept[v] != 0 || !in_kept);
+      in_kept = in_kept || with_kept.kept[v] != 0;
+    }
+    CHECK(sorted);
+  }
+}
+
+TEST_CASE("the dofs of a node move together", "[linear][ordering]") {
+  const SparseCase c = ball_case(3);
+  const CholeskyAnalysis analysis(c.lower, c.layout);
+  const detail::NodeVector& place = analysis.tree().place_of_dof;
+  for (std::size_t dof = 1; dof < c.layout.node_of_dof.size(); ++dof)
+    if (c.layout.node_of_dof[dof] == c.layout.node_of_dof[dof - 1])
+      CHECK(place[static_cast<Index>(dof)] == place[static_cast<Index>(dof) - 1] + 1);
+  // Without being told, they are found from the pattern.
+  const NodeGraph told = node_graph(c.lower, c.layout), found = node_graph(c.lower, {});
+  CHECK(found.nodes() <= told.nodes());
+}
+
+TEST_CASE("a separator separates", "[linear][ordering]") {
+  for (bool coordinates : {true, false}) {
+    SparseCase c = ball_case(5);
+    if (!coordinates) c.layout.positions.clear();
+    const NodeGraph g = node_graph(c.lower, c.layout);
+    detail::PartLists lists;
+    lists.graph = &g;
+    lists.place.assign(g.nodes(), {});
+    lists.side.assign(g.nodes(), detail::side_first);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (Index v = 0; v < g.nodes(); ++v) lists.sorted[axis].push_back(static_cast<NodeId>(v));
+      if (coordinates)
+        std::sort(lists.sorted[axis].begin(), lists.sorted[axis].end(), [&](NodeId a, NodeId b) {
+          return g.positions[static_cast<std::size_t>(a)][static_cast<int>(axis)] <
+                 g.positions[static_cast<std::size_t>(b)][static_cast<int>(axis)];
+        });
+    }
+    for (Index v = 0; v < g.nodes(); ++v) lists.place[v].label = 0;
+    const detail::Part all{0, g.nodes(), 0};
+    if (!coordinates) detail::LevelOrder(lists).sort(all);
+    const std::array<Index, 3> sizes = detail::SeparatorFinder(lists).cut(all);
+    CHECK(sizes[0] + sizes[1] + sizes[2] == g.nodes());
+    CHECK(std::min(sizes[0], sizes[1]) >= g.nodes() / 5);
+    CHECK(sizes[2] <= g.nodes() / 5);
+    Index crossing = 0;
+    for (Index v = 0; v < g.nodes(); ++v)
+      for (Index p = g.start[v]; p < g.start[v + 1]; ++p)
+        crossing += lists.side[v] == detail::side_first && lists.side[g.neighbour[p]] == detail::side_second;
+    CHECK(crossing == 0);
+  }
+}
+
+TEST_CASE("a vertex cover meets every edge and is smallest", "[linear][ordering]") {
+  testing::Random random(11);
+  for (int trial = 0; trial < 200; ++trial) {
+    constexpr Index n = 7;
+    std::vector<std::pair<Index, Index>> edges;
+    detail::BipartiteCover cover;
+    cover.clear();
+    for (Index l = 0; l < n; ++l) {
+      for (NodeId r = 0; r < n; ++r)
+        if (random.uniform() < 0.25) {
+          cover.add_edge(r);
+          edges.emplace_back(l, r);
+        }
+      cover.end_left();
+    }
+    cover.solve(n);
+    int size = 0, smallest = 2 * n;
+    for (Index i = 0; i < n; ++i) size += cover.left_in_cover(i) + cover.right_in_cover(i);
+    for (const auto& [l, r] : edges) CHECK((cover.left_in_cover(l) || cover.right_in_cover(r)));
+    for (unsigned set = 0; set < 1u << (2 * n); ++set) {
+      if (std::popcount(set) >= smallest) continue;
+      bool meets = true;
+      for (const auto& [l, r] : edges) meets = meets && ((set >> l & 1u) != 0 || (set >> (n + r) & 1u) != 0);
+      if (meets) smallest = std::popcount(set);
+    }
+    CHECK(size == smallest);
+  }
+}
+
+TEST_CASE("row counts are those of elimination", "[linear][ordering]") {
+  for (const SparseCase& c : sparse_cases()) {
+    INFO(c.name);
+    const NodeGraph g = node_graph(c.lower, c.layout);
+    if (g.nodes() > 200) continue;
+    const detail::EliminationTree t = detail::elimination_tree(g, nested_dissection(g));
+    const std::vector<Index> expected = dense_counts(g, t.order);
+    for (Index j = 0; j < g.nodes(); ++j) CHECK(t.rows[j] == expected[static_cast<std::size_t>(j)]);
+    for (Index j = 0; j < g.nodes(); ++j) CHECK((t.parent[j] < 0 || t.parent[j] > j));
+  }
+}
+
+TEST_CASE("fronts cover the matrix and know their rows", "[linear][ordering]") {
+  for (const SparseCase& c : sparse_cases()) {
+    INFO(c.name);
+    DofLayout layout = c.layout;
+    for (bool keep : {false, true}) {
+      if (keep)
+        for (Index dof = 1; dof < c.lower.rows(); dof += 5) layout.kept.push_back(dof);
+      const CholeskyAnalysis analysis(c.lower, layout);
+      Index pivots = 0;
+      for (const detail::Front& f : analysis.tree().fronts) {
+        CHECK(f.first == pivots);
+        pivots += f.pivots;
+        Index rows = 0;
+        for (Index r = f.run_begin; r < f.run_end; ++r) {
+          CHECK(analysis.tree().runs[r].first >= pivots);
+          rows += analysis.tree().runs[r].count;
+        }
+        CHECK(rows == f.rows);
+      }
+      CHECK(pivots == c.lower.rows());
+      if (keep && !layout.kept.empty())
+        CHECK(analysis.tree().fronts.back().pivots == static_cast<Index>(layout.kept.size()));
+    }
+  }
+}
+
+TEST_CASE("the elimination order keeps fill low", "[linear][ordering]") {
+  const SparseCase c = ball_case(6);
+  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> minimum_degree;
+  minimum_degree.analyzePattern(c.lower);
+  minimum_degree.factorize(c.lower);
+  const auto reference = static_cast<double>(SparseMatrix(minimum_degree.matrixL()).nonZeros());
+  CHECK(CholeskyAnalysis(c.lower, c.layout).nonzeros() <= 1.15 * reference);
+  CHECK(CholeskyAnalysis(c.lower, {}).nonzeros() <= 1.4 * reference);
+}
+
+TEST_CASE("layouts that do not fit are refused", "[linear][ordering]") {
+  const SparseMatrix lower = ball_stiffness(1);
+  const auto n = static_cast<std::size_t>(lower.rows());
+  DofLayout layout;
+  SECTION("too few nodes") { layout.node_of_dof.assign(n - 1, 0); }
+  SECTION("a negative node") { layout.node_of_dof.assign(n, -1); }
+  SECTION("no place for a node") {
+    layout.node_of_dof.assign(n, 3);
+    layout.positions.assign(3, Vector3::Zero());
+  }
+  SECTION("places without nodes") { layout.positions.assign(3, Vector3::Zero()); }
+  SECTION("a place that is not finite") {
+    layout.node_of_dof.assign(n, 0);
+    layout.positions.assign(1, Vector3(0.0, infinity, 0.0));
+  }
+  SECTION("kept twice") { layout.kept = {2, 5, 2}; }
+  SECTION("kept beyond the end") { layout.kept = {lower.rows()}; }
+  CHECK_REFUSED(SetupErrorKind::bad_argument, CholeskyAnalysis(lower, layout));
+}
