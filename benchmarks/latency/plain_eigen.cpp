@@ -30,7 +30,11 @@ struct Problem {
     for (palpate::NodeId node : model.touchable_nodes())
       for (int c = 0; c < 3; ++c)
         kept.push_back(conditions.free_index[static_cast<std::size_t>(3 * palpate::Index{node} + c)]);
-    inverse = model.condensed_stiffness().llt().solve(MatrixX::Identity(size(), size()));
+    const Eigen::SimplicialLDLT<palpate::SparseMatrix> ldlt(k);
+    MatrixX unit = MatrixX::Zero(k.rows(), size()), response;
+    for (palpate::Index i = 0; i < size(); ++i) unit(kept[static_cast<std::size_t>(i)], i) = 1.0;
+    response = ldlt.solve(unit);
+    inverse = response(kept, Eigen::all);
     inverse_float = inverse.cast<float>();
     loaded = 3 * (size() / 6);
     load = VectorX::Zero(k.rows());

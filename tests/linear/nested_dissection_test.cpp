@@ -74,6 +74,7 @@ TEST_CASE("the dofs of a node move together", "[linear][ordering]") {
 }
 
 TEST_CASE("a separator separates", "[linear][ordering]") {
+  const bool refined = GENERATE(false, true);
   for (bool coordinates : {true, false}) {
     SparseCase c = ball_case(5);
     if (!coordinates) c.layout.positions.clear();
@@ -93,7 +94,15 @@ TEST_CASE("a separator separates", "[linear][ordering]") {
     for (Index v = 0; v < g.nodes(); ++v) lists.place[v].label = 0;
     const detail::Part all{0, g.nodes(), 0};
     if (!coordinates) detail::LevelOrder(lists).sort(all);
-    const std::array<Index, 3> sizes = detail::SeparatorFinder(lists).cut(all);
+    std::array<Index, 3> sizes = detail::SeparatorFinder(lists).cut(all);
+    const double before = detail::separator_score(sizes, g.nodes());
+    if (refined) {
+      sizes = detail::SeparatorRefinement(lists).refine(all, sizes);
+      CHECK(detail::separator_score(sizes, g.nodes()) <= before);
+      std::array<Index, 3> counted{};
+      for (detail::Side s : lists.side) ++counted[s];
+      CHECK(counted == sizes);
+    }
     CHECK(sizes[0] + sizes[1] + sizes[2] == g.nodes());
     CHECK(std::min(sizes[0], sizes[1]) >= g.nodes() / 5);
     CHECK(sizes[2] <= g.nodes() / 5);
@@ -186,18 +195,28 @@ TEST_CASE("layouts that do not fit are refused", "[linear][ordering]") {
   const SparseMatrix lower = ball_stiffness(1);
   const auto n = static_cast<std::size_t>(lower.rows());
   DofLayout layout;
-  SECTION("too few nodes") { layout.node_of_dof.assign(n - 1, 0); }
-  SECTION("a negative node") { layout.node_of_dof.assign(n, -1); }
+  SECTION("too few nodes") {
+    layout.node_of_dof.assign(n - 1, 0);
+  }
+  SECTION("a negative node") {
+    layout.node_of_dof.assign(n, -1);
+  }
   SECTION("no place for a node") {
     layout.node_of_dof.assign(n, 3);
     layout.positions.assign(3, Vector3::Zero());
   }
-  SECTION("places without nodes") { layout.positions.assign(3, Vector3::Zero()); }
+  SECTION("places without nodes") {
+    layout.positions.assign(3, Vector3::Zero());
+  }
   SECTION("a place that is not finite") {
     layout.node_of_dof.assign(n, 0);
     layout.positions.assign(1, Vector3(0.0, infinity, 0.0));
   }
-  SECTION("kept twice") { layout.kept = {2, 5, 2}; }
-  SECTION("kept beyond the end") { layout.kept = {lower.rows()}; }
+  SECTION("kept twice") {
+    layout.kept = {2, 5, 2};
+  }
+  SECTION("kept beyond the end") {
+    layout.kept = {lower.rows()};
+  }
   CHECK_REFUSED(SetupErrorKind::bad_argument, CholeskyAnalysis(lower, layout));
 }

@@ -1,6 +1,9 @@
 // Matrices without a trustworthy answer: refused, where the library underneath reports success.
+#include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/dense_inverse.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
+
+#include <Eigen/SparseCholesky>
 
 #include "linear/systems.hpp"
 

@@ -1,6 +1,7 @@
 // Solvers against a dense reference in long double, on matrices that have an answer.
 #include <palpate/condensation/uncondensed.hpp>
 #include <palpate/linear/condition.hpp>
+#include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/dense_inverse.hpp>
 #include <palpate/testing/solver_laws.hpp>
 

@@ -39,7 +39,9 @@ inline SparseMatrix dominant(Index n, const std::vector<std::array<Index, 2>>& p
 
 inline std::vector<SparseCase> sparse_cases() {
   std::vector<SparseCase> cases;
-  const auto add = [&](std::string name, SparseMatrix lower) { cases.push_back({std::move(name), std::move(lower), {}}); };
+  const auto add = [&](std::string name, SparseMatrix lower) {
+    cases.push_back({std::move(name), std::move(lower), {}});
+  };
   add("empty", SparseMatrix(0, 0));
   add("one", dominant(1, {}));
   add("diagonal", dominant(50, {}));

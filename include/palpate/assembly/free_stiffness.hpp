@@ -9,6 +9,8 @@
 #include <Eigen/LU>
 #include <Eigen/SparseCore>
 
+#include <numeric>
+
 namespace palpate::inline PALPATE_ABI {
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
@@ -64,33 +66,53 @@ class FreeStiffness {
   mutable VectorX in_, out_;
 };
 
-/// Lower half of K_ff as a sparse matrix. The block pattern is stored by rows of the lower half, which read as columns
-/// of the upper one.
-inline SparseMatrix free_matrix(const BlockMatrix& k, const EssentialConditions& conditions) {
+/// Calls visit(row, column, value) for every stored entry of the lower half of K_ff, rows ascending within a column.
+template <class Visit>
+void for_each_free_entry(const BlockMatrix& k, const EssentialConditions& conditions, Visit&& visit) {
   const BlockPattern& pattern = k.pattern();
-  const Index n = conditions.free_count();
-  SparseMatrix upper(n, n);  // built column by column; each column ends at its diagonal
-  Eigen::Matrix<Index, Eigen::Dynamic, 1> counts = Eigen::Matrix<Index, Eigen::Dynamic, 1>::Zero(n);
-  const auto visit = [&](auto&& entry) {
-    for (Index i = 0; i < pattern.rows(); ++i)
+  const std::vector<Index>& free = conditions.free_index;
+  for (Index i = 0; i < pattern.rows(); ++i)
+    for (Index p = pattern.row_start[static_cast<std::size_t>(i)];
+         p < pattern.row_start[static_cast<std::size_t>(i) + 1]; ++p) {
+      const Index j = pattern.column[static_cast<std::size_t>(p)];
+      const auto block = k.block(p);
       for (int c = 0; c < 3; ++c) {
-        const Index col = conditions.free_index[static_cast<std::size_t>(3 * i + c)];
-        if (col < 0) continue;
-        for (Index p = pattern.row_start[static_cast<std::size_t>(i)];
-             p < pattern.row_start[static_cast<std::size_t>(i) + 1]; ++p)
-          for (int d = 0; d < 3; ++d) {
-            const Index row =
-                conditions
-                    .free_index[static_cast<std::size_t>(3 * Index{pattern.column[static_cast<std::size_t>(p)]} + d)];
-            if (row >= 0 && row <= col) entry(row, col, p, c, d);
-          }
+        const Index row = free[static_cast<std::size_t>(3 * i + c)];
+        if (row < 0) continue;
+        for (int d = 0; d < 3; ++d) {
+          const Index column = free[static_cast<std::size_t>(3 * j + d)];
+          if (column >= 0 && column <= row) visit(row, column, block(c, d));
+        }
       }
-  };
-  visit([&](Index, Index col, Index, int, int) { ++counts[col]; });
-  upper.reserve(counts);
-  visit([&](Index row, Index col, Index p, int c, int d) { upper.insert(row, col) = k.block(p)(c, d); });
-  upper.makeCompressed();
-  return SparseMatrix(upper.transpose());
+    }
+}
+
+/// Lower half of K_ff as a compressed sparse matrix. O(entries), allocates it.
+inline SparseMatrix free_matrix(const BlockMatrix& k, const EssentialConditions& conditions) {
+  const Index n = conditions.free_count();
+  SparseMatrix lower(n, n);
+  Index* const start = lower.outerIndexPtr();
+  std::fill_n(start, n + 1, Index{0});
+  for_each_free_entry(k, conditions, [&](Index, Index column, double) { ++start[column + 1]; });
+  std::partial_sum(start, start + n + 1, start);
+  lower.resizeNonZeros(start[n]);
+  std::vector<Index> next(start, start + n);
+  for_each_free_entry(k, conditions, [&](Index row, Index column, double value) {
+    const Index at = next[static_cast<std::size_t>(column)]++;
+    lower.innerIndexPtr()[at] = row;
+    lower.valuePtr()[at] = value;
+  });
+  return lower;
+}
+
+/// 1-norm of K_ff. O(entries).
+inline double free_norm(const BlockMatrix& k, const EssentialConditions& conditions) {
+  VectorX sums = VectorX::Zero(conditions.free_count());
+  for_each_free_entry(k, conditions, [&](Index row, Index column, double value) {
+    sums[column] += std::abs(value);
+    if (row != column) sums[row] += std::abs(value);
+  });
+  return sums.size() > 0 ? sums.maxCoeff() : 0.0;
 }
 
 }  // namespace palpate::inline PALPATE_ABI

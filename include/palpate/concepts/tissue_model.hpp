@@ -23,6 +23,7 @@ struct VertexForce {
 /// matrix, or an Eigen expression that stays valid until the next `require_columns`.
 /// - `compliance_bound(j)` is at least the largest displacement [m/N] of any vertex per unit force on j.
 /// - `compliance_floor()` is a tiny compliance that keeps a fixed vertex from dividing by zero.
+/// - `foresee(vertices)`, if there is one, is told which vertices a tool may press soon.
 /// - `pose()` maps the model's frame to the world's.
 /// All are noexcept, allocate nothing and take bounded time.
 template <class T>

@@ -7,6 +7,12 @@
 
 namespace palpate::inline PALPATE_ABI {
 
+/// A solver that finds few entries of the answer to few loads faster than all of it.
+template <class S>
+concept PathSolver = requires(S& s, std::span<const Index> dofs, std::span<const double> loads, std::span<double> answer) {
+  { s.solve_path_into(dofs, loads, dofs, answer) } noexcept;
+};
+
 /// A solver over all free dofs, asked for the compliance of a few. Each compliance column costs one solve.
 template <LinearSolver Solver>
 class Uncondensed {
@@ -26,6 +32,11 @@ class Uncondensed {
 
   SolveReport compliance_column(Index j, VectorX& column) noexcept {
     const Index loaded = kept_[static_cast<std::size_t>(j)];
+    if constexpr (PathSolver<Solver>) {
+      const double unit = 1.0;
+      solver_.solve_path_into({&loaded, 1}, {&unit, 1}, kept_, {column.data(), kept_.size()});
+      return {true, 0, std::numeric_limits<double>::quiet_NaN()};
+    }
     load_[loaded] = 1.0;
     const SolveReport report = solver_.solve_into(load_, answer_);
     load_[loaded] = 0.0;

@@ -40,6 +40,7 @@ class ContactProblem {
     for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
       for (std::size_t t = 0; t < tools.size(); ++t) start_force_[t] = tools[t].force;
       status |= candidates_.update(tissue, tools, displacement_);
+      if (candidates_.is_new()) foresee(tissue);
       status |= solve_linearised(tissue, tools, iteration);
       follow(tools);
       change = relative_change(tools);
@@ -70,6 +71,17 @@ class ContactProblem {
 
  private:
   using Tools = std::span<ContactTool>;
+
+  /// Tells a tissue that wants to know which vertices lie near the balls.
+  template <TissueModel Tissue>
+  void foresee(Tissue& tissue) noexcept {
+    if constexpr (requires(std::span<const int> vertices) { tissue.foresee(vertices); })
+      for (const Candidate& c : candidates_.items()) {
+        const ContactSample& sample = candidates_.samples()[c.sample];
+        for (std::size_t a = 0; a < 3; ++a)
+          if (sample.weights[a] > 0.0) tissue.foresee({&sample.vertices[a], 1});
+      }
+  }
 
   /// One Signorini problem at the present proxies; updates the forces of points, vertices and tools. Rows are added
   /// until no point sinks in.

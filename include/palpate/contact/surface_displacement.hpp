@@ -54,12 +54,12 @@ class SurfaceDisplacement {
   /// such.
   template <TissueModel Tissue>
   double reach(const Tissue& tissue) noexcept {
-    double everywhere = 0.0, loaded = 0.0;
+    double bounded = 0.0, loaded = 0.0;
     for (const VertexForce& f : forces()) {
-      everywhere += tissue.compliance_bound(f.vertex) * f.force.norm();
+      bounded += tissue.compliance_bound(f.vertex) * f.force.norm();
       loaded = std::max(loaded, at(tissue, f.vertex).norm());
     }
-    return std::min(everywhere, 2.0 * loaded);
+    return std::min(bounded, 2.0 * loaded);
   }
 
  private:

@@ -14,7 +14,7 @@ namespace palpate::inline PALPATE_ABI::detail {
 
 struct AlignedDelete {
   std::size_t alignment = 64;
-  void operator()(double* p) const noexcept { ::operator delete(p, std::align_val_t{alignment}); }
+  void operator()(double* p) const noexcept { ::operator delete (p, std::align_val_t{alignment}); }
 };
 
 /// Uninitialised doubles, aligned for any packet. On Linux large ones ask for huge pages: filling 4 KiB pages one
@@ -24,16 +24,24 @@ class BigArray {
   BigArray() = default;
   explicit BigArray(Index size) : size_(size) {
     const std::size_t alignment = bytes() >= 2 * huge_page ? huge_page : line;
-    data_ = {static_cast<double*>(::operator new(bytes(), std::align_val_t{alignment})), AlignedDelete{alignment}};
+    data_ = {static_cast<double*>(::operator new (bytes(), std::align_val_t{alignment})), AlignedDelete{alignment}};
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
     if (alignment == huge_page) ::madvise(data_.get(), bytes(), MADV_HUGEPAGE);  // only a hint
 #endif
   }
 
-  double* data() noexcept { return data_.get(); }
-  const double* data() const noexcept { return data_.get(); }
-  Index size() const noexcept { return size_; }
-  std::size_t bytes() const noexcept { return static_cast<std::size_t>(size_) * sizeof(double); }
+  double* data() noexcept {
+    return data_.get();
+  }
+  const double* data() const noexcept {
+    return data_.get();
+  }
+  Index size() const noexcept {
+    return size_;
+  }
+  std::size_t bytes() const noexcept {
+    return static_cast<std::size_t>(size_) * sizeof(double);
+  }
 
  private:
   static constexpr std::size_t huge_page = std::size_t{1} << 21, line = 64;

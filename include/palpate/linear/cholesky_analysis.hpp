@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/core/setup_options.hpp>
-#include <palpate/linear/front_tree.hpp>
+#include <palpate/linear/front_tree_builder.hpp>
 #include <palpate/linear/nested_dissection.hpp>
 
 #include <memory>
@@ -60,9 +60,7 @@ class CholeskyAnalysis {
 
   const detail::FrontTree& tree() const noexcept { return data_->tree; }
   /// Doubles that a factorisation needs to pack operands; zero rows at the end included.
-  Index pack_size() const noexcept {
-    return 2 * (data_->tree.largest_front + 64) * detail::LowerPanels::width;
-  }
+  Index pack_size() const noexcept { return 2 * (data_->tree.largest_front + 64) * detail::LowerPanels::width; }
 
  private:
   Index side_size() const noexcept { return pack_size() + 3 * size(); }
@@ -73,7 +71,9 @@ class CholeskyAnalysis {
     std::uint64_t pattern = 0;
   };
 
-  static std::uint64_t weight(Index i) noexcept { return (static_cast<std::uint64_t>(i) + 1) * 0x9e3779b97f4a7c15u | 1u; }
+  static std::uint64_t weight(Index i) noexcept {
+    return (static_cast<std::uint64_t>(i) + 1) * 0x9e3779b97f4a7c15u | 1u;
+  }
   static std::uint64_t fingerprint(const SparseLower& m) noexcept {
     const Index* start = m.outerIndexPtr();
     const Index* row = m.innerIndexPtr();

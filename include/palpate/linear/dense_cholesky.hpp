@@ -44,14 +44,6 @@ class DenseCholesky {
     return {true, 0, std::numeric_limits<double>::quiet_NaN()};
   }
 
-  /// The inverse, symmetric to the last bit. Allocates.
-  MatrixX inverse() const {
-    MatrixX c = MatrixX::Identity(size(), size());
-    factor_->triangularView<Eigen::Lower>().solveInPlace(c);
-    factor_->triangularView<Eigen::Lower>().transpose().solveInPlace(c);
-    return 0.5 * (c + c.transpose());
-  }
-
  private:
   static constexpr double pivot_threshold = 1e-15;
   std::shared_ptr<const MatrixX> factor_;

@@ -1,7 +1,10 @@
 // The stored inverse and its selective product (thesis 3.6.2; Bro-Nielsen and Cotin 1996).
 #pragma once
 
-#include <palpate/linear/dense_cholesky.hpp>
+#include <palpate/concepts/linear_solver.hpp>
+#include <palpate/linear/spd_inverse.hpp>
+
+#include <memory>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -11,9 +14,14 @@ template <std::floating_point Scalar>
 class DenseInverse {
  public:
   DenseInverse() = default;
-  DenseInverse(MatrixX matrix, const SetupLimits& limits)
-      : inverse_(std::make_shared<const Matrix>(
-            DenseCholesky(std::move(matrix), limits).inverse().template cast<Scalar>())) {}
+  /// Inverts in place (lower half read). Throws not_positive_definite.
+  DenseInverse(MatrixX matrix, const SetupLimits&) {
+    SpdInverse::invert(matrix, 1e-15, "the condensed stiffness is not positive definite");
+    if constexpr (std::same_as<Scalar, double>)
+      inverse_ = std::make_shared<const Matrix>(std::move(matrix));
+    else
+      inverse_ = std::make_shared<const Matrix>(matrix.template cast<Scalar>());
+  }
 
   Index size() const noexcept { return inverse_ ? inverse_->rows() : 0; }
   std::size_t bytes() const noexcept { return static_cast<std::size_t>(size() * size()) * sizeof(Scalar); }

@@ -9,10 +9,10 @@ namespace palpate::inline PALPATE_ABI::detail {
 
 /// Nodes in a postorder of the elimination tree, so that every subtree is contiguous.
 struct EliminationTree {
-  NodeVector order;       ///< node at every position
-  NodeVector position;    ///< its inverse
-  NodeVector parent;      ///< per position, a later position or -1
-  OffsetVector rows;      ///< per position the dofs of its column of the factor, its own included
+  NodeVector order;     ///< node at every position
+  NodeVector position;  ///< its inverse
+  NodeVector parent;    ///< per position, a later position or -1
+  OffsetVector rows;    ///< per position the dofs of its column of the factor, its own included
 };
 
 /// Parents in the given order, by path compression (Liu 1990). Nearly O(edges).
@@ -102,7 +102,8 @@ inline EliminationTree elimination_tree(const NodeGraph& g, const NodeVector& or
   for (NodeId i = 0; i < static_cast<NodeId>(n); ++i) t.position[order[i]] = i;
   NodeVector parent = elimination_parents(g, order, t.position);
   const Index inner = n - std::count(g.kept.begin(), g.kept.end(), char{1});
-  for (Index i = inner; i < n; ++i) parent[i] = i + 1 < n ? static_cast<NodeId>(i + 1) : -1;  // one chain: a dense front
+  for (Index i = inner; i < n; ++i)
+    parent[i] = i + 1 < n ? static_cast<NodeId>(i + 1) : -1;  // one chain: a dense front
   const NodeVector cut = [&] {  // kept nodes as roots, so that a postorder leaves them at the end
     NodeVector p = parent;
     for (Index i = 0; i < n; ++i)

@@ -35,7 +35,8 @@ class FrontFactorisation {
       assemble(front, columns);
       double* const update = workspace_.data() + front.update;
       factor_front(columns, front.pivots, front.rows, update, front.first, sink, packed_.data());
-      add_children(front, [&](Index j) { return update + update_column(front, j); }, front.pivots, front.size());
+      add_children(
+          front, [&](Index j) { return update + update_column(front, j); }, front.pivots, front.size());
       done += front.flops();
       if (done - told < 0.01 * tree_.flops) continue;
       told = done;
@@ -57,11 +58,11 @@ class FrontFactorisation {
         double* to = columns + shape.at(local_[run.row], local_[run.column]);
         for (Index i = 0; i < run.count; ++i) to[i] += value[i];
       } else {
-        for (Index i = 0; i < -run.count; ++i)
-          columns[shape.at(local_[run.row], local_[run.column] + i)] += value[i];
+        for (Index i = 0; i < -run.count; ++i) columns[shape.at(local_[run.row], local_[run.column] + i)] += value[i];
       }
     }
-    add_children(front, [&](Index j) { return columns + shape.at(0, j); }, 0, front.pivots);
+    add_children(
+        front, [&](Index j) { return columns + shape.at(0, j); }, 0, front.pivots);
   }
 
   /// By place in the elimination order: pivots before their roots, and the diagonal of the matrix.
@@ -105,7 +106,8 @@ class FrontFactorisation {
   /// address of row 0 of a column.
   template <class Column>
   void add_children(const Front& front, Column&& column, Index begin, Index end) {
-    for (NodeId c = front.first_child; c >= 0; c = tree_.fronts[c].next_sibling) add_child(tree_.fronts[c], column, begin, end);
+    for (NodeId c = front.first_child; c >= 0; c = tree_.fronts[c].next_sibling)
+      add_child(tree_.fronts[c], column, begin, end);
   }
   template <class Column>
   void add_child(const Front& child, Column&& column, Index begin, Index end) {

@@ -10,8 +10,8 @@ namespace palpate::inline PALPATE_ABI::detail {
 
 /// Receives every pivot before its root is taken; returns what to scale its column with.
 struct PivotSink {
-  double* pivots;            ///< per place in the elimination order
-  const double* diagonal;    ///< of the matrix, per place
+  double* pivots;          ///< per place in the elimination order
+  const double* diagonal;  ///< of the matrix, per place
   double threshold;
 
   /// A pivot that fails leaves its dof out: the column becomes zero, and the rest can still be looked at.
@@ -29,8 +29,8 @@ inline void subtract_square(double* c, Index stride, Index rows, Index columns, 
   for (Index j = 0; j < columns; j += tile_columns) {
     const Index valid = std::min<Index>(tile_columns, columns - j);
     for (Index i = j / packet_size * packet_size; i < rows; i += tile_rows)
-      subtract_tile<Mode>((rows - i) / packet_size, steps, {a.data + i, a.step}, {a.data + j, a.step}, c + i + j * stride,
-                          stride, valid);
+      subtract_tile<Mode>((rows - i) / packet_size, steps, {a.data + i, a.step}, {a.data + j, a.step},
+                          c + i + j * stride, stride, valid);
   }
 }
 
@@ -132,15 +132,24 @@ inline void factor_trapezoid(double* a, Index stride, Index rows, Index columns,
     return;
   }
   switch (columns) {
-    case 1: return factor_columns<1>(a, stride, rows, place, sink);
-    case 2: return factor_columns<2>(a, stride, rows, place, sink);
-    case 3: return factor_columns<3>(a, stride, rows, place, sink);
-    case 4: return factor_columns<4>(a, stride, rows, place, sink);
-    case 5: return factor_columns<5>(a, stride, rows, place, sink);
-    case 6: return factor_columns<6>(a, stride, rows, place, sink);
-    case 7: return factor_columns<7>(a, stride, rows, place, sink);
-    case 8: return factor_columns<8>(a, stride, rows, place, sink);
-    default: return;
+    case 1:
+      return factor_columns<1>(a, stride, rows, place, sink);
+    case 2:
+      return factor_columns<2>(a, stride, rows, place, sink);
+    case 3:
+      return factor_columns<3>(a, stride, rows, place, sink);
+    case 4:
+      return factor_columns<4>(a, stride, rows, place, sink);
+    case 5:
+      return factor_columns<5>(a, stride, rows, place, sink);
+    case 6:
+      return factor_columns<6>(a, stride, rows, place, sink);
+    case 7:
+      return factor_columns<7>(a, stride, rows, place, sink);
+    case 8:
+      return factor_columns<8>(a, stride, rows, place, sink);
+    default:
+      return;
   }
 }
 

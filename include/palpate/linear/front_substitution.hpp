@@ -70,14 +70,22 @@ inline void backward_columns(const double* a, Index stride, Index top, double* v
 template <class Visit>
 inline void with_width(Index width, Visit&& visit) noexcept {
   switch (width) {
-    case 1: return visit(std::integral_constant<int, 1>());
-    case 2: return visit(std::integral_constant<int, 2>());
-    case 3: return visit(std::integral_constant<int, 3>());
-    case 4: return visit(std::integral_constant<int, 4>());
-    case 5: return visit(std::integral_constant<int, 5>());
-    case 6: return visit(std::integral_constant<int, 6>());
-    case 7: return visit(std::integral_constant<int, 7>());
-    default: return;
+    case 1:
+      return visit(std::integral_constant<int, 1>());
+    case 2:
+      return visit(std::integral_constant<int, 2>());
+    case 3:
+      return visit(std::integral_constant<int, 3>());
+    case 4:
+      return visit(std::integral_constant<int, 4>());
+    case 5:
+      return visit(std::integral_constant<int, 5>());
+    case 6:
+      return visit(std::integral_constant<int, 6>());
+    case 7:
+      return visit(std::integral_constant<int, 7>());
+    default:
+      return;
   }
 }
 
@@ -89,9 +97,8 @@ inline void forward_front(const double* l, const LowerPanels& shape, double* v) 
     const Index stride = shape.stride(p), columns = shape.panel_width(p), whole = columns / 8 * 8;
     double* const at = v + shape.panel_begin(p);
     for (Index j = 0; j < whole; j += 8) forward_columns<8>(panel + j * stride, stride, j, at);
-    with_width(columns - whole, [&](auto width) {
-      forward_columns<decltype(width)::value>(panel + whole * stride, stride, whole, at);
-    });
+    with_width(columns - whole,
+               [&](auto width) { forward_columns<decltype(width)::value>(panel + whole * stride, stride, whole, at); });
   }
 }
 /// The reverse: v holds the pivots' values and the answers in the rows below; out comes L11^-T (v - L21^T v below).

@@ -42,7 +42,9 @@ class LeafOrder {
   using Bits = std::array<std::uint64_t, words>;
 
   static void set(Bits& b, Index i) noexcept { b[static_cast<std::size_t>(i >> 6)] |= std::uint64_t{1} << (i & 63); }
-  static void reset(Bits& b, Index i) noexcept { b[static_cast<std::size_t>(i >> 6)] &= ~(std::uint64_t{1} << (i & 63)); }
+  static void reset(Bits& b, Index i) noexcept {
+    b[static_cast<std::size_t>(i >> 6)] &= ~(std::uint64_t{1} << (i & 63));
+  }
   static int popcount(const Bits& b) noexcept {
     int sum = 0;
     for (std::uint64_t w : b) sum += std::popcount(w);

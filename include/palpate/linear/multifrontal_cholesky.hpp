@@ -114,7 +114,8 @@ class MultifrontalCholesky {
       raise(SetupErrorKind::bad_argument, "the matrix does not have the pattern that was analysed",
             "Compress the matrix and analyse it again");
     limits.advance("factorisation", 0.0);
-    limits.require_memory(schur != nullptr ? analysis.interior_peak_bytes() : analysis.peak_bytes(), "the sparse factor");
+    limits.require_memory(schur != nullptr ? analysis.interior_peak_bytes() : analysis.peak_bytes(),
+                          "the sparse factor");
     const detail::FrontTree& tree = analysis.tree();
     auto made = std::make_shared<Factor>();
     made->fronts = tree.fronts.size();

@@ -81,7 +81,8 @@ class NestedDissection {
   void finish(const Part& part) {
     for (Index i = part.begin; i < part.end; ++i) order_[i] = lists_.sorted[0][i];
     if (part.size() <= LeafOrder::max_nodes)
-      leaf_.order(order_.data() + part.begin, part.size(), [&](NodeId u) { return lists_.place[u].label == later || graph_.kept[u] != 0; });
+      leaf_.order(order_.data() + part.begin, part.size(),
+                  [&](NodeId u) { return lists_.place[u].label == later || graph_.kept[u] != 0; });
     for (Index i = part.begin; i < part.end; ++i) lists_.place[order_[i]].label = gone;
   }
 

@@ -20,13 +20,13 @@ struct DofLayout {
 
 /// Undirected graph of nodes without loops. Nodes hold one dof or more, all kept or none.
 struct NodeGraph {
-  detail::OffsetVector start;         ///< nodes + 1 offsets into neighbour
-  detail::NodeVector neighbour;       ///< both directions of every edge
-  detail::OffsetVector dof_start;     ///< nodes + 1 offsets into dof
-  detail::IndexedVector<Index> dof;   ///< dofs of every node, ascending
-  detail::NodeVector node_of_dof;     ///< inverse of the former
-  detail::IndexedVector<char> kept;   ///< per node
-  std::vector<Vector3> positions;     ///< per node, or empty
+  detail::OffsetVector start;        ///< nodes + 1 offsets into neighbour
+  detail::NodeVector neighbour;      ///< both directions of every edge
+  detail::OffsetVector dof_start;    ///< nodes + 1 offsets into dof
+  detail::IndexedVector<Index> dof;  ///< dofs of every node, ascending
+  detail::NodeVector node_of_dof;    ///< inverse of the former
+  detail::IndexedVector<char> kept;  ///< per node
+  std::vector<Vector3> positions;    ///< per node, or empty
 
   Index nodes() const noexcept { return start.size() - 1; }
   Index weight(Index node) const noexcept { return dof_start[node + 1] - dof_start[node]; }

@@ -34,7 +34,7 @@ struct PartLists {
 /// Cost of a separator between two sides, given the three sizes and the nodes in all: size first, balance second. In
 /// three dimensions halves of 0.4 and 0.6 cost about as much as a separator larger by some per cent.
 inline double separator_cost(double separator, double bias) noexcept {
-  return (separator + 0.5) * (1.0 + 4.0 * bias * bias);
+  return (separator + 0.5) * (1.0 + 7.0 * bias * bias);
 }
 inline double separator_score(const std::array<Index, 3>& sizes, Index all) noexcept {
   return separator_cost(static_cast<double>(sizes[2]),

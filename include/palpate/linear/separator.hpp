@@ -38,9 +38,9 @@ class SeparatorFinder {
     double score = infinity;
   };
   using Ranks = std::array<NodeId, dissection_axes>;
-  static constexpr double worth_a_look = 1.5;   // a cover is hardly ever thinner than its layer by more
+  static constexpr double worth_a_look = 1.5;  // a cover is hardly ever thinner than its layer by more
   static constexpr Index worth_refining = 1500;
-  static constexpr double largest_bias = 0.2;   // cuts from 0.3 : 0.7 to 0.7 : 0.3
+  static constexpr double largest_bias = 0.2;  // cuts from 0.3 : 0.7 to 0.7 : 0.3
 
   /// For every axis and every cut position, the nodes before the cut with a neighbour behind it, and the reverse.
   void sweep(const Part& part) {

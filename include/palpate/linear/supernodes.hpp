@@ -8,9 +8,9 @@ namespace palpate::inline PALPATE_ABI::detail {
 
 /// Supernodes in the order of their elimination, children before parents.
 struct Supernodes {
-  NodeVector order;    ///< node at every position, supernode after supernode
-  OffsetVector start;  ///< supernodes + 1 offsets into order
-  NodeVector parent;   ///< supernode or -1
+  NodeVector order;           ///< node at every position, supernode after supernode
+  OffsetVector start;         ///< supernodes + 1 offsets into order
+  NodeVector parent;          ///< supernode or -1
   OffsetVector pivots, rows;  ///< dofs eliminated, and coupled rows below them
 };
 
@@ -19,8 +19,7 @@ struct Supernodes {
 inline double front_cost(double pivots, double rows) noexcept {
   constexpr double per_front = 60000.0, per_entry = 16.0;
   const double m = pivots + rows;
-  return per_front + per_entry * (pivots * m + 0.5 * rows * rows) +
-         pivots * (m * (m - pivots) + pivots * pivots / 3.0);
+  return per_front + per_entry * (pivots * m + 0.5 * rows * rows) + pivots * (m * (m - pivots) + pivots * pivots / 3.0);
 }
 
 /// Finds supernodes and merges a child into its parent where the model says that this is faster.
@@ -76,14 +75,16 @@ class SupernodeBuilder {
       pivots_.back() += g_.weight(t_.order[j]);
       rows_.back() = kept ? 0 : t_.rows[j] - g_.weight(t_.order[j]);
     }
-    const Index count = begin_.size();
     begin_.push_back(static_cast<NodeId>(n));
-    first_child_.assign(count, -1);
-    next_sibling_.assign(count, -1);
-    parent_.assign(count, -1);
+    link(super);
+  }
+
+  /// The tree of the supernodes.
+  void link(const NodeVector& super) {
+    const Index count = pivots_.size();
+    for (NodeVector* v : {&first_child_, &next_sibling_, &parent_, &next_}) v->assign(count, -1);
     zeros_.assign(count, 0.0);
     head_.resize(count);
-    next_.assign(count, -1);
     tail_.resize(count);
     for (NodeId s = static_cast<NodeId>(count) - 1; s >= 0; --s) {
       head_[s] = tail_[s] = s;

@@ -13,9 +13,15 @@ inline constexpr int tile_packets = 3;
 inline constexpr int tile_rows = tile_packets * packet_size;
 inline constexpr int tile_columns = packet_size == 8 ? 8 : 4;
 
-inline Packet load(const double* p) noexcept { return Eigen::internal::ploadu<Packet>(p); }
-inline void store(double* p, const Packet& x) noexcept { Eigen::internal::pstoreu(p, x); }
-inline Packet broadcast(double x) noexcept { return Eigen::internal::pset1<Packet>(x); }
+inline Packet load(const double* p) noexcept {
+  return Eigen::internal::ploadu<Packet>(p);
+}
+inline void store(double* p, const Packet& x) noexcept {
+  Eigen::internal::pstoreu(p, x);
+}
+inline Packet broadcast(double x) noexcept {
+  return Eigen::internal::pset1<Packet>(x);
+}
 /// a b + c
 inline Packet multiply_add(const Packet& a, const Packet& b, const Packet& c) noexcept {
   return Eigen::internal::pmadd(a, b, c);
@@ -30,10 +36,11 @@ struct Steps {
   Index step;
 };
 
-/// c = c - A B (Into::full) or -A B (Into::empty), where step s of A is a column of `V` packets and step s of B a row of
-/// which entry j lies at j * `b_apart`. Only the first `valid` columns of c are written; all of B is read.
+/// c = c - A B (Into::full) or -A B (Into::empty), where step s of A is a column of `V` packets and step s of B a row
+/// of which entry j lies at j * `b_apart`. Only the first `valid` columns of c are written; all of B is read.
 template <int V, int Columns, Into Mode>
-inline void subtract_tile(Index steps, Steps a, Steps b, Index b_apart, double* c, Index c_stride, Index valid) noexcept {
+inline void subtract_tile(Index steps, Steps a, Steps b, Index b_apart, double* c, Index c_stride,
+                          Index valid) noexcept {
   Packet sum[Columns][V];
   for (auto& column : sum)
     for (Packet& x : column) x = broadcast(0.0);
@@ -61,7 +68,8 @@ inline void subtract_tile(Index steps, Steps a, Steps b, Index b_apart, double* 
 
 /// The same with the number of packets, up to tile_packets, known at run time.
 template <Into Mode>
-inline void subtract_tile(Index packets, Index steps, Steps a, Steps b, double* c, Index c_stride, Index valid) noexcept {
+inline void subtract_tile(Index packets, Index steps, Steps a, Steps b, double* c, Index c_stride,
+                          Index valid) noexcept {
   if (packets >= 3)
     subtract_tile<3, tile_columns, Mode>(steps, a, b, 1, c, c_stride, valid);
   else if (packets == 2)

@@ -18,7 +18,8 @@ struct SetupOptions {
       std::numeric_limits<std::size_t>::max();  ///< [bytes]; more is refused as too_large before it is allocated
   int threads = 1;
   AdmissionPolicy admission;
-  int compliance_slots = 256;  ///< vertices whose compliance a lazy solver remembers
+  int compliance_slots = 256;  ///< vertices whose compliance is remembered by a solver that does not store all
+  ColumnFill columns = ColumnFill::in_tick;  ///< when such a solver computes it
 };
 
 /// Linear static tissue. `E` is the element, `M` the material, `Solver` a policy of model/policies.hpp; assembly,
@@ -67,8 +68,6 @@ class HapticFEModel {
   VectorX internal_force() const { return statics_->internal_force(); }
   VectorX reactions() const { return statics_->reactions(); }
   double strain_energy() const { return palpate::strain_energy(statics_->body(), statics_->displacement()); }
-  /// P_u of thesis 3.7 on the free dofs of the touchable nodes; condensing policies only.
-  const MatrixX& condensed_stiffness() const noexcept { return tick_system_.stiffness(); }
 
   /// Displacement with these forces on the contact surface, for drawing: one back-substitution. u has 3 entries per
   /// node. No allocation; may run beside a tick, but not twice at once.
@@ -115,7 +114,8 @@ class HapticFEModel {
 
   // TissueModel
   const ContactSurface& contact_surface() const noexcept { return surface_; }
-  Status require_columns(std::span<const int> vertices) noexcept { return compliance_.require(tick_system_, vertices); }
+  Status require_columns(std::span<const int> vertices) noexcept { return compliance_.require(vertices); }
+  void foresee(std::span<const int> vertices) noexcept { compliance_.foresee(vertices); }
   auto compliance(int i, int j) const noexcept { return compliance_(i, j); }
   double compliance_bound(int j) const noexcept { return compliance_.bound(j); }
   double compliance_floor() const noexcept { return compliance_floor_; }
@@ -156,27 +156,21 @@ class HapticFEModel {
                                                     report_);
     statics_->set_conditions(scene_, scene_.gravity());
     gravity_ = scene_.gravity();
-    tick_system_ = statics_->system();
     prepare_contact(touchable.triangles, options);
   }
 
   void prepare_contact(const std::vector<Triangle>& triangles, const SetupOptions& options) {
     const StageTimer timer(report_, "compliance");
     const int vertices = static_cast<int>(touchable_.size());
-    std::vector<Index> kept_index(3 * touchable_.size(), -1);
-    Index kept = 0;
-    for (std::size_t i = 0; i < kept_index.size(); ++i)
-      if (!statics_->conditions().is_constrained(3 * Index{touchable_[i / 3]} + static_cast<Index>(i % 3)))
-        kept_index[i] = kept++;
-    compliance_ = ContactCompliance<typename Traits::Scalar>(
-        vertices, std::move(kept_index), kept, Traits::eager ? vertices : options.compliance_slots, limits_);
+    compliance_ = Compliance(statics_->system(), kept_index(), Traits::eager ? vertices : options.compliance_slots, limits_);
     if (Traits::eager)
       for (int v = 0; v < vertices; ++v) {
         if (v % 64 == 0) limits_.advance("compliance", static_cast<double>(v) / static_cast<double>(vertices));
         require_columns({&v, 1});
       }
+    else if (vertices > 0)
+      sample_columns(options.columns);
     // A thousandth of a millionth of the tissue's own compliance, or a nanometre per newton where nothing moves.
-    if (!Traits::eager && vertices > 0) require_columns(std::array{0, vertices / 2, vertices - 1});
     for (int v = 0; v < vertices; ++v)
       compliance_floor_ = std::max(compliance_floor_, 1e-9 * compliance_.bound(v));
     if (compliance_floor_ == 0.0) compliance_floor_ = 1e-9;
@@ -188,6 +182,29 @@ class HapticFEModel {
     report_.seen_nodes = static_cast<Index>(seen_.size());
     report_.compliance_bytes = compliance_.bytes();
     limits_.advance("checks", 1.0);
+  }
+
+  /// Kept dof of every touchable dof, -1 when it is prescribed.
+  std::vector<Index> kept_index() const {
+    std::vector<Index> index(3 * touchable_.size(), -1);
+    Index kept = 0;
+    for (std::size_t i = 0; i < index.size(); ++i)
+      if (!statics_->conditions().is_constrained(3 * Index{touchable_[i / 3]} + static_cast<Index>(i % 3)))
+        index[i] = kept++;
+    return index;
+  }
+
+  /// Computes a few columns: how soft the surface is, and how long a column takes.
+  void sample_columns(ColumnFill fill) {
+    const int vertices = static_cast<int>(touchable_.size());
+    const std::array sampled{0, vertices / 2, vertices - 1};
+    const auto start = std::chrono::steady_clock::now();
+    require_columns(sampled);
+    report_.column_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 3.0;
+    double softest = 0.0;
+    for (int v : sampled) softest = std::max(softest, compliance_.bound(v));
+    compliance_.assume(softest / std::sqrt(3.0));
+    if (fill == ColumnFill::ahead) compliance_.fill_ahead();
   }
 
   Vector3 deformed(NodeId node) const noexcept {
@@ -205,8 +222,8 @@ class HapticFEModel {
   Vector3 origin_ = Vector3::Zero(), gravity_ = Vector3::Zero();
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity(), world_ = Eigen::Isometry3d::Identity();
   std::unique_ptr<Statics<E, Solver>> statics_;
-  typename Statics<E, Solver>::System tick_system_;
-  ContactCompliance<typename Traits::Scalar> compliance_;
+  using Compliance = ContactCompliance<typename Statics<E, Solver>::System, typename Traits::Scalar>;
+  Compliance compliance_;
   double compliance_floor_ = 0.0;
   ContactSurface surface_;
   std::vector<Vector3> moved_;

@@ -7,7 +7,10 @@
 #include <palpate/condensation/condensed_system.hpp>
 #include <palpate/condensation/uncondensed.hpp>
 #include <palpate/linear/dense_conjugate_gradient.hpp>
+#include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/dense_inverse.hpp>
+
+#include <utility>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -34,7 +37,7 @@ template <class Policy, class Assembly>
 struct WithAssembly {};
 
 /// What a policy means: `Assembly`, `Scalar` of the contact compliance, whether it is `eager` (computed at set-up), and
-/// how to make the prepared system from the stiffness. Specialise it for a solver of your own.
+/// how to make the prepared system from the stiffness and what is known of its dofs. Specialise it for a solver of your own.
 template <class Policy>
 struct SolverTraits;
 
@@ -44,8 +47,10 @@ struct SolverTraits<SparseCholesky> {
   using Scalar = double;
   static constexpr bool eager = false;
   static Uncondensed<SparseCholesky> make(const BlockMatrix& k, const EssentialConditions& conditions,
-                                          std::vector<Index> kept, const SetupLimits& limits) {
-    return {SparseCholesky(free_matrix(k, conditions), limits), std::move(kept)};
+                                          DofLayout layout, const SetupLimits& limits) {
+    std::vector<Index> kept = std::exchange(layout.kept, {});  // asked for, but nothing is condensed onto them
+    const SparseMatrix lower = free_matrix(k, conditions);
+    return {SparseCholesky(CholeskyAnalysis(lower, layout, limits), lower, limits), std::move(kept)};
   }
 };
 
@@ -55,10 +60,9 @@ struct SolverTraits<WithAssembly<ConjugateGradient, AssemblyPolicy>> {
   using Scalar = double;
   static constexpr bool eager = false;
   template <StiffnessOperator Stiffness>
-  static auto make(const Stiffness& k, const EssentialConditions& conditions, std::vector<Index> kept,
-                   const SetupLimits&) {
+  static auto make(const Stiffness& k, const EssentialConditions& conditions, DofLayout layout, const SetupLimits&) {
     using Solver = IterativeSolver<FreeStiffness<Stiffness>>;
-    return Uncondensed<Solver>(Solver(FreeStiffness<Stiffness>(k, conditions), {}), std::move(kept));
+    return Uncondensed<Solver>(Solver(FreeStiffness<Stiffness>(k, conditions), {}), std::move(layout.kept));
   }
 };
 template <>
@@ -70,10 +74,10 @@ struct SolverTraits<BasicSelectiveInverse<S>> {
   using Scalar = S;
   static constexpr bool eager = true;
   static Uncondensed<DenseInverse<S>> make(const BlockMatrix& k, const EssentialConditions& conditions,
-                                           std::vector<Index> kept, const SetupLimits& limits) {
+                                           DofLayout layout, const SetupLimits& limits) {
     const double n = static_cast<double>(conditions.free_count());
     limits.require_memory(3.0 * n * n * sizeof(double), "the inverse of the whole stiffness");
-    return {DenseInverse<S>(MatrixX(free_matrix(k, conditions)), limits), std::move(kept)};
+    return {DenseInverse<S>(MatrixX(free_matrix(k, conditions)), limits), std::move(layout.kept)};
   }
 };
 
@@ -104,11 +108,10 @@ struct SolverTraits<Condensed<Inner>> {
   using Assembly = Assembled;
   using Scalar = typename CondensedTraits<Inner>::Scalar;
   static constexpr bool eager = CondensedTraits<Inner>::eager;
-  static CondensedSystem<typename CondensedTraits<Inner>::Solver> make(const BlockMatrix& k,
-                                                                       const EssentialConditions& conditions,
-                                                                       std::vector<Index> kept,
-                                                                       const SetupLimits& limits) {
-    return {condense(free_matrix(k, conditions), kept, limits), limits};
+  using System = CondensedSystem<typename CondensedTraits<Inner>::Solver>;
+  static System make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+                     const SetupLimits& limits) {
+    return {condense(free_matrix(k, conditions), layout, limits), limits};
   }
 };
 

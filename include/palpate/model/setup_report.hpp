@@ -28,6 +28,7 @@ struct SetupReport {
   double condition_estimate = 0.0;                      ///< 1-norm; 0 when not estimated (iterative solvers)
   double probe_error = 0.0;                             ///< relative error of a solve with known answer
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage
+  double column_seconds = 0.0;  ///< for the compliance of a vertex pressed for the first time; 0 when all is stored
   std::uint32_t flags = 0;
   std::vector<std::string> remarks;  ///< one sentence per flag
 
@@ -55,6 +56,8 @@ inline std::ostream& operator<<(std::ostream& out, const SetupReport& r) {
   out << "\n  quality: worst " << number(r.worst_quality) << ", mean " << number(r.mean_quality) << "; condition "
       << (r.condition_estimate > 0.0 ? number(r.condition_estimate) : std::string("not estimated")) << ", probe error "
       << number(r.probe_error) << '\n';
+  if (r.column_seconds > 0.0)
+    out << "  a vertex pressed for the first time: " << number(1e6 * r.column_seconds) << " us\n";
   for (const std::string& remark : r.remarks) out << "  note: " << remark << '\n';
   return out;
 }

@@ -37,7 +37,7 @@ class Statics {
   using Traits = SolverTraits<Policy>;
   using Stiffness = typename Traits::Assembly::template Operator<E>;
   using System = decltype(Traits::make(std::declval<const Stiffness&>(), std::declval<const EssentialConditions&>(),
-                                       std::vector<Index>{}, SetupLimits{}));
+                                       DofLayout{}, SetupLimits{}));
   static_assert(StaticSystem<System>);
 
   /// Prepares everything but the contact. `kept_nodes` are the touchable ones. Throws what assembly, factorisation and
@@ -60,7 +60,7 @@ class Statics {
     report.kept_dofs = static_cast<Index>(kept.size());
     {
       const StageTimer timer(report, "factorisation");
-      system_ = Traits::make(stiffness_, conditions_, std::move(kept), limits);
+      system_ = Traits::make(stiffness_, conditions_, layout(std::move(kept)), limits);
     }
     {
       const StageTimer timer(report, "checks");
@@ -178,13 +178,20 @@ class Statics {
               "Give every region a density in kg/m^3");
   }
 
+  DofLayout layout(std::vector<Index> kept) const {
+    DofLayout layout{{}, body_.mesh.positions, std::move(kept)};
+    layout.node_of_dof.reserve(conditions_.free_dofs.size());
+    for (const Index dof : conditions_.free_dofs) layout.node_of_dof.push_back(dof / 3);
+    return layout;
+  }
+
   /// Measures what the solver is worth; flags or refuses.
   void check_solver(SetupReport& report) {
     const FreeStiffness<Stiffness> k(stiffness_, conditions_);
     report.probe_error = probe_error(k, system_);
     if constexpr (std::same_as<Stiffness, BlockMatrix>)
       if constexpr (!std::same_as<Policy, WithAssembly<ConjugateGradient, Assembled>>)
-        report.condition_estimate = conditioning_norm() * inverse_norm_estimate(system_);
+        report.condition_estimate = free_norm(stiffness_, conditions_) * inverse_norm_estimate(system_);
     if (report.probe_error > refused_probe_error) {
       SetupProblem p;
       p.kind = SetupErrorKind::ill_conditioned;
@@ -203,21 +210,6 @@ class Statics {
       report.set(SetupFlag::ill_conditioned, "the condition of the stiffness is about " +
                                                  number(report.condition_estimate) +
                                                  ": parameters that differ in the last digits give other forces");
-  }
-
-  /// 1-norm of K over the free dofs.
-  double conditioning_norm() const {
-    if constexpr (std::same_as<Stiffness, BlockMatrix>) {
-      const SparseMatrix lower = free_matrix(stiffness_, conditions_);
-      VectorX sums = VectorX::Zero(lower.rows());
-      for (Index col = 0; col < lower.cols(); ++col)
-        for (SparseMatrix::InnerIterator it(lower, col); it; ++it) {
-          sums[col] += std::abs(it.value());
-          if (it.row() != col) sums[it.row()] += std::abs(it.value());
-        }
-      return sums.size() > 0 ? sums.maxCoeff() : 0.0;
-    }
-    return 0.0;
   }
 
   static constexpr double flagged_probe_error = 1e-6;

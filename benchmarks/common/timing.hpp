@@ -1,0 +1,106 @@
+// Processor time, its medians, and the memory a piece of work takes.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
+namespace bench {
+
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Processor time of the whole process [s]: a baseline that quietly uses a second thread gains nothing by it.
+inline double process_seconds() noexcept {
+#if defined(CLOCK_PROCESS_CPUTIME_ID)
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+#else
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+#endif
+}
+
+template <class Work>
+double seconds_of(Work&& work) {
+  const double start = process_seconds();
+  work();
+  return process_seconds() - start;
+}
+
+/// Value that a share `fraction` of all values does not exceed.
+inline double percentile(std::vector<double> values, double fraction) {
+  if (values.empty()) return unknown;
+  const auto at = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+/// How often something is repeated: until that much time is spent, within these bounds.
+struct Repeat {
+  double seconds = 1.5;
+  int least = 3, most = 15;
+};
+
+/// Median time of work() [s]. Work of under a millisecond is timed in batches of eight.
+template <class Work>
+double median_seconds(Work&& work, Repeat repeat = {}) {
+  const double first = seconds_of(work);
+  const int batch = first < 1e-3 ? 8 : 1;
+  std::vector<double> times;
+  double spent = first;
+  for (int i = 0; i < repeat.least || (i < repeat.most && spent < repeat.seconds); ++i) {
+    times.push_back(seconds_of([&] {
+                      for (int k = 0; k < batch; ++k) work();
+                    }) /
+                    batch);
+    spent += batch * times.back();
+  }
+  return percentile(std::move(times), 0.5);
+}
+
+/// Medians of two pieces of work done in turns, so that a slow phase of the machine hits both.
+template <class First, class Second>
+std::pair<double, double> medians_in_turns(First&& first, Second&& second, Repeat repeat = {}) {
+  std::vector<double> one, other;
+  double spent = 0.0;
+  for (int i = 0; i < repeat.least || (i < repeat.most && spent < repeat.seconds); ++i) {
+    one.push_back(seconds_of(first));
+    other.push_back(seconds_of(second));
+    spent += one.back() + other.back();
+  }
+  return {percentile(std::move(one), 0.5), percentile(std::move(other), 0.5)};
+}
+
+/// A line of /proc/self/status [bytes]; not a number where there is none.
+inline double process_bytes(const char* key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind(key, 0) == 0) return 1024.0 * std::atof(line.c_str() + std::strlen(key) + 1);
+  return unknown;
+}
+
+/// Largest growth of the resident memory during work() [bytes]; not a number where the system does not say.
+template <class Work>
+double peak_growth(Work&& work) {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+  std::ofstream("/proc/self/clear_refs") << "5";  // forget the peak so far
+  const double before = process_bytes("VmRSS");
+  work();
+  return process_bytes("VmHWM") - before;
+}
+
+}  // namespace bench

@@ -1,0 +1,39 @@
+// A queue between exactly two threads.
+#pragma once
+
+#include <palpate/core/config.hpp>
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Bounded first-in first-out queue, one thread pushes and one pops. Neither waits, locks or allocates.
+template <class T, std::size_t Capacity>
+class SpscRing {
+ public:
+  /// False when it is full.
+  bool push(const T& value) noexcept {
+    const std::size_t tail = tail_.load(std::memory_order_relaxed);
+    if (tail - head_.load(std::memory_order_acquire) == Capacity) return false;
+    items_[tail % Capacity] = value;
+    tail_.store(tail + 1, std::memory_order_release);
+    return true;
+  }
+  /// False when it is empty.
+  bool pop(T& value) noexcept {
+    const std::size_t head = head_.load(std::memory_order_relaxed);
+    if (head == tail_.load(std::memory_order_acquire)) return false;
+    value = items_[head % Capacity];
+    head_.store(head + 1, std::memory_order_release);
+    return true;
+  }
+
+ private:
+  std::array<T, Capacity> items_{};
+  alignas(64) std::atomic<std::size_t> head_{0};
+  alignas(64) std::atomic<std::size_t> tail_{0};
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,85 @@
+// Whole surfaces touched without a stored compliance: columns computed in the tick, or by a thread ahead of it.
+#include "contact/servo_session.hpp"
+
+#include "catch.hpp"
+
+using namespace palpate;
+using test::ball_radius;
+using test::pad_height;
+using test::ServoSession;
+
+namespace {
+
+using Sparse = HapticFEModel<Tet4, LinearElastic, SparseCholesky>;
+
+Sparse make_model(ColumnFill fill, int slots = 256) {
+  SetupOptions options;
+  options.columns = fill;
+  options.compliance_slots = slots;
+  return test::make_pad<Sparse>("surface", 1e4, {6, 6, 4}, options);
+}
+
+/// Ticks at one place until no column is missing; false when that does not happen within some seconds.
+bool settle(ServoSession<Sparse>& session) {
+  int complete = 0;
+  for (int i = 0; i < 20'000 && complete < 20; ++i) {
+    complete = session.tick().status.has(StatusFlag::degraded_model) ? 0 : complete + 1;
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  return complete == 20;
+}
+
+}  // namespace
+
+TEST_CASE("columns computed ahead end at the force of columns computed in the tick", "[haptic][columns]") {
+  Sparse ahead = make_model(ColumnFill::ahead), in_tick = make_model(ColumnFill::in_tick);
+  ServoSession session(ahead), reference(in_tick);
+  for (double x : {0.009, 0.0137, 0.021}) {
+    session.press(2e-3, x);
+    reference.press(2e-3, x);
+    REQUIRE(settle(session));
+    reference.hold(50);
+    const Vector3 f = session.servo.contact_force(), g = reference.servo.contact_force();
+    CHECK((f - g).norm() <= 1e-3 * g.norm());
+  }
+}
+
+TEST_CASE("a column that is not there yet is flagged, and the force stays finite and soft", "[haptic][columns][extreme]") {
+  Sparse ahead = make_model(ColumnFill::ahead), in_tick = make_model(ColumnFill::in_tick);
+  ServoSession session(ahead), reference(in_tick);
+  const Vector3 above(0.0137, 0.0159, pad_height + ball_radius + 5e-3), pressed(0.0137, 0.0159, pad_height + ball_radius - 1.5e-3);
+  session.tick(above);
+  reference.tick(above);
+  const bool flagged = session.tick(pressed).status.has(StatusFlag::degraded_model);
+  reference.tick(pressed);
+  const double f = session.servo.contact_force().norm(), g = reference.servo.contact_force().norm();
+  CHECK(std::isfinite(f));
+  CHECK(f <= 5.0 * g);
+  if (!flagged) CHECK(std::abs(f - g) <= 1e-2 * g);  // the thread was faster
+}
+
+TEST_CASE("with less room than vertices near the ball the tick says so and goes on", "[haptic][columns][extreme]") {
+  Sparse ahead = make_model(ColumnFill::ahead, 4);
+  ServoSession session(ahead);
+  session.press(2e-3);
+  for (int i = 0; i < 300; ++i) {
+    const ToolForce& f = session.tick(session.states[0].position + Vector3(2e-5, 1e-5, 0.0));
+    CHECK(f.force.allFinite());
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+}
+
+TEST_CASE("a model may end while columns are in work, and may be moved", "[haptic][columns]") {
+  for (int round = 0; round < 10; ++round) {
+    Sparse first = make_model(ColumnFill::ahead);
+    std::vector<int> all(static_cast<std::size_t>(first.contact_surface().vertex_count()));
+    std::iota(all.begin(), all.end(), 0);
+    first.foresee(all);
+    Sparse moved = std::move(first);
+    for (int i = 0; i < 3 * round; ++i) {
+      moved.require_columns(all);
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+  }
+  SUCCEED();
+}
