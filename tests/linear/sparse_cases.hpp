@@ -2,7 +2,7 @@
 
 #include "linear/systems.hpp"
 
-#include <palpate/linear/multifrontal_cholesky.hpp>
+#include <palpate/linear/sparse_cholesky.hpp>
 
 namespace test {
 

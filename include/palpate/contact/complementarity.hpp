@@ -86,16 +86,18 @@ class ComplementarityProblem {
     active_.fill(false);
     lambda.setZero();
     gap_ = b;
-    for (; pivots < maximum_pivots; ++pivots) {
+    while (true) {
       int deepest = -1;
       for (int i = 0; i < rows_; ++i)
         if (!active_[at(i)] && gap_[i] < -tolerance_ && (deepest < 0 || gap_[i] < gap_[deepest])) deepest = i;
       if (deepest < 0) return true;
       add(deepest);
-      while (!step() && pivots < maximum_pivots) ++pivots;
+      for (bool whole = false; !whole; ++pivots) {
+        if (pivots >= maximum_pivots) return false;
+        whole = step();
+      }
       update_gaps();
     }
-    return false;
   }
 
   /// Goes from lambda towards the answer of the active rows; true if all of the way, else to where the first forces

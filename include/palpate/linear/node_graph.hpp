@@ -116,7 +116,7 @@ inline void check_layout(const SparseLower& lower, const DofLayout& layout) {
   for (Index node : layout.node_of_dof)
     fine = fine && node >= 0 && node < std::numeric_limits<NodeId>::max() / 4 &&
            (layout.positions.empty() || static_cast<std::size_t>(node) < layout.positions.size());
-  fine = fine && (layout.positions.empty() || !layout.node_of_dof.empty());
+  fine = fine && (layout.positions.empty() || layout.node_of_dof.size() == n);
   std::vector<Index> kept = layout.kept;
   std::sort(kept.begin(), kept.end());
   fine = fine && std::adjacent_find(kept.begin(), kept.end()) == kept.end();

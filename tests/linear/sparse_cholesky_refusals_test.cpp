@@ -1,5 +1,5 @@
 // Matrices the direct solver must refuse, with the dofs to blame.
-#include <palpate/linear/multifrontal_cholesky.hpp>
+#include <palpate/linear/sparse_cholesky.hpp>
 
 #include "linear/sparse_cases.hpp"
 
@@ -8,7 +8,7 @@ using namespace test;
 namespace {
 
 SetupProblem problem_of(const SparseMatrix& lower) {
-  const SetupProblem p = refusal([&] { MultifrontalCholesky(lower, {}); });
+  const SetupProblem p = refusal([&] { SparseCholesky(lower, {}); });
   CHECK(p.kind == SetupErrorKind::not_positive_definite);
   CHECK(p.count > 0);
   CHECK(p.ids.size() == static_cast<std::size_t>(std::min<std::int64_t>(p.count, SetupProblem::max_ids)));
@@ -23,7 +23,7 @@ SparseMatrix free_ball(int refinement) {
 
 }  // namespace
 
-TEST_CASE("multifrontal: NaN and infinity are refused wherever they are", "[linear][multifrontal][extreme]") {
+TEST_CASE("sparse Cholesky: NaN and infinity are refused wherever they are", "[linear][sparse_cholesky][extreme]") {
   const SparseMatrix good = ball_stiffness(3);
   for (double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})
     for (Index at : {Index{0}, good.nonZeros() / 3, good.nonZeros() / 2, good.nonZeros() - 1}) {
@@ -33,7 +33,7 @@ TEST_CASE("multifrontal: NaN and infinity are refused wherever they are", "[line
     }
 }
 
-TEST_CASE("multifrontal: indefinite and negative matrices are refused", "[linear][multifrontal][extreme]") {
+TEST_CASE("sparse Cholesky: indefinite and negative matrices are refused", "[linear][sparse_cholesky][extreme]") {
   CHECK(problem_of(ball_stiffness(3, {5e3, 0.6, 0.0})).value < 0.0);
   CHECK(problem_of(SparseMatrix(-ball_stiffness(2))).value <= 0.0);
   SparseMatrix m = ball_stiffness(2);
@@ -42,7 +42,7 @@ TEST_CASE("multifrontal: indefinite and negative matrices are refused", "[linear
   CHECK(p.value < 0.0);
 }
 
-TEST_CASE("multifrontal: a lone bad dof is named", "[linear][multifrontal][extreme]") {
+TEST_CASE("sparse Cholesky: a lone bad dof is named", "[linear][sparse_cholesky][extreme]") {
   MatrixX m = MatrixX::Identity(30, 30);
   m(17, 17) = 0.0;
   const SetupProblem p = problem_of(lower_half(m));
@@ -55,7 +55,7 @@ TEST_CASE("multifrontal: a lone bad dof is named", "[linear][multifrontal][extre
   CHECK(problem_of(missing).ids == std::vector<std::int64_t>{2});
 }
 
-TEST_CASE("multifrontal: a free body is refused, at any size and in any unit", "[linear][multifrontal][extreme]") {
+TEST_CASE("sparse Cholesky: a free body is refused, at any size and in any unit", "[linear][sparse_cholesky][extreme]") {
   for (int refinement : {1, 2, 4, 7})
     for (double unit : {1e-9, 1.0, 1e9}) {
       INFO(refinement << " " << unit);
@@ -63,23 +63,23 @@ TEST_CASE("multifrontal: a free body is refused, at any size and in any unit", "
     }
 }
 
-TEST_CASE("multifrontal: a barely definite matrix is taken", "[linear][multifrontal][extreme]") {
+TEST_CASE("sparse Cholesky: a barely definite matrix is taken", "[linear][sparse_cholesky][extreme]") {
   const MatrixX m = with_condition(40, 1e12);
   VectorX x(40);
-  MultifrontalCholesky solver(lower_half(m), {});
+  SparseCholesky solver(lower_half(m), {});
   solver.solve_into(m * VectorX::Ones(40), x);
   CHECK((x - VectorX::Ones(40)).norm() <= 1e-2);
 }
 
-TEST_CASE("multifrontal: a refusal leaves nothing behind", "[linear][multifrontal]") {
+TEST_CASE("sparse Cholesky: a refusal leaves nothing behind", "[linear][sparse_cholesky]") {
   const SparseMatrix good = ball_stiffness(2);
   SparseMatrix bad = good;
   bad.coeffRef(4, 4) = -1.0;
-  MultifrontalCholesky solver(good, {});
+  SparseCholesky solver(good, {});
   VectorX before(good.rows()), after(good.rows());
   const VectorX b = VectorX::Ones(good.rows());
   solver.solve_into(b, before);
-  CHECK_REFUSED(SetupErrorKind::not_positive_definite, solver = MultifrontalCholesky(solver.analysis(), bad, {}));
+  CHECK_REFUSED(SetupErrorKind::not_positive_definite, solver = SparseCholesky(solver.analysis(), bad, {}));
   solver.solve_into(b, after);
   CHECK(before == after);
 }

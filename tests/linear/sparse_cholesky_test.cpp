@@ -1,5 +1,5 @@
 // The direct solver against dense references, path by path.
-#include <palpate/linear/multifrontal_cholesky.hpp>
+#include <palpate/linear/sparse_cholesky.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/solver_laws.hpp>
 
@@ -11,7 +11,7 @@ using namespace test;
 
 namespace {
 
-MultifrontalCholesky factored(const SparseCase& c) {
+SparseCholesky factored(const SparseCase& c) {
   return {CholeskyAnalysis(c.lower, c.layout), c.lower, {}};
 }
 
@@ -37,10 +37,10 @@ std::vector<Index> some_dofs(Index n) {
 
 }  // namespace
 
-TEST_CASE("the multifrontal solver solves to rounding", "[linear][multifrontal]") {
+TEST_CASE("the sparse solver solves to rounding", "[linear][sparse_cholesky]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
-    MultifrontalCholesky solver = factored(c);
+    SparseCholesky solver = factored(c);
     REQUIRE(solver.size() == c.lower.rows());
     if (solver.size() == 0) continue;
     VectorX x(solver.size());
@@ -55,13 +55,13 @@ TEST_CASE("the multifrontal solver solves to rounding", "[linear][multifrontal]"
   }
 }
 
-TEST_CASE("the multifrontal solver keeps the laws of solvers", "[linear][multifrontal][laws]") {
+TEST_CASE("the sparse solver keeps the laws of solvers", "[linear][sparse_cholesky][laws]") {
   const SparseCase c = ball_case(3);
   const MatrixX k = full(c.lower);
-  MultifrontalCholesky solver = factored(c);
+  SparseCholesky solver = factored(c);
   CHECK(testing::describe(testing::solver_laws(op_of(k), solver, {1e-13, true})) == "");
   for (double unit : {1e-12, 1e12}) {
-    MultifrontalCholesky scaled(SparseMatrix(unit * c.lower), {});
+    SparseCholesky scaled(SparseMatrix(unit * c.lower), {});
     const VectorX b = random_vector(k.rows(), 9), truth = exact_solution(unit * k, b);
     VectorX x(k.rows());
     scaled.solve_into(b, x);
@@ -69,10 +69,10 @@ TEST_CASE("the multifrontal solver keeps the laws of solvers", "[linear][multifr
   }
 }
 
-TEST_CASE("a large front is factorised in panels", "[linear][multifrontal]") {
+TEST_CASE("a large front is factorised in panels", "[linear][sparse_cholesky]") {
   const Index n = 700;  // several panels, and more rows than the unpacked kernels take
   const SparseMatrix lower = lower_half(with_condition(n, 1e4));
-  MultifrontalCholesky solver(lower, {});
+  SparseCholesky solver(lower, {});
   CHECK(solver.analysis().front_count() == 1);
   CHECK(solver.factor_nonzeros() == n * (n + 1) / 2);
   const VectorX b = random_vector(n, 4);
@@ -84,7 +84,7 @@ TEST_CASE("a large front is factorised in panels", "[linear][multifrontal]") {
   DofLayout layout;  // and with rows below it
   for (Index i = 0; i < 250; ++i) layout.kept.push_back(i);
   MatrixX schur;
-  MultifrontalCholesky::interior(CholeskyAnalysis(lower, layout), lower, schur, {});
+  SparseCholesky::interior(CholeskyAnalysis(lower, layout), lower, schur, {});
   const MatrixX k = full(lower);
   const MatrixX expected =
       k.topLeftCorner(250, 250) -
@@ -92,7 +92,7 @@ TEST_CASE("a large front is factorised in panels", "[linear][multifrontal]") {
   CHECK(largest(schur - expected) <= 1e-12 * largest(k));
 }
 
-TEST_CASE("kept dofs: the Schur complement is exact", "[linear][multifrontal][schur]") {
+TEST_CASE("kept dofs: the Schur complement is exact", "[linear][sparse_cholesky][schur]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
     const Index n = c.lower.rows();
@@ -100,7 +100,7 @@ TEST_CASE("kept dofs: the Schur complement is exact", "[linear][multifrontal][sc
     layout.kept = some_dofs(n);
     const CholeskyAnalysis analysis(c.lower, layout);
     MatrixX schur;
-    MultifrontalCholesky interior = MultifrontalCholesky::interior(analysis, c.lower, schur, {});
+    SparseCholesky interior = SparseCholesky::interior(analysis, c.lower, schur, {});
     const auto k = static_cast<Index>(layout.kept.size());
     REQUIRE(schur.rows() == k);
     CHECK(interior.kept() == k);
@@ -117,7 +117,7 @@ TEST_CASE("kept dofs: the Schur complement is exact", "[linear][multifrontal][sc
     interior.recover_into(kept_answer, x);
     CHECK(residual(c.lower, b, x) <= 1e-14);
     for (Index i = 0; i < k; ++i) CHECK(x[layout.kept[static_cast<std::size_t>(i)]] == kept_answer[i]);
-    MultifrontalCholesky(analysis, c.lower, {}).solve_into(b, direct);
+    SparseCholesky(analysis, c.lower, {}).solve_into(b, direct);
     CHECK(residual(c.lower, b, direct) <= 1e-14);
 
     // The interior factor alone holds the kept dofs.
@@ -128,12 +128,12 @@ TEST_CASE("kept dofs: the Schur complement is exact", "[linear][multifrontal][sc
   }
 }
 
-TEST_CASE("loads and answers on a few dofs follow their elimination path", "[linear][multifrontal][path]") {
+TEST_CASE("loads and answers on a few dofs follow their elimination path", "[linear][sparse_cholesky][path]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
     const Index n = c.lower.rows();
     if (n < 10) continue;
-    MultifrontalCholesky solver = factored(c);
+    SparseCholesky solver = factored(c);
     testing::Random random(17);
     for (int trial = 0; trial < 5; ++trial) {
       std::vector<Index> loaded, wanted;
@@ -155,8 +155,8 @@ TEST_CASE("loads and answers on a few dofs follow their elimination path", "[lin
     DofLayout layout = c.layout;
     layout.kept = some_dofs(n);
     MatrixX schur;
-    MultifrontalCholesky interior =
-        MultifrontalCholesky::interior(CholeskyAnalysis(c.lower, layout), c.lower, schur, {});
+    SparseCholesky interior =
+        SparseCholesky::interior(CholeskyAnalysis(c.lower, layout), c.lower, schur, {});
     const std::vector<Index> loaded{n / 2}, wanted{1, n - 2, n / 3};
     const std::vector<double> loads{2.0};
     std::vector<double> answer(3);
@@ -172,11 +172,11 @@ TEST_CASE("loads and answers on a few dofs follow their elimination path", "[lin
   }
 }
 
-TEST_CASE("blocks of right-hand sides are single ones", "[linear][multifrontal]") {
+TEST_CASE("blocks of right-hand sides are single ones", "[linear][sparse_cholesky]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
     const Index n = c.lower.rows();
-    MultifrontalCholesky solver = factored(c);
+    SparseCholesky solver = factored(c);
     for (Index columns : {Index{0}, Index{1}, Index{7}, Index{17}, Index{53}}) {
       MatrixX b(n, columns);
       for (Index j = 0; j < columns; ++j) b.col(j) = random_vector(n, static_cast<std::uint64_t>(j));
@@ -192,30 +192,30 @@ TEST_CASE("blocks of right-hand sides are single ones", "[linear][multifrontal]"
   }
 }
 
-TEST_CASE("new values on an analysed pattern", "[linear][multifrontal]") {
+TEST_CASE("new values on an analysed pattern", "[linear][sparse_cholesky]") {
   const SparseCase c = ball_case(3);
   const CholeskyAnalysis analysis(c.lower, c.layout);
   SparseMatrix other = c.lower;
   for (Index j = 0; j < other.cols(); ++j) other.coeffRef(j, j) *= 1.5;
   const VectorX b = random_vector(other.rows(), 8);
   VectorX reused(b.size()), fresh(b.size()), again(b.size());
-  MultifrontalCholesky(analysis, c.lower, {}).solve_into(b, again);
-  MultifrontalCholesky(analysis, other, {}).solve_into(b, reused);
-  MultifrontalCholesky(CholeskyAnalysis(other, c.layout), other, {}).solve_into(b, fresh);
+  SparseCholesky(analysis, c.lower, {}).solve_into(b, again);
+  SparseCholesky(analysis, other, {}).solve_into(b, reused);
+  SparseCholesky(CholeskyAnalysis(other, c.layout), other, {}).solve_into(b, fresh);
   CHECK(reused == fresh);  // to the last bit, and in every run
   CHECK(reused != again);
   CHECK(analysis.fits(other));
   const SparseMatrix wrong = ball_stiffness(2);
   CHECK_FALSE(analysis.fits(wrong));
-  CHECK_REFUSED(SetupErrorKind::bad_argument, MultifrontalCholesky(analysis, wrong, {}));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, SparseCholesky(analysis, wrong, {}));
   CHECK_FALSE(CholeskyAnalysis().fits(wrong));
-  CHECK_REFUSED(SetupErrorKind::bad_argument, MultifrontalCholesky(CholeskyAnalysis(), wrong, {}));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, SparseCholesky(CholeskyAnalysis(), wrong, {}));
 }
 
-TEST_CASE("multifrontal copies solve at the same time", "[linear][multifrontal][threads]") {
+TEST_CASE("sparse Cholesky: copies solve at the same time", "[linear][sparse_cholesky][threads]") {
   const SparseCase c = ball_case(3);
-  MultifrontalCholesky original = factored(c);
-  std::vector<MultifrontalCholesky> copies(3, original);
+  SparseCholesky original = factored(c);
+  std::vector<SparseCholesky> copies(3, original);
   std::vector<VectorX> expected(3, VectorX(original.size())), found = expected;
   for (std::size_t i = 0; i < 3; ++i) original.solve_into(random_vector(original.size(), i), expected[i]);
   std::vector<std::thread> threads;
@@ -228,14 +228,14 @@ TEST_CASE("multifrontal copies solve at the same time", "[linear][multifrontal][
   for (std::size_t i = 0; i < 3; ++i) CHECK(found[i] == expected[i]);
 }
 
-TEST_CASE("solves do not allocate", "[linear][multifrontal][realtime]") {
+TEST_CASE("solves do not allocate", "[linear][sparse_cholesky][realtime]") {
   const SparseCase c = ball_case(3);
   const Index n = c.lower.rows();
   DofLayout layout = c.layout;
   layout.kept = some_dofs(n);
   MatrixX schur;
-  MultifrontalCholesky solver = factored(c);
-  MultifrontalCholesky interior = MultifrontalCholesky::interior(CholeskyAnalysis(c.lower, layout), c.lower, schur, {});
+  SparseCholesky solver = factored(c);
+  SparseCholesky interior = SparseCholesky::interior(CholeskyAnalysis(c.lower, layout), c.lower, schur, {});
   const VectorX b = random_vector(n, 6);
   VectorX x(n), load(interior.kept());
   const std::vector<Index> loaded{3, 77}, wanted{5, 6};
@@ -252,20 +252,20 @@ TEST_CASE("solves do not allocate", "[linear][multifrontal][realtime]") {
   if (testing::allocations_are_counted()) CHECK(allocations == 0);
 }
 
-TEST_CASE("limits of a factorisation", "[linear][multifrontal]") {
+TEST_CASE("limits of a factorisation", "[linear][sparse_cholesky]") {
   const SparseCase c = ball_case(4);
   const CholeskyAnalysis analysis(c.lower, c.layout);
   SetupLimits limits;
   limits.memory = static_cast<std::size_t>(analysis.peak_bytes()) - 1;
-  CHECK_REFUSED(SetupErrorKind::too_large, MultifrontalCholesky(analysis, c.lower, limits));
+  CHECK_REFUSED(SetupErrorKind::too_large, SparseCholesky(analysis, c.lower, limits));
   limits.memory += 1;
-  CHECK_NOTHROW(MultifrontalCholesky(analysis, c.lower, limits));
+  CHECK_NOTHROW(SparseCholesky(analysis, c.lower, limits));
   DofLayout layout = c.layout;
   layout.kept = some_dofs(c.lower.rows());
   const CholeskyAnalysis with_kept(c.lower, layout);
   MatrixX schur;
   limits.memory = static_cast<std::size_t>(with_kept.interior_peak_bytes()) - 1;
-  CHECK_REFUSED(SetupErrorKind::too_large, MultifrontalCholesky::interior(with_kept, c.lower, schur, limits));
+  CHECK_REFUSED(SetupErrorKind::too_large, SparseCholesky::interior(with_kept, c.lower, schur, limits));
   CHECK(schur.size() == 0);
   int calls = 0;
   double last = 0.0;
@@ -274,9 +274,9 @@ TEST_CASE("limits of a factorisation", "[linear][multifrontal]") {
     last = p.fraction;
     return ++calls < 6;
   };
-  CHECK_REFUSED(SetupErrorKind::cancelled, MultifrontalCholesky(analysis, c.lower, limits));
+  CHECK_REFUSED(SetupErrorKind::cancelled, SparseCholesky(analysis, c.lower, limits));
   CHECK(calls == 6);
-  MultifrontalCholesky solver(analysis, c.lower, {});
+  SparseCholesky solver(analysis, c.lower, {});
   CHECK(static_cast<double>(solver.bytes()) <= 1.01 * analysis.factor_bytes() + 1024.0);
   CHECK(static_cast<double>(solver.factor_nonzeros()) * sizeof(double) <= analysis.factor_bytes());
 }
