@@ -17,8 +17,8 @@ struct AlignedDelete {
   void operator()(double* p) const noexcept { ::operator delete (p, std::align_val_t{alignment}); }
 };
 
-/// Uninitialised doubles, aligned for any packet. On Linux large ones ask for huge pages: filling 4 KiB pages one
-/// fault at a time costs a tenth of a factorisation.
+/// Uninitialised doubles, aligned for any packet. On Linux large ones ask for huge pages, for fewer page faults while a
+/// factorisation fills them.
 class BigArray {
  public:
   BigArray() = default;
