@@ -33,6 +33,7 @@ class AnalyticTissue {
   Status require_columns(std::span<const int>) noexcept { return {}; }
   Matrix3 compliance(int i, int j) const noexcept { return (common_ + (i == j ? own_ : 0.0)) * Matrix3::Identity(); }
   double compliance_bound(int) const noexcept { return own_ + common_; }
+  std::uint64_t compliance_revision() const noexcept { return 0; }
   double compliance_floor() const noexcept { return 1e-12; }
   const Eigen::Isometry3d& pose() const noexcept { return pose_; }
 

@@ -36,7 +36,7 @@ struct Session {
     }
   }
   void tick(std::size_t i, const Vector3& target) {
-    tools[i].motion = (target - tools[i].target).norm();
+    tools[i].motion = target - tools[i].target;
     tools[i].target = target;
     status |= problem.solve(tissue, tools);
   }

@@ -67,6 +67,7 @@ class AnyModel {
   virtual Status require_columns(std::span<const int>) noexcept = 0;
   virtual Matrix3 compliance(int, int) const noexcept = 0;
   virtual double compliance_bound(int) const noexcept = 0;
+  virtual std::uint64_t compliance_revision() const noexcept = 0;
   virtual double compliance_floor() const noexcept = 0;
   virtual const Eigen::Isometry3d& pose() const noexcept = 0;
 };

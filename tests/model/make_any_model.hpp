@@ -32,6 +32,7 @@ class ModelOf final : public AnyModel {
   Status require_columns(std::span<const int> vertices) noexcept override { return model_.require_columns(vertices); }
   Matrix3 compliance(int i, int j) const noexcept override { return model_.compliance(i, j); }
   double compliance_bound(int j) const noexcept override { return model_.compliance_bound(j); }
+  std::uint64_t compliance_revision() const noexcept override { return model_.compliance_revision(); }
   double compliance_floor() const noexcept override { return model_.compliance_floor(); }
   const Eigen::Isometry3d& pose() const noexcept override { return model_.pose(); }
 

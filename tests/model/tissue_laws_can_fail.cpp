@@ -34,6 +34,7 @@ struct Springs {
   }
   Matrix3 compliance(int i, int j) const noexcept { return c.block<3, 3>(3 * i, 3 * j); }
   double compliance_bound(int j) const noexcept { return bound[static_cast<std::size_t>(j)]; }
+  std::uint64_t compliance_revision() const noexcept { return 0; }
   double compliance_floor() const noexcept { return floor; }
   const Eigen::Isometry3d& pose() const noexcept { return frame; }
 };

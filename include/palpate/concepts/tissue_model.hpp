@@ -21,6 +21,8 @@ struct VertexForce {
 /// the status.
 /// - `compliance(i, j)` is the 3 x 3 displacement [m/N] of vertex i per force on vertex j, whose column was required: a
 /// matrix, or an Eigen expression that stays valid until the next `require_columns`.
+/// - `compliance_revision()` is another number when a value that `compliance` has given is no longer right; constant for
+/// a tissue whose compliance never changes.
 /// - `compliance_bound(j)` is at least the largest displacement [m/N] of any vertex per unit force on j.
 /// - `compliance_floor()` is a tiny compliance that keeps a fixed vertex from dividing by zero.
 /// - `foresee(vertices)`, if there is one, is told which vertices a tool may press soon.
@@ -31,6 +33,7 @@ concept TissueModel = requires(T& tissue, const T& constant, int i, std::span<co
   { constant.contact_surface().vertex_count() } noexcept -> std::convertible_to<int>;
   { tissue.require_columns(vertices) } noexcept -> std::same_as<Status>;
   { constant.compliance(i, i) } noexcept -> FixedExpression<3, 3>;
+  { constant.compliance_revision() } noexcept -> std::convertible_to<std::uint64_t>;
   { constant.compliance_bound(i) } noexcept -> std::convertible_to<double>;
   { constant.compliance_floor() } noexcept -> std::convertible_to<double>;
   { constant.pose() } noexcept -> std::same_as<const Eigen::Isometry3d&>;

@@ -19,6 +19,7 @@ struct Candidate {
   int triangle = 0;
   int tool = 0;
   int row = -1;                      ///< of the contact problem, -1 when it has none
+  int slot = -1;                     ///< where its compliance was remembered last
   bool facing = true;                ///< the ball is on the outer side
   double gap = 0.0;                  ///< [m]
   double seen = 0.0;                 ///< travel of ball and surface until then [m]
@@ -145,10 +146,10 @@ class Candidates {
   }
 
  private:
-  static constexpr int per_tick = 4;
+  static constexpr int per_tick = 2;
 
   /// Points this near may be reached while the linearisation settles; leaving one out lets the ball fall through it.
-  static double needed(const ContactTool& tool) noexcept { return tool.longest_step() + 0.5 * tool.motion; }
+  static double needed(const ContactTool& tool) noexcept { return tool.longest_step() + 0.5 * tool.motion.norm(); }
   double travel(std::size_t tool) const noexcept { return travel_[tool] + surface_travel_; }
 
   template <TissueModel Tissue>

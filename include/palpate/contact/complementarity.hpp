@@ -146,6 +146,7 @@ class ComplementarityProblem {
   /// copy of another).
   void solve_active() noexcept {
     const int m = order_count_;
+    if (factored_ == 0) factor_all();
     for (; factored_ < m; ++factored_) factor_row(factored_);
     answer_.resize(m);
     for (int p = 0; p < m; ++p) answer_[p] = -b[order_[at(p)]];
@@ -160,20 +161,43 @@ class ComplementarityProblem {
     }
   }
 
-  /// Row p of the Cholesky factor from the rows before it; the diagonal holds its inverse.
+  /// The whole Cholesky factor, column by column; the diagonal holds its inverse.
+  void factor_all() noexcept {
+    const int m = factored_ = order_count_;
+    for (int q = 0; q < m; ++q) {
+      const int j = order_[at(q)];
+      for (int p = q; p < m; ++p) factor_(p, q) = w(order_[at(p)], j);
+      factor_(q, q) *= 1.0 + relaxation;
+    }
+    for (int q = 0; q < m; ++q) {
+      double* column = &factor_(0, q);
+      const double scale = column[q] = inverse_root(column[q], order_[at(q)]);
+      for (int p = q + 1; p < m; ++p) column[p] *= scale;
+      for (int k = q + 1; k < m; ++k) {
+        double* other = &factor_(0, k);
+        const double value = column[k];
+        for (int p = k; p < m; ++p) other[p] -= value * column[p];
+      }
+    }
+  }
+
+  /// Row p of it from the rows before.
   void factor_row(int p) noexcept {
     const int i = order_[at(p)];
     std::array<double, static_cast<std::size_t>(Capacity)> row;
     for (int q = 0; q < p; ++q) row[at(q)] = w(order_[at(q)], i);
-    const double diagonal = (1.0 + relaxation) * w(i, i);
-    double pivot = diagonal;
+    double pivot = (1.0 + relaxation) * w(i, i);
     for (int q = 0; q < p; ++q) {
       const double value = row[at(q)] *= factor_(q, q);
       pivot -= value * value;
       for (int k = q + 1; k < p; ++k) row[at(k)] -= value * factor_(k, q);
     }
     for (int q = 0; q < p; ++q) factor_(p, q) = row[at(q)];
-    factor_(p, p) = pivot > 1e-13 * diagonal ? 1.0 / std::sqrt(pivot) : 0.0;
+    factor_(p, p) = inverse_root(pivot, i);
+  }
+  /// 0 for a pivot of row i that is lost to rounding.
+  double inverse_root(double pivot, int i) const noexcept {
+    return pivot > 1e-13 * w(i, i) ? 1.0 / std::sqrt(pivot) : 0.0;
   }
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }

@@ -22,13 +22,13 @@ struct ContactTool {
   Vector3 force = Vector3::Zero();   ///< of the tissue on the ball [N]
   double radius = 0.0;               ///< [m]
   double compliance = 0.0;           ///< of the coupling between proxy and device [m/N]; 0 is rigid
-  double motion = 0.0;               ///< how far the device moved since the last tick [m]
+  Vector3 motion = Vector3::Zero();  ///< of the device since the last tick [m]
   bool active = false;               ///< takes part in this tick
 
   /// The proxy that a rigid tissue pushing back with `force` would allow.
   Vector3 goal(double floor) const noexcept { return target + (compliance + floor) * force; }
   /// The longest way of the proxy in one linearisation: points that far off are known.
-  double longest_step() const noexcept { return 0.25 * radius + motion; }
+  double longest_step() const noexcept { return 0.25 * radius + motion.norm(); }
 };
 
 /// One contact of one tool: a point of the deformed surface with the three vertices that carry it. The barycentric

@@ -3,6 +3,7 @@
 
 #include <palpate/contact/candidates.hpp>
 #include <palpate/contact/complementarity.hpp>
+#include <palpate/contact/point_compliance.hpp>
 #include <palpate/core/setup_error.hpp>
 
 namespace palpate::inline PALPATE_ABI {
@@ -34,6 +35,8 @@ class ContactProblem {
     Status status;
     floor_ = tissue.compliance_floor();
     rounds_left_ = maximum_rounds;
+    compliance_.begin_tick(tissue.compliance_revision());
+    slide(tools);
     candidates_.begin_tick(tissue.contact_surface(), tools);
     candidates_.look_round(tissue, tools, displacement_);
     double change = 0.0, before = 0.0;
@@ -45,8 +48,10 @@ class ContactProblem {
       follow(tools);
       change = relative_change(tools);
       // Each step is smaller than the last by about the same ratio (the curvature of the ball is left out of the
-      // linearisation), so that the steps still to come sum to this.
-      const double expected = iteration > 0 && change < before ? change * change / (before - change) : change;
+      // linearisation), so that the steps still to come sum to this. The first step has no ratio yet.
+      const double expected = iteration == 0   ? 10.0 * change
+                              : change < before ? change * change / (before - change)
+                                                : change;
       if (arrived_ && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) return status;
       before = change;
     }
@@ -72,6 +77,16 @@ class ContactProblem {
  private:
   using Tools = std::span<ContactTool>;
 
+  /// Takes the proxies along with their devices, across the contact force: from there the first linearisation is nearly
+  /// right for a ball that slides.
+  static void slide(Tools tools) noexcept {
+    for (ContactTool& tool : tools) {
+      const double force = tool.force.squaredNorm();
+      if (!tool.active || force == 0.0 || tool.motion.norm() > 0.1 * tool.radius) continue;
+      tool.proxy += tool.motion - (tool.force.dot(tool.motion) / force) * tool.force;
+    }
+  }
+
   /// Tells a tissue that wants to know which vertices lie near the balls.
   template <TissueModel Tissue>
   void foresee(Tissue& tissue) noexcept {
@@ -91,6 +106,7 @@ class ContactProblem {
     gather_pressing(tools);
     predict_normals(iteration);
     row_count_ = 0;
+    compliance_.begin_rows();
     for (int i = 0; i < pressing_count_; ++i) add_row(tissue.contact_surface(), *pressing_[at(i)]);
     for (int built = 0;; built = row_count_) {
       if (built > 0 || row_count_ == 0)
@@ -177,6 +193,7 @@ class ContactProblem {
   /// There is always room: the caller has seen to it.
   void add_row(const ContactSurface& surface, Candidate& c) noexcept {
     c.row = row_count_;
+    c.slot = compliance_.slot_of(c.sample, c.slot);
     const ContactSample& sample = candidates_.samples()[c.sample];
     candidate_[at(row_count_)] = &c;
     Contact& row = rows_[at(row_count_++)];
@@ -193,10 +210,12 @@ class ContactProblem {
   /// Rows without force make room; the number of rows whose compliance is built is then none.
   int drop_idle_rows() noexcept {
     int kept = 0;
+    compliance_.begin_rows();
     for (int i = 0; i < row_count_; ++i) {
       Candidate& c = *candidate_[at(i)];
       c.row = rows_[at(i)].force > 0.0 ? kept : -1;
       if (c.row < 0) continue;
+      c.slot = compliance_.slot_of(c.sample, c.slot);
       candidate_[at(kept)] = &c;
       rows_[at(kept++)] = rows_[at(i)];
     }
@@ -230,32 +249,29 @@ class ContactProblem {
       problem_.b[i] = ci.normal.dot(tool.target - ci.rest) - tool.radius;
       for (int j = 0; j <= i; ++j) {
         const Contact& cj = rows_[at(j)];
-        if (ci.weights[0] == 1.0 && cj.weights[0] == 1.0) {
-          set_responses(tissue.compliance(ci.vertices[0], cj.vertices[0]), i, j);
-        } else {
-          set_responses(weighted_compliance(tissue, ci, cj), i, j);
-        }
-        double w = ci.normal.dot(response_[at(i)][at(j)]);
+        double w = set_responses(tissue, i, j);
         if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
         problem_.w(i, j) = problem_.w(j, i) = w;
       }
     }
   }
 
-  /// Displacement of two rows' points per force on the other, `c` = J C J^T.
-  template <class Compliance>
-  void set_responses(const Compliance& c, int i, int j) noexcept {
-    response_[at(i)][at(j)].noalias() = c * rows_[at(j)].normal;
-    response_[at(j)][at(i)].noalias() = c.transpose() * rows_[at(i)].normal;
-  }
+  /// Displacement of two rows' points per force on the other. Returns the part of it along the own normal. Written out
+  /// so that it stays in registers: half of the work of a tick with many contacts is here.
   template <TissueModel Tissue>
-  static Matrix3 weighted_compliance(const Tissue& tissue, const Contact& ci, const Contact& cj) noexcept {
-    Matrix3 sum = Matrix3::Zero();
-    for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t b = 0; b < 3; ++b)
-        if (ci.weights[a] * cj.weights[b] > 0.0)
-          sum += (ci.weights[a] * cj.weights[b]) * tissue.compliance(ci.vertices[a], cj.vertices[b]);
-    return sum;
+  double set_responses(const Tissue& tissue, int i, int j) noexcept {
+    const int p = candidate_[at(i)]->slot, q = candidate_[at(j)]->slot;
+    if (p < q) return set_responses(tissue, j, i);
+    const Matrix3& c = compliance_(tissue, candidates_.samples(), p, q);
+    const double *m = rows_[at(i)].normal.data(), *n = rows_[at(j)].normal.data();
+    const double x = c(0, 0) * n[0] + c(0, 1) * n[1] + c(0, 2) * n[2];
+    const double y = c(1, 0) * n[0] + c(1, 1) * n[1] + c(1, 2) * n[2];
+    const double z = c(2, 0) * n[0] + c(2, 1) * n[1] + c(2, 2) * n[2];
+    response_[at(i)][at(j)] = {x, y, z};
+    response_[at(j)][at(i)] = {c(0, 0) * m[0] + c(1, 0) * m[1] + c(2, 0) * m[2],
+                               c(0, 1) * m[0] + c(1, 1) * m[1] + c(2, 1) * m[2],
+                               c(0, 2) * m[0] + c(1, 2) * m[1] + c(2, 2) * m[2]};
+    return m[0] * x + m[1] * y + m[2] * z;
   }
 
   /// Hands the answer to points, vertices and tools.
@@ -335,6 +351,7 @@ class ContactProblem {
   SurfaceDisplacement<3 * Capacity> displacement_;
   Candidates<Capacity> candidates_;
   ComplementarityProblem<Capacity> problem_;
+  PointCompliance<Capacity> compliance_;
   std::array<Contact, capacity> rows_{};
   std::array<Candidate*, capacity> candidate_{}, pressing_{};  // of the rows; of the last linearisation
   std::array<std::array<Vector3, capacity>, capacity> response_{};  // of a row's point to unit force on another

@@ -145,7 +145,7 @@ class HapticServo {
     input.status = {};
     input.readable = state.valid;
     input.restarted = false;
-    tool.motion = 0.0;
+    tool.motion.setZero();
     if (!state.valid) {
       tool.active = input.known = false;
       tool.force.setZero();
@@ -161,8 +161,8 @@ class HapticServo {
       return;
     }
     input.time = state.time;
-    const double motion = (position - input.position).norm();
-    if (input.known && motion > 2.0 * tool.radius) {
+    const Vector3 motion = position - input.position;
+    if (input.known && motion.norm() > 2.0 * tool.radius) {
       input.known = false;
       input.status.set(StatusFlag::reacquired);
     }

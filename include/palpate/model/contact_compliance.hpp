@@ -78,6 +78,8 @@ class ContactCompliance {
     else
       return stored.template cast<double>();
   }
+  /// Another number when a column that was missing has come.
+  std::uint64_t revision() const noexcept { return revision_; }
   /// Upper bound of |displacement| of any vertex per unit force on vertex j [m/N].
   double bound(int j) const noexcept {
     return has(j) ? columns_->bound(slot_of_[static_cast<std::size_t>(j)]) : 2.0 * static_cast<double>(own_[0]);
@@ -94,6 +96,7 @@ class ContactCompliance {
     ColumnOrder done;
     while (worker_ && worker_->take(done)) {
       slot_of_[static_cast<std::size_t>(done.vertex)] = done.slot;
+      ++revision_;
       ordered_[static_cast<std::size_t>(done.vertex)] = false;
       last_used_[static_cast<std::size_t>(done.slot)] = clock_;
       if (!done.converged) status.set(StatusFlag::solver_not_converged);
@@ -119,6 +122,7 @@ class ContactCompliance {
       return status;
     }
     slot_of_[static_cast<std::size_t>(v)] = s;
+    ++revision_;
     if (!columns_->fill(system_, v, s, column_)) status.set(StatusFlag::solver_not_converged);
     return status;
   }
@@ -131,7 +135,7 @@ class ContactCompliance {
   std::vector<int> slot_of_, vertex_of_;
   std::vector<bool> ordered_;             // per vertex: the thread has it
   std::vector<std::uint64_t> last_used_;  // per slot
-  std::uint64_t clock_ = 0;
+  std::uint64_t clock_ = 0, revision_ = 0;
   VectorX column_;
   std::array<Scalar, 9> own_{};
   std::unique_ptr<ColumnWorker<System, Scalar>> worker_;  // last: it ends before what it writes to

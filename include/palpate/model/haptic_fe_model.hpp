@@ -118,6 +118,7 @@ class HapticFEModel {
   void foresee(std::span<const int> vertices) noexcept { compliance_.foresee(vertices); }
   auto compliance(int i, int j) const noexcept { return compliance_(i, j); }
   double compliance_bound(int j) const noexcept { return compliance_.bound(j); }
+  std::uint64_t compliance_revision() const noexcept { return compliance_.revision(); }
   double compliance_floor() const noexcept { return compliance_floor_; }
   /// Frame of the contact surface in the world.
   const Eigen::Isometry3d& pose() const noexcept { return world_; }
