@@ -20,6 +20,7 @@ struct SetupOptions {
   AdmissionPolicy admission;
   int compliance_slots = 256;  ///< vertices whose compliance is remembered by a solver that does not store all
   ColumnFill columns = ColumnFill::in_tick;  ///< when such a solver computes it
+  std::string cache_file;  ///< where the prepared system is kept for the next time; empty: nowhere. See docs/cache.md
 };
 
 /// Linear static tissue. `E` is the element, `M` the material, `Solver` a policy of model/policies.hpp; assembly,
@@ -153,7 +154,7 @@ class HapticFEModel {
     touchable_ = touchable.nodes;
     seen_ = resolve_seen(body.mesh, boundary, scene_);
     statics_ = std::make_unique<Statics<E, Solver>>(std::move(body), scene_, std::move(boundary), touchable_, limits_,
-                                                    report_);
+                                                    options.cache_file, report_);
     statics_->set_conditions(scene_, scene_.gravity());
     gravity_ = scene_.gravity();
     prepare_contact(touchable.triangles, options);

@@ -5,6 +5,7 @@
 #include <palpate/linear/condition.hpp>
 #include <palpate/mesh/rigid_modes.hpp>
 #include <palpate/model/policies.hpp>
+#include <palpate/model/prepared_cache.hpp>
 #include <palpate/model/setup_report.hpp>
 
 #include <chrono>
@@ -40,10 +41,12 @@ class Statics {
                                        DofLayout{}, SetupLimits{}));
   static_assert(StaticSystem<System>);
 
-  /// Prepares everything but the contact. `kept_nodes` are the touchable ones. Throws what assembly, factorisation and
-  /// checks throw: unconstrained, not_positive_definite, ill_conditioned ...
+  /// Prepares everything but the contact. `kept_nodes` are the touchable ones; `cache_file` may hold the prepared system,
+  /// or will. Throws what assembly, factorisation and checks throw: unconstrained, not_positive_definite, ill_conditioned
+  /// ... but nothing because of the cache.
   Statics(Body<E> given, const Scene& scene, std::vector<BoundaryFace<E>> boundary,
-          const std::vector<NodeId>& kept_nodes, const SetupLimits& limits, SetupReport& report)
+          const std::vector<NodeId>& kept_nodes, const SetupLimits& limits, const std::string& cache_file,
+          SetupReport& report)
       : body_(std::move(given)),
         boundary_(std::move(boundary)),
         conditions_(resolve_essential(body_.mesh, boundary_, scene)) {
@@ -52,21 +55,9 @@ class Statics {
       const StageTimer timer(report, "assembly");
       stiffness_ = Traits::Assembly::make(body_, limits);
     }
-    std::vector<Index> kept;
-    for (NodeId node : kept_nodes)
-      for (int c = 0; c < 3; ++c)
-        if (const Index free = conditions_.free_index[static_cast<std::size_t>(3 * Index{node} + c)]; free >= 0)
-          kept.push_back(free);
-    report.kept_dofs = static_cast<Index>(kept.size());
-    {
-      const StageTimer timer(report, "factorisation");
-      system_ = Traits::make(stiffness_, conditions_, layout(std::move(kept)), limits);
-    }
-    {
-      const StageTimer timer(report, "checks");
-      limits.advance("checks", 0.0);
-      check_solver(report);
-    }
+    const DofLayout dofs = layout(kept_nodes);
+    report.kept_dofs = static_cast<Index>(dofs.kept.size());
+    prepare(dofs, kept_nodes, limits, cache_file, report);
     free_load_ = VectorX::Zero(conditions_.free_count());
     free_answer_.resize(conditions_.free_count());
     scratch_ = full_load_ = displacement_ = VectorX::Zero(conditions_.dof_count());
@@ -178,20 +169,81 @@ class Statics {
               "Give every region a density in kg/m^3");
   }
 
-  DofLayout layout(std::vector<Index> kept) const {
-    DofLayout layout{{}, body_.mesh.positions, std::move(kept)};
+  DofLayout layout(const std::vector<NodeId>& kept_nodes) const {
+    DofLayout layout{{}, body_.mesh.positions, {}};
+    for (NodeId node : kept_nodes)
+      for (int c = 0; c < 3; ++c)
+        if (const Index free = conditions_.free_index[static_cast<std::size_t>(3 * Index{node} + c)]; free >= 0)
+          layout.kept.push_back(free);
     layout.node_of_dof.reserve(conditions_.free_dofs.size());
     for (const Index dof : conditions_.free_dofs) layout.node_of_dof.push_back(dof / 3);
     return layout;
   }
 
-  /// Measures what the solver is worth; flags or refuses.
-  void check_solver(SetupReport& report) {
-    const FreeStiffness<Stiffness> k(stiffness_, conditions_);
-    report.probe_error = probe_error(k, system_);
+  /// The system, from the cache file or made and then stored.
+  void prepare(const DofLayout& dofs, const std::vector<NodeId>& kept_nodes, const SetupLimits& limits,
+               const std::string& cache_file, SetupReport& report) {
+    if constexpr (CacheablePolicy<Policy>) {
+      if (!cache_file.empty()) return prepare_cached(dofs, kept_nodes, limits, cache_file, report);
+    } else if (!cache_file.empty()) {
+      report.cache.file = cache_file;
+      report.cache.supported = false;
+    }
+    make_system(dofs, limits, report);
+  }
+
+  void prepare_cached(const DofLayout& dofs, const std::vector<NodeId>& kept_nodes, const SetupLimits& limits,
+                      const std::string& cache_file, SetupReport& report) {
+    limits.advance("cache", 0.0);
+    const CacheKey key = cache_key<E>(body_, conditions_, kept_nodes, stiffness_, Traits::cache_name,
+                                      sizeof(typename Traits::Scalar));
+    PreparedCache cache(cache_file, key, report.cache);
+    if (read_system(cache, dofs, limits, report)) return judge_solver(report);
+    system_ = System();  // what a bad file has left there
+    make_system(dofs, limits, report);
+    limits.advance("cache", 0.5);
+    const StageTimer timer(report, "write cache");
+    cache.store([&](BinaryWriter& out) {
+      out.value(report.condition_estimate);
+      system_.write(out);
+    });
+    if (report.cache.mismatch != CacheMismatch::none)
+      report.set(SetupFlag::cache_rejected, cache_file + " was not used because " + report.cache.why);
+    if (!report.cache.written)
+      report.set(SetupFlag::cache_unwritten, cache_file + " could not be written: " + report.cache.problem);
+  }
+
+  /// True when the file held this system and a solve with it is right: a last check that trusts no hash. The condition
+  /// is as it was measured when the system was made; to measure it again costs more than to read.
+  bool read_system(PreparedCache& cache, const DofLayout& dofs, const SetupLimits& limits, SetupReport& report) {
+    const StageTimer timer(report, "read cache");
+    if (!cache.open()) return false;
+    double condition = 0.0;
+    cache.payload().value(condition);
+    system_ = Traits::read(cache.payload(), stiffness_, conditions_, dofs, limits);
+    if (!cache.verify()) return false;
+    report.condition_estimate = condition;
+    report.probe_error = probe_error(FreeStiffness<Stiffness>(stiffness_, conditions_), system_);
+    return report.probe_error <= refused_probe_error ||
+           cache.reject(CacheMismatch::answers, "a solve with a known answer is wrong");
+  }
+
+  void make_system(const DofLayout& dofs, const SetupLimits& limits, SetupReport& report) {
+    {
+      const StageTimer timer(report, "factorisation");
+      system_ = Traits::make(stiffness_, conditions_, dofs, limits);
+    }
+    const StageTimer timer(report, "checks");
+    limits.advance("checks", 0.0);
+    report.probe_error = probe_error(FreeStiffness<Stiffness>(stiffness_, conditions_), system_);
     if constexpr (std::same_as<Stiffness, BlockMatrix>)
       if constexpr (!std::same_as<Policy, WithAssembly<ConjugateGradient, Assembled>>)
         report.condition_estimate = free_norm(stiffness_, conditions_) * inverse_norm_estimate(system_);
+    judge_solver(report);
+  }
+
+  /// Flags or refuses what was measured.
+  void judge_solver(SetupReport& report) const {
     if (report.probe_error > refused_probe_error) {
       SetupProblem p;
       p.kind = SetupErrorKind::ill_conditioned;
