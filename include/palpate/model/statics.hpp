@@ -2,33 +2,10 @@
 #pragma once
 
 #include <palpate/assembly/load_vector.hpp>
-#include <palpate/linear/condition.hpp>
 #include <palpate/mesh/rigid_modes.hpp>
-#include <palpate/model/policies.hpp>
-#include <palpate/model/prepared_cache.hpp>
-#include <palpate/model/setup_report.hpp>
-
-#include <chrono>
+#include <palpate/model/prepared_system.hpp>
 
 namespace palpate::inline PALPATE_ABI {
-
-/// Adds the time since its construction to a report when it goes.
-class StageTimer {
- public:
-  StageTimer(SetupReport& report, const char* stage)
-      : report_(&report), stage_(stage), start_(std::chrono::steady_clock::now()) {}
-  ~StageTimer() {
-    report_->seconds.emplace_back(stage_,
-                                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
-  }
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
-
- private:
-  SetupReport* report_;
-  const char* stage_;
-  std::chrono::steady_clock::time_point start_;
-};
 
 /// Stiffness, essential conditions, loads and prepared solver of a body. Neither copied nor moved: the solver refers to
 /// its members.
@@ -37,9 +14,7 @@ class Statics {
  public:
   using Traits = SolverTraits<Policy>;
   using Stiffness = typename Traits::Assembly::template Operator<E>;
-  using System = decltype(Traits::make(std::declval<const Stiffness&>(), std::declval<const EssentialConditions&>(),
-                                       DofLayout{}, SetupLimits{}));
-  static_assert(StaticSystem<System>);
+  using System = typename SystemSource<E, Policy>::System;
 
   /// Prepares everything but the contact. `kept_nodes` are the touchable ones; `cache_file` may hold the prepared system,
   /// or will. Throws what assembly, factorisation and checks throw: unconstrained, not_positive_definite, ill_conditioned
@@ -57,7 +32,8 @@ class Statics {
     }
     const DofLayout dofs = layout(kept_nodes);
     report.kept_dofs = static_cast<Index>(dofs.kept.size());
-    prepare(dofs, kept_nodes, limits, cache_file, report);
+    const SystemSource<E, Policy> source{body_, conditions_, stiffness_, kept_nodes, dofs, limits};
+    system_ = source.prepare(cache_file, report);
     free_load_ = VectorX::Zero(conditions_.free_count());
     free_answer_.resize(conditions_.free_count());
     scratch_ = full_load_ = displacement_ = VectorX::Zero(conditions_.dof_count());
@@ -179,94 +155,6 @@ class Statics {
     for (const Index dof : conditions_.free_dofs) layout.node_of_dof.push_back(dof / 3);
     return layout;
   }
-
-  /// The system, from the cache file or made and then stored.
-  void prepare(const DofLayout& dofs, const std::vector<NodeId>& kept_nodes, const SetupLimits& limits,
-               const std::string& cache_file, SetupReport& report) {
-    if constexpr (CacheablePolicy<Policy>) {
-      if (!cache_file.empty()) return prepare_cached(dofs, kept_nodes, limits, cache_file, report);
-    } else if (!cache_file.empty()) {
-      report.cache.file = cache_file;
-      report.cache.supported = false;
-    }
-    make_system(dofs, limits, report);
-  }
-
-  void prepare_cached(const DofLayout& dofs, const std::vector<NodeId>& kept_nodes, const SetupLimits& limits,
-                      const std::string& cache_file, SetupReport& report) {
-    limits.advance("cache", 0.0);
-    const CacheKey key = cache_key<E>(body_, conditions_, kept_nodes, stiffness_, Traits::cache_name,
-                                      sizeof(typename Traits::Scalar));
-    PreparedCache cache(cache_file, key, report.cache);
-    if (read_system(cache, dofs, limits, report)) return judge_solver(report);
-    system_ = System();  // what a bad file has left there
-    make_system(dofs, limits, report);
-    limits.advance("cache", 0.5);
-    const StageTimer timer(report, "write cache");
-    cache.store([&](BinaryWriter& out) {
-      out.value(report.condition_estimate);
-      system_.write(out);
-    });
-    if (report.cache.mismatch != CacheMismatch::none)
-      report.set(SetupFlag::cache_rejected, cache_file + " was not used because " + report.cache.why);
-    if (!report.cache.written)
-      report.set(SetupFlag::cache_unwritten, cache_file + " could not be written: " + report.cache.problem);
-  }
-
-  /// True when the file held this system and a solve with it is right: a last check that trusts no hash. The condition
-  /// is as it was measured when the system was made; to measure it again costs more than to read.
-  bool read_system(PreparedCache& cache, const DofLayout& dofs, const SetupLimits& limits, SetupReport& report) {
-    const StageTimer timer(report, "read cache");
-    if (!cache.open()) return false;
-    double condition = 0.0;
-    cache.payload().value(condition);
-    system_ = Traits::read(cache.payload(), stiffness_, conditions_, dofs, limits);
-    if (!cache.verify()) return false;
-    report.condition_estimate = condition;
-    report.probe_error = probe_error(FreeStiffness<Stiffness>(stiffness_, conditions_), system_);
-    return report.probe_error <= refused_probe_error ||
-           cache.reject(CacheMismatch::answers, "a solve with a known answer is wrong");
-  }
-
-  void make_system(const DofLayout& dofs, const SetupLimits& limits, SetupReport& report) {
-    {
-      const StageTimer timer(report, "factorisation");
-      system_ = Traits::make(stiffness_, conditions_, dofs, limits);
-    }
-    const StageTimer timer(report, "checks");
-    limits.advance("checks", 0.0);
-    report.probe_error = probe_error(FreeStiffness<Stiffness>(stiffness_, conditions_), system_);
-    if constexpr (std::same_as<Stiffness, BlockMatrix>)
-      if constexpr (!std::same_as<Policy, WithAssembly<ConjugateGradient, Assembled>>)
-        report.condition_estimate = free_norm(stiffness_, conditions_) * inverse_norm_estimate(system_);
-    judge_solver(report);
-  }
-
-  /// Flags or refuses what was measured.
-  void judge_solver(SetupReport& report) const {
-    if (report.probe_error > refused_probe_error) {
-      SetupProblem p;
-      p.kind = SetupErrorKind::ill_conditioned;
-      p.what = "a solve with a known answer is wrong by " + number(report.probe_error) + " (relative)";
-      p.hint =
-          "Look for slivers, extreme stiffness contrast, or a Poisson ratio at its limit; prefer a direct solver in "
-          "double";
-      p.value = report.probe_error;
-      p.threshold = refused_probe_error;
-      raise(std::move(p));
-    }
-    if (report.probe_error > flagged_probe_error)
-      report.set(SetupFlag::ill_conditioned, "a solve with a known answer is wrong by " + number(report.probe_error) +
-                                                 " (relative): forces keep no more digits than that");
-    else if (report.condition_estimate > flagged_condition)
-      report.set(SetupFlag::ill_conditioned, "the condition of the stiffness is about " +
-                                                 number(report.condition_estimate) +
-                                                 ": parameters that differ in the last digits give other forces");
-  }
-
-  static constexpr double flagged_probe_error = 1e-6;
-  static constexpr double flagged_condition = 1e12;
-  static constexpr double refused_probe_error = 1e-3;
 
   Body<E> body_;
   std::vector<BoundaryFace<E>> boundary_;
