@@ -13,14 +13,14 @@ namespace palpate::inline PALPATE_ABI {
 
 /// What a caller may decide about a model's set-up.
 struct SetupOptions {
-  ProgressCallback progress;  ///< may cancel
+  ProgressCallback progress{};  ///< may cancel
   std::size_t memory_limit =
       std::numeric_limits<std::size_t>::max();  ///< [bytes]; more is refused as too_large before it is allocated
   int threads = 1;
-  AdmissionPolicy admission;
+  AdmissionPolicy admission{};
   int compliance_slots = 256;  ///< vertices whose compliance is remembered by a solver that does not store all
   ColumnFill columns = ColumnFill::in_tick;  ///< when such a solver computes it
-  std::string cache_file;  ///< where the prepared system is kept for the next time; empty: nowhere. See docs/cache.md
+  std::string cache_file{};  ///< where the prepared system is kept for the next time; empty: nowhere. See docs/cache.md
 };
 
 /// Linear static tissue. `E` is the element, `M` the material, `Solver` a policy of model/policies.hpp; assembly,
