@@ -14,9 +14,21 @@ class CondensedSystem {
   CondensedSystem() = default;
   CondensedSystem(SchurComplement schur, const SetupLimits& limits) : interior_(std::move(schur.interior)) {
     limits.advance("compliance", 0.0);
-    kept_load_ = VectorX::Zero(schur.stiffness.rows());
-    kept_answer_.resize(kept_load_.size());
+    make_room(schur.stiffness.rows());
     dense_ = Dense(std::move(schur.stiffness), limits);
+  }
+
+  void write(BinaryWriter& out) const {
+    interior_.write(out);
+    dense_.write(out);
+  }
+  /// What `write` stored of a system with this analysis; usable only when the reader is good. Throws too_large.
+  static CondensedSystem read(BinaryReader& in, CholeskyAnalysis analysis, const SetupLimits& limits) {
+    CondensedSystem read;
+    read.make_room(static_cast<Index>(analysis.kept().size()));
+    read.interior_ = SparseCholesky::read(in, std::move(analysis), true, limits);
+    if (in.good()) read.dense_ = Dense::read(in, read.kept(), limits);
+    return read;
   }
 
   Index kept() const noexcept { return kept_load_.size(); }
@@ -41,6 +53,11 @@ class CondensedSystem {
   }
 
  private:
+  void make_room(Index kept) {
+    kept_load_ = VectorX::Zero(kept);
+    kept_answer_.resize(kept);
+  }
+
   SparseCholesky interior_;
   Dense dense_;
   VectorX kept_load_, kept_answer_;

@@ -25,6 +25,13 @@ class Uncondensed {
         load_(VectorX::Zero(solver_.size())),
         answer_(solver_.size()) {}
 
+  /// For solvers that can be stored.
+  void write(BinaryWriter& out) const
+    requires requires(const Solver& solver) { solver.write(out); }
+  {
+    solver_.write(out);
+  }
+
   Index size() const noexcept { return solver_.size(); }
   Index kept() const noexcept { return static_cast<Index>(kept_.size()); }
   std::size_t bytes() const noexcept { return solver_.bytes(); }

@@ -10,7 +10,7 @@ namespace palpate::inline PALPATE_ABI {
 
 /// Where set-up stands.
 struct Progress {
-  std::string_view stage;  ///< "admission", "assembly", "factorisation", "condensation", "compliance", "checks"
+  std::string_view stage;  ///< "admission", "assembly", "factorisation", "condensation", "compliance", "checks", "cache"
   double fraction = 0.0;   ///< of this stage, 0 ... 1
 };
 

@@ -1,6 +1,7 @@
 // The part of a sparse Cholesky factorisation that depends on the pattern of the matrix only.
 #pragma once
 
+#include <palpate/core/content_hash.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/linear/front_tree_builder.hpp>
 #include <palpate/linear/nested_dissection.hpp>
@@ -57,6 +58,21 @@ class CholeskyAnalysis {
   }
   /// True when the matrix has the pattern that was analysed.
   bool fits(const SparseLower& lower) const noexcept { return data_ && data_->pattern == fingerprint(lower); }
+
+  /// Hash of the elimination order and of where everything lies in a factor: a stored factor belongs to an analysis that
+  /// has the same. The order follows from positions in floating point, so another build may find another one.
+  std::uint64_t order_hash() const noexcept {
+    ContentHash hash;
+    if (!data_) return hash.digest();
+    const detail::FrontTree& t = data_->tree;
+    hash.add(detail::LowerPanels::width);
+    hash.add(detail::LowerPanels::alignment);
+    hash.add(std::span<const detail::Front>(t.fronts.data(), static_cast<std::size_t>(t.fronts.size())));
+    hash.add(std::span<const detail::Run>(t.runs.data(), static_cast<std::size_t>(t.runs.size())));
+    hash.add(std::span<const NodeId>(t.place_of_dof.data(), static_cast<std::size_t>(t.place_of_dof.size())));
+    hash.add(std::span<const Index>(data_->kept));
+    return hash.digest();
+  }
 
   const detail::FrontTree& tree() const noexcept { return data_->tree; }
   /// Doubles that a factorisation needs to pack operands; zero rows at the end included.

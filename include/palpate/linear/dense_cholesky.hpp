@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
+#include <palpate/linear/dense_io.hpp>
 
 #include <Eigen/Cholesky>
 
@@ -30,6 +31,14 @@ class DenseCholesky {
       raise(std::move(p));
     }
     factor_ = std::make_shared<const MatrixX>(std::move(matrix));
+  }
+
+  void write(BinaryWriter& out) const { detail::write_dense(out, factor_.get()); }
+  /// What `write` stored of a system of this size; usable only when the reader is good. Throws too_large.
+  static DenseCholesky read(BinaryReader& in, Index size, const SetupLimits& limits) {
+    DenseCholesky read;
+    read.factor_ = std::make_shared<const MatrixX>(detail::read_dense<double>(in, size, limits));
+    return read;
   }
 
   Index size() const noexcept { return factor_ ? factor_->rows() : 0; }

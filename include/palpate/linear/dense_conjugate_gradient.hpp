@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/linear/conjugate_gradient.hpp>
+#include <palpate/linear/dense_io.hpp>
 
 #include <memory>
 
@@ -15,6 +16,7 @@ class DenseOperator {
       : matrix_(std::make_shared<const MatrixX>(std::move(matrix))),
         inverse_diagonal_(matrix_->diagonal().cwiseInverse()) {}
   Index size() const noexcept { return inverse_diagonal_.size(); }
+  const MatrixX* matrix() const noexcept { return matrix_.get(); }
   std::size_t bytes() const noexcept { return static_cast<std::size_t>(size() * size()) * sizeof(double); }
   void apply(const VectorX& x, VectorX& y) const noexcept {
     y.noalias() = matrix_->selfadjointView<Eigen::Lower>() * x;
@@ -31,6 +33,12 @@ class DenseConjugateGradient {
  public:
   DenseConjugateGradient() = default;
   DenseConjugateGradient(MatrixX matrix, const SetupLimits&) : op_(std::move(matrix)), solver_(op_.size()) {}
+  void write(BinaryWriter& out) const { detail::write_dense(out, op_.matrix()); }
+  /// What `write` stored of a system of this size; usable only when the reader is good. Throws too_large.
+  static DenseConjugateGradient read(BinaryReader& in, Index size, const SetupLimits& limits) {
+    return {detail::read_dense<double>(in, size, limits), limits};
+  }
+
   Index size() const noexcept { return op_.size(); }
   std::size_t bytes() const noexcept { return op_.bytes() + solver_.bytes(); }
   SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return solver_.solve_into(op_, b, x); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
+#include <palpate/linear/dense_io.hpp>
 #include <palpate/linear/spd_inverse.hpp>
 
 #include <memory>
@@ -12,6 +13,8 @@ namespace palpate::inline PALPATE_ABI {
 /// non-zero loads only: n multiply-adds per loaded dof. Copies share the matrix.
 template <std::floating_point Scalar>
 class DenseInverse {
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+
  public:
   DenseInverse() = default;
   /// Inverts in place (lower half read). Throws not_positive_definite.
@@ -21,6 +24,14 @@ class DenseInverse {
       inverse_ = std::make_shared<const Matrix>(std::move(matrix));
     else
       inverse_ = std::make_shared<const Matrix>(matrix.template cast<Scalar>());
+  }
+
+  void write(BinaryWriter& out) const { detail::write_dense(out, inverse_.get()); }
+  /// What `write` stored of a system of this size; usable only when the reader is good. Throws too_large.
+  static DenseInverse read(BinaryReader& in, Index size, const SetupLimits& limits) {
+    DenseInverse read;
+    read.inverse_ = std::make_shared<const Matrix>(detail::read_dense<Scalar>(in, size, limits));
+    return read;
   }
 
   Index size() const noexcept { return inverse_ ? inverse_->rows() : 0; }
@@ -35,7 +46,6 @@ class DenseInverse {
   }
 
  private:
-  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
   std::shared_ptr<const Matrix> inverse_;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
+#include <palpate/core/binary_io.hpp>
 #include <palpate/linear/front_block_substitution.hpp>
 #include <palpate/linear/front_factorisation.hpp>
 #include <palpate/linear/front_sweeps.hpp>
@@ -40,6 +41,23 @@ class SparseCholesky {
   static SparseCholesky interior(CholeskyAnalysis analysis, const Matrix& lower, MatrixX& schur,
                                        const SetupLimits& limits) {
     return SparseCholesky(std::move(analysis), lower, &schur, limits);
+  }
+
+  /// Stores the numbers of the factor; its structure is found again by analysis, so that nothing in a file is an index.
+  void write(BinaryWriter& out) const {
+    out.value(factor_->analysis.order_hash());
+    out.array(std::span<const double>(factor_->values.data(), static_cast<std::size_t>(factor_->stored())));
+  }
+  /// What `write` stored of a complete factor (or of an interior one) of a matrix with this analysis. Usable only when
+  /// the reader is good. Throws too_large.
+  static SparseCholesky read(BinaryReader& in, CholeskyAnalysis analysis, bool interior, const SetupLimits& limits) {
+    limits.require_memory(analysis.factor_bytes(), "the sparse factor");
+    SparseCholesky read;
+    if (!in.expect(analysis.order_hash(), ReadFailure::unfit)) return read;
+    auto made = allocate(analysis, interior);
+    in.array(std::span<double>(made->values.data(), static_cast<std::size_t>(made->stored())));
+    read.adopt(std::move(made), std::move(analysis));
+    return read;
   }
 
   Index size() const noexcept { return factor_ ? factor_->analysis.size() : 0; }
@@ -107,7 +125,30 @@ class SparseCholesky {
     detail::BigArray values;
     Index fronts = 0;  // eliminated
     Index kept = 0;    // dofs that were not
+
+    Index stored() const noexcept { return values.size() - padding; }
   };
+  static constexpr Index padding = 64;  // zeros behind the factor, for kernels that read past its end
+
+  /// A factor without numbers; its last front left out when interior and something is kept.
+  static std::shared_ptr<Factor> allocate(const CholeskyAnalysis& analysis, bool interior) {
+    const detail::FrontTree& tree = analysis.tree();
+    auto made = std::make_shared<Factor>();
+    made->fronts = tree.fronts.size();
+    Index stored = tree.factor_size;
+    if (interior && !analysis.kept().empty()) {
+      made->kept = static_cast<Index>(analysis.kept().size());
+      stored = tree.fronts[--made->fronts].factor;
+    }
+    made->values = detail::BigArray(stored + padding);
+    std::fill_n(made->values.data() + stored, padding, 0.0);
+    return made;
+  }
+  void adopt(std::shared_ptr<Factor> made, CholeskyAnalysis analysis) {
+    made->analysis = std::move(analysis);
+    factor_ = std::move(made);
+    sweeps_ = detail::FrontSweeps(factor_->analysis.tree(), factor_->values.data(), factor_->fronts);
+  }
 
   SparseCholesky(CholeskyAnalysis analysis, const Matrix& lower, MatrixX* schur, const SetupLimits& limits) {
     if (!lower.isCompressed() || !analysis.fits(lower))
@@ -116,22 +157,11 @@ class SparseCholesky {
     limits.advance("factorisation", 0.0);
     limits.require_memory(schur != nullptr ? analysis.interior_peak_bytes() : analysis.peak_bytes(),
                           "the sparse factor");
-    const detail::FrontTree& tree = analysis.tree();
-    auto made = std::make_shared<Factor>();
-    made->fronts = tree.fronts.size();
-    Index stored = tree.factor_size;
-    if (schur != nullptr && !analysis.kept().empty()) {
-      made->kept = static_cast<Index>(analysis.kept().size());
-      stored = tree.fronts[--made->fronts].factor;
-    }
-    made->values = detail::BigArray(stored + 64);
-    std::fill_n(made->values.data() + stored, 64, 0.0);
+    auto made = allocate(analysis, schur != nullptr);
     detail::FrontFactorisation factorisation(analysis, lower, made->values.data());
     factorisation.eliminate(made->fronts, pivot_threshold, limits);
     if (schur != nullptr) *schur = factorisation.schur(analysis.kept());
-    made->analysis = std::move(analysis);
-    factor_ = std::move(made);
-    sweeps_ = detail::FrontSweeps(factor_->analysis.tree(), factor_->values.data(), factor_->fronts);
+    adopt(std::move(made), std::move(analysis));
     limits.advance("factorisation", 1.0);
   }
 

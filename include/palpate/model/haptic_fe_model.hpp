@@ -13,13 +13,14 @@ namespace palpate::inline PALPATE_ABI {
 
 /// What a caller may decide about a model's set-up.
 struct SetupOptions {
-  ProgressCallback progress;  ///< may cancel
+  ProgressCallback progress{};  ///< may cancel
   std::size_t memory_limit =
       std::numeric_limits<std::size_t>::max();  ///< [bytes]; more is refused as too_large before it is allocated
   int threads = 1;
-  AdmissionPolicy admission;
+  AdmissionPolicy admission{};
   int compliance_slots = 256;  ///< vertices whose compliance is remembered by a solver that does not store all
   ColumnFill columns = ColumnFill::in_tick;  ///< when such a solver computes it
+  std::string cache_file{};  ///< where the prepared system is kept for the next time; empty: nowhere. See docs/cache.md
 };
 
 /// Linear static tissue. `E` is the element, `M` the material, `Solver` a policy of model/policies.hpp; assembly,
@@ -154,7 +155,7 @@ class HapticFEModel {
     touchable_ = touchable.nodes;
     seen_ = resolve_seen(body.mesh, boundary, scene_);
     statics_ = std::make_unique<Statics<E, Solver>>(std::move(body), scene_, std::move(boundary), touchable_, limits_,
-                                                    report_);
+                                                    options.cache_file, report_);
     statics_->set_conditions(scene_, scene_.gravity());
     gravity_ = scene_.gravity();
     prepare_contact(touchable.triangles, options);

@@ -37,7 +37,8 @@ template <class Policy, class Assembly>
 struct WithAssembly {};
 
 /// What a policy means: `Assembly`, `Scalar` of the contact compliance, whether it is `eager` (computed at set-up), and
-/// how to make the prepared system from the stiffness and what is known of its dofs. Specialise it for a solver of your own.
+/// how to make the prepared system from the stiffness and what is known of its dofs. Specialise it for a solver of your
+/// own. With `cache_name` and `read` (see CacheablePolicy) the system can be kept in a cache file.
 template <class Policy>
 struct SolverTraits;
 
@@ -51,6 +52,14 @@ struct SolverTraits<SparseCholesky> {
     std::vector<Index> kept = std::exchange(layout.kept, {});  // asked for, but nothing is condensed onto them
     const SparseMatrix lower = free_matrix(k, conditions);
     return {SparseCholesky(CholeskyAnalysis(lower, layout, limits), lower, limits), std::move(kept)};
+  }
+
+  static constexpr std::string_view cache_name = "SparseCholesky";
+  static Uncondensed<SparseCholesky> read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
+                                          DofLayout layout, const SetupLimits& limits) {
+    std::vector<Index> kept = std::exchange(layout.kept, {});
+    const SparseMatrix lower = free_matrix(k, conditions);
+    return {SparseCholesky::read(in, CholeskyAnalysis(lower, layout, limits), false, limits), std::move(kept)};
   }
 };
 
@@ -79,6 +88,12 @@ struct SolverTraits<BasicSelectiveInverse<S>> {
     limits.require_memory(3.0 * n * n * sizeof(double), "the inverse of the whole stiffness");
     return {DenseInverse<S>(MatrixX(free_matrix(k, conditions)), limits), std::move(layout.kept)};
   }
+
+  static constexpr std::string_view cache_name = "SelectiveInverse";
+  static Uncondensed<DenseInverse<S>> read(BinaryReader& in, const BlockMatrix&, const EssentialConditions& conditions,
+                                           DofLayout layout, const SetupLimits& limits) {
+    return {DenseInverse<S>::read(in, conditions.free_count(), limits), std::move(layout.kept)};
+  }
 };
 
 /// Dense solver, scalar and eagerness of a condensed system.
@@ -89,18 +104,21 @@ struct CondensedTraits<BasicSelectiveInverse<S>> {
   using Solver = DenseInverse<S>;
   using Scalar = S;
   static constexpr bool eager = true;
+  static constexpr std::string_view cache_name = "Condensed<SelectiveInverse>";
 };
 template <>
 struct CondensedTraits<DenseCholesky> {
   using Solver = DenseCholesky;
   using Scalar = double;
   static constexpr bool eager = false;
+  static constexpr std::string_view cache_name = "Condensed<DenseCholesky>";
 };
 template <>
 struct CondensedTraits<ConjugateGradient> {
   using Solver = DenseConjugateGradient;
   using Scalar = double;
   static constexpr bool eager = false;
+  static constexpr std::string_view cache_name = "Condensed<ConjugateGradient>";
 };
 
 template <class Inner>
@@ -113,6 +131,12 @@ struct SolverTraits<Condensed<Inner>> {
                      const SetupLimits& limits) {
     return {condense(free_matrix(k, conditions), layout, limits), limits};
   }
+
+  static constexpr std::string_view cache_name = CondensedTraits<Inner>::cache_name;
+  static System read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
+                     const DofLayout& layout, const SetupLimits& limits) {
+    return System::read(in, CholeskyAnalysis(free_matrix(k, conditions), layout, limits), limits);
+  }
 };
 
 /// A policy that HapticFEModel can be composed with.
@@ -121,6 +145,18 @@ concept SolverPolicy = requires {
   typename SolverTraits<P>::Assembly;
   typename SolverTraits<P>::Scalar;
   { SolverTraits<P>::eager } -> std::convertible_to<bool>;
+};
+
+/// A policy whose prepared system can be stored: `cache_name` tells it from all others, the system has `write`, and
+/// `read` makes it again from what was written, given the same stiffness, conditions and layout. `read` takes every size
+/// from these and none from the file, and returns whatever it likes when the reader fails.
+template <class P>
+concept CacheablePolicy = SolverPolicy<P> && requires(BinaryReader& in, BinaryWriter& out, const BlockMatrix& k,
+                                                      const EssentialConditions& conditions, const DofLayout& layout,
+                                                      const SetupLimits& limits) {
+  requires std::same_as<typename SolverTraits<P>::Assembly, Assembled>;
+  { SolverTraits<P>::cache_name } -> std::convertible_to<std::string_view>;
+  SolverTraits<P>::read(in, k, conditions, layout, limits).write(out);
 };
 
 }  // namespace palpate::inline PALPATE_ABI

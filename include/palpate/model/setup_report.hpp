@@ -1,8 +1,8 @@
 // What a set-up did, found and used.
 #pragma once
 
-#include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/model/cache_report.hpp>
 
 #include <ostream>
 #include <utility>
@@ -17,6 +17,8 @@ enum class SetupFlag : std::uint32_t {
   repaired = 1u << 3,          ///< admission changed the mesh
   disconnected = 1u << 4,      ///< more than one piece
   suspicious_units = 1u << 5,  ///< looks like millimetres
+  cache_rejected = 1u << 6,    ///< there was a cache file and it was not used
+  cache_unwritten = 1u << 7,   ///< the cache file could not be written
 };
 
 /// Sizes, memory, times and findings of a set-up.
@@ -29,6 +31,7 @@ struct SetupReport {
   double probe_error = 0.0;                             ///< relative error of a solve with known answer
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage
   double column_seconds = 0.0;  ///< for the compliance of a vertex pressed for the first time; 0 when all is stored
+  CacheReport cache;
   std::uint32_t flags = 0;
   std::vector<std::string> remarks;  ///< one sentence per flag
 
@@ -58,6 +61,7 @@ inline std::ostream& operator<<(std::ostream& out, const SetupReport& r) {
       << number(r.probe_error) << '\n';
   if (r.column_seconds > 0.0)
     out << "  a vertex pressed for the first time: " << number(1e6 * r.column_seconds) << " us\n";
+  if (!r.cache.file.empty()) out << "  cache: " << r.cache << '\n';
   for (const std::string& remark : r.remarks) out << "  note: " << remark << '\n';
   return out;
 }

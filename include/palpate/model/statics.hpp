@@ -2,32 +2,10 @@
 #pragma once
 
 #include <palpate/assembly/load_vector.hpp>
-#include <palpate/linear/condition.hpp>
 #include <palpate/mesh/rigid_modes.hpp>
-#include <palpate/model/policies.hpp>
-#include <palpate/model/setup_report.hpp>
-
-#include <chrono>
+#include <palpate/model/prepared_system.hpp>
 
 namespace palpate::inline PALPATE_ABI {
-
-/// Adds the time since its construction to a report when it goes.
-class StageTimer {
- public:
-  StageTimer(SetupReport& report, const char* stage)
-      : report_(&report), stage_(stage), start_(std::chrono::steady_clock::now()) {}
-  ~StageTimer() {
-    report_->seconds.emplace_back(stage_,
-                                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
-  }
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
-
- private:
-  SetupReport* report_;
-  const char* stage_;
-  std::chrono::steady_clock::time_point start_;
-};
 
 /// Stiffness, essential conditions, loads and prepared solver of a body. Neither copied nor moved: the solver refers to
 /// its members.
@@ -36,14 +14,14 @@ class Statics {
  public:
   using Traits = SolverTraits<Policy>;
   using Stiffness = typename Traits::Assembly::template Operator<E>;
-  using System = decltype(Traits::make(std::declval<const Stiffness&>(), std::declval<const EssentialConditions&>(),
-                                       DofLayout{}, SetupLimits{}));
-  static_assert(StaticSystem<System>);
+  using System = typename SystemSource<E, Policy>::System;
 
-  /// Prepares everything but the contact. `kept_nodes` are the touchable ones. Throws what assembly, factorisation and
-  /// checks throw: unconstrained, not_positive_definite, ill_conditioned ...
+  /// Prepares everything but the contact. `kept_nodes` are the touchable ones; `cache_file` may hold the prepared system,
+  /// or will. Throws what assembly, factorisation and checks throw: unconstrained, not_positive_definite, ill_conditioned
+  /// ... but nothing because of the cache.
   Statics(Body<E> given, const Scene& scene, std::vector<BoundaryFace<E>> boundary,
-          const std::vector<NodeId>& kept_nodes, const SetupLimits& limits, SetupReport& report)
+          const std::vector<NodeId>& kept_nodes, const SetupLimits& limits, const std::string& cache_file,
+          SetupReport& report)
       : body_(std::move(given)),
         boundary_(std::move(boundary)),
         conditions_(resolve_essential(body_.mesh, boundary_, scene)) {
@@ -52,21 +30,10 @@ class Statics {
       const StageTimer timer(report, "assembly");
       stiffness_ = Traits::Assembly::make(body_, limits);
     }
-    std::vector<Index> kept;
-    for (NodeId node : kept_nodes)
-      for (int c = 0; c < 3; ++c)
-        if (const Index free = conditions_.free_index[static_cast<std::size_t>(3 * Index{node} + c)]; free >= 0)
-          kept.push_back(free);
-    report.kept_dofs = static_cast<Index>(kept.size());
-    {
-      const StageTimer timer(report, "factorisation");
-      system_ = Traits::make(stiffness_, conditions_, layout(std::move(kept)), limits);
-    }
-    {
-      const StageTimer timer(report, "checks");
-      limits.advance("checks", 0.0);
-      check_solver(report);
-    }
+    const DofLayout dofs = layout(kept_nodes);
+    report.kept_dofs = static_cast<Index>(dofs.kept.size());
+    const SystemSource<E, Policy> source{body_, conditions_, stiffness_, kept_nodes, dofs, limits};
+    system_ = source.prepare(cache_file, report);
     free_load_ = VectorX::Zero(conditions_.free_count());
     free_answer_.resize(conditions_.free_count());
     scratch_ = full_load_ = displacement_ = VectorX::Zero(conditions_.dof_count());
@@ -178,43 +145,16 @@ class Statics {
               "Give every region a density in kg/m^3");
   }
 
-  DofLayout layout(std::vector<Index> kept) const {
-    DofLayout layout{{}, body_.mesh.positions, std::move(kept)};
+  DofLayout layout(const std::vector<NodeId>& kept_nodes) const {
+    DofLayout layout{{}, body_.mesh.positions, {}};
+    for (NodeId node : kept_nodes)
+      for (int c = 0; c < 3; ++c)
+        if (const Index free = conditions_.free_index[static_cast<std::size_t>(3 * Index{node} + c)]; free >= 0)
+          layout.kept.push_back(free);
     layout.node_of_dof.reserve(conditions_.free_dofs.size());
     for (const Index dof : conditions_.free_dofs) layout.node_of_dof.push_back(dof / 3);
     return layout;
   }
-
-  /// Measures what the solver is worth; flags or refuses.
-  void check_solver(SetupReport& report) {
-    const FreeStiffness<Stiffness> k(stiffness_, conditions_);
-    report.probe_error = probe_error(k, system_);
-    if constexpr (std::same_as<Stiffness, BlockMatrix>)
-      if constexpr (!std::same_as<Policy, WithAssembly<ConjugateGradient, Assembled>>)
-        report.condition_estimate = free_norm(stiffness_, conditions_) * inverse_norm_estimate(system_);
-    if (report.probe_error > refused_probe_error) {
-      SetupProblem p;
-      p.kind = SetupErrorKind::ill_conditioned;
-      p.what = "a solve with a known answer is wrong by " + number(report.probe_error) + " (relative)";
-      p.hint =
-          "Look for slivers, extreme stiffness contrast, or a Poisson ratio at its limit; prefer a direct solver in "
-          "double";
-      p.value = report.probe_error;
-      p.threshold = refused_probe_error;
-      raise(std::move(p));
-    }
-    if (report.probe_error > flagged_probe_error)
-      report.set(SetupFlag::ill_conditioned, "a solve with a known answer is wrong by " + number(report.probe_error) +
-                                                 " (relative): forces keep no more digits than that");
-    else if (report.condition_estimate > flagged_condition)
-      report.set(SetupFlag::ill_conditioned, "the condition of the stiffness is about " +
-                                                 number(report.condition_estimate) +
-                                                 ": parameters that differ in the last digits give other forces");
-  }
-
-  static constexpr double flagged_probe_error = 1e-6;
-  static constexpr double flagged_condition = 1e12;
-  static constexpr double refused_probe_error = 1e-3;
 
   Body<E> body_;
   std::vector<BoundaryFace<E>> boundary_;
