@@ -1,0 +1,115 @@
+// The compliance between contact points and when it is read anew.
+#include <palpate/contact/point_compliance.hpp>
+#include <palpate/testing/random.hpp>
+
+#include "catch.hpp"
+
+using namespace palpate;
+
+namespace {
+
+/// A strip of triangles between vertices whose compliance is any function of the pair, and counts how often it is read.
+struct CountingTissue {
+  ContactSurface surface;
+  std::uint64_t revision = 0;
+  double scale = 1.0;
+  mutable int reads = 0;
+
+  CountingTissue() {
+    std::vector<Vector3> x;
+    std::vector<Triangle> t;
+    for (int i = 0; i < 12; ++i) x.emplace_back(0.01 * i, 0.01 * (i % 2), 0.0);
+    for (int i = 0; i + 2 < 12; ++i) t.push_back(i % 2 == 0 ? Triangle{i, i + 2, i + 1} : Triangle{i, i + 1, i + 2});
+    surface = ContactSurface(std::move(x), std::move(t));
+  }
+  const ContactSurface& contact_surface() const noexcept { return surface; }
+  Status require_columns(std::span<const int>) noexcept { return {}; }
+  Matrix3 compliance(int i, int j) const noexcept {
+    ++reads;
+    return value(i, j);
+  }
+  /// C(i, j) = C(j, i)^T, with no other symmetry.
+  Matrix3 value(int i, int j) const noexcept {
+    if (i > j) return value(j, i).transpose();
+    Matrix3 m;
+    for (int k = 0; k < 9; ++k) m.data()[k] = scale * std::sin(1.0 + 3.1 * i + 7.7 * j + 0.9 * k);
+    return m;
+  }
+  std::uint64_t compliance_revision() const noexcept { return revision; }
+  double compliance_bound(int) const noexcept { return 3.0 * scale; }
+  double compliance_floor() const noexcept { return 1e-12; }
+  const Eigen::Isometry3d& pose() const noexcept {
+    static const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
+    return identity;
+  }
+};
+static_assert(TissueModel<CountingTissue>);
+
+Matrix3 expected(const CountingTissue& tissue, const ContactSample& p, const ContactSample& q) {
+  Matrix3 sum = Matrix3::Zero();
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < 3; ++b) sum += p.weights[a] * q.weights[b] * tissue.value(p.vertices[a], q.vertices[b]);
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("compliance between points is J C J^T whatever was asked before", "[contact][point_compliance]") {
+  const CountingTissue tissue;
+  const ContactSamples samples(tissue.surface, 0.004);
+  const int count = samples.first_of(static_cast<int>(tissue.surface.triangles().size()));
+  REQUIRE(count > 24);
+  PointCompliance<8> compliance;
+  testing::Random random(61);
+  std::vector<int> hint(static_cast<std::size_t>(count), -1);
+  double worst = 0.0;
+  for (int round = 0; round < 500; ++round) {
+    compliance.begin_rows();
+    std::vector<int> rows, slots;
+    for (int k = 0; k < 8; ++k) {
+      const int s = static_cast<int>(random.uniform(0.0, count - 1e-9));
+      int& h = hint[static_cast<std::size_t>(s)];
+      rows.push_back(s);
+      slots.push_back(h = compliance.slot_of(s, round % 3 == 0 ? -1 : h));
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (std::size_t j = 0; j < rows.size(); ++j) {
+        // One point has one slot, two points have two.
+        CHECK((rows[i] == rows[j]) == (slots[i] == slots[j]));
+        if (slots[i] < slots[j]) continue;
+        const Matrix3 given = compliance(tissue, samples, slots[i], slots[j]);
+        worst = std::max(worst, (given - expected(tissue, samples[rows[i]], samples[rows[j]])).cwiseAbs().maxCoeff());
+      }
+  }
+  CHECK(worst <= 1e-14);
+}
+
+TEST_CASE("what is known is not read again, until the tissue says so", "[contact][point_compliance]") {
+  CountingTissue tissue;
+  const ContactSamples samples(tissue.surface, 0.004);
+  PointCompliance<8> compliance;
+  const auto read = [&](int first) {
+    tissue.reads = 0;
+    compliance.begin_tick(tissue.compliance_revision());
+    compliance.begin_rows();
+    std::array<int, 4> slots;
+    for (int k = 0; k < 4; ++k) slots[static_cast<std::size_t>(k)] = compliance.slot_of(first + k, -1);
+    Matrix3 sum = Matrix3::Zero();
+    for (int p : slots)
+      for (int q : slots)
+        if (p >= q) sum += compliance(tissue, samples, p, q);
+    return sum;
+  };
+  const Matrix3 first = read(3);
+  CHECK(tissue.reads > 0);
+  CHECK(read(3) == first);
+  CHECK(tissue.reads == 0);
+  read(4);  // one new point among three known ones
+  const int one_point = tissue.reads;
+  CHECK(one_point > 0);
+  tissue.scale = 2.0;
+  CHECK(read(3) == first);
+  tissue.revision = 1;
+  CHECK(read(3).isApprox(2.0 * first, 1e-14));
+  CHECK(tissue.reads > one_point);
+}
