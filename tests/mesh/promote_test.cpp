@@ -65,6 +65,18 @@ Mesh<Tet4> ball_with_regions() {
   return mesh;
 }
 
+template <Element E>
+void check_turned_round(Mesh<E> mesh) {
+  const double volume = diagnose<E>(mesh).volume;
+  reorient(mesh, {0});
+  refused(SetupErrorKind::inverted_element, [&] { admit<E>(mesh); });
+  AdmissionPolicy policy;
+  policy.inverted = Admission::repair;
+  const auto admitted = admit<E>(mesh, policy);
+  CHECK(testing::describe(testing::mesh_laws<E>(admitted.mesh)) == "");
+  CHECK_THAT(admitted.admitted.volume, WithinRel(volume, 1e-13));
+}
+
 }  // namespace
 
 TEST_CASE("boxes of hexahedra and quadratic elements", "[mesh][generators]") {
@@ -132,4 +144,25 @@ TEST_CASE("elements do not get worse with refinement", "[mesh][refine]") {
   }
   CHECK(worst[1] > 0.5 * worst[0]);
   CHECK(worst[3] >= 0.999 * worst[1]);
+}
+
+TEST_CASE("admission sees an element that is inside out at a node only", "[mesh][admission][extreme]") {
+  Mesh<Tet10> tetrahedra = box_tet10({1, 1, 1}, {1, 1, 1});
+  auto& nodes = tetrahedra.elements[0];
+  const Vector3 from = tetrahedra.position(nodes[0]), to = tetrahedra.position(nodes[1]);
+  tetrahedra.positions[static_cast<std::size_t>(nodes[4])] = from + 0.2 * (to - from);  // beyond the quarter point
+  const auto problem = refused(SetupErrorKind::inverted_element, [&] { admit<Tet10>(tetrahedra); });
+  CHECK(std::ranges::find(problem.ids, 0) != problem.ids.end());
+  tetrahedra.positions[static_cast<std::size_t>(nodes[4])] = from + 0.3 * (to - from);  // short of it
+  CHECK(admit<Tet10>(tetrahedra).mesh.element_count() == 5);
+
+  Mesh<Hex20> hexahedron = box_hex20({1, 1, 1}, {1, 1, 1});
+  std::swap(hexahedron.elements[0][8], hexahedron.elements[0][10]);  // two middles mixed up, as by another node order
+  refused(SetupErrorKind::inverted_element, [&] { admit<Hex20>(hexahedron); });
+}
+
+TEST_CASE("admission turns elements of every kind round", "[mesh][admission]") {
+  check_turned_round(box_tet10({1, 1, 1}, {1, 1, 1}));
+  check_turned_round(box_hex8({1, 1, 1}, {2, 1, 1}));
+  check_turned_round(box_hex20({1, 1, 1}, {2, 1, 1}));
 }

@@ -9,8 +9,8 @@ namespace palpate::inline PALPATE_ABI {
 /// Quadratic tetrahedron on the unit tetrahedron, L = (1 - u - v - w, u, v, w): corners L (2 L - 1), then 4 L_i L_j on
 /// the `edges`, in the order of VTK and CalculiX (Gmsh swaps the last two). Usable to a Poisson ratio of 0.499.
 /// Its edges may be curved. Four points integrate the stiffness, exactly where they are straight; where they are not,
-/// constant strain is met to the curvature only, and near incompressibility that counts (two hundredths at 0.499 on a
-/// sphere of six elements per quadrant): there use `WithQuadrature<Tet10, TetrahedronRule<5>>`.
+/// constant strain is met to the curvature only, and near incompressibility that counts (2 % of the
+/// displacement at 0.499 on a coarsely meshed thick sphere): there use `WithQuadrature<Tet10, TetrahedronRule<5>>`.
 struct Tet10 {
   static constexpr int nodes = 10;
   static constexpr int order = 2;

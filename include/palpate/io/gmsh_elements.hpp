@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/element/hex20.hpp>
+#include <palpate/element/mean_dilatation.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/element/with_quadrature.hpp>
 
@@ -39,5 +40,7 @@ struct GmshElement<Hex20> {
 };
 template <class E, class Rule>
 struct GmshElement<WithQuadrature<E, Rule>> : GmshElement<E> {};
+template <class E>
+struct GmshElement<MeanDilatation<E>> : GmshElement<E> {};
 
 }  // namespace palpate::inline PALPATE_ABI::io

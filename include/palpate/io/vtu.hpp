@@ -3,6 +3,7 @@
 
 #include <palpate/core/setup_error.hpp>
 #include <palpate/element/hex20.hpp>
+#include <palpate/element/mean_dilatation.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/element/with_quadrature.hpp>
 #include <palpate/io/decimal.hpp>
@@ -41,6 +42,8 @@ struct VtkElement<Hex20> {
 };
 template <class E, class Rule>
 struct VtkElement<WithQuadrature<E, Rule>> : VtkElement<E> {};
+template <class E>
+struct VtkElement<MeanDilatation<E>> : VtkElement<E> {};
 
 /// A field to write: `values` holds the components of node or element 0, then of 1, and so on. How many components
 /// there are follows from the length: 1 is a scalar, 3 a vector such as a displacement.

@@ -37,24 +37,31 @@ inline std::optional<std::vector<LameConstants>> all_isotropic(const std::vector
 
 /// K_e of an isotropic law [N/m]: with M_ai,bj = sum_q dN_a/dx_i dN_b/dx_j dV, one product of a 3 nodes x points matrix
 /// with its transpose, K_ai,bj = lambda M_ai,bj + mu M_aj,bi + mu delta_ij sum_k M_ak,bk. The same as with the matrix D
-/// but for rounding.
+/// but for rounding; with a mean change of volume its part is bulk modulus x volume x mean gradients.
 template <Element E>
 ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const LameConstants& c) noexcept {
   constexpr int points = static_cast<int>(E::Quadrature::points.size());
   Eigen::Matrix<double, 3 * E::nodes, points> gradients, weighted;
+  double total_volume = 0.0;
+  const IntegrationPoints<E> at = integration_points<E>(x);
   for (int q = 0; q < points; ++q) {
-    const auto& point = E::Quadrature::points[static_cast<std::size_t>(q)];
-    const PointGeometry<E> g = point_geometry<E>(x, reference_point(point), point.weight);
-    for (int a = 0; a < E::nodes; ++a) gradients.template block<3, 1>(3 * a, q) = g.gradient.row(a).transpose();
-    weighted.col(q) = g.volume * gradients.col(q);
+    const IntegrationPoint<E>& point = at[static_cast<std::size_t>(q)];
+    for (int a = 0; a < E::nodes; ++a) gradients.template block<3, 1>(3 * a, q) = point.gradient.row(a).transpose();
+    weighted.col(q) = point.volume * gradients.col(q);
+    total_volume += point.volume;
   }
   ElementStiffness<E> m, k;
   m.noalias() = gradients * weighted.transpose();
+  [[maybe_unused]] const double bulk = (c.lambda + 2.0 / 3.0 * c.mu) * total_volume;
   for (int b = 0; b < E::nodes; ++b)
     for (int a = b; a < E::nodes; ++a) {
       Matrix3 block = m.template block<3, 3>(3 * a, 3 * b);
       if (a == b) block = Matrix3(block.selfadjointView<Eigen::Lower>());  // to the last bit
-      const Matrix3 result = c.lambda * block + c.mu * block.transpose() + c.mu * block.trace() * Matrix3::Identity();
+      Matrix3 result = c.mu * block.transpose() + c.mu * block.trace() * Matrix3::Identity();
+      if constexpr (HasMeanDilatation<E>)  // the volumetric part of B^T D B with the mean instead
+        result += bulk * (at[0].dilatation.row(a).transpose() * at[0].dilatation.row(b)) - 2.0 / 3.0 * c.mu * block;
+      else
+        result += c.lambda * block;
       k.template block<3, 3>(3 * a, 3 * b) = result;
       k.template block<3, 3>(3 * b, 3 * a) = result.transpose();
     }
