@@ -48,7 +48,7 @@ TEST_CASE("MeanDilatation keeps the laws of a stiffness", "[assembly][locking]")
     if (!isotropic) body.elasticity.front() = orthotropic();
     const BlockMatrix stored = assemble_stiffness<Cured>(body, {});
     const MatrixFreeStiffness<Cured> free(body, {});
-    CHECK(testing::describe(testing::stiffness_laws(body, stored, 1)) == "");  // affine fields and rigid modes among them
+    CHECK(testing::describe(testing::stiffness_laws(body, stored, 1)) == "");
     CHECK(testing::describe(testing::same_stiffness_laws(stored, free)) == "");
   }
 }

@@ -91,8 +91,8 @@ TEST_CASE("each shear uses its own modulus", "[local][closed_form]") {
     }
 }
 
-TEMPLATE_TEST_CASE("rigid motions cost nothing and nothing else does", "[local][rigid]", Tet4, Tet10, Hex8, Hex20, user::Hex8,
-                   user::Tet10, thesis::ThesisTet4) {
+TEMPLATE_TEST_CASE("rigid motions cost nothing and nothing else does", "[local][rigid]", Tet4, Tet10, Hex8, Hex20,
+                   user::Hex8, user::Tet10, thesis::ThesisTet4) {
   using E = TestType;
   testing::Random random(5);
   for (int trial = 0; trial < 10; ++trial) {
@@ -206,8 +206,8 @@ TEST_CASE("what each misprint of the thesis does to the stiffness", "[local][the
   }
 }
 
-TEMPLATE_TEST_CASE("with two constants or with a matrix, the stiffness is the same", "[local]", Tet4, Tet10, Hex8, Hex20,
-                   (WithQuadrature<Tet10, TetrahedronRule<3>>)) {  // with a negative weight
+TEMPLATE_TEST_CASE("with two constants or with a matrix, the stiffness is the same", "[local]", Tet4, Tet10, Hex8,
+                   Hex20, (WithQuadrature<Tet10, TetrahedronRule<3>>)) {  // with a negative weight
   using E = TestType;
   testing::Random random(29);
   for (int trial = 0; trial < 5; ++trial) {

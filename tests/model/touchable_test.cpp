@@ -57,8 +57,8 @@ TEMPLATE_TEST_CASE("the touchable triangles are the surface, closed and outward"
     CHECK(surface_of(top, mesh.positions).normal(static_cast<int>(t)) == Vector3(0, 0, 1));
 }
 
-TEMPLATE_TEST_CASE("contact weights are positive, sum to one, and carry force and moment", "[model][touch]", Tet4, Tet10,
-                   Hex8, Hex20) {
+TEMPLATE_TEST_CASE("contact weights are positive, sum to one, and carry force and moment", "[model][touch]", Tet4,
+                   Tet10, Hex8, Hex20) {
   Mesh<TestType> mesh = block<TestType>();
   testing::Random random(37);
   for (Vector3& x : mesh.positions) x += random.vector<3>(-0.05, 0.05);  // curved faces
