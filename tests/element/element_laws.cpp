@@ -1,4 +1,5 @@
 #include <palpate/element/hex20.hpp>
+#include <palpate/element/mean_dilatation.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/element/with_quadrature.hpp>
 #include <palpate/testing/element_laws.hpp>
@@ -9,7 +10,8 @@
 using namespace palpate;
 
 TEMPLATE_TEST_CASE("the elements of the library keep the laws", "[element][laws]", Tet4, Tet10, Hex8, Hex20,
-                   (WithQuadrature<Tet10, TetrahedronRule<5>>), (WithQuadrature<Hex20, HexahedronRule<4>>)) {
+                   MeanDilatation<Hex8>, (WithQuadrature<Tet10, TetrahedronRule<5>>),
+                   (WithQuadrature<Hex20, HexahedronRule<4>>)) {
   STATIC_REQUIRE(Element<TestType>);
   CHECK(testing::describe(testing::element_laws<TestType>()) == "");
 }
