@@ -1,5 +1,6 @@
 // The stiffness of whole bodies, stored and matrix-free.
 #include <palpate/assembly/matrix_free.hpp>
+#include <palpate/mesh/generators_box.hpp>
 #include <palpate/testing/assembler_laws.hpp>
 
 #include "assembly/bodies.hpp"
@@ -57,6 +58,16 @@ TEST_CASE("assembled and matrix-free stiffness keep the laws", "[assembly][laws]
     Body<Tet4> body = body_of(ball_tet4(1.0, 1), {liver});
     body.elasticity.front() = orthotropic();
     check_laws(body);
+  }
+  SECTION("elements of every kind, isotropic and orthotropic") {
+    const auto check_both = [](auto body) {
+      check_laws(body);
+      body.elasticity.front() = orthotropic();
+      check_laws(body);
+    };
+    check_both(body_of(box_tet10({1, 2, 3}, {1, 1, 2}), {liver}));
+    check_both(body_of(box_hex8({1, 2, 3}, {2, 2, 1}), {liver}));
+    check_both(body_of(box_hex20({1, 2, 3}, {2, 1, 1}), {liver}));
   }
   SECTION("one hexahedron of a user's element type") {
     Mesh<user::Hex8> mesh;
@@ -144,4 +155,12 @@ TEST_CASE("assembly can be cancelled", "[assembly]") {
   limits.progress = [](const Progress& p) { return p.stage != "assembly"; };
   CHECK_REFUSED(SetupErrorKind::cancelled, assemble_stiffness<Tet4>(body, limits));
   CHECK_REFUSED(SetupErrorKind::cancelled, MatrixFreeStiffness<Tet4>(body, limits));
+}
+
+TEST_CASE("an element that is inside out at an integration point is refused", "[assembly][extreme]") {
+  Mesh<Hex8> mesh = box_hex8({1, 1, 1}, {2, 2, 2});
+  mesh.positions[13] = Vector3(0.05, 0.05, 0.05);  // the middle node, into a corner
+  const auto problem = refusal([&] { assemble_stiffness<Hex8>(body_of(mesh, {liver}), {}); });
+  CHECK(problem.kind == SetupErrorKind::inverted_element);
+  CHECK(problem.ids == std::vector<std::int64_t>{0});
 }

@@ -1,4 +1,6 @@
-#include <palpate/element/tet4.hpp>
+#include <palpate/element/hex20.hpp>
+#include <palpate/element/tet10.hpp>
+#include <palpate/element/with_quadrature.hpp>
 
 #include "catch.hpp"
 #include "element/thesis_tet4.hpp"
@@ -41,6 +43,9 @@ struct FaceWithSolidRule : Tri3 {
 struct FaceWithWideGradient : Tri3 {
   static Eigen::Matrix<double, 3, 3> gradient(const Vector2&) noexcept { return {}; }
 };
+struct CornersOnly : Quad4 {
+  static constexpr std::array<std::array<int, 4>, 1> triangles{};  // triangles have three nodes
+};
 struct ScaledShape : Tet4 {
   static Eigen::Vector4d shape(const Vector3& xi) noexcept { return 0.9 * Tet4::shape(xi); }
 };
@@ -52,9 +57,23 @@ TEST_CASE("Element accepts elements", "[concepts][element]") {
   STATIC_REQUIRE(Element<thesis::ThesisTet4>);
   STATIC_REQUIRE(Element<user::Hex8>);
   STATIC_REQUIRE(Element<user::Tet10>);
+  STATIC_REQUIRE(Element<Tet10>);
+  STATIC_REQUIRE(Element<Hex8>);
+  STATIC_REQUIRE(Element<Hex20>);
+  STATIC_REQUIRE(Element<WithQuadrature<Tet10, TetrahedronRule<5>>>);
   STATIC_REQUIRE(FaceElement<Tri3>);
   STATIC_REQUIRE(FaceElement<user::Quad4>);
   STATIC_REQUIRE(FaceElement<user::Tri6>);
+}
+
+TEST_CASE("a face can be touched if it has triangles", "[concepts][element]") {
+  STATIC_REQUIRE(TriangulatedFace<Tri3>);
+  STATIC_REQUIRE(TriangulatedFace<Tri6>);
+  STATIC_REQUIRE(TriangulatedFace<Quad4>);
+  STATIC_REQUIRE(TriangulatedFace<Quad8>);
+  STATIC_REQUIRE_FALSE(TriangulatedFace<user::Tri6>);
+  STATIC_REQUIRE_FALSE(TriangulatedFace<CornersOnly>);
+  STATIC_REQUIRE_FALSE(TriangulatedFace<Tet4>);
 }
 
 TEST_CASE("Element refuses what is none", "[concepts][element]") {

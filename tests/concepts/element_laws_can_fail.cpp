@@ -1,5 +1,7 @@
 // A deliberate break for every element law: a law that cannot fail shows nothing.
+#include <palpate/element/quad8.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/tri6.hpp>
 #include <palpate/testing/element_laws.hpp>
 
 #include "catch.hpp"
@@ -98,6 +100,18 @@ struct TriangleWithSquareRule : Tri3 {
 struct OnePointTri6 : user::Tri6 {
   using Quadrature = TriangleRule<1>;
 };
+struct TriangleOutOfRange : Quad4 {
+  static constexpr std::array<std::array<int, 3>, 2> triangles{{{0, 1, 2}, {0, 2, 4}}};
+};
+struct TurnedTriangle : Quad4 {
+  static constexpr std::array<std::array<int, 3>, 2> triangles{{{0, 1, 2}, {0, 3, 2}}};
+};
+struct HalfCovered : Quad4 {
+  static constexpr std::array<std::array<int, 3>, 1> triangles{{{0, 1, 2}}};
+};
+struct CornersCoverTri6 : Tri6 {  // covers the face, but a neighbour would meet it at the middle nodes
+  static constexpr std::array<std::array<int, 3>, 1> triangles{{{0, 1, 2}}};
+};
 struct CollinearTriangle : Tri3 {
   static Eigen::Matrix<double, 3, 2> reference_nodes() noexcept {
     Eigen::Matrix<double, 3, 2> x;
@@ -171,4 +185,14 @@ TEST_CASE("surface element laws can fail", "[testing][element]") {
   CHECK(violates(face_element_laws<OnePointTri6>(), "rule integrates the shape functions"));
   CHECK(violates(face_element_laws<CollinearTriangle>(), "reference cell"));
   CHECK(violates(face_element_laws<CollinearTriangle>(), "Kronecker delta"));
+}
+
+TEST_CASE("triangulation laws can fail", "[testing][element]") {
+  const auto vertex_law = "every node is a vertex of a triangle, and lies on no other";
+  CHECK(face_element_laws<Quad8>().empty());
+  CHECK(violates(face_element_laws<TriangleOutOfRange>(), "triangles name nodes of the face"));
+  CHECK(violates(face_element_laws<TurnedTriangle>(), "triangles are turned as the face is"));
+  CHECK(violates(face_element_laws<HalfCovered>(), "triangles cover the face"));
+  CHECK(violates(face_element_laws<CornersCoverTri6>(), vertex_law));
+  CHECK_FALSE(violates(face_element_laws<CornersCoverTri6>(), "triangles cover the face"));
 }

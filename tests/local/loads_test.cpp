@@ -1,4 +1,6 @@
 // Nodal loads of elements and faces.
+#include <palpate/element/hex20.hpp>
+#include <palpate/element/tet10.hpp>
 #include <palpate/local/loads.hpp>
 #include <palpate/local/stiffness.hpp>
 
@@ -56,7 +58,7 @@ TEST_CASE("a third of the area goes to each node of Tri3, outward", "[local][loa
   CHECK_THAT(shape_area_vectors<Tri3>(x)(0, 2), Catch::Matchers::WithinRel(-1.0, 1e-14));
 }
 
-TEMPLATE_TEST_CASE("sums of the loads", "[local][loads]", Tet4, user::Hex8, user::Tet10) {
+TEMPLATE_TEST_CASE("sums of the loads", "[local][loads]", Tet4, Tet10, Hex8, Hex20, user::Hex8, user::Tet10) {
   using E = TestType;
   const ElementNodes<E> x = stretched<E>();
   const double volume = volume_of<E>(x);
@@ -131,4 +133,39 @@ TEST_CASE("strain of a linear field", "[local]") {
   Vector6 by_blocks = Vector6::Zero();  // sum of B_a u_a is the same
   for (int a = 0; a < 4; ++a) by_blocks += strain_displacement(g.gradient.row(a).transpose()) * u.row(a).transpose();
   CHECK(largest(e - by_blocks) <= 1e-12);
+}
+
+TEST_CASE("a uniform traction on quadratic faces: nothing on corners, or less", "[local][loads]") {
+  FaceNodes<Tri6> triangle = FaceNodes<Tri6>::Zero();
+  triangle.leftCols<2>() = Tri6::reference_nodes();
+  const auto t = shape_areas<Tri6>(triangle);
+  CHECK(largest(t.head<3>()) <= 1e-16);
+  CHECK(largest(t.tail<3>() - Vector3::Constant(1.0 / 6.0)) <= 1e-15);
+  FaceNodes<Quad8> square = FaceNodes<Quad8>::Zero();
+  square.leftCols<2>() = Quad8::reference_nodes();
+  const auto q = shape_areas<Quad8>(square);
+  CHECK(largest(q.head<4>() - Eigen::Vector4d::Constant(-4.0 / 12.0)) <= 1e-15);
+  CHECK(largest(q.tail<4>() - Eigen::Vector4d::Constant(4.0 / 3.0)) <= 1e-15);
+}
+
+TEMPLATE_TEST_CASE("pressure on a closed curved surface adds up to nothing", "[local][loads]", Tet10, Hex20) {
+  using E = TestType;
+  testing::Random random(31);
+  ElementNodes<E> x = stretched<E>();
+  for (int a = 0; a < E::nodes; ++a) x.row(a) += random.vector<3>(-0.03, 0.03).transpose();
+  Vector3 sum = Vector3::Zero(), moment = Vector3::Zero();
+  double flux = 0.0;
+  for (std::size_t f = 0; f < E::faces.size(); ++f) {
+    const auto nodes = face_of<E>(x, f);
+    const auto vectors = shape_area_vectors<typename E::Face>(nodes);
+    for (int a = 0; a < E::Face::nodes; ++a) {
+      const Vector3 load = vectors.row(a).transpose(), at = nodes.row(a).transpose();
+      sum += load;
+      moment += at.cross(load);
+      flux += at.dot(load);
+    }
+  }
+  CHECK(largest(sum) <= 1e-14);
+  CHECK(largest(moment) <= 1e-13);
+  CHECK_THAT(flux, Catch::Matchers::WithinRel(3 * shape_volumes<E>(x).sum(), 1e-13));
 }

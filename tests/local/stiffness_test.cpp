@@ -1,5 +1,8 @@
 // Element stiffness: closed forms, rigid motions, invariance, and the element of the thesis.
-#include <palpate/local/stiffness.hpp>
+#include <palpate/element/hex20.hpp>
+#include <palpate/element/tet10.hpp>
+#include <palpate/element/with_quadrature.hpp>
+#include <palpate/local/isotropic.hpp>
 
 #include <Eigen/Eigenvalues>
 
@@ -88,8 +91,8 @@ TEST_CASE("each shear uses its own modulus", "[local][closed_form]") {
     }
 }
 
-TEMPLATE_TEST_CASE("rigid motions cost nothing and nothing else does", "[local][rigid]", Tet4, user::Hex8, user::Tet10,
-                   thesis::ThesisTet4) {
+TEMPLATE_TEST_CASE("rigid motions cost nothing and nothing else does", "[local][rigid]", Tet4, Tet10, Hex8, Hex20,
+                   user::Hex8, user::Tet10, thesis::ThesisTet4) {
   using E = TestType;
   testing::Random random(5);
   for (int trial = 0; trial < 10; ++trial) {
@@ -111,7 +114,7 @@ TEMPLATE_TEST_CASE("rigid motions cost nothing and nothing else does", "[local][
   }
 }
 
-TEMPLATE_TEST_CASE("moving and turning an element", "[local][invariance][M1][M2]", Tet4, user::Hex8, user::Tet10) {
+TEMPLATE_TEST_CASE("moving and turning an element", "[local][invariance][M1][M2]", Tet4, Tet10, Hex8, Hex20) {
   using E = TestType;
   testing::Random random(7);
   const ElementNodes<E> x = some_element<E>(random);
@@ -201,4 +204,32 @@ TEST_CASE("what each misprint of the thesis does to the stiffness", "[local][the
     CHECK(largest(element_stiffness<thesis::PrintedOrder>(x, d)) > 0.0);
     CHECK(element_stiffness<thesis::PrintedOrder>(x, d).diagonal().maxCoeff() < 0.0);
   }
+}
+
+TEMPLATE_TEST_CASE("with two constants or with a matrix, the stiffness is the same", "[local]", Tet4, Tet10, Hex8,
+                   Hex20, (WithQuadrature<Tet10, TetrahedronRule<3>>)) {  // with a negative weight
+  using E = TestType;
+  testing::Random random(29);
+  for (int trial = 0; trial < 5; ++trial) {
+    ElementNodes<E> x = some_element<E>(random);
+    const double size = (x.rowwise() - x.row(0)).rowwise().norm().maxCoeff();
+    for (int a = 0; a < E::nodes; ++a) x.row(a) += random.vector<3>(-0.02 * size, 0.02 * size).transpose();  // curved
+    const LinearElastic m{random.uniform(1.0, 1e6), random.uniform(-0.9, 0.49), 0.0};
+    const auto constants = lame_constants(m.elasticity());
+    REQUIRE(constants.has_value());
+    const auto k = element_stiffness<E>(x, m.elasticity());
+    const auto same = element_stiffness<E>(x, *constants);
+    CHECK(largest(same - k) <= 1e-13 * largest(k));
+    CHECK(same == same.transpose());
+  }
+}
+
+TEST_CASE("an element turned inside out at one integration point is seen", "[local][extreme]") {
+  ElementNodes<Hex8> x = Hex8::reference_nodes();
+  CHECK(is_positively_oriented<Hex8>(x));
+  x.row(6) = Eigen::RowVector3d(-0.6, -0.6, -0.6);  // a corner pushed through the middle
+  CHECK_FALSE(is_positively_oriented<Hex8>(x));
+  ElementNodes<Tet10> y = Tet10::reference_nodes();
+  y.row(4) = Eigen::RowVector3d(-0.9, 0.0, 0.0);  // a middle node beyond its edge's end
+  CHECK_FALSE(is_positively_oriented<Tet10>(y));
 }

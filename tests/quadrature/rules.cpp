@@ -1,4 +1,5 @@
 #include <palpate/quadrature/gauss_legendre.hpp>
+#include <palpate/quadrature/tensor.hpp>
 #include <palpate/quadrature/tetrahedron.hpp>
 #include <palpate/quadrature/triangle.hpp>
 #include <palpate/testing/quadrature_laws.hpp>
@@ -27,6 +28,15 @@ TEMPLATE_TEST_CASE("tetrahedron rules keep the laws", "[quadrature][laws]", Tetr
                    TetrahedronRule<3>, TetrahedronRule<5>) {
   STATIC_REQUIRE(Quadrature<TestType>);
   CHECK(testing::describe(testing::quadrature_laws<TestType>(Domain::tetrahedron)) == "");
+}
+
+TEMPLATE_TEST_CASE("tensor rules keep the laws", "[quadrature][laws]", QuadrilateralRule<1>, QuadrilateralRule<2>,
+                   QuadrilateralRule<3>, QuadrilateralRule<5>, HexahedronRule<1>, HexahedronRule<2>, HexahedronRule<3>,
+                   HexahedronRule<4>) {
+  STATIC_REQUIRE(Quadrature<TestType>);
+  constexpr Domain domain = TestType::dimension == 2 ? Domain::quadrilateral : Domain::hexahedron;
+  CHECK(testing::describe(testing::quadrature_laws<TestType>(domain)) == "");
+  for (const auto& p : TestType::points) CHECK(p.weight > 0.0);
 }
 
 TEST_CASE("only the tetrahedron rule of degree 3 has a negative weight, and one", "[quadrature]") {

@@ -5,26 +5,9 @@
 #include <palpate/assembly/body.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/local/geometry.hpp>
-
-#include <optional>
+#include <palpate/local/isotropic.hpp>
 
 namespace palpate::inline PALPATE_ABI {
-
-/// The two constants of an isotropic law [Pa].
-struct LameConstants {
-  double lambda = 0.0, mu = 0.0;
-};
-
-/// The constants of an elasticity matrix if it is exactly isotropic.
-inline std::optional<LameConstants> lame_constants(const Matrix6& d) noexcept {
-  const LameConstants c{d(0, 1), d(3, 3)};
-  Matrix6 same = Matrix6::Zero();
-  same.topLeftCorner<3, 3>().setConstant(c.lambda);
-  for (int i = 0; i < 3; ++i) same(i, i) += 2.0 * c.mu;
-  for (int i = 3; i < 6; ++i) same(i, i) = c.mu;
-  if ((d - same).cwiseAbs().maxCoeff() <= 1e-14 * d.cwiseAbs().maxCoeff()) return c;
-  return std::nullopt;
-}
 
 /// Elements with one integration point: their gradients are constant (Tet4).
 template <class E>

@@ -5,20 +5,24 @@
 #include <palpate/assembly/body.hpp>
 #include <palpate/concepts/assembler.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/local/stiffness.hpp>
+#include <palpate/local/isotropic.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
 static_assert(StiffnessOperator<BlockMatrix>);
 
-/// Fills `k` element by element, for elements and laws of any kind.
-template <Element E>
-void assemble_elements(const Body<E>& body, BlockMatrix& k, const SetupLimits& limits) {
+/// Fills `k` element by element, for elements and laws of any kind. `law(e)` is what element_stiffness takes: a matrix
+/// or Lame's constants.
+template <Element E, class Law>
+void assemble_elements(const Body<E>& body, BlockMatrix& k, const SetupLimits& limits, Law law) {
   const Index count = body.mesh.element_count();
   for (Index e = 0; e < count; ++e) {
     if (e % 8192 == 0) limits.advance("assembly", static_cast<double>(e) / static_cast<double>(count));
-    const ElementStiffness<E> ke = element_stiffness<E>(element_nodes<E>(body.mesh, e), body.elasticity_of(e));
+    const ElementNodes<E> x = element_nodes<E>(body.mesh, e);
+    const ElementStiffness<E> ke = element_stiffness<E>(x, law(e));
     if (!ke.allFinite()) raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
+    if (!is_positively_oriented<E>(x))
+      raise_element(SetupErrorKind::inverted_element, e, "has a negative Jacobian at an integration point");
     const auto& nodes = body.mesh.elements[static_cast<std::size_t>(e)];
     for (int a = 0; a < E::nodes; ++a)
       for (int b = 0; b < E::nodes; ++b) {
@@ -26,17 +30,6 @@ void assemble_elements(const Body<E>& body, BlockMatrix& k, const SetupLimits& l
         if (j <= i) k.block(k.pattern().find(i, j)) += ke.template block<3, 3>(3 * a, 3 * b);
       }
   }
-}
-
-/// Lame's constants of all regions, if all are isotropic.
-inline std::optional<std::vector<LameConstants>> all_isotropic(const std::vector<Matrix6>& elasticity) {
-  std::vector<LameConstants> constants;
-  for (const Matrix6& d : elasticity) {
-    const auto c = lame_constants(d);
-    if (!c) return std::nullopt;
-    constants.push_back(*c);
-  }
-  return constants;
 }
 
 /// Sum of all element stiffnesses into the block pattern (thesis 3.37, 3.46). Throws inverted_element for a negative
@@ -48,12 +41,13 @@ BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
   BlockPattern pattern = block_pattern(body.mesh, around);
   limits.require_memory(static_cast<double>(pattern.column.size()) * 9 * sizeof(double), "the stiffness");
   BlockMatrix k(std::move(pattern));
-  if constexpr (ConstantGradient<E>)
-    if (const auto constants = all_isotropic(body.elasticity)) {
-      assemble_rows<E>(body.mesh, around, *constants, k, limits);
-      return k;
-    }
-  assemble_elements(body, k, limits);
+  const auto constants = all_isotropic(body.elasticity);
+  if (!constants)
+    assemble_elements(body, k, limits, [&](Index e) -> const Matrix6& { return body.elasticity_of(e); });
+  else if constexpr (ConstantGradient<E>)
+    assemble_rows<E>(body.mesh, around, *constants, k, limits);
+  else
+    assemble_elements(body, k, limits, [&](Index e) -> const LameConstants& { return (*constants)[body.region_of(e)]; });
   return k;
 }
 

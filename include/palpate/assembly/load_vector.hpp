@@ -104,10 +104,9 @@ double strain_energy(const Body<E>& body, const VectorX& u) {
     ElementNodes<E> ue;
     for (int a = 0; a < E::nodes; ++a)
       ue.row(a) = u.template segment<3>(3 * Index{body.mesh.element_node(e, a)}).transpose();
-    for (const auto& point : E::Quadrature::points) {
-      const PointGeometry<E> g = point_geometry<E>(x, reference_point(point), point.weight);
-      const Vector6 elastic = strain(ue, g.gradient) - body.initial_strain[body.region_of(e)];
-      energy += 0.5 * g.volume * elastic.dot(body.elasticity_of(e) * elastic);
+    for (const IntegrationPoint<E>& point : integration_points<E>(x)) {
+      const Vector6 elastic = strain_at<E>(point, ue) - body.initial_strain[body.region_of(e)];
+      energy += 0.5 * point.volume * elastic.dot(body.elasticity_of(e) * elastic);
     }
   }
   return energy;

@@ -19,16 +19,15 @@ class MatrixFreeStiffness {
   MatrixFreeStiffness(const Body<E>& body, const SetupLimits& limits)
       : nodes_(body.mesh.node_count()), connectivity_(body.mesh.elements), elasticity_(body.elasticity) {
     const Index count = body.mesh.element_count();
-    limits.require_memory(static_cast<double>(count) * E::Quadrature::points.size() * sizeof(PointGeometry<E>),
+    limits.require_memory(static_cast<double>(count) * E::Quadrature::points.size() * sizeof(IntegrationPoint<E>),
                           "the element gradients");
     regions_.reserve(static_cast<std::size_t>(count));
     points_.reserve(static_cast<std::size_t>(count) * E::Quadrature::points.size());
     for (Index e = 0; e < count; ++e) {
       if (e % 8192 == 0) limits.advance("assembly", static_cast<double>(e) / static_cast<double>(count));
       regions_.push_back(body.region_of(e));
-      const ElementNodes<E> x = element_nodes<E>(body.mesh, e);
-      for (const auto& point : E::Quadrature::points) {
-        points_.push_back(point_geometry<E>(x, reference_point(point), point.weight));
+      for (const IntegrationPoint<E>& point : integration_points<E>(element_nodes<E>(body.mesh, e))) {
+        points_.push_back(point);
         if (!points_.back().gradient.allFinite())
           raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
       }
@@ -51,8 +50,8 @@ class MatrixFreeStiffness {
         u.row(a) = x.segment<3>(3 * Index{connectivity_[e][static_cast<std::size_t>(a)]}).transpose();
       ElementNodes<E> f = ElementNodes<E>::Zero();
       for (std::size_t q = 0; q < E::Quadrature::points.size(); ++q, ++geometry) {
-        const Vector6 stress = elasticity_[regions_[e]] * strain(u, geometry->gradient);
-        f.noalias() += geometry->volume * geometry->gradient * voigt::stress_tensor(stress);
+        const Vector6 stress = elasticity_[regions_[e]] * strain_at<E>(*geometry, u);
+        f += force_of_stress<E>(*geometry, stress);
       }
       for (int a = 0; a < E::nodes; ++a)
         y.segment<3>(3 * Index{connectivity_[e][static_cast<std::size_t>(a)]}) += f.row(a).transpose();
@@ -65,7 +64,7 @@ class MatrixFreeStiffness {
     for (std::size_t e = 0; e < connectivity_.size(); ++e)
       for (std::size_t q = 0; q < E::Quadrature::points.size(); ++q, ++geometry)
         for (int a = 0; a < E::nodes; ++a) {
-          const auto b = strain_displacement(geometry->gradient.row(a).transpose());
+          const auto b = strain_block<E>(*geometry, a);
           d[static_cast<std::size_t>(connectivity_[e][static_cast<std::size_t>(a)])] +=
               geometry->volume * b.transpose() * elasticity_[regions_[e]] * b;
         }
@@ -76,7 +75,7 @@ class MatrixFreeStiffness {
   Index nodes_ = 0;
   std::vector<typename Mesh<E>::Connectivity> connectivity_;
   std::vector<std::size_t> regions_;
-  std::vector<PointGeometry<E>> points_;
+  std::vector<IntegrationPoint<E>> points_;
   std::vector<Matrix6> elasticity_;
 };
 

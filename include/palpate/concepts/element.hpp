@@ -20,6 +20,13 @@ concept FaceElement = requires(const Eigen::Vector2d& xi) {
   requires F::Quadrature::dimension == 2;
 };
 
+/// A face that tools can touch: `triangles` lists local nodes of linear triangles that cover the face, turned as the face
+/// is, with every node a vertex. Contact collides with these triangles, and reads displacement and spreads force with
+/// their barycentric weights (docs/contact.md). Laws: testing/element_laws.hpp.
+template <class F>
+concept TriangulatedFace = FaceElement<F> &&
+    std::same_as<std::remove_cvref_t<decltype(F::triangles)>, std::array<std::array<int, 3>, F::triangles.size()>>;
+
 /// A solid element: `nodes` shape functions of three reference coordinates (thesis 3.3.2).
 /// `shape(xi)` is nodes x 1, `gradient(xi)` nodes x 3 (derivatives by xi), `reference_nodes()` nodes x 3.
 /// `faces` lists the local nodes of every face, outward by the right-hand rule; all faces are of type `Face`.

@@ -9,6 +9,7 @@ namespace palpate::inline PALPATE_ABI {
 /// Linear triangle on the unit triangle (0, e1, e2): N = (1 - u - v, u, v).
 struct Tri3 {
   static constexpr int nodes = 3;
+  static constexpr std::array<std::array<int, 3>, 1> triangles{{{0, 1, 2}}};
   using Quadrature = TriangleRule<2>;
 
   static Eigen::Vector3d shape(const Eigen::Vector2d& xi) noexcept { return {1.0 - xi[0] - xi[1], xi[0], xi[1]}; }
@@ -25,5 +26,7 @@ struct Tri3 {
     return x;
   }
 };
+
+static_assert(TriangulatedFace<Tri3>);
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -1,27 +1,11 @@
 // Turns what a Gmsh file says into a mesh of one element type.
 #pragma once
 
-#include <palpate/element/tet4.hpp>
+#include <palpate/io/gmsh_elements.hpp>
 #include <palpate/io/gmsh_file.hpp>
 #include <palpate/mesh/mesh.hpp>
 
 #include <set>
-
-namespace palpate::inline PALPATE_ABI::io {
-
-/// What Gmsh calls element E: its type number, that of its faces, and `order[a]`, the place in Gmsh's node list of E's
-/// node a. Specialise it to read another element.
-template <class E>
-struct GmshElement;
-
-template <>
-struct GmshElement<Tet4> {
-  static constexpr int type = 4;
-  static constexpr int face_type = 2;
-  static constexpr std::array<int, 4> order{0, 1, 2, 3};
-};
-
-}  // namespace palpate::inline PALPATE_ABI::io
 
 namespace palpate::inline PALPATE_ABI::io::gmsh {
 

@@ -20,7 +20,7 @@ struct Type {
   std::string_view name;
 };
 
-/// Every type a file may hold. What becomes of them is decided by GmshElement<E> in io/gmsh.hpp.
+/// Every type a file may hold. What becomes of them is decided by GmshElement<E> in io/gmsh_elements.hpp.
 inline constexpr std::array types{
     Type{15, 0, 1, "point"},
     Type{1, 1, 2, "2-node line"},

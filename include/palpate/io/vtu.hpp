@@ -2,7 +2,10 @@
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
-#include <palpate/element/tet4.hpp>
+#include <palpate/element/hex20.hpp>
+#include <palpate/element/mean_dilatation.hpp>
+#include <palpate/element/tet10.hpp>
+#include <palpate/element/with_quadrature.hpp>
 #include <palpate/io/decimal.hpp>
 #include <palpate/mesh/mesh.hpp>
 
@@ -22,6 +25,25 @@ struct VtkElement<Tet4> {
   static constexpr std::uint8_t type = 10;
   static constexpr std::array<int, 4> order{0, 1, 2, 3};
 };
+template <>
+struct VtkElement<Tet10> {
+  static constexpr std::uint8_t type = 24;
+  static constexpr std::array<int, 10> order{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+};
+template <>
+struct VtkElement<Hex8> {
+  static constexpr std::uint8_t type = 12;
+  static constexpr std::array<int, 8> order{0, 1, 2, 3, 4, 5, 6, 7};
+};
+template <>
+struct VtkElement<Hex20> {
+  static constexpr std::uint8_t type = 25;
+  static constexpr std::array<int, 20> order{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19};
+};
+template <class E, class Rule>
+struct VtkElement<WithQuadrature<E, Rule>> : VtkElement<E> {};
+template <class E>
+struct VtkElement<MeanDilatation<E>> : VtkElement<E> {};
 
 /// A field to write: `values` holds the components of node or element 0, then of 1, and so on. How many components
 /// there are follows from the length: 1 is a scalar, 3 a vector such as a displacement.

@@ -35,4 +35,15 @@ inline Eigen::Vector2d reference_point(const QuadraturePoint<2>& p) noexcept {
   return {p.xi[0], p.xi[1]};
 }
 
+/// True when det J is positive at every point of the element's rule.
+template <Element E>
+bool is_positively_oriented(const ElementNodes<E>& x) noexcept {
+  const ElementNodes<E> edges = x.rowwise() - x.row(0);
+  for (const auto& point : E::Quadrature::points) {
+    const Matrix3 jacobian = edges.transpose() * E::gradient(reference_point(point));
+    if (!(jacobian.determinant() > 0.0)) return false;
+  }
+  return true;
+}
+
 }  // namespace palpate::inline PALPATE_ABI

@@ -2,8 +2,7 @@
 // measure is the length of the cross product).
 #pragma once
 
-#include <palpate/local/geometry.hpp>
-#include <palpate/local/strain_displacement.hpp>
+#include <palpate/local/integration_points.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -56,11 +55,7 @@ template <Element E>
 ElementNodes<E> initial_strain_load(const ElementNodes<E>& x, const Matrix6& d, const Vector6& strain0) noexcept {
   ElementNodes<E> f = ElementNodes<E>::Zero();
   const Vector6 stress = d * strain0;
-  const Matrix3 tensor = voigt::stress_tensor(stress);
-  for (const auto& point : E::Quadrature::points) {
-    const PointGeometry<E> g = point_geometry<E>(x, reference_point(point), point.weight);
-    f.noalias() += g.volume * g.gradient * tensor;
-  }
+  for (const IntegrationPoint<E>& point : integration_points<E>(x)) f += force_of_stress<E>(point, stress);
   return f;
 }
 

@@ -1,8 +1,7 @@
 // Stiffness of one element.
 #pragma once
 
-#include <palpate/local/geometry.hpp>
-#include <palpate/local/strain_displacement.hpp>
+#include <palpate/local/integration_points.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -15,12 +14,10 @@ using ElementStiffness = Eigen::Matrix<double, 3 * E::nodes, 3 * E::nodes>;
 template <Element E>
 ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const Matrix6& d) noexcept {
   ElementStiffness<E> k = ElementStiffness<E>::Zero();
-  for (const auto& point : E::Quadrature::points) {
-    const PointGeometry<E> g = point_geometry<E>(x, reference_point(point), point.weight);
+  for (const IntegrationPoint<E>& point : integration_points<E>(x)) {
     Eigen::Matrix<double, 6, 3 * E::nodes> b;
-    for (int a = 0; a < E::nodes; ++a)
-      b.template middleCols<3>(3 * a) = strain_displacement(g.gradient.row(a).transpose());
-    k.noalias() += b.transpose() * (g.volume * d) * b;
+    for (int a = 0; a < E::nodes; ++a) b.template middleCols<3>(3 * a) = strain_block<E>(point, a);
+    k.noalias() += b.transpose() * (point.volume * d) * b;
   }
   return k;
 }

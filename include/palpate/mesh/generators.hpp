@@ -62,6 +62,26 @@ inline void split_in_six(Mesh<Tet4>& mesh, const BoxGrid& grid, std::array<NodeI
         add_oriented(mesh, grid.corner(cell, 0), grid.corner(cell, a), grid.corner(cell, a | b), grid.corner(cell, 7));
 }
 
+/// Nodes at every combination of the coordinates, x running fastest.
+template <Element E>
+void add_grid_nodes(Mesh<E>& mesh, const std::vector<double>& x, const std::vector<double>& y,
+                    const std::vector<double>& z) {
+  for (double pz : z)
+    for (double py : y)
+      for (double px : x) mesh.positions.emplace_back(px, py, pz);
+}
+
+/// Groups "x0", "x1" ... "z1" of a box whose nodes are those of the grid.
+template <Element E>
+void add_box_groups(Mesh<E>& mesh, const BoxGrid& grid) {
+  const auto boundary = extract_boundary<E>(mesh);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (NodeId side : {0, 1})
+      add_boundary_group(mesh, boundary, std::string(1, "xyz"[axis]) + (side == 0 ? '0' : '1'), [&](NodeId node) {
+        return grid.place(node)[axis] == (side == 0 ? 0 : grid.cells[axis]);
+      });
+}
+
 /// Number of cells along an axis. Refuses coordinates that do not rise.
 inline NodeId count_cells(const std::vector<double>& x) {
   bool fine = x.size() >= 2;
@@ -97,20 +117,13 @@ inline Mesh<Tet4> box_tet4(const std::vector<double>& x, const std::vector<doubl
       2147483647.0)
     raise(SetupErrorKind::count_too_large, "the box would have more than 2^31 elements");
   Mesh<Tet4> mesh;
-  for (double pz : z)
-    for (double py : y)
-      for (double px : x) mesh.positions.emplace_back(px, py, pz);
+  detail::add_grid_nodes(mesh, x, y, z);
   for (NodeId k = 0; k < grid.cells[2]; ++k)
     for (NodeId j = 0; j < grid.cells[1]; ++j)
       for (NodeId i = 0; i < grid.cells[0]; ++i)
         split == BoxSplit::six ? detail::split_in_six(mesh, grid, {i, j, k})
                                : detail::split_in_five(mesh, grid, {i, j, k});
-  const auto boundary = extract_boundary<Tet4>(mesh);
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (NodeId side : {0, 1})
-      detail::add_boundary_group(
-          mesh, boundary, std::string(1, "xyz"[axis]) + (side == 0 ? '0' : '1'),
-          [&](NodeId node) { return grid.place(node)[axis] == (side == 0 ? 0 : grid.cells[axis]); });
+  detail::add_box_groups(mesh, grid);
   return mesh;
 }
 

@@ -33,7 +33,8 @@ struct SetupOptions {
 template <Element E, LinearMaterial M, SolverPolicy Solver = Condensed<SelectiveInverse>>
 class HapticFEModel {
  public:
-  static_assert(E::Face::nodes == 3, "touch is implemented for elements with three-node faces");
+  static_assert(TriangulatedFace<typename E::Face>,
+                "palpate: tools touch triangles; give the element's Face a list `triangles` of its nodes, like Tri6");
   using Traits = SolverTraits<Solver>;
 
   /// One material everywhere. Throws SetupError; see docs/errors.md for the kinds.

@@ -6,7 +6,8 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// The touchable surface: its nodes, sorted, and its outward triangles in numbers of those nodes.
+/// The touchable surface: its nodes, sorted, and its outward triangles in numbers of those nodes. Faces with more nodes
+/// than three give the triangles their face element lists.
 struct Touchable {
   std::vector<NodeId> nodes;
   std::vector<Triangle> triangles;
@@ -35,12 +36,14 @@ Touchable resolve_touchable(const Mesh<E>& mesh, const std::vector<BoundaryFace<
   const auto same = [](const auto& a, const auto& b) { return a.key() == b.key(); };
   std::ranges::sort(faces, {}, [](const auto& f) { return f.key(); });
   faces.erase(std::unique(faces.begin(), faces.end(), same), faces.end());
-  for (const auto& face : faces) {
-    Triangle t;
-    for (std::size_t a = 0; a < t.size(); ++a)
-      t[a] = static_cast<int>(std::ranges::lower_bound(touchable.nodes, face.nodes[a]) - touchable.nodes.begin());
-    touchable.triangles.push_back(t);
-  }
+  const auto vertex = [&](NodeId node) {
+    return static_cast<int>(std::ranges::lower_bound(touchable.nodes, node) - touchable.nodes.begin());
+  };
+  for (const auto& face : faces)
+    for (const auto& [a, b, c] : E::Face::triangles) {
+      const auto at = [&](int local) { return vertex(face.nodes[static_cast<std::size_t>(local)]); };
+      touchable.triangles.push_back({at(a), at(b), at(c)});
+    }
   return touchable;
 }
 

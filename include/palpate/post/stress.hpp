@@ -2,8 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/body.hpp>
-#include <palpate/local/geometry.hpp>
-#include <palpate/local/strain_displacement.hpp>
+#include <palpate/local/integration_points.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -16,7 +15,7 @@ using StressColumns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 template <Element E>
 Vector6 point_stress(const ElementNodes<E>& x, const ElementNodes<E>& u, const Vector3& xi, const Matrix6& d,
                      const Vector6& strain0 = Vector6::Zero()) noexcept {
-  return d * (strain(u, point_geometry<E>(x, xi, 1.0).gradient) - strain0);
+  return d * (strain_at<E>(integration_point<E>(x, xi, 1.0), u) - strain0);
 }
 
 /// The mean of an element's stress over its volume.
@@ -31,10 +30,9 @@ MeanStress mean_stress(const ElementNodes<E>& x, const ElementNodes<E>& u, const
                        const Vector6& strain0 = Vector6::Zero()) noexcept {
   MeanStress mean;
   Vector6 sum = Vector6::Zero();
-  for (const auto& point : E::Quadrature::points) {
-    const PointGeometry<E> g = point_geometry<E>(x, reference_point(point), point.weight);
-    sum += g.volume * strain(u, g.gradient);
-    mean.volume += g.volume;
+  for (const IntegrationPoint<E>& point : integration_points<E>(x)) {
+    sum += point.volume * strain_at<E>(point, u);
+    mean.volume += point.volume;
   }
   mean.stress.noalias() = d * (sum / mean.volume - strain0);
   return mean;

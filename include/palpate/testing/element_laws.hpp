@@ -6,8 +6,42 @@
 
 namespace palpate::inline PALPATE_ABI::testing {
 
+/// Laws of the triangles of a face: "triangles name nodes of the face", "triangles are turned as the face is",
+/// "triangles cover the face" (their areas sum to its own), "every node is a vertex of a triangle, and lies on no other".
+template <TriangulatedFace F>
+Violations triangulation_laws(double area) {
+  Violations v;
+  const Eigen::Matrix<double, F::nodes, 2> x = F::reference_nodes();
+  const auto area_of = [](const Vector2& a, const Vector2& b, const Vector2& c) {
+    return 0.5 * ((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0]);
+  };
+  double sum = 0.0;
+  std::vector<bool> used(static_cast<std::size_t>(F::nodes), false);
+  for (const auto& t : F::triangles) {
+    const bool in_range = std::ranges::all_of(t, [](int a) { return a >= 0 && a < F::nodes; });
+    expect_true(v, "triangles name nodes of the face", in_range);
+    if (!in_range) return v;
+    const std::array<Vector2, 3> p{x.row(t[0]).transpose(), x.row(t[1]).transpose(), x.row(t[2]).transpose()};
+    const double own = area_of(p[0], p[1], p[2]);
+    expect_above(v, "triangles are turned as the face is", own, 0.0);
+    sum += own;
+    for (int a : t) used[static_cast<std::size_t>(a)] = true;
+    for (int a = 0; a < F::nodes; ++a) {
+      if (std::ranges::find(t, a) != t.end()) continue;
+      const Vector2 q = x.row(a).transpose();
+      const double inside = std::min({area_of(q, p[1], p[2]), area_of(p[0], q, p[2]), area_of(p[0], p[1], q)});
+      expect_true(v, "every node is a vertex of a triangle, and lies on no other", inside < -1e-9 * own,
+                  "node " + std::to_string(a));
+    }
+  }
+  expect_at_most(v, "triangles cover the face", std::abs(sum - area), 1e-12 * area);
+  expect_true(v, "every node is a vertex of a triangle, and lies on no other", std::ranges::find(used, false) == used.end());
+  return v;
+}
+
 /// Laws of a surface element: the shape laws, linear completeness, the laws of its rule on its own reference cell, and
-/// "rule integrates the shape functions" (a constant traction gives the consistent load).
+/// "rule integrates the shape functions" (a constant traction gives the consistent load),
+/// and those of its triangles where it has any.
 template <FaceElement F>
 Violations face_element_laws() {
   Violations v = basic_shape_laws<F, 2>();
@@ -21,6 +55,7 @@ Violations face_element_laws() {
   expect_true(v, "reference cell", cell.has_value(), "the corners make no triangle and no box");
   if (!cell) return v;
   append(v, quadrature_laws<typename F::Quadrature>(*cell), "Quadrature");
+  if constexpr (TriangulatedFace<F>) append(v, triangulation_laws<F>(cell->volume()), "triangles");
   Eigen::Matrix<double, F::nodes, 1> by_rule = Eigen::Matrix<double, F::nodes, 1>::Zero();
   for (const auto& q : F::Quadrature::points) by_rule += q.weight * F::shape(point_of(q.xi));
   for (int a = 0; a < F::nodes; ++a) {

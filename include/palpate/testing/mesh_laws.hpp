@@ -107,7 +107,7 @@ struct MeshFace {
 
 /// All faces of all elements, equal keys adjacent. Areas are taken relative to the first node of the mesh.
 template <Element E, MeshOf<E> M>
-std::vector<MeshFace> sorted_faces(const M& mesh) {
+std::vector<MeshFace> faces_with_areas(const M& mesh) {
   std::vector<MeshFace> faces;
   for (Index e = 0; e < static_cast<Index>(mesh.element_count()); ++e) {
     const ElementNodes<E> x = element_nodes<E>(mesh, e);
@@ -133,7 +133,7 @@ std::vector<MeshFace> sorted_faces(const M& mesh) {
 template <Element E, MeshOf<E> M>
 Violations surface_laws(const M& mesh) {
   Violations v;
-  const auto faces = sorted_faces<E>(mesh);
+  const auto faces = faces_with_areas<E>(mesh);
   Worst shared("at most two elements share a face", 2.0), opposite("neighbours lie on opposite sides", 1e-6);
   Vector3 sum = Vector3::Zero();
   double area = 0.0;

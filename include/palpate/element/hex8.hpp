@@ -1,0 +1,46 @@
+// The eight-node hexahedron.
+#pragma once
+
+#include <palpate/element/quad4.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Trilinear hexahedron on [-1, 1]^3: bottom (w = -1) counter-clockwise seen from above, then top; 2 x 2 x 2 points.
+/// The plain, fully integrated brick: it locks near incompressibility, and results above `locking_poisson_ratio` are
+/// flagged.
+struct Hex8 {
+  static constexpr int nodes = 8;
+  static constexpr int order = 1;
+  static constexpr double reference_volume = 8.0;
+  static constexpr double locking_poisson_ratio = 0.45;
+  static constexpr std::array<std::array<int, 4>, 6> faces{
+      {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
+  using Face = Quad4;
+  using Quadrature = HexahedronRule<2>;
+  using MassQuadrature = HexahedronRule<2>;
+
+  static Eigen::Matrix<double, 8, 1> shape(const Vector3& xi) noexcept {
+    const Eigen::Vector4d n = Quad4::shape(xi.head<2>());
+    Eigen::Matrix<double, 8, 1> result;
+    result << 0.5 * (1.0 - xi[2]) * n, 0.5 * (1.0 + xi[2]) * n;
+    return result;
+  }
+
+  static Eigen::Matrix<double, 8, 3> gradient(const Vector3& xi) noexcept {
+    const Eigen::Vector4d n = Quad4::shape(xi.head<2>());
+    const Eigen::Matrix<double, 4, 2> d = Quad4::gradient(xi.head<2>());
+    Eigen::Matrix<double, 8, 3> g;
+    g << 0.5 * (1.0 - xi[2]) * d, -0.5 * n, 0.5 * (1.0 + xi[2]) * d, 0.5 * n;
+    return g;
+  }
+
+  static Eigen::Matrix<double, 8, 3> reference_nodes() noexcept {
+    Eigen::Matrix<double, 8, 3> x;
+    x << Quad4::reference_nodes(), -Eigen::Vector4d::Ones(), Quad4::reference_nodes(), Eigen::Vector4d::Ones();
+    return x;
+  }
+};
+
+static_assert(Element<Hex8>);
+
+}  // namespace palpate::inline PALPATE_ABI

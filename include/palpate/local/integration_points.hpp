@@ -1,0 +1,92 @@
+// All integration points of an element, and strain, stress and force in them.
+#pragma once
+
+#include <palpate/core/voigt.hpp>
+#include <palpate/element/mean_dilatation.hpp>
+#include <palpate/local/geometry.hpp>
+#include <palpate/local/strain_displacement.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// A point of the element's rule. With a mean change of volume (element/mean_dilatation.hpp) also the mean over the
+/// element of the gradients, which gives it.
+template <Element E>
+struct IntegrationPoint : PointGeometry<E> {};
+
+template <HasMeanDilatation E>
+struct IntegrationPoint<E> : PointGeometry<E> {
+  Eigen::Matrix<double, E::nodes, 3> dilatation;  ///< [1/m]
+};
+
+template <Element E>
+using IntegrationPoints = std::array<IntegrationPoint<E>, E::Quadrature::points.size()>;
+
+/// Mean over the element of the spatial gradients [1/m].
+template <HasMeanDilatation E>
+Eigen::Matrix<double, E::nodes, 3> mean_gradient(const ElementNodes<E>& x) noexcept {
+  Eigen::Matrix<double, E::nodes, 3> sum = Eigen::Matrix<double, E::nodes, 3>::Zero();
+  double volume = 0.0;
+  for (const auto& point : E::Quadrature::points) {
+    const PointGeometry<E> g = point_geometry<E>(x, reference_point(point), point.weight);
+    sum += g.volume * g.gradient;
+    volume += g.volume;
+  }
+  return sum / volume;
+}
+
+/// The point with these reference coordinates and this weight.
+template <Element E>
+IntegrationPoint<E> integration_point(const ElementNodes<E>& x, const Vector3& xi, double weight) noexcept {
+  if constexpr (HasMeanDilatation<E>)
+    return {point_geometry<E>(x, xi, weight), mean_gradient<E>(x)};
+  else
+    return {point_geometry<E>(x, xi, weight)};
+}
+
+/// All points of the element's rule.
+template <Element E>
+IntegrationPoints<E> integration_points(const ElementNodes<E>& x) noexcept {
+  IntegrationPoints<E> points;
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    const auto& point = E::Quadrature::points[q];
+    static_cast<PointGeometry<E>&>(points[q]) = point_geometry<E>(x, reference_point(point), point.weight);
+  }
+  if constexpr (HasMeanDilatation<E>) {
+    const auto mean = mean_gradient<E>(x);
+    for (auto& point : points) point.dilatation = mean;
+  }
+  return points;
+}
+
+/// Strain under the nodal displacements u [m], one per row.
+template <Element E>
+Vector6 strain_at(const IntegrationPoint<E>& point, const ElementNodes<E>& u) noexcept {
+  Vector6 e = strain(u, point.gradient);
+  if constexpr (HasMeanDilatation<E>)
+    e.template head<3>().array() += (u.cwiseProduct(point.dilatation).sum() - e.template head<3>().sum()) / 3.0;
+  return e;
+}
+
+/// Nodal forces [N] of a stress [Pa] in a point, one per row: B^T sigma dV.
+template <Element E>
+ElementNodes<E> force_of_stress(const IntegrationPoint<E>& point, const Vector6& stress) noexcept {
+  Matrix3 tensor = voigt::stress_tensor(stress);
+  if constexpr (HasMeanDilatation<E>) {
+    const double mean = tensor.trace() / 3.0;
+    tensor.diagonal().array() -= mean;
+    return point.volume * (point.gradient * tensor + mean * point.dilatation);
+  } else {
+    return point.volume * point.gradient * tensor;
+  }
+}
+
+/// Block of the strain-displacement matrix for local node a, 6 x 3 [1/m].
+template <Element E>
+Eigen::Matrix<double, 6, 3> strain_block(const IntegrationPoint<E>& point, int a) noexcept {
+  Eigen::Matrix<double, 6, 3> b = strain_displacement(point.gradient.row(a).transpose());
+  if constexpr (HasMeanDilatation<E>)
+    b.template topRows<3>().rowwise() += (point.dilatation.row(a) - point.gradient.row(a)) / 3.0;
+  return b;
+}
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,31 @@
+#include "properties/element_cases.hpp"
+#if __has_include(<nlohmann/json.hpp>)
+#include "properties/oracle_checks.hpp"
+#endif
+
+using namespace test;
+
+TEST_CASE("Hex20: an affine field is reproduced on a distorted mesh, here and far away", "[property][patch]") {
+  check_affine_patch<Hex20>(false);
+}
+
+TEST_CASE("Hex20: an affine field under its tractions", "[property][patch]") {
+  check_traction_patch<Hex20>(false);
+}
+
+TEST_CASE("Hex20: a quadratic field is exact on straight edges", "[property][patch]") {
+  check_quadratic_patch<Hex20>();
+}
+
+TEST_CASE("Hex20: a smooth field converges with the order of the element", "[property][mms]") {
+  check_convergence<Hex20>(2, 4);
+}
+
+#if __has_include(<nlohmann/json.hpp>)
+TEST_CASE("Hex20: linear statics agrees with the reference results", "[oracle]") {
+  CHECK(check_folder<Hex20>(PALPATE_TEST_DATA "/oracle/B_cantilever/hex20_5x1x1", "hex20") == 2);
+  const int checked = check_all_folders<Hex20>("hex20");
+  if (checked < 0) WARN("skipped: there is no folder " PALPATE_ORACLE_DIR);
+  CHECK(checked != 0);
+}
+#endif
