@@ -26,11 +26,12 @@ struct State {
   std::map<std::vector<int>, std::uint32_t> sets;
 };
 
-/// Refuses lines behind the last one announced.
+/// Refuses lines behind the last one announced, and a last one that is cut.
 inline void need_end(TextReader& in, std::string_view what, Index count) {
   if (in.next_line())
     in.refuse(SetupErrorKind::bad_file, "the end of the file after " + std::to_string(count) + ' ' + std::string(what),
               TextReader::quoted(in.line()));
+  in.need_last_line_end();
 }
 
 /// x.node. A node with a boundary marker other than 0 becomes a point of that tag.

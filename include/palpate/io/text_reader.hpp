@@ -84,6 +84,13 @@ class TextReader {
     next_raw_line();
   }
 
+  /// Refuses a text whose last line does not end: where a format has no mark for its end, the last number may be cut.
+  void need_last_line_end() const {
+    if (!text_.empty() && text_.back() != '\n')
+      refuse(SetupErrorKind::bad_file, "a line end after the last line", "the end of the file",
+             "If the file is whole, add an empty line");
+  }
+
   std::size_t bytes_left() const noexcept { return text_.size() - std::min(next_, text_.size()); }
 
   /// The current line, or minus the current byte when binary data has begun; see place_text.

@@ -26,6 +26,7 @@ class Lines {
     if (held_) return !(held_ = false);
     for (;;) {
       while (!in().next_line()) {
+        in().need_last_line_end();
         if (open_.size() == 1) return false;
         open_.pop_back();
         file_.pop_back();

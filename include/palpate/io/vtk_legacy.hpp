@@ -17,6 +17,7 @@ class LegacyParser {
     if (!has_types_)
       in_.refuse(SetupErrorKind::bad_file, !has_points_ ? "POINTS" : !has_cells_ ? "CELLS" : "CELL_TYPES",
                  "the end of the file");
+    if (!numbers_.is_binary) in_.need_last_line_end();
     add_cells();
     return std::move(mesh_);
   }
