@@ -18,6 +18,7 @@ const std::string bad = "bad_file", range = "index_out_of_range", count = "count
 const std::string nan64 = f64(std::nan("")), nan64_swapped = f64(std::nan(""), true), inf64 = f64(palpate::infinity);
 const bool swap = std::endian::native == std::endian::little;
 
+// clang-format off
 inline const std::vector<BadFile> files{
     // Gmsh MSH 2, ASCII
     {"msh2", "Nodes\n5", "Nodes\n4", bad},
@@ -443,6 +444,7 @@ inline const std::vector<BadFile> files{
     {"veg", "*REGION", "*INCLUDE missing.veg", bad},
     {"veg", "*REGION", "*INCLUDE itself.veg", other},
 };
+// clang-format on
 
 }  // namespace table
 }  // namespace test

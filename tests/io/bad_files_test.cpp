@@ -9,7 +9,9 @@ using test::BadFile;
 
 namespace {
 
-std::string edited(const BadFile& f) { return test::with(test::samples().at(f.format), f.from, f.to); }
+std::string edited(const BadFile& f) {
+  return test::with(test::samples().at(f.format), f.from, f.to);
+}
 
 /// Bytes that do not print as \xHH, shortened.
 std::string printable(const std::string& text) {

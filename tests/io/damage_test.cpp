@@ -19,8 +19,12 @@ std::string replace_all(std::string text, const std::string& from, const std::st
   return text;
 }
 
-bool is_text(const std::string& format) { return format.find("binary") == std::string::npos; }
-bool is_gmsh(const std::string& format) { return format.starts_with("msh"); }
+bool is_text(const std::string& format) {
+  return format.find("binary") == std::string::npos;
+}
+bool is_gmsh(const std::string& format) {
+  return format.starts_with("msh");
+}
 
 const std::vector<std::pair<std::string, std::string>> spellings{
     {"nan 1 1", not_finite},   {"NaN 1 1", not_finite},    {"inf 1 1", not_finite}, {"-infinity 1 1", not_finite},
@@ -49,17 +53,17 @@ TEST_CASE("Formats of Gmsh that are not read are named, with the command that co
   for (const std::string& base : {test::msh2, test::msh4}) {
     const std::string format = base.substr(12, 7);
     for (const auto& [to, expected] : std::vector<std::pair<std::string, std::string>>{{"4 0 8", other},
-                                                                                        {"4.0 0 8", other},
-                                                                                        {"4.2 0 8", other},
-                                                                                        {"3 0 8", other},
-                                                                                        {"1 0 8", other},
-                                                                                        {"2.2 1 8", bad},
-                                                                                        {"4.1 1 8", bad},
-                                                                                        {"4.1 2 8", range},
-                                                                                        {"nan 0 8", not_finite},
-                                                                                        {"2,2 0 8", bad},
-                                                                                        {"2.2 0", bad},
-                                                                                        {"2.2", bad}}) {
+                                                                                       {"4.0 0 8", other},
+                                                                                       {"4.2 0 8", other},
+                                                                                       {"3 0 8", other},
+                                                                                       {"1 0 8", other},
+                                                                                       {"2.2 1 8", bad},
+                                                                                       {"4.1 1 8", bad},
+                                                                                       {"4.1 2 8", range},
+                                                                                       {"nan 0 8", not_finite},
+                                                                                       {"2,2 0 8", bad},
+                                                                                       {"2.2 0", bad},
+                                                                                       {"2.2", bad}}) {
       INFO(to);
       CHECK(test::verdict(with(base, format, to)) == expected);
     }
@@ -157,7 +161,8 @@ TEST_CASE("No prefix of a file is taken for a file", "[io][extreme][C1]") {
       if (is_gmsh(format)) CHECK(size + 1 >= base.size());
       if (format.starts_with("vtk")) CHECK(size >= std::min(types, binary_types));
       if (format == "veg") CHECK((size > base.find("\n\n*MATERIAL") && copy.back() == '\n'));
-      if (format.starts_with("tetgen")) CHECK((size >= base.rfind('\x1f') && (copy.back() == '\n' || copy.back() == '\x1f')));
+      if (format.starts_with("tetgen"))
+        CHECK((size >= base.rfind('\x1f') && (copy.back() == '\n' || copy.back() == '\x1f')));
     }
     CHECK(accepted >= 1);
     if (is_gmsh(format)) CHECK(accepted == 2);  // all of it, and all but the last line end
@@ -178,28 +183,46 @@ TEST_CASE("Random damage is refused or harmless", "[io][extreme][C2]") {
   const std::string bytes = "0123456789-+.,eE $\"\n\r\tNadx\x01\x80";
   std::size_t unsound = 0;
   for (const auto& [format, base] : test::samples())
-  for (int i = 0; i < 4000; ++i) {
-    std::string text = base;
-    for (std::size_t edits = 1 + below(4); edits > 0; --edits) {
-      const std::size_t at = below(text.size());
-      switch (below(4)) {
-        case 0:
-          text[at] = bytes[below(bytes.size())];
-          break;
-        case 1:
-          text.insert(at, 1, bytes[below(bytes.size())]);
-          break;
-        case 2:
-          text.erase(at, 1 + below(8));
-          break;
-        default:
-          text.insert(at, text.substr(below(text.size()), 1 + below(16)));
-          break;
+    for (int i = 0; i < 4000; ++i) {
+      std::string text = base;
+      for (std::size_t edits = 1 + below(4); edits > 0; --edits) {
+        const std::size_t at = below(text.size());
+        switch (below(4)) {
+          case 0:
+            text[at] = bytes[below(bytes.size())];
+            break;
+          case 1:
+            text.insert(at, 1, bytes[below(bytes.size())]);
+            break;
+          case 2:
+            text.erase(at, 1 + below(8));
+            break;
+          default:
+            text.insert(at, text.substr(below(text.size()), 1 + below(16)));
+            break;
+        }
       }
+      unsound += test::verdict(text, format) == "unsound" ? 1 : 0;
     }
-    unsound += test::verdict(text, format) == "unsound" ? 1 : 0;
-  }
   CHECK(unsound == 0);
+}
+
+TEST_CASE("A few bytes cannot ask for much memory or time", "[io][extreme][C2]") {
+  // Every one of 3000 elements in 3000 groups: 30 kB of text, 9 million memberships.
+  std::string tags, elements, names;
+  for (int i = 1; i <= 3000; ++i) tags += ' ' + std::to_string(i);
+  for (int i = 1; i <= 3000; ++i) elements += std::to_string(i) + " 1 2 3 4\n";
+  auto text = with(test::msh4, "1 1 1 1\n$EndEnt", "3000" + tags + " 0\n$EndEnt");
+  text = with(text, "3 1 4 2\n3 1 2 3 4\n4 2 3 4 5\n", "3 1 4 3000\n" + elements);
+  text = with(text, "3 4 1 4\n", "3 3002 1 4\n");
+  CHECK(test::complaint(text).find("expected elements in groups at most") != std::string::npos);
+
+  for (int i = 1; i <= 10001; ++i) names += "2 " + std::to_string(i + 10) + " \"g" + std::to_string(i) + "\"\n";
+  CHECK(test::verdict(with(test::msh2, "3\n0 3 \"tip\"\n", "10004\n0 3 \"tip\"\n" + names)) == "count_too_large");
+
+  std::string regions;
+  for (int i = 0; i < 9000; ++i) regions += "*REGION\nallElements, soft\n";
+  CHECK(test::verdict(test::samples().at("veg") + regions, "veg") == good);
 }
 
 TEST_CASE("The locale of the process does not matter", "[io][extreme][C4]") {

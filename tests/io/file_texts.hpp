@@ -22,9 +22,15 @@ std::string bytes(T value, bool swap) {
   std::memcpy(raw.data(), &value, sizeof(T));
   return swap ? std::string(raw.rbegin(), raw.rend()) : raw;
 }
-inline std::string i32(Index value, bool swap = false) { return bytes(static_cast<std::int32_t>(value), swap); }
-inline std::string i64(Index value, bool swap = false) { return bytes(static_cast<std::int64_t>(value), swap); }
-inline std::string f64(double value, bool swap = false) { return bytes(value, swap); }
+inline std::string i32(Index value, bool swap = false) {
+  return bytes(static_cast<std::int32_t>(value), swap);
+}
+inline std::string i64(Index value, bool swap = false) {
+  return bytes(static_cast<std::int64_t>(value), swap);
+}
+inline std::string f64(double value, bool swap = false) {
+  return bytes(value, swap);
+}
 
 inline std::string words(std::initializer_list<Index> numbers) {
   std::string text;
@@ -36,7 +42,9 @@ inline std::string point(const palpate::Vector3& x) {
   return to_decimal(x[0]) + ' ' + to_decimal(x[1]) + ' ' + to_decimal(x[2]);
 }
 
-inline int tag_of(const FileMesh& m, const FileCell& c) { return c.tag_set == 0 ? 0 : m.tag_sets[c.tag_set].front(); }
+inline int tag_of(const FileMesh& m, const FileCell& c) {
+  return c.tag_set == 0 ? 0 : m.tag_sets[c.tag_set].front();
+}
 inline Index node_of(const FileMesh& m, const FileCell& c, int a) {
   return m.cell_nodes[c.first_node + static_cast<std::size_t>(a)];
 }
@@ -48,7 +56,9 @@ inline std::string node_list(const FileMesh& m, const FileCell& c, Index base) {
 inline int gmsh_number(CellShape shape) {
   return shape == CellShape::point ? 15 : shape == CellShape::triangle3 ? 2 : 4;
 }
-inline int vtk_number(CellShape shape) { return shape == CellShape::point ? 1 : shape == CellShape::triangle3 ? 5 : 10; }
+inline int vtk_number(CellShape shape) {
+  return shape == CellShape::point ? 1 : shape == CellShape::triangle3 ? 5 : 10;
+}
 
 inline std::string names_section(const FileMesh& m) {
   if (m.names.empty()) return {};
@@ -59,7 +69,8 @@ inline std::string names_section(const FileMesh& m) {
 
 inline std::string msh1(const FileMesh& m) {
   std::string text = "$NOD\n" + std::to_string(m.positions.size()) + '\n';
-  for (std::size_t i = 0; i < m.positions.size(); ++i) text += std::to_string(i + 1) + ' ' + point(m.positions[i]) + '\n';
+  for (std::size_t i = 0; i < m.positions.size(); ++i)
+    text += std::to_string(i + 1) + ' ' + point(m.positions[i]) + '\n';
   text += "$ENDNOD\n$ELM\n" + std::to_string(m.cells.size()) + '\n';
   for (const FileCell& c : m.cells)
     text += words({c.tag, gmsh_number(c.shape), tag_of(m, c), 1, facts(c.shape).nodes}) + node_list(m, c, 1) + '\n';
@@ -127,7 +138,8 @@ inline std::string tetgen(const FileMesh& m, Index base) {
   for (const FileCell& c : m.cells) {
     const std::string tag = std::to_string(tag_of(m, c));
     if (c.shape == CellShape::point) markers[node_of(m, c, 0)] = tag_of(m, c);
-    if (c.shape == CellShape::triangle3) face += std::to_string(base + faces++) + node_list(m, c, base) + ' ' + tag + '\n';
+    if (c.shape == CellShape::triangle3)
+      face += std::to_string(base + faces++) + node_list(m, c, base) + ' ' + tag + '\n';
     if (c.shape == CellShape::tetrahedron4)
       ele += std::to_string(base + elements++) + node_list(m, c, base) + ' ' + tag + '\n';
   }
@@ -149,7 +161,8 @@ inline std::string vtk(const FileMesh& m, int version, bool is_binary) {
     text += !is_binary ? std::to_string(n) + ' ' : is_long ? i64(n, swap) : i32(n, swap);
   };
   for (const auto& x : m.positions)
-    for (int k = 0; k < 3; ++k) text += is_binary ? f64(x[k], swap) : palpate::io::to_decimal(x[k]) + (k < 2 ? " " : "\n");
+    for (int k = 0; k < 3; ++k)
+      text += is_binary ? f64(x[k], swap) : palpate::io::to_decimal(x[k]) + (k < 2 ? " " : "\n");
   const auto cells = static_cast<Index>(m.cells.size()), nodes = static_cast<Index>(m.cell_nodes.size());
   if (version == 5) {
     text += "\nCELLS " + words({cells + 1, nodes}) + "\nOFFSETS vtktypeint64\n";
@@ -167,7 +180,8 @@ inline std::string vtk(const FileMesh& m, int version, bool is_binary) {
   }
   text += "\nCELL_TYPES " + std::to_string(cells) + '\n';
   for (const FileCell& c : m.cells) put(vtk_number(c.shape), false);
-  text += "\n\nCELL_DATA " + std::to_string(cells) + "\nFIELD FieldData 1\nregion 1 " + std::to_string(cells) + " int\n";
+  text +=
+      "\n\nCELL_DATA " + std::to_string(cells) + "\nFIELD FieldData 1\nregion 1 " + std::to_string(cells) + " int\n";
   for (const FileCell& c : m.cells) put(tag_of(m, c), false);
   return text + "\n";
 }
@@ -183,8 +197,10 @@ inline std::string veg(const FileMesh& m) {
       sets[tag_of(m, c)] += std::to_string(count) + (count % 8 == 0 ? ",\n" : ", ");
     }
   std::string text = "# VegaFEM\n*VERTICES\n" + std::to_string(m.positions.size()) + " 3 0 0\n";
-  for (std::size_t i = 0; i < m.positions.size(); ++i) text += std::to_string(i + 1) + ' ' + point(m.positions[i]) + '\n';
-  text += "\n*ELEMENTS\nTET\n" + std::to_string(count) + " 4 0\n" + elements + "\n*MATERIAL soft\nENU, 1060, 5e3, 0.45\n";
+  for (std::size_t i = 0; i < m.positions.size(); ++i)
+    text += std::to_string(i + 1) + ' ' + point(m.positions[i]) + '\n';
+  text +=
+      "\n*ELEMENTS\nTET\n" + std::to_string(count) + " 4 0\n" + elements + "\n*MATERIAL soft\nENU, 1060, 5e3, 0.45\n";
   for (const auto& n : m.names)
     if (n.dimension == 3) text += "\n*SET " + n.name + '\n' + sets[n.tag] + "\n\n*REGION\n" + n.name + ", soft\n";
   return text;

@@ -58,7 +58,9 @@ void check_all_formats(const io::FileMesh& file) {
 }
 
 /// The files that Gmsh 4.8.4 writes for the sample.
-std::string gmsh_seed(const std::string& name) { return std::string(PALPATE_TEST_DATA) + "/../fuzz/seeds/" + name; }
+std::string gmsh_seed(const std::string& name) {
+  return std::string(PALPATE_TEST_DATA) + "/../fuzz/seeds/" + name;
+}
 
 }  // namespace
 
@@ -73,7 +75,8 @@ TEST_CASE("An organ is the same mesh in every format", "[io]") {
   std::vector<io::FileCell> cells;
   std::map<NodeId, int> points;
   for (const auto& c : file.cells)
-    if (c.shape != io::CellShape::point || points.try_emplace(file.cell_nodes[c.first_node], 0).second) cells.push_back(c);
+    if (c.shape != io::CellShape::point || points.try_emplace(file.cell_nodes[c.first_node], 0).second)
+      cells.push_back(c);
   std::vector<NodeId> nodes;
   for (auto& c : cells) {
     const auto first = file.cell_nodes.begin() + static_cast<std::ptrdiff_t>(c.first_node);
@@ -89,15 +92,16 @@ TEST_CASE("An organ is the same mesh in every format", "[io]") {
 TEST_CASE("What Gmsh writes in its formats is one mesh", "[io]") {
   const auto reference = io::read_mesh<Tet4>(gmsh_seed("gmsh/two_msh22_0.msh"));
   REQUIRE(reference.element_count() == 2);
-  for (const char* name : {"gmsh/two_msh22_1.msh", "gmsh/two_msh41_0.msh", "gmsh/two_msh41_1.msh", "gmsh/two_msh1_0.msh",
-                           "vtk/two_0.vtk", "vtk/two_1.vtk"}) {
+  for (const char* name : {"gmsh/two_msh22_1.msh", "gmsh/two_msh41_0.msh", "gmsh/two_msh41_1.msh",
+                           "gmsh/two_msh1_0.msh", "vtk/two_0.vtk", "vtk/two_1.vtk"}) {
     INFO(name);
     const auto mesh = io::read_mesh<Tet4>(gmsh_seed(name));
     CHECK(mesh.positions == reference.positions);
     CHECK(mesh.elements == reference.elements);
     CHECK(mesh.groups.all().size() == 3);
     const bool has_names = mesh.find_group("base") != nullptr;
-    CHECK(has_names == (std::string(name).find("msh22") != std::string::npos || std::string(name).find("msh41") != std::string::npos));
+    CHECK(has_names == (std::string(name).find("msh22") != std::string::npos ||
+                        std::string(name).find("msh41") != std::string::npos));
     const Group* base = mesh.find_group(has_names ? "base" : "surface 2");
     REQUIRE(base != nullptr);
     CHECK(base->faces == reference.find_group("base")->faces);
@@ -137,9 +141,10 @@ TEST_CASE("Legacy VTK: regions by the name of the array, other data passed over"
   CHECK(regions(base) == std::vector<std::string>{"volume 1"});
   CHECK(regions(test::with(base, "region 1", "pressure 1")) == std::vector<std::string>{"body"});
   CHECK(regions(test::with(base, "region 1", "CellEntityIds 1")) == std::vector<std::string>{"volume 1"});
-  CHECK(regions(test::with(base, "FIELD FieldData 1\nregion 1 4 int", "SCALARS MaterialIds int 1\nLOOKUP_TABLE default")) ==
+  CHECK(regions(test::with(base, "FIELD FieldData 1\nregion 1 4 int",
+                           "SCALARS MaterialIds int 1\nLOOKUP_TABLE default")) == std::vector<std::string>{"volume 1"});
+  CHECK(regions(base + "SCALARS material long\nLOOKUP_TABLE default\n7 7 7 7\n") ==
         std::vector<std::string>{"volume 1"});
-  CHECK(regions(base + "SCALARS material long\nLOOKUP_TABLE default\n7 7 7 7\n") == std::vector<std::string>{"volume 1"});
   const std::string more =
       "VECTORS v float\n1 2 3 4 5 6 7 8 9 10 11 12\nMETADATA\nINFORMATION 0\n\nPOINT_DATA 5\nTENSORS6 t double\n"
       "1 2 3 4 5 6 1 2 3 4 5 6 1 2 3 4 5 6 1 2 3 4 5 6 1 2 3 4 5 nan\nCOLOR_SCALARS c 1\n0 0.5 0 1 1\n"
@@ -148,7 +153,8 @@ TEST_CASE("Legacy VTK: regions by the name of the array, other data passed over"
   CHECK(test::verdict(base + test::with(more, "11 12", "11"), "vtk2") == "bad_file");
 }
 
-TEST_CASE("The content tells the format, then the name; surfaces are refused with the command that meshes them", "[io]") {
+TEST_CASE("The content tells the format, then the name; surfaces are refused with the command that meshes them",
+          "[io]") {
   for (const auto& [format, text] : test::samples()) {
     if (format.starts_with("tetgen")) continue;
     INFO(format);

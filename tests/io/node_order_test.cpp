@@ -104,9 +104,10 @@ const std::string cube_nodes = R"(1 0 0 0
 19 1 1 0.5
 20 0 1 0.5
 )";
-const std::string gmsh_hex20 = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n20\n" + cube_nodes +
-                               "$EndNodes\n$Elements\n1\n1 17 2 1 1 1 2 4 3 5 6 7 8 9 11 17 12 18 10 19 20 13 16 14 15\n"
-                               "$EndElements\n";
+const std::string gmsh_hex20 =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n20\n" + cube_nodes +
+    "$EndNodes\n$Elements\n1\n1 17 2 1 1 1 2 4 3 5 6 7 8 9 11 17 12 18 10 19 20 13 16 14 15\n"
+    "$EndElements\n";
 
 /// The same cube as Gmsh exports it to VTK.
 std::string vtk_hex20() {
@@ -124,7 +125,9 @@ std::string vtk_hex20() {
 const std::string tetgen_tet10 =
     "19 3 0 0\n0 0 0 0\n1 1 0 0\n2 1 1 0\n3 0 1 0\n4 0 0 1\n5 1 0 1\n6 1 1 1\n7 0 1 1\n8 0.5 1 0.5\n9 0.5 0.5 0\n"
     "10 0 0.5 0\n11 0 1 0.5\n12 0.5 1 0\n13 0 0.5 0.5\n14 0.5 0.5 1\n15 0.5 0.5 0.5\n16 0 0.5 1\n17 0.5 1 1\n"
-    "18 0 0 0.5\n\x1f" "2 10 1\n0 0 3 7 2 8 9 10 11 12 13 3\n1 0 7 4 6 14 15 13 16 17 18 3\n\x1f" "1 1\n0 2 0 3 9 10 12 7\n";
+    "18 0 0 0.5\n\x1f"
+    "2 10 1\n0 0 3 7 2 8 9 10 11 12 13 3\n1 0 7 4 6 14 15 13 16 17 18 3\n\x1f"
+    "1 1\n0 2 0 3 9 10 12 7\n";
 
 template <class E>
 Mesh<E> build(const std::string& format, const std::string& text) {

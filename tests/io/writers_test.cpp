@@ -69,8 +69,9 @@ double enclosed_volume(const io::TriangleSurface& s) {
 
 TEST_CASE("A Gmsh file comes back as it was", "[io]") {
   check_round_trip(io::parse_mesh<Tet4>(test::msh2));
-  const auto twice = test::with(test::with(test::with(test::msh2, "3\n0 3", "4\n3 9 \"half\"\n0 3"), "Elements\n4", "Elements\n5"),
-                                "4 4 2 1", "7 4 2 9 1 1 2 3 4\n4 4 2 1");
+  const auto twice =
+      test::with(test::with(test::with(test::msh2, "3\n0 3", "4\n3 9 \"half\"\n0 3"), "Elements\n4", "Elements\n5"),
+                 "4 4 2 1", "7 4 2 9 1 1 2 3 4\n4 4 2 1");
   check_round_trip(io::parse_mesh<Tet4>(twice));
   const auto two = test::with(test::with(test::msh2, "3\n0 3", "4\n3 4 \"tumour\"\n0 3"), "3 4 2 1 1", "3 4 2 4 1");
   check_round_trip(io::parse_mesh<Tet4>(two));

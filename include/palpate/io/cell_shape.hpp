@@ -72,7 +72,9 @@ inline constexpr std::array<ShapeFacts, 23> shape_facts{{
     {3, 14, "14-node pyramid"},
 }};
 
-constexpr const ShapeFacts& facts(CellShape shape) noexcept { return shape_facts[static_cast<std::size_t>(shape)]; }
+constexpr const ShapeFacts& facts(CellShape shape) noexcept {
+  return shape_facts[static_cast<std::size_t>(shape)];
+}
 
 /// The shape of element E: known by its nodes and faces, so an element needs no entry anywhere to be read.
 template <Element E>

@@ -42,11 +42,12 @@ struct FileMesh {
   std::vector<std::vector<int>> tag_sets{{}};  ///< entry 0 is "none"
   std::vector<FileCell> cells;
   std::vector<NodeId> cell_nodes;
-  bool repeats_cells = false;        ///< a cell stands once for every group it is in, one below the other
+  bool repeats_cells = false;                   ///< a cell stands once for every group it is in, one below the other
   int last_region = static_cast<int>(max_int);  ///< tags above it make groups but no regions
 
   /// Adds a cell whose nodes were read in the order of the file into the end of cell_nodes.
-  void add_cell(Index tag, Index place, CellShape shape, std::uint32_t tag_set, NodeOrder order, std::uint8_t file = 0) {
+  void add_cell(Index tag, Index place, CellShape shape, std::uint32_t tag_set, NodeOrder order,
+                std::uint8_t file = 0) {
     const std::size_t count = static_cast<std::size_t>(facts(shape).nodes), first = cell_nodes.size() - count;
     cells.push_back({tag, place, first, tag_set, shape, file});
     if (order.empty()) return;
@@ -70,6 +71,22 @@ Vector3 read_point(In& in) {
   Vector3 x;
   for (int i = 0; i < 3; ++i) x[i] = in.real("a coordinate");
   return x;
+}
+
+/// The ids a mesh file uses: entry i belongs to node i or element i of the mesh.
+struct MeshNumbering {
+  std::vector<Index> node_tags;
+  std::vector<Index> element_tags;
+};
+
+/// How many groups a mesh file may have; more of them are taken for numbers that mean something else.
+inline constexpr std::size_t max_groups = 10000;
+
+/// The command that fills a closed surface with tetrahedra.
+inline std::string fill_command(const std::string& surface) {
+  return "Fill it: echo 'Merge \"" + surface +
+         "\"; Surface Loop(1) = Surface{:}; Volume(1) = {1}; "
+         "Physical Volume(\"body\") = {1};' > solid.geo && gmsh solid.geo -3 -o solid.msh";
 }
 
 }  // namespace palpate::inline PALPATE_ABI::io

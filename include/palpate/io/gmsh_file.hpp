@@ -36,7 +36,8 @@ inline Format read_format(TextReader& in) {
   in.end_line("the data size");
   if (format.is_binary) {
     if (size != 8)
-      in.refuse(SetupErrorKind::unsupported, "binary numbers of 8 bytes", std::to_string(size), convert_command(in.name()));
+      in.refuse(SetupErrorKind::unsupported, "binary numbers of 8 bytes", std::to_string(size),
+                convert_command(in.name()));
     read_byte_order(in, format);
   }
   need_mark(in, "$EndMeshFormat");
@@ -70,41 +71,49 @@ inline void read_section4(TextReader& in, State& state, void (*text)(TextNumbers
   state.format.is_binary ? binary({in, state.format.swap}, state) : text({in}, state);
 }
 
+/// Moves to the last line of a section that nobody needs.
+inline void skip_section(TextReader& in, const State& state, const std::string& end) {
+  if (state.format.is_binary) in.skip_to(end);
+  while (in.line() != end) in.need_line(end);
+}
+
+/// Reads the nodes or elements, in the layout of the format.
+inline void read_nodes(TextReader& in, State& state) {
+  if (state.format.major == 4)
+    read_section4(in, state, msh4::read_nodes<TextNumbers>, msh4::read_nodes<BinaryNumbers>);
+  else
+    msh2::read_nodes(in, state);
+}
+inline void read_elements(TextReader& in, State& state) {
+  if (state.format.major == 4)
+    read_section4(in, state, msh4::read_elements<TextNumbers>, msh4::read_elements<BinaryNumbers>);
+  else
+    msh2::read_elements(in, state);
+}
+
 /// Reads the section whose first line is the current one; skips those nobody needs.
 inline void read_section(TextReader& in, State& state) {
   const std::string section(in.line());
-  const int major = state.format.major;
+  const bool is1 = state.format.major == 1;
   if (section.size() < 2 || section.front() != '$' || section.starts_with("$End") || section.starts_with("$END"))
     in.refuse(SetupErrorKind::bad_file, "the start of a section such as $Nodes", TextReader::quoted(in.line()));
-  const std::string end = (major == 1 ? "$END" : "$End") + section.substr(1);
+  const std::string end = (is1 ? "$END" : "$End") + section.substr(1);
   if (section == "$PhysicalNames") {
     check_order(in, state.has_names, true, {});
     read_physical_names(in, state);
-  } else if (section == "$Entities" && major == 4) {
+  } else if (section == "$Entities" && state.format.major == 4) {
     check_order(in, state.has_entities, !state.has_elements, "$Entities before $Elements");
     read_section4(in, state, msh4::read_entities<TextNumbers>, msh4::read_entities<BinaryNumbers>);
-  } else if (section == (major == 1 ? "$NOD" : "$Nodes")) {
+  } else if (section == (is1 ? "$NOD" : "$Nodes")) {
     check_order(in, state.has_nodes, true, {});
-    if (major == 4)
-      read_section4(in, state, msh4::read_nodes<TextNumbers>, msh4::read_nodes<BinaryNumbers>);
-    else
-      msh2::read_nodes(in, state);
-  } else if (section == (major == 1 ? "$ELM" : "$Elements")) {
+    read_nodes(in, state);
+  } else if (section == (is1 ? "$ELM" : "$Elements")) {
     check_order(in, state.has_elements, state.has_nodes, "the nodes before the elements");
-    if (major == 4)
-      read_section4(in, state, msh4::read_elements<TextNumbers>, msh4::read_elements<BinaryNumbers>);
-    else
-      msh2::read_elements(in, state);
+    read_elements(in, state);
   } else if (section == "$PartitionedEntities") {
     in.refuse(SetupErrorKind::unsupported, "a mesh in one part", "a partitioned mesh", "Save it without partitions");
-  } else if (state.format.is_binary) {
-    in.skip_to(end);
-    if (in.line() != end) in.refuse(SetupErrorKind::bad_file, end, TextReader::quoted(in.line()));
-    return;
   } else {
-    do in.need_line(end);
-    while (in.line() != end);
-    return;
+    return skip_section(in, state, end);
   }
   need_mark(in, end);
 }

@@ -70,8 +70,8 @@ inline void read_old_row(TextNumbers in, const NodeIds& nodes, State& state) {
 inline Index read_block(BinaryNumbers in, const NodeIds& nodes, State& state, Index left) {
   const Type* type = read_type(in, in.in);
   const Index count = in.integer("a number of elements in a block", 1, left, SetupErrorKind::count_too_large);
-  const Index tags = in.integer("a number of tags", 0, static_cast<Index>(in.in.bytes_left()) / 4,
-                                SetupErrorKind::count_too_large);
+  const Index tags =
+      in.integer("a number of tags", 0, static_cast<Index>(in.in.bytes_left()) / 4, SetupErrorKind::count_too_large);
   for (Index i = 0; i < count; ++i) {
     const Index tag = in.integer("an element id", 1, max_int);
     const int physical = read_tags(in, tags);

@@ -22,6 +22,8 @@ void read_entity(In& in, int dimension, State& state) {
     for (Index i = 0; i < bounds; ++i) in.integer("a bounding entity", -max_int, max_int);
   }
   in.end("an entity");
+  std::ranges::sort(physical);
+  physical.erase(std::unique(physical.begin(), physical.end()), physical.end());
   if (!state.entities.emplace(std::pair{dimension, tag}, state.mesh.set_of(state.sets, physical)).second)
     in.in.refuse(SetupErrorKind::bad_file, "every entity once",
                  "entity " + std::to_string(tag) + " of dimension " + std::to_string(dimension) + " twice");
@@ -99,6 +101,16 @@ inline std::uint32_t physical_set(const TextReader& in, const State& state, int 
   return it->second;
 }
 
+/// Counts the groups of `count` elements more. A few bytes can put every element into thousands of groups; what that
+/// takes must stay in proportion to the file.
+inline void add_memberships(const TextReader& in, State& state, std::uint32_t set, Index count) {
+  const auto limit = static_cast<Index>(in.size());
+  state.memberships += count * static_cast<Index>(state.mesh.tag_sets[set].size());
+  if (state.memberships > limit)
+    in.refuse(SetupErrorKind::count_too_large, "elements in groups at most " + std::to_string(limit) + " times",
+              std::to_string(state.memberships));
+}
+
 /// A block of elements: `dimension entity type count`, then `id nodes...` each.
 template <class In>
 void read_element_block(In& in, const NodeIds& nodes, State& state) {
@@ -112,6 +124,7 @@ void read_element_block(In& in, const NodeIds& nodes, State& state) {
     in.in.refuse(SetupErrorKind::bad_file, "elements of dimension " + std::to_string(dimension),
                  facts(type->shape).name);
   const std::uint32_t set = physical_set(in.in, state, dimension, entity);
+  add_memberships(in.in, state, set, count);
   for (Index i = 0; i < count; ++i) {
     in.begin("an element");
     const Index place = in.in.place(), tag = in.long_integer("an element id", 1, max_tag);

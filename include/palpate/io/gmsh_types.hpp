@@ -70,6 +70,7 @@ struct State {
   bool has_names = false, has_entities = false, has_nodes = false, has_elements = false;
   std::map<std::vector<int>, std::uint32_t> sets;
   std::map<std::pair<int, Index>, std::uint32_t> entities;  ///< MSH 4: (dimension, entity tag) -> set of physical tags
+  Index memberships = 0;                                    ///< MSH 4: of elements in groups
 };
 
 /// Reads an element type number; refuses one that is not in `types`.

@@ -9,22 +9,6 @@
 
 namespace palpate::inline PALPATE_ABI::io {
 
-/// The ids a mesh file uses: entry i belongs to node i or element i of the mesh.
-struct MeshNumbering {
-  std::vector<Index> node_tags;
-  std::vector<Index> element_tags;
-};
-
-/// How many groups a mesh file may have; more of them are taken for numbers that mean something else.
-inline constexpr std::size_t max_groups = 10000;
-
-/// The command that fills a closed surface with tetrahedra.
-inline std::string fill_command(const std::string& surface) {
-  return "Fill it: echo 'Merge \"" + surface +
-         "\"; Surface Loop(1) = Surface{:}; Volume(1) = {1}; "
-         "Physical Volume(\"body\") = {1};' > solid.geo && gmsh solid.geo -3 -o solid.msh";
-}
-
 /// Turns a parsed file into a mesh of E.
 template <Element E>
 class MeshBuilder {
@@ -59,9 +43,9 @@ class MeshBuilder {
   void check_solid_shapes() const {
     for (const FileCell& cell : file_.cells)
       if (facts(cell.shape).dimension == 3 && cell.shape != solid)
-        refuse_shape(cell, solid,
-                     "Read it as its own element type, or mesh again: gmsh model.geo -3 -order " +
-                         std::to_string(E::order));
+        refuse_shape(
+            cell, solid,
+            "Read it as its own element type, or mesh again: gmsh model.geo -3 -order " + std::to_string(E::order));
   }
 
   /// One group per name in the order of the file, then one per tag without a name: "volume 3" or "surface 1".
@@ -71,8 +55,8 @@ class MeshBuilder {
       for (const int tag : tags(cell))
         if (tag != 0 && used.size() <= max_groups) used.emplace(facts(cell.shape).dimension, tag);
     if (used.size() > max_groups || file_.names.size() > max_groups)
-      raise(SetupErrorKind::count_too_large, file_.files[0] + ": expected at most " + std::to_string(max_groups) +
-                                                 " groups, found more");
+      raise(SetupErrorKind::count_too_large,
+            file_.files[0] + ": expected at most " + std::to_string(max_groups) + " groups, found more");
     for (const TagName& n : file_.names)
       if (!group_of_.try_emplace({n.dimension, n.tag}, group_index(n.name, n.dimension)).second)
         raise(SetupErrorKind::bad_file, file_.files[0] + ": tag " + std::to_string(n.tag) + " of dimension " +
@@ -157,11 +141,20 @@ class MeshBuilder {
   static void tidy_faces_and_elements(Group& group) {
     std::ranges::sort(group.elements);
     group.elements.erase(std::unique(group.elements.begin(), group.elements.end()), group.elements.end());
-    std::set<std::vector<NodeId>> seen;
-    std::erase_if(group.faces, [&](std::vector<NodeId> nodes) {
-      std::ranges::sort(nodes);
-      return !seen.insert(std::move(nodes)).second;
-    });
+    using Key = std::array<NodeId, static_cast<std::size_t>(E::Face::nodes)>;
+    std::vector<std::pair<Key, std::size_t>> keys(group.faces.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      std::ranges::copy(group.faces[i], keys[i].first.begin());
+      std::ranges::sort(keys[i].first);
+      keys[i].second = i;
+    }
+    std::ranges::sort(keys);
+    std::vector<bool> is_again(keys.size());
+    for (std::size_t i = 1; i < keys.size(); ++i) is_again[keys[i].second] = keys[i].first == keys[i - 1].first;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      if (!is_again[i]) std::swap(group.faces[kept++], group.faces[i]);
+    group.faces.resize(kept);
   }
 
   [[noreturn]] void refuse_shape(const FileCell& cell, CellShape wanted, const std::string& hint) const {
@@ -174,9 +167,9 @@ class MeshBuilder {
   [[noreturn]] void refuse_without_solids() const {
     const auto faces =
         std::ranges::count(file_.cells, 2, [](const FileCell& cell) { return facts(cell.shape).dimension; });
-    const std::string expected = file_.files[0] + ": expected solid elements, found ";
-    if (faces == 0) raise(SetupErrorKind::empty_mesh, expected + "none");
-    raise(SetupErrorKind::unsupported, expected + "a surface of " + std::to_string(faces) + " faces",
+    const std::string found = file_.files[0] + ": expected solid elements, found ";
+    if (faces == 0) raise(SetupErrorKind::empty_mesh, found + "none");
+    raise(SetupErrorKind::unsupported, found + "a surface of " + std::to_string(faces) + " faces",
           fill_command(file_.files[0]));
   }
 

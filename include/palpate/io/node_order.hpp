@@ -13,7 +13,7 @@ namespace palpate::inline PALPATE_ABI::io {
 /// Gmsh: the last two edges of the tetrahedron are swapped, the edges of the hexahedron sorted by their first corner
 /// (Gmsh reference manual, "Node ordering").
 inline constexpr std::array<std::uint8_t, 10> gmsh_tetrahedron10{0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
-inline constexpr std::array<std::uint8_t, 20> gmsh_hexahedron20{0,  1,  2, 3,  4,  5,  6,  7,  8,  11,
+inline constexpr std::array<std::uint8_t, 20> gmsh_hexahedron20{0,  1, 2,  3,  4,  5,  6,  7,  8,  11,
                                                                 13, 9, 16, 18, 19, 17, 10, 12, 14, 15};
 /// TetGen 1.5 and 1.6 with -o2: edges 23, 03, 01, 12, 13, 02 (seen in its output).
 inline constexpr std::array<std::uint8_t, 10> tetgen_tetrahedron10{0, 1, 2, 3, 6, 7, 9, 5, 8, 4};
@@ -26,18 +26,8 @@ inline constexpr std::array<std::array<int, 3>, 8> hexahedron_corners{
     {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
 /// Corners at the ends of VTK's mid-edge nodes.
 inline constexpr std::array<std::array<int, 2>, 6> tetrahedron_edges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
-inline constexpr std::array<std::array<int, 2>, 12> hexahedron_edges{{{0, 1},
-                                                                      {1, 2},
-                                                                      {2, 3},
-                                                                      {0, 3},
-                                                                      {4, 5},
-                                                                      {5, 6},
-                                                                      {6, 7},
-                                                                      {4, 7},
-                                                                      {0, 4},
-                                                                      {1, 5},
-                                                                      {2, 6},
-                                                                      {3, 7}}};
+inline constexpr std::array<std::array<int, 2>, 12> hexahedron_edges{
+    {{0, 1}, {1, 2}, {2, 3}, {0, 3}, {4, 5}, {5, 6}, {6, 7}, {4, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
 
 /// Where VTK's node k sits: on the unit tetrahedron (0, e1, e2, e3) or the unit cube.
 inline Vector3 vtk_node(CellShape shape, int k) {
@@ -78,8 +68,8 @@ std::array<int, static_cast<std::size_t>(E::nodes)> element_order() {
     int k = 0;
     while (k < E::nodes && (vtk_node(solid_shape<E>(), k) - x.row(a).transpose()).norm() > 1e-6) ++k;
     if (k == E::nodes)
-      raise(SetupErrorKind::bad_argument, "reference node " + std::to_string(a) +
-                                              " of the element is neither a corner nor the middle of an edge");
+      raise(SetupErrorKind::bad_argument,
+            "reference node " + std::to_string(a) + " of the element is neither a corner nor the middle of an edge");
     order[static_cast<std::size_t>(a)] = k;
   }
   return order;

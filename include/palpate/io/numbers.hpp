@@ -39,7 +39,6 @@ double binary_real(TextReader& in, bool swap, std::string_view what) {
 struct TextNumbers {
   TextReader& in;
 
-  static constexpr bool is_text = true;
   void begin(std::string_view what) const { in.need_line(what); }
   void end(std::string_view what) const { in.end_line(what); }
   Index integer(std::string_view what, Index low, Index high,
@@ -65,7 +64,6 @@ struct BinaryNumbers {
   TextReader& in;
   bool swap;
 
-  static constexpr bool is_text = false;
   void begin(std::string_view) const noexcept {}
   void end(std::string_view) const noexcept {}
   Index integer(std::string_view what, Index low, Index high,

@@ -24,16 +24,24 @@ inline MeshFormat format_of(std::string_view text, const std::string& name) {
   in.next_line();
   if (in.line().starts_with("# vtk DataFile")) return MeshFormat::vtk;
   if (in.line() == "$MeshFormat" || in.line() == "$NOD") return MeshFormat::gmsh;
-  while (in.line().starts_with('#') && in.next_line()) {
-  }
+  while (in.line().starts_with('#') && in.next_line()) {}
   if (in.line().starts_with("*VERTICES") || in.line().starts_with("*INCLUDE")) return MeshFormat::veg;
   const std::string ending = vtk::lower(std::filesystem::path(name).extension().string());
-  for (const auto& [known, format] : std::array<std::pair<std::string_view, MeshFormat>, 14>{{
-           {".msh", MeshFormat::gmsh},      {".vtk", MeshFormat::vtk},     {".veg", MeshFormat::veg},
-           {".node", MeshFormat::tetgen},   {".ele", MeshFormat::tetgen},  {".face", MeshFormat::tetgen},
-           {".stl", MeshFormat::surface},   {".obj", MeshFormat::surface}, {".ply", MeshFormat::surface},
-           {".off", MeshFormat::surface},   {".poly", MeshFormat::surface}, {".smesh", MeshFormat::surface},
-           {".edge", MeshFormat::surface},  {".gltf", MeshFormat::surface}}})
+  for (const auto& [known, format] :
+       std::array<std::pair<std::string_view, MeshFormat>, 14>{{{".msh", MeshFormat::gmsh},
+                                                                {".vtk", MeshFormat::vtk},
+                                                                {".veg", MeshFormat::veg},
+                                                                {".node", MeshFormat::tetgen},
+                                                                {".ele", MeshFormat::tetgen},
+                                                                {".face", MeshFormat::tetgen},
+                                                                {".stl", MeshFormat::surface},
+                                                                {".obj", MeshFormat::surface},
+                                                                {".ply", MeshFormat::surface},
+                                                                {".off", MeshFormat::surface},
+                                                                {".poly", MeshFormat::surface},
+                                                                {".smesh", MeshFormat::surface},
+                                                                {".edge", MeshFormat::surface},
+                                                                {".gltf", MeshFormat::surface}}})
     if (ending == known) return format;
   return MeshFormat::unknown;
 }
@@ -43,7 +51,8 @@ inline MeshFormat format_of(std::string_view text, const std::string& name) {
   const std::string ending = vtk::lower(std::filesystem::path(name).extension().string());
   std::string hint = "Fill it: tetgen -pq " + name + ", then read the .ele file it writes";
   if (ending == ".stl" || ending == ".ply") hint = fill_command(name);
-  if (ending == ".obj" || ending == ".gltf") hint = "First: meshio convert " + name + " surface.stl. " + fill_command("surface.stl");
+  if (ending == ".obj" || ending == ".gltf")
+    hint = "First: meshio convert " + name + " surface.stl. " + fill_command("surface.stl");
   if (ending == ".edge") hint = "Read the .ele file beside it";
   raise(SetupErrorKind::unsupported, name + ":1: expected solid elements, found a surface", hint);
 }
@@ -86,24 +95,23 @@ Mesh<E> parse_mesh(std::string_view text, const std::string& name = "text", cons
 ///
 /// Nodes and elements keep the order of the file: with node ids 1 ... n, id k is node k - 1. Every tagged set of
 /// dimension 0 to 3 (physical group, boundary marker, region number, set of elements) becomes a group with its nodes,
-/// faces (dimension 2) and elements (dimension 3); names used in several dimensions share one group. Tags without a name
-/// are called "volume 1", "surface 2", "curve 3", "point 4"; the tag 0 is none. Every tagged volume that holds elements
-/// is a region, numbered by rising tag; an element of several volumes belongs to the region of the lowest tag and to all
-/// the groups; elements of none form the region "body". Nodes inside an element are brought from the order of the
-/// format to that of E.
+/// faces (dimension 2) and elements (dimension 3); names used in several dimensions share one group. Tags without a
+/// name are called "volume 1", "surface 2", "curve 3", "point 4"; the tag 0 is none. Every tagged volume that holds
+/// elements is a region, numbered by rising tag; an element of several volumes belongs to the region of the lowest tag
+/// and to all the groups; elements of none form the region "body". Nodes inside an element are brought from the order
+/// of the format to that of E.
 ///
 /// Throws SetupError bad_file, index_out_of_range, count_too_large, non_finite or unsupported (other versions,
 /// partitions, solids other than E, a surface without solids: with the command that meshes it), all with file and line
-/// (in binary data: byte), and empty_mesh. Geometry is not judged here. Linear time; memory of about five times the size
-/// of the file; counts are compared with the size of the file before anything is allocated.
+/// (in binary data: byte), and empty_mesh. Geometry is not judged here. Linear time; memory of about five times the
+/// size of the file; counts are compared with the size of the file before anything is allocated.
 template <Element E>
 Mesh<E> read_mesh(const std::string& path, const ReadOptions& options = {}) {
   const std::string ending = vtk::lower(std::filesystem::path(path).extension().string());
   if (ending == ".node" || ending == ".ele" || ending == ".face")
     return build_mesh<E>(tetgen::read(path), options.scale, options.numbering);
   const std::string text = read_file(path);
-  if (format_of(text, path) == MeshFormat::veg)
-    return build_mesh<E>(veg::read(path), options.scale, options.numbering);
+  if (format_of(text, path) == MeshFormat::veg) return build_mesh<E>(veg::read(path), options.scale, options.numbering);
   return parse_mesh<E>(text, path, options);
 }
 

@@ -25,7 +25,8 @@ constexpr auto face_triangles() {
   using Triangle = std::array<std::size_t, 3>;
   if constexpr (Nodes == 3) return std::array<Triangle, 1>{{{0, 1, 2}}};
   if constexpr (Nodes == 4) return std::array{Triangle{0, 1, 2}, Triangle{0, 2, 3}};
-  if constexpr (Nodes == 6) return std::array{Triangle{0, 3, 5}, Triangle{3, 1, 4}, Triangle{5, 4, 2}, Triangle{3, 4, 5}};
+  if constexpr (Nodes == 6)
+    return std::array{Triangle{0, 3, 5}, Triangle{3, 1, 4}, Triangle{5, 4, 2}, Triangle{3, 4, 5}};
   if constexpr (Nodes == 8)
     return std::array{Triangle{0, 4, 7}, Triangle{4, 1, 5}, Triangle{5, 2, 6},
                       Triangle{6, 3, 7}, Triangle{4, 5, 6}, Triangle{4, 6, 7}};

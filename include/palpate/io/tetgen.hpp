@@ -71,7 +71,8 @@ inline void read_elements(TextReader& in, State& state) {
   state.is_second_order = header.shape == CellShape::tetrahedron10;
   for (Index i = 0; i < header.count; ++i) {
     in.need_line("an element");
-    const Index place = in.place(), id = in.integer("an element id counted like the nodes", state.base + i, state.base + i);
+    const Index place = in.place(),
+                id = in.integer("an element id counted like the nodes", state.base + i, state.base + i);
     read_cell_nodes(in, facts(header.shape).nodes, state.base, state.mesh);
     const int region = read_region(in, header.attributes);
     in.end_line("an element");
@@ -92,8 +93,7 @@ inline void read_faces(TextReader& in, State& state) {
     in.need_line("a face");
     const Index place = in.place(), id = in.integer("a face id counted like the nodes", state.base + i, state.base + i);
     read_cell_nodes(in, facts(shape).nodes, state.base, state.mesh);
-    const auto marker =
-        markers == 0 ? 0 : static_cast<int>(in.integer("a boundary marker", -max_int, max_int));
+    const auto marker = markers == 0 ? 0 : static_cast<int>(in.integer("a boundary marker", -max_int, max_int));
     for (int n = 0; n < 2 && !in.rest().empty(); ++n) in.integer("a neighbour", -1, max_int);
     in.end_line("a face");
     const auto set = marker == 0 ? 0 : state.mesh.set_of(state.sets, {marker});

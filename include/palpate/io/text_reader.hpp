@@ -68,8 +68,8 @@ class TextReader {
   std::string_view take(std::size_t bytes, std::string_view what) {
     is_binary_ = true;
     if (bytes > bytes_left())
-      refuse(SetupErrorKind::bad_file, what, "the end of the file after " + std::to_string(bytes_left()) + " of " +
-                                                 std::to_string(bytes) + " bytes");
+      refuse(SetupErrorKind::bad_file, what,
+             "the end of the file after " + std::to_string(bytes_left()) + " of " + std::to_string(bytes) + " bytes");
     const std::string_view raw = text_.substr(next_, bytes);
     next_ += bytes;
     line_ = rest_ = {};
@@ -91,6 +91,7 @@ class TextReader {
              "If the file is whole, add an empty line");
   }
 
+  std::size_t size() const noexcept { return text_.size(); }  ///< bytes in all
   std::size_t bytes_left() const noexcept { return text_.size() - std::min(next_, text_.size()); }
 
   /// The current line, or minus the current byte when binary data has begun; see place_text.

@@ -123,19 +123,27 @@ class Parser {
     regions_.push_back(set);
   }
 
+  /// Gives every element the tag of the last region whose set holds it. Each set is walked once, however many regions
+  /// name it.
+  void put_regions(std::vector<std::vector<int>>& tags) {
+    std::set<std::string> done;
+    for (std::size_t r = regions_.size(); r-- > 0;) {
+      if (!done.insert(regions_[r]).second) continue;
+      const auto put = [&](std::size_t e) {
+        if (tags[e].empty()) tags[e].push_back(static_cast<int>(r) + 1);
+      };
+      for (const Index e : sets_[regions_[r]]) put(static_cast<std::size_t>(e));
+      if (regions_[r] == "allElements")
+        for (std::size_t e = 0; e < tags.size(); ++e) put(e);
+    }
+  }
+
   /// Region r gets tag r + 1, set s a tag above those; both have the name of the set.
   void add_tags() {
     mesh_.last_region = static_cast<int>(regions_.size());
     std::vector<std::vector<int>> tags(mesh_.cells.size());
-    for (std::size_t r = 0; r < regions_.size(); ++r) {
-      const int tag = static_cast<int>(r) + 1;
-      mesh_.names.push_back({3, tag, regions_[r]});
-      const auto put = [&](std::size_t e) { tags[e].assign(1, tag); };
-      if (regions_[r] == "allElements")
-        for (std::size_t e = 0; e < tags.size(); ++e) put(e);
-      else
-        for (const Index e : sets_[regions_[r]]) put(static_cast<std::size_t>(e));
-    }
+    for (std::size_t r = 0; r < regions_.size(); ++r) mesh_.names.push_back({3, static_cast<int>(r) + 1, regions_[r]});
+    put_regions(tags);
     int tag = mesh_.last_region;
     for (const std::string& name : names_) {
       mesh_.names.push_back({3, ++tag, name});

@@ -43,7 +43,7 @@ class Lines {
   /// Has next_line() stay on the current line once.
   void hold() noexcept { held_ = true; }
 
-  TextReader& in() noexcept { return open_.back().reader; }           ///< the reader of the current line
+  TextReader& in() noexcept { return open_.back().reader; }    ///< the reader of the current line
   std::uint8_t file() const noexcept { return file_.back(); }  ///< its entry in `names`
 
   std::vector<std::string> names;  ///< all files so far

@@ -36,18 +36,17 @@ class AttributeReader {
 
  private:
   void skip_metadata() {
-    while (in_.next_raw_line() && !in_.line().empty()) {
-    }
+    while (in_.next_raw_line() && !in_.line().empty()) {}
   }
 
   /// Reads an array if it holds the regions, else skips it.
   void read_array(std::string_view name, const NumberType& type, Index components, Index tuples) {
     const auto rank = std::ranges::find(region_arrays, name) - region_arrays.begin();
-    const bool is_region = of_cells_ && components == 1 && tuples == count_ &&
-                           type.kind != NumberType::real && type.bits > 1 && rank < region_rank_;
+    const bool is_region = of_cells_ && components == 1 && tuples == count_ && type.kind != NumberType::real &&
+                           type.bits > 1 && rank < region_rank_;
     if (tuples > 0 && components > static_cast<Index>(in_.bytes_left()) * 8 / tuples)
-      in_.refuse(SetupErrorKind::count_too_large, "an array that fits into the file", std::to_string(components) + " x " +
-                                                                                          std::to_string(tuples));
+      in_.refuse(SetupErrorKind::count_too_large, "an array that fits into the file",
+                 std::to_string(components) + " x " + std::to_string(tuples));
     if (!is_region) return numbers_.skip(type, components * tuples);
     region_rank_ = rank;
     regions.clear();

@@ -9,14 +9,13 @@ namespace palpate::inline PALPATE_ABI::io::vtk {
 /// Parses one file ("VTK File Formats" of the VTK User's Guide; the layout of CELLS changed with 5.0).
 class LegacyParser {
  public:
-  LegacyParser(std::string_view text, const std::string& name) : in_(text, name), numbers_(in_), attributes_(in_, numbers_), mesh_(name) {}
+  LegacyParser(std::string_view text, const std::string& name)
+      : in_(text, name), numbers_(in_), attributes_(in_, numbers_), mesh_(name) {}
 
   FileMesh parse() {
     read_head();
     while (in_.next_line()) read_section();
-    if (!has_types_)
-      in_.refuse(SetupErrorKind::bad_file, !has_points_ ? "POINTS" : !has_cells_ ? "CELLS" : "CELL_TYPES",
-                 "the end of the file");
+    if (!has_types_) in_.refuse(SetupErrorKind::bad_file, "POINTS, CELLS and CELL_TYPES", "the end of the file");
     if (!numbers_.is_binary) in_.need_last_line_end();
     add_cells();
     return std::move(mesh_);
@@ -133,7 +132,8 @@ class LegacyParser {
       offsets_.push_back(numbers_.integer(offset_type, "an offset", i == 0 ? 0 : offsets_.back(), i == 0 ? 0 : total));
     numbers_.end("the offsets");
     if (count > 0 && offsets_.back() != total)
-      in_.refuse(SetupErrorKind::bad_file, "a last offset of " + std::to_string(total), std::to_string(offsets_.back()));
+      in_.refuse(SetupErrorKind::bad_file, "a last offset of " + std::to_string(total),
+                 std::to_string(offsets_.back()));
     if (count == 0) offsets_.assign(1, 0);
     const NumberType& node_type = read_array_head("CONNECTIVITY");
     for (std::size_t c = 1; c < offsets_.size(); ++c) {
@@ -154,7 +154,8 @@ class LegacyParser {
       const Index wanted = numbers_.integer(number_types[7], "a cell type", 0, 255);
       types_.push_back(find_cell_type(wanted));
       if (types_.back() == nullptr)
-        in_.refuse(SetupErrorKind::unsupported, "a cell type of first or second order", '\'' + std::to_string(wanted) + '\'');
+        in_.refuse(SetupErrorKind::unsupported, "a cell type of first or second order",
+                   '\'' + std::to_string(wanted) + '\'');
       const Index nodes = offsets_[static_cast<std::size_t>(c) + 1] - offsets_[static_cast<std::size_t>(c)];
       const ShapeFacts& shape = facts(types_.back()->shape);
       if (nodes != shape.nodes)
@@ -189,6 +190,8 @@ class LegacyParser {
 /// Reads a whole file. Cells with a region number other than 0 are in the groups "volume 3", "surface 2" and so on.
 /// Errors: bad_file, index_out_of_range, count_too_large, non_finite, unsupported, with file and line (in binary data:
 /// byte). Linear in the size of the text.
-inline FileMesh parse(std::string_view text, const std::string& name) { return LegacyParser(text, name).parse(); }
+inline FileMesh parse(std::string_view text, const std::string& name) {
+  return LegacyParser(text, name).parse();
+}
 
 }  // namespace palpate::inline PALPATE_ABI::io::vtk
