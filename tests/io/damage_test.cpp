@@ -238,8 +238,18 @@ TEST_CASE("The locale of the process does not matter", "[io][extreme][C4]") {
   const auto mesh = io::parse_mesh<Tet4>(test::msh2);
   const std::string comma = test::verdict(with(test::msh2, "1.5", "1,5")), text = io::to_decimal(1234567.5);
   const std::string message = test::complaint(test::msh2.substr(0, 40));
+  std::map<std::string, std::string> verdicts, with_comma;
+  for (const auto& [format, sample] : test::samples()) {
+    verdicts[format] = test::verdict(sample, format);
+    with_comma[format] = test::verdict(replace_all(sample, "1.5", "1,5"), format);
+  }
   std::locale::global(old);
   std::setlocale(LC_ALL, before.c_str());
+  for (const auto& [format, verdict] : verdicts) {
+    INFO(format);
+    CHECK(verdict == good);
+    CHECK(with_comma[format] == (is_text(format) ? bad : good));  // binary files hold no decimals to damage
+  }
   CHECK(mesh.positions[4] == Vector3(1.5, 1.0, 1.0));
   CHECK(comma == bad);
   CHECK(text == "1234567.5");
