@@ -82,7 +82,7 @@ int run_example(const Arguments& arguments) {
     raise(SetupErrorKind::bad_argument, "the loop ended before the first picture", "Give more --seconds");
   const Index files = write_series(arguments.out, organ, pictures);
   const std::string report = (arguments.out / "report.html").string();
-  io::vtk::write_file(report, {make_page(organ, path, session, plan, pictures)});
+  io::write_file(report, {make_page(organ, path, session, plan, pictures)});
   std::cout << pictures.size() << " pictures; wrote " << report << " and " << (arguments.out / "touch.pvd").string()
             << " (" << files << " files)\n";
 

@@ -30,7 +30,7 @@ void refuse_all(const CaseFile& file, const Arguments&) {
   if (file.load_cases.empty()) refuse(file.title, "a case file without load_cases", {});
 }
 
-/// A new element is one line here, a source file like tet4.cpp, and its GmshElement.
+/// A new element is one line here and a source file like tet4.cpp.
 constexpr std::pair<std::string_view, void (*)(const CaseFile&, const Arguments&)> elements[] = {
     {"tet4", solve_all<palpate::Tet4>},
     {"tet10", solve_all<palpate::Tet10>},

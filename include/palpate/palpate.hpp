@@ -13,7 +13,9 @@
 #include <palpate/haptic/run_haptic_loop.hpp>
 #include <palpate/io/gmsh.hpp>
 #include <palpate/io/pvd.hpp>
+#include <palpate/io/surface_files.hpp>
 #include <palpate/io/vtu.hpp>
+#include <palpate/io/write_msh.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>

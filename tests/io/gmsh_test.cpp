@@ -1,5 +1,5 @@
 // What a good file becomes.
-#include "gmsh_samples.hpp"
+#include "samples.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -31,8 +31,8 @@ using Nodes = std::vector<NodeId>;
 
 TEST_CASE("Both formats of the sample give the mesh it describes", "[io]") {
   for (const std::string& text : {test::msh2, test::msh4}) {
-    io::GmshNumbering ids;
-    const auto mesh = io::parse_mesh<Tet4>(text, "mesh", 1.0, &ids);
+    io::MeshNumbering ids;
+    const auto mesh = io::parse_mesh<Tet4>(text, "mesh", {.scale = 1.0, .numbering = &ids});
     CHECK(mesh.node_count() == 5);
     CHECK(mesh.positions[4] == Vector3(1.5, 1.0, 1.0));
     CHECK(mesh.elements == std::vector<std::array<NodeId, 4>>{{0, 1, 2, 3}, {1, 2, 3, 4}});
@@ -58,7 +58,7 @@ TEST_CASE("Both formats of a Gmsh mesh give the same mesh", "[io]") {
       folders.push_back(PALPATE_ORACLE_DIR + ('/' + std::string(name)));
   for (const std::string& folder : folders) {
     INFO(folder);
-    io::GmshNumbering ids2, ids4;
+    io::MeshNumbering ids2, ids4;
     const auto mesh2 = io::read_mesh<Tet4>(folder + "/mesh_v22.msh", 1.0, &ids2);
     const auto mesh4 = io::read_mesh<Tet4>(folder + "/mesh_v41.msh", 1.0, &ids4);
     check_same(mesh2, mesh4);
@@ -130,8 +130,8 @@ TEST_CASE("Node ids may have gaps and any order", "[io]") {
   auto text = with(test::msh2, "\n5 1.5", "\n700 1.5");
   text = with(with(with(text, "\n1 0 0 0", "\n90 0 0 0"), " 5 5\n", " 5 700\n"), "3 4 5\n$End", "3 4 700\n$End");
   text = with(with(text, "1 1 3 2\n", "1 90 3 2\n"), "1 1 1 2 3 4", "1 1 90 2 3 4");
-  io::GmshNumbering ids;
-  const auto mesh = io::parse_mesh<Tet4>(text, "mesh", 1.0, &ids);
+  io::MeshNumbering ids;
+  const auto mesh = io::parse_mesh<Tet4>(text, "mesh", {.scale = 1.0, .numbering = &ids});
   check_same(mesh, io::parse_mesh<Tet4>(test::msh2));
   CHECK(ids.node_tags == std::vector<Index>{90, 2, 3, 4, 700});
   CHECK(test::verdict(with(text, "90 3 2\n", "91 3 2\n")) == "index_out_of_range");
@@ -139,10 +139,10 @@ TEST_CASE("Node ids may have gaps and any order", "[io]") {
 }
 
 TEST_CASE("The unit of the file is scaled to metres", "[io]") {
-  CHECK(io::parse_mesh<Tet4>(test::msh2, "mesh", 1e-3).positions[4] == Vector3(1.5e-3, 1e-3, 1e-3));
+  CHECK(io::parse_mesh<Tet4>(test::msh2, "mesh", {.scale = 1e-3}).positions[4] == Vector3(1.5e-3, 1e-3, 1e-3));
   for (const double scale : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), infinity})
-    CHECK_THROWS_AS(io::parse_mesh<Tet4>(test::msh2, "mesh", scale), SetupError);
-  CHECK_THROWS_AS(io::parse_mesh<Tet4>(with(test::msh2, "1.5", "1e300"), "mesh", 1e10), SetupError);
+    CHECK_THROWS_AS(io::parse_mesh<Tet4>(test::msh2, "mesh", {.scale = scale}), SetupError);
+  CHECK_THROWS_AS(io::parse_mesh<Tet4>(with(test::msh2, "1.5", "1e300"), "mesh", {.scale = 1e10}), SetupError);
 }
 
 TEST_CASE("Sections that nobody needs are skipped", "[io]") {

@@ -1,5 +1,5 @@
 // VTU files are read back by a reader that knows the format, not the writer.
-#include "gmsh_samples.hpp"
+#include "samples.hpp"
 
 #include <palpate/io/pvd.hpp>
 

@@ -1,49 +1,12 @@
 // Writes meshes with fields for ParaView and other readers of VTK files.
 #pragma once
 
-#include <palpate/core/setup_error.hpp>
-#include <palpate/element/hex20.hpp>
-#include <palpate/element/mean_dilatation.hpp>
-#include <palpate/element/tet10.hpp>
-#include <palpate/element/with_quadrature.hpp>
 #include <palpate/io/decimal.hpp>
+#include <palpate/io/file.hpp>
+#include <palpate/io/vtk_types.hpp>
 #include <palpate/mesh/mesh.hpp>
 
-#include <bit>
-#include <cmath>
-#include <fstream>
-
 namespace palpate::inline PALPATE_ABI::io {
-
-/// What VTK calls element E: its cell type, and `order[k]`, the node of E that is VTK's node k. Specialise it to write
-/// another element.
-template <class E>
-struct VtkElement;
-
-template <>
-struct VtkElement<Tet4> {
-  static constexpr std::uint8_t type = 10;
-  static constexpr std::array<int, 4> order{0, 1, 2, 3};
-};
-template <>
-struct VtkElement<Tet10> {
-  static constexpr std::uint8_t type = 24;
-  static constexpr std::array<int, 10> order{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
-};
-template <>
-struct VtkElement<Hex8> {
-  static constexpr std::uint8_t type = 12;
-  static constexpr std::array<int, 8> order{0, 1, 2, 3, 4, 5, 6, 7};
-};
-template <>
-struct VtkElement<Hex20> {
-  static constexpr std::uint8_t type = 25;
-  static constexpr std::array<int, 20> order{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19};
-};
-template <class E, class Rule>
-struct VtkElement<WithQuadrature<E, Rule>> : VtkElement<E> {};
-template <class E>
-struct VtkElement<MeanDilatation<E>> : VtkElement<E> {};
 
 /// A field to write: `values` holds the components of node or element 0, then of 1, and so on. How many components
 /// there are follows from the length: 1 is a scalar, 3 a vector such as a displacement.
@@ -76,15 +39,6 @@ inline std::string escape(std::string_view text) {
       out += c;
   }
   return out;
-}
-
-/// Writes `text` to a file. Throws bad_file.
-inline void write_file(const std::string& path, std::initializer_list<std::string_view> parts) {
-  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-  if (!stream) raise(SetupErrorKind::bad_file, path + ": cannot be opened for writing");
-  for (const std::string_view part : parts) stream.write(part.data(), static_cast<std::streamsize>(part.size()));
-  stream.close();
-  if (!stream) raise(SetupErrorKind::bad_file, path + ": writing failed");
 }
 
 /// A VTU file in the making: an XML head and raw blocks, to which the head refers by offset.
@@ -128,14 +82,16 @@ void add_points(VtuText& file, const M& mesh) {
 template <Element E, MeshOf<E> M>
 void add_cells(VtuText& file, const M& mesh) {
   const auto count = static_cast<std::size_t>(mesh.element_count());
+  const auto order = vtk_order<E>();
+  constexpr int type = std::ranges::find(cell_types, solid_shape<E>(), &CellType::shape)->number;
   std::vector<std::int64_t> nodes, offsets;
   nodes.reserve(count * static_cast<std::size_t>(E::nodes));
   offsets.reserve(count);
   for (Index e = 0; e < mesh.element_count(); ++e) {
-    for (const int a : VtkElement<E>::order) nodes.push_back(static_cast<std::int64_t>(mesh.element_node(e, a)));
+    for (const int a : order) nodes.push_back(static_cast<std::int64_t>(mesh.element_node(e, a)));
     offsets.push_back(static_cast<std::int64_t>(nodes.size()));
   }
-  const std::vector<std::uint8_t> types(count, VtkElement<E>::type);
+  const std::vector<std::uint8_t> types(count, static_cast<std::uint8_t>(type));
   file.array("Int64", "connectivity", 1, nodes.data(), nodes.size());
   file.array("Int64", "offsets", 1, offsets.data(), offsets.size());
   file.array("UInt8", "types", 1, types.data(), types.size());
@@ -171,7 +127,7 @@ void write_vtu(const std::string& path, const M& mesh, const VtuFields& fields =
   file.xml += "      </Points>\n      <Cells>\n";
   vtk::add_cells<E>(file, mesh);
   file.xml += "      </Cells>\n    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n_";
-  vtk::write_file(path, {file.xml, file.raw, "\n  </AppendedData>\n</VTKFile>\n"});
+  write_file(path, {file.xml, file.raw, "\n  </AppendedData>\n</VTKFile>\n"});
 }
 
 /// The same for a Mesh, which knows its element.

@@ -1,0 +1,92 @@
+// What a mesh file says, before anybody asks which element type is wanted.
+#pragma once
+
+#include <palpate/io/cell_shape.hpp>
+#include <palpate/io/text_reader.hpp>
+
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace palpate::inline PALPATE_ABI::io {
+
+inline constexpr Index max_tag = std::numeric_limits<Index>::max();
+inline constexpr Index max_int = std::numeric_limits<int>::max();
+
+/// The name a file gives to the cells of one dimension with one tag.
+struct TagName {
+  int dimension;
+  int tag;
+  std::string name;
+};
+
+/// A cell of the file. Its nodes are `facts(shape).nodes` entries of FileMesh::cell_nodes from `first_node` on.
+struct FileCell {
+  Index tag;    ///< its id in the file
+  Index place;  ///< where it stands, for place_text
+  std::size_t first_node;
+  std::uint32_t tag_set;  ///< entry of FileMesh::tag_sets
+  CellShape shape;
+  std::uint8_t file;  ///< entry of FileMesh::files
+};
+
+/// A parsed file, whatever its format. Nodes count from zero, those of a cell come in VTK's order. A tag puts a cell
+/// into the group of its dimension and tag; the lowest tag of a solid cell is its region.
+struct FileMesh {
+  explicit FileMesh(std::string name) : files{std::move(name)} {}
+
+  std::vector<std::string> files;  ///< names, for messages
+  std::vector<Vector3> positions;
+  std::vector<Index> node_tags;  ///< ids in the file
+  std::vector<TagName> names;
+  std::vector<std::vector<int>> tag_sets{{}};  ///< entry 0 is "none"
+  std::vector<FileCell> cells;
+  std::vector<NodeId> cell_nodes;
+  bool repeats_cells = false;                   ///< a cell stands once for every group it is in, one below the other
+  int last_region = static_cast<int>(max_int);  ///< tags above it make groups but no regions
+
+  /// Adds a cell whose nodes were read in the order of the file into the end of cell_nodes.
+  void add_cell(Index tag, Index place, CellShape shape, std::uint32_t tag_set, NodeOrder order,
+                std::uint8_t file = 0) {
+    const std::size_t count = static_cast<std::size_t>(facts(shape).nodes), first = cell_nodes.size() - count;
+    cells.push_back({tag, place, first, tag_set, shape, file});
+    if (order.empty()) return;
+    std::array<NodeId, 32> read{};
+    std::copy_n(cell_nodes.begin() + static_cast<std::ptrdiff_t>(first), count, read.begin());
+    for (std::size_t k = 0; k < count; ++k) cell_nodes[first + k] = read[order[k]];
+  }
+
+  /// The entry of tag_sets that holds `tags`; the caller keeps the map. O(log n).
+  std::uint32_t set_of(std::map<std::vector<int>, std::uint32_t>& known, const std::vector<int>& tags) {
+    if (tags.empty()) return 0;
+    const auto [set, is_new] = known.try_emplace(tags, static_cast<std::uint32_t>(tag_sets.size()));
+    if (is_new) tag_sets.push_back(tags);
+    return set->second;
+  }
+};
+
+/// Reads three coordinates.
+template <class In>
+Vector3 read_point(In& in) {
+  Vector3 x;
+  for (int i = 0; i < 3; ++i) x[i] = in.real("a coordinate");
+  return x;
+}
+
+/// The ids a mesh file uses: entry i belongs to node i or element i of the mesh.
+struct MeshNumbering {
+  std::vector<Index> node_tags;
+  std::vector<Index> element_tags;
+};
+
+/// How many groups a mesh file may have; more of them are taken for numbers that mean something else.
+inline constexpr std::size_t max_groups = 10000;
+
+/// The command that fills a closed surface with tetrahedra.
+inline std::string fill_command(const std::string& surface) {
+  return "Fill it: echo 'Merge \"" + surface +
+         "\"; Surface Loop(1) = Surface{:}; Volume(1) = {1}; "
+         "Physical Volume(\"body\") = {1};' > solid.geo && gmsh solid.geo -3 -o solid.msh";
+}
+
+}  // namespace palpate::inline PALPATE_ABI::io

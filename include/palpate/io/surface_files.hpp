@@ -1,0 +1,96 @@
+// Writes the surface of a mesh as OBJ or STL.
+#pragma once
+
+#include <palpate/io/decimal.hpp>
+#include <palpate/io/file.hpp>
+#include <palpate/mesh/surface.hpp>
+
+#include <Eigen/Geometry>
+
+#include <bit>
+
+namespace palpate::inline PALPATE_ABI::io {
+
+/// The boundary of a mesh as triangles, outward by the right-hand rule: faces with more than three nodes are cut up,
+/// mid-edge nodes included.
+struct TriangleSurface {
+  std::vector<Vector3> positions;
+  std::vector<std::array<NodeId, 3>> triangles;
+};
+
+/// Local nodes of the triangles of a face with that many nodes, corners first.
+template <int Nodes>
+constexpr auto face_triangles() {
+  static_assert(Nodes == 3 || Nodes == 4 || Nodes == 6 || Nodes == 8);
+  using Triangle = std::array<std::size_t, 3>;
+  if constexpr (Nodes == 3) return std::array<Triangle, 1>{{{0, 1, 2}}};
+  if constexpr (Nodes == 4) return std::array{Triangle{0, 1, 2}, Triangle{0, 2, 3}};
+  if constexpr (Nodes == 6)
+    return std::array{Triangle{0, 3, 5}, Triangle{3, 1, 4}, Triangle{5, 4, 2}, Triangle{3, 4, 5}};
+  if constexpr (Nodes == 8)
+    return std::array{Triangle{0, 4, 7}, Triangle{4, 1, 5}, Triangle{5, 2, 6},
+                      Triangle{6, 3, 7}, Triangle{4, 5, 6}, Triangle{4, 6, 7}};
+}
+
+/// The surface of a mesh, moved by `displacement` (3 numbers per node of the mesh, or empty) [m]. Only nodes of the
+/// surface come along, in the order of the mesh. Throws bad_argument for a displacement of another length and what
+/// extract_boundary throws.
+template <Element E, MeshOf<E> M>
+TriangleSurface triangle_surface(const M& mesh, const VectorX& displacement = {}) {
+  if (displacement.size() != 0 && displacement.size() != 3 * mesh.node_count())
+    raise(SetupErrorKind::bad_argument, "a displacement of " + std::to_string(displacement.size()) + " numbers for " +
+                                            std::to_string(mesh.node_count()) + " nodes");
+  const auto faces = extract_boundary<E>(mesh);
+  const auto nodes = nodes_of<E>(faces);
+  TriangleSurface surface;
+  for (const NodeId i : nodes) {
+    Vector3 x = mesh.position(i);
+    if (displacement.size() != 0) x += displacement.template segment<3>(3 * static_cast<Index>(i));
+    surface.positions.push_back(x);
+  }
+  const auto place = [&](NodeId i) { return static_cast<NodeId>(std::ranges::lower_bound(nodes, i) - nodes.begin()); };
+  for (const auto& face : faces)
+    for (const auto& t : face_triangles<E::Face::nodes>())
+      surface.triangles.push_back({place(face.nodes[t[0]]), place(face.nodes[t[1]]), place(face.nodes[t[2]])});
+  return surface;
+}
+
+/// Writes the surface of a mesh as a Wavefront OBJ file; coordinates [m] read back exactly. Throws bad_file and what
+/// triangle_surface throws.
+template <Element E>
+void write_obj(const std::string& path, const Mesh<E>& mesh, const VectorX& displacement = {}) {
+  const TriangleSurface surface = triangle_surface<E>(mesh, displacement);
+  std::string text;
+  for (const Vector3& x : surface.positions)
+    text += "v " + to_decimal(x[0]) + ' ' + to_decimal(x[1]) + ' ' + to_decimal(x[2]) + '\n';
+  for (const auto& t : surface.triangles)
+    text += "f " + std::to_string(t[0] + 1) + ' ' + std::to_string(t[1] + 1) + ' ' + std::to_string(t[2] + 1) + '\n';
+  write_file(path, {text});
+}
+
+/// Writes the surface of a mesh as a binary STL file: little-endian floats, so coordinates [m] keep seven digits.
+/// Throws bad_file and what triangle_surface throws.
+template <Element E>
+void write_stl(const std::string& path, const Mesh<E>& mesh, const VectorX& displacement = {}) {
+  const TriangleSurface surface = triangle_surface<E>(mesh, displacement);
+  std::string text(80, '\0');  // a head that must not begin with "solid"
+  const auto put = [&](std::uint32_t bits, int bytes) {
+    for (int i = 0; i < bytes; ++i) text += static_cast<char>((bits >> (8 * i)) & 0xffU);
+  };
+  const auto put_vector = [&](const Vector3& x) {
+    for (int c = 0; c < 3; ++c) put(std::bit_cast<std::uint32_t>(static_cast<float>(x[c])), 4);
+  };
+  put(static_cast<std::uint32_t>(surface.triangles.size()), 4);
+  for (const auto& t : surface.triangles) {
+    std::array<Vector3, 3> x;
+    for (std::size_t a = 0; a < 3; ++a) x[a] = surface.positions[static_cast<std::size_t>(t[a])];
+    const Vector3 normal = (x[1] - x[0]).cross(x[2] - x[0]);
+    const double length = normal.norm();
+    put_vector(length > 0.0 ? Vector3(normal / length) : Vector3(Vector3::Zero()));
+    for (const Vector3& corner : x) put_vector(corner);
+    put(0, 2);
+  }
+  write_file(path, {text});
+}
+
+}  // namespace palpate::inline PALPATE_ABI::io

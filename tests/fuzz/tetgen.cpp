@@ -1,0 +1,10 @@
+#include "fuzz_reader.hpp"
+
+#include <palpate/io/tetgen.hpp>
+
+/// The .node, .ele and .face files, with the byte 0x1F between them.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::string_view rest = fuzz::text_of(data, size);
+  const std::string_view node = fuzz::cut(rest), ele = fuzz::cut(rest);
+  return fuzz::run([&] { return palpate::io::tetgen::parse({"mesh", node, ele, rest}); });
+}
