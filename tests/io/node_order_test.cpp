@@ -121,7 +121,7 @@ std::string vtk_hex20() {
          "CELLS 1 21\n20 0 1 3 2 4 5 6 7 8 11 9 10 12 13 14 15 16 17 18 19\nCELL_TYPES 1\n25\n";
 }
 
-/// The first two tetrahedra that TetGen 1.6 -o2 makes of a cube.
+/// The first two tetrahedra that TetGen 1.5 -o2 makes of a cube.
 const std::string tetgen_tet10 =
     "19 3 0 0\n0 0 0 0\n1 1 0 0\n2 1 1 0\n3 0 1 0\n4 0 0 1\n5 1 0 1\n6 1 1 1\n7 0 1 1\n8 0.5 1 0.5\n9 0.5 0.5 0\n"
     "10 0 0.5 0\n11 0 1 0.5\n12 0.5 1 0\n13 0 0.5 0.5\n14 0.5 0.5 1\n15 0.5 0.5 0.5\n16 0 0.5 1\n17 0.5 1 1\n"

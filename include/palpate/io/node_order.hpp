@@ -15,7 +15,7 @@ namespace palpate::inline PALPATE_ABI::io {
 inline constexpr std::array<std::uint8_t, 10> gmsh_tetrahedron10{0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 inline constexpr std::array<std::uint8_t, 20> gmsh_hexahedron20{0,  1, 2,  3,  4,  5,  6,  7,  8,  11,
                                                                 13, 9, 16, 18, 19, 17, 10, 12, 14, 15};
-/// TetGen 1.5 and 1.6 with -o2: edges 23, 03, 01, 12, 13, 02 (seen in its output).
+/// TetGen 1.5 with -o2: edges 23, 03, 01, 12, 13, 02 (seen in its output).
 inline constexpr std::array<std::uint8_t, 10> tetgen_tetrahedron10{0, 1, 2, 3, 6, 7, 9, 5, 8, 4};
 /// VTK's voxel and pixel count their corners like binary numbers.
 inline constexpr std::array<std::uint8_t, 8> voxel_hexahedron8{0, 1, 3, 2, 4, 5, 7, 6};

