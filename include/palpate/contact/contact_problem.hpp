@@ -48,10 +48,11 @@ class ContactProblem {
       follow(tools);
       change = relative_change(tools);
       // Each step is smaller than the last by about the same ratio (the curvature of the ball is left out of the
-      // linearisation), so that the steps still to come sum to this. The first step has no ratio yet.
-      const double expected = iteration == 0   ? 10.0 * change
-                              : change < before ? change * change / (before - change)
-                                                : change;
+      // linearisation), so that the steps still to come sum to this. The first step is the hand's, so that the second
+      // says nothing about the ratio yet.
+      const double expected = iteration == 0                   ? 10.0 * change
+                              : iteration > 1 && change < before ? change * change / (before - change)
+                                                                 : change;
       if (arrived_ && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) return status;
       before = change;
     }
