@@ -4,6 +4,7 @@
 #include <palpate/linear/sparse_cholesky.hpp>
 
 #include <Eigen/SparseCholesky>
+#include <cstdio>
 
 #include "linear/systems.hpp"
 
@@ -113,4 +114,40 @@ TEST_CASE("a barely definite matrix is taken", "[linear][extreme]") {
   sparse.solve_into(m * VectorX::Ones(40), x);
   CHECK((x - VectorX::Ones(40)).norm() <= 1e-2);
   CHECK_NOTHROW(DenseCholesky(m, {}));
+}
+
+TEST_CASE("side by side with Eigen", "[.][table]") {
+  MatrixX with_nan = good, with_infinity = good, zero_row = good;
+  with_nan(20, 3) = with_nan(3, 20) = std::numeric_limits<double>::quiet_NaN();
+  with_infinity(7, 7) = infinity;
+  zero_row.row(11).setZero();
+  zero_row.col(11).setZero();
+  const std::vector<std::pair<const char*, MatrixX>> matrices{
+      {"ball, held", good},
+      {"NaN in one entry", with_nan},
+      {"infinity on the diagonal", with_infinity},
+      {"Poisson ratio 0.6", full(ball_stiffness(2, {5e3, 0.6, 0.0}))},
+      {"negative definite", -good},
+      {"free body", free_body()},
+      {"one row zero", zero_row},
+      {"condition 1e12", with_condition(40, 1e12)},
+      {"condition 1e17", with_condition(40, 1e17)},
+  };
+  std::printf("%-26s %-12s %-12s %-22s %s\n", "matrix", "SimplicialLDLT", "dense LDLT", "error of its answer", "ours");
+  for (const auto& [name, m] : matrices) {
+    const EigenSays says = eigen_says(m);
+    const auto word = [](Eigen::ComputationInfo info) { return info == Eigen::Success ? "Success" : "no"; };
+    const VectorX ones = VectorX::Ones(m.rows()), b = m * ones;
+    const double error = (VectorX(Eigen::LDLT<MatrixX>(m).solve(b)) - ones).norm() / ones.norm();
+    std::string ours = "taken";
+    try {
+      SparseCholesky solver(lower_half(m), {});
+      VectorX x(m.rows());
+      solver.solve_into(b, x);
+      ours += ", error " + number((x - ones).norm() / ones.norm());
+    } catch (const SetupError& e) {
+      ours = std::string(e.what()).substr(0, 90);
+    }
+    std::printf("%-26s %-12s %-12s %-22.3g %s\n", name, word(says.sparse_ldlt), word(says.dense_ldlt), error, ours.c_str());
+  }
 }
