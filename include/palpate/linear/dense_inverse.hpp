@@ -5,6 +5,7 @@
 #include <palpate/linear/dense_io.hpp>
 #include <palpate/linear/spd_inverse.hpp>
 
+#include <array>
 #include <memory>
 
 namespace palpate::inline PALPATE_ABI {
@@ -40,12 +41,39 @@ class DenseInverse {
   /// b and x must not be the same vector. No allocation.
   SolveReport solve_into(const VectorX& b, VectorX& x) noexcept {
     x.setZero();
-    for (Index j = 0; j < size(); ++j)
-      if (b[j] != 0.0) x.noalias() += b[j] * inverse_->col(j).template cast<double>();
+    std::array<Index, 8> loaded;  // eight columns in one pass: x goes through the registers once for all of them
+    std::size_t count = 0;
+    for (Index j = 0; j < size(); ++j) {
+      if (b[j] == 0.0) continue;
+      loaded[count++] = j;
+      if (count < loaded.size()) continue;
+      add_columns(loaded, b, x);
+      count = 0;
+    }
+    for (std::size_t k = 0; k < count; ++k) add_columns(std::array{loaded[k]}, b, x);
     return {true, 0, std::numeric_limits<double>::quiet_NaN()};
   }
 
  private:
+  /// x += the columns times their loads. A plain loop, which compilers vectorise with the change of precision in it;
+  /// Eigen's casts of mixed width are scalar.
+  template <std::size_t N>
+  void add_columns(const std::array<Index, N>& columns, const VectorX& b, VectorX& x) const noexcept {
+    const Index n = size();
+    std::array<const Scalar*, N> column;
+    std::array<double, N> load;
+    for (std::size_t k = 0; k < N; ++k) {
+      column[k] = inverse_->data() + columns[k] * n;
+      load[k] = b[columns[k]];
+    }
+    double* out = x.data();
+    for (Index i = 0; i < n; ++i) {
+      double sum = out[i];
+      for (std::size_t k = 0; k < N; ++k) sum += load[k] * static_cast<double>(column[k][i]);
+      out[i] = sum;
+    }
+  }
+
   std::shared_ptr<const Matrix> inverse_;
 };
 
