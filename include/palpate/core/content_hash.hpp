@@ -49,18 +49,23 @@ class ContentHash {
     return std::rotl(state + value * second_prime, 31) * first_prime;
   }
 
+  static void add_stripe(std::array<std::uint64_t, lane_count>& lanes, const unsigned char* bytes) noexcept {
+    for (std::size_t i = 0; i < lane_count; ++i) {
+      std::uint64_t value;
+      std::memcpy(&value, bytes + i * word, word);
+      lanes[i] = mixed(lanes[i], value);
+    }
+  }
+
   void add_bytes(const void* data, std::size_t size) noexcept {
     const auto* bytes = static_cast<const unsigned char*>(data);
-    std::array<std::uint64_t, lane_count> lanes = lanes_, words{};
-    std::size_t at = 0;
-    for (; size - at >= stripe; at += stripe) {
-      std::memcpy(words.data(), bytes + at, stripe);
-      for (std::size_t i = 0; i < lane_count; ++i) lanes[i] = mixed(lanes[i], words[i]);
-    }
-    if (at < size) {
-      words.fill(0);
-      std::memcpy(words.data(), bytes + at, size - at);
-      for (std::size_t i = 0; i < lane_count; ++i) lanes[i] = mixed(lanes[i], words[i]);
+    std::array<std::uint64_t, lane_count> lanes = lanes_;
+    const std::size_t stripes = size / stripe, rest = size % stripe;
+    for (std::size_t s = 0; s < stripes; ++s) add_stripe(lanes, bytes + s * stripe);
+    if (rest > 0) {
+      std::array<unsigned char, stripe> last{};
+      std::memcpy(last.data(), bytes + stripes * stripe, rest);
+      add_stripe(lanes, last.data());
     }
     lanes[0] = mixed(lanes[0], static_cast<std::uint64_t>(size));
     lanes_ = lanes;
