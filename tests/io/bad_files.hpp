@@ -19,7 +19,7 @@ const std::string nan64 = f64(std::nan("")), nan64_swapped = f64(std::nan(""), t
 const bool swap = std::endian::native == std::endian::little;
 
 // clang-format off
-inline const std::vector<BadFile> files{
+const std::vector<BadFile> files{
     // Gmsh MSH 2, ASCII
     {"msh2", "Nodes\n5", "Nodes\n4", bad},
     {"msh2", "Nodes\n5", "Nodes\n6", bad},
