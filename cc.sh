@@ -1,1 +1,0 @@
-g++ -std=c++20 -O1 -Wall -Wextra -Wconversion -Wshadow -Wno-restrict -Wno-maybe-uninitialized -I include -I tests -isystem /usr/include/eigen3 -DPALPATE_TEST_DATA='"/tmp/w/merged/tests/data"' -DPALPATE_ORACLE_DIR='"/work/shared/oracle"' "$@"
