@@ -1,9 +1,7 @@
 // Rigid balls against a deformable surface, solved exactly in every tick.
 #pragma once
 
-#include <palpate/contact/candidates.hpp>
-#include <palpate/contact/complementarity.hpp>
-#include <palpate/contact/point_compliance.hpp>
+#include <palpate/contact/contact_rows.hpp>
 #include <palpate/core/setup_error.hpp>
 
 namespace palpate::inline PALPATE_ABI {
@@ -26,7 +24,7 @@ class ContactProblem {
       : parameters_(checked(parameters)),
         displacement_(surface.vertex_count()),
         candidates_(surface, parameters.sample_spacing * smallest_radius),
-        slot_(static_cast<std::size_t>(surface.vertex_count()), -1) {}
+        rows_(surface.vertex_count()) {}
 
   /// Finds the forces for the tools' new targets; updates proxy and force of every active tool. At most
   /// `maximum_tools` tools. Never allocates.
@@ -35,7 +33,7 @@ class ContactProblem {
     Status status;
     floor_ = tissue.compliance_floor();
     rounds_left_ = maximum_rounds;
-    compliance_.begin_tick(tissue.compliance_revision());
+    rows_.begin_tick(tissue.compliance_revision());
     slide(tools);
     candidates_.begin_tick(tissue.contact_surface(), tools);
     candidates_.look_round(tissue, tools, displacement_);
@@ -65,11 +63,11 @@ class ContactProblem {
     displacement_.clear();
     for (Candidate& c : candidates_.items()) c.force = 0.0;
     candidates_.forget();
-    row_count_ = 0;
+    rows_.clear();
   }
 
   /// Rows of the last linearisation: what presses, and what would have sunk in without; some without force.
-  std::span<const Contact> contacts() const noexcept { return {rows_.data(), static_cast<std::size_t>(row_count_)}; }
+  std::span<const Contact> contacts() const noexcept { return rows_.contacts(); }
   /// The forces of the last tick on the vertices.
   std::span<const VertexForce> vertex_forces() const noexcept { return displacement_.forces(); }
   /// Whether a contact point is near a tool's ball.
@@ -106,24 +104,23 @@ class ContactProblem {
     Status status;
     gather_pressing(tools);
     predict_normals(iteration);
-    row_count_ = 0;
-    compliance_.begin_rows();
-    for (int i = 0; i < pressing_count_; ++i) add_row(tissue.contact_surface(), *pressing_[at(i)]);
-    for (int built = 0;; built = row_count_) {
-      if (built > 0 || row_count_ == 0)
+    rows_.clear();
+    for (int i = 0; i < pressing_count_; ++i) rows_.add(tissue.contact_surface(), candidates_, *pressing_[at(i)]);
+    for (int built = 0;; built = rows_.count()) {
+      if (built > 0 || rows_.count() == 0)
         if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);
-      if (row_count_ == built) {
-        if (built == 0) apply(tools);
+      if (rows_.count() == built) {
+        if (built == 0) rows_.apply(tools, displacement_, candidates_);
         break;
       }
       if (rounds_left_-- <= 0) {
         status.set(StatusFlag::solver_not_converged);
         break;
       }
-      status |= require_columns(tissue);
-      build(tissue, tools, built);
-      if (!problem_.solve()) status.set(StatusFlag::solver_not_converged);
-      apply(tools);
+      status |= rows_.require_columns(tissue);
+      rows_.build(tissue, candidates_.samples(), tools, floor_, built);
+      if (!rows_.solve()) status.set(StatusFlag::solver_not_converged);
+      rows_.apply(tools, displacement_, candidates_);
     }
     return status;
   }
@@ -135,9 +132,10 @@ class ContactProblem {
       for (Candidate& c : candidates_.items())
         if (c.force > 0.0) pressing_[at(pressing_count_++)] = &c;
     } else {
-      for (int i = 0; i < row_count_; ++i) {
-        candidate_[at(i)]->row = -1;
-        if (candidate_[at(i)]->force > 0.0) pressing_[at(pressing_count_++)] = candidate_[at(i)];
+      for (int i = 0; i < rows_.count(); ++i) {
+        Candidate& c = rows_.candidate(i);
+        c.row = -1;
+        if (c.force > 0.0) pressing_[at(pressing_count_++)] = &c;
       }
     }
     for (int i = 0; i < pressing_count_; ++i) {
@@ -172,7 +170,7 @@ class ContactProblem {
   template <TissueModel Tissue>
   bool add_violated(const Tissue& tissue, Tools tools, int& built) noexcept {
     violated_count_ = 0;
-    const double allowed = built > 0 ? violation * std::max(0.0, -problem_.b.minCoeff()) : 0.0;
+    const double allowed = built > 0 ? violation * rows_.deepest_push() : 0.0;
     for (Candidate& c : candidates_.items()) {
       if (c.row >= 0) continue;
       const ContactTool& tool = tools[at(c.tool)];
@@ -185,124 +183,13 @@ class ContactProblem {
     const auto wanted = std::min(violated_count_, added_per_round);
     std::partial_sort(violated_.begin(), violated_.begin() + wanted, violated_.begin() + violated_count_,
                       [](const Violated& a, const Violated& b) { return a.gap < b.gap; });
-    if (row_count_ + wanted > Capacity) built = drop_idle_rows();
-    const int room = std::min(wanted, Capacity - row_count_);
-    for (int i = 0; i < room; ++i) add_row(tissue.contact_surface(), *violated_[at(i)].candidate);
+    if (rows_.count() + wanted > Capacity) {
+      rows_.drop_idle();
+      built = 0;
+    }
+    const int room = std::min(wanted, Capacity - rows_.count());
+    for (int i = 0; i < room; ++i) rows_.add(tissue.contact_surface(), candidates_, *violated_[at(i)].candidate);
     return room > 0 || wanted == 0;
-  }
-
-  /// There is always room: the caller has seen to it.
-  void add_row(const ContactSurface& surface, Candidate& c) noexcept {
-    c.row = row_count_;
-    c.slot = compliance_.slot_of(c.sample, c.slot);
-    const ContactSample& sample = candidates_.samples()[c.sample];
-    candidate_[at(row_count_)] = &c;
-    Contact& row = rows_[at(row_count_++)];
-    row.tool = c.tool;
-    row.vertices = sample.vertices;
-    row.weights = sample.weights;
-    row.normal = c.normal;
-    row.rest = candidates_.rest(surface, c.sample);
-    row.point = c.point;
-    row.gap = c.gap;
-    row.force = c.force;
-  }
-
-  /// Rows without force make room; the number of rows whose compliance is built is then none.
-  int drop_idle_rows() noexcept {
-    int kept = 0;
-    compliance_.begin_rows();
-    for (int i = 0; i < row_count_; ++i) {
-      Candidate& c = *candidate_[at(i)];
-      c.row = rows_[at(i)].force > 0.0 ? kept : -1;
-      if (c.row < 0) continue;
-      c.slot = compliance_.slot_of(c.sample, c.slot);
-      candidate_[at(kept)] = &c;
-      rows_[at(kept++)] = rows_[at(i)];
-    }
-    row_count_ = kept;
-    return 0;
-  }
-
-  /// Asks for the compliance columns of all vertices that carry rows.
-  template <TissueModel Tissue>
-  Status require_columns(Tissue& tissue) noexcept {
-    int count = 0;
-    for (const Contact& row : contacts())
-      for (std::size_t a = 0; a < 3; ++a) {
-        int& slot = slot_[at(row.vertices[a])];
-        if (row.weights[a] == 0.0 || slot >= 0) continue;
-        slot = count;
-        vertices_[at(count++)] = row.vertices[a];
-      }
-    for (int i = 0; i < count; ++i) slot_[at(vertices_[at(i)])] = -1;
-    return tissue.require_columns({vertices_.data(), at(count)});
-  }
-
-  /// Rows `first` and later of W = J C J^T plus the coupling, and of b = gap at the target without contact force.
-  template <TissueModel Tissue>
-  void build(const Tissue& tissue, Tools tools, int first) noexcept {
-    problem_.resize(row_count_);
-    for (int i = first; i < row_count_; ++i) {
-      problem_.lambda[i] = 1.0;  // it presses, or would sink in
-      const Contact& ci = rows_[at(i)];
-      const ContactTool& tool = tools[at(ci.tool)];
-      problem_.b[i] = ci.normal.dot(tool.target - ci.rest) - tool.radius;
-      for (int j = 0; j <= i; ++j) {
-        const Contact& cj = rows_[at(j)];
-        double w = set_responses(tissue, i, j);
-        if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
-        problem_.w(i, j) = problem_.w(j, i) = w;
-      }
-    }
-  }
-
-  /// Displacement of two rows' points per force on the other. Returns the part of it along the own normal. Written out
-  /// so that it stays in registers: half of the work of a tick with many contacts is here.
-  template <TissueModel Tissue>
-  double set_responses(const Tissue& tissue, int i, int j) noexcept {
-    const int p = candidate_[at(i)]->slot, q = candidate_[at(j)]->slot;
-    if (p < q) return set_responses(tissue, j, i);
-    const Matrix3& c = compliance_(tissue, candidates_.samples(), p, q);
-    const double *m = rows_[at(i)].normal.data(), *n = rows_[at(j)].normal.data();
-    const double x = c(0, 0) * n[0] + c(0, 1) * n[1] + c(0, 2) * n[2];
-    const double y = c(1, 0) * n[0] + c(1, 1) * n[1] + c(1, 2) * n[2];
-    const double z = c(2, 0) * n[0] + c(2, 1) * n[1] + c(2, 2) * n[2];
-    response_[at(i)][at(j)] = {x, y, z};
-    response_[at(j)][at(i)] = {c(0, 0) * m[0] + c(1, 0) * m[1] + c(2, 0) * m[2],
-                               c(0, 1) * m[0] + c(1, 1) * m[1] + c(2, 1) * m[2],
-                               c(0, 2) * m[0] + c(1, 2) * m[1] + c(2, 2) * m[2]};
-    return m[0] * x + m[1] * y + m[2] * z;
-  }
-
-  /// Hands the answer to points, vertices and tools.
-  void apply(Tools tools) noexcept {
-    displacement_.clear();
-    for (ContactTool& tool : tools) tool.force.setZero();
-    double largest = 0.0;
-    for (int i = 0; i < row_count_; ++i) {
-      Contact& row = rows_[at(i)];
-      row.force = problem_.lambda[i];
-      Vector3 point = row.rest;
-      for (int j = 0; j < row_count_; ++j)
-        if (problem_.lambda[j] > 0.0) point.noalias() -= problem_.lambda[j] * response_[at(i)][at(j)];
-      largest = std::max(largest, (point - row.point).squaredNorm());
-      row.point = point;
-      if (row.force == 0.0) continue;
-      tools[at(row.tool)].force += row.force * row.normal;
-      for (std::size_t a = 0; a < 3; ++a)
-        if (row.weights[a] > 0.0)
-          displacement_.add(row.vertices[a], -(row.force * row.weights[a]) * row.normal, slot_[at(row.vertices[a])]);
-    }
-    for (const VertexForce& f : displacement_.forces()) slot_[at(f.vertex)] = -1;
-    candidates_.move_surface(2.0 * std::sqrt(largest));
-    for (int i = 0; i < row_count_; ++i) {
-      Candidate& c = *candidate_[at(i)];
-      candidates_.place(c, rows_[at(i)].point, tools[at(c.tool)]);
-      c.force = rows_[at(i)].force;
-      if (c.force == 0.0) c.history.known = 0;
-      rows_[at(i)].gap = c.gap;
-    }
   }
 
   /// Moves the proxies to where the answer has them, as far as one linearisation may go.
@@ -338,7 +225,6 @@ class ContactProblem {
     return p;
   }
 
-  static constexpr auto capacity = static_cast<std::size_t>(Capacity);
   static constexpr int maximum_rounds = 12;   // solutions of the contact problem per tick
   static constexpr int added_per_round = 16;  // rows, the deepest ones
   static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
@@ -351,16 +237,11 @@ class ContactProblem {
   ContactParameters parameters_;
   SurfaceDisplacement<3 * Capacity> displacement_;
   Candidates<Capacity> candidates_;
-  ComplementarityProblem<Capacity> problem_;
-  PointCompliance<Capacity> compliance_;
-  std::array<Contact, capacity> rows_{};
-  std::array<Candidate*, capacity> candidate_{}, pressing_{};  // of the rows; of the last linearisation
-  std::array<std::array<Vector3, capacity>, capacity> response_{};  // of a row's point to unit force on another
-  std::array<int, 3 * capacity> vertices_{};
-  std::vector<int> slot_;  // scratch per vertex: -1 between calls
+  ContactRows<Capacity> rows_;
+  std::array<Candidate*, static_cast<std::size_t>(Capacity)> pressing_{};  // in the last linearisation
   std::array<Violated, static_cast<std::size_t>(Candidates<Capacity>::maximum)> violated_{};
   std::array<Vector3, maximum_tools> start_force_{};
-  int row_count_ = 0, pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
+  int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   bool arrived_ = true;  // at the answer of the last linearisation
   double feedback_ = 0.0;
   double floor_ = 0.0;

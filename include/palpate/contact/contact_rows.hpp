@@ -1,0 +1,165 @@
+// The rows of the contact problem of a tick.
+#pragma once
+
+#include <palpate/contact/candidates.hpp>
+#include <palpate/contact/complementarity.hpp>
+#include <palpate/contact/point_compliance.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Up to `Capacity` candidates that press or might, as rows of W lambda + b: adds and drops them, builds W from the
+/// tissue's compliance, solves, and hands forces and displaced points back. Nothing allocates after construction.
+template <int Capacity>
+class ContactRows {
+ public:
+  using Displacement = SurfaceDisplacement<3 * Capacity>;
+
+  /// Allocates workspaces; for set-up.
+  explicit ContactRows(int vertices) : slot_(static_cast<std::size_t>(vertices), -1) {}
+
+  /// Forgets the compliance between points when the tissue's has changed.
+  void begin_tick(std::uint64_t compliance_revision) noexcept { compliance_.begin_tick(compliance_revision); }
+  void clear() noexcept {
+    count_ = 0;
+    compliance_.begin_rows();
+  }
+
+  int count() const noexcept { return count_; }
+  std::span<const Contact> contacts() const noexcept { return {rows_.data(), at(count_)}; }
+  Candidate& candidate(int row) noexcept { return *candidate_[at(row)]; }
+
+  /// There is always room: the caller has seen to it.
+  void add(const ContactSurface& surface, const Candidates<Capacity>& candidates, Candidate& c) noexcept {
+    c.row = count_;
+    c.slot = compliance_.slot_of(c.sample, c.slot);
+    const ContactSample& sample = candidates.samples()[c.sample];
+    candidate_[at(count_)] = &c;
+    Contact& row = rows_[at(count_++)];
+    row.tool = c.tool;
+    row.vertices = sample.vertices;
+    row.weights = sample.weights;
+    row.normal = c.normal;
+    row.rest = candidates.rest(surface, c.sample);
+    row.point = c.point;
+    row.gap = c.gap;
+    row.force = c.force;
+  }
+
+  /// Rows without force make room; W has to be built anew.
+  void drop_idle() noexcept {
+    int kept = 0;
+    compliance_.begin_rows();
+    for (int i = 0; i < count_; ++i) {
+      Candidate& c = *candidate_[at(i)];
+      c.row = rows_[at(i)].force > 0.0 ? kept : -1;
+      if (c.row < 0) continue;
+      c.slot = compliance_.slot_of(c.sample, c.slot);
+      candidate_[at(kept)] = &c;
+      rows_[at(kept++)] = rows_[at(i)];
+    }
+    count_ = kept;
+  }
+
+  /// Asks for the compliance columns of all vertices that carry rows.
+  template <TissueModel Tissue>
+  Status require_columns(Tissue& tissue) noexcept {
+    int count = 0;
+    for (const Contact& row : contacts())
+      for (std::size_t a = 0; a < 3; ++a) {
+        int& slot = slot_[at(row.vertices[a])];
+        if (row.weights[a] == 0.0 || slot >= 0) continue;
+        slot = count;
+        vertices_[at(count++)] = row.vertices[a];
+      }
+    for (int i = 0; i < count; ++i) slot_[at(vertices_[at(i)])] = -1;
+    return tissue.require_columns({vertices_.data(), at(count)});
+  }
+
+  /// Rows `first` and later of W = J C J^T plus the coupling and `floor` [m/N], and of b = gap at the target without
+  /// contact force.
+  template <TissueModel Tissue>
+  void build(const Tissue& tissue, const ContactSamples& samples, std::span<const ContactTool> tools, double floor,
+             int first) noexcept {
+    problem_.resize(count_);
+    for (int i = first; i < count_; ++i) {
+      problem_.lambda[i] = 1.0;  // it presses, or would sink in
+      const Contact& ci = rows_[at(i)];
+      const ContactTool& tool = tools[at(ci.tool)];
+      problem_.b[i] = ci.normal.dot(tool.target - ci.rest) - tool.radius;
+      for (int j = 0; j <= i; ++j) {
+        const Contact& cj = rows_[at(j)];
+        double w = set_responses(tissue, samples, i, j);
+        if (ci.tool == cj.tool) w += (tool.compliance + floor) * ci.normal.dot(cj.normal);
+        problem_.w(i, j) = problem_.w(j, i) = w;
+      }
+    }
+  }
+
+  /// False when the forces are a cut-off answer.
+  bool solve() noexcept { return problem_.solve(); }
+  /// How far the tools would go in without contact force, at the deepest row built [m].
+  double deepest_push() const noexcept { return std::max(0.0, -problem_.b.minCoeff()); }
+
+  /// Hands the answer to points, vertices and tools.
+  void apply(std::span<ContactTool> tools, Displacement& displacement, Candidates<Capacity>& candidates) noexcept {
+    displacement.clear();
+    for (ContactTool& tool : tools) tool.force.setZero();
+    double largest = 0.0;
+    for (int i = 0; i < count_; ++i) {
+      Contact& row = rows_[at(i)];
+      row.force = problem_.lambda[i];
+      Vector3 point = row.rest;
+      for (int j = 0; j < count_; ++j)
+        if (problem_.lambda[j] > 0.0) point.noalias() -= problem_.lambda[j] * response_[at(i)][at(j)];
+      largest = std::max(largest, (point - row.point).squaredNorm());
+      row.point = point;
+      if (row.force == 0.0) continue;
+      tools[at(row.tool)].force += row.force * row.normal;
+      for (std::size_t a = 0; a < 3; ++a)
+        if (row.weights[a] > 0.0)
+          displacement.add(row.vertices[a], -(row.force * row.weights[a]) * row.normal, slot_[at(row.vertices[a])]);
+    }
+    for (const VertexForce& f : displacement.forces()) slot_[at(f.vertex)] = -1;
+    candidates.move_surface(2.0 * std::sqrt(largest));
+    for (int i = 0; i < count_; ++i) {
+      Candidate& c = *candidate_[at(i)];
+      candidates.place(c, rows_[at(i)].point, tools[at(c.tool)]);
+      c.force = rows_[at(i)].force;
+      if (c.force == 0.0) c.history.known = 0;
+      rows_[at(i)].gap = c.gap;
+    }
+  }
+
+ private:
+  /// Displacement of two rows' points per force on the other. Returns the part of it along the own normal. Written out
+  /// so that it stays in registers: half of the work of a tick with many contacts is here.
+  template <TissueModel Tissue>
+  double set_responses(const Tissue& tissue, const ContactSamples& samples, int i, int j) noexcept {
+    const int p = candidate_[at(i)]->slot, q = candidate_[at(j)]->slot;
+    if (p < q) return set_responses(tissue, samples, j, i);
+    const Matrix3& c = compliance_(tissue, samples, p, q);
+    const double *m = rows_[at(i)].normal.data(), *n = rows_[at(j)].normal.data();
+    const double x = c(0, 0) * n[0] + c(0, 1) * n[1] + c(0, 2) * n[2];
+    const double y = c(1, 0) * n[0] + c(1, 1) * n[1] + c(1, 2) * n[2];
+    const double z = c(2, 0) * n[0] + c(2, 1) * n[1] + c(2, 2) * n[2];
+    response_[at(i)][at(j)] = {x, y, z};
+    response_[at(j)][at(i)] = {c(0, 0) * m[0] + c(1, 0) * m[1] + c(2, 0) * m[2],
+                               c(0, 1) * m[0] + c(1, 1) * m[1] + c(2, 1) * m[2],
+                               c(0, 2) * m[0] + c(1, 2) * m[1] + c(2, 2) * m[2]};
+    return m[0] * x + m[1] * y + m[2] * z;
+  }
+
+  static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+
+  static constexpr auto capacity = static_cast<std::size_t>(Capacity);
+  ComplementarityProblem<Capacity> problem_;
+  PointCompliance<Capacity> compliance_;
+  std::array<Contact, capacity> rows_{};
+  std::array<Candidate*, capacity> candidate_{};
+  std::array<std::array<Vector3, capacity>, capacity> response_{};  // of a row's point to unit force on another
+  std::array<int, 3 * capacity> vertices_{};
+  std::vector<int> slot_;  // scratch per vertex: -1 between calls
+  int count_ = 0;
+};
+
+}  // namespace palpate::inline PALPATE_ABI
