@@ -120,6 +120,13 @@ inline void factor_columns(double* a, Index stride, Index rows, Index place, con
     for (int i = j; i < Width; ++i) a[i + j * stride] = l[j][i];
 }
 
+/// factor_columns for a number of columns known at run time.
+template <int Width>
+inline void factor_few(double* a, Index stride, Index rows, Index columns, Index place, const PivotSink& sink) noexcept {
+  if (columns == Width) return factor_columns<Width>(a, stride, rows, place, sink);
+  if constexpr (Width > 1) factor_few<Width - 1>(a, stride, rows, columns, place, sink);
+}
+
 /// Factorises a trapezoid (rows x columns, column major) by halves, so that nearly all work is in subtract_square.
 inline void factor_trapezoid(double* a, Index stride, Index rows, Index columns, Index place,
                              const PivotSink& sink) noexcept {
@@ -131,26 +138,7 @@ inline void factor_trapezoid(double* a, Index stride, Index rows, Index columns,
     factor_trapezoid(rest, stride, rows - half, columns - half, place + half, sink);
     return;
   }
-  switch (columns) {
-    case 1:
-      return factor_columns<1>(a, stride, rows, place, sink);
-    case 2:
-      return factor_columns<2>(a, stride, rows, place, sink);
-    case 3:
-      return factor_columns<3>(a, stride, rows, place, sink);
-    case 4:
-      return factor_columns<4>(a, stride, rows, place, sink);
-    case 5:
-      return factor_columns<5>(a, stride, rows, place, sink);
-    case 6:
-      return factor_columns<6>(a, stride, rows, place, sink);
-    case 7:
-      return factor_columns<7>(a, stride, rows, place, sink);
-    case 8:
-      return factor_columns<8>(a, stride, rows, place, sink);
-    default:
-      return;
-  }
+  factor_few<column_block>(a, stride, rows, columns, place, sink);
 }
 
 /// Factorises the pivot columns of a front and writes minus L21 L21^T to the lower triangle `update` of its `rows`
