@@ -55,6 +55,18 @@ TEST_CASE("sparse Cholesky: a lone bad dof is named", "[linear][sparse_cholesky]
   CHECK(problem_of(missing).ids == std::vector<std::int64_t>{2});
 }
 
+TEST_CASE("sparse Cholesky: bad dofs are named by their nodes when these are known", "[linear][sparse_cholesky][extreme]") {
+  MatrixX m = MatrixX::Identity(30, 30);
+  m(17, 17) = m(16, 16) = m(3, 3) = 0.0;
+  DofLayout layout;
+  for (Index dof = 0; dof < 30; ++dof) layout.node_of_dof.push_back(100 + dof / 3);
+  const SparseMatrix lower = lower_half(m);
+  const SetupProblem p = refusal([&] { SparseCholesky(CholeskyAnalysis(lower, layout), lower, {}); });
+  CHECK(p.kind == SetupErrorKind::not_positive_definite);
+  CHECK(p.ids == std::vector<std::int64_t>{101, 105});
+  CHECK(p.count == 2);
+}
+
 TEST_CASE("sparse Cholesky: a free body is refused, at any size and in any unit", "[linear][sparse_cholesky][extreme]") {
   for (int refinement : {1, 2, 4, 7})
     for (double unit : {1e-9, 1.0, 1e9}) {

@@ -25,7 +25,8 @@ class CholeskyAnalysis {
     auto made = std::make_shared<Data>();
     made->tree = detail::FrontTreeBuilder(graph, supernodes, lower).take();
     made->kept = layout.kept;
-    made->pattern = fingerprint(lower);
+    made->node_of_dof = layout.node_of_dof;
+    made->pattern = hash_of_pattern(lower);
     data_ = std::move(made);
   }
 
@@ -35,6 +36,8 @@ class CholeskyAnalysis {
     static const std::vector<Index> none;
     return data_ ? data_->kept : none;
   }
+  /// Per dof the node it belongs to, as given in the layout; may be empty.
+  const std::vector<Index>& node_of_dof() const noexcept { return data_->node_of_dof; }
   Index front_count() const noexcept { return data_ ? data_->tree.fronts.size() : 0; }
   /// Stored entries of L, zeros from merging included.
   double nonzeros() const noexcept { return data_ ? data_->tree.nonzeros : 0.0; }
@@ -57,7 +60,7 @@ class CholeskyAnalysis {
     return factor_bytes() + sizeof(double) * static_cast<double>(last + side_size());
   }
   /// True when the matrix has the pattern that was analysed.
-  bool fits(const SparseLower& lower) const noexcept { return data_ && data_->pattern == fingerprint(lower); }
+  bool fits(const SparseLower& lower) const noexcept { return data_ && data_->pattern == hash_of_pattern(lower); }
 
   /// Hash of the elimination order and of where everything lies in a factor: a stored factor belongs to an analysis that
   /// has the same. The order follows from positions in floating point, so another build may find another one.
@@ -83,21 +86,15 @@ class CholeskyAnalysis {
 
   struct Data {
     detail::FrontTree tree;
-    std::vector<Index> kept;
+    std::vector<Index> kept, node_of_dof;
     std::uint64_t pattern = 0;
   };
 
-  static std::uint64_t weight(Index i) noexcept {
-    return (static_cast<std::uint64_t>(i) + 1) * 0x9e3779b97f4a7c15u | 1u;
-  }
-  static std::uint64_t fingerprint(const SparseLower& m) noexcept {
-    const Index* start = m.outerIndexPtr();
-    const Index* row = m.innerIndexPtr();
-    std::uint64_t hash = static_cast<std::uint64_t>(m.rows());  // a weighted sum: quick, and order counts
-    for (Index j = 0; j <= m.cols(); ++j) hash += static_cast<std::uint64_t>(start[j]) * weight(j);
-    hash *= 0xbf58476d1ce4e5b9u;
-    for (Index p = 0; p < start[m.cols()]; ++p) hash += static_cast<std::uint64_t>(row[p] + 1) * weight(p);
-    return hash;
+  static std::uint64_t hash_of_pattern(const SparseLower& m) noexcept {
+    ContentHash hash;
+    hash.add(std::span<const Index>(m.outerIndexPtr(), static_cast<std::size_t>(m.cols()) + 1));
+    hash.add(std::span<const Index>(m.innerIndexPtr(), static_cast<std::size_t>(m.outerIndexPtr()[m.cols()])));
+    return hash.digest();
   }
 
   std::shared_ptr<const Data> data_;

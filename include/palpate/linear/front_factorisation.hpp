@@ -17,6 +17,7 @@ class FrontFactorisation {
         factor_(factor),
         workspace_(tree_.workspace_size + 64),
         packed_(analysis.pack_size()),
+        node_of_dof_(analysis.node_of_dof()),
         local_(analysis.size(), 0),
         pivots_(analysis.size()),
         diagonal_(VectorX::Zero(analysis.size())) {
@@ -43,31 +44,8 @@ class FrontFactorisation {
       limits.advance("factorisation", done / tree_.flops);
     }
     const Index checked = count == 0 ? 0 : tree_.fronts[count - 1].first + tree_.fronts[count - 1].pivots;
-    check_pivots(pivots_, diagonal_, tree_.place_of_dof, checked, threshold);
+    check_pivots(pivots_, diagonal_, tree_.place_of_dof, node_of_dof_, checked, threshold);
   }
-
-  /// Fills the pivot columns of a front, before their elimination: entries of the matrix and updates of the children.
-  void assemble(const Front& front, double* columns) {
-    const LowerPanels shape = front.panels();
-    std::fill(columns, columns + shape.size(), 0.0);
-    number_rows(front);
-    for (NodeId e = front.first_entry; e >= 0; e = tree_.entries[e].next) {
-      const EntryRun& run = tree_.entries[e];
-      const double* value = values_ + run.source;
-      if (run.count > 0) {
-        double* to = columns + shape.at(local_[run.row], local_[run.column]);
-        for (Index i = 0; i < run.count; ++i) to[i] += value[i];
-      } else {
-        for (Index i = 0; i < -run.count; ++i) columns[shape.at(local_[run.row], local_[run.column] + i)] += value[i];
-      }
-    }
-    add_children(
-        front, [&](Index j) { return columns + shape.at(0, j); }, 0, front.pivots);
-  }
-
-  /// By place in the elimination order: pivots before their roots, and the diagonal of the matrix.
-  const VectorX& pivots() const noexcept { return pivots_; }
-  const VectorX& diagonal() const noexcept { return diagonal_; }
 
   /// The last front before its elimination: the Schur complement of the kept dofs in the order given. Nothing can be
   /// eliminated any more.
@@ -90,6 +68,25 @@ class FrontFactorisation {
   }
 
  private:
+  /// Fills the pivot columns of a front, before their elimination: entries of the matrix and updates of the children.
+  void assemble(const Front& front, double* columns) {
+    const LowerPanels shape = front.panels();
+    std::fill(columns, columns + shape.size(), 0.0);
+    number_rows(front);
+    for (NodeId e = front.first_entry; e >= 0; e = tree_.entries[e].next) {
+      const EntryRun& run = tree_.entries[e];
+      const double* value = values_ + run.source;
+      if (run.count > 0) {
+        double* to = columns + shape.at(local_[run.row], local_[run.column]);
+        for (Index i = 0; i < run.count; ++i) to[i] += value[i];
+      } else {
+        for (Index i = 0; i < -run.count; ++i) columns[shape.at(local_[run.row], local_[run.column] + i)] += value[i];
+      }
+    }
+    add_children(
+        front, [&](Index j) { return columns + shape.at(0, j); }, 0, front.pivots);
+  }
+
   static Index update_column(const Front& front, Index j) noexcept {
     return front.update_panels().at(0, j - front.pivots) - front.pivots;
   }
@@ -155,6 +152,7 @@ class FrontFactorisation {
   const double* values_;
   double* factor_;
   BigArray workspace_, packed_;
+  const std::vector<Index>& node_of_dof_;
   NodeVector local_;
   VectorX pivots_, diagonal_;
   std::vector<Match> matched_;

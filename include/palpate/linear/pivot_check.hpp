@@ -7,24 +7,29 @@
 namespace palpate::inline PALPATE_ABI::detail {
 
 /// Throws not_positive_definite when a pivot is not finite, not positive or not more than `threshold` of its own
-/// diagonal entry. `pivots` and `diagonal` go by place in the elimination order, the ids by dof.
-inline void check_pivots(const VectorX& pivots, const VectorX& diagonal, const NodeVector& place_of_dof, Index checked,
-                         double threshold) {
+/// diagonal entry. `pivots` and `diagonal` go by place in the elimination order; the ids are nodes where
+/// `node_of_dof` has them, dofs where it is empty.
+inline void check_pivots(const VectorX& pivots, const VectorX& diagonal, const NodeVector& place_of_dof,
+                         const std::vector<Index>& node_of_dof, Index checked, double threshold) {
   std::vector<Index> bad;
+  Index count = 0;
   double worst = infinity;
   for (Index dof = 0; dof < place_of_dof.size(); ++dof) {
     const Index i = place_of_dof[dof];
     if (i >= checked || (std::isfinite(pivots[i]) && pivots[i] > 0.0 && pivots[i] > threshold * diagonal[i])) continue;
     const double ratio = pivots[i] / std::abs(diagonal[i]);
-    bad.push_back(dof);
     if (!(ratio >= worst)) worst = ratio;
+    ++count;
+    bad.push_back(node_of_dof.empty() ? dof : node_of_dof[static_cast<std::size_t>(dof)]);
   }
   if (bad.empty()) return;
+  std::ranges::sort(bad);
+  bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
   SetupProblem p;
   p.kind = SetupErrorKind::not_positive_definite;
-  p.what = "the stiffness matrix is not positive definite: " + std::to_string(bad.size()) + " pivots fail";
-  p.hint =
-      "Look for a body that is not held, an inverted element or a Poisson ratio at its limit; the ids are free dofs";
+  p.what = "the stiffness matrix is not positive definite: " + std::to_string(count) + " pivots fail" +
+           (node_of_dof.empty() ? "; the ids are dofs" : ", at " + std::to_string(bad.size()) + " nodes");
+  p.hint = "Look there for a body that is not held, an inverted element or a Poisson ratio at its limit";
   p.value = worst;
   p.threshold = threshold;
   p.set_ids(bad);

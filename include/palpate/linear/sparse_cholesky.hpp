@@ -39,7 +39,7 @@ class SparseCholesky {
   /// Factorises all but the kept dofs and writes their exact Schur complement K_kk - K_ki K_ii^-1 K_ik, symmetric to
   /// the last bit, in the order they were given in [kept x kept]. Costs one factorisation. Throws as above.
   static SparseCholesky interior(CholeskyAnalysis analysis, const Matrix& lower, MatrixX& schur,
-                                       const SetupLimits& limits) {
+                                 const SetupLimits& limits) {
     return SparseCholesky(std::move(analysis), lower, &schur, limits);
   }
 
