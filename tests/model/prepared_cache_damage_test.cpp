@@ -174,7 +174,7 @@ TEST_CASE("other versions and other machines are told apart", "[model][cache][ex
     CHECK(static_cast<int>(r.mismatch) == static_cast<int>(expected));
     return r.why;
   };
-  CHECK_THAT(why(t.with_header([](CacheHeader& h) { ++h.library; }), CacheMismatch::version),
+  CHECK_THAT(why(t.with_header([](CacheHeader& h) { ++h.version; }), CacheMismatch::version),
              contains("library " + std::to_string(PALPATE_VERSION + 1) + " in the file"));
   CHECK_THAT(why(t.with_header([](CacheHeader& h) { ++h.layout; }), CacheMismatch::version),
              contains("layout 2 in the file, 1 here"));

@@ -69,7 +69,7 @@ inline void sleep_until_ns(std::int64_t deadline) noexcept {
 inline RealtimeGrant request_realtime(const LoopOptions& options) {
   RealtimeGrant grant;
   grant.requested = options.real_time && options.paced;
-  if (grant.requested || options.cpu >= 0) grant.refusals = "scheduling, pinning: not implemented on this system. ";
+  if (grant.requested || options.cpu >= 0) grant.refusals = "scheduling, pinning: not supported on this system. ";
   return grant;
 }
 #endif

@@ -17,7 +17,7 @@ struct CacheHeader {
   std::array<char, 8> magic = our_magic;
   std::uint64_t byte_order = our_byte_order;
   std::uint64_t layout = our_layout;
-  std::uint64_t library = PALPATE_VERSION;
+  std::uint64_t version = PALPATE_VERSION;
   CacheKey key;
   std::uint64_t hash = 0;  ///< of all the above
 
@@ -50,7 +50,7 @@ inline CacheMismatch read_cache_header(std::FILE* file, CacheHeader& header, std
     return CacheMismatch::version;
   };
   if (header.layout != CacheHeader::our_layout) return versions("layout", header.layout, CacheHeader::our_layout);
-  if (header.library != CacheHeader().library) return versions("library", header.library, CacheHeader().library);
+  if (header.version != CacheHeader().version) return versions("library", header.version, CacheHeader().version);
   if (header.hash != header.right_hash()) return why = "its header is damaged", CacheMismatch::header;
   return CacheMismatch::none;
 }
