@@ -8,7 +8,16 @@
 #include "catch.hpp"
 #include "file_texts.hpp"
 
+#include <filesystem>
+
 namespace test {
+
+/// A file name in the temporary folder, removed at the end.
+struct TemporaryFile {
+  std::string path;
+  explicit TemporaryFile(const std::string& name) : path((std::filesystem::temp_directory_path() / name).string()) {}
+  ~TemporaryFile() { std::filesystem::remove(path); }
+};
 
 inline const std::string msh2 = R"($MeshFormat
 2.2 0 8

@@ -4,20 +4,12 @@
 #include <palpate/io/pvd.hpp>
 
 #include <cstring>
-#include <filesystem>
 #include <map>
 
 using namespace palpate;
 using Catch::Matchers::WithinAbs;
 
 namespace {
-
-/// A file name in the temporary folder, removed at the end.
-struct TemporaryFile {
-  std::string path;
-  explicit TemporaryFile(const std::string& name) : path((std::filesystem::temp_directory_path() / name).string()) {}
-  ~TemporaryFile() { std::filesystem::remove(path); }
-};
 
 std::string attribute(const std::string& tag, const std::string& name) {
   const std::size_t from = tag.find(' ' + name + "=\"") + name.size() + 3;
@@ -80,7 +72,7 @@ TEST_CASE("A VTU file holds the mesh and its fields", "[io]") {
   const auto mesh = io::read_mesh<Tet4>(PALPATE_TEST_DATA "/oracle/A_two_cubes/tet4/mesh_v22.msh");
   const VectorX u = VectorX::LinSpaced(36, -1.0, 1.0), p = VectorX::LinSpaced(12, 0.0, 1.0),
                 s = VectorX::LinSpaced(10, 1.0, 2.0);
-  const TemporaryFile file("palpate_io_test.vtu");
+  const test::TemporaryFile file("palpate_io_test.vtu");
   io::write_vtu(file.path, mesh, {{{"displacement [m]", u}, {"p < 1 & \"so\"", p}}, {{"von Mises", s}}});
   const Vtu vtu = read_vtu(file.path);
 
@@ -122,14 +114,14 @@ TEST_CASE("A VTU file holds the mesh and its fields", "[io]") {
 }
 
 TEST_CASE("A mesh without fields is written too", "[io]") {
-  const TemporaryFile file("palpate_io_bare.vtu");
+  const test::TemporaryFile file("palpate_io_bare.vtu");
   io::write_vtu<Tet4>(file.path, io::parse_mesh<Tet4>(test::msh2));
   CHECK(read_vtu(file.path).arrays.size() == 5);
 }
 
 TEST_CASE("A field of the wrong length and a path that cannot be written are refused", "[io]") {
   const auto mesh = io::parse_mesh<Tet4>(test::msh2);
-  const TemporaryFile file("palpate_io_refused.vtu");
+  const test::TemporaryFile file("palpate_io_refused.vtu");
   for (const int size : {0, 1, 4, 6, 14, 16}) {
     INFO(size);
     CHECK_THROWS_AS(io::write_vtu(file.path, mesh, {{{"u", VectorX::Zero(size)}}, {}}), SetupError);
@@ -141,7 +133,7 @@ TEST_CASE("A field of the wrong length and a path that cannot be written are ref
 }
 
 TEST_CASE("A PVD series is complete after every file", "[io]") {
-  const TemporaryFile file("palpate_io_series.pvd");
+  const test::TemporaryFile file("palpate_io_series.pvd");
   const std::string head =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  "
       "<Collection>\n";

@@ -12,14 +12,8 @@ using Catch::Matchers::WithinAbs;
 
 namespace {
 
-struct TemporaryFile {
-  std::string path;
-  explicit TemporaryFile(const std::string& name) : path((std::filesystem::temp_directory_path() / name).string()) {}
-  ~TemporaryFile() { std::filesystem::remove(path); }
-};
-
 void check_round_trip(const Mesh<Tet4>& mesh) {
-  const TemporaryFile file("palpate_io_round_trip.msh");
+  const test::TemporaryFile file("palpate_io_round_trip.msh");
   io::write_msh(file.path, mesh);
   const auto back = io::read_mesh<Tet4>(file.path);
   CHECK(back.positions == mesh.positions);
@@ -98,7 +92,7 @@ TEST_CASE("A mesh with a region in the middle called body keeps its regions", "[
 
 TEST_CASE("Names that a Gmsh file cannot hold are refused and no file is begun", "[io]") {
   auto mesh = io::parse_mesh<Tet4>(test::msh2);
-  const TemporaryFile file("palpate_io_names.msh");
+  const test::TemporaryFile file("palpate_io_names.msh");
   for (const char* name : {"a \"b\"", "a\nb", ""}) {
     mesh.groups.all()[0].name = name;
     CHECK_THROWS_AS(io::write_msh(file.path, mesh), SetupError);
@@ -116,7 +110,7 @@ TEST_CASE("An OBJ surface is closed, points outward and follows the displacement
     for (int i = 0; i < 3; ++i) edges.row(i) = x.row(i + 1) - x.row(0);
     volume += edges.determinant() / 6.0;
   }
-  const TemporaryFile file("palpate_io_surface.obj");
+  const test::TemporaryFile file("palpate_io_surface.obj");
   io::write_obj(file.path, mesh);
   const auto surface = read_obj(file.path);
   CHECK(surface.triangles.size() == 20);
@@ -151,7 +145,7 @@ TEST_CASE("Faces of every kind are cut into triangles that cover them", "[io]") 
 
 TEST_CASE("A binary STL file has a head, a count and 50 bytes for each triangle", "[io]") {
   const auto mesh = io::parse_mesh<Tet4>(test::msh2);
-  const TemporaryFile file("palpate_io_surface.stl");
+  const test::TemporaryFile file("palpate_io_surface.stl");
   io::write_stl(file.path, mesh);
   const std::string text = io::read_file(file.path);
   const auto surface = io::triangle_surface<Tet4>(mesh);

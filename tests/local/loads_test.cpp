@@ -33,6 +33,29 @@ double volume_of(const ElementNodes<E>& x) {
   return volume;
 }
 
+/// Sums over the closed surface of an element under unit pressure, to the inside.
+struct SurfaceSums {
+  Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
+  double area = 0.0, flux = 0.0;
+};
+
+template <class E>
+SurfaceSums surface_sums(const ElementNodes<E>& x) {
+  SurfaceSums sums;
+  for (std::size_t f = 0; f < E::faces.size(); ++f) {
+    const auto nodes = face_of<E>(x, f);
+    const auto vectors = shape_area_vectors<typename E::Face>(nodes);
+    for (int a = 0; a < E::Face::nodes; ++a) {
+      const Vector3 load = vectors.row(a).transpose(), at = nodes.row(a).transpose();
+      sums.force += load;
+      sums.moment += at.cross(load);
+      sums.flux += at.dot(load);
+    }
+    sums.area += shape_areas<typename E::Face>(nodes).sum();
+  }
+  return sums;
+}
+
 }  // namespace
 
 TEST_CASE("a quarter of the volume goes to each node of Tet4", "[local][loads]") {
@@ -71,22 +94,10 @@ TEMPLATE_TEST_CASE("sums of the loads", "[local][loads]", Tet4, Tet10, Hex8, Hex
     CHECK(largest(moment - volume * centroid) <= 1e-12 * volume);
   }
   SECTION("pressure on the closed surface adds up to nothing, and has no moment") {
-    Vector3 sum = Vector3::Zero(), moment = Vector3::Zero();
-    double area = 0.0, flux = 0.0;
-    for (std::size_t f = 0; f < E::faces.size(); ++f) {
-      const auto nodes = face_of<E>(x, f);
-      const auto vectors = shape_area_vectors<typename E::Face>(nodes);
-      for (int a = 0; a < E::Face::nodes; ++a) {
-        const Vector3 load = vectors.row(a).transpose(), at = nodes.row(a).transpose();
-        sum += load;
-        moment += at.cross(load);
-        flux += at.dot(load);
-      }
-      area += shape_areas<typename E::Face>(nodes).sum();
-    }
-    CHECK(largest(sum) <= 1e-14 * area);
-    CHECK(largest(moment) <= 1e-13 * area);
-    CHECK_THAT(flux, Catch::Matchers::WithinRel(3 * volume, 1e-12));  // divergence theorem: outward
+    const SurfaceSums sums = surface_sums<E>(x);
+    CHECK(largest(sums.force) <= 1e-14 * sums.area);
+    CHECK(largest(sums.moment) <= 1e-13 * sums.area);
+    CHECK_THAT(sums.flux, Catch::Matchers::WithinRel(3 * volume, 1e-12));  // divergence theorem: outward
   }
   SECTION("an initial strain loads no rigid motion") {
     Vector6 strain;
@@ -153,19 +164,8 @@ TEMPLATE_TEST_CASE("pressure on a closed curved surface adds up to nothing", "[l
   testing::Random random(31);
   ElementNodes<E> x = stretched<E>();
   for (int a = 0; a < E::nodes; ++a) x.row(a) += random.vector<3>(-0.03, 0.03).transpose();
-  Vector3 sum = Vector3::Zero(), moment = Vector3::Zero();
-  double flux = 0.0;
-  for (std::size_t f = 0; f < E::faces.size(); ++f) {
-    const auto nodes = face_of<E>(x, f);
-    const auto vectors = shape_area_vectors<typename E::Face>(nodes);
-    for (int a = 0; a < E::Face::nodes; ++a) {
-      const Vector3 load = vectors.row(a).transpose(), at = nodes.row(a).transpose();
-      sum += load;
-      moment += at.cross(load);
-      flux += at.dot(load);
-    }
-  }
-  CHECK(largest(sum) <= 1e-14);
-  CHECK(largest(moment) <= 1e-13);
-  CHECK_THAT(flux, Catch::Matchers::WithinRel(3 * shape_volumes<E>(x).sum(), 1e-13));
+  const SurfaceSums sums = surface_sums<E>(x);
+  CHECK(largest(sums.force) <= 1e-14);
+  CHECK(largest(sums.moment) <= 1e-13);
+  CHECK_THAT(sums.flux, Catch::Matchers::WithinRel(3 * shape_volumes<E>(x).sum(), 1e-13));
 }
