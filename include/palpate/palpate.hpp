@@ -6,6 +6,7 @@
 #include <palpate/device/replay_device.hpp>
 #include <palpate/element/hex20.hpp>
 #include <palpate/element/mean_dilatation.hpp>
+#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/element/with_quadrature.hpp>

@@ -1,5 +1,6 @@
 #include <palpate/element/hex20.hpp>
 #include <palpate/element/mean_dilatation.hpp>
+#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/element/with_quadrature.hpp>
 #include <palpate/testing/element_laws.hpp>
@@ -10,7 +11,7 @@
 using namespace palpate;
 
 TEMPLATE_TEST_CASE("the elements of the library keep the laws", "[element][laws]", Tet4, Tet10, Hex8, Hex20,
-                   MeanDilatation<Hex8>, (WithQuadrature<Tet10, TetrahedronRule<5>>),
+                   MeanDilatation<Hex8>, Smoothed<Tet4>, (WithQuadrature<Tet10, TetrahedronRule<5>>),
                    (WithQuadrature<Hex20, HexahedronRule<4>>)) {
   STATIC_REQUIRE(Element<TestType>);
   CHECK(testing::describe(testing::element_laws<TestType>()) == "");

@@ -37,16 +37,6 @@ class ScaledGradients {
   std::vector<Gradient> values_;
 };
 
-/// Adds the isotropic block of two nodes, V (lambda g_a g_b^T + mu g_b g_a^T + mu g_a . g_b I), to `k` (column-major).
-inline void add_isotropic_block(const LameConstants& c, const Vector3& a, const Vector3& b, double* k) noexcept {
-  const Vector3 lambda_a = c.lambda * a, mu_b = c.mu * b;
-  const double trace = mu_b.dot(a);
-  for (int col = 0; col < 3; ++col) {
-    for (int row = 0; row < 3; ++row) k[3 * col + row] += lambda_a[row] * b[col] + mu_b[row] * a[col];
-    k[4 * col] += trace;
-  }
-}
-
 /// Fills `k` with the stiffness of isotropic elements. Every block is finished while its row is in cache; no element
 /// matrix is formed. About E::nodes^2 / 2 blocks of 25 multiplications per element; allocates the gradients.
 template <ConstantGradient E>

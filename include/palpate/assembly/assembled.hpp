@@ -3,6 +3,7 @@
 
 #include <palpate/assembly/assemble_rows.hpp>
 #include <palpate/assembly/body.hpp>
+#include <palpate/assembly/smoothed_stiffness.hpp>
 #include <palpate/concepts/assembler.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/local/isotropic.hpp>

@@ -1,17 +1,17 @@
 // Nodal loads of a whole scene (thesis 3.38, 3.47; BCNaturlig, EksternLast, InitToyning).
 #pragma once
 
-#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/smoothed_strain.hpp>
 #include <palpate/local/loads.hpp>
 #include <palpate/mesh/selection.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
 /// Coordinates of a boundary face's nodes, one per row [m].
-template <Element E>
-FaceNodes<typename E::Face> face_nodes(const Mesh<E>& mesh, const BoundaryFace<E>& face) {
-  FaceNodes<typename E::Face> x;
-  for (int a = 0; a < E::Face::nodes; ++a)
+template <FaceElement F, Element E>
+FaceNodes<F> face_nodes(const Mesh<E>& mesh, const BoundaryFace<E>& face) {
+  FaceNodes<F> x;
+  for (int a = 0; a < F::nodes; ++a)
     x.row(a) = mesh.position(Index{face.nodes[static_cast<std::size_t>(a)]}).transpose();
   return x;
 }
@@ -37,16 +37,18 @@ VectorX applied_load(const Body<E>& body, const std::vector<BoundaryFace<E>>& bo
   const auto add = [&](NodeId node, const Vector3& force) { f.template segment<3>(3 * Index{node}) += force; };
 
   for (const auto& load : scene.tractions())
-    for (const auto& face : resolve_faces(mesh, boundary, load.where)) {
-      const auto areas = shape_areas<typename E::Face>(face_nodes(mesh, face));
-      for (int a = 0; a < E::Face::nodes; ++a) add(face.nodes[static_cast<std::size_t>(a)], areas[a] * load.traction);
-    }
+    for (const auto& face : resolve_faces(mesh, boundary, load.where))
+      with_face_element<E>(face.nodes.size(), [&]<FaceElement F>() {
+        const auto areas = shape_areas<F>(face_nodes<F>(mesh, face));
+        for (int a = 0; a < F::nodes; ++a) add(face.nodes[static_cast<std::size_t>(a)], areas[a] * load.traction);
+      });
   for (const auto& load : scene.pressures())
-    for (const auto& face : resolve_faces(mesh, boundary, load.where)) {
-      const auto areas = shape_area_vectors<typename E::Face>(face_nodes(mesh, face));
-      for (int a = 0; a < E::Face::nodes; ++a)
-        add(face.nodes[static_cast<std::size_t>(a)], -load.pressure * areas.row(a).transpose());
-    }
+    for (const auto& face : resolve_faces(mesh, boundary, load.where))
+      with_face_element<E>(face.nodes.size(), [&]<FaceElement F>() {
+        const auto areas = shape_area_vectors<F>(face_nodes<F>(mesh, face));
+        for (int a = 0; a < F::nodes; ++a)
+          add(face.nodes[static_cast<std::size_t>(a)], -load.pressure * areas.row(a).transpose());
+      });
   for (const auto& load : scene.point_loads()) {
     const auto nodes = resolve_nodes(mesh, boundary, load.where);
     for (NodeId node : nodes) add(node, load.force / static_cast<double>(nodes.size()));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/body.hpp>
+#include <palpate/assembly/smoothed_stiffness.hpp>
 #include <palpate/concepts/assembler.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/local/stiffness.hpp>
@@ -77,6 +78,12 @@ class MatrixFreeStiffness {
   std::vector<std::size_t> regions_;
   std::vector<IntegrationPoint<E>> points_;
   std::vector<Matrix6> elasticity_;
+};
+
+template <HasSmoothedStrain E>
+class MatrixFreeStiffness<E> : public SmoothedStiffness<E> {
+ public:
+  using SmoothedStiffness<E>::SmoothedStiffness;
 };
 
 /// Stores no matrix: about a third of the memory of Assembled; for iterative solvers.

@@ -35,6 +35,16 @@ inline std::optional<std::vector<LameConstants>> all_isotropic(const std::vector
   return constants;
 }
 
+/// Adds the isotropic block of two nodes, V (lambda g_a g_b^T + mu g_b g_a^T + mu g_a . g_b I), to `k` (column-major).
+inline void add_isotropic_block(const LameConstants& c, const Vector3& a, const Vector3& b, double* k) noexcept {
+  const Vector3 lambda_a = c.lambda * a, mu_b = c.mu * b;
+  const double trace = mu_b.dot(a);
+  for (int col = 0; col < 3; ++col) {
+    for (int row = 0; row < 3; ++row) k[3 * col + row] += lambda_a[row] * b[col] + mu_b[row] * a[col];
+    k[4 * col] += trace;
+  }
+}
+
 /// K_e of an isotropic law [N/m]: with M_ai,bj = sum_q dN_a/dx_i dN_b/dx_j dV, one product of a 3 nodes x points matrix
 /// with its transpose, K_ai,bj = lambda M_ai,bj + mu M_aj,bi + mu delta_ij sum_k M_ak,bk. The same as with the matrix D
 /// but for rounding; with a mean change of volume its part is bulk modulus x volume x mean gradients.

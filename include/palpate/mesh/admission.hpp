@@ -60,21 +60,13 @@ void require_valid_groups(const Mesh<E>& mesh) {
     bool fine = std::ranges::none_of(g.nodes, [&](NodeId i) { return outside(i, mesh.node_count()); }) &&
                 std::ranges::none_of(g.elements, [&](Index e) { return outside(e, mesh.element_count()); });
     for (const auto& face : g.faces)
-      fine = fine && face.size() == static_cast<std::size_t>(E::Face::nodes) &&
+      fine = fine && is_face_size<E>(face.size()) &&
              std::ranges::none_of(face, [&](NodeId i) { return outside(i, mesh.node_count()); });
     if (!fine)
       raise(SetupErrorKind::index_out_of_range, "group '" + g.name +
                                                     "' names a node or element that does not exist, or a face of " +
                                                     "another kind of element");
   }
-}
-
-/// Owning copy with the named groups, or with all of an owning mesh's groups when none is named.
-template <Element E, MeshOf<E> M>
-Mesh<E> copy_for_admission(const M& view, const std::vector<std::string>& group_names) {
-  if constexpr (std::same_as<M, Mesh<E>>)
-    if (group_names.empty()) return view;
-  return copy_mesh<E>(view, group_names);
 }
 
 template <Element E>
@@ -167,7 +159,7 @@ Admitted<E> admit(const M& view, const AdmissionPolicy& policy = {}, const std::
   result.diagnosis = diagnose<E>(view, policy.thresholds);
   result.admitted = result.diagnosis;
   if (!result.diagnosis.complete) detail::enforce(result, policy);  // refuses
-  result.mesh = detail::copy_for_admission<E>(view, group_names);
+  result.mesh = copy_mesh<E>(view, group_names);
   detail::require_valid_groups(result.mesh);
   result.node_map.resize(result.mesh.positions.size());
   result.element_map.resize(result.mesh.elements.size());

@@ -42,7 +42,14 @@ ElementNodes<E> element_nodes(const M& mesh, Index e) {
   return x;
 }
 
-/// Owning copy of any mesh, with the groups named in `group_names`.
+/// A mesh that lists its groups, such as Mesh.
+template <class M>
+concept ListsGroups = MeshView<M> && requires(const M& m) {
+  { m.groups } -> std::convertible_to<const GroupTable&>;
+};
+
+/// Owning copy of any mesh with as many nodes per element, with the groups named in `group_names`; with all groups when
+/// none is named and the mesh lists them.
 template <Element E, MeshOf<E> M>
 Mesh<E> copy_mesh(const M& view, const std::vector<std::string>& group_names = {}) {
   Mesh<E> mesh;
@@ -59,6 +66,8 @@ Mesh<E> copy_mesh(const M& view, const std::vector<std::string>& group_names = {
   }
   mesh.region_names.clear();
   for (int r = 0; r < view.region_count(); ++r) mesh.region_names.emplace_back(view.region_name(r));
+  if constexpr (ListsGroups<M>)
+    if (group_names.empty()) mesh.groups = view.groups;
   for (const std::string& name : group_names)
     if (const Group* g = view.find_group(name)) mesh.groups.get_or_add(name, g->dimension) = *g;
   return mesh;

@@ -1,0 +1,57 @@
+// Loads, energy and stress of elements whose strain is an average over neighbours.
+#pragma once
+
+#include <palpate/assembly/strain_domains.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Calls visit(domain, stress, strain) for every domain of a body: the elastic strain under displacements u [m], initial
+/// strains per region taken off, and the part of the stress [Pa] it makes.
+template <HasSmoothedStrain E, class Visit>
+void for_each_domain_stress(const Body<E>& body, const std::vector<Vector6>& initial, const VectorX& u, Visit&& visit) {
+  const StrainDomains<E> domains(body.mesh);
+  const DomainElasticity elasticity(body);
+  for (Index d = 0; d < domains.size(); ++d) {
+    const StrainDomain domain = domains[d];
+    const Vector6 strain = domain.strain(u) - initial[static_cast<std::size_t>(domain.region)];
+    visit(domain, Vector6(elasticity(domain) * strain), strain);
+  }
+}
+
+/// Load f_0 of initial strains per region, for elements with smoothed strain: 3 nodes entries [N].
+template <HasSmoothedStrain E>
+VectorX initial_strain_load(const Body<E>& body, const std::vector<Vector6>& strains) {
+  const VectorX none = VectorX::Zero(3 * body.mesh.node_count());
+  VectorX f = none;
+  for_each_domain_stress(body, strains, none, [&](const StrainDomain& domain, const Vector6& stress, const Vector6&) {
+    domain.add_force(-stress, f);
+  });
+  return f;
+}
+
+/// Stored energy [J] for nodal displacements u (3 nodes entries [m]).
+template <HasSmoothedStrain E>
+double strain_energy(const Body<E>& body, const VectorX& u) {
+  double energy = 0.0;
+  for_each_domain_stress(body, body.initial_strain, u,
+                         [&](const StrainDomain& domain, const Vector6& stress, const Vector6& strain) {
+                           energy += 0.5 * domain.volume * stress.dot(strain);
+                         });
+  return energy;
+}
+
+/// Stress of every element [Pa], one per column: the mean over its edges and nodes, with which the element makes the
+/// nodal forces B^T sigma V that it makes in K.
+template <HasSmoothedStrain E>
+Eigen::Matrix<double, 6, Eigen::Dynamic> smoothed_stress(const Body<E>& body, const VectorX& u) {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> mean;
+  mean.setZero(6, body.mesh.element_count());
+  for_each_domain_stress(body, body.initial_strain, u,
+                         [&](const StrainDomain& domain, const Vector6& stress, const Vector6&) {
+                           const double share = domain.part == StrainPart::deviatoric ? 1.0 / 6.0 : 1.0 / 4.0;
+                           for (const NodeId e : domain.elements) mean.col(e) += share * stress;
+                         });
+  return mean;
+}
+
+}  // namespace palpate::inline PALPATE_ABI
