@@ -124,25 +124,6 @@ TEST_CASE("An OBJ surface is closed, points outward and follows the displacement
   CHECK_THROWS_AS(io::write_obj(file.path, mesh, VectorX::Zero(5)), SetupError);
 }
 
-TEST_CASE("Faces of every kind are cut into triangles that cover them", "[io]") {
-  const auto area = [](const auto& triangles, const std::vector<Vector2>& x) {
-    double sum = 0.0;
-    for (const auto& t : triangles) {
-      const Vector2 a = x[t[1]] - x[t[0]], b = x[t[2]] - x[t[0]];
-      const double twice = a[0] * b[1] - a[1] * b[0];
-      CHECK(twice > 0.0);
-      sum += 0.5 * twice;
-    }
-    return sum;
-  };
-  const std::vector<Vector2> triangle{{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}};
-  const std::vector<Vector2> square{{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}};
-  CHECK_THAT(area(io::face_triangles<3>(), triangle), WithinAbs(0.5, 1e-15));
-  CHECK_THAT(area(io::face_triangles<6>(), triangle), WithinAbs(0.5, 1e-15));
-  CHECK_THAT(area(io::face_triangles<4>(), square), WithinAbs(1.0, 1e-15));
-  CHECK_THAT(area(io::face_triangles<8>(), square), WithinAbs(1.0, 1e-15));
-}
-
 TEST_CASE("A binary STL file has a head, a count and 50 bytes for each triangle", "[io]") {
   const auto mesh = io::parse_mesh<Tet4>(test::msh2);
   const test::TemporaryFile file("palpate_io_surface.stl");

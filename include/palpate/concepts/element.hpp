@@ -5,6 +5,7 @@
 #include <palpate/core/types.hpp>
 
 #include <array>
+#include <span>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -29,7 +30,8 @@ concept TriangulatedFace = FaceElement<F> &&
 
 /// A solid element: `nodes` shape functions of three reference coordinates (thesis 3.3.2).
 /// `shape(xi)` is nodes x 1, `gradient(xi)` nodes x 3 (derivatives by xi), `reference_nodes()` nodes x 3.
-/// `faces` lists the local nodes of every face, outward by the right-hand rule; all faces are of type `Face`.
+/// `faces` lists the local nodes of every face, outward by the right-hand rule; all faces are of type `Face`, or some
+/// of a type `SmallFace` with fewer nodes: those lists end in -1.
 /// `order` is the polynomial degree reproduced exactly. `Quadrature` is the default rule for stiffness,
 /// `MassQuadrature` integrates products of two shape functions exactly on straight-sided elements. Laws:
 /// testing/element_laws.hpp.
@@ -50,6 +52,36 @@ concept Element = requires(const Vector3& xi) {
   requires E::MassQuadrature::dimension == 3;
   { E::reference_volume } -> std::convertible_to<double>;
 };
+
+/// An element with two kinds of faces, such as a wedge or a hexahedron with more nodes along one axis.
+template <class E>
+concept HasSmallFace = Element<E> && FaceElement<typename E::SmallFace> && (E::SmallFace::nodes < E::Face::nodes);
+
+/// Local nodes of face f.
+template <Element E>
+constexpr std::span<const int> local_face(std::size_t f) noexcept {
+  std::size_t count = E::faces[f].size();
+  if constexpr (HasSmallFace<E>)
+    if (E::faces[f].back() < 0) count = static_cast<std::size_t>(E::SmallFace::nodes);
+  return {E::faces[f].data(), count};
+}
+
+/// Whether a face of E may have that many nodes.
+template <Element E>
+constexpr bool is_face_size(std::size_t nodes) noexcept {
+  if constexpr (HasSmallFace<E>)
+    if (nodes == static_cast<std::size_t>(E::SmallFace::nodes)) return true;
+  return nodes == static_cast<std::size_t>(E::Face::nodes);
+}
+
+/// Calls visit.template operator()<F>() with F the face element of a face of that many nodes.
+template <Element E, class Visit>
+constexpr decltype(auto) with_face_element([[maybe_unused]] std::size_t nodes, Visit&& visit) {
+  if constexpr (HasSmallFace<E>)
+    if (nodes == static_cast<std::size_t>(E::SmallFace::nodes))
+      return visit.template operator()<typename E::SmallFace>();
+  return visit.template operator()<typename E::Face>();
+}
 
 /// Coordinates of one element's nodes, one per row.
 template <class E>

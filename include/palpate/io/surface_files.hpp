@@ -18,20 +18,6 @@ struct TriangleSurface {
   std::vector<std::array<NodeId, 3>> triangles;
 };
 
-/// Local nodes of the triangles of a face with that many nodes, corners first.
-template <int Nodes>
-constexpr auto face_triangles() {
-  static_assert(Nodes == 3 || Nodes == 4 || Nodes == 6 || Nodes == 8);
-  using Triangle = std::array<std::size_t, 3>;
-  if constexpr (Nodes == 3) return std::array<Triangle, 1>{{{0, 1, 2}}};
-  if constexpr (Nodes == 4) return std::array{Triangle{0, 1, 2}, Triangle{0, 2, 3}};
-  if constexpr (Nodes == 6)
-    return std::array{Triangle{0, 3, 5}, Triangle{3, 1, 4}, Triangle{5, 4, 2}, Triangle{3, 4, 5}};
-  if constexpr (Nodes == 8)
-    return std::array{Triangle{0, 4, 7}, Triangle{4, 1, 5}, Triangle{5, 2, 6},
-                      Triangle{6, 3, 7}, Triangle{4, 5, 6}, Triangle{4, 6, 7}};
-}
-
 /// The surface of a mesh, moved by `displacement` (3 numbers per node of the mesh, or empty) [m]. Only nodes of the
 /// surface come along, in the order of the mesh. Throws bad_argument for a displacement of another length and what
 /// extract_boundary throws.
@@ -49,9 +35,12 @@ TriangleSurface triangle_surface(const M& mesh, const VectorX& displacement = {}
     surface.positions.push_back(x);
   }
   const auto place = [&](NodeId i) { return static_cast<NodeId>(std::ranges::lower_bound(nodes, i) - nodes.begin()); };
-  for (const auto& face : faces)
-    for (const auto& t : face_triangles<E::Face::nodes>())
-      surface.triangles.push_back({place(face.nodes[t[0]]), place(face.nodes[t[1]]), place(face.nodes[t[2]])});
+  for (const auto& face : faces) {
+    const auto at = [&](int local) { return place(face.nodes[static_cast<std::size_t>(local)]); };
+    with_face_element<E>(face.nodes.size(), [&]<TriangulatedFace F>() {
+      for (const auto& [a, b, c] : F::triangles) surface.triangles.push_back({at(a), at(b), at(c)});
+    });
+  }
   return surface;
 }
 

@@ -39,7 +39,7 @@ inline constexpr std::array<AdmissionRule, 11> admission_rules{{
     {SetupErrorKind::index_out_of_range, &MeshDiagnosis::index_out_of_range, nullptr, false, false,
      "elements name a node or region that does not exist", "Ids count from zero; a file may count from one"},
     {SetupErrorKind::non_finite, &MeshDiagnosis::non_finite, nullptr, true, false,
-     "positions are not finite or beyond 1e100", ""},
+     "positions are not finite or beyond 1e100", "Look at what wrote these positions"},
     {SetupErrorKind::duplicate_node, &MeshDiagnosis::duplicate_nodes, &AdmissionPolicy::duplicate_nodes, true, true,
      "nodes lie on another one (distance / local edge)", "Weld them: duplicate_nodes = Admission::repair"},
     {SetupErrorKind::duplicate_element, &MeshDiagnosis::duplicate_elements, &AdmissionPolicy::duplicate_elements, false,

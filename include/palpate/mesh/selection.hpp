@@ -61,8 +61,8 @@ std::vector<BoundaryFace<E>> resolve_faces(const Mesh<E>& mesh, const std::vecto
     for (const auto& f : boundary) by_key.push_back(&f);
     std::ranges::sort(by_key, {}, [](const auto* f) { return f->key(); });
     for (const auto& nodes : group->faces) {
-      auto key = BoundaryFace<E>{}.nodes;
-      if (nodes.size() == key.size()) {
+      if (is_face_size<E>(nodes.size())) {
+        FaceIds<E> key = make_face_ids<E>(nodes.size());
         std::ranges::copy(nodes, key.begin());
         std::ranges::sort(key);
         const auto it = std::ranges::lower_bound(by_key, key, {}, [](const auto* f) { return f->key(); });

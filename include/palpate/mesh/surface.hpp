@@ -1,8 +1,8 @@
 // The boundary of a solid mesh.
 #pragma once
 
-#include <palpate/concepts/element.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/mesh/face_ids.hpp>
 #include <palpate/mesh/mesh.hpp>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace palpate::inline PALPATE_ABI {
 /// A face of the boundary: its nodes, outward by the right-hand rule, and the element it belongs to.
 template <Element E>
 struct BoundaryFace {
-  std::array<NodeId, static_cast<std::size_t>(E::Face::nodes)> nodes;
+  FaceIds<E> nodes;
   Index element = 0;
 
   /// Sorted node ids: the same for every ordering of the face's nodes.
@@ -28,7 +28,7 @@ struct BoundaryFace {
 /// A face of an element with the name all elements give it.
 template <Element E>
 struct KeyedFace {
-  std::array<NodeId, static_cast<std::size_t>(E::Face::nodes)> key;  ///< sorted nodes
+  FaceIds<E> key;  ///< sorted nodes
   int local = 0;
   Index element = 0;
 };
@@ -41,9 +41,7 @@ std::vector<KeyedFace<E>> sorted_faces(const M& mesh) {
   const auto each_face = [&](auto&& visit) {
     for (Index e = 0; e < mesh.element_count(); ++e)
       for (std::size_t f = 0; f < E::faces.size(); ++f) {
-        KeyedFace<E> face{{}, static_cast<int>(f), e};
-        for (std::size_t a = 0; a < face.key.size(); ++a)
-          face.key[a] = static_cast<NodeId>(mesh.element_node(e, E::faces[f][a]));
+        KeyedFace<E> face{face_ids<E>(mesh, e, f), static_cast<int>(f), e};
         std::ranges::sort(face.key);
         if (face.key.front() < 0 || face.key.back() >= mesh.node_count())
           raise(SetupErrorKind::index_out_of_range, "element " + std::to_string(e) + " names a node that does not exist");
@@ -76,11 +74,8 @@ std::vector<BoundaryFace<E>> extract_boundary(const M& mesh) {
     std::size_t j = i + 1;
     while (j < faces.size() && faces[j].key == faces[i].key) ++j;
     if (j - i == 1) {
-      BoundaryFace<E> face{{}, faces[i].element};
-      const auto& local = E::faces[static_cast<std::size_t>(faces[i].local)];
-      for (std::size_t a = 0; a < local.size(); ++a)
-        face.nodes[a] = static_cast<NodeId>(mesh.element_node(face.element, local[a]));
-      boundary.push_back(face);
+      const Index e = faces[i].element;
+      boundary.push_back({face_ids<E>(mesh, e, static_cast<std::size_t>(faces[i].local)), e});
     } else if (j - i > 2) {
       bad.push_back(faces[i].element);
     }

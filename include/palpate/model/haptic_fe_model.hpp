@@ -33,7 +33,7 @@ struct SetupOptions {
 template <Element E, LinearMaterial M, SolverPolicy Solver = Condensed<SelectiveInverse>>
 class HapticFEModel {
  public:
-  static_assert(TriangulatedFace<typename E::Face>,
+  static_assert(has_triangulated_faces<E>(),
                 "palpate: tools touch triangles; give the element's Face a list `triangles` of its nodes, like Tri6");
   using Traits = SolverTraits<Solver>;
 
@@ -132,8 +132,8 @@ class HapticFEModel {
     limits_.advance("admission", 0.0);
     Admitted<E> admitted = [&] {
       const StageTimer timer(report_, "admission");
-      // An owning mesh keeps all its groups, so that later conditions may name any; a view cannot list them.
-      if constexpr (std::same_as<GivenMesh, Mesh<E>>) return admit<E>(mesh, options.admission);
+      // A mesh that lists its groups keeps all, so that later conditions may name any.
+      if constexpr (ListsGroups<GivenMesh>) return admit<E>(mesh, options.admission);
       else return admit<E>(mesh, options.admission, scene.group_names());
     }();
     report_admission(admitted, report_);

@@ -6,6 +6,14 @@
 
 namespace palpate::inline PALPATE_ABI {
 
+/// Whether all faces of E can be touched.
+template <Element E>
+constexpr bool has_triangulated_faces() noexcept {
+  if constexpr (HasSmallFace<E>)
+    if (!TriangulatedFace<typename E::SmallFace>) return false;
+  return TriangulatedFace<typename E::Face>;
+}
+
 /// The touchable surface: its nodes, sorted, and its outward triangles in numbers of those nodes. Faces with more nodes
 /// than three give the triangles their face element lists.
 struct Touchable {
@@ -39,11 +47,12 @@ Touchable resolve_touchable(const Mesh<E>& mesh, const std::vector<BoundaryFace<
   const auto vertex = [&](NodeId node) {
     return static_cast<int>(std::ranges::lower_bound(touchable.nodes, node) - touchable.nodes.begin());
   };
-  for (const auto& face : faces)
-    for (const auto& [a, b, c] : E::Face::triangles) {
-      const auto at = [&](int local) { return vertex(face.nodes[static_cast<std::size_t>(local)]); };
-      touchable.triangles.push_back({at(a), at(b), at(c)});
-    }
+  for (const auto& face : faces) {
+    const auto at = [&](int local) { return vertex(face.nodes[static_cast<std::size_t>(local)]); };
+    with_face_element<E>(face.nodes.size(), [&]<TriangulatedFace F>() {
+      for (const auto& [a, b, c] : F::triangles) touchable.triangles.push_back({at(a), at(b), at(c)});
+    });
+  }
   return touchable;
 }
 

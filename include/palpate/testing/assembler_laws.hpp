@@ -127,12 +127,13 @@ Violations affine_patch_laws(const Body<E>& body, const K& k, double scale) {
     for (const Matrix6& d : body.elasticity) uniform = uniform && d == body.elasticity.front();
     if (!uniform) continue;
     const Matrix3 stress = voigt::stress_tensor(body.elasticity.front() * strain);
-    for (const BoundaryFace<E>& face : extract_boundary<E>(body.mesh)) {
-      const auto areas = shape_area_vectors<typename E::Face>(face_nodes(body.mesh, face));
-      for (int i = 0; i < E::Face::nodes; ++i)
-        force.template segment<3>(3 * Index{face.nodes[static_cast<std::size_t>(i)]}) -=
-            stress * areas.row(i).transpose();
-    }
+    for (const BoundaryFace<E>& face : extract_boundary<E>(body.mesh))
+      with_face_element<E>(face.nodes.size(), [&]<FaceElement F>() {
+        const auto areas = shape_area_vectors<F>(face_nodes<F>(body.mesh, face));
+        for (int i = 0; i < F::nodes; ++i)
+          force.template segment<3>(3 * Index{face.nodes[static_cast<std::size_t>(i)]}) -=
+              stress * areas.row(i).transpose();
+      });
     expect_at_most(v, "affine patch", force.cwiseAbs().maxCoeff(), bound, name);
   }
   return v;

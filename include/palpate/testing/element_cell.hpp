@@ -10,8 +10,8 @@ namespace palpate::inline PALPATE_ABI::testing {
 /// True when every face lists nodes the element has.
 template <Element E>
 bool face_nodes_in_range() {
-  for (const auto& face : E::faces)
-    for (int a : face)
+  for (std::size_t f = 0; f < E::faces.size(); ++f)
+    for (int a : local_face<E>(f))
       if (a < 0 || a >= E::nodes) return false;
   return true;
 }

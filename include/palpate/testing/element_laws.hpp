@@ -121,6 +121,7 @@ Violations element_laws() {
   Violations v = basic_shape_laws<E, 3>();
   append(v, completeness_laws<E, 3>(E::order));
   append(v, face_element_laws<typename E::Face>(), "Face");
+  if constexpr (HasSmallFace<E>) append(v, face_element_laws<typename E::SmallFace>(), "SmallFace");
   expect_true(v, "face nodes in range", face_nodes_in_range<E>());
   if (!face_nodes_in_range<E>()) return v;
   append(v, face_laws<E>());

@@ -111,16 +111,18 @@ std::vector<MeshFace> faces_with_areas(const M& mesh) {
   std::vector<MeshFace> faces;
   for (Index e = 0; e < static_cast<Index>(mesh.element_count()); ++e) {
     const ElementNodes<E> x = element_nodes<E>(mesh, e);
-    for (const auto& local : E::faces) {
+    for (std::size_t f = 0; f < E::faces.size(); ++f) {
+      const auto local = local_face<E>(f);
       MeshFace face;
-      FaceNodes<typename E::Face> nodes;
-      for (std::size_t a = 0; a < local.size(); ++a) {
-        face.key.push_back(static_cast<Index>(mesh.element_node(e, local[a])));
-        nodes.row(static_cast<Eigen::Index>(a)) = x.row(local[a]) - x.row(0);
-      }
-      std::ranges::sort(face.key);
       face.element = e;
-      face.area = area_vector<typename E::Face>(nodes);
+      for (const int a : local) face.key.push_back(static_cast<Index>(mesh.element_node(e, a)));
+      std::ranges::sort(face.key);
+      with_face_element<E>(local.size(), [&]<FaceElement F>() {
+        FaceNodes<F> nodes;
+        for (std::size_t a = 0; a < local.size(); ++a)
+          nodes.row(static_cast<Eigen::Index>(a)) = x.row(local[a]) - x.row(0);
+        face.area = area_vector<F>(nodes);
+      });
       faces.push_back(std::move(face));
     }
   }
