@@ -1,23 +1,23 @@
 // What the two parts of the program share: graded boxes of tissue and a rigidly held ball.
 #pragma once
 
-#include <algorithm>
-#include <memory>
-#include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
-#include <palpate/mesh/generators.hpp>
+#include <palpate/mesh/generators_box.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
-namespace indentation {
+#include <algorithm>
+#include <memory>
 
-using Model = palpate::HapticFEModel<palpate::Tet4, palpate::LinearElastic>;
+namespace indentation {
 
 inline constexpr double ball_radius = 4e-3;     ///< [m]
 inline constexpr double youngs_modulus = 10e3;  ///< [Pa]
 
-/// Part 1: presses into a bonded layer and compares with the exact solution. False when the acceptance fails.
-bool force_converges();
+/// Part 1: presses into a bonded layer of elements E and compares with the exact solution. False when the acceptance
+/// fails. Defined in layer.hpp, compiled in a file per element.
+template <palpate::Element E>
+bool force_converges(const char* element);
 /// Part 2: slides over a flat block at constant depth and looks at the ripple. False when the acceptance fails.
 bool sliding_is_smooth();
 
@@ -48,8 +48,8 @@ inline std::vector<double> graded_down(double h, double fine, double height, dou
 }
 
 /// Nodes of the top side for which near(position) holds.
-template <class Near>
-std::vector<palpate::NodeId> top_nodes(const palpate::Mesh<palpate::Tet4>& mesh, Near near) {
+template <palpate::Element E, class Near>
+std::vector<palpate::NodeId> top_nodes(const palpate::Mesh<E>& mesh, Near near) {
   std::vector<palpate::NodeId> nodes;
   for (palpate::NodeId node : mesh.find_group("z1")->nodes)
     if (near(mesh.position(node))) nodes.push_back(node);
@@ -57,13 +57,16 @@ std::vector<palpate::NodeId> top_nodes(const palpate::Mesh<palpate::Tet4>& mesh,
 }
 
 /// A tissue and a ball that follows the device exactly; the gate's limits are out of reach.
+template <palpate::Element E>
 struct Session {
+  using Model = palpate::HapticFEModel<E, palpate::LinearElastic>;
+
   Model model;
   palpate::HapticServo<Model> servo;
   palpate::ToolState state;
   palpate::Status status;
 
-  Session(const palpate::Mesh<palpate::Tet4>& mesh, const palpate::Scene& scene, double poisson_ratio)
+  Session(const palpate::Mesh<E>& mesh, const palpate::Scene& scene, double poisson_ratio)
       : model(mesh, scene, palpate::LinearElastic{.youngs_modulus = youngs_modulus, .poisson_ratio = poisson_ratio}),
         servo(model, palpate::SphereTool{ball_radius}, options()) {}
 

@@ -1,11 +1,19 @@
-// How right and how smooth the force of the tick is. Exits with 1 when it is not.
+// How right and how smooth the force of the tick is, for every element. Exits with 1 when it is not.
+#include <palpate/element/mean_dilatation.hpp>
+#include <palpate/element/smoothed.hpp>
+
 #include <cstdio>
 
 #include "indentation.hpp"
 
 int main() {
+  using namespace palpate;
   const bool smooth = indentation::sliding_is_smooth();
-  const bool right = indentation::force_converges();
+  bool right = indentation::force_converges<Tet4>("Tet4");
+  right = indentation::force_converges<Smoothed<Tet4>>("Smoothed<Tet4>") && right;
+  right = indentation::force_converges<Tet10>("Tet10") && right;
+  right = indentation::force_converges<Hex8>("Hex8") && right;
+  right = indentation::force_converges<MeanDilatation<Hex8>>("MeanDilatation<Hex8>") && right;
   std::printf("\nsliding: %s, indentation: %s\n", smooth ? "pass" : "FAIL", right ? "pass" : "FAIL");
   return smooth && right ? 0 : 1;
 }

@@ -30,13 +30,13 @@ std::vector<double> across(double h, double half_fine) {
   return x;
 }
 
-std::unique_ptr<Session> make_block(double h) {
+std::unique_ptr<Session<Tet4>> make_block(double h) {
   const Mesh<Tet4> mesh = box_tet4(across(h, 8e-3), across(h, 4.5e-3), graded_down(h, h, height, 1.3));
   Scene scene;
   scene.fix("z0").touch(top_nodes(mesh, [&](const Vector3& p) {
     return std::abs(p.x() - 0.5 * width) < 9e-3 + h && std::abs(p.y() - 0.5 * width) < 4.5e-3 + h;
   }));
-  return std::make_unique<Session>(mesh, scene, poisson_ratio);
+  return std::make_unique<Session<Tet4>>(mesh, scene, poisson_ratio);
 }
 
 /// 10 mm in one second, at a slant to the mesh, after a press in place.

@@ -14,9 +14,11 @@ using namespace palpate;
 
 /// 30 x 30 x 20 mm, fixed below, touched above.
 template <Element E>
-Mesh<E> touch_block() {
+auto touch_block() {
   const Vector3 size(0.03, 0.03, 0.02);
-  if constexpr (std::same_as<E, Tet10>) return box_tet10(size, {4, 4, 2});
+  if constexpr (E::nodes == 4) return box_tet4(size, {8, 8, 4});
+  else if constexpr (E::nodes == 8) return box_hex8(size, {8, 8, 4});
+  else if constexpr (E::nodes == 10) return box_tet10(size, {4, 4, 2});
   else return box_hex20(size, {4, 4, 2});
 }
 

@@ -18,9 +18,10 @@ using StaticModel = HapticFEModel<E, LinearElastic, SparseCholesky>;
 
 template <Element E>
 Mesh<E> box_of(const Vector3& size, std::array<int, 3> cells) {
-  if constexpr (std::same_as<E, Hex8>) return box_hex8(size, cells);
-  else if constexpr (std::same_as<E, Hex20>) return box_hex20(size, cells);
-  else return box_tet10(size, cells);
+  if constexpr (E::nodes == 4) return copy_mesh<E>(box_tet4(size, cells));
+  else if constexpr (E::nodes == 8) return copy_mesh<E>(box_hex8(size, cells));
+  else if constexpr (E::nodes == 10) return copy_mesh<E>(box_tet10(size, cells));
+  else return copy_mesh<E>(box_hex20(size, cells));
 }
 
 /// Prescribes a displacement field on the whole boundary.

@@ -1,3 +1,4 @@
+#include "extremes/element_extremes.hpp"
 #include "properties/element_cases.hpp"
 #if __has_include(<nlohmann/json.hpp>)
 #include "properties/oracle_checks.hpp"
@@ -19,6 +20,10 @@ TEST_CASE("Hex20: a quadratic field is exact on straight edges", "[property][pat
 
 TEST_CASE("Hex20: a smooth field converges with the order of the element", "[property][mms]") {
   check_convergence<Hex20>(2, 4);
+}
+
+TEST_CASE("Hex20 at the extremes: right, flagged or refused", "[extreme][A1][A2][A3][A4][B1][B2][B3][B4][B5][B7][B8][B9]") {
+  check_extremes<Hex20>();
 }
 
 #if __has_include(<nlohmann/json.hpp>)

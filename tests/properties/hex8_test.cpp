@@ -1,3 +1,4 @@
+#include "extremes/element_extremes.hpp"
 #include "properties/element_cases.hpp"
 #if __has_include(<nlohmann/json.hpp>)
 #include "properties/oracle_checks.hpp"
@@ -15,6 +16,10 @@ TEST_CASE("Hex8: an affine field under its tractions", "[property][patch]") {
 
 TEST_CASE("Hex8: a smooth field converges with the order of the element", "[property][mms]") {
   check_convergence<Hex8>(4, 8);
+}
+
+TEST_CASE("Hex8 at the extremes: right, flagged or refused", "[extreme][A1][A2][A3][A4][B1][B2][B3][B4][B5][B7][B8][B9]") {
+  check_extremes<Hex8>();
 }
 
 #if __has_include(<nlohmann/json.hpp>)

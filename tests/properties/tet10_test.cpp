@@ -1,5 +1,6 @@
 #include <palpate/element/with_quadrature.hpp>
 
+#include "extremes/element_extremes.hpp"
 #include "properties/element_cases.hpp"
 #if __has_include(<nlohmann/json.hpp>)
 #include "properties/oracle_checks.hpp"
@@ -33,6 +34,10 @@ TEST_CASE("Tet10: a quadratic field is exact on straight edges", "[property][pat
 
 TEST_CASE("Tet10: a smooth field converges with the order of the element", "[property][mms]") {
   check_convergence<Tet10>(4, 8);
+}
+
+TEST_CASE("Tet10 at the extremes: right, flagged or refused", "[extreme][A1][A2][A3][A4][B1][B2][B3][B4][B5][B7][B8][B9]") {
+  check_extremes<Tet10>();
 }
 
 #if __has_include(<nlohmann/json.hpp>)

@@ -1,11 +1,12 @@
 // A ball pressed into an elastic layer bonded to a rigid base, without friction, against the exact solution.
+#pragma once
+
 #include <cmath>
 #include <cstdio>
 
 #include "indentation.hpp"
 
 namespace indentation {
-namespace {
 
 using namespace palpate;
 
@@ -15,13 +16,18 @@ struct Truth {
   double chi;  ///< sqrt(R d) / H
   double force_over_hertz;
 };
-constexpr std::array<Truth, 4> truths{
-    {{0.30, 0.188, 1.2007}, {0.30, 0.357, 1.4500}, {0.45, 0.186, 1.2436}, {0.45, 0.349, 1.5626}}};
+/// The last two are those of an incompressible layer.
+inline constexpr std::array<Truth, 6> truths{{{0.30, 0.188, 1.2007},
+                                       {0.30, 0.357, 1.4500},
+                                       {0.45, 0.186, 1.2436},
+                                       {0.45, 0.349, 1.5626},
+                                       {0.4999, 0.185, 1.2698},
+                                       {0.4999, 0.344, 1.6355}}};
 
 // The exact solution is that of a shallow ball. At a / R = 0.05 the finite slope still changes the force by less than
 // 1 %; at 0.25 it is up to 4 %, at 0.5 up to 14 % (nu = 0.45), on any mesh.
-constexpr double depth = ball_radius / 400.0;
-const double a = std::sqrt(ball_radius * depth);
+inline constexpr double depth = ball_radius / 400.0;
+inline const double a = std::sqrt(ball_radius * depth);
 
 struct Row {
   double cells_per_a = 0.0, force = 0.0, over_hertz = 0.0, seconds = 0.0;
@@ -30,20 +36,31 @@ struct Row {
   bool stationary = false, dropped = false;
 };
 
+/// A box of elements E whose surface has nodes at (about) these coordinates; quadratic elements use every second.
+template <Element E>
+Mesh<E> layer_mesh(double h, double width, double height) {
+  const double cell = (E::nodes == 10 || E::nodes == 20 ? 2.0 : 1.0) * h;
+  const std::vector<double> x = graded(cell, 1.5 * a, width, 1.25), z = graded_down(cell, a, height, 1.25);
+  if constexpr (E::nodes == 4) return copy_mesh<E>(box_tet4(x, x, z));
+  else if constexpr (E::nodes == 8) return copy_mesh<E>(box_hex8(x, x, z));
+  else return copy_mesh<E>(promote<Tet10>(box_tet4(x, x, z)));
+}
+
 /// A quarter of the layer: the ball's axis is the edge x = y = 0.
-std::unique_ptr<Session> make_layer(const Truth& truth, double h) {
-  const double height = a / truth.chi, width = std::max(8.0 * a, 3.0 * height);
-  const std::vector<double> x = graded(h, 1.5 * a, width, 1.25);
-  const Mesh<Tet4> mesh = box_tet4(x, x, graded_down(h, a, height, 1.25));
+template <Element E>
+std::unique_ptr<Session<E>> make_layer(const Truth& truth, double h) {
+  const double height = a / truth.chi;
+  const Mesh<E> mesh = layer_mesh<E>(h, std::max(8.0 * a, 3.0 * height), height);
   Scene scene;
   scene.fix("z0").prescribe("x0", {0.0, std::nullopt, std::nullopt}).prescribe("y0", {std::nullopt, 0.0, std::nullopt});
   // The ball touches up to 1.12 a. Fewer touchable nodes around that leave room for those that matter.
   scene.touch(top_nodes(mesh, [&](const Vector3& p) { return std::hypot(p.x(), p.y()) < 1.3 * a + h; }));
-  return std::make_unique<Session>(mesh, scene, truth.poisson_ratio);
+  return std::make_unique<Session<E>>(mesh, scene, truth.poisson_ratio);
 }
 
+template <Element E>
 Row press(const Truth& truth, double cells_per_a) {
-  const auto session = make_layer(truth, a / cells_per_a);
+  const auto session = make_layer<E>(truth, a / cells_per_a);
   const double height = a / truth.chi;
   Row row{.cells_per_a = cells_per_a};
   for (int i = 1; i <= 200 && !row.stationary; ++i) {
@@ -62,7 +79,7 @@ Row press(const Truth& truth, double cells_per_a) {
   return row;
 }
 
-void print(const Row& row, const Truth& truth, const Row& before) {
+inline void print(const Row& row, const Truth& truth, const Row& before) {
   std::printf("  a/%-3.0f %7lld %6d %6d %11.4e %10.4f %8.4f %+8.2f %%", row.cells_per_a,
               static_cast<long long>(row.dofs), row.candidates, row.pressing, row.force, row.over_hertz,
               truth.force_over_hertz, 100.0 * (row.over_hertz / truth.force_over_hertz - 1.0));
@@ -75,32 +92,41 @@ void print(const Row& row, const Truth& truth, const Row& before) {
   std::fflush(stdout);
 }
 
-/// h = a/2, a/3, a/4, a/6. Accepted: a/3 to a/6 changes the force by less than 5 %, and a/6 is within 5 % of the truth.
+/// An element that says it locks is measured there, not judged.
+template <Element E>
+constexpr bool may_lock(double poisson_ratio) {
+  if constexpr (SaysWhenItLocks<E>) return poisson_ratio > std::max(0.49, E::locking_poisson_ratio);
+  else return false;
+}
+
+/// Nodes every h = a/2, a/3, a/4, a/6. Accepted: a/3 to a/6 changes the force by less than 5 %, and a/6 is within 5 % of
+/// the truth.
+template <Element E>
 bool converges(const Truth& truth) {
-  std::printf("\nnu = %.2f, chi = %.3f, H = %.2f mm\n", truth.poisson_ratio, truth.chi, 1e3 * a / truth.chi);
+  std::printf("\nnu = %.4g, chi = %.3f, H = %.2f mm\n", truth.poisson_ratio, truth.chi, 1e3 * a / truth.chi);
   std::printf("  %-5s %7s %6s %6s %11s %10s %8s %10s %10s %9s\n", "h", "dofs", "points", "press", "F [N]", "F/F_Hertz",
               "exact", "error", "change", "set-up");
   std::vector<Row> rows;
   for (double cells : {2.0, 3.0, 4.0, 6.0}) {
-    rows.push_back(press(truth, cells));
+    rows.push_back(press<E>(truth, cells));
     print(rows.back(), truth, rows.size() > 1 ? rows[rows.size() - 2] : Row{});
   }
   const double change = rows[3].force / rows[1].force - 1.0, error = rows[3].over_hertz / truth.force_over_hertz - 1.0;
   const bool stationary = std::ranges::all_of(rows, &Row::stationary);
   const bool good = stationary && std::abs(change) < 0.05 && std::abs(error) < 0.05;
   std::printf("  halving h from a/3: %+.2f %%, finest error %+.2f %%, allowed 5 %%: %s\n", 100.0 * change,
-              100.0 * error, good ? "pass" : "FAIL");
-  return good;
+              100.0 * error, good ? "pass" : may_lock<E>(truth.poisson_ratio) ? "locks, as it says" : "FAIL");
+  return good || may_lock<E>(truth.poisson_ratio);
 }
 
-}  // namespace
-
-bool force_converges() {
+template <Element E>
+bool force_converges(const char* element) {
   std::printf(
-      "Indentation of a bonded layer: R = %.0f mm, depth = %.3f mm, a = sqrt(R d) = %.2f mm, quarter of the body\n",
-      1e3 * ball_radius, 1e3 * depth, 1e3 * a);
+      "\n%s: indentation of a bonded layer: R = %.0f mm, depth = %.3f mm, a = sqrt(R d) = %.2f mm, quarter of the "
+      "body\n",
+      element, 1e3 * ball_radius, 1e3 * depth, 1e3 * a);
   bool good = true;
-  for (const Truth& truth : truths) good = converges(truth) && good;
+  for (const Truth& truth : truths) good = converges<E>(truth) && good;
   return good;
 }
 

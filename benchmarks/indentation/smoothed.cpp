@@ -1,0 +1,5 @@
+#include <palpate/element/smoothed.hpp>
+
+#include "layer.hpp"
+
+template bool indentation::force_converges<palpate::Smoothed<palpate::Tet4>>(const char*);
