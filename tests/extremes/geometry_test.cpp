@@ -1,4 +1,6 @@
 // Extremes of mesh and support: refused, flagged, or right.
+#include <palpate/testing/tissue_laws.hpp>
+
 #include "extremes/verdict.hpp"
 
 using namespace test;
@@ -191,6 +193,19 @@ TEST_CASE("two bricks joined by a hinge or a corner", "[extreme][B7][B8]") {
       check_refused_by_all(mesh, Scene(scene).touch("surface"));
       check_refused_by_all(mesh, Scene(scene).touch(brick().find_group("z0")->nodes).gravity({1, 2, 3}));
     }
+}
+
+TEST_CASE("a surface whose edge four faces share is reported, and safe to touch", "[extreme][B11]") {
+  const Mesh<Tet4> mesh = hinged_bricks(true);
+  std::vector<NodeId> held;
+  for (NodeId i = 0; i < mesh.node_count(); ++i)
+    if (mesh.position(i).x() < 1e-9 || mesh.position(i).x() > 0.2 - 1e-9) held.push_back(i);
+  const auto model = make_model(PolicyName::sparse_cholesky, mesh, Scene().fix(held).touch("surface"), plain);
+  CHECK(model->report().has(SetupFlag::non_manifold));
+  const auto plain_model = make_model(PolicyName::sparse_cholesky, brick(), brick_scene(), plain);
+  CHECK(!plain_model->report().has(SetupFlag::non_manifold));
+  CHECK(testing::describe(testing::tissue_laws(*model, all_vertices(model->contact_surface().vertex_count()),
+                                               {accuracy(PolicyName::sparse_cholesky)})) == "");
 }
 
 TEST_CASE("one element", "[extreme][B9]") {

@@ -31,6 +31,7 @@ class ContactSurface {
       for (std::size_t i = 0; i < 3; ++i) {
         const auto& sharing = edges[std::minmax(triangles_[t][i], triangles_[t][(i + 1) % 3])];
         neighbour_[t][i] = sharing.size() != 2 ? -1 : sharing[0] == static_cast<int>(t) ? sharing[1] : sharing[0];
+        if (sharing.size() > 2 && sharing.front() == static_cast<int>(t)) ++crowded_edges_;
         if (sharing.size() == 1)
           for (std::size_t end : {i, (i + 1) % 3}) rim_vertex_[static_cast<std::size_t>(triangles_[t][end])] = true;
       }
@@ -53,6 +54,8 @@ class ContactSurface {
   }
   /// Changes whenever the resting surface moves.
   std::uint64_t revision() const noexcept { return revision_; }
+  /// Edges where more than two triangles meet: there a tool finds no neighbour across, and none is guessed.
+  int crowded_edges() const noexcept { return crowded_edges_; }
   int vertex_count() const noexcept { return static_cast<int>(positions_.size()); }
 
   /// Moves the resting surface (new loads, new pose of the loads). No allocation; not while a tick runs.
@@ -147,6 +150,7 @@ class ContactSurface {
   std::vector<Vector3> normals_, vertex_normals_;
   std::vector<bool> rim_vertex_;
   std::vector<int> first_at_, triangles_at_;  // triangles of every vertex
+  int crowded_edges_ = 0;
   std::uint64_t revision_ = 0;
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20; -1 at the rim
 };

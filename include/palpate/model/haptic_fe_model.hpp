@@ -181,6 +181,9 @@ class HapticFEModel {
     for (NodeId node : touchable_) positions.push_back(deformed(node));
     surface_ = ContactSurface(positions, triangles);
     moved_ = std::move(positions);
+    if (const int edges = surface_.crowded_edges())
+      report_.set(SetupFlag::non_manifold, "more than two touchable triangles meet at " + std::to_string(edges) +
+                                               " edges: contact does not pass across them smoothly");
     report_.touchable_vertices = vertices;
     report_.seen_nodes = static_cast<Index>(seen_.size());
     report_.compliance_bytes = compliance_.bytes();

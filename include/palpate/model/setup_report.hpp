@@ -19,6 +19,7 @@ enum class SetupFlag : std::uint32_t {
   suspicious_units = 1u << 5,  ///< looks like millimetres
   cache_rejected = 1u << 6,    ///< there was a cache file and it was not used
   cache_unwritten = 1u << 7,   ///< the cache file could not be written
+  non_manifold = 1u << 8,      ///< more than two touchable triangles meet at an edge
 };
 
 /// Sizes, memory, times and findings of a set-up.
