@@ -22,4 +22,5 @@
 #include <palpate/mesh/refine.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/model/natural_frequencies.hpp>
 #include <palpate/version.hpp>

@@ -66,4 +66,29 @@ std::vector<M> materials_by_region(const Mesh& mesh, const RegionMaterials<M>& m
   return result;
 }
 
+/// An admitted mesh with one material per region, by region number, without initial strain.
+template <Element E, LinearMaterial M>
+Body<E> make_body(Mesh<E> mesh, const std::vector<M>& by_region) {
+  Body<E> body{std::move(mesh), {}, {}, {}};
+  for (const M& material : by_region) {
+    body.elasticity.push_back(material.elasticity());
+    body.density.push_back(material.density);
+  }
+  body.initial_strain.assign(by_region.size(), Vector6::Zero());
+  return body;
+}
+
+/// The same with materials by name; throws as materials_by_region.
+template <Element E, LinearMaterial M>
+Body<E> make_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
+  const std::vector<M> by_region = materials_by_region(mesh, materials);
+  return make_body(std::move(mesh), by_region);
+}
+
+/// The same with one material everywhere.
+template <Element E, LinearMaterial M>
+Body<E> make_body(Mesh<E> mesh, const M& material) {
+  return make_body(std::move(mesh), RegionMaterials<M>{{everywhere, material}});
+}
+
 }  // namespace palpate::inline PALPATE_ABI
