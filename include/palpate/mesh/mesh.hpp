@@ -21,7 +21,7 @@ struct Mesh {
   std::vector<int> regions;            ///< region of each element; empty means all 0
   std::vector<std::string> region_names{"body"};
   GroupTable groups;
-  std::vector<Vector3> fibres;  ///< unit vector along the fibres of each element; empty where there are none
+  std::vector<Vector3> fibres{};  ///< unit vector along the fibres of each element; empty where there are none
 
   Index node_count() const noexcept { return static_cast<Index>(positions.size()); }
   Index element_count() const noexcept { return static_cast<Index>(elements.size()); }
