@@ -64,15 +64,18 @@ inline CaseFile read_case_file(const std::string& path) {
   });
 }
 
-/// Refuses what is not a linear static analysis.
-inline void check_analysis(const json& load_case) {
+inline constexpr const char* statics = "linear static, small strain";
+inline constexpr const char* eigenfrequencies = "linear eigenfrequency";
+
+/// Refuses another analysis than the one wanted, and keys that mean nothing to it.
+inline void check_analysis(const json& load_case, const char* wanted) {
   allow_keys(load_case, "the load case",
-             {"name", "title", "analysis", "materials", "boundary_conditions", "loads", "reference", "crosscheck",
-              "closed_form"});
+             {"name", "title", "analysis", "materials", "boundary_conditions", "reference", "crosscheck", "closed_form",
+              wanted == eigenfrequencies ? "modes" : "loads"});
   const auto analysis = load_case.at("analysis").get<std::string>();
-  if (analysis != "linear static, small strain")
+  if (analysis != wanted)
     palpate::raise(SetupErrorKind::unsupported, "the analysis '" + analysis + "'",
-                   "Only 'linear static, small strain' is solved");
+                   "'" + std::string(statics) + "' and '" + eigenfrequencies + "' are solved");
 }
 
 /// The material of each region.
@@ -147,9 +150,9 @@ void read_load(palpate::Scene& scene, const json& load, const json& materials, c
   }
 }
 
-/// What is held and loaded. A component that is null stays free.
+/// What is held. A component that is null stays free.
 template <palpate::Element E>
-palpate::Scene read_scene(const json& load_case, const palpate::Mesh<E>& mesh) {
+palpate::Scene read_supports(const json& load_case, const palpate::Mesh<E>& mesh) {
   palpate::Scene scene;
   for (const json& condition : load_case.at("boundary_conditions")) {
     allow_keys(condition, "a boundary condition", {"group", "u"});
@@ -160,6 +163,13 @@ palpate::Scene read_scene(const json& load_case, const palpate::Mesh<E>& mesh) {
       if (!u.at(c).is_null()) values[c] = u.at(c).get<double>();
     scene.prescribe(read_selection(condition.at("group").get<std::string>(), mesh), values);
   }
+  return scene;
+}
+
+/// What is held and loaded.
+template <palpate::Element E>
+palpate::Scene read_scene(const json& load_case, const palpate::Mesh<E>& mesh) {
+  palpate::Scene scene = read_supports(load_case, mesh);
   int gravities = 0;
   for (const json& load : load_case.at("loads")) {
     gravities += load.at("type") == "gravity" ? 1 : 0;

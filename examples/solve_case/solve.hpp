@@ -29,7 +29,7 @@ struct Solution {
 template <palpate::Element E>
 Solution solve(const palpate::Mesh<E>& mesh, const json& load_case) {
   using Model = palpate::HapticFEModel<E, palpate::LinearElastic, palpate::SparseCholesky>;
-  check_analysis(load_case);
+  check_analysis(load_case, statics);
   const palpate::Scene scene = read_scene(load_case, mesh);
   const Materials materials = read_materials(load_case);
 
@@ -60,35 +60,41 @@ inline std::ofstream open_csv(const std::filesystem::path& path, const char* hea
   return file;
 }
 
-/// Writes <name>_u.csv and <name>_reactions.csv with the node ids of the mesh file.
+inline void write_triple(std::ostream& out, const palpate::Vector3& v) {
+  out << ',' << v[0] << ',' << v[1] << ',' << v[2];
+}
+
+/// Writes three numbers per node of the model, in rows `node,x,y,z,...` with the node ids of the mesh file.
+template <palpate::Element E>
+void write_nodes(const std::filesystem::path& path, const NumberedMesh<E>& numbered,
+                 const std::vector<palpate::NodeId>& node_map, const palpate::VectorX& values) {
+  std::ofstream u = open_csv(path, "node,x,y,z,ux,uy,uz");
+  for (palpate::Index i = 0; i < numbered.mesh.node_count(); ++i) {
+    const palpate::Index k = node_map[static_cast<std::size_t>(i)];
+    if (k < 0) continue;
+    u << numbered.ids.node_tags[static_cast<std::size_t>(i)];
+    write_triple(u, numbered.mesh.position(i));
+    write_triple(u, values.segment<3>(3 * k));
+    u << '\n';
+  }
+  if (!u.flush()) palpate::raise(SetupErrorKind::bad_file, path.string() + ": writing failed");
+}
+
+/// Writes <name>_u.csv and <name>_reactions.csv.
 template <palpate::Element E>
 void write_csv(const std::filesystem::path& folder, const std::string& name, const NumberedMesh<E>& numbered,
                const Solution& s) {
-  const auto triple = [](std::ostream& out, const auto& v) { out << ',' << v[0] << ',' << v[1] << ',' << v[2]; };
-  const auto at = [](const std::vector<palpate::NodeId>& map, palpate::Index i) {
-    return map[static_cast<std::size_t>(i)];
-  };
-  const auto& tags = numbered.ids.node_tags;
-
-  std::ofstream u = open_csv(folder / (name + "_u.csv"), "node,x,y,z,ux,uy,uz");
-  for (palpate::Index i = 0; i < numbered.mesh.node_count(); ++i) {
-    const palpate::Index k = at(s.node_map, i);
-    if (k < 0) continue;
-    u << tags[static_cast<std::size_t>(i)];
-    triple(u, numbered.mesh.position(i));
-    triple(u, s.displacement.segment<3>(3 * k));
-    u << '\n';
-  }
+  write_nodes(folder / (name + "_u.csv"), numbered, s.node_map, s.displacement);
   std::ofstream r = open_csv(folder / (name + "_reactions.csv"), "node,rx,ry,rz,ix,iy,iz");
   for (const palpate::NodeId i : s.held) {
-    const palpate::Index k = at(s.node_map, i);
+    const palpate::Index k = s.node_map[static_cast<std::size_t>(i)];
     if (k < 0) continue;
-    r << tags[static_cast<std::size_t>(i)];
-    triple(r, s.reactions.segment<3>(3 * k));
-    triple(r, s.internal_force.segment<3>(3 * k));
+    r << numbered.ids.node_tags[static_cast<std::size_t>(i)];
+    write_triple(r, s.reactions.segment<3>(3 * k));
+    write_triple(r, s.internal_force.segment<3>(3 * k));
     r << '\n';
   }
-  if (!u.flush() || !r.flush()) palpate::raise(SetupErrorKind::bad_file, folder.string() + ": writing failed");
+  if (!r.flush()) palpate::raise(SetupErrorKind::bad_file, folder.string() + ": writing failed");
 }
 
 /// The line printed for a solved load case.

@@ -1,7 +1,7 @@
 // Defines solve_all for the source files that instantiate it, one per element.
 #pragma once
 
-#include "solve.hpp"
+#include "modes.hpp"
 #include "solve_all.hpp"
 
 namespace solve_case {
@@ -10,10 +10,14 @@ template <palpate::Element E>
 void solve_load_case(const NumberedMesh<E>& numbered, const std::string& element, const json& load_case,
                      const std::filesystem::path& out) {
   const std::string name = case_name(load_case);
-  try {
-    const Solution solution = checked(name, [&] { return solve<E>(numbered.mesh, load_case); });
+  const auto run = [&](auto solver) {
+    const auto solution = checked(name, [&] { return solver(numbered.mesh, load_case); });
     write_csv(out, name, numbered, solution);
     print(summary(name, element, solution));
+  };
+  try {
+    if (load_case.value("analysis", "") == eigenfrequencies) run(solve_modes<E>);
+    else run(solve<E>);
   } catch (const palpate::SetupError& error) {
     print_refusal(name, error);
   }

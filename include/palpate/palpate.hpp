@@ -18,9 +18,12 @@
 #include <palpate/io/vtu.hpp>
 #include <palpate/io/write_msh.hpp>
 #include <palpate/material/linear_elastic.hpp>
+#include <palpate/material/orthotropic.hpp>
+#include <palpate/material/transversely_isotropic.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>
 #include <palpate/mesh/refine.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/model/natural_frequencies.hpp>
 #include <palpate/version.hpp>

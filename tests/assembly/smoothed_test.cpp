@@ -30,6 +30,14 @@ Mesh<Cured> box() {
   return mesh;
 }
 
+/// Two laws that change from element to element, as along fibres.
+void mix_laws(Body<Cured>& body) {
+  testing::Random random(17);
+  body.elasticity = {orthotropic(), 3.0 * orthotropic(), liver.elasticity()};
+  for (Index e = 0; e < body.mesh.element_count(); ++e)
+    body.laws.push_back(static_cast<std::int32_t>(random.uniform(0.0, 2.999)));
+}
+
 VectorX random_displacement(const Mesh<Cured>& mesh) {
   testing::Random random(11);
   return testing::random_vector(random, 3 * mesh.node_count());
@@ -38,9 +46,10 @@ VectorX random_displacement(const Mesh<Cured>& mesh) {
 }  // namespace
 
 TEST_CASE("Smoothed<Tet4> keeps the laws of a stiffness, stored and not", "[assembly][smoothed]") {
-  const int materials = GENERATE(1, 2, 3);
+  const int materials = GENERATE(1, 2, 3, 4);
   Body<Cured> body = body_of(box(), {liver, materials == 2 ? LinearElastic{2e5, 0.2, 900.0} : liver});
   if (materials == 3) body.elasticity = {orthotropic(), 3.0 * orthotropic()};
+  if (materials == 4) mix_laws(body);
   const BlockMatrix stored = assemble_stiffness<Cured>(body, {});
   const MatrixFreeStiffness<Cured> free(body, {});
   CHECK(testing::describe(testing::stiffness_laws(body, stored)) == "");
@@ -70,8 +79,9 @@ TEST_CASE("Smoothed<Tet4>: domains fill the body, and their gradients sum to not
 
 TEST_CASE("Smoothed<Tet4>: energy, forces and stress belong together", "[assembly][smoothed]") {
   Body<Cured> body = body_of(box(), {liver, {2e5, 0.2, 900.0}});
-  const bool isotropic = GENERATE(true, false);
-  if (!isotropic) body.elasticity = {orthotropic(), 3.0 * orthotropic()};
+  const int materials = GENERATE(1, 2, 3);
+  if (materials == 2) body.elasticity = {orthotropic(), 3.0 * orthotropic()};
+  if (materials == 3) mix_laws(body);
   body.initial_strain[0] << 0.01, -0.02, 0.03, 0.04, 0.05, -0.06;
   const VectorX u = 0.1 * random_displacement(body.mesh);
   VectorX force(u.size());

@@ -42,7 +42,7 @@ BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
   BlockPattern pattern = block_pattern(body.mesh, around);
   limits.require_memory(static_cast<double>(pattern.column.size()) * 9 * sizeof(double), "the stiffness");
   BlockMatrix k(std::move(pattern));
-  const auto constants = all_isotropic(body.elasticity);
+  const auto constants = body.laws.empty() ? all_isotropic(body.elasticity) : std::nullopt;  // per region, if at all
   if (!constants)
     assemble_elements(body, k, limits, [&](Index e) -> const Matrix6& { return body.elasticity_of(e); });
   else if constexpr (ConstantGradient<E>)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/material.hpp>
+#include <palpate/mesh/fibres.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
 
@@ -13,16 +14,22 @@ namespace palpate::inline PALPATE_ABI {
 template <Material M>
 using RegionMaterials = std::vector<std::pair<std::string, M>>;
 
-/// An admitted mesh and, per region, elasticity matrix [Pa], density [kg/m^3] and initial strain.
+/// An admitted mesh and, per region, elasticity matrix [Pa], density [kg/m^3] and initial strain. Where fibres run in
+/// another direction from element to element there are more elasticity matrices than regions, and `laws` says which
+/// element has which.
 template <Element E>
 struct Body {
   Mesh<E> mesh;
   std::vector<Matrix6> elasticity;
   std::vector<double> density;
   std::vector<Vector6> initial_strain;
+  std::vector<std::int32_t> laws{};  ///< place in `elasticity` of every element's law; empty: its region
 
   std::size_t region_of(Index e) const noexcept { return static_cast<std::size_t>(mesh.region(e)); }
-  const Matrix6& elasticity_of(Index e) const noexcept { return elasticity[region_of(e)]; }
+  std::size_t law_of(Index e) const noexcept {
+    return laws.empty() ? region_of(e) : static_cast<std::size_t>(laws[static_cast<std::size_t>(e)]);
+  }
+  const Matrix6& elasticity_of(Index e) const noexcept { return elasticity[law_of(e)]; }
 };
 
 /// Refuses with the id of one element.
@@ -64,6 +71,50 @@ std::vector<M> materials_by_region(const Mesh& mesh, const RegionMaterials<M>& m
     result.push_back(it->second);
   }
   return result;
+}
+
+/// Evaluates the law of every element along its own fibre: 292 bytes per element, less where neighbours in the order of
+/// the mesh have the same.
+template <Element E, FibreMaterial M>
+void add_fibre_laws(Body<E>& body, const std::vector<M>& by_region) {
+  const Mesh<E>& mesh = body.mesh;
+  body.elasticity.clear();
+  body.laws.reserve(static_cast<std::size_t>(mesh.element_count()));
+  for (Index e = 0; e < mesh.element_count(); ++e) {
+    const bool same = e > 0 && mesh.region(e) == mesh.region(e - 1) && mesh.fibre(e) == mesh.fibre(e - 1);
+    if (!same) body.elasticity.push_back(by_region[body.region_of(e)].elasticity(mesh.fibre(e)));
+    body.laws.push_back(static_cast<std::int32_t>(body.elasticity.size()) - 1);
+  }
+}
+
+/// An admitted mesh with one material per region, by region number, without initial strain. Where the mesh has fibres
+/// and the material asks for them, every element gets its own elasticity.
+template <Element E, LinearMaterial M>
+Body<E> make_body(Mesh<E> mesh, const std::vector<M>& by_region) {
+  Body<E> body{std::move(mesh), {}, {}, {}};
+  for (const M& material : by_region) {
+    body.elasticity.push_back(material.elasticity());
+    body.density.push_back(material.density);
+  }
+  body.initial_strain.assign(by_region.size(), Vector6::Zero());
+  if constexpr (FibreMaterial<M>) {
+    require_unit_fibres(body.mesh);
+    if (body.mesh.has_fibres()) add_fibre_laws(body, by_region);
+  }
+  return body;
+}
+
+/// The same with materials by name; throws as materials_by_region.
+template <Element E, LinearMaterial M>
+Body<E> make_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
+  const std::vector<M> by_region = materials_by_region(mesh, materials);
+  return make_body(std::move(mesh), by_region);
+}
+
+/// The same with one material everywhere.
+template <Element E, LinearMaterial M>
+Body<E> make_body(Mesh<E> mesh, const M& material) {
+  return make_body(std::move(mesh), RegionMaterials<M>{{everywhere, material}});
 }
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -22,11 +22,11 @@ class MatrixFreeStiffness {
     const Index count = body.mesh.element_count();
     limits.require_memory(static_cast<double>(count) * E::Quadrature::points.size() * sizeof(IntegrationPoint<E>),
                           "the element gradients");
-    regions_.reserve(static_cast<std::size_t>(count));
+    laws_.reserve(static_cast<std::size_t>(count));
     points_.reserve(static_cast<std::size_t>(count) * E::Quadrature::points.size());
     for (Index e = 0; e < count; ++e) {
       if (e % 8192 == 0) limits.advance("assembly", static_cast<double>(e) / static_cast<double>(count));
-      regions_.push_back(body.region_of(e));
+      laws_.push_back(body.law_of(e));
       for (const IntegrationPoint<E>& point : integration_points<E>(element_nodes<E>(body.mesh, e))) {
         points_.push_back(point);
         if (!points_.back().gradient.allFinite())
@@ -38,7 +38,7 @@ class MatrixFreeStiffness {
   Index size() const noexcept { return 3 * nodes_; }
   std::size_t bytes() const noexcept {
     return points_.size() * sizeof(points_[0]) + connectivity_.size() * sizeof(connectivity_[0]) +
-           regions_.size() * sizeof(std::size_t);
+           laws_.size() * sizeof(std::size_t) + elasticity_.size() * sizeof(Matrix6);
   }
 
   /// y = K x. No allocation.
@@ -51,7 +51,7 @@ class MatrixFreeStiffness {
         u.row(a) = x.segment<3>(3 * Index{connectivity_[e][static_cast<std::size_t>(a)]}).transpose();
       ElementNodes<E> f = ElementNodes<E>::Zero();
       for (std::size_t q = 0; q < E::Quadrature::points.size(); ++q, ++geometry) {
-        const Vector6 stress = elasticity_[regions_[e]] * strain_at<E>(*geometry, u);
+        const Vector6 stress = elasticity_[laws_[e]] * strain_at<E>(*geometry, u);
         f += force_of_stress<E>(*geometry, stress);
       }
       for (int a = 0; a < E::nodes; ++a)
@@ -67,7 +67,7 @@ class MatrixFreeStiffness {
         for (int a = 0; a < E::nodes; ++a) {
           const auto b = strain_block<E>(*geometry, a);
           d[static_cast<std::size_t>(connectivity_[e][static_cast<std::size_t>(a)])] +=
-              geometry->volume * b.transpose() * elasticity_[regions_[e]] * b;
+              geometry->volume * b.transpose() * elasticity_[laws_[e]] * b;
         }
     return d;
   }
@@ -75,7 +75,7 @@ class MatrixFreeStiffness {
  private:
   Index nodes_ = 0;
   std::vector<typename Mesh<E>::Connectivity> connectivity_;
-  std::vector<std::size_t> regions_;
+  std::vector<std::size_t> laws_;
   std::vector<IntegrationPoint<E>> points_;
   std::vector<Matrix6> elasticity_;
 };

@@ -57,11 +57,11 @@ BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
   limits.require_memory(static_cast<double>(pattern.column.size()) * 9 * sizeof(double), "the stiffness");
   BlockMatrix k(std::move(pattern));
   const StrainDomains<E> domains(body.mesh, around, limits);
-  const DomainElasticity elasticity(body);
+  const DomainElasticity elasticity(body, domains);
   for (Index d = 0; d < domains.size(); ++d) {
     if (d % 65536 == 0) limits.advance("assembly", static_cast<double>(d) / static_cast<double>(domains.size()));
     const StrainDomain domain = domains[d];
-    for_each_domain_block(domain, elasticity(domain), [&](std::size_t a, std::size_t b, const Matrix3& block) {
+    for_each_domain_block(domain, elasticity(d, domain), [&](std::size_t a, std::size_t b, const Matrix3& block) {
       k.block(k.pattern().find(domain.nodes[a], domain.nodes[b])) += block;
     });
   }
@@ -75,7 +75,7 @@ class SmoothedStiffness {
   SmoothedStiffness() = default;
   /// Throws as assemble_domains does.
   SmoothedStiffness(const Body<E>& body, const SetupLimits& limits)
-      : nodes_(body.mesh.node_count()), domains_(body.mesh, NodeElements(body.mesh), limits), elasticity_(body) {}
+      : nodes_(body.mesh.node_count()), domains_(body.mesh, NodeElements(body.mesh), limits), elasticity_(body, domains_) {}
 
   Index size() const noexcept { return 3 * nodes_; }
   std::size_t bytes() const noexcept { return domains_.bytes(); }
@@ -85,7 +85,7 @@ class SmoothedStiffness {
     y.setZero();
     for (Index d = 0; d < domains_.size(); ++d) {
       const StrainDomain domain = domains_[d];
-      domain.add_force(elasticity_(domain) * domain.strain(x), y);
+      domain.add_force(elasticity_(d, domain) * domain.strain(x), y);
     }
   }
 
@@ -95,7 +95,7 @@ class SmoothedStiffness {
       const StrainDomain domain = domains_[d];
       for (std::size_t a = 0; a < domain.nodes.size(); ++a) {
         const auto b = strain_displacement(domain.gradients[a]);
-        diagonal[static_cast<std::size_t>(domain.nodes[a])] += domain.volume * b.transpose() * elasticity_(domain) * b;
+        diagonal[static_cast<std::size_t>(domain.nodes[a])] += domain.volume * b.transpose() * elasticity_(d, domain) * b;
       }
     }
     return diagonal;

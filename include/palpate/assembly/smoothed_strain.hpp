@@ -10,11 +10,11 @@ namespace palpate::inline PALPATE_ABI {
 template <HasSmoothedStrain E, class Visit>
 void for_each_domain_stress(const Body<E>& body, const std::vector<Vector6>& initial, const VectorX& u, Visit&& visit) {
   const StrainDomains<E> domains(body.mesh);
-  const DomainElasticity elasticity(body);
+  const DomainElasticity elasticity(body, domains);
   for (Index d = 0; d < domains.size(); ++d) {
     const StrainDomain domain = domains[d];
     const Vector6 strain = domain.strain(u) - initial[static_cast<std::size_t>(domain.region)];
-    visit(domain, Vector6(elasticity(domain) * strain), strain);
+    visit(domain, Vector6(elasticity(d, domain) * strain), strain);
   }
 }
 

@@ -23,4 +23,11 @@ concept LinearMaterial = Material<M> && requires(const M& m) {
   { m.elasticity() } -> FixedMatrix<6, 6>;
 };
 
+/// A linear material with fibres: `elasticity(fibre)` is its matrix where the fibres run along that unit vector. Used
+/// where the mesh has fibre directions, `elasticity()` where it has none.
+template <class M>
+concept FibreMaterial = LinearMaterial<M> && requires(const M& m, const Vector3& fibre) {
+  { m.elasticity(fibre) } -> FixedMatrix<6, 6>;
+};
+
 }  // namespace palpate::inline PALPATE_ABI

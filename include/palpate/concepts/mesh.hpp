@@ -34,6 +34,14 @@ concept MeshView = requires(const M& m, Index i, int a, std::string_view name) {
   { m.find_group(name) } -> std::convertible_to<const Group*>;
 };
 
+/// A mesh that may know the direction of the fibres in its elements: `has_fibres()` says whether it does, `fibre(e)` is
+/// then a unit vector in the frame of the positions. Materials without fibres do not ask.
+template <class M>
+concept FibreMesh = MeshView<M> && requires(const M& m, Index e) {
+  { m.has_fibres() } -> std::convertible_to<bool>;
+  { m.fibre(e) } -> FixedVector<3>;
+};
+
 /// A mesh whose elements are of type E.
 template <class M, class E>
 concept MeshOf = MeshView<M> && M::nodes_per_element == E::nodes;

@@ -32,6 +32,14 @@ inline Vector6 strain_vector(const Matrix3& e) {
   return v;
 }
 
+/// The 6 x 6 matrix T that turns a stress: stress_vector(R s R^T) = T stress_vector(s). Strains turn by its inverse
+/// transpose, an elasticity matrix by T D T^T. `r` is a rotation.
+inline Matrix6 stress_rotation(const Matrix3& r) {
+  Matrix6 t;
+  for (int k = 0; k < 6; ++k) t.col(k) = stress_vector(r * stress_tensor(Vector6::Unit(k)) * r.transpose());
+  return t;
+}
+
 /// Equivalent (von Mises) stress [Pa], always >= 0.
 inline double von_mises(const Vector6& s) {
   const double a = s[xx] - s[yy], b = s[yy] - s[zz], c = s[zz] - s[xx];

@@ -3,6 +3,7 @@
 
 #include <palpate/mesh/admission_policy.hpp>
 #include <palpate/mesh/diagnose.hpp>
+#include <palpate/mesh/fibres.hpp>
 #include <palpate/mesh/repair.hpp>
 
 namespace palpate::inline PALPATE_ABI {
@@ -159,6 +160,7 @@ Admitted<E> admit(const M& view, const AdmissionPolicy& policy = {}, const std::
   result.diagnosis = diagnose<E>(view, policy.thresholds);
   result.admitted = result.diagnosis;
   if (!result.diagnosis.complete) detail::enforce(result, policy);  // refuses
+  require_unit_fibres(view);
   result.mesh = copy_mesh<E>(view, group_names);
   detail::require_valid_groups(result.mesh);
   result.node_map.resize(result.mesh.positions.size());

@@ -21,6 +21,7 @@ struct Mesh {
   std::vector<int> regions;            ///< region of each element; empty means all 0
   std::vector<std::string> region_names{"body"};
   GroupTable groups;
+  std::vector<Vector3> fibres{};  ///< unit vector along the fibres of each element; empty where there are none
 
   Index node_count() const noexcept { return static_cast<Index>(positions.size()); }
   Index element_count() const noexcept { return static_cast<Index>(elements.size()); }
@@ -32,6 +33,8 @@ struct Mesh {
   int region_count() const noexcept { return static_cast<int>(region_names.size()); }
   const std::string& region_name(int r) const noexcept { return region_names[static_cast<std::size_t>(r)]; }
   const Group* find_group(std::string_view name) const noexcept { return groups.find(name); }
+  bool has_fibres() const noexcept { return !fibres.empty(); }
+  const Vector3& fibre(Index e) const noexcept { return fibres[static_cast<std::size_t>(e)]; }
 };
 
 /// Coordinates of element e's nodes, one per row [m].
@@ -64,6 +67,9 @@ Mesh<E> copy_mesh(const M& view, const std::vector<std::string>& group_names = {
           static_cast<NodeId>(view.element_node(e, a));
     mesh.regions[static_cast<std::size_t>(e)] = static_cast<int>(view.region(e));
   }
+  if constexpr (FibreMesh<M>)
+    if (view.has_fibres())
+      for (Index e = 0; e < m; ++e) mesh.fibres.push_back(view.fibre(e));
   mesh.region_names.clear();
   for (int r = 0; r < view.region_count(); ++r) mesh.region_names.emplace_back(view.region_name(r));
   if constexpr (ListsGroups<M>)

@@ -43,6 +43,20 @@ class MeshArrays {
     groups_.tidy();
     return *this;
   }
+  /// Direction of the fibres in every element, x y z each: any contiguous range that outlives the view. Throws
+  /// bad_argument when its length is another.
+  template <class Fibres>
+  requires(Outlives<Fibres>) MeshArrays& fibres(Fibres&& directions) {
+    const std::span<const Real> given(directions);
+    if (static_cast<Index>(given.size()) != 3 * element_count())
+      raise(SetupErrorKind::bad_argument, "fibres holds " + std::to_string(given.size()) + " numbers",
+            "It needs x y z per element: " + std::to_string(3 * element_count()));
+    fibres_ = given;
+    return *this;
+  }
+  template <class Fibres>
+  requires(!Outlives<Fibres>) MeshArrays& fibres(Fibres&&) = delete;  // a view of a temporary would dangle
+
   MeshArrays& name_region(int region, std::string name) {
     region_names_.at(static_cast<std::size_t>(region)) = std::move(name);
     return *this;
@@ -58,6 +72,11 @@ class MeshArrays {
     return static_cast<Index>(connectivity_[static_cast<std::size_t>(e * E::nodes + a)]);
   }
   int region(Index e) const noexcept { return regions_.empty() ? 0 : regions_[static_cast<std::size_t>(e)]; }
+  bool has_fibres() const noexcept { return !fibres_.empty(); }
+  Vector3 fibre(Index e) const noexcept {
+    const auto* f = fibres_.data() + 3 * e;
+    return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
+  }
   int region_count() const noexcept { return static_cast<int>(region_names_.size()); }
   const std::string& region_name(int r) const noexcept { return region_names_[static_cast<std::size_t>(r)]; }
   const Group* find_group(std::string_view name) const noexcept { return groups_.find(name); }
@@ -83,7 +102,7 @@ class MeshArrays {
     for (Index r = 0; r < count; ++r) region_names_.push_back(count == 1 ? "body" : "region " + std::to_string(r));
   }
 
-  std::span<const Real> positions_;
+  std::span<const Real> positions_, fibres_;
   std::span<const Integer> connectivity_;
   std::span<const int> regions_;
   std::vector<std::string> region_names_;

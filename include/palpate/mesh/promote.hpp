@@ -81,8 +81,8 @@ void promote_group(Group& group, const Mesh<E>& mesh, const EdgeMiddles& middles
 
 }  // namespace detail
 
-/// The same body in quadratic elements: Tet4 to Tet10, Hex8 to Hex20. Nodes keep their ids, middles follow; regions and
-/// groups come along. A group gains the middles of the edges of its faces and elements; a group of lines (dimension 1)
+/// The same body in quadratic elements: Tet4 to Tet10, Hex8 to Hex20. Nodes keep their ids, middles follow; regions,
+/// fibres and groups come along. A group gains the middles of the edges of its faces and elements; a group of lines (dimension 1)
 /// those between two of its nodes; a group of nodes alone keeps exactly its nodes, because an edge between two of them
 /// need not belong to it (an edge through the body between two surface nodes would be held or loaded too). Edges stay
 /// straight: move the middles of a curved surface onto it if you know it. Throws unsupported for a group's face that no
@@ -110,6 +110,7 @@ Mesh<To> promote(const Mesh<typename To::Linear>& linear) {
   }
   mesh.regions = linear.regions;
   mesh.region_names = linear.region_names;
+  mesh.fibres = linear.fibres;
   mesh.groups = linear.groups;
   for (Group& group : mesh.groups.all()) detail::promote_group(group, mesh, middles);
   mesh.groups.tidy();

@@ -41,7 +41,7 @@ inline void refine_group(Group& group) {
 }  // namespace detail
 
 /// Every tetrahedron cut into eight of an eighth of its volume. Nodes keep their ids, element e becomes 8 e ... 8 e + 7;
-/// regions and groups come along as in `promote`. Neighbours conform: only the interior of an element depends on which
+/// regions, fibres and groups come along as in `promote`. Neighbours conform: only the interior of an element depends on which
 /// diagonal was cut. Throws as promote does, and count_too_large beyond 2^31 elements.
 inline Mesh<Tet4> refine(const Mesh<Tet4>& coarse) {
   if (coarse.element_count() > std::numeric_limits<NodeId>::max() / 8)
@@ -57,6 +57,7 @@ inline Mesh<Tet4> refine(const Mesh<Tet4>& coarse) {
       fine.elements.push_back(corners);
     }
     if (!coarse.regions.empty()) fine.regions.insert(fine.regions.end(), 8, coarse.region(e));
+    if (coarse.has_fibres()) fine.fibres.insert(fine.fibres.end(), 8, coarse.fibre(e));
   }
   fine.positions = std::move(quadratic.positions);
   fine.region_names = coarse.region_names;

@@ -60,10 +60,12 @@ void renumber_elements(Mesh<E>& mesh, const std::vector<Index>& map) {
     if (map[e] < 0) continue;
     mesh.elements[kept] = mesh.elements[e];
     if (!mesh.regions.empty()) mesh.regions[kept] = mesh.regions[e];
+    if (mesh.has_fibres()) mesh.fibres[kept] = mesh.fibres[e];
     ++kept;
   }
   mesh.elements.resize(kept);
   if (!mesh.regions.empty()) mesh.regions.resize(kept);
+  if (mesh.has_fibres()) mesh.fibres.resize(kept);
   for (Group& group : mesh.groups.all()) {
     std::vector<Index> elements;
     for (Index e : group.elements)

@@ -98,6 +98,24 @@ class Scene {
     initial_strains_.push_back({std::move(region), strain});
     return *this;
   }
+  /// Free growth of a region, or `everywhere`: every length wants to become 1 + elongation times what it was, the same
+  /// in all directions; negative shrinks. Adds to other initial strains there. Swelling by a volume fraction v is an
+  /// elongation of v / 3 (small strain).
+  Scene& expand(std::string region, double elongation) {
+    require_finite(elongation, "an expansion");
+    if (!(elongation > -1.0))
+      raise(SetupErrorKind::bad_argument, "an expansion of " + number(elongation) + " leaves no length",
+            "It is relative: 0.01 for one per cent");
+    Vector6 strain = Vector6::Zero();
+    strain.head<3>().setConstant(elongation);
+    return initial_strain(std::move(region), strain);
+  }
+  /// Thermal expansion of a region, or `everywhere`: coefficient [1/K] times rise of temperature [K].
+  Scene& heat(std::string region, double coefficient, double rise) {
+    require_finite(coefficient, "a coefficient of expansion");
+    require_finite(rise, "a rise of temperature");
+    return expand(std::move(region), coefficient * rise);
+  }
   /// Nodes a tool may touch: their dofs are kept, all others are condensed away.
   Scene& touch(Selection where) {
     touched_.push_back(std::move(where));

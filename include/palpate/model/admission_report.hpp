@@ -1,6 +1,7 @@
 // What admission and materials have to say in a set-up report.
 #pragma once
 
+#include <palpate/local/split_elasticity.hpp>
 #include <palpate/mesh/admission.hpp>
 #include <palpate/model/setup_report.hpp>
 
@@ -33,20 +34,18 @@ void report_admission(const Admitted<E>& admitted, SetupReport& report) {
 
 template <class E>
 concept SaysWhenItLocks = requires { E::locking_poisson_ratio; };
-template <class M>
-concept HasPoissonRatio = requires(const M& material) { material.poisson_ratio; };
 
-/// Flags an element that locks at the Poisson ratio of one of the materials, where both say enough to know.
-template <Element E, class M>
-void report_locking(const std::vector<M>& materials, SetupReport& report) {
-  if constexpr (SaysWhenItLocks<E> && HasPoissonRatio<M>)
-    for (const M& material : materials)
-      if (material.poisson_ratio > E::locking_poisson_ratio) {
-        report.set(SetupFlag::locking, "this element is too stiff at a Poisson ratio of " +
-                                           number(material.poisson_ratio) + " (above " +
-                                           number(E::locking_poisson_ratio) + ")");
-        return;
-      }
+/// Flags an element that locks with one of the laws of a body, where it says when it does.
+template <Element E>
+void report_locking(const std::vector<Matrix6>& elasticity, SetupReport& report) {
+  if constexpr (SaysWhenItLocks<E>)
+    for (const Matrix6& d : elasticity) {
+      const double nu = equivalent_poisson_ratio(d);
+      if (!(nu > E::locking_poisson_ratio + 1e-9)) continue;  // what rounding makes of an equal one
+      report.set(SetupFlag::locking, "this element is too stiff at a Poisson ratio of " + number(nu) + " (above " +
+                                         number(E::locking_poisson_ratio) + ")");
+      return;
+    }
 }
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -17,7 +17,7 @@ struct CacheKey {
   std::uint64_t scalar_bytes = 0;   ///< of the stored compliance: 4 or 8
   std::uint64_t element = 0;        ///< reference nodes, shape functions and gradients at the quadrature points
   std::uint64_t mesh = 0;           ///< positions, connectivity, regions
-  std::uint64_t material = 0;       ///< elasticity matrix of every region
+  std::uint64_t material = 0;       ///< elasticity matrix of every region or element
   std::uint64_t conditions = 0;     ///< which components of which nodes are prescribed
   std::uint64_t touched = 0;        ///< kept nodes
   std::uint64_t stiffness = 0;      ///< pattern and values
@@ -91,6 +91,7 @@ CacheKey cache_key(const Body<E>& body, const EssentialConditions& conditions, c
   key.mesh = detail::hash_of_mesh(body.mesh);
   ContentHash material;
   for (const Matrix6& d : body.elasticity) detail::add_entries(material, d);
+  material.add(std::span<const std::int32_t>(body.laws));
   key.material = material.digest();
   key.conditions = detail::hash_of(conditions.constrained);
   key.touched = detail::hash_of(kept);

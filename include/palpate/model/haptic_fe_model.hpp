@@ -143,13 +143,8 @@ class HapticFEModel {
     for (Vector3& x : admitted.mesh.positions) x -= origin_;
     world_ = pose_ * Eigen::Translation3d(origin_);
 
-    Body<E> body{std::move(admitted.mesh), {}, {}, {}};
-    for (const M& material : by_region) {
-      body.elasticity.push_back(material.elasticity());
-      body.density.push_back(material.density);
-    }
-    body.initial_strain.assign(by_region.size(), Vector6::Zero());
-    report_locking<E>(by_region, report_);
+    Body<E> body = make_body(std::move(admitted.mesh), by_region);
+    report_locking<E>(body.elasticity, report_);
 
     auto boundary = extract_boundary<E>(body.mesh);
     const Touchable touchable = resolve_touchable(body.mesh, boundary, scene_);
