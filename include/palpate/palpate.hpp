@@ -22,4 +22,7 @@
 #include <palpate/mesh/refine.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/post/error_estimate.hpp>
+#include <palpate/post/principal.hpp>
+#include <palpate/post/stress.hpp>
 #include <palpate/version.hpp>
