@@ -121,8 +121,9 @@ TEST_CASE("a stress of degree order - 1 is exact in all points and at all nodes,
   }
 }
 
-TEST_CASE("on even meshes of Hex8 recovered stress is one order better than the element's", "[post]") {
+TEST_CASE("on even meshes of hexahedra recovered stress is one order better than the element's", "[post]") {
   CHECK(polynomial_error(box_of<Hex8>({1, 2, 3}, {4, 3, 2}), 2) <= 1e-12);
+  CHECK(polynomial_error(box_of<Hex20>({1, 2, 3}, {3, 2, 2}), 3) <= 1e-12);
   // The same points do not hold it without recovery.
   CHECK(points_error(box_of<Hex8>({1, 1, 1}, {3, 3, 3}), 2) > 1e-2);
 }
@@ -162,8 +163,8 @@ TEST_CASE("recovery beats the mean around a node on a smooth field", "[post]") {
     const double order = std::log2(coarse / fine);
     INFO("nodes " << E::nodes << ": recovered " << coarse << ' ' << fine << " order " << order << ", mean " << coarse_mean
                   << ' ' << fine_mean);
-    CHECK(order > 0.9);
-    CHECK(fine < 0.8 * fine_mean);
+    CHECK(order > 0.85);  // in the worst node, on an edge
+    CHECK(fine < 0.9 * fine_mean);
   });
 }
 

