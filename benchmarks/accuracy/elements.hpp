@@ -61,8 +61,8 @@ std::string element_name() {
   return name;
 }
 
-/// Cells along an edge of a mesh for elements of first order; those of second order get half of them, and about the same
-/// nodes.
+/// Cells along an edge of a mesh for elements of first order; those of second order get half of them, and about the
+/// same nodes.
 template <Element E>
 int cells(int for_linear) {
   return std::max(1, for_linear / E::order);

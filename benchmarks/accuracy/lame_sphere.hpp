@@ -18,7 +18,8 @@ struct LameSphere {
   }
   Vector3 displacement(const Vector3& x) const { return radial_displacement(x.norm()) * x.normalized(); }
   Vector6 stress(const Vector3& x) const {
-    const double cube = std::pow(b / x.norm(), 3), radial = factor() * (1.0 - cube), hoop = factor() * (1.0 + 0.5 * cube);
+    const double cube = std::pow(b / x.norm(), 3), radial = factor() * (1.0 - cube),
+                 hoop = factor() * (1.0 + 0.5 * cube);
     const Vector3 n = x.normalized();
     return voigt::stress_vector(hoop * Matrix3::Identity() + (radial - hoop) * n * n.transpose());
   }

@@ -20,11 +20,13 @@ Measured deflect(int across, double nu) {
   return {mean_displacement(body, scene, solved, 1e-3), solved.seconds, body.mesh.node_count()};
 }
 
-/// A unit cube bonded below and above, pressed together by 0.01: the force for E = 1. `quarter` takes a quarter of it, with two planes of symmetry.
+/// A unit cube bonded below and above, pressed together by 0.01: the force for E = 1. `quarter` takes a quarter of it,
+/// with two planes of symmetry.
 template <Element E>
 Measured press(int n, double nu, bool quarter = false) {
   Scene scene = Scene().fix("z0").prescribe("z1", {0.0, 0.0, -0.01});
-  if (quarter) scene.prescribe("x0", {0.0, std::nullopt, std::nullopt}).prescribe("y0", {std::nullopt, 0.0, std::nullopt});
+  if (quarter)
+    scene.prescribe("x0", {0.0, std::nullopt, std::nullopt}).prescribe("y0", {std::nullopt, 0.0, std::nullopt});
   const double half = quarter ? 0.5 : 1.0;
   const int across = quarter ? n / 2 : n;
   const Body<E> body = body_of(box_of<E>({half, half, 1.0}, {across, across, n}), {{1.0, nu, 0.0}});
@@ -63,8 +65,9 @@ void judge(const std::vector<double>& errors, double allowed, Checks& checks) {
 }
 
 void bend(Checks& checks) {
-  std::printf("### Clamped beam 4 x 1 x 1\n\nError of the deflection [%%] against 0.2636, 0.2584, 0.2564, 0.2559, 0.2558 "
-              "(Taylor-Hood elements, +-0.3 %%). n cells across; time: assembly and factorisation.\n\n");
+  std::printf(
+      "### Clamped beam 4 x 1 x 1\n\nError of the deflection [%%] against 0.2636, 0.2584, 0.2564, 0.2559, 0.2558 "
+      "(Taylor-Hood elements, +-0.3 %%). n cells across; time: assembly and factorisation.\n\n");
   Table table({"element", "n", "nodes", "0.3", "0.45", "0.49", "0.499", "0.4999", "set-up [s]"});
   each_element([&]<class E>(std::type_identity<E>) {
     std::vector<double> errors;
@@ -84,10 +87,11 @@ void compress(Checks& checks) {
     exact[i] = 2.0 * fine - coarse;
     doubt = std::max(doubt, std::abs(fine / exact[i] - 1.0));
   }
-  std::printf("### Bonded block\n\nA cube held below, its top moved down and held sideways. Error of the force [%%] "
-              "against MeanDilatation<Hex8> on 16^3 and 32^3 cells, extrapolated (the last step is %.2g %%): %.5f, %.5f, "
-              "%.5f, %.5f, %.5f for E = 1 and 1 %% of compression.\n\n",
-              100.0 * doubt, exact[0], exact[1], exact[2], exact[3], exact[4]);
+  std::printf(
+      "### Bonded block\n\nA cube held below, its top moved down and held sideways. Error of the force [%%] "
+      "against MeanDilatation<Hex8> on 16^3 and 32^3 cells, extrapolated (the last step is %.2g %%): %.5f, %.5f, "
+      "%.5f, %.5f, %.5f for E = 1 and 1 %% of compression.\n\n",
+      100.0 * doubt, exact[0], exact[1], exact[2], exact[3], exact[4]);
   checks.expect(doubt < 0.01, "the reference force of the bonded block has not converged");
   Table table({"element", "n", "nodes", "0.3", "0.45", "0.49", "0.499", "0.4999", "set-up [s]"});
   each_element([&]<class E>(std::type_identity<E>) {

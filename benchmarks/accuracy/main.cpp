@@ -1,6 +1,7 @@
-// How right the answers are, per element: other codes, a manufactured solution, benchmark problems, locking. Prints tables
-// in Markdown, and returns 1 when something is not as it must be.
-//   bench_accuracy [--oracle <folder>] [--out <folder for convergence.svg>] [--only oracle|manufactured|problems|locking]
+// How right the answers are, per element: other codes, a manufactured solution, benchmark problems, locking. Prints
+// tables in Markdown, and returns 1 when something is not as it must be.
+//   bench_accuracy [--oracle <folder>] [--out <folder for convergence.svg>] [--only
+//   oracle|manufactured|problems|locking]
 #include "parts.hpp"
 
 #include <exception>

@@ -54,8 +54,9 @@ void refine(bool distorted, const std::string& colour, Table& table, OrderPlot& 
 }  // namespace
 
 void manufactured_solution(const std::string& picture, Checks& checks) {
-  std::printf("## Manufactured solution\n\nA unit cube, nu = 0.3, trigonometric displacement. Relative errors; n cells "
-              "along an edge (six tetrahedra in each); distorted: inner corners moved by up to 0.1 / n.\n\n");
+  std::printf(
+      "## Manufactured solution\n\nA unit cube, nu = 0.3, trigonometric displacement. Relative errors; n cells "
+      "along an edge (six tetrahedra in each); distorted: inner corners moved by up to 0.1 / n.\n\n");
   Table table({"element", "mesh", "n", "error of u (L2)", "order", "theory", "error in energy", "order", "theory"});
   OrderPlot displacement(0, "Relative error of displacement (L2)"), energy(420, "Relative error in the energy norm");
   constexpr std::array colours{"#c53030", "#2b6cb0", "#d69e2e", "#2f855a", "#6b46c1", "#0d9488", "#b83280", "#4a5568"};

@@ -75,13 +75,15 @@ Mesh<E> joined(const std::vector<Mesh<E>>& parts, double size) {
   NodeId next = 0;
   for (const Mesh<E>& part : parts)
     for (const Vector3& x : part.positions)
-      keys.push_back({{std::llround(x[0] / size * 1e8), std::llround(x[1] / size * 1e8),
-                       std::llround(x[2] / size * 1e8)}, next++});
+      keys.push_back(
+          {{std::llround(x[0] / size * 1e8), std::llround(x[1] / size * 1e8), std::llround(x[2] / size * 1e8)},
+           next++});
   std::ranges::sort(keys);
   std::vector<NodeId> first(keys.size());  // the lowest number at the same place
   for (std::size_t i = 0; i < keys.size(); ++i)
-    first[static_cast<std::size_t>(keys[i].second)] =
-        i > 0 && keys[i].first == keys[i - 1].first ? first[static_cast<std::size_t>(keys[i - 1].second)] : keys[i].second;
+    first[static_cast<std::size_t>(keys[i].second)] = i > 0 && keys[i].first == keys[i - 1].first
+                                                          ? first[static_cast<std::size_t>(keys[i - 1].second)]
+                                                          : keys[i].second;
   std::vector<NodeId> number(keys.size(), -1);
   NodeId offset = 0;
   for (const Mesh<E>& part : parts) {
@@ -130,8 +132,8 @@ Mesh<E> sphere_octant(double inner, double outer, int n, int layers) {
   return mesh;
 }
 
-/// Cook's membrane: 48 long, 44 high at the left and 16 at the right, 5 thick; n x n cells, nz through the thickness. Held
-/// "x0", loaded "x1", faces "z0", "z1" [any unit of length].
+/// Cook's membrane: 48 long, 44 high at the left and 16 at the right, 5 thick; n x n cells, nz through the thickness.
+/// Held "x0", loaded "x1", faces "z0", "z1" [any unit of length].
 template <Element E>
 Mesh<E> cook_membrane(int n, int nz, double thickness = 5.0) {
   return mapped_box<E>({n, n, nz}, [&](const Vector3& s) -> Vector3 {

@@ -114,8 +114,9 @@ void compare_folder(const fs::path& root, const fs::path& folder, const solve_ca
 }  // namespace
 
 void compare_with_oracle(const std::string& folder, Checks& checks) {
-  std::printf("## Against other codes\n\nLargest difference of displacement over the largest one, to CalculiX (which "
-              "prints seven digits), and the difference of the second code (GetFEM) to it.\n\n");
+  std::printf(
+      "## Against other codes\n\nLargest difference of displacement over the largest one, to CalculiX (which "
+      "prints seven digits), and the difference of the second code (GetFEM) to it.\n\n");
   Table table({"case", "load case", "element", "nodes", "ours", "second code"});
   const auto disagreement = read_disagreement(fs::path(folder) / "index.csv");
   std::vector<fs::path> folders;
@@ -127,7 +128,8 @@ void compare_with_oracle(const std::string& folder, Checks& checks) {
     const auto file = solve_case::read_case_file((one / "case.json").string());
     each_element([&]<class E>(std::type_identity<E>) {
       std::string plain = element_name<E>();
-      std::ranges::transform(plain, plain.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+      std::ranges::transform(plain, plain.begin(),
+                             [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
       if (plain != file.element) return;
       ++found;
       compare_folder<E>(folder, one, file, table, disagreement, checks);

@@ -61,15 +61,16 @@ class OrderPlot {
 
   void grid(std::string& s) const {
     for (double n = 2.0; n <= high_[0] * 1.01; n *= 2.0)
-      if (n >= low_[0] * 0.99) s += line(x(n), top, x(n), bottom, "stroke='#ddd'") + label(x(n) - 4, bottom + 16, number(n));
+      if (n >= low_[0] * 0.99)
+        s += line(x(n), top, x(n), bottom, "stroke='#ddd'") + label(x(n) - 4, bottom + 16, number(n));
     for (double v = low_[1]; v <= high_[1] * 1.01; v *= 10.0)
       s += line(left_ + 50, y(v), left_ + 50 + width, y(v), "stroke='#ddd'") + label(left_ + 4, y(v) + 4, number(v));
     s += label(left_ + 150, bottom + 34, "cells along the cube's edge");
-    const double a = low_[0], b = std::sqrt(low_[0] * high_[0]);
+    const double a = low_[0], b = 2.5 * a;
     for (int order : {1, 2, 3}) {
-      const double at = 3.0 * low_[1], end = at * std::pow(b / a, -order);
-      if (end < low_[1]) continue;
-      s += line(x(a), y(at), x(b), y(end), "stroke='#888' stroke-dasharray='2 3'") + label(x(b) + 3, y(end), std::to_string(order));
+      const double at = 20.0 * low_[1], end = at * std::pow(b / a, -order);
+      s += line(x(a), y(at), x(b), y(end), "stroke='#888' stroke-dasharray='2 3'") +
+           label(x(b) + 3, y(end), std::to_string(order));
     }
   }
   void draw(std::string& s, const Curve& c, double key) const {

@@ -39,27 +39,30 @@ void solve_sphere(double nu, Table& table, Checks& checks) {
     const NodalStress nodal = patch_recovery(body, u);
     for (Index i = 0; i < body.mesh.node_count(); ++i) {
       const Vector3& x = body.mesh.position(i);
-      worst = std::max(worst, (u.segment<3>(3 * i) - sphere.displacement(x)).norm() / sphere.radial_displacement(sphere.a));
+      worst =
+          std::max(worst, (u.segment<3>(3 * i) - sphere.displacement(x)).norm() / sphere.radial_displacement(sphere.a));
       worst_stress = std::max(worst_stress, (nodal.at(i) - sphere.stress(x)).cwiseAbs().maxCoeff() / sphere.p);
     }
     const ErrorEstimate estimate = estimate_error(body, u, nodal);
     const double exact = true_error(body, u, sphere);
     effectivity = estimate.error / exact;
-    table.add({element_name<E>(), text(nu), count(n), count(body.mesh.node_count()), percent(worst), percent(worst_stress),
-               percent(exact / std::hypot(estimate.energy_norm, exact)), percent(estimate.relative()),
-               text(effectivity, "%.2f")});
+    table.add({element_name<E>(), text(nu), count(n), count(body.mesh.node_count()), percent(worst),
+               percent(worst_stress), percent(exact / std::hypot(estimate.energy_norm, exact)),
+               percent(estimate.relative()), text(effectivity, "%.2f")});
     checks.expect(worst < before, element_name<E>() + ", nu " + text(nu) + ": the sphere does not converge");
     before = worst;
   }
-  if (nu < 0.4) checks.expect(effectivity > 0.8 && effectivity < 1.25, element_name<E>() + ": effectivity of the estimate");
+  if (nu < 0.4)
+    checks.expect(effectivity > 0.8 && effectivity < 1.25, element_name<E>() + ": effectivity of the estimate");
 }
 
 void sphere(Checks& checks) {
-  std::printf("## Hollow sphere under inner pressure (Lame)\n\nAn eighth, a = 1, b = 2, n cells a side of three blocks and n "
-              "through the wall. Worst nodal errors: displacement over u(a), recovered stress over p; then the error in "
-              "the energy norm, true and estimated (Zienkiewicz and Zhu), in %%.\n\n");
-  Table table({"element", "nu", "n", "nodes", "displacement [%]", "stress [%]", "energy [%]", "estimated [%]",
-               "effectivity"});
+  std::printf(
+      "## Hollow sphere under inner pressure (Lame)\n\nAn eighth, a = 1, b = 2, n cells a side of three blocks and n "
+      "through the wall. Worst nodal errors: displacement over u(a), recovered stress over p; then the error in "
+      "the energy norm, true and estimated (Zienkiewicz and Zhu), in %%.\n\n");
+  Table table(
+      {"element", "nu", "n", "nodes", "displacement [%]", "stress [%]", "energy [%]", "estimated [%]", "effectivity"});
   for (const double nu : {0.3, 0.499})
     each_element([&]<class E>(std::type_identity<E>) { solve_sphere<E>(nu, table, checks); });
   table.print();
@@ -78,7 +81,8 @@ void solve_cantilever(Table& table, Checks& checks) {
                percent(tip / converged - 1.0)});
     // Values of two other codes, which agree to seven digits.
     const auto agrees = [&](double reference) {
-      checks.expect(std::abs(tip / reference - 1.0) < 1e-6, element_name<E>() + ": not the reference value of this mesh");
+      checks.expect(std::abs(tip / reference - 1.0) < 1e-6,
+                    element_name<E>() + ": not the reference value of this mesh");
     };
     if (std::same_as<E, Hex8> && n == 2) agrees(0.00882890013);
     if (std::same_as<E, Hex8> && n == 4) agrees(0.00976842);
@@ -89,8 +93,9 @@ void solve_cantilever(Table& table, Checks& checks) {
 }
 
 void cantilever(Checks& checks) {
-  std::printf("## Cantilever\n\n1 x 0.2 x 0.2 m, clamped, nu = 0.3. Mean deflection of the loaded end, converged in three "
-              "dimensions to 0.0101745 m (beam theory, which lets the clamped end contract, says 0.01031).\n\n");
+  std::printf(
+      "## Cantilever\n\n1 x 0.2 x 0.2 m, clamped, nu = 0.3. Mean deflection of the loaded end, converged in three "
+      "dimensions to 0.0101745 m (beam theory, which lets the clamped end contract, says 0.01031).\n\n");
   Table table({"element", "cells", "nodes", "deflection [m]", "error [%]"});
   each_element([&]<class E>(std::type_identity<E>) { solve_cantilever<E>(table, checks); });
   table.print();
@@ -109,20 +114,23 @@ void solve_cook(double nu, double converged, Table& table, Checks& checks) {
     const Body<E> body = body_of(cook_membrane<E>(n, n / 4), {{240.565, nu, 0.0}});
     const double tip = mean_displacement(body, scene, solve(body, scene), 6.25 * 16.0 * 5.0);
     error = tip / converged - 1.0;
-    table.add({element_name<E>(), text(nu, "%.4f"), times(n, n, n / 4), count(body.mesh.node_count()), text(tip, "%.4f"),
-               percent(error)});
+    table.add({element_name<E>(), text(nu, "%.4f"), times(n, n, n / 4), count(body.mesh.node_count()),
+               text(tip, "%.4f"), percent(error)});
     const auto agrees = [&](double reference) {
-      checks.expect(std::abs(tip / reference - 1.0) < 2e-4, element_name<E>() + ": not the reference value of this mesh");
+      checks.expect(std::abs(tip / reference - 1.0) < 2e-4,
+                    element_name<E>() + ": not the reference value of this mesh");
     };
     if (std::same_as<E, Hex8> && n == 8) agrees(nu < 0.4 ? 8.134 : nu < 0.4995 ? 2.701 : 2.225);
   }
   if constexpr (E::order == 2 || HasMeanDilatation<E>)
-    checks.expect(std::abs(error) < 0.05, element_name<E>() + ", nu " + text(nu) + ": more than 5 % off on Cook's membrane");
+    checks.expect(std::abs(error) < 0.05,
+                  element_name<E>() + ", nu " + text(nu) + ": more than 5 % off on Cook's membrane");
 }
 
 void cook(Checks& checks) {
-  std::printf("## Cook's membrane, plane strain\n\nMean displacement of the loaded edge over the converged 8.974, 7.727, "
-              "7.718.\n\n");
+  std::printf(
+      "## Cook's membrane, plane strain\n\nMean displacement of the loaded edge over the converged 8.974, 7.727, "
+      "7.718.\n\n");
   Table table({"element", "nu", "cells", "nodes", "displacement", "error [%]"});
   for (const auto& [nu, converged] : {std::pair{1.0 / 3.0, 8.974}, std::pair{0.499, 7.727}, std::pair{0.4999, 7.718}})
     each_element([&]<class E>(std::type_identity<E>) { solve_cook<E>(nu, converged, table, checks); });
@@ -145,8 +153,9 @@ void solve_le10(Table& table, Checks& checks) {
 }
 
 void le10(Checks& checks) {
-  std::printf("## NAFEMS LE10\n\nsigma_yy at D, by patch recovery; the target is -5.38 MPa. The line support is singular: "
-              "fine meshes end near -5.42. Other codes: Hex20 -5.470 and -5.483 on such meshes, Tet10 -5.48 ... -5.40.\n\n");
+  std::printf(
+      "## NAFEMS LE10\n\nsigma_yy at D, by patch recovery; the target is -5.38 MPa. The line support is singular: "
+      "fine meshes end near -5.42. Other codes: Hex20 -5.470 and -5.483 on such meshes, Tet10 -5.48 ... -5.40.\n\n");
   Table table({"element", "cells", "nodes", "sigma_yy [MPa]", "error [%]", "estimated error, energy norm [%]"});
   each_element([&]<class E>(std::type_identity<E>) { solve_le10<E>(table, checks); });
   table.print();

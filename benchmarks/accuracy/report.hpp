@@ -17,7 +17,8 @@ class Table {
 
   void print() const {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      for (const std::string& cell : rows_[i]) std::printf("| %s ", cell.c_str());
+      for (const std::string& cell : rows_[i])  // Markdown would take <Hex8> for a tag
+        std::printf(cell.find('<') == cell.npos ? "| %s " : "| `%s` ", cell.c_str());
       std::printf("|\n");
       for (std::size_t c = 0; i == 0 && c < rows_[0].size(); ++c) std::printf("|---");
       if (i == 0) std::printf("|\n");

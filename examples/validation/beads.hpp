@@ -15,18 +15,18 @@ namespace truth_cube {
 
 using namespace palpate;
 
-inline constexpr int per_side = 7;           ///< beads along an edge
-inline constexpr double edge = 80e-3;        ///< of the cube [m]
-inline constexpr double spacing = 10e-3;     ///< nominal, of the beads [m]
+inline constexpr int per_side = 7;        ///< beads along an edge
+inline constexpr double edge = 80e-3;     ///< of the cube [m]
+inline constexpr double spacing = 10e-3;  ///< nominal, of the beads [m]
 inline constexpr std::array strains{"5 %", "12.5 %", "18.25 %"};
 inline constexpr std::array nominal_travel{0.05 * edge, 0.125 * edge, 0.1825 * edge};  ///< [m]
 
 /// A bead in the frame of the cube: a corner at the origin, the platen at z = 0 moving along +z, the bonded base at
 /// z = 80 mm.
 struct Bead {
-  std::array<int, 3> place{};            ///< 0 ... 6 along x, y, z
-  Vector3 rest = Vector3::Zero();        ///< [m]
-  std::array<Vector3, 3> displacement;   ///< in the three states [m]
+  std::array<int, 3> place{};           ///< 0 ... 6 along x, y, z
+  Vector3 rest = Vector3::Zero();       ///< [m]
+  std::array<Vector3, 3> displacement;  ///< in the three states [m]
 
   bool outer() const {
     return std::ranges::any_of(place, [](int i) { return i == 0 || i == per_side - 1; });
@@ -61,8 +61,8 @@ inline void align(std::vector<Bead>& beads) {
   }
 }
 
-/// Reads uniaxial_positions.csv: i, j, k and four positions [mm] per bead. Throws bad_file unless there are 343 beads, one
-/// per place. Beads come in order of their places, x fastest.
+/// Reads uniaxial_positions.csv: i, j, k and four positions [mm] per bead. Throws bad_file unless there are 343 beads,
+/// one per place. Beads come in order of their places, x fastest.
 inline std::vector<Bead> read_beads(const std::string& path) {
   const std::string text = io::read_file(path);
   std::vector<Bead> beads(per_side * per_side * per_side);
@@ -79,7 +79,9 @@ inline std::vector<Bead> read_beads(const std::string& path) {
     bead.place = {int(n[0]) - 1, int(n[1]) - 1, per_side - int(n[2])};
     if (std::ranges::any_of(bead.place, [](int i) { return i < 0 || i >= per_side; }))
       raise(SetupErrorKind::bad_file, path + ": a bead outside 1 ... 7");
-    const auto at = [&](std::size_t state) { return Vector3(1e-3 * Vector3(n[3 + 3 * state], n[4 + 3 * state], n[5 + 3 * state])); };
+    const auto at = [&](std::size_t state) {
+      return Vector3(1e-3 * Vector3(n[3 + 3 * state], n[4 + 3 * state], n[5 + 3 * state]));
+    };
     bead.rest = at(0);
     for (std::size_t s = 0; s < 3; ++s) bead.displacement[s] = at(s + 1) - bead.rest;
     const auto index = static_cast<std::size_t>(bead.place[0] + per_side * (bead.place[1] + per_side * bead.place[2]));

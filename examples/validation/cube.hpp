@@ -37,8 +37,8 @@ Vector3 between_beads(const Vector3& place, Value value) {
   return sum;
 }
 
-/// (a) The body between the beads, `cells` per gap, the measured motion prescribed on its whole surface: nothing needs to
-/// be known of platen and base. What is predicted is the motion of the 125 beads inside.
+/// (a) The body between the beads, `cells` per gap, the measured motion prescribed on its whole surface: nothing needs
+/// to be known of platen and base. What is predicted is the motion of the 125 beads inside.
 template <Element E>
 Motion inside_measured_shell(const std::vector<Bead>& beads, std::size_t state, int cells) {
   const int n = (per_side - 1) * cells;
@@ -48,8 +48,8 @@ Motion inside_measured_shell(const std::vector<Bead>& beads, std::size_t state, 
   for (Vector3& x : mesh.positions) x = between_beads(x, [&](std::size_t b) { return beads[b].rest; });
   Scene scene;
   for (const NodeId i : nodes_of<E>(extract_boundary<E>(mesh))) {
-    const Vector3 u = between_beads(places[static_cast<std::size_t>(i)],
-                                    [&](std::size_t b) { return beads[b].displacement[state]; });
+    const Vector3 u =
+        between_beads(places[static_cast<std::size_t>(i)], [&](std::size_t b) { return beads[b].displacement[state]; });
     scene.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
   }
   const VectorX u = solve_static(body_of(mesh, {rubber}), scene).displacement;
@@ -57,7 +57,8 @@ Motion inside_measured_shell(const std::vector<Bead>& beads, std::size_t state, 
   for (Index i = 0; i < mesh.node_count(); ++i) {
     const Vector3 nearest = places[static_cast<std::size_t>(i)].array().round();
     if ((places[static_cast<std::size_t>(i)] - nearest).norm() > 1e-9) continue;
-    motion[static_cast<std::size_t>(nearest[0] + per_side * (nearest[1] + per_side * nearest[2]))] = u.segment<3>(3 * i);
+    motion[static_cast<std::size_t>(nearest[0] + per_side * (nearest[1] + per_side * nearest[2]))] =
+        u.segment<3>(3 * i);
   }
   return motion;
 }
@@ -70,7 +71,8 @@ Motion at_beads(const Mesh<E>& mesh, const VectorX& u, const std::vector<Bead>& 
   Motion motion(beads.size(), Vector3::Constant(std::numeric_limits<double>::quiet_NaN()));
   for (Index e = 0; e < mesh.element_count(); ++e) {
     const ElementNodes<E> x = element_nodes<E>(mesh, e);
-    const Vector3 low = x.colwise().minCoeff(), high = x.colwise().maxCoeff(), middle = x.transpose() * E::shape(centre);
+    const Vector3 low = x.colwise().minCoeff(), high = x.colwise().maxCoeff(),
+                  middle = x.transpose() * E::shape(centre);
     const Matrix3 inverse = Matrix3(x.transpose() * E::gradient(centre)).inverse();  // the map is affine
     for (std::size_t b = 0; b < beads.size(); ++b) {
       const Vector3& p = beads[b].rest;
@@ -95,9 +97,11 @@ std::array<Motion, 4> under_the_platen(const std::vector<Bead>& beads, int n) {
   const Body<E> body = body_of(mesh, {rubber});
   Scene widened = Scene().fix("z1");
   for (const NodeId i : mesh.find_group("z0")->nodes)
-    widened.prescribe(std::vector<NodeId>{i}, {mesh.position(i)[0] - 0.5 * edge, mesh.position(i)[1] - 0.5 * edge, 0.0});
+    widened.prescribe(std::vector<NodeId>{i},
+                      {mesh.position(i)[0] - 0.5 * edge, mesh.position(i)[1] - 0.5 * edge, 0.0});
   std::array<Motion, 4> motions;
-  const std::array scenes{Scene().fix("z1").prescribe("z0", {0.0, 0.0, 1.0}), Scene().fix("z1").prescribe("z0", {1.0, 0.0, 0.0}),
+  const std::array scenes{Scene().fix("z1").prescribe("z0", {0.0, 0.0, 1.0}),
+                          Scene().fix("z1").prescribe("z0", {1.0, 0.0, 0.0}),
                           Scene().fix("z1").prescribe("z0", {0.0, 1.0, 0.0}), widened};
   for (std::size_t i = 0; i < 4; ++i) motions[i] = at_beads(mesh, solve_static(body, scenes[i]).displacement, beads);
   return motions;

@@ -2,19 +2,20 @@
 //
 //   truth_cube <uniaxial_positions.csv> [--out <folder>]
 //
-// The Truth Cube (Kerdok, Cotin, Ottensmeyer, Galea, Howe, Dawson: "Truth cube: establishing physical standards for soft
-// tissue simulation", Medical Image Analysis 7, 2003, 283-291) is a cube of silicone rubber, 80 mm, with 343 Teflon beads
-// in it, scanned at rest and pressed together by 5, 12.5 and 18.25 % between a base and a platen. The positions of the
-// beads are the data of the Harvard Biorobotics Laboratory (biorobotics.harvard.edu/truthcube); they are not part of this
-// project. A copy lies in the repository simquest/opensurgsim, SurgSim/Physics/RenderTests/Data/uniaxial_positions.csv,
-// with the parameters used here: E = 15.3 kPa, nu = 0.499, rho = 980 kg/m^3. E does not matter: displacements are given.
+// The Truth Cube (Kerdok, Cotin, Ottensmeyer, Galea, Howe, Dawson: "Truth cube: establishing physical standards for
+// soft tissue simulation", Medical Image Analysis 7, 2003, 283-291) is a cube of silicone rubber, 80 mm, with 343
+// Teflon beads in it, scanned at rest and pressed together by 5, 12.5 and 18.25 % between a base and a platen. The
+// positions of the beads are the data of the Harvard Biorobotics Laboratory (biorobotics.harvard.edu/truthcube); they
+// are not part of this project. A copy lies in the repository simquest/opensurgsim,
+// SurgSim/Physics/RenderTests/Data/uniaxial_positions.csv, with the parameters used here: E = 15.3 kPa, nu = 0.499, rho
+// = 980 kg/m^3. E does not matter: displacements are given.
 //
 // Two set-ups. (a) The measured motion of the 218 outer beads is prescribed and that of the 125 inner ones predicted:
-// nothing has to be assumed about base and platen. (b) The whole cube, base bonded, the platen pushing: held sideways with
-// its nominal travel, and with its travel, sideways shift and slip fitted (four numbers per state, by least squares over
-// all beads: the beads drift by up to 2 mm along y, which a platen that moves straight cannot do).
-// Prints tables in Markdown and writes truth_cube_shell.svg and truth_cube_platen.svg. Exit code 1: the treated element
-// does no better than an affine guess where strain is large, or a number is not finite.
+// nothing has to be assumed about base and platen. (b) The whole cube, base bonded, the platen pushing: held sideways
+// with its nominal travel, and with its travel, sideways shift and slip fitted (four numbers per state, by least
+// squares over all beads: the beads drift by up to 2 mm along y, which a platen that moves straight cannot do). Prints
+// tables in Markdown and writes truth_cube_shell.svg and truth_cube_platen.svg. Exit code 1: the treated element does
+// no better than an affine guess where strain is large, or a number is not finite.
 #include "picture.hpp"
 
 #include "../../benchmarks/accuracy/report.hpp"
@@ -59,8 +60,8 @@ std::string millimetres(double metres) {
 void add_row(Table& table, const std::string& name, const std::string& mesh, const std::array<Errors, 3>& errors) {
   std::vector<std::string> row{name, mesh};
   for (const Errors& e : errors)
-    row.push_back(millimetres(e.mean) + " / " + millimetres(e.root_mean_square) + " / " + millimetres(e.largest) + " (" +
-                  text(100.0 * e.relative, "%.1f") + " %)");
+    row.push_back(millimetres(e.mean) + " / " + millimetres(e.root_mean_square) + " / " + millimetres(e.largest) +
+                  " (" + text(100.0 * e.relative, "%.1f") + " %)");
   table.add(std::move(row));
 }
 
@@ -75,14 +76,15 @@ void print_layers(const std::vector<Bead>& beads, const std::array<Motion, 3>& m
     std::vector<std::string> row{std::to_string(10 * (layer + 1))};
     for (std::size_t s = 0; s < 3; ++s)
       row.push_back(millimetres(errors_of(beads, motion[s], s, [&](const Bead& b) {
-        return b.place[2] == layer && !(inner && b.outer());
-      }).root_mean_square));
+                                  return b.place[2] == layer && !(inner && b.outer());
+                                }).root_mean_square));
     table.add(std::move(row));
   }
   table.print();
 }
 
-std::array<Errors, 3> judge(const std::vector<Bead>& beads, const std::array<Motion, 3>& motion, bool inner, Checks& checks) {
+std::array<Errors, 3> judge(const std::vector<Bead>& beads, const std::array<Motion, 3>& motion, bool inner,
+                            Checks& checks) {
   std::array<Errors, 3> errors;
   for (std::size_t s = 0; s < 3; ++s) {
     errors[s] = errors_of(beads, motion[s], s, [&](const Bead& b) { return !inner || !b.outer(); });
@@ -92,11 +94,13 @@ std::array<Errors, 3> judge(const std::vector<Bead>& beads, const std::array<Mot
 }
 
 void prescribe_shell(const std::vector<Bead>& beads, const std::string& out, Checks& checks) {
-  std::printf("## (a) Outer beads as measured, inner beads predicted\n\nMean, root mean square and largest distance; in "
-              "brackets the root mean square over that of the motion itself.\n\n");
+  std::printf(
+      "## (a) Outer beads as measured, inner beads predicted\n\nMean, root mean square and largest distance; in "
+      "brackets the root mean square over that of the motion itself.\n\n");
   Table table = error_table();
   const auto each_state = [](auto make) { return std::array<Motion, 3>{make(0), make(1), make(2)}; };
-  const auto affine = judge(beads, each_state([&](std::size_t s) { return affine_from_shell(beads, s); }), true, checks);
+  const auto affine =
+      judge(beads, each_state([&](std::size_t s) { return affine_from_shell(beads, s); }), true, checks);
   add_row(table, "affine guess", "-", affine);
   const auto run = [&]<class E>(std::type_identity<E>, const char* name, int cells) {
     const auto motion = each_state([&](std::size_t s) { return inside_measured_shell<E>(beads, s, cells); });
@@ -129,8 +133,8 @@ void push_platen(const std::vector<Bead>& beads, const std::string& out, Checks&
       const PlatenMotion p = fit(beads, unit, s);
       nominal[s] = combine(unit, {nominal_travel[s], 0.0, 0.0, 0.0});
       best[s] = combine(unit, p);
-      found += std::string(s == 0 ? " " : ", ") + "travel " + millimetres(p[0]) + " mm, shift (" + millimetres(p[1]) + ", " +
-               millimetres(p[2]) + ") mm, widening " + text(100.0 * p[3], "%.1f") + " % at " + strains[s];
+      found += std::string(s == 0 ? " " : ", ") + "travel " + millimetres(p[0]) + " mm, shift (" + millimetres(p[1]) +
+               ", " + millimetres(p[2]) + ") mm, widening " + text(100.0 * p[3], "%.1f") + " % at " + strains[s];
     }
     const std::string mesh = std::to_string(n) + "^3";
     add_row(held, name, mesh, judge(beads, nominal, false, checks));

@@ -56,11 +56,21 @@ void check_effectivity(int n, double most_coarse = 1.7, double most_fine = 1.16)
 }  // namespace
 
 TEST_CASE("the estimate tends to the error on Lame's sphere", "[post]") {
-  SECTION("Tet4") { check_effectivity<Tet4>(4); }
-  SECTION("Hex8") { check_effectivity<Hex8>(4); }
-  SECTION("MeanDilatation<Hex8>") { check_effectivity<Cured>(4); }
-  SECTION("Tet10") { check_effectivity<Tet10>(2); }
-  SECTION("Hex20") { check_effectivity<Hex20>(2, 2.5, 1.7); }  // patches at surfaces are wide: from above, slowly
+  SECTION("Tet4") {
+    check_effectivity<Tet4>(4);
+  }
+  SECTION("Hex8") {
+    check_effectivity<Hex8>(4);
+  }
+  SECTION("MeanDilatation<Hex8>") {
+    check_effectivity<Cured>(4);
+  }
+  SECTION("Tet10") {
+    check_effectivity<Tet10>(2);
+  }
+  SECTION("Hex20") {
+    check_effectivity<Hex20>(2, 2.5, 1.7);
+  }  // patches at surfaces are wide: from above, slowly
 }
 
 TEST_CASE("no error where the element holds the solution, and none without load", "[post]") {
@@ -74,7 +84,8 @@ TEST_CASE("no error where the element holds the solution, and none without load"
   CHECK((none.size_ratio(0.05).array() == 8.0).all());
 }
 
-TEST_CASE("the estimate finds where the mesh is too coarse, and the sizes it asks for keep what they promise", "[post]") {
+TEST_CASE("the estimate finds where the mesh is too coarse, and the sizes it asks for keep what they promise",
+          "[post]") {
   // A beam clamped at one end: the error sits there.
   const Scene scene = Scene().fix("x0").traction("x1", {0.0, 0.0, -1e-3});
   const Body<Hex8> body = body_of(box_of<Hex8>({4, 1, 1}, {8, 4, 4}), {soft});
@@ -114,7 +125,8 @@ TEST_CASE("the estimate does not depend on units, place and direction", "[post]"
     v.segment<3>(3 * i) = 1e-3 * r * u.segment<3>(3 * i);
     moved.positions[static_cast<std::size_t>(i)] = 1e-3 * (r * x + Vector3(3, 4, 5));
   }
-  const ErrorEstimate here = estimate_error(body_of(mesh, {soft}), u), there = estimate_error(body_of(moved, {soft}), v);
+  const ErrorEstimate here = estimate_error(body_of(mesh, {soft}), u),
+                      there = estimate_error(body_of(moved, {soft}), v);
   CHECK_THAT(there.relative(), Catch::Matchers::WithinRel(here.relative(), 1e-9));
   CHECK((here.size_ratio(0.01) - there.size_ratio(0.01)).cwiseAbs().maxCoeff() <= 1e-8);
 }

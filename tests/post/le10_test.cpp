@@ -39,7 +39,8 @@ TEST_CASE("LE10: recovered stress comes to the target with refinement", "[post][
   CHECK(std::abs(error_at_d<Tet4>({16, 12, 8})) < 0.15);
 }
 
-TEST_CASE("LE10 on the reference mesh: recovered stress between the values of two other codes", "[post][le10][oracle]") {
+TEST_CASE("LE10 on the reference mesh: recovered stress between the values of two other codes",
+          "[post][le10][oracle]") {
   const std::string folder = PALPATE_ORACLE_DIR "/D_nafems_le10/tet10_h0.4/";
   if (!std::filesystem::exists(folder)) {
     WARN("skipped: there is no folder " << folder);
@@ -61,7 +62,8 @@ TEST_CASE("LE10 on the reference mesh: recovered stress between the values of tw
   CHECK(recovered > -5.60e6);
   CHECK(recovered < -5.25e6);
   // The mean around a node is of first order only: it is far off on this mesh.
-  const double mean = stress_field(body, solved.displacement).nodes(voigt::yy, accuracy::nearest_node(body.mesh, {2, 0, 0.6}));
+  const double mean =
+      stress_field(body, solved.displacement).nodes(voigt::yy, accuracy::nearest_node(body.mesh, {2, 0, 0.6}));
   CHECK(std::abs(mean / le10_target - 1.0) > 2.0 * std::abs(recovered / le10_target - 1.0));
   const ErrorEstimate estimate = estimate_error(body, solved.displacement, patch_recovery(body, solved.displacement));
   CHECK(estimate.relative() > 0.01);

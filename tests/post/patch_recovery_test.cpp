@@ -51,7 +51,8 @@ struct Polynomial {
         if (n[c] == 0) continue;
         auto m = n;
         --m[c];
-        gradient.col(static_cast<int>(c)) += f * n[c] * std::pow(x[0], m[0]) * std::pow(x[1], m[1]) * std::pow(x[2], m[2]);
+        gradient.col(static_cast<int>(c)) +=
+            f * n[c] * std::pow(x[0], m[0]) * std::pow(x[1], m[1]) * std::pow(x[2], m[2]);
       }
     });
     return voigt::strain_vector(0.5 * (gradient + gradient.transpose()));
@@ -113,7 +114,8 @@ TEST_CASE("a stress of degree order - 1 is exact in all points and at all nodes,
       }
     }
   });
-  for (int degree : {0, 1}) CHECK(polynomial_error(jittered(box_of<Hex20>({1, 1, 1}, {3, 3, 3}), 0.05), degree) <= 1e-10);
+  for (int degree : {0, 1})
+    CHECK(polynomial_error(jittered(box_of<Hex20>({1, 1, 1}, {3, 3, 3}), 0.05), degree) <= 1e-10);
   for (int degree : {0, 1, 2}) {
     CHECK(points_error(box_of<Hex20>({1, 1, 1}, {2, 3, 2}), degree) <= 1e-12);
     CHECK(polynomial_error(box_of<Hex20>({1, 1, 1}, {1, 1, 1}), degree) <= 1e-11);  // a single element
@@ -161,8 +163,8 @@ TEST_CASE("recovery beats the mean around a node on a smooth field", "[post]") {
     const auto [coarse, coarse_mean] = errors(element, n);
     const auto [fine, fine_mean] = errors(element, 2 * n);
     const double order = std::log2(coarse / fine);
-    INFO("nodes " << E::nodes << ": recovered " << coarse << ' ' << fine << " order " << order << ", mean " << coarse_mean
-                  << ' ' << fine_mean);
+    INFO("nodes " << E::nodes << ": recovered " << coarse << ' ' << fine << " order " << order << ", mean "
+                  << coarse_mean << ' ' << fine_mean);
     CHECK(order > 0.85);  // in the worst node, on an edge
     CHECK(fine < 0.9 * fine_mean);
   });
@@ -211,11 +213,14 @@ TEST_CASE("recovered stress turns with the body, and does not depend on where it
       });
       VectorX v(u.size());
       for (Index i = 0; i < mesh.node_count(); ++i) v.segment<3>(3 * i) = r * u.segment<3>(3 * i);
-      const NodalStress before = patch_recovery(body_of(mesh, {soft}), u), after = patch_recovery(body_of(turned, {soft}), v);
+      const NodalStress before = patch_recovery(body_of(mesh, {soft}), u),
+                        after = patch_recovery(body_of(turned, {soft}), v);
       double worst = 0.0;
       for (Index i = 0; i < mesh.node_count(); ++i)
-        worst = std::max(worst, (r * voigt::stress_tensor(before.at(i)) * r.transpose() -
-                                 voigt::stress_tensor(after.at(i))).cwiseAbs().maxCoeff());
+        worst =
+            std::max(worst, (r * voigt::stress_tensor(before.at(i)) * r.transpose() - voigt::stress_tensor(after.at(i)))
+                                .cwiseAbs()
+                                .maxCoeff());
       CHECK(worst <= 1e-9 * before.stress.cwiseAbs().maxCoeff());
     }
   });

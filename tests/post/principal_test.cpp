@@ -27,8 +27,9 @@ void check(const Matrix3& t, double tolerance = 1e-14) {
 
 TEST_CASE("principal values of known tensors, in every frame, repeated values too", "[post]") {
   testing::Random random(101);
-  for (const Vector3& values : {Vector3(3, 2, -1), Vector3(5, 5, -2), Vector3(4, -1, -1), Vector3(2, 2, 2), Vector3(0, 0, 0),
-                                Vector3(1, 1e-9, 0), Vector3(1, 1 - 1e-15, 1 - 2e-15), Vector3(7, 0, 0), Vector3(0, 0, -7)})
+  for (const Vector3& values :
+       {Vector3(3, 2, -1), Vector3(5, 5, -2), Vector3(4, -1, -1), Vector3(2, 2, 2), Vector3(0, 0, 0),
+        Vector3(1, 1e-9, 0), Vector3(1, 1 - 1e-15, 1 - 2e-15), Vector3(7, 0, 0), Vector3(0, 0, -7)})
     for (int i = 0; i < 50; ++i) {
       const Matrix3 r = i == 0 ? Matrix3(Matrix3::Identity()) : testing::random_rotation(random);
       Matrix3 t = r * values.asDiagonal() * r.transpose();

@@ -1,4 +1,5 @@
-// A manufactured solution on even and distorted meshes: orders of convergence of displacement and energy, every element.
+// A manufactured solution on even and distorted meshes: orders of convergence of displacement and energy, every
+// element.
 #include "../../benchmarks/accuracy/manufactured.hpp"
 #include "../../benchmarks/accuracy/solver.cpp"
 
@@ -13,7 +14,9 @@ template <Element E>
 void check_orders(int coarse) {
   const Manufactured field;
   for (const bool distorted : {false, true}) {
-    const auto errors = [&](int n) { return manufactured_errors(refined_cube<E>(n, distorted), field, &solve_static<E>); };
+    const auto errors = [&](int n) {
+      return manufactured_errors(refined_cube<E>(n, distorted), field, &solve_static<E>);
+    };
     const Errors before = errors(coarse), after = errors(2 * coarse);
     const double displacement = observed_order(before.displacement, after.displacement, 2.0);
     const double energy = observed_order(before.energy, after.energy, 2.0);
@@ -41,16 +44,25 @@ TEST_CASE("a manufactured body force is minus the divergence of its stress", "[p
     divergence += (stress(h) - stress(-h)).col(j) / (2.0 * h);
     Matrix3 gradient;
     for (int c = 0; c < 3; ++c)
-      gradient.col(c) = (field.displacement(x + h * Vector3::Unit(c)) - field.displacement(x - h * Vector3::Unit(c))) / (2.0 * h);
+      gradient.col(c) =
+          (field.displacement(x + h * Vector3::Unit(c)) - field.displacement(x - h * Vector3::Unit(c))) / (2.0 * h);
     CHECK((voigt::strain_vector(0.5 * (gradient + gradient.transpose())) - field.strain(x)).norm() <= 1e-8);
   }
   CHECK((divergence + field.body_force(x)).norm() <= 1e-8);
 }
 
-TEST_CASE("Tet4 converges with its order in displacement and energy", "[property][mms]") { check_orders<Tet4>(4); }
-TEST_CASE("Tet10 converges with its order in displacement and energy", "[property][mms]") { check_orders<Tet10>(2); }
-TEST_CASE("Hex8 converges with its order in displacement and energy", "[property][mms]") { check_orders<Hex8>(4); }
+TEST_CASE("Tet4 converges with its order in displacement and energy", "[property][mms]") {
+  check_orders<Tet4>(4);
+}
+TEST_CASE("Tet10 converges with its order in displacement and energy", "[property][mms]") {
+  check_orders<Tet10>(2);
+}
+TEST_CASE("Hex8 converges with its order in displacement and energy", "[property][mms]") {
+  check_orders<Hex8>(4);
+}
 TEST_CASE("MeanDilatation<Hex8> converges with its order in displacement and energy", "[property][mms]") {
   check_orders<MeanDilatation<Hex8>>(4);
 }
-TEST_CASE("Hex20 converges with its order in displacement and energy", "[property][mms]") { check_orders<Hex20>(2); }
+TEST_CASE("Hex20 converges with its order in displacement and energy", "[property][mms]") {
+  check_orders<Hex20>(2);
+}

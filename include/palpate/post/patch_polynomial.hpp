@@ -35,10 +35,10 @@ inline PatchFrame patch_frame(const std::vector<Vector3>& points) {
 }
 
 /// Least-squares fit of a polynomial of degree 1 or 2 to every stress component, points weighted by the inverse
-/// square of their distance to the node. A constant is always met; directions in which the points do not differ get no slope.
+/// square of their distance to the node. A constant is always met; directions in which the points do not differ get no
+/// slope.
 template <int Degree>
-requires(Degree == 1 || Degree == 2)
-class PatchPolynomial {
+requires(Degree == 1 || Degree == 2) class PatchPolynomial {
  public:
   static constexpr int terms = Degree == 1 ? 3 : 9;  ///< besides the constant
 

@@ -34,22 +34,20 @@ struct NodalStress {
 
 /// Where patch recovery looks at an element's stress, and how many such points it wants per unknown: the centre of Hex8
 /// and eight points of Hex20, where the stress is better than elsewhere (Barlow 1976), by ten times near
-/// incompressibility; one or four points in tetrahedra, and more of them, for their stress scatters. Other elements: the
-/// points of their own rule.
+/// incompressibility; one or four points in tetrahedra, and more of them, for their stress scatters. Other elements:
+/// the points of their own rule.
 template <Element E>
 struct SamplingRule {
   using Type = typename E::Quadrature;
   static constexpr int oversampling = 2;
 };
 template <Element E>
-requires(E::faces.size() == 4 && E::order <= 2)
-struct SamplingRule<E> {
+requires(E::faces.size() == 4 && E::order <= 2) struct SamplingRule<E> {
   using Type = TetrahedronRule<E::order>;
   static constexpr int oversampling = 4;
 };
 template <Element E>
-requires(E::faces.size() == 6 && E::order <= 2)
-struct SamplingRule<E> {
+requires(E::faces.size() == 6 && E::order <= 2) struct SamplingRule<E> {
   using Type = HexahedronRule<E::order>;
   static constexpr int oversampling = 2;
 };
@@ -134,9 +132,8 @@ class PatchRecovery {
   }
 
   bool is_corner(Index node, int region) const noexcept {
-    return std::ranges::any_of(around_.of(node), [&](NodeId e) {
-      return mesh().region(e) == region && local_node(e, node) < corners;
-    });
+    return std::ranges::any_of(around_.of(node),
+                               [&](NodeId e) { return mesh().region(e) == region && local_node(e, node) < corners; });
   }
 
   /// The elements of the patch and of those that touch it, in the same region.
@@ -222,9 +219,9 @@ class PatchRecovery {
 /// of SamplingRule; nodes in the middle of an edge take the mean of its two ends. Exact when the stress is a polynomial
 /// of degree order - 1; on even meshes of hexahedra of degree order. Regions are kept apart. Where a patch does not
 /// determine its polynomial (at surfaces) it grows by up to two rings of elements; what cannot be determined then gets
-/// no slope, so that a body of a single element has its mean. What is not finite in `u` stays so in the patches that see
-/// it. Costs about 5 us a node (linear elements) to 60 us a corner (quadratic ones), allocates: for looking at results,
-/// not for every frame. Throws bad_argument when `u` has another length.
+/// no slope, so that a body of a single element has its mean. What is not finite in `u` stays so in the patches that
+/// see it. Costs 3 to 12 us a node, allocates: for looking at results, not for every
+/// frame. Throws bad_argument when `u` has another length.
 template <Element E>
 NodalStress patch_recovery(const Body<E>& body, const VectorX& u) {
   require_displacement(body.mesh, u);

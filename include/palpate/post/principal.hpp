@@ -11,8 +11,8 @@ namespace palpate::inline PALPATE_ABI {
 
 /// Principal values of a symmetric tensor, falling, and their directions.
 struct Principal {
-  Vector3 values = Vector3::Zero();            ///< falling; unit of the tensor
-  Matrix3 directions = Matrix3::Identity();    ///< unit vectors, one per column in order of the values, right-handed
+  Vector3 values = Vector3::Zero();          ///< falling; unit of the tensor
+  Matrix3 directions = Matrix3::Identity();  ///< unit vectors, one per column in order of the values, right-handed
 
   /// Largest shear, half of the difference between the outer values (Tresca).
   double largest_shear() const noexcept { return 0.5 * values[0] - 0.5 * values[2]; }
@@ -21,7 +21,7 @@ struct Principal {
 /// Principal values and directions of a symmetric tensor (the upper half is read), by Jacobi's rotations (Golub and Van
 /// Loan, Matrix Computations, 8.5): directions are orthogonal to rounding also where values repeat, where any basis of
 /// their space is right; values are off by a few units in the last place of the largest. Any finite tensor, without
-/// overflow; NaN values for one that is not finite. No allocation, about 0.2 us.
+/// overflow; NaN values for one that is not finite. No allocation, about 1 us.
 inline Principal principal(Matrix3 t) noexcept {
   const double scale = t.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
   Principal p;
