@@ -69,7 +69,7 @@ TEST_CASE("the estimate tends to the error on Lame's sphere", "[post]") {
     check_effectivity<Tet10>(2);
   }
   SECTION("Hex20") {
-    check_effectivity<Hex20>(2, 2.5, 1.7);
+    check_effectivity<Hex20>(2, 2.5, 1.8);
   }  // patches at surfaces are wide: from above, slowly
 }
 

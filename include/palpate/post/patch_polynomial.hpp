@@ -35,8 +35,7 @@ inline PatchFrame patch_frame(const std::vector<Vector3>& points) {
 }
 
 /// Least-squares fit of a polynomial of degree 1 or 2 to every stress component, points weighted by the inverse
-/// square of their distance to the node. A constant is always met; directions in which the points do not differ get no
-/// slope.
+/// of their distance to the node. A constant is always met; directions in which the points do not differ get no slope.
 template <int Degree>
 requires(Degree == 1 || Degree == 2) class PatchPolynomial {
  public:
@@ -52,7 +51,7 @@ requires(Degree == 1 || Degree == 2) class PatchPolynomial {
     Eigen::Matrix<double, Eigen::Dynamic, terms> a(count, terms);
     for (Index i = 0; i < count; ++i) {
       const Vector3& point = points[static_cast<std::size_t>(i)];
-      weights[i] = 1.0 / ((frame.map * (point - node)).squaredNorm() + nearest);
+      weights[i] = 1.0 / ((frame.map * (point - node)).norm() + nearest);
       a.row(i) = powers(point).transpose();
     }
     weights /= weights.sum();
@@ -77,7 +76,7 @@ requires(Degree == 1 || Degree == 2) class PatchPolynomial {
  private:
   /// A pivot this much smaller than the largest says that a term cannot be told from the others.
   static constexpr double least_pivot = 0.03;
-  static constexpr double nearest = 1e-4;  ///< keeps the weights finite
+  static constexpr double nearest = 0.01;  ///< keeps the weights finite
 
   using Terms = Eigen::Matrix<double, terms, 1>;
 
