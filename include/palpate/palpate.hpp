@@ -26,4 +26,7 @@
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/natural_frequencies.hpp>
+#include <palpate/post/error_estimate.hpp>
+#include <palpate/post/principal.hpp>
+#include <palpate/post/stress.hpp>
 #include <palpate/version.hpp>

@@ -40,18 +40,30 @@ double strain_energy(const Body<E>& body, const VectorX& u) {
   return energy;
 }
 
-/// Stress of every element [Pa], one per column: the mean over its edges and nodes, with which the element makes the
-/// nodal forces B^T sigma V that it makes in K.
+/// Strain, and stress [Pa], of every element, one per column: means over its edges and nodes. With this stress an element
+/// makes the nodal forces B^T sigma V that it makes in K.
+struct SmoothedState {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> strain, stress;
+};
+
 template <HasSmoothedStrain E>
-Eigen::Matrix<double, 6, Eigen::Dynamic> smoothed_stress(const Body<E>& body, const VectorX& u) {
-  Eigen::Matrix<double, 6, Eigen::Dynamic> mean;
-  mean.setZero(6, body.mesh.element_count());
-  for_each_domain_stress(body, body.initial_strain, u,
-                         [&](const StrainDomain& domain, const Vector6& stress, const Vector6&) {
-                           const double share = domain.part == StrainPart::deviatoric ? 1.0 / 6.0 : 1.0 / 4.0;
-                           for (const NodeId e : domain.elements) mean.col(e) += share * stress;
-                         });
-  return mean;
+SmoothedState smoothed_state(const Body<E>& body, const VectorX& u) {
+  SmoothedState state;
+  state.strain.setZero(6, body.mesh.element_count());
+  state.stress.setZero(6, body.mesh.element_count());
+  const auto visit = [&](const StrainDomain& domain, const Vector6& stress, const Vector6& elastic) {
+    const Vector6 strain = elastic + body.initial_strain[static_cast<std::size_t>(domain.region)];
+    Vector6 part = Vector6::Zero();
+    part.head<3>().setConstant(strain.head<3>().sum() / 3.0);
+    if (domain.part == StrainPart::deviatoric) part = strain - part;
+    const double share = domain.part == StrainPart::deviatoric ? 1.0 / 6.0 : 1.0 / 4.0;
+    for (const NodeId e : domain.elements) {
+      state.strain.col(e) += share * part;
+      state.stress.col(e) += share * stress;
+    }
+  };
+  for_each_domain_stress(body, body.initial_strain, u, visit);
+  return state;
 }
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,84 @@
+// How wrong the stress is, and where the mesh is too coarse.
+#pragma once
+
+#include <palpate/post/patch_recovery.hpp>
+
+#include <Eigen/Cholesky>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Estimate of the discretisation error in the energy norm |e| = (integral of e_sigma : D^-1 : e_sigma)^1/2, the square
+/// root of twice its strain energy [J^1/2].
+struct ErrorEstimate {
+  VectorX elements;          ///< of every element [J^1/2]; their squares add up to that of the body
+  double error = 0.0;        ///< of the body [J^1/2]
+  double energy_norm = 0.0;  ///< of the elastic strain found, sqrt(2 strain energy) [J^1/2]
+  int order = 1;             ///< of the element
+
+  /// Error over the norm of the estimated exact solution, 0 ... 1; 0 for an unloaded body.
+  double relative() const noexcept {
+    const double whole = std::hypot(error, energy_norm);
+    return whole > 0.0 ? error / whole : 0.0;
+  }
+
+  /// h_new / h per element for a mesh whose relative error is `target`, spread evenly over the elements (Zienkiewicz
+  /// and Zhu 1987): below 1 the mesh is too coarse there, above 1 finer than need be. Cut off at 1 / `most` and `most`.
+  /// Next to a singular point the error falls more slowly than the order of the element says: refine in steps, and
+  /// estimate again. Throws bad_argument unless 0 < target < 1 and most >= 1.
+  VectorX size_ratio(double target, double most = 8.0) const {
+    if (!(target > 0.0 && target < 1.0) || !(most >= 1.0))
+      raise(SetupErrorKind::bad_argument, "a mesh for a relative error of " + number(target),
+            "Give one between 0 and 1");
+    const double allowed =
+        target * std::hypot(error, energy_norm) / std::sqrt(static_cast<double>(std::max<Index>(elements.size(), 1)));
+    VectorX ratio(elements.size());
+    for (Index e = 0; e < ratio.size(); ++e)
+      if (elements[e] == 0.0)
+        ratio[e] = most;
+      else
+        ratio[e] = std::clamp(std::pow(allowed / elements[e], 1.0 / order), 1.0 / most, most);  // NaN stays NaN
+    return ratio;
+  }
+};
+
+/// The estimate of Zienkiewicz and Zhu (1987, 1992): the recovered stress, interpolated with the shape functions,
+/// stands for the exact one. `nodal` is patch_recovery of the same body and displacement. Sound where the mesh resolves
+/// the solution: then error estimated / error tends to 1. It cannot see what the whole mesh misses; a body that locks
+/// (plain Tet4 or Hex8 near nu = 0.5) has more error than it says. Costs 1 us (Tet4) to 35 us (Hex20) an element.
+/// Throws bad_argument when `u` or `nodal` do not fit the body.
+template <Element E>
+ErrorEstimate estimate_error(const Body<E>& body, const VectorX& u, const NodalStress& nodal) {
+  const ElementStress<E> state(body, u);
+  if (nodal.first.size() != static_cast<std::size_t>(body.mesh.node_count()) + 1)
+    raise(SetupErrorKind::bad_argument, "the recovered stress belongs to another mesh", "Give patch_recovery(body, u)");
+  std::vector<Eigen::LDLT<Matrix6>> elasticity;
+  for (const Matrix6& d : body.elasticity) elasticity.emplace_back(d);
+  ErrorEstimate estimate{VectorX(body.mesh.element_count()), 0.0, 0.0, E::order};
+  double error = 0.0, energy = 0.0;
+  for (Index e = 0; e < body.mesh.element_count(); ++e) {
+    Eigen::Matrix<double, 6, E::nodes> at_nodes;
+    for (int a = 0; a < E::nodes; ++a)
+      at_nodes.col(a) = nodal.stress.col(nodal.column(body.mesh.element_node(e, a), body.mesh.region(e)));
+    const auto& compliance = elasticity[body.law_of(e)];
+    const auto points = state.template points<typename E::MassQuadrature>(e);
+    double square = 0.0;
+    for (std::size_t q = 0; q < points.size(); ++q) {
+      const Vector6 missed = at_nodes * E::shape(reference_point(E::MassQuadrature::points[q])) - points[q].stress;
+      square += points[q].volume * missed.dot(compliance.solve(missed));
+      energy += points[q].volume * points[q].stress.dot(compliance.solve(points[q].stress));
+    }
+    estimate.elements[e] = std::sqrt(square);
+    error += square;
+  }
+  estimate.error = std::sqrt(error);
+  estimate.energy_norm = std::sqrt(energy);
+  return estimate;
+}
+
+/// The same, recovering the stress first.
+template <Element E>
+ErrorEstimate estimate_error(const Body<E>& body, const VectorX& u) {
+  return estimate_error(body, u, patch_recovery(body, u));
+}
+
+}  // namespace palpate::inline PALPATE_ABI
