@@ -9,9 +9,10 @@ namespace touch {
 
 using namespace palpate;
 
-// The three choices that make a tissue: which element, which material, how it is solved. Condensed<SelectiveInverse>
-// keeps the nodes a tool can reach and reads their compliance from a stored inverse: the least work in a tick.
-using Organ = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
+// The three choices that make a tissue: which element, which material, how it is solved. Smoothed<Tet4> is Tet4 without
+// its locking: tissue is nearly incompressible. Condensed<SelectiveInverse> keeps the nodes a tool can reach and reads
+// their compliance from a stored inverse: the least work in a tick.
+using Organ = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
 
 inline const RegionMaterials<LinearElastic> materials{
     {"parenchyma", {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}},  // soft, nearly incompressible
