@@ -1,7 +1,9 @@
 // The whole library. Include single headers to compile less.
 #pragma once
 
+#include <palpate/contact/tissue_group.hpp>
 #include <palpate/device/mock_device.hpp>
+#include <palpate/device/placement.hpp>
 #include <palpate/device/recorder.hpp>
 #include <palpate/device/replay_device.hpp>
 #include <palpate/element/hex20.hpp>
@@ -19,6 +21,7 @@
 #include <palpate/io/write_msh.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/orthotropic.hpp>
+#include <palpate/material/tissue_presets.hpp>
 #include <palpate/material/transversely_isotropic.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>
@@ -26,6 +29,7 @@
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/natural_frequencies.hpp>
+#include <palpate/model/visual_surface.hpp>
 #include <palpate/post/error_estimate.hpp>
 #include <palpate/post/principal.hpp>
 #include <palpate/post/stress.hpp>

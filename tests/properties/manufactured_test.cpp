@@ -54,6 +54,9 @@ TEST_CASE("a manufactured body force is minus the divergence of its stress", "[p
 TEST_CASE("Tet4 converges with its order in displacement and energy", "[property][mms]") {
   check_orders<Tet4>(4);
 }
+TEST_CASE("Smoothed<Tet4> converges with the order of Tet4 at least", "[property][mms]") {
+  check_orders<Smoothed<Tet4>>(4);
+}
 TEST_CASE("Tet10 converges with its order in displacement and energy", "[property][mms]") {
   check_orders<Tet10>(2);
 }

@@ -22,6 +22,14 @@ struct ServoOptions {
   ContactParameters contact;
 };
 
+/// A contact that presses, world frame.
+struct ToolContact {
+  int tool = 0;
+  Vector3 point = Vector3::Zero();   ///< on the deformed surface [m]
+  Vector3 normal = Vector3::Zero();  ///< unit, from the surface to the ball's centre
+  double force = 0.0;                ///< of the tissue on the ball along the normal, before the gate [N]
+};
+
 /// Contact state and force gate of one session. `tick` computes the force in the tick that brought the pose and passes
 /// it through the gate: no way to the device goes round it. Refers to the tissue, which must outlive it; neither copied
 /// nor moved.
@@ -31,13 +39,16 @@ class HapticServo {
   static constexpr std::size_t max_tools = maximum_tools;
   static constexpr int contact_capacity = 64;  ///< contacts of all tools; more are left out (degraded_model)
 
-  /// What a renderer needs of a tick: forces on the contact surface, proxies of the tools in the world.
+  /// What a renderer needs of a tick: forces on the contact surface, contacts and proxies of the tools in the world.
   struct Snapshot {
     std::array<VertexForce, 3 * contact_capacity> forces;
     std::size_t force_count = 0;
+    std::array<ToolContact, contact_capacity> contacts;
+    std::size_t contact_count = 0;
     std::array<Vector3, max_tools> proxies{};  ///< centre of every tool's ball, world frame [m]
     double time = 0.0;
     std::span<const VertexForce> vertex_forces() const noexcept { return {forces.data(), force_count}; }
+    std::span<const ToolContact> tool_contacts() const noexcept { return {contacts.data(), contact_count}; }
   };
 
   /// Throws bad_argument for an invalid tool, coupling or limits, or when nothing of the tissue can be touched.
@@ -201,6 +212,10 @@ class HapticServo {
     const auto forces = problem_.vertex_forces();
     std::ranges::copy(forces, s.forces.begin());
     s.force_count = forces.size();
+    s.contact_count = 0;
+    for (const Contact& c : problem_.contacts())
+      if (c.force > 0.0)
+        s.contacts[s.contact_count++] = {c.tool, tissue_->pose() * c.point, tissue_->pose().linear() * c.normal, c.force};
     for (std::size_t i = 0; i < contact_tools_.size(); ++i) s.proxies[i] = proxy(i);
     s.time = states_.front().time;
     snapshots_.publish();

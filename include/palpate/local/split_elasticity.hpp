@@ -3,8 +3,7 @@
 
 #include <palpate/local/isotropic.hpp>
 
-#include <Eigen/Cholesky>
-
+#include <array>
 #include <cmath>
 
 namespace palpate::inline PALPATE_ABI {
@@ -19,9 +18,22 @@ struct SplitElasticity {
 /// The bulk modulus of a law under hydrostatic pressure [Pa]; `d` is symmetric and positive definite.
 inline double bulk_modulus(const Matrix6& d) noexcept {
   if (const auto c = lame_constants(d)) return c->lambda + 2.0 / 3.0 * c->mu;
-  Vector6 m = Vector6::Zero();
-  m.head<3>().setOnes();
-  return 1.0 / m.dot(d.ldlt().solve(m));
+  // m . D^-1 m by Cholesky: |y|^2 with L y = m. Eigen's would cost every user a second of compiling.
+  std::array<std::array<double, 6>, 6> l{};
+  std::array<double, 6> y{};
+  double compliance = 0.0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    double rest = i < 3 ? 1.0 : 0.0;
+    for (std::size_t j = 0; j <= i; ++j) {
+      double sum = d(static_cast<int>(i), static_cast<int>(j));
+      for (std::size_t k = 0; k < j; ++k) sum -= l[i][k] * l[j][k];
+      l[i][j] = i == j ? std::sqrt(sum) : sum / l[j][j];
+    }
+    for (std::size_t k = 0; k < i; ++k) rest -= l[i][k] * y[k];
+    y[i] = rest / l[i][i];
+    compliance += y[i] * y[i];
+  }
+  return 1.0 / compliance;
 }
 
 inline SplitElasticity split_elasticity(const Matrix6& d) noexcept {

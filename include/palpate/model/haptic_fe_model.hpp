@@ -35,6 +35,7 @@ class HapticFEModel {
  public:
   static_assert(has_triangulated_faces<E>(),
                 "palpate: tools touch triangles; give the element's Face a list `triangles` of its nodes, like Tri6");
+  using ElementType = E;
   using Traits = SolverTraits<Solver>;
 
   /// One material everywhere. Throws SetupError; see docs/errors.md for the kinds.
