@@ -1,6 +1,8 @@
 // Natural frequencies of one load case with elements E.
 #pragma once
 
+#include <palpate/model/natural_frequencies.hpp>
+
 #include "solve.hpp"
 
 namespace solve_case {

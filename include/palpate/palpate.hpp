@@ -1,4 +1,5 @@
-// The whole library. Include single headers to compile less.
+// All a haptic session needs. Include single headers to compile less; what looks at results has headers of its own
+// (post/, model/natural_frequencies.hpp).
 #pragma once
 
 #include <palpate/contact/tissue_group.hpp>
@@ -28,9 +29,5 @@
 #include <palpate/mesh/refine.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
-#include <palpate/model/natural_frequencies.hpp>
 #include <palpate/model/visual_surface.hpp>
-#include <palpate/post/error_estimate.hpp>
-#include <palpate/post/principal.hpp>
-#include <palpate/post/stress.hpp>
 #include <palpate/version.hpp>
