@@ -97,7 +97,7 @@ class TissueGroup {
     Member m{&tissue, first, surface.vertex_count(), surface.positions().data(), &tissue.pose(), {}, {}, {}, {}, {}};
     m.require = [](void* t, std::span<const int> v) noexcept { return static_cast<T*>(t)->require_columns(v); };
     m.foresee = [](void* t, std::span<const int> v) noexcept {
-      if constexpr (requires(T& tissue) { tissue.foresee(v); }) static_cast<T*>(t)->foresee(v);
+      if constexpr (requires(T& model) { model.foresee(v); }) static_cast<T*>(t)->foresee(v);
     };
     m.compliance = [](const void* t, int i, int j) noexcept -> Matrix3 {
       return static_cast<const T*>(t)->compliance(i, j);
