@@ -76,7 +76,7 @@ Body<E> read_body(const Mesh<E>& mesh, const json& load_case, const Scene& scene
 template <Element E>
 double difference(const Mesh<E>& mesh, const json& load_case, const std::map<Index, Vector3>& reference,
                   const std::vector<Index>& tags) {
-  solve_case::check_analysis(load_case);
+  solve_case::check_analysis(load_case, solve_case::statics);
   Scene scene = solve_case::read_scene(load_case, mesh);
   const Body<E> body = read_body(mesh, load_case, scene);
   hold_lone_nodes(mesh, scene);
@@ -102,7 +102,7 @@ void compare_folder(const fs::path& root, const fs::path& folder, const solve_ca
   for (const json& load_case : file.load_cases) {
     const auto which = load_case.at("name").get<std::string>();
     const fs::path reference = folder / (which + "_u.csv");
-    if (load_case.at("analysis") != "linear static, small strain" || !fs::exists(reference)) continue;
+    if (load_case.at("analysis") != solve_case::statics || !fs::exists(reference)) continue;
     const double error = difference(mesh, load_case, read_displacements(reference), tags);
     const auto other = disagreement.find(name + ' ' + which);
     table.add({name, which, element_name<E>(), std::to_string(mesh.node_count()), text(error, "%.1e"),

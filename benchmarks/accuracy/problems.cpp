@@ -87,8 +87,12 @@ void solve_cantilever(Table& table, Checks& checks) {
     };
     if (std::same_as<E, Hex8> && n == 2) agrees(0.00882890013);
     if (std::same_as<E, Hex8> && n == 4) agrees(0.00976842);
-    checks.expect(tip > last, element_name<E>() + ": the deflection does not grow with refinement");
-    checks.expect(tip < 1.002 * converged, element_name<E>() + ": softer than the body");
+    if constexpr (HasSmoothedStrain<E>) {  // no minimum of the energy: it may come from either side
+      checks.expect(std::abs(tip - converged) < std::abs(last - converged), element_name<E>() + ": does not converge");
+    } else {
+      checks.expect(tip > last, element_name<E>() + ": the deflection does not grow with refinement");
+      checks.expect(tip < 1.002 * converged, element_name<E>() + ": softer than the body");
+    }
     last = tip;
   }
 }
