@@ -64,11 +64,8 @@ void hold_lone_nodes(const Mesh<E>& mesh, Scene& scene) {
 
 template <Element E>
 Body<E> read_body(const Mesh<E>& mesh, const json& load_case, const Scene& scene) {
-  Body<E> body{mesh, {}, {}, initial_strains_by_region(mesh, scene)};
-  for (const LinearElastic& m : materials_by_region(mesh, solve_case::read_materials(load_case))) {
-    body.elasticity.push_back(m.elasticity());
-    body.density.push_back(m.density);
-  }
+  Body<E> body = make_body(mesh, solve_case::read_materials(load_case));
+  body.initial_strain = initial_strains_by_region(mesh, scene);
   return body;
 }
 

@@ -15,15 +15,9 @@ using namespace palpate;
 
 /// One material per region, the last for all further ones; no initial strain.
 template <Element E>
-Body<E> body_of(Mesh<E> mesh, const std::vector<LinearElastic>& materials) {
-  Body<E> body{std::move(mesh), {}, {}, {}};
-  for (std::size_t r = 0; r < body.mesh.region_names.size(); ++r) {
-    const LinearElastic& m = materials[std::min(r, materials.size() - 1)];
-    body.elasticity.push_back(m.elasticity());
-    body.density.push_back(m.density);
-    body.initial_strain.push_back(Vector6::Zero());
-  }
-  return body;
+Body<E> body_of(Mesh<E> mesh, std::vector<LinearElastic> materials) {
+  materials.resize(mesh.region_names.size(), LinearElastic(materials.back()));
+  return make_body(std::move(mesh), materials);
 }
 
 /// Displacement and forces of a static state, 3 per node.

@@ -20,17 +20,11 @@ inline const LinearElastic liver{5e3, 0.45, 1060.0};
 /// The material of the reference matrices of the two cubes.
 inline const LinearElastic reference_material{1000.0, 0.3, 1.0};
 
-/// One material per region, no initial strain.
+/// One material per region, the last for all further ones; no initial strain.
 template <Element E>
-Body<E> body_of(Mesh<E> mesh, const std::vector<LinearElastic>& materials) {
-  Body<E> body{std::move(mesh), {}, {}, {}};
-  for (std::size_t r = 0; r < body.mesh.region_names.size(); ++r) {
-    const LinearElastic& m = materials[std::min(r, materials.size() - 1)];
-    body.elasticity.push_back(m.elasticity());
-    body.density.push_back(m.density);
-    body.initial_strain.push_back(Vector6::Zero());
-  }
-  return body;
+Body<E> body_of(Mesh<E> mesh, std::vector<LinearElastic> materials) {
+  materials.resize(mesh.region_names.size(), LinearElastic(materials.back()));
+  return make_body(std::move(mesh), materials);
 }
 
 /// The problem with which `what` is refused.

@@ -91,4 +91,13 @@ double largest(const Eigen::MatrixBase<Derived>& m) {
   return static_cast<double>(m.cwiseAbs().maxCoeff());
 }
 
+/// The reference nodes moved by a random affine map without a mirror: straight sides, any shape.
+template <Element E>
+ElementNodes<E> some_element(testing::Random& random) {
+  const ElementNodes<Tet4> image = random_tetrahedron(random);
+  Matrix3 axes;
+  for (int i = 0; i < 3; ++i) axes.col(i) = (image.row(i + 1) - image.row(0)).transpose();
+  return (E::reference_nodes() * axes.transpose()).rowwise() + image.row(0);
+}
+
 }  // namespace test

@@ -15,15 +15,6 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// The reference nodes moved by a random affine map without a mirror.
-template <Element E>
-ElementNodes<E> some_element(testing::Random& random) {
-  const ElementNodes<Tet4> image = random_tetrahedron(random);
-  Matrix3 axes;
-  for (int i = 0; i < 3; ++i) axes.col(i) = (image.row(i + 1) - image.row(0)).transpose();
-  return (E::reference_nodes() * axes.transpose()).rowwise() + image.row(0);
-}
-
 template <Element E>
 double volume_of(const ElementNodes<E>& x) {
   return shape_volumes<E>(x).sum();

@@ -17,15 +17,6 @@ namespace {
 
 const LinearElastic liver{5e3, 0.45, 1060.0};
 
-/// The reference nodes moved by a random affine map without a mirror: straight sides, any shape.
-template <Element E>
-ElementNodes<E> some_element(testing::Random& random) {
-  const ElementNodes<Tet4> image = random_tetrahedron(random);
-  Matrix3 axes;
-  for (int i = 0; i < 3; ++i) axes.col(i) = (image.row(i + 1) - image.row(0)).transpose();
-  return (E::reference_nodes() * axes.transpose()).rowwise() + image.row(0);
-}
-
 template <Element E>
 Eigen::Matrix<double, 3 * E::nodes, 1> nodal(const ElementNodes<E>& u) {
   Eigen::Matrix<double, 3 * E::nodes, 1> v;
