@@ -69,32 +69,49 @@ void check_load_case(const std::string& folder, const solve_case::NumberedMesh<E
   CHECK((sum - expected).norm() <= oracle_tolerance * s.reactions.cwiseAbs().maxCoeff());
 }
 
-/// Checks all linear static load cases of a folder that have a reference in it, and returns how many these are; none when
-/// its elements have another name.
-template <Element E>
-int check_folder(const std::string& folder, const std::string& element) {
+/// Calls check(mesh, load_case) for the load cases of a folder with this kind of analysis and returns how many these are;
+/// none when its elements have another name.
+template <Element E, class Check>
+int each_load_case(const std::string& folder, const std::string& element, std::string_view analysis, Check check) {
   const auto file = solve_case::read_case_file(folder + "/case.json");
   if (file.element != element) return 0;
   solve_case::NumberedMesh<E> mesh;
   mesh.mesh = io::read_mesh<E>(file.mesh_v22, 1.0, &mesh.ids);
   int checked = 0;
   for (const json& load_case : file.load_cases) {
-    if (load_case.at("analysis") != "linear static, small strain") continue;
-    if (!std::filesystem::exists(folder + '/' + load_case.at("name").get<std::string>() + "_u.csv")) continue;
-    check_load_case(folder, mesh, load_case);
+    if (load_case.at("analysis") != analysis) continue;
+    check(mesh, load_case);
     ++checked;
   }
+  return checked;
+}
+
+/// Sum of check(folder) over all folders of the further reference results; -1 when they are not there.
+template <class Check>
+int each_reference_folder(Check check) {
+  if (!std::filesystem::is_directory(PALPATE_ORACLE_DIR)) return -1;
+  int checked = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(PALPATE_ORACLE_DIR))
+    if (entry.path().filename() == "case.json") checked += check(entry.path().parent_path().string());
+  return checked;
+}
+
+/// Checks all linear static load cases of a folder and returns how many had a reference in it.
+template <Element E>
+int check_folder(const std::string& folder, const std::string& element) {
+  int checked = 0;
+  each_load_case<E>(folder, element, solve_case::statics, [&](const auto& mesh, const json& load_case) {
+    if (!std::filesystem::exists(folder + '/' + load_case.at("name").get<std::string>() + "_u.csv")) return;
+    check_load_case(folder, mesh, load_case);
+    ++checked;
+  });
   return checked;
 }
 
 /// The same for all folders of the further reference results; -1 when they are not there.
 template <Element E>
 int check_all_folders(const std::string& element) {
-  if (!std::filesystem::is_directory(PALPATE_ORACLE_DIR)) return -1;
-  int checked = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(PALPATE_ORACLE_DIR))
-    if (entry.path().filename() == "case.json") checked += check_folder<E>(entry.path().parent_path().string(), element);
-  return checked;
+  return each_reference_folder([&](const std::string& folder) { return check_folder<E>(folder, element); });
 }
 
 }  // namespace test

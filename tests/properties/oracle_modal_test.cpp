@@ -30,16 +30,10 @@ double distance(const test::Table& reference, const solve_case::NumberedMesh<E>&
 
 template <Element E>
 int check_modes(const std::string& folder, const std::string& element, double tolerance) {
-  const auto file = solve_case::read_case_file(folder + "/case.json");
-  if (file.element != element) return 0;
-  solve_case::NumberedMesh<E> mesh;
-  mesh.mesh = io::read_mesh<E>(file.mesh_v22, 1.0, &mesh.ids);
-  int checked = 0;
-  for (const json& load_case : file.load_cases) {
-    if (load_case.at("analysis") != "linear eigenfrequency") continue;
+  return test::each_load_case<E>(folder, element, solve_case::eigenfrequencies, [&](const auto& mesh, const json& load_case) {
     const auto modes = solve_case::solve_modes<E>(mesh.mesh, load_case);
     const json& scalars = load_case.at("reference").at("scalars");
-    const auto frequencies = scalars.at("elastic_frequencies_hz").get<std::vector<double>>();
+    const auto frequencies = scalars.at("elastic_frequencies_hz").template get<std::vector<double>>();
     INFO(folder);
     CHECK(modes.found.rigid_modes() == (scalars.at("rigid").is_null() ? 0 : 6));
     REQUIRE(modes.found.frequencies.size() == static_cast<Index>(frequencies.size()));
@@ -49,9 +43,7 @@ int check_modes(const std::string& folder, const std::string& element, double to
       const std::string shape = folder + "/mode" + std::to_string(k + 1) + "_u.csv";
       if (std::filesystem::exists(shape)) CHECK(distance(test::read_csv(shape), mesh, modes, k) <= 1e-6);
     }
-    ++checked;
-  }
-  return checked;
+  });
 }
 
 }  // namespace
@@ -62,18 +54,12 @@ TEST_CASE("Natural frequencies agree with the reference results in the tree", "[
 }
 
 TEST_CASE("Natural frequencies agree with all further reference results", "[oracle][modal]") {
-  if (!std::filesystem::is_directory(PALPATE_ORACLE_DIR)) {
-    WARN("skipped: there is no folder " PALPATE_ORACLE_DIR);
-    return;
-  }
-  int checked = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(PALPATE_ORACLE_DIR)) {
-    if (entry.path().filename() != "case.json") continue;
-    const std::string folder = entry.path().parent_path().string();
-    checked += check_modes<Tet4>(folder, "tet4", 1e-8) + check_modes<Tet10>(folder, "tet10", 1e-8) +
-               check_modes<Hex8>(folder, "hex8", 1e-8) + check_modes<Hex20>(folder, "hex20", 1e-8);
-  }
-  CHECK(checked > 0);
+  const int checked = test::each_reference_folder([](const std::string& folder) {
+    return check_modes<Tet4>(folder, "tet4", 1e-8) + check_modes<Tet10>(folder, "tet10", 1e-8) +
+           check_modes<Hex8>(folder, "hex8", 1e-8) + check_modes<Hex20>(folder, "hex20", 1e-8);
+  });
+  if (checked < 0) WARN("skipped: there is no folder " PALPATE_ORACLE_DIR);
+  CHECK(checked != 0);
 }
 
 TEST_CASE("A modal load case that says something unknown is refused", "[oracle][modal]") {
