@@ -2,16 +2,11 @@
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
-#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/constant_geometry.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/local/geometry.hpp>
 #include <palpate/local/isotropic.hpp>
 
 namespace palpate::inline PALPATE_ABI {
-
-/// Elements with one integration point: their gradients are constant (Tet4).
-template <class E>
-concept ConstantGradient = Element<E> && E::Quadrature::points.size() == 1;
 
 /// Spatial gradients of all elements, times the root of the volume: what K_ab is a sum of products of.
 template <ConstantGradient E>
@@ -21,14 +16,9 @@ class ScaledGradients {
 
   /// Throws inverted_element for a volume that is not positive, non_finite for one that is not finite.
   explicit ScaledGradients(const Mesh<E>& mesh) : values_(static_cast<std::size_t>(mesh.element_count())) {
-    constexpr auto point = E::Quadrature::points[0];
     for (Index e = 0; e < mesh.element_count(); ++e) {
-      const PointGeometry<E> g = point_geometry<E>(element_nodes<E>(mesh, e), reference_point(point), point.weight);
-      auto& scaled = values_[static_cast<std::size_t>(e)];
-      scaled.noalias() = std::sqrt(g.volume) * g.gradient.transpose();
-      if (!(g.volume > 0.0) || !scaled.allFinite())
-        raise_element(g.volume < 0.0 ? SetupErrorKind::inverted_element : SetupErrorKind::non_finite, e,
-                      g.volume < 0.0 ? "has a negative volume" : "has a stiffness that is not finite");
+      const PointGeometry<E> g = constant_geometry(mesh, e);
+      values_[static_cast<std::size_t>(e)].noalias() = std::sqrt(g.volume) * g.gradient.transpose();
     }
   }
   const Gradient& operator[](Index e) const noexcept { return values_[static_cast<std::size_t>(e)]; }

@@ -39,9 +39,7 @@ void assemble_elements(const Body<E>& body, BlockMatrix& k, const SetupLimits& l
 template <Element E>
 BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
   const NodeElements around(body.mesh);
-  BlockPattern pattern = block_pattern(body.mesh, around);
-  limits.require_memory(static_cast<double>(pattern.column.size()) * 9 * sizeof(double), "the stiffness");
-  BlockMatrix k(std::move(pattern));
+  BlockMatrix k = make_stiffness(block_pattern(body.mesh, around), limits);
   const auto constants = body.laws.empty() ? all_isotropic(body.elasticity) : std::nullopt;  // per region, if at all
   if (!constants)
     assemble_elements(body, k, limits, [&](Index e) -> const Matrix6& { return body.elasticity_of(e); });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/node_elements.hpp>
+#include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
 
 #include <algorithm>
@@ -103,5 +104,11 @@ class BlockMatrix {
   BlockPattern pattern_;
   std::vector<double> values_;
 };
+
+/// A zero matrix on a pattern, or too_large.
+inline BlockMatrix make_stiffness(BlockPattern pattern, const SetupLimits& limits) {
+  limits.require_memory(static_cast<double>(pattern.column.size()) * 9 * sizeof(double), "the stiffness");
+  return BlockMatrix(std::move(pattern));
+}
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -87,8 +87,10 @@ void for_each_free_entry(const BlockMatrix& k, const EssentialConditions& condit
     }
 }
 
-/// Lower half of K_ff as a compressed sparse matrix. O(entries), allocates it.
-inline SparseMatrix free_matrix(const BlockMatrix& k, const EssentialConditions& conditions) {
+/// Lower half of the free dofs' part of a matrix (BlockMatrix, MassMatrix) as a compressed sparse one. O(entries),
+/// allocates it.
+template <class Matrix>
+SparseMatrix free_matrix(const Matrix& k, const EssentialConditions& conditions) {
   const Index n = conditions.free_count();
   SparseMatrix lower(n, n);
   Index* const start = lower.outerIndexPtr();

@@ -93,24 +93,19 @@ VectorX lumped_mass(const Body<E>& body) {
   return mass;
 }
 
-/// Lower half of the mass of the free dofs as a compressed sparse matrix. O(entries), allocates it.
-inline SparseMatrix free_matrix(const MassMatrix& m, const EssentialConditions& conditions) {
+/// Calls visit(row, column, value) for every stored entry of the lower half of the mass of the free dofs, rows ascending
+/// within a column: what free_matrix needs.
+template <class Visit>
+void for_each_free_entry(const MassMatrix& m, const EssentialConditions& conditions, Visit&& visit) {
   const BlockPattern& pattern = m.pattern();
-  const Index n = conditions.free_count();
-  std::vector<Eigen::Triplet<double, Index>> entries;
-  entries.reserve(3 * pattern.column.size());
+  const auto free = [&](Index node, Index c) { return conditions.free_index[static_cast<std::size_t>(3 * node + c)]; };
   for (Index i = 0; i < pattern.rows(); ++i)
     for (Index p = pattern.row_start[static_cast<std::size_t>(i)];
          p < pattern.row_start[static_cast<std::size_t>(i) + 1]; ++p)
       for (Index c = 0; c < 3; ++c) {
-        const Index j = pattern.column[static_cast<std::size_t>(p)];
-        const Index row = conditions.free_index[static_cast<std::size_t>(3 * i + c)];
-        const Index column = conditions.free_index[static_cast<std::size_t>(3 * j + c)];
-        if (row >= 0 && column >= 0) entries.emplace_back(row, column, m[p]);
+        const Index row = free(i, c), column = free(pattern.column[static_cast<std::size_t>(p)], c);
+        if (row >= 0 && column >= 0) visit(row, column, m[p]);
       }
-  SparseMatrix lower(n, n);
-  lower.setFromTriplets(entries.begin(), entries.end());
-  return lower;
 }
 
 }  // namespace palpate::inline PALPATE_ABI

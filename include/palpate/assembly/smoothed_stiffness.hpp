@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
-#include <palpate/assembly/strain_domains.hpp>
+#include <palpate/assembly/domain_elasticity.hpp>
 #include <palpate/local/isotropic.hpp>
 
 namespace palpate::inline PALPATE_ABI {
@@ -53,9 +53,7 @@ void for_each_domain_block(const StrainDomain& domain, const Matrix6& d, Add&& a
 template <HasSmoothedStrain E>
 BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
   const NodeElements around(body.mesh);
-  BlockPattern pattern = smoothed_pattern(body.mesh, around);
-  limits.require_memory(static_cast<double>(pattern.column.size()) * 9 * sizeof(double), "the stiffness");
-  BlockMatrix k(std::move(pattern));
+  BlockMatrix k = make_stiffness(smoothed_pattern(body.mesh, around), limits);
   const StrainDomains<E> domains(body.mesh, around, limits);
   const DomainElasticity elasticity(body, domains);
   for (Index d = 0; d < domains.size(); ++d) {
@@ -73,12 +71,14 @@ template <HasSmoothedStrain E>
 class SmoothedStiffness {
  public:
   SmoothedStiffness() = default;
-  /// Throws as assemble_domains does.
+  /// Throws as assemble_stiffness does.
   SmoothedStiffness(const Body<E>& body, const SetupLimits& limits)
-      : nodes_(body.mesh.node_count()), domains_(body.mesh, NodeElements(body.mesh), limits), elasticity_(body, domains_) {}
+      : nodes_(body.mesh.node_count()),
+        domains_(body.mesh, NodeElements(body.mesh), limits),
+        elasticity_(body, domains_) {}
 
   Index size() const noexcept { return 3 * nodes_; }
-  std::size_t bytes() const noexcept { return domains_.bytes(); }
+  std::size_t bytes() const noexcept { return domains_.bytes() + elasticity_.bytes(); }
 
   /// y = K x. No allocation.
   void apply(const VectorX& x, VectorX& y) const noexcept {
@@ -93,9 +93,10 @@ class SmoothedStiffness {
     std::vector<Matrix3> diagonal(static_cast<std::size_t>(nodes_), Matrix3::Zero());
     for (Index d = 0; d < domains_.size(); ++d) {
       const StrainDomain domain = domains_[d];
+      const Matrix6 stiffness = domain.volume * elasticity_(d, domain);
       for (std::size_t a = 0; a < domain.nodes.size(); ++a) {
         const auto b = strain_displacement(domain.gradients[a]);
-        diagonal[static_cast<std::size_t>(domain.nodes[a])] += domain.volume * b.transpose() * elasticity_(d, domain) * b;
+        diagonal[static_cast<std::size_t>(domain.nodes[a])] += b.transpose() * stiffness * b;
       }
     }
     return diagonal;

@@ -1,7 +1,7 @@
 // Loads, energy and stress of elements whose strain is an average over neighbours.
 #pragma once
 
-#include <palpate/assembly/strain_domains.hpp>
+#include <palpate/assembly/domain_elasticity.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 

@@ -1,13 +1,11 @@
 // What a smoothed strain is averaged over.
 #pragma once
 
-#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/constant_geometry.hpp>
 #include <palpate/assembly/node_elements.hpp>
 #include <palpate/core/setup_options.hpp>
+#include <palpate/core/voigt.hpp>
 #include <palpate/element/smoothed.hpp>
-#include <palpate/local/loads.hpp>
-#include <palpate/local/split_elasticity.hpp>
-#include <palpate/local/strain_displacement.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -17,7 +15,7 @@ enum class StrainPart : std::uint8_t { deviatoric, volumetric };
 /// The elements of one region around an edge, a sixth of each, or around a node, a quarter of each. The mean of their
 /// strains is sum B_a u_a with the mean gradients.
 struct StrainDomain {
-  std::span<const NodeId> nodes;      ///< ascending
+  std::span<const NodeId> nodes;       ///< ascending
   std::span<const Vector3> gradients;  ///< per node, mean over the domain [1/m]
   std::span<const NodeId> elements;
   double volume = 0.0;  ///< [m^3]
@@ -39,7 +37,8 @@ struct StrainDomain {
   }
 };
 
-/// All domains of a mesh: for every edge a deviatoric one, for every node a volumetric one, per region. About 2 kB per node.
+/// All domains of a mesh: for every edge a deviatoric one, for every node a volumetric one, per region. About 2 kB per
+/// node.
 template <HasSmoothedStrain E>
 class StrainDomains {
  public:
@@ -92,15 +91,9 @@ class StrainDomains {
     limits.require_memory(static_cast<double>(mesh.element_count()) * sizeof(PointGeometry<E>) +
                               2000.0 * static_cast<double>(mesh.node_count()),
                           "the averages of the strain");
-    constexpr auto point = E::Quadrature::points[0];
-    std::vector<PointGeometry<E>> geometry(static_cast<std::size_t>(mesh.element_count()));
-    for (Index e = 0; e < mesh.element_count(); ++e) {
-      PointGeometry<E>& g = geometry[static_cast<std::size_t>(e)];
-      g = point_geometry<E>(element_nodes<E>(mesh, e), reference_point(point), point.weight);
-      if (g.volume < 0.0) raise_element(SetupErrorKind::inverted_element, e, "has a negative volume");
-      if (!(g.volume > 0.0) || !g.gradient.allFinite())
-        raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
-    }
+    std::vector<PointGeometry<E>> geometry;
+    geometry.reserve(static_cast<std::size_t>(mesh.element_count()));
+    for (Index e = 0; e < mesh.element_count(); ++e) geometry.push_back(constant_geometry(mesh, e));
     return geometry;
   }
 
@@ -163,49 +156,6 @@ class StrainDomains {
   std::vector<PointGeometry<E>> geometry_;  // while they are made
   std::vector<std::size_t> place_;          // of a node in node_
   std::vector<Share> shares_;
-};
-
-/// The part of the elasticity [Pa] that acts in each domain of a body. Where the law changes from element to element (along
-/// fibres), the mean over the domain by volume: 288 bytes per domain.
-class DomainElasticity {
- public:
-  DomainElasticity() = default;
-
-  template <HasSmoothedStrain E>
-  DomainElasticity(const Body<E>& body, const StrainDomains<E>& domains) {
-    std::vector<SplitElasticity> laws;
-    for (const Matrix6& d : body.elasticity) laws.push_back(split_elasticity(d));
-    const auto part = [](const SplitElasticity& law, StrainPart of) {
-      return of == StrainPart::deviatoric ? law.deviatoric : law.volumetric;
-    };
-    by_domain_ = !body.laws.empty();
-    if (!by_domain_) {
-      for (const SplitElasticity& law : laws)
-        for (const StrainPart of : {StrainPart::deviatoric, StrainPart::volumetric}) elasticity_.push_back(part(law, of));
-      return;
-    }
-    for (Index d = 0; d < domains.size(); ++d) {
-      const StrainDomain domain = domains[d];
-      Matrix6 sum = Matrix6::Zero();
-      double volume = 0.0;
-      for (const NodeId e : domain.elements) {
-        const double v = shape_volumes<E>(element_nodes<E>(body.mesh, e)).sum();
-        sum += v * part(laws[body.law_of(e)], domain.part);
-        volume += v;
-      }
-      elasticity_.push_back(sum / volume);
-    }
-  }
-
-  /// Of domain number d.
-  const Matrix6& operator()(Index d, const StrainDomain& domain) const noexcept {
-    const std::size_t of_region = 2 * static_cast<std::size_t>(domain.region) + (domain.part == StrainPart::volumetric ? 1 : 0);
-    return elasticity_[by_domain_ ? static_cast<std::size_t>(d) : of_region];
-  }
-
- private:
-  bool by_domain_ = false;
-  std::vector<Matrix6> elasticity_;  // of every domain, or both parts of every region
 };
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,25 @@
+// Gradients and volume of elements where they are constant.
+#pragma once
+
+#include <palpate/assembly/body.hpp>
+#include <palpate/local/geometry.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Elements with one integration point: their gradients are constant (Tet4).
+template <class E>
+concept ConstantGradient = Element<E> && E::Quadrature::points.size() == 1;
+
+/// Geometry of element e [1/m, m^3]. Throws inverted_element for a negative volume, non_finite for one that is zero or no
+/// number.
+template <ConstantGradient E>
+PointGeometry<E> constant_geometry(const Mesh<E>& mesh, Index e) {
+  constexpr auto point = E::Quadrature::points[0];
+  const PointGeometry<E> g = point_geometry<E>(element_nodes<E>(mesh, e), reference_point(point), point.weight);
+  if (g.volume < 0.0) raise_element(SetupErrorKind::inverted_element, e, "has a negative volume");
+  if (!(g.volume > 0.0) || !g.gradient.allFinite())
+    raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
+  return g;
+}
+
+}  // namespace palpate::inline PALPATE_ABI
