@@ -18,3 +18,9 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/palpateConfigVersion.cmak
 install(FILES ${PROJECT_BINARY_DIR}/palpateConfig.cmake ${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake
         DESTINATION ${package_dir})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/palpate)
+
+# pkg-config: finds its way from where it lies, so that the installed folder may be moved.
+file(RELATIVE_PATH PALPATE_PC_TO_PREFIX ${CMAKE_INSTALL_FULL_DATADIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+string(REGEX REPLACE "/$" "" PALPATE_PC_TO_PREFIX "${PALPATE_PC_TO_PREFIX}")
+configure_file(cmake/palpate.pc.in ${PROJECT_BINARY_DIR}/palpate.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/palpate.pc DESTINATION ${CMAKE_INSTALL_DATADIR}/pkgconfig)

@@ -1,8 +1,8 @@
 // A ball that moves over a body, with a given number of contacts.
 #pragma once
 
+#include <palpate/core/platform.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/haptic/realtime_thread.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
 #include "bodies.hpp"
@@ -121,9 +121,9 @@ inline TickTimes hot_ticks(Touching& body, int batches = 2500) {
   std::vector<double> times;
   times.reserve(static_cast<std::size_t>(batches));
   for (int i = 0; i < batches; ++i) {
-    const std::int64_t start = palpate::detail::compute_ns();
+    const std::int64_t start = palpate::platform::compute_ns();
     for (int k = 0; k < 8; ++k) body.tick();
-    times.push_back(1e-9 / 8.0 * static_cast<double>(palpate::detail::compute_ns() - start));
+    times.push_back(1e-9 / 8.0 * static_cast<double>(palpate::platform::compute_ns() - start));
   }
   return {percentile(times, 0.5), percentile(times, 0.99)};
 }

@@ -11,7 +11,7 @@ namespace latency {
 
 /// Processor time of this thread [s].
 inline double thread_seconds() noexcept {
-  return 1e-9 * static_cast<double>(palpate::detail::compute_ns());
+  return 1e-9 * static_cast<double>(palpate::platform::compute_ns());
 }
 
 /// Durations and their percentiles. Room is made beforehand: recording does not allocate.

@@ -9,7 +9,7 @@
 namespace tick {
 namespace {
 
-using palpate::detail::compute_ns;
+using palpate::platform::compute_ns;
 
 std::string wrong_if(bool wrong) {
   return wrong ? "the pressed points do not lie on the ball" : "";

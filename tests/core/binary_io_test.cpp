@@ -108,7 +108,7 @@ TEST_CASE("arrays come back bit by bit, however long", "[core][binary]") {
   for (std::size_t count : {0u, 1u, 3u, 32768u, 32769u, 100000u}) {
     std::vector<double> numbers(count);
     for (std::size_t i = 0; i < count; ++i) numbers[i] = 1.0 / (static_cast<double>(i) - 7.5);
-    const detail::File out(std::fopen((folder / "a").c_str(), "wb"));
+    const detail::File out(std::fopen((folder / "a").string().c_str(), "wb"));
     BinaryWriter writer(out.get());
     writer.value(std::uint64_t{42});
     writer.array(std::span<const double>(numbers));
@@ -117,7 +117,7 @@ TEST_CASE("arrays come back bit by bit, however long", "[core][binary]") {
     REQUIRE(std::fflush(out.get()) == 0);
 
     std::vector<double> back(count);
-    const detail::File in(std::fopen((folder / "a").c_str(), "rb"));
+    const detail::File in(std::fopen((folder / "a").string().c_str(), "rb"));
     BinaryReader reader(in.get());
     CHECK(reader.expect(std::uint64_t{42}, ReadFailure::unfit));
     CHECK(reader.array(std::span<double>(back)));
@@ -133,13 +133,13 @@ TEST_CASE("arrays come back bit by bit, however long", "[core][binary]") {
 TEST_CASE("a reader stops at the first thing that is wrong", "[core][binary]") {
   const Folder folder;
   {
-    const detail::File out(std::fopen((folder / "a").c_str(), "wb"));
+    const detail::File out(std::fopen((folder / "a").string().c_str(), "wb"));
     BinaryWriter writer(out.get());
     writer.value(std::uint64_t{5});
     writer.array(std::span<const double>(std::array{1.0, 2.0}));
   }
   const auto failure = [&](std::uint64_t first, std::size_t count) {
-    const detail::File in(std::fopen((folder / "a").c_str(), "rb"));
+    const detail::File in(std::fopen((folder / "a").string().c_str(), "rb"));
     BinaryReader reader(in.get());
     std::vector<double> values(count, -1.0);
     reader.expect(first, ReadFailure::unfit);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/core/binary_io.hpp>
+#include <palpate/core/platform.hpp>
 
 #include <atomic>
 #include <chrono>
@@ -24,7 +25,7 @@ class AtomicFile {
     for (int attempt = 0; attempt < 16 && !file_; ++attempt) {
       temporary_ = path_ + suffix + unique_digits();
       errno = 0;
-      file_.reset(std::fopen(temporary_.c_str(), "wbx"));  // x: fails when it exists
+      file_.reset(platform::create_new_file(temporary_));
       const int code = errno;
       if (!file_) error_ = detail::system_message(code);
       if (code != EEXIST) break;
@@ -76,10 +77,11 @@ class AtomicFile {
   }
 
   bool is_leftover(const std::filesystem::path& file) const {
-    const std::string name = file.filename().string();
-    const std::string start = std::filesystem::path(path_).filename().string() + suffix;
+    using Name = std::filesystem::path::string_type;  // a name on Windows need not exist as std::string
+    const Name name = file.filename().native(), hexadecimal = std::filesystem::path("0123456789abcdef").native();
+    const Name start = std::filesystem::path(path_ + suffix).filename().native();
     if (name.size() != start.size() + digits || !name.starts_with(start)) return false;
-    return name.find_first_not_of("0123456789abcdef", start.size()) == std::string::npos;
+    return name.find_first_not_of(hexadecimal, start.size()) == Name::npos;
   }
 
   void remove_leftovers() const {

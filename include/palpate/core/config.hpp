@@ -14,9 +14,15 @@
 #error "palpate refuses -ffast-math: it removes the NaN checks that guard the device. Build without it."
 #endif
 
-// Layout of fixed-size Eigen members depends on compiler flags (-mavx2 changes their alignment). The alignment is part
-// of the namespace, so translation units with different layouts fail to link instead of corrupting memory.
+// Layout of fixed-size Eigen members depends on compiler flags (-mavx512f changes their alignment), and what a refused
+// set-up does on -fno-exceptions. Both are part of the namespace, so translation units that differ fail to link instead
+// of corrupting memory or missing an exception. See docs/linking.md.
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+#define PALPATE_HAS_EXCEPTIONS 1
 #define PALPATE_ABI_PASTE(align) v0_align##align
+#else
+#define PALPATE_ABI_PASTE(align) v0_align##align##_no_exceptions
+#endif
 #define PALPATE_ABI_NAME(align) PALPATE_ABI_PASTE(align)
 #define PALPATE_ABI PALPATE_ABI_NAME(EIGEN_MAX_STATIC_ALIGN_BYTES)
 
@@ -28,5 +34,14 @@
 #define PALPATE_COLD
 #endif
 
+// Parameters carry the namespace into the name of a user's function, results and variables do not: the tag does that.
+#if defined(__GNUC__) || defined(__clang__)
+#define PALPATE_ABI_TAG __attribute__((abi_tag))
+#else
+#define PALPATE_ABI_TAG
+#endif
+
 /// The finite element method for haptics.
-namespace palpate::inline PALPATE_ABI {}
+namespace palpate {
+inline namespace PALPATE_ABI PALPATE_ABI_TAG {}
+}  // namespace palpate

@@ -1,14 +1,7 @@
 // What the tick needs from the processor: denormals flushed to zero inside a scope.
 #pragma once
 
-#include <palpate/core/config.hpp>
-
-#include <cstdint>
-
-#if defined(__SSE2__) || defined(_M_X64)
-#include <immintrin.h>
-#define PALPATE_HAS_MXCSR 1
-#endif
+#include <palpate/core/platform.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -17,30 +10,15 @@ namespace palpate::inline PALPATE_ABI {
 /// not know.
 class FlushDenormals {
  public:
-#if defined(PALPATE_HAS_MXCSR)
-  FlushDenormals() noexcept : saved_(_mm_getcsr()) {
-    _mm_setcsr(static_cast<unsigned>(saved_) | 0x8040u);
+  FlushDenormals() noexcept : saved_(platform::float_mode()) {
+    platform::set_float_mode(saved_ | platform::flush_denormals);
   }
-  ~FlushDenormals() {
-    _mm_setcsr(static_cast<unsigned>(saved_));
-  }
-#elif defined(__aarch64__)
-  FlushDenormals() noexcept {
-    asm volatile("mrs %0, fpcr" : "=r"(saved_));
-    asm volatile("msr fpcr, %0" : : "r"(saved_ | (std::uint64_t{1} << 24)));
-  }
-  ~FlushDenormals() {
-    asm volatile("msr fpcr, %0" : : "r"(saved_));
-  }
-#else
-  FlushDenormals() noexcept = default;
-  ~FlushDenormals() = default;
-#endif
+  ~FlushDenormals() { platform::set_float_mode(saved_); }
   FlushDenormals(const FlushDenormals&) = delete;
   FlushDenormals& operator=(const FlushDenormals&) = delete;
 
  private:
-  [[maybe_unused]] std::uint64_t saved_ = 0;
+  std::uint64_t saved_;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -142,10 +142,12 @@ class SetupError : public std::runtime_error {
   SetupProblem problem_;
 };
 
-/// Called instead of throwing when exceptions are disabled. It must not return; the default prints the problem and
-/// aborts.
+/// Called instead of throwing when exceptions are disabled. It must not return: it ends the process, or the thread. When
+/// it does return, and by default, the problem is printed and the process aborted. Jumping out of it with longjmp skips
+/// destructors, which C++ leaves undefined.
 using SetupFailureHandler = void (*)(const SetupProblem&);
 
+/// Assign to replace it, before the first set-up and not while another thread is in one.
 inline SetupFailureHandler& setup_failure_handler() {
   static SetupFailureHandler handler = nullptr;
   return handler;
@@ -153,7 +155,7 @@ inline SetupFailureHandler& setup_failure_handler() {
 
 /// Refuses: throws SetupError, or without exceptions calls the failure handler.
 [[noreturn]] PALPATE_COLD inline void raise(SetupProblem problem) {
-#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+#if defined(PALPATE_HAS_EXCEPTIONS)
   throw SetupError(std::move(problem));
 #else
   if (setup_failure_handler() != nullptr) setup_failure_handler()(problem);

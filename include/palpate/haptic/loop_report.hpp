@@ -1,6 +1,7 @@
 // What a haptic loop is asked for, and what it has to say afterwards.
 #pragma once
 
+#include <palpate/core/platform.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/haptic/duration_histogram.hpp>
 
@@ -15,7 +16,7 @@ namespace palpate::inline PALPATE_ABI {
 /// lock of the caller's own.
 struct RealtimeGrant {
   bool requested = false;
-  bool fifo = false;           ///< SCHED_FIFO, priority 50
+  bool fifo = false;           ///< SCHED_FIFO, priority 50; on Windows time-critical priority
   bool memory_locked = false;  ///< the pages mapped at the start
   int cpu = -1;                ///< pinned to this one
   std::string refusals;        ///< one sentence per refusal, with the system's reason
@@ -80,7 +81,7 @@ inline std::ostream& operator<<(std::ostream& out, const LoopReport& r) {
   if (text.size() == before) text += " clean";
   text += "\n  real time: ";
   const RealtimeGrant& g = r.real_time;
-  text += !g.requested ? "not requested" : g.fifo ? "SCHED_FIFO 50" : "normal scheduling";
+  text += !g.requested ? "not requested" : g.fifo ? platform::realtime_scheduling : "normal scheduling";
   if (g.memory_locked) text += ", memory locked";
   if (g.cpu >= 0) text += ", on processor " + std::to_string(g.cpu);
   if (!g.refusals.empty()) text += "; refused: " + g.refusals;

@@ -37,13 +37,13 @@ class LoopBody {
     report_.clock_cost = measured_clock_cost();
     {
       const FlushDenormals flush;
-      const std::int64_t start = wall_ns();
+      const std::int64_t start = platform::wall_ns();
       if (options_.paced)
         run_paced(start);
       else
         run_unpaced();
       device_.write(Vector3::Zero(), Vector3::Zero());  // stop() comes when the other thread gets to it
-      report_.elapsed = 1e-9 * static_cast<double>(wall_ns() - start);
+      report_.elapsed = 1e-9 * static_cast<double>(platform::wall_ns() - start);
     }
     const std::lock_guard lock(shared_.mutex);
     shared_.finished = true;
@@ -68,10 +68,10 @@ class LoopBody {
     const std::int64_t end = periods();
     for (std::int64_t k = 0; k < end && !cancelled();) {
       const std::int64_t deadline = start + std::llround(period * static_cast<double>(k));
-      sleep_until_ns(deadline);
-      report_.lateness.record(1e-9 * static_cast<double>(wall_ns() - deadline));
+      platform::sleep_until_ns(deadline);
+      report_.lateness.record(1e-9 * static_cast<double>(platform::wall_ns() - deadline));
       tick(static_cast<double>(k) / options_.rate);
-      const auto passed = static_cast<std::int64_t>(static_cast<double>(wall_ns() - start) / period);
+      const auto passed = static_cast<std::int64_t>(static_cast<double>(platform::wall_ns() - start) / period);
       const std::int64_t next = std::clamp(passed + 1, k + 1, end);
       report_.missed_deadlines += static_cast<std::uint64_t>(next - k - 1);
       k = next;
@@ -80,9 +80,9 @@ class LoopBody {
 
   void tick(double elapsed) noexcept {
     const ToolState state = device_.read();
-    const std::int64_t before = compute_ns();
+    const std::int64_t before = platform::compute_ns();
     const std::span<const ToolForce> forces = servo_.tick(std::span<const ToolState>(&state, 1));
-    report_.compute.record(1e-9 * static_cast<double>(compute_ns() - before));
+    report_.compute.record(1e-9 * static_cast<double>(platform::compute_ns() - before));
     const ToolForce force = forces.empty() ? ToolForce{} : forces.front();
     if constexpr (requires { device_.note(force.status); }) device_.note(force.status);
     const Status rendered = device_.write(force.force, force.torque);

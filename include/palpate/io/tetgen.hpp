@@ -118,11 +118,13 @@ inline FileMesh parse(const Texts& texts) {
 /// Reads the files of the mesh to which x.node, x.ele or x.face belongs.
 inline FileMesh read(const std::string& path) {
   const std::string name = std::filesystem::path(path).replace_extension().string();
-  if (!std::filesystem::exists(name + ".ele"))
+  std::error_code ignored;
+  if (!std::filesystem::exists(name + ".ele", ignored))
     raise(SetupErrorKind::unsupported, name + ".ele: expected the elements of " + path + ", found no such file",
           "Nodes and faces alone are a surface; tetgen -pq " + name + ".poly fills one");
   const std::string node = read_file(name + ".node"), ele = read_file(name + ".ele");
-  const std::string face = std::filesystem::exists(name + ".face") ? read_file(name + ".face") : std::string{};
+  const bool has_faces = std::filesystem::exists(name + ".face", ignored);
+  const std::string face = has_faces ? read_file(name + ".face") : std::string{};
   return parse({name, node, ele, face});
 }
 

@@ -177,7 +177,8 @@ inline FileMesh read(const std::string& path) {
   const auto folder = std::filesystem::path(path).parent_path();
   return parse(read_file(path), path, [&](const std::string& name) {
     const std::filesystem::path other = folder / name;
-    if (!std::filesystem::is_regular_file(other))
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(other, ignored))
       raise(SetupErrorKind::bad_file, path + ": *INCLUDE " + name + ": there is no such file");
     return read_file(other.string());
   });

@@ -1,14 +1,11 @@
 // Large blocks of doubles that are not filled before they are used.
 #pragma once
 
+#include <palpate/core/platform.hpp>
 #include <palpate/core/types.hpp>
 
 #include <memory>
 #include <new>
-
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
 
 namespace palpate::inline PALPATE_ABI::detail {
 
@@ -25,9 +22,7 @@ class BigArray {
   explicit BigArray(Index size) : size_(size) {
     const std::size_t alignment = bytes() >= 2 * huge_page ? huge_page : line;
     data_ = {static_cast<double*>(::operator new (bytes(), std::align_val_t{alignment})), AlignedDelete{alignment}};
-#if defined(__linux__) && defined(MADV_HUGEPAGE)
-    if (alignment == huge_page) ::madvise(data_.get(), bytes(), MADV_HUGEPAGE);  // only a hint
-#endif
+    if (alignment == huge_page) platform::prefer_huge_pages(data_.get(), bytes());
   }
 
   double* data() noexcept {

@@ -18,12 +18,14 @@ struct LanczosPairs {
 /// Block Lanczos on A = (K - sigma M)^-1 M, which is symmetric in the scalar product of M, with full
 /// reorthogonalisation (Grimes, Lewis and Simon 1994) and restarts that keep the best Ritz vectors (thick restart, Wu and
 /// Simon 2000). The block is wider than the number of pairs wanted, so that an eigenvalue of any multiplicity is found as
-/// often as it occurs. The start is random with a fixed seed: the same problem gives the same answer.
+/// often as it occurs. The start is random with a fixed seed: the same problem gives the same answer. A template, so that
+/// nobody pays for its compilation who does not use it.
+template <class Factor = SparseCholesky>
 class BlockLanczos {
  public:
   /// `factor` of K - sigma M, positive definite; `mass` the lower half of M, positive definite. Eigenvectors in the span
   /// of `known` are left out. Both references must outlive this.
-  BlockLanczos(const SparseCholesky& factor, const SparseLower& mass, const MatrixX& known, Index wanted)
+  BlockLanczos(const Factor& factor, const SparseLower& mass, const MatrixX& known, Index wanted)
       : factor_(factor),
         mass_(mass),
         wanted_(wanted),
@@ -128,7 +130,7 @@ class BlockLanczos {
     size_ = expanded_ + next;
   }
 
-  const SparseCholesky& factor_;
+  const Factor& factor_;
   const SparseLower& mass_;
   Index wanted_, block_;
   MatrixX basis_;      // known vectors, then expanded ones, then the newest block

@@ -98,23 +98,25 @@ inline MatrixX full_shapes(const MatrixX& free, const EssentialConditions& condi
   return shapes;
 }
 
-/// What is returned of modes of the free dofs: sorted, on all nodes, with their residuals.
-inline NaturalFrequencies natural_frequencies_of(const ModalProblem& problem, const MatrixX& modes,
-                                                 const EssentialConditions& conditions) {
+/// What is returned of modes of the free dofs: sorted, on all nodes, with their residuals. A template only to be compiled
+/// where it is used.
+template <class Problem>
+NaturalFrequencies natural_frequencies_of(const Problem& problem, const MatrixX& modes,
+                                          const EssentialConditions& conditions) {
   const VectorX lambda = problem.rayleigh(modes);
   std::vector<Index> order(static_cast<std::size_t>(lambda.size()));
   std::iota(order.begin(), order.end(), Index{0});
   std::ranges::sort(order, {}, [&](Index k) { return lambda[k]; });
   const MatrixX sorted = modes(Eigen::all, order);
   const VectorX squares = lambda(order);
-  const MatrixX forces = ModalProblem::times(problem.stiffness, sorted);
-  const MatrixX inertia = ModalProblem::times(problem.mass, sorted) * squares.asDiagonal();
+  const MatrixX forces = Problem::times(problem.stiffness, sorted);
+  const MatrixX inertia = Problem::times(problem.mass, sorted) * squares.asDiagonal();
 
   NaturalFrequencies result;
   result.frequencies = squares.cwiseMax(0.0).cwiseSqrt() / (2.0 * std::numbers::pi);
   result.residuals = (forces - inertia).colwise().norm().cwiseQuotient(forces.colwise().norm()).transpose();
   result.shapes = full_shapes(sorted, conditions);
-  const MatrixX gram = problem.rigid.transpose() * ModalProblem::times(problem.mass, problem.rigid);
+  const MatrixX gram = problem.rigid.transpose() * Problem::times(problem.mass, problem.rigid);
   const MatrixX orthonormal = gram.llt().matrixL().solve(problem.rigid.transpose()).transpose();
   result.rigid_shapes = full_shapes(orthonormal, conditions);
   return result;
@@ -162,7 +164,7 @@ NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, 
   const EssentialConditions conditions = resolve_essential(body.mesh, extract_boundary<E>(body.mesh), scene);
   const MatrixX rigid_motions = rigid_displacements(body.mesh, conditions.constrained);
   detail::require_count(count, conditions.free_count() - rigid_motions.cols());
-  limits.require_memory(BlockLanczos::bytes(conditions.free_count(), rigid_motions.cols(), count), "the modes");
+  limits.require_memory(BlockLanczos<>::bytes(conditions.free_count(), rigid_motions.cols(), count), "the modes");
 
   detail::ModalProblem problem{free_matrix(assemble_stiffness<E>(body, limits), conditions),
                                free_matrix(assemble_mass<E>(body, limits), conditions),
