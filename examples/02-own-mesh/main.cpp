@@ -60,7 +60,7 @@ const char* advice(SetupErrorKind kind) {
              "SetupOptions::admission.inverted = Admission::repair. If only some are, mesh anew.";
     case SetupErrorKind::degenerate_element:
     case SetupErrorKind::poor_quality:
-      return "Smooth the surface and mesh anew (gmsh -optimize_netgen, tetgen -q1.2); dropping flat elements with\n"
+      return "Smooth the surface and mesh anew (gmsh -optimize, tetgen -pq1.2); dropping flat elements with\n"
              "admission.degenerate = Admission::repair may leave holes.";
     case SetupErrorKind::duplicate_node:
       return "Parts that were meshed apart share no nodes. If they belong together:\n"
