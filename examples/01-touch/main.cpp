@@ -18,11 +18,12 @@
 //   4. Meanwhile this thread does what a renderer does, thirty times a second: it takes the newest contact forces from
 //      the servo, without either waiting for the other, and computes from them how all nodes have moved (session.hpp).
 //   5. Stresses follow from displacements (pictures.hpp), and all of it becomes a page to look at, DIR/report.html, and
-//      a series for ParaView, DIR/touch.pvd.
+//      a drawing of the moment of the longest force, DIR/still.svg, and a series for ParaView, DIR/touch.pvd.
 //
 // --unpaced does the same in simulated time, as fast as it goes; for tests. The exit code is 1 when a force was not
 // finite or longer than the device allows, 2 when the arguments or the mesh are refused.
 #include "report.hpp"
+#include "still.hpp"
 
 #include <iostream>
 #include <optional>
@@ -83,6 +84,7 @@ int run_example(const Arguments& arguments) {
   const Index files = write_series(arguments.out, organ, pictures);
   const std::string report = (arguments.out / "report.html").string();
   io::write_file(report, {make_page(organ, path, session, plan, pictures)});
+  io::write_file((arguments.out / "still.svg").string(), {draw_still(organ, path, pictures)});
   std::cout << pictures.size() << " pictures; wrote " << report << " and " << (arguments.out / "touch.pvd").string()
             << " (" << files << " files)\n";
 

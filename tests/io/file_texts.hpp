@@ -130,6 +130,30 @@ inline std::string msh4_binary(const FileMesh& m, bool swap) {
   return text + blocks + "\n$EndElements\n";
 }
 
+/// One volume, surface and point entity per tag, numbered tag + 1; a block per cell.
+inline std::string msh4_ascii(const FileMesh& m) {
+  std::array<std::map<int, Index>, 4> entities;
+  for (const FileCell& c : m.cells) ++entities[static_cast<std::size_t>(facts(c.shape).dimension)][tag_of(m, c)];
+  const auto sizes = [&](std::size_t d) { return static_cast<Index>(entities[d].size()); };
+  std::string text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n" + names_section(m) + "$Entities\n" +
+                     words({sizes(0), sizes(1), sizes(2), sizes(3)}) + '\n';
+  for (std::size_t d = 0; d < 4; ++d)
+    for (const auto& [tag, cells] : entities[d]) {
+      text += std::to_string(tag + 1) + (d == 0 ? " 0 0 0 " : " 0 0 0 1 1 1 ");
+      text += (tag == 0 ? "0" : "1 " + std::to_string(tag)) + (d == 0 ? "\n" : " 0\n");
+    }
+  const auto n = static_cast<Index>(m.positions.size()), cells = static_cast<Index>(m.cells.size());
+  const int home = entities[3].begin()->first + 1;
+  text += "$EndEntities\n$Nodes\n" + words({1, n, 1, n}) + '\n' + words({3, home, 0, n}) + '\n';
+  for (Index i = 1; i <= n; ++i) text += std::to_string(i) + '\n';
+  for (const auto& x : m.positions) text += point(x) + '\n';
+  text += "$EndNodes\n$Elements\n" + words({cells, cells, 1, cells}) + '\n';
+  for (const FileCell& c : m.cells)
+    text += words({facts(c.shape).dimension, tag_of(m, c) + 1, gmsh_number(c.shape), 1}) + '\n' +
+            std::to_string(c.tag) + node_list(m, c, 1) + '\n';
+  return text + "$EndElements\n";
+}
+
 /// The .node, .ele and .face files with the byte 0x1F between them; ids count from `base`.
 inline std::string tetgen(const FileMesh& m, Index base) {
   std::map<Index, int> markers;

@@ -1,0 +1,170 @@
+// Example 02: a mesh of your own.
+//
+//   example_02_own_mesh [FILE] [--scale METRES] [--fix GROUP] [--touch GROUP] [--radius METRES] [--out DIR]
+//
+// Reads a file, says what is wrong with it and what to do about that, and touches it with a scripted ball. Without a
+// file it takes the organ that comes with palpate. docs/from_images.md tells how to make such a file from a scan.
+//
+//   1. Read. The content of the file decides about its format. Positions become metres: --scale 1e-3 for a file in
+//      millimetres, which most scans are. A file without solids is refused with the command that fills it.
+//   2. Diagnose. `diagnose` measures without judging: sizes, quality, inverted and flat elements, duplicates, orphans,
+//      loose pieces. Read it before you look for an error anywhere else.
+//   3. Say what holds the body and what may be touched, by the names of groups or by lists of nodes (scene.hpp here).
+//   4. Set up. HapticFEModel refuses what cannot be right. Every refusal has a kind; `advice` says what to do about the
+//      commonest. Mending is never done in silence: ask for it with AdmissionPolicy.
+//   5. Touch, and write what happened for ParaView: DIR/touched.vtu, with displacement and stress.
+//
+// The exit code is 0 when the ball was pressed in and felt something, 1 when it was not, 2 when the mesh or the
+// arguments were refused.
+#include "scene.hpp"
+
+#include <palpate/io/vtu.hpp>
+#include <palpate/post/stress.hpp>
+
+#include <filesystem>
+#include <iostream>
+
+using namespace own_mesh;
+
+namespace {
+
+using Organ = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
+
+std::optional<Arguments> read_arguments(int count, char** values) {
+  Arguments a;
+  for (int i = 1; i < count; ++i) {
+    const std::string_view name = values[i];
+    if (!name.starts_with("--")) {
+      a.file = name;
+      continue;
+    }
+    if (++i == count) return {};
+    const auto positive = [&](double& x) { return io::parse_decimal(values[i], x) == std::errc{} && x > 0.0; };
+    if (name == "--fix")
+      a.fix = values[i];
+    else if (name == "--touch")
+      a.touch = values[i];
+    else if (name == "--out")
+      a.out = values[i];
+    else if (!(name == "--scale" && positive(a.scale)) && !(name == "--radius" && positive(a.radius)))
+      return {};
+  }
+  return a;
+}
+
+/// What to do about a refusal, for the kinds that people meet.
+const char* advice(SetupErrorKind kind) {
+  switch (kind) {
+    case SetupErrorKind::inverted_element:
+      return "If all elements are inverted, the file numbers them the other way round: set\n"
+             "SetupOptions::admission.inverted = Admission::repair. If only some are, mesh anew.";
+    case SetupErrorKind::degenerate_element:
+    case SetupErrorKind::poor_quality:
+      return "Smooth the surface and mesh anew (gmsh -optimize, tetgen -pq1.2); dropping flat elements with\n"
+             "admission.degenerate = Admission::repair may leave holes.";
+    case SetupErrorKind::duplicate_node:
+      return "Parts that were meshed apart share no nodes. If they belong together:\n"
+             "admission.duplicate_nodes = Admission::repair welds them.";
+    case SetupErrorKind::unconstrained:
+      return "Hold at least three nodes of every piece that are not on one line: --fix with a group.";
+    case SetupErrorKind::unknown_group:
+    case SetupErrorKind::empty_group:
+      return "Name one of the groups listed above, or leave --fix and --touch out.";
+    case SetupErrorKind::unsupported:
+      return "A surface has to be filled first; a file of ten-node tetrahedra wants read_mesh<Tet10>, one of\n"
+             "hexahedra read_mesh<Hex8>.";
+    case SetupErrorKind::bad_file:
+      return "The message names the line, what was expected there and what was found: look at it in the file.";
+    default:
+      return "docs/errors.md lists every kind of refusal.";
+  }
+}
+
+void print_groups(const Mesh<Tet4>& mesh) {
+  std::cout << "groups:\n";
+  for (const Group& g : mesh.groups.all())
+    std::cout << "  '" << g.name << "': " << g.nodes.size() << " nodes, " << g.faces.size() << " faces, "
+              << g.elements.size() << " elements\n";
+  if (mesh.groups.all().empty()) std::cout << "  none\n";
+}
+
+/// How many elements have which quality, as bars.
+void print_quality(const MeshDiagnosis& d) {
+  std::cout << "quality (mean ratio, 1 is regular; below " << MeshThresholds{}.poor_quality << " is poor):\n";
+  const Index most = *std::ranges::max_element(d.quality_histogram);
+  for (std::size_t i = 0; i < d.quality_histogram.size(); ++i) {
+    const Index n = d.quality_histogram[i];
+    const auto bar = static_cast<std::size_t>(most > 0 ? (40 * n + most - 1) / most : 0);
+    std::printf("  %.1f-%.1f %8lld %s\n", 0.1 * static_cast<double>(i), 0.1 * static_cast<double>(i + 1),
+                static_cast<long long>(n), std::string(bar, '#').c_str());
+  }
+}
+
+/// Presses the ball in, as fast as the machine goes. Returns the longest force [N] and leaves the displacement of the
+/// deepest moment in `u`.
+double touch(Organ& organ, const Press& press, VectorX& u) {
+  HapticServo servo(organ, press.ball);
+  const Trajectory path = trajectory::poke({.from = press.above, .to = press.deepest, .approach = 0.5, .hold = 0.2});
+  ToolState state;
+  double longest = 0.0;
+  Status seen;
+  for (int k = 0; k < 700; ++k) {
+    state.time = 1e-3 * k;
+    state.position = path(state.time);
+    const ToolForce out = servo.tick({&state, 1})[0];
+    longest = std::max(longest, out.force.norm());
+    if (k > 100) seen |= out.status;  // the ramp at the start is over
+  }
+  u.resize(3 * organ.mesh().node_count());
+  organ.displacement_with(servo.read_snapshot().vertex_forces(), u);
+  std::cout << "touched with a ball of " << 1e3 * press.ball.radius << " mm, " << 1e3 * press.depth
+            << " mm deep: " << longest << " N, status";
+  for (int bit = 0; bit < status_flag_count; ++bit)
+    if (((seen.bits() >> bit) & 1u) != 0u) std::cout << ' ' << status_flag_name(bit);
+  std::cout << (seen.ok() ? " clean\n" : "\n");
+  return longest;
+}
+
+int run(const Arguments& arguments) {
+  const auto mesh = io::read_mesh<Tet4>(arguments.file, {.scale = arguments.scale});
+  std::cout << arguments.file << '\n';
+  print_groups(mesh);
+  const MeshDiagnosis diagnosis = diagnose<Tet4>(mesh);
+  std::cout << describe(diagnosis) << '\n';
+  print_quality(diagnosis);
+
+  const Chosen chosen = choose(mesh, arguments);
+  std::cout << "held: " << chosen.held << "; touched: " << chosen.touched << '\n';
+  Organ organ(mesh, chosen.scene, {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
+  std::cout << organ.report();
+
+  const Press press = plan_press(organ, arguments.radius);
+  VectorX u;
+  const double force = touch(organ, press, u);
+  StressField stress;
+  recover_stress(organ.body(), u, stress);
+  std::filesystem::create_directories(arguments.out);
+  const std::string file = (std::filesystem::path(arguments.out) / "touched.vtu").string();
+  io::write_vtu(file, organ.mesh(),
+                {{{"displacement [m]", u}, {"von Mises [Pa]", stress.von_mises_nodes}},
+                 {{"von Mises mean [Pa]", stress.von_mises_elements}}});
+  std::cout << "wrote " << file << ", largest displacement " << 1e3 * u.cwiseAbs().maxCoeff() << " mm\n";
+  return force > 0.0 && u.allFinite() ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  const auto arguments = read_arguments(count, values);
+  if (!arguments) {
+    std::cerr << "usage: example_02_own_mesh [FILE] [--scale METRES] [--fix GROUP] [--touch GROUP] [--radius METRES] "
+                 "[--out DIR]\n";
+    return 2;
+  }
+  try {
+    return run(*arguments);
+  } catch (const SetupError& error) {
+    std::cerr << "refused: " << error.what() << "\n" << advice(error.kind()) << '\n';
+    return 2;
+  }
+}

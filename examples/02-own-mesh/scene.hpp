@@ -1,0 +1,85 @@
+// What holds a body, what of it is touched, and where the ball goes, for a mesh nobody has seen before.
+#pragma once
+
+#include <palpate/palpate.hpp>
+
+#include <optional>
+
+namespace own_mesh {
+
+using namespace palpate;
+
+struct Arguments {
+  std::string file = PALPATE_EXAMPLE_DATA "/organ.msh";
+  std::string fix, touch;  ///< names of groups; empty: see choose
+  std::string out = "build/own_mesh";
+  double scale = 1.0;   ///< unit of the file [m]
+  double radius = 0.0;  ///< of the ball [m]; 0: see plan_press
+};
+
+/// A scene, and in words what was chosen.
+struct Chosen {
+  Scene scene;
+  std::string held, touched;
+};
+
+/// Boundary nodes between two shares of the body's height (0 the lowest, 1 the highest point), z up.
+inline std::vector<NodeId> between(const Mesh<Tet4>& mesh, double low_share, double high_share) {
+  const auto nodes = nodes_of(extract_boundary<Tet4>(mesh));
+  double low = infinity, high = -infinity;
+  for (const NodeId i : nodes) {
+    low = std::min(low, mesh.position(i).z());
+    high = std::max(high, mesh.position(i).z());
+  }
+  std::vector<NodeId> chosen;
+  for (const NodeId i : nodes) {
+    const double share = (mesh.position(i).z() - low) / (high - low);
+    if (share >= low_share && share <= high_share) chosen.push_back(i);
+  }
+  return chosen;
+}
+
+/// The named groups; where none is named, "ligament" and "front" if the mesh has them, else the lowest tenth of the
+/// surface is held and the upper half may be touched.
+inline Chosen choose(const Mesh<Tet4>& mesh, const Arguments& arguments) {
+  Chosen c;
+  const auto name_of = [&](const std::string& named, const char* usual) {
+    return !named.empty() ? named : mesh.find_group(usual) != nullptr ? std::string(usual) : std::string();
+  };
+  const std::string fix = name_of(arguments.fix, "ligament"), touch = name_of(arguments.touch, "front");
+  c.held = fix.empty() ? "the lowest tenth of the surface" : "group '" + fix + "'";
+  c.touched = touch.empty() ? "the upper half of the surface" : "group '" + touch + "'";
+  c.scene.fix(fix.empty() ? Selection(between(mesh, 0.0, 0.1)) : Selection(fix));
+  c.scene.touch(touch.empty() ? Selection(between(mesh, 0.5, 1.0)) : Selection(touch)).see("surface");
+  return c;
+}
+
+/// A ball and its way: from above the surface to its deepest place, world frame [m].
+struct Press {
+  SphereTool ball;
+  Vector3 above, deepest;
+  double depth;  ///< of the ball in the surface at rest
+};
+
+/// In the middle of what may be touched, along the outward normal there, a quarter of the radius deep. Without a radius
+/// the ball is twice as large as the mean edge there: facets longer than half the radius make contact too stiff.
+template <class Organ>
+Press plan_press(const Organ& organ, double radius) {
+  const ContactSurface& surface = organ.contact_surface();
+  double edges = 0.0;
+  Vector3 middle = Vector3::Zero();
+  for (const auto& t : surface.triangles())
+    for (std::size_t i = 0; i < 3; ++i) {
+      edges += (surface.position(t[i]) - surface.position(t[(i + 1) % 3])).norm();
+      middle += surface.position(t[i]);
+    }
+  const double count = 3.0 * static_cast<double>(surface.triangles().size());
+  if (radius <= 0.0) radius = 2.0 * edges / count;
+  const auto at = surface.closest(middle / count);
+  const Vector3 outward = surface.normal(at.triangle);
+  const double depth = 0.25 * radius;
+  const auto world = [&](double height) { return Vector3(organ.pose() * Vector3(at.point + height * outward)); };
+  return {SphereTool{.radius = radius}, world(2.0 * radius), world(radius - depth), depth};
+}
+
+}  // namespace own_mesh
