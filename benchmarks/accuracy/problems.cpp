@@ -54,7 +54,8 @@ void solve_sphere(double nu, Table& table, Checks& checks) {
     before = worst;
   }
   if (nu < 0.4)
-    checks.expect(effectivity > 0.8 && effectivity < (E::nodes == 20 ? 1.8 : 1.25), element_name<E>() + ": effectivity of the estimate");
+    checks.expect(effectivity > 0.8 && effectivity < (E::nodes == 20 ? 1.8 : 1.25),
+                  element_name<E>() + ": effectivity of the estimate");
 }
 
 void sphere(Checks& checks) {

@@ -18,11 +18,11 @@ struct Truth {
 };
 /// The last two are those of an incompressible layer.
 inline constexpr std::array<Truth, 6> truths{{{0.30, 0.188, 1.2007},
-                                       {0.30, 0.357, 1.4500},
-                                       {0.45, 0.186, 1.2436},
-                                       {0.45, 0.349, 1.5626},
-                                       {0.4999, 0.185, 1.2698},
-                                       {0.4999, 0.344, 1.6355}}};
+                                              {0.30, 0.357, 1.4500},
+                                              {0.45, 0.186, 1.2436},
+                                              {0.45, 0.349, 1.5626},
+                                              {0.4999, 0.185, 1.2698},
+                                              {0.4999, 0.344, 1.6355}}};
 
 // The exact solution is that of a shallow ball. At a / R = 0.05 the finite slope still changes the force by less than
 // 1 %; at 0.25 it is up to 4 %, at 0.5 up to 14 % (nu = 0.45), on any mesh.
@@ -41,9 +41,12 @@ template <Element E>
 Mesh<E> layer_mesh(double h, double width, double height) {
   const double cell = (E::nodes == 10 || E::nodes == 20 ? 2.0 : 1.0) * h;
   const std::vector<double> x = graded(cell, 1.5 * a, width, 1.25), z = graded_down(cell, a, height, 1.25);
-  if constexpr (E::nodes == 4) return copy_mesh<E>(box_tet4(x, x, z));
-  else if constexpr (E::nodes == 8) return copy_mesh<E>(box_hex8(x, x, z));
-  else return copy_mesh<E>(promote<Tet10>(box_tet4(x, x, z)));
+  if constexpr (E::nodes == 4)
+    return copy_mesh<E>(box_tet4(x, x, z));
+  else if constexpr (E::nodes == 8)
+    return copy_mesh<E>(box_hex8(x, x, z));
+  else
+    return copy_mesh<E>(promote<Tet10>(box_tet4(x, x, z)));
 }
 
 /// A quarter of the layer: the ball's axis is the edge x = y = 0.
@@ -95,12 +98,14 @@ inline void print(const Row& row, const Truth& truth, const Row& before) {
 /// An element that says it locks is measured there, not judged.
 template <Element E>
 constexpr bool may_lock(double poisson_ratio) {
-  if constexpr (SaysWhenItLocks<E>) return poisson_ratio > std::max(0.49, E::locking_poisson_ratio);
-  else return false;
+  if constexpr (SaysWhenItLocks<E>)
+    return poisson_ratio > std::max(0.49, E::locking_poisson_ratio);
+  else
+    return false;
 }
 
-/// Nodes every h = a/2, a/3, a/4, a/6. Accepted: a/3 to a/6 changes the force by less than 5 %, and a/6 is within 5 % of
-/// the truth.
+/// Nodes every h = a/2, a/3, a/4, a/6. Accepted: a/3 to a/6 changes the force by less than 5 %, and a/6 is within 5 %
+/// of the truth.
 template <Element E>
 bool converges(const Truth& truth) {
   std::printf("\nnu = %.4g, chi = %.3f, H = %.2f mm\n", truth.poisson_ratio, truth.chi, 1e3 * a / truth.chi);
@@ -115,7 +120,10 @@ bool converges(const Truth& truth) {
   const bool stationary = std::ranges::all_of(rows, &Row::stationary);
   const bool good = stationary && std::abs(change) < 0.05 && std::abs(error) < 0.05;
   std::printf("  halving h from a/3: %+.2f %%, finest error %+.2f %%, allowed 5 %%: %s\n", 100.0 * change,
-              100.0 * error, good ? "pass" : may_lock<E>(truth.poisson_ratio) ? "locks, as it says" : "FAIL");
+              100.0 * error,
+              good                               ? "pass"
+              : may_lock<E>(truth.poisson_ratio) ? "locks, as it says"
+                                                 : "FAIL");
   return good || may_lock<E>(truth.poisson_ratio);
 }
 

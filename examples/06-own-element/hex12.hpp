@@ -3,12 +3,13 @@
 
 #include <palpate/element/quad4.hpp>
 
-/// All an element needs is here: nodes, shape functions and their gradients, faces, rules. Nothing registers it anywhere.
-/// `static_assert(palpate::Element<Hex12>)` below checks the form at compile time, the laws of
+/// All an element needs is here: nodes, shape functions and their gradients, faces, rules. Nothing registers it
+/// anywhere. `static_assert(palpate::Element<Hex12>)` below checks the form at compile time, the laws of
 /// palpate/testing/element_laws.hpp check the numbers (main.cpp runs them).
 namespace own {
 
-/// The side of Hex12: quadratic along its first axis. Nodes: the corners of Quad4, then the middles of the two long edges.
+/// The side of Hex12: quadratic along its first axis. Nodes: the corners of Quad4, then the middles of the two long
+/// edges.
 struct Quad6 {
   static constexpr int nodes = 6;
   /// What a tool touches: triangles that use every node.

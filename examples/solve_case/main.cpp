@@ -12,8 +12,8 @@
 //      displacement, the strain energy, the sum of the reactions and the time it took.
 //
 // Where the analysis is "linear eigenfrequency" it finds the lowest elastic modes instead (modes.hpp), writes
-// DIR/<load case>_mode<k>_u.csv, shapes normalised by mass, and prints their frequencies; rigid motions of a body that is
-// not held are counted apart.
+// DIR/<load case>_mode<k>_u.csv, shapes normalised by mass, and prints their frequencies; rigid motions of a body that
+// is not held are counted apart.
 //
 // Whatever palpate does not do (a non-linear material, an analysis in time, an element it lacks, a group that the mesh
 // does not have) is refused by name in that line, and the next load case is tried: a wrong answer is never printed. The

@@ -13,7 +13,9 @@ struct Arguments {
   bool mesh_v41 = false;
 };
 
-inline void print(const nlohmann::ordered_json& line) { std::cout << line.dump() << std::endl; }
+inline void print(const nlohmann::ordered_json& line) {
+  std::cout << line.dump() << std::endl;
+}
 
 inline void print_refusal(const std::string& name, const palpate::SetupError& error) {
   const palpate::SetupProblem& p = error.problem();

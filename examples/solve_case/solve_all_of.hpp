@@ -16,8 +16,10 @@ void solve_load_case(const NumberedMesh<E>& numbered, const std::string& element
     print(summary(name, element, solution));
   };
   try {
-    if (load_case.value("analysis", "") == eigenfrequencies) run(solve_modes<E>);
-    else run(solve<E>);
+    if (load_case.value("analysis", "") == eigenfrequencies)
+      run(solve_modes<E>);
+    else
+      run(solve<E>);
   } catch (const palpate::SetupError& error) {
     print_refusal(name, error);
   }

@@ -25,7 +25,8 @@ VectorX solve(Body<E>& body, const Scene& scene) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a body that is just held expands without stress", "[assembly][expansion]", Tet4, Tet10, Hex8, Hex20) {
+TEMPLATE_TEST_CASE("a body that is just held expands without stress", "[assembly][expansion]", Tet4, Tet10, Hex8,
+                   Hex20) {
   using E = TestType;
   const auto mesh = [] {
     if constexpr (E::nodes == 4) return box_tet4({0.3, 0.2, 0.1}, {3, 2, 1});
@@ -60,7 +61,9 @@ TEST_CASE("one region grows, the other is strained by it", "[assembly][expansion
   mesh.regions = {0, 1};
   mesh.region_names = {"left", "right"};
   Scene scene;
-  scene.prescribe("surface", {std::nullopt, 0.0, 0.0}).prescribe("x0", {0.0, 0.0, 0.0}).prescribe("x1", {0.0, 0.0, 0.0});
+  scene.prescribe("surface", {std::nullopt, 0.0, 0.0})
+      .prescribe("x0", {0.0, 0.0, 0.0})
+      .prescribe("x1", {0.0, 0.0, 0.0});
   scene.expand("right", 0.01);
   Body<Hex8> body = make_body(mesh, LinearElastic{1000.0, 0.0, 1.0});
   const VectorX u = solve(body, scene);

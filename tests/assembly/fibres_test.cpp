@@ -17,7 +17,9 @@ namespace {
 
 const TransverselyIsotropic muscle{60e3, 12e3, 0.45, 0.6, 9e3, Vector3::UnitX(), 1060.0};
 
-Vector3 random_direction(testing::Random& random) { return testing::random_rotation(random).col(0); }
+Vector3 random_direction(testing::Random& random) {
+  return testing::random_rotation(random).col(0);
+}
 
 template <Element E>
 void give_fibres(Mesh<E>& mesh) {
@@ -161,7 +163,8 @@ TEST_CASE("fibres come along through admission, promotion and refinement", "[mes
   damaged.elements.insert(damaged.elements.begin() + 3, damaged.elements[1]);
   damaged.fibres.insert(damaged.fibres.begin() + 3, Vector3::UnitZ());
   damaged.elements.insert(damaged.elements.begin() + 5, {0, 1, 2, 2});
-  damaged.elements[5] = {damaged.elements[0][0], damaged.elements[0][1], damaged.elements[0][2], damaged.elements[0][0]};
+  damaged.elements[5] = {damaged.elements[0][0], damaged.elements[0][1], damaged.elements[0][2],
+                         damaged.elements[0][0]};
   damaged.fibres.insert(damaged.fibres.begin() + 5, Vector3::UnitY());
   std::swap(damaged.elements[7][0], damaged.elements[7][1]);
   AdmissionPolicy mend;

@@ -108,7 +108,8 @@ TEST_CASE("near incompressibility Tet4 locks, Smoothed<Tet4> does not", "[assemb
   const BoxSplit split = GENERATE(BoxSplit::five_mirrored, BoxSplit::six);
   const Mesh<Tet4> mesh = box_tet4({4, 1, 1}, {16, 4, 4}, split);
   double before = infinity;
-  for (const auto& [nu, exact] : {std::pair{0.3, 0.2636}, {0.45, 0.2584}, {0.49, 0.2564}, {0.499, 0.2559}, {0.4999, 0.2558}}) {
+  for (const auto& [nu, exact] :
+       {std::pair{0.3, 0.2636}, {0.45, 0.2584}, {0.49, 0.2564}, {0.499, 0.2559}, {0.4999, 0.2558}}) {
     const double plain = tip_deflection(mesh, nu) / exact - 1.0;
     const double cured = tip_deflection(as<Smoothed<Tet4>>(mesh), nu) / exact - 1.0;
     INFO("nu " << nu << ": Tet4 " << plain << ", Smoothed<Tet4> " << cured);

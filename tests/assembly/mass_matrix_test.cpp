@@ -102,7 +102,8 @@ TEMPLATE_TEST_CASE("mass does not depend on the order of nodes and elements", "[
   assemble_mass(other).apply(other_v, other_mv);
   for (std::size_t i = 0; i < n; ++i) {
     CHECK_THAT(other_lumped[map[i]], WithinRel(lumped[static_cast<Index>(i)], 1e-13));
-    const Vector3 difference = other_mv.template segment<3>(3 * map[i]) - mv.template segment<3>(3 * static_cast<Index>(i));
+    const Vector3 difference =
+        other_mv.template segment<3>(3 * map[i]) - mv.template segment<3>(3 * static_cast<Index>(i));
     CHECK(difference.norm() <= 1e-13 * mv.norm());
   }
 }

@@ -92,7 +92,8 @@ TEST_CASE("Smoothed<Tet4>: energy, forces and stress belong together", "[assembl
   double at_rest = 0.0;
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
     const Vector6& e0 = body.initial_strain[body.region_of(e)];
-    at_rest += 0.5 * e0.dot(body.elasticity_of(e) * e0) * shape_volumes<Cured>(element_nodes<Cured>(body.mesh, e)).sum();
+    at_rest +=
+        0.5 * e0.dot(body.elasticity_of(e) * e0) * shape_volumes<Cured>(element_nodes<Cured>(body.mesh, e)).sum();
   }
   CHECK_THAT(strain_energy(body, u), Catch::Matchers::WithinRel(0.5 * u.dot(force) - u.dot(load) + at_rest, 1e-12));
 

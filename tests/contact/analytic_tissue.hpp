@@ -10,16 +10,18 @@ namespace test {
 
 using namespace palpate;
 
-/// Vertices of a plane grid at z = 0, normal +z. Each moves with `own` [m/N] under its own force and all move with `common` [m/N] under the
-/// sum of all forces, alike in all directions. A ball of radius R at p then feels from vertex x the force
-/// max(0, R - |p - x|) / own along p - x, if the common displacement is taken off p first.
+/// Vertices of a plane grid at z = 0, normal +z. Each moves with `own` [m/N] under its own force and all move with
+/// `common` [m/N] under the sum of all forces, alike in all directions. A ball of radius R at p then feels from vertex
+/// x the force max(0, R - |p - x|) / own along p - x, if the common displacement is taken off p first.
 class AnalyticTissue {
  public:
   AnalyticTissue(int cells, double size, double own, double common = 0.0) : own_(own), common_(common) {
     std::vector<Vector3> positions;
     std::vector<Triangle> triangles;
     for (int j = 0; j <= cells; ++j)
-      for (int i = 0; i <= cells; ++i) positions.emplace_back(size * (static_cast<double>(i) / cells - 0.5), size * (static_cast<double>(j) / cells - 0.5), 0.0);
+      for (int i = 0; i <= cells; ++i)
+        positions.emplace_back(size * (static_cast<double>(i) / cells - 0.5),
+                               size * (static_cast<double>(j) / cells - 0.5), 0.0);
     for (int j = 0; j < cells; ++j)
       for (int i = 0; i < cells; ++i) {
         const int a = i + (cells + 1) * j, b = a + 1, c = a + cells + 1, d = c + 1;
@@ -87,13 +89,16 @@ std::vector<Vector3> deformed_surface(const Tissue& tissue, std::span<const Cont
   for (std::size_t i = 0; i < x.size(); ++i)
     for (const Contact& c : contacts)
       for (std::size_t a = 0; a < 3; ++a)
-        if (c.weights[a] > 0.0) x[i] -= tissue.compliance(static_cast<int>(i), c.vertices[a]) * (c.weights[a] * c.force * c.normal);
+        if (c.weights[a] > 0.0)
+          x[i] -= tissue.compliance(static_cast<int>(i), c.vertices[a]) * (c.weights[a] * c.force * c.normal);
   return x;
 }
 
-/// Smallest gap between a ball at `proxy` (model frame) and any contact point of the deformed surface; those the ball is behind count too.
+/// Smallest gap between a ball at `proxy` (model frame) and any contact point of the deformed surface; those the ball
+/// is behind count too.
 template <TissueModel Tissue>
-double smallest_gap(const Tissue& tissue, const ContactSamples& samples, std::span<const Contact> contacts, const Vector3& proxy, double radius) {
+double smallest_gap(const Tissue& tissue, const ContactSamples& samples, std::span<const Contact> contacts,
+                    const Vector3& proxy, double radius) {
   const std::vector<Vector3> x = deformed_surface(tissue, contacts);
   double smallest = infinity;
   for (int t = 0; t < static_cast<int>(tissue.contact_surface().triangles().size()); ++t)

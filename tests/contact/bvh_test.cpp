@@ -104,7 +104,8 @@ TEST_CASE("after a refit the answers are those of the moved triangles", "[contac
 TEST_CASE("of equally near triangles the lowest number wins", "[contact][bvh]") {
   const Soup once(40, 26);
   Soup soup = once;
-  for (int copy = 0; copy < 3; ++copy) soup.triangles.insert(soup.triangles.end(), once.triangles.begin(), once.triangles.end());
+  for (int copy = 0; copy < 3; ++copy)
+    soup.triangles.insert(soup.triangles.end(), once.triangles.begin(), once.triangles.end());
   const Bvh bvh(soup.triangles, soup.positions);
   testing::Random random(27);
   for (int i = 0; i < 500; ++i) {

@@ -39,7 +39,8 @@ Case random_case(testing::Random& random, int n, double decades) {
   return c;
 }
 
-/// Contacts of a ball with a half space of softness `own` per point: normals within 60 degrees, coupled by the ball's own mobility.
+/// Contacts of a ball with a half space of softness `own` per point: normals within 60 degrees, coupled by the ball's
+/// own mobility.
 Case ball_case(testing::Random& random, int n, double own) {
   MatrixX normals(n, 3);
   Case c;
@@ -90,7 +91,8 @@ VectorX enumerate(const Case& c) {
   return best;
 }
 
-/// Largest violation of lambda >= 0, gap >= 0, lambda * gap = 0, all as gaps relative to max |b|; the relaxed diagonal is allowed for.
+/// Largest violation of lambda >= 0, gap >= 0, lambda * gap = 0, all as gaps relative to max |b|; the relaxed diagonal
+/// is allowed for.
 double violation(const Case& c, const Problem& problem) {
   const VectorX lambda = problem.lambda;
   MatrixX w = c.w;
@@ -161,7 +163,8 @@ TEST_CASE("more contacts than degrees of freedom, copies among them", "[contact]
       const VectorX gap = c.b + c.w * problem.lambda;
       worst_sum = std::max(worst_sum, -gap.minCoeff() / c.b.cwiseAbs().maxCoeff());
     }
-  INFO("most pivots of 900 redundant problems: " << most << ", worst violation " << worst << ", deepest gap " << worst_sum);
+  INFO("most pivots of 900 redundant problems: " << most << ", worst violation " << worst << ", deepest gap "
+                                                 << worst_sum);
   CHECK(unsolved == 0);
   CHECK(worst <= 1e-6);
   CHECK(worst_sum <= 1e-4);

@@ -25,8 +25,8 @@ struct Session {
   std::vector<ContactTool> tools;
   Status status;
 
-  Session(AnalyticTissue& t, const std::vector<Vector3>& start, double coupling_compliance, double sampled_for = vertices_only,
-          const ContactParameters& parameters = {})
+  Session(AnalyticTissue& t, const std::vector<Vector3>& start, double coupling_compliance,
+          double sampled_for = vertices_only, const ContactParameters& parameters = {})
       : tissue(t), problem(t.contact_surface(), sampled_for, parameters), tools(start.size()) {
     for (std::size_t i = 0; i < tools.size(); ++i) {
       tools[i].radius = radius;
@@ -89,7 +89,8 @@ TEST_CASE("many contacts: the force of the closed form", "[contact][problem]") {
       std::size_t most = 0;
       for (int i = 0; i < 25; ++i) {
         const Vector3 start(random.uniform(-3e-3, 3e-3), random.uniform(-3e-3, 3e-3), radius + 1e-4);
-        const Vector3 end = start + Vector3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), -random.uniform(2e-4, 1.5e-3));
+        const Vector3 end =
+            start + Vector3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), -random.uniform(2e-4, 1.5e-3));
         Session<> s(tissue, {start}, coupling);
         s.move(0, end);
         s.settle();
@@ -185,7 +186,8 @@ TEST_CASE("the ball sinks into no contact point and is pushed out, not in", "[co
     for (int i = 0; i < 60; ++i) {
       const Vector3 start(random.uniform(-5e-3, 5e-3), random.uniform(-5e-3, 5e-3), radius + 1e-4);
       Session<> s(tissue, {start}, i % 2 == 0 ? 0.0 : 2e-3, sampled_for);
-      s.move(0, start + Vector3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), -random.uniform(2e-4, 1.2e-3)));
+      s.move(0,
+             start + Vector3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), -random.uniform(2e-4, 1.2e-3)));
       s.settle();
       if (s.force().norm() > 0.0) ++touching;
       deepest = std::min(deepest, smallest_gap(tissue, samples, s.problem.contacts(), s.tools[0].proxy, radius));
@@ -219,8 +221,8 @@ TEST_CASE("forces on the tissue are the forces on the balls, and balance them", 
 
 namespace {
 
-/// Work of the tissue on a rigidly coupled ball that is pressed in, slid, released and taken back through the air, over the work of the
-/// press. Trapezoid rule.
+/// Work of the tissue on a rigidly coupled ball that is pressed in, slid, released and taken back through the air, over
+/// the work of the press. Trapezoid rule.
 double work_of_loop(const ContactParameters& parameters, double sampled_for, int cells, double step) {
   AnalyticTissue tissue(cells, 0.02, 2e-2);
   Session<> s(tissue, {Vector3(-1.3e-3, -4e-4, radius + 1e-4)}, 0.0, sampled_for, parameters);
@@ -249,8 +251,8 @@ TEST_CASE("a closed loop under rigid coupling gives no work", "[contact][problem
   for (int cells : {20, 8}) {  // every contact point a vertex; points on edges and faces too
     INFO(cells << " cells");
     const double sampled_for = cells == 20 ? vertices_only : radius;
-    // As a servo has it: linearisation stops when the force changes by a thousandth. What is missing then is the turn of the normals of
-    // one step: a drag, never a push.
+    // As a servo has it: linearisation stops when the force changes by a thousandth. What is missing then is the turn
+    // of the normals of one step: a drag, never a push.
     for (double step : {2e-5, 1e-5, 2.5e-6}) {
       const double work = work_of_loop({}, sampled_for, cells, step);
       INFO(cells << " cells, steps of " << 1e6 * step << " um: work of the loop over work of the press " << work);
@@ -259,10 +261,12 @@ TEST_CASE("a closed loop under rigid coupling gives no work", "[contact][problem
     }
     ContactParameters strict;
     strict.force_tolerance = 1e-7;
-    const double coarse = work_of_loop(strict, sampled_for, cells, 2e-5), fine = work_of_loop(strict, sampled_for, cells, 5e-6);
+    const double coarse = work_of_loop(strict, sampled_for, cells, 2e-5),
+                 fine = work_of_loop(strict, sampled_for, cells, 5e-6);
     strict.maximum_iterations = 30;
     const double converged = work_of_loop(strict, sampled_for, cells, 2e-5);
-    INFO(cells << " cells, four linearisations always: " << coarse << " in 20 um steps, " << fine << " in 5 um steps; to convergence: " << converged);
+    INFO(cells << " cells, four linearisations always: " << coarse << " in 20 um steps, " << fine
+               << " in 5 um steps; to convergence: " << converged);
     CHECK(std::abs(coarse) <= 5e-3);
     CHECK(std::abs(fine) <= 0.4 * std::abs(coarse));
     CHECK(std::abs(converged) <= 2e-4);

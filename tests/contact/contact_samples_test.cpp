@@ -14,7 +14,8 @@ namespace {
 
 ContactSurface surface_of(const Mesh<Tet4>& mesh) {
   std::vector<Triangle> triangles;
-  for (const auto& face : extract_boundary<Tet4>(mesh)) triangles.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
+  for (const auto& face : extract_boundary<Tet4>(mesh))
+    triangles.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
   return {mesh.positions, triangles};
 }
 
@@ -91,7 +92,8 @@ TEST_CASE("no point of the surface is further than the spacing from a sample", "
         u = 1.0 - u;
         v = 1.0 - v;
       }
-      const Vector3 p = (1.0 - u - v) * surface.position(t[0]) + u * surface.position(t[1]) + v * surface.position(t[2]);
+      const Vector3 p =
+          (1.0 - u - v) * surface.position(t[0]) + u * surface.position(t[1]) + v * surface.position(t[2]);
       double nearest = infinity;
       for (const Vector3& x : places) nearest = std::min(nearest, (x - p).norm());
       farthest = std::max(farthest, nearest);
@@ -116,8 +118,10 @@ TEST_CASE("samples on a line of the mesh are not further apart than the spacing"
       REQUIRE(along.size() >= 2);
       CHECK(along.front() == 0.0);
       CHECK(along.back() == 1.0);
-      const double length = (one.position(static_cast<int>((i + 1) % 3)) - one.position(static_cast<int>((i + 2) % 3))).norm();
-      for (std::size_t k = 1; k < along.size(); ++k) CHECK((along[k] - along[k - 1]) * length <= spacing * (1.0 + 1e-12));
+      const double length =
+          (one.position(static_cast<int>((i + 1) % 3)) - one.position(static_cast<int>((i + 2) % 3))).norm();
+      for (std::size_t k = 1; k < along.size(); ++k)
+        CHECK((along[k] - along[k - 1]) * length <= spacing * (1.0 + 1e-12));
     }
   }
 }

@@ -17,7 +17,8 @@ ContactSurface surface_of(const Mesh<Tet4>& mesh, std::size_t only_axis = 3) {
   for (const Vector3& x : mesh.positions) top = std::max(top, x[2]);
   for (const auto& face : extract_boundary<Tet4>(mesh)) {
     const Triangle t{face.nodes[0], face.nodes[1], face.nodes[2]};
-    const bool on_top = std::ranges::all_of(t, [&](int v) { return mesh.positions[static_cast<std::size_t>(v)][2] == top; });
+    const bool on_top =
+        std::ranges::all_of(t, [&](int v) { return mesh.positions[static_cast<std::size_t>(v)][2] == top; });
     if (only_axis == 3 || on_top) triangles.push_back(t);
   }
   return {mesh.positions, triangles};
@@ -77,7 +78,8 @@ TEST_CASE("on the surface the outward direction is the normal, not rounding", "[
   const ContactSurface surface = surface_of(box_tet4(Vector3(0.03, 0.03, 0.02), {6, 6, 4}, BoxSplit::six));
   testing::Random random(34);
   for (int i = 0; i < 1000; ++i) {
-    const Vector3 p(random.uniform(1e-4, 0.0299), random.uniform(1e-4, 0.0299), 0.02 + 1e-17 * static_cast<double>(i % 3 - 1));
+    const Vector3 p(random.uniform(1e-4, 0.0299), random.uniform(1e-4, 0.0299),
+                    0.02 + 1e-17 * static_cast<double>(i % 3 - 1));
     const auto closest = surface.closest(p);
     if (!(closest.outward[2] > 0.999)) FAIL(p.transpose() << ": outward " << closest.outward.transpose());
     if (!(std::abs(closest.distance) <= 1e-15)) FAIL(p.transpose() << ": distance " << closest.distance);
@@ -88,7 +90,8 @@ TEST_CASE("on the surface the outward direction is the normal, not rounding", "[
 TEST_CASE("ties go to the same triangle every time", "[contact][surface]") {
   const ContactSurface surface = surface_of(box_tet4(Vector3(1, 1, 1), {4, 4, 4}, BoxSplit::five_mirrored));
   const ContactSurface again = surface_of(box_tet4(Vector3(1, 1, 1), {4, 4, 4}, BoxSplit::five_mirrored));
-  for (const Vector3& p : {Vector3(0.5, 0.5, 0.5), Vector3(0.5, 0.5, 1.0), Vector3(0.25, 0.25, 1.0), Vector3(0, 0, 0), Vector3(0.5, 0, 0)}) {
+  for (const Vector3& p : {Vector3(0.5, 0.5, 0.5), Vector3(0.5, 0.5, 1.0), Vector3(0.25, 0.25, 1.0), Vector3(0, 0, 0),
+                           Vector3(0.5, 0, 0)}) {
     const auto first = surface.closest(p);
     CHECK(first.triangle >= 0);
     for (int i = 0; i < 3; ++i) {
@@ -135,7 +138,8 @@ TEST_CASE("over an open surface the sign is that of the plane", "[contact][surfa
 
 TEST_CASE("a point beside the rim of an open surface is not inside", "[contact][surface][extreme][D3]") {
   const ContactSurface top = surface_of(box_tet4(Vector3(1, 1, 1), {3, 3, 3}, BoxSplit::six), 2);
-  for (const Vector3& p : {Vector3(-0.5, 0.5, 0.9), Vector3(1.5, 0.4, 0.2), Vector3(-0.3, -0.3, 0.5), Vector3(0.5, -1e-3, 0.9999)}) {
+  for (const Vector3& p :
+       {Vector3(-0.5, 0.5, 0.9), Vector3(1.5, 0.4, 0.2), Vector3(-0.3, -0.3, 0.5), Vector3(0.5, -1e-3, 0.9999)}) {
     INFO(p.transpose());
     CHECK(top.closest(p).distance > 0.0);
   }

@@ -81,6 +81,8 @@ struct ServoSession {
 };
 
 /// Bit by bit the same vector.
-inline bool same(const Vector3& a, const Vector3& b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
+inline bool same(const Vector3& a, const Vector3& b) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
 
 }  // namespace test

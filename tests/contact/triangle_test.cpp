@@ -59,18 +59,27 @@ bool weights_are_fine(const TrianglePoint& q) {
 bool weights_match_feature(const TrianglePoint& q) {
   const auto zero = [&](std::size_t i) { return q.weights[i] == 0.0; };
   switch (q.feature) {
-    case TriangleFeature::face: return true;
-    case TriangleFeature::edge01: return zero(2);
-    case TriangleFeature::edge12: return zero(0);
-    case TriangleFeature::edge20: return zero(1);
-    case TriangleFeature::vertex0: return zero(1) && zero(2);
-    case TriangleFeature::vertex1: return zero(0) && zero(2);
-    case TriangleFeature::vertex2: return zero(0) && zero(1);
+    case TriangleFeature::face:
+      return true;
+    case TriangleFeature::edge01:
+      return zero(2);
+    case TriangleFeature::edge12:
+      return zero(0);
+    case TriangleFeature::edge20:
+      return zero(1);
+    case TriangleFeature::vertex0:
+      return zero(1) && zero(2);
+    case TriangleFeature::vertex1:
+      return zero(0) && zero(2);
+    case TriangleFeature::vertex2:
+      return zero(0) && zero(1);
   }
   return false;
 }
 
-TrianglePoint closest(const Vector3& p, const Corners& t) { return closest_point(p, t.a, t.b, t.c); }
+TrianglePoint closest(const Vector3& p, const Corners& t) {
+  return closest_point(p, t.a, t.b, t.c);
+}
 
 }  // namespace
 
@@ -122,7 +131,8 @@ TEST_CASE("no sampled point of a triangle is closer", "[contact][triangle]") {
     const Corners t{random.vector<3>(-1, 1), random.vector<3>(-1, 1), random.vector<3>(-1, 1)};
     const Vector3 p = random.vector<3>(-2, 2);
     const double found = (p - t.at(closest(p, t).weights)).norm(), sampled = sampled_distance(p, t, 60);
-    if (!(found <= sampled + 1e-12 && sampled <= found + 0.1)) FAIL("triangle " << i << ": " << found << ", " << sampled);
+    if (!(found <= sampled + 1e-12 && sampled <= found + 0.1))
+      FAIL("triangle " << i << ": " << found << ", " << sampled);
   }
   SUCCEED();
 }
@@ -133,7 +143,12 @@ TEST_CASE("corners and points of the edges are found exactly", "[contact][triang
   for (int i = 0; i < 2000; ++i) {
     const Corners t{random.vector<3>(-1, 1), random.vector<3>(-1, 1), random.vector<3>(-1, 1)};
     const double s = random.uniform();
-    for (const auto& w : {std::array{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {1.0 - s, s, 0.0}, {0.0, 1.0 - s, s}, {s, 0.0, 1.0 - s}}) {
+    for (const auto& w : {std::array{1.0, 0.0, 0.0},
+                          {0.0, 1.0, 0.0},
+                          {0.0, 0.0, 1.0},
+                          {1.0 - s, s, 0.0},
+                          {0.0, 1.0 - s, s},
+                          {s, 0.0, 1.0 - s}}) {
       const Vector3 p = t.at(w);
       worst = std::max(worst, (p - t.at(closest(p, t).weights)).norm());
     }

@@ -59,7 +59,9 @@ void run_recorded(Device& device, const std::string& path, double seconds) {
   CHECK(recorder.dropped() == 0);
 }
 
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0 || (std::isnan(a) && std::isnan(b)); }
+bool same_bits(double a, double b) {
+  return std::memcmp(&a, &b, sizeof a) == 0 || (std::isnan(a) && std::isnan(b));
+}
 
 bool same(const RecordedTick& a, const RecordedTick& b) {
   bool equal = same_bits(a.state.time, b.state.time) && a.state.buttons == b.state.buttons &&

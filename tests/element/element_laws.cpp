@@ -17,8 +17,7 @@ TEMPLATE_TEST_CASE("the elements of the library keep the laws", "[element][laws]
   CHECK(testing::describe(testing::element_laws<TestType>()) == "");
 }
 
-TEMPLATE_TEST_CASE("the surface elements of the library keep the laws", "[element][laws]", Tri3, Tri6, Quad4,
-                   Quad8) {
+TEMPLATE_TEST_CASE("the surface elements of the library keep the laws", "[element][laws]", Tri3, Tri6, Quad4, Quad8) {
   STATIC_REQUIRE(FaceElement<TestType>);
   CHECK(testing::describe(testing::face_element_laws<TestType>()) == "");
 }

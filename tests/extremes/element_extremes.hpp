@@ -47,7 +47,8 @@ void check_contrast(double contrast) {
     mesh.regions.push_back(element_nodes<E>(mesh, e).col(0).mean() < 0.05 ? 0 : 1);
   const RegionMaterials<LinearElastic> materials{{"soft", {1e3, 0.0, 0.0}}, {"hard", {contrast * 1e3, 0.0, 0.0}}};
   const double stress = 20.0;
-  const Scene scene = Scene().prescribe("x0", {0.0, std::nullopt, std::nullopt})
+  const Scene scene = Scene()
+                          .prescribe("x0", {0.0, std::nullopt, std::nullopt})
                           .prescribe("y0", {std::nullopt, 0.0, std::nullopt})
                           .prescribe("z0", {std::nullopt, std::nullopt, 0.0})
                           .traction("x1", {stress, 0.0, 0.0});
@@ -181,10 +182,18 @@ void check_small_bodies() {
 
 template <Element E>
 void check_extremes() {
-  SECTION("material, size and place") { check_material_extremes<E>(); }
-  SECTION("slivers") { check_slivers<E>(); }
-  SECTION("defects") { check_defects<E>(); }
-  SECTION("small bodies") { check_small_bodies<E>(); }
+  SECTION("material, size and place") {
+    check_material_extremes<E>();
+  }
+  SECTION("slivers") {
+    check_slivers<E>();
+  }
+  SECTION("defects") {
+    check_defects<E>();
+  }
+  SECTION("small bodies") {
+    check_small_bodies<E>();
+  }
 }
 
 }  // namespace test

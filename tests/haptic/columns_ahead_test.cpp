@@ -44,10 +44,12 @@ TEST_CASE("columns computed ahead end at the force of columns computed in the ti
   }
 }
 
-TEST_CASE("a column that is not there yet is flagged, and the force stays finite and soft", "[haptic][columns][extreme]") {
+TEST_CASE("a column that is not there yet is flagged, and the force stays finite and soft",
+          "[haptic][columns][extreme]") {
   Sparse ahead = make_model(ColumnFill::ahead), in_tick = make_model(ColumnFill::in_tick);
   ServoSession session(ahead), reference(in_tick);
-  const Vector3 above(0.0137, 0.0159, pad_height + ball_radius + 5e-3), pressed(0.0137, 0.0159, pad_height + ball_radius - 1.5e-3);
+  const Vector3 above(0.0137, 0.0159, pad_height + ball_radius + 5e-3),
+      pressed(0.0137, 0.0159, pad_height + ball_radius - 1.5e-3);
   session.tick(above);
   reference.tick(above);
   const bool flagged = session.tick(pressed).status.has(StatusFlag::degraded_model);

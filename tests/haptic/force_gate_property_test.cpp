@@ -30,7 +30,9 @@ constexpr double special_values[] = {0.0,
                                      std::numeric_limits<double>::quiet_NaN(),
                                      -std::numeric_limits<double>::quiet_NaN()};
 
-double special(testing::Random& random) { return special_values[random.bits() % std::size(special_values)]; }
+double special(testing::Random& random) {
+  return special_values[random.bits() % std::size(special_values)];
+}
 
 /// A component of a force: mostly of the size of forces, sometimes of any size or special.
 double component(testing::Random& random) {
@@ -40,7 +42,9 @@ double component(testing::Random& random) {
   return random.uniform(-5.0, 5.0);
 }
 
-Vector3 random_force(testing::Random& random) { return {component(random), component(random), component(random)}; }
+Vector3 random_force(testing::Random& random) {
+  return {component(random), component(random), component(random)};
+}
 
 /// The cosine without overflow; 1 where both are zero.
 double cosine(const Vector3& a, const Vector3& b) {

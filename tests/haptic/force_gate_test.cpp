@@ -377,7 +377,7 @@ TEST_CASE("senseless limits are refused", "[haptic][gate]") {
   CHECK(refusal([](ForceLimits& l) {
           l.fade_time = 1.0;
           l.slew_rate = l.peak_force * (1.0 - 1e-9);
-        }) == SetupErrorKind::unsupported);  // exactly at the bound
+        }) == SetupErrorKind::unsupported);                               // exactly at the bound
   CHECK(refusal([](ForceLimits& l) { l.stale_after = 0.0014; }) == bad);  // every tick would be stale
   CHECK(refusal([](ForceLimits& l) { l.stale_after = 0.0015; }) == SetupErrorKind::unsupported);
 }

@@ -29,7 +29,8 @@ ServoOptions slow_gate() {
 constexpr double slow_slew = 165.0 * 1e-3;
 
 double special(testing::Random& random) {
-  constexpr std::array values{0.0, -0.0, 5e-324, DBL_MIN, 1e308, -1e308, DBL_MAX, infinity, -infinity, nan_value, 1e154, -1e-310, 1e6, 0.015, -0.01, 1.0};
+  constexpr std::array values{0.0,       -0.0,      5e-324, DBL_MIN, 1e308, -1e308, DBL_MAX, infinity,
+                              -infinity, nan_value, 1e154,  -1e-310, 1e6,   0.015,  -0.01,   1.0};
   return values[random.bits() % values.size()];
 }
 
@@ -64,7 +65,8 @@ Vector3 static_force(Pad& pad, double depth) {
 
 }  // namespace
 
-TEST_CASE("1e6 ticks of special and random values give finite forces within the limits", "[haptic][servo][extreme][D1]") {
+TEST_CASE("1e6 ticks of special and random values give finite forces within the limits",
+          "[haptic][servo][extreme][D1]") {
   Pad pad = test::make_pad("z1", 1e5);
   ServoOptions options = slow_gate();
   options.contact.sample_spacing = 1.0;
@@ -77,16 +79,23 @@ TEST_CASE("1e6 ticks of special and random values give finite forces within the 
     ToolState& s = session.states[0];
     const double dice = random.uniform();
     p += random.vector<3>(-1e-4, 1e-4);
-    p = p.cwiseMax(Vector3(5e-3, 5e-3, pad_height + radius - 1.5e-3)).cwiseMin(Vector3(0.025, 0.025, pad_height + radius));
+    p = p.cwiseMax(Vector3(5e-3, 5e-3, pad_height + radius - 1.5e-3))
+            .cwiseMin(Vector3(0.025, 0.025, pad_height + radius));
     const bool calm = i / 200 % 5 == 0;  // else the ramp would never open
-    if (calm || dice < 0.5) s.position = p;
-    else if (dice < 0.8) s.position[static_cast<Index>(random.bits() % 3)] = special(random);
-    else if (dice < 0.9) s.position = random.vector<3>(-0.1, 0.1);
-    else s.position = Vector3(special(random), special(random), special(random));
+    if (calm || dice < 0.5)
+      s.position = p;
+    else if (dice < 0.8)
+      s.position[static_cast<Index>(random.bits() % 3)] = special(random);
+    else if (dice < 0.9)
+      s.position = random.vector<3>(-0.1, 0.1);
+    else
+      s.position = Vector3(special(random), special(random), special(random));
     s.velocity = Vector3(special(random), nan_value, infinity);
     s.orientation = {special(random), special(random), special(random), special(random)};
-    if (calm || dice < 0.97) s.time = 1e-3 * i;
-    else s.time = special(random);
+    if (calm || dice < 0.97)
+      s.time = 1e-3 * i;
+    else
+      s.time = special(random);
     s.valid = calm || random.uniform() < 0.98;
     const bool finite = s.position.allFinite() && std::isfinite(s.time);
     const ToolForce f = session.servo.tick(session.states).front();
@@ -184,7 +193,8 @@ TEST_CASE("a jump into the tissue within two radii ends at the static force", "[
   for (int i = 0; i < 200; ++i) {
     const Vector3 start(random.uniform(8e-3, 22e-3), random.uniform(8e-3, 22e-3), pad_height + radius + 1e-4);
     const double length = radius * random.uniform(0.2, 1.9);
-    const Vector3 end = start + length * Vector3(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), -1.0).normalized();
+    const Vector3 end =
+        start + length * Vector3(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), -1.0).normalized();
     ServoSession jumped(pad), walked(pad);
     jumped.tick(start);
     jumped.hold(5);
@@ -194,8 +204,10 @@ TEST_CASE("a jump into the tissue within two radii ends at the static force", "[
     walked.move(end, 200);
     const Vector3 g = walked.hold(100).force;
     ++jumps;
-    if (f.norm() < 0.1 * g.norm()) ++lost;
-    else if ((f - g).norm() > 0.1 * g.norm()) ++elsewhere;
+    if (f.norm() < 0.1 * g.norm())
+      ++lost;
+    else if ((f - g).norm() > 0.1 * g.norm())
+      ++elsewhere;
   }
   INFO(lost << " lost, " << elsewhere << " elsewhere, of " << jumps);
   CHECK(lost == 0);
@@ -206,7 +218,7 @@ TEST_CASE("a session that starts in the tissue ramps from zero to an outward for
   struct Start {
     const char* where;
     Vector3 position;
-    Vector3 outward;  // the force must have a share along it; zero: anything
+    Vector3 outward;     // the force must have a share along it; zero: anything
     double fall = 1e-3;  // relative loss of force allowed in a tick while it ramps
   };
   const Vector3 up = Vector3::UnitZ();
@@ -218,7 +230,8 @@ TEST_CASE("a session that starts in the tissue ramps from zero to an outward for
                                   {"on a node", Vector3(0.015, 0.015, pad_height), up},
                                   {"on an edge of a triangle", Vector3(0.0125, 0.015, pad_height), up},
                                   {"on an edge of the body", Vector3(0.0, 0.0137, pad_height), Vector3(-1, 0, 1)},
-                                  {"on a corner of the body", Vector3(0.03, 0.03, pad_height), Vector3(1, 1, 1), 0.05},  // it balances, then slides off
+                                  {"on a corner of the body", Vector3(0.03, 0.03, pad_height), Vector3(1, 1, 1),
+                                   0.05},  // it balances, then slides off
                                   {"inside, at the side", Vector3(0.002, 0.0137, 0.011), -Vector3::UnitX()},
                                   {"in the very middle", Vector3(0.015, 0.015, 0.01), Vector3::Zero()},
                                   {"on a fixed face", Vector3(0.0137, 0.0159, 0.0), -up},
@@ -248,7 +261,8 @@ TEST_CASE("a session that starts in the tissue ramps from zero to an outward for
   }
 }
 
-TEST_CASE("a session that starts beside or below a body whose top can be touched feels nothing", "[haptic][servo][extreme][D3]") {
+TEST_CASE("a session that starts beside or below a body whose top can be touched feels nothing",
+          "[haptic][servo][extreme][D3]") {
   Pad pad = test::make_pad();
   double worst = 0.0;
   for (double x = -0.02; x <= -radius; x += 1.7e-3)
@@ -265,7 +279,8 @@ TEST_CASE("a session that starts beside or below a body whose top can be touched
   CHECK(worst == 0.0);
 }
 
-TEST_CASE("on fixed nodes the force is the coupling's, saturated if that is rigid", "[haptic][servo][extreme][D3][D7]") {
+TEST_CASE("on fixed nodes the force is the coupling's, saturated if that is rigid",
+          "[haptic][servo][extreme][D3][D7]") {
   const Vector3 start(0.0137, 0.0159, -radius - 1e-4);
   for (double k : {500.0, infinity}) {
     ServoOptions options;
@@ -287,7 +302,8 @@ TEST_CASE("on fixed nodes the force is the coupling's, saturated if that is rigi
 TEST_CASE("a model whose touchable nodes are all fixed is a rigid wall", "[haptic][servo][extreme][D3]") {
   Scene scene;
   scene.fix("z0").fix("z1").touch("z1");
-  Pad wall(box_tet4(Vector3(0.03, 0.03, 0.02), {6, 6, 4}, BoxSplit::six), scene, LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.3});
+  Pad wall(box_tet4(Vector3(0.03, 0.03, 0.02), {6, 6, 4}, BoxSplit::six), scene,
+           LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.3});
   ServoSession session(wall);
   session.press(1e-3);
   const Vector3 f = session.hold(100).force;
@@ -310,7 +326,8 @@ TEST_CASE("1e5 ticks of random contact sets: slew kept, contacts bounded", "[hap
       const double scale = i / 1000 % 4 == 0 ? 2e-3 : 2e-4;
       if (i == 0) p = Vector3(0.01 + 0.01 * static_cast<double>(t), 0.015, pad_height + radius);
       p += random.vector<3>(-scale, scale);
-      p = p.cwiseMax(Vector3(0, 0, pad_height + radius - 1.2e-3)).cwiseMin(Vector3(0.03, 0.03, pad_height + radius + 3e-4));
+      p = p.cwiseMax(Vector3(0, 0, pad_height + radius - 1.2e-3))
+              .cwiseMin(Vector3(0.03, 0.03, pad_height + radius + 3e-4));
     }
     session.tick();
     for (std::size_t t : {0u, 1u}) watch[t].look(session.forces[t]);
@@ -405,7 +422,8 @@ TEST_CASE("reads that fail at random: zero at once, ramp afterwards", "[haptic][
     since_failure = s.valid ? since_failure + 1 : 0;
     if (f.status.has(StatusFlag::disconnected) == s.valid) ++wrong;
     if (since_failure <= 1 && !f.force.isZero(0.0)) ++wrong;
-    if (since_failure > 0 && f.force.norm() > settled.norm() * std::min(1.0, (since_failure - 1) / 33.0) * 1.01) ++wrong;
+    if (since_failure > 0 && f.force.norm() > settled.norm() * std::min(1.0, (since_failure - 1) / 33.0) * 1.01)
+      ++wrong;
     if (since_failure > 60 && (f.force - settled).norm() > 1e-2 * settled.norm()) ++wrong;
     if (f.force.norm() > 0.9 * settled.norm()) ++at_work;
     if (session.forces[1].status.has(StatusFlag::disconnected) || !session.forces[1].force.isZero(0.0)) ++wrong;

@@ -14,7 +14,8 @@ struct Slide {
   bool degraded = false;
 };
 
-/// A ball slid 8 mm, not along a line of the mesh, over a block of 24 x 24 x 12 mm in n x n x n / 2 cells. Rigid coupling.
+/// A ball slid 8 mm, not along a line of the mesh, over a block of 24 x 24 x 12 mm in n x n x n / 2 cells. Rigid
+/// coupling.
 Slide slide(int n, double radius, double depth) {
   Scene scene;
   scene.fix("z0").touch("z1");
@@ -63,7 +64,8 @@ TEST_CASE("sliding over edges a third of the radius long is smooth", "[haptic][s
 
 TEST_CASE("a coarse mesh ripples and is too stiff, but does not jump", "[haptic][servo][sliding]") {
   const Slide coarse = slide(6, 6e-3, 2e-3), fine = slide(12, 6e-3, 2e-3);
-  INFO("coarse: mean " << coarse.mean << " N, ripple " << coarse.ripple << ", jump " << coarse.jump << "; fine: " << fine.mean << " N");
+  INFO("coarse: mean " << coarse.mean << " N, ripple " << coarse.ripple << ", jump " << coarse.jump
+                       << "; fine: " << fine.mean << " N");
   CHECK(coarse.jump <= 0.02);
   CHECK(coarse.ripple <= 0.1);
   CHECK(coarse.mean >= fine.mean);
@@ -72,7 +74,8 @@ TEST_CASE("a coarse mesh ripples and is too stiff, but does not jump", "[haptic]
 
 TEST_CASE("halving a mesh of a third of the radius changes the force by less than 5 %", "[haptic][servo][sliding]") {
   const Slide coarse = slide(6, 12e-3, 3e-3), fine = slide(12, 12e-3, 3e-3);
-  INFO("coarse: mean " << coarse.mean << " N, ripple " << coarse.ripple << "; fine: mean " << fine.mean << " N, ripple " << fine.ripple);
+  INFO("coarse: mean " << coarse.mean << " N, ripple " << coarse.ripple << "; fine: mean " << fine.mean << " N, ripple "
+                       << fine.ripple);
   CHECK_FALSE(coarse.degraded);
   CHECK(std::abs(fine.mean - coarse.mean) <= 0.05 * fine.mean);
   CHECK(coarse.ripple <= 0.03);

@@ -65,7 +65,8 @@ TEST_CASE("away from the tissue the force is exactly zero", "[haptic][servo]") {
     if (distance < radius + 1e-6 || next.norm() > 0.1) next = p;
     p = next;
     const ToolForce& f = session.tick(p);
-    if (!test::same(f.force, Vector3::Zero()) || !test::same(session.servo.contact_force(), Vector3::Zero())) ++not_zero;
+    if (!test::same(f.force, Vector3::Zero()) || !test::same(session.servo.contact_force(), Vector3::Zero()))
+      ++not_zero;
     if (!test::same(f.torque, Vector3::Zero())) ++not_zero;
   }
   CHECK(not_zero == 0);
@@ -98,7 +99,8 @@ TEST_CASE("the force is the coupling spring between device and proxy, and the pr
       const Vector3 f = session.servo.contact_force(), stretch = session.servo.proxy() - session.states[0].position;
       CHECK((f - k * stretch).norm() <= 1e-5 * f.norm());
       CHECK(f[2] <= k * 1.5e-3);
-      CHECK(test::smallest_gap(pad, samples, session.servo.contacts(), pad.pose().inverse() * session.servo.proxy(), radius) >= -1e-5 * radius);
+      CHECK(test::smallest_gap(pad, samples, session.servo.contacts(), pad.pose().inverse() * session.servo.proxy(),
+                               radius) >= -1e-5 * radius);
     }
   }
 }
@@ -113,15 +115,18 @@ TEST_CASE("near an edge of a body that can be touched all over no contact point 
     session.hold(30);
     INFO("x " << x);
     CHECK(session.servo.contact_force()[2] > 0.01);
-    CHECK(test::smallest_gap(pad, samples, session.servo.contacts(), pad.pose().inverse() * session.servo.proxy(), radius) >= -1e-5 * radius);
+    CHECK(test::smallest_gap(pad, samples, session.servo.contacts(), pad.pose().inverse() * session.servo.proxy(),
+                             radius) >= -1e-5 * radius);
   }
 }
 
 TEST_CASE("two tools: alone when far apart, felt by each other when near", "[haptic][servo]") {
   Scene scene;
   scene.fix("z0").touch("z1");
-  Pad slab(box_tet4(Vector3(0.12, 0.02, 0.01), {24, 4, 2}, BoxSplit::six), scene, LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.3});
-  const Vector3 left(0.015, 0.0093, 0.01 + radius + 1e-4), right(0.105, 0.0107, 0.01 + radius + 1e-4), down(0, 0, -1.1e-3);
+  Pad slab(box_tet4(Vector3(0.12, 0.02, 0.01), {24, 4, 2}, BoxSplit::six), scene,
+           LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.3});
+  const Vector3 left(0.015, 0.0093, 0.01 + radius + 1e-4), right(0.105, 0.0107, 0.01 + radius + 1e-4),
+      down(0, 0, -1.1e-3);
   const auto run = [&](const Vector3& a, const Vector3& b, bool press_a, bool press_b) {
     ServoSession session(slab, {}, 2);
     for (int i = 0; i <= 100; ++i) {
@@ -133,7 +138,8 @@ TEST_CASE("two tools: alone when far apart, felt by each other when near", "[hap
     return std::pair(session.servo.contact_force(0), session.servo.contact_force(1));
   };
   const Vector3 beside = left + Vector3(0.009, 0.001, 0);
-  const auto far = run(left, right, true, true), left_alone = run(left, right, true, false), right_alone = run(left, right, false, true);
+  const auto far = run(left, right, true, true), left_alone = run(left, right, true, false),
+             right_alone = run(left, right, false, true);
   CHECK(test::same(left_alone.second, Vector3::Zero()));
   CHECK(left_alone.first.norm() > 0.02);
   CHECK((far.first - left_alone.first).norm() <= 1e-4 * far.first.norm());
@@ -308,7 +314,8 @@ TEST_CASE("a replayed recording gives the recorded forces bit by bit", "[haptic]
   for (const RecordedTick& tick : replay.recorded()) {
     const ToolState state = replay.read();
     const ToolForce f = servo.tick(std::span<const ToolState>(&state, 1)).front();
-    if (&tick != &replay.recorded().back() && !test::same(f.force, tick.force)) ++different;  // the loop ends with a zero
+    if (&tick != &replay.recorded().back() && !test::same(f.force, tick.force))
+      ++different;  // the loop ends with a zero
     if (f.force.norm() > 1e-3) ++at_work;
   }
   CHECK(different == 0);
@@ -330,7 +337,9 @@ TEST_CASE("the snapshot holds the forces of the tick", "[haptic][servo]") {
   const auto x = test::deformed_surface(pad, session.servo.contacts());
   double worst = 0.0;
   for (std::size_t v = 0; v < x.size(); ++v)
-    worst = std::max(worst, (u.segment<3>(3 * Index{pad.touchable_nodes()[v]}) - (x[v] - pad.contact_surface().positions()[v])).norm());
+    worst = std::max(
+        worst,
+        (u.segment<3>(3 * Index{pad.touchable_nodes()[v]}) - (x[v] - pad.contact_surface().positions()[v])).norm());
   CHECK(worst <= 1e-12);
   CHECK(u.norm() > 1e-4);
 }
@@ -367,7 +376,8 @@ TEST_CASE("missing states count as unreadable, surplus ones are ignored", "[hapt
 TEST_CASE("a servo that makes no sense is refused", "[haptic][servo]") {
   Pad pad = test::make_pad();
   const double nan_value = std::numeric_limits<double>::quiet_NaN();
-  for (double bad : {0.0, -1e-3, nan_value, infinity}) CHECK_THROWS_AS(HapticServo(pad, SphereTool{.radius = bad}), SetupError);
+  for (double bad : {0.0, -1e-3, nan_value, infinity})
+    CHECK_THROWS_AS(HapticServo(pad, SphereTool{.radius = bad}), SetupError);
   CHECK_THROWS_AS(HapticServo(pad, std::vector<SphereTool>{}), SetupError);
   for (double bad : {0.0, -1.0, nan_value}) {
     ServoOptions options;
@@ -382,6 +392,7 @@ TEST_CASE("a servo that makes no sense is refused", "[haptic][servo]") {
   }
   Scene scene;
   scene.fix("z0");
-  Pad untouchable(box_tet4(Vector3(1, 1, 1), {1, 1, 1}), scene, LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.3});
+  Pad untouchable(box_tet4(Vector3(1, 1, 1), {1, 1, 1}), scene,
+                  LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.3});
   CHECK_THROWS_AS(HapticServo(untouchable, SphereTool{}), SetupError);
 }

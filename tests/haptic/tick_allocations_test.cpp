@@ -31,7 +31,10 @@ Seen abuse(Model& model, int ticks, const ServoOptions& options) {
   for (int i = 0; i < ticks; ++i) {
     const int phase = i % 1000;
     const double drag = 1e-5 * phase;
-    const double z = pad_height + radius + 3e-4 - (phase < 200 ? 1e-5 * phase : phase < 800 ? 2e-3 : 2e-3 - 1e-5 * (phase - 800));
+    const double z = pad_height + radius + 3e-4 -
+                     (phase < 200   ? 1e-5 * phase
+                      : phase < 800 ? 2e-3
+                                    : 2e-3 - 1e-5 * (phase - 800));
     states[0].position = Vector3(0.01 + drag, 0.0137, z);
     states[1].position = Vector3(0.02, 0.02, pad_height + radius + (phase > 400 && phase < 500 ? -5e-4 : 2e-3));
     for (ToolState& s : states) {
@@ -57,8 +60,8 @@ void check(const Seen& seen, int ticks) {
   CHECK(seen.allocations == 0);
   CHECK(seen.frees == 0);
   CHECK(seen.pressed > ticks / 3);
-  for (StatusFlag flag : {StatusFlag::non_finite_input, StatusFlag::disconnected, StatusFlag::reacquired, StatusFlag::ramping, StatusFlag::stale,
-                          StatusFlag::deadline_missed})
+  for (StatusFlag flag : {StatusFlag::non_finite_input, StatusFlag::disconnected, StatusFlag::reacquired,
+                          StatusFlag::ramping, StatusFlag::stale, StatusFlag::deadline_missed})
     CHECK(seen.flags[flag] > 0);
 }
 

@@ -20,9 +20,12 @@ using Model = HapticFEModel<Tet4, LinearElastic>;
 constexpr LinearElastic soft{1e4, 0.3, 1000.0};
 constexpr double radius = 4e-3;
 
-
-Mesh<Tet4> block() { return box_tet4({0.02, 0.02, 0.01}, {6, 6, 3}); }
-Scene scene() { return Scene().fix("z0").touch("z1").see("z1"); }
+Mesh<Tet4> block() {
+  return box_tet4({0.02, 0.02, 0.01}, {6, 6, 3});
+}
+Scene scene() {
+  return Scene().fix("z0").touch("z1").see("z1");
+}
 
 ServoOptions stiff() {
   ServoOptions options;
@@ -42,7 +45,9 @@ Vector3 press(Servo& servo, const Vector3& at, double depth) {
   return servo.contact_force();
 }
 
-Vector3 at(const std::vector<float>& values, std::size_t i) { return {values[3 * i], values[3 * i + 1], values[3 * i + 2]}; }
+Vector3 at(const std::vector<float>& values, std::size_t i) {
+  return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+}
 
 /// A fine grid over the top of the block, a little above it.
 VisualMesh fine_top(double above) {
@@ -207,7 +212,7 @@ TEST_CASE("two halves of a scene are felt at once, each in its pose", "[contact]
   Model left(block(), scene(), soft), right(block(), scene(), {3e4, 0.3, 1000.0});
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.rotate(Eigen::AngleAxisd(3.14159265358979323846, Vector3::UnitZ()));  // the right one turned about
-  pose.pretranslate(Vector3(0.0405, 0.02, 0.0));                            // half a millimetre beside the left one
+  pose.pretranslate(Vector3(0.0405, 0.02, 0.0));                             // half a millimetre beside the left one
   right.set_pose(pose);
   TissueGroup group(left, right);
   CHECK(group.member_count() == 2);
@@ -222,8 +227,8 @@ TEST_CASE("two halves of a scene are felt at once, each in its pose", "[contact]
   for (int member : {0, 1})
     for (std::size_t i = 0; i < group.forces_on(member, forces, own); ++i)
       sum[static_cast<std::size_t>(member)] += own[i].force;
-  CHECK(sum[0].z() < 0.0);                  // both are pressed,
-  CHECK(sum[1].z() < 2.0 * sum[0].z());     // the harder one more
+  CHECK(sum[0].z() < 0.0);               // both are pressed,
+  CHECK(sum[1].z() < 2.0 * sum[0].z());  // the harder one more
   CHECK((pose.linear() * sum[1] + sum[0] + both).norm() <= 1e-10 * both.norm());
 
   // far from each other nothing changes, but for what a tick may leave unconverged

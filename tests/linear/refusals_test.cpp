@@ -148,6 +148,7 @@ TEST_CASE("side by side with Eigen", "[.][table]") {
     } catch (const SetupError& e) {
       ours = std::string(e.what()).substr(0, 90);
     }
-    std::printf("%-26s %-12s %-12s %-22.3g %s\n", name, word(says.sparse_ldlt), word(says.dense_ldlt), error, ours.c_str());
+    std::printf("%-26s %-12s %-12s %-22.3g %s\n", name, word(says.sparse_ldlt), word(says.dense_ldlt), error,
+                ours.c_str());
   }
 }

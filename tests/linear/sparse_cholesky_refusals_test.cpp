@@ -55,7 +55,8 @@ TEST_CASE("sparse Cholesky: a lone bad dof is named", "[linear][sparse_cholesky]
   CHECK(problem_of(missing).ids == std::vector<std::int64_t>{2});
 }
 
-TEST_CASE("sparse Cholesky: bad dofs are named by their nodes when these are known", "[linear][sparse_cholesky][extreme]") {
+TEST_CASE("sparse Cholesky: bad dofs are named by their nodes when these are known",
+          "[linear][sparse_cholesky][extreme]") {
   MatrixX m = MatrixX::Identity(30, 30);
   m(17, 17) = m(16, 16) = m(3, 3) = 0.0;
   DofLayout layout;
@@ -67,7 +68,8 @@ TEST_CASE("sparse Cholesky: bad dofs are named by their nodes when these are kno
   CHECK(p.count == 2);
 }
 
-TEST_CASE("sparse Cholesky: a free body is refused, at any size and in any unit", "[linear][sparse_cholesky][extreme]") {
+TEST_CASE("sparse Cholesky: a free body is refused, at any size and in any unit",
+          "[linear][sparse_cholesky][extreme]") {
   for (int refinement : {1, 2, 4, 7})
     for (double unit : {1e-9, 1.0, 1e9}) {
       INFO(refinement << " " << unit);

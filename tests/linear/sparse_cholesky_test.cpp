@@ -155,8 +155,7 @@ TEST_CASE("loads and answers on a few dofs follow their elimination path", "[lin
     DofLayout layout = c.layout;
     layout.kept = some_dofs(n);
     MatrixX schur;
-    SparseCholesky interior =
-        SparseCholesky::interior(CholeskyAnalysis(c.lower, layout), c.lower, schur, {});
+    SparseCholesky interior = SparseCholesky::interior(CholeskyAnalysis(c.lower, layout), c.lower, schur, {});
     const std::vector<Index> loaded{n / 2}, wanted{1, n - 2, n / 3};
     const std::vector<double> loads{2.0};
     std::vector<double> answer(3);

@@ -86,8 +86,8 @@ TEST_CASE("lumped masses are positive where row sums are not", "[local][mass]") 
   }
   SECTION("Hex8: an eighth") {
     const ElementNodes<Hex8> x = some_element<Hex8>(random);
-    CHECK(largest(lumped_element_mass<Hex8>(x) / volume_of<Hex8>(x) -
-                  Eigen::Matrix<double, 8, 1>::Constant(0.125)) <= 1e-14);
+    CHECK(largest(lumped_element_mass<Hex8>(x) / volume_of<Hex8>(x) - Eigen::Matrix<double, 8, 1>::Constant(0.125)) <=
+          1e-14);
   }
 }
 

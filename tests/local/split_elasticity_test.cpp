@@ -14,7 +14,8 @@ TEST_CASE("an isotropic law splits into shear and bulk modulus", "[local]") {
     const LinearElastic m{5e3, nu, 0.0};
     const SplitElasticity split = split_elasticity(m.elasticity());
     const double bulk = 5e3 / (3.0 * (1.0 - 2.0 * nu));
-    CHECK_THAT(bulk_modulus(m.elasticity()), Catch::Matchers::WithinRel(bulk, 1e-3 * std::abs(1e-12 / (1.0 - 2.0 * nu)) + 1e-12));
+    CHECK_THAT(bulk_modulus(m.elasticity()),
+               Catch::Matchers::WithinRel(bulk, 1e-3 * std::abs(1e-12 / (1.0 - 2.0 * nu)) + 1e-12));
     CHECK(largest(split.deviatoric + split.volumetric - m.elasticity()) <= 1e-15 * largest(m.elasticity()));
     CHECK(split.volumetric.bottomRows<3>().isZero(0.0));
     CHECK_THAT(equivalent_poisson_ratio(m.elasticity()), Catch::Matchers::WithinAbs(nu, 1e-12));

@@ -131,9 +131,9 @@ TEST_CASE("inadmissible anisotropic materials are refused", "[material][extreme]
     m.*member = value;
     bad.push_back(m);
   };
-  for (const auto member : {&Orthotropic::youngs_modulus_1, &Orthotropic::youngs_modulus_2,
-                            &Orthotropic::youngs_modulus_3, &Orthotropic::shear_modulus_12,
-                            &Orthotropic::shear_modulus_13, &Orthotropic::shear_modulus_23})
+  for (const auto member :
+       {&Orthotropic::youngs_modulus_1, &Orthotropic::youngs_modulus_2, &Orthotropic::youngs_modulus_3,
+        &Orthotropic::shear_modulus_12, &Orthotropic::shear_modulus_13, &Orthotropic::shear_modulus_23})
     for (double value : {0.0, -1.0, nan, infinity, 1e-310}) with(member, value);
   for (double value : {nan, -infinity}) with(&Orthotropic::poisson_ratio_13, value);
   for (double value : {nan, -1.0}) with(&Orthotropic::density, value);

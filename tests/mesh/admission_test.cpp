@@ -11,7 +11,9 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-Mesh<Tet4> sound_box() { return box_tet4({0.1, 0.1, 0.1}, {2, 2, 2}); }
+Mesh<Tet4> sound_box() {
+  return box_tet4({0.1, 0.1, 0.1}, {2, 2, 2});
+}
 
 AdmissionPolicy accept_all() {
   AdmissionPolicy p;

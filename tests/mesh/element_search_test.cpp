@@ -15,10 +15,14 @@ namespace {
 template <Element E>
 Mesh<E> box() {
   const Vector3 size(0.3, 0.2, 0.1);
-  if constexpr (std::same_as<E, Tet4>) return box_tet4(size, {5, 4, 3});
-  else if constexpr (std::same_as<E, Tet10>) return box_tet10(size, {5, 4, 3});
-  else if constexpr (std::same_as<E, Hex8>) return box_hex8(size, {5, 4, 3});
-  else return box_hex20(size, {5, 4, 3});
+  if constexpr (std::same_as<E, Tet4>)
+    return box_tet4(size, {5, 4, 3});
+  else if constexpr (std::same_as<E, Tet10>)
+    return box_tet10(size, {5, 4, 3});
+  else if constexpr (std::same_as<E, Hex8>)
+    return box_hex8(size, {5, 4, 3});
+  else
+    return box_hex20(size, {5, 4, 3});
 }
 
 /// Nodes moved a little; quadratic edges become curved.
@@ -53,7 +57,8 @@ TEMPLATE_TEST_CASE("every point inside is found, and where it is", "[mesh][searc
     REQUIRE(found);
     CHECK((position(mesh, *found) - node).norm() <= 1e-10);
   }
-  for (const Vector3& out : {Vector3(-0.01, 0.1, 0.05), Vector3(0.15, 0.21, 0.05), Vector3(0.1, 0.1, 1e6), Vector3(-1e9, 0, 0)})
+  for (const Vector3& out :
+       {Vector3(-0.01, 0.1, 0.05), Vector3(0.15, 0.21, 0.05), Vector3(0.1, 0.1, 1e6), Vector3(-1e9, 0, 0)})
     CHECK(!search.find(out));
 }
 

@@ -10,7 +10,9 @@ using namespace palpate;
 
 namespace {
 
-std::vector<std::uint8_t> free_nodes(const Mesh<Tet4>& mesh) { return std::vector<std::uint8_t>(mesh.positions.size(), 0); }
+std::vector<std::uint8_t> free_nodes(const Mesh<Tet4>& mesh) {
+  return std::vector<std::uint8_t>(mesh.positions.size(), 0);
+}
 
 }  // namespace
 

@@ -89,7 +89,9 @@ TEST_CASE("free motions are named", "[mesh][rigid_modes][extreme][B8]") {
     CHECK(modes_of(mesh, {4, 4, 4, 0}) ==
           Names{"translation x", "translation y", "rotation about the axis (0, 0, 1) through (0.333, 0.333, 0)"});
   }
-  SECTION("a rail along x") { CHECK(modes_of(mesh, {6, 6, 6, 6}) == Names{"translation x"}); }
+  SECTION("a rail along x") {
+    CHECK(modes_of(mesh, {6, 6, 6, 6}) == Names{"translation x"});
+  }
   SECTION("held") {
     CHECK(modes_of(mesh, {7, 6, 4, 0}).empty());  // 3 + 2 + 1
     CHECK(modes_of(mesh, {7, 7, 7, 7}).empty());

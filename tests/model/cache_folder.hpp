@@ -17,7 +17,8 @@ inline Bytes bytes_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 inline void write_bytes(const fs::path& path, const Bytes& bytes) {
-  std::ofstream(path, std::ios::binary | std::ios::trunc).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(path, std::ios::binary | std::ios::trunc)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
 /// A folder of one test's own, gone afterwards, with a cache file in mind.
@@ -49,9 +50,9 @@ class CacheFolder {
   }
   /// In memory where there is such a thing: a disk may take milliseconds for every file that replaces another.
   static fs::path base() { return fs::is_directory("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path(); }
-  fs::path path_ = base() /
-                   ("palpate_cache_" + std::to_string(std::chrono::steady_clock::now().time_since_epoch().count()) +
-                    "_" + std::to_string(next()));
+  fs::path path_ =
+      base() / ("palpate_cache_" + std::to_string(std::chrono::steady_clock::now().time_since_epoch().count()) + "_" +
+                std::to_string(next()));
 };
 
 /// The smallest body that has all parts of a cache: four touched nodes, eight condensed ones.

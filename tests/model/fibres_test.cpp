@@ -60,5 +60,6 @@ TEST_CASE("a model of a body with fibres solves what its parts say", "[model][fi
   CHECK(refusal([&] { Model(spoilt, scene, muscle); }).ids == std::vector<std::int64_t>{4});
   Mesh<Tet4> turned = mesh;
   for (Vector3& f : turned.fibres) f = Vector3::UnitY();
-  CHECK((Model(turned, scene, muscle).displacement() - model.displacement()).norm() > 0.01 * model.displacement().norm());
+  CHECK((Model(turned, scene, muscle).displacement() - model.displacement()).norm() >
+        0.01 * model.displacement().norm());
 }

@@ -53,11 +53,21 @@ TEST_CASE("the free cube has the modes of the exact one", "[model][modal]") {
   const NaturalFrequencies modes = natural_frequencies(body, {}, 12);
   REQUIRE(modes.rigid_modes() == 6);
   const VectorX w = reduced(modes, m, length);
-  const std::array exact{2.8561, 2.8561, 3.8460, 3.8460, 3.8460, 3.9113, 3.9113, 3.9113,
-                         pi * std::sqrt(2.0), pi * std::sqrt(2.0), pi * std::sqrt(2.0), 4.5728};
+  const std::array exact{2.8561,
+                         2.8561,
+                         3.8460,
+                         3.8460,
+                         3.8460,
+                         3.9113,
+                         3.9113,
+                         3.9113,
+                         pi * std::sqrt(2.0),
+                         pi * std::sqrt(2.0),
+                         pi * std::sqrt(2.0),
+                         4.5728};
   for (std::size_t k = 0; k < exact.size(); ++k) CHECK_THAT(w[static_cast<Index>(k)], WithinRel(exact[k], 2e-3));
   for (Index k : {8, 9, 10}) CHECK(w[k] > pi * std::sqrt(2.0));  // a Ritz method bounds from above
-  CHECK_THAT(w[1], WithinRel(w[0], 1e-9));  // what the symmetry of the mesh demands
+  CHECK_THAT(w[1], WithinRel(w[0], 1e-9));                       // what the symmetry of the mesh demands
   CHECK_THAT(w[3], WithinRel(w[2], 1e-9));
   CHECK_THAT(w[4], WithinRel(w[2], 1e-9));
   CHECK_THAT(w[7], WithinRel(w[5], 1e-9));
@@ -170,8 +180,7 @@ TEST_CASE("hard cases: slender, nearly incompressible, soft part in a hard body"
     const auto body = body_of(mesh, {soft, hard});
     const VectorX all = dense_eigenvalues(body, {});
     const auto modes = natural_frequencies(body, {}, 4);
-    for (Index k = 0; k < 4; ++k)
-      CHECK_THAT(modes.frequencies[k], WithinRel(std::sqrt(all[6 + k]) / (2.0 * pi), 1e-6));
+    for (Index k = 0; k < 4; ++k) CHECK_THAT(modes.frequencies[k], WithinRel(std::sqrt(all[6 + k]) / (2.0 * pi), 1e-6));
   }
 }
 

@@ -185,8 +185,9 @@ TEST_CASE("other versions and other machines are told apart", "[model][cache][ex
 
   Bytes swapped = t.good;  // as a machine of the other endianness writes: every word but the magic and the name
   for (std::size_t at = 8; at + word <= swapped.size(); at += word)
-    if (at < 32 || at >= 96) std::reverse(swapped.begin() + static_cast<std::ptrdiff_t>(at),
-                                          swapped.begin() + static_cast<std::ptrdiff_t>(at + word));
+    if (at < 32 || at >= 96)
+      std::reverse(swapped.begin() + static_cast<std::ptrdiff_t>(at),
+                   swapped.begin() + static_cast<std::ptrdiff_t>(at + word));
   CHECK_THAT(why(swapped, CacheMismatch::byte_order), contains("byte order"));
   CHECK(t.mistakes == 0);
 }

@@ -88,11 +88,21 @@ TEST_CASE("what does not touch the stored numbers does not spoil the cache", "[m
   SECTION("loads") {
     setup.scene.gravity({0, 0, -9.81}).traction("x1", {5, 2, -10}).point_load("z1", {0, 0, -1});
   }
-  SECTION("prescribed values") { setup.scene = Scene().prescribe("x0", {1e-3, 0.0, 0.0}).touch("z1").see("surface"); }
-  SECTION("density") { setup.materials[0].second.density = 1.0; }
-  SECTION("what is looked at") { setup.scene.see("x1"); }
-  SECTION("names of regions") { setup.mesh.region_names = {"liver"}; }
-  SECTION("slots") { options.compliance_slots = 3; }
+  SECTION("prescribed values") {
+    setup.scene = Scene().prescribe("x0", {1e-3, 0.0, 0.0}).touch("z1").see("surface");
+  }
+  SECTION("density") {
+    setup.materials[0].second.density = 1.0;
+  }
+  SECTION("what is looked at") {
+    setup.scene.see("x1");
+  }
+  SECTION("names of regions") {
+    setup.mesh.region_names = {"liver"};
+  }
+  SECTION("slots") {
+    options.compliance_slots = 3;
+  }
   const auto model = setup.make(options);
   CHECK(model->report().cache.read);
   CHECK(same_bits(answers(*model), answers(*setup.make())));
@@ -258,7 +268,8 @@ TEST_CASE("writers at once leave a file that fits one of them", "[model][cache][
         for (int i = 0; i < 40; ++i) {
           const auto model = setups[t].make(folder.options());
           const auto& u = model->displacement();
-          if (std::memcmp(u.data(), truths[t].data(), static_cast<std::size_t>(u.size()) * sizeof(double)) != 0) ++wrong[t];
+          if (std::memcmp(u.data(), truths[t].data(), static_cast<std::size_t>(u.size()) * sizeof(double)) != 0)
+            ++wrong[t];
           if (!model->report().cache.read && !model->report().cache.written) ++unwritten[t];
         }
       });

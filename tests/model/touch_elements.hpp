@@ -16,10 +16,14 @@ using namespace palpate;
 template <Element E>
 auto touch_block() {
   const Vector3 size(0.03, 0.03, 0.02);
-  if constexpr (E::nodes == 4) return box_tet4(size, {8, 8, 4});
-  else if constexpr (E::nodes == 8) return box_hex8(size, {8, 8, 4});
-  else if constexpr (E::nodes == 10) return box_tet10(size, {4, 4, 2});
-  else return box_hex20(size, {4, 4, 2});
+  if constexpr (E::nodes == 4)
+    return box_tet4(size, {8, 8, 4});
+  else if constexpr (E::nodes == 8)
+    return box_hex8(size, {8, 8, 4});
+  else if constexpr (E::nodes == 10)
+    return box_tet10(size, {4, 4, 2});
+  else
+    return box_hex20(size, {4, 4, 2});
 }
 
 /// A contact point reads what a force spread from another by its weights does to the whole body; the same the other way
@@ -94,8 +98,7 @@ template <Element E>
 void check_touch() {
   HapticFEModel<E, LinearElastic, Condensed<SelectiveInverse>> model(touch_block<E>(), Scene().fix("z0").touch("z1"),
                                                                      LinearElastic{1e4, 0.3, 0.0});
-  CHECK(model.contact_surface().vertex_count() ==
-        static_cast<int>(touch_block<E>().find_group("z1")->nodes.size()));
+  CHECK(model.contact_surface().vertex_count() == static_cast<int>(touch_block<E>().find_group("z1")->nodes.size()));
   check_weights_both_ways(model);
   check_press(model);
 }

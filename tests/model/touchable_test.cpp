@@ -12,10 +12,14 @@ namespace {
 
 template <Element E>
 Mesh<E> block() {
-  if constexpr (std::same_as<E, Tet4>) return box_tet4({3, 2, 1}, {3, 2, 1});
-  else if constexpr (std::same_as<E, Tet10>) return box_tet10({3, 2, 1}, {3, 2, 1});
-  else if constexpr (std::same_as<E, Hex8>) return box_hex8({3, 2, 1}, {3, 2, 1});
-  else return box_hex20({3, 2, 1}, {3, 2, 1});
+  if constexpr (std::same_as<E, Tet4>)
+    return box_tet4({3, 2, 1}, {3, 2, 1});
+  else if constexpr (std::same_as<E, Tet10>)
+    return box_tet10({3, 2, 1}, {3, 2, 1});
+  else if constexpr (std::same_as<E, Hex8>)
+    return box_hex8({3, 2, 1}, {3, 2, 1});
+  else
+    return box_hex20({3, 2, 1}, {3, 2, 1});
 }
 
 template <Element E>
@@ -40,8 +44,8 @@ TEMPLATE_TEST_CASE("the touchable triangles are the surface, closed and outward"
   Vector3 sum = Vector3::Zero();
   double area = 0.0, volume = 0.0;
   for (const Triangle& t : surface.triangles()) {
-    const Vector3 half = 0.5 * (surface.position(t[1]) - surface.position(t[0]))
-                                   .cross(surface.position(t[2]) - surface.position(t[0]));
+    const Vector3 half =
+        0.5 * (surface.position(t[1]) - surface.position(t[0])).cross(surface.position(t[2]) - surface.position(t[0]));
     sum += half;
     area += half.norm();
     volume += half.dot(surface.position(t[0])) / 3.0;
@@ -83,8 +87,8 @@ TEMPLATE_TEST_CASE("contact weights are positive, sum to one, and carry force an
       work += (w * force).dot(gradient * x);
     }
     CHECK_THAT(sum, Catch::Matchers::WithinAbs(1.0, 1e-14));
-    CHECK((moved - gradient * at).norm() <= 1e-13);              // a linear field is read exactly
-    CHECK((moment - at.cross(force)).norm() <= 1e-13);           // the force acts where the point is
+    CHECK((moved - gradient * at).norm() <= 1e-13);                         // a linear field is read exactly
+    CHECK((moment - at.cross(force)).norm() <= 1e-13);                      // the force acts where the point is
     CHECK_THAT(work, Catch::Matchers::WithinAbs(force.dot(moved), 1e-13));  // and works as much as the point moves
   }
 }

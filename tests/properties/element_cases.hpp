@@ -18,10 +18,14 @@ using StaticModel = HapticFEModel<E, LinearElastic, SparseCholesky>;
 
 template <Element E>
 Mesh<E> box_of(const Vector3& size, std::array<int, 3> cells) {
-  if constexpr (E::nodes == 4) return copy_mesh<E>(box_tet4(size, cells));
-  else if constexpr (E::nodes == 8) return copy_mesh<E>(box_hex8(size, cells));
-  else if constexpr (E::nodes == 10) return copy_mesh<E>(box_tet10(size, cells));
-  else return copy_mesh<E>(box_hex20(size, cells));
+  if constexpr (E::nodes == 4)
+    return copy_mesh<E>(box_tet4(size, cells));
+  else if constexpr (E::nodes == 8)
+    return copy_mesh<E>(box_hex8(size, cells));
+  else if constexpr (E::nodes == 10)
+    return copy_mesh<E>(box_tet10(size, cells));
+  else
+    return copy_mesh<E>(box_hex20(size, cells));
 }
 
 /// Prescribes a displacement field on the whole boundary.
@@ -104,8 +108,7 @@ void check_traction_patch(bool straight) {
   mesh = shaken(mesh, 0.0, straight);
   Matrix3 h;  // upper triangular: the six dofs below do not move
   h << 0.01, 0.004, -0.003, 0.0, -0.02, 0.005, 0.0, 0.0, 0.015;
-  const Matrix3 stress =
-      voigt::stress_tensor(liver.elasticity() * voigt::strain_vector(0.5 * (h + h.transpose())));
+  const Matrix3 stress = voigt::stress_tensor(liver.elasticity() * voigt::strain_vector(0.5 * (h + h.transpose())));
   Scene scene;
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side)

@@ -18,7 +18,8 @@ TEST_CASE("Hex8: a smooth field converges with the order of the element", "[prop
   check_convergence<Hex8>(4, 8);
 }
 
-TEST_CASE("Hex8 at the extremes: right, flagged or refused", "[extreme][A1][A2][A3][A4][B1][B2][B3][B4][B5][B7][B8][B9]") {
+TEST_CASE("Hex8 at the extremes: right, flagged or refused",
+          "[extreme][A1][A2][A3][A4][B1][B2][B3][B4][B5][B7][B8][B9]") {
   check_extremes<Hex8>();
 }
 

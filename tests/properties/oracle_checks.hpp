@@ -69,8 +69,8 @@ void check_load_case(const std::string& folder, const solve_case::NumberedMesh<E
   CHECK((sum - expected).norm() <= oracle_tolerance * s.reactions.cwiseAbs().maxCoeff());
 }
 
-/// Calls check(mesh, load_case) for the load cases of a folder with this kind of analysis and returns how many these are;
-/// none when its elements have another name.
+/// Calls check(mesh, load_case) for the load cases of a folder with this kind of analysis and returns how many these
+/// are; none when its elements have another name.
 template <Element E, class Check>
 int each_load_case(const std::string& folder, const std::string& element, std::string_view analysis, Check check) {
   const auto file = solve_case::read_case_file(folder + "/case.json");

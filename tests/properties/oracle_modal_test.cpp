@@ -30,20 +30,22 @@ double distance(const test::Table& reference, const solve_case::NumberedMesh<E>&
 
 template <Element E>
 int check_modes(const std::string& folder, const std::string& element, double tolerance) {
-  return test::each_load_case<E>(folder, element, solve_case::eigenfrequencies, [&](const auto& mesh, const json& load_case) {
-    const auto modes = solve_case::solve_modes<E>(mesh.mesh, load_case);
-    const json& scalars = load_case.at("reference").at("scalars");
-    const auto frequencies = scalars.at("elastic_frequencies_hz").template get<std::vector<double>>();
-    INFO(folder);
-    CHECK(modes.found.rigid_modes() == (scalars.at("rigid").is_null() ? 0 : 6));
-    REQUIRE(modes.found.frequencies.size() == static_cast<Index>(frequencies.size()));
-    for (std::size_t k = 0; k < frequencies.size(); ++k)
-      CHECK_THAT(modes.found.frequencies[static_cast<Index>(k)], Catch::Matchers::WithinRel(frequencies[k], tolerance));
-    for (Index k : {0, 1}) {
-      const std::string shape = folder + "/mode" + std::to_string(k + 1) + "_u.csv";
-      if (std::filesystem::exists(shape)) CHECK(distance(test::read_csv(shape), mesh, modes, k) <= 1e-6);
-    }
-  });
+  return test::each_load_case<E>(
+      folder, element, solve_case::eigenfrequencies, [&](const auto& mesh, const json& load_case) {
+        const auto modes = solve_case::solve_modes<E>(mesh.mesh, load_case);
+        const json& scalars = load_case.at("reference").at("scalars");
+        const auto frequencies = scalars.at("elastic_frequencies_hz").template get<std::vector<double>>();
+        INFO(folder);
+        CHECK(modes.found.rigid_modes() == (scalars.at("rigid").is_null() ? 0 : 6));
+        REQUIRE(modes.found.frequencies.size() == static_cast<Index>(frequencies.size()));
+        for (std::size_t k = 0; k < frequencies.size(); ++k)
+          CHECK_THAT(modes.found.frequencies[static_cast<Index>(k)],
+                     Catch::Matchers::WithinRel(frequencies[k], tolerance));
+        for (Index k : {0, 1}) {
+          const std::string shape = folder + "/mode" + std::to_string(k + 1) + "_u.csv";
+          if (std::filesystem::exists(shape)) CHECK(distance(test::read_csv(shape), mesh, modes, k) <= 1e-6);
+        }
+      });
 }
 
 }  // namespace

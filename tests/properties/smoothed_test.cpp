@@ -18,6 +18,7 @@ TEST_CASE("Smoothed<Tet4>: a smooth field converges with the order of the elemen
   check_convergence<Cured>(6, 12);
 }
 
-TEST_CASE("Smoothed<Tet4> at the extremes: right, flagged or refused", "[extreme][A1][A2][A3][A4][B1][B2][B3][B4][B5][B7][B8][B9]") {
+TEST_CASE("Smoothed<Tet4> at the extremes: right, flagged or refused",
+          "[extreme][A1][A2][A3][A4][B1][B2][B3][B4][B5][B7][B8][B9]") {
   check_extremes<Cured>();
 }

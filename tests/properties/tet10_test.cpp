@@ -36,7 +36,8 @@ TEST_CASE("Tet10: a smooth field converges with the order of the element", "[pro
   check_convergence<Tet10>(4, 8);
 }
 
-TEST_CASE("Tet10 at the extremes: right, flagged or refused", "[extreme][A1][A2][A3][A4][B1][B2][B3][B4][B5][B7][B8][B9]") {
+TEST_CASE("Tet10 at the extremes: right, flagged or refused",
+          "[extreme][A1][A2][A3][A4][B1][B2][B3][B4][B5][B7][B8][B9]") {
   check_extremes<Tet10>();
 }
 

@@ -39,8 +39,8 @@ void assemble_rows(const Mesh<E>& mesh, const NodeElements& around, const std::v
   std::vector<Index> place(static_cast<std::size_t>(pattern.rows()), -1);  // of a column in the present row
   for (Index i = 0; i < pattern.rows(); ++i) {
     if (i % 8192 == 0) limits.advance("assembly", static_cast<double>(i) / static_cast<double>(pattern.rows()));
-    for (Index p = pattern.row_start[static_cast<std::size_t>(i)]; p < pattern.row_start[static_cast<std::size_t>(i) + 1];
-         ++p)
+    for (Index p = pattern.row_start[static_cast<std::size_t>(i)];
+         p < pattern.row_start[static_cast<std::size_t>(i) + 1]; ++p)
       place[static_cast<std::size_t>(pattern.column[static_cast<std::size_t>(p)])] = p;
     for (const NodeId e : around.of(i)) {
       const auto& nodes = mesh.elements[static_cast<std::size_t>(e)];

@@ -46,7 +46,8 @@ BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
   else if constexpr (ConstantGradient<E>)
     assemble_rows<E>(body.mesh, around, *constants, k, limits);
   else
-    assemble_elements(body, k, limits, [&](Index e) -> const LameConstants& { return (*constants)[body.region_of(e)]; });
+    assemble_elements(body, k, limits,
+                      [&](Index e) -> const LameConstants& { return (*constants)[body.region_of(e)]; });
   return k;
 }
 

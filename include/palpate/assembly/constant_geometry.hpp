@@ -10,8 +10,8 @@ namespace palpate::inline PALPATE_ABI {
 template <class E>
 concept ConstantGradient = Element<E> && E::Quadrature::points.size() == 1;
 
-/// Geometry of element e [1/m, m^3]. Throws inverted_element for a negative volume, non_finite for one that is zero or no
-/// number.
+/// Geometry of element e [1/m, m^3]. Throws inverted_element for a negative volume, non_finite for one that is zero or
+/// no number.
 template <ConstantGradient E>
 PointGeometry<E> constant_geometry(const Mesh<E>& mesh, Index e) {
   constexpr auto point = E::Quadrature::points[0];

@@ -71,8 +71,8 @@ VectorX initial_strain_load(const Body<E>& body, const std::vector<Vector6>& str
   VectorX f = VectorX::Zero(3 * body.mesh.node_count());
   if (std::ranges::all_of(strains, [](const Vector6& s) { return s.isZero(0.0); })) return f;
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
-    const auto fe = initial_strain_load<E>(element_nodes<E>(body.mesh, e), body.elasticity_of(e),
-                                           strains[body.region_of(e)]);
+    const auto fe =
+        initial_strain_load<E>(element_nodes<E>(body.mesh, e), body.elasticity_of(e), strains[body.region_of(e)]);
     for (int a = 0; a < E::nodes; ++a)
       f.template segment<3>(3 * Index{body.mesh.element_node(e, a)}) += fe.row(a).transpose();
   }

@@ -79,8 +79,8 @@ MassMatrix assemble_mass(const Body<E>& body, const SetupLimits& limits = {}) {
   return m;
 }
 
-/// Lumped mass [kg], one entry per node, by diagonal scaling (local/mass.hpp): positive wherever the density is, and the
-/// total is exact. Explicit integration divides by it. Throws inverted_element or non_finite.
+/// Lumped mass [kg], one entry per node, by diagonal scaling (local/mass.hpp): positive wherever the density is, and
+/// the total is exact. Explicit integration divides by it. Throws inverted_element or non_finite.
 template <Element E>
 VectorX lumped_mass(const Body<E>& body) {
   VectorX mass = VectorX::Zero(body.mesh.node_count());
@@ -93,8 +93,8 @@ VectorX lumped_mass(const Body<E>& body) {
   return mass;
 }
 
-/// Calls visit(row, column, value) for every stored entry of the lower half of the mass of the free dofs, rows ascending
-/// within a column: what free_matrix needs.
+/// Calls visit(row, column, value) for every stored entry of the lower half of the mass of the free dofs, rows
+/// ascending within a column: what free_matrix needs.
 template <class Visit>
 void for_each_free_entry(const MassMatrix& m, const EssentialConditions& conditions, Visit&& visit) {
   const BlockPattern& pattern = m.pattern();

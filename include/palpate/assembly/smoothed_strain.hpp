@@ -5,8 +5,8 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// Calls visit(domain, stress, strain) for every domain of a body: the elastic strain under displacements u [m], initial
-/// strains per region taken off, and the part of the stress [Pa] it makes.
+/// Calls visit(domain, stress, strain) for every domain of a body: the elastic strain under displacements u [m],
+/// initial strains per region taken off, and the part of the stress [Pa] it makes.
 template <HasSmoothedStrain E, class Visit>
 void for_each_domain_stress(const Body<E>& body, const std::vector<Vector6>& initial, const VectorX& u, Visit&& visit) {
   const StrainDomains<E> domains(body.mesh);
@@ -40,8 +40,8 @@ double strain_energy(const Body<E>& body, const VectorX& u) {
   return energy;
 }
 
-/// Strain, and stress [Pa], of every element, one per column: means over its edges and nodes. With this stress an element
-/// makes the nodal forces B^T sigma V that it makes in K.
+/// Strain, and stress [Pa], of every element, one per column: means over its edges and nodes. With this stress an
+/// element makes the nodal forces B^T sigma V that it makes in K.
 struct SmoothedState {
   Eigen::Matrix<double, 6, Eigen::Dynamic> strain, stress;
 };

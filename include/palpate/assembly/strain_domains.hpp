@@ -32,8 +32,7 @@ struct StrainDomain {
   /// Adds the nodal forces of a stress [Pa] to f, 3 per node of the mesh [N].
   void add_force(const Vector6& stress, VectorX& f) const noexcept {
     const Matrix3 tensor = volume * voigt::stress_tensor(stress);
-    for (std::size_t a = 0; a < nodes.size(); ++a)
-      f.segment<3>(3 * Index{nodes[a]}).noalias() += tensor * gradients[a];
+    for (std::size_t a = 0; a < nodes.size(); ++a) f.segment<3>(3 * Index{nodes[a]}).noalias() += tensor * gradients[a];
   }
 };
 

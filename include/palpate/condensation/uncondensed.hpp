@@ -9,8 +9,10 @@ namespace palpate::inline PALPATE_ABI {
 
 /// A solver that finds few entries of the answer to few loads faster than all of it.
 template <class S>
-concept PathSolver = requires(S& s, std::span<const Index> dofs, std::span<const double> loads, std::span<double> answer) {
-  { s.solve_path_into(dofs, loads, dofs, answer) } noexcept;
+concept PathSolver = requires(S& s, std::span<const Index> dofs, std::span<const double> loads,
+                              std::span<double> answer) {
+  { s.solve_path_into(dofs, loads, dofs, answer) }
+  noexcept;
 };
 
 /// A solver over all free dofs, asked for the compliance of a few. Each compliance column costs one solve.
@@ -26,11 +28,8 @@ class Uncondensed {
         answer_(solver_.size()) {}
 
   /// For solvers that can be stored.
-  void write(BinaryWriter& out) const
-    requires requires(const Solver& solver) { solver.write(out); }
-  {
-    solver_.write(out);
-  }
+  void write(BinaryWriter& out) const requires requires(const Solver& solver) { solver.write(out); }
+  { solver_.write(out); }
 
   Index size() const noexcept { return solver_.size(); }
   Index kept() const noexcept { return static_cast<Index>(kept_.size()); }

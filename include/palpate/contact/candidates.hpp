@@ -42,7 +42,9 @@ class Candidates {
   using Displacement = SurfaceDisplacement<3 * Capacity>;
 
   /// Places the samples `spacing` [m] apart. Allocates; for set-up.
-  Candidates(const ContactSurface& surface, double spacing) : samples_(surface, spacing) { proxy_.fill(Vector3::Zero()); }
+  Candidates(const ContactSurface& surface, double spacing) : samples_(surface, spacing) {
+    proxy_.fill(Vector3::Zero());
+  }
 
   const ContactSamples& samples() const noexcept { return samples_; }
   std::span<Candidate> items() noexcept { return {items_.data(), static_cast<std::size_t>(count_)}; }
@@ -184,9 +186,8 @@ class Candidates {
     lost_forces_ = false;
     for (int i = 0; i < loaded_count_; ++i) {
       const Candidate& old = loaded_[static_cast<std::size_t>(i)];
-      const auto found = std::find_if(items_.begin(), items_.begin() + count_, [&](const Candidate& c) {
-        return c.sample == old.sample && c.tool == old.tool;
-      });
+      const auto found = std::find_if(items_.begin(), items_.begin() + count_,
+                                      [&](const Candidate& c) { return c.sample == old.sample && c.tool == old.tool; });
       if (found != items_.begin() + count_) {
         found->force = old.force;
       } else if (count_ < maximum && tools[static_cast<std::size_t>(old.tool)].active) {
@@ -229,7 +230,8 @@ class Candidates {
     for (int t : surface.triangles_at(sample.vertices[0])) {
       bool contains = true;
       for (std::size_t a = 1; a < 3; ++a)
-        contains = contains && (sample.weights[a] == 0.0 || std::ranges::count(surface.triangle(t), sample.vertices[a]) > 0);
+        contains =
+            contains && (sample.weights[a] == 0.0 || std::ranges::count(surface.triangle(t), sample.vertices[a]) > 0);
       if (contains && c.normal.dot(surface.normal(t)) > 0.0) return true;
     }
     const Triangle& v = surface.triangle(c.triangle);

@@ -12,9 +12,9 @@ namespace palpate::inline PALPATE_ABI {
 /// Solves lambda >= 0, g = b + W lambda >= 0, lambda . g = 0 for a symmetric positive (semi)definite W of at most
 /// `Capacity` rows, exactly. First by block principal pivoting (Kostreva 1978; Judice and Pires 1994): whole sets of
 /// rows change side while that helps, which from a good start is one or two solves. Where it does not, by a primal
-/// active set (Lawson and Hanson 1974, ch. 23), one row at a time: lambda stays >= 0 and the energy falls in every step,
-/// so that it ends, and wherever it is cut off the forces are ones that a smaller push would have made. The factor is
-/// updated when a row joins (O(m^2)) and recomputed from the row that leaves. No allocation; work bounded by
+/// active set (Lawson and Hanson 1974, ch. 23), one row at a time: lambda stays >= 0 and the energy falls in every
+/// step, so that it ends, and wherever it is cut off the forces are ones that a smaller push would have made. The
+/// factor is updated when a row joins (O(m^2)) and recomputed from the row that leaves. No allocation; work bounded by
 /// `maximum_pivots`.
 template <int Capacity>
 class ComplementarityProblem {
@@ -74,8 +74,10 @@ class ComplementarityProblem {
       for (int p = order_count_ - 1; p >= 0; --p)
         if (flip_[at(order_[at(p)])]) remove(p);
       for (int i = 0; i < rows_; ++i)
-        if (flip_[at(i)] && !active_[at(i)]) add(i);
-        else if (flip_[at(i)]) active_[at(i)] = false;
+        if (flip_[at(i)] && !active_[at(i)])
+          add(i);
+        else if (flip_[at(i)])
+          active_[at(i)] = false;
     }
     return false;
   }

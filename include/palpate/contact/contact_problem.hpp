@@ -48,7 +48,7 @@ class ContactProblem {
       // Each step is smaller than the last by about the same ratio (the curvature of the ball is left out of the
       // linearisation), so that the steps still to come sum to this. The first step is the hand's, so that the second
       // says nothing about the ratio yet.
-      const double expected = iteration == 0                   ? 10.0 * change
+      const double expected = iteration == 0                     ? 10.0 * change
                               : iteration > 1 && change < before ? change * change / (before - change)
                                                                  : change;
       if (arrived_ && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) return status;
@@ -160,8 +160,7 @@ class ContactProblem {
     for (int i = 0; i < pressing_count_; ++i) {
       Candidate& c = *pressing_[at(i)];
       const Vector3 made = c.normal;
-      if (c.history.known > 0)
-        c.normal = (made + feedback_ / (1.0 - feedback_) * (made - c.history.used)).normalized();
+      if (c.history.known > 0) c.normal = (made + feedback_ / (1.0 - feedback_) * (made - c.history.used)).normalized();
       c.history = {c.normal, c.history.used, made, std::min(c.history.known + 1, 2)};
     }
   }

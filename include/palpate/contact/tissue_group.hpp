@@ -11,14 +11,13 @@
 namespace palpate::inline PALPATE_ABI {
 
 /// Tissues of any types as one TissueModel in the world's frame: a ball that touches two organs is one contact problem,
-/// with one force and one gate. Vertices are those of the members one after the other. Refers to the members, which must
-/// outlive it; the organs do not touch each other.
+/// with one force and one gate. Vertices are those of the members one after the other. Refers to the members, which
+/// must outlive it; the organs do not touch each other.
 class TissueGroup {
  public:
   /// Throws bad_argument when there is none. Allocates.
   template <TissueModel... T>
-  requires(sizeof...(T) > 0)
-  explicit TissueGroup(T&... members) { (add(members), ...), build(); }
+  requires(sizeof...(T) > 0) explicit TissueGroup(T&... members) { (add(members), ...), build(); }
   /// The same for a number of members known at run time.
   template <TissueModel T>
   explicit TissueGroup(std::span<T* const> members) {
@@ -36,8 +35,8 @@ class TissueGroup {
   }
 
   int member_count() const noexcept { return static_cast<int>(members_.size()); }
-  /// Those of the group's forces that act on one member, in its own numbers and frame, as `displacement_with` wants them.
-  /// Writes as many as fit and returns how many. No allocation.
+  /// Those of the group's forces that act on one member, in its own numbers and frame, as `displacement_with` wants
+  /// them. Writes as many as fit and returns how many. No allocation.
   std::size_t forces_on(int member, std::span<const VertexForce> forces, std::span<VertexForce> own) const noexcept {
     const Member& m = members_[at(member)];
     std::size_t count = 0;
@@ -97,7 +96,7 @@ class TissueGroup {
     Member m{&tissue, first, surface.vertex_count(), surface.positions().data(), &tissue.pose(), {}, {}, {}, {}, {}};
     m.require = [](void* t, std::span<const int> v) noexcept { return static_cast<T*>(t)->require_columns(v); };
     m.foresee = [](void* t, std::span<const int> v) noexcept {
-      if constexpr (requires(T& model) { model.foresee(v); }) static_cast<T*>(t)->foresee(v);
+      if constexpr (requires(T & model) { model.foresee(v); }) static_cast<T*>(t)->foresee(v);
     };
     m.compliance = [](const void* t, int i, int j) noexcept -> Matrix3 {
       return static_cast<const T*>(t)->compliance(i, j);

@@ -37,7 +37,8 @@ inline TrianglePoint closest_on_edges(const Vector3& p, const std::array<Vector3
     best.weights = {0.0, 0.0, 0.0};
     best.weights[i] = 1.0 - t;
     best.weights[j] = t;
-    const auto first = static_cast<std::size_t>(t == 0.0 || t == 1.0 ? TriangleFeature::vertex0 : TriangleFeature::edge01);
+    const auto first =
+        static_cast<std::size_t>(t == 0.0 || t == 1.0 ? TriangleFeature::vertex0 : TriangleFeature::edge01);
     best.feature = static_cast<TriangleFeature>(first + (t == 1.0 ? j : i));
   }
   return best;

@@ -12,14 +12,14 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// Writes under a name nobody else uses, `<path>.tmp-<16 hexadecimal digits>`, and renames at the end, which replaces an
-/// older file at once: who opens `path` finds the old file or the new one, and of several writers the last one stays.
-/// The destructor removes what was not renamed. Nothing is forced to the disk: after a power failure the file may be
-/// damaged, which its reader must find out. Nothing throws but memory.
+/// Writes under a name nobody else uses, `<path>.tmp-<16 hexadecimal digits>`, and renames at the end, which replaces
+/// an older file at once: who opens `path` finds the old file or the new one, and of several writers the last one
+/// stays. The destructor removes what was not renamed. Nothing is forced to the disk: after a power failure the file
+/// may be damaged, which its reader must find out. Nothing throws but memory.
 class AtomicFile {
  public:
-  /// Opens; `stream()` is null and `error()` says why when that failed. Files of this pattern that a killed process left
-  /// behind are removed when they are older than an hour.
+  /// Opens; `stream()` is null and `error()` says why when that failed. Files of this pattern that a killed process
+  /// left behind are removed when they are older than an hour.
   explicit AtomicFile(std::string path) : path_(std::move(path)) {
     remove_leftovers();
     for (int attempt = 0; attempt < 16 && !file_; ++attempt) {

@@ -14,12 +14,12 @@ namespace palpate::inline PALPATE_ABI {
 /// Types without padding, whose bytes are their value. Floating point counts: that 0 and -0 differ does no harm.
 template <class T>
 concept HashableBytes = std::same_as<T, double> || std::same_as<T, float> ||
-                        (std::is_trivially_copyable_v<T> && std::has_unique_object_representations_v<T>);
+    (std::is_trivially_copyable_v<T>&& std::has_unique_object_representations_v<T>);
 
 /// Hash of 64 bits over a sequence of arrays, at the speed of memory: four independent lanes of multiply and rotate, in
-/// the manner of xxHash64 (Y. Collet) but not equal to it. Every step is a bijection of its lane, so a change within one
-/// aligned word of eight bytes is noticed always, any other with a chance of 2^-64 to be missed. Not cryptographic: it
-/// finds accidents, not forgeries. Lengths count. Depends on the byte order.
+/// the manner of xxHash64 (Y. Collet) but not equal to it. Every step is a bijection of its lane, so a change within
+/// one aligned word of eight bytes is noticed always, any other with a chance of 2^-64 to be missed. Not cryptographic:
+/// it finds accidents, not forgeries. Lengths count. Depends on the byte order.
 class ContentHash {
  public:
   template <HashableBytes T>

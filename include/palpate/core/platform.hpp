@@ -73,18 +73,23 @@ inline std::int64_t clock_ns(clockid_t clock) noexcept {
 }  // namespace detail
 
 /// Steady time [ns].
-inline std::int64_t wall_ns() noexcept { return detail::clock_ns(CLOCK_MONOTONIC); }
+inline std::int64_t wall_ns() noexcept {
+  return detail::clock_ns(CLOCK_MONOTONIC);
+}
 /// Processor time of this thread [ns]: does not count what other programs do on a busy machine. A system call: 0.2 to
 /// 1 us. Where there is none that fine, steady time.
-inline std::int64_t compute_ns() noexcept { return detail::clock_ns(CLOCK_THREAD_CPUTIME_ID); }
+inline std::int64_t compute_ns() noexcept {
+  return detail::clock_ns(CLOCK_THREAD_CPUTIME_ID);
+}
 /// Sleeps until steady time `deadline` [ns].
 inline void sleep_until_ns(std::int64_t deadline) noexcept {
   const timespec t{static_cast<time_t>(deadline / 1'000'000'000), static_cast<long>(deadline % 1'000'000'000)};
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
-  }
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {}
 }
 /// This thread's sleeps are not rounded up by the default 50 us.
-inline void ask_for_exact_sleeps() noexcept { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }
+inline void ask_for_exact_sleeps() noexcept {
+  prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+}
 
 inline int pin_this_thread(int cpu) noexcept {
   cpu_set_t set;
@@ -101,7 +106,9 @@ inline int ask_for_realtime_scheduling() noexcept {
 }
 /// Keeps the pages mapped now in memory. Not MCL_FUTURE: with a small limit on locked memory it makes later allocations
 /// anywhere in the program fail.
-inline int lock_memory() noexcept { return mlockall(MCL_CURRENT) == 0 ? 0 : errno; }
+inline int lock_memory() noexcept {
+  return mlockall(MCL_CURRENT) == 0 ? 0 : errno;
+}
 
 /// Asks for huge pages, for fewer page faults; only a hint.
 inline void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) noexcept {
@@ -115,8 +122,12 @@ inline void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] st
 inline std::int64_t wall_ns() noexcept {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-inline std::int64_t compute_ns() noexcept { return wall_ns(); }
-inline int lock_memory() noexcept { return not_supported; }
+inline std::int64_t compute_ns() noexcept {
+  return wall_ns();
+}
+inline int lock_memory() noexcept {
+  return not_supported;
+}
 inline void prefer_huge_pages(void*, std::size_t) noexcept {}
 inline void ask_for_exact_sleeps() noexcept {}
 
@@ -176,9 +187,13 @@ inline void sleep_until_ns(std::int64_t deadline) noexcept {
   const std::chrono::nanoseconds since_epoch(deadline);
   std::this_thread::sleep_until(Clock::time_point(std::chrono::duration_cast<Clock::duration>(since_epoch)));
 }
-inline int pin_this_thread(int) noexcept { return not_supported; }
+inline int pin_this_thread(int) noexcept {
+  return not_supported;
+}
 inline constexpr const char* realtime_scheduling = "real-time scheduling";
-inline int ask_for_realtime_scheduling() noexcept { return not_supported; }
+inline int ask_for_realtime_scheduling() noexcept {
+  return not_supported;
+}
 
 #endif
 #endif
@@ -201,8 +216,12 @@ inline std::FILE* create_new_file(const std::string& path) noexcept {
 /// The processor's word that says how it treats denormals, and the same word with denormals flushed to zero; 0 on
 /// processors not known here.
 #if defined(PALPATE_HAS_MXCSR)
-inline std::uint64_t float_mode() noexcept { return _mm_getcsr(); }
-inline void set_float_mode(std::uint64_t mode) noexcept { _mm_setcsr(static_cast<unsigned>(mode)); }
+inline std::uint64_t float_mode() noexcept {
+  return _mm_getcsr();
+}
+inline void set_float_mode(std::uint64_t mode) noexcept {
+  _mm_setcsr(static_cast<unsigned>(mode));
+}
 inline constexpr std::uint64_t flush_denormals = 0x8040;  // FTZ and DAZ
 #elif defined(__aarch64__) && !defined(_MSC_VER)
 inline std::uint64_t float_mode() noexcept {
@@ -210,10 +229,14 @@ inline std::uint64_t float_mode() noexcept {
   asm volatile("mrs %0, fpcr" : "=r"(mode));
   return mode;
 }
-inline void set_float_mode(std::uint64_t mode) noexcept { asm volatile("msr fpcr, %0" : : "r"(mode)); }
+inline void set_float_mode(std::uint64_t mode) noexcept {
+  asm volatile("msr fpcr, %0" : : "r"(mode));
+}
 inline constexpr std::uint64_t flush_denormals = std::uint64_t{1} << 24;
 #else
-inline std::uint64_t float_mode() noexcept { return 0; }
+inline std::uint64_t float_mode() noexcept {
+  return 0;
+}
 inline void set_float_mode(std::uint64_t) noexcept {}
 inline constexpr std::uint64_t flush_denormals = 0;
 #endif

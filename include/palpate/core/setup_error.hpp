@@ -142,9 +142,9 @@ class SetupError : public std::runtime_error {
   SetupProblem problem_;
 };
 
-/// Called instead of throwing when exceptions are disabled. It must not return: it ends the process, or the thread. When
-/// it does return, and by default, the problem is printed and the process aborted. Jumping out of it with longjmp skips
-/// destructors, which C++ leaves undefined.
+/// Called instead of throwing when exceptions are disabled. It must not return: it ends the process, or the thread.
+/// When it does return, and by default, the problem is printed and the process aborted. Jumping out of it with longjmp
+/// skips destructors, which C++ leaves undefined.
 using SetupFailureHandler = void (*)(const SetupProblem&);
 
 /// Assign to replace it, before the first set-up and not while another thread is in one.

@@ -10,8 +10,9 @@ namespace palpate::inline PALPATE_ABI {
 
 /// Where set-up stands.
 struct Progress {
-  std::string_view stage;  ///< "admission", "assembly", "factorisation", "condensation", "compliance", "checks", "cache"
-  double fraction = 0.0;   ///< of this stage, 0 ... 1
+  std::string_view
+      stage;              ///< "admission", "assembly", "factorisation", "condensation", "compliance", "checks", "cache"
+  double fraction = 0.0;  ///< of this stage, 0 ... 1
 };
 
 /// Called now and then during set-up, from the thread that sets up; returning false cancels (SetupError cancelled).

@@ -33,7 +33,8 @@ concept FixedMatrix = requires {
   requires std::derived_from<std::remove_cvref_t<M>, Eigen::PlainObjectBase<std::remove_cvref_t<M>>>;  // no expressions
   requires std::remove_cvref_t<M>::RowsAtCompileTime == R;
   requires std::remove_cvref_t<M>::ColsAtCompileTime == C;
-  requires std::same_as<typename std::remove_cvref_t<M>::Scalar, double>;
+  requires std::same_as < typename std::remove_cvref_t<M>::Scalar,
+  double > ;
 };
 
 /// As FixedMatrix, or an Eigen expression of that shape: one that is read where it lies, without a copy.
@@ -42,7 +43,8 @@ concept FixedExpression = requires {
   requires std::derived_from<std::remove_cvref_t<M>, Eigen::MatrixBase<std::remove_cvref_t<M>>>;
   requires std::remove_cvref_t<M>::RowsAtCompileTime == R;
   requires std::remove_cvref_t<M>::ColsAtCompileTime == C;
-  requires std::same_as<typename std::remove_cvref_t<M>::Scalar, double>;
+  requires std::same_as < typename std::remove_cvref_t<M>::Scalar,
+  double > ;
 };
 
 template <class V, int N>

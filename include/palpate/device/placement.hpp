@@ -13,8 +13,8 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// Scene position = scene_origin + scale rotation (device position - device_origin). A force of the scene reaches the hand
-/// as force_scale rotation^T force. With scale s and force scale f a hand feels a stiffness s f times that of the
+/// Scene position = scene_origin + scale rotation (device position - device_origin). A force of the scene reaches the
+/// hand as force_scale rotation^T force. With scale s and force scale f a hand feels a stiffness s f times that of the
 /// tissue, and does f / s times the work it would do there.
 struct Placement {
   Vector3 device_origin = Vector3::Zero();  ///< [m] this point of the device's space ...
@@ -104,8 +104,7 @@ class PlacedDevice {
   void start() { device_->start(); }
   void stop() noexcept { device_->stop(); }
   /// Passed on to devices that keep a log (Recorder).
-  void note(Status status) noexcept
-  requires requires(Device& d) { d.note(status); }
+  void note(Status status) noexcept requires requires(Device& d) { d.note(status); }
   { device_->note(status); }
 
   const Placement& placement() const noexcept { return placement_; }

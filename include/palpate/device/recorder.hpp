@@ -32,8 +32,7 @@ struct RecordedTick {
 };
 
 /// First line of a recording. SI units; valid is 0 or 1; buttons and status are bit masks.
-inline constexpr std::string_view recording_header =
-    "time,x,y,z,vx,vy,vz,qw,qx,qy,qz,buttons,valid,fx,fy,fz,status";
+inline constexpr std::string_view recording_header = "time,x,y,z,vx,vy,vz,qw,qx,qy,qz,buttons,valid,fx,fy,fz,status";
 
 namespace detail {
 

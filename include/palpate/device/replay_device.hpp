@@ -151,7 +151,7 @@ class ReplayDevice {
   void stop() noexcept { motors_.stop(); }
 
   void rewind() noexcept { next_ = 0; }
-  bool finished() const noexcept { return next_ == ticks_.size(); }      ///< every state was read
+  bool finished() const noexcept { return next_ == ticks_.size(); }  ///< every state was read
   std::span<const RecordedTick> recorded() const noexcept { return ticks_; }
   const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] what is rendered now
   double peak_force() const noexcept { return motors_.peak(); }           ///< [N] the most that was rendered

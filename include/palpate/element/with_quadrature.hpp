@@ -10,8 +10,7 @@ namespace palpate::inline PALPATE_ABI {
 /// "reference volume" of testing/element_laws.hpp; one with too few points leaves zero-energy modes, and set-up refuses
 /// the matrix where these are not held. Files treat it as `E`.
 template <Element E, Quadrature Rule>
-requires(Rule::dimension == 3)
-struct WithQuadrature : E {
+requires(Rule::dimension == 3) struct WithQuadrature : E {
   using Quadrature = Rule;
 };
 

@@ -137,8 +137,8 @@ class HapticServo {
 
   static double smallest_radius(const std::vector<SphereTool>& tools) {
     if (tools.empty() || tools.size() > max_tools)
-      raise(SetupErrorKind::bad_argument, "a servo has one to " + std::to_string(max_tools) + " tools, not " +
-                                              std::to_string(tools.size()));
+      raise(SetupErrorKind::bad_argument,
+            "a servo has one to " + std::to_string(max_tools) + " tools, not " + std::to_string(tools.size()));
     for (const SphereTool& tool : tools) tool.require_valid();
     return std::ranges::min_element(tools, {}, &SphereTool::radius)->radius;
   }
@@ -215,7 +215,8 @@ class HapticServo {
     s.contact_count = 0;
     for (const Contact& c : problem_.contacts())
       if (c.force > 0.0)
-        s.contacts[s.contact_count++] = {c.tool, tissue_->pose() * c.point, tissue_->pose().linear() * c.normal, c.force};
+        s.contacts[s.contact_count++] = {c.tool, tissue_->pose() * c.point, tissue_->pose().linear() * c.normal,
+                                         c.force};
     for (std::size_t i = 0; i < contact_tools_.size(); ++i) s.proxies[i] = proxy(i);
     s.time = states_.front().time;
     snapshots_.publish();

@@ -24,10 +24,10 @@ struct RealtimeGrant {
 
 /// Where a loop stands.
 struct LoopProgress {
-  double elapsed = 0.0;       ///< [s] of its duration
-  double fraction = 0.0;      ///< 0 ... 1
+  double elapsed = 0.0;   ///< [s] of its duration
+  double fraction = 0.0;  ///< 0 ... 1
   std::uint64_t ticks = 0;
-  double force = 0.0;         ///< [N] of the last tick
+  double force = 0.0;  ///< [N] of the last tick
 };
 
 struct LoopOptions {
@@ -41,10 +41,10 @@ struct LoopOptions {
 };
 
 struct LoopReport {
-  double rate = 0.0;                   ///< [1/s] asked for
-  double elapsed = 0.0;                ///< [s] wall time of the loop
+  double rate = 0.0;     ///< [1/s] asked for
+  double elapsed = 0.0;  ///< [s] wall time of the loop
   bool paced = true;
-  bool cancelled = false;              ///< by the progress callback
+  bool cancelled = false;  ///< by the progress callback
   std::uint64_t ticks = 0;
   std::uint64_t missed_deadlines = 0;  ///< periods without a tick: the one before woke or ended too late
   DurationHistogram compute;           ///< servo.tick: processor time of the thread on Linux, wall time elsewhere

@@ -25,18 +25,10 @@ class BigArray {
     if (alignment == huge_page) platform::prefer_huge_pages(data_.get(), bytes());
   }
 
-  double* data() noexcept {
-    return data_.get();
-  }
-  const double* data() const noexcept {
-    return data_.get();
-  }
-  Index size() const noexcept {
-    return size_;
-  }
-  std::size_t bytes() const noexcept {
-    return static_cast<std::size_t>(size_) * sizeof(double);
-  }
+  double* data() noexcept { return data_.get(); }
+  const double* data() const noexcept { return data_.get(); }
+  Index size() const noexcept { return size_; }
+  std::size_t bytes() const noexcept { return static_cast<std::size_t>(size_) * sizeof(double); }
 
  private:
   static constexpr std::size_t huge_page = std::size_t{1} << 21, line = 64;

@@ -10,21 +10,21 @@ namespace palpate::inline PALPATE_ABI {
 /// Eigenpairs K x = lambda M x of a pencil shifted to K - sigma M: largest theta = 1 / (lambda - sigma) first.
 struct LanczosPairs {
   VectorX theta;
-  MatrixX vectors;          ///< M-orthonormal, one per column
-  double residual = 0.0;    ///< largest |A x - theta x|_M / theta of the pairs
+  MatrixX vectors;        ///< M-orthonormal, one per column
+  double residual = 0.0;  ///< largest |A x - theta x|_M / theta of the pairs
   bool converged = false;
 };
 
 /// Block Lanczos on A = (K - sigma M)^-1 M, which is symmetric in the scalar product of M, with full
-/// reorthogonalisation (Grimes, Lewis and Simon 1994) and restarts that keep the best Ritz vectors (thick restart, Wu and
-/// Simon 2000). The block is wider than the number of pairs wanted, so that an eigenvalue of any multiplicity is found as
-/// often as it occurs. The start is random with a fixed seed: the same problem gives the same answer. A template, so that
-/// nobody pays for its compilation who does not use it.
+/// reorthogonalisation (Grimes, Lewis and Simon 1994) and restarts that keep the best Ritz vectors (thick restart, Wu
+/// and Simon 2000). The block is wider than the number of pairs wanted, so that an eigenvalue of any multiplicity is
+/// found as often as it occurs. The start is random with a fixed seed: the same problem gives the same answer. A
+/// template, so that nobody pays for its compilation who does not use it.
 template <class Factor = SparseCholesky>
 class BlockLanczos {
  public:
-  /// `factor` of K - sigma M, positive definite; `mass` the lower half of M, positive definite. Eigenvectors in the span
-  /// of `known` are left out. Both references must outlive this.
+  /// `factor` of K - sigma M, positive definite; `mass` the lower half of M, positive definite. Eigenvectors in the
+  /// span of `known` are left out. Both references must outlive this.
   BlockLanczos(const Factor& factor, const SparseLower& mass, const MatrixX& known, Index wanted)
       : factor_(factor),
         mass_(mass),
@@ -42,8 +42,8 @@ class BlockLanczos {
     return sizeof(double) * n * (static_cast<double>(known) + 10.0 * block + 24.0);
   }
 
-  /// Runs until every wanted pair has |A x - theta x|_M <= tolerance * theta, or `most` block steps are done. Each costs
-  /// a solve with as many right-hand sides as the block is wide, and products of it with the basis.
+  /// Runs until every wanted pair has |A x - theta x|_M <= tolerance * theta, or `most` block steps are done. Each
+  /// costs a solve with as many right-hand sides as the block is wide, and products of it with the basis.
   LanczosPairs run(double tolerance, int most, const SetupLimits& limits) {
     append(factor_.solve(random_block()));
     LanczosPairs pairs;
@@ -55,7 +55,8 @@ class BlockLanczos {
       pairs = ritz_pairs(coupling);
       pairs.converged = pairs.theta.size() == wanted_ && pairs.residual <= tolerance;
     }
-    pairs.vectors = basis_.middleCols(known_, expanded_ - known_) * ritz_.rightCols(pairs.theta.size()).rowwise().reverse();
+    pairs.vectors =
+        basis_.middleCols(known_, expanded_ - known_) * ritz_.rightCols(pairs.theta.size()).rowwise().reverse();
     return pairs;
   }
 

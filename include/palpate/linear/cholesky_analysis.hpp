@@ -62,8 +62,8 @@ class CholeskyAnalysis {
   /// True when the matrix has the pattern that was analysed.
   bool fits(const SparseLower& lower) const noexcept { return data_ && data_->pattern == hash_of_pattern(lower); }
 
-  /// Hash of the elimination order and of where everything lies in a factor: a stored factor belongs to an analysis that
-  /// has the same. The order follows from positions in floating point, so another build may find another one.
+  /// Hash of the elimination order and of where everything lies in a factor: a stored factor belongs to an analysis
+  /// that has the same. The order follows from positions in floating point, so another build may find another one.
   std::uint64_t order_hash() const noexcept {
     ContentHash hash;
     if (!data_) return hash.digest();

@@ -122,7 +122,8 @@ inline void factor_columns(double* a, Index stride, Index rows, Index place, con
 
 /// factor_columns for a number of columns known at run time.
 template <int Width>
-inline void factor_few(double* a, Index stride, Index rows, Index columns, Index place, const PivotSink& sink) noexcept {
+inline void factor_few(double* a, Index stride, Index rows, Index columns, Index place,
+                       const PivotSink& sink) noexcept {
   if (columns == Width) return factor_columns<Width>(a, stride, rows, place, sink);
   if constexpr (Width > 1) factor_few<Width - 1>(a, stride, rows, columns, place, sink);
 }

@@ -22,9 +22,9 @@ ElementMass<E> element_mass(const ElementNodes<E>& x) noexcept {
   return m;
 }
 
-/// Lumped mass over density [m^3]: the diagonal of the consistent mass, scaled to the element's volume (Hinton, Rock and
-/// Zienkiewicz 1976). Positive for every element that is not inverted, where row sums are not: the corners of Tet10 and
-/// Hex20 would get negative mass.
+/// Lumped mass over density [m^3]: the diagonal of the consistent mass, scaled to the element's volume (Hinton, Rock
+/// and Zienkiewicz 1976). Positive for every element that is not inverted, where row sums are not: the corners of Tet10
+/// and Hex20 would get negative mass.
 template <Element E>
 Eigen::Matrix<double, E::nodes, 1> lumped_element_mass(const ElementNodes<E>& x) noexcept {
   const ElementMass<E> m = element_mass<E>(x);  // its sum is the volume: shape functions sum to 1

@@ -13,13 +13,13 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// Hooke's law with nine constants along the material's own axes 1 2 3. A pull along i contracts j by nu_ij sigma_i / E_i,
-/// and nu_ji / E_j = nu_ij / E_i (Lekhnitskii 1963; Jones 1999, eq. 2.25). Admissible: all E and G positive, the
+/// Hooke's law with nine constants along the material's own axes 1 2 3. A pull along i contracts j by nu_ij sigma_i /
+/// E_i, and nu_ji / E_j = nu_ij / E_i (Lekhnitskii 1963; Jones 1999, eq. 2.25). Admissible: all E and G positive, the
 /// compliance positive definite (its smallest eigenvalue, scaled to a unit diagonal, at least 1e-12), axes a rotation.
 struct Orthotropic {
-  double youngs_modulus_1 = 0.0, youngs_modulus_2 = 0.0, youngs_modulus_3 = 0.0;     ///< E_i [Pa]
-  double poisson_ratio_12 = 0.0, poisson_ratio_13 = 0.0, poisson_ratio_23 = 0.0;     ///< nu_ij [-]
-  double shear_modulus_12 = 0.0, shear_modulus_13 = 0.0, shear_modulus_23 = 0.0;     ///< G_ij [Pa]
+  double youngs_modulus_1 = 0.0, youngs_modulus_2 = 0.0, youngs_modulus_3 = 0.0;  ///< E_i [Pa]
+  double poisson_ratio_12 = 0.0, poisson_ratio_13 = 0.0, poisson_ratio_23 = 0.0;  ///< nu_ij [-]
+  double shear_modulus_12 = 0.0, shear_modulus_13 = 0.0, shear_modulus_23 = 0.0;  ///< G_ij [Pa]
   Matrix3 axes = Matrix3::Identity();  ///< a rotation; its columns are the directions 1, 2, 3 in the mesh's frame
   double density = 0.0;                ///< rho [kg/m^3]
 
@@ -50,21 +50,23 @@ struct Orthotropic {
     for (const auto& [name, value] : positive)  // written so that NaN fails every comparison
       if (!(std::isnormal(value) && value > 0.0))
         return problem(SetupErrorKind::bad_youngs_modulus, name, value, 0.0, "It must be finite and positive, in Pa");
-    for (const auto& [name, value] : {std::pair("poisson_ratio_12", poisson_ratio_12),
-                                      std::pair("poisson_ratio_13", poisson_ratio_13),
-                                      std::pair("poisson_ratio_23", poisson_ratio_23)})
+    for (const auto& [name, value] :
+         {std::pair("poisson_ratio_12", poisson_ratio_12), std::pair("poisson_ratio_13", poisson_ratio_13),
+          std::pair("poisson_ratio_23", poisson_ratio_23)})
       if (!std::isfinite(value))
         return problem(SetupErrorKind::bad_poisson_ratio, name, value, 0.0, "It must be finite");
     if (!(std::isfinite(density) && density >= 0.0))
-      return problem(SetupErrorKind::bad_density, "density", density, 0.0, "It must be finite and not negative, in kg/m^3");
+      return problem(SetupErrorKind::bad_density, "density", density, 0.0,
+                     "It must be finite and not negative, in kg/m^3");
     const double skew = (axes.transpose() * axes - Matrix3::Identity()).cwiseAbs().maxCoeff();
     if (!(axes.allFinite() && skew <= 1e-9 && axes.determinant() > 0.0))
       return problem(SetupErrorKind::bad_argument, "the deviation of the axes from a rotation", skew, 1e-9,
                      "Give three perpendicular unit vectors, right-handed, one per column");
     const double smallest = Eigen::SelfAdjointEigenSolver<Matrix3>(scaled_compliance()).eigenvalues()[0];
     if (!(smallest >= positive_definite_threshold) || !elasticity().allFinite())
-      return problem(SetupErrorKind::not_positive_definite, "the smallest eigenvalue of the compliance, scaled to a unit diagonal,",
-                     smallest, positive_definite_threshold,
+      return problem(SetupErrorKind::not_positive_definite,
+                     "the smallest eigenvalue of the compliance, scaled to a unit diagonal,", smallest,
+                     positive_definite_threshold,
                      "The Poisson ratios are too large for these moduli; mind that nu_ij goes with E_i");
     return std::nullopt;
   }

@@ -9,10 +9,10 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// What one source measured of one tissue, for small strain. A start value, not the truth: sources differ by a factor of
-/// three and more with perfusion, preconditioning, rate and method (in skin by a factor of thousands; indentation tends
-/// to give less than tension, McKee et al. 2011, doi 10.1089/ten.teb.2010.0520). Where the source gives a shear modulus,
-/// youngs_modulus is 2 (1 + nu) times it, with nu = 0.49 assumed.
+/// What one source measured of one tissue, for small strain. A start value, not the truth: sources differ by a factor
+/// of three and more with perfusion, preconditioning, rate and method (in skin by a factor of thousands; indentation
+/// tends to give less than tension, McKee et al. 2011, doi 10.1089/ten.teb.2010.0520). Where the source gives a shear
+/// modulus, youngs_modulus is 2 (1 + nu) times it, with nu = 0.49 assumed.
 struct TissuePreset {
   std::string_view name;
   double youngs_modulus;  ///< [Pa]

@@ -7,9 +7,9 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// Hooke's law with five constants: stiffer (or softer) along the fibres, the same in all directions across them; muscle,
-/// tendon. Where the mesh has a fibre direction per element (`Mesh::fibres`) that counts, elsewhere `fibre`. Admissible:
-/// moduli positive, the compliance positive definite, `fibre` a unit vector to within 1e-5.
+/// Hooke's law with five constants: stiffer (or softer) along the fibres, the same in all directions across them;
+/// muscle, tendon. Where the mesh has a fibre direction per element (`Mesh::fibres`) that counts, elsewhere `fibre`.
+/// Admissible: moduli positive, the compliance positive definite, `fibre` a unit vector to within 1e-5.
 struct TransverselyIsotropic {
   double youngs_modulus_along = 0.0;   ///< E under a pull along the fibres [Pa]
   double youngs_modulus_across = 0.0;  ///< E under a pull across them [Pa]

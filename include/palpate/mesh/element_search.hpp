@@ -109,7 +109,8 @@ class ElementSearch {
       const ElementNodes<E> x = element_nodes<E>(*mesh_, e);
       const Vector3 low = x.colwise().minCoeff().transpose(), high = x.colwise().maxCoeff().transpose();
       const Vector3 margin = (E::order > 1 ? 0.1 : 1e-6) * Vector3::Constant((high - low).maxCoeff());
-      const Cell first = cell_of(low - margin).cwiseMax(Index{0}), last = cell_of(high + margin).cwiseMin(Cell(cells_ - Cell::Ones()));
+      const Cell first = cell_of(low - margin).cwiseMax(Index{0}),
+                 last = cell_of(high + margin).cwiseMin(Cell(cells_ - Cell::Ones()));
       for (Index k = first[2]; k <= last[2]; ++k)
         for (Index j = first[1]; j <= last[1]; ++j)
           for (Index i = first[0]; i <= last[0]; ++i) visit(number({i, j, k}), e);

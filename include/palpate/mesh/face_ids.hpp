@@ -39,8 +39,10 @@ using FaceIds = std::conditional_t<HasSmallFace<E>, ShortIds<static_cast<std::si
 /// Room for a face of that many nodes.
 template <Element E>
 FaceIds<E> make_face_ids([[maybe_unused]] std::size_t nodes) {
-  if constexpr (HasSmallFace<E>) return FaceIds<E>(nodes);
-  else return {};
+  if constexpr (HasSmallFace<E>)
+    return FaceIds<E>(nodes);
+  else
+    return {};
 }
 
 /// Nodes of face f of element e, in the element's order.

@@ -77,9 +77,8 @@ void add_box_groups(Mesh<E>& mesh, const BoxGrid& grid) {
   const auto boundary = extract_boundary<E>(mesh);
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (NodeId side : {0, 1})
-      add_boundary_group(mesh, boundary, std::string(1, "xyz"[axis]) + (side == 0 ? '0' : '1'), [&](NodeId node) {
-        return grid.place(node)[axis] == (side == 0 ? 0 : grid.cells[axis]);
-      });
+      add_boundary_group(mesh, boundary, std::string(1, "xyz"[axis]) + (side == 0 ? '0' : '1'),
+                         [&](NodeId node) { return grid.place(node)[axis] == (side == 0 ? 0 : grid.cells[axis]); });
 }
 
 /// Number of cells along an axis. Refuses coordinates that do not rise.

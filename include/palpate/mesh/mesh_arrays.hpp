@@ -26,7 +26,7 @@ class MeshArrays {
   /// multiple of 3 or E::nodes, or `regions` has the wrong length; index_out_of_range for a region number that is
   /// negative or larger than the number of elements.
   template <class Positions, class Connectivity, class Regions = std::span<const int>>
-  requires(Outlives<Positions> && Outlives<Connectivity> && Outlives<Regions>)
+  requires(Outlives<Positions>&& Outlives<Connectivity>&& Outlives<Regions>)
       MeshArrays(Positions&& positions, Connectivity&& connectivity, Regions&& regions = {})
       : positions_(positions), connectivity_(connectivity), regions_(regions) {
     check();

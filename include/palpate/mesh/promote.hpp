@@ -13,8 +13,9 @@ namespace palpate::inline PALPATE_ABI {
 
 /// A quadratic element over a linear one: the nodes of `Linear`, then one in the middle of each of `edges`.
 template <class E>
-concept QuadraticElement = Element<E> && Element<typename E::Linear> && E::nodes ==
-    E::Linear::nodes + static_cast<int>(E::edges.size()) && E::Face::nodes == 2 * E::Linear::Face::nodes;
+concept QuadraticElement = Element<E> && Element<typename E::Linear> &&
+                               E::nodes == E::Linear::nodes + static_cast<int>(E::edges.size()) &&
+                           E::Face::nodes == 2 * E::Linear::Face::nodes;
 
 namespace detail {
 
@@ -82,11 +83,11 @@ void promote_group(Group& group, const Mesh<E>& mesh, const EdgeMiddles& middles
 }  // namespace detail
 
 /// The same body in quadratic elements: Tet4 to Tet10, Hex8 to Hex20. Nodes keep their ids, middles follow; regions,
-/// fibres and groups come along. A group gains the middles of the edges of its faces and elements; a group of lines (dimension 1)
-/// those between two of its nodes; a group of nodes alone keeps exactly its nodes, because an edge between two of them
-/// need not belong to it (an edge through the body between two surface nodes would be held or loaded too). Edges stay
-/// straight: move the middles of a curved surface onto it if you know it. Throws unsupported for a group's face that no
-/// element has, count_too_large beyond 2^31 nodes. O(elements log elements).
+/// fibres and groups come along. A group gains the middles of the edges of its faces and elements; a group of lines
+/// (dimension 1) those between two of its nodes; a group of nodes alone keeps exactly its nodes, because an edge
+/// between two of them need not belong to it (an edge through the body between two surface nodes would be held or
+/// loaded too). Edges stay straight: move the middles of a curved surface onto it if you know it. Throws unsupported
+/// for a group's face that no element has, count_too_large beyond 2^31 nodes. O(elements log elements).
 template <QuadraticElement To>
 Mesh<To> promote(const Mesh<typename To::Linear>& linear) {
   const auto middles = detail::EdgeMiddles::of<To>(linear);

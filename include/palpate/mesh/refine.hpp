@@ -19,8 +19,7 @@ inline std::array<std::array<int, 4>, 8> eight_tetrahedra(const ElementNodes<Tet
     if (length(i) < length(shortest)) shortest = i;
   std::array<std::array<int, 4>, 8> parts{{{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}}};
   const auto [from, to] = diagonals[shortest];
-  for (std::size_t i = 0; i < 4; ++i)
-    parts[4 + i] = {from, around[shortest][i], around[shortest][(i + 1) % 4], to};
+  for (std::size_t i = 0; i < 4; ++i) parts[4 + i] = {from, around[shortest][i], around[shortest][(i + 1) % 4], to};
   return parts;
 }
 
@@ -29,8 +28,8 @@ inline void refine_group(Group& group) {
   std::vector<std::vector<NodeId>> faces;
   for (const auto& face : group.faces)
     for (const auto& [a, b, c] : Tri6::triangles)
-      faces.push_back({face[static_cast<std::size_t>(a)], face[static_cast<std::size_t>(b)],
-                       face[static_cast<std::size_t>(c)]});
+      faces.push_back(
+          {face[static_cast<std::size_t>(a)], face[static_cast<std::size_t>(b)], face[static_cast<std::size_t>(c)]});
   group.faces = std::move(faces);
   std::vector<Index> elements;
   for (const Index e : group.elements)
@@ -40,9 +39,9 @@ inline void refine_group(Group& group) {
 
 }  // namespace detail
 
-/// Every tetrahedron cut into eight of an eighth of its volume. Nodes keep their ids, element e becomes 8 e ... 8 e + 7;
-/// regions, fibres and groups come along as in `promote`. Neighbours conform: only the interior of an element depends on which
-/// diagonal was cut. Throws as promote does, and count_too_large beyond 2^31 elements.
+/// Every tetrahedron cut into eight of an eighth of its volume. Nodes keep their ids, element e becomes 8 e ... 8 e +
+/// 7; regions, fibres and groups come along as in `promote`. Neighbours conform: only the interior of an element
+/// depends on which diagonal was cut. Throws as promote does, and count_too_large beyond 2^31 elements.
 inline Mesh<Tet4> refine(const Mesh<Tet4>& coarse) {
   if (coarse.element_count() > std::numeric_limits<NodeId>::max() / 8)
     raise(SetupErrorKind::count_too_large, "the mesh would have more than 2^31 elements");

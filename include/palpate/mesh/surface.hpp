@@ -44,7 +44,8 @@ std::vector<KeyedFace<E>> sorted_faces(const M& mesh) {
         KeyedFace<E> face{face_ids<E>(mesh, e, f), static_cast<int>(f), e};
         std::ranges::sort(face.key);
         if (face.key.front() < 0 || face.key.back() >= mesh.node_count())
-          raise(SetupErrorKind::index_out_of_range, "element " + std::to_string(e) + " names a node that does not exist");
+          raise(SetupErrorKind::index_out_of_range,
+                "element " + std::to_string(e) + " names a node that does not exist");
         visit(face);
       }
   };

@@ -33,7 +33,9 @@ void report_admission(const Admitted<E>& admitted, SetupReport& report) {
 }
 
 template <class E>
-concept SaysWhenItLocks = requires { E::locking_poisson_ratio; };
+concept SaysWhenItLocks = requires {
+  E::locking_poisson_ratio;
+};
 
 /// Flags an element that locks with one of the laws of a body, where it says when it does.
 template <Element E>

@@ -10,17 +10,17 @@
 namespace palpate::inline PALPATE_ABI {
 
 /// Everything that decides the numbers in a cache file, part by part, so that a mismatch has a name. The stiffness
-/// matrix is hashed as well, value by value: whatever the parts may miss (an element or law whose code was changed, other
-/// compiler flags) shows there. Plain bytes, stored as they are.
+/// matrix is hashed as well, value by value: whatever the parts may miss (an element or law whose code was changed,
+/// other compiler flags) shows there. Plain bytes, stored as they are.
 struct CacheKey {
-  std::array<char, 64> policy{};    ///< name, filled up with zeros
-  std::uint64_t scalar_bytes = 0;   ///< of the stored compliance: 4 or 8
-  std::uint64_t element = 0;        ///< reference nodes, shape functions and gradients at the quadrature points
-  std::uint64_t mesh = 0;           ///< positions, connectivity, regions
-  std::uint64_t material = 0;       ///< elasticity matrix of every region or element
-  std::uint64_t conditions = 0;     ///< which components of which nodes are prescribed
-  std::uint64_t touched = 0;        ///< kept nodes
-  std::uint64_t stiffness = 0;      ///< pattern and values
+  std::array<char, 64> policy{};   ///< name, filled up with zeros
+  std::uint64_t scalar_bytes = 0;  ///< of the stored compliance: 4 or 8
+  std::uint64_t element = 0;       ///< reference nodes, shape functions and gradients at the quadrature points
+  std::uint64_t mesh = 0;          ///< positions, connectivity, regions
+  std::uint64_t material = 0;      ///< elasticity matrix of every region or element
+  std::uint64_t conditions = 0;    ///< which components of which nodes are prescribed
+  std::uint64_t touched = 0;       ///< kept nodes
+  std::uint64_t stiffness = 0;     ///< pattern and values
 
   void set_policy(std::string_view name) noexcept {
     policy.fill('\0');

@@ -36,9 +36,9 @@ struct CacheReport {
   bool read = false;      ///< the system comes from the file
   bool written = false;   ///< the file was (re)written
   CacheMismatch mismatch = CacheMismatch::none;
-  std::string why;         ///< what differs, for `mismatch`
-  std::string problem;     ///< why the file could not be written
-  std::size_t bytes = 0;   ///< of the file, read or written
+  std::string why;        ///< what differs, for `mismatch`
+  std::string problem;    ///< why the file could not be written
+  std::size_t bytes = 0;  ///< of the file, read or written
 };
 
 /// One line: read / written / rebuilt because ... / could not be written because ...

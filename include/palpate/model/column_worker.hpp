@@ -16,8 +16,8 @@ struct ColumnOrder {
   bool converged = true;
 };
 
-/// A thread that fills slots as ordered. Orders and answers pass through queues: who orders never waits. An ordered slot
-/// belongs to the thread until its answer is taken. The destructor waits for the column in work.
+/// A thread that fills slots as ordered. Orders and answers pass through queues: who orders never waits. An ordered
+/// slot belongs to the thread until its answer is taken. The destructor waits for the column in work.
 template <class System, std::floating_point Scalar>
 class ColumnWorker {
  public:

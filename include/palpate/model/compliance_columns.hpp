@@ -8,8 +8,8 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// Slots for compliance columns: per loaded vertex nine values for every touchable vertex, in one piece, as a tick reads
-/// single blocks of it. Stored as Scalar. A slot is written by one thread at a time.
+/// Slots for compliance columns: per loaded vertex nine values for every touchable vertex, in one piece, as a tick
+/// reads single blocks of it. Stored as Scalar. A slot is written by one thread at a time.
 template <std::floating_point Scalar>
 class ComplianceColumns {
  public:
@@ -47,7 +47,8 @@ class ComplianceColumns {
     }
     double largest = 0.0;
     for (int i = 0; i < vertices(); ++i)
-      largest = std::max(largest, Eigen::Map<const Eigen::Matrix<Scalar, 9, 1>>(block(i, slot)).template cast<double>().squaredNorm());
+      largest = std::max(
+          largest, Eigen::Map<const Eigen::Matrix<Scalar, 9, 1>>(block(i, slot)).template cast<double>().squaredNorm());
     bound_[static_cast<std::size_t>(slot)] = std::sqrt(largest);
     return converged;
   }

@@ -128,14 +128,17 @@ class HapticFEModel {
 
  private:
   template <class GivenMesh>
-  void prepare(const GivenMesh& mesh, const Scene& scene, const RegionMaterials<M>& materials, const SetupOptions& options) {
+  void prepare(const GivenMesh& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+               const SetupOptions& options) {
     const std::vector<M> by_region = materials_by_region(mesh, materials);
     limits_.advance("admission", 0.0);
     Admitted<E> admitted = [&] {
       const StageTimer timer(report_, "admission");
       // A mesh that lists its groups keeps all, so that later conditions may name any.
-      if constexpr (ListsGroups<GivenMesh>) return admit<E>(mesh, options.admission);
-      else return admit<E>(mesh, options.admission, scene.group_names());
+      if constexpr (ListsGroups<GivenMesh>)
+        return admit<E>(mesh, options.admission);
+      else
+        return admit<E>(mesh, options.admission, scene.group_names());
     }();
     report_admission(admitted, report_);
     node_map_ = std::move(admitted.node_map);
@@ -161,7 +164,8 @@ class HapticFEModel {
   void prepare_contact(const std::vector<Triangle>& triangles, const SetupOptions& options) {
     const StageTimer timer(report_, "compliance");
     const int vertices = static_cast<int>(touchable_.size());
-    compliance_ = Compliance(statics_->system(), kept_index(), Traits::eager ? vertices : options.compliance_slots, limits_);
+    compliance_ =
+        Compliance(statics_->system(), kept_index(), Traits::eager ? vertices : options.compliance_slots, limits_);
     if (Traits::eager)
       for (int v = 0; v < vertices; ++v) {
         if (v % 64 == 0) limits_.advance("compliance", static_cast<double>(v) / static_cast<double>(vertices));
@@ -170,8 +174,7 @@ class HapticFEModel {
     else if (vertices > 0)
       sample_columns(options.columns);
     // A thousandth of a millionth of the tissue's own compliance, or a nanometre per newton where nothing moves.
-    for (int v = 0; v < vertices; ++v)
-      compliance_floor_ = std::max(compliance_floor_, 1e-9 * compliance_.bound(v));
+    for (int v = 0; v < vertices; ++v) compliance_floor_ = std::max(compliance_floor_, 1e-9 * compliance_.bound(v));
     if (compliance_floor_ == 0.0) compliance_floor_ = 1e-9;
     std::vector<Vector3> positions;
     for (NodeId node : touchable_) positions.push_back(deformed(node));

@@ -12,12 +12,12 @@ namespace palpate::inline PALPATE_ABI {
 
 /// The lowest elastic modes of a body, ascending, and the rigid motions it is left with.
 struct NaturalFrequencies {
-  VectorX frequencies;   ///< [Hz]
-  MatrixX shapes;        ///< one per column, 3 per node, shape^T M shape = 1 kg m^2; its largest component is positive
-  VectorX residuals;     ///< |K x - omega^2 M x| / |K x| [-]; means nothing at zero frequency (a mechanism)
-  MatrixX rigid_shapes;  ///< motions without strain and frequency, likewise M-orthonormal; six for a free body
-  double rounding = 0.0;  ///< largest relative difference of omega^2 (beyond the shift) computed from the factor and from
-                          ///< the matrices: digits lost to contrast and slenderness; above 1e-3 it is refused
+  VectorX frequencies;    ///< [Hz]
+  MatrixX shapes;         ///< one per column, 3 per node, shape^T M shape = 1 kg m^2; its largest component is positive
+  VectorX residuals;      ///< |K x - omega^2 M x| / |K x| [-]; means nothing at zero frequency (a mechanism)
+  MatrixX rigid_shapes;   ///< motions without strain and frequency, likewise M-orthonormal; six for a free body
+  double rounding = 0.0;  ///< largest relative difference of omega^2 (beyond the shift) computed from the factor and
+                          ///< from the matrices: digits lost to contrast and slenderness; above 1e-3 it is refused
 
   int rigid_modes() const noexcept { return static_cast<int>(rigid_shapes.cols()); }
 };
@@ -29,7 +29,9 @@ struct ModalProblem {
   SparseMatrix stiffness, mass;  // lower halves
   MatrixX rigid;
 
-  static MatrixX times(const SparseMatrix& lower, const MatrixX& x) { return lower.selfadjointView<Eigen::Lower>() * x; }
+  static MatrixX times(const SparseMatrix& lower, const MatrixX& x) {
+    return lower.selfadjointView<Eigen::Lower>() * x;
+  }
 
   /// x^T K x / x^T M x of every column [1/s^2].
   VectorX rayleigh(const MatrixX& x) const {
@@ -65,10 +67,11 @@ inline void require_count(Index wanted, Index available) {
   raise(std::move(p));
 }
 
-/// The frequency scale of a body that can move rigidly [1/s^2]: the lowest Rayleigh quotient of the six uniform strains,
-/// with their rigid part taken out.
+/// The frequency scale of a body that can move rigidly [1/s^2]: the lowest Rayleigh quotient of the six uniform
+/// strains, with their rigid part taken out.
 template <Element E>
-double uniform_strain_quotient(const Body<E>& body, const EssentialConditions& conditions, const ModalProblem& problem) {
+double uniform_strain_quotient(const Body<E>& body, const EssentialConditions& conditions,
+                               const ModalProblem& problem) {
   const Vector3 origin = body.mesh.position(0);
   MatrixX fields(conditions.free_count(), 6);
   VectorX full(conditions.dof_count()), part(conditions.free_count());
@@ -98,8 +101,8 @@ inline MatrixX full_shapes(const MatrixX& free, const EssentialConditions& condi
   return shapes;
 }
 
-/// What is returned of modes of the free dofs: sorted, on all nodes, with their residuals. A template only to be compiled
-/// where it is used.
+/// What is returned of modes of the free dofs: sorted, on all nodes, with their residuals. A template only to be
+/// compiled where it is used.
 template <class Problem>
 NaturalFrequencies natural_frequencies_of(const Problem& problem, const MatrixX& modes,
                                           const EssentialConditions& conditions) {
@@ -130,7 +133,8 @@ inline double require_pairs(const LanczosPairs& pairs, const VectorX& lambda, do
   p.hint = "Look for parts that are far softer or far lighter than others";
   p.value = pairs.residual;
   p.threshold = tolerance;
-  p.what = "the natural frequencies did not converge: residual " + number(pairs.residual) + ", bound " + number(tolerance);
+  p.what =
+      "the natural frequencies did not converge: residual " + number(pairs.residual) + ", bound " + number(tolerance);
   if (!pairs.converged || !lambda.allFinite()) raise(std::move(p));
   const double rounding = ((lambda.array() - shift) * pairs.theta.array() - 1.0).abs().maxCoeff();
   if (rounding <= 1e-3) return rounding;
@@ -152,10 +156,10 @@ inline double require_pairs(const LanczosPairs& pairs, const VectorX& lambda, do
 ///   auto modes = natural_frequencies(model.body(), scene, 6);                                // of a model
 ///   auto modes = natural_frequencies(make_body(admit<Tet10>(mesh).mesh, material), {}, 6);   // of a free body
 ///
-/// Throws bad_density for a region without mass, bad_argument or count_too_large for the count, not_positive_definite for
-/// a held body that is a mechanism, not_converged, ill_conditioned, too_large, cancelled, and what assembly and conditions
-/// throw. Cost: a sparse factorisation of K - sigma M (sigma = 0 when held) and some 10 solves with count + 4 right-hand
-/// sides; a body with far softer parts may take up to four factorisations.
+/// Throws bad_density for a region without mass, bad_argument or count_too_large for the count, not_positive_definite
+/// for a held body that is a mechanism, not_converged, ill_conditioned, too_large, cancelled, and what assembly and
+/// conditions throw. Cost: a sparse factorisation of K - sigma M (sigma = 0 when held) and some 10 solves with count +
+/// 4 right-hand sides; a body with far softer parts may take up to four factorisations.
 template <Element E>
 NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, int count,
                                        const SetupLimits& limits = {}) {
@@ -175,7 +179,8 @@ NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, 
   VectorX lambda;
   for (int attempt = 0; attempt < (held ? 1 : 4) && !pairs.converged; ++attempt) {
     if (attempt > 0) shift = -1e-2 * lambda.cwiseAbs().minCoeff();  // far below the uniform strains: start again there
-    const SparseCholesky factor(held ? problem.stiffness : SparseMatrix(problem.stiffness - shift * problem.mass), limits);
+    const SparseCholesky factor(held ? problem.stiffness : SparseMatrix(problem.stiffness - shift * problem.mass),
+                                limits);
     BlockLanczos lanczos(factor, problem.mass, problem.rigid, count);
     pairs = lanczos.run(tolerance, held ? 200 : 40, limits);
     lambda = problem.rayleigh(pairs.vectors);

@@ -47,8 +47,8 @@ struct SolverTraits<SparseCholesky> {
   using Assembly = Assembled;
   using Scalar = double;
   static constexpr bool eager = false;
-  static Uncondensed<SparseCholesky> make(const BlockMatrix& k, const EssentialConditions& conditions,
-                                          DofLayout layout, const SetupLimits& limits) {
+  static Uncondensed<SparseCholesky> make(const BlockMatrix& k, const EssentialConditions& conditions, DofLayout layout,
+                                          const SetupLimits& limits) {
     std::vector<Index> kept = std::exchange(layout.kept, {});  // asked for, but nothing is condensed onto them
     const SparseMatrix lower = free_matrix(k, conditions);
     return {SparseCholesky(CholeskyAnalysis(lower, layout, limits), lower, limits), std::move(kept)};
@@ -148,12 +148,12 @@ concept SolverPolicy = requires {
 };
 
 /// A policy whose prepared system can be stored: `cache_name` tells it from all others, the system has `write`, and
-/// `read` makes it again from what was written, given the same stiffness, conditions and layout. `read` takes every size
-/// from these and none from the file, and returns whatever it likes when the reader fails.
+/// `read` makes it again from what was written, given the same stiffness, conditions and layout. `read` takes every
+/// size from these and none from the file, and returns whatever it likes when the reader fails.
 template <class P>
-concept CacheablePolicy = SolverPolicy<P> && requires(BinaryReader& in, BinaryWriter& out, const BlockMatrix& k,
-                                                      const EssentialConditions& conditions, const DofLayout& layout,
-                                                      const SetupLimits& limits) {
+concept CacheablePolicy = SolverPolicy<P> &&
+    requires(BinaryReader& in, BinaryWriter& out, const BlockMatrix& k, const EssentialConditions& conditions,
+             const DofLayout& layout, const SetupLimits& limits) {
   requires std::same_as<typename SolverTraits<P>::Assembly, Assembled>;
   { SolverTraits<P>::cache_name } -> std::convertible_to<std::string_view>;
   SolverTraits<P>::read(in, k, conditions, layout, limits).write(out);

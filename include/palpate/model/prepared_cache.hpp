@@ -23,7 +23,8 @@ struct CacheHeader {
 
   std::uint64_t right_hash() const noexcept;
 };
-static_assert(HashableBytes<CacheHeader> && sizeof(CacheHeader) == 160, "the header is plain words, the same everywhere");
+static_assert(HashableBytes<CacheHeader> && sizeof(CacheHeader) == 160,
+              "the header is plain words, the same everywhere");
 
 inline std::uint64_t CacheHeader::right_hash() const noexcept {
   CacheHeader all_but_hash = *this;

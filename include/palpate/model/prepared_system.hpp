@@ -39,8 +39,8 @@ struct SystemSource {
  private:
   System prepare_with(const std::string& cache_file, SetupReport& report) const {
     limits.advance("cache", 0.0);
-    const CacheKey key = cache_key<E>(body, conditions, kept_nodes, stiffness, Traits::cache_name,
-                                      sizeof(typename Traits::Scalar));
+    const CacheKey key =
+        cache_key<E>(body, conditions, kept_nodes, stiffness, Traits::cache_name, sizeof(typename Traits::Scalar));
     PreparedCache cache(cache_file, key, report.cache);
     if (auto system = read(cache, report)) return std::move(*system);
     System system = make(report);
@@ -57,8 +57,8 @@ struct SystemSource {
     return system;
   }
 
-  /// The system when the file holds it and a solve with it is right: a last check that trusts no hash. The condition is as
-  /// it was measured when the system was made; to measure it again costs as much as to read.
+  /// The system when the file holds it and a solve with it is right: a last check that trusts no hash. The condition is
+  /// as it was measured when the system was made; to measure it again costs as much as to read.
   std::optional<System> read(PreparedCache& cache, SetupReport& report) const {
     const StageTimer timer(report, "read cache");
     if (!cache.open()) return std::nullopt;

@@ -16,8 +16,9 @@ class Statics {
   using Stiffness = typename Traits::Assembly::template Operator<E>;
   using System = typename SystemSource<E, Policy>::System;
 
-  /// Prepares everything but the contact. `kept_nodes` are the touchable ones; `cache_file` may hold the prepared system,
-  /// or will. Throws what assembly, factorisation and checks throw: unconstrained, not_positive_definite, ill_conditioned
+  /// Prepares everything but the contact. `kept_nodes` are the touchable ones; `cache_file` may hold the prepared
+  /// system, or will. Throws what assembly, factorisation and checks throw: unconstrained, not_positive_definite,
+  /// ill_conditioned
   /// ... but nothing because of the cache.
   Statics(Body<E> given, const Scene& scene, std::vector<BoundaryFace<E>> boundary,
           const std::vector<NodeId>& kept_nodes, const SetupLimits& limits, const std::string& cache_file,
@@ -46,8 +47,8 @@ class Statics {
   Statics(const Statics&) = delete;
   Statics& operator=(const Statics&) = delete;
 
-  /// Loads, prescribed values and initial strains of a scene; `gravity` [m/s^2] in the body's frame. Solves once. Strong
-  /// guarantee.
+  /// Loads, prescribed values and initial strains of a scene; `gravity` [m/s^2] in the body's frame. Solves once.
+  /// Strong guarantee.
   void set_conditions(const Scene& scene, const Vector3& gravity) {
     EssentialConditions conditions = resolve_essential(body_.mesh, boundary_, scene);
     if (conditions.constrained != conditions_.constrained)
@@ -65,14 +66,15 @@ class Statics {
     accept(loaded);
   }
 
-  /// Changes gravity [m/s^2], body frame, and solves once. Throws bad_density when some region has none. Strong guarantee.
+  /// Changes gravity [m/s^2], body frame, and solves once. Throws bad_density when some region has none. Strong
+  /// guarantee.
   void set_gravity(const Vector3& gravity) {
     Loaded loaded = solve_loads(applied_, strain_load_, conditions_.prescribed, gravity);
     accept(loaded);
   }
 
-  /// Displacement under the scene's loads and `forces` [N] on vertices, 3 per node [m]. No allocation when u has its size;
-  /// not to be called by two threads at once.
+  /// Displacement under the scene's loads and `forces` [N] on vertices, 3 per node [m]. No allocation when u has its
+  /// size; not to be called by two threads at once.
   template <class Forces>
   SolveReport displacement_with(const Forces& forces, const std::vector<NodeId>& node_of_vertex, VectorX& u) noexcept {
     scratch_.setZero();
@@ -109,7 +111,8 @@ class Statics {
   };
 
   /// The answer to given loads; nothing is changed but workspaces. Throws bad_density, non_finite or not_converged.
-  Loaded solve_loads(const VectorX& applied, const VectorX& strain_load, const VectorX& prescribed, const Vector3& gravity) {
+  Loaded solve_loads(const VectorX& applied, const VectorX& strain_load, const VectorX& prescribed,
+                     const Vector3& gravity) {
     require_density(gravity);
     Loaded loaded{applied, VectorX(applied.size())};
     for (Index i = 0; i < mass_.size(); ++i) loaded.load.template segment<3>(3 * i) += mass_[i] * gravity;
@@ -118,10 +121,12 @@ class Statics {
     const SolveReport solved = solve_free(full_load_, loaded.displacement);
     loaded.displacement += prescribed;
     if (!loaded.displacement.allFinite() || !full_load_.allFinite())
-      raise(SetupErrorKind::non_finite, "the static displacement is not finite", "Loads may be too large for the stiffness");
+      raise(SetupErrorKind::non_finite, "the static displacement is not finite",
+            "Loads may be too large for the stiffness");
     if (!solved.converged)
       raise(SetupErrorKind::not_converged,
-            "the static solve stopped at a relative residual of " + number(solved.relative_residual), "Use a direct solver");
+            "the static solve stopped at a relative residual of " + number(solved.relative_residual),
+            "Use a direct solver");
     return loaded;
   }
   void accept(Loaded& loaded) noexcept {

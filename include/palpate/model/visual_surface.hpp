@@ -19,9 +19,9 @@ struct EmbeddingReport {
   double element_size = 0;    ///< mean longest edge on the boundary, to compare with [m]
 };
 
-/// Positions and normals for a renderer's own thread. Every point of the drawn surface is a fixed combination of the nodes
-/// of one element (its shape functions there), so a fine surface follows a coarse mesh smoothly. Reading recovers the
-/// displacement of the whole body from the contact forces of a tick (one back-substitution, exact); with
+/// Positions and normals for a renderer's own thread. Every point of the drawn surface is a fixed combination of the
+/// nodes of one element (its shape functions there), so a fine surface follows a coarse mesh smoothly. Reading recovers
+/// the displacement of the whole body from the contact forces of a tick (one back-substitution, exact); with
 /// HapticServo::read_snapshot it never waits for the haptic thread, nor that for the reader. Refers to the model; one
 /// reader at a time.
 template <class Model>
@@ -32,8 +32,8 @@ class VisualSurface {
   /// The boundary of the body: what the scene lets be seen, or all of it. Nodes become points.
   explicit VisualSurface(Model& model) : VisualSurface(model, boundary_of(model)) {}
 
-  /// A surface of one's own. Throws index_out_of_range for a triangle that names a point that does not exist, non_finite,
-  /// empty_mesh without triangles. O(points log elements), allocates.
+  /// A surface of one's own. Throws index_out_of_range for a triangle that names a point that does not exist,
+  /// non_finite, empty_mesh without triangles. O(points log elements), allocates.
   VisualSurface(Model& model, VisualMesh surface)
       : model_(&model), surface_(checked(std::move(surface))), displacement_(3 * model.mesh().node_count()) {
     for (Vector3& x : surface_.positions) x -= model.origin();
@@ -47,9 +47,10 @@ class VisualSurface {
   const EmbeddingReport& report() const noexcept { return report_; }
 
   /// Writes x y z of every point and of its unit normal, world frame [m], under the contact forces of a tick
-  /// (`servo.read_snapshot().vertex_forces()`; empty: at rest). False when a span has not 3 numbers per point: nothing is
-  /// written then. For one thread, beside the haptic one; no allocation, no lock.
-  bool read_surface(std::span<const VertexForce> forces, std::span<float> positions, std::span<float> normals) noexcept {
+  /// (`servo.read_snapshot().vertex_forces()`; empty: at rest). False when a span has not 3 numbers per point: nothing
+  /// is written then. For one thread, beside the haptic one; no allocation, no lock.
+  bool read_surface(std::span<const VertexForce> forces, std::span<float> positions,
+                    std::span<float> normals) noexcept {
     const std::size_t size = 3 * surface_.positions.size();
     if (positions.size() != size || normals.size() != size) return false;
     model_->displacement_with(forces, displacement_);
@@ -77,7 +78,8 @@ class VisualSurface {
     for (const auto& t : surface.triangles)
       for (const int v : t)
         if (v < 0 || static_cast<std::size_t>(v) >= surface.positions.size())
-          raise(SetupErrorKind::index_out_of_range, "a triangle of the surface to draw names point " + std::to_string(v));
+          raise(SetupErrorKind::index_out_of_range,
+                "a triangle of the surface to draw names point " + std::to_string(v));
     return surface;
   }
 
@@ -103,38 +105,59 @@ class VisualSurface {
   void embed() {
     const Mesh<E>& mesh = model_->mesh();
     const ElementSearch<E> inside(mesh);
-    std::vector<Vector3> corners;
-    std::vector<Triangle> triangles;
-    std::vector<Index> owner;
-    for (const auto& face : model_->boundary()) {
-      with_face_element<E>(face.nodes.size(), [&]<TriangulatedFace F>() {
-        const int first = static_cast<int>(corners.size());
-        for (const NodeId i : face.nodes) corners.push_back(mesh.position(i));
-        for (const auto& [a, b, c] : F::triangles) {
-          triangles.push_back({first + a, first + b, first + c});
-          owner.push_back(face.element);
-        }
-      });
-      report_.element_size += longest_edge<E>(element_nodes<E>(mesh, face.element)) / static_cast<double>(model_->boundary().size());
-    }
-    const Bvh bvh(triangles, corners);
-    const auto corner = [&](int i) -> const Vector3& { return corners[static_cast<std::size_t>(i)]; };
+    const Boundary boundary(*model_);
+    report_.element_size = boundary.mean_edge;
     for (const Vector3& p : surface_.positions) {
       auto place = inside.find(p);
       if (!place) {
-        const auto distance = [&](int t) {
-          const Triangle& v = triangles[static_cast<std::size_t>(t)];
-          const auto on = closest_point(p, corner(v[0]), corner(v[1]), corner(v[2]));
-          return (p - on.weights[0] * corner(v[0]) - on.weights[1] * corner(v[1]) - on.weights[2] * corner(v[2])).squaredNorm();
-        };
-        const int nearest = bvh.nearest(p, distance);
-        place = beyond(owner[static_cast<std::size_t>(nearest)], p);
+        const auto [element, distance] = boundary.nearest(p);
+        place = beyond(element, p);
         ++report_.outside;
-        report_.worst_distance = std::max(report_.worst_distance, std::sqrt(distance(nearest)));
+        report_.worst_distance = std::max(report_.worst_distance, distance);
       }
       anchors_.push_back({place->element, E::shape(place->xi)});
     }
   }
+
+  /// The triangles of the body's boundary, to find the element nearest to a point outside.
+  struct Boundary {
+    explicit Boundary(const Model& model) {
+      for (const auto& face : model.boundary()) {
+        with_face_element<E>(face.nodes.size(), [&]<TriangulatedFace F>() {
+          const int first = static_cast<int>(corners.size());
+          for (const NodeId i : face.nodes) corners.push_back(model.mesh().position(i));
+          for (const auto& [a, b, c] : F::triangles) {
+            triangles.push_back({first + a, first + b, first + c});
+            owner.push_back(face.element);
+          }
+        });
+        mean_edge += longest_edge<E>(element_nodes<E>(model.mesh(), face.element));
+      }
+      mean_edge /= static_cast<double>(model.boundary().size());
+      bvh = Bvh(triangles, corners);
+    }
+
+    double squared_distance(const Vector3& p, int triangle) const {
+      const auto& [i, j, k] = triangles[static_cast<std::size_t>(triangle)];
+      const auto corner = [&](int v) -> const Vector3& { return corners[static_cast<std::size_t>(v)]; };
+      const Vector3& a = corner(i);
+      const Vector3& b = corner(j);
+      const Vector3& c = corner(k);
+      const auto w = closest_point(p, a, b, c).weights;
+      return (p - w[0] * a - w[1] * b - w[2] * c).squaredNorm();
+    }
+
+    std::pair<Index, double> nearest(const Vector3& p) const {
+      const int t = bvh.nearest(p, [&](int triangle) { return squared_distance(p, triangle); });
+      return {owner[static_cast<std::size_t>(t)], std::sqrt(squared_distance(p, t))};
+    }
+
+    std::vector<Vector3> corners;
+    std::vector<Triangle> triangles;
+    std::vector<Index> owner;
+    double mean_edge = 0.0;
+    Bvh bvh;
+  };
 
   /// The point of an element's continuation; its middle where Newton's method finds nothing.
   ElementPoint beyond(Index element, const Vector3& p) const noexcept {

@@ -58,7 +58,9 @@ namespace detail {
 template <Element E>
 class PatchRecovery {
  public:
-  PatchRecovery(const Body<E>& body, const VectorX& u) : body_(body), state_(body, u), around_(body.mesh) { number_columns(); }
+  PatchRecovery(const Body<E>& body, const VectorX& u) : body_(body), state_(body, u), around_(body.mesh) {
+    number_columns();
+  }
 
   NodalStress recover() {
     sample<typename SamplingRule<E>::Type>(good_);

@@ -103,7 +103,8 @@ class ElementStress {
   /// The mean over an element.
   MeanStress mean(Index e) const noexcept {
     const ElementNodes<E> x = element_nodes<E>(body_.mesh, e);
-    if constexpr (HasSmoothedStrain<E>) return {smoothed_.stress.col(e), shape_volumes<E>(x).sum()};
+    if constexpr (HasSmoothedStrain<E>)
+      return {smoothed_.stress.col(e), shape_volumes<E>(x).sum()};
     else
       return mean_stress<E>(x, element_displacements<E>(body_.mesh, e, u_), body_.elasticity_of(e),
                             body_.initial_strain[body_.region_of(e)]);

@@ -24,8 +24,9 @@ struct StressField {
 };
 
 /// Fills `field` with the stress under the displacement `u` (3 per node [m]). One pass over the elements, about 0.1 us
-/// for a linear tetrahedron; no allocation when `field` has the body's sizes, unless strain is averaged over neighbours. What is not finite in `u` stays so in the
-/// stress around it. Throws bad_argument when `u` has another length.
+/// for a linear tetrahedron; no allocation when `field` has the body's sizes, unless strain is averaged over
+/// neighbours. What is not finite in `u` stays so in the stress around it. Throws bad_argument when `u` has another
+/// length.
 template <Element E>
 void recover_stress(const Body<E>& body, const VectorX& u, StressField& field) {
   const Mesh<E>& mesh = body.mesh;

@@ -88,7 +88,9 @@ void* memalign(std::size_t alignment, std::size_t size) noexcept {
   ++palpate::testing::detail::heap_calls.allocations;
   return __libc_memalign(alignment, size);
 }
-void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept { return memalign(alignment, size); }
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  return memalign(alignment, size);
+}
 int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
   void* const got = memalign(alignment, size);
   if (got == nullptr) return ENOMEM;

@@ -24,7 +24,7 @@ template <class Device>
 DeviceProbe<Device> default_probe() {
   DeviceProbe<Device> probe;
   probe.rendered = [](const Device& device) -> Vector3 { return device.last_force(); };
-  if constexpr (requires(Device& device) { device.unplug(true); })
+  if constexpr (requires(Device & device) { device.unplug(true); })
     probe.break_reads = [](Device& device, bool broken) { device.unplug(broken); };
   return probe;
 }

@@ -7,7 +7,8 @@
 namespace palpate::inline PALPATE_ABI::testing {
 
 /// Laws of the triangles of a face: "triangles name nodes of the face", "triangles are turned as the face is",
-/// "triangles cover the face" (their areas sum to its own), "every node is a vertex of a triangle, and lies on no other".
+/// "triangles cover the face" (their areas sum to its own), "every node is a vertex of a triangle, and lies on no
+/// other".
 template <TriangulatedFace F>
 Violations triangulation_laws(double area) {
   Violations v;
@@ -35,7 +36,8 @@ Violations triangulation_laws(double area) {
     }
   }
   expect_at_most(v, "triangles cover the face", std::abs(sum - area), 1e-12 * area);
-  expect_true(v, "every node is a vertex of a triangle, and lies on no other", std::ranges::find(used, false) == used.end());
+  expect_true(v, "every node is a vertex of a triangle, and lies on no other",
+              std::ranges::find(used, false) == used.end());
   return v;
 }
 

@@ -1,7 +1,7 @@
-// The whole library without exceptions and RTTI. The first argument chooses: `valid` makes a tissue and touches it, which
-// must work; `invalid` makes one with a Poisson ratio of 0.5, `inverted` one with an element inside out, which must end
-// in the handler (exit code 7); `default` the same without a handler of ours, `returns` with one that returns: both
-// print and abort.
+// The whole library without exceptions and RTTI. The first argument chooses: `valid` makes a tissue and touches it,
+// which must work; `invalid` makes one with a Poisson ratio of 0.5, `inverted` one with an element inside out, which
+// must end in the handler (exit code 7); `default` the same without a handler of ours, `returns` with one that returns:
+// both print and abort.
 #include <palpate/palpate.hpp>
 
 #include <cstdio>
