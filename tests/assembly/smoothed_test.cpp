@@ -12,16 +12,16 @@ using namespace test;
 
 namespace {
 
-using Cured = Smoothed<Tet4>;
+using Averaged = Smoothed<Tet4>;
 
 /// A box of 3 x 2 x 2 distorted cells in two regions, the border between them a plane.
-Mesh<Cured> box() {
+Mesh<Averaged> box() {
   const Vector3 size(3, 2, 2);
   const Mesh<Tet4> plain = box_tet4(size, {4, 2, 2}, BoxSplit::six);
-  Mesh<Cured> mesh{plain.positions, plain.elements, {}, {"left", "right"}, plain.groups};
+  Mesh<Averaged> mesh{plain.positions, plain.elements, {}, {"left", "right"}, plain.groups};
   testing::Random random(5);
   for (Index e = 0; e < mesh.element_count(); ++e)
-    mesh.regions.push_back(element_nodes<Cured>(mesh, e).col(0).mean() < 1.5 ? 0 : 1);
+    mesh.regions.push_back(element_nodes<Averaged>(mesh, e).col(0).mean() < 1.5 ? 0 : 1);
   for (Vector3& x : mesh.positions) {
     const Vector3 step = random.vector<3>(-0.12, 0.12);
     const bool inside = (x.array() > 1e-9).all() && (x.array() < size.array() - 1e-9).all();
@@ -31,14 +31,14 @@ Mesh<Cured> box() {
 }
 
 /// Two laws that change from element to element, as along fibres.
-void mix_laws(Body<Cured>& body) {
+void mix_laws(Body<Averaged>& body) {
   testing::Random random(17);
   body.elasticity = {orthotropic(), 3.0 * orthotropic(), liver.elasticity()};
   for (Index e = 0; e < body.mesh.element_count(); ++e)
     body.laws.push_back(static_cast<std::int32_t>(random.uniform(0.0, 2.999)));
 }
 
-VectorX random_displacement(const Mesh<Cured>& mesh) {
+VectorX random_displacement(const Mesh<Averaged>& mesh) {
   testing::Random random(11);
   return testing::random_vector(random, 3 * mesh.node_count());
 }
@@ -47,18 +47,18 @@ VectorX random_displacement(const Mesh<Cured>& mesh) {
 
 TEST_CASE("Smoothed<Tet4> keeps the laws of a stiffness, stored and not", "[assembly][smoothed]") {
   const int materials = GENERATE(1, 2, 3, 4);
-  Body<Cured> body = body_of(box(), {liver, materials == 2 ? LinearElastic{2e5, 0.2, 900.0} : liver});
+  Body<Averaged> body = body_of(box(), {liver, materials == 2 ? LinearElastic{2e5, 0.2, 900.0} : liver});
   if (materials == 3) body.elasticity = {orthotropic(), 3.0 * orthotropic()};
   if (materials == 4) mix_laws(body);
-  const BlockMatrix stored = assemble_stiffness<Cured>(body, {});
-  const MatrixFreeStiffness<Cured> free(body, {});
+  const BlockMatrix stored = assemble_stiffness<Averaged>(body, {});
+  const MatrixFreeStiffness<Averaged> free(body, {});
   CHECK(testing::describe(testing::stiffness_laws(body, stored)) == "");
   CHECK(testing::describe(testing::same_stiffness_laws(stored, free)) == "");
 }
 
 TEST_CASE("Smoothed<Tet4>: domains fill the body, and their gradients sum to nothing", "[assembly][smoothed]") {
-  const Mesh<Cured> mesh = box();
-  const StrainDomains<Cured> domains(mesh);
+  const Mesh<Averaged> mesh = box();
+  const StrainDomains<Averaged> domains(mesh);
   double deviatoric = 0.0, volumetric = 0.0;
   for (Index d = 0; d < domains.size(); ++d) {
     const StrainDomain domain = domains[d];
@@ -78,14 +78,14 @@ TEST_CASE("Smoothed<Tet4>: domains fill the body, and their gradients sum to not
 }
 
 TEST_CASE("Smoothed<Tet4>: energy, forces and stress belong together", "[assembly][smoothed]") {
-  Body<Cured> body = body_of(box(), {liver, {2e5, 0.2, 900.0}});
+  Body<Averaged> body = body_of(box(), {liver, {2e5, 0.2, 900.0}});
   const int materials = GENERATE(1, 2, 3);
   if (materials == 2) body.elasticity = {orthotropic(), 3.0 * orthotropic()};
   if (materials == 3) mix_laws(body);
   body.initial_strain[0] << 0.01, -0.02, 0.03, 0.04, 0.05, -0.06;
   const VectorX u = 0.1 * random_displacement(body.mesh);
   VectorX force(u.size());
-  assemble_stiffness<Cured>(body, {}).apply(u, force);
+  assemble_stiffness<Averaged>(body, {}).apply(u, force);
   const VectorX load = initial_strain_load(body);
 
   // 1/2 u K u - u f_0 + 1/2 eps_0 D eps_0 V
@@ -93,7 +93,7 @@ TEST_CASE("Smoothed<Tet4>: energy, forces and stress belong together", "[assembl
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
     const Vector6& e0 = body.initial_strain[body.region_of(e)];
     at_rest +=
-        0.5 * e0.dot(body.elasticity_of(e) * e0) * shape_volumes<Cured>(element_nodes<Cured>(body.mesh, e)).sum();
+        0.5 * e0.dot(body.elasticity_of(e) * e0) * shape_volumes<Averaged>(element_nodes<Averaged>(body.mesh, e)).sum();
   }
   CHECK_THAT(strain_energy(body, u), Catch::Matchers::WithinRel(0.5 * u.dot(force) - u.dot(load) + at_rest, 1e-12));
 
@@ -109,7 +109,7 @@ TEST_CASE("Smoothed<Tet4>: energy, forces and stress belong together", "[assembl
 }
 
 TEST_CASE("Smoothed<Tet4>: a uniform initial strain is undone by its displacement", "[assembly][smoothed]") {
-  Body<Cured> body = body_of(box(), {liver, {2e5, 0.2, 900.0}});
+  Body<Averaged> body = body_of(box(), {liver, {2e5, 0.2, 900.0}});
   Vector6 strain;
   strain << 0.01, -0.02, 0.03, 0.04, 0.05, -0.06;
   for (Vector6& s : body.initial_strain) s = strain;
@@ -117,7 +117,7 @@ TEST_CASE("Smoothed<Tet4>: a uniform initial strain is undone by its displacemen
   gradient << 0.01, 0.04, 0.0, 0.0, -0.02, -0.06, 0.05, 0.0, 0.03;
   const VectorX u = testing::affine_displacement(body.mesh, Vector3(1, 2, 3), gradient);
   VectorX force(u.size());
-  assemble_stiffness<Cured>(body, {}).apply(u, force);
+  assemble_stiffness<Averaged>(body, {}).apply(u, force);
   const VectorX load = initial_strain_load(body);
   CHECK(largest(force - load) <= 1e-12 * largest(load));
   CHECK(strain_energy(body, u) <= 1e-24 * 2e5);
@@ -126,14 +126,14 @@ TEST_CASE("Smoothed<Tet4>: a uniform initial strain is undone by its displacemen
 
 TEST_CASE("Smoothed<Tet4>: averages stop at the border of a material", "[assembly][smoothed]") {
   // Pulled along x, two blocks in series: the strain jumps at the border, and both parts are exact.
-  const Body<Cured> body = body_of(box(), {{1e4, 0.0, 1.0}, {3e4, 0.0, 1.0}});
+  const Body<Averaged> body = body_of(box(), {{1e4, 0.0, 1.0}, {3e4, 0.0, 1.0}});
   VectorX u = VectorX::Zero(3 * body.mesh.node_count());
   for (Index i = 0; i < body.mesh.node_count(); ++i) {
     const double x = body.mesh.position(i)[0];
     u[3 * i] = x < 1.5 ? 0.03 * x : 0.045 + 0.01 * (x - 1.5);
   }
   VectorX force(u.size());
-  assemble_stiffness<Cured>(body, {}).apply(u, force);
+  assemble_stiffness<Averaged>(body, {}).apply(u, force);
   for (Index i = 0; i < body.mesh.node_count(); ++i) {
     const double x = body.mesh.position(i)[0];
     if (x > 1e-9 && x < 3.0 - 1e-9) CHECK(force.segment<3>(3 * i).norm() <= 1e-12 * 300.0);
@@ -143,12 +143,12 @@ TEST_CASE("Smoothed<Tet4>: averages stop at the border of a material", "[assembl
 }
 
 TEST_CASE("Smoothed<Tet4> refuses what Tet4 refuses", "[assembly][smoothed][extreme]") {
-  Body<Cured> body = body_of(box(), {liver});
+  Body<Averaged> body = body_of(box(), {liver});
   std::swap(body.mesh.elements[7][0], body.mesh.elements[7][1]);
-  CHECK(refusal([&] { assemble_stiffness<Cured>(body, {}); }).ids == std::vector<std::int64_t>{7});
-  CHECK_REFUSED(SetupErrorKind::inverted_element, assemble_stiffness<Cured>(body, {}));
+  CHECK(refusal([&] { assemble_stiffness<Averaged>(body, {}); }).ids == std::vector<std::int64_t>{7});
+  CHECK_REFUSED(SetupErrorKind::inverted_element, assemble_stiffness<Averaged>(body, {}));
   body.mesh.positions[3][1] = std::numeric_limits<double>::quiet_NaN();
   std::swap(body.mesh.elements[7][0], body.mesh.elements[7][1]);
-  CHECK_REFUSED(SetupErrorKind::non_finite, assemble_stiffness<Cured>(body, {}));
-  CHECK_REFUSED(SetupErrorKind::non_finite, (MatrixFreeStiffness<Cured>(body, {})));
+  CHECK_REFUSED(SetupErrorKind::non_finite, assemble_stiffness<Averaged>(body, {}));
+  CHECK_REFUSED(SetupErrorKind::non_finite, (MatrixFreeStiffness<Averaged>(body, {})));
 }

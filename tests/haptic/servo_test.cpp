@@ -21,21 +21,21 @@ using test::ServoSession;
 
 namespace {
 
-constexpr double radius = test::ball_radius;
+using test::ball_radius;
 
 }  // namespace
 
 TEST_CASE("press, hold, release: the force rises, stays, and is gone", "[haptic][servo]") {
   Pad pad = test::make_pad();
   ServoSession session(pad);
-  session.tick(Vector3(0.0137, 0.0159, pad_height + radius + 1e-3));
+  session.tick(Vector3(0.0137, 0.0159, pad_height + ball_radius + 1e-3));
   session.hold(50);
   double before = 0.0;
   for (int i = 0; i <= 100; ++i) {
-    const double z = pad_height + radius + 2e-4 - 2e-5 * i;
+    const double z = pad_height + ball_radius + 2e-4 - 2e-5 * i;
     const ToolForce& f = session.tick(Vector3(0.0137, 0.0159, z));
     CHECK(f.status.ok());
-    if (z >= pad_height + radius)
+    if (z >= pad_height + ball_radius)
       CHECK(test::same(f.force, Vector3::Zero()));
     else
       CHECK(f.force[2] > before);
@@ -46,7 +46,7 @@ TEST_CASE("press, hold, release: the force rises, stays, and is gone", "[haptic]
   const Vector3 at_once = session.forces[0].force, held = session.hold(200).force;
   CHECK((held - at_once).norm() <= 2e-3 * held.norm());
   CHECK((session.hold(500).force - held).norm() <= 1e-9 * held.norm());
-  session.move(Vector3(0.0137, 0.0159, pad_height + radius + 1e-4), 100);
+  session.move(Vector3(0.0137, 0.0159, pad_height + ball_radius + 1e-4), 100);
   CHECK(test::same(session.hold(3).force, Vector3::Zero()));
   CHECK(session.servo.read_snapshot().vertex_forces().empty());
   session.press(1.8e-3);
@@ -62,7 +62,7 @@ TEST_CASE("away from the tissue the force is exactly zero", "[haptic][servo]") {
   for (int i = 0; i < 3000; ++i) {
     Vector3 next = p + random.vector<3>(-3e-3, 3e-3);
     const double distance = ((next - half).cwiseAbs() - half).cwiseMax(Vector3::Zero()).norm();
-    if (distance < radius + 1e-6 || next.norm() > 0.1) next = p;
+    if (distance < ball_radius + 1e-6 || next.norm() > 0.1) next = p;
     p = next;
     const ToolForce& f = session.tick(p);
     if (!test::same(f.force, Vector3::Zero()) || !test::same(session.servo.contact_force(), Vector3::Zero()))
@@ -88,7 +88,7 @@ TEST_CASE("a tick renders the force of the pose it was given", "[haptic][servo]"
 
 TEST_CASE("the force is the coupling spring between device and proxy, and the proxy is outside", "[haptic][servo]") {
   Pad pad = test::make_pad();
-  const ContactSamples samples(pad.contact_surface(), 0.5 * radius);
+  const ContactSamples samples(pad.contact_surface(), 0.5 * ball_radius);
   for (double k : {100.0, 500.0, 1e4}) {
     ServoOptions options;
     options.coupling_stiffness = k;
@@ -100,14 +100,14 @@ TEST_CASE("the force is the coupling spring between device and proxy, and the pr
       CHECK((f - k * stretch).norm() <= 1e-5 * f.norm());
       CHECK(f[2] <= k * 1.5e-3);
       CHECK(test::smallest_gap(pad, samples, session.servo.contacts(), pad.pose().inverse() * session.servo.proxy(),
-                               radius) >= -1e-5 * radius);
+                               ball_radius) >= -1e-5 * ball_radius);
     }
   }
 }
 
 TEST_CASE("near an edge of a body that can be touched all over no contact point is left out", "[haptic][servo]") {
   Pad& pad = test::whole_pad();
-  const ContactSamples samples(pad.contact_surface(), 0.5 * radius);
+  const ContactSamples samples(pad.contact_surface(), 0.5 * ball_radius);
   ServoSession session(pad);
   for (double x : {0.0, 5e-4, 1e-3, 2e-3, 4e-3}) {
     session.tick(Vector3(x, 0.015, 0.06));
@@ -116,7 +116,7 @@ TEST_CASE("near an edge of a body that can be touched all over no contact point 
     INFO("x " << x);
     CHECK(session.servo.contact_force()[2] > 0.01);
     CHECK(test::smallest_gap(pad, samples, session.servo.contacts(), pad.pose().inverse() * session.servo.proxy(),
-                             radius) >= -1e-5 * radius);
+                             ball_radius) >= -1e-5 * ball_radius);
   }
 }
 
@@ -125,7 +125,7 @@ TEST_CASE("two tools: alone when far apart, felt by each other when near", "[hap
   scene.fix("z0").touch("z1");
   Pad slab(box_tet4(Vector3(0.12, 0.02, 0.01), {24, 4, 2}, BoxSplit::six), scene,
            LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.3});
-  const Vector3 left(0.015, 0.0093, 0.01 + radius + 1e-4), right(0.105, 0.0107, 0.01 + radius + 1e-4),
+  const Vector3 left(0.015, 0.0093, 0.01 + ball_radius + 1e-4), right(0.105, 0.0107, 0.01 + ball_radius + 1e-4),
       down(0, 0, -1.1e-3);
   const auto run = [&](const Vector3& a, const Vector3& b, bool press_a, bool press_b) {
     ServoSession session(slab, {}, 2);
@@ -152,7 +152,7 @@ TEST_CASE("two tools: alone when far apart, felt by each other when near", "[hap
 
 TEST_CASE("tools in swapped order give swapped forces", "[haptic][servo]") {
   Pad pad = test::make_pad();
-  const Vector3 a(0.01, 0.011, pad_height + radius), b(0.021, 0.019, pad_height + radius);
+  const Vector3 a(0.01, 0.011, pad_height + ball_radius), b(0.021, 0.019, pad_height + ball_radius);
   std::array<std::array<Vector3, 2>, 2> force;
   for (std::size_t swapped : {0u, 1u}) {
     ServoSession session(pad, {}, 2);
@@ -176,7 +176,7 @@ TEST_CASE("turning model and tools together turns the forces", "[haptic][servo][
     pose.translation() = random.vector<3>(-0.3, 0.3);
     turned.set_pose(pose);
     ServoSession plain(pad), other(turned);
-    const Vector3 start(0.0137, 0.0159, pad_height + radius + 5e-4);
+    const Vector3 start(0.0137, 0.0159, pad_height + ball_radius + 5e-4);
     double worst = 0.0, largest = 0.0, worst_proxy = 0.0;
     for (int i = 0; i < 600; ++i) {
       const Vector3 p = start + Vector3(1e-5 * std::max(0, i - 200), 0, -1e-5 * std::min(i, 200));
@@ -187,7 +187,7 @@ TEST_CASE("turning model and tools together turns the forces", "[haptic][servo][
     }
     CHECK(largest > 0.05);
     CHECK(worst <= 1e-6 * largest);
-    CHECK(worst_proxy <= 1e-6 * radius);
+    CHECK(worst_proxy <= 1e-6 * ball_radius);
   }
 }
 
@@ -198,7 +198,7 @@ TEST_CASE("compliance in float gives the forces of double to 1e-4", "[haptic][se
   ServoSession in_float(single);
   double worst = 0.0, largest = 0.0;
   for (int i = 0; i < 600; ++i) {
-    const Vector3 p(0.0137 + 1e-5 * std::max(0, i - 200), 0.0159, pad_height + radius + 5e-4 - 1e-5 * std::min(i, 200));
+    const Vector3 p(0.0137 + 1e-5 * std::max(0, i - 200), 0.0159, pad_height + ball_radius + 5e-4 - 1e-5 * std::min(i, 200));
     const Vector3 f = in_double.tick(p).force;
     worst = std::max(worst, (f - in_float.tick(p).force).norm());
     largest = std::max(largest, f.norm());
@@ -216,7 +216,7 @@ TEST_CASE("solvers that make compliance when needed give the same forces", "[hap
   ServoSession lazy_dense(dense);
   double worst = 0.0, largest = 0.0;
   for (int i = 0; i < 600; ++i) {
-    const Vector3 p(0.0137 + 1e-5 * std::max(0, i - 200), 0.0159, pad_height + radius + 5e-4 - 1e-5 * std::min(i, 200));
+    const Vector3 p(0.0137 + 1e-5 * std::max(0, i - 200), 0.0159, pad_height + ball_radius + 5e-4 - 1e-5 * std::min(i, 200));
     const Vector3 f = reference.tick(p).force;
     worst = std::max({worst, (f - lazy.tick(p).force).norm(), (f - lazy_dense.tick(p).force).norm()});
     largest = std::max(largest, f.norm());
@@ -243,7 +243,7 @@ TEST_CASE("static ticks of any length give the same static force", "[haptic][ser
 
 TEST_CASE("another way to the same place ends at the same force", "[haptic][servo]") {
   Pad pad = test::make_pad();
-  const Vector3 end(0.0137, 0.0159, pad_height + radius - 1e-3);
+  const Vector3 end(0.0137, 0.0159, pad_height + ball_radius - 1e-3);
   ServoSession straight(pad), around(pad);
   straight.press(1e-3);
   straight.hold(50);
@@ -260,12 +260,12 @@ TEST_CASE("two runs are the same bit by bit", "[haptic][servo]") {
     ServoSession session(pad, {}, 2);
     testing::Random random(73);
     std::vector<Vector3> forces;
-    Vector3 p(0.012, 0.012, pad_height + radius), q(0.02, 0.02, pad_height + radius);
+    Vector3 p(0.012, 0.012, pad_height + ball_radius), q(0.02, 0.02, pad_height + ball_radius);
     for (int i = 0; i < 2000; ++i) {
       p += random.vector<3>(-2e-4, 2e-4);
       q += random.vector<3>(-2e-4, 2e-4);
-      p[2] = std::clamp(p[2], pad_height + radius - 2e-3, pad_height + radius + 1e-3);
-      q[2] = std::clamp(q[2], pad_height + radius - 2e-3, pad_height + radius + 1e-3);
+      p[2] = std::clamp(p[2], pad_height + ball_radius - 2e-3, pad_height + ball_radius + 1e-3);
+      q[2] = std::clamp(q[2], pad_height + ball_radius - 2e-3, pad_height + ball_radius + 1e-3);
       session.states[0].position = p;
       session.states[1].position = q;
       session.tick();
@@ -292,16 +292,16 @@ TEST_CASE("a replayed recording gives the recorded forces bit by bit", "[haptic]
                  {.kind = Kind::teleport, .first = 1300, .count = 3, .offset = Vector3(0.2, 0, 0)},
                  {.kind = Kind::stall, .first = 1600, .seconds = 0.05}};
   trajectory::PressDragRelease path;
-  path.above = Vector3(0.011, 0.0137, pad_height + radius + 5e-3);
-  path.pressed = Vector3(0.011, 0.0137, pad_height + radius - 2e-3);
-  path.dragged = Vector3(0.021, 0.0159, pad_height + radius - 2e-3);
+  path.above = Vector3(0.011, 0.0137, pad_height + ball_radius + 5e-3);
+  path.pressed = Vector3(0.011, 0.0137, pad_height + ball_radius - 2e-3);
+  path.dragged = Vector3(0.021, 0.0159, pad_height + ball_radius - 2e-3);
   MockDevice stylus(trajectory::press_drag_release(path), mock);
   Recorder recorder(stylus, 5000);
   LoopOptions loop;
   loop.paced = false;
   loop.duration = 4.0;
   {
-    HapticServo servo(pad, SphereTool{.radius = radius});
+    HapticServo servo(pad, SphereTool{.radius = ball_radius});
     run_haptic_loop(recorder, servo, loop);
   }
   const std::string file = (std::filesystem::temp_directory_path() / "palpate_servo_test_recording.csv").string();
@@ -309,7 +309,7 @@ TEST_CASE("a replayed recording gives the recorded forces bit by bit", "[haptic]
   ReplayDevice replay(file);
   std::remove(file.c_str());
   REQUIRE(replay.recorded().size() == 4000);
-  HapticServo servo(pad, SphereTool{.radius = radius});
+  HapticServo servo(pad, SphereTool{.radius = ball_radius});
   int different = 0, at_work = 0;
   for (const RecordedTick& tick : replay.recorded()) {
     const ToolState state = replay.read();

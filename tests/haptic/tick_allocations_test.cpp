@@ -12,7 +12,7 @@ using test::pad_height;
 
 namespace {
 
-constexpr double radius = test::ball_radius;
+using test::ball_radius;
 
 struct Seen {
   std::uint64_t allocations = 0, frees = 0;
@@ -23,7 +23,7 @@ struct Seen {
 /// Presses, drags, releases, jumps, and sends NaN and failed reads in between, over and over.
 template <class Model>
 Seen abuse(Model& model, int ticks, const ServoOptions& options) {
-  HapticServo<Model> servo(model, std::vector<SphereTool>(2, SphereTool{.radius = radius}), options);
+  HapticServo<Model> servo(model, std::vector<SphereTool>(2, SphereTool{.radius = ball_radius}), options);
   std::array<ToolState, 2> states;
   testing::Random random(91);
   Seen seen;
@@ -31,12 +31,12 @@ Seen abuse(Model& model, int ticks, const ServoOptions& options) {
   for (int i = 0; i < ticks; ++i) {
     const int phase = i % 1000;
     const double drag = 1e-5 * phase;
-    const double z = pad_height + radius + 3e-4 -
+    const double z = pad_height + ball_radius + 3e-4 -
                      (phase < 200   ? 1e-5 * phase
                       : phase < 800 ? 2e-3
                                     : 2e-3 - 1e-5 * (phase - 800));
     states[0].position = Vector3(0.01 + drag, 0.0137, z);
-    states[1].position = Vector3(0.02, 0.02, pad_height + radius + (phase > 400 && phase < 500 ? -5e-4 : 2e-3));
+    states[1].position = Vector3(0.02, 0.02, pad_height + ball_radius + (phase > 400 && phase < 500 ? -5e-4 : 2e-3));
     for (ToolState& s : states) {
       s.time = 1e-3 * i;
       s.valid = true;

@@ -18,7 +18,7 @@ namespace {
 
 using Model = HapticFEModel<Tet4, LinearElastic>;
 constexpr LinearElastic soft{1e4, 0.3, 1000.0};
-constexpr double radius = 4e-3;
+constexpr double tool_radius = 4e-3;
 
 Mesh<Tet4> block() {
   return box_tet4({0.02, 0.02, 0.01}, {6, 6, 3});
@@ -39,7 +39,7 @@ Vector3 press(Servo& servo, const Vector3& at, double depth) {
   ToolState state;
   for (int i = 0; i <= 100; ++i) {
     state.time += 1e-3;
-    state.position = at + Vector3(0, 0, radius - depth * i / 100.0);
+    state.position = at + Vector3(0, 0, tool_radius - depth * i / 100.0);
     servo.tick({&state, 1});
   }
   return servo.contact_force();
@@ -68,7 +68,7 @@ VisualMesh fine_top(double above) {
 
 TEST_CASE("the surface of the body is drawn where the body is", "[model][visual]") {
   Model model(block(), scene().gravity({0, 0, -9.81}), soft);
-  HapticServo servo(model, SphereTool{radius}, stiff());
+  HapticServo servo(model, SphereTool{tool_radius}, stiff());
   VisualSurface surface(model);
   REQUIRE(surface.point_count() == 49);
   CHECK(surface.report().outside == 0);
@@ -87,7 +87,7 @@ TEST_CASE("the surface of the body is drawn where the body is", "[model][visual]
   }
   CHECK(lowest < 0.01 - 0.8e-3);
   // no point sinks into the ball
-  for (std::size_t i = 0; i < 49; ++i) CHECK((at(positions, i) - servo.proxy()).norm() >= radius - 1e-5);
+  for (std::size_t i = 0; i < 49; ++i) CHECK((at(positions, i) - servo.proxy()).norm() >= tool_radius - 1e-5);
 }
 
 TEST_CASE("a fine surface follows an affine displacement exactly, on the body and above it", "[model][visual]") {
@@ -154,14 +154,14 @@ TEST_CASE("surfaces that are none are refused", "[model][visual][extreme]") {
 
 TEST_CASE("a renderer reads while the hand feels", "[model][visual][threads]") {
   Model model(block(), scene(), soft);
-  HapticServo servo(model, SphereTool{radius}, stiff());
+  HapticServo servo(model, SphereTool{tool_radius}, stiff());
   VisualSurface surface(model);
   std::atomic<bool> stop{false};
   std::thread hand([&] {
     ToolState state;
     for (int i = 0; i < 20'000 && !stop; ++i) {
       state.time += 1e-3;
-      state.position = Vector3(0.01 + 2e-3 * std::sin(0.01 * i), 0.01, 0.01 + radius - 5e-4);
+      state.position = Vector3(0.01 + 2e-3 * std::sin(0.01 * i), 0.01, 0.01 + tool_radius - 5e-4);
       servo.tick({&state, 1});
     }
     stop = true;
@@ -183,7 +183,7 @@ TEST_CASE("contacts of a snapshot carry point, normal and the whole force", "[ha
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.pretranslate(Vector3(0.1, 0.0, 0.0));
   model.set_pose(pose);
-  HapticServo servo(model, SphereTool{radius}, stiff());
+  HapticServo servo(model, SphereTool{tool_radius}, stiff());
   press(servo, {0.11, 0.01, 0.01}, 1e-3);
   const auto& snapshot = servo.read_snapshot();
   REQUIRE(!snapshot.tool_contacts().empty());
@@ -192,8 +192,8 @@ TEST_CASE("contacts of a snapshot carry point, normal and the whole force", "[ha
     CHECK(c.tool == 0);
     CHECK(c.force > 0.0);
     CHECK(std::abs(c.normal.norm() - 1.0) <= 1e-12);
-    CHECK(std::abs((c.point - snapshot.proxies[0]).norm() - radius) <= 1e-4 * radius);
-    CHECK((c.point - Vector3(0.11, 0.01, 0.01)).norm() < radius);
+    CHECK(std::abs((c.point - snapshot.proxies[0]).norm() - tool_radius) <= 1e-4 * tool_radius);
+    CHECK((c.point - Vector3(0.11, 0.01, 0.01)).norm() < tool_radius);
     sum += c.force * c.normal;
   }
   CHECK((sum - servo.contact_force()).norm() <= 1e-12 * sum.norm());
@@ -201,10 +201,10 @@ TEST_CASE("contacts of a snapshot carry point, normal and the whole force", "[ha
 
 TEST_CASE("one model in a group feels as it does alone", "[contact][group]") {
   Model model(block(), scene(), soft);
-  HapticServo alone(model, SphereTool{radius}, stiff());
+  HapticServo alone(model, SphereTool{tool_radius}, stiff());
   const Vector3 truth = press(alone, {0.01, 0.01, 0.01}, 1e-3);
   TissueGroup group(model);
-  HapticServo together(group, SphereTool{radius}, stiff());
+  HapticServo together(group, SphereTool{tool_radius}, stiff());
   CHECK((press(together, {0.01, 0.01, 0.01}, 1e-3) - truth).norm() <= 1e-10 * truth.norm());
 }
 
@@ -219,7 +219,7 @@ TEST_CASE("two halves of a scene are felt at once, each in its pose", "[contact]
   std::vector<int> some{0, 5, 20, 49, 60, 97};
   CHECK(testing::describe(testing::tissue_laws(group, some)) == "");
 
-  HapticServo servo(group, SphereTool{radius}, stiff());
+  HapticServo servo(group, SphereTool{tool_radius}, stiff());
   const Vector3 both = press(servo, {0.02025, 0.01, 0.01}, 1e-3);
   std::array<VertexForce, 64> own;
   const auto forces = servo.read_snapshot().vertex_forces();
@@ -236,7 +236,7 @@ TEST_CASE("two halves of a scene are felt at once, each in its pose", "[contact]
   right.set_pose(pose);
   group.update();
   servo.reset();
-  HapticServo alone(left, SphereTool{radius}, stiff());
+  HapticServo alone(left, SphereTool{tool_radius}, stiff());
   const Vector3 truth = press(alone, {0.01, 0.01, 0.01}, 1e-3);
   CHECK((press(servo, {0.01, 0.01, 0.01}, 1e-3) - truth).norm() <= 1e-6 * truth.norm());
 }

@@ -11,7 +11,7 @@ using accuracy::body_of, accuracy::box_of;
 namespace {
 
 using Cured = MeanDilatation<Hex8>;
-constexpr LinearElastic soft{.youngs_modulus = 5e3, .poisson_ratio = 0.3};
+constexpr LinearElastic tissue{.youngs_modulus = 5e3, .poisson_ratio = 0.3};
 
 /// Energy norm of the difference between the stress found and an exact one.
 template <Element E, class Stress>
@@ -75,7 +75,7 @@ TEST_CASE("the estimate tends to the error on Lame's sphere", "[post]") {
 }
 
 TEST_CASE("no error where the element holds the solution, and none without load", "[post]") {
-  const Body<Tet4> body = body_of(box_of<Tet4>({1, 1, 1}, {3, 3, 3}), {soft});
+  const Body<Tet4> body = body_of(box_of<Tet4>({1, 1, 1}, {3, 3, 3}), {tissue});
   VectorX u(3 * body.mesh.node_count());
   for (Index i = 0; i < body.mesh.node_count(); ++i)
     u.segment<3>(3 * i) = Vector3(0.1, 0.02, -0.03).cwiseProduct(body.mesh.position(i));
@@ -89,7 +89,7 @@ TEST_CASE("the estimate finds where the mesh is too coarse, and the sizes it ask
           "[post]") {
   // A beam clamped at one end: the error sits there.
   const Scene scene = Scene().fix("x0").traction("x1", {0.0, 0.0, -1e-3});
-  const Body<Hex8> body = body_of(box_of<Hex8>({4, 1, 1}, {8, 4, 4}), {soft});
+  const Body<Hex8> body = body_of(box_of<Hex8>({4, 1, 1}, {8, 4, 4}), {tissue});
   const ErrorEstimate coarse = estimate_error(body, accuracy::solve_static(body, scene).displacement);
   Index worst = 0;
   coarse.elements.maxCoeff(&worst);
@@ -126,14 +126,14 @@ TEST_CASE("the estimate does not depend on units, place and direction", "[post]"
     v.segment<3>(3 * i) = 1e-3 * r * u.segment<3>(3 * i);
     moved.positions[static_cast<std::size_t>(i)] = 1e-3 * (r * x + Vector3(3, 4, 5));
   }
-  const ErrorEstimate here = estimate_error(body_of(mesh, {soft}), u),
-                      there = estimate_error(body_of(moved, {soft}), v);
+  const ErrorEstimate here = estimate_error(body_of(mesh, {tissue}), u),
+                      there = estimate_error(body_of(moved, {tissue}), v);
   CHECK_THAT(there.relative(), Catch::Matchers::WithinRel(here.relative(), 1e-9));
   CHECK((here.size_ratio(0.01) - there.size_ratio(0.01)).cwiseAbs().maxCoeff() <= 1e-8);
 }
 
 TEST_CASE("an estimate of what is not finite is not finite; bad arguments are refused", "[post]") {
-  const Body<Tet4> body = body_of(box_of<Tet4>({1, 1, 1}, {3, 3, 3}), {soft});
+  const Body<Tet4> body = body_of(box_of<Tet4>({1, 1, 1}, {3, 3, 3}), {tissue});
   VectorX u = VectorX::Zero(3 * body.mesh.node_count());
   u[1] = std::numeric_limits<double>::quiet_NaN();
   const ErrorEstimate bad = estimate_error(body, u);

@@ -4,21 +4,21 @@
 #include "properties/element_cases.hpp"
 
 using namespace test;
-using Cured = Smoothed<Tet4>;
+using Averaged = Smoothed<Tet4>;
 
 TEST_CASE("Smoothed<Tet4>: an affine field is reproduced on a distorted mesh, here and far away", "[property][patch]") {
-  check_affine_patch<Cured>(false);
+  check_affine_patch<Averaged>(false);
 }
 
 TEST_CASE("Smoothed<Tet4>: an affine field under its tractions", "[property][patch]") {
-  check_traction_patch<Cured>(false);
+  check_traction_patch<Averaged>(false);
 }
 
 TEST_CASE("Smoothed<Tet4>: a smooth field converges with the order of the element", "[property][mms]") {
-  check_convergence<Cured>(6, 12);
+  check_convergence<Averaged>(6, 12);
 }
 
 TEST_CASE("Smoothed<Tet4> at the extremes: right, flagged or refused",
           "[extreme][A1][A2][A3][A4][B1][B2][B3][B4][B5][B7][B8][B9]") {
-  check_extremes<Cured>();
+  check_extremes<Averaged>();
 }
