@@ -50,7 +50,7 @@ inline std::string setup_table(const SetupReport& r) {
                {"condition, probe error", text("%.2g, %.1g", r.condition_estimate, r.probe_error)}};
   for (const auto& [stage, seconds] : r.seconds) facts.push_back({"time: " + stage, seconds_text(seconds)});
   facts.push_back({"time: all", seconds_text(r.total_seconds())});
-  for (const std::string& remark : r.remarks) facts.push_back({"note", remark});
+  for (const auto& [flag, remark] : r.remarks) facts.push_back({"note", remark});
   return rows(facts);
 }
 

@@ -12,8 +12,7 @@
 //   1. All that is expensive happens before the scheduler starts: reading, set-up, the servo's constructor.
 //   2. The callback converts units at the border (this SDK speaks millimetres and newtons, and its z points at the
 //      user), ticks, and hands the force over. It counts status flags in memory of its own; it prints nothing.
-//   3. Another thread draws. It takes `servo.read_snapshot()`, which neither waits nor makes the tick wait, and turns
-//   the
+//   3. Another thread draws. It takes `servo.read_snapshot()`, which neither waits nor makes the tick wait, and turns the
 //      contact forces in it into the displacement of every node: one back-substitution, thirty times a second.
 //
 // --unpaced calls back as fast as it goes, in simulated time; for tests. The exit code is 0 when every force was finite
@@ -32,7 +31,6 @@ using Organ = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveIn
 using Steady = std::chrono::steady_clock;
 
 // --- what an SDK brings
-// ------------------------------------------------------------------------------------------------
 
 /// The state of a device as a C library keeps it: a hand that pokes, in millimetres, z towards the user, y up.
 struct SdkDevice {
@@ -55,7 +53,6 @@ class Scheduler {
 };
 
 // --- what you bring
-// ----------------------------------------------------------------------------------------------------
 
 /// Everything the callback touches: made before the scheduler starts, read by others after it has stopped.
 struct Session {

@@ -45,6 +45,35 @@ TEST_CASE("the report counts and measures", "[model][report]") {
   }
 }
 
+TEST_CASE("loads that move the body too far for small strain are reported, and only they", "[model][report]") {
+  const Mesh<Tet4> mesh = brick();
+  const auto model = model_of(mesh, Scene().fix("z0").touch("z1").gravity({1.0, 0.0, 0.0}), {5e3, 0.3, 1000.0});
+  const auto flagged = [&] { return model->report().has(SetupFlag::large_displacement); };
+  const VectorX u = model->displacement();
+  const Eigen::Map<const Eigen::Matrix3Xd> moved(u.data(), 3, u.size() / 3);
+  const double spread = (moved.colwise() - moved.rowwise().mean()).colwise().norm().maxCoeff();
+  Vector3 low = mesh.positions[0], high = low;
+  for (const Vector3& x : mesh.positions) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  const double just = 0.1 * (high - low).norm() / spread;  // gravity that moves it by a tenth [m/s^2]
+  CHECK_FALSE(flagged());
+  model->set_gravity({1.01 * just, 0.0, 0.0});
+  CHECK(flagged());
+  model->set_gravity({0.99 * just, 0.0, 0.0});
+  CHECK_FALSE(flagged());
+  model->set_gravity({-2.0 * just, 0.0, 0.0});
+  CHECK(flagged());
+  CHECK(model->report().remarks.size() == static_cast<std::size_t>(std::popcount(model->report().flags)));
+  model->reset();
+  CHECK_FALSE(flagged());
+  const double far = 10.0 * (high - low).norm();  // a motion of the whole body is no strain
+  CHECK_FALSE(model_of(mesh, Scene().prescribe("z0", {far, 0.0, 0.0}).touch("z1"), {5e3, 0.3, 0.0})
+                  ->report()
+                  .has(SetupFlag::large_displacement));
+}
+
 TEST_CASE("the condition estimate is within a factor of ten", "[model][report]") {
   const LinearElastic m{5e3, 0.3, 1000.0};
   const Mesh<Tet4> mesh = brick();

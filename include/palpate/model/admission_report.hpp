@@ -5,6 +5,8 @@
 #include <palpate/mesh/admission.hpp>
 #include <palpate/model/setup_report.hpp>
 
+#include <Eigen/Geometry>
+
 namespace palpate::inline PALPATE_ABI {
 
 /// Sizes, quality and findings of an admitted mesh.
@@ -48,6 +50,22 @@ void report_locking(const std::vector<Matrix6>& elasticity, SetupReport& report)
                                          number(E::locking_poisson_ratio) + ")");
       return;
     }
+}
+
+/// Flags a displacement u, 3 per node [m], that is not small: linear strain takes a turn for a stretch. Judged by how far
+/// single nodes move from the mean, against the diagonal of the box around the body.
+inline void report_displacement(const std::vector<Vector3>& positions, const VectorX& u, SetupReport& report) {
+  constexpr double largest = 0.1;
+  report.clear(SetupFlag::large_displacement);
+  const Eigen::Map<const Eigen::Matrix3Xd> moved(u.data(), 3, u.size() / 3);
+  const double spread = (moved.colwise() - moved.rowwise().mean()).colwise().norm().maxCoeff();
+  Eigen::AlignedBox3d box;
+  for (const Vector3& x : positions) box.extend(x);
+  const double size = box.diagonal().norm();
+  if (spread > largest * size)
+    report.set(SetupFlag::large_displacement,
+               "the loads move a node by " + number(spread) + " m against the mean, " + number(spread / size) +
+                   " of the body's diagonal: too far for linear elasticity");
 }
 
 }  // namespace palpate::inline PALPATE_ABI

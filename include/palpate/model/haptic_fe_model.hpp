@@ -84,14 +84,14 @@ class HapticFEModel {
     const Scene mapped = scene.mapped(node_map_);
     statics_->set_conditions(mapped, pose_.linear().transpose() * scene.gravity());
     gravity_ = scene.gravity();
-    move_surface();
+    accept_displacement();
   }
   /// Gravity [m/s^2] in the world's frame.
   void set_gravity(const Vector3& gravity) {
     if (!gravity.allFinite()) raise(SetupErrorKind::non_finite, "gravity is not finite");
     statics_->set_gravity(pose_.linear().transpose() * gravity);
     gravity_ = gravity;
-    move_surface();
+    accept_displacement();
   }
   /// Where the organ lies in the world; turns gravity with it. Throws bad_argument unless it is a rigid motion.
   void set_pose(const Eigen::Isometry3d& pose) {
@@ -104,7 +104,7 @@ class HapticFEModel {
     if (!gravity_.isZero(0.0)) statics_->set_gravity(pose.linear().transpose() * gravity_);
     pose_ = pose;
     world_ = pose_ * Eigen::Translation3d(origin_);
-    move_surface();
+    accept_displacement();
   }
   /// Back to the scene and pose of construction.
   void reset() {
@@ -112,7 +112,7 @@ class HapticFEModel {
     world_ = pose_ * Eigen::Translation3d(origin_);
     statics_->set_conditions(scene_, scene_.gravity());
     gravity_ = scene_.gravity();
-    move_surface();
+    accept_displacement();
   }
 
   // TissueModel
@@ -158,6 +158,7 @@ class HapticFEModel {
                                                     options.cache_file, report_);
     statics_->set_conditions(scene_, scene_.gravity());
     gravity_ = scene_.gravity();
+    report_displacement(mesh().positions, displacement(), report_);
     prepare_contact(touchable.triangles, options);
   }
 
@@ -214,6 +215,10 @@ class HapticFEModel {
 
   Vector3 deformed(NodeId node) const noexcept {
     return mesh().position(node) + displacement().template segment<3>(3 * Index{node});
+  }
+  void accept_displacement() {
+    move_surface();
+    report_displacement(mesh().positions, displacement(), report_);
   }
   void move_surface() noexcept {
     for (std::size_t v = 0; v < touchable_.size(); ++v) moved_[v] = deformed(touchable_[v]);

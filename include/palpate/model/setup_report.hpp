@@ -20,6 +20,8 @@ enum class SetupFlag : std::uint32_t {
   cache_rejected = 1u << 6,    ///< there was a cache file and it was not used
   cache_unwritten = 1u << 7,   ///< the cache file could not be written
   non_manifold = 1u << 8,      ///< more than two touchable triangles meet at an edge
+  /// the scene's loads alone move parts of the body by a tenth of its size against each other: not small
+  large_displacement = 1u << 9,
 };
 
 /// Sizes, memory, times and findings of a set-up.
@@ -34,11 +36,15 @@ struct SetupReport {
   double column_seconds = 0.0;  ///< for the compliance of a vertex pressed for the first time; 0 when all is stored
   CacheReport cache;
   std::uint32_t flags = 0;
-  std::vector<std::string> remarks;  ///< one sentence per flag
+  std::vector<std::pair<SetupFlag, std::string>> remarks;  ///< a sentence per flag
 
   void set(SetupFlag flag, std::string remark) {
     flags |= static_cast<std::uint32_t>(flag);
-    remarks.push_back(std::move(remark));
+    remarks.emplace_back(flag, std::move(remark));
+  }
+  void clear(SetupFlag flag) {
+    flags &= ~static_cast<std::uint32_t>(flag);
+    std::erase_if(remarks, [flag](const auto& remark) { return remark.first == flag; });
   }
   bool has(SetupFlag flag) const noexcept { return (flags & static_cast<std::uint32_t>(flag)) != 0; }
   double total_seconds() const noexcept {
@@ -63,7 +69,7 @@ inline std::ostream& operator<<(std::ostream& out, const SetupReport& r) {
   if (r.column_seconds > 0.0)
     out << "  a vertex pressed for the first time: " << number(1e6 * r.column_seconds) << " us\n";
   if (!r.cache.file.empty()) out << "  cache: " << r.cache << '\n';
-  for (const std::string& remark : r.remarks) out << "  note: " << remark << '\n';
+  for (const auto& [flag, remark] : r.remarks) out << "  note: " << remark << '\n';
   return out;
 }
 
