@@ -21,7 +21,9 @@
 #include <palpate/io/vtu.hpp>
 #include <palpate/io/write_msh.hpp>
 #include <palpate/material/linear_elastic.hpp>
+#include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/orthotropic.hpp>
+#include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/material/tissue_presets.hpp>
 #include <palpate/material/transversely_isotropic.hpp>
 #include <palpate/mesh/generators_box.hpp>
