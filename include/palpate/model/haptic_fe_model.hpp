@@ -158,7 +158,7 @@ class HapticFEModel {
                                                     options.cache_file, report_);
     statics_->set_conditions(scene_, scene_.gravity());
     gravity_ = scene_.gravity();
-    report_displacement(mesh().positions, displacement(), report_);
+    report_displacement(statics_->body().mesh.positions, displacement(), report_);
     prepare_contact(touchable.triangles, options);
   }
 
@@ -218,7 +218,7 @@ class HapticFEModel {
   }
   void accept_displacement() {
     move_surface();
-    report_displacement(mesh().positions, displacement(), report_);
+    report_displacement(statics_->body().mesh.positions, displacement(), report_);
   }
   void move_surface() noexcept {
     for (std::size_t v = 0; v < touchable_.size(); ++v) moved_[v] = deformed(touchable_[v]);
