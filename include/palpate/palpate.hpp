@@ -21,7 +21,10 @@
 #include <palpate/io/vtu.hpp>
 #include <palpate/io/write_msh.hpp>
 #include <palpate/material/linear_elastic.hpp>
+#include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
+#include <palpate/material/neo_hookean_isochoric.hpp>
+#include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/orthotropic.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/material/tissue_presets.hpp>

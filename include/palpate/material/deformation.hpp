@@ -18,6 +18,11 @@ PALPATE_ALWAYS_INLINE S stretch_change(const Tensor3<S>& h) noexcept {
   return S(2) * trace(h) + contract(h, h);
 }
 
+/// Where a law that needs J > 0 holds.
+inline bool has_volume(const Tensor3<double>& f) noexcept {
+  return all_finite(f) && determinant(f) > 0.0;
+}
+
 /// F - I
 template <class S>
 PALPATE_ALWAYS_INLINE Tensor3<S> from_rest(const Tensor3<S>& f) noexcept {

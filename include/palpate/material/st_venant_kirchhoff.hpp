@@ -44,7 +44,7 @@ struct StVenantKirchhoff {
     return t;
   }
 
-  bool admits(const Tensor3<double>& f) const noexcept { return all_finite(f) && determinant(f) > 0.0; }
+  bool admits(const Tensor3<double>& f) const noexcept { return detail::has_volume(f); }
 
  private:
   /// E = sym h + h^T h / 2 with h = F - I.
