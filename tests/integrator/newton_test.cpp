@@ -27,6 +27,7 @@ struct Rosenbrock {
   }
   void direction(const VectorX& r, VectorX& d) noexcept { d = second.llt().solve(r); }
   double scale() const noexcept { return 1.0; }
+  double rounding() const noexcept { return 0.0; }
 };
 
 /// x - log x, defined for x > 0 only: from x = 10 a full step leaves the domain.
@@ -48,6 +49,7 @@ struct Barrier {
   }
   void direction(const VectorX& r, VectorX& d) noexcept { d = r / second; }
   double scale() const noexcept { return 1.0; }
+  double rounding() const noexcept { return 0.0; }
 };
 
 /// No minimum: x.
@@ -60,6 +62,7 @@ struct Slope {
   bool prepare(const VectorX&) noexcept { return true; }
   void direction(const VectorX& r, VectorX& d) noexcept { d = r; }
   double scale() const noexcept { return 1.0; }
+  double rounding() const noexcept { return 0.0; }
 };
 
 static_assert(NewtonProblem<Rosenbrock> && NewtonProblem<Barrier> && NewtonProblem<Slope>);

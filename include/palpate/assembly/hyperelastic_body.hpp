@@ -5,8 +5,8 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// An admitted mesh, a law per region, and the body as it is at small strain: what stiffness at rest, mass and dead loads
-/// come from.
+/// An admitted mesh, a law per region, and the body as it is at small strain: what stiffness at rest, mass and dead
+/// loads come from.
 template <Element E, HyperelasticMaterial M>
 struct HyperelasticBody {
   Body<E> rest;

@@ -1,27 +1,19 @@
 // Energy, force and tangent stiffness of a body at any deformation: total Lagrangian.
 #pragma once
 
-#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/elastic_forces.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/local/geometry.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
-/// How far a state is from inside out.
-struct DeformationReport {
-  double smallest_volume_ratio = infinity;  ///< least det F of all points
-  Index worst_element = -1;                 ///< where that is
-  Index inverted = 0;                       ///< elements with a point where det F <= 0
-  bool admissible = true;                   ///< every law holds where it was asked
-};
-
-/// Integrates a body over its shape at rest (Belytschko, Liu, Moran, Nonlinear Finite Elements, 4.9): F = I + sum u_a grad
-/// N_a, f_a = sum_q P grad N_a dV. Gradients and volumes are computed once: (3 nodes + 1) x 8 bytes per integration point.
-/// Vectors have 3 entries per node, all dofs. No function allocates; sums go by element, so results do not depend on
-/// threads.
+/// Integrates a body over its shape at rest (Belytschko, Liu, Moran, Nonlinear Finite Elements, 4.9): F = I + sum u_a
+/// grad N_a, f_a = sum_q P grad N_a dV. Gradients and volumes are computed once: (3 nodes + 1) x 8 bytes per
+/// integration point. Vectors have 3 entries per node, all dofs. No function allocates; sums go by element, so results
+/// do not depend on threads.
 template <Element E, HyperelasticMaterial M>
-class LargeStrain {
+class LargeStrain final : public ElasticForces {
  public:
   /// Throws inverted_element or non_finite for a mesh that is so at rest, too_large.
   explicit LargeStrain(HyperelasticBody<E, M> body, const SetupLimits& limits = {}) : body_(std::move(body)) {
@@ -43,10 +35,10 @@ class LargeStrain {
 
   const HyperelasticBody<E, M>& body() const noexcept { return body_; }
   const Mesh<E>& mesh() const noexcept { return body_.rest.mesh; }
-  Index dof_count() const noexcept { return 3 * mesh().node_count(); }
+  Index dof_count() const noexcept override { return 3 * mesh().node_count(); }
 
   /// Stored energy [J]; infinite where a law does not hold.
-  double energy(const VectorX& u) const noexcept {
+  double energy(const VectorX& u) const noexcept override {
     double sum = 0.0;
     for (Index e = 0; e < mesh().element_count(); ++e) {
       const Displacements ue = displacements(e, u);
@@ -62,7 +54,7 @@ class LargeStrain {
 
   /// Forces with which the body answers a displacement [N], derivative of the energy. A law that does not hold adds
   /// nothing.
-  DeformationReport internal_force(const VectorX& u, VectorX& force) const noexcept {
+  DeformationReport internal_force(const VectorX& u, VectorX& force) const noexcept override {
     DeformationReport report;
     force.setZero();
     for (Index e = 0; e < mesh().element_count(); ++e) {
@@ -85,7 +77,7 @@ class LargeStrain {
   }
 
   /// Derivative of the internal force, into a matrix on block_pattern(mesh). Not always positive definite.
-  void tangent(const VectorX& u, BlockMatrix& k) const noexcept {
+  void tangent(const VectorX& u, BlockMatrix& k) const noexcept override {
     k.set_zero();
     for (Index e = 0; e < mesh().element_count(); ++e) {
       const Displacements ue = displacements(e, u);

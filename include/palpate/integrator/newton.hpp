@@ -8,23 +8,27 @@
 namespace palpate::inline PALPATE_ABI {
 
 /// The minimum of a potential of `size()` unknowns.
-/// - `evaluate(x, residual)` writes the force that is left (minus the gradient) and returns the potential, infinite where
-/// x is outside of its domain (the residual is then not read).
+/// - `evaluate(x, residual)` writes the force that is left (minus the gradient) and returns the potential, infinite
+/// where x is outside of its domain (the residual is then not read).
 /// - `prepare(x)` makes the second derivative at x ready, or something positive definite near it; false when it cannot.
 /// - `direction(residual, d)` solves with what was prepared.
-/// - `scale()` is a force to compare the residual of the last evaluation with.
+/// - `scale()` is a force to compare the residual of the last evaluation with; `rounding()` what rounding alone leaves.
 template <class P>
 concept NewtonProblem = requires(P& p, const VectorX& x, VectorX& y) {
   { p.size() } -> std::convertible_to<Index>;
-  { p.evaluate(x, y) } noexcept -> std::same_as<double>;
-  { p.prepare(x) } noexcept -> std::same_as<bool>;
-  { p.direction(x, y) } noexcept;
-  { p.scale() } noexcept -> std::convertible_to<double>;
+  { p.evaluate(x, y) }
+  noexcept->std::same_as<double>;
+  { p.prepare(x) }
+  noexcept->std::same_as<bool>;
+  { p.direction(x, y) }
+  noexcept;
+  { p.scale() }
+  noexcept->std::convertible_to<double>;
 };
 
 struct NewtonParameters {
   int maximum_iterations = 40;
-  double tolerance = 1e-10;  ///< of the residual against the problem's scale
+  double tolerance = 1e-10;   ///< of the residual against the problem's scale
   int maximum_halvings = 12;  ///< of one step
 };
 
@@ -53,7 +57,7 @@ class Newton {
     for (;;) {
       const double norm = residual_.norm();
       report.relative_residual = norm > 0.0 ? norm / problem.scale() : 0.0;
-      report.converged = report.relative_residual <= parameters_.tolerance;
+      report.converged = report.relative_residual <= parameters_.tolerance || norm <= problem.rounding();
       if (report.converged || report.iterations == parameters_.maximum_iterations) return report;
       if (!problem.prepare(x)) return report;
       ++report.iterations;
@@ -71,7 +75,8 @@ class Newton {
       trial_ = x + length * step_;
       const double next = problem.evaluate(trial_, trial_residual_);
       const bool lower = next <= potential - 1e-4 * length * slope;
-      const bool nearer = next < infinity && std::abs(next - potential) <= 1e-9 * (std::abs(next) + std::abs(potential)) &&
+      const bool nearer = next < infinity &&
+                          std::abs(next - potential) <= 1e-9 * (std::abs(next) + std::abs(potential)) &&
                           trial_residual_.norm() < norm;
       if (lower || nearer) {
         x.swap(trial_);

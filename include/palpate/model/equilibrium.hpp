@@ -8,6 +8,8 @@
 #include <palpate/linear/repeated_cholesky.hpp>
 #include <palpate/mesh/rigid_modes.hpp>
 
+#include <memory>
+
 namespace palpate::inline PALPATE_ABI {
 
 struct EquilibriumParameters {
@@ -19,20 +21,35 @@ struct EquilibriumParameters {
 struct EquilibriumReport {
   bool converged = false;
   int load_steps = 0, iterations = 0, refused_steps = 0;
-  double fraction = 0.0;             ///< of the loads that are in equilibrium
-  double relative_residual = 0.0;    ///< of the last step
-  bool stable = true;                ///< the tangent stiffness is positive definite there
+  double fraction = 0.0;           ///< of the loads that are in equilibrium
+  double relative_residual = 0.0;  ///< of the last step
+  bool stable = true;              ///< the tangent stiffness is positive definite there
   DeformationReport deformation{};
 };
 
+/// What was reached, in a sentence.
+inline std::string describe(const EquilibriumReport& r) {
+  if (!r.converged)
+    return "no equilibrium was found beyond " + number(100.0 * r.fraction) +
+           " % of the loads; the most deformed element is " + std::to_string(r.deformation.worst_element) +
+           " with a volume ratio of " + number(r.deformation.smallest_volume_ratio);
+  std::string text = "equilibrium after " + std::to_string(r.load_steps) + " load steps and " +
+                     std::to_string(r.iterations) + " iterations, residual " + number(r.relative_residual);
+  if (!r.stable) text += ", not stable";
+  if (r.deformation.inverted > 0)
+    text += ", " + std::to_string(r.deformation.inverted) + " elements inside out, first of all " +
+            std::to_string(r.deformation.worst_element);
+  return text;
+}
+
 /// A body under dead loads and prescribed displacements. Neither copied nor moved.
-template <Element E, HyperelasticMaterial M>
 class Equilibrium {
  public:
   /// Throws what assembly and conditions throw, unsupported for initial strains, unconstrained.
-  Equilibrium(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {})
-      : elastic_(std::move(body), limits) {
-    const Body<E>& rest = elastic_.body().rest;
+  template <Element E, HyperelasticMaterial M>
+  Equilibrium(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
+    auto elastic = std::make_unique<LargeStrain<E, M>>(std::move(body), limits);
+    const Body<E>& rest = elastic->body().rest;
     if (!scene.initial_strains().empty())
       raise(SetupErrorKind::unsupported, "initial strains at large deformation", "Use a linear material");
     const auto boundary = extract_boundary<E>(rest.mesh);
@@ -41,19 +58,10 @@ class Equilibrium {
     load_ = applied_load(rest, boundary, scene);
     const VectorX mass = nodal_mass(rest);
     for (Index i = 0; i < mass.size(); ++i) load_.template segment<3>(3 * i) += mass[i] * scene.gravity();
-    if (!load_.allFinite()) raise(SetupErrorKind::non_finite, "the loads are not finite");
     stiffness_ = make_stiffness(block_pattern(rest.mesh), limits);
-    displacement_ = force_ = full_ = VectorX::Zero(elastic_.dof_count());
-    elastic_.tangent(displacement_, stiffness_);
-    values_ = FreeValues(stiffness_, conditions_);
-    DofLayout layout{{}, rest.mesh.positions, {}};
-    for (const Index dof : conditions_.free_dofs) layout.node_of_dof.push_back(dof / 3);
-    trial_.resize(size());
-    buckling_ = VectorX::NullaryExpr(size(), [](Index i) { return std::sin(1.0 + static_cast<double>(i)); });
-    Eigen::AlignedBox3d box;
-    for (const Vector3& x : rest.mesh.positions) box.extend(x);
-    size_ = box.diagonal().norm();
-    factor_ = std::make_unique<RepeatedCholesky>(CholeskyAnalysis(values_.lower(), layout, limits), limits);
+    const std::vector<Vector3> positions = rest.mesh.positions;
+    elastic_ = std::move(elastic);
+    prepare_solver(positions, limits);
   }
   Equilibrium(const Equilibrium&) = delete;
   Equilibrium& operator=(const Equilibrium&) = delete;
@@ -87,18 +95,18 @@ class Equilibrium {
     report.fraction = fraction_;
     report.converged = fraction_ == 1.0;
     place(x);
-    report.deformation = elastic_.internal_force(displacement_, force_);
+    report.deformation = elastic_->internal_force(displacement_, force_);
     report.stable = prepare(x) && shift_ == 0.0;
     return report;
   }
 
-  const LargeStrain<E, M>& elastic() const noexcept { return elastic_; }
+  const ElasticForces& elastic() const noexcept { return *elastic_; }
   const EssentialConditions& conditions() const noexcept { return conditions_; }
   const VectorX& displacement() const noexcept { return displacement_; }
-  double energy() const noexcept { return elastic_.energy(displacement_); }
+  double energy() const noexcept { return elastic_->energy(displacement_); }
   VectorX internal_force() const {
     VectorX f(displacement_.size());
-    elastic_.internal_force(displacement_, f);
+    elastic_->internal_force(displacement_, f);
     return f;
   }
   /// Forces of the supports, zero on free dofs, 3 per node [N].
@@ -112,16 +120,16 @@ class Equilibrium {
   Index size() const noexcept { return conditions_.free_count(); }
   double evaluate(const VectorX& x, VectorX& residual) noexcept {
     place(x);
-    const DeformationReport deformation = elastic_.internal_force(displacement_, force_);
+    const DeformationReport deformation = elastic_->internal_force(displacement_, force_);
     if (!deformation.admissible) return infinity;
     scale_ = std::max(force_.norm(), fraction_ * load_.norm());
     full_ = fraction_ * load_ - force_;
     conditions_.gather(full_, residual);
-    return elastic_.energy(displacement_) - fraction_ * load_.dot(displacement_);
+    return elastic_->energy(displacement_) - fraction_ * load_.dot(displacement_);
   }
   bool prepare(const VectorX& x) noexcept {
     place(x);
-    elastic_.tangent(displacement_, stiffness_);
+    elastic_->tangent(displacement_, stiffness_);
     values_.update(stiffness_, conditions_);
     shift_ = 0.0;
     if (factor_->factorise(values_.lower())) return true;
@@ -139,8 +147,26 @@ class Equilibrium {
     if (shift_ > 0.0 && residual.norm() <= 1e-3 * scale_) add_way_down(residual, d);
   }
   double scale() const noexcept { return scale_; }
+  double rounding() const noexcept { return rounding_; }
 
  private:
+  void prepare_solver(const std::vector<Vector3>& positions, const SetupLimits& limits) {
+    if (!load_.allFinite()) raise(SetupErrorKind::non_finite, "the loads are not finite");
+    displacement_ = force_ = full_ = VectorX::Zero(elastic_->dof_count());
+    elastic_->tangent(displacement_, stiffness_);
+    values_ = FreeValues(stiffness_, conditions_);
+    DofLayout layout{{}, positions, {}};
+    for (const Index dof : conditions_.free_dofs) layout.node_of_dof.push_back(dof / 3);
+    trial_.resize(size());
+    buckling_ = VectorX::NullaryExpr(size(), [](Index i) { return std::sin(1.0 + static_cast<double>(i)); });
+    Eigen::AlignedBox3d box;
+    for (const Vector3& x : positions) box.extend(x);
+    size_ = box.diagonal().norm();
+    rounding_ =
+        std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(size())) * largest_diagonal() * size_;
+    factor_ = std::make_unique<RepeatedCholesky>(CholeskyAnalysis(values_.lower(), layout, limits), limits);
+  }
+
   /// Full displacement from the free dofs, with prescribed ones at the present fraction.
   void place(const VectorX& x) noexcept {
     displacement_ = fraction_ * conditions_.prescribed;
@@ -148,10 +174,11 @@ class Equilibrium {
       displacement_[conditions_.free_dofs[static_cast<std::size_t>(k)]] = x[k];
   }
 
-  /// From equilibrium at the present fraction to equilibrium at another: a step along the tangent, then Newton's method.
+  /// From equilibrium at the present fraction to equilibrium at another: a step along the tangent, then Newton's
+  /// method.
   NewtonReport advance(Newton& newton, double to, VectorX& x) noexcept {
     if (!prepare(x)) return {};
-    elastic_.internal_force(displacement_, force_);
+    elastic_->internal_force(displacement_, force_);
     stiffness_.apply((to - fraction_) * conditions_.prescribed, full_);
     full_ = to * load_ - force_ - full_;
     VectorX residual(size()), d(size());
@@ -162,8 +189,8 @@ class Equilibrium {
     return newton.solve(*this, x);
   }
 
-  /// Where the tangent is not positive definite the state may be an unstable equilibrium, which the residual alone does not
-  /// leave (a column pressed straight): adds the direction of most negative curvature, by inverse iteration.
+  /// Where the tangent is not positive definite the state may be an unstable equilibrium, which the residual alone does
+  /// not leave (a column pressed straight): adds the direction of most negative curvature, by inverse iteration.
   void add_way_down(const VectorX& residual, VectorX& d) noexcept {
     double softest = infinity;
     for (int k = 0; k < 6; ++k) {
@@ -183,13 +210,13 @@ class Equilibrium {
     return largest;
   }
 
-  LargeStrain<E, M> elastic_;
+  std::unique_ptr<ElasticForces> elastic_;
   EssentialConditions conditions_;
   BlockMatrix stiffness_;
   FreeValues values_;
   std::unique_ptr<RepeatedCholesky> factor_;
   VectorX load_, displacement_, force_, full_, buckling_, trial_;
-  double fraction_ = 0.0, scale_ = 0.0, shift_ = 0.0, size_ = 0.0;
+  double fraction_ = 0.0, scale_ = 0.0, shift_ = 0.0, size_ = 0.0, rounding_ = 0.0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI
