@@ -20,6 +20,7 @@
 #include <palpate/io/surface_files.hpp>
 #include <palpate/io/vtu.hpp>
 #include <palpate/io/write_msh.hpp>
+#include <palpate/material/corotational.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
