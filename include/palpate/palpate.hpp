@@ -21,6 +21,7 @@
 #include <palpate/io/vtu.hpp>
 #include <palpate/io/write_msh.hpp>
 #include <palpate/material/corotational.hpp>
+#include <palpate/material/fibre_reinforced.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
