@@ -31,6 +31,7 @@
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/material/tissue_presets.hpp>
 #include <palpate/material/transversely_isotropic.hpp>
+#include <palpate/material/viscoelastic.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>
 #include <palpate/mesh/refine.hpp>
