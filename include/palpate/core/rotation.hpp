@@ -123,13 +123,20 @@ template <class S>
 PALPATE_COLD Quaternion<S> jacobi_eigenvector(const Davenport<S>& k) noexcept {
   S a[4][4] = {{k.ww, k.wx, k.wy, k.wz}, {k.wx, k.xx, k.xy, k.xz}, {k.wy, k.xy, k.yy, k.yz}, {k.wz, k.xz, k.yz, k.zz}};
   S v[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-  for (int sweep = 0; sweep < 10; ++sweep)
+  S size = S(0);
+  for (const auto& row : a)
+    for (S x : row) size = std::max(size, std::abs(x));
+  const S negligible = std::numeric_limits<S>::epsilon() / 8 * size;
+  bool turned = true;
+  for (int sweep = 0; turned && sweep < 10; ++sweep) {
+    turned = false;
     for (int p = 0; p < 3; ++p)
       for (int q = p + 1; q < 4; ++q) {
-        if (a[p][q] == S(0)) continue;
+        if (!(std::abs(a[p][q]) > negligible)) continue;
+        turned = true;
         const S theta = (a[q][q] - a[p][p]) / (S(2) * a[p][q]);
-        const S t = std::copysign(S(1), theta) / (std::abs(theta) + std::hypot(theta, S(1)));
-        const S c = S(1) / std::hypot(t, S(1)), s = t * c;
+        const S t = std::copysign(S(1), theta) / (std::abs(theta) + std::sqrt(theta * theta + S(1)));
+        const S c = S(1) / std::sqrt(t * t + S(1)), s = t * c;
         for (auto& row : a) {
           const S x = row[p], y = row[q];
           row[p] = c * x - s * y;
@@ -147,6 +154,7 @@ PALPATE_COLD Quaternion<S> jacobi_eigenvector(const Davenport<S>& k) noexcept {
           row[q] = s * x + c * y;
         }
       }
+  }
   int largest = 0;
   for (int i = 1; i < 4; ++i)
     if (a[i][i] > a[largest][largest]) largest = i;

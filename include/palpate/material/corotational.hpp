@@ -64,7 +64,7 @@ struct Corotational {
   }
 
   /// dP/dF with R held fixed, R D R^T of every corotational code: positive semidefinite at every F, right at rest and
-  /// for any rotation; 2 mu sym(R^T dF) in the turned frame. It costs a fifth of the exact one.
+  /// for any rotation; 2 mu sym(R^T dF) in the turned frame.
   Matrix9 semidefinite_tangent(const Tensor3<double>& f) const noexcept {
     const double lambda = base.lame_lambda(), mu = base.shear_modulus();
     const Tensor3<double> r = closest_rotation(f);

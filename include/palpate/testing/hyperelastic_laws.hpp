@@ -210,7 +210,7 @@ Violations collapse_laws(const M& m, bool barrier) {
 }
 
 /// All laws of one admissible material for large strain. Bounds are relative to its moduli: the unit of stress does not
-/// matter. About 10 ms.
+/// matter.
 template <HyperelasticMaterial M>
 Violations hyperelastic_material_laws(const M& material, HyperelasticClaims claims = {}) {
   Violations v;
