@@ -20,6 +20,8 @@
 #include <palpate/io/surface_files.hpp>
 #include <palpate/io/vtu.hpp>
 #include <palpate/io/write_msh.hpp>
+#include <palpate/material/corotational.hpp>
+#include <palpate/material/fibre_reinforced.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
@@ -29,6 +31,7 @@
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/material/tissue_presets.hpp>
 #include <palpate/material/transversely_isotropic.hpp>
+#include <palpate/material/viscoelastic.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>
 #include <palpate/mesh/refine.hpp>

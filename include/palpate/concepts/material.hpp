@@ -38,7 +38,7 @@ concept FibreMaterial = LinearMaterial<M> && requires(const M& m, const Vector3&
 ///   rest_elasticity()          the 6 x 6 matrix of the same law at small strain [Pa]. Not called `elasticity`: no such
 ///                              material may pass as a linear one unnoticed.
 ///   admits(F) -> bool          whether the law holds at F. Outside, the other functions may return anything.
-///   survives_inversion         whether that is every finite F, flat and turned inside out too; else J > 0 is needed.
+///   survives_inversion         whether it holds at flat F and those turned inside out; else J > 0 is needed.
 /// None allocates or throws. Laws: testing/hyperelastic_laws.hpp.
 template <class M>
 concept HyperelasticMaterial =

@@ -165,7 +165,7 @@ Violations domain_laws(const M& m) {
     Tensor3<double> flat = f;  // rank two and one, and turned inside out by one column
     for (int i = 0; i < 3; ++i) flat(i, 2) = f(i, 0) + f(i, 1);
     const Tensor3<double> line = outer(column(f, 0), column(f, 1)), mirrored = f * Tensor3<double>::diagonal(1, 1, -1);
-    for (const Tensor3<double>& x : {0.0 * f, -1e-8 * f, -1.0 * f, -2.0 * f, flat, line, mirrored}) {
+    for (const Tensor3<double>& x : {0.0 * f, -1e-8 * f, -1.0 * f, -1.5 * f, flat, line, mirrored}) {
       if (!M::survives_inversion) {
         if (determinant(x) <= 0.0) expect_true(v, "refuses J <= 0", !m.admits(x), detail::name_of(k));
         continue;
@@ -210,7 +210,7 @@ Violations collapse_laws(const M& m, bool barrier) {
 }
 
 /// All laws of one admissible material for large strain. Bounds are relative to its moduli: the unit of stress does not
-/// matter. About 10 ms.
+/// matter.
 template <HyperelasticMaterial M>
 Violations hyperelastic_material_laws(const M& material, HyperelasticClaims claims = {}) {
   Violations v;
