@@ -1,14 +1,11 @@
 // Static equilibrium at large deformation, by Newton's method along a path of loads.
 #pragma once
 
-#include <palpate/assembly/free_values.hpp>
-#include <palpate/assembly/large_strain.hpp>
-#include <palpate/assembly/load_vector.hpp>
 #include <palpate/integrator/newton.hpp>
-#include <palpate/linear/repeated_cholesky.hpp>
-#include <palpate/mesh/rigid_modes.hpp>
+#include <palpate/model/deformable_body.hpp>
+#include <palpate/model/tangent_solver.hpp>
 
-#include <memory>
+#include <Eigen/Geometry>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -45,23 +42,22 @@ inline std::string describe(const EquilibriumReport& r) {
 /// A body under dead loads and prescribed displacements. Neither copied nor moved.
 class Equilibrium {
  public:
-  /// Throws what assembly and conditions throw, unsupported for initial strains, unconstrained.
+  /// Throws what make_deformable_body throws, and unconstrained.
   template <Element E, HyperelasticMaterial M>
-  Equilibrium(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
-    auto elastic = std::make_unique<LargeStrain<E, M>>(std::move(body), limits);
-    const Body<E>& rest = elastic->body().rest;
-    if (!scene.initial_strains().empty())
-      raise(SetupErrorKind::unsupported, "initial strains at large deformation", "Use a linear material");
-    const auto boundary = extract_boundary<E>(rest.mesh);
-    conditions_ = resolve_essential(rest.mesh, boundary, scene);
-    require_constrained(rest.mesh, conditions_.constrained);
-    load_ = applied_load(rest, boundary, scene);
-    const VectorX mass = nodal_mass(rest);
-    for (Index i = 0; i < mass.size(); ++i) load_.template segment<3>(3 * i) += mass[i] * scene.gravity();
-    stiffness_ = make_stiffness(block_pattern(rest.mesh), limits);
-    const std::vector<Vector3> positions = rest.mesh.positions;
-    elastic_ = std::move(elastic);
-    prepare_solver(positions, limits);
+  Equilibrium(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {})
+      : body_(held(std::move(body), scene, limits)),
+        tangent_(body_.pattern, body_.conditions, body_.positions, limits),
+        displacement_(VectorX::Zero(body_.elastic->dof_count())),
+        force_(displacement_),
+        full_(displacement_),
+        buckling_(VectorX::NullaryExpr(size(), [](Index i) { return std::sin(1.0 + static_cast<double>(i)); })),
+        trial_(size()) {
+    Eigen::AlignedBox3d box;
+    for (const Vector3& x : body_.positions) box.extend(x);
+    size_ = box.diagonal().norm();
+    body_.elastic->tangent(displacement_, tangent_.matrix());
+    rounding_ = std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(size())) *
+                tangent_.largest_diagonal() * size_;
   }
   Equilibrium(const Equilibrium&) = delete;
   Equilibrium& operator=(const Equilibrium&) = delete;
@@ -69,10 +65,10 @@ class Equilibrium {
   /// Raises the loads from none to all. What is reached at the end is in `displacement()`.
   EquilibriumReport solve(const EquilibriumParameters& parameters = {}) {
     EquilibriumReport report;
-    Newton newton(conditions_.free_count(), parameters.newton);
+    Newton newton(body_.conditions.free_count(), parameters.newton);
     displacement_.setZero();
     fraction_ = 0.0;
-    VectorX x = VectorX::Zero(conditions_.free_count()), start = x;
+    VectorX x = VectorX::Zero(body_.conditions.free_count()), start = x;
     double step = 1.0 / std::max(1, parameters.load_steps);
     while (fraction_ < 1.0) {
       const double from = fraction_, to = std::min(1.0, from + step);
@@ -95,94 +91,74 @@ class Equilibrium {
     report.fraction = fraction_;
     report.converged = fraction_ == 1.0;
     place(x);
-    report.deformation = elastic_->internal_force(displacement_, force_);
-    report.stable = prepare(x) && shift_ == 0.0;
+    report.deformation = body_.elastic->internal_force(displacement_, force_);
+    report.stable = prepare(x) && tangent_.shift() == 0.0;
     return report;
   }
 
-  const ElasticForces& elastic() const noexcept { return *elastic_; }
-  const EssentialConditions& conditions() const noexcept { return conditions_; }
+  const ElasticForces& elastic() const noexcept { return *body_.elastic; }
+  const EssentialConditions& conditions() const noexcept { return body_.conditions; }
   const VectorX& displacement() const noexcept { return displacement_; }
-  double energy() const noexcept { return elastic_->energy(displacement_); }
+  double energy() const noexcept { return body_.elastic->energy(displacement_); }
   VectorX internal_force() const {
     VectorX f(displacement_.size());
-    elastic_->internal_force(displacement_, f);
+    body_.elastic->internal_force(displacement_, f);
     return f;
   }
   /// Forces of the supports, zero on free dofs, 3 per node [N].
   VectorX reactions() const {
-    VectorX r = internal_force() - fraction_ * load_;
-    for (const Index dof : conditions_.free_dofs) r[dof] = 0.0;
+    VectorX r = internal_force() - fraction_ * body_.load;
+    for (const Index dof : body_.conditions.free_dofs) r[dof] = 0.0;
     return r;
   }
 
   // NewtonProblem, at the present fraction of the loads
-  Index size() const noexcept { return conditions_.free_count(); }
+  Index size() const noexcept { return body_.conditions.free_count(); }
   double evaluate(const VectorX& x, VectorX& residual) noexcept {
     place(x);
-    const DeformationReport deformation = elastic_->internal_force(displacement_, force_);
+    const DeformationReport deformation = body_.elastic->internal_force(displacement_, force_);
     if (!deformation.admissible) return infinity;
-    scale_ = std::max(force_.norm(), fraction_ * load_.norm());
-    full_ = fraction_ * load_ - force_;
-    conditions_.gather(full_, residual);
-    return elastic_->energy(displacement_) - fraction_ * load_.dot(displacement_);
+    scale_ = std::max(force_.norm(), fraction_ * body_.load.norm());
+    full_ = fraction_ * body_.load - force_;
+    body_.conditions.gather(full_, residual);
+    return body_.elastic->energy(displacement_) - fraction_ * body_.load.dot(displacement_);
   }
   bool prepare(const VectorX& x) noexcept {
     place(x);
-    elastic_->tangent(displacement_, stiffness_);
-    values_.update(stiffness_, conditions_);
-    shift_ = 0.0;
-    if (factor_->factorise(values_.lower())) return true;
-    // Past a limit point the tangent is not positive definite: a multiple of the unit matrix makes it so (Nocedal and
-    // Wright, 3.4).
-    for (double next = 1e-3 * largest_diagonal(); next <= 1e2 * largest_diagonal(); next *= 4.0) {
-      values_.add_to_diagonal(next - shift_);
-      shift_ = next;
-      if (factor_->factorise(values_.lower())) return true;
-    }
-    return false;
+    body_.elastic->tangent(displacement_, tangent_.matrix());
+    return tangent_.factorise();
   }
   void direction(const VectorX& residual, VectorX& d) noexcept {
-    factor_->solve_into(residual, d);
-    if (shift_ > 0.0 && residual.norm() <= 1e-3 * scale_) add_way_down(residual, d);
+    tangent_.solve(residual, d);
+    if (tangent_.shift() > 0.0 && residual.norm() <= 1e-3 * scale_) add_way_down(residual, d);
   }
   double scale() const noexcept { return scale_; }
   double rounding() const noexcept { return rounding_; }
 
  private:
-  void prepare_solver(const std::vector<Vector3>& positions, const SetupLimits& limits) {
-    if (!load_.allFinite()) raise(SetupErrorKind::non_finite, "the loads are not finite");
-    displacement_ = force_ = full_ = VectorX::Zero(elastic_->dof_count());
-    elastic_->tangent(displacement_, stiffness_);
-    values_ = FreeValues(stiffness_, conditions_);
-    DofLayout layout{{}, positions, {}};
-    for (const Index dof : conditions_.free_dofs) layout.node_of_dof.push_back(dof / 3);
-    trial_.resize(size());
-    buckling_ = VectorX::NullaryExpr(size(), [](Index i) { return std::sin(1.0 + static_cast<double>(i)); });
-    Eigen::AlignedBox3d box;
-    for (const Vector3& x : positions) box.extend(x);
-    size_ = box.diagonal().norm();
-    rounding_ =
-        std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(size())) * largest_diagonal() * size_;
-    factor_ = std::make_unique<RepeatedCholesky>(CholeskyAnalysis(values_.lower(), layout, limits), limits);
+  template <Element E, HyperelasticMaterial M>
+  static DeformableBody held(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits) {
+    const Mesh<E>& mesh = body.rest.mesh;
+    require_constrained(mesh, resolve_essential(mesh, extract_boundary<E>(mesh), scene).constrained);
+    return make_deformable_body(std::move(body), scene, limits);
   }
 
   /// Full displacement from the free dofs, with prescribed ones at the present fraction.
   void place(const VectorX& x) noexcept {
-    displacement_ = fraction_ * conditions_.prescribed;
-    for (Index k = 0; k < conditions_.free_count(); ++k)
-      displacement_[conditions_.free_dofs[static_cast<std::size_t>(k)]] = x[k];
+    displacement_ = fraction_ * body_.conditions.prescribed;
+    for (Index k = 0; k < body_.conditions.free_count(); ++k)
+      displacement_[body_.conditions.free_dofs[static_cast<std::size_t>(k)]] = x[k];
   }
 
   /// From equilibrium at the present fraction to equilibrium at another: a step along the tangent, then Newton's
   /// method.
   NewtonReport advance(Newton& newton, double to, VectorX& x) noexcept {
     if (!prepare(x)) return {};
-    elastic_->internal_force(displacement_, force_);
-    stiffness_.apply((to - fraction_) * conditions_.prescribed, full_);
-    full_ = to * load_ - force_ - full_;
+    body_.elastic->internal_force(displacement_, force_);
+    tangent_.matrix().apply((to - fraction_) * body_.conditions.prescribed, full_);
+    full_ = to * body_.load - force_ - full_;
     VectorX residual(size()), d(size());
-    conditions_.gather(full_, residual);
+    body_.conditions.gather(full_, residual);
     direction(residual, d);
     fraction_ = to;
     x += d;
@@ -195,8 +171,8 @@ class Equilibrium {
     double softest = infinity;
     for (int k = 0; k < 6; ++k) {
       buckling_.normalize();
-      factor_->solve_into(buckling_, trial_);
-      softest = 1.0 / buckling_.dot(trial_) - shift_;
+      tangent_.solve(buckling_, trial_);
+      softest = 1.0 / buckling_.dot(trial_) - tangent_.shift();
       buckling_.swap(trial_);
     }
     if (!(softest < 0.0)) return;
@@ -204,19 +180,10 @@ class Equilibrium {
     d += std::copysign(length, residual.dot(buckling_)) * buckling_;
   }
 
-  double largest_diagonal() const noexcept {
-    double largest = 0.0;
-    for (const Matrix3& block : stiffness_.diagonal_blocks()) largest = std::max(largest, block.cwiseAbs().maxCoeff());
-    return largest;
-  }
-
-  std::unique_ptr<ElasticForces> elastic_;
-  EssentialConditions conditions_;
-  BlockMatrix stiffness_;
-  FreeValues values_;
-  std::unique_ptr<RepeatedCholesky> factor_;
-  VectorX load_, displacement_, force_, full_, buckling_, trial_;
-  double fraction_ = 0.0, scale_ = 0.0, shift_ = 0.0, size_ = 0.0, rounding_ = 0.0;
+  DeformableBody body_;
+  TangentSolver tangent_;
+  VectorX displacement_, force_, full_, buckling_, trial_;
+  double fraction_ = 0.0, scale_ = 0.0, size_ = 0.0, rounding_ = 0.0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,31 @@
+// Small strain as an elastic body like any other.
+#pragma once
+
+#include <palpate/assembly/elastic_forces.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// f = K u with a constant stiffness. Right for small displacements only; nothing is ever inside out.
+class LinearForces final : public ElasticForces {
+ public:
+  explicit LinearForces(BlockMatrix stiffness) : stiffness_(std::move(stiffness)), force_(stiffness_.size()) {}
+
+  Index dof_count() const noexcept override { return stiffness_.size(); }
+  double energy(const VectorX& u) const noexcept override {
+    stiffness_.apply(u, force_);
+    return 0.5 * u.dot(force_);
+  }
+  DeformationReport internal_force(const VectorX& u, VectorX& force) const noexcept override {
+    stiffness_.apply(u, force);
+    DeformationReport report;
+    report.smallest_volume_ratio = 1.0;
+    return report;
+  }
+  void tangent(const VectorX&, BlockMatrix& k) const noexcept override { k.copy_values(stiffness_); }
+
+ private:
+  BlockMatrix stiffness_;
+  mutable VectorX force_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI
