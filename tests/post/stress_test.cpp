@@ -17,9 +17,9 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-constexpr LinearElastic soft{.youngs_modulus = 5e3, .poisson_ratio = 0.3};
+constexpr LinearElastic gel{.youngs_modulus = 5e3, .poisson_ratio = 0.3};
 
-Body<Tet4> body_of(Mesh<Tet4> mesh, const LinearElastic& material = soft, const Vector6& strain0 = Vector6::Zero()) {
+Body<Tet4> body_of(Mesh<Tet4> mesh, const LinearElastic& material = gel, const Vector6& strain0 = Vector6::Zero()) {
   const auto regions = static_cast<std::size_t>(mesh.region_count());
   return {std::move(mesh), std::vector<Matrix6>(regions, material.elasticity()), std::vector<double>(regions, 0.0),
           std::vector<Vector6>(regions, strain0)};
@@ -60,7 +60,7 @@ TEST_CASE("Von Mises of pure shear, of pressure and of a plane state", "[post]")
   Matrix3 shear = Matrix3::Zero();
   shear(0, 2) = 0.01;  // gamma_xz
   const StressField sheared = stress_field(cube, linear_field(cube.mesh, shear));
-  const double tau = soft.shear_modulus() * 0.01;
+  const double tau = gel.shear_modulus() * 0.01;
   CHECK(difference(sheared, (Vector6() << 0, 0, 0, 0, tau, 0).finished()) <= 1e-12 * tau);
   CHECK_THAT(sheared.von_mises_nodes.maxCoeff(), WithinRel(std::sqrt(3.0) * tau, 1e-12));
 
@@ -79,7 +79,7 @@ TEST_CASE("Von Mises of pure shear, of pressure and of a plane state", "[post]")
 TEST_CASE("A rigid motion, and swelling that nothing hinders, make no stress", "[post]") {
   testing::Random random(7);
   const Vector6 swelling = random.vector<6>(-0.1, 0.1);
-  const Body<Tet4> cube = body_of(box_tet4({1, 1, 1}, {2, 2, 2}), soft, swelling);
+  const Body<Tet4> cube = body_of(box_tet4({1, 1, 1}, {2, 2, 2}), gel, swelling);
   Matrix3 gradient;  // the strain of the swelling, and a turn
   gradient << swelling[0], swelling[3], swelling[4], 0, swelling[1], swelling[5], 0, 0, swelling[2];
   const Vector3 turn = random.vector<3>(-0.1, 0.1);
@@ -87,7 +87,7 @@ TEST_CASE("A rigid motion, and swelling that nothing hinders, make no stress", "
   VectorX u = linear_field(cube.mesh, gradient);
   for (Index i = 0; i < cube.mesh.node_count(); ++i) u.segment<3>(3 * i) += Vector3(3.0, -2.0, 1.0);
   CHECK(difference(stress_field(cube, u), Vector6::Zero()) <= 1e-13 * 5e3);
-  CHECK(difference(stress_field(cube, VectorX::Zero(u.size())), -(soft.elasticity() * swelling)) <= 1e-13 * 5e3);
+  CHECK(difference(stress_field(cube, VectorX::Zero(u.size())), -(gel.elasticity() * swelling)) <= 1e-13 * 5e3);
 }
 
 TEST_CASE("A node carries the mean of its elements, weighted by their volumes", "[post]") {
@@ -98,7 +98,7 @@ TEST_CASE("A node carries the mean of its elements, weighted by their volumes", 
   VectorX u = VectorX::Zero(18);
   u[11] = 0.01;  // node 3 moves by 0.01 along z: strain in the first element only
   const StressField field = stress_field(body, u);
-  const Vector6 first = soft.elasticity() * Vector6::Unit(voigt::zz) * 0.01;
+  const Vector6 first = gel.elasticity() * Vector6::Unit(voigt::zz) * 0.01;
   CHECK((field.elements.col(0) - first).norm() <= 1e-13 * first.norm());
   CHECK(field.elements.col(1).isZero(0.0));
   for (int i : {0, 1, 2}) CHECK((field.nodes.col(i) - 0.25 * first).norm() <= 1e-13 * first.norm());
@@ -112,8 +112,8 @@ TEST_CASE("Mean and point stress of an element agree where the stress is constan
   const ElementNodes<Tet4> x = Tet4::reference_nodes() + 0.2 * random.vector<12>(-1.0, 1.0).reshaped(4, 3);
   const ElementNodes<Tet4> u = random.vector<12>(-0.1, 0.1).reshaped(4, 3);
   const Vector6 strain0 = random.vector<6>(-0.1, 0.1);
-  const MeanStress mean = mean_stress<Tet4>(x, u, soft.elasticity(), strain0);
-  const Vector6 point = point_stress<Tet4>(x, u, {0.1, 0.2, 0.3}, soft.elasticity(), strain0);
+  const MeanStress mean = mean_stress<Tet4>(x, u, gel.elasticity(), strain0);
+  const Vector6 point = point_stress<Tet4>(x, u, {0.1, 0.2, 0.3}, gel.elasticity(), strain0);
   CHECK((mean.stress - point).norm() <= 1e-12 * point.norm());
 }
 
@@ -122,7 +122,7 @@ TEST_CASE("Stress keeps its digits far from the origin", "[post]") {
   Matrix3 gradient = Vector3(0.01, 0.0, 0.0).asDiagonal();
   const VectorX u = linear_field(cube, gradient);
   for (Vector3& x : cube.positions) x += Vector3::Constant(1e4);
-  const Vector6 expected = soft.elasticity() * Vector6::Unit(voigt::xx) * 0.01;
+  const Vector6 expected = gel.elasticity() * Vector6::Unit(voigt::xx) * 0.01;
   CHECK(difference(stress_field(body_of(cube), u), expected) <= 1e-9 * expected.norm());
 }
 
