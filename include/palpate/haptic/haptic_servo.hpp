@@ -85,6 +85,7 @@ class HapticServo {
   std::span<const ToolForce> tick(std::span<const ToolState> states) noexcept {
     const FlushDenormals flush;
     Status shared;
+    if constexpr (requires { tissue_->begin_tick(); }) shared |= tissue_->begin_tick();
     for (std::size_t i = 0; i < states_.size(); ++i) read(i, i < states.size() ? states[i] : unreadable());
     shared |= problem_.solve(*tissue_, contact_tools_);
     for (std::size_t i = 0; i < states_.size(); ++i) recover(i);
@@ -95,6 +96,8 @@ class HapticServo {
       forces_[i] = gates_[i].apply(wanted, input.time, input.time, input.readable, input.restarted);
       forces_[i].status |= input.status | shared;
     }
+    if constexpr (requires { tissue_->end_tick(problem_.vertex_forces()); })
+      tissue_->end_tick(problem_.vertex_forces());
     publish();
     return forces_;
   }

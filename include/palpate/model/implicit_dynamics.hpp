@@ -72,11 +72,32 @@ class ImplicitDynamics {
     report.taken = true;
     report.deformation = deformation_;
     find_motion();
-    u_ = trial_;
-    v_ = velocity_;
-    a_ = acceleration_;
+    accept();
     time_ += h;
     return report;
+  }
+
+  /// Takes `more` forces [N] into account in the step just taken, to first order: with the tangent of its last
+  /// iteration. One solve.
+  void correct(const VectorX& more) noexcept {
+    if (h_ == 0.0) return;
+    respond(more, trial_);
+    trial_ += u_;
+    find_motion();
+    accept();
+  }
+  /// Displacement [m] that forces [N] add at the end of a step, to first order, as `correct` has it.
+  void respond(const VectorX& forces, VectorX& u) noexcept {
+    body_.conditions.gather(forces, residual_);
+    tangent_.solve(residual_, x_);
+    body_.conditions.scatter(x_, u);
+  }
+  /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
+  bool prepare_response(double h) noexcept {
+    if (!(h > 0.0) || !(h < infinity)) return false;
+    h_ = h;
+    body_.conditions.gather(u_, x_);
+    return prepare(x_);
   }
 
   double time() const noexcept { return time_; }
@@ -164,6 +185,12 @@ class ImplicitDynamics {
     const TimeScheme& s = parameters_.scheme;
     acceleration_ = (trial_ - predicted_) / (s.new_in_u * h_ * h_);
     velocity_ = coasting_ + (s.new_in_v * h_) * acceleration_;
+  }
+
+  void accept() noexcept {
+    u_ = trial_;
+    v_ = velocity_;
+    a_ = acceleration_;
   }
 
   void apply_mass(const VectorX& x, VectorX& y) const noexcept {
