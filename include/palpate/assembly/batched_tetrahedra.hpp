@@ -1,0 +1,137 @@
+// Internal force of tetrahedra at any strain, several elements at once: the force of explicit integration.
+#pragma once
+
+#include <palpate/assembly/large_strain.hpp>
+#include <palpate/assembly/tetrahedron_batches.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+namespace detail {
+
+/// Least J, in which batch, how many are positive, and whether one is not finite, per lane.
+template <class S, int N>
+struct VolumeWatch {
+  Lanes<S, N> smallest{std::numeric_limits<S>::infinity()}, batch{S(-1)}, upright{S(0)}, broken{S(0)};
+
+  PALPATE_ALWAYS_INLINE void see(const Lanes<S, N>& j, S at) noexcept {
+    const auto ahead = j < smallest;
+    smallest = select(ahead, j, smallest);
+    batch = select(ahead, Lanes<S, N>(at), batch);
+    broken += j - j;  // zero, or NaN from then on
+    upright += select(j > Lanes<S, N>(S(0)), Lanes<S, N>(S(1)), Lanes<S, N>(S(0)));
+  }
+};
+
+}  // namespace detail
+
+/// Total Lagrangian force of linear tetrahedra (Miller, Joldes, Lance, Wittek 2007): F from gradients at rest, f_a = V
+/// P grad N_a, Lanes<S, N> of elements at once. Elements lie in blocks of 512 that are added up in the cache first,
+/// then by node: the sum has one order, whatever the number of threads and whoever computes which block. Vectors are
+/// double, all dofs, in the order of the mesh; S = float computes in single precision from differences of displacement
+/// within a block. No allocation after construction.
+template <HyperelasticMaterial M, class S = double, int N = 64 / sizeof(S)>
+class BatchedTetrahedra {
+ public:
+  using Material = M;
+
+  BatchedTetrahedra() = default;
+  /// Throws inverted_element, non_finite, or what the law of a region says in its check().
+  explicit BatchedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {}) : laws_(body.laws) {
+    for (const M& law : laws_)
+      if (auto problem = law.check()) raise(std::move(*problem));
+    limits.require_memory(static_cast<double>(body.rest.mesh.element_count()) * 160.0, "the batches of elements");
+    layout_ = TetrahedronBatches<S, N>(body.rest.mesh);
+    rows_.assign(4 * layout_.nodes.size(), S(0));
+    seen_.resize(layout_.blocks.size());
+  }
+
+  Index size() const noexcept { return 3 * layout_.node_count(); }
+  Index block_count() const noexcept { return static_cast<Index>(layout_.blocks.size()); }
+  std::size_t bytes() const noexcept { return layout_.bytes() + rows_.size() * sizeof(S); }
+
+  /// force = internal force at displacement u [N]. A law that does not hold adds whatever it gives; the report says so:
+  /// det F <= 0 where the law needs more, or not finite. (Narrower bounds of a law are seen by LargeStrain only.)
+  DeformationReport force(const VectorX& u, VectorX& f) noexcept {
+    for (Index b = 0; b < block_count(); ++b) compute_block(b, u);
+    add_up(0, layout_.node_count(), f);
+    return report();
+  }
+
+  /// The three parts of force(), for several threads: every block once, in any order; then every node; then the report.
+  void compute_block(Index index, const VectorX& u) noexcept {
+    const TetrahedronBlock block = layout_.blocks[static_cast<std::size_t>(index)];
+    alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
+    load_displacements(block, u, local);
+    S* const rows = rows_.data() + 4 * block.first_row;
+    std::fill(rows, rows + 4 * block.row_count, S(0));
+    const M law = laws_[static_cast<std::size_t>(block.region)];
+    detail::VolumeWatch<S, N> watch;
+    for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
+      const TetrahedronBatch<S, N>& batch = layout_.batches[static_cast<std::size_t>(b)];
+      const Tensor3<Lanes<S, N>> f = batch.deformation_gradient(local);
+      watch.see(determinant(f, cofactor(f)), static_cast<S>(b - block.first_batch));
+      batch.add_force(law.stress(f), rows);
+    }
+    seen_[static_cast<std::size_t>(index)] = summary(block, watch);
+  }
+  void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
+    for (Index i = first_node; i < last_node; ++i) {
+      double sum[3] = {0.0, 0.0, 0.0};
+      for (Index k = layout_.first_copy[static_cast<std::size_t>(i)];
+           k < layout_.first_copy[static_cast<std::size_t>(i) + 1]; ++k) {
+        const S* row = rows_.data() + 4 * Index{layout_.copies[static_cast<std::size_t>(k)]};
+        for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(row[c]);
+      }
+      for (int c = 0; c < 3; ++c) f[3 * i + c] = sum[c];
+    }
+  }
+  DeformationReport report() const noexcept {
+    DeformationReport all;
+    for (const DeformationReport& part : seen_) {
+      if (part.smallest_volume_ratio < all.smallest_volume_ratio) {
+        all.smallest_volume_ratio = part.smallest_volume_ratio;
+        all.worst_element = part.worst_element;
+      }
+      all.inverted += part.inverted;
+      all.admissible = all.admissible && part.admissible;
+    }
+    return all;
+  }
+
+ private:
+  /// Displacements of a block's nodes less that of the first: single precision then keeps digits of strain, not of
+  /// place.
+  void load_displacements(const TetrahedronBlock& block, const VectorX& u, S* local) const noexcept {
+    const NodeId* const nodes = layout_.nodes.data() + block.first_row;
+    const double* const from = u.data();
+    const double* const u0 = from + 3 * Index{nodes[0]};
+    const double origin[3] = {u0[0], u0[1], u0[2]};
+    for (Index r = 0; r < block.row_count; ++r) {
+      const double* const ur = from + 3 * Index{nodes[r]};
+      for (int c = 0; c < 3; ++c) local[4 * r + c] = static_cast<S>(ur[c] - origin[c]);
+      local[4 * r + 3] = S(0);
+    }
+  }
+  DeformationReport summary(const TetrahedronBlock& block, const detail::VolumeWatch<S, N>& watch) const noexcept {
+    DeformationReport report;
+    Index upright = 0;
+    for (int lane = 0; lane < N; ++lane) {
+      upright += static_cast<Index>(watch.upright[lane]);
+      report.admissible = report.admissible && watch.broken[lane] == S(0);
+      if (!(watch.smallest[lane] < report.smallest_volume_ratio)) continue;
+      report.smallest_volume_ratio = static_cast<double>(watch.smallest[lane]);
+      const auto at = static_cast<std::size_t>(block.first_batch + static_cast<Index>(watch.batch[lane]));
+      report.worst_element = layout_.elements[at][static_cast<std::size_t>(lane)];
+    }
+    report.inverted = block.batch_count * N - upright;
+    report.admissible = report.admissible && (M::survives_inversion || report.inverted == 0);
+    return report;
+  }
+
+  TetrahedronBatches<S, N> layout_;
+  std::vector<M> laws_;                  // by region
+  std::vector<S> rows_;                  // force on every row, four numbers
+  std::vector<DeformationReport> seen_;  // by block
+};
+
+}  // namespace palpate::inline PALPATE_ABI
