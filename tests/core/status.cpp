@@ -46,6 +46,8 @@ TEST_CASE("every flag has one bit and one name", "[core][status]") {
   CHECK(name(StatusFlag::reacquired) == "Reacquired");
   CHECK(name(StatusFlag::ramping) == "Ramping");
   CHECK(name(StatusFlag::non_finite_force) == "NonFiniteForce");
+  CHECK(name(StatusFlag::step_refused) == "StepRefused");
+  CHECK(name(StatusFlag::energy_grew) == "EnergyGrew");
 }
 
 TEST_CASE("counters add one per flag and tick", "[core][status]") {

@@ -3,6 +3,7 @@
 
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/assembly/tetrahedron_batches.hpp>
+#include <palpate/concepts/integrator.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -43,6 +44,7 @@ class BatchedTetrahedra {
     layout_ = TetrahedronBatches<S, N>(body.rest.mesh);
     rows_.assign(4 * layout_.nodes.size(), S(0));
     seen_.resize(layout_.blocks.size());
+    probe_length_ = std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * shortest_edge(body.rest.mesh);
   }
 
   Index size() const noexcept { return 3 * layout_.node_count(); }
@@ -57,21 +59,35 @@ class BatchedTetrahedra {
     return report();
   }
 
+  /// Stored energy [J].
+  double energy(const VectorX& u) noexcept {
+    double sum = 0.0;
+    for (const TetrahedronBlock& block : layout_.blocks) {
+      const M law = laws_[static_cast<std::size_t>(block.region)];
+      Lanes<S, N> part(S(0));
+      for_each_gradient(block, u,
+                        [&](const Batch& batch, const Gradient& f) { part += batch.volume * law.energy(f); });
+      for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(part[lane]);
+    }
+    return sum;
+  }
+
+  /// A small part of the shortest edge [m]: differences of forces then keep half their digits.
+  double probe_length() const noexcept { return probe_length_; }
+
   /// The three parts of force(), for several threads: every block once, in any order; then every node; then the report.
   void compute_block(Index index, const VectorX& u) noexcept {
     const TetrahedronBlock block = layout_.blocks[static_cast<std::size_t>(index)];
-    alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
-    load_displacements(block, u, local);
     S* const rows = rows_.data() + 4 * block.first_row;
     std::fill(rows, rows + 4 * block.row_count, S(0));
     const M law = laws_[static_cast<std::size_t>(block.region)];
     detail::VolumeWatch<S, N> watch;
-    for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
-      const TetrahedronBatch<S, N>& batch = layout_.batches[static_cast<std::size_t>(b)];
-      const Tensor3<Lanes<S, N>> f = batch.deformation_gradient(local);
-      watch.see(determinant(f, cofactor(f)), static_cast<S>(b - block.first_batch));
+    S at = S(0);
+    for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
+      watch.see(determinant(f, cofactor(f)), at);
+      at += S(1);
       batch.add_force(law.stress(f), rows);
-    }
+    });
     seen_[static_cast<std::size_t>(index)] = summary(block, watch);
   }
   void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
@@ -99,6 +115,30 @@ class BatchedTetrahedra {
   }
 
  private:
+  using Batch = TetrahedronBatch<S, N>;
+  using Gradient = Tensor3<Lanes<S, N>>;
+
+  template <class Visit>
+  PALPATE_ALWAYS_INLINE void for_each_gradient(const TetrahedronBlock& block, const VectorX& u,
+                                               Visit&& visit) const noexcept {
+    alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
+    load_displacements(block, u, local);
+    for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
+      const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
+      visit(batch, batch.deformation_gradient(local));
+    }
+  }
+
+  static double shortest_edge(const Mesh<Tet4>& mesh) {
+    double shortest = infinity;
+    for (Index e = 0; e < mesh.element_count(); ++e) {
+      const ElementNodes<Tet4> x = element_nodes<Tet4>(mesh, e);
+      for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < a; ++b) shortest = std::min(shortest, (x.row(a) - x.row(b)).norm());
+    }
+    return shortest;
+  }
+
   /// Displacements of a block's nodes less that of the first: single precision then keeps digits of strain, not of
   /// place.
   void load_displacements(const TetrahedronBlock& block, const VectorX& u, S* local) const noexcept {
@@ -132,6 +172,7 @@ class BatchedTetrahedra {
   std::vector<M> laws_;                  // by region
   std::vector<S> rows_;                  // force on every row, four numbers
   std::vector<DeformationReport> seen_;  // by block
+  double probe_length_ = 0.0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

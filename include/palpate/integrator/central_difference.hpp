@@ -1,0 +1,42 @@
+// Explicit integration of order two.
+#pragma once
+
+#include <palpate/concepts/integrator.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+namespace detail {
+
+/// Held dofs go to their targets at constant speed.
+inline void move_held(MotionState& s, double dt) noexcept {
+  for (Index dof : s.held) {
+    s.velocity[dof] = (s.target[dof] - s.displacement[dof]) / dt;
+    s.displacement[dof] = s.target[dof];
+  }
+}
+
+}  // namespace detail
+
+/// Central differences (Belytschko, Liu, Moran, Nonlinear Finite Elements, 6.2), as half a kick, a drift, half a kick:
+/// u and v belong to the same time, the step may change, and with a constant step the displacements are those of
+///   u_n+1 = [dt^2 (R - F) / m + 2 u_n - (1 - alpha dt/2) u_n-1] / (1 + alpha dt/2).
+/// Order 2; symplectic without damping: energy does not drift, momentum is exact. Stable up to 2 / omega_max, whatever
+/// alpha.
+struct CentralDifference {
+  static constexpr int order = 2;
+
+  template <class Refresh>
+  static void step(MotionState& s, double dt, Refresh&& refresh) noexcept {
+    const double half = 0.5 * dt, shrink = 1.0 / (1.0 + s.damping * half), keep = 1.0 - s.damping * half;
+    for (Index dof : s.free) {
+      s.velocity[dof] = (s.velocity[dof] + half * s.acceleration(dof)) * shrink;
+      s.displacement[dof] += dt * s.velocity[dof];
+    }
+    detail::move_held(s, dt);
+    refresh();
+    for (Index dof : s.free) s.velocity[dof] = s.velocity[dof] * keep + half * s.acceleration(dof);
+    s.time += dt;
+  }
+};
+
+}  // namespace palpate::inline PALPATE_ABI
