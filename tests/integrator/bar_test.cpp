@@ -39,8 +39,8 @@ TEST_CASE("a wave in a bar with dt = dx / c is d'Alembert's to the last digits",
   ExplicitOptions options;
   options.margin = 0.0;  // the step is the limit of a bar, 2e-5 below that of the block
   options.energy_growth = 4.0;
-  auto motion = linear_motion<CentralDifference>(
-      body, dofs_where(mesh, [](const Vector3& p) { return p.x() > 1e-9; }), options);
+  auto motion =
+      linear_motion<CentralDifference>(body, dofs_where(mesh, [](const Vector3& p) { return p.x() > 1e-9; }), options);
   Scene scene;
   scene.traction("x1", Vector3(1000.0, 0.0, 0.0));
   motion.load() = applied_load(body, extract_boundary<Hex8>(mesh), scene);

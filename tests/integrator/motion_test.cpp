@@ -15,8 +15,7 @@ template <Element E>
 Vector3 angular_momentum(const Mesh<E>& mesh, const MotionState& s) {
   Vector3 l = Vector3::Zero();
   for (Index i = 0; i < mesh.node_count(); ++i)
-    l += s.mass[3 * i] *
-         (mesh.position(i) + s.displacement.segment<3>(3 * i)).cross(s.velocity.segment<3>(3 * i));
+    l += s.mass[3 * i] * (mesh.position(i) + s.displacement.segment<3>(3 * i)).cross(s.velocity.segment<3>(3 * i));
   return l;
 }
 
@@ -25,7 +24,8 @@ Vector3 swirl(const Vector3& p) {
   return Vector3(0.2, -0.1, 0.3) + Vector3(4.0, -3.0, 5.0).cross(r) + 6.0 * Vector3(r.y(), r.z(), -r.x());
 }
 
-/// Grows without bound when let go at this step?
+/// Whether the fastest mode grows at this step: it changes sign at every step. (A pressed block may also buckle, which
+/// grows without changing sign, at any step.)
 template <class Scheme>
 bool unstable(const HyperelasticBody<Tet4, NeoHookean>& body, const VectorX& shape, const std::vector<Index>& free,
               double dt) {
@@ -48,14 +48,21 @@ bool unstable(const HyperelasticBody<Tet4, NeoHookean>& body, const VectorX& sha
     s.force = (f - f0) / scale;
   };
   refresh();
-  for (int i = 0; i < 1500; ++i) Scheme::step(s, dt, refresh);
-  return s.displacement.norm() > 1e3 * std::sqrt(static_cast<double>(shape.size()));
+  const double start = s.displacement.norm();
+  VectorX before;
+  for (int i = 0; i < 150; ++i) {
+    before = s.displacement;
+    Scheme::step(s, dt, refresh);
+  }
+  const double size = s.displacement.norm();
+  REQUIRE(std::isfinite(size));
+  return size > 1e3 * start && s.displacement.dot(before) / size / before.norm() < -0.5;
 }
 
 template <class Scheme>
 double measured_limit(const HyperelasticBody<Tet4, NeoHookean>& body, const VectorX& shape,
                       const std::vector<Index>& free, double guess) {
-  double low = 0.7 * guess, high = 1.4 * guess;
+  double low = 0.7 * guess, high = 1.3 * guess;
   REQUIRE_FALSE(unstable<Scheme>(body, shape, free, low));
   REQUIRE(unstable<Scheme>(body, shape, free, high));
   while (high - low > 0.005 * guess) {
@@ -65,10 +72,12 @@ double measured_limit(const HyperelasticBody<Tet4, NeoHookean>& body, const Vect
   return low;
 }
 
+/// Pressed to a share of its height, and wider, so that its volume stays.
 VectorX pressed(const Mesh<Tet4>& mesh, double ratio) {
-  VectorX u = VectorX::Zero(3 * mesh.node_count());
-  for (Index i = 0; i < mesh.node_count(); ++i) u[3 * i + 2] = (ratio - 1.0) * mesh.position(i).z();
-  return u;
+  const double wider = 1.0 / std::sqrt(ratio) - 1.0;
+  return velocity_field(mesh, [&](const Vector3& p) -> Vector3 {
+    return {wider * p.x(), wider * p.y(), (ratio - 1.0) * p.z()};
+  });
 }
 
 }  // namespace
@@ -91,7 +100,7 @@ TEMPLATE_TEST_CASE("free flight keeps momentum, and swings about its energy", "[
     (i < steps / 2 ? low : late_low) = std::min(i < steps / 2 ? low : late_low, now);
     (i < steps / 2 ? high : late_high) = std::max(i < steps / 2 ? high : late_high, now);
   }
-  CHECK((momentum(mesh, s) - p).norm() <= 1e-12 * p.norm() * 10.0);
+  CHECK((momentum(mesh, s) - p).norm() <= 1e-12 * p.norm());
   CHECK((angular_momentum(mesh, s) - l).norm() <= 1e-11 * l.norm());
   const double swing = TestType::order == 2 ? 0.02 : 0.15;  // of the energy, no matter how long
   CHECK(low >= (1.0 - swing) * energy);
@@ -219,23 +228,35 @@ TEST_CASE("scrambled blocks stay finite and come to rest", "[integrator][extreme
   const Mesh<Tet4>& mesh = body.rest.mesh;
   ExplicitOptions options;
   options.damping = 60.0;
-  options.limit_every = 1;
+  options.limit_every = 1;  // the limit changes from step to step
   options.margin = 0.15;
   const std::vector<Index> free = above_ground(mesh);
   auto motion = motion_of<CentralDifference>(body, free, options);
   testing::Random random(17);
-  int settled = 0, finite = 0;
-  const int runs = 200;
-  for (int run = 0; run < runs; ++run) {
-    VectorX u = VectorX::Zero(3 * mesh.node_count());
-    for (Index dof : free) u[dof] = random.uniform(-0.05, 0.05);
-    motion.set(u, VectorX::Zero(u.size()));
-    motion.estimate_limit(10);
-    for (int i = 0; i < 4000 && !(motion.kinetic_energy() + motion.stored_energy() < 1e-8); ++i)
-      motion.step(0.7 * motion.limit());
-    finite += motion.state().displacement.allFinite() && motion.state().velocity.allFinite() ? 1 : 0;
-    settled += motion.state().displacement.norm() < 1e-3 ? 1 : 0;
+  // By less than half a cell every block finds home. By a whole cell, with most elements inside out, some find another
+  // shape that is in equilibrium, all elements upright: a corner pushed through.
+  const double cell = 0.05;
+  for (const double amount : {0.45 * cell, cell}) {
+    int inverted_at_start = 0, flagged = 0, at_rest = 0, upright = 0, home = 0;
+    const int runs = 100;
+    for (int run = 0; run < runs; ++run) {
+      VectorX u = VectorX::Zero(3 * mesh.node_count());
+      for (Index dof : free) u[dof] = random.uniform(-amount, amount);
+      motion.set(u, VectorX::Zero(u.size()));
+      inverted_at_start += motion.force().report().inverted > 0 ? 1 : 0;
+      motion.estimate_limit(10);
+      for (int i = 0; i < 6000 && (i < 100 || motion.kinetic_energy() > 1e-14); ++i)
+        flagged += motion.step(0.5 * motion.limit()).ok() ? 0 : 1;
+      REQUIRE(motion.state().displacement.allFinite());
+      at_rest += motion.kinetic_energy() <= 1e-14 ? 1 : 0;
+      upright += motion.force().report().inverted == 0 ? 1 : 0;
+      home += motion.state().displacement.norm() < 1e-3 ? 1 : 0;
+    }
+    INFO("moved by up to " << amount << " m: " << home << " of " << runs << " came home");
+    CHECK(inverted_at_start > runs / 4);
+    CHECK(flagged == 0);
+    CHECK(at_rest == runs);
+    CHECK(upright == runs);
+    CHECK(home >= (amount < cell ? runs : runs / 2));
   }
-  CHECK(finite == runs);
-  CHECK(settled >= runs - runs / 100);
 }

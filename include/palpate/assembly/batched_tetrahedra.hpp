@@ -65,8 +65,7 @@ class BatchedTetrahedra {
     for (const TetrahedronBlock& block : layout_.blocks) {
       const M law = laws_[static_cast<std::size_t>(block.region)];
       Lanes<S, N> part(S(0));
-      for_each_gradient(block, u,
-                        [&](const Batch& batch, const Gradient& f) { part += batch.volume * law.energy(f); });
+      for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) { part += batch.volume * law.energy(f); });
       for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(part[lane]);
     }
     return sum;

@@ -30,9 +30,7 @@ class StepLimit {
   /// Estimate of omega_max^2 [1/s^2].
   double largest_square() const noexcept { return square_; }
   /// Largest step [s]: (1 - margin) 2 / omega_max.
-  double step() const noexcept {
-    return std::isfinite(square_) ? (1.0 - margin_) * 2.0 / std::sqrt(square_) : 0.0;
-  }
+  double step() const noexcept { return std::isfinite(square_) ? (1.0 - margin_) * 2.0 / std::sqrt(square_) : 0.0; }
 
  private:
   /// Between -1 and 1, without pattern (the finaliser of SplitMix64).
