@@ -44,7 +44,8 @@ class BatchedTetrahedra {
     layout_ = TetrahedronBatches<S, N>(body.rest.mesh);
     rows_.assign(4 * layout_.nodes.size(), S(0));
     seen_.resize(layout_.blocks.size());
-    probe_length_ = std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * shortest_edge(body.rest.mesh);
+    probe_length_ =
+        std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * detail::shortest_edge(body.rest.mesh);
   }
 
   Index size() const noexcept { return 3 * layout_.node_count(); }
@@ -90,15 +91,7 @@ class BatchedTetrahedra {
     seen_[static_cast<std::size_t>(index)] = summary(block, watch);
   }
   void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
-    for (Index i = first_node; i < last_node; ++i) {
-      double sum[3] = {0.0, 0.0, 0.0};
-      for (Index k = layout_.first_copy[static_cast<std::size_t>(i)];
-           k < layout_.first_copy[static_cast<std::size_t>(i) + 1]; ++k) {
-        const S* row = rows_.data() + 4 * Index{layout_.copies[static_cast<std::size_t>(k)]};
-        for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(row[c]);
-      }
-      for (int c = 0; c < 3; ++c) f[3 * i + c] = sum[c];
-    }
+    layout_.add_up(rows_.data(), first_node, last_node, f);
   }
   DeformationReport report() const noexcept {
     DeformationReport all;
@@ -121,36 +114,13 @@ class BatchedTetrahedra {
   PALPATE_ALWAYS_INLINE void for_each_gradient(const TetrahedronBlock& block, const VectorX& u,
                                                Visit&& visit) const noexcept {
     alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
-    load_displacements(block, u, local);
+    layout_.load_displacements(block, u, local);
     for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
       const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
       visit(batch, batch.deformation_gradient(local));
     }
   }
 
-  static double shortest_edge(const Mesh<Tet4>& mesh) {
-    double shortest = infinity;
-    for (Index e = 0; e < mesh.element_count(); ++e) {
-      const ElementNodes<Tet4> x = element_nodes<Tet4>(mesh, e);
-      for (int a = 0; a < 4; ++a)
-        for (int b = 0; b < a; ++b) shortest = std::min(shortest, (x.row(a) - x.row(b)).norm());
-    }
-    return shortest;
-  }
-
-  /// Displacements of a block's nodes less that of the first: single precision then keeps digits of strain, not of
-  /// place.
-  void load_displacements(const TetrahedronBlock& block, const VectorX& u, S* local) const noexcept {
-    const NodeId* const nodes = layout_.nodes.data() + block.first_row;
-    const double* const from = u.data();
-    const double* const u0 = from + 3 * Index{nodes[0]};
-    const double origin[3] = {u0[0], u0[1], u0[2]};
-    for (Index r = 0; r < block.row_count; ++r) {
-      const double* const ur = from + 3 * Index{nodes[r]};
-      for (int c = 0; c < 3; ++c) local[4 * r + c] = static_cast<S>(ur[c] - origin[c]);
-      local[4 * r + 3] = S(0);
-    }
-  }
   DeformationReport summary(const TetrahedronBlock& block, const detail::VolumeWatch<S, N>& watch) const noexcept {
     DeformationReport report;
     Index upright = 0;

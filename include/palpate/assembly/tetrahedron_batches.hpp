@@ -48,6 +48,20 @@ struct TetrahedronBlock {
   int region = 0;
 };
 
+namespace detail {
+
+inline double shortest_edge(const Mesh<Tet4>& mesh) {
+  double shortest = infinity;
+  for (Index e = 0; e < mesh.element_count(); ++e) {
+    const ElementNodes<Tet4> x = element_nodes<Tet4>(mesh, e);
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < a; ++b) shortest = std::min(shortest, (x.row(a) - x.row(b)).norm());
+  }
+  return shortest;
+}
+
+}  // namespace detail
+
 /// All batches of a mesh, and where its nodes are in the blocks. 88 bytes per element in double, 48 in float; about two
 /// rows per node.
 template <class S, int N>
@@ -79,6 +93,31 @@ struct TetrahedronBatches {
   std::size_t bytes() const noexcept {
     return batches.size() * (sizeof(batches[0]) + sizeof(elements[0])) + nodes.size() * 2 * sizeof(NodeId) +
            first_copy.size() * sizeof(Index);
+  }
+
+  /// Displacements of a block's nodes less that of the first: single precision then keeps digits of strain, not of
+  /// place.
+  void load_displacements(const TetrahedronBlock& block, const VectorX& u, S* local) const noexcept {
+    const NodeId* const of_row = nodes.data() + block.first_row;
+    const double* const from = u.data();
+    const double* const u0 = from + 3 * Index{of_row[0]};
+    const double origin[3] = {u0[0], u0[1], u0[2]};
+    for (Index r = 0; r < block.row_count; ++r) {
+      const double* const ur = from + 3 * Index{of_row[r]};
+      for (int c = 0; c < 3; ++c) local[4 * r + c] = static_cast<S>(ur[c] - origin[c]);
+      local[4 * r + 3] = S(0);
+    }
+  }
+  /// f = for every node of a range, the sum of its rows of four numbers.
+  void add_up(const S* rows, Index first_node, Index last_node, VectorX& f) const noexcept {
+    for (Index i = first_node; i < last_node; ++i) {
+      double sum[3] = {0.0, 0.0, 0.0};
+      for (Index k = first_copy[static_cast<std::size_t>(i)]; k < first_copy[static_cast<std::size_t>(i) + 1]; ++k) {
+        const S* row = rows + 4 * Index{copies[static_cast<std::size_t>(k)]};
+        for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(row[c]);
+      }
+      for (int c = 0; c < 3; ++c) f[3 * i + c] = sum[c];
+    }
   }
 
  private:
