@@ -38,7 +38,8 @@ bool unstable(const HyperelasticBody<Tet4, NeoHookean>& body, const VectorX& sha
   MotionState s;
   s.displacement = s.velocity = s.force = s.load = s.target = VectorX::Zero(shape.size());
   s.mass = mass;
-  s.free = free;
+  s.inverse_mass = VectorX::Zero(shape.size());
+  for (Index dof : free) s.inverse_mass[dof] = 1.0 / mass[dof];
   for (Index dof : free) s.displacement[dof] = random.uniform(-1.0, 1.0);
   const double probe = force.probe_length();
   const auto refresh = [&]() noexcept {

@@ -26,13 +26,13 @@ struct MotionState {
   VectorX velocity;            ///< [m/s]; of held dofs that of the last step
   VectorX force;               ///< internal force at this displacement [N]
   VectorX load;                ///< external force [N]
-  VectorX mass;                ///< lumped [kg]
+  VectorX mass;          ///< lumped [kg]
+  VectorX inverse_mass;  ///< [1/kg]; zero on held dofs
+  VectorX held_speed;    ///< of held dofs in this step, in the order of `held` [m/s]
   VectorX target;              ///< where held dofs are at the end of the next step [m]; not read elsewhere
   std::vector<Index> free, held;  ///< dofs
   double damping = 0.0;        ///< alpha of the mass-proportional damping force alpha M v [1/s]
   double time = 0.0;           ///< [s]
-
-  double acceleration(Index dof) const noexcept { return (load[dof] - force[dof]) / mass[dof]; }
 };
 
 /// One step of a motion: `step(state, dt, refresh)` moves displacement and velocity over dt and calls refresh(), which

@@ -7,12 +7,20 @@ namespace palpate::inline PALPATE_ABI {
 
 namespace detail {
 
-/// Held dofs go to their targets at constant speed.
+/// Held dofs stay out of what all dofs do: their inverse mass is zero, and so is their velocity meanwhile.
+inline void leave_out_held(MotionState& s) noexcept {
+  for (Index dof : s.held) s.velocity[dof] = 0.0;
+}
+/// They go to their targets at constant speed.
 inline void move_held(MotionState& s, double dt) noexcept {
-  for (Index dof : s.held) {
-    s.velocity[dof] = (s.target[dof] - s.displacement[dof]) / dt;
+  for (std::size_t k = 0; k < s.held.size(); ++k) {
+    const Index dof = s.held[k];
+    s.held_speed[static_cast<Index>(k)] = (s.target[dof] - s.displacement[dof]) / dt;
     s.displacement[dof] = s.target[dof];
   }
+}
+inline void show_held(MotionState& s) noexcept {
+  for (std::size_t k = 0; k < s.held.size(); ++k) s.velocity[s.held[k]] = s.held_speed[static_cast<Index>(k)];
 }
 
 }  // namespace detail
@@ -28,13 +36,13 @@ struct CentralDifference {
   template <class Refresh>
   static void step(MotionState& s, double dt, Refresh&& refresh) noexcept {
     const double half = 0.5 * dt, shrink = 1.0 / (1.0 + s.damping * half), keep = 1.0 - s.damping * half;
-    for (Index dof : s.free) {
-      s.velocity[dof] = (s.velocity[dof] + half * s.acceleration(dof)) * shrink;
-      s.displacement[dof] += dt * s.velocity[dof];
-    }
+    detail::leave_out_held(s);
+    s.velocity = shrink * (s.velocity + half * (s.load - s.force).cwiseProduct(s.inverse_mass));
+    s.displacement += dt * s.velocity;
     detail::move_held(s, dt);
     refresh();
-    for (Index dof : s.free) s.velocity[dof] = s.velocity[dof] * keep + half * s.acceleration(dof);
+    s.velocity = keep * s.velocity + half * (s.load - s.force).cwiseProduct(s.inverse_mass);
+    detail::show_held(s);
     s.time += dt;
   }
 };

@@ -43,8 +43,11 @@ class ExplicitMotion {
     for (Index dof : free_dofs) is_free[static_cast<std::size_t>(dof)] = 1;
     for (Index dof = 0; dof < dofs; ++dof)
       if (is_free[static_cast<std::size_t>(dof)] == 0) state_.held.push_back(dof);
+    state_.inverse_mass = VectorX::Zero(dofs);
+    for (Index dof : free_dofs) state_.inverse_mass[dof] = 1.0 / state_.mass[dof];
     state_.damping = options.damping;
-    reactions_ = held_before_ = VectorX::Zero(static_cast<Index>(state_.held.size()));
+    total_mass_ = nodal_mass.sum();
+    state_.held_speed = reactions_ = held_before_ = VectorX::Zero(static_cast<Index>(state_.held.size()));
     restart();
     limit_.iterate(force_, state_, options_.first_iterations);
   }
@@ -112,8 +115,8 @@ class ExplicitMotion {
 
   /// Of the free dofs [J].
   double kinetic_energy() const noexcept {
-    double sum = 0.0;
-    for (Index dof : state_.free) sum += state_.mass[dof] * state_.velocity[dof] * state_.velocity[dof];
+    double sum = state_.mass.dot(state_.velocity.cwiseAbs2());
+    for (Index dof : state_.held) sum -= state_.mass[dof] * state_.velocity[dof] * state_.velocity[dof];
     return 0.5 * sum;
   }
   double stored_energy() noexcept { return force_.energy(state_.displacement); }
@@ -143,18 +146,18 @@ class ExplicitMotion {
   }
 
   void before_step() noexcept {
-    load_work_ = 0.0;
-    for (Index dof : state_.free) load_work_ -= state_.load[dof] * state_.displacement[dof];
+    load_work_ = -state_.load.dot(state_.displacement);
     for (std::size_t k = 0; k < state_.held.size(); ++k) {
       reactions_[static_cast<Index>(k)] = state_.force[state_.held[k]];
       held_before_[static_cast<Index>(k)] = state_.displacement[state_.held[k]];
     }
   }
   void after_step() noexcept {
-    for (Index dof : state_.free) load_work_ += state_.load[dof] * state_.displacement[dof];
+    load_work_ += state_.load.dot(state_.displacement);
     for (std::size_t k = 0; k < state_.held.size(); ++k) {
       const Index dof = state_.held[k], i = static_cast<Index>(k);
-      load_work_ += 0.5 * (reactions_[i] + state_.force[dof]) * (state_.displacement[dof] - held_before_[i]);
+      load_work_ +=
+          (0.5 * (reactions_[i] + state_.force[dof]) - state_.load[dof]) * (state_.displacement[dof] - held_before_[i]);
     }
     work_ += load_work_;
     gross_ += std::abs(load_work_);
@@ -162,15 +165,16 @@ class ExplicitMotion {
   bool energy_explained(double dt) noexcept {
     const double share = std::min(dt / (limit() / (1.0 - options_.margin)), 0.95);
     const double allowed = options_.energy_growth / (1.0 - share) * (start_energy_ + gross_) + rounding();
-    if (!(kinetic_energy() <= allowed)) return false;
+    const double kinetic = kinetic_energy();
+    if (!(kinetic <= allowed)) return false;
     if (steps_ % options_.energy_every != 0) return true;
-    if (!(kinetic_energy() + force_.energy(state_.displacement) <= allowed)) return false;
+    if (!(kinetic + force_.energy(state_.displacement) <= allowed)) return false;
     keep();
     return true;
   }
   /// Energy of a motion by the length that differences of forces can still see.
   double rounding() const noexcept {
-    return 0.5 * limit_.largest_square() * state_.mass.sum() * force_.probe_length() * force_.probe_length();
+    return 0.5 * limit_.largest_square() * total_mass_ * force_.probe_length() * force_.probe_length();
   }
   void keep() noexcept {
     good_.displacement = state_.displacement;
@@ -185,7 +189,7 @@ class ExplicitMotion {
   StepLimit limit_;
   Good good_;
   VectorX reactions_, held_before_;
-  double work_ = 0.0, gross_ = 0.0, load_work_ = 0.0, start_energy_ = 0.0;
+  double work_ = 0.0, gross_ = 0.0, load_work_ = 0.0, start_energy_ = 0.0, total_mass_ = 0.0;
   std::int64_t steps_ = 0;
   bool stopped_ = false;
 };

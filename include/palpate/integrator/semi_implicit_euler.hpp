@@ -14,12 +14,12 @@ struct SemiImplicitEuler {
   template <class Refresh>
   static void step(MotionState& s, double dt, Refresh&& refresh) noexcept {
     const double shrink = 1.0 / (1.0 + s.damping * dt);
-    for (Index dof : s.free) {
-      s.velocity[dof] = (s.velocity[dof] + dt * s.acceleration(dof)) * shrink;
-      s.displacement[dof] += dt * s.velocity[dof];
-    }
+    detail::leave_out_held(s);
+    s.velocity = shrink * (s.velocity + dt * (s.load - s.force).cwiseProduct(s.inverse_mass));
+    s.displacement += dt * s.velocity;
     detail::move_held(s, dt);
     refresh();
+    detail::show_held(s);
     s.time += dt;
   }
 };
