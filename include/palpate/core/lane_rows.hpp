@@ -28,6 +28,18 @@ PALPATE_ALWAYS_INLINE void add_rows_by_loops(S* rows, const Id* row, const Tripl
   }
 }
 
+/// Lanes first to first + W - 1.
+template <int W, class S, int N>
+PALPATE_ALWAYS_INLINE LaneVector<S, W> part(const Lanes<S, N>& lanes, int first) noexcept {
+  LaneVector<S, W> v;
+  std::memcpy(&v, reinterpret_cast<const S*>(&lanes.v) + first, sizeof v);
+  return v;
+}
+template <int W, class S, int N>
+PALPATE_ALWAYS_INLINE void set_part(Lanes<S, N>& lanes, int first, const LaneVector<S, W>& v) noexcept {
+  std::memcpy(reinterpret_cast<S*>(&lanes.v) + first, &v, sizeof v);
+}
+
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(PALPATE_LANES_BY_LOOPS)
 
 /// Transposes 4 x 4 blocks in vectors of W numbers, W a multiple of four that fits a register of the processor. Element
@@ -114,22 +126,12 @@ struct RowTranspose {
 template <class S, int N>
 inline constexpr int transposed_at_once = std::min<int>(N, static_cast<int>(EIGEN_MAX_STATIC_ALIGN_BYTES / sizeof(S)));
 
-/// Lanes first to first + W - 1.
-template <int W, class S, int N>
-PALPATE_ALWAYS_INLINE LaneVector<S, W> part(const Lanes<S, N>& lanes, int first) noexcept {
-  LaneVector<S, W> v;
-  std::memcpy(&v, reinterpret_cast<const S*>(&lanes.v) + first, sizeof v);
-  return v;
-}
-template <int W, class S, int N>
-PALPATE_ALWAYS_INLINE void set_part(Lanes<S, N>& lanes, int first, const LaneVector<S, W>& v) noexcept {
-  std::memcpy(reinterpret_cast<S*>(&lanes.v) + first, &v, sizeof v);
-}
-
 #else
 
 template <class S, int N>
 inline constexpr int transposed_at_once = 0;
+template <class S, int W>
+struct RowTranspose;
 
 #endif
 
