@@ -2,6 +2,9 @@
 // (post/, model/natural_frequencies.hpp).
 #pragma once
 
+#include <palpate/assembly/averaged_tetrahedra.hpp>
+#include <palpate/assembly/batched_tetrahedra.hpp>
+#include <palpate/assembly/element_frequency.hpp>
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/device/mock_device.hpp>
 #include <palpate/device/placement.hpp>
@@ -15,6 +18,9 @@
 #include <palpate/element/with_quadrature.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
+#include <palpate/integrator/explicit_motion.hpp>
+#include <palpate/integrator/linear_force.hpp>
+#include <palpate/integrator/semi_implicit_euler.hpp>
 #include <palpate/io/gmsh.hpp>
 #include <palpate/io/pvd.hpp>
 #include <palpate/io/surface_files.hpp>
