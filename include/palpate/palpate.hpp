@@ -2,9 +2,6 @@
 // (post/, model/natural_frequencies.hpp).
 #pragma once
 
-#include <palpate/assembly/averaged_tetrahedra.hpp>
-#include <palpate/assembly/batched_tetrahedra.hpp>
-#include <palpate/assembly/element_frequency.hpp>
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/device/mock_device.hpp>
 #include <palpate/device/placement.hpp>
@@ -18,26 +15,15 @@
 #include <palpate/element/with_quadrature.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
-#include <palpate/integrator/explicit_motion.hpp>
-#include <palpate/integrator/linear_force.hpp>
-#include <palpate/integrator/semi_implicit_euler.hpp>
 #include <palpate/io/gmsh.hpp>
 #include <palpate/io/pvd.hpp>
 #include <palpate/io/surface_files.hpp>
 #include <palpate/io/vtu.hpp>
 #include <palpate/io/write_msh.hpp>
-#include <palpate/material/corotational.hpp>
-#include <palpate/material/fibre_reinforced.hpp>
 #include <palpate/material/linear_elastic.hpp>
-#include <palpate/material/mooney_rivlin.hpp>
-#include <palpate/material/neo_hookean.hpp>
-#include <palpate/material/neo_hookean_isochoric.hpp>
-#include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/orthotropic.hpp>
-#include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/material/tissue_presets.hpp>
 #include <palpate/material/transversely_isotropic.hpp>
-#include <palpate/material/viscoelastic.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>
 #include <palpate/mesh/refine.hpp>

@@ -73,14 +73,15 @@ class ImplicitDynamics {
     report.deformation = deformation_;
     find_motion();
     accept();
+    stepped_ = true;
     time_ += h;
     return report;
   }
 
   /// Takes `more` forces [N] into account in the step just taken, to first order: with the tangent of its last
-  /// iteration. One solve.
+  /// iteration. One solve; nothing before the first step.
   void correct(const VectorX& more) noexcept {
-    if (h_ == 0.0) return;
+    if (!stepped_) return;
     respond(more, trial_);
     trial_ += u_;
     find_motion();
@@ -112,6 +113,7 @@ class ImplicitDynamics {
       u_[dof] = u[dof];
       v_[dof] = v[dof];
     }
+    stepped_ = false;
     find_acceleration();
   }
   /// Forces from now on instead of the scene's loads [N].
@@ -242,6 +244,7 @@ class ImplicitDynamics {
   VectorX u_, v_, a_, load_;
   VectorX trial_, predicted_, coasting_, velocity_, acceleration_, force_, full_, other_, drag_, x_, residual_;
   DeformationReport deformation_;
+  bool stepped_ = false;  // since the state was set
   double h_ = 0.0, time_ = 0.0, scale_ = 0.0, heaviest_ = 0.0;
 };
 
