@@ -1,8 +1,6 @@
-// Large strain and motion, which palpate.hpp leaves out: laws, statics, implicit and explicit motion, and tissue that moves
+// Large strain and motion, to be had beside palpate.hpp: laws, statics, implicit and explicit motion, and tissue that moves
 // while it is touched.
 #pragma once
-
-#include <palpate/palpate.hpp>
 
 #include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/batched_tetrahedra.hpp>
