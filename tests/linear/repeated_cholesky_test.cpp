@@ -69,7 +69,7 @@ TEST_CASE("factorising again and solving do not allocate", "[linear][repeated_ch
   const SparseCase c = ball_case(3);
   RepeatedCholesky repeated(CholeskyAnalysis(c.lower, c.layout));
   VectorX x = random_vector(repeated.size(), 9);
-  const testing::HeapCallScope scope;
+  const testing::AllocationScope scope;
   const bool factorised = repeated.factorise(c.lower);
   repeated.solve_into(x, x);
   const std::uint64_t allocations = scope.allocations();
