@@ -22,7 +22,7 @@ const Vector3 size(0.06, 0.06, 0.03);
 Mesh<Tet4> pad() {
   return box_tet4(size, {6, 6, 3});
 }
-Scene scene() {
+Scene pad_scene() {
   return Scene().fix("z0").touch("z1");
 }
 SoftTissueOptions options(double step) {
@@ -84,13 +84,13 @@ double ramp(double t) {
 TEST_CASE("the steady force does not depend on the step, and is that of the equilibrium", "[haptic][soft]") {
   std::vector<double> steady;
   for (const double h : {0.02, 0.01, 0.005, 0.001}) {
-    SoftTissue tissue(pad(), scene(), NeoHookean{5e3, 0.45, 1000.0}, options(h));
+    SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(h));
     const Session s = press(tissue, 2000, ramp);
     steady.push_back(s.force[2]);
     CHECK(s.status.ok());
     CHECK(s.largest_change <= 0.1 * s.force[2]);
     if (h != 0.01) continue;
-    Scene loaded = scene();
+    Scene loaded = pad_scene();
     for (const VertexForce& f : s.on_vertices)
       loaded.point_load(std::vector<NodeId>{tissue.touchable_nodes()[static_cast<std::size_t>(f.vertex)]}, f.force);
     Equilibrium statics(make_hyperelastic_body(pad(), std::vector<NeoHookean>{{5e3, 0.45, 1000.0}}), loaded);
@@ -103,16 +103,16 @@ TEST_CASE("the steady force does not depend on the step, and is that of the equi
 
 TEST_CASE("a slight touch feels as linear elasticity does", "[haptic][soft]") {
   const auto slight = [](double t) { return std::min(0.0005, 0.01 * t); };
-  SoftTissue tissue(pad(), scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
   const double soft = press(tissue, 600, slight).force[2];
-  HapticFEModel<Tet4, LinearElastic> linear(pad(), scene(), LinearElastic{5e3, 0.45, 1000.0});
+  HapticFEModel<Tet4, LinearElastic> linear(pad(), pad_scene(), LinearElastic{5e3, 0.45, 1000.0});
   HapticServo servo(linear, SphereTool{.radius = ball}, device());
   for (int k = 0; k < 600; ++k) servo.tick({std::array{above(k, slight(1e-3 * k))}});
   CHECK_THAT(soft, WithinRel(servo.contact_force()[2], 0.02));
 }
 
 TEST_CASE("a tissue that is let go comes back, and a stalled one stays elastic", "[haptic][soft]") {
-  SoftTissue tissue(pad(), scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
   press(tissue, 500, ramp);
   const double pressed = tissue.motion().displacement().norm();
   press(tissue, 1500, [](double) { return -0.01; });
@@ -134,7 +134,7 @@ TEST_CASE("a tissue that is let go comes back, and a stalled one stays elastic",
 }
 
 TEST_CASE("gravity is settled before the first touch", "[haptic][soft]") {
-  SoftTissue tissue(pad(), scene().gravity({0.0, 0.0, -9.81}), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  SoftTissue tissue(pad(), pad_scene().gravity({0.0, 0.0, -9.81}), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
   const VectorX u = tissue.motion().displacement();
   CHECK(u.norm() > 0.0);
   for (int k = 0; k < 20; ++k) tissue.advance();
@@ -142,7 +142,7 @@ TEST_CASE("gravity is settled before the first touch", "[haptic][soft]") {
 }
 
 TEST_CASE("moving tissue keeps the laws of tissues, at rest and turned", "[haptic][soft][laws]") {
-  SoftTissue tissue(pad(), scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
   CHECK(testing::describe(testing::tissue_laws(tissue, std::array{0, 24, 30, 48}, {1e-9})) == "");
   press(tissue, 500, ramp, 0.01);
   tissue.begin_tick();
@@ -151,7 +151,7 @@ TEST_CASE("moving tissue keeps the laws of tissues, at rest and turned", "[hapti
 
 TEST_CASE("neither a tick nor a step of the tissue allocates", "[haptic][soft][allocation]") {
   if (!testing::allocations_are_counted()) return;
-  SoftTissue tissue(pad(), scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
   HapticServo servo(tissue, SphereTool{.radius = ball}, device());
   const testing::AllocationScope scope;
   for (int k = 0; k < 300; ++k) {
@@ -164,7 +164,7 @@ TEST_CASE("neither a tick nor a step of the tissue allocates", "[haptic][soft][a
 }
 
 TEST_CASE("thread and ticks exchange without waiting", "[haptic][soft]") {
-  SoftTissue tissue(pad(), scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.005));
+  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.005));
   HapticServo servo(tissue, SphereTool{.radius = ball}, device());
   TissueThread thread(tissue);
   double most = 0.0;
@@ -192,8 +192,8 @@ TEST_CASE("steps and bodies that cannot be are refused", "[haptic][soft]") {
     }
     return SetupErrorKind::cancelled;
   };
-  CHECK(kind(scene(), 0.0) == SetupErrorKind::bad_argument);
-  CHECK(kind(scene(), std::numeric_limits<double>::quiet_NaN()) == SetupErrorKind::bad_argument);
+  CHECK(kind(pad_scene(), 0.0) == SetupErrorKind::bad_argument);
+  CHECK(kind(pad_scene(), std::numeric_limits<double>::quiet_NaN()) == SetupErrorKind::bad_argument);
   CHECK(kind(Scene().touch("z1"), 0.01) == SetupErrorKind::unconstrained);
   CHECK(kind(Scene().fix("nowhere").touch("z1"), 0.01) == SetupErrorKind::unknown_group);
 }
