@@ -12,7 +12,7 @@ namespace {
 
 /// Checks the load cases at large strain of a folder and returns how many there are with reference files.
 template <Element E>
-int check_folder(const std::string& folder, const std::string& element) {
+int check_large_strain(const std::string& folder, const std::string& element) {
   int checked = 0;
   test::each_load_case<E>(folder, element, solve_case::large_strain_statics, [&](const auto& mesh, const json& c) {
     if (!std::filesystem::exists(folder + '/' + c.at("name").get<std::string>() + "_reactions.csv")) return;
@@ -35,15 +35,15 @@ int check_folder(const std::string& folder, const std::string& element) {
 
 TEST_CASE("Equilibrium at large strain agrees with the reference results in the tree", "[oracle][large_strain]") {
   const std::string folder = PALPATE_TEST_DATA "/oracle";
-  CHECK(check_folder<Hex8>(folder + "/G_hyperelastic_cube/hex8", "hex8") == 18);
-  CHECK(check_folder<Tet10>(folder + "/G_hyperelastic_cube/tet10", "tet10") == 2);
-  CHECK(check_folder<Tet4>(folder + "/J_organ/tet4_2k", "tet4") == 2);
+  CHECK(check_large_strain<Hex8>(folder + "/G_hyperelastic_cube/hex8", "hex8") == 18);
+  CHECK(check_large_strain<Tet10>(folder + "/G_hyperelastic_cube/tet10", "tet10") == 2);
+  CHECK(check_large_strain<Tet4>(folder + "/J_organ/tet4_2k", "tet4") == 2);
 }
 
 TEST_CASE("Equilibrium at large strain agrees with all further reference results", "[oracle][large_strain]") {
   const int checked = test::each_reference_folder([](const std::string& folder) {
-    return check_folder<Tet4>(folder, "tet4") + check_folder<Tet10>(folder, "tet10") +
-           check_folder<Hex8>(folder, "hex8");
+    return check_large_strain<Tet4>(folder, "tet4") + check_large_strain<Tet10>(folder, "tet10") +
+           check_large_strain<Hex8>(folder, "hex8");
   });
   if (checked < 0) WARN("skipped: there is no folder " PALPATE_ORACLE_DIR);
   CHECK(checked != 0);
