@@ -8,7 +8,6 @@
 #include <palpate/haptic/tissue_thread.hpp>
 #include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
-#include <palpate/integrator/linear_force.hpp>
 #include <palpate/integrator/semi_implicit_euler.hpp>
 #include <palpate/material/corotational.hpp>
 #include <palpate/material/fibre_reinforced.hpp>

@@ -11,9 +11,8 @@ constexpr double pi = 3.14159265358979323846;
 
 template <class Scheme, Element E>
 auto linear_motion(const Body<E>& body, const std::vector<Index>& free, const ExplicitOptions& options = {}) {
-  using Force = LinearForce<decltype(assemble_stiffness<E>(body, {}))>;
-  return ExplicitMotion<Force, Scheme>(Force(assemble_stiffness<E>(body, {})), lumped_mass(body), free,
-                                       element_frequency_bound(body), options);
+  return ExplicitMotion<LinearForces, Scheme>(LinearForces(assemble_stiffness<E>(body, {})), lumped_mass(body), free,
+                                              element_frequency_bound(body), options);
 }
 
 /// Lame's mode of a cube of side 1: no change of volume, no traction on any face.

@@ -3,6 +3,7 @@
 
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/assembly/tetrahedron_batches.hpp>
+#include <palpate/mesh/quality.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -37,8 +38,7 @@ class AveragedTetrahedra {
       }
     gather_sums(inverse_volume_);
     inverse_volume_ = inverse_volume_.cwiseInverse();
-    probe_length_ =
-        std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * detail::shortest_edge(body.rest.mesh);
+    probe_length_ = std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * shortest_edge(body.rest.mesh);
   }
 
   Index size() const noexcept { return 3 * layout_.node_count(); }

@@ -4,6 +4,7 @@
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/assembly/tetrahedron_batches.hpp>
 #include <palpate/concepts/integrator.hpp>
+#include <palpate/mesh/quality.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -44,8 +45,7 @@ class BatchedTetrahedra {
     layout_ = TetrahedronBatches<S, N>(body.rest.mesh);
     rows_.assign(4 * layout_.nodes.size(), S(0));
     seen_.resize(layout_.blocks.size());
-    probe_length_ =
-        std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * detail::shortest_edge(body.rest.mesh);
+    probe_length_ = std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * shortest_edge(body.rest.mesh);
   }
 
   Index size() const noexcept { return 3 * layout_.node_count(); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
+#include <palpate/concepts/integrator.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -20,13 +21,17 @@ class ElasticForces {
  public:
   virtual ~ElasticForces() = default;
 
-  virtual Index dof_count() const noexcept = 0;
+  virtual Index size() const noexcept = 0;  ///< dofs
   /// Stored energy [J]; infinite where a law does not hold.
   virtual double energy(const VectorX& u) const noexcept = 0;
   /// Forces with which the body answers [N], derivative of the energy.
-  virtual DeformationReport internal_force(const VectorX& u, VectorX& force) const noexcept = 0;
+  virtual DeformationReport force(const VectorX& u, VectorX& f) const noexcept = 0;
   /// Derivative of the internal force, into a matrix on the pattern of the mesh. Not always positive definite.
   virtual void tangent(const VectorX& u, BlockMatrix& k) const noexcept = 0;
+  /// A displacement [m] small against the elements, with which differences of forces still have half their digits.
+  virtual double probe_length() const noexcept = 0;
 };
+
+static_assert(ForceOperator<ElasticForces>);
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -5,6 +5,7 @@
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/local/geometry.hpp>
+#include <palpate/mesh/quality.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -19,6 +20,7 @@ class LargeStrain final : public ElasticForces {
   explicit LargeStrain(HyperelasticBody<E, M> body, const SetupLimits& limits = {}) : body_(std::move(body)) {
     const Mesh<E>& mesh = body_.rest.mesh;
     limits.require_memory(static_cast<double>(mesh.element_count()) * sizeof(Points), "the gradients at rest");
+    probe_length_ = std::sqrt(std::numeric_limits<double>::epsilon()) * shortest_edge(mesh);
     points_.resize(static_cast<std::size_t>(mesh.element_count()));
     for (Index e = 0; e < mesh.element_count(); ++e) {
       const ElementNodes<E> x = element_nodes<E>(mesh, e);
@@ -35,7 +37,7 @@ class LargeStrain final : public ElasticForces {
 
   const HyperelasticBody<E, M>& body() const noexcept { return body_; }
   const Mesh<E>& mesh() const noexcept { return body_.rest.mesh; }
-  Index dof_count() const noexcept override { return 3 * mesh().node_count(); }
+  Index size() const noexcept override { return 3 * mesh().node_count(); }
 
   /// Stored energy [J]; infinite where a law does not hold.
   double energy(const VectorX& u) const noexcept override {
@@ -54,9 +56,9 @@ class LargeStrain final : public ElasticForces {
 
   /// Forces with which the body answers a displacement [N], derivative of the energy. A law that does not hold adds
   /// nothing.
-  DeformationReport internal_force(const VectorX& u, VectorX& force) const noexcept override {
+  DeformationReport force(const VectorX& u, VectorX& all) const noexcept override {
     DeformationReport report;
-    force.setZero();
+    all.setZero();
     for (Index e = 0; e < mesh().element_count(); ++e) {
       const Displacements ue = displacements(e, u);
       Displacements fe = Displacements::Zero();
@@ -71,7 +73,7 @@ class LargeStrain final : public ElasticForces {
           report.admissible = false;
       }
       report.inverted += inverted ? 1 : 0;
-      for (int a = 0; a < E::nodes; ++a) force.template segment<3>(3 * Index{mesh().element_node(e, a)}) += fe.col(a);
+      for (int a = 0; a < E::nodes; ++a) all.template segment<3>(3 * Index{mesh().element_node(e, a)}) += fe.col(a);
     }
     return report;
   }
@@ -87,6 +89,8 @@ class LargeStrain final : public ElasticForces {
       }
     }
   }
+
+  double probe_length() const noexcept override { return probe_length_; }
 
  private:
   static constexpr std::size_t point_count = E::Quadrature::points.size();
@@ -132,6 +136,7 @@ class LargeStrain final : public ElasticForces {
 
   HyperelasticBody<E, M> body_;
   std::vector<Points> points_;
+  double probe_length_ = 0.0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

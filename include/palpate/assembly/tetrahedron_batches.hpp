@@ -48,20 +48,6 @@ struct TetrahedronBlock {
   int region = 0;
 };
 
-namespace detail {
-
-inline double shortest_edge(const Mesh<Tet4>& mesh) {
-  double shortest = infinity;
-  for (Index e = 0; e < mesh.element_count(); ++e) {
-    const ElementNodes<Tet4> x = element_nodes<Tet4>(mesh, e);
-    for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < a; ++b) shortest = std::min(shortest, (x.row(a) - x.row(b)).norm());
-  }
-  return shortest;
-}
-
-}  // namespace detail
-
 /// All batches of a mesh, and where its nodes are in the blocks. 88 bytes per element in double, 48 in float; about two
 /// rows per node.
 template <class S, int N>

@@ -47,7 +47,7 @@ class Equilibrium {
   Equilibrium(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {})
       : body_(held(std::move(body), scene, limits)),
         tangent_(body_.pattern, body_.conditions, body_.positions, limits),
-        displacement_(VectorX::Zero(body_.elastic->dof_count())),
+        displacement_(VectorX::Zero(body_.elastic->size())),
         force_(displacement_),
         full_(displacement_),
         buckling_(VectorX::NullaryExpr(size(), [](Index i) { return std::sin(1.0 + static_cast<double>(i)); })),
@@ -91,7 +91,7 @@ class Equilibrium {
     report.fraction = fraction_;
     report.converged = fraction_ == 1.0;
     place(x);
-    report.deformation = body_.elastic->internal_force(displacement_, force_);
+    report.deformation = body_.elastic->force(displacement_, force_);
     report.stable = prepare(x) && tangent_.shift() == 0.0;
     return report;
   }
@@ -102,7 +102,7 @@ class Equilibrium {
   double energy() const noexcept { return body_.elastic->energy(displacement_); }
   VectorX internal_force() const {
     VectorX f(displacement_.size());
-    body_.elastic->internal_force(displacement_, f);
+    body_.elastic->force(displacement_, f);
     return f;
   }
   /// Forces of the supports, zero on free dofs, 3 per node [N].
@@ -116,7 +116,7 @@ class Equilibrium {
   Index size() const noexcept { return body_.conditions.free_count(); }
   double evaluate(const VectorX& x, VectorX& residual) noexcept {
     place(x);
-    const DeformationReport deformation = body_.elastic->internal_force(displacement_, force_);
+    const DeformationReport deformation = body_.elastic->force(displacement_, force_);
     if (!deformation.admissible) return infinity;
     scale_ = std::max(force_.norm(), fraction_ * body_.load.norm());
     full_ = fraction_ * body_.load - force_;
@@ -154,7 +154,7 @@ class Equilibrium {
   /// method.
   NewtonReport advance(Newton& newton, double to, VectorX& x) noexcept {
     if (!prepare(x)) return {};
-    body_.elastic->internal_force(displacement_, force_);
+    body_.elastic->force(displacement_, force_);
     tangent_.matrix().apply((to - fraction_) * body_.conditions.prescribed, full_);
     full_ = to * body_.load - force_ - full_;
     VectorX residual(size()), d(size());

@@ -39,7 +39,7 @@ class ImplicitDynamics {
         tangent_(body_.pattern, body_.conditions, body_.positions, limits),
         damping_(parameters.stiffness_damping > 0.0 ? make_stiffness(body_.pattern, limits) : BlockMatrix()),
         newton_(size(), parameters.newton),
-        u_(VectorX::Zero(body_.elastic->dof_count())),
+        u_(VectorX::Zero(body_.elastic->size())),
         v_(u_),
         a_(u_),
         load_(body_.load),
@@ -133,7 +133,7 @@ class ImplicitDynamics {
   Index size() const noexcept { return body_.conditions.free_count(); }
   double evaluate(const VectorX& x, VectorX& residual) noexcept {
     place(x);
-    deformation_ = body_.elastic->internal_force(trial_, force_);
+    deformation_ = body_.elastic->force(trial_, force_);
     if (!deformation_.admissible) return infinity;
     find_motion();
     apply_mass(acceleration_, full_);
@@ -225,7 +225,7 @@ class ImplicitDynamics {
     drag_ = acceleration_ = velocity_ = VectorX::Zero(u_.size());
     residual_.resize(size());
     if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
-    body_.elastic->internal_force(u_, force_);
+    body_.elastic->force(u_, force_);
     apply_damping(v_, other_);
     full_ = load_ - force_ - other_;
     body_.conditions.gather(full_, residual_);
