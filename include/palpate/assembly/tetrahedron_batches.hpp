@@ -16,28 +16,34 @@ struct TetrahedronBatch {
   Lanes<S, N> volume;               ///< at rest [m^3]
   std::uint16_t row[4][N];          ///< 4 times the place of every node among those of the block
 
-  /// F = I + sum over a = 1, 2, 3 of (u_a - u_0) grad N_a.
-  PALPATE_ALWAYS_INLINE Tensor3<Lanes<S, N>> deformation_gradient(const S* u) const noexcept {
+  /// u_a - u_0 for a = 1, 2, 3, from rows of four numbers.
+  PALPATE_ALWAYS_INLINE void differences(const S* u, Triple<Lanes<S, N>> (&d)[3]) const noexcept {
     const Triple<Lanes<S, N>> u0 = load_rows<S, N>(u, row[0]);
-    return plus_identity(outer(edge(u, row[1], u0), gradient[0]) + outer(edge(u, row[2], u0), gradient[1]) +
-                             outer(edge(u, row[3], u0), gradient[2]),
-                         Lanes<S, N>(S(1)));
+    for (int a = 0; a < 3; ++a) {
+      const Triple<Lanes<S, N>> ua = load_rows<S, N>(u, row[a + 1]);
+      d[a] = {ua.x - u0.x, ua.y - u0.y, ua.z - u0.z};
+    }
   }
-  /// f_a += V P grad N_a.
-  PALPATE_ALWAYS_INLINE void add_force(const Tensor3<Lanes<S, N>>& stress, S* force) const noexcept {
-    const Tensor3<Lanes<S, N>> p = volume * stress;
-    const Triple<Lanes<S, N>> f1 = p * gradient[0], f2 = p * gradient[1], f3 = p * gradient[2];
+  /// Adds forces on nodes 1, 2, 3, and minus their sum on node 0, to rows of four numbers.
+  PALPATE_ALWAYS_INLINE void add_balanced(const Triple<Lanes<S, N>>& f1, const Triple<Lanes<S, N>>& f2,
+                                          const Triple<Lanes<S, N>>& f3, S* force) const noexcept {
     add_rows(force, row[1], f1);
     add_rows(force, row[2], f2);
     add_rows(force, row[3], f3);
     add_rows(force, row[0], Triple<Lanes<S, N>>{-(f1.x + f2.x + f3.x), -(f1.y + f2.y + f3.y), -(f1.z + f2.z + f3.z)});
   }
 
- private:
-  PALPATE_ALWAYS_INLINE static Triple<Lanes<S, N>> edge(const S* u, const std::uint16_t* to,
-                                                        const Triple<Lanes<S, N>>& u0) noexcept {
-    const Triple<Lanes<S, N>> ua = load_rows<S, N>(u, to);
-    return {ua.x - u0.x, ua.y - u0.y, ua.z - u0.z};
+  /// F = I + sum over a = 1, 2, 3 of (u_a - u_0) grad N_a.
+  PALPATE_ALWAYS_INLINE Tensor3<Lanes<S, N>> deformation_gradient(const S* u) const noexcept {
+    Triple<Lanes<S, N>> d[3];
+    differences(u, d);
+    return plus_identity(outer(d[0], gradient[0]) + outer(d[1], gradient[1]) + outer(d[2], gradient[2]),
+                         Lanes<S, N>(S(1)));
+  }
+  /// f_a += V P grad N_a.
+  PALPATE_ALWAYS_INLINE void add_force(const Tensor3<Lanes<S, N>>& stress, S* force) const noexcept {
+    const Tensor3<Lanes<S, N>> p = volume * stress;
+    add_balanced(p * gradient[0], p * gradient[1], p * gradient[2], force);
   }
 };
 

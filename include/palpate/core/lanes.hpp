@@ -118,9 +118,16 @@ PALPATE_ALWAYS_INLINE bool all(bool mask) noexcept {
 }
 template <class S, int N>
 PALPATE_ALWAYS_INLINE bool any(const LaneMask<S, N>& mask) noexcept {
-  bool yes = false;
-  for (int i = 0; i < N; ++i) yes = yes || mask[i];
-  return yes;
+  if constexpr (sizeof(mask.v) % sizeof(std::uint64_t) == 0) {
+    std::uint64_t words[sizeof(mask.v) / sizeof(std::uint64_t)], found = 0;
+    std::memcpy(words, &mask.v, sizeof words);
+    for (const std::uint64_t word : words) found |= word;
+    return found != 0;
+  } else {
+    bool yes = false;
+    for (int i = 0; i < N; ++i) yes = yes || mask[i];
+    return yes;
+  }
 }
 template <class S, int N>
 PALPATE_ALWAYS_INLINE bool all(const LaneMask<S, N>& mask) noexcept {

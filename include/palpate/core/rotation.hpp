@@ -7,13 +7,13 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-namespace detail {
-
-/// A rotation as four numbers, real part first; of unit length only where said.
+/// A rotation as four numbers, real part first; of unit length where not said otherwise.
 template <class S>
 struct Quaternion {
   S w, x, y, z;
 };
+
+namespace detail {
 
 template <class S>
 PALPATE_ALWAYS_INLINE Quaternion<S> normalized(const Quaternion<S>& q) noexcept {
@@ -199,7 +199,7 @@ PALPATE_ALWAYS_INLINE Quaternion<S> refined(const Quaternion<S>& q, const Tensor
 /// Davenport's matrix and its characteristic polynomial as in QUEST (Shuster and Oh 1981), its eigenvector by the
 /// adjugate, one step of Newton's method after it; near a multiple eigenvalue Jacobi's method.
 template <class S>
-PALPATE_ALWAYS_INLINE Tensor3<S> closest_rotation(const Tensor3<S>& f) noexcept {
+PALPATE_ALWAYS_INLINE Quaternion<S> closest_quaternion(const Tensor3<S>& f) noexcept {
   using Scalar = scalar_of<S>;
   using std::abs;
   using std::max;
@@ -212,7 +212,12 @@ PALPATE_ALWAYS_INLINE Tensor3<S> closest_rotation(const Tensor3<S>& f) noexcept 
   const auto apart = (S(-1) * diagonal >= S(detail::eigenvalues_apart<S>) * t * t * t) & (t > S(0));  // false for NaN
   q = detail::refined(detail::normalized(q), scaled);
   if (!all(apart)) detail::jacobi_lanes(scaled, !apart, q);
-  return detail::rotation_of(q);
+  return q;
+}
+/// The same as a tensor.
+template <class S>
+PALPATE_ALWAYS_INLINE Tensor3<S> closest_rotation(const Tensor3<S>& f) noexcept {
+  return detail::rotation_of(closest_quaternion(f));
 }
 
 }  // namespace palpate::inline PALPATE_ABI

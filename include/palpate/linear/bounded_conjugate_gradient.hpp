@@ -1,0 +1,67 @@
+// Conjugate gradients for a step of time: a bounded number of iterations, and what they leave.
+#pragma once
+
+#include <palpate/concepts/linear_solver.hpp>
+
+#include <cmath>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// When to stop, and what was left.
+struct BoundedSolveParameters {
+  int maximum_iterations = 50;
+  double tolerance = 1e-3;  ///< of the answer, in the energy norm
+};
+struct BoundedSolveReport {
+  bool converged = false;
+  int iterations = 0;
+  double error = 0.0;  ///< part of the answer that the last iteration added, in the energy norm
+};
+
+/// K x = b by preconditioned conjugate gradients from zero. Every iteration adds alpha r.z to the squared energy norm
+/// of x (Hestenes and Stiefel 1952), the quantity in which CG is optimal: it stops when the last one added less than
+/// tolerance^2 of the whole. That is an estimate of the error before the last iteration, exact but for the iterations
+/// not made. No residual is recomputed. Owns its workspace; solving does not allocate.
+class BoundedConjugateGradient {
+ public:
+  BoundedConjugateGradient() = default;
+  explicit BoundedConjugateGradient(Index size) : r_(size), z_(size), p_(size), q_(size) {}
+
+  std::size_t bytes() const noexcept { return static_cast<std::size_t>(4 * r_.size()) * sizeof(double); }
+
+  /// x stays finite for a finite b: a direction without positive curvature ends it.
+  template <SpdOperator Op>
+  BoundedSolveReport solve_into(const Op& op, const VectorX& b, VectorX& x,
+                                const BoundedSolveParameters& parameters) noexcept {
+    BoundedSolveReport report;
+    x.setZero();
+    r_ = b;
+    op.precondition(r_, z_);
+    p_ = z_;
+    double rz = r_.dot(z_), whole = 0.0;
+    report.converged = rz == 0.0;
+    while (!report.converged && report.iterations < parameters.maximum_iterations) {
+      op.apply(p_, q_);
+      const double alpha = rz / p_.dot(q_);
+      if (!(alpha > 0.0 && alpha < infinity && rz < infinity)) return report;
+      x.noalias() += alpha * p_;
+      ++report.iterations;
+      whole += alpha * rz;
+      report.error = std::sqrt(alpha * rz / whole);
+      report.converged = report.error <= parameters.tolerance;
+      if (report.converged) break;
+      r_.noalias() -= alpha * q_;
+      op.precondition(r_, z_);
+      const double next = r_.dot(z_);
+      p_ = z_ + (next / rz) * p_;
+      rz = next;
+      if (rz == 0.0) report.converged = true;
+    }
+    return report;
+  }
+
+ private:
+  VectorX r_, z_, p_, q_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

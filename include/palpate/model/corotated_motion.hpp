@@ -1,0 +1,259 @@
+// Motion in time of a co-rotated body by implicit steps without a factor: fixed work per step.
+#pragma once
+
+#include <palpate/assembly/corotated_tetrahedra.hpp>
+#include <palpate/core/realtime.hpp>
+#include <palpate/integrator/time_scheme.hpp>
+#include <palpate/linear/bounded_conjugate_gradient.hpp>
+#include <palpate/model/step_preconditioners.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+struct CorotatedMotionOptions {
+  TimeScheme scheme = TimeScheme::implicit_euler();
+  double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]
+  double stiffness_damping = 0.0;  ///< Rayleigh's beta [s]
+  BoundedSolveParameters solve{};
+  int precondition_every = 16;  ///< steps between two looks at the diagonal of the stiffness
+  bool check = true;            ///< look at the potential after the step and shorten a step that raises it
+};
+
+/// What a step did.
+struct CorotatedStep {
+  bool taken = false;  ///< false: the step was not a positive number, or nothing finite came of it; nothing has changed
+  BoundedSolveReport solve{};
+  int halvings = 0;            ///< of the increment, by the check
+  double residual = infinity;  ///< force left over, of the largest force of the step; infinite without the check
+  DeformationReport deformation{};
+};
+
+/// M a + D v + f(u) = load for linear tetrahedra that turn (CorotatedTetrahedra), one linearisation per step at the
+/// state the motion coasts to (Baraff and Witkin 1998), solved by conjugate gradients on products without a matrix. A
+/// step takes up to two sweeps of forces and `solve.maximum_iterations` products; it neither allocates nor throws. What
+/// it leaves: `solve.error` of the increment, and what the rotations change within the step, which `residual` shows and
+/// the next step takes up. Where the potential of the step would rise the increment is halved. Vectors have 3 entries
+/// per node; mass is lumped. Neither copied nor moved.
+template <class Base = LinearElastic, class S = float, class Preconditioner = BlockJacobi>
+class CorotatedMotion {
+ public:
+  using Tetrahedra = CorotatedTetrahedra<Base, S>;
+  static_assert(StepPreconditioner<Preconditioner, Tetrahedra>);
+
+  /// Starts at rest without displacement. Throws what Tetrahedra and conditions throw, unsupported for initial strains,
+  /// bad_density where a free node has no mass, bad_argument for options out of range.
+  CorotatedMotion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene,
+                  const CorotatedMotionOptions& options = {}, const SetupLimits& limits = {})
+      : options_(checked(options)),
+        tetrahedra_(body, limits),
+        body_(checked(detail::deformable_body(body.rest, scene, limits), scene)),
+        mass_(body_.lumped.replicate(1, 3).transpose().reshaped()),
+        preconditioner_(body_, body.rest, limits),
+        gradients_(mass_.size()),
+        load_(body_.load) {
+    for (VectorX* v : {&u_, &v_, &a_, &predicted_, &coasting_, &trial_, &velocity_, &acceleration_, &increment_,
+                       &force_, &residual_, &other_})
+      *v = VectorX::Zero(mass_.size());
+    for (Index dof = 0; dof < mass_.size(); ++dof)
+      if (body_.conditions.is_constrained(dof)) held_.push_back(dof);
+    set_state(u_, v_);
+  }
+  CorotatedMotion(const CorotatedMotion&) = delete;
+  CorotatedMotion& operator=(const CorotatedMotion&) = delete;
+
+  /// Moves on by h [s].
+  CorotatedStep step(double h) noexcept {
+    CorotatedStep report;
+    if (!(h > 0.0 && h < infinity)) return report;
+    const FlushDenormals flush;
+    use_step(h);
+    coast();
+    const double before = evaluate(report.deformation);
+    if (!std::isfinite(before)) return report;
+    prepare();
+    report.solve = gradients_.solve_into(*this, residual_, increment_, options_.solve);
+    trial_ += increment_;
+    find_motion();
+    if (options_.check) settle(before, report);
+    if (!trial_.allFinite() || !velocity_.allFinite()) return report;
+    accept();
+    time_ += h;
+    report.taken = true;
+    return report;
+  }
+
+  /// Adds what `more` forces [N] change in the step just taken, to first order. One solve; nothing before the first
+  /// step.
+  BoundedSolveReport correct(const VectorX& more) noexcept {
+    const FlushDenormals flush;
+    if (!stepped_) return {};
+    const BoundedSolveReport report = respond(more, increment_);
+    trial_ = u_ + increment_;
+    find_motion();
+    if (trial_.allFinite() && velocity_.allFinite()) accept();
+    return report;
+  }
+  /// Displacement [m] that forces [N] add at the end of a step, to first order, with the rotations looked at last.
+  BoundedSolveReport respond(const VectorX& forces, VectorX& u) noexcept {
+    return gradients_.solve_into(*this, forces, u, options_.solve);
+  }
+  /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
+  bool prepare_response(double h) noexcept {
+    if (!(h > 0.0 && h < infinity)) return false;
+    use_step(h);
+    stepped_ = false;
+    double energy;
+    tetrahedra_.linearise(u_, force_, energy);
+    trial_ = u_;
+    prepare();
+    return std::isfinite(energy);
+  }
+
+  double time() const noexcept { return time_; }
+  const VectorX& displacement() const noexcept { return u_; }
+  const VectorX& velocity() const noexcept { return v_; }
+  const VectorX& acceleration() const noexcept { return a_; }
+  const DeformableBody& body() const noexcept { return body_; }
+  /// With what force the body answers its state [N], inertia and damping included, as the last step left it: on held
+  /// dofs minus the reaction.
+  const VectorX& resistance() noexcept {
+    double energy;
+    tetrahedra_.linearise(u_, force_, energy);
+    damp(v_, other_);
+    return other_ += force_ + mass_.cwiseProduct(a_);
+  }
+
+  /// Changes the state; prescribed components keep their values. The acceleration follows from forces and loads.
+  void set_state(const VectorX& u, const VectorX& v) noexcept {
+    for (const Index dof : body_.conditions.free_dofs) {
+      u_[dof] = u[dof];
+      v_[dof] = v[dof];
+    }
+    double energy;
+    tetrahedra_.linearise(u_, force_, energy);
+    damp(v_, other_);
+    for (const Index dof : body_.conditions.free_dofs) a_[dof] = (load_[dof] - force_[dof] - other_[dof]) / mass_[dof];
+    stepped_ = false;
+    age_ = 0;
+  }
+  /// Forces from now on instead of the scene's loads [N].
+  void set_load(const VectorX& load) noexcept { load_ = load; }
+  /// Values of the prescribed components at the end of the next step [m].
+  void set_prescribed(const VectorX& values) noexcept { body_.conditions.prescribed = values; }
+
+  double kinetic_energy() const noexcept { return 0.5 * v_.dot(mass_.cwiseProduct(v_)); }
+
+  // SpdOperator: what multiplies the increment
+  Index size() const noexcept { return mass_.size(); }
+  void apply(const VectorX& x, VectorX& y) const noexcept {
+    tetrahedra_.apply(x, y);
+    y = factors_.stiffness * y + factors_.mass * mass_.cwiseProduct(x);
+  }
+  void precondition(const VectorX& r, VectorX& z) const noexcept { preconditioner_.apply(r, z); }
+
+ private:
+  static CorotatedMotionOptions checked(const CorotatedMotionOptions& o) {
+    for (const double d : {o.mass_damping, o.stiffness_damping})
+      if (!(d >= 0.0 && d < infinity))
+        raise(SetupErrorKind::bad_argument, "a damping of " + number(d), "Give 0 or a positive number");
+    for (const double c : {o.scheme.new_in_u, o.scheme.new_in_v})
+      if (!(c > 0.0)) raise(SetupErrorKind::bad_argument, "the time scheme is explicit", "Use central differences");
+    if (o.solve.maximum_iterations < 1 || !(o.solve.tolerance >= 0.0) || o.precondition_every < 1)
+      raise(SetupErrorKind::bad_argument, "a step without work",
+            "Give at least one iteration and a tolerance in (0, 1)");
+    return o;
+  }
+  static DeformableBody checked(DeformableBody body, const Scene& scene) {
+    if (!scene.initial_strains().empty())
+      raise(SetupErrorKind::unsupported, "initial strains at large deformation", "Use a linear material");
+    for (Index i = 0; i < body.lumped.size(); ++i)
+      if (!(body.lumped[i] > 0.0) && body.conditions.constrained[static_cast<std::size_t>(i)] != 7)
+        raise(SetupErrorKind::bad_density, "node " + std::to_string(i) + " has no mass",
+              "Give every region a density in kg/m^3");
+    return body;
+  }
+
+  void use_step(double h) noexcept {
+    if (h != h_) age_ = 0;
+    h_ = h;
+    const TimeScheme& s = options_.scheme;
+    const double per_u = 1.0 / (s.new_in_u * h * h), per_v = s.new_in_v / (s.new_in_u * h);
+    factors_ = {per_u + options_.mass_damping * per_v, 1.0 + options_.stiffness_damping * per_v};
+  }
+  void prepare() noexcept {
+    preconditioner_.update(tetrahedra_, factors_, trial_, age_ % options_.precondition_every == 0);
+    ++age_;
+  }
+
+  /// Where the step would end without new acceleration, held dofs where they are told to be.
+  void coast() noexcept {
+    const TimeScheme& s = options_.scheme;
+    predicted_ = u_ + h_ * v_ + (s.old_in_u * h_ * h_) * a_;
+    coasting_ = v_ + (s.old_in_v * h_) * a_;
+    trial_ = predicted_;
+    for (const Index dof : held_) trial_[dof] = body_.conditions.prescribed[dof];
+    find_motion();
+  }
+  /// Velocity and acceleration at the end of the step from the displacement there.
+  void find_motion() noexcept {
+    const TimeScheme& s = options_.scheme;
+    acceleration_ = (trial_ - predicted_) / (s.new_in_u * h_ * h_);
+    velocity_ = coasting_ + (s.new_in_v * h_) * acceleration_;
+  }
+  void accept() noexcept {
+    u_ = trial_;
+    v_ = velocity_;
+    a_ = acceleration_;
+    stepped_ = true;
+  }
+  void damp(const VectorX& v, VectorX& f) noexcept {
+    if (options_.stiffness_damping > 0.0) {
+      tetrahedra_.apply(v, f);
+      f *= options_.stiffness_damping;
+    } else {
+      f.setZero();
+    }
+    if (options_.mass_damping > 0.0) f += options_.mass_damping * mass_.cwiseProduct(v);
+  }
+
+  /// Potential of the step at trial_, and the force that is left there on free dofs.
+  double evaluate(DeformationReport& deformation) noexcept {
+    const TimeScheme& s = options_.scheme;
+    double potential;
+    deformation = tetrahedra_.linearise(trial_, force_, potential);
+    damp(velocity_, other_);
+    potential += 0.5 * h_ * s.new_in_u / s.new_in_v * velocity_.dot(other_) - load_.dot(trial_);
+    residual_ = load_ - force_ - other_;
+    other_ = mass_.cwiseProduct(acceleration_);
+    residual_ -= other_;
+    for (const Index dof : held_) residual_[dof] = 0.0;
+    return potential + 0.5 * s.new_in_u * h_ * h_ * acceleration_.dot(other_);
+  }
+  /// Halves the increment while the potential is above that before it by more than rounding.
+  void settle(double before, CorotatedStep& report) noexcept {
+    const double noise = std::numeric_limits<S>::epsilon() * (std::abs(before) + force_.norm() * trial_.norm());
+    for (;; ++report.halvings) {
+      const double after = evaluate(report.deformation);
+      report.residual = residual_.norm() / std::max({force_.norm(), other_.norm(), load_.norm()});
+      if (after <= before + noise || report.halvings == 6) return;
+      increment_ *= 0.5;
+      trial_ -= increment_;
+      find_motion();
+    }
+  }
+
+  CorotatedMotionOptions options_;
+  Tetrahedra tetrahedra_;
+  DeformableBody body_;
+  VectorX mass_;  // of every dof
+  Preconditioner preconditioner_;
+  BoundedConjugateGradient gradients_;
+  std::vector<Index> held_;
+  VectorX u_, v_, a_, load_;
+  VectorX predicted_, coasting_, trial_, velocity_, acceleration_, increment_, force_, residual_, other_;
+  StepFactors factors_;
+  bool stepped_ = false;  // since the state was set
+  int age_ = 0;           // of the preconditioner, in steps
+  double h_ = 0.0, time_ = 0.0;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

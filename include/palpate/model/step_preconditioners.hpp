@@ -1,0 +1,145 @@
+// Approximate inverses of what an implicit step of a co-rotated body multiplies its increment by.
+#pragma once
+
+#include <palpate/model/deformable_body.hpp>
+#include <palpate/model/nodal_rotation.hpp>
+#include <palpate/model/tangent_solver.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// A = mass M + stiffness K.
+struct StepFactors {
+  double mass = 0.0, stiffness = 0.0;
+};
+
+/// What CorotatedMotion wants of a preconditioner P for A:
+///   P(body, rest, limits)                          set-up
+///   update(tetrahedra, factors, u, anew) noexcept  before the solves of a step; `anew` when it is due, or factors
+///   changed apply(r, z) noexcept                           z = P^-1 r; zero on held dofs
+template <class P, class Tetrahedra>
+concept StepPreconditioner = std::constructible_from < P,
+        const DeformableBody&, const Body<Tet4>
+&, const SetupLimits& > &&requires(P& p, const P& fixed, const Tetrahedra& tetrahedra, const StepFactors& factors,
+                                   const VectorX& u, VectorX& z) {
+  { p.update(tetrahedra, factors, u, true) }
+  noexcept;
+  { fixed.apply(u, z) }
+  noexcept;
+};
+
+/// The inverse 3 x 3 blocks of A on the diagonal, looked at when due. One product of blocks per application.
+class BlockJacobi {
+ public:
+  BlockJacobi(const DeformableBody& body, const Body<Tet4>&, const SetupLimits&)
+      : lumped_(body.lumped),
+        constrained_(body.conditions.constrained),
+        straight_(3 * lumped_.size()),
+        mixed_(straight_) {
+    inverse_.resize(constrained_.size(), Matrix3::Zero());
+  }
+
+  template <class Tetrahedra>
+  void update(const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX&, bool anew) noexcept {
+    if (!anew) return;
+    tetrahedra.diagonal_blocks(straight_, mixed_);
+    for (std::size_t i = 0; i < inverse_.size(); ++i) {
+      const auto at = 3 * static_cast<Index>(i);
+      const Vector3 d = straight_.segment<3>(at), m = mixed_.segment<3>(at);
+      Matrix3 a;
+      a << d.x(), m.x(), m.y(), m.x(), d.y(), m.z(), m.y(), m.z(), d.z();
+      a *= factors.stiffness;
+      a.diagonal().array() += factors.mass * lumped_[static_cast<Index>(i)];
+      hold(constrained_[i], a, inverse_[i]);
+    }
+  }
+  void apply(const VectorX& r, VectorX& z) const noexcept {
+    for (std::size_t i = 0; i < inverse_.size(); ++i) {
+      const auto at = 3 * static_cast<Index>(i);
+      z.segment<3>(at).noalias() = inverse_[i] * r.segment<3>(at);
+    }
+  }
+
+ private:
+  /// Inverse of the free part of a block, zero elsewhere.
+  static void hold(std::uint8_t constrained, Matrix3& a, Matrix3& inverse) noexcept {
+    for (int c = 0; c < 3; ++c)
+      if (((constrained >> c) & 1u) != 0) {
+        a.row(c).setZero();
+        a.col(c).setZero();
+        a(c, c) = 1.0;
+      }
+    inverse = a.inverse();
+    for (int c = 0; c < 3; ++c)
+      if (((constrained >> c) & 1u) != 0) inverse(c, c) = 0.0;
+  }
+
+  VectorX lumped_;
+  std::vector<std::uint8_t> constrained_;
+  std::vector<Matrix3> inverse_;
+  VectorX straight_, mixed_;
+};
+
+/// The factor of A at rest, between the rotations of the nodes: R (M + K0)^-1 R^T. Exact for a body that turns as a
+/// whole, good where neighbours turn alike; wins where steps are long. Factorised again when the factors of M and K
+/// change, which takes as long as it takes; rotations are fitted in every step.
+class TurnedFactor {
+ public:
+  TurnedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
+      : conditions_(body.conditions),
+        lumped_(body.lumped),
+        stiffness_(assemble_stiffness<Tet4>(rest, limits)),
+        solver_(body.pattern, conditions_, body.positions, limits),
+        rotations_(body.pattern, body.positions, all_nodes(lumped_.size())),
+        turn_(static_cast<std::size_t>(lumped_.size()), Matrix3::Identity()),
+        full_(3 * lumped_.size()),
+        x_(conditions_.free_count()) {}
+  TurnedFactor(const TurnedFactor&) = delete;
+  TurnedFactor& operator=(const TurnedFactor&) = delete;
+
+  template <class Tetrahedra>
+  void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool) noexcept {
+    if (factors.mass != factors_.mass || factors.stiffness != factors_.stiffness) {
+      BlockMatrix& a = solver_.matrix();
+      a.set_zero();
+      a.add(factors.stiffness, stiffness_);
+      for (Index i = 0; i < lumped_.size(); ++i)
+        a.block(a.pattern().diagonal(i)).diagonal().array() += factors.mass * lumped_[i];
+      solver_.factorise();
+      factors_ = factors;
+    }
+    for (std::size_t i = 0; i < turn_.size(); ++i) turn_[i] = rotations_(i, u);
+  }
+  void apply(const VectorX& r, VectorX& z) const noexcept {
+    for (std::size_t i = 0; i < turn_.size(); ++i) {
+      const auto at = 3 * static_cast<Index>(i);
+      full_.segment<3>(at).noalias() = turn_[i].transpose() * r.segment<3>(at);
+    }
+    conditions_.gather(full_, x_);
+    solver_.solve(x_, x_);
+    conditions_.scatter(x_, full_);
+    for (std::size_t i = 0; i < turn_.size(); ++i) {
+      const auto at = 3 * static_cast<Index>(i);
+      z.segment<3>(at).noalias() = turn_[i] * full_.segment<3>(at);
+    }
+    for (Index dof = 0; dof < z.size(); ++dof)
+      if (conditions_.is_constrained(dof)) z[dof] = 0.0;
+  }
+
+ private:
+  static std::vector<NodeId> all_nodes(Index count) {
+    std::vector<NodeId> nodes(static_cast<std::size_t>(count));
+    std::iota(nodes.begin(), nodes.end(), NodeId{0});
+    return nodes;
+  }
+
+  EssentialConditions conditions_;
+  VectorX lumped_;
+  BlockMatrix stiffness_;
+  mutable TangentSolver solver_;
+  NodalRotations rotations_;
+  std::vector<Matrix3> turn_;
+  StepFactors factors_;
+  mutable VectorX full_, x_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI
