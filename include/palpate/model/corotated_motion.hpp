@@ -14,25 +14,28 @@ struct CorotatedMotionOptions {
   double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]
   double stiffness_damping = 0.0;  ///< Rayleigh's beta [s]
   BoundedSolveParameters solve{};
-  int precondition_every = 16;  ///< steps between two looks at the diagonal of the stiffness
-  bool check = true;            ///< look at the potential after the step and shorten a step that raises it
+  int precondition_every = 16;     ///< steps between two looks at the diagonal of the stiffness
+  bool check = true;               ///< hold the energy after a step against that before it: one more sweep of forces
+  int maximum_linearisations = 8;  ///< of a step whose check fails; one is enough for all but wild ones
 };
 
 /// What a step did.
 struct CorotatedStep {
   bool taken = false;  ///< false: the step was not a positive number, or nothing finite came of it; nothing has changed
-  BoundedSolveReport solve{};
-  int halvings = 0;            ///< of the increment, by the check
+  BoundedSolveReport solve{};  ///< the last one
+  int linearisations = 0;
+  bool calm = true;            ///< false: checked, and the energy is still above that at the start of the step
   double residual = infinity;  ///< force left over, of the largest force of the step; infinite without the check
   DeformationReport deformation{};
 };
 
-/// M a + D v + f(u) = load for linear tetrahedra that turn (CorotatedTetrahedra), one linearisation per step at the
-/// state the motion coasts to (Baraff and Witkin 1998), solved by conjugate gradients on products without a matrix. A
-/// step takes up to two sweeps of forces and `solve.maximum_iterations` products; it neither allocates nor throws. What
-/// it leaves: `solve.error` of the increment, and what the rotations change within the step, which `residual` shows and
-/// the next step takes up. Where the potential of the step would rise the increment is halved. Vectors have 3 entries
-/// per node; mass is lumped. Neither copied nor moved.
+/// M a + D v + f(u) = load for linear tetrahedra that turn (CorotatedTetrahedra), linearised at the state the motion
+/// coasts to (Baraff and Witkin 1998) and solved by conjugate gradients on products without a matrix. A step takes up
+/// to two sweeps of forces and `solve.maximum_iterations` products; it neither allocates nor throws. What it leaves:
+/// `solve.error` of the increment, and what the rotations change within the step, which `residual` shows and the next
+/// step takes up. The check keeps implicit Euler from adding energy: the potential of the step must end no higher than
+/// at the state it starts from, else it is linearised again. Vectors have 3 entries per node; mass is lumped. Neither
+/// copied nor moved.
 template <class Base = LinearElastic, class S = float, class Preconditioner = BlockJacobi>
 class CorotatedMotion {
  public:
@@ -51,7 +54,7 @@ class CorotatedMotion {
         gradients_(mass_.size()),
         load_(body_.load) {
     for (VectorX* v : {&u_, &v_, &a_, &predicted_, &coasting_, &trial_, &velocity_, &acceleration_, &increment_,
-                       &force_, &residual_, &other_})
+                       &force_, &residual_, &drag_, &inertia_})
       *v = VectorX::Zero(mass_.size());
     for (Index dof = 0; dof < mass_.size(); ++dof)
       if (body_.conditions.is_constrained(dof)) held_.push_back(dof);
@@ -66,16 +69,22 @@ class CorotatedMotion {
     if (!(h > 0.0 && h < infinity)) return report;
     const FlushDenormals flush;
     use_step(h);
+    predict();
+    const double highest = options_.check ? limit() : infinity;
     coast();
-    const double before = evaluate(report.deformation);
-    if (!std::isfinite(before)) return report;
-    prepare();
-    report.solve = gradients_.solve_into(*this, residual_, increment_, options_.solve);
-    trial_ += increment_;
-    find_motion();
-    if (options_.check) settle(before, report);
+    double reached = evaluate(report.deformation);
+    if (!std::isfinite(reached)) return report;
+    do {
+      prepare();
+      report.solve = gradients_.solve_into(*this, residual_, increment_, options_.solve);
+      trial_ += increment_;
+      find_motion();
+      ++report.linearisations;
+      if (options_.check) report.calm = settle(highest, reached, report);
+    } while (!report.calm && report.linearisations < options_.maximum_linearisations);
     if (!trial_.allFinite() || !velocity_.allFinite()) return report;
     accept();
+    energy_known_ = options_.check;
     time_ += h;
     report.taken = true;
     return report;
@@ -89,7 +98,9 @@ class CorotatedMotion {
     const BoundedSolveReport report = respond(more, increment_);
     trial_ = u_ + increment_;
     find_motion();
-    if (trial_.allFinite() && velocity_.allFinite()) accept();
+    if (!trial_.allFinite() || !velocity_.allFinite()) return report;
+    accept();
+    energy_known_ = energy_known_ && report.iterations == 0;
     return report;
   }
   /// Displacement [m] that forces [N] add at the end of a step, to first order, with the rotations looked at last.
@@ -101,11 +112,11 @@ class CorotatedMotion {
     if (!(h > 0.0 && h < infinity)) return false;
     use_step(h);
     stepped_ = false;
-    double energy;
-    tetrahedra_.linearise(u_, force_, energy);
+    tetrahedra_.linearise(u_, force_, energy_);
+    energy_known_ = true;
     trial_ = u_;
     prepare();
-    return std::isfinite(energy);
+    return std::isfinite(energy_);
   }
 
   double time() const noexcept { return time_; }
@@ -116,10 +127,9 @@ class CorotatedMotion {
   /// With what force the body answers its state [N], inertia and damping included, as the last step left it: on held
   /// dofs minus the reaction.
   const VectorX& resistance() noexcept {
-    double energy;
-    tetrahedra_.linearise(u_, force_, energy);
-    damp(v_, other_);
-    return other_ += force_ + mass_.cwiseProduct(a_);
+    tetrahedra_.linearise(u_, force_, energy_);
+    damp(v_, drag_);
+    return drag_ += force_ + mass_.cwiseProduct(a_);
   }
 
   /// Changes the state; prescribed components keep their values. The acceleration follows from forces and loads.
@@ -128,10 +138,10 @@ class CorotatedMotion {
       u_[dof] = u[dof];
       v_[dof] = v[dof];
     }
-    double energy;
-    tetrahedra_.linearise(u_, force_, energy);
-    damp(v_, other_);
-    for (const Index dof : body_.conditions.free_dofs) a_[dof] = (load_[dof] - force_[dof] - other_[dof]) / mass_[dof];
+    tetrahedra_.linearise(u_, force_, energy_);
+    damp(v_, drag_);
+    for (const Index dof : body_.conditions.free_dofs) a_[dof] = (load_[dof] - force_[dof] - drag_[dof]) / mass_[dof];
+    energy_known_ = true;
     stepped_ = false;
     age_ = 0;
   }
@@ -157,7 +167,8 @@ class CorotatedMotion {
         raise(SetupErrorKind::bad_argument, "a damping of " + number(d), "Give 0 or a positive number");
     for (const double c : {o.scheme.new_in_u, o.scheme.new_in_v})
       if (!(c > 0.0)) raise(SetupErrorKind::bad_argument, "the time scheme is explicit", "Use central differences");
-    if (o.solve.maximum_iterations < 1 || !(o.solve.tolerance >= 0.0) || o.precondition_every < 1)
+    if (o.solve.maximum_iterations < 1 || !(o.solve.tolerance >= 0.0) || o.precondition_every < 1 ||
+        o.maximum_linearisations < 1)
       raise(SetupErrorKind::bad_argument, "a step without work",
             "Give at least one iteration and a tolerance in (0, 1)");
     return o;
@@ -184,11 +195,13 @@ class CorotatedMotion {
     ++age_;
   }
 
-  /// Where the step would end without new acceleration, held dofs where they are told to be.
-  void coast() noexcept {
+  void predict() noexcept {
     const TimeScheme& s = options_.scheme;
     predicted_ = u_ + h_ * v_ + (s.old_in_u * h_ * h_) * a_;
     coasting_ = v_ + (s.old_in_v * h_) * a_;
+  }
+  /// Where the step would end without new acceleration, held dofs where they are told to be.
+  void coast() noexcept {
     trial_ = predicted_;
     for (const Index dof : held_) trial_[dof] = body_.conditions.prescribed[dof];
     find_motion();
@@ -203,6 +216,7 @@ class CorotatedMotion {
     u_ = trial_;
     v_ = velocity_;
     a_ = acceleration_;
+    energy_ = trial_energy_;
     stepped_ = true;
   }
   void damp(const VectorX& v, VectorX& f) noexcept {
@@ -215,30 +229,44 @@ class CorotatedMotion {
     if (options_.mass_damping > 0.0) f += options_.mass_damping * mass_.cwiseProduct(v);
   }
 
-  /// Potential of the step at trial_, and the force that is left there on free dofs.
-  double evaluate(DeformationReport& deformation) noexcept {
+  /// Potential of the step at trial_, given the energy stored there; leaves drag and inertia.
+  double potential(double stored) noexcept {
     const TimeScheme& s = options_.scheme;
-    double potential;
-    deformation = tetrahedra_.linearise(trial_, force_, potential);
-    damp(velocity_, other_);
-    potential += 0.5 * h_ * s.new_in_u / s.new_in_v * velocity_.dot(other_) - load_.dot(trial_);
-    residual_ = load_ - force_ - other_;
-    other_ = mass_.cwiseProduct(acceleration_);
-    residual_ -= other_;
-    for (const Index dof : held_) residual_[dof] = 0.0;
-    return potential + 0.5 * s.new_in_u * h_ * h_ * acceleration_.dot(other_);
+    damp(velocity_, drag_);
+    inertia_ = mass_.cwiseProduct(acceleration_);
+    return stored - load_.dot(trial_) + 0.5 * h_ * s.new_in_u / s.new_in_v * velocity_.dot(drag_) +
+           0.5 * s.new_in_u * h_ * h_ * acceleration_.dot(inertia_);
   }
-  /// Halves the increment while the potential is above that before it by more than rounding.
-  void settle(double before, CorotatedStep& report) noexcept {
-    const double noise = std::numeric_limits<S>::epsilon() * (std::abs(before) + force_.norm() * trial_.norm());
-    for (;; ++report.halvings) {
-      const double after = evaluate(report.deformation);
-      report.residual = residual_.norm() / std::max({force_.norm(), other_.norm(), load_.norm()});
-      if (after <= before + noise || report.halvings == 6) return;
+  /// The same with the force that is left there on free dofs.
+  double evaluate(DeformationReport& deformation) noexcept {
+    deformation = tetrahedra_.linearise(trial_, force_, trial_energy_);
+    const double at_trial = potential(trial_energy_);
+    residual_ = load_ - force_ - drag_ - inertia_;
+    for (const Index dof : held_) residual_[dof] = 0.0;
+    return at_trial;
+  }
+  /// Potential of the step at the state it starts from; no limit where held dofs move, which does work.
+  double limit() noexcept {
+    for (const Index dof : held_)
+      if (u_[dof] != body_.conditions.prescribed[dof]) return infinity;
+    if (!energy_known_) tetrahedra_.linearise(u_, force_, energy_);
+    trial_ = u_;
+    find_motion();
+    return potential(energy_);
+  }
+  /// Halves the increment until the potential is no higher than before it; true when it is within the limit as well.
+  bool settle(double highest, double& reached, CorotatedStep& report) noexcept {
+    const double before = reached,
+                 noise = std::numeric_limits<S>::epsilon() * (std::abs(before) + force_.norm() * trial_.norm());
+    for (int halvings = 0;; ++halvings) {
+      reached = evaluate(report.deformation);
+      if (reached <= before + noise || halvings == 6) break;
       increment_ *= 0.5;
       trial_ -= increment_;
       find_motion();
     }
+    report.residual = residual_.norm() / std::max({force_.norm(), inertia_.norm(), load_.norm()});
+    return reached <= highest + noise;
   }
 
   CorotatedMotionOptions options_;
@@ -249,10 +277,12 @@ class CorotatedMotion {
   BoundedConjugateGradient gradients_;
   std::vector<Index> held_;
   VectorX u_, v_, a_, load_;
-  VectorX predicted_, coasting_, trial_, velocity_, acceleration_, increment_, force_, residual_, other_;
+  VectorX predicted_, coasting_, trial_, velocity_, acceleration_, increment_, force_, residual_, drag_, inertia_;
   StepFactors factors_;
-  bool stepped_ = false;  // since the state was set
-  int age_ = 0;           // of the preconditioner, in steps
+  double energy_ = 0.0, trial_energy_ = 0.0;  // stored
+  bool energy_known_ = false;                 // at the present state
+  bool stepped_ = false;                      // since the state was set
+  int age_ = 0;                               // of the preconditioner, in steps
   double h_ = 0.0, time_ = 0.0;
 };
 

@@ -1,0 +1,92 @@
+// The parts of the program.
+#pragma once
+
+#include <palpate/model/corotated_motion.hpp>
+
+#include "../common/bodies.hpp"
+#include "../common/row.hpp"
+#include "../common/timing.hpp"
+
+#include <memory>
+#include <numbers>
+
+namespace implicit_path {
+
+using namespace palpate;
+
+using Law = Corotational<LinearElastic>;
+
+/// The standard block under its weight, held below; a patch in the middle of its top is pressed 20 mm down and up
+/// again, twice a second.
+struct Pressing {
+  bench::Held block;
+  HyperelasticBody<Tet4, Law> body;
+  Scene scene;
+
+  explicit Pressing(int n)
+      : block(bench::standard_block(n)), body(make_hyperelastic_body(block.mesh, std::vector<Law>{{bench::tissue}})) {
+    scene.fix(block.held).fix(block.touched).gravity(Vector3(0.0, 0.0, -9.81));
+  }
+  double tets() const { return static_cast<double>(body.rest.mesh.element_count()); }
+  /// Values of held dofs at a time [m].
+  VectorX held_at(double time) const {
+    VectorX u = VectorX::Zero(3 * body.rest.mesh.node_count());
+    for (const NodeId node : block.touched)
+      u[3 * Index{node} + 2] = -0.01 * (1.0 - std::cos(4.0 * std::numbers::pi * time));
+    return u;
+  }
+  /// Force on the patch [N] when every node answers with `resistance`.
+  Vector3 force_on_patch(const VectorX& resistance) const {
+    Vector3 sum = Vector3::Zero();
+    for (const NodeId node : block.touched) sum += resistance.segment<3>(3 * Index{node});
+    return sum;
+  }
+};
+
+/// A step as one writes it with Eigen: closest rotations by Mueller's iteration (2016) from the last ones, stiffness of
+/// every element turned and added to a sparse matrix at places known beforehand, Eigen's conjugate gradients with its
+/// diagonal preconditioner.
+class PlainEigenStep {
+ public:
+  PlainEigenStep(const Pressing& pressing, double tolerance);
+  void set_state(const VectorX& u, const VectorX& v) {
+    u_ = u;
+    v_ = v;
+  }
+  void step(double h, const VectorX& held);
+  const VectorX& displacement() const noexcept { return u_; }
+  const VectorX& velocity() const noexcept { return v_; }
+  long iterations() const noexcept { return iterations_; }
+
+ private:
+  using Matrix12 = Eigen::Matrix<double, 12, 12>;
+  struct Element {
+    std::array<NodeId, 4> nodes;
+    Eigen::Matrix<double, 4, 3> gradient;
+    Matrix12 stiffness;
+    double volume = 0.0;
+    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+    std::array<Index, 144> place;  // of every entry among the values; -1: held
+  };
+  void turn(Element& e) const;
+  void add(Element& e, const VectorX& predicted, VectorX& residual);
+
+  std::vector<Element> elements_;
+  EssentialConditions conditions_;
+  VectorX mass_, load_, u_, v_;
+  SparseMatrix a_;
+  std::vector<Index> diagonal_;
+  double tolerance_;
+  long iterations_ = 0;
+};
+
+/// Rows (n) and (o): steps of a block of n cells a side against plain Eigen, and what every short cut leaves.
+void measure_steps(bench::RowFile& rows, int n, double budget);
+/// The same block under its weight in Bullet, where that is installed.
+void measure_bullet(bench::RowFile& rows, int n);
+/// Block Jacobi against the factor that turns, over the length of a step.
+void measure_preconditioners(bench::RowFile& rows, int n);
+/// The largest block that steps a millisecond in a millisecond, by material and integrator.
+void measure_largest(bench::RowFile& rows);
+
+}  // namespace implicit_path

@@ -1,0 +1,187 @@
+// Steps of a pressed block: their time, and how far they are from steps solved to the end.
+#include "implicit.hpp"
+
+#include <palpate/assembly/large_strain.hpp>
+#include <palpate/model/implicit_dynamics.hpp>
+
+namespace implicit_path {
+namespace {
+
+/// One step of any motion from given velocities.
+struct Judge {
+  const Pressing& pressing;
+  double h;
+  LargeStrain<Tet4, Law> force;
+  ImplicitDynamics solved;
+  CorotatedMotion<LinearElastic, double> norm;  // for products with M + h^2 K
+  double increment = 0.0, contact = 0.0;        // worst errors so far
+
+  Judge(const Pressing& p, double step)
+      : pressing(p),
+        h(step),
+        force(p.body),
+        solved(make_deformable_body(p.body, p.scene), {.newton = {.maximum_iterations = 60, .tolerance = 1e-10}}),
+        norm(p.body, p.scene) {}
+
+  double length(const VectorX& x) {
+    VectorX y(x.size());
+    norm.apply(x, y);
+    return std::sqrt(x.dot(y));
+  }
+  Vector3 contact_force(const VectorX& u) const {
+    VectorX f(u.size());
+    force.force(u, f);
+    return pressing.force_on_patch(f);
+  }
+  /// From (u0, v0) a step to held(time) ended in (u, v): how far from where it should have?
+  void look(const VectorX& u0, const VectorX& v0, double time, const VectorX& u, const VectorX& v) {
+    solved.set_state(u0, v0);
+    solved.set_prescribed(pressing.held_at(time));
+    if (!solved.step(h).newton.converged) throw std::runtime_error("the reference step did not converge");
+    norm.set_state(u0, v0);
+    norm.prepare_response(h);
+    VectorX gained = solved.velocity() - v0, missed = solved.velocity() - v;
+    for (Index dof = 0; dof < gained.size(); ++dof)
+      if (solved.body().conditions.is_constrained(dof)) gained[dof] = missed[dof] = 0.0;
+    increment = std::max(increment, length(missed) / length(gained));
+    const Vector3 wanted = contact_force(solved.displacement());
+    contact = std::max(contact, (contact_force(u) - wanted).norm() / wanted.norm());
+  }
+};
+
+struct Measured {
+  double time = bench::unknown, iterations = 0.0, increment = 0.0, contact = 0.0;
+
+  std::string text() const {
+    char t[120];
+    std::snprintf(t, sizeof t, ", %.1f iterations, increment %.1e, force %.1e off", iterations, increment, contact);
+    return bench::milliseconds(time) + t;
+  }
+};
+
+constexpr int steps = 240, look_every = 30;
+
+/// `step(held)` moves on; the times of all steps are kept, every 30th is judged.
+template <class Motion, class Step>
+Measured run(const Pressing& pressing, double h, Motion& motion, Step&& step, std::vector<double>* times = nullptr) {
+  Judge judge(pressing, h);
+  Measured m;
+  std::vector<double> own;
+  for (int k = 1; k <= steps; ++k) {
+    const VectorX held = pressing.held_at(k * h), u = motion.displacement(), v = motion.velocity();
+    own.push_back(bench::seconds_of([&] { m.iterations += static_cast<double>(step(held)); }));
+    if (k % look_every == 0) judge.look(u, v, k * h, motion.displacement(), motion.velocity());
+  }
+  m.time = bench::percentile(own, 0.5);
+  m.iterations /= steps;
+  m.increment = judge.increment;
+  m.contact = judge.contact;
+  if (times != nullptr) *times = std::move(own);
+  return m;
+}
+
+template <class S, class Preconditioner = BlockJacobi>
+Measured run_ours(const Pressing& pressing, double h, const CorotatedMotionOptions& options) {
+  CorotatedMotion<LinearElastic, S, Preconditioner> motion(pressing.body, pressing.scene, options);
+  return run(pressing, h, motion, [&](const VectorX& held) {
+    motion.set_prescribed(held);
+    return motion.step(h).solve.iterations;
+  });
+}
+Measured run_plain(const Pressing& pressing, double h, double tolerance) {
+  PlainEigenStep motion(pressing, tolerance);
+  return run(pressing, h, motion, [&](const VectorX& held) {
+    const long before = motion.iterations();
+    motion.step(h, held);
+    return motion.iterations() - before;
+  });
+}
+
+/// What a haptic step asks for: one percent.
+CorotatedMotionOptions usual() {
+  CorotatedMotionOptions options;
+  options.solve.tolerance = 3e-3;
+  return options;
+}
+std::string converged(const Measured& m) {
+  return m.increment <= 0.01 && m.contact <= 0.01 ? "" : "not within one percent";
+}
+std::string block_of(const Pressing& p) {
+  return std::to_string(p.body.rest.mesh.element_count()) + " tets";
+}
+
+void add_short_cut(bench::RowFile& rows, const Pressing& pressing, const char* what, const Measured& m,
+                   const Measured& usual_one) {
+  rows.add({.target = "o",
+            .what = std::string("implicit step of ") + block_of(pressing) + ": " + what,
+            .figure = m.text(),
+            .baseline = bench::milliseconds(usual_one.time),
+            .ratio = m.time / usual_one.time,
+            .bound = {},
+            .error = std::isfinite(m.increment) ? "" : "not finite"});
+}
+
+}  // namespace
+
+void measure_steps(bench::RowFile& rows, int n, double budget) {
+  const Pressing pressing(n);
+  const double h = 1e-3;
+  const Measured ours = run_ours<float>(pressing, h, usual());
+  rows.add({.target = "n",
+            .what = "implicit co-rotated step of 1 ms, float, " + block_of(pressing),
+            .figure = ours.text(),
+            .baseline = bench::milliseconds(budget),
+            .ratio = budget / ours.time,
+            .bound = bench::at_least(1.0),
+            .error = converged(ours)});
+  const Measured plain = run_plain(pressing, h, 1e-2);
+  const Measured again = run_ours<float>(pressing, h, usual());  // on both sides of the baseline
+  const double time = 0.5 * (ours.time + again.time);
+  rows.add({.target = "n",
+            .what = "the same against plain Eigen, assembled, conjugate gradients to 1e-2",
+            .figure = bench::with_unit(1e9 * time / pressing.tets(), "ns/tet"),
+            .baseline = bench::with_unit(1e9 * plain.time / pressing.tets(), "ns/tet") + ": " + plain.text(),
+            .ratio = plain.time / time,
+            .bound = bench::at_least(5.6),
+            .error = converged(plain)});
+  CorotatedMotionOptions o = usual();
+  add_short_cut(rows, pressing, "double", run_ours<double>(pressing, h, o), ours);
+  o.check = false;
+  add_short_cut(rows, pressing, "without the check", run_ours<float>(pressing, h, o), ours);
+  o = usual();
+  o.solve = {1, 0.0};
+  add_short_cut(rows, pressing, "one iteration", run_ours<float>(pressing, h, o), ours);
+  o.solve = {2, 0.0};
+  add_short_cut(rows, pressing, "two iterations", run_ours<float>(pressing, h, o), ours);
+  o.solve = {4, 0.0};
+  add_short_cut(rows, pressing, "four iterations", run_ours<float>(pressing, h, o), ours);
+  o.solve = {200, 1e-7};
+  add_short_cut(rows, pressing, "solved to 1e-7", run_ours<float>(pressing, h, o), ours);
+  o = usual();
+  o.precondition_every = 1000000;
+  add_short_cut(rows, pressing, "preconditioner of the first step kept", run_ours<float>(pressing, h, o), ours);
+  o.precondition_every = 1;
+  add_short_cut(rows, pressing, "preconditioner renewed in every step", run_ours<float>(pressing, h, o), ours);
+}
+
+void measure_preconditioners(bench::RowFile& rows, int n) {
+  const Pressing pressing(n);
+  for (const double h : {1e-3, 4e-3, 16e-3}) {
+    const Measured jacobi = run_ours<float>(pressing, h, usual());
+    const Measured turned = run_ours<float, TurnedFactor>(pressing, h, usual());
+    CorotatedMotionOptions two = usual();
+    two.solve = {2, 0.0};
+    const Measured fixed = run_ours<float, TurnedFactor>(pressing, h, two);
+    const std::string what = "step of " + bench::milliseconds(h) + ", " + block_of(pressing);
+    for (const auto& [name, m] : {std::pair{"the factor that turns", turned}, {"the same, two iterations", fixed}})
+      rows.add({.target = "o",
+                .what = what + ", " + name,
+                .figure = m.text(),
+                .baseline = "block Jacobi: " + jacobi.text(),
+                .ratio = jacobi.time / m.time,
+                .bound = {},
+                .error = std::isfinite(m.increment) && std::isfinite(jacobi.increment) ? "" : "not finite"});
+  }
+}
+
+}  // namespace implicit_path
