@@ -17,7 +17,6 @@ namespace implicit_path {
 namespace {
 
 constexpr double h = 1e-3, together = 0.2;  // [s]
-
 /// The block under its weight: implicit Euler, co-rotated linear elasticity without damping.
 class BulletBlock {
  public:
@@ -29,6 +28,7 @@ class BulletBlock {
     world_.getWorldInfo().m_gravity = gravity;
     world_.setImplicit(true);
     world_.setLineSearch(false);
+    world_.setUseProjection(true);  // with its other way of holding nodes, version 3.24 does not move at all
     const Mesh<Tet4>& mesh = pressing.body.rest.mesh;
     std::vector<btVector3> x;
     for (const Vector3& p : mesh.positions) x.emplace_back(btScalar(p.x()), btScalar(p.y()), btScalar(p.z()));
@@ -39,9 +39,10 @@ class BulletBlock {
     for (const auto& e : mesh.elements) body_->appendTetra(e[0], e[1], e[2], e[3]);
     for (const NodeId node : pressing.block.held) body_->setMass(node, 0);
     body_->initializeDmInverse();
+    body_->m_tetraScratches.resize(body_->m_tetras.size());
+    body_->m_tetraScratchesTn.resize(body_->m_tetras.size());
     body_->m_cfg.collisions = 0;
     body_->setSelfCollision(false);
-    body_->setDampingCoefficient(0);
     body_->m_sleepingThreshold = 0;
     world_.addSoftBody(body_);
     const auto mu = static_cast<btScalar>(bench::tissue.shear_modulus()),
