@@ -119,3 +119,21 @@ TEST_CASE("Newton's method gives up where there is no minimum, and starts over w
   CHECK(at_once.converged);
   CHECK(at_once.iterations == 0);
 }
+
+TEST_CASE("parameters that mean nothing are refused", "[integrator][newton][extreme]") {
+  const auto refused = [](const NewtonParameters& p) {
+    try {
+      Newton newton(2, p);
+    } catch (const SetupError& error) {
+      return error.kind() == SetupErrorKind::bad_argument;
+    }
+    return false;
+  };
+  CHECK_FALSE(refused({}));
+  CHECK_FALSE(refused({.maximum_iterations = 0, .tolerance = 0.0, .maximum_halvings = 0}));
+  CHECK(refused({.maximum_iterations = -1}));
+  CHECK(refused({.maximum_halvings = -1}));
+  for (const double tolerance : {-1e-10, std::nan(""), infinity}) CHECK(refused({.tolerance = tolerance}));
+}
+
+static_assert(NewtonProblem<Rosenbrock> && NewtonProblem<Barrier>);

@@ -3,28 +3,11 @@
 
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/assembly/tetrahedron_batches.hpp>
+#include <palpate/assembly/volume_watch.hpp>
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/mesh/quality.hpp>
 
 namespace palpate::inline PALPATE_ABI {
-
-namespace detail {
-
-/// Least J, in which batch, how many are positive, and whether one is not finite, per lane.
-template <class S, int N>
-struct VolumeWatch {
-  Lanes<S, N> smallest{std::numeric_limits<S>::infinity()}, batch{S(-1)}, upright{S(0)}, broken{S(0)};
-
-  PALPATE_ALWAYS_INLINE void see(const Lanes<S, N>& j, S at) noexcept {
-    const auto ahead = j < smallest;
-    smallest = select(ahead, j, smallest);
-    batch = select(ahead, Lanes<S, N>(at), batch);
-    broken += j - j;  // zero, or NaN from then on
-    upright += select(j > Lanes<S, N>(S(0)), Lanes<S, N>(S(1)), Lanes<S, N>(S(0)));
-  }
-};
-
-}  // namespace detail
 
 /// Total Lagrangian force of linear tetrahedra (Miller, Joldes, Lance, Wittek 2007): F from gradients at rest, f_a = V
 /// P grad N_a, Lanes<S, N> of elements at once. Elements lie in blocks of 512 that are added up in the cache first,
@@ -37,10 +20,12 @@ class BatchedTetrahedra {
   using Material = M;
 
   BatchedTetrahedra() = default;
-  /// Throws inverted_element, non_finite, or what the law of a region says in its check().
+  /// Throws inverted_element, non_finite, unsupported for a law with fibres on a mesh that has some, or what the law of
+  /// a region says in its check().
   explicit BatchedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {}) : laws_(body.laws) {
     for (const M& law : laws_)
       if (auto problem = law.check()) raise(std::move(*problem));
+    require_no_fibres(body);
     limits.require_memory(static_cast<double>(body.rest.mesh.element_count()) * 160.0, "the batches of elements");
     layout_ = TetrahedronBatches<S, N>(body.rest.mesh);
     rows_.assign(4 * layout_.nodes.size(), S(0));
@@ -82,27 +67,18 @@ class BatchedTetrahedra {
     std::fill(rows, rows + 4 * block.row_count, S(0));
     const M law = laws_[static_cast<std::size_t>(block.region)];
     detail::VolumeWatch<S, N> watch;
-    S at = S(0);
     for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
-      watch.see(determinant(f, cofactor(f)), at);
-      at += S(1);
+      watch.see(determinant(f, cofactor(f)), batch.volume);
       batch.add_force(law.stress(f), rows);
     });
-    seen_[static_cast<std::size_t>(index)] = summary(block, watch);
+    seen_[static_cast<std::size_t>(index)] = watch.summary(layout_, block, M::survives_inversion);
   }
   void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
     layout_.add_up(rows_.data(), first_node, last_node, f);
   }
   DeformationReport report() const noexcept {
     DeformationReport all;
-    for (const DeformationReport& part : seen_) {
-      if (part.smallest_volume_ratio < all.smallest_volume_ratio) {
-        all.smallest_volume_ratio = part.smallest_volume_ratio;
-        all.worst_element = part.worst_element;
-      }
-      all.inverted += part.inverted;
-      all.admissible = all.admissible && part.admissible;
-    }
+    for (const DeformationReport& part : seen_) detail::add_report(part, all);
     return all;
   }
 
@@ -119,22 +95,6 @@ class BatchedTetrahedra {
       const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
       visit(batch, batch.deformation_gradient(local));
     }
-  }
-
-  DeformationReport summary(const TetrahedronBlock& block, const detail::VolumeWatch<S, N>& watch) const noexcept {
-    DeformationReport report;
-    Index upright = 0;
-    for (int lane = 0; lane < N; ++lane) {
-      upright += static_cast<Index>(watch.upright[lane]);
-      report.admissible = report.admissible && watch.broken[lane] == S(0);
-      if (!(watch.smallest[lane] < report.smallest_volume_ratio)) continue;
-      report.smallest_volume_ratio = static_cast<double>(watch.smallest[lane]);
-      const auto at = static_cast<std::size_t>(block.first_batch + static_cast<Index>(watch.batch[lane]));
-      report.worst_element = layout_.elements[at][static_cast<std::size_t>(lane)];
-    }
-    report.inverted = block.batch_count * N - upright;
-    report.admissible = report.admissible && (M::survives_inversion || report.inverted == 0);
-    return report;
   }
 
   TetrahedronBatches<S, N> layout_;

@@ -11,7 +11,7 @@ namespace palpate::inline PALPATE_ABI {
 /// constant volume, which in compressible tissue lets pulled fibres swell it. Fibres that are not pulled do nothing:
 /// energy and stress are continuous at |F a| = 1, the stiffness jumps by 4 k1 there, and rest_elasticity is that of the
 /// base. Where the mesh has fibre directions these count, elsewhere `fibre`. Admissible: base admissible, k1 >= 0, k2 >
-/// 0, `fibre` a unit vector to within 1e-5. F is refused where the base refuses it or k2 E^2 exceeds 60, which is 1e26
+/// 0, `fibre` a unit vector to within 1e-5. F is refused where the base refuses it or k2 E^2 exceeds 40, which is 2e17
 /// times the stiffness of small pulls; beyond, the exponent stays there, so that the stress is finite in float as well.
 /// Cost of stress: base, one exponential per number.
 template <HyperelasticMaterial Base>
