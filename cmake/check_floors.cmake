@@ -24,7 +24,6 @@ set(room_post          6     both)
 set(room_io            6     both)
 set(room_testing       7     both)
 set(room_version.hpp   0     common)
-set(room_fwd.hpp       8     roof)
 set(room_palpate.hpp   9     roof)
 set(room_soft.hpp      10    roof)
 

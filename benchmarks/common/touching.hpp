@@ -5,6 +5,8 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
+#include <numbers>
+
 #include "bodies.hpp"
 #include "timing.hpp"
 
@@ -72,7 +74,7 @@ class Touching {
 
   // A device.
   ToolState read() noexcept {
-    const double angle = 2.0 * 3.14159265358979 * (count_ % ticks_around) / ticks_around;
+    const double angle = 2.0 * std::numbers::pi * (count_ % ticks_around) / ticks_around;
     ToolState state;
     state.position << 0.23 * cell + orbit * std::cos(angle), 0.41 * cell + orbit * std::sin(angle), radius - depth_;
     state.time = 1e-3 * static_cast<double>(++count_);

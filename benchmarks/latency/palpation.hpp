@@ -4,6 +4,8 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
+#include <numbers>
+
 #include "block.hpp"
 #include "sampling.hpp"
 
@@ -41,7 +43,7 @@ class Palpation {
   double depth() const noexcept { return depth_; }
 
   palpate::Vector3 tick() noexcept {
-    const double angle = 2.0 * 3.14159265358979 * (count_ % ticks_around) / ticks_around;
+    const double angle = 2.0 * std::numbers::pi * (count_ % ticks_around) / ticks_around;
     state_.position << 0.23 * cell + orbit * std::cos(angle), 0.41 * cell + orbit * std::sin(angle),
         height + radius - depth_;
     return hold();

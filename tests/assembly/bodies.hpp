@@ -11,6 +11,7 @@
 #include <functional>
 
 #include "catch.hpp"
+#include "refused.hpp"
 
 namespace test {
 
@@ -26,28 +27,6 @@ Body<E> body_of(Mesh<E> mesh, std::vector<LinearElastic> materials) {
   materials.resize(mesh.region_names.size(), LinearElastic(materials.back()));
   return make_body(std::move(mesh), materials);
 }
-
-/// The problem with which `what` is refused.
-inline SetupProblem refusal(const std::function<void()>& what) {
-  try {
-    what();
-  } catch (const SetupError& error) {
-    return error.problem();
-  }
-  FAIL_CHECK("accepted, and must not be");
-  return {};
-}
-
-/// The kind as a word, "accepted" when nothing is refused.
-inline std::string refusal_kind(const std::function<void()>& what) {
-  try {
-    what();
-  } catch (const SetupError& error) {
-    return std::string(to_string(error.kind()));
-  }
-  return "accepted";
-}
-#define CHECK_REFUSED(expected, ...) CHECK(test::refusal_kind([&] { __VA_ARGS__; }) == palpate::to_string(expected))
 
 /// Moves every node by up to `amount`, except those on the faces of the box [0, size].
 inline Mesh<Tet4> jittered(Mesh<Tet4> mesh, double amount, const Vector3& size) {

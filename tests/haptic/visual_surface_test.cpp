@@ -8,6 +8,7 @@
 #include <palpate/testing/tissue_laws.hpp>
 
 #include <atomic>
+#include <numbers>
 #include <thread>
 
 #include "catch.hpp"
@@ -211,7 +212,7 @@ TEST_CASE("one model in a group feels as it does alone", "[contact][group]") {
 TEST_CASE("two halves of a scene are felt at once, each in its pose", "[contact][group]") {
   Model left(block(), scene(), soft), right(block(), scene(), {3e4, 0.3, 1000.0});
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.rotate(Eigen::AngleAxisd(3.14159265358979323846, Vector3::UnitZ()));  // the right one turned about
+  pose.rotate(Eigen::AngleAxisd(std::numbers::pi, Vector3::UnitZ()));  // the right one turned about
   pose.pretranslate(Vector3(0.0405, 0.02, 0.0));                             // half a millimetre beside the left one
   right.set_pose(pose);
   TissueGroup group(left, right);

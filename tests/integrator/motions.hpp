@@ -51,6 +51,21 @@ NeoHookeanMotion<Scheme, S> motion_of(const HyperelasticBody<Tet4, NeoHookean>& 
           options};
 }
 
+/// Linear [kg m/s] and angular [kg m^2/s] momentum, about the origin.
+struct Momenta {
+  Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
+};
+template <Element E>
+Momenta momenta(const Mesh<E>& mesh, const MotionState& s) {
+  Momenta m;
+  for (Index i = 0; i < mesh.node_count(); ++i) {
+    const Vector3 p = s.mass[3 * i] * s.velocity.segment<3>(3 * i);
+    m.linear += p;
+    m.angular += (mesh.position(i) + s.displacement.segment<3>(3 * i)).cross(p);
+  }
+  return m;
+}
+
 /// A velocity of every node [m/s].
 template <Element E>
 VectorX velocity_field(const Mesh<E>& mesh, const std::function<Vector3(const Vector3&)>& v) {

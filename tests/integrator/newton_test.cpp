@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include "catch.hpp"
+#include "refused.hpp"
 
 using namespace palpate;
 
@@ -118,4 +119,13 @@ TEST_CASE("Newton's method gives up where there is no minimum, and starts over w
   const NewtonReport at_once = Newton(1).solve(barrier, x);
   CHECK(at_once.converged);
   CHECK(at_once.iterations == 0);
+}
+
+TEST_CASE("parameters that mean nothing are refused", "[integrator][newton][extreme]") {
+  const auto make = [](const NewtonParameters& p) { Newton newton(2, p); };
+  make({.maximum_iterations = 0, .tolerance = 0.0, .maximum_halvings = 0});
+  CHECK_REFUSED(SetupErrorKind::bad_argument, make({.maximum_iterations = -1}));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, make({.maximum_halvings = -1}));
+  for (const double tolerance : {-1e-10, std::nan(""), infinity})
+    CHECK_REFUSED(SetupErrorKind::bad_argument, make({.tolerance = tolerance}));
 }

@@ -95,6 +95,11 @@ TEST_CASE("a pull beyond the exponential is refused and finite", "[material][lar
   const Tensor3<double> f = Tensor3<double>::diagonal(4.0, 4.0, 4.0), far = 1e3 * Tensor3<double>::identity();
   CHECK_FALSE(fibred.admits(f));
   CHECK_FALSE(fibred.admits(far));
+  for (const double exponent : {39.9, 40.1}) {  // of the least stretch that is refused: k2 E^2 = 40
+    const double stretch = std::sqrt(1.0 + std::sqrt(exponent / fibred.k2));
+    CHECK(fibred.admits(stretch * Tensor3<double>::identity()) == (exponent < Muscle::largest_exponent));
+  }
+  CHECK(Muscle::largest_exponent == 40.0);
   CHECK(all_finite(fibred.stress(f)));
   CHECK(all_finite(fibred.stress(far)));
   Tensor3<float> single;

@@ -5,10 +5,8 @@
 #include <palpate/testing/hyperelastic_laws.hpp>
 #include <palpate/testing/material_laws.hpp>
 
-#include <fstream>
-#include <sstream>
-
 #include "catch.hpp"
+#include "number_rows.hpp"
 
 using namespace palpate;
 using Catch::Matchers::WithinAbs;
@@ -24,16 +22,7 @@ Linear cube(Relaxation relaxation) {
 }
 
 std::vector<std::vector<double>> table(const std::string& name) {
-  std::ifstream file(PALPATE_TEST_DATA "/oracle/K_viscoelastic_cube/" + name);
-  std::vector<std::vector<double>> rows;
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    std::istringstream in(line);
-    rows.emplace_back();
-    for (std::string word; std::getline(in, word, ',');) rows.back().push_back(std::stod(word));
-  }
-  return rows;
+  return test::read_rows(PALPATE_TEST_DATA "/oracle/K_viscoelastic_cube/" + name, 1);
 }
 
 Vector6 axial(double along, double across) {

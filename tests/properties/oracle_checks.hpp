@@ -14,6 +14,10 @@ using solve_case::json;
 
 inline constexpr double oracle_tolerance = 1e-6;  // of the largest value: the reference is printed with 7 digits
 
+/// What a test says that finds no folder with further reference results and so checks nothing.
+inline const std::string no_further_results =
+    "nothing was checked: PALPATE_ORACLE_DIR names no folder with reference results: '" PALPATE_ORACLE_DIR "'";
+
 /// A table by node id.
 using Table = std::map<Index, std::vector<double>>;
 

@@ -3,6 +3,7 @@
 
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/assembly/tetrahedron_batches.hpp>
+#include <palpate/assembly/volume_watch.hpp>
 #include <palpate/mesh/quality.hpp>
 
 namespace palpate::inline PALPATE_ABI {
@@ -11,26 +12,30 @@ namespace palpate::inline PALPATE_ABI {
 /// the elements around it by volume, J' of an element the mean of its nodes, and the law sees F' = (J'/J)^(1/3) F.
 /// Theirs uses V P(F') grad N_a as the force, which derives from no energy; here the force is the whole derivative of
 ///   sum over elements of V W(F'),
-/// so that energy and angular momentum are kept, for one more sweep over the elements: three in all. At small strain it
-/// is the element Smoothed<Tet4> is. Below J = 0.1 an element counts as 0.1 in the ratio, so that the force stays
-/// finite; elements that are inside out do not come back as surely as those of BatchedTetrahedra. Laws, vectors and
-/// allocation as there.
+/// so that energy and angular momentum are kept, for one more sweep over the elements: three in all. Averages stop
+/// where the region changes: a node between two has a J in each. Not the element that Smoothed<Tet4> is at small
+/// strain: that one averages the change of volume once, to nodes, and the change of shape over edges as well; here
+/// shape is each element's own. Below J = 0.1 an element counts as 0.1 in the ratio, so that the force stays finite;
+/// elements that are inside out do not come back as surely as those of BatchedTetrahedra. Laws, vectors and allocation
+/// as there.
 template <HyperelasticMaterial M, class S = double, int N = 64 / sizeof(S)>
 class AveragedTetrahedra {
  public:
   using Material = M;
 
   AveragedTetrahedra() = default;
-  /// Throws inverted_element, non_finite, or what the law of a region says in its check().
+  /// Throws inverted_element, non_finite, unsupported for a law with fibres on a mesh that has some, or what the law of
+  /// a region says in its check().
   explicit AveragedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {})
       : laws_(body.laws) {
     for (const M& law : laws_)
       if (auto problem = law.check()) raise(std::move(*problem));
+    require_no_fibres(body);
     limits.require_memory(static_cast<double>(body.rest.mesh.element_count()) * 180.0, "the batches of elements");
     layout_ = TetrahedronBatches<S, N>(body.rest.mesh);
     rows_.assign(4 * layout_.nodes.size(), S(0));
     sums_.assign(layout_.nodes.size(), S(0));
-    inverse_volume_ = volume_ratio_ = pressure_ = VectorX::Ones(layout_.node_count());
+    place_averages();
     for (const TetrahedronBlock& block : layout_.blocks)
       for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
         const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
@@ -44,9 +49,10 @@ class AveragedTetrahedra {
   Index size() const noexcept { return 3 * layout_.node_count(); }
   double probe_length() const noexcept { return probe_length_; }
 
-  /// force = internal force at displacement u [N].
-  void force(const VectorX& u, VectorX& f) noexcept {
-    average_volumes(u);
+  /// force = internal force at displacement u [N]. The report is of the elements' own J; a law that needs J > 0 counts
+  /// as not holding where that is not so.
+  DeformationReport force(const VectorX& u, VectorX& f) noexcept {
+    const DeformationReport report = average_volumes(u);
     clear(sums_);
     for_each_element(u, [&](const TetrahedronBlock& block, const Batch& batch, const Gradient& gradient) {
       const Averaged a = averaged(block, batch, gradient);
@@ -64,6 +70,7 @@ class AveragedTetrahedra {
       batch.add_force(a.ratio * a.stress + (around - own) * cofactor(gradient), rows_.data() + 4 * block.first_row);
     });
     layout_.add_up(rows_.data(), 0, layout_.node_count(), f);
+    return report;
   }
 
   /// Stored energy, of which force() is the derivative [J].
@@ -105,12 +112,12 @@ class AveragedTetrahedra {
     a.pressure = S(1.0 / 3.0) * contract(a.stress, seen);
     return a;
   }
-  Number mean_of_nodes(const TetrahedronBlock& block, const Batch& batch, const VectorX& nodal) const noexcept {
-    const NodeId* const nodes = layout_.nodes.data() + block.first_row;
+  Number mean_of_nodes(const TetrahedronBlock& block, const Batch& batch, const VectorX& averages) const noexcept {
+    const std::int32_t* const places = place_.data() + block.first_row;
     Number mean;
     for (int lane = 0; lane < N; ++lane) {
       double sum = 0.0;
-      for (int a = 0; a < 4; ++a) sum += nodal[nodes[batch.row[a][lane] / 4]];
+      for (int a = 0; a < 4; ++a) sum += averages[places[batch.row[a][lane] / 4]];
       mean.set(lane, static_cast<S>(0.25 * sum));
     }
     return mean;
@@ -119,39 +126,60 @@ class AveragedTetrahedra {
     for (int lane = 0; lane < N; ++lane)
       for (int a = 0; a < 4; ++a) sums[batch.row[a][lane] / 4] += value[lane];
   }
-  void gather_sums(VectorX& nodal) const noexcept {
-    for (Index i = 0; i < layout_.node_count(); ++i) {
-      double sum = 0.0;
-      for (Index k = layout_.first_copy[static_cast<std::size_t>(i)];
-           k < layout_.first_copy[static_cast<std::size_t>(i) + 1]; ++k)
-        sum += static_cast<double>(sums_[static_cast<std::size_t>(layout_.copies[static_cast<std::size_t>(k)])]);
-      nodal[i] = sum;
-    }
+  /// Numbers the averages: one per node and region that has elements there.
+  void place_averages() {
+    std::vector<std::pair<NodeId, int>> pairs;
+    for (const TetrahedronBlock& block : layout_.blocks)
+      for (Index r = 0; r < block.row_count; ++r)
+        pairs.emplace_back(layout_.nodes[static_cast<std::size_t>(block.first_row + r)], block.region);
+    auto sorted = pairs;
+    std::ranges::sort(sorted);
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+    for (const auto& pair : pairs)
+      place_.push_back(static_cast<std::int32_t>(std::ranges::lower_bound(sorted, pair) - sorted.begin()));
+    inverse_volume_ = volume_ratio_ = pressure_ = VectorX::Ones(static_cast<Index>(sorted.size()));
   }
-  void average_volumes(const VectorX& u) noexcept {
+  void gather_sums(VectorX& averages) const noexcept {
+    averages.setZero();
+    for (std::size_t r = 0; r < place_.size(); ++r) averages[place_[r]] += static_cast<double>(sums_[r]);
+  }
+  DeformationReport average_volumes(const VectorX& u) noexcept {
+    DeformationReport report;
     clear(sums_);
-    for_each_element(u, [&](const TetrahedronBlock& block, const Batch& batch, const Gradient& gradient) {
-      add_to_rows(batch, sums_.data() + block.first_row, batch.volume * determinant(gradient));
-    });
+    for (const TetrahedronBlock& block : layout_.blocks) {
+      detail::VolumeWatch<S, N> watch;
+      for_each_of(block, u, [&](const Batch& batch, const Gradient& gradient) {
+        const Number j = determinant(gradient);
+        watch.see(j, batch.volume);
+        add_to_rows(batch, sums_.data() + block.first_row, batch.volume * j);
+      });
+      detail::add_report(watch.summary(layout_, block, M::survives_inversion), report);
+    }
     gather_sums(volume_ratio_);
     volume_ratio_ = volume_ratio_.cwiseProduct(inverse_volume_);
+    return report;
+  }
+  template <class Visit>
+  PALPATE_ALWAYS_INLINE void for_each_of(const TetrahedronBlock& block, const VectorX& u,
+                                         Visit&& visit) const noexcept {
+    alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
+    layout_.load_displacements(block, u, local);
+    for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
+      const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
+      visit(batch, batch.deformation_gradient(local));
+    }
   }
   template <class Visit>
   PALPATE_ALWAYS_INLINE void for_each_element(const VectorX& u, Visit&& visit) const noexcept {
-    for (const TetrahedronBlock& block : layout_.blocks) {
-      alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
-      layout_.load_displacements(block, u, local);
-      for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
-        const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
-        visit(block, batch, batch.deformation_gradient(local));
-      }
-    }
+    for (const TetrahedronBlock& block : layout_.blocks)
+      for_each_of(block, u, [&](const Batch& batch, const Gradient& gradient) { visit(block, batch, gradient); });
   }
 
   TetrahedronBatches<S, N> layout_;
   std::vector<M> laws_;                               // by region
   std::vector<S> rows_, sums_;                        // by row: force, four numbers; a number
-  VectorX inverse_volume_, volume_ratio_, pressure_;  // by node; the volume is that of all elements around it
+  std::vector<std::int32_t> place_;                   // by row: which average
+  VectorX inverse_volume_, volume_ratio_, pressure_;  // by node and region; the volume is that of its elements there
   double probe_length_ = 0.0;
 };
 

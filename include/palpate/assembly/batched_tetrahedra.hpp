@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/large_strain.hpp>
+#include <palpate/assembly/tetrahedron_batches.hpp>
 #include <palpate/assembly/volume_watch.hpp>
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/mesh/quality.hpp>
@@ -19,10 +20,12 @@ class BatchedTetrahedra {
   using Material = M;
 
   BatchedTetrahedra() = default;
-  /// Throws inverted_element, non_finite, or what the law of a region says in its check().
+  /// Throws inverted_element, non_finite, unsupported for a law with fibres on a mesh that has some, or what the law of
+  /// a region says in its check().
   explicit BatchedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {}) : laws_(body.laws) {
     for (const M& law : laws_)
       if (auto problem = law.check()) raise(std::move(*problem));
+    require_no_fibres(body);
     limits.require_memory(static_cast<double>(body.rest.mesh.element_count()) * 160.0, "the batches of elements");
     layout_ = TetrahedronBatches<S, N>(body.rest.mesh);
     rows_.assign(4 * layout_.nodes.size(), S(0));
@@ -68,12 +71,16 @@ class BatchedTetrahedra {
       watch.see(determinant(f, cofactor(f)), batch.volume);
       batch.add_force(law.stress(f), rows);
     });
-    seen_[static_cast<std::size_t>(index)] = watch.report(layout_, block, M::survives_inversion);
+    seen_[static_cast<std::size_t>(index)] = watch.summary(layout_, block, M::survives_inversion);
   }
   void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
     layout_.add_up(rows_.data(), first_node, last_node, f);
   }
-  DeformationReport report() const noexcept { return detail::merged(seen_); }
+  DeformationReport report() const noexcept {
+    DeformationReport all;
+    for (const DeformationReport& part : seen_) detail::add_report(part, all);
+    return all;
+  }
 
  private:
   using Batch = TetrahedronBatch<S, N>;

@@ -42,6 +42,29 @@ struct Body {
   raise(std::move(p));
 }
 
+/// Refuses a material that its own check() refuses, with the region's number and name.
+template <Material M, MeshView Mesh>
+void require_admissible(const M& material, const Mesh& mesh, int region) {
+  auto problem = material.check();
+  if (!problem) return;
+  problem->what += " in region '" + std::string(mesh.region_name(region)) + "'";
+  problem->ids = {region};
+  problem->count = 1;
+  raise(std::move(*problem));
+}
+
+/// Refuses materials by region number that are not one per region: missing_material, bad_argument for more; and those
+/// that are not admissible.
+template <Material M, MeshView Mesh>
+void require_material_per_region(const std::vector<M>& by_region, const Mesh& mesh) {
+  const auto regions = static_cast<std::size_t>(mesh.region_count());
+  if (by_region.size() != regions)
+    raise(by_region.size() < regions ? SetupErrorKind::missing_material : SetupErrorKind::bad_argument,
+          std::to_string(by_region.size()) + " materials for " + std::to_string(regions) + " regions",
+          "Give one per region, in the order of the mesh");
+  for (std::size_t r = 0; r < regions; ++r) require_admissible(by_region[r], mesh, static_cast<int>(r));
+}
+
 /// The material of every region of a mesh, in region order. Throws missing_material, unknown_group (a material for a
 /// region that does not exist) or whatever the material's own check() says, with the region's number and name.
 template <Material M, MeshView Mesh>
@@ -62,35 +85,32 @@ std::vector<M> materials_by_region(const Mesh& mesh, const RegionMaterials<M>& m
     if (it == materials.end())
       raise(SetupErrorKind::missing_material, "region '" + std::string(mesh.region_name(r)) + "' has no material",
             "Give one per region");
-    if (auto problem = it->second.check()) {
-      problem->what += " in region '" + std::string(mesh.region_name(r)) + "'";
-      problem->ids = {r};
-      problem->count = 1;
-      raise(std::move(*problem));
-    }
+    require_admissible(it->second, mesh, r);
     result.push_back(it->second);
   }
   return result;
 }
 
-/// Evaluates the law of every element along its own fibre: 292 bytes per element, less where neighbours in the order of
-/// the mesh have the same.
-template <Element E, FibreMaterial M>
-void add_fibre_laws(Body<E>& body, const std::vector<M>& by_region) {
+/// Evaluates the law of every element along its own fibre, elasticity(region, fibre): 292 bytes per element, less where
+/// neighbours in the order of the mesh have the same.
+template <Element E, class Elasticity>
+void add_fibre_laws(Body<E>& body, Elasticity elasticity) {
   const Mesh<E>& mesh = body.mesh;
   body.elasticity.clear();
   body.laws.reserve(static_cast<std::size_t>(mesh.element_count()));
   for (Index e = 0; e < mesh.element_count(); ++e) {
     const bool same = e > 0 && mesh.region(e) == mesh.region(e - 1) && mesh.fibre(e) == mesh.fibre(e - 1);
-    if (!same) body.elasticity.push_back(by_region[body.region_of(e)].elasticity(mesh.fibre(e)));
+    if (!same) body.elasticity.push_back(elasticity(body.region_of(e), mesh.fibre(e)));
     body.laws.push_back(static_cast<std::int32_t>(body.elasticity.size()) - 1);
   }
 }
 
 /// An admitted mesh with one material per region, by region number, without initial strain. Where the mesh has fibres
-/// and the material asks for them, every element gets its own elasticity.
+/// and the material asks for them, every element gets its own elasticity. Throws as require_material_per_region, and
+/// bad_argument for fibres that are no unit vectors.
 template <Element E, LinearMaterial M>
 Body<E> make_body(Mesh<E> mesh, const std::vector<M>& by_region) {
+  require_material_per_region(by_region, mesh);
   Body<E> body{std::move(mesh), {}, {}, {}};
   for (const M& material : by_region) {
     body.elasticity.push_back(material.elasticity());
@@ -99,7 +119,8 @@ Body<E> make_body(Mesh<E> mesh, const std::vector<M>& by_region) {
   body.initial_strain.assign(by_region.size(), Vector6::Zero());
   if constexpr (FibreMaterial<M>) {
     require_unit_fibres(body.mesh);
-    if (body.mesh.has_fibres()) add_fibre_laws(body, by_region);
+    if (body.mesh.has_fibres())
+      add_fibre_laws(body, [&](std::size_t r, const Vector3& fibre) { return by_region[r].elasticity(fibre); });
   }
   return body;
 }

@@ -42,7 +42,9 @@ class CorotatedTetrahedra {
     energy = 0.0;
     for (std::size_t b = 0; b < layout_.blocks.size(); ++b) energy += linearise_block(b, u);
     layout_.add_up(rows_.data(), 0, layout_.node_count(), f);
-    return detail::merged(seen_);
+    DeformationReport report;
+    for (const DeformationReport& part : seen_) detail::add_report(part, report);
+    return report;
   }
 
   /// y = R K R^T x with the rotations taken last.
@@ -115,7 +117,7 @@ class CorotatedTetrahedra {
       batch.add_force(Lane(S(2) * mu) * d + pressure * r, rows);
       turn_gradients(r, batch, turned);
     }
-    seen_[index] = watch.report(layout_, block, true);
+    seen_[index] = watch.summary(layout_, block, true);
     double sum = 0.0;
     for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(stored[lane]);
     return sum;

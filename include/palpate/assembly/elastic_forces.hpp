@@ -6,14 +6,6 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// How far a state is from inside out.
-struct DeformationReport {
-  double smallest_volume_ratio = infinity;  ///< least det F of all points
-  Index worst_element = -1;                 ///< where that is
-  Index inverted = 0;                       ///< elements with a point where det F <= 0
-  bool admissible = true;                   ///< every law holds where it was asked
-};
-
 /// Energy, force and tangent of a body at a displacement u, all dofs, 3 per node [m]. Called once per iteration or step
 /// for the whole body, so a virtual call costs nothing, and what is built on it is compiled once for all elements and
 /// laws.

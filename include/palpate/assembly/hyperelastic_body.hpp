@@ -5,6 +5,42 @@
 
 namespace palpate::inline PALPATE_ABI {
 
+/// The law of one element: along the element's own fibres where there are some, else as the law has it.
+template <HyperelasticMaterial M>
+class ElementLaw {
+ public:
+  ElementLaw(const M& law, const Vector3* fibre) noexcept : law_(law) {
+    if (fibre == nullptr) return;
+    along_ = {(*fibre)[0], (*fibre)[1], (*fibre)[2]};
+    has_fibre_ = true;
+  }
+  double energy(const Tensor3<double>& f) const noexcept {
+    if constexpr (FibreHyperelasticMaterial<M>)
+      if (has_fibre_) return law_.energy(f, along_);
+    return law_.energy(f);
+  }
+  Tensor3<double> stress(const Tensor3<double>& f) const noexcept {
+    if constexpr (FibreHyperelasticMaterial<M>)
+      if (has_fibre_) return law_.stress(f, along_);
+    return law_.stress(f);
+  }
+  Matrix9 tangent(const Tensor3<double>& f) const noexcept {
+    if constexpr (FibreHyperelasticMaterial<M>)
+      if (has_fibre_) return law_.tangent(f, along_);
+    return law_.tangent(f);
+  }
+  bool admits(const Tensor3<double>& f) const noexcept {
+    if constexpr (FibreHyperelasticMaterial<M>)
+      if (has_fibre_) return law_.admits(f, along_);
+    return law_.admits(f);
+  }
+
+ private:
+  const M& law_;
+  Triple<double> along_{};
+  bool has_fibre_ = false;
+};
+
 /// An admitted mesh, a law per region, and the body as it is at small strain: what stiffness at rest, mass and dead
 /// loads come from.
 template <Element E, HyperelasticMaterial M>
@@ -12,19 +48,42 @@ struct HyperelasticBody {
   Body<E> rest;
   std::vector<M> laws;  ///< by region
 
-  const M& law_of(Index e) const noexcept { return laws[rest.region_of(e)]; }
+  /// With the direction of the element's fibres, if mesh and law have any. Refers to the body.
+  ElementLaw<M> law_of(Index e) const noexcept {
+    return {laws[rest.region_of(e)], uses_fibres() ? &rest.mesh.fibre(e) : nullptr};
+  }
+  bool uses_fibres() const noexcept { return FibreHyperelasticMaterial<M> && rest.mesh.has_fibres(); }
 };
 
-/// By region number.
+/// By region number. Where the mesh has fibres and the law asks for them, every element has its own direction, made a
+/// unit vector to the last bit. Throws as require_material_per_region, and bad_argument for fibres that are no unit
+/// vectors.
 template <Element E, HyperelasticMaterial M>
 HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, std::vector<M> by_region) {
+  require_material_per_region(by_region, mesh);
   HyperelasticBody<E, M> body{{std::move(mesh), {}, {}, {}}, std::move(by_region)};
   for (const M& law : body.laws) {
     body.rest.elasticity.push_back(law.rest_elasticity());
     body.rest.density.push_back(law.density);
   }
   body.rest.initial_strain.assign(body.laws.size(), Vector6::Zero());
+  if constexpr (FibreHyperelasticMaterial<M>) {
+    require_unit_fibres(body.rest.mesh);
+    for (Vector3& fibre : body.rest.mesh.fibres) fibre.normalize();
+    if (body.rest.mesh.has_fibres())
+      add_fibre_laws(body.rest, [&](std::size_t r, const Vector3& a) {
+        return body.laws[r].rest_elasticity(Triple<double>{a[0], a[1], a[2]});
+      });
+  }
   return body;
+}
+
+/// For forces that know one direction per region only: refuses a law with fibres on a mesh that has some.
+template <Element E, HyperelasticMaterial M>
+void require_no_fibres(const HyperelasticBody<E, M>& body) {
+  if (body.uses_fibres())
+    raise(SetupErrorKind::unsupported, "a force in batches with a fibre direction per element",
+          "Use LargeStrain, or clear the mesh's fibres so that the law's own direction counts");
 }
 
 /// With materials by name; throws as materials_by_region.

@@ -4,6 +4,8 @@
 #include <palpate/assembly/elastic_forces.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/core/setup_options.hpp>
+#include <palpate/element/mean_dilatation.hpp>
+#include <palpate/element/smoothed.hpp>
 #include <palpate/local/geometry.hpp>
 #include <palpate/mesh/quality.hpp>
 
@@ -16,6 +18,10 @@ namespace palpate::inline PALPATE_ABI {
 template <Element E, HyperelasticMaterial M>
 class LargeStrain final : public ElasticForces {
  public:
+  static_assert(!HasSmoothedStrain<E> && !HasMeanDilatation<E>,
+                "palpate: Smoothed and MeanDilatation average strains of small deformations; choose Tet10 or Hex20, or "
+                "AveragedTetrahedra for explicit motion");
+
   /// Throws inverted_element or non_finite for a mesh that is so at rest, too_large.
   explicit LargeStrain(HyperelasticBody<E, M> body, const SetupLimits& limits = {}) : body_(std::move(body)) {
     const Mesh<E>& mesh = body_.rest.mesh;
@@ -43,10 +49,10 @@ class LargeStrain final : public ElasticForces {
   double energy(const VectorX& u) const noexcept override {
     double sum = 0.0;
     for (Index e = 0; e < mesh().element_count(); ++e) {
+      const ElementLaw<M> law = body_.law_of(e);
       const Displacements ue = displacements(e, u);
       for (const PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
-        const M& law = body_.law_of(e);
         if (!law.admits(f)) return infinity;
         sum += g.volume * law.energy(f);
       }
@@ -60,13 +66,13 @@ class LargeStrain final : public ElasticForces {
     DeformationReport report;
     all.setZero();
     for (Index e = 0; e < mesh().element_count(); ++e) {
+      const ElementLaw<M> law = body_.law_of(e);
       const Displacements ue = displacements(e, u);
       Displacements fe = Displacements::Zero();
       bool inverted = false;
       for (const PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
         inverted = !see(determinant(f), e, report) || inverted;
-        const M& law = body_.law_of(e);
         if (law.admits(f))
           fe.noalias() += g.volume * matrix3(law.stress(f)) * g.gradient.transpose();
         else
@@ -82,10 +88,11 @@ class LargeStrain final : public ElasticForces {
   void tangent(const VectorX& u, BlockMatrix& k) const noexcept override {
     k.set_zero();
     for (Index e = 0; e < mesh().element_count(); ++e) {
+      const ElementLaw<M> law = body_.law_of(e);
       const Displacements ue = displacements(e, u);
       for (const PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
-        if (const M& law = body_.law_of(e); law.admits(f)) add_tangent(e, g, law.tangent(f), k);
+        if (law.admits(f)) add_tangent(e, g, law.tangent(f), k);
       }
     }
   }

@@ -1,54 +1,58 @@
-// The change of volume of tetrahedra in lanes, watched while their force is computed.
+// What a force in batches sees of its elements.
 #pragma once
 
-#include <palpate/assembly/elastic_forces.hpp>
 #include <palpate/assembly/tetrahedron_batches.hpp>
+#include <palpate/concepts/integrator.hpp>
 
 namespace palpate::inline PALPATE_ABI::detail {
 
-/// Least J, in which batch, how many are not positive, and whether one is not finite, per lane. One per block.
-template <class S, int N>
-struct VolumeWatch {
-  Lanes<S, N> smallest{std::numeric_limits<S>::infinity()}, batch{S(-1)}, inverted{S(0)}, broken{S(0)}, at{S(0)};
-
-  /// Batches in their order; lanes without an element have no volume and are not seen.
-  PALPATE_ALWAYS_INLINE void see(const Lanes<S, N>& j, const Lanes<S, N>& volume) noexcept {
-    const auto present = volume > Lanes<S, N>(S(0)), ahead = (j < smallest) & present;
-    smallest = select(ahead, j, smallest);
-    batch = select(ahead, at, batch);
-    broken += j - j;  // zero, or NaN from then on
-    inverted += select((j > Lanes<S, N>(S(0))) | !present, Lanes<S, N>(S(0)), Lanes<S, N>(S(1)));
-    at += Lanes<S, N>(S(1));
+/// The report of two parts of a body.
+inline void add_report(const DeformationReport& part, DeformationReport& all) noexcept {
+  if (part.smallest_volume_ratio < all.smallest_volume_ratio) {
+    all.smallest_volume_ratio = part.smallest_volume_ratio;
+    all.worst_element = part.worst_element;
   }
-
-  DeformationReport report(const TetrahedronBatches<S, N>& layout, const TetrahedronBlock& block,
-                           bool survives_inversion) const noexcept {
-    DeformationReport r;
-    for (int lane = 0; lane < N; ++lane) {
-      r.inverted += static_cast<Index>(inverted[lane]);
-      r.admissible = r.admissible && broken[lane] == S(0);
-      if (!(smallest[lane] < r.smallest_volume_ratio)) continue;
-      r.smallest_volume_ratio = static_cast<double>(smallest[lane]);
-      const auto b = static_cast<std::size_t>(block.first_batch + static_cast<Index>(batch[lane]));
-      r.worst_element = layout.elements[b][static_cast<std::size_t>(lane)];
-    }
-    r.admissible = r.admissible && (survives_inversion || r.inverted == 0);
-    return r;
-  }
-};
-
-/// One report of all blocks.
-inline DeformationReport merged(const std::vector<DeformationReport>& parts) noexcept {
-  DeformationReport all;
-  for (const DeformationReport& part : parts) {
-    if (part.smallest_volume_ratio < all.smallest_volume_ratio) {
-      all.smallest_volume_ratio = part.smallest_volume_ratio;
-      all.worst_element = part.worst_element;
-    }
-    all.inverted += part.inverted;
-    all.admissible = all.admissible && part.admissible;
-  }
-  return all;
+  all.inverted += part.inverted;
+  all.admissible = all.admissible && part.admissible;
 }
+
+/// Least J of a block, in which batch, how many are positive, and whether one is not finite, per lane.
+template <class S, int N>
+class VolumeWatch {
+ public:
+  /// The next batch: its J, and its volumes at rest, zero in lanes without an element, which do not count.
+  PALPATE_ALWAYS_INLINE void see(const Lanes<S, N>& j, const Lanes<S, N>& volume) noexcept {
+    const Lanes<S, N> none(std::numeric_limits<S>::infinity()), zero(S(0)), one(S(1));
+    const Lanes<S, N> seen = select(volume > zero, j, none);
+    const auto ahead = seen < smallest_;
+    smallest_ = select(ahead, seen, smallest_);
+    batch_ = select(ahead, Lanes<S, N>(at_), batch_);
+    broken_ += j - j;  // zero, or NaN from then on
+    upright_ += select(seen > zero, one, zero);
+    at_ += S(1);
+  }
+
+  /// Of a block all of whose batches were seen.
+  DeformationReport summary(const TetrahedronBatches<S, N>& layout, const TetrahedronBlock& block,
+                            bool survives_inversion) const noexcept {
+    DeformationReport report;
+    Index upright = 0;
+    for (int lane = 0; lane < N; ++lane) {
+      upright += static_cast<Index>(upright_[lane]);
+      report.admissible = report.admissible && broken_[lane] == S(0);
+      if (!(smallest_[lane] < report.smallest_volume_ratio)) continue;
+      report.smallest_volume_ratio = static_cast<double>(smallest_[lane]);
+      const auto at = static_cast<std::size_t>(block.first_batch + static_cast<Index>(batch_[lane]));
+      report.worst_element = layout.elements[at][static_cast<std::size_t>(lane)];
+    }
+    report.inverted = block.batch_count * N - upright;
+    report.admissible = report.admissible && (survives_inversion || report.inverted == 0);
+    return report;
+  }
+
+ private:
+  Lanes<S, N> smallest_{std::numeric_limits<S>::infinity()}, batch_{S(-1)}, upright_{S(0)}, broken_{S(0)};
+  S at_ = S(0);
+};
 
 }  // namespace palpate::inline PALPATE_ABI::detail

@@ -1,4 +1,4 @@
-// What is integrated in time by explicit steps, and by what.
+// What is integrated in time by explicit steps, and by what; what Newton's method minimises.
 #pragma once
 
 #include <palpate/core/types.hpp>
@@ -7,15 +7,23 @@
 
 namespace palpate::inline PALPATE_ABI {
 
+/// How far a state is from inside out.
+struct DeformationReport {
+  double smallest_volume_ratio = infinity;  ///< least det F of all points
+  Index worst_element = -1;                 ///< where that is
+  Index inverted = 0;                       ///< elements with a point where det F <= 0
+  bool admissible = true;                   ///< every law holds where it was asked
+};
+
 /// The internal force of a body at a displacement, all dofs (x y z per node).
 ///   size()           dofs
-///   force(u, f)      f = forces with which the body answers u [N]; no allocation
+///   force(u, f)      f = forces with which the body answers u [N], and what it saw on the way; no allocation
 ///   energy(u)        stored energy [J]
 ///   probe_length()   a displacement [m] small against the elements, with which differences of forces still have digits
 template <class F>
 concept ForceOperator = requires(F& force, const VectorX& u, VectorX& f) {
   { force.size() } -> std::convertible_to<Index>;
-  { force.force(u, f) } noexcept;
+  { force.force(u, f) } noexcept -> std::same_as<DeformationReport>;
   { force.energy(u) } noexcept -> std::convertible_to<double>;
   { force.probe_length() } -> std::convertible_to<double>;
 };
@@ -33,6 +41,7 @@ struct MotionState {
   std::vector<Index> free, held;  ///< dofs
   double damping = 0.0;        ///< alpha of the mass-proportional damping force alpha M v [1/s]
   double time = 0.0;           ///< [s]
+  DeformationReport deformation;  ///< what `force` saw at this displacement
 };
 
 /// One step of a motion: `step(state, dt, refresh)` moves displacement and velocity over dt and calls refresh(), which
@@ -42,6 +51,23 @@ template <class I>
 concept ExplicitScheme = requires(MotionState& state, double dt, void (*refresh)() noexcept) {
   { I::step(state, dt, refresh) } noexcept;
   { I::order } -> std::convertible_to<int>;
+};
+
+/// The minimum of a potential of `size()` unknowns.
+/// - `evaluate(x, residual)` writes the force that is left (minus the gradient) and returns the potential, infinite
+/// where x is outside of its domain (the residual is then not read).
+/// - `prepare(x)` makes the second derivative at x ready, or something positive definite near it; false when it cannot.
+/// - `direction(residual, d)` solves with what was prepared.
+/// - `scale()` is a force to compare the residual of the last evaluation with.
+/// - `rounding()` is the norm of the residual that rounding alone leaves there.
+template <class P>
+concept NewtonProblem = requires(P& p, const VectorX& x, VectorX& y) {
+  { p.size() } noexcept -> std::convertible_to<Index>;
+  { p.evaluate(x, y) } noexcept -> std::same_as<double>;
+  { p.prepare(x) } noexcept -> std::same_as<bool>;
+  { p.direction(x, y) } noexcept;
+  { p.scale() } noexcept -> std::convertible_to<double>;
+  { p.rounding() } noexcept -> std::convertible_to<double>;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

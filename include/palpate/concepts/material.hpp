@@ -9,6 +9,18 @@
 
 namespace palpate::inline PALPATE_ABI {
 
+/// The problem with a parameter of a material; `what` names it.
+inline SetupProblem parameter_problem(SetupErrorKind kind, const std::string& what, double value, double threshold,
+                                      const char* hint) {
+  SetupProblem p;
+  p.kind = kind;
+  p.what = what + " is " + number(value);
+  p.hint = hint;
+  p.value = value;
+  p.threshold = threshold;
+  return p;
+}
+
 /// An aggregate of named parameters that can say whether they are admissible. `density` is in kg/m^3; `check()` returns
 /// the problem or nothing and is called once per region at set-up.
 template <class M>

@@ -27,7 +27,8 @@ struct VertexForce {
 /// - `compliance_floor()` is a tiny compliance that keeps a fixed vertex from dividing by zero.
 /// - `foresee(vertices)`, if there is one, is told which vertices a tool may press soon.
 /// - `begin_tick()`, if there is one, is called before each tick and may bring in what moved since; its Status is part of
-/// the tick's. `end_tick(forces)`, if there is one, is told the forces on the vertices after it.
+/// the tick's. `end_tick(forces)`, if there is one, is told the forces on the vertices after it, and that there are none
+/// when a session is reset.
 /// - `pose()` maps the model's frame to the world's.
 /// All are noexcept, allocate nothing and take bounded time.
 template <class T>
@@ -39,6 +40,19 @@ concept TissueModel = requires(T& tissue, const T& constant, int i, std::span<co
   { constant.compliance_bound(i) } noexcept -> std::convertible_to<double>;
   { constant.compliance_floor() } noexcept -> std::convertible_to<double>;
   { constant.pose() } noexcept -> std::same_as<const Eigen::Isometry3d&>;
+};
+
+/// A tissue whose surface or compliance changes between ticks, and which says so before each (SoftTissue).
+template <class T>
+concept MovesByItself = requires(T& tissue) {
+  tissue.begin_tick();
+};
+
+/// A tissue with a motion of its own: `advance()` makes one step of `step()` seconds.
+template <class T>
+concept MovingTissue = requires(T& tissue, const T& constant) {
+  { tissue.advance() } noexcept;
+  { constant.step() } -> std::convertible_to<double>;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

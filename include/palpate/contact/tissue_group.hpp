@@ -10,12 +10,6 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// A tissue that moves by itself and says so before and after ticks (SoftTissue).
-template <class T>
-concept MovesByItself = requires(T& tissue) {
-  tissue.begin_tick();
-};
-
 /// Tissues of any types that do not move by themselves as one TissueModel in the world's frame: a ball that touches two
 /// organs is one contact problem, with one force and one gate. Vertices are those of the members one after the other.
 /// Refers to the members, which must outlive it; the organs do not touch each other.

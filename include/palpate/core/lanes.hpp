@@ -105,11 +105,13 @@ template <class S>
 using scalar_of = typename ScalarOf<S>::Type;
 
 /// The same three questions for one number.
+// clang-format off
 template <class S>
-requires std::is_floating_point_v<S> PALPATE_ALWAYS_INLINE S select(bool mask, S yes, S no)
-noexcept {
+requires std::is_floating_point_v<S>
+PALPATE_ALWAYS_INLINE S select(bool mask, S yes, S no) noexcept {
   return mask ? yes : no;
 }
+// clang-format on
 PALPATE_ALWAYS_INLINE bool any(bool mask) noexcept {
   return mask;
 }

@@ -85,7 +85,7 @@ class HapticServo {
   std::span<const ToolForce> tick(std::span<const ToolState> states) noexcept {
     const FlushDenormals flush;
     Status shared;
-    if constexpr (requires { tissue_->begin_tick(); }) shared |= tissue_->begin_tick();
+    if constexpr (MovesByItself<Tissue>) shared |= tissue_->begin_tick();
     for (std::size_t i = 0; i < states_.size(); ++i) read(i, i < states.size() ? states[i] : unreadable());
     shared |= problem_.solve(*tissue_, contact_tools_);
     for (std::size_t i = 0; i < states_.size(); ++i) recover(i);
@@ -102,7 +102,8 @@ class HapticServo {
     return forces_;
   }
 
-  /// Lifts all tools and closes the gates; the next tick starts anew with the ramp.
+  /// Lifts all tools, tells the tissue that nothing presses, and closes the gates; the next tick starts anew with the
+  /// ramp. For the tick's own thread.
   void reset() noexcept {
     problem_.clear();
     for (Input& input : states_) input = Input{};
@@ -111,6 +112,8 @@ class HapticServo {
       tool.force.setZero();
     }
     for (ForceGate& gate : gates_) gate.reset();
+    if constexpr (requires { tissue_->end_tick(problem_.vertex_forces()); })
+      tissue_->end_tick(std::span<const VertexForce>());
   }
 
   /// Contacts of the last tick, model frame. For the tick's own thread.

@@ -1,23 +1,15 @@
 // Moves a tissue on in a thread of its own.
 #pragma once
 
+#include <palpate/concepts/tissue_model.hpp>
 #include <palpate/core/platform.hpp>
 
 #include <algorithm>
 #include <atomic>
-#include <concepts>
 #include <cstdint>
 #include <thread>
 
 namespace palpate::inline PALPATE_ABI {
-
-/// A tissue with a motion of its own: `advance()` makes one step of `step()` seconds.
-template <class T>
-concept MovingTissue = requires(T& tissue, const T& constant) {
-  { tissue.advance() }
-  noexcept;
-  { constant.step() } -> std::convertible_to<double>;
-};
 
 /// What a tissue's thread has done.
 struct TissueThreadReport {

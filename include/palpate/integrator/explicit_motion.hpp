@@ -19,21 +19,26 @@ struct ExplicitOptions {
 
 /// Integrates M u'' + alpha M u' + f(u) = R with a lumped mass. step() neither allocates nor throws and flushes
 /// denormals. What it will not do it refuses, with a flag and without a change:
-///   step_refused   dt is not positive, no number, or above limit()
+///   step_refused   dt is not positive, no number, or above limit(); load() or target() has not one entry per dof
 ///   energy_grew    kinetic and stored energy exceed what was there at the start and what loads and held dofs have put
 ///                  in since, or are not finite; the body is back in its last good state, and stays until restart()
+/// A step that is taken says of the state it ends in:
+///   inverted         elements are inside out (deformation() says how many, and which is worst)
+///   degraded_model   a law was asked where it does not hold, and what it adds there means nothing
 /// A stable motion near the limit swings above its energy by up to 1 / (1 - dt / limit); the watch allows for that.
 /// Cost per step: one force, 1/limit_every forces, 1/energy_every energies, and about 20 numbers per dof.
 template <ForceOperator Force, ExplicitScheme Scheme>
 class ExplicitMotion {
  public:
   /// `nodal_mass` [kg] per node; `free_dofs` ascending, all others are held where they are (set target() to move them);
-  /// `frequency_bound` an upper bound of omega^2 [1/s^2], infinite when there is none. Throws bad_argument for sizes
-  /// that do not fit and options out of range, bad_density for a mass that is not positive.
+  /// `frequency_bound` an upper bound of omega^2 at rest [1/s^2] (element_frequency_bound), which limits the step until
+  /// the estimate has StepLimit::settled iterations; infinite when there is none, and the estimate then needs as many
+  /// as `first_iterations`. Throws bad_argument for sizes that do not fit and options out of range, bad_density for a
+  /// mass that is not positive.
   ExplicitMotion(Force force, const VectorX& nodal_mass, const std::vector<Index>& free_dofs,
                  double frequency_bound = infinity, const ExplicitOptions& options = {})
       : force_(std::move(force)), options_(options), limit_(force_.size(), frequency_bound, options.margin) {
-    check(nodal_mass, free_dofs);
+    check(nodal_mass, free_dofs, frequency_bound);
     const Index dofs = force_.size();
     for (VectorX* v : {&state_.displacement, &state_.velocity, &state_.force, &state_.load, &state_.target})
       *v = VectorX::Zero(dofs);
@@ -54,20 +59,28 @@ class ExplicitMotion {
 
   const MotionState& state() const noexcept { return state_; }
   Force& force() noexcept { return force_; }
-  /// External forces [N], constant until changed.
+  /// How far the present state is from inside out.
+  const DeformationReport& deformation() const noexcept { return state_.deformation; }
+  /// External forces [N], constant until changed. Keep the size.
   VectorX& load() noexcept { return state_.load; }
-  /// Where held dofs are at the end of the next step [m]; they go there at constant speed.
+  /// Where held dofs are at the end of the next step [m]; they go there at constant speed. Keep the size.
   VectorX& target() noexcept { return state_.target; }
 
   /// Sets displacement and velocity (of the same time), forgets work done so far, and lets a stopped motion go on.
-  void set(const VectorX& displacement, const VectorX& velocity) noexcept {
+  /// Throws bad_argument, without a change, for vectors that have not one entry per dof.
+  void set(const VectorX& displacement, const VectorX& velocity) {
+    for (const VectorX* v : {&displacement, &velocity})
+      if (v->size() != force_.size())
+        raise(SetupErrorKind::bad_argument,
+              std::to_string(v->size()) + " entries for " + std::to_string(force_.size()) + " dofs",
+              "Give displacement and velocity three per node");
     state_.displacement = displacement;
     state_.velocity = velocity;
     state_.target = displacement;
     restart();
   }
   void restart() noexcept {
-    force_.force(state_.displacement, state_.force);
+    state_.deformation = force_.force(state_.displacement, state_.force);
     work_ = 0.0;
     gross_ = 0.0;
     start_energy_ = kinetic_energy() + std::abs(force_.energy(state_.displacement));
@@ -98,16 +111,19 @@ class ExplicitMotion {
   Status step(double dt) noexcept {
     if (stopped_) return StatusFlag::energy_grew;
     if (!(dt > 0.0) || !(dt <= limit())) return StatusFlag::step_refused;
+    if (state_.load.size() != force_.size() || state_.target.size() != force_.size()) return StatusFlag::step_refused;
     const FlushDenormals flush;
     before_step();
-    Scheme::step(state_, dt, [this]() noexcept { force_.force(state_.displacement, state_.force); });
+    Scheme::step(state_, dt,
+                 [this]() noexcept { state_.deformation = force_.force(state_.displacement, state_.force); });
     after_step();
     ++steps_;
     if (options_.limit_every > 0 && steps_ % options_.limit_every == 0) limit_.iterate(force_, state_, 1);
-    if (options_.energy_every == 0 || energy_explained(dt)) return {};
+    if (options_.energy_every == 0 || energy_explained(dt)) return seen();
     state_.displacement = good_.displacement;
     state_.velocity = good_.velocity;
     state_.force = good_.force;
+    state_.deformation = good_.deformation;
     state_.time = good_.time;
     stopped_ = true;
     return StatusFlag::energy_grew;
@@ -126,10 +142,11 @@ class ExplicitMotion {
  private:
   struct Good {
     VectorX displacement, velocity, force;
+    DeformationReport deformation;
     double time = 0.0;
   };
 
-  void check(const VectorX& mass, const std::vector<Index>& free_dofs) const {
+  void check(const VectorX& mass, const std::vector<Index>& free_dofs, double frequency_bound) const {
     if (3 * mass.size() != force_.size())
       raise(SetupErrorKind::bad_argument,
             "there are " + std::to_string(mass.size()) + " masses for " + std::to_string(force_.size() / 3) + " nodes");
@@ -143,8 +160,21 @@ class ExplicitMotion {
     if (!(options_.damping >= 0.0) || !std::isfinite(options_.damping) || !(options_.margin >= 0.0) ||
         !(options_.margin < 1.0) || options_.first_iterations < 0 || !(options_.energy_growth >= 1.0))
       raise(SetupErrorKind::bad_argument, "an option of explicit motion is out of range");
+    if (!(frequency_bound > 0.0))
+      raise(SetupErrorKind::bad_argument, "the bound of omega^2 is " + number(frequency_bound),
+            "Give element_frequency_bound(body), or infinity");
+    if (frequency_bound == infinity && options_.first_iterations < StepLimit::settled)
+      raise(SetupErrorKind::bad_argument,
+            "the stable step would be estimated by " + std::to_string(options_.first_iterations) + " iterations",
+            "Give a bound of omega^2, or " + std::to_string(StepLimit::settled) + " first_iterations or more");
   }
 
+  Status seen() const noexcept {
+    Status status;
+    if (state_.deformation.inverted > 0) status.set(StatusFlag::inverted);
+    if (!state_.deformation.admissible) status.set(StatusFlag::degraded_model);
+    return status;
+  }
   void before_step() noexcept {
     load_work_ = -state_.load.dot(state_.displacement);
     for (std::size_t k = 0; k < state_.held.size(); ++k) {
@@ -180,6 +210,7 @@ class ExplicitMotion {
     good_.displacement = state_.displacement;
     good_.velocity = state_.velocity;
     good_.force = state_.force;
+    good_.deformation = state_.deformation;
     good_.time = state_.time;
   }
 

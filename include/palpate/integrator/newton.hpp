@@ -1,35 +1,28 @@
 // Newton's method for a potential, with a line search.
 #pragma once
 
-#include <palpate/core/types.hpp>
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/core/setup_error.hpp>
 
 #include <cmath>
 
 namespace palpate::inline PALPATE_ABI {
 
-/// The minimum of a potential of `size()` unknowns.
-/// - `evaluate(x, residual)` writes the force that is left (minus the gradient) and returns the potential, infinite
-/// where x is outside of its domain (the residual is then not read).
-/// - `prepare(x)` makes the second derivative at x ready, or something positive definite near it; false when it cannot.
-/// - `direction(residual, d)` solves with what was prepared.
-/// - `scale()` is a force to compare the residual of the last evaluation with; `rounding()` what rounding alone leaves.
-template <class P>
-concept NewtonProblem = requires(P& p, const VectorX& x, VectorX& y) {
-  { p.size() } -> std::convertible_to<Index>;
-  { p.evaluate(x, y) }
-  noexcept->std::same_as<double>;
-  { p.prepare(x) }
-  noexcept->std::same_as<bool>;
-  { p.direction(x, y) }
-  noexcept;
-  { p.scale() }
-  noexcept->std::convertible_to<double>;
-};
-
 struct NewtonParameters {
   int maximum_iterations = 40;
-  double tolerance = 1e-10;   ///< of the residual against the problem's scale
+  double tolerance = 1e-10;   ///< of the residual against the problem's scale; 0: as far as rounding lets it
   int maximum_halvings = 12;  ///< of one step
+
+  /// Throws bad_argument for numbers that are negative or, of the tolerance, not finite.
+  void require_valid() const {
+    const auto refuse = [](const char* name, const std::string& value) {
+      raise(SetupErrorKind::bad_argument, std::string("Newton's ") + name + " is " + value,
+            "Give 0 or a positive number");
+    };
+    if (maximum_iterations < 0) refuse("maximum_iterations", std::to_string(maximum_iterations));
+    if (!(tolerance >= 0.0 && tolerance < infinity)) refuse("tolerance", number(tolerance));
+    if (maximum_halvings < 0) refuse("maximum_halvings", std::to_string(maximum_halvings));
+  }
 };
 
 struct NewtonReport {
@@ -45,8 +38,11 @@ struct NewtonReport {
 class Newton {
  public:
   Newton() = default;
+  /// Throws as NewtonParameters::require_valid. Allocates four vectors.
   explicit Newton(Index size, const NewtonParameters& parameters = {})
-      : parameters_(parameters), residual_(size), step_(size), trial_(size), trial_residual_(size) {}
+      : parameters_(parameters), residual_(size), step_(size), trial_(size), trial_residual_(size) {
+    parameters_.require_valid();
+  }
 
   /// Improves x until the residual is small. x is always inside the domain if it was at the start.
   template <NewtonProblem P>

@@ -13,10 +13,14 @@ namespace palpate::inline PALPATE_ABI {
 /// after 20 iterations from a random start it is up to 5 % short, after 40 up to 3 %; the margin covers that.
 class StepLimit {
  public:
-  /// `bound` is an upper bound of omega^2 [1/s^2], such as that of the worst element; it holds until the first
-  /// iteration.
+  /// Iterations from a random start after which the estimate is trusted.
+  static constexpr int settled = 20;
+
+  /// `bound` is an upper bound of omega^2 [1/s^2] at rest, such as that of the worst element, or infinite. Until the
+  /// estimate has settled the larger of the two counts; from then on the estimate alone, because a deformed body may be
+  /// stiffer than the bound says.
   StepLimit(Index dofs, double bound, double margin = 0.07)
-      : vector_(dofs), moved_(dofs), force_(dofs), square_(bound), margin_(margin) {
+      : vector_(dofs), moved_(dofs), force_(dofs), bound_(bound), margin_(margin) {
     for (Index i = 0; i < dofs; ++i) vector_[i] = start_value(static_cast<std::uint64_t>(i));
   }
 
@@ -28,9 +32,14 @@ class StepLimit {
   }
 
   /// Estimate of omega_max^2 [1/s^2].
-  double largest_square() const noexcept { return square_; }
+  double largest_square() const noexcept {
+    return iterations_ < settled && square_ < bound_ ? bound_ : square_;  // NaN stays
+  }
   /// Largest step [s]: (1 - margin) 2 / omega_max.
-  double step() const noexcept { return std::isfinite(square_) ? (1.0 - margin_) * 2.0 / std::sqrt(square_) : 0.0; }
+  double step() const noexcept {
+    const double square = largest_square();
+    return std::isfinite(square) ? (1.0 - margin_) * 2.0 / std::sqrt(square) : 0.0;
+  }
 
  private:
   /// Between -1 and 1, without pattern (the finaliser of SplitMix64).
@@ -60,13 +69,16 @@ class StepLimit {
       next += s.mass[dof] * vector_[dof] * vector_[dof];
     }
     square_ = std::sqrt(next / norm);
+    ++iterations_;
     if (std::isfinite(square_)) return;
+    iterations_ = 0;
     for (Index dof : s.free) vector_[dof] = start_value(static_cast<std::uint64_t>(dof));
     square_ = std::numeric_limits<double>::quiet_NaN();
   }
 
   VectorX vector_, moved_, force_;
-  double square_, margin_;
+  double bound_, margin_, square_ = 0.0;
+  std::int64_t iterations_ = 0;  // since the last start
 };
 
 }  // namespace palpate::inline PALPATE_ABI

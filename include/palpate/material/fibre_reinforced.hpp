@@ -11,7 +11,7 @@ namespace palpate::inline PALPATE_ABI {
 /// constant volume, which in compressible tissue lets pulled fibres swell it. Fibres that are not pulled do nothing:
 /// energy and stress are continuous at |F a| = 1, the stiffness jumps by 4 k1 there, and rest_elasticity is that of the
 /// base. Where the mesh has fibre directions these count, elsewhere `fibre`. Admissible: base admissible, k1 >= 0, k2 >
-/// 0, `fibre` a unit vector to within 1e-5. F is refused where the base refuses it or k2 E^2 exceeds 60, which is 1e26
+/// 0, `fibre` a unit vector to within 1e-5. F is refused where the base refuses it or k2 E^2 exceeds 40, which is 2e17
 /// times the stiffness of small pulls; beyond, the exponent stays there, so that the stress is finite in float as well.
 /// Cost of stress: base, one exponential per number.
 template <HyperelasticMaterial Base>
@@ -74,11 +74,15 @@ struct FibreReinforced {
     Base with_density = base;
     with_density.density = density;
     if (auto problem = with_density.check()) return problem;
-    if (!(std::isfinite(k1) && k1 >= 0.0)) return problem("k1", k1, 0.0, "It must be finite and not negative, in Pa");
-    if (!(std::isnormal(k2) && k2 > 0.0)) return problem("k2", k2, 0.0, "It must be finite and positive");
+    if (!(std::isfinite(k1) && k1 >= 0.0))
+      return parameter_problem(SetupErrorKind::bad_argument, "k1", k1, 0.0,
+                               "It must be finite and not negative, in Pa");
+    if (!(std::isnormal(k2) && k2 > 0.0))
+      return parameter_problem(SetupErrorKind::bad_argument, "k2", k2, 0.0, "It must be finite and positive");
     const double length = fibre.norm();
     if (!(std::abs(length - 1.0) <= 1e-5))
-      return problem("the length of the fibre direction", length, 1.0, "Give a unit vector");
+      return parameter_problem(SetupErrorKind::bad_argument, "the length of the fibre direction", length, 1.0,
+                               "Give a unit vector");
     return std::nullopt;
   }
 
@@ -101,15 +105,6 @@ struct FibreReinforced {
   PALPATE_ALWAYS_INLINE S exponent(const S& e) const noexcept {
     using std::min;
     return min(S(constant<S>(k2) * e * e), S(constant<S>(largest_exponent)));
-  }
-  static SetupProblem problem(const char* name, double value, double threshold, const char* hint) {
-    SetupProblem p;
-    p.kind = SetupErrorKind::bad_argument;
-    p.what = std::string(name) + " is " + number(value);
-    p.hint = hint;
-    p.value = value;
-    p.threshold = threshold;
-    return p;
   }
 };
 

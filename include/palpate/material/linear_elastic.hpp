@@ -36,29 +36,20 @@ struct LinearElastic {
 
   /// The problem with these parameters, or nothing.
   std::optional<SetupProblem> check() const {
-    const auto problem = [](SetupErrorKind kind, const char* what, double value, double threshold, const char* hint) {
-      SetupProblem p;
-      p.kind = kind;
-      p.what = std::string(what) + " is " + number(value);
-      p.hint = hint;
-      p.value = value;
-      p.threshold = threshold;
-      return p;
-    };
     // Written so that NaN fails every comparison. 1 - 2 nu and 1 + nu are what the law divides by: they must not vanish
     // either.
     if (!(std::isfinite(youngs_modulus) && youngs_modulus > 0.0))
-      return problem(SetupErrorKind::bad_youngs_modulus, "youngs_modulus", youngs_modulus, 0.0,
-                     "It must be finite and positive, in Pa");
+      return parameter_problem(SetupErrorKind::bad_youngs_modulus, "youngs_modulus", youngs_modulus, 0.0,
+                               "It must be finite and positive, in Pa");
     if (!(poisson_ratio > -1.0 && poisson_ratio < 0.5))
-      return problem(SetupErrorKind::bad_poisson_ratio, "poisson_ratio", poisson_ratio, poisson_ratio < 0 ? -1.0 : 0.5,
-                     "It must lie strictly between -1 and 0.5");
+      return parameter_problem(SetupErrorKind::bad_poisson_ratio, "poisson_ratio", poisson_ratio,
+                               poisson_ratio < 0 ? -1.0 : 0.5, "It must lie strictly between -1 and 0.5");
     if (!(std::isfinite(density) && density >= 0.0))
-      return problem(SetupErrorKind::bad_density, "density", density, 0.0,
-                     "It must be finite and not negative, in kg/m^3");
+      return parameter_problem(SetupErrorKind::bad_density, "density", density, 0.0,
+                               "It must be finite and not negative, in kg/m^3");
     if (!elasticity().allFinite() || !std::isnormal(shear_modulus()))
-      return problem(SetupErrorKind::not_positive_definite, "the largest modulus", lame_lambda(), 0.0,
-                     "youngs_modulus is beyond the range of double precision");
+      return parameter_problem(SetupErrorKind::not_positive_definite, "the largest modulus", lame_lambda(), 0.0,
+                               "youngs_modulus is beyond the range of double precision");
     return std::nullopt;
   }
 };

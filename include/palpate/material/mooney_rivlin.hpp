@@ -71,10 +71,14 @@ struct MooneyRivlin {
   std::optional<SetupProblem> check() const {
     for (const auto& [name, value] : {std::pair("c10", c10), std::pair("c01", c01)})
       if (!(std::isfinite(value) && value >= 0.0))
-        return problem(name, value, "It must be finite and not negative, in Pa");
+        return parameter_problem(SetupErrorKind::bad_argument, name, value, 0.0,
+                                 "It must be finite and not negative, in Pa");
     if (!(std::isnormal(bulk_modulus) && bulk_modulus > 0.0))
-      return problem("bulk_modulus", bulk_modulus, "It must be finite and positive, in Pa");
-    if (!(shear_modulus() > 0.0)) return problem("c10 + c01", c10 + c01, "One of them must be positive");
+      return parameter_problem(SetupErrorKind::bad_argument, "bulk_modulus", bulk_modulus, 0.0,
+                               "It must be finite and positive, in Pa");
+    if (!(shear_modulus() > 0.0))
+      return parameter_problem(SetupErrorKind::bad_argument, "c10 + c01", c10 + c01, 0.0,
+                               "One of them must be positive");
     return small_strain().check();
   }
 
@@ -82,14 +86,6 @@ struct MooneyRivlin {
   template <class S>
   PALPATE_ALWAYS_INLINE static scalar_of<S> constant(double x) noexcept {
     return static_cast<scalar_of<S>>(x);
-  }
-  static SetupProblem problem(const char* name, double value, const char* hint) {
-    SetupProblem p;
-    p.kind = SetupErrorKind::bad_argument;
-    p.what = std::string(name) + " is " + number(value);
-    p.hint = hint;
-    p.value = value;
-    return p;
   }
 };
 

@@ -49,25 +49,26 @@ struct Orthotropic {
                                                                   {"shear_modulus_23", shear_modulus_23}}};
     for (const auto& [name, value] : positive)  // written so that NaN fails every comparison
       if (!(std::isnormal(value) && value > 0.0))
-        return problem(SetupErrorKind::bad_youngs_modulus, name, value, 0.0, "It must be finite and positive, in Pa");
+        return parameter_problem(SetupErrorKind::bad_youngs_modulus, name, value, 0.0,
+                                 "It must be finite and positive, in Pa");
     for (const auto& [name, value] :
          {std::pair("poisson_ratio_12", poisson_ratio_12), std::pair("poisson_ratio_13", poisson_ratio_13),
           std::pair("poisson_ratio_23", poisson_ratio_23)})
       if (!std::isfinite(value))
-        return problem(SetupErrorKind::bad_poisson_ratio, name, value, 0.0, "It must be finite");
+        return parameter_problem(SetupErrorKind::bad_poisson_ratio, name, value, 0.0, "It must be finite");
     if (!(std::isfinite(density) && density >= 0.0))
-      return problem(SetupErrorKind::bad_density, "density", density, 0.0,
-                     "It must be finite and not negative, in kg/m^3");
+      return parameter_problem(SetupErrorKind::bad_density, "density", density, 0.0,
+                               "It must be finite and not negative, in kg/m^3");
     const double skew = (axes.transpose() * axes - Matrix3::Identity()).cwiseAbs().maxCoeff();
     if (!(axes.allFinite() && skew <= 1e-9 && axes.determinant() > 0.0))
-      return problem(SetupErrorKind::bad_argument, "the deviation of the axes from a rotation", skew, 1e-9,
-                     "Give three perpendicular unit vectors, right-handed, one per column");
+      return parameter_problem(SetupErrorKind::bad_argument, "the deviation of the axes from a rotation", skew, 1e-9,
+                               "Give three perpendicular unit vectors, right-handed, one per column");
     const double smallest = Eigen::SelfAdjointEigenSolver<Matrix3>(scaled_compliance()).eigenvalues()[0];
     if (!(smallest >= positive_definite_threshold) || !elasticity().allFinite())
-      return problem(SetupErrorKind::not_positive_definite,
-                     "the smallest eigenvalue of the compliance, scaled to a unit diagonal,", smallest,
-                     positive_definite_threshold,
-                     "The Poisson ratios are too large for these moduli; mind that nu_ij goes with E_i");
+      return parameter_problem(SetupErrorKind::not_positive_definite,
+                               "the smallest eigenvalue of the compliance, scaled to a unit diagonal,", smallest,
+                               positive_definite_threshold,
+                               "The Poisson ratios are too large for these moduli; mind that nu_ij goes with E_i");
     return std::nullopt;
   }
 
@@ -82,17 +83,6 @@ struct Orthotropic {
     s(0, 2) = s(2, 0) = -poisson_ratio_13 * std::sqrt(e[2] / e[0]);
     s(1, 2) = s(2, 1) = -poisson_ratio_23 * std::sqrt(e[2] / e[1]);
     return s;
-  }
-
-  static SetupProblem problem(SetupErrorKind kind, const std::string& what, double value, double threshold,
-                              const char* hint) {
-    SetupProblem p;
-    p.kind = kind;
-    p.what = what + " is " + number(value);
-    p.hint = hint;
-    p.value = value;
-    p.threshold = threshold;
-    return p;
   }
 };
 

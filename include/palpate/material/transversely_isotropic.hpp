@@ -28,15 +28,9 @@ struct TransverselyIsotropic {
 
   /// The problem with these parameters, or nothing.
   std::optional<SetupProblem> check() const {
-    if (const double length = fibre.norm(); !(std::abs(length - 1.0) <= 1e-5)) {
-      SetupProblem p;
-      p.kind = SetupErrorKind::bad_argument;
-      p.what = "the length of the fibre direction is " + number(length);
-      p.hint = "Give a unit vector";
-      p.value = length;
-      p.threshold = 1.0;
-      return p;
-    }
+    if (const double length = fibre.norm(); !(std::abs(length - 1.0) <= 1e-5))
+      return parameter_problem(SetupErrorKind::bad_argument, "the length of the fibre direction", length, 1.0,
+                               "Give a unit vector");
     auto problem = orthotropic(fibre).check();
     if (problem) problem->what += " (orthotropic axis 1 is the fibre)";
     return problem;

@@ -124,14 +124,9 @@ struct Viscoelastic {
     return total;
   }
 
-  static SetupProblem problem(const char* name, double value, double threshold) {
-    SetupProblem p;
-    p.kind = SetupErrorKind::bad_argument;
-    p.what = "the " + std::string(name) + " is " + number(value);
-    p.hint = "Shares lie between 0 and 1 and sum to less than 1; times are positive, in s";
-    p.value = value;
-    p.threshold = threshold;
-    return p;
+  static SetupProblem problem(const std::string& name, double value, double threshold) {
+    return parameter_problem(SetupErrorKind::bad_argument, "the " + name, value, threshold,
+                             "Shares lie between 0 and 1 and sum to less than 1; times are positive, in s");
   }
 };
 

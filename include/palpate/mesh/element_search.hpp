@@ -76,7 +76,10 @@ class ElementSearch {
     each_cell([&](std::size_t c, Index e) { element_[static_cast<std::size_t>(next[c]++)] = e; });
   }
 
-  /// The element that holds p [m], its border included; the first of several. No allocation.
+  /// The element that holds p [m], its border included; the first of several. No allocation. Cost: Newton's method for
+  /// the elements around one cell of the grid, one step each for straight-sided tetrahedra. A cell has the
+  /// mean volume of an element, so these are a few tens in an even mesh, and O(elements) at worst, where sizes differ
+  /// so much that most elements lie in one cell.
   std::optional<ElementPoint> find(const Vector3& p) const noexcept {
     const auto at = cell_of(p);
     if ((at.array() < 0).any() || (at.array() >= cells_.array()).any()) return std::nullopt;
