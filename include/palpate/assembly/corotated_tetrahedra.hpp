@@ -3,6 +3,7 @@
 
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/assembly/volume_watch.hpp>
+#include <palpate/core/setup_options.hpp>
 #include <palpate/core/tracked_rotation.hpp>
 #include <palpate/material/corotational.hpp>
 
