@@ -1,6 +1,7 @@
 // Approximate inverses of what an implicit step of a co-rotated body multiplies its increment by.
 #pragma once
 
+#include <palpate/element/tet4.hpp>
 #include <palpate/model/deformable_body.hpp>
 #include <palpate/model/nodal_rotation.hpp>
 #include <palpate/model/tangent_solver.hpp>
