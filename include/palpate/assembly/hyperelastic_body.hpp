@@ -2,12 +2,18 @@
 #pragma once
 
 #include <palpate/assembly/body.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/material/viscoelastic.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
+/// A law for large strain, with memory or without.
+template <class M>
+concept LargeStrainMaterial = HyperelasticMaterial<M> || ViscousMaterial<M>;
+
 /// An admitted mesh, a law per region, and the body as it is at small strain: what stiffness at rest, mass and dead
 /// loads come from.
-template <Element E, HyperelasticMaterial M>
+template <Element E, LargeStrainMaterial M>
 struct HyperelasticBody {
   Body<E> rest;
   std::vector<M> laws;  ///< by region
@@ -16,7 +22,7 @@ struct HyperelasticBody {
 };
 
 /// By region number.
-template <Element E, HyperelasticMaterial M>
+template <Element E, LargeStrainMaterial M>
 HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, std::vector<M> by_region) {
   HyperelasticBody<E, M> body{{std::move(mesh), {}, {}, {}}, std::move(by_region)};
   for (const M& law : body.laws) {
@@ -28,7 +34,7 @@ HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, std::vector<M> by_re
 }
 
 /// With materials by name; throws as materials_by_region.
-template <Element E, HyperelasticMaterial M>
+template <Element E, LargeStrainMaterial M>
 HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
   std::vector<M> by_region = materials_by_region(mesh, materials);
   return make_hyperelastic_body(std::move(mesh), std::move(by_region));

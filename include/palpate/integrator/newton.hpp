@@ -1,6 +1,7 @@
 // Newton's method for a potential, with a line search.
 #pragma once
 
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 
 #include <cmath>
@@ -31,6 +32,16 @@ struct NewtonParameters {
   double tolerance = 1e-10;   ///< of the residual against the problem's scale
   int maximum_halvings = 12;  ///< of one step
 };
+
+/// Throws bad_argument for parameters with which nothing could be solved.
+inline void require_usable(const NewtonParameters& p) {
+  if (p.maximum_iterations < 1)
+    raise(SetupErrorKind::bad_argument, std::to_string(p.maximum_iterations) + " iterations", "Give at least one");
+  if (p.maximum_halvings < 0)
+    raise(SetupErrorKind::bad_argument, std::to_string(p.maximum_halvings) + " halvings", "Give 0 or more");
+  if (!(p.tolerance >= 0.0 && p.tolerance < 1.0))
+    raise(SetupErrorKind::bad_argument, "a tolerance of " + number(p.tolerance), "Give 0 or a little more");
+}
 
 struct NewtonReport {
   bool converged = false;
