@@ -30,6 +30,9 @@ class ElasticForces {
   virtual void tangent(const VectorX& u, BlockMatrix& k) const noexcept = 0;
   /// A displacement [m] small against the elements, with which differences of forces still have half their digits.
   virtual double probe_length() const noexcept = 0;
+  /// Whether forces are as small as displacements are. Where they come of a deformation gradient, 1 and a little, they
+  /// carry its rounding also at rest.
+  virtual bool is_linear() const noexcept { return false; }
 
   // Bodies with memory; others have nothing to do here.
   /// From now on energy, force and tangent are those at the end of a step of dt >= 0 [s] from where the last step

@@ -64,7 +64,7 @@ class Equilibrium {
         trial_(x_),
         size_(extent(body_.positions)) {
     body_.elastic->tangent(displacement_, tangent_.matrix());
-    rounding_ = tangent_.rounding(size_);
+    if (!body_.elastic->is_linear()) rounding_ = tangent_.rounding(size_);
   }
   Equilibrium(const Equilibrium&) = delete;
   Equilibrium& operator=(const Equilibrium&) = delete;

@@ -52,7 +52,7 @@ class ImplicitDynamics {
         x_(size()),
         heaviest_(body_.lumped.maxCoeff()) {
     body_.elastic->tangent(u_, tangent_.matrix());
-    floor_ = tangent_.rounding(extent(body_.positions));
+    if (!body_.elastic->is_linear()) floor_ = tangent_.rounding(extent(body_.positions));
     find_acceleration();
   }
   ImplicitDynamics(const ImplicitDynamics&) = delete;
@@ -274,6 +274,7 @@ class ImplicitDynamics {
       tangent_.solve(residual_, x_);
     }
     body_.conditions.scatter(x_, a_);
+    if (!a_.allFinite()) a_.setZero();  // of loads that are none: steps refuse these
   }
 
   DynamicsParameters parameters_;

@@ -22,14 +22,38 @@ struct SoftTissueOptions {
   SetupLimits limits{};
 };
 
-/// A hyperelastic body that moves at its own rate, in a thread of its own, while a servo solves the contact anew in
-/// every tick (the architecture of Duriez et al. 2006 and Courtecuisse et al. 2015).
+namespace detail {
+
+template <Element E, LargeStrainMaterial M>
+auto soft_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
+  return make_hyperelastic_body(std::move(mesh), materials);
+}
+template <Element E, class M>
+auto soft_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
+  return make_body(std::move(mesh), materials);
+}
+template <class Body>
+const auto& mesh_of(const Body& body) noexcept {
+  if constexpr (requires { body.rest.mesh; })
+    return body.rest.mesh;
+  else if constexpr (requires { body.fast.mesh; })
+    return body.fast.mesh;
+  else
+    return body.mesh;
+}
+
+}  // namespace detail
+
+/// A body, hyperelastic or at small strain, with memory or without, that moves at its own rate, in a thread of its own,
+/// while a servo solves the contact anew in every tick (the architecture of Duriez et al. 2006 and Courtecuisse et al.
+/// 2015).
 ///
 /// After every step the tissue publishes where its surface would be without the tools, and how much each vertex has
-/// turned. Between two steps the servo solves the contact on that surface with the compliance of a step at rest, turned
-/// with the vertices: C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). What presses at the end of a
-/// step corrects the step and loads the next one. In a steady hold the force is that of the non-linear equilibrium,
-/// whatever the step and however rough C is: C only says how a change goes on until the next step has seen it.
+/// turned. Between two steps the servo solves the contact on that surface with the compliance of a step as the body
+/// settled, turned with the vertices: C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). What presses at
+/// the end of a step corrects the step and loads the next one. In a steady hold the force is that of the non-linear
+/// equilibrium, whatever the step and however rough C is: C only says how a change goes on until the next step has seen
+/// it.
 ///
 /// Two threads: `advance` belongs to one (see TissueThread), the functions of TissueModel to the one that ticks; they
 /// exchange through triple buffers and never wait for each other. Satisfies TissueModel.
@@ -40,10 +64,10 @@ class SoftTissue {
 
   /// One material everywhere, or one per region. Throws what make_deformable_body and statics throw, bad_argument for a
   /// step that is none, not_converged when there is no equilibrium to settle in. Set-up solves once per touchable dof.
-  template <Element E, LargeStrainMaterial M>
+  template <Element E, Material M>
   SoftTissue(const Mesh<E>& mesh, const Scene& scene, const M& material, const SoftTissueOptions& options = {})
       : SoftTissue(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options) {}
-  template <Element E, LargeStrainMaterial M>
+  template <Element E, Material M>
   SoftTissue(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
              const SoftTissueOptions& options = {})
       : SoftTissue(prepare(mesh, scene, materials, options), options) {}
@@ -127,7 +151,7 @@ class SoftTissue {
     VectorX settled;
   };
 
-  template <Element E, LargeStrainMaterial M>
+  template <Element E, Material M>
   static Prepared prepare(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
                           const SoftTissueOptions& options) {
     if (!(options.step > 0.0 && options.step < infinity))
@@ -137,10 +161,10 @@ class SoftTissue {
     Prepared prepared;
     prepared.origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
     for (Vector3& x : admitted.mesh.positions) x -= prepared.origin;
-    auto body = make_hyperelastic_body(std::move(admitted.mesh), materials);
-    prepared.touchable = resolve_touchable(body.rest.mesh, extract_boundary<E>(body.rest.mesh), mapped);
-    prepared.settled = VectorX::Zero(3 * body.rest.mesh.node_count());
-    const Mesh<E>& rest = body.rest.mesh;
+    auto body = detail::soft_body(std::move(admitted.mesh), materials);
+    const Mesh<E>& rest = detail::mesh_of(body);
+    prepared.touchable = resolve_touchable(rest, extract_boundary<E>(rest), mapped);
+    prepared.settled = VectorX::Zero(3 * rest.node_count());
     if (options.settle)
       require_constrained(rest, resolve_essential(rest, extract_boundary<E>(rest), mapped).constrained);
     prepared.body = make_deformable_body(std::move(body), mapped, options.limits);

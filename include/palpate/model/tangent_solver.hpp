@@ -33,9 +33,10 @@ class TangentSolver {
     values_.update(matrix_, conditions_);
     shift_ = 0.0;
     if (factor_.factorise(values_.lower())) return true;
-    const double enough = 1.0001 * values_.gershgorin_shift(row_sums_);
+    const double largest = largest_diagonal();
+    const double enough = values_.gershgorin_shift(row_sums_) + 1e-3 * largest;
     if (!(enough < infinity)) return false;
-    double next = last_shift_ > 0.0 ? 0.25 * last_shift_ : 1e-3 * largest_diagonal();
+    double next = last_shift_ > 0.0 ? std::max(0.25 * last_shift_, 1e-4 * largest) : 1e-3 * largest;
     for (int k = 2; k <= most_factorisations; ++k, next *= 4.0) {
       if (k == most_factorisations || next > enough) next = enough;
       values_.add_to_diagonal(next - shift_);
