@@ -12,6 +12,8 @@ struct ContactParameters {
   double sample_spacing = 0.5;    ///< of contact points on the surface, in radii of the smallest tool
 };
 
+/// Contacts of one contact problem unless it says otherwise.
+inline constexpr int default_contact_capacity = 64;
 /// Tools of one contact problem.
 inline constexpr std::size_t maximum_tools = 8;
 

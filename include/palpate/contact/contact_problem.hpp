@@ -15,7 +15,7 @@ namespace palpate::inline PALPATE_ABI {
 /// between proxy and device enters as n_i . n_j / k between contacts of one tool: the device never feels more than k,
 /// however many contacts there are, and the proxy never sinks in. docs/contact.md has the law, its limits and figures.
 /// Work is bounded by `Capacity`, iterations, rounds and candidates.
-template <int Capacity = 64>
+template <int Capacity = default_contact_capacity>
 class ContactProblem {
  public:
   /// Places the contact points for balls of at least `smallest_radius` [m]. Allocates workspaces; for set-up.

@@ -37,7 +37,8 @@ template <TissueModel Tissue>
 class HapticServo {
  public:
   static constexpr std::size_t max_tools = maximum_tools;
-  static constexpr int contact_capacity = 64;  ///< contacts of all tools; more are left out (degraded_model)
+  /// Contacts of all tools; more are left out (degraded_model).
+  static constexpr int contact_capacity = default_contact_capacity;
 
   /// What a renderer needs of a tick: forces on the contact surface, contacts and proxies of the tools in the world.
   struct Snapshot {

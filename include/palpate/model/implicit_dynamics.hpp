@@ -15,7 +15,7 @@ struct DynamicsParameters {
   double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]: drags, also a body that moves freely
   double stiffness_damping = 0.0;  ///< Rayleigh's beta [s], with the tangent at the start of the step
   MassKind mass = MassKind::lumped;
-  NewtonParameters newton{};  ///< `maximum_iterations` bounds the work of a step
+  NewtonParameters newton{};  ///< `maximum_iterations` bounds the work of a step, TangentSolver that of an iteration
 };
 
 /// What a step did.
@@ -31,7 +31,7 @@ struct StepReport {
 class ImplicitDynamics {
  public:
   /// Starts at rest without displacement, but for the initial acceleration, which follows from the loads. Throws
-  /// too_large, bad_density where a free node has no mass, bad_argument for negative damping.
+  /// too_large, bad_density where a free node has no mass, bad_argument for negative damping and useless parameters.
   explicit ImplicitDynamics(DeformableBody body, const DynamicsParameters& parameters = {},
                             const SetupLimits& limits = {})
       : parameters_(parameters),
@@ -51,6 +51,8 @@ class ImplicitDynamics {
         other_(u_),
         x_(size()),
         heaviest_(body_.lumped.maxCoeff()) {
+    body_.elastic->tangent(u_, tangent_.matrix());
+    if (!body_.elastic->is_linear()) floor_ = tangent_.rounding(extent(body_.positions));
     find_acceleration();
   }
   ImplicitDynamics(const ImplicitDynamics&) = delete;
@@ -60,7 +62,7 @@ class ImplicitDynamics {
   StepReport step(double h) noexcept {
     StepReport report;
     if (!(h > 0.0) || !(h < infinity)) return report;
-    h_ = h;
+    begin(h);
     const TimeScheme& s = parameters_.scheme;
     predicted_ = u_ + h * v_ + (s.old_in_u * h * h) * a_;
     coasting_ = v_ + (s.old_in_v * h) * a_;
@@ -79,13 +81,21 @@ class ImplicitDynamics {
   }
 
   /// Takes `more` forces [N] into account in the step just taken, to first order: with the tangent of its last
-  /// iteration. One solve; nothing before the first step.
-  void correct(const VectorX& more) noexcept {
-    if (!stepped_) return;
+  /// iteration, or where it needed none, of its end. One solve and one force. False, and nothing changes, where no step
+  /// was taken since the state or the length of steps was changed, and where the corrected state is not finite or no
+  /// state of the laws.
+  bool correct(const VectorX& more) noexcept {
+    if (!stepped_) return false;
+    if (more.isZero(0.0)) return true;
+    if (!factorised_ && !prepare_at(u_)) return false;
     respond(more, trial_);
     trial_ += u_;
     find_motion();
+    if (!trial_.allFinite() || !velocity_.allFinite() || !acceleration_.allFinite()) return false;
+    const DeformationReport deformation = body_.elastic->force(trial_, force_);
+    if (!deformation.admissible || !force_.allFinite()) return false;
     accept();
+    return true;
   }
   /// Displacement [m] that forces [N] add at the end of a step, to first order, as `correct` has it.
   void respond(const VectorX& forces, VectorX& u) noexcept {
@@ -96,9 +106,8 @@ class ImplicitDynamics {
   /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
   bool prepare_response(double h) noexcept {
     if (!(h > 0.0) || !(h < infinity)) return false;
-    h_ = h;
-    body_.conditions.gather(u_, x_);
-    return prepare(x_);
+    begin(h);
+    return prepare_at(u_);
   }
 
   double time() const noexcept { return time_; }
@@ -107,13 +116,19 @@ class ImplicitDynamics {
   const VectorX& acceleration() const noexcept { return a_; }
   const DeformableBody& body() const noexcept { return body_; }
 
-  /// Changes the state; prescribed components keep their values. The acceleration follows.
+  /// Changes the state; prescribed components rest where they are prescribed. The acceleration follows. For a body with
+  /// memory the change is sudden.
   void set_state(const VectorX& u, const VectorX& v) {
+    end();
+    body_.elastic->begin_step(0.0);
+    u_ = body_.conditions.prescribed;
+    v_.setZero();
     for (const Index dof : body_.conditions.free_dofs) {
       u_[dof] = u[dof];
       v_[dof] = v[dof];
     }
-    stepped_ = false;
+    body_.elastic->end_step(u_);
+    body_.elastic->begin_step(0.0);
     find_acceleration();
   }
   /// Forces from now on instead of the scene's loads [N].
@@ -125,6 +140,7 @@ class ImplicitDynamics {
     apply_mass(v_, full_);
     return 0.5 * v_.dot(full_);
   }
+  /// Stored [J]. For a body with memory: the potential of its last step, which counts what faded in it.
   double elastic_energy() const noexcept { return body_.elastic->energy(u_); }
   /// Kinetic and stored, less the work that the loads can still do [J]: constant without damping.
   double energy() noexcept { return kinetic_energy() + elastic_energy() - load_.dot(u_); }
@@ -147,23 +163,41 @@ class ImplicitDynamics {
   }
   bool prepare(const VectorX& x) noexcept {
     place(x);
-    BlockMatrix& k = tangent_.matrix();
-    body_.elastic->tangent(trial_, k);
-    const TimeScheme& s = parameters_.scheme;
-    const double per_u = 1.0 / (s.new_in_u * h_ * h_), per_v = s.new_in_v / (s.new_in_u * h_);
-    add_mass(per_u + parameters_.mass_damping * per_v, k);
-    if (damping_.size() > 0) k.add(parameters_.stiffness_damping * per_v, damping_);
-    return tangent_.factorise();
+    return prepare_at(trial_);
   }
   void direction(const VectorX& residual, VectorX& d) noexcept { tangent_.solve(residual, d); }
   double scale() const noexcept { return scale_; }
   double rounding() const noexcept {
     const double of_inertia = heaviest_ / (parameters_.scheme.new_in_u * h_ * h_) * trial_.norm();
-    return 4.0 * std::numeric_limits<double>::epsilon() * std::max(scale_, of_inertia);
+    return std::max(floor_, 4.0 * std::numeric_limits<double>::epsilon() * std::max(scale_, of_inertia));
   }
 
  private:
+  /// A step of h starts at the end of the last one.
+  void begin(double h) noexcept {
+    end();
+    body_.elastic->begin_step(h);
+    h_ = h;
+  }
+  /// The last step, if there was one, can not be corrected any more.
+  void end() noexcept {
+    if (stepped_) body_.elastic->end_step(u_);
+    stepped_ = factorised_ = false;
+  }
+
+  /// Factorises the tangent of a step at a displacement.
+  bool prepare_at(const VectorX& u) noexcept {
+    BlockMatrix& k = tangent_.matrix();
+    body_.elastic->tangent(u, k);
+    const TimeScheme& s = parameters_.scheme;
+    const double per_u = 1.0 / (s.new_in_u * h_ * h_), per_v = s.new_in_v / (s.new_in_u * h_);
+    add_mass(per_u + parameters_.mass_damping * per_v, k);
+    if (damping_.size() > 0) k.add(parameters_.stiffness_damping * per_v, damping_);
+    return factorised_ = tangent_.factorise();
+  }
+
   static DeformableBody checked(DeformableBody body, const DynamicsParameters& p) {
+    p.newton.require_usable();
     for (const double d : {p.mass_damping, p.stiffness_damping})
       if (!(d >= 0.0 && d < infinity))
         raise(SetupErrorKind::bad_argument, "a damping of " + number(d), "Give 0 or a positive number");
@@ -229,11 +263,18 @@ class ImplicitDynamics {
     apply_damping(v_, other_);
     full_ = load_ - force_ - other_;
     body_.conditions.gather(full_, residual_);
-    tangent_.matrix().set_zero();
-    add_mass(1.0, tangent_.matrix());
-    if (!tangent_.factorise()) raise(SetupErrorKind::not_positive_definite, "the mass is not positive definite");
-    tangent_.solve(residual_, x_);
+    factorised_ = false;
+    if (parameters_.mass == MassKind::lumped) {
+      for (Index k = 0; k < size(); ++k)
+        x_[k] = residual_[k] / body_.lumped[body_.conditions.free_dofs[static_cast<std::size_t>(k)] / 3];
+    } else {
+      tangent_.matrix().set_zero();
+      add_mass(1.0, tangent_.matrix());
+      if (!tangent_.factorise()) raise(SetupErrorKind::not_positive_definite, "the mass is not positive definite");
+      tangent_.solve(residual_, x_);
+    }
     body_.conditions.scatter(x_, a_);
+    if (!a_.allFinite()) a_.setZero();  // of loads that are none: steps refuse these
   }
 
   DynamicsParameters parameters_;
@@ -244,8 +285,9 @@ class ImplicitDynamics {
   VectorX u_, v_, a_, load_;
   VectorX trial_, predicted_, coasting_, velocity_, acceleration_, force_, full_, other_, drag_, x_, residual_;
   DeformationReport deformation_;
-  bool stepped_ = false;  // since the state was set
-  double h_ = 0.0, time_ = 0.0, scale_ = 0.0, heaviest_ = 0.0;
+  bool stepped_ = false;     // the state is the end of a step of h_
+  bool factorised_ = false;  // tangent_ is that of this step
+  double h_ = 0.0, time_ = 0.0, scale_ = 0.0, heaviest_ = 0.0, floor_ = 0.0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI
