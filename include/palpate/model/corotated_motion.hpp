@@ -48,7 +48,7 @@ class CorotatedMotion {
                   const CorotatedMotionOptions& options = {}, const SetupLimits& limits = {})
       : options_(checked(options)),
         tetrahedra_(body, limits),
-        body_(checked(detail::deformable_body(body.rest, scene, limits), scene)),
+        body_(checked(body.rest, scene, limits)),
         mass_(body_.lumped.replicate(1, 3).transpose().reshaped()),
         preconditioner_(body_, body.rest, limits),
         gradients_(mass_.size()),
@@ -173,9 +173,9 @@ class CorotatedMotion {
             "Give at least one iteration and a tolerance in (0, 1)");
     return o;
   }
-  static DeformableBody checked(DeformableBody body, const Scene& scene) {
-    if (!scene.initial_strains().empty())
-      raise(SetupErrorKind::unsupported, "initial strains at large deformation", "Use a linear material");
+  static DeformableBody checked(const Body<Tet4>& rest, const Scene& scene, const SetupLimits& limits) {
+    detail::refuse_initial_strains(scene);
+    DeformableBody body = detail::body_with_mass(rest, scene, limits);
     for (Index i = 0; i < body.lumped.size(); ++i)
       if (!(body.lumped[i] > 0.0) && body.conditions.constrained[static_cast<std::size_t>(i)] != 7)
         raise(SetupErrorKind::bad_density, "node " + std::to_string(i) + " has no mass",
