@@ -267,3 +267,15 @@ TEST_CASE("a tissue with memory that is held relaxes to the slow equilibrium, wh
     CHECK(f > 1.2 * relaxed);
   }
 }
+
+TEST_CASE("small strain with memory is felt as well", "[haptic][soft][viscous]") {
+  const LinearElastic fast{5e3, 0.45, 1000.0};
+  const Viscoelastic<LinearElastic, 1> law{fast, {{{0.6, 0.3}}}};
+  SoftTissue tissue(pad(), pad_scene(), law, options(0.01)), elastic(pad(), pad_scene(), fast, options(0.01));
+  const auto slight = [](double t) { return std::min(0.001, 0.05 * t); };
+  const double at_first = press(tissue, 60, slight).force[2], unrelaxed = press(elastic, 2000, slight).force[2];
+  const double at_last = press(tissue, 4000, [](double) { return 0.001; }).force[2];
+  CHECK(at_first > 0.8 * unrelaxed);
+  SoftTissue slow(pad(), pad_scene(), LinearElastic{0.4 * 5e3, 0.45, 1000.0}, options(0.01));
+  CHECK_THAT(at_last, WithinRel(press(slow, 2000, slight).force[2], 5e-3));
+}
