@@ -18,4 +18,5 @@
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/material/viscoelastic.hpp>
 #include <palpate/model/quasi_non_linear.hpp>
+#include <palpate/model/corotated_tissue.hpp>
 #include <palpate/model/soft_tissue.hpp>

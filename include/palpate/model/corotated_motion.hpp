@@ -58,8 +58,12 @@ class CorotatedMotion {
       *v = VectorX::Zero(mass_.size());
     for (Index dof = 0; dof < mass_.size(); ++dof)
       if (body_.conditions.is_constrained(dof)) held_.push_back(dof);
-    set_state(u_, v_);
+    set_state(trial_, velocity_);
   }
+  /// With both in one.
+  explicit CorotatedMotion(const std::pair<HyperelasticBody<Tet4, Corotational<Base>>, Scene>& in,
+                           const CorotatedMotionOptions& options = {}, const SetupLimits& limits = {})
+      : CorotatedMotion(in.first, in.second, options, limits) {}
   CorotatedMotion(const CorotatedMotion&) = delete;
   CorotatedMotion& operator=(const CorotatedMotion&) = delete;
 
@@ -90,22 +94,24 @@ class CorotatedMotion {
     return report;
   }
 
-  /// Adds what `more` forces [N] change in the step just taken, to first order. One solve; nothing before the first
-  /// step.
-  BoundedSolveReport correct(const VectorX& more) noexcept {
+  /// Adds what `more` forces [N] change in the step just taken, to first order. One solve. False, and nothing changes,
+  /// where no step was taken since the state or the length of steps was changed, and where nothing finite comes of it.
+  bool correct(const VectorX& more) noexcept {
     const FlushDenormals flush;
-    if (!stepped_) return {};
-    const BoundedSolveReport report = respond(more, increment_);
+    if (!stepped_) return false;
+    const BoundedSolveReport report = gradients_.solve_into(*this, more, increment_, options_.solve);
+    if (report.iterations == 0) return report.converged;
     trial_ = u_ + increment_;
     find_motion();
-    if (!trial_.allFinite() || !velocity_.allFinite()) return report;
+    if (!trial_.allFinite() || !velocity_.allFinite()) return false;
     accept();
-    energy_known_ = energy_known_ && report.iterations == 0;
-    return report;
+    energy_known_ = false;
+    return true;
   }
   /// Displacement [m] that forces [N] add at the end of a step, to first order, with the rotations looked at last.
-  BoundedSolveReport respond(const VectorX& forces, VectorX& u) noexcept {
-    return gradients_.solve_into(*this, forces, u, options_.solve);
+  /// Solved to the end, whatever the options say: for set-up.
+  void respond(const VectorX& forces, VectorX& u) noexcept {
+    gradients_.solve_into(*this, forces, u, {1000, sizeof(S) == 8 ? 1e-10 : 1e-6});
   }
   /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
   bool prepare_response(double h) noexcept {
@@ -132,8 +138,12 @@ class CorotatedMotion {
     return drag_ += force_ + mass_.cwiseProduct(a_);
   }
 
-  /// Changes the state; prescribed components keep their values. The acceleration follows from forces and loads.
+  /// Changes the state; prescribed components rest where they are prescribed. The acceleration follows from the forces.
   void set_state(const VectorX& u, const VectorX& v) noexcept {
+    for (const Index dof : held_) {
+      u_[dof] = body_.conditions.prescribed[dof];
+      v_[dof] = a_[dof] = 0.0;
+    }
     for (const Index dof : body_.conditions.free_dofs) {
       u_[dof] = u[dof];
       v_[dof] = v[dof];

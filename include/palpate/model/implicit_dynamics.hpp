@@ -121,11 +121,10 @@ class ImplicitDynamics {
   void set_state(const VectorX& u, const VectorX& v) {
     end();
     body_.elastic->begin_step(0.0);
-    u_ = body_.conditions.prescribed;
-    v_.setZero();
-    for (const Index dof : body_.conditions.free_dofs) {
-      u_[dof] = u[dof];
-      v_[dof] = v[dof];
+    for (Index dof = 0; dof < u_.size(); ++dof) {  // u and v may be those of this motion
+      const bool held = body_.conditions.is_constrained(dof);
+      u_[dof] = held ? body_.conditions.prescribed[dof] : u[dof];
+      v_[dof] = held ? 0.0 : v[dof];
     }
     body_.elastic->end_step(u_);
     body_.elastic->begin_step(0.0);

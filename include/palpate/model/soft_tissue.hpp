@@ -14,9 +14,54 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-struct SoftTissueOptions {
-  double step = 0.01;  ///< of the motion [s]
-  DynamicsParameters motion{.newton = {.maximum_iterations = 2, .tolerance = 1e-9}};
+/// What a moving tissue asks of a motion; specialise for motions of your own.
+///   Parameters, usual_step [s], usual()    what the motion is made with, Motion(source, parameters, limits)
+///   source(body, scene, limits)            what it is made from
+///   settle(source, limits)                 its displacement in equilibrium; throws not_converged
+///   close(report)                          whether a step ended near its answer
+/// The motion itself: step, correct, respond, prepare_response, set_state, set_load, displacement, body, as
+/// ImplicitDynamics has them.
+template <class Motion>
+struct TissueMotion;
+
+namespace detail {
+
+/// Displacement of the equilibrium, or not_converged.
+inline VectorX settled(Equilibrium& statics) {
+  const EquilibriumReport report = statics.solve();
+  if (!report.converged)
+    raise(SetupErrorKind::not_converged, describe(report), "Set settle = false, or hold it better");
+  return statics.displacement();
+}
+
+}  // namespace detail
+
+template <>
+struct TissueMotion<ImplicitDynamics> {
+  using Parameters = DynamicsParameters;
+  using Source = DeformableBody;
+  static constexpr double usual_step = 0.01;
+  static Parameters usual() { return {.newton = {.maximum_iterations = 2, .tolerance = 1e-9}}; }
+
+  template <class Body>
+  static Source source(Body body, const Scene& scene, const SetupLimits& limits) {
+    return make_deformable_body(std::move(body), scene, limits);
+  }
+  static VectorX settle(Source& body, const SetupLimits& limits) {
+    Equilibrium statics(std::move(body), limits);
+    VectorX u = detail::settled(statics);
+    body = std::move(statics).release();
+    return u;
+  }
+  static bool close(const StepReport& r) noexcept {
+    return r.taken && (r.newton.converged || r.newton.relative_residual <= 0.05);
+  }
+};
+
+template <class Motion>
+struct TissueOptions {
+  double step = TissueMotion<Motion>::usual_step;  ///< of the motion [s]
+  typename TissueMotion<Motion>::Parameters motion = TissueMotion<Motion>::usual();
   bool settle = true;  ///< start in equilibrium under the scene's loads
   AdmissionPolicy admission{};
   SetupLimits limits{};
@@ -57,27 +102,29 @@ const auto& mesh_of(const Body& body) noexcept {
 ///
 /// Two threads: `advance` belongs to one (see TissueThread), the functions of TissueModel to the one that ticks; they
 /// exchange through triple buffers and never wait for each other. Satisfies TissueModel.
-class SoftTissue {
+template <class Motion>
+class BasicSoftTissue {
  public:
+  using Options = TissueOptions<Motion>;
   /// On vertices, three to a contact; of more the first are felt by the tissue.
   static constexpr std::size_t most_forces = 3 * default_contact_capacity;
 
   /// One material everywhere, or one per region. Throws what make_deformable_body and statics throw, bad_argument for a
   /// step that is none, not_converged when there is no equilibrium to settle in. Set-up solves once per touchable dof.
   template <Element E, Material M>
-  SoftTissue(const Mesh<E>& mesh, const Scene& scene, const M& material, const SoftTissueOptions& options = {})
-      : SoftTissue(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options) {}
+  BasicSoftTissue(const Mesh<E>& mesh, const Scene& scene, const M& material, const Options& options = {})
+      : BasicSoftTissue(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options) {}
   template <Element E, Material M>
-  SoftTissue(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-             const SoftTissueOptions& options = {})
-      : SoftTissue(prepare(mesh, scene, materials, options), options) {}
-  SoftTissue(const SoftTissue&) = delete;
-  SoftTissue& operator=(const SoftTissue&) = delete;
+  BasicSoftTissue(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                  const Options& options = {})
+      : BasicSoftTissue(prepare(mesh, scene, materials, options), options) {}
+  BasicSoftTissue(const BasicSoftTissue&) = delete;
+  BasicSoftTissue& operator=(const BasicSoftTissue&) = delete;
 
   // The tissue's thread
 
   /// Takes in what pressed since the last step, and moves on by one step. No allocation; as long as it takes.
-  StepReport advance() noexcept {
+  auto advance() noexcept {
     const FlushDenormals flush;
     pressing_.update();
     full_.setZero();
@@ -88,11 +135,11 @@ class SoftTissue {
     full_ = motion_.body().load;
     add(used_, 1.0, full_);
     motion_.set_load(full_);
-    const StepReport report = motion_.step(step_);
+    const auto report = motion_.step(step_);
     publish(report, corrected);
     return report;
   }
-  const ImplicitDynamics& motion() const noexcept { return motion_; }
+  const Motion& motion() const noexcept { return motion_; }
   double step() const noexcept { return step_; }
   /// Steps published so far.
   std::uint64_t steps() const noexcept { return steps_; }
@@ -145,7 +192,7 @@ class SoftTissue {
     Status status;
   };
   struct Prepared {
-    DeformableBody body;
+    typename TissueMotion<Motion>::Source source;
     Touchable touchable;
     Vector3 origin;
     VectorX settled;
@@ -153,7 +200,7 @@ class SoftTissue {
 
   template <Element E, Material M>
   static Prepared prepare(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-                          const SoftTissueOptions& options) {
+                          const Options& options) {
     if (!(options.step > 0.0 && options.step < infinity))
       raise(SetupErrorKind::bad_argument, "a step of " + number(options.step), "Give a positive time in seconds");
     Admitted<E> admitted = admit<E>(mesh, options.admission);
@@ -167,24 +214,17 @@ class SoftTissue {
     prepared.settled = VectorX::Zero(3 * rest.node_count());
     if (options.settle)
       require_constrained(rest, resolve_essential(rest, extract_boundary<E>(rest), mapped).constrained);
-    prepared.body = make_deformable_body(std::move(body), mapped, options.limits);
-    if (options.settle) {
-      Equilibrium statics(std::move(prepared.body), options.limits);
-      const EquilibriumReport report = statics.solve();
-      if (!report.converged)
-        raise(SetupErrorKind::not_converged, describe(report), "Set settle = false, or hold it better");
-      prepared.settled = statics.displacement();
-      prepared.body = std::move(statics).release();
-    }
+    prepared.source = TissueMotion<Motion>::source(std::move(body), mapped, options.limits);
+    if (options.settle) prepared.settled = TissueMotion<Motion>::settle(prepared.source, options.limits);
     return prepared;
   }
 
-  SoftTissue(Prepared prepared, const SoftTissueOptions& options)
+  BasicSoftTissue(Prepared prepared, const Options& options)
       : step_(options.step),
         world_(Eigen::Translation3d(prepared.origin)),
         touchable_(std::move(prepared.touchable.nodes)),
-        rotations_(prepared.body.pattern, prepared.body.positions, touchable_),
-        motion_(std::move(prepared.body), options.motion, options.limits),
+        motion_(std::move(prepared.source), options.motion, options.limits),
+        rotations_(motion_.body().pattern, motion_.body().positions, touchable_),
         full_(motion_.displacement()) {
     motion_.set_state(prepared.settled, VectorX::Zero(full_.size()));
     store_compliance(options.limits);
@@ -250,13 +290,12 @@ class SoftTissue {
     }
   }
   static std::size_t vertex(const VertexForce& f) noexcept { return static_cast<std::size_t>(f.vertex); }
-  void publish(const StepReport& report, bool corrected) noexcept {
+  void publish(const auto& report, bool corrected) noexcept {
     View& view = views_.back();
     look(view);
     view.status = {};
     if (report.deformation.inverted > 0) view.status.set(StatusFlag::inverted);
-    const bool near = report.newton.converged || report.newton.relative_residual <= 0.05;
-    if (!report.taken || !near) view.status.set(StatusFlag::solver_not_converged);
+    if (!TissueMotion<Motion>::close(report)) view.status.set(StatusFlag::solver_not_converged);
     if (!corrected) view.status.set(StatusFlag::degraded_model);
     views_.publish();
     ++steps_;
@@ -265,8 +304,8 @@ class SoftTissue {
   double step_;
   Eigen::Isometry3d world_;
   std::vector<NodeId> touchable_;
+  Motion motion_;
   NodalRotations rotations_;
-  ImplicitDynamics motion_;
   VectorX full_;
   std::vector<Matrix3> rest_;  // of vertex i per force on j at i + vertices x j
   std::vector<double> bound_;
@@ -279,6 +318,10 @@ class SoftTissue {
   std::uint64_t revision_ = 0;
   Status ticked_;  // of the last end_tick
 };
+
+/// Solved by Newton's method with a factor: any element, law and step; see ImplicitDynamics.
+using SoftTissue = BasicSoftTissue<ImplicitDynamics>;
+using SoftTissueOptions = TissueOptions<ImplicitDynamics>;
 
 static_assert(TissueModel<SoftTissue>);
 
