@@ -7,6 +7,7 @@
 #include <palpate/device/placement.hpp>
 #include <palpate/device/recorder.hpp>
 #include <palpate/device/replay_device.hpp>
+#include <palpate/device/simulated_device.hpp>
 #include <palpate/element/hex20.hpp>
 #include <palpate/element/mean_dilatation.hpp>
 #include <palpate/element/smoothed.hpp>
