@@ -15,6 +15,7 @@
 #include <palpate/element/tet4.hpp>
 #include <palpate/element/with_quadrature.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/haptic/passivity_observer.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 #include <palpate/io/gmsh.hpp>
 #include <palpate/io/pvd.hpp>

@@ -6,6 +6,7 @@
 #include <palpate/contact/sphere_tool.hpp>
 #include <palpate/core/realtime.hpp>
 #include <palpate/haptic/force_gate.hpp>
+#include <palpate/haptic/passivity_observer.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
 
 #include <optional>
@@ -32,8 +33,8 @@ struct ToolContact {
 
 /// Contact state and force gate of one session. `tick` computes the force in the tick that brought the pose and passes
 /// it through the gate: no way to the device goes round it. Refers to the tissue, which must outlive it; neither copied
-/// nor moved.
-template <TissueModel Tissue>
+/// nor moved. `Energy` limits what the tool may be given: NoEnergyTank, or an EnergyTank given as last argument.
+template <TissueModel Tissue, class Energy = NoEnergyTank>
 class HapticServo {
  public:
   static constexpr std::size_t max_tools = maximum_tools;
@@ -53,13 +54,15 @@ class HapticServo {
 
   /// Throws bad_argument for an invalid tool, coupling or limits, or when nothing of the tissue can be touched.
   /// Allocates all a tick needs.
-  HapticServo(Tissue& tissue, const SphereTool& tool, const ServoOptions& options = {})
-      : HapticServo(tissue, std::vector<SphereTool>{tool}, options) {}
-  HapticServo(Tissue& tissue, const std::vector<SphereTool>& tools, const ServoOptions& options = {})
+  HapticServo(Tissue& tissue, const SphereTool& tool, const ServoOptions& options = {}, const Energy& energy = Energy())
+      : HapticServo(tissue, std::vector<SphereTool>{tool}, options, energy) {}
+  HapticServo(Tissue& tissue, const std::vector<SphereTool>& tools, const ServoOptions& options = {},
+              const Energy& energy = Energy())
       : tissue_(&tissue),
         problem_(tissue.contact_surface(), smallest_radius(tools), options.contact),
         contact_tools_(tools.size()),
         states_(tools.size()),
+        energies_(tools.size(), energy),
         forces_(tools.size()) {
     if (tissue.contact_surface().triangles().empty())
       raise(SetupErrorKind::bad_argument, "nothing of this tissue can be touched",
@@ -92,8 +95,11 @@ class HapticServo {
       const Vector3 wanted =
           contact_tools_[i].active ? Vector3(tissue_->pose().linear() * contact_tools_[i].force) : Vector3::Zero();
       const Input& input = states_[i];
-      forces_[i] = gates_[i].apply(wanted, input.time, input.time, input.readable, input.restarted);
-      forces_[i].status |= input.status | shared;
+      Status energy;
+      const Vector3 given = limit_energy(i, wanted, energy);
+      forces_[i] = gates_[i].apply(given, input.time, input.time, input.readable, input.restarted);
+      energies_[i].gave(forces_[i].force);
+      forces_[i].status |= input.status | shared | energy;
     }
     publish();
     return forces_;
@@ -108,6 +114,7 @@ class HapticServo {
       tool.force.setZero();
     }
     for (ForceGate& gate : gates_) gate.reset();
+    for (Energy& energy : energies_) energy.reset();
   }
 
   /// Contacts of the last tick, model frame. For the tick's own thread.
@@ -118,6 +125,9 @@ class HapticServo {
   Vector3 contact_force(std::size_t tool = 0) const noexcept {
     return tissue_->pose().linear() * contact_tools_[tool].force;
   }
+
+  /// What limits a tool's energy. For the tick's own thread.
+  const Energy& energy(std::size_t tool = 0) const noexcept { return energies_[tool]; }
 
   /// Newest snapshot, for one reader thread; never waits. Valid until the next call.
   const Snapshot& read_snapshot() noexcept {
@@ -207,6 +217,13 @@ class HapticServo {
     states_[i].status.set(StatusFlag::reacquired);
   }
 
+  /// Before the gate: what it limits further has then been given.
+  Vector3 limit_energy(std::size_t i, const Vector3& wanted, Status& status) noexcept {
+    const Input& input = states_[i];
+    if (!input.readable || input.restarted) energies_[i].forget();
+    return energies_[i].limit(wanted, tissue_->pose() * input.position, input.time, status);
+  }
+
   void publish() noexcept {
     Snapshot& s = snapshots_.back();
     const auto forces = problem_.vertex_forces();
@@ -227,6 +244,7 @@ class HapticServo {
   std::vector<ContactTool> contact_tools_;
   std::vector<Input> states_;
   std::vector<ForceGate> gates_;
+  std::vector<Energy> energies_;
   std::vector<ToolForce> forces_;
   TripleBuffer<Snapshot> snapshots_;
   unsigned ticks_ = 0;
