@@ -26,6 +26,7 @@ set(room_testing       7     both)
 set(room_version.hpp   0     common)
 set(room_fwd.hpp       8     roof)
 set(room_palpate.hpp   9     roof)
+set(room_soft.hpp      10    roof)
 
 if(NOT HEADERS)
   set(HEADERS ${CMAKE_CURRENT_LIST_DIR}/../include)

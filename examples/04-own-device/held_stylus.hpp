@@ -2,13 +2,12 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/core/limit_length.hpp>
+#include <palpate/device/virtual_motors.hpp>
 
 namespace own {
 
 using palpate::DeviceLimits;
 using palpate::Status;
-using palpate::StatusFlag;
 using palpate::ToolState;
 using palpate::Vector3;
 
@@ -20,7 +19,6 @@ class HeldStylus {
   HeldStylus(const Vector3& start, const Vector3& goal) : start_(start), goal_(goal), position_(start) {}
 
   // --- the five functions of a HapticDevice
-  // ---------------------------------------------------------------------------
 
   /// Never throws, blocks, allocates or locks. SI units and the clock of the device; a state that could not be had is
   /// marked invalid, not guessed.
@@ -30,46 +28,28 @@ class HeldStylus {
     state.position = position_;
     state.velocity = velocity_;
     state.time = time_;
-    state.valid = readable_ = plugged_;
-    if (!readable_) force_.setZero();  // who cannot read must not push
+    state.valid = plugged_;
+    motors_.read_was(plugged_);  // who cannot read must not push
     return state;
   }
 
   /// The device is the last to touch the force: finite, within the peak, and zero unless running and readable. That the
-  /// servo has a gate of its own is no excuse.
+  /// servo has a gate of its own is no excuse. VirtualMotors sees to it here; with real ones these are your lines.
   Status write(const Vector3& force, const Vector3& /*torque: there is no motor for it*/) noexcept {
-    Status status;
-    force_.setZero();
-    if (!readable_) status.set(StatusFlag::disconnected);
-    if (!force.allFinite()) status.set(StatusFlag::non_finite_force);
-    if (!running_ || !status.ok()) return status;
-    bool shortened = false;
-    force_ = palpate::limit_length(force, limits().peak_force, shortened);
-    if (shortened) status.set(StatusFlag::saturated);
-    return status;
+    return motors_.render(force);
   }
 
   /// From the data sheet, or better from the SDK. `stiffness` bounds what is felt: the servo couples tool and tissue
   /// with it. Too high and a real device buzzes.
-  DeviceLimits limits() const noexcept {
-    return {.peak_force = 3.3,
-            .continuous_force = 0.88,
-            .stiffness = 500.0,
-            .workspace_low = Vector3(-0.1, -0.1, -0.05),
-            .workspace_high = Vector3(0.1, 0.1, 0.15)};
-  }
+  DeviceLimits limits() const noexcept { return motors_.limits(); }
 
   /// Opens, checks, calibrates; the only one that may throw.
-  void start() noexcept { running_ = true; }
-  void stop() noexcept {
-    running_ = false;
-    force_.setZero();
-  }
+  void start() noexcept { motors_.start(); }
+  void stop() noexcept { motors_.stop(); }
 
   // --- for tests
-  // --------------------------------------------------------------------------------------------------------
 
-  const Vector3& last_force() const noexcept { return force_; }  ///< [N] what is rendered now
+  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] what is rendered now
   void unplug(bool unplugged) noexcept { plugged_ = !unplugged; }
   const Vector3& goal() const noexcept { return goal_; }
   const Vector3& position() const noexcept { return position_; }
@@ -86,13 +66,18 @@ class HeldStylus {
     const double share = std::min(1.0, time_);  // the hand takes a second to get there
     const Vector3 wanted = start_ + share * (goal_ - start_);
     const Vector3 pull = stiffness * (wanted - position_) - damping * velocity_;
-    velocity_ += step / mass * (pull + force_);
+    velocity_ += step / mass * (pull + motors_.force());
     position_ += step * velocity_;
   }
 
-  Vector3 start_, goal_, position_, velocity_ = Vector3::Zero(), force_ = Vector3::Zero();
+  Vector3 start_, goal_, position_, velocity_ = Vector3::Zero();
   double time_ = 0.0;
-  bool running_ = false, readable_ = true, plugged_ = true;
+  bool plugged_ = true;
+  palpate::VirtualMotors motors_{{.peak_force = 3.3,
+                                  .continuous_force = 0.88,
+                                  .stiffness = 500.0,
+                                  .workspace_low = Vector3(-0.1, -0.1, -0.05),
+                                  .workspace_high = Vector3(0.1, 0.1, 0.15)}};
 };
 
 static_assert(palpate::HapticDevice<HeldStylus>);  // says at once what is missing

@@ -32,7 +32,6 @@ class SimulatorBody {
   std::vector<Group> sets;  ///< palpate's type for named sets; a simulator with its own keeps a table of these beside
 
   // --- MeshView
-  // -------------------------------------------------------------------------------------------------------
   static constexpr int nodes_per_element = 4;
   Index node_count() const { return static_cast<Index>(particles.size()); }
   Index element_count() const { return static_cast<Index>(cells.size()); }

@@ -65,6 +65,7 @@ inline CaseFile read_case_file(const std::string& path) {
 }
 
 inline constexpr const char* statics = "linear static, small strain";
+inline constexpr const char* large_strain_statics = "geometrically non-linear static, dead loads";
 inline constexpr const char* eigenfrequencies = "linear eigenfrequency";
 
 /// Refuses another analysis than the one wanted, and keys that mean nothing to it.
@@ -74,8 +75,9 @@ inline void check_analysis(const json& load_case, const char* wanted) {
               wanted == eigenfrequencies ? "modes" : "loads"});
   const auto analysis = load_case.at("analysis").get<std::string>();
   if (analysis != wanted)
-    palpate::raise(SetupErrorKind::unsupported, "the analysis '" + analysis + "'",
-                   "'" + std::string(statics) + "' and '" + eigenfrequencies + "' are solved");
+    palpate::raise(
+        SetupErrorKind::unsupported, "the analysis '" + analysis + "'",
+        "'" + std::string(statics) + "', '" + large_strain_statics + "' and '" + eigenfrequencies + "' are solved");
 }
 
 /// The material of each region.

@@ -1,4 +1,4 @@
-// solve_case: linear statics and natural frequencies of the load cases in a file.
+// solve_case: statics, linear or at large deformation, and natural frequencies of the load cases in a file.
 //
 //   solve_case CASE.json [--out DIR] [--mesh41]
 //
@@ -11,11 +11,12 @@
 //   3. writes DIR/<load case>_u.csv and DIR/<load case>_reactions.csv and prints one line of JSON with the largest
 //      displacement, the strain energy, the sum of the reactions and the time it took.
 //
-// Where the analysis is "linear eigenfrequency" it finds the lowest elastic modes instead (modes.hpp), writes
+// Where the analysis is "geometrically non-linear static, dead loads" it finds the equilibrium of hyperelastic bodies
+// instead (large_strain.hpp). Where it is "linear eigenfrequency" it finds the lowest elastic modes instead (modes.hpp), writes
 // DIR/<load case>_mode<k>_u.csv, shapes normalised by mass, and prints their frequencies; rigid motions of a body that
 // is not held are counted apart.
 //
-// Whatever palpate does not do (a non-linear material, an analysis in time, an element it lacks, a group that the mesh
+// Whatever palpate does not do (another law, an analysis in time, an element it lacks, a group that the mesh
 // does not have) is refused by name in that line, and the next load case is tried: a wrong answer is never printed. The
 // exit code is 0 when every load case was solved or refused, and 2 when the case file or its mesh cannot be read.
 #include "solve_all.hpp"

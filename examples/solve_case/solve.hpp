@@ -25,6 +25,18 @@ struct Solution {
   double seconds = 0.0;
 };
 
+/// Nodes of a mesh with a prescribed component, ascending.
+template <palpate::Element E>
+std::vector<palpate::NodeId> held_nodes(const palpate::Mesh<E>& mesh, const palpate::Scene& scene) {
+  std::vector<palpate::NodeId> held;
+  const auto boundary = palpate::extract_boundary<E>(mesh);
+  for (const auto& condition : scene.prescribed())
+    for (const palpate::NodeId i : palpate::resolve_nodes(mesh, boundary, condition.where)) held.push_back(i);
+  std::ranges::sort(held);
+  held.erase(std::unique(held.begin(), held.end()), held.end());
+  return held;
+}
+
 /// Sets up the model of a load case, which solves it. Throws SetupError.
 template <palpate::Element E>
 Solution solve(const palpate::Mesh<E>& mesh, const json& load_case) {
@@ -40,15 +52,9 @@ Solution solve(const palpate::Mesh<E>& mesh, const json& load_case) {
              model.reactions(),
              model.strain_energy(),
              model.node_map(),
-             {},
+             held_nodes(mesh, scene),
              0.0};
   s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-
-  const auto boundary = palpate::extract_boundary<E>(mesh);
-  for (const auto& condition : scene.prescribed())
-    for (const palpate::NodeId i : palpate::resolve_nodes(mesh, boundary, condition.where)) s.held.push_back(i);
-  std::ranges::sort(s.held);
-  s.held.erase(std::unique(s.held.begin(), s.held.end()), s.held.end());
   return s;
 }
 

@@ -1,6 +1,7 @@
 // Defines solve_all for the source files that instantiate it, one per element.
 #pragma once
 
+#include "large_strain.hpp"
 #include "modes.hpp"
 #include "solve_all.hpp"
 
@@ -16,8 +17,11 @@ void solve_load_case(const NumberedMesh<E>& numbered, const std::string& element
     print(summary(name, element, solution));
   };
   try {
-    if (load_case.value("analysis", "") == eigenfrequencies)
+    const auto analysis = load_case.value("analysis", "");
+    if (analysis == eigenfrequencies)
       run(solve_modes<E>);
+    else if (analysis == large_strain_statics)
+      run(solve_large_strain<E>);
     else
       run(solve<E>);
   } catch (const palpate::SetupError& error) {

@@ -5,6 +5,9 @@
 #include "../../benchmarks/accuracy/statics.hpp"
 #include "beads.hpp"
 
+#include <palpate/material/neo_hookean.hpp>
+#include <palpate/model/equilibrium.hpp>
+
 namespace truth_cube {
 
 using accuracy::body_of, accuracy::box_of, accuracy::solve_static;
@@ -13,6 +16,29 @@ using accuracy::body_of, accuracy::box_of, accuracy::solve_static;
 using Motion = std::vector<Vector3>;
 
 inline constexpr LinearElastic rubber{.youngs_modulus = 15.3e3, .poisson_ratio = 0.499, .density = 980.0};
+
+/// The same at large strain.
+inline constexpr NeoHookean large_strain_rubber{
+    .youngs_modulus = rubber.youngs_modulus, .poisson_ratio = rubber.poisson_ratio, .density = rubber.density};
+
+/// Displacement of the nodes, by linear elasticity.
+struct Linear {
+  template <Element E>
+  VectorX operator()(const Mesh<E>& mesh, const Scene& scene) const {
+    return solve_static(body_of(mesh, {rubber}), scene).displacement;
+  }
+};
+/// By equilibrium at large strain; throws not_converged.
+struct LargeStrainLaw {
+  template <Element E>
+  VectorX operator()(const Mesh<E>& mesh, const Scene& scene) const {
+    Equilibrium body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{large_strain_rubber}), scene);
+    const EquilibriumReport report = body.solve();
+    if (!report.converged || !report.stable || report.deformation.inverted > 0)
+      raise(SetupErrorKind::not_converged, describe(report));
+    return body.displacement();
+  }
+};
 
 /// A value given at the beads, at `place` in 0 ... 6 along every axis between them (trilinear).
 template <class Value>
@@ -39,8 +65,8 @@ Vector3 between_beads(const Vector3& place, Value value) {
 
 /// (a) The body between the beads, `cells` per gap, the measured motion prescribed on its whole surface: nothing needs
 /// to be known of platen and base. What is predicted is the motion of the 125 beads inside.
-template <Element E>
-Motion inside_measured_shell(const std::vector<Bead>& beads, std::size_t state, int cells) {
+template <Element E, class Solve>
+Motion inside_measured_shell(const std::vector<Bead>& beads, std::size_t state, int cells, Solve solve) {
   const int n = (per_side - 1) * cells;
   const double side = per_side - 1;
   Mesh<E> mesh = box_of<E>({side, side, side}, {n, n, n});
@@ -52,7 +78,7 @@ Motion inside_measured_shell(const std::vector<Bead>& beads, std::size_t state, 
         between_beads(places[static_cast<std::size_t>(i)], [&](std::size_t b) { return beads[b].displacement[state]; });
     scene.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
   }
-  const VectorX u = solve_static(body_of(mesh, {rubber}), scene).displacement;
+  const VectorX u = solve(mesh, scene);
   Motion motion(beads.size());
   for (Index i = 0; i < mesh.node_count(); ++i) {
     const Vector3 nearest = places[static_cast<std::size_t>(i)].array().round();
@@ -105,6 +131,13 @@ std::array<Motion, 4> under_the_platen(const std::vector<Bead>& beads, int n) {
                           Scene().fix("z1").prescribe("z0", {0.0, 1.0, 0.0}), widened};
   for (std::size_t i = 0; i < 4; ++i) motions[i] = at_beads(mesh, solve_static(body, scenes[i]).displacement, beads);
   return motions;
+}
+
+/// (b) at large strain, the platen held sideways.
+template <Element E>
+Motion pushed_far(const std::vector<Bead>& beads, int n, double travel) {
+  const Mesh<E> mesh = box_of<E>({edge, edge, edge}, {n, n, n});
+  return at_beads(mesh, LargeStrainLaw{}(mesh, Scene().fix("z1").prescribe("z0", {0.0, 0.0, travel})), beads);
 }
 
 /// The motion that belongs to a platen's.

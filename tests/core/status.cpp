@@ -46,6 +46,8 @@ TEST_CASE("every flag has one bit and one name", "[core][status]") {
   CHECK(name(StatusFlag::reacquired) == "Reacquired");
   CHECK(name(StatusFlag::ramping) == "Ramping");
   CHECK(name(StatusFlag::non_finite_force) == "NonFiniteForce");
+  CHECK(name(StatusFlag::step_refused) == "StepRefused");
+  CHECK(name(StatusFlag::energy_grew) == "EnergyGrew");
 }
 
 TEST_CASE("counters add one per flag and tick", "[core][status]") {
@@ -54,11 +56,11 @@ TEST_CASE("counters add one per flag and tick", "[core][status]") {
   for (int tick = 0; tick < 1000; ++tick) {
     Status s;
     if (tick % 2 == 0) s |= StatusFlag::saturated;
-    if (tick % 10 == 0) s |= StatusFlag::non_finite_force;
+    if (tick % 10 == 0) s |= StatusFlag::energy_grew;
     counters.count(s);
   }
   CHECK(counters[StatusFlag::saturated] == 500);
-  CHECK(counters[StatusFlag::non_finite_force] == 100);
+  CHECK(counters[StatusFlag::energy_grew] == 100);
   CHECK(counters[StatusFlag::stale] == 0);
   CHECK(counters.at(1) == 500);
   CHECK(counters.at(status_flag_count - 1) == 100);

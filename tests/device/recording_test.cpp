@@ -234,7 +234,8 @@ TEST_CASE("files that are no recording are refused with file and line",
       {header + "0,0,0,0,nan,nan,nan,1,0,0,0,-1,1,0,0,0,0\n", ":2: ", "buttons"},
       {header + "0,0,0,0,nan,nan,nan,1,0,0,0,4294967296,1,0,0,0,0\n", ":2: ", "buttons"},
       {header + "0,0,0,0,nan,nan,nan,1,0,0,0,0,2,0,0,0,0\n", ":2: ", "valid"},
-      {header + "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,8192\n", ":2: ", "a status"},
+      {header + "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0," + std::to_string(1u << status_flag_count) + "\n", ":2: ",
+       "a status"},
       {header + std::string(1000, '\x01') + "\n", ":2: ", "time"},
   };
   const TemporaryFile file("bad.csv");

@@ -17,6 +17,9 @@ struct BlockPattern {
 
   Index rows() const noexcept { return static_cast<Index>(row_start.size()) - 1; }
 
+  /// Position of a block on the diagonal: the last of its row.
+  Index diagonal(Index row) const noexcept { return row_start[static_cast<std::size_t>(row) + 1] - 1; }
+
   /// Position of block (row, col), col <= row; binary search.
   Index find(NodeId row, NodeId col) const noexcept {
     const auto begin = column.begin() + row_start[static_cast<std::size_t>(row)];
@@ -74,6 +77,12 @@ class BlockMatrix {
   }
 
   void set_zero() noexcept { std::ranges::fill(values_, 0.0); }
+  /// Adds `factor` times a matrix on the same pattern. No allocation.
+  void add(double factor, const BlockMatrix& other) noexcept {
+    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] += factor * other.values_[i];
+  }
+  /// Takes the values of a matrix on the same pattern. No allocation.
+  void copy_values(const BlockMatrix& other) noexcept { std::ranges::copy(other.values_, values_.begin()); }
 
   /// y = K x; x and y hold size() entries. No allocation; reads every stored block once.
   void apply(const VectorX& x, VectorX& y) const noexcept {

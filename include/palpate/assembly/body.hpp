@@ -44,7 +44,7 @@ struct Body {
 
 /// The material of every region of a mesh, in region order. Throws missing_material, unknown_group (a material for a
 /// region that does not exist) or whatever the material's own check() says, with the region's number and name.
-template <LinearMaterial M, MeshView Mesh>
+template <Material M, MeshView Mesh>
 std::vector<M> materials_by_region(const Mesh& mesh, const RegionMaterials<M>& materials) {
   std::vector<M> result;
   for (const auto& [name, material] : materials) {

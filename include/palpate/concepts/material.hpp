@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 
 #include <optional>
@@ -29,5 +30,44 @@ template <class M>
 concept FibreMaterial = LinearMaterial<M> && requires(const M& m, const Vector3& fibre) {
   { m.elasticity(fibre) } -> FixedMatrix<6, 6>;
 };
+
+/// A material for large strains, given by its stored energy. F is the deformation gradient.
+///   energy(F) -> S             W [J per m^3 of rest volume], zero at rest
+///   stress(F) -> Tensor3<S>    P = dW/dF, the first Piola-Kirchhoff stress [Pa]; S is double, float or Lanes of them
+///   tangent(F) -> Matrix9      dP/dF [Pa], symmetric; row i + 3 j is P_ij, column k + 3 l is F_kl
+///   rest_elasticity()          the 6 x 6 matrix of the same law at small strain [Pa]. Not called `elasticity`: no such
+///                              material may pass as a linear one unnoticed.
+///   admits(F) -> bool          whether the law holds at F. Outside, the other functions may return anything.
+///   survives_inversion         whether it holds at flat F and those turned inside out; else J > 0 is needed.
+/// None allocates or throws. Laws: testing/hyperelastic_laws.hpp.
+template <class M>
+concept HyperelasticMaterial =
+    Material<M> && requires(const M& m, const Tensor3<double>& f, const Tensor3<float>& single,
+                            const Tensor3<Lanes<double, 8>>& lanes, const Tensor3<Lanes<float, 16>>& single_lanes) {
+      requires std::same_as<std::remove_cvref_t<decltype(M::survives_inversion)>, bool>;
+      { m.energy(f) } -> std::same_as<double>;
+      { m.energy(single) } -> std::same_as<float>;
+      { m.stress(f) } -> std::same_as<Tensor3<double>>;
+      { m.stress(single) } -> std::same_as<Tensor3<float>>;
+      { m.stress(lanes) } -> std::same_as<Tensor3<Lanes<double, 8>>>;
+      { m.stress(single_lanes) } -> std::same_as<Tensor3<Lanes<float, 16>>>;
+      { m.tangent(f) } -> FixedMatrix<9, 9>;
+      { m.rest_elasticity() } -> FixedMatrix<6, 6>;
+      { m.admits(f) } -> std::same_as<bool>;
+    };
+
+/// A hyperelastic material with fibres: the same functions with the unit vector along the fibres at rest as a last
+/// argument, used where the mesh has fibre directions.
+template <class M>
+concept FibreHyperelasticMaterial =
+    HyperelasticMaterial<M> && requires(const M& m, const Tensor3<double>& f, const Triple<double>& fibre,
+                                        const Tensor3<Lanes<float, 16>>& lanes, const Triple<Lanes<float, 16>>& fibres) {
+      { m.energy(f, fibre) } -> std::same_as<double>;
+      { m.stress(f, fibre) } -> std::same_as<Tensor3<double>>;
+      { m.stress(lanes, fibres) } -> std::same_as<Tensor3<Lanes<float, 16>>>;
+      { m.tangent(f, fibre) } -> FixedMatrix<9, 9>;
+      { m.rest_elasticity(fibre) } -> FixedMatrix<6, 6>;
+      { m.admits(f, fibre) } -> std::same_as<bool>;
+    };
 
 }  // namespace palpate::inline PALPATE_ABI

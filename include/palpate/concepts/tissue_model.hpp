@@ -26,6 +26,8 @@ struct VertexForce {
 /// - `compliance_bound(j)` is at least the largest displacement [m/N] of any vertex per unit force on j.
 /// - `compliance_floor()` is a tiny compliance that keeps a fixed vertex from dividing by zero.
 /// - `foresee(vertices)`, if there is one, is told which vertices a tool may press soon.
+/// - `begin_tick()`, if there is one, is called before each tick and may bring in what moved since; its Status is part of
+/// the tick's. `end_tick(forces)`, if there is one, is told the forces on the vertices after it.
 /// - `pose()` maps the model's frame to the world's.
 /// All are noexcept, allocate nothing and take bounded time.
 template <class T>

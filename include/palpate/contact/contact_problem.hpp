@@ -34,6 +34,7 @@ class ContactProblem {
     floor_ = tissue.compliance_floor();
     rounds_left_ = maximum_rounds;
     rows_.begin_tick(tissue.compliance_revision());
+    displacement_.begin_tick(tissue.compliance_revision());
     slide(tools);
     candidates_.begin_tick(tissue.contact_surface(), tools);
     candidates_.look_round(tissue, tools, displacement_);

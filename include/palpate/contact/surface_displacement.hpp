@@ -4,6 +4,7 @@
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact_surface.hpp>
 
+#include <utility>
 #include <vector>
 
 namespace palpate::inline PALPATE_ABI {
@@ -18,6 +19,11 @@ class SurfaceDisplacement {
       : displacement_(static_cast<std::size_t>(vertices)), stamp_(static_cast<std::size_t>(vertices), 0) {}
 
   std::span<const VertexForce> forces() const noexcept { return {forces_.data(), static_cast<std::size_t>(count_)}; }
+
+  /// Forgets remembered displacements when the tissue's compliance is another than in the last tick.
+  void begin_tick(std::uint64_t revision) noexcept {
+    if (revision != std::exchange(revision_, revision)) ++generation_;
+  }
 
   void clear() noexcept {
     count_ = 0;
@@ -67,7 +73,7 @@ class SurfaceDisplacement {
   int count_ = 0;
   std::vector<Vector3> displacement_;
   std::vector<std::uint64_t> stamp_;
-  std::uint64_t generation_ = 1;
+  std::uint64_t generation_ = 1, revision_ = 0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

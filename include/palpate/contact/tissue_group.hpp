@@ -10,9 +10,15 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// Tissues of any types as one TissueModel in the world's frame: a ball that touches two organs is one contact problem,
-/// with one force and one gate. Vertices are those of the members one after the other. Refers to the members, which
-/// must outlive it; the organs do not touch each other.
+/// A tissue that moves by itself and says so before and after ticks (SoftTissue).
+template <class T>
+concept MovesByItself = requires(T& tissue) {
+  tissue.begin_tick();
+};
+
+/// Tissues of any types that do not move by themselves as one TissueModel in the world's frame: a ball that touches two
+/// organs is one contact problem, with one force and one gate. Vertices are those of the members one after the other.
+/// Refers to the members, which must outlive it; the organs do not touch each other.
 class TissueGroup {
  public:
   /// Throws bad_argument when there is none. Allocates.
@@ -91,6 +97,9 @@ class TissueGroup {
 
   template <class T>
   void add(T& tissue) {
+    static_assert(
+        !MovesByItself<T>,
+        "palpate: a tissue that moves by itself cannot be in a TissueGroup; give it a HapticServo of its own");
     const ContactSurface& surface = tissue.contact_surface();
     const int first = members_.empty() ? 0 : members_.back().first + members_.back().count;
     Member m{&tissue, first, surface.vertex_count(), surface.positions().data(), &tissue.pose(), {}, {}, {}, {}, {}};

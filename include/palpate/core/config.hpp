@@ -34,6 +34,15 @@
 #define PALPATE_COLD
 #endif
 
+// For kernels on numbers that fill a vector register: a call would pass them in a way that depends on compiler flags.
+#if defined(__GNUC__) || defined(__clang__)
+#define PALPATE_ALWAYS_INLINE [[gnu::always_inline]] inline
+#elif defined(_MSC_VER)
+#define PALPATE_ALWAYS_INLINE __forceinline
+#else
+#define PALPATE_ALWAYS_INLINE inline
+#endif
+
 // Parameters carry the namespace into the name of a user's function, results and variables do not: the tag does that.
 #if defined(__GNUC__) || defined(__clang__)
 #define PALPATE_ABI_TAG __attribute__((abi_tag))

@@ -24,10 +24,12 @@ enum class StatusFlag : std::uint32_t {
   reacquired = 1u << 10,           ///< the tool jumped: contact was started anew
   ramping = 1u << 11,              ///< start-up ramp is scaling the force
   non_finite_force = 1u << 12,     ///< a computed force was not finite and was replaced by zero
+  step_refused = 1u << 13,         ///< a time step that is not positive, or above the stable limit: nothing was done
+  energy_grew = 1u << 14,          ///< a motion has energy that nothing put in: it is held at its last good state
 };
 
 /// Number of flags that exist.
-inline constexpr int status_flag_count = 13;
+inline constexpr int status_flag_count = 15;
 
 /// A set of StatusFlag. Trivially copyable; no operation allocates.
 class Status {
@@ -55,7 +57,7 @@ constexpr std::string_view status_flag_name(int bit) {
   constexpr std::array<std::string_view, status_flag_count> names{
       "NonFiniteInput",     "Saturated",      "SlewLimited",   "Stale",        "DeadlineMissed", "Inverted",
       "SolverNotConverged", "EnergyInjected", "DegradedModel", "Disconnected", "Reacquired",     "Ramping",
-      "NonFiniteForce"};
+      "NonFiniteForce", "StepRefused",    "EnergyGrew"};
   return names[static_cast<std::size_t>(bit)];
 }
 

@@ -22,6 +22,8 @@ using Matrix3 = Eigen::Matrix3d;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 /// Elasticity matrix in Voigt order.
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
+/// Derivative of one 3 x 3 tensor by another, both in column-major order (core/tensor3.hpp).
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
 using VectorX = Eigen::VectorXd;
 using MatrixX = Eigen::MatrixXd;
 

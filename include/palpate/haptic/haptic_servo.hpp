@@ -88,6 +88,7 @@ class HapticServo {
   std::span<const ToolForce> tick(std::span<const ToolState> states) noexcept {
     const FlushDenormals flush;
     Status shared;
+    if constexpr (requires { tissue_->begin_tick(); }) shared |= tissue_->begin_tick();
     for (std::size_t i = 0; i < states_.size(); ++i) read(i, i < states.size() ? states[i] : unreadable());
     shared |= problem_.solve(*tissue_, contact_tools_);
     for (std::size_t i = 0; i < states_.size(); ++i) recover(i);
@@ -101,6 +102,8 @@ class HapticServo {
       energies_[i].gave(forces_[i].force);
       forces_[i].status |= input.status | shared | energy;
     }
+    if constexpr (requires { tissue_->end_tick(problem_.vertex_forces()); })
+      tissue_->end_tick(problem_.vertex_forces());
     publish();
     return forces_;
   }

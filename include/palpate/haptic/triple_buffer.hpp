@@ -13,6 +13,9 @@ namespace palpate::inline PALPATE_ABI {
 template <class T>
 class TripleBuffer {
  public:
+  /// Puts this into all slots; before the two threads begin.
+  void fill(const T& value) { slots_.fill(value); }
+
   /// Slot of the writer; keeps whatever was written two or three publications ago.
   T& back() noexcept { return slots_[back_]; }
   /// Makes the writer's slot the newest value.

@@ -8,12 +8,11 @@
 
 namespace palpate::inline PALPATE_ABI::detail {
 
-/// Eliminates front after front into `factor`.
+/// Eliminates front after front into `factor`. May be used again for other values on the same pattern.
 class FrontFactorisation {
  public:
-  FrontFactorisation(const CholeskyAnalysis& analysis, const SparseLower& lower, double* factor)
+  FrontFactorisation(const CholeskyAnalysis& analysis, double* factor)
       : tree_(analysis.tree()),
-        values_(lower.valuePtr()),
         factor_(factor),
         workspace_(tree_.workspace_size + 64),
         packed_(analysis.pack_size()),
@@ -21,30 +20,40 @@ class FrontFactorisation {
         local_(analysis.size(), 0),
         pivots_(analysis.size()),
         diagonal_(VectorX::Zero(analysis.size())) {
+    Index most = 0;
+    for (Index f = 0; f < tree_.fronts.size(); ++f)
+      most = std::max<Index>(most, tree_.fronts[f].run_end - tree_.fronts[f].run_begin);
+    matched_.reserve(static_cast<std::size_t>(most));
+  }
+
+  /// Takes the values of a matrix with the analysed pattern, which must stay until they are eliminated.
+  void take(const SparseLower& lower) noexcept {
+    values_ = lower.valuePtr();
     for (Index j = 0; j < lower.cols(); ++j)
       for (Index p = lower.outerIndexPtr()[j]; p < lower.outerIndexPtr()[j + 1]; ++p)
         if (lower.innerIndexPtr()[p] == j) diagonal_[tree_.place_of_dof[j]] = values_[p];
   }
 
-  /// Eliminates the first `count` fronts.
+  /// Eliminates the first `count` fronts. Throws not_positive_definite or cancelled.
   void eliminate(Index count, double threshold, const SetupLimits& limits) {
-    const PivotSink sink{pivots_.data(), diagonal_.data(), threshold};
     double done = 0.0, told = 0.0;
     for (Index f = 0; f < count; ++f) {
-      const Front& front = tree_.fronts[f];
-      double* const columns = factor_ + front.factor;
-      assemble(front, columns);
-      double* const update = workspace_.data() + front.update;
-      factor_front(columns, front.pivots, front.rows, update, front.first, sink, packed_.data());
-      add_children(
-          front, [&](Index j) { return update + update_column(front, j); }, front.pivots, front.size());
-      done += front.flops();
+      eliminate_front(tree_.fronts[f], threshold);
+      done += tree_.fronts[f].flops();
       if (done - told < 0.01 * tree_.flops) continue;
       told = done;
       limits.advance("factorisation", done / tree_.flops);
     }
     const Index checked = count == 0 ? 0 : tree_.fronts[count - 1].first + tree_.fronts[count - 1].pivots;
     check_pivots(pivots_, diagonal_, tree_.place_of_dof, node_of_dof_, checked, threshold);
+  }
+
+  /// Eliminates all fronts; false when a pivot fails. No allocation.
+  bool try_eliminate(double threshold) noexcept {
+    for (Index f = 0; f < tree_.fronts.size(); ++f) eliminate_front(tree_.fronts[f], threshold);
+    for (Index i = 0; i < pivots_.size(); ++i)
+      if (!pivot_is_good(pivots_[i], diagonal_[i], threshold)) return false;
+    return true;
   }
 
   /// The last front before its elimination: the Schur complement of the kept dofs in the order given. Nothing can be
@@ -68,6 +77,16 @@ class FrontFactorisation {
   }
 
  private:
+  void eliminate_front(const Front& front, double threshold) noexcept {
+    const PivotSink sink{pivots_.data(), diagonal_.data(), threshold};
+    double* const columns = factor_ + front.factor;
+    assemble(front, columns);
+    double* const update = workspace_.data() + front.update;
+    factor_front(columns, front.pivots, front.rows, update, front.first, sink, packed_.data());
+    add_children(
+        front, [&](Index j) { return update + update_column(front, j); }, front.pivots, front.size());
+  }
+
   /// Fills the pivot columns of a front, before their elimination: entries of the matrix and updates of the children.
   void assemble(const Front& front, double* columns) {
     const LowerPanels shape = front.panels();
@@ -149,7 +168,7 @@ class FrontFactorisation {
   };
 
   const FrontTree& tree_;
-  const double* values_;
+  const double* values_ = nullptr;
   double* factor_;
   BigArray workspace_, packed_;
   const std::vector<Index>& node_of_dof_;

@@ -6,6 +6,10 @@
 
 namespace palpate::inline PALPATE_ABI::detail {
 
+inline bool pivot_is_good(double pivot, double diagonal, double threshold) noexcept {
+  return std::isfinite(pivot) && pivot > 0.0 && pivot > threshold * diagonal;
+}
+
 /// Throws not_positive_definite when a pivot is not finite, not positive or not more than `threshold` of its own
 /// diagonal entry. `pivots` and `diagonal` go by place in the elimination order; the ids are nodes where
 /// `node_of_dof` has them, dofs where it is empty.
@@ -16,7 +20,7 @@ inline void check_pivots(const VectorX& pivots, const VectorX& diagonal, const N
   double worst = infinity;
   for (Index dof = 0; dof < place_of_dof.size(); ++dof) {
     const Index i = place_of_dof[dof];
-    if (i >= checked || (std::isfinite(pivots[i]) && pivots[i] > 0.0 && pivots[i] > threshold * diagonal[i])) continue;
+    if (i >= checked || pivot_is_good(pivots[i], diagonal[i], threshold)) continue;
     const double ratio = pivots[i] / std::abs(diagonal[i]);
     if (!(ratio >= worst)) worst = ratio;
     ++count;

@@ -158,7 +158,8 @@ class SparseCholesky {
     limits.require_memory(schur != nullptr ? analysis.interior_peak_bytes() : analysis.peak_bytes(),
                           "the sparse factor");
     auto made = allocate(analysis, schur != nullptr);
-    detail::FrontFactorisation factorisation(analysis, lower, made->values.data());
+    detail::FrontFactorisation factorisation(analysis, made->values.data());
+    factorisation.take(lower);
     factorisation.eliminate(made->fronts, pivot_threshold, limits);
     if (schur != nullptr) *schur = factorisation.schur(analysis.kept());
     adopt(std::move(made), std::move(analysis));

@@ -1,6 +1,7 @@
 // How an element is shaped: orientation, flatness and quality, free of scale and of position.
 #pragma once
 
+#include <palpate/mesh/mesh.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/types.hpp>
 
@@ -70,6 +71,18 @@ double longest_edge(const ElementNodes<E>& nodes) noexcept {
   double square = 0.0;
   for (int a = 0; a < E::nodes; ++a)
     for (int b = a + 1; b < E::nodes; ++b) square = std::max(square, (nodes.row(a) - nodes.row(b)).squaredNorm());
+  return std::sqrt(square);
+}
+
+/// Least distance between two nodes of one element in a mesh [m]; infinite without elements. O(elements).
+template <Element E>
+double shortest_edge(const Mesh<E>& mesh) noexcept {
+  double square = infinity;
+  for (Index e = 0; e < mesh.element_count(); ++e) {
+    const ElementNodes<E> nodes = element_nodes<E>(mesh, e);
+    for (int a = 0; a < E::nodes; ++a)
+      for (int b = a + 1; b < E::nodes; ++b) square = std::min(square, (nodes.row(a) - nodes.row(b)).squaredNorm());
+  }
   return std::sqrt(square);
 }
 

@@ -52,8 +52,8 @@ void report_locking(const std::vector<Matrix6>& elasticity, SetupReport& report)
     }
 }
 
-/// Flags a displacement u, 3 per node [m], that is not small: linear strain takes a turn for a stretch. Judged by how far
-/// single nodes move from the mean, against the diagonal of the box around the body.
+/// Flags a displacement u, 3 per node [m], that is not small: linear strain takes a turn for a stretch. Judged by how
+/// far single nodes move from the mean, against the diagonal of the box around the body.
 inline void report_displacement(const std::vector<Vector3>& positions, const VectorX& u, SetupReport& report) {
   constexpr double largest = 0.1;
   report.clear(SetupFlag::large_displacement);
@@ -63,9 +63,9 @@ inline void report_displacement(const std::vector<Vector3>& positions, const Vec
   for (const Vector3& x : positions) box.extend(x);
   const double size = box.diagonal().norm();
   if (spread > largest * size)
-    report.set(SetupFlag::large_displacement,
-               "the loads move a node by " + number(spread) + " m against the mean, " + number(spread / size) +
-                   " of the body's diagonal: too far for linear elasticity");
+    report.set(SetupFlag::large_displacement, "the loads move a node by " + number(spread) + " m against the mean, " +
+                                                  number(spread / size) +
+                                                  " of the body's diagonal: too far for linear elasticity");
 }
 
 }  // namespace palpate::inline PALPATE_ABI

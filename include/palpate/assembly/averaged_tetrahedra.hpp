@@ -1,0 +1,158 @@
+// Tetrahedra that do not lock: the change of volume is averaged over neighbours.
+#pragma once
+
+#include <palpate/assembly/large_strain.hpp>
+#include <palpate/assembly/tetrahedron_batches.hpp>
+#include <palpate/mesh/quality.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Linear tetrahedra with the average nodal Jacobian of Joldes, Wittek and Miller (2009): J of a node is the mean of
+/// the elements around it by volume, J' of an element the mean of its nodes, and the law sees F' = (J'/J)^(1/3) F.
+/// Theirs uses V P(F') grad N_a as the force, which derives from no energy; here the force is the whole derivative of
+///   sum over elements of V W(F'),
+/// so that energy and angular momentum are kept, for one more sweep over the elements: three in all. At small strain it
+/// is the element Smoothed<Tet4> is. Below J = 0.1 an element counts as 0.1 in the ratio, so that the force stays
+/// finite; elements that are inside out do not come back as surely as those of BatchedTetrahedra. Laws, vectors and
+/// allocation as there.
+template <HyperelasticMaterial M, class S = double, int N = 64 / sizeof(S)>
+class AveragedTetrahedra {
+ public:
+  using Material = M;
+
+  AveragedTetrahedra() = default;
+  /// Throws inverted_element, non_finite, or what the law of a region says in its check().
+  explicit AveragedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {})
+      : laws_(body.laws) {
+    for (const M& law : laws_)
+      if (auto problem = law.check()) raise(std::move(*problem));
+    limits.require_memory(static_cast<double>(body.rest.mesh.element_count()) * 180.0, "the batches of elements");
+    layout_ = TetrahedronBatches<S, N>(body.rest.mesh);
+    rows_.assign(4 * layout_.nodes.size(), S(0));
+    sums_.assign(layout_.nodes.size(), S(0));
+    inverse_volume_ = volume_ratio_ = pressure_ = VectorX::Ones(layout_.node_count());
+    for (const TetrahedronBlock& block : layout_.blocks)
+      for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
+        const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
+        add_to_rows(batch, sums_.data() + block.first_row, batch.volume);
+      }
+    gather_sums(inverse_volume_);
+    inverse_volume_ = inverse_volume_.cwiseInverse();
+    probe_length_ = std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * shortest_edge(body.rest.mesh);
+  }
+
+  Index size() const noexcept { return 3 * layout_.node_count(); }
+  double probe_length() const noexcept { return probe_length_; }
+
+  /// force = internal force at displacement u [N].
+  void force(const VectorX& u, VectorX& f) noexcept {
+    average_volumes(u);
+    clear(sums_);
+    for_each_element(u, [&](const TetrahedronBlock& block, const Batch& batch, const Gradient& gradient) {
+      const Averaged a = averaged(block, batch, gradient);
+      const Number share = S(0.25f) * batch.volume * a.pressure / a.mean;
+      add_to_rows(batch, sums_.data() + block.first_row, select(a.mean > least(), share, Number(S(0))));
+    });
+    gather_sums(pressure_);
+    pressure_ = pressure_.cwiseProduct(inverse_volume_);
+
+    clear(rows_);
+    for_each_element(u, [&](const TetrahedronBlock& block, const Batch& batch, const Gradient& gradient) {
+      const Averaged a = averaged(block, batch, gradient);
+      const Number own = select(a.own > least(), a.pressure / a.own, Number(S(0)));
+      const Number around = S(4) * mean_of_nodes(block, batch, pressure_);
+      batch.add_force(a.ratio * a.stress + (around - own) * cofactor(gradient), rows_.data() + 4 * block.first_row);
+    });
+    layout_.add_up(rows_.data(), 0, layout_.node_count(), f);
+  }
+
+  /// Stored energy, of which force() is the derivative [J].
+  double energy(const VectorX& u) noexcept {
+    average_volumes(u);
+    double sum = 0.0;
+    for_each_element(u, [&](const TetrahedronBlock& block, const Batch& batch, const Gradient& gradient) {
+      const Number part = batch.volume * law_of(block).energy(averaged(block, batch, gradient).ratio * gradient);
+      for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(part[lane]);
+    });
+    return sum;
+  }
+
+ private:
+  using Number = Lanes<S, N>;
+  using Batch = TetrahedronBatch<S, N>;
+  using Gradient = Tensor3<Number>;
+
+  /// What the law says of F', and the volumes behind it.
+  struct Averaged {
+    Number own, mean, ratio, pressure;  ///< J and J', at least 0.1; (J'/J)^(1/3); P : F' / 3 [Pa]
+    Gradient stress;
+  };
+
+  static Number least() noexcept { return Number(S(0.1f)); }
+  const M& law_of(const TetrahedronBlock& block) const noexcept {
+    return laws_[static_cast<std::size_t>(block.region)];
+  }
+  static void clear(std::vector<S>& values) noexcept { std::fill(values.begin(), values.end(), S(0)); }
+
+  PALPATE_ALWAYS_INLINE Averaged averaged(const TetrahedronBlock& block, const Batch& batch,
+                                          const Gradient& f) const noexcept {
+    Averaged a;
+    a.own = max(determinant(f), least());
+    a.mean = max(mean_of_nodes(block, batch, volume_ratio_), least());
+    a.ratio = cbrt(a.mean / a.own);
+    const Gradient seen = a.ratio * f;
+    a.stress = law_of(block).stress(seen);
+    a.pressure = S(1.0 / 3.0) * contract(a.stress, seen);
+    return a;
+  }
+  Number mean_of_nodes(const TetrahedronBlock& block, const Batch& batch, const VectorX& nodal) const noexcept {
+    const NodeId* const nodes = layout_.nodes.data() + block.first_row;
+    Number mean;
+    for (int lane = 0; lane < N; ++lane) {
+      double sum = 0.0;
+      for (int a = 0; a < 4; ++a) sum += nodal[nodes[batch.row[a][lane] / 4]];
+      mean.set(lane, static_cast<S>(0.25 * sum));
+    }
+    return mean;
+  }
+  static void add_to_rows(const Batch& batch, S* sums, const Number& value) noexcept {
+    for (int lane = 0; lane < N; ++lane)
+      for (int a = 0; a < 4; ++a) sums[batch.row[a][lane] / 4] += value[lane];
+  }
+  void gather_sums(VectorX& nodal) const noexcept {
+    for (Index i = 0; i < layout_.node_count(); ++i) {
+      double sum = 0.0;
+      for (Index k = layout_.first_copy[static_cast<std::size_t>(i)];
+           k < layout_.first_copy[static_cast<std::size_t>(i) + 1]; ++k)
+        sum += static_cast<double>(sums_[static_cast<std::size_t>(layout_.copies[static_cast<std::size_t>(k)])]);
+      nodal[i] = sum;
+    }
+  }
+  void average_volumes(const VectorX& u) noexcept {
+    clear(sums_);
+    for_each_element(u, [&](const TetrahedronBlock& block, const Batch& batch, const Gradient& gradient) {
+      add_to_rows(batch, sums_.data() + block.first_row, batch.volume * determinant(gradient));
+    });
+    gather_sums(volume_ratio_);
+    volume_ratio_ = volume_ratio_.cwiseProduct(inverse_volume_);
+  }
+  template <class Visit>
+  PALPATE_ALWAYS_INLINE void for_each_element(const VectorX& u, Visit&& visit) const noexcept {
+    for (const TetrahedronBlock& block : layout_.blocks) {
+      alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
+      layout_.load_displacements(block, u, local);
+      for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
+        const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
+        visit(block, batch, batch.deformation_gradient(local));
+      }
+    }
+  }
+
+  TetrahedronBatches<S, N> layout_;
+  std::vector<M> laws_;                               // by region
+  std::vector<S> rows_, sums_;                        // by row: force, four numbers; a number
+  VectorX inverse_volume_, volume_ratio_, pressure_;  // by node; the volume is that of all elements around it
+  double probe_length_ = 0.0;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

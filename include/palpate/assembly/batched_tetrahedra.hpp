@@ -1,0 +1,147 @@
+// Internal force of tetrahedra at any strain, several elements at once: the force of explicit integration.
+#pragma once
+
+#include <palpate/assembly/large_strain.hpp>
+#include <palpate/assembly/tetrahedron_batches.hpp>
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/mesh/quality.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+namespace detail {
+
+/// Least J, in which batch, how many are positive, and whether one is not finite, per lane.
+template <class S, int N>
+struct VolumeWatch {
+  Lanes<S, N> smallest{std::numeric_limits<S>::infinity()}, batch{S(-1)}, upright{S(0)}, broken{S(0)};
+
+  PALPATE_ALWAYS_INLINE void see(const Lanes<S, N>& j, S at) noexcept {
+    const auto ahead = j < smallest;
+    smallest = select(ahead, j, smallest);
+    batch = select(ahead, Lanes<S, N>(at), batch);
+    broken += j - j;  // zero, or NaN from then on
+    upright += select(j > Lanes<S, N>(S(0)), Lanes<S, N>(S(1)), Lanes<S, N>(S(0)));
+  }
+};
+
+}  // namespace detail
+
+/// Total Lagrangian force of linear tetrahedra (Miller, Joldes, Lance, Wittek 2007): F from gradients at rest, f_a = V
+/// P grad N_a, Lanes<S, N> of elements at once. Elements lie in blocks of 512 that are added up in the cache first,
+/// then by node: the sum has one order, whatever the number of threads and whoever computes which block. Vectors are
+/// double, all dofs, in the order of the mesh; S = float computes in single precision from differences of displacement
+/// within a block. No allocation after construction.
+template <HyperelasticMaterial M, class S = double, int N = 64 / sizeof(S)>
+class BatchedTetrahedra {
+ public:
+  using Material = M;
+
+  BatchedTetrahedra() = default;
+  /// Throws inverted_element, non_finite, or what the law of a region says in its check().
+  explicit BatchedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {}) : laws_(body.laws) {
+    for (const M& law : laws_)
+      if (auto problem = law.check()) raise(std::move(*problem));
+    limits.require_memory(static_cast<double>(body.rest.mesh.element_count()) * 160.0, "the batches of elements");
+    layout_ = TetrahedronBatches<S, N>(body.rest.mesh);
+    rows_.assign(4 * layout_.nodes.size(), S(0));
+    seen_.resize(layout_.blocks.size());
+    probe_length_ = std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * shortest_edge(body.rest.mesh);
+  }
+
+  Index size() const noexcept { return 3 * layout_.node_count(); }
+  Index block_count() const noexcept { return static_cast<Index>(layout_.blocks.size()); }
+  std::size_t bytes() const noexcept { return layout_.bytes() + rows_.size() * sizeof(S); }
+
+  /// force = internal force at displacement u [N]. A law that does not hold adds whatever it gives; the report says so:
+  /// det F <= 0 where the law needs more, or not finite. (Narrower bounds of a law are seen by LargeStrain only.)
+  DeformationReport force(const VectorX& u, VectorX& f) noexcept {
+    for (Index b = 0; b < block_count(); ++b) compute_block(b, u);
+    add_up(0, layout_.node_count(), f);
+    return report();
+  }
+
+  /// Stored energy [J].
+  double energy(const VectorX& u) noexcept {
+    double sum = 0.0;
+    for (const TetrahedronBlock& block : layout_.blocks) {
+      const M law = laws_[static_cast<std::size_t>(block.region)];
+      Lanes<S, N> part(S(0));
+      for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) { part += batch.volume * law.energy(f); });
+      for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(part[lane]);
+    }
+    return sum;
+  }
+
+  /// A small part of the shortest edge [m]: differences of forces then keep half their digits.
+  double probe_length() const noexcept { return probe_length_; }
+
+  /// The three parts of force(), for several threads: every block once, in any order; then every node; then the report.
+  void compute_block(Index index, const VectorX& u) noexcept {
+    const TetrahedronBlock block = layout_.blocks[static_cast<std::size_t>(index)];
+    S* const rows = rows_.data() + 4 * block.first_row;
+    std::fill(rows, rows + 4 * block.row_count, S(0));
+    const M law = laws_[static_cast<std::size_t>(block.region)];
+    detail::VolumeWatch<S, N> watch;
+    S at = S(0);
+    for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
+      watch.see(determinant(f, cofactor(f)), at);
+      at += S(1);
+      batch.add_force(law.stress(f), rows);
+    });
+    seen_[static_cast<std::size_t>(index)] = summary(block, watch);
+  }
+  void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
+    layout_.add_up(rows_.data(), first_node, last_node, f);
+  }
+  DeformationReport report() const noexcept {
+    DeformationReport all;
+    for (const DeformationReport& part : seen_) {
+      if (part.smallest_volume_ratio < all.smallest_volume_ratio) {
+        all.smallest_volume_ratio = part.smallest_volume_ratio;
+        all.worst_element = part.worst_element;
+      }
+      all.inverted += part.inverted;
+      all.admissible = all.admissible && part.admissible;
+    }
+    return all;
+  }
+
+ private:
+  using Batch = TetrahedronBatch<S, N>;
+  using Gradient = Tensor3<Lanes<S, N>>;
+
+  template <class Visit>
+  PALPATE_ALWAYS_INLINE void for_each_gradient(const TetrahedronBlock& block, const VectorX& u,
+                                               Visit&& visit) const noexcept {
+    alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
+    layout_.load_displacements(block, u, local);
+    for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
+      const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
+      visit(batch, batch.deformation_gradient(local));
+    }
+  }
+
+  DeformationReport summary(const TetrahedronBlock& block, const detail::VolumeWatch<S, N>& watch) const noexcept {
+    DeformationReport report;
+    Index upright = 0;
+    for (int lane = 0; lane < N; ++lane) {
+      upright += static_cast<Index>(watch.upright[lane]);
+      report.admissible = report.admissible && watch.broken[lane] == S(0);
+      if (!(watch.smallest[lane] < report.smallest_volume_ratio)) continue;
+      report.smallest_volume_ratio = static_cast<double>(watch.smallest[lane]);
+      const auto at = static_cast<std::size_t>(block.first_batch + static_cast<Index>(watch.batch[lane]));
+      report.worst_element = layout_.elements[at][static_cast<std::size_t>(lane)];
+    }
+    report.inverted = block.batch_count * N - upright;
+    report.admissible = report.admissible && (M::survives_inversion || report.inverted == 0);
+    return report;
+  }
+
+  TetrahedronBatches<S, N> layout_;
+  std::vector<M> laws_;                  // by region
+  std::vector<S> rows_;                  // force on every row, four numbers
+  std::vector<DeformationReport> seen_;  // by block
+  double probe_length_ = 0.0;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

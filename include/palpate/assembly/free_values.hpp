@@ -1,0 +1,39 @@
+// The free part of a matrix whose values change.
+#pragma once
+
+#include <palpate/assembly/free_stiffness.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Lower half of K_ff on a pattern made once; new values are copied without allocation or search. 8 bytes per entry
+/// beside the matrix.
+class FreeValues {
+ public:
+  FreeValues() = default;
+  FreeValues(const BlockMatrix& k, const EssentialConditions& conditions) : lower_(free_matrix(k, conditions)) {
+    place_.reserve(static_cast<std::size_t>(lower_.nonZeros()));
+    std::vector<Index> next(lower_.outerIndexPtr(), lower_.outerIndexPtr() + lower_.cols());
+    for_each_free_entry(k, conditions, [&](Index, Index column, double) {
+      place_.push_back(next[static_cast<std::size_t>(column)]++);
+    });
+  }
+
+  const SparseMatrix& lower() const noexcept { return lower_; }
+
+  /// Takes the values of a matrix on the same pattern with the same conditions.
+  void update(const BlockMatrix& k, const EssentialConditions& conditions) noexcept {
+    auto place = place_.begin();
+    double* const values = lower_.valuePtr();
+    for_each_free_entry(k, conditions, [&](Index, Index, double value) { values[*place++] = value; });
+  }
+  /// The diagonal comes first in a column of the lower half.
+  void add_to_diagonal(double value) noexcept {
+    for (Index j = 0; j < lower_.cols(); ++j) lower_.valuePtr()[lower_.outerIndexPtr()[j]] += value;
+  }
+
+ private:
+  SparseMatrix lower_;
+  std::vector<Index> place_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,142 @@
+// Energy, force and tangent stiffness of a body at any deformation: total Lagrangian.
+#pragma once
+
+#include <palpate/assembly/elastic_forces.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/local/geometry.hpp>
+#include <palpate/mesh/quality.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Integrates a body over its shape at rest (Belytschko, Liu, Moran, Nonlinear Finite Elements, 4.9): F = I + sum u_a
+/// grad N_a, f_a = sum_q P grad N_a dV. Gradients and volumes are computed once: (3 nodes + 1) x 8 bytes per
+/// integration point. Vectors have 3 entries per node, all dofs. No function allocates; sums go by element, so results
+/// do not depend on threads.
+template <Element E, HyperelasticMaterial M>
+class LargeStrain final : public ElasticForces {
+ public:
+  /// Throws inverted_element or non_finite for a mesh that is so at rest, too_large.
+  explicit LargeStrain(HyperelasticBody<E, M> body, const SetupLimits& limits = {}) : body_(std::move(body)) {
+    const Mesh<E>& mesh = body_.rest.mesh;
+    limits.require_memory(static_cast<double>(mesh.element_count()) * sizeof(Points), "the gradients at rest");
+    probe_length_ = std::sqrt(std::numeric_limits<double>::epsilon()) * shortest_edge(mesh);
+    points_.resize(static_cast<std::size_t>(mesh.element_count()));
+    for (Index e = 0; e < mesh.element_count(); ++e) {
+      const ElementNodes<E> x = element_nodes<E>(mesh, e);
+      if (!is_positively_oriented<E>(x))
+        raise_element(SetupErrorKind::inverted_element, e, "has a negative Jacobian at an integration point");
+      for (std::size_t q = 0; q < point_count; ++q) {
+        const auto& point = E::Quadrature::points[q];
+        PointGeometry<E>& g = points_[static_cast<std::size_t>(e)][q];
+        g = point_geometry<E>(x, reference_point(point), point.weight);
+        if (!g.gradient.allFinite()) raise_element(SetupErrorKind::non_finite, e, "has gradients that are not finite");
+      }
+    }
+  }
+
+  const HyperelasticBody<E, M>& body() const noexcept { return body_; }
+  const Mesh<E>& mesh() const noexcept { return body_.rest.mesh; }
+  Index size() const noexcept override { return 3 * mesh().node_count(); }
+
+  /// Stored energy [J]; infinite where a law does not hold.
+  double energy(const VectorX& u) const noexcept override {
+    double sum = 0.0;
+    for (Index e = 0; e < mesh().element_count(); ++e) {
+      const Displacements ue = displacements(e, u);
+      for (const PointGeometry<E>& g : points_of(e)) {
+        const Tensor3<double> f = deformation_gradient(ue, g);
+        const M& law = body_.law_of(e);
+        if (!law.admits(f)) return infinity;
+        sum += g.volume * law.energy(f);
+      }
+    }
+    return sum;
+  }
+
+  /// Forces with which the body answers a displacement [N], derivative of the energy. A law that does not hold adds
+  /// nothing.
+  DeformationReport force(const VectorX& u, VectorX& all) const noexcept override {
+    DeformationReport report;
+    all.setZero();
+    for (Index e = 0; e < mesh().element_count(); ++e) {
+      const Displacements ue = displacements(e, u);
+      Displacements fe = Displacements::Zero();
+      bool inverted = false;
+      for (const PointGeometry<E>& g : points_of(e)) {
+        const Tensor3<double> f = deformation_gradient(ue, g);
+        inverted = !see(determinant(f), e, report) || inverted;
+        const M& law = body_.law_of(e);
+        if (law.admits(f))
+          fe.noalias() += g.volume * matrix3(law.stress(f)) * g.gradient.transpose();
+        else
+          report.admissible = false;
+      }
+      report.inverted += inverted ? 1 : 0;
+      for (int a = 0; a < E::nodes; ++a) all.template segment<3>(3 * Index{mesh().element_node(e, a)}) += fe.col(a);
+    }
+    return report;
+  }
+
+  /// Derivative of the internal force, into a matrix on block_pattern(mesh). Not always positive definite.
+  void tangent(const VectorX& u, BlockMatrix& k) const noexcept override {
+    k.set_zero();
+    for (Index e = 0; e < mesh().element_count(); ++e) {
+      const Displacements ue = displacements(e, u);
+      for (const PointGeometry<E>& g : points_of(e)) {
+        const Tensor3<double> f = deformation_gradient(ue, g);
+        if (const M& law = body_.law_of(e); law.admits(f)) add_tangent(e, g, law.tangent(f), k);
+      }
+    }
+  }
+
+  double probe_length() const noexcept override { return probe_length_; }
+
+ private:
+  static constexpr std::size_t point_count = E::Quadrature::points.size();
+  using Points = std::array<PointGeometry<E>, point_count>;
+  using Displacements = Eigen::Matrix<double, 3, E::nodes>;  // one per column
+  using TangentBlock = Eigen::Matrix<double, 9, 3>;
+
+  const Points& points_of(Index e) const noexcept { return points_[static_cast<std::size_t>(e)]; }
+
+  Displacements displacements(Index e, const VectorX& u) const noexcept {
+    Displacements ue;
+    for (int a = 0; a < E::nodes; ++a) ue.col(a) = u.template segment<3>(3 * Index{mesh().element_node(e, a)});
+    return ue;
+  }
+  static Tensor3<double> deformation_gradient(const Displacements& u, const PointGeometry<E>& g) noexcept {
+    Matrix3 f = Matrix3::Identity();
+    f.noalias() += u * g.gradient;
+    return tensor3<double>(f);
+  }
+  static bool see(double volume_ratio, Index e, DeformationReport& report) noexcept {
+    if (!(volume_ratio >= report.smallest_volume_ratio)) {
+      report.smallest_volume_ratio = volume_ratio;
+      report.worst_element = e;
+    }
+    return volume_ratio > 0.0;
+  }
+
+  /// K_ab += dV grad N_a . A . grad N_b; rows and columns of A are i + 3 j for F_ij.
+  void add_tangent(Index e, const PointGeometry<E>& g, const Matrix9& a9, BlockMatrix& k) const noexcept {
+    for (int b = 0; b < E::nodes; ++b) {
+      TangentBlock right = TangentBlock::Zero();
+      for (int l = 0; l < 3; ++l) right += g.volume * g.gradient(b, l) * a9.template middleCols<3>(3 * l);
+      const NodeId column = mesh().element_node(e, b);
+      for (int a = 0; a < E::nodes; ++a) {
+        const NodeId row = mesh().element_node(e, a);
+        if (column > row) continue;
+        Matrix3 block = Matrix3::Zero();
+        for (int j = 0; j < 3; ++j) block += g.gradient(a, j) * right.template middleRows<3>(3 * j);
+        k.block(k.pattern().find(row, column)) += block;
+      }
+    }
+  }
+
+  HyperelasticBody<E, M> body_;
+  std::vector<Points> points_;
+  double probe_length_ = 0.0;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,33 @@
+// Small strain as an elastic body like any other.
+#pragma once
+
+#include <palpate/assembly/elastic_forces.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// f = K u with a constant stiffness. Right for small displacements only; nothing is ever inside out.
+class LinearForces final : public ElasticForces {
+ public:
+  explicit LinearForces(BlockMatrix stiffness) : stiffness_(std::move(stiffness)), force_(stiffness_.size()) {}
+
+  Index size() const noexcept override { return stiffness_.size(); }
+  double energy(const VectorX& u) const noexcept override {
+    stiffness_.apply(u, force_);
+    return 0.5 * u.dot(force_);
+  }
+  DeformationReport force(const VectorX& u, VectorX& f) const noexcept override {
+    stiffness_.apply(u, f);
+    DeformationReport report;
+    report.smallest_volume_ratio = 1.0;
+    return report;
+  }
+  void tangent(const VectorX&, BlockMatrix& k) const noexcept override { k.copy_values(stiffness_); }
+  /// Any length would do.
+  double probe_length() const noexcept override { return 1.0; }
+
+ private:
+  BlockMatrix stiffness_;
+  mutable VectorX force_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

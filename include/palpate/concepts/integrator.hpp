@@ -1,0 +1,47 @@
+// What is integrated in time by explicit steps, and by what.
+#pragma once
+
+#include <palpate/core/types.hpp>
+
+#include <vector>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// The internal force of a body at a displacement, all dofs (x y z per node).
+///   size()           dofs
+///   force(u, f)      f = forces with which the body answers u [N]; no allocation
+///   energy(u)        stored energy [J]
+///   probe_length()   a displacement [m] small against the elements, with which differences of forces still have digits
+template <class F>
+concept ForceOperator = requires(F& force, const VectorX& u, VectorX& f) {
+  { force.size() } -> std::convertible_to<Index>;
+  { force.force(u, f) } noexcept;
+  { force.energy(u) } noexcept -> std::convertible_to<double>;
+  { force.probe_length() } -> std::convertible_to<double>;
+};
+
+/// A motion in progress. Vectors have one entry per dof.
+struct MotionState {
+  VectorX displacement;        ///< [m]
+  VectorX velocity;            ///< [m/s]; of held dofs that of the last step
+  VectorX force;               ///< internal force at this displacement [N]
+  VectorX load;                ///< external force [N]
+  VectorX mass;          ///< lumped [kg]
+  VectorX inverse_mass;  ///< [1/kg]; zero on held dofs
+  VectorX held_speed;    ///< of held dofs in this step, in the order of `held` [m/s]
+  VectorX target;              ///< where held dofs are at the end of the next step [m]; not read elsewhere
+  std::vector<Index> free, held;  ///< dofs
+  double damping = 0.0;        ///< alpha of the mass-proportional damping force alpha M v [1/s]
+  double time = 0.0;           ///< [s]
+};
+
+/// One step of a motion: `step(state, dt, refresh)` moves displacement and velocity over dt and calls refresh(), which
+/// computes state.force at state.displacement, once. On entry and on return the force belongs to the displacement.
+/// A step above 2 / omega_max of the undamped body must be the first that is not stable.
+template <class I>
+concept ExplicitScheme = requires(MotionState& state, double dt, void (*refresh)() noexcept) {
+  { I::step(state, dt, refresh) } noexcept;
+  { I::order } -> std::convertible_to<int>;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

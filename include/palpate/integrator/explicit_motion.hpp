@@ -1,0 +1,197 @@
+// A body in explicit motion: steps within the stable limit, and a watch over its energy.
+#pragma once
+
+#include <palpate/core/realtime.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/integrator/step_limit.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+struct ExplicitOptions {
+  double damping = 0.0;       ///< alpha of the mass-proportional damping [1/s]
+  double margin = 0.07;       ///< the stable limit is taken this much smaller than estimated
+  int first_iterations = 40;  ///< of the estimate at set-up
+  int limit_every = 16;       ///< steps between two iterations of the estimate, each of which costs one force; 0: never
+  int energy_every = 16;  ///< steps between two looks at the stored energy; the kinetic is seen every step. 0: never
+  double energy_growth = 1.5;  ///< how many times the energy that explains itself may be there before motion stops
+};
+
+/// Integrates M u'' + alpha M u' + f(u) = R with a lumped mass. step() neither allocates nor throws and flushes
+/// denormals. What it will not do it refuses, with a flag and without a change:
+///   step_refused   dt is not positive, no number, or above limit()
+///   energy_grew    kinetic and stored energy exceed what was there at the start and what loads and held dofs have put
+///                  in since, or are not finite; the body is back in its last good state, and stays until restart()
+/// A stable motion near the limit swings above its energy by up to 1 / (1 - dt / limit); the watch allows for that.
+/// Cost per step: one force, 1/limit_every forces, 1/energy_every energies, and about 20 numbers per dof.
+template <ForceOperator Force, ExplicitScheme Scheme>
+class ExplicitMotion {
+ public:
+  /// `nodal_mass` [kg] per node; `free_dofs` ascending, all others are held where they are (set target() to move them);
+  /// `frequency_bound` an upper bound of omega^2 [1/s^2], infinite when there is none. Throws bad_argument for sizes
+  /// that do not fit and options out of range, bad_density for a mass that is not positive.
+  ExplicitMotion(Force force, const VectorX& nodal_mass, const std::vector<Index>& free_dofs,
+                 double frequency_bound = infinity, const ExplicitOptions& options = {})
+      : force_(std::move(force)), options_(options), limit_(force_.size(), frequency_bound, options.margin) {
+    check(nodal_mass, free_dofs);
+    const Index dofs = force_.size();
+    for (VectorX* v : {&state_.displacement, &state_.velocity, &state_.force, &state_.load, &state_.target})
+      *v = VectorX::Zero(dofs);
+    state_.mass = nodal_mass.replicate(1, 3).transpose().reshaped();
+    state_.free = free_dofs;
+    std::vector<char> is_free(static_cast<std::size_t>(dofs), 0);
+    for (Index dof : free_dofs) is_free[static_cast<std::size_t>(dof)] = 1;
+    for (Index dof = 0; dof < dofs; ++dof)
+      if (is_free[static_cast<std::size_t>(dof)] == 0) state_.held.push_back(dof);
+    state_.inverse_mass = VectorX::Zero(dofs);
+    for (Index dof : free_dofs) state_.inverse_mass[dof] = 1.0 / state_.mass[dof];
+    state_.damping = options.damping;
+    total_mass_ = nodal_mass.sum();
+    state_.held_speed = reactions_ = held_before_ = VectorX::Zero(static_cast<Index>(state_.held.size()));
+    restart();
+    limit_.iterate(force_, state_, options_.first_iterations);
+  }
+
+  const MotionState& state() const noexcept { return state_; }
+  Force& force() noexcept { return force_; }
+  /// External forces [N], constant until changed.
+  VectorX& load() noexcept { return state_.load; }
+  /// Where held dofs are at the end of the next step [m]; they go there at constant speed.
+  VectorX& target() noexcept { return state_.target; }
+
+  /// Sets displacement and velocity (of the same time), forgets work done so far, and lets a stopped motion go on.
+  void set(const VectorX& displacement, const VectorX& velocity) noexcept {
+    state_.displacement = displacement;
+    state_.velocity = velocity;
+    state_.target = displacement;
+    restart();
+  }
+  void restart() noexcept {
+    force_.force(state_.displacement, state_.force);
+    work_ = 0.0;
+    gross_ = 0.0;
+    start_energy_ = kinetic_energy() + std::abs(force_.energy(state_.displacement));
+    stopped_ = false;
+    steps_ = 0;
+    keep();
+  }
+
+  /// Largest step that is accepted [s], from the state of at most limit_every steps ago.
+  double limit() const noexcept { return limit_.step(); }
+  /// Estimates the limit anew, from the present state; one force per iteration.
+  double estimate_limit(int iterations) noexcept {
+    const FlushDenormals flush;
+    limit_.iterate(force_, state_, iterations);
+    return limit();
+  }
+  /// For set-up: throws bad_argument unless step(dt) would be accepted now.
+  void require_step(double dt) const {
+    if (dt > 0.0 && dt <= limit()) return;
+    SetupProblem p;
+    p.what = "a step of " + number(dt) + " s is not between 0 and the stable limit, " + number(limit()) + " s";
+    p.hint = "Shorten the step, make the smallest and stiffest elements larger, or integrate implicitly";
+    p.value = dt;
+    p.threshold = limit();
+    raise(std::move(p));
+  }
+
+  Status step(double dt) noexcept {
+    if (stopped_) return StatusFlag::energy_grew;
+    if (!(dt > 0.0) || !(dt <= limit())) return StatusFlag::step_refused;
+    const FlushDenormals flush;
+    before_step();
+    Scheme::step(state_, dt, [this]() noexcept { force_.force(state_.displacement, state_.force); });
+    after_step();
+    ++steps_;
+    if (options_.limit_every > 0 && steps_ % options_.limit_every == 0) limit_.iterate(force_, state_, 1);
+    if (options_.energy_every == 0 || energy_explained(dt)) return {};
+    state_.displacement = good_.displacement;
+    state_.velocity = good_.velocity;
+    state_.force = good_.force;
+    state_.time = good_.time;
+    stopped_ = true;
+    return StatusFlag::energy_grew;
+  }
+
+  /// Of the free dofs [J].
+  double kinetic_energy() const noexcept {
+    double sum = state_.mass.dot(state_.velocity.cwiseAbs2());
+    for (Index dof : state_.held) sum -= state_.mass[dof] * state_.velocity[dof] * state_.velocity[dof];
+    return 0.5 * sum;
+  }
+  double stored_energy() noexcept { return force_.energy(state_.displacement); }
+  /// Done by loads and held dofs since the last restart [J].
+  double work() const noexcept { return work_; }
+
+ private:
+  struct Good {
+    VectorX displacement, velocity, force;
+    double time = 0.0;
+  };
+
+  void check(const VectorX& mass, const std::vector<Index>& free_dofs) const {
+    if (3 * mass.size() != force_.size())
+      raise(SetupErrorKind::bad_argument,
+            "there are " + std::to_string(mass.size()) + " masses for " + std::to_string(force_.size() / 3) + " nodes");
+    for (Index dof : free_dofs)
+      if (dof < 0 || dof >= force_.size())
+        raise(SetupErrorKind::index_out_of_range, "there is no dof " + std::to_string(dof));
+    for (Index i = 0; i < mass.size(); ++i)
+      if (!(mass[i] > 0.0) || !std::isfinite(mass[i]))
+        raise(SetupErrorKind::bad_density, "node " + std::to_string(i) + " has the mass " + number(mass[i]),
+              "Give every region a positive density");
+    if (!(options_.damping >= 0.0) || !std::isfinite(options_.damping) || !(options_.margin >= 0.0) ||
+        !(options_.margin < 1.0) || options_.first_iterations < 0 || !(options_.energy_growth >= 1.0))
+      raise(SetupErrorKind::bad_argument, "an option of explicit motion is out of range");
+  }
+
+  void before_step() noexcept {
+    load_work_ = -state_.load.dot(state_.displacement);
+    for (std::size_t k = 0; k < state_.held.size(); ++k) {
+      reactions_[static_cast<Index>(k)] = state_.force[state_.held[k]];
+      held_before_[static_cast<Index>(k)] = state_.displacement[state_.held[k]];
+    }
+  }
+  void after_step() noexcept {
+    load_work_ += state_.load.dot(state_.displacement);
+    for (std::size_t k = 0; k < state_.held.size(); ++k) {
+      const Index dof = state_.held[k], i = static_cast<Index>(k);
+      load_work_ +=
+          (0.5 * (reactions_[i] + state_.force[dof]) - state_.load[dof]) * (state_.displacement[dof] - held_before_[i]);
+    }
+    work_ += load_work_;
+    gross_ += std::abs(load_work_);
+  }
+  bool energy_explained(double dt) noexcept {
+    const double share = std::min(dt / (limit() / (1.0 - options_.margin)), 0.95);
+    const double allowed = options_.energy_growth / (1.0 - share) * (start_energy_ + gross_) + rounding();
+    const double kinetic = kinetic_energy();
+    if (!(kinetic <= allowed)) return false;
+    if (steps_ % options_.energy_every != 0) return true;
+    if (!(kinetic + force_.energy(state_.displacement) <= allowed)) return false;
+    keep();
+    return true;
+  }
+  /// Energy of a motion by the length that differences of forces can still see.
+  double rounding() const noexcept {
+    return 0.5 * limit_.largest_square() * total_mass_ * force_.probe_length() * force_.probe_length();
+  }
+  void keep() noexcept {
+    good_.displacement = state_.displacement;
+    good_.velocity = state_.velocity;
+    good_.force = state_.force;
+    good_.time = state_.time;
+  }
+
+  Force force_;
+  ExplicitOptions options_;
+  MotionState state_;
+  StepLimit limit_;
+  Good good_;
+  VectorX reactions_, held_before_;
+  double work_ = 0.0, gross_ = 0.0, load_work_ = 0.0, start_energy_ = 0.0, total_mass_ = 0.0;
+  std::int64_t steps_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

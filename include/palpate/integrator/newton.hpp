@@ -1,0 +1,96 @@
+// Newton's method for a potential, with a line search.
+#pragma once
+
+#include <palpate/core/types.hpp>
+
+#include <cmath>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// The minimum of a potential of `size()` unknowns.
+/// - `evaluate(x, residual)` writes the force that is left (minus the gradient) and returns the potential, infinite
+/// where x is outside of its domain (the residual is then not read).
+/// - `prepare(x)` makes the second derivative at x ready, or something positive definite near it; false when it cannot.
+/// - `direction(residual, d)` solves with what was prepared.
+/// - `scale()` is a force to compare the residual of the last evaluation with; `rounding()` what rounding alone leaves.
+template <class P>
+concept NewtonProblem = requires(P& p, const VectorX& x, VectorX& y) {
+  { p.size() } -> std::convertible_to<Index>;
+  { p.evaluate(x, y) }
+  noexcept->std::same_as<double>;
+  { p.prepare(x) }
+  noexcept->std::same_as<bool>;
+  { p.direction(x, y) }
+  noexcept;
+  { p.scale() }
+  noexcept->std::convertible_to<double>;
+};
+
+struct NewtonParameters {
+  int maximum_iterations = 40;
+  double tolerance = 1e-10;   ///< of the residual against the problem's scale
+  int maximum_halvings = 12;  ///< of one step
+};
+
+struct NewtonReport {
+  bool converged = false;
+  int iterations = 0;  ///< factorisations
+  int halvings = 0;
+  double relative_residual = infinity;
+};
+
+/// Newton's method with Armijo's rule on the potential (Nocedal and Wright, Numerical Optimization, 3.1); near the
+/// minimum, where the potential has no digits left to compare, on the residual. Owns its workspaces: solving does not
+/// allocate.
+class Newton {
+ public:
+  Newton() = default;
+  explicit Newton(Index size, const NewtonParameters& parameters = {})
+      : parameters_(parameters), residual_(size), step_(size), trial_(size), trial_residual_(size) {}
+
+  /// Improves x until the residual is small. x is always inside the domain if it was at the start.
+  template <NewtonProblem P>
+  NewtonReport solve(P& problem, VectorX& x) noexcept {
+    NewtonReport report;
+    double potential = problem.evaluate(x, residual_);
+    if (!(potential < infinity)) return report;
+    for (;;) {
+      const double norm = residual_.norm();
+      report.relative_residual = norm > 0.0 ? norm / problem.scale() : 0.0;
+      report.converged = report.relative_residual <= parameters_.tolerance || norm <= problem.rounding();
+      if (report.converged || report.iterations == parameters_.maximum_iterations) return report;
+      if (!problem.prepare(x)) return report;
+      ++report.iterations;
+      problem.direction(residual_, step_);
+      if (!(residual_.dot(step_) > 0.0) || !search(problem, x, potential, norm, report)) return report;
+    }
+  }
+
+ private:
+  template <NewtonProblem P>
+  bool search(P& problem, VectorX& x, double& potential, double norm, NewtonReport& report) noexcept {
+    const double slope = residual_.dot(step_);
+    double length = 1.0;
+    for (int k = 0; k <= parameters_.maximum_halvings; ++k, length *= 0.5) {
+      trial_ = x + length * step_;
+      const double next = problem.evaluate(trial_, trial_residual_);
+      const bool lower = next <= potential - 1e-4 * length * slope;
+      const bool nearer = next < infinity &&
+                          std::abs(next - potential) <= 1e-9 * (std::abs(next) + std::abs(potential)) &&
+                          trial_residual_.norm() < norm;
+      if (lower || nearer) {
+        x.swap(trial_);
+        residual_.swap(trial_residual_);
+        potential = next;
+        return true;
+      }
+      ++report.halvings;
+    }
+    return false;
+  }
+
+  NewtonParameters parameters_;
+  VectorX residual_, step_, trial_, trial_residual_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

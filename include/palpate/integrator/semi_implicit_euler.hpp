@@ -1,0 +1,27 @@
+// Explicit integration of order one: the velocity first, then the place.
+#pragma once
+
+#include <palpate/integrator/central_difference.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Semi-implicit Euler, as in Bro-Nielsen's models: v_n+1 = (v_n + dt (R - F(u_n)) / m) / (1 + alpha dt), u_n+1 = u_n +
+/// dt v_n+1. Order 1, symplectic; its displacements are those of central differences that start half a step off. Stable
+/// up to 2 / omega_max.
+struct SemiImplicitEuler {
+  static constexpr int order = 1;
+
+  template <class Refresh>
+  static void step(MotionState& s, double dt, Refresh&& refresh) noexcept {
+    const double shrink = 1.0 / (1.0 + s.damping * dt);
+    detail::leave_out_held(s);
+    s.velocity = shrink * (s.velocity + dt * (s.load - s.force).cwiseProduct(s.inverse_mass));
+    s.displacement += dt * s.velocity;
+    detail::move_held(s, dt);
+    refresh();
+    detail::show_held(s);
+    s.time += dt;
+  }
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,105 @@
+// A linear isotropic law in the frame that turns with the element.
+#pragma once
+
+#include <palpate/core/rotation.hpp>
+#include <palpate/material/deformation.hpp>
+#include <palpate/material/small_strain.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// W = mu |F - R|^2 + lambda/2 tr(R^T F - I)^2 with the rotation R closest to F (core/rotation.hpp): Hooke's law for
+/// large rotations, not for large strains. Finite for every F and inverted elements are pushed back; where the closest
+/// rotation is not unique (an element pressed to a line, or so far inside out that two stretches cancel) the stress
+/// jumps. Isotropic bases only: with others the stress needs the derivative of R, and the tangent its second one.
+/// Cost of stress: one closest rotation, see docs/materials.md.
+template <class Base = LinearElastic>
+requires LinearMaterial<Base> && requires(const Base& b) {
+  { b.lame_lambda() } -> std::same_as<double>;
+  { b.shear_modulus() } -> std::same_as<double>;
+}
+struct Corotational {
+  Base base{};
+  double density = base.density;  ///< rho at rest [kg/m^3]; that of the base unless given
+
+  static constexpr bool survives_inversion = true;
+
+  Matrix6 rest_elasticity() const noexcept { return base.elasticity(); }
+
+  /// As the base, and a density.
+  std::optional<SetupProblem> check() const {
+    Base with_density = base;
+    with_density.density = density;
+    return with_density.check();
+  }
+
+  template <class S>
+  PALPATE_ALWAYS_INLINE S energy(const Tensor3<S>& f) const noexcept {
+    const auto [lambda, mu] = detail::lame<S>(base);
+    const Tensor3<S> r = closest_rotation(f), d = f - r;
+    const S swelling = contract(r, d);
+    return mu * contract(d, d) + S(0.5f) * lambda * swelling * swelling;
+  }
+
+  template <class S>
+  PALPATE_ALWAYS_INLINE Tensor3<S> stress(const Tensor3<S>& f) const noexcept {
+    return stress(f, closest_rotation(f));
+  }
+  /// With a rotation that is at hand.
+  template <class S>
+  PALPATE_ALWAYS_INLINE Tensor3<S> stress(const Tensor3<S>& f, const Tensor3<S>& r) const noexcept {
+    const auto [lambda, mu] = detail::lame<S>(base);
+    const Tensor3<S> d = f - r;
+    return S(2) * mu * d + (lambda * contract(r, d)) * r;
+  }
+
+  /// Exact, with dR/dF. Indefinite under pressure, where mu (si + sj - 2) + lambda (s1 + s2 + s3 - 3) < 0. dR/dF is
+  /// infinite where two stretches cancel; close to that their sum is taken for larger by 1e-6.
+  Matrix9 tangent(const Tensor3<double>& f) const noexcept {
+    const double lambda = base.lame_lambda(), mu = base.shear_modulus();
+    const Tensor3<double> r = closest_rotation(f);
+    Matrix9 t = (lambda * contract(r, f - r) - 2.0 * mu) * rotation_derivative(f, r);
+    t += (lambda * vector9(r)) * vector9(r).transpose();
+    t.diagonal().array() += 2.0 * mu;
+    return t;
+  }
+
+  /// dP/dF with R held fixed, R D R^T of every corotational code: positive semidefinite at every F, right at rest and
+  /// for any rotation; 2 mu sym(R^T dF) in the turned frame.
+  Matrix9 semidefinite_tangent(const Tensor3<double>& f) const noexcept {
+    const double lambda = base.lame_lambda(), mu = base.shear_modulus();
+    const Tensor3<double> r = closest_rotation(f);
+    Matrix9 t = (lambda * vector9(r)) * vector9(r).transpose();
+    t.diagonal().array() += mu;
+    for (int j = 0; j < 3; ++j)
+      for (int l = 0; l < 3; ++l)
+        for (int i = 0; i < 3; ++i)
+          for (int k = 0; k < 3; ++k) t(i + 3 * j, k + 3 * l) += mu * r(i, l) * r(k, j);
+    return t;
+  }
+
+  bool admits(const Tensor3<double>& f) const noexcept { return all_finite(f); }
+
+ private:
+  /// dR/dF = sum over k, l of (G^-1)_kl R [e_k]x (R [e_l]x)^T with G = tr(S) I - S, S = R^T F.
+  static Matrix9 rotation_derivative(const Tensor3<double>& f, const Tensor3<double>& r) noexcept {
+    Eigen::Matrix<double, 9, 3> turns;  // R [e_k]x
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3, last = (k + 2) % 3;
+      Tensor3<double> t{};
+      for (int i = 0; i < 3; ++i) {
+        t(i, next) = r(i, last);
+        t(i, last) = -r(i, next);
+      }
+      turns.col(k) = vector9(t);
+    }
+    const Tensor3<double> g = detail::rotational_stiffness(transpose_product(r, f)), c = cofactor(g);
+    const double j = determinant(g, c), size = trace(g);
+    if (j > 1e-9 * size * size * size) return turns * ((1.0 / j) * matrix3(c)) * turns.transpose();
+    const Tensor3<double> kept = plus_identity(g, 1e-6 * (1.0 + size)), inverse = cofactor(kept);
+    return turns * ((1.0 / determinant(kept, inverse)) * matrix3(inverse)) * turns.transpose();
+  }
+};
+
+static_assert(HyperelasticMaterial<Corotational<LinearElastic>>);
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,116 @@
+// Fibres that resist being pulled, in a law without a direction.
+#pragma once
+
+#include <palpate/material/deformation.hpp>
+#include <palpate/material/linear_elastic.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// W = base + k1 / (2 k2) (exp(k2 E^2) - 1) where E = |F a|^2 - 1 > 0, a the unit vector along the fibres at rest
+/// (Holzapfel, Gasser and Ogden 2000, one family, without dispersion). The whole stretch counts, not its part at
+/// constant volume, which in compressible tissue lets pulled fibres swell it. Fibres that are not pulled do nothing:
+/// energy and stress are continuous at |F a| = 1, the stiffness jumps by 4 k1 there, and rest_elasticity is that of the
+/// base. Where the mesh has fibre directions these count, elsewhere `fibre`. Admissible: base admissible, k1 >= 0, k2 >
+/// 0, `fibre` a unit vector to within 1e-5. F is refused where the base refuses it or k2 E^2 exceeds 60, which is 1e26
+/// times the stiffness of small pulls; beyond, the exponent stays there, so that the stress is finite in float as well.
+/// Cost of stress: base, one exponential per number.
+template <HyperelasticMaterial Base>
+struct FibreReinforced {
+  Base base{};
+  double k1 = 0.0;                   ///< stiffness of the fibres [Pa]: a quarter of the modulus they add when pulled
+  double k2 = 1.0;                   ///< how fast they stiffen [-]
+  Vector3 fibre = Vector3::UnitX();  ///< unit vector
+  double density = base.density;     ///< rho at rest [kg/m^3]; that of the base unless given
+
+  static constexpr bool survives_inversion = Base::survives_inversion;
+  static constexpr double largest_exponent = 40.0;
+
+  template <class S>
+  PALPATE_ALWAYS_INLINE S energy(const Tensor3<S>& f, const Triple<S>& along) const noexcept {
+    using std::expm1;
+    const S e = pull(f * along);
+    return base.energy(f) + constant<S>(0.5 * k1 / k2) * expm1(exponent(e));
+  }
+
+  template <class S>
+  PALPATE_ALWAYS_INLINE Tensor3<S> stress(const Tensor3<S>& f, const Triple<S>& along) const noexcept {
+    using std::exp;
+    const Triple<S> pulled = f * along;
+    const S e = pull(pulled);
+    return base.stress(f) + (constant<S>(2.0 * k1) * e * exp(exponent(e))) * outer(pulled, along);
+  }
+
+  Matrix9 tangent(const Tensor3<double>& f, const Triple<double>& along) const noexcept {
+    const Triple<double> pulled = f * along;
+    const double e = pull(pulled), stiff = 2.0 * k1 * std::exp(exponent(e));
+    Matrix9 t = base.tangent(f);
+    if (!(e > 0.0)) return t;
+    const Eigen::Matrix<double, 9, 1> column = vector9(outer(pulled, along));
+    t += (2.0 * stiff * (1.0 + 2.0 * k2 * e * e)) * column * column.transpose();
+    detail::add_right_product(t, stiff * e, outer(along, along));
+    return t;
+  }
+
+  Matrix6 rest_elasticity(const Triple<double>&) const noexcept { return base.rest_elasticity(); }
+  bool admits(const Tensor3<double>& f, const Triple<double>& along) const noexcept {
+    const double e = pull(f * along);
+    return base.admits(f) && k2 * e * e <= largest_exponent;
+  }
+
+  // The same with the material's own direction.
+  template <class S>
+  PALPATE_ALWAYS_INLINE S energy(const Tensor3<S>& f) const noexcept {
+    return energy(f, own<S>());
+  }
+  template <class S>
+  PALPATE_ALWAYS_INLINE Tensor3<S> stress(const Tensor3<S>& f) const noexcept {
+    return stress(f, own<S>());
+  }
+  Matrix9 tangent(const Tensor3<double>& f) const noexcept { return tangent(f, own<double>()); }
+  Matrix6 rest_elasticity() const noexcept { return base.rest_elasticity(); }
+  bool admits(const Tensor3<double>& f) const noexcept { return admits(f, own<double>()); }
+
+  std::optional<SetupProblem> check() const {
+    Base with_density = base;
+    with_density.density = density;
+    if (auto problem = with_density.check()) return problem;
+    if (!(std::isfinite(k1) && k1 >= 0.0)) return problem("k1", k1, 0.0, "It must be finite and not negative, in Pa");
+    if (!(std::isnormal(k2) && k2 > 0.0)) return problem("k2", k2, 0.0, "It must be finite and positive");
+    const double length = fibre.norm();
+    if (!(std::abs(length - 1.0) <= 1e-5))
+      return problem("the length of the fibre direction", length, 1.0, "Give a unit vector");
+    return std::nullopt;
+  }
+
+ private:
+  template <class S>
+  PALPATE_ALWAYS_INLINE static scalar_of<S> constant(double x) noexcept {
+    return static_cast<scalar_of<S>>(x);
+  }
+  template <class S>
+  PALPATE_ALWAYS_INLINE Triple<S> own() const noexcept {
+    return {S(constant<S>(fibre[0])), S(constant<S>(fibre[1])), S(constant<S>(fibre[2]))};
+  }
+  /// E where the fibre is pulled, else 0.
+  template <class S>
+  PALPATE_ALWAYS_INLINE static S pull(const Triple<S>& pulled) noexcept {
+    using std::max;
+    return max(S(dot(pulled, pulled) - S(1)), S(0));
+  }
+  template <class S>
+  PALPATE_ALWAYS_INLINE S exponent(const S& e) const noexcept {
+    using std::min;
+    return min(S(constant<S>(k2) * e * e), S(constant<S>(largest_exponent)));
+  }
+  static SetupProblem problem(const char* name, double value, double threshold, const char* hint) {
+    SetupProblem p;
+    p.kind = SetupErrorKind::bad_argument;
+    p.what = std::string(name) + " is " + number(value);
+    p.hint = hint;
+    p.value = value;
+    p.threshold = threshold;
+    return p;
+  }
+};
+
+}  // namespace palpate::inline PALPATE_ABI

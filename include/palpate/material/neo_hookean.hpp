@@ -1,0 +1,60 @@
+// The neo-Hookean law without inverse: the one for 1 kHz.
+#pragma once
+
+#include <palpate/material/deformation.hpp>
+#include <palpate/material/small_strain.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// W = mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2 with Lame's constants of small strain: the volume term
+/// carries lambda + mu, because the one in J - 1 takes mu away again. A polynomial: finite for every F, and a flat or
+/// inverted element is pushed back. One state it does not leave by itself: at F = 0 exactly, all nodes of an element on
+/// one point, the stress is zero.
+/// Cost of stress: about 60 additions and multiplications, no division but in the constants; hold the material in a
+/// local variable outside of a loop and the compiler forms these once.
+struct NeoHookean {
+  double youngs_modulus = 0.0;  ///< E at small strain [Pa]
+  double poisson_ratio = 0.0;   ///< nu at small strain [-]
+  double density = 0.0;         ///< rho at rest [kg/m^3]
+
+  static constexpr bool survives_inversion = true;
+
+  /// The same law at small strain.
+  LinearElastic small_strain() const noexcept { return {youngs_modulus, poisson_ratio, density}; }
+  Matrix6 rest_elasticity() const noexcept { return small_strain().elasticity(); }
+  /// As LinearElastic.
+  std::optional<SetupProblem> check() const { return small_strain().check(); }
+
+  template <class S>
+  PALPATE_ALWAYS_INLINE S energy(const Tensor3<S>& f) const noexcept {
+    const Tensor3<S> h = detail::from_rest(f), c = cofactor(h);
+    const S second = trace(c) + determinant(h, c), j = trace(h) + second;
+    // mu/2 (|F|^2 - 3) - mu (J - 1) with what cancels left out
+    const auto [lambda, mu] = detail::lame<S>(small_strain());
+    return mu * (S(0.5f) * contract(h, h) - second) + S(0.5f) * (lambda + mu) * j * j;
+  }
+
+  template <class S>
+  PALPATE_ALWAYS_INLINE Tensor3<S> stress(const Tensor3<S>& f) const noexcept {
+    const Tensor3<S> c = cofactor(f);
+    const auto [lambda, mu] = detail::lame<S>(small_strain());
+    return mu * f + ((lambda + mu) * determinant(f, c) - (lambda + S(2) * mu)) * c;
+  }
+
+  Matrix9 tangent(const Tensor3<double>& f) const noexcept {
+    const auto [lambda, mu] = detail::lame<double>(small_strain());
+    const double l = lambda + mu;
+    const Tensor3<double> c = cofactor(f);
+    const Eigen::Matrix<double, 9, 1> column = vector9(c);
+    Matrix9 t = (l * (determinant(f, c) - 1.0) - mu) * detail::cofactor_derivative(f);
+    t += (l * column) * column.transpose();
+    t.diagonal().array() += mu;
+    return t;
+  }
+
+  bool admits(const Tensor3<double>& f) const noexcept { return all_finite(f); }
+};
+
+static_assert(HyperelasticMaterial<NeoHookean>);
+
+}  // namespace palpate::inline PALPATE_ABI

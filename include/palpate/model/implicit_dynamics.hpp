@@ -1,0 +1,251 @@
+// Motion in time by implicit steps.
+#pragma once
+
+#include <palpate/integrator/newton.hpp>
+#include <palpate/integrator/time_scheme.hpp>
+#include <palpate/model/deformable_body.hpp>
+#include <palpate/model/tangent_solver.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+enum class MassKind { lumped, consistent };
+
+struct DynamicsParameters {
+  TimeScheme scheme = TimeScheme::implicit_euler();
+  double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]: drags, also a body that moves freely
+  double stiffness_damping = 0.0;  ///< Rayleigh's beta [s], with the tangent at the start of the step
+  MassKind mass = MassKind::lumped;
+  NewtonParameters newton{};  ///< `maximum_iterations` bounds the work of a step
+};
+
+/// What a step did.
+struct StepReport {
+  bool taken = false;     ///< false: the step was not a positive number, or there is no way on; nothing has changed
+  NewtonReport newton{};  ///< not converged: the state is the best found, and relative_residual says what is missing
+  DeformationReport deformation{};
+};
+
+/// M a + D v + f(u) = load: every step minimises its incremental potential (Ortiz and Stainier 1999; Gast et al. 2015),
+/// so a step never ends at a state worse than where it began. A step neither allocates nor throws. Neither copied nor
+/// moved. Vectors have 3 entries per node.
+class ImplicitDynamics {
+ public:
+  /// Starts at rest without displacement, but for the initial acceleration, which follows from the loads. Throws
+  /// too_large, bad_density where a free node has no mass, bad_argument for negative damping.
+  explicit ImplicitDynamics(DeformableBody body, const DynamicsParameters& parameters = {},
+                            const SetupLimits& limits = {})
+      : parameters_(parameters),
+        body_(checked(std::move(body), parameters)),
+        tangent_(body_.pattern, body_.conditions, body_.positions, limits),
+        damping_(parameters.stiffness_damping > 0.0 ? make_stiffness(body_.pattern, limits) : BlockMatrix()),
+        newton_(size(), parameters.newton),
+        u_(VectorX::Zero(body_.elastic->size())),
+        v_(u_),
+        a_(u_),
+        load_(body_.load),
+        trial_(u_),
+        predicted_(u_),
+        coasting_(u_),
+        force_(u_),
+        full_(u_),
+        other_(u_),
+        x_(size()),
+        heaviest_(body_.lumped.maxCoeff()) {
+    find_acceleration();
+  }
+  ImplicitDynamics(const ImplicitDynamics&) = delete;
+  ImplicitDynamics& operator=(const ImplicitDynamics&) = delete;
+
+  /// Moves on by h [s].
+  StepReport step(double h) noexcept {
+    StepReport report;
+    if (!(h > 0.0) || !(h < infinity)) return report;
+    h_ = h;
+    const TimeScheme& s = parameters_.scheme;
+    predicted_ = u_ + h * v_ + (s.old_in_u * h * h) * a_;
+    coasting_ = v_ + (s.old_in_v * h) * a_;
+    if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
+    body_.conditions.gather(predicted_, x_);
+    if (!(evaluate(x_, full_free()) < infinity)) body_.conditions.gather(u_, x_);  // the old state holds
+    report.newton = newton_.solve(*this, x_);
+    if (!(evaluate(x_, full_free()) < infinity)) return report;
+    report.taken = true;
+    report.deformation = deformation_;
+    find_motion();
+    accept();
+    stepped_ = true;
+    time_ += h;
+    return report;
+  }
+
+  /// Takes `more` forces [N] into account in the step just taken, to first order: with the tangent of its last
+  /// iteration. One solve; nothing before the first step.
+  void correct(const VectorX& more) noexcept {
+    if (!stepped_) return;
+    respond(more, trial_);
+    trial_ += u_;
+    find_motion();
+    accept();
+  }
+  /// Displacement [m] that forces [N] add at the end of a step, to first order, as `correct` has it.
+  void respond(const VectorX& forces, VectorX& u) noexcept {
+    body_.conditions.gather(forces, residual_);
+    tangent_.solve(residual_, x_);
+    body_.conditions.scatter(x_, u);
+  }
+  /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
+  bool prepare_response(double h) noexcept {
+    if (!(h > 0.0) || !(h < infinity)) return false;
+    h_ = h;
+    body_.conditions.gather(u_, x_);
+    return prepare(x_);
+  }
+
+  double time() const noexcept { return time_; }
+  const VectorX& displacement() const noexcept { return u_; }
+  const VectorX& velocity() const noexcept { return v_; }
+  const VectorX& acceleration() const noexcept { return a_; }
+  const DeformableBody& body() const noexcept { return body_; }
+
+  /// Changes the state; prescribed components keep their values. The acceleration follows.
+  void set_state(const VectorX& u, const VectorX& v) {
+    for (const Index dof : body_.conditions.free_dofs) {
+      u_[dof] = u[dof];
+      v_[dof] = v[dof];
+    }
+    stepped_ = false;
+    find_acceleration();
+  }
+  /// Forces from now on instead of the scene's loads [N].
+  void set_load(const VectorX& load) noexcept { load_ = load; }
+  /// Values of the prescribed components at the end of the next step [m].
+  void set_prescribed(const VectorX& values) noexcept { body_.conditions.prescribed = values; }
+
+  double kinetic_energy() noexcept {
+    apply_mass(v_, full_);
+    return 0.5 * v_.dot(full_);
+  }
+  double elastic_energy() const noexcept { return body_.elastic->energy(u_); }
+  /// Kinetic and stored, less the work that the loads can still do [J]: constant without damping.
+  double energy() noexcept { return kinetic_energy() + elastic_energy() - load_.dot(u_); }
+
+  // NewtonProblem: one step
+  Index size() const noexcept { return body_.conditions.free_count(); }
+  double evaluate(const VectorX& x, VectorX& residual) noexcept {
+    place(x);
+    deformation_ = body_.elastic->force(trial_, force_);
+    if (!deformation_.admissible) return infinity;
+    find_motion();
+    apply_mass(acceleration_, full_);
+    const double inertia = 0.5 * parameters_.scheme.new_in_u * h_ * h_ * acceleration_.dot(full_);
+    apply_damping(velocity_, other_);
+    const double lost = 0.5 * h_ * parameters_.scheme.new_in_u / parameters_.scheme.new_in_v * velocity_.dot(other_);
+    scale_ = std::max({force_.norm(), full_.norm(), other_.norm(), load_.norm()});
+    full_ = load_ - force_ - full_ - other_;
+    body_.conditions.gather(full_, residual);
+    return inertia + lost + body_.elastic->energy(trial_) - load_.dot(trial_);
+  }
+  bool prepare(const VectorX& x) noexcept {
+    place(x);
+    BlockMatrix& k = tangent_.matrix();
+    body_.elastic->tangent(trial_, k);
+    const TimeScheme& s = parameters_.scheme;
+    const double per_u = 1.0 / (s.new_in_u * h_ * h_), per_v = s.new_in_v / (s.new_in_u * h_);
+    add_mass(per_u + parameters_.mass_damping * per_v, k);
+    if (damping_.size() > 0) k.add(parameters_.stiffness_damping * per_v, damping_);
+    return tangent_.factorise();
+  }
+  void direction(const VectorX& residual, VectorX& d) noexcept { tangent_.solve(residual, d); }
+  double scale() const noexcept { return scale_; }
+  double rounding() const noexcept {
+    const double of_inertia = heaviest_ / (parameters_.scheme.new_in_u * h_ * h_) * trial_.norm();
+    return 4.0 * std::numeric_limits<double>::epsilon() * std::max(scale_, of_inertia);
+  }
+
+ private:
+  static DeformableBody checked(DeformableBody body, const DynamicsParameters& p) {
+    for (const double d : {p.mass_damping, p.stiffness_damping})
+      if (!(d >= 0.0 && d < infinity))
+        raise(SetupErrorKind::bad_argument, "a damping of " + number(d), "Give 0 or a positive number");
+    for (const double c : {p.scheme.new_in_u, p.scheme.new_in_v})
+      if (!(c > 0.0)) raise(SetupErrorKind::bad_argument, "the time scheme is explicit", "Use central differences");
+    for (Index i = 0; i < body.lumped.size(); ++i)
+      if (!(body.lumped[i] > 0.0) && body.conditions.constrained[static_cast<std::size_t>(i)] != 7)
+        raise(SetupErrorKind::bad_density, "node " + std::to_string(i) + " has no mass",
+              "Give every region a density in kg/m^3");
+    return body;
+  }
+
+  VectorX& full_free() noexcept { return residual_; }
+
+  void place(const VectorX& x) noexcept {
+    trial_ = body_.conditions.prescribed;
+    for (Index k = 0; k < size(); ++k) trial_[body_.conditions.free_dofs[static_cast<std::size_t>(k)]] = x[k];
+  }
+  /// Acceleration and velocity at the end of the step from the displacement there.
+  void find_motion() noexcept {
+    const TimeScheme& s = parameters_.scheme;
+    acceleration_ = (trial_ - predicted_) / (s.new_in_u * h_ * h_);
+    velocity_ = coasting_ + (s.new_in_v * h_) * acceleration_;
+  }
+
+  void accept() noexcept {
+    u_ = trial_;
+    v_ = velocity_;
+    a_ = acceleration_;
+  }
+
+  void apply_mass(const VectorX& x, VectorX& y) const noexcept {
+    if (parameters_.mass == MassKind::consistent) return body_.mass.apply(x, y);
+    for (Index i = 0; i < body_.lumped.size(); ++i) y.segment<3>(3 * i) = body_.lumped[i] * x.segment<3>(3 * i);
+  }
+  void add_mass(double factor, BlockMatrix& k) const noexcept {
+    const BlockPattern& pattern = k.pattern();
+    if (parameters_.mass == MassKind::consistent)
+      for (Index p = 0; p < static_cast<Index>(pattern.column.size()); ++p)
+        k.block(p).diagonal().array() += factor * body_.mass[p];
+    else
+      for (Index i = 0; i < pattern.rows(); ++i)
+        k.block(pattern.diagonal(i)).diagonal().array() += factor * body_.lumped[i];
+  }
+  void apply_damping(const VectorX& v, VectorX& y) noexcept {
+    if (damping_.size() > 0) {
+      damping_.apply(v, y);
+      y *= parameters_.stiffness_damping;
+    } else {
+      y.setZero();
+    }
+    if (parameters_.mass_damping == 0.0) return;
+    apply_mass(v, drag_);
+    y += parameters_.mass_damping * drag_;
+  }
+
+  /// M a = load - f(u) - D v on the free dofs.
+  void find_acceleration() {
+    drag_ = acceleration_ = velocity_ = VectorX::Zero(u_.size());
+    residual_.resize(size());
+    if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
+    body_.elastic->force(u_, force_);
+    apply_damping(v_, other_);
+    full_ = load_ - force_ - other_;
+    body_.conditions.gather(full_, residual_);
+    tangent_.matrix().set_zero();
+    add_mass(1.0, tangent_.matrix());
+    if (!tangent_.factorise()) raise(SetupErrorKind::not_positive_definite, "the mass is not positive definite");
+    tangent_.solve(residual_, x_);
+    body_.conditions.scatter(x_, a_);
+  }
+
+  DynamicsParameters parameters_;
+  DeformableBody body_;
+  TangentSolver tangent_;
+  BlockMatrix damping_;
+  Newton newton_;
+  VectorX u_, v_, a_, load_;
+  VectorX trial_, predicted_, coasting_, velocity_, acceleration_, force_, full_, other_, drag_, x_, residual_;
+  DeformationReport deformation_;
+  bool stepped_ = false;  // since the state was set
+  double h_ = 0.0, time_ = 0.0, scale_ = 0.0, heaviest_ = 0.0;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

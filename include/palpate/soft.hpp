@@ -1,0 +1,20 @@
+// Large strain and motion, to be had beside palpate.hpp: laws, statics, implicit and explicit motion, and tissue that moves
+// while it is touched.
+#pragma once
+
+#include <palpate/assembly/averaged_tetrahedra.hpp>
+#include <palpate/assembly/batched_tetrahedra.hpp>
+#include <palpate/assembly/element_frequency.hpp>
+#include <palpate/haptic/tissue_thread.hpp>
+#include <palpate/integrator/central_difference.hpp>
+#include <palpate/integrator/explicit_motion.hpp>
+#include <palpate/integrator/semi_implicit_euler.hpp>
+#include <palpate/material/corotational.hpp>
+#include <palpate/material/fibre_reinforced.hpp>
+#include <palpate/material/mooney_rivlin.hpp>
+#include <palpate/material/neo_hookean.hpp>
+#include <palpate/material/neo_hookean_isochoric.hpp>
+#include <palpate/material/neo_hookean_logarithmic.hpp>
+#include <palpate/material/st_venant_kirchhoff.hpp>
+#include <palpate/material/viscoelastic.hpp>
+#include <palpate/model/soft_tissue.hpp>

@@ -1,0 +1,199 @@
+// Tissue that moves at its own rate under a servo that ticks at another.
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/haptic/tissue_thread.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/material/neo_hookean.hpp>
+#include <palpate/mesh/generators.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/model/soft_tissue.hpp>
+#include <palpate/testing/allocation_counter.hpp>
+#include <palpate/testing/tissue_laws.hpp>
+
+#include "catch.hpp"
+
+using namespace palpate;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+constexpr double ball = 0.012;
+const Vector3 size(0.06, 0.06, 0.03);
+
+Mesh<Tet4> pad() {
+  return box_tet4(size, {6, 6, 3});
+}
+Scene pad_scene() {
+  return Scene().fix("z0").touch("z1");
+}
+SoftTissueOptions options(double step) {
+  SoftTissueOptions o;
+  o.step = step;
+  return o;
+}
+ServoOptions device() {
+  ServoOptions o;
+  o.device.peak_force = 20.0;
+  o.device.stiffness = 2000.0;
+  return o;
+}
+
+/// A ball over the middle of the pad, `depth` below first touch, at tick k of 1 kHz.
+ToolState above(int k, double depth, double aside = 0.0) {
+  ToolState s;
+  s.time = 1e-3 * k;
+  s.position = {0.5 * size[0] + aside, 0.5 * size[1], size[2] + ball - depth};
+  return s;
+}
+
+/// What a session of ticks with steps in between ended with.
+struct Session {
+  Vector3 force = Vector3::Zero();  ///< before the gate [N]
+  double largest_change = 0.0;      ///< of the force between two ticks after the first 50 [N]
+  Status status;                    ///< of the last 100 ticks
+  std::vector<VertexForce> on_vertices;
+};
+
+template <class Depth>
+Session press(SoftTissue& tissue, int ticks, Depth depth, double from = 0.0) {
+  HapticServo servo(tissue, SphereTool{.radius = ball}, device());
+  Session s;
+  double next = 0.0;
+  Vector3 last = Vector3::Zero();
+  for (int k = 0; k < ticks; ++k) {
+    if (1e-3 * k >= next - 1e-9) {
+      tissue.advance();
+      next += tissue.step();
+    }
+    const ToolForce out = servo.tick({std::array{above(k, depth(1e-3 * k), from)}})[0];
+    s.force = servo.contact_force();
+    REQUIRE(s.force.allFinite());
+    if (k > 50) s.largest_change = std::max(s.largest_change, (s.force - last).norm());
+    if (k >= ticks - 100) s.status |= out.status;
+    last = s.force;
+  }
+  const auto forces = servo.read_snapshot().vertex_forces();
+  s.on_vertices.assign(forces.begin(), forces.end());
+  return s;
+}
+double ramp(double t) {
+  return std::min(0.008, 0.02 * t);
+}
+
+}  // namespace
+
+TEST_CASE("the steady force does not depend on the step, and is that of the equilibrium", "[haptic][soft]") {
+  std::vector<double> steady;
+  for (const double h : {0.02, 0.01, 0.005, 0.001}) {
+    SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(h));
+    const Session s = press(tissue, 2000, ramp);
+    steady.push_back(s.force[2]);
+    CHECK(s.status.ok());
+    CHECK(s.largest_change <= 0.1 * s.force[2]);
+    if (h != 0.01) continue;
+    Scene loaded = pad_scene();
+    for (const VertexForce& f : s.on_vertices)
+      loaded.point_load(std::vector<NodeId>{tissue.touchable_nodes()[static_cast<std::size_t>(f.vertex)]}, f.force);
+    Equilibrium statics(make_hyperelastic_body(pad(), std::vector<NeoHookean>{{5e3, 0.45, 1000.0}}), loaded);
+    REQUIRE(statics.solve().converged);
+    CHECK((statics.displacement() - tissue.motion().displacement()).norm() <= 1e-4 * statics.displacement().norm());
+  }
+  for (const double f : steady) CHECK_THAT(f, WithinRel(steady.back(), 1e-3));  // 1 % asked for
+  CHECK(steady.back() > 0.3);
+}
+
+TEST_CASE("a slight touch feels as linear elasticity does", "[haptic][soft]") {
+  const auto slight = [](double t) { return std::min(0.0005, 0.01 * t); };
+  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  const double soft = press(tissue, 600, slight).force[2];
+  HapticFEModel<Tet4, LinearElastic> linear(pad(), pad_scene(), LinearElastic{5e3, 0.45, 1000.0});
+  HapticServo servo(linear, SphereTool{.radius = ball}, device());
+  for (int k = 0; k < 600; ++k) servo.tick({std::array{above(k, slight(1e-3 * k))}});
+  CHECK_THAT(soft, WithinRel(servo.contact_force()[2], 0.02));
+}
+
+TEST_CASE("a tissue that is let go comes back, and a stalled one stays elastic", "[haptic][soft]") {
+  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  press(tissue, 500, ramp);
+  const double pressed = tissue.motion().displacement().norm();
+  press(tissue, 1500, [](double) { return -0.01; });
+  CHECK(tissue.motion().displacement().norm() <= 0.01 * pressed);
+
+  for (int k = 0; k < 50; ++k) tissue.advance();
+  HapticServo servo(tissue, SphereTool{.radius = ball}, device());
+  double work = 0.0, depth = -0.001, most = 0.0;
+  for (int k = 0; k < 400; ++k) {  // 0.4 s without a step: in, hold, out
+    const double next = k < 100 ? depth + 5e-5 : k < 300 ? depth : depth - 5e-5;
+    servo.tick({std::array{above(k, next)}});
+    work += servo.contact_force()[2] * (next - depth);
+    depth = next;
+    most = std::max(most, servo.contact_force()[2]);
+  }
+  CHECK(most > 0.1);
+  CHECK(work >= -0.02 * most * 0.004);  // the hand gets no energy out of it
+  CHECK(servo.contact_force()[2] == 0.0);
+}
+
+TEST_CASE("gravity is settled before the first touch", "[haptic][soft]") {
+  SoftTissue tissue(pad(), pad_scene().gravity({0.0, 0.0, -9.81}), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  const VectorX u = tissue.motion().displacement();
+  CHECK(u.norm() > 0.0);
+  for (int k = 0; k < 20; ++k) tissue.advance();
+  CHECK((tissue.motion().displacement() - u).norm() <= 1e-6 * u.norm());
+}
+
+TEST_CASE("moving tissue keeps the laws of tissues, at rest and turned", "[haptic][soft][laws]") {
+  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  CHECK(testing::describe(testing::tissue_laws(tissue, std::array{0, 24, 30, 48}, {1e-9})) == "");
+  press(tissue, 500, ramp, 0.01);
+  tissue.begin_tick();
+  CHECK(testing::describe(testing::tissue_laws(tissue, std::array{0, 24, 30, 48}, {1e-9})) == "");
+}
+
+TEST_CASE("neither a tick nor a step of the tissue allocates", "[haptic][soft][allocation]") {
+  if (!testing::allocations_are_counted()) return;
+  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  HapticServo servo(tissue, SphereTool{.radius = ball}, device());
+  const testing::AllocationScope scope;
+  for (int k = 0; k < 300; ++k) {
+    if (k % 10 == 0) tissue.advance();
+    const ToolState state = above(k, ramp(1e-3 * k));
+    servo.tick({&state, 1});
+  }
+  const std::uint64_t allocations = scope.allocations();
+  CHECK(allocations == 0);
+}
+
+TEST_CASE("thread and ticks exchange without waiting", "[haptic][soft]") {
+  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.005));
+  HapticServo servo(tissue, SphereTool{.radius = ball}, device());
+  TissueThread thread(tissue);
+  double most = 0.0;
+  for (int k = 0; k < 600; ++k) {
+    const ToolState state = above(k, ramp(1e-3 * k));
+    const ToolForce out = servo.tick({&state, 1})[0];
+    REQUIRE(out.force.allFinite());
+    most = std::max(most, out.force.norm());
+    std::this_thread::sleep_for(std::chrono::microseconds(500));
+  }
+  thread.stop();
+  CHECK(thread.report().steps > 10);
+  CHECK(thread.report().steps == tissue.steps());
+  CHECK(most > 0.05);
+  CHECK(thread.report().rate > 0.0);
+  CHECK(thread.report().rate <= 1.1);
+}
+
+TEST_CASE("steps and bodies that cannot be are refused", "[haptic][soft]") {
+  const auto kind = [](const Scene& s, double step) {
+    try {
+      SoftTissue tissue(pad(), s, NeoHookean{5e3, 0.45, 1000.0}, options(step));
+    } catch (const SetupError& error) {
+      return error.kind();
+    }
+    return SetupErrorKind::cancelled;
+  };
+  CHECK(kind(pad_scene(), 0.0) == SetupErrorKind::bad_argument);
+  CHECK(kind(pad_scene(), std::numeric_limits<double>::quiet_NaN()) == SetupErrorKind::bad_argument);
+  CHECK(kind(Scene().touch("z1"), 0.01) == SetupErrorKind::unconstrained);
+  CHECK(kind(Scene().fix("nowhere").touch("z1"), 0.01) == SetupErrorKind::unknown_group);
+}

@@ -1,0 +1,263 @@
+// Explicit motion of a neo-Hookean block: what is conserved, what is refused, and what it survives.
+#include "integrator/motions.hpp"
+
+using namespace test;
+
+namespace {
+
+template <Element E>
+Vector3 momentum(const Mesh<E>& mesh, const MotionState& s) {
+  Vector3 p = Vector3::Zero();
+  for (Index i = 0; i < mesh.node_count(); ++i) p += s.mass[3 * i] * s.velocity.segment<3>(3 * i);
+  return p;
+}
+template <Element E>
+Vector3 angular_momentum(const Mesh<E>& mesh, const MotionState& s) {
+  Vector3 l = Vector3::Zero();
+  for (Index i = 0; i < mesh.node_count(); ++i)
+    l += s.mass[3 * i] * (mesh.position(i) + s.displacement.segment<3>(3 * i)).cross(s.velocity.segment<3>(3 * i));
+  return l;
+}
+
+Vector3 swirl(const Vector3& p) {
+  const Vector3 r = p - Vector3(0.05, 0.05, 0.05);
+  return Vector3(0.2, -0.1, 0.3) + Vector3(4.0, -3.0, 5.0).cross(r) + 6.0 * Vector3(r.y(), r.z(), -r.x());
+}
+
+/// Whether the fastest mode grows at this step: it changes sign at every step. (A pressed block may also buckle, which
+/// grows without changing sign, at any step.)
+template <class Scheme>
+bool unstable(const HyperelasticBody<Tet4, NeoHookean>& body, const VectorX& shape, const std::vector<Index>& free,
+              double dt) {
+  BatchedTetrahedra<NeoHookean> force(body);
+  const VectorX mass = lumped_mass(body.rest).replicate(1, 3).transpose().reshaped();
+  // the tangent at `shape`, as differences: linear, so that growth is not stopped by stiffening
+  VectorX f0(shape.size()), f(shape.size()), moved(shape.size());
+  force.force(shape, f0);
+  testing::Random random(4);
+  MotionState s;
+  s.displacement = s.velocity = s.force = s.load = s.target = VectorX::Zero(shape.size());
+  s.mass = mass;
+  s.inverse_mass = VectorX::Zero(shape.size());
+  for (Index dof : free) s.inverse_mass[dof] = 1.0 / mass[dof];
+  for (Index dof : free) s.displacement[dof] = random.uniform(-1.0, 1.0);
+  const double probe = force.probe_length();
+  const auto refresh = [&]() noexcept {
+    const double scale = probe / s.displacement.cwiseAbs().maxCoeff();
+    moved = shape + scale * s.displacement;
+    force.force(moved, f);
+    s.force = (f - f0) / scale;
+  };
+  refresh();
+  const double start = s.displacement.norm();
+  VectorX before;
+  for (int i = 0; i < 150; ++i) {
+    before = s.displacement;
+    Scheme::step(s, dt, refresh);
+  }
+  const double size = s.displacement.norm();
+  REQUIRE(std::isfinite(size));
+  return size > 1e3 * start && s.displacement.dot(before) / size / before.norm() < -0.5;
+}
+
+template <class Scheme>
+double measured_limit(const HyperelasticBody<Tet4, NeoHookean>& body, const VectorX& shape,
+                      const std::vector<Index>& free, double guess) {
+  double low = 0.7 * guess, high = 1.3 * guess;
+  REQUIRE_FALSE(unstable<Scheme>(body, shape, free, low));
+  REQUIRE(unstable<Scheme>(body, shape, free, high));
+  while (high - low > 0.005 * guess) {
+    const double middle = 0.5 * (low + high);
+    (unstable<Scheme>(body, shape, free, middle) ? high : low) = middle;
+  }
+  return low;
+}
+
+/// Pressed to a share of its height, and wider, so that its volume stays.
+VectorX pressed(const Mesh<Tet4>& mesh, double ratio) {
+  const double wider = 1.0 / std::sqrt(ratio) - 1.0;
+  return velocity_field(mesh, [&](const Vector3& p) -> Vector3 {
+    return {wider * p.x(), wider * p.y(), (ratio - 1.0) * p.z()};
+  });
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("free flight keeps momentum, and swings about its energy", "[integrator]", CentralDifference,
+                   SemiImplicitEuler) {
+  const auto body = soft_block(2);
+  const Mesh<Tet4>& mesh = body.rest.mesh;
+  auto motion = motion_of<TestType>(body, all_dofs(mesh));
+  motion.set(VectorX::Zero(3 * mesh.node_count()), velocity_field(mesh, swirl));
+  const MotionState& s = motion.state();
+  const Vector3 p = momentum(mesh, s), l = angular_momentum(mesh, s);
+  const double energy = motion.kinetic_energy() + motion.stored_energy(), dt = 0.25 * motion.limit();
+  double low = energy, high = energy, late_low = infinity, late_high = 0.0;
+  const int steps = 100000;
+  for (int i = 0; i < steps; ++i) {
+    REQUIRE(motion.step(dt).ok());
+    if (i % 7 != 0) continue;
+    const double now = motion.kinetic_energy() + motion.stored_energy();
+    (i < steps / 2 ? low : late_low) = std::min(i < steps / 2 ? low : late_low, now);
+    (i < steps / 2 ? high : late_high) = std::max(i < steps / 2 ? high : late_high, now);
+  }
+  CHECK((momentum(mesh, s) - p).norm() <= 1e-12 * p.norm());
+  CHECK((angular_momentum(mesh, s) - l).norm() <= 1e-11 * l.norm());
+  const double swing = TestType::order == 2 ? 0.02 : 0.15;  // of the energy, no matter how long
+  CHECK(low >= (1.0 - swing) * energy);
+  CHECK(high <= (1.0 + swing) * energy);
+  CHECK(late_low >= (1.0 - swing) * energy);
+  CHECK(late_high <= (1.0 + swing) * energy);
+  INFO(low / energy << ' ' << high / energy << ' ' << late_low / energy << ' ' << late_high / energy);
+}
+
+TEST_CASE("free fall", "[integrator]") {
+  const auto body = soft_block(2);
+  const Mesh<Tet4>& mesh = body.rest.mesh;
+  auto motion = motion_of<CentralDifference>(body, all_dofs(mesh));
+  const Vector3 g(0.0, 0.0, -9.81);
+  motion.load() = motion.state().mass.cwiseProduct(velocity_field(mesh, [&](const Vector3&) { return g; }));
+  const double dt = 0.5 * motion.limit();
+  for (int i = 0; i < 2000; ++i) REQUIRE(motion.step(dt).ok());
+  const double t = motion.state().time;
+  for (Index i = 0; i < mesh.node_count(); ++i) {
+    CHECK((motion.state().displacement.segment<3>(3 * i) - 0.5 * t * t * g).norm() <= 1e-11 * t * t);
+    CHECK((motion.state().velocity.segment<3>(3 * i) - t * g).norm() <= 1e-10 * t);
+  }
+}
+
+TEMPLATE_TEST_CASE("the limit is that of the state: within 5 % of where motion becomes unstable", "[integrator]",
+                   CentralDifference, SemiImplicitEuler) {
+  const auto body = soft_block(3);
+  const Mesh<Tet4>& mesh = body.rest.mesh;
+  const std::vector<Index> free = above_ground(mesh);
+  ExplicitOptions options;
+  options.margin = 0.03;
+  auto motion = motion_of<TestType>(body, free, options);
+  double at_rest = 0.0;
+  for (const double ratio : {1.0, 0.5}) {
+    const VectorX shape = pressed(mesh, ratio);
+    motion.set(shape, VectorX::Zero(shape.size()));
+    const double limit = motion.estimate_limit(60), measured = measured_limit<TestType>(body, shape, free, limit);
+    INFO("pressed to " << ratio << ": limit " << limit << ", measured " << measured);
+    CHECK(limit <= measured);
+    CHECK(limit >= 0.95 * measured);
+    CHECK(motion.step(1.001 * limit).has(StatusFlag::step_refused));
+    CHECK(motion.step(0.999 * limit).ok());
+    if (ratio == 1.0)
+      at_rest = limit;
+    else
+      CHECK(limit < 0.85 * at_rest);
+  }
+}
+
+TEST_CASE("the bound of the elements is above, and never far", "[integrator]") {
+  const auto body = soft_block(3);
+  auto motion = motion_of<CentralDifference>(body, all_dofs(body.rest.mesh));
+  ExplicitOptions options;
+  options.first_iterations = 0;
+  auto bounded = motion_of<CentralDifference>(body, all_dofs(body.rest.mesh), options);
+  motion.estimate_limit(100);
+  CHECK(bounded.limit() <= motion.limit());
+  CHECK(bounded.limit() >= 0.5 * motion.limit());
+}
+
+TEST_CASE("steps that cannot be are refused and change nothing", "[integrator][extremes]") {
+  const auto body = soft_block(2);
+  const Mesh<Tet4>& mesh = body.rest.mesh;
+  auto motion = motion_of<CentralDifference>(body, above_ground(mesh));
+  motion.set(VectorX::Zero(3 * mesh.node_count()), velocity_field(mesh, swirl));
+  for (int i = 0; i < 20; ++i) REQUIRE(motion.step(0.5 * motion.limit()).ok());
+  const MotionState before = motion.state();
+  for (const double dt : {0.0, -1e-4, std::nan(""), infinity, -infinity, 1.0, 10.0 * motion.limit()}) {
+    CHECK(motion.step(dt).has(StatusFlag::step_refused));
+    CHECK(motion.state().displacement == before.displacement);
+    CHECK(motion.state().velocity == before.velocity);
+    CHECK(motion.state().time == before.time);
+    CHECK_REFUSED(SetupErrorKind::bad_argument, motion.require_step(dt));
+  }
+  CHECK(motion.step(1e-9).ok());
+  CHECK((motion.state().displacement - before.displacement).norm() <= 1.1e-9 * before.velocity.norm());
+  CHECK(motion.state().displacement != before.displacement);
+
+  const BatchedTetrahedra<NeoHookean> force(body);
+  using Motion = NeoHookeanMotion<CentralDifference>;
+  VectorX mass = lumped_mass(body.rest);
+  CHECK_REFUSED(SetupErrorKind::bad_argument, Motion(force, mass.head(3), {}));
+  CHECK_REFUSED(SetupErrorKind::index_out_of_range, Motion(force, mass, {3 * mass.size()}));
+  ExplicitOptions negative;
+  negative.damping = -1.0;
+  CHECK_REFUSED(SetupErrorKind::bad_argument, Motion(force, mass, {}, 1.0, negative));
+  mass[4] = 0.0;
+  CHECK_REFUSED(SetupErrorKind::bad_density, Motion(force, mass, {}));
+}
+
+TEST_CASE("energy from nowhere stops the motion at its last good state", "[integrator][extremes]") {
+  const auto body = soft_block(3);
+  const Mesh<Tet4>& mesh = body.rest.mesh;
+  ExplicitOptions options;
+  options.limit_every = 0;
+  options.first_iterations = 0;
+  // a bound that is wrong by far: nothing but the energy can tell
+  NeoHookeanMotion<CentralDifference> motion(BatchedTetrahedra<NeoHookean>(body), lumped_mass(body.rest),
+                                             above_ground(mesh), 0.01 * element_frequency_bound(body.rest), options);
+  const VectorX still = VectorX::Zero(3 * mesh.node_count());
+  motion.set(still, velocity_field(mesh, swirl));
+  const double energy = motion.kinetic_energy(), dt = motion.limit();
+  int steps = 0;
+  Status status;
+  while ((status = motion.step(dt)).ok() && steps < 100) ++steps;
+  CHECK(steps <= 3);
+  CHECK(status.has(StatusFlag::energy_grew));
+  CHECK(motion.state().displacement.allFinite());
+  CHECK(motion.kinetic_energy() + motion.stored_energy() <= 100.0 * energy);
+  const VectorX held = motion.state().displacement;
+  CHECK(motion.step(dt).has(StatusFlag::energy_grew));
+  CHECK(motion.state().displacement == held);
+  motion.set(still, still);
+  CHECK(motion.step(1e-6).ok());
+
+  motion.set(still, velocity_field(mesh, swirl));
+  motion.load()[mesh.node_count()] = std::nan("");
+  for (int i = 0; i < 3; ++i) status = motion.step(1e-6);
+  CHECK(status.has(StatusFlag::energy_grew));
+  CHECK(motion.state().displacement.allFinite());
+}
+
+TEST_CASE("scrambled blocks stay finite and come to rest", "[integrator][extremes]") {
+  const auto body = soft_block(2);
+  const Mesh<Tet4>& mesh = body.rest.mesh;
+  ExplicitOptions options;
+  options.damping = 60.0;
+  options.limit_every = 1;  // the limit changes from step to step
+  options.margin = 0.15;
+  const std::vector<Index> free = above_ground(mesh);
+  auto motion = motion_of<CentralDifference>(body, free, options);
+  testing::Random random(17);
+  // By less than half a cell every block finds home. By a whole cell, with most elements inside out, some find another
+  // shape that is in equilibrium, all elements upright: a corner pushed through.
+  const double cell = 0.05;
+  for (const double amount : {0.45 * cell, cell}) {
+    int inverted_at_start = 0, flagged = 0, at_rest = 0, upright = 0, home = 0;
+    const int runs = 100;
+    for (int run = 0; run < runs; ++run) {
+      VectorX u = VectorX::Zero(3 * mesh.node_count());
+      for (Index dof : free) u[dof] = random.uniform(-amount, amount);
+      motion.set(u, VectorX::Zero(u.size()));
+      inverted_at_start += motion.force().report().inverted > 0 ? 1 : 0;
+      motion.estimate_limit(10);
+      for (int i = 0; i < 6000 && (i < 100 || motion.kinetic_energy() > 1e-14); ++i)
+        flagged += motion.step(0.5 * motion.limit()).ok() ? 0 : 1;
+      REQUIRE(motion.state().displacement.allFinite());
+      at_rest += motion.kinetic_energy() <= 1e-14 ? 1 : 0;
+      upright += motion.force().report().inverted == 0 ? 1 : 0;
+      home += motion.state().displacement.norm() < 1e-3 ? 1 : 0;
+    }
+    INFO("moved by up to " << amount << " m: " << home << " of " << runs << " came home");
+    CHECK(inverted_at_start > runs / 4);
+    CHECK(flagged == 0);
+    CHECK(at_rest == runs);
+    CHECK(upright == runs);
+    CHECK(home >= (amount < cell ? runs : runs / 2));
+  }
+}

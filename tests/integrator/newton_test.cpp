@@ -1,0 +1,121 @@
+// Newton's method on potentials whose minimum is known.
+#include <palpate/integrator/newton.hpp>
+
+#include <Eigen/Cholesky>
+
+#include "catch.hpp"
+
+using namespace palpate;
+
+namespace {
+
+/// Rosenbrock's valley: minimum 0 at (1, 1); Newton's full steps climb out of it.
+struct Rosenbrock {
+  Eigen::Matrix2d second;
+  int evaluations = 0;
+  Index size() const noexcept { return 2; }
+  double evaluate(const VectorX& x, VectorX& residual) noexcept {
+    ++evaluations;
+    const double a = 1.0 - x[0], b = x[1] - x[0] * x[0];
+    residual << 2.0 * a + 400.0 * b * x[0], -200.0 * b;
+    return a * a + 100.0 * b * b;
+  }
+  bool prepare(const VectorX& x) noexcept {
+    second << 2.0 + 1200.0 * x[0] * x[0] - 400.0 * x[1], -400.0 * x[0], -400.0 * x[0], 200.0;
+    if (Eigen::LLT<Eigen::Matrix2d>(second).info() != Eigen::Success) second = 1e3 * Eigen::Matrix2d::Identity();
+    return true;
+  }
+  void direction(const VectorX& r, VectorX& d) noexcept { d = second.llt().solve(r); }
+  double scale() const noexcept { return 1.0; }
+  double rounding() const noexcept { return 0.0; }
+};
+
+/// x - log x, defined for x > 0 only: from x = 10 a full step leaves the domain.
+struct Barrier {
+  double second = 0.0;
+  bool left = false;
+  Index size() const noexcept { return 1; }
+  double evaluate(const VectorX& x, VectorX& residual) noexcept {
+    if (!(x[0] > 0.0)) {
+      left = true;
+      return infinity;
+    }
+    residual[0] = 1.0 / x[0] - 1.0;
+    return x[0] - std::log(x[0]);
+  }
+  bool prepare(const VectorX& x) noexcept {
+    second = 1.0 / (x[0] * x[0]);
+    return true;
+  }
+  void direction(const VectorX& r, VectorX& d) noexcept { d = r / second; }
+  double scale() const noexcept { return 1.0; }
+  double rounding() const noexcept { return 0.0; }
+};
+
+/// No minimum: x.
+struct Slope {
+  Index size() const noexcept { return 1; }
+  double evaluate(const VectorX& x, VectorX& residual) noexcept {
+    residual[0] = -1.0;
+    return x[0];
+  }
+  bool prepare(const VectorX&) noexcept { return true; }
+  void direction(const VectorX& r, VectorX& d) noexcept { d = r; }
+  double scale() const noexcept { return 1.0; }
+  double rounding() const noexcept { return 0.0; }
+};
+
+static_assert(NewtonProblem<Rosenbrock> && NewtonProblem<Barrier> && NewtonProblem<Slope>);
+static_assert(!NewtonProblem<int>);
+
+}  // namespace
+
+TEST_CASE("Newton's method finds a minimum at the end of a valley", "[integrator][newton]") {
+  Rosenbrock problem;
+  Newton newton(2);
+  VectorX x = Eigen::Vector2d(-1.2, 1.0);
+  const NewtonReport report = newton.solve(problem, x);
+  CHECK(report.converged);
+  CHECK(report.halvings > 0);
+  CHECK(report.relative_residual <= 1e-10);
+  CHECK((x - Eigen::Vector2d(1.0, 1.0)).norm() <= 1e-10);
+}
+
+TEST_CASE("Newton's method stays inside the domain", "[integrator][newton]") {
+  Barrier problem;
+  Newton newton(1);
+  VectorX x = VectorX::Constant(1, 10.0);
+  const NewtonReport report = newton.solve(problem, x);
+  CHECK(problem.left);  // it was tried, and not taken
+  CHECK(report.converged);
+  CHECK(std::abs(x[0] - 1.0) <= 1e-10);
+  x[0] = -1.0;
+  CHECK_FALSE(newton.solve(problem, x).converged);
+  CHECK(x[0] == -1.0);
+}
+
+TEST_CASE("Newton's method converges with the square of the error", "[integrator][newton]") {
+  Barrier problem;
+  double error = 0.1;
+  for (int k = 1; k <= 3; ++k) {
+    VectorX x = VectorX::Constant(1, 0.9);
+    const NewtonReport report = Newton(1, {.maximum_iterations = k}).solve(problem, x);
+    CHECK(report.iterations == k);
+    error *= error;  // of x - log x exactly
+    CHECK(std::abs(1.0 - x[0] - error) <= 1e-15);
+  }
+}
+
+TEST_CASE("Newton's method gives up where there is no minimum, and starts over without one step at one",
+          "[integrator][newton]") {
+  Slope slope;
+  VectorX x = VectorX::Zero(1);
+  const NewtonReport report = Newton(1, {.maximum_iterations = 7}).solve(slope, x);
+  CHECK_FALSE(report.converged);
+  CHECK(report.iterations == 7);
+  Barrier barrier;
+  x[0] = 1.0;
+  const NewtonReport at_once = Newton(1).solve(barrier, x);
+  CHECK(at_once.converged);
+  CHECK(at_once.iterations == 0);
+}

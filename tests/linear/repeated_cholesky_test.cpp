@@ -1,0 +1,78 @@
+// Factorising again and again into the same memory.
+#include <palpate/linear/repeated_cholesky.hpp>
+#include <palpate/testing/allocation_counter.hpp>
+#include <palpate/testing/random.hpp>
+
+#include "linear/sparse_cases.hpp"
+
+using namespace test;
+
+namespace {
+
+VectorX random_vector(Index n, std::uint64_t seed) {
+  testing::Random random(seed);
+  VectorX v(n);
+  for (Index i = 0; i < n; ++i) v[i] = random.uniform(-1.0, 1.0);
+  return v;
+}
+
+/// The entry (j, j) of a lower half.
+double& diagonal(SparseMatrix& lower, Index j) {
+  return lower.coeffRef(j, j);
+}
+
+}  // namespace
+
+TEST_CASE("a repeated factorisation gives the bits of a single one", "[linear][repeated_cholesky]") {
+  for (const SparseCase& c : sparse_cases()) {
+    INFO(c.name);
+    const CholeskyAnalysis analysis(c.lower, c.layout);
+    RepeatedCholesky repeated(analysis);
+    CHECK_FALSE(repeated.ready());
+    VectorX x(repeated.size());
+    CHECK_FALSE(repeated.solve_into(x, x).converged);
+    for (const double factor : {1.0, 3.0, 1.0}) {
+      const SparseMatrix scaled = factor * c.lower;
+      REQUIRE(repeated.factorise(scaled));
+      SparseCholesky single(analysis, scaled, {});
+      const VectorX b = random_vector(repeated.size(), 5);
+      VectorX y(repeated.size());
+      CHECK(repeated.solve_into(b, x).converged);
+      single.solve_into(b, y);
+      CHECK(x == y);
+    }
+  }
+}
+
+TEST_CASE("a repeated factorisation says when there is no factor, and goes on with the next matrix",
+          "[linear][repeated_cholesky]") {
+  const SparseCase c = ball_case(3);
+  const CholeskyAnalysis analysis(c.lower, c.layout);
+  RepeatedCholesky repeated(analysis);
+  const Index last = c.lower.rows() - 1;
+  for (const double bad : {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN(), infinity}) {
+    SparseMatrix broken = c.lower;
+    diagonal(broken, last / 2) = bad;
+    CHECK_FALSE(repeated.factorise(broken));
+    CHECK_FALSE(repeated.ready());
+    REQUIRE(repeated.factorise(c.lower));
+    const VectorX b = random_vector(repeated.size(), 7);
+    VectorX x(repeated.size()), y(repeated.size());
+    repeated.solve_into(b, x);
+    SparseCholesky(analysis, c.lower, {}).solve_into(b, y);
+    CHECK(x == y);
+  }
+}
+
+TEST_CASE("factorising again and solving do not allocate", "[linear][repeated_cholesky][allocation]") {
+  if (!testing::allocations_are_counted()) return;
+  const SparseCase c = ball_case(3);
+  RepeatedCholesky repeated(CholeskyAnalysis(c.lower, c.layout));
+  VectorX x = random_vector(repeated.size(), 9);
+  const testing::AllocationScope scope;
+  const bool factorised = repeated.factorise(c.lower);
+  repeated.solve_into(x, x);
+  const std::uint64_t allocations = scope.allocations();
+  CHECK(factorised);
+  CHECK(allocations == 0);
+}

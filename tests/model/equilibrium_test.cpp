@@ -1,0 +1,122 @@
+// Static equilibrium at large deformation.
+#include <palpate/material/neo_hookean.hpp>
+#include <palpate/material/neo_hookean_logarithmic.hpp>
+#include <palpate/mesh/generators.hpp>
+#include <palpate/model/equilibrium.hpp>
+
+#include "catch.hpp"
+
+using namespace palpate;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+const Vector3 size(0.04, 0.04, 0.08);
+
+template <class M = NeoHookean>
+Equilibrium pillar(const Scene& scene, double youngs_modulus = 5e3) {
+  return Equilibrium(make_hyperelastic_body(box_tet4(size, {3, 3, 6}), std::vector<M>{{youngs_modulus, 0.45, 1000.0}}),
+                     scene);
+}
+
+double sum_along(const VectorX& forces, int axis) {
+  return Eigen::Map<const Eigen::Matrix3Xd>(forces.data(), 3, forces.size() / 3).row(axis).sum();
+}
+
+}  // namespace
+
+TEST_CASE("a prescribed affine boundary gives the affine state inside", "[model][equilibrium]") {
+  const Mesh<Tet4> mesh = box_tet4(size, {3, 3, 4});
+  Matrix3 a;
+  a << 1.3, 0.4, 0.0, 0.1, 0.9, 0.1, 0.0, -0.2, 0.8;
+  Scene scene;
+  for (const NodeId i : nodes_of(extract_boundary<Tet4>(mesh))) {
+    const Vector3 u = a * mesh.position(i) - mesh.position(i);
+    scene.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
+  }
+  Equilibrium body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{{5e3, 0.45, 0.0}}), scene);
+  const EquilibriumReport report = body.solve();
+  CHECK(report.converged);
+  CHECK(report.stable);
+  for (Index i = 0; i < mesh.node_count(); ++i)
+    CHECK((body.displacement().segment<3>(3 * i) - (a * mesh.position(i) - mesh.position(i))).norm() <= 1e-12);
+}
+
+TEST_CASE("loads, supports and inner forces balance", "[model][equilibrium]") {
+  Equilibrium body = pillar(Scene().fix("z0").gravity({2.0, 0.0, -9.81}).point_load("z1", {0.01, 0.02, -0.03}));
+  const EquilibriumReport report = body.solve();
+  REQUIRE(report.converged);
+  CHECK(report.relative_residual <= 1e-10);
+  CHECK(report.iterations <= 10);
+  const double mass = 1000.0 * size.prod();
+  const VectorX r = body.reactions();
+  CHECK_THAT(sum_along(r, 0), WithinRel(-2.0 * mass - 0.01, 1e-9));
+  CHECK_THAT(sum_along(r, 1), WithinRel(-0.02, 1e-9));
+  CHECK_THAT(sum_along(r, 2), WithinRel(9.81 * mass + 0.03, 1e-9));
+}
+
+TEST_CASE("small loads give the answer of linear elasticity, and the difference is of second order",
+          "[model][equilibrium]") {
+  const auto tip = [](double g) {
+    Equilibrium body = pillar(Scene().fix("z0").gravity({g, 0.0, 0.0}));
+    REQUIRE(body.solve().converged);
+    return (body.displacement() / g).eval();
+  };
+  const VectorX linear = tip(1e-3);
+  const double at_one = (tip(1.0) - linear).norm(), at_two = (tip(2.0) - linear).norm();
+  CHECK(at_one <= 0.05 * linear.norm());
+  CHECK(at_two / at_one > 1.5);
+  CHECK(at_two / at_one < 4.5);
+}
+
+TEST_CASE("the number of load steps does not change the answer", "[model][equilibrium]") {
+  const Scene scene = Scene().fix("z0").prescribe("z1", {0.01, 0.0, -0.02});
+  Equilibrium one = pillar(scene), many = pillar(scene);
+  const EquilibriumReport a = one.solve(), b = many.solve({.load_steps = 7});
+  REQUIRE((a.converged && b.converged));
+  CHECK(b.load_steps > a.load_steps);
+  CHECK((one.displacement() - many.displacement()).norm() <= 1e-8 * one.displacement().norm());
+}
+
+TEST_CASE("a pillar pressed too far buckles into a stable state", "[model][equilibrium]") {
+  Equilibrium body = pillar(Scene().fix("z0").prescribe("z1", {0.0, 0.0, -0.036}));
+  const EquilibriumReport report = body.solve();
+  CHECK(report.converged);
+  CHECK(report.stable);
+  Equilibrium again = pillar(Scene().fix("z0").prescribe("z1", {0.0, 0.0, -0.036}));
+  again.solve();
+  CHECK(again.displacement() == body.displacement());  // the same way every time
+}
+
+TEST_CASE("what cannot be reached is said, with the worst element", "[model][equilibrium]") {
+  const Components no_x{0.0, std::nullopt, std::nullopt}, no_y{std::nullopt, 0.0, std::nullopt};
+  Equilibrium body = pillar<NeoHookeanLogarithmic>(  // in a box, the top is to go through the floor
+      Scene()
+          .fix("z0")
+          .prescribe("z1", {0.0, 0.0, -0.0801})
+          .prescribe("x0", no_x)
+          .prescribe("x1", no_x)
+          .prescribe("y0", no_y)
+          .prescribe("y1", no_y));
+  const EquilibriumReport report = body.solve();
+  CHECK_FALSE(report.converged);
+  CHECK(report.fraction > 0.3);
+  CHECK(report.fraction < 1.0);
+  CHECK(report.deformation.worst_element >= 0);
+  CHECK(report.deformation.smallest_volume_ratio > 0.0);
+  CHECK(body.displacement().allFinite());
+  CHECK_THAT(describe(report), test::contains("no equilibrium was found beyond"));
+}
+
+TEST_CASE("equilibrium refuses bodies that can move, and initial strains", "[model][equilibrium]") {
+  const auto kind = [](const Scene& scene) {
+    try {
+      pillar(scene);
+    } catch (const SetupError& error) {
+      return error.kind();
+    }
+    return SetupErrorKind::cancelled;
+  };
+  CHECK(kind(Scene().prescribe("z0", Components{std::nullopt, std::nullopt, 0.0})) == SetupErrorKind::unconstrained);
+  CHECK(kind(Scene().fix("z0").expand(std::string(everywhere), 0.01)) == SetupErrorKind::unsupported);
+}

@@ -1,0 +1,263 @@
+// Motion in time against closed forms, conservation laws and another code.
+#include <palpate/element/hex8.hpp>
+#include <palpate/io/read_mesh.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/material/neo_hookean.hpp>
+#include <palpate/mesh/generators.hpp>
+#include <palpate/mesh/generators_box.hpp>
+#include <palpate/model/equilibrium.hpp>
+#include <palpate/model/implicit_dynamics.hpp>
+#include <palpate/testing/random.hpp>
+
+#include <numbers>
+
+#include "catch.hpp"
+
+using namespace palpate;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+constexpr double length = 0.1, youngs_modulus = 1e4, density = 1e3;
+
+/// A cube that can only stretch along x, and evenly: an oscillator of mass m = rho V / 2 (half of it sits at the free
+/// end) and stiffness E A / L.
+DeformableBody oscillator(double load = 0.0) {
+  Scene scene;
+  const Components still{0.0, 0.0, 0.0}, along{std::nullopt, 0.0, 0.0};
+  scene.prescribe("x0", still).prescribe("x1", along).traction("x1", {load, 0.0, 0.0});
+  return make_deformable_body(
+      make_body(box_hex8({length, length, length}, {1, 1, 1}), LinearElastic{youngs_modulus, 0.0, density}), scene);
+}
+const double omega = std::sqrt(youngs_modulus * length / (0.5 * density * length * length * length));
+
+double end_of(const ImplicitDynamics& d) {
+  return d.displacement()[d.body().conditions.free_dofs.front()];
+}
+/// Lets it go from 1 mm.
+void release(ImplicitDynamics& d) {
+  VectorX u = VectorX::Zero(d.displacement().size());
+  for (const Index dof : d.body().conditions.free_dofs) u[dof] = 1e-3;
+  d.set_state(u, VectorX::Zero(u.size()));
+}
+
+/// Displacement of the free end after `time`, let go from 1 mm.
+double released(TimeScheme scheme, int steps, double time, double damping = 0.0) {
+  ImplicitDynamics d(oscillator(), {.scheme = scheme, .mass_damping = damping});
+  release(d);
+  for (int k = 0; k < steps; ++k) REQUIRE(d.step(time / steps).newton.converged);
+  return end_of(d);
+}
+
+HyperelasticBody<Tet4, NeoHookean> block(double poisson_ratio = 0.4) {
+  return make_hyperelastic_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}),
+                                std::vector<NeoHookean>{{5e3, poisson_ratio, density}});
+}
+
+Vector3 momentum(const ImplicitDynamics& d) {
+  Vector3 sum = Vector3::Zero();
+  for (Index i = 0; i < d.body().lumped.size(); ++i) sum += d.body().lumped[i] * d.velocity().segment<3>(3 * i);
+  return sum;
+}
+Vector3 angular_momentum(const ImplicitDynamics& d) {
+  Vector3 sum = Vector3::Zero();
+  for (Index i = 0; i < d.body().lumped.size(); ++i) {
+    const Vector3 x = d.body().positions[static_cast<std::size_t>(i)] + d.displacement().segment<3>(3 * i);
+    sum += d.body().lumped[i] * x.cross(d.velocity().segment<3>(3 * i));
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("time schemes have their orders", "[model][dynamics]") {
+  const double time = 0.8 * 2.0 * std::numbers::pi / omega, exact = 1e-3 * std::cos(omega * time);
+  const auto error = [&](TimeScheme s, int steps) { return std::abs(released(s, steps, time) - exact); };
+  CHECK_THAT(error(TimeScheme::newmark(), 40) / error(TimeScheme::newmark(), 80), WithinAbs(4.0, 0.2));
+  CHECK_THAT(error(TimeScheme::implicit_euler(), 2000) / error(TimeScheme::implicit_euler(), 4000),
+             WithinAbs(2.0, 0.1));
+}
+
+TEST_CASE("implicit Euler damps an oscillation as theory says", "[model][dynamics]") {
+  const double h = 0.1 / omega;
+  ImplicitDynamics d(oscillator(), {});
+  release(d);
+  // The energy of the scheme, x^2 + (v / omega)^2, falls by 1 / (1 + (omega h)^2) in every step
+  double before = d.displacement().squaredNorm();
+  for (int k = 0; k < 100; ++k) {
+    d.step(h);
+    const double after = d.displacement().squaredNorm() + d.velocity().squaredNorm() / (omega * omega);
+    CHECK_THAT(after / before, WithinRel(1.0 / 1.01, 1e-9));
+    before = after;
+  }
+}
+
+TEST_CASE("a damped oscillator follows its closed form", "[model][dynamics]") {
+  const double ratio = 0.2, time = 2.0 / omega, damped = omega * std::sqrt(1.0 - ratio * ratio);
+  const double exact = 1e-3 * std::exp(-ratio * omega * time) *
+                       (std::cos(damped * time) + ratio * omega / damped * std::sin(damped * time));
+  CHECK_THAT(released(TimeScheme::newmark(), 2000, time, 2.0 * ratio * omega), WithinAbs(exact, 1e-3 * 1e-6));
+  // Stiffness-proportional: beta = 2 ratio / omega gives the same motion.
+  ImplicitDynamics d(oscillator(), {.scheme = TimeScheme::newmark(), .stiffness_damping = 2.0 * ratio / omega});
+  release(d);
+  for (int k = 0; k < 2000; ++k) d.step(time / 2000);
+  CHECK_THAT(end_of(d), WithinAbs(exact, 1e-3 * 1e-6));
+}
+
+TEST_CASE("the trapezoidal rule keeps the energy of a linear body, implicit Euler never adds any",
+          "[model][dynamics][energy]") {
+  for (const bool trapezoidal : {true, false}) {
+    ImplicitDynamics d(oscillator(30.0),
+                       {.scheme = trapezoidal ? TimeScheme::newmark() : TimeScheme::implicit_euler()});
+    const double start = d.energy();
+    double kinetic = 0.0, before = start;
+    for (int k = 0; k < 2000; ++k) {
+      d.step(0.2 / omega);
+      kinetic = std::max(kinetic, d.kinetic_energy());
+      if (trapezoidal)
+        CHECK_THAT(d.energy(), WithinAbs(start, 1e-12 * kinetic));
+      else
+        CHECK(d.energy() <= before + 1e-14 * kinetic);
+      before = d.energy();
+    }
+  }
+}
+
+TEST_CASE("an elastic bar under a sudden pull moves as in another code", "[model][dynamics][oracle]") {
+  const std::string folder = PALPATE_TEST_DATA "/oracle/L_dynamic/bar_hex8";
+  const auto mesh = io::read_mesh<Hex8>(folder + "/mesh_v22.msh");
+  const Scene scene = Scene().fix("fixed").traction("load", {1000.0, 0.0, 0.0});
+  ImplicitDynamics d(make_deformable_body(make_body(mesh, LinearElastic{1e6, 0.0, 1e3}), scene),
+                     {.scheme = TimeScheme::newmark(), .mass = MassKind::consistent});
+  Index tip = 0;
+  for (Index i = 0; i < mesh.node_count(); ++i)
+    if (mesh.position(i).x() > mesh.position(tip).x()) tip = i;
+  const std::string text = io::read_file(folder + "/history.csv");
+  io::TextReader in(text, "history.csv");
+  in.need_line("a header");
+  const double h = 0.000158113883008;  // of the reference
+  double worst = 0.0;
+  int rows = 0;
+  while (in.next_line()) {
+    std::vector<double> row;
+    std::string line(in.rest());
+    std::ranges::replace(line, ',', ' ');
+    std::istringstream numbers(line);
+    for (double x = 0.0; row.size() < 3 && numbers >> x;) row.push_back(x);
+    REQUIRE(row.size() == 3);
+    while (d.time() < row[0] - 0.5 * h) REQUIRE(d.step(h).newton.converged);
+    worst = std::max(worst, std::abs(d.displacement()[3 * tip] - row[2]));
+    ++rows;
+  }
+  CHECK(rows > 100);
+  CHECK(worst <= 1e-8 * 2e-3);  // printed with 9 digits
+}
+
+TEST_CASE("a free body keeps its momentum and falls as it must", "[model][dynamics][energy]") {
+  Scene scene;
+  scene.gravity({0.0, 0.0, -9.81});
+  for (const TimeScheme scheme : {TimeScheme::implicit_euler(), TimeScheme::newmark()}) {
+    ImplicitDynamics d(make_deformable_body(block(), scene), {.scheme = scheme});
+    testing::Random random(7);
+    VectorX u = VectorX::Zero(d.displacement().size()), v(u.size());
+    for (double& x : v) x = random.uniform(-0.2, 0.2);
+    d.set_state(u, v);
+    const double mass = d.body().lumped.sum();
+    const Vector3 start = momentum(d);
+    for (int k = 1; k <= 50; ++k) {
+      REQUIRE(d.step(2e-3).newton.converged);
+      const Vector3 expected = start - Vector3(0.0, 0.0, 9.81 * mass * d.time());
+      CHECK((momentum(d) - expected).norm() <= 1e-10 * expected.norm());
+    }
+  }
+  ImplicitDynamics turning(make_deformable_body(block(), Scene()), {.scheme = TimeScheme::implicit_euler()});
+  VectorX v(turning.displacement().size());
+  for (Index i = 0; i < v.size() / 3; ++i)
+    v.segment<3>(3 * i) = Vector3(0.0, 0.0, 5.0).cross(turning.body().positions[static_cast<std::size_t>(i)]);
+  turning.set_state(VectorX::Zero(v.size()), v);
+  const double spin = angular_momentum(turning).z();
+  double before = spin;
+  for (int k = 0; k < 50; ++k) {
+    REQUIRE(turning.step(2e-3).newton.converged);
+    const double now = angular_momentum(turning).z();
+    CHECK(std::abs(now) <= std::abs(before) * (1.0 + 1e-9));  // implicit Euler loses spin, and never gains any
+    before = now;
+  }
+  CHECK(before > 0.5 * spin);
+}
+
+TEST_CASE("a body at rest stays, and one that has come to rest is where statics puts it", "[model][dynamics]") {
+  const Scene scene = Scene().fix("z0").gravity({9.81, 0.0, 0.0});
+  Equilibrium statics(block(), scene);
+  REQUIRE(statics.solve().converged);
+  ImplicitDynamics d(make_deformable_body(block(), scene), {.mass_damping = 20.0});
+  StepReport report;
+  for (int k = 0; k < 400; ++k) report = d.step(0.02);
+  CHECK(report.taken);
+  CHECK((d.displacement() - statics.displacement()).norm() <= 1e-7 * statics.displacement().norm());
+  ImplicitDynamics still(make_deformable_body(block(), Scene().fix("z0")), {});
+  for (int k = 0; k < 20; ++k) still.step(1e-3);
+  CHECK(still.displacement().isZero(0.0));
+}
+
+TEST_CASE("any step is bounded, and none that is no step is taken", "[model][dynamics][extreme][E1]") {
+  for (const double h : {1e-9, 1e-6, 1e-3, 0.1, 1.0, 100.0}) {
+    ImplicitDynamics d(make_deformable_body(block(), Scene().fix("z0").gravity({9.81, 0.0, 0.0})), {});
+    double before = d.energy();
+    for (int k = 0; k < 8; ++k) {
+      const StepReport report = d.step(h);
+      CHECK(report.taken);
+      CHECK(d.displacement().allFinite());
+      const double now = d.energy();
+      CHECK(now <= before + 1e-12 * std::abs(before) + 1e-18);
+      before = now;
+    }
+  }
+  ImplicitDynamics d(make_deformable_body(block(), Scene().fix("z0").gravity({9.81, 0.0, 0.0})), {});
+  d.step(1e-3);
+  const VectorX u = d.displacement();
+  for (const double h : {0.0, -1e-3, std::numeric_limits<double>::quiet_NaN(), infinity, -infinity}) {
+    CHECK_FALSE(d.step(h).taken);
+    CHECK(d.displacement() == u);
+    CHECK(d.time() == 1e-3);
+  }
+}
+
+TEST_CASE("vertices thrown about settle to rest", "[model][dynamics][extreme][E5]") {
+  testing::Random random(11);
+  int settled = 0;
+  constexpr int runs = 12;
+  for (int run = 0; run < runs; ++run) {
+    ImplicitDynamics d(make_deformable_body(block(), Scene().fix("z0")), {.mass_damping = 5.0});
+    VectorX u(d.displacement().size());
+    for (double& x : u) x = random.uniform(-0.04, 0.04);
+    d.set_state(u, VectorX::Zero(u.size()));
+    for (int k = 0; k < 150; ++k) {
+      d.step(0.02);
+      REQUIRE(d.displacement().allFinite());
+    }
+    if (d.displacement().cwiseAbs().maxCoeff() <= 1e-3) ++settled;
+  }
+  CHECK(settled == runs);
+}
+
+TEST_CASE("dynamics refuses what cannot move, and negative damping", "[model][dynamics]") {
+  const auto kind = [](DeformableBody body, const DynamicsParameters& parameters) {
+    try {
+      ImplicitDynamics d(std::move(body), parameters);
+    } catch (const SetupError& error) {
+      return error.kind();
+    }
+    return SetupErrorKind::cancelled;
+  };
+  const auto weightless = [] {
+    return make_deformable_body(make_body(box_tet4({1, 1, 1}, {1, 1, 1}), LinearElastic{1e3, 0.3, 0.0}),
+                                Scene().fix("x0"));
+  };
+  CHECK(kind(weightless(), {}) == SetupErrorKind::bad_density);
+  CHECK(kind(oscillator(), {.mass_damping = -1.0}) == SetupErrorKind::bad_argument);
+  CHECK(kind(oscillator(), {.stiffness_damping = std::numeric_limits<double>::quiet_NaN()}) ==
+        SetupErrorKind::bad_argument);
+  CHECK(kind(oscillator(), {.scheme = TimeScheme::newmark(0.0, 0.5)}) == SetupErrorKind::bad_argument);
+}
