@@ -230,7 +230,7 @@ void compare(const gate::Limits& chosen, std::uint64_t ticks) {
       difference = std::max(difference, std::abs(out.force[k] - want.force[static_cast<std::size_t>(k)]));
       difference = std::max(difference, std::abs(out.torque[k] - want.torque[static_cast<std::size_t>(k)]));
     }
-    if (!(difference <= 1e-9) || real.last_force() != out.force) ++wrong_force;
+    if (!(difference <= 1e-9) || real.last_force() != out.force || real.last_torque() != out.torque) ++wrong_force;
     if (((out.status.bits() ^ want.status) & ~want.unsure) != 0) ++wrong_status;
     if (!out.force.allFinite() || !out.torque.allFinite()) ++not_finite;
     if (!(out.force.norm() <= chosen.peak * (1.0 + 1e-12))) ++too_long;

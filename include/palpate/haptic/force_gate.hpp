@@ -55,7 +55,7 @@ class ForceGate {
   explicit ForceGate(const ForceLimits& limits = {}) : limits_(limits) {
     const ForceLimits& l = limits;
     for (double value : {l.peak_force, l.slew_rate, l.ramp_time, l.stale_after, l.fade_time, l.period,
-                         l.continuous_force, l.heating_time, l.peak_torque == 0.0 ? 1.0 : l.peak_torque})
+                         l.continuous_force, l.heating_time, l.peak_torque == 0.0 ? l.period : l.peak_torque})
       require(value >= 1e-9 && value <= 1e9, "a force limit is " + number(value), "Give 1e-9 to 1e9, in SI units");
     require(l.slew_rate * l.fade_time >= l.peak_force * (1.0 - 1e-9),
             "slew_rate * fade_time is less than peak_force, " + number(l.peak_force) + " N", "Raise one of the two");
@@ -105,7 +105,8 @@ class ForceGate {
     last_now_ = last_input_ = std::numeric_limits<double>::quiet_NaN();
   }
   const ForceLimits& limits() const noexcept { return limits_; }
-  const Vector3& last_force() const noexcept { return last_; }  ///< [N] what the last tick let through
+  const Vector3& last_force() const noexcept { return last_; }          ///< [N] what the last tick let through
+  const Vector3& last_torque() const noexcept { return last_torque_; }  ///< [N m] the same
 
  private:
   static constexpr double late_factor = 1.5;

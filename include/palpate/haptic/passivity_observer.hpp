@@ -62,6 +62,10 @@ class PassivityObserver {
     last_time_ = time;
     return step;
   }
+  /// Takes in work of another kind: of a torque.
+  void moved_by(double work) noexcept {
+    if (std::isfinite(work)) given_ += work;
+  }
   /// The force that was rendered upon that sample.
   void gave(const Vector3& force) noexcept {
     newest_ = (newest_ + 1) % forces_.size();
@@ -124,6 +128,12 @@ class EnergyTank {
     status.set(StatusFlag::energy_injected);
     return gain() * wanted;
   }
+  /// Takes in the work of a torque on the tool since the last call of limit [J], before that is called again.
+  void turned(double work) noexcept {
+    if (!std::isfinite(work)) return;
+    observer_.moved_by(work);
+    level_ = std::clamp(level_ - work, -limits_.allowance, limits_.capacity);
+  }
   /// What was rendered in the end.
   void gave(const Vector3& force) noexcept { observer_.gave(force); }
   /// The device was lost, or the tool jumped: the way to the next sample does not count.
@@ -153,6 +163,8 @@ class EnergyTank {
 /// The policy of a servo that observes no energy, at no cost.
 struct NoEnergyTank {
   const Vector3& limit(const Vector3& wanted, const Vector3&, double, Status&) noexcept { return wanted; }
+  void turned(double) noexcept {}
+  static constexpr double gain() noexcept { return 1.0; }
   void gave(const Vector3&) noexcept {}
   void forget() noexcept {}
   void reset() noexcept {}
