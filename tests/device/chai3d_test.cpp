@@ -26,6 +26,7 @@ struct FakeMatrix {
 };
 struct FakeInfo {
   double m_maxLinearForce = 8.0, m_maxLinearStiffness = 3000.0, m_workspaceRadius = 0.04;
+  double m_maxAngularTorque = 0.1, m_maxAngularStiffness = 1.5;
 };
 struct FakeDevice {
   FakeInfo info;
@@ -102,6 +103,7 @@ TEST_CASE("chai3d: states and limits", "[device][chai3d]") {
   CHECK(stylus.limits().continuous_force == 2.0);
   CHECK(stylus.limits().stiffness == 3000.0);
   CHECK(stylus.limits().workspace_high == Vector3::Constant(0.04));
+  CHECK(stylus.limits().peak_torque == 0.0);  // without the option
 }
 
 TEST_CASE("chai3d: keeps the laws of devices", "[device][chai3d][laws]") {
@@ -152,6 +154,10 @@ TEST_CASE("chai3d: torque where there are motors", "[device][chai3d]") {
   stylus.read();
   stylus.write(Vector3(1.0, 0.0, 0.0), Vector3(0.0, 0.02, 0.0));
   CHECK(fake.torque.y() == 0.02);
+  CHECK(stylus.limits().peak_torque == 0.1);
+  CHECK(stylus.limits().turning_stiffness == 1.5);
+  stylus.write(Vector3(1.0, 0.0, 0.0), Vector3(0.0, 3.0, 0.0));
+  CHECK_THAT(fake.torque.y(), WithinAbs(0.1, 1e-15));
   stylus.write(Vector3(1.0, 0.0, 0.0), Vector3(0.0, infinity, 0.0));
   CHECK(fake.torque.y() == 0.0);
 }

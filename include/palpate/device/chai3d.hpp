@@ -19,15 +19,17 @@ struct Chai3dOptions {
 /// A cGenericHapticDevice as a HapticDevice, for loops of your own (run_haptic_loop), in CHAI3D's frame: x to the user,
 /// y to the right, z up. SI units. Refers to the device:
 ///   Chai3dDevice<chai3d::cGenericHapticDevice, chai3d::cVector3d, chai3d::cMatrix3d> stylus(*device_pointer);
-/// The limits are those of CHAI3D's specification of the device, which CHAI3D itself does not enforce; continuous force
-/// is not in it and taken as a quarter of the peak.
+/// The limits are those of CHAI3D's specification of the device, which CHAI3D itself does not enforce. Its header calls
+/// the force continuous, but the numbers are the makers' peaks (3.3 N for an Omni); a quarter is taken as continuous.
 template <class Device, class Vector, class Matrix>
 class Chai3dDevice {
  public:
   /// Opens the device. Throws SetupError(unsupported) when that fails, (bad_argument) when its specification holds no
   /// positive force, stiffness and workspace (the device without hardware) and no limits are given.
   explicit Chai3dDevice(Device& device, const Chai3dOptions& options = {})
-      : device_(&device), options_(options), motors_(options.limits ? *options.limits : specified(device)) {
+      : device_(&device),
+        options_(options),
+        motors_(options.limits ? *options.limits : specified(device, options.torque)) {
     if (!device.open()) refuse("open the device");
   }
   ~Chai3dDevice() {
@@ -63,7 +65,7 @@ class Chai3dDevice {
     Status status = motors_.render(force);
     const bool turns = options_.torque && torque.allFinite() && running_ && !status.has(StatusFlag::disconnected) &&
                        !status.has(StatusFlag::non_finite_force);
-    if (!send(motors_.force(), turns ? torque : Vector3::Zero())) {
+    if (!send(motors_.force(), turns ? motors_.torque(torque) : Vector3::Zero())) {
       status.set(StatusFlag::disconnected);
       motors_.read_was(false);
     }
@@ -88,7 +90,7 @@ class Chai3dDevice {
     raise(SetupErrorKind::unsupported, std::string("CHAI3D could not ") + what,
           "Is it plugged in, and its driver installed?");
   }
-  static DeviceLimits specified(Device& device) {
+  static DeviceLimits specified(Device& device, bool torque) {
     const auto info = device.getSpecifications();
     const double force = info.m_maxLinearForce, stiffness = info.m_maxLinearStiffness, radius = info.m_workspaceRadius;
     for (double value : {force, stiffness, radius})
@@ -99,8 +101,11 @@ class Chai3dDevice {
             .continuous_force = 0.25 * force,
             .stiffness = stiffness,
             .workspace_low = Vector3::Constant(-radius),
-            .workspace_high = Vector3::Constant(radius)};
+            .workspace_high = Vector3::Constant(radius),
+            .peak_torque = torque ? positive_or_zero(info.m_maxAngularTorque) : 0.0,
+            .turning_stiffness = torque ? positive_or_zero(info.m_maxAngularStiffness) : 0.0};
   }
+  static double positive_or_zero(double value) noexcept { return std::isfinite(value) && value > 0.0 ? value : 0.0; }
   static void orient(ToolState& state, const Matrix& m) noexcept {
     Matrix3 rotation;
     for (int i = 0; i < 3; ++i)

@@ -61,7 +61,7 @@ class ForceDimensionDevice {
     Status status = motors_.render(force);
     const bool turns = options_.torque && torque.allFinite() && running_ && !status.has(StatusFlag::disconnected) &&
                        !status.has(StatusFlag::non_finite_force);
-    const int answer = send(motors_.force(), turns ? torque : Vector3::Zero());
+    const int answer = send(motors_.force(), turns ? motors_.torque(torque) : Vector3::Zero());
     if (answer < 0) {
       status.set(StatusFlag::disconnected);
       motors_.read_was(false);

@@ -182,7 +182,7 @@ class OpenHapticsDevice {
   }
 
   void send_torque(const Vector3& torque) const noexcept {
-    const Vector3 sent = torque.allFinite() ? Vector3(1e3 * torque) : Vector3::Zero();  // mN m
+    const Vector3 sent = torque.allFinite() ? Vector3(1e3 * motors_.torque(torque)) : Vector3::Zero();  // mN m
 #ifdef HD_CURRENT_GIMBAL_TORQUE
     hdSetDoublev(HD_CURRENT_GIMBAL_TORQUE, sent.data());
 #else
