@@ -31,7 +31,7 @@ check address-contact "$undefined" "" main.cpp contact/friction_test.cpp contact
   contact/contact_problem_test.cpp
 check address-devices "$undefined" "" main.cpp device/chai3d_test.cpp device/force_dimension_test.cpp device/openhaptics_test.cpp
 check address-faults "$undefined" "" main.cpp haptic/faults_test.cpp
-check threads "-fsanitize=thread" "" main.cpp haptic/triple_buffer_test.cpp haptic/faults_test.cpp
+check threads "-fsanitize=thread" "" main.cpp haptic/triple_buffer_test.cpp haptic/lifetimes_test.cpp haptic/faults_test.cpp
 
 cxx=
 for c in clang++-22 clang++-21 clang++-20; do

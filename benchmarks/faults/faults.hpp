@@ -28,6 +28,9 @@ struct Fault {
   double tissue_stall = 0.0;  ///< [s] the tissue's next step comes that much later
   double device_stall = 0.0;  ///< [s] no ticks for so long
   bool bad_input = false;     ///< one pose that is no number, one device that cannot be read
+
+  /// Whether forces fade on its account: where the hand moves meanwhile, it may then get back more than it put in.
+  bool fades() const { return tissue_stall > stale_after || device_stall > ForceLimits{}.stale_after || bad_input; }
 };
 
 struct Outcome {

@@ -38,7 +38,7 @@ int main() {
                          o.bad == o.bad_due;
     const bool calm =
         o.not_finite == 0 && o.peak <= limits.peak_force && o.step <= limits.slew_rate * tick * (1.0 + 1e-9);
-    const bool bounded = o.given <= energy.allowance + energy.refill * duration && o.taken >= 0.0;
+    const bool bounded = o.given <= energy.allowance + energy.refill * duration && (c.fault.fades() || o.taken >= 0.0);
     if (!counted || !calm || !bounded || std::abs(o.last_force - steady) > 0.05 * steady) {
       ++wrong;
       std::printf("WRONG: counted %d, calm %d, bounded %d, force a second later %g instead of %g N\n", counted, calm,

@@ -43,6 +43,8 @@ struct ContactTool {
   double turning_compliance = 0.0;                ///< of the coupling [rad/(N m)]; 0 is rigid
   double turned = 0.0;                            ///< way of the capsule's ends round its middle, last tick [m]
 
+  Vector3 drag_way = Vector3::Zero(), drag_turn = Vector3::Zero();  ///< of the coupling under friction [m], [rad]
+
   /// The proxy that a rigid tissue pushing back with `force` would allow.
   Vector3 goal(double floor) const noexcept { return target + (compliance + floor) * force; }
   /// The same for the rotation.

@@ -155,11 +155,12 @@ class ContactProblem {
         if (is_holding(t)) rows_.add(tissue.contact_surface(), candidates_, c);
     for (int i = 0; i < pressing_count_ && rows_.count() < Capacity; ++i)
       if (!is_held(*pressing_[at(i)])) rows_.add(tissue.contact_surface(), candidates_, *pressing_[at(i)]);
-    for (int built = 0;; built = rows_.count()) {
+    int built = 0;
+    for (;; built = rows_.count()) {
       if (built > 0 || rows_.count() == 0)
         if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);
       if (rows_.count() == built) {
-        if (built == 0) rows_.apply(tissue, tools, displacement_, candidates_);
+        if (built == 0) rows_.apply(tools, displacement_, candidates_);
         break;
       }
       if (rounds_left_-- <= 0) {
@@ -169,7 +170,11 @@ class ContactProblem {
       status |= rows_.require_columns(tissue);
       rows_.build(tissue, candidates_.samples(), tools, floor_, built);
       if (!rows_.solve()) status.set(StatusFlag::solver_not_converged);
-      rows_.apply(tissue, tools, displacement_, candidates_);
+      rows_.apply(tools, displacement_, candidates_);
+    }
+    if (rows_.has_friction() && built > 0 && built == rows_.count()) {
+      if (!rows_.rub()) status.set(StatusFlag::solver_not_converged);
+      rows_.apply(tools, displacement_, candidates_);
     }
     return status;
   }

@@ -85,6 +85,7 @@ class ContactRows {
   template <TissueModel Tissue>
   void build(const Tissue& tissue, const ContactSamples& samples, std::span<const ContactTool> tools, double floor,
              int first) noexcept {
+    floor_ = floor;
     problem_.resize(count_);
     for (int i = first; i < count_; ++i) {
       problem_.lambda[i] = 1.0;  // it presses, or would sink in
@@ -102,41 +103,38 @@ class ContactRows {
           w += tool.turning_compliance * ci.arm.cross(ci.normal).dot(cj.arm.cross(cj.normal));
         problem_.w(i, j) = problem_.w(j, i) = w;
       }
-      if (friction_.acts()) build_friction(tissue, samples, tool, floor, i);
+      if (friction_.acts()) build_friction(tissue, samples, tool, i);
     }
+    if (friction_.acts()) friction_.press(count_, pressing_before());
   }
 
-  /// False when the forces are a cut-off answer. With friction: pressing and dragging forces in turn, each exact for
-  /// the other (Panagiotopoulos 1975), until they agree.
+  /// Presses: with the drags as they are. False when the forces are a cut-off answer.
   bool solve() noexcept {
     if (!friction_.acts()) return problem_.solve();
-    bool solved = false;
-    for (int turn = 0; turn < maximum_turns && !solved; ++turn) {
-      for (int i = 0; i < count_; ++i) problem_.b[i] = free_gap_[at(i)] + friction_.opening(count_, i);
-      if (!problem_.solve()) return false;
-      double change = 0.0, largest = 0.0;
-      for (int i = 0; i < count_; ++i) {
-        auto& row = friction_.row(i);
-        change = std::max(change, std::abs(problem_.lambda[i] - row.pressing));
-        largest = std::max(largest, std::abs(problem_.lambda[i]));
-        row.pressing = problem_.lambda[i];
-      }
-      solved = friction_.solve(count_) && !(change > 1e-3 * largest);
-    }
-    return true;  // how much forces still change is for the caller to see
+    for (int i = 0; i < count_; ++i) problem_.b[i] = free_gap_[at(i)] + rows_[at(i)].normal.dot(friction_.moved(i));
+    const bool solved = problem_.solve();
+    friction_.press(count_, pressing());
+    return solved;
   }
+  /// Drags, and presses once more: each exact for the other (Panagiotopoulos 1975); linearisations and ticks go on with
+  /// it. False when the forces are a cut-off answer.
+  bool rub() noexcept {
+    friction_.solve(count_);
+    friction_.press(count_, pressing());
+    return solve();
+  }
+  bool has_friction() const noexcept { return friction_.acts(); }
   /// How far the tools would go in without contact force, at the deepest row built [m].
   double deepest_push() const noexcept { return std::max(0.0, -problem_.b.minCoeff()); }
 
   /// Hands the answer to points, vertices and tools.
-  template <TissueModel Tissue>
-  void apply(const Tissue& tissue, std::span<ContactTool> tools, Displacement& displacement,
-             Candidates<Capacity>& candidates) noexcept {
+  void apply(std::span<ContactTool> tools, Displacement& displacement, Candidates<Capacity>& candidates) noexcept {
     displacement.clear();
     for (ContactTool& tool : tools) {
       tool.force.setZero();
       tool.torque.setZero();
     }
+    if (friction_.acts()) note_drags(tools);
     double largest = 0.0;
     for (int i = 0; i < count_; ++i) {
       Contact& row = rows_[at(i)];
@@ -145,7 +143,7 @@ class ContactRows {
       Vector3 point = row.rest;
       for (int j = 0; j < count_; ++j)
         if (problem_.lambda[j] != 0.0) point.noalias() -= problem_.lambda[j] * response_[at(i)][at(j)];
-      if (friction_.acts()) point -= dragged(tissue, candidates.samples(), i);
+      if (friction_.acts()) point -= friction_.moved(i) - sprung(tools[at(row.tool)], row);
       largest = std::max(largest, (point - row.point).squaredNorm());
       row.point = point;
       if (row.force == 0.0) continue;
@@ -187,7 +185,6 @@ class ContactRows {
   }
 
  private:
-  static constexpr int maximum_turns = 4;
   bool clings(const Candidate& c) const noexcept { return c.clung != 0 && c.clung + 1 == tick_; }
 
   /// Where the tool touches a row's point.
@@ -204,10 +201,16 @@ class ContactRows {
     row.offset += c.along * row.normal.dot(tool.target_rotation * tool.own_axis);
   }
 
+  auto pressing() const noexcept {
+    return [this](int i) { return problem_.lambda[i]; };
+  }
+  /// The forces of the solution before, as far as rows have been in one.
+  auto pressing_before() const noexcept {
+    return [this](int i) { return candidate_[at(i)]->force; };
+  }
   /// Row i of what friction needs to know.
   template <TissueModel Tissue>
-  void build_friction(const Tissue& tissue, const ContactSamples& samples, const ContactTool& tool, double floor,
-                      int i) noexcept {
+  void build_friction(const Tissue& tissue, const ContactSamples& samples, const ContactTool& tool, int i) noexcept {
     const Candidate& c = *candidate_[at(i)];
     const Contact& ci = rows_[at(i)];
     const Vector3 drift = tool.target + tool.target_rotation * c.anchor - ci.rest;
@@ -217,7 +220,7 @@ class ContactRows {
       const Contact& cj = rows_[at(j)];
       Matrix3 w = between(tissue, samples, i, j);
       if (ci.tool == cj.tool)
-        w.diagonal().array() += tool.compliance + floor + tool.turning_compliance * ci.arm.dot(cj.arm);
+        w.diagonal().array() += tool.compliance + floor_ + tool.turning_compliance * ci.arm.dot(cj.arm);
       if (ci.tool == cj.tool && tool.turning_compliance > 0.0)
         w -= tool.turning_compliance * cj.arm * ci.arm.transpose();
       friction_.set(i, j, w);
@@ -229,14 +232,21 @@ class ContactRows {
     const int p = candidate_[at(i)]->slot, q = candidate_[at(j)]->slot;
     return p >= q ? compliance_(tissue, samples, p, q) : Matrix3(compliance_(tissue, samples, q, p).transpose());
   }
-  /// How far the drags move the tool's side of row i over the tissue's.
-  template <TissueModel Tissue>
-  Vector3 dragged(const Tissue& tissue, const ContactSamples& samples, int i) noexcept {
-    Vector3 moved = Vector3::Zero();
-    for (int j = 0; j < count_; ++j)
-      if (!rows_[at(j)].grasped && friction_.row(j).clings)
-        moved += between(tissue, samples, i, j) * friction_.row(j).drag;
-    return moved;
+  /// How far the couplings give way to the drags where a tool touches; the rest of CoulombFriction::moved is tissue.
+  static Vector3 sprung(const ContactTool& tool, const Contact& row) noexcept {
+    return tool.drag_way + tool.drag_turn.cross(row.arm);
+  }
+  void note_drags(std::span<ContactTool> tools) const noexcept {
+    for (ContactTool& tool : tools) {
+      tool.drag_way.setZero();
+      tool.drag_turn.setZero();
+    }
+    for (int j = 0; j < count_; ++j) {
+      const Contact& row = rows_[at(j)];
+      ContactTool& tool = tools[at(row.tool)];
+      tool.drag_way += (tool.compliance + floor_) * friction_.row(j).drag;
+      tool.drag_turn += tool.turning_compliance * row.arm.cross(friction_.row(j).drag);
+    }
   }
 
   /// Displacement of two rows' points per force on the other. Returns the part of it along the own normal. Written out
@@ -263,6 +273,7 @@ class ContactRows {
   ComplementarityProblem<Capacity> problem_;
   CoulombFriction<Capacity> friction_;
   std::array<double, capacity> free_gap_{};
+  double floor_ = 0.0;
   std::uint64_t tick_ = 0;
   PointCompliance<Capacity> compliance_;
   std::array<Contact, capacity> rows_{};
