@@ -37,26 +37,28 @@ ServoOptions options() {
 }
 
 /// The probe's device: where it is, how far it is tilted about y.
-struct Hand {
-  HapticServo<Tissue>& servo;
-  ToolState state{};
+class Hand {
+ public:
+  Hand(HapticServo<Tissue>& servo, const Vector3& from) : servo_(servo) { state_.position = from; }
 
   ToolForce move(const Vector3& to, double tilt, int ticks) {
-    const Vector3 from = state.position;
+    const Vector3 from = state_.position;
     const double before = tilt_;
     ToolForce out;
     for (int k = 1; k <= ticks; ++k) {
-      state.time += 1e-3;
-      state.position = from + (to - from) * k / ticks;
+      state_.time += 1e-3;
+      state_.position = from + (to - from) * k / ticks;
       tilt_ = before + (tilt - before) * k / ticks;
       const Eigen::Quaterniond q(Eigen::AngleAxisd(tilt_, Vector3::UnitY()));
-      state.orientation = {q.w(), q.x(), q.y(), q.z()};
-      out = servo.tick({&state, 1})[0];
+      state_.orientation = {q.w(), q.x(), q.y(), q.z()};
+      out = servo_.tick({&state_, 1})[0];
     }
     return out;
   }
 
  private:
+  HapticServo<Tissue>& servo_;
+  ToolState state_;
   double tilt_ = 0.0;
 };
 
@@ -109,8 +111,7 @@ int main(int count, char** values) {
   HapticServo servo(tissue, CapsuleTool(radius, half_length, Vector3::UnitX()), options());
 
   const Vector3 middle(0.5 * size[0], 0.5 * size[1], size[2] + radius);
-  Hand hand{servo};
-  hand.state.position = middle + Vector3(0, 0, 2e-3);
+  Hand hand(servo, middle + Vector3(0, 0, 2e-3));
   hand.move(middle + Vector3(0, 0, 2e-3), 0.0, 50);
   const ToolForce pressed = hand.move(middle - Vector3(0, 0, depth), 0.0, 300);
   say("pressed", pressed);
