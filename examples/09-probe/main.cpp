@@ -7,8 +7,9 @@
 //      device with three motors renders the force; one with six, told by its limits, the torque too.
 //   3. The stress of the deepest moment is drawn.
 //
-// The exit code is 0 when the forces are what statics says: the press is carried by the floor, the torque turns the
-// tilted probe back, friction is at most mu times the press.
+// The exit code is 0 when a level probe feels the press along the vertical, the torque turns the tilted probe back,
+// friction drags, and nothing is left once it is lifted. The drag is mu times the press and a little more: a dent has a
+// wall in front of the probe.
 #include <palpate/palpate.hpp>
 #include <palpate/post/stress.hpp>
 
