@@ -42,9 +42,10 @@ inline bool is_exact(const Force& f) {
   }
   return components <= 1;
 }
-/// Whether rounding decides if `f` is longer than `most`.
-inline bool is_unsure(const Force& f, long double most) {
-  return !is_exact(f) && std::abs(length(f) - most) <= 1e-12L * most;
+/// Whether rounding decides if `f` is longer than `most`: it is as long but for rounding, and something was rounded on
+/// the way.
+inline bool is_unsure(const Force& f, long double most, bool rounded) {
+  return (rounded || !is_exact(f)) && std::abs(length(f) - most) <= 1e-12L * most;
 }
 
 class Model {
@@ -83,6 +84,8 @@ class Model {
     a.torque = torque_;
     return a;
   }
+  /// What the gate gave: where it differs by rounding, so may what follows.
+  void compare(const Force& force, const Force& torque) { rounded_ = force != force_ || torque != torque_; }
   /// Motors stay as hot as they are.
   void reset() {
     const double heat = heat_;
@@ -125,7 +128,7 @@ class Model {
   Force shortened(const Force& wanted, double peak, double gain, Answer& a) {
     const long double size = length(wanted);
     if (size > peak) a.status |= saturated;
-    if (is_unsure(wanted, peak)) a.unsure |= saturated;
+    if (is_unsure(wanted, peak, heat_ > 0.7 * l_.continuous * l_.continuous)) a.unsure |= saturated;
     const long double factor = size > peak ? peak / size : 1.0L;
     Force f{};
     for (std::size_t i = 0; i < 3; ++i) f[i] = static_cast<double>(wanted[i] * factor) * gain;
@@ -136,7 +139,7 @@ class Model {
     for (std::size_t i = 0; i < 3; ++i) change[i] = target[i] - from[i];
     const long double size = length(change);
     if (size > most) a.status |= slew_limited;
-    if (is_unsure(change, most)) a.unsure |= slew_limited;
+    if (is_unsure(change, most, rounded_)) a.unsure |= slew_limited;
     if (size <= most)
       from = target;
     else
@@ -146,6 +149,7 @@ class Model {
   static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Limits l_;
   Force force_{}, torque_{};
+  bool rounded_ = false;
   double heat_ = 0.0, gain_ = 0.0, age_ = 0.0, now_before_ = nan, stamp_before_ = nan;
 };
 

@@ -232,6 +232,7 @@ void compare(const gate::Limits& chosen, std::uint64_t ticks) {
     }
     if (!(difference <= 1e-9) || real.last_force() != out.force || real.last_torque() != out.torque) ++wrong_force;
     if (((out.status.bits() ^ want.status) & ~want.unsure) != 0) ++wrong_status;
+    model.compare({out.force[0], out.force[1], out.force[2]}, {out.torque[0], out.torque[1], out.torque[2]});
     if (!out.force.allFinite() || !out.torque.allFinite()) ++not_finite;
     if (!(out.force.norm() <= chosen.peak * (1.0 + 1e-12))) ++too_long;
     if (!(out.torque.norm() <= chosen.torque * (1.0 + 1e-12))) ++too_long;
