@@ -29,6 +29,8 @@ struct VertexForce {
 /// - `begin_tick()`, if there is one, is called before each tick and may bring in what moved since; its Status is part of
 /// the tick's. `end_tick(forces)`, if there is one, is told the forces on the vertices after it, and that there are none
 /// when a session is reset.
+/// - `updates()`, if there is one, counts what `begin_tick` has brought in: a servo fades its force when that stands
+/// still for too long.
 /// - `pose()` maps the model's frame to the world's.
 /// All are noexcept, allocate nothing and take bounded time.
 template <class T>

@@ -174,6 +174,8 @@ class BasicSoftTissue {
   Status require_columns(std::span<const int>) noexcept { return {}; }
   Matrix3 compliance(int i, int j) const noexcept { return warped(views_.front(), i, j); }
   std::uint64_t compliance_revision() const noexcept { return revision_; }
+  /// Surfaces brought in so far.
+  std::uint64_t updates() const noexcept { return revision_; }
   double compliance_bound(int j) const noexcept { return bound_[static_cast<std::size_t>(j)]; }
   double compliance_floor() const noexcept { return floor_; }
   const Eigen::Isometry3d& pose() const noexcept { return world_; }
