@@ -50,6 +50,9 @@ class ImplicitDynamics {
         full_(u_),
         other_(u_),
         x_(size()),
+        kept_load_(u_),
+        change_(size()),
+        start_(size()),
         heaviest_(body_.lumped.maxCoeff()) {
     body_.elastic->tangent(u_, tangent_.matrix());
     if (!body_.elastic->is_linear()) floor_ = tangent_.rounding(extent(body_.positions));
@@ -81,21 +84,30 @@ class ImplicitDynamics {
   }
 
   /// Takes `more` forces [N] into account in the step just taken, to first order: with the tangent of its last
-  /// iteration, or where it needed none, of its end. One solve and one force. False, and nothing changes, where no step
-  /// was taken since the state or the length of steps was changed, and where the corrected state is not finite or no
-  /// state of the laws.
+  /// iteration, or where it needed none, of its end. One solve and two forces; up to four more where the first order
+  /// leads too far. False, and nothing changes, where no step was taken since the state or the length of steps was
+  /// changed, and where nothing on the way leaves less force than there was.
   bool correct(const VectorX& more) noexcept {
     if (!stepped_) return false;
     if (more.isZero(0.0)) return true;
     if (!factorised_ && !prepare_at(u_)) return false;
-    respond(more, trial_);
-    trial_ += u_;
-    find_motion();
-    if (!trial_.allFinite() || !velocity_.allFinite() || !acceleration_.allFinite()) return false;
-    const DeformationReport deformation = body_.elastic->force(trial_, force_);
-    if (!deformation.admissible || !force_.allFinite()) return false;
-    accept();
-    return true;
+    body_.conditions.gather(more, residual_);
+    tangent_.solve(residual_, change_);
+    body_.conditions.gather(u_, start_);
+    kept_load_ = load_;
+    load_ += more;
+    bool better = false;
+    if (evaluate(start_, residual_) < infinity) {
+      const double before = residual_.norm();
+      for (int halvings = 0; halvings < 5 && !better; ++halvings, change_ *= 0.5) {
+        x_ = start_ + change_;
+        better = evaluate(x_, residual_) < infinity && residual_.norm() <= std::max(before, rounding()) &&
+                 velocity_.allFinite();
+      }
+    }
+    load_ = kept_load_;
+    if (better) accept();
+    return better;
   }
   /// Displacement [m] that forces [N] add at the end of a step, to first order, as `correct` has it.
   void respond(const VectorX& forces, VectorX& u) noexcept {
@@ -283,6 +295,7 @@ class ImplicitDynamics {
   Newton newton_;
   VectorX u_, v_, a_, load_;
   VectorX trial_, predicted_, coasting_, velocity_, acceleration_, force_, full_, other_, drag_, x_, residual_;
+  VectorX kept_load_, change_, start_;  // of a correction
   DeformationReport deformation_;
   bool stepped_ = false;     // the state is the end of a step of h_
   bool factorised_ = false;  // tangent_ is that of this step
