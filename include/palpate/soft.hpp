@@ -19,4 +19,5 @@
 #include <palpate/material/viscoelastic.hpp>
 #include <palpate/model/quasi_non_linear.hpp>
 #include <palpate/model/corotated_tissue.hpp>
+#include <palpate/model/renewed_factor.hpp>
 #include <palpate/model/soft_tissue.hpp>

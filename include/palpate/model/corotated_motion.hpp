@@ -130,6 +130,7 @@ class CorotatedMotion {
   const VectorX& velocity() const noexcept { return v_; }
   const VectorX& acceleration() const noexcept { return a_; }
   const DeformableBody& body() const noexcept { return body_; }
+  const Preconditioner& preconditioner() const noexcept { return preconditioner_; }
   /// With what force the body answers its state [N], inertia and damping included, as the last step left it: on held
   /// dofs minus the reaction.
   const VectorX& resistance() noexcept {
