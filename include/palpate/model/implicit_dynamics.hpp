@@ -83,22 +83,21 @@ class ImplicitDynamics {
     return report;
   }
 
-  /// Takes `more` forces [N] into account in the step just taken, to first order: with the tangent of its last
-  /// iteration, or where it needed none, of its end. One solve and two forces; up to four more where the first order
-  /// leads too far. False, and nothing changes, where no step was taken since the state or the length of steps was
-  /// changed, and where nothing on the way leaves less force than there was.
+  /// Takes `more` forces [N] into account in the step just taken, and what it left, to first order: with the tangent of
+  /// its last iteration, or where it needed none, of its end. One solve and two forces; up to four more where the first
+  /// order leads too far. False, and nothing changes, where no step was taken since the state or the length of steps
+  /// was changed, and where nothing on the way leaves less force than there was.
   bool correct(const VectorX& more) noexcept {
     if (!stepped_) return false;
     if (more.isZero(0.0)) return true;
     if (!factorised_ && !prepare_at(u_)) return false;
-    body_.conditions.gather(more, residual_);
-    tangent_.solve(residual_, change_);
     body_.conditions.gather(u_, start_);
     kept_load_ = load_;
     load_ += more;
     bool better = false;
     if (evaluate(start_, residual_) < infinity) {
       const double before = residual_.norm();
+      tangent_.solve(residual_, change_);
       for (int halvings = 0; halvings < 5 && !better; ++halvings, change_ *= 0.5) {
         x_ = start_ + change_;
         better = evaluate(x_, residual_) < infinity && residual_.norm() <= std::max(before, rounding()) &&
