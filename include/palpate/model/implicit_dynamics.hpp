@@ -51,6 +51,7 @@ class ImplicitDynamics {
         other_(u_),
         x_(size()),
         kept_load_(u_),
+        step_load_(u_),
         change_(size()),
         start_(size()),
         heaviest_(body_.lumped.maxCoeff()) {
@@ -78,6 +79,7 @@ class ImplicitDynamics {
     report.deformation = deformation_;
     find_motion();
     accept();
+    step_load_ = load_;
     stepped_ = true;
     time_ += h;
     return report;
@@ -93,7 +95,7 @@ class ImplicitDynamics {
     if (!factorised_ && !prepare_at(u_)) return false;
     body_.conditions.gather(u_, start_);
     kept_load_ = load_;
-    load_ += more;
+    load_ = step_load_ + more;
     bool better = false;
     if (evaluate(start_, residual_) < infinity) {
       const double before = residual_.norm();
@@ -104,6 +106,7 @@ class ImplicitDynamics {
                  velocity_.allFinite();
       }
     }
+    if (better) step_load_ = load_;
     load_ = kept_load_;
     if (better) accept();
     return better;
@@ -294,7 +297,7 @@ class ImplicitDynamics {
   Newton newton_;
   VectorX u_, v_, a_, load_;
   VectorX trial_, predicted_, coasting_, velocity_, acceleration_, force_, full_, other_, drag_, x_, residual_;
-  VectorX kept_load_, change_, start_;  // of a correction
+  VectorX kept_load_, step_load_, change_, start_;  // of corrections
   DeformationReport deformation_;
   bool stepped_ = false;     // the state is the end of a step of h_
   bool factorised_ = false;  // tangent_ is that of this step
