@@ -64,8 +64,9 @@ inline std::vector<CaseFile> read_cube_in_time(const json& file, const std::file
   for (const auto& [element, variant] : file.at("meshes").items()) {
     if (!std::filesystem::exists(folder / element)) continue;
     read.push_back(case_file_on(variant.at("mesh"), folder / element));
+    const std::string before = element + "__";
     const auto add = [&](const std::string& law, const std::string& hold, const std::string& table) {
-      read.back().load_cases.push_back({{"name", element + "__" + law + "__" + hold},
+      read.back().load_cases.push_back({{"name", before + law + "__" + hold},
                                         {"analysis", cube_in_time},
                                         {"material", file.at("material")},
                                         {"law", law},
