@@ -33,6 +33,14 @@ inline double extent(const std::vector<Vector3>& positions) {
   return box.diagonal().norm();
 }
 
+/// Throws bad_density where a node that may move has no mass.
+inline void require_mass(const DeformableBody& body) {
+  for (Index i = 0; i < body.lumped.size(); ++i)
+    if (!(body.lumped[i] > 0.0) && body.conditions.constrained[static_cast<std::size_t>(i)] != 7)
+      raise(SetupErrorKind::bad_density, "node " + std::to_string(i) + " has no mass",
+            "Give every region a density in kg/m^3");
+}
+
 namespace detail {
 
 /// All but the forces and the mass.

@@ -1,8 +1,8 @@
 // Motion in time by implicit steps.
 #pragma once
 
+#include <palpate/integrator/implicit_step.hpp>
 #include <palpate/integrator/newton.hpp>
-#include <palpate/integrator/time_scheme.hpp>
 #include <palpate/model/deformable_body.hpp>
 #include <palpate/model/tangent_solver.hpp>
 
@@ -37,6 +37,7 @@ class ImplicitDynamics {
       : parameters_(parameters),
         body_(checked(std::move(body), parameters)),
         tangent_(body_.pattern, body_.conditions, body_.positions, limits),
+        step_(parameters.scheme, body_.elastic->size()),
         damping_(parameters.stiffness_damping > 0.0 ? make_stiffness(body_.pattern, limits) : BlockMatrix()),
         newton_(size(), parameters.newton),
         u_(VectorX::Zero(body_.elastic->size())),
@@ -44,8 +45,6 @@ class ImplicitDynamics {
         a_(u_),
         load_(body_.load),
         trial_(u_),
-        predicted_(u_),
-        coasting_(u_),
         force_(u_),
         full_(u_),
         other_(u_),
@@ -65,19 +64,16 @@ class ImplicitDynamics {
   /// Moves on by h [s].
   StepReport step(double h) noexcept {
     StepReport report;
-    if (!(h > 0.0) || !(h < infinity)) return report;
+    if (!ImplicitStep::is_length(h)) return report;
     begin(h);
-    const TimeScheme& s = parameters_.scheme;
-    predicted_ = u_ + h * v_ + (s.old_in_u * h * h) * a_;
-    coasting_ = v_ + (s.old_in_v * h) * a_;
+    step_.coast(u_, v_, a_);
     if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
-    body_.conditions.gather(predicted_, x_);
+    body_.conditions.gather(step_.predicted(), x_);
     if (!(evaluate(x_, full_free()) < infinity)) body_.conditions.gather(u_, x_);  // the old state holds
     report.newton = newton_.solve(*this, x_);
     if (!(evaluate(x_, full_free()) < infinity)) return report;
     report.taken = true;
     report.deformation = deformation_;
-    find_motion();
     accept();
     step_load_ = load_;
     stepped_ = true;
@@ -119,7 +115,7 @@ class ImplicitDynamics {
   }
   /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
   bool prepare_response(double h) noexcept {
-    if (!(h > 0.0) || !(h < infinity)) return false;
+    if (!ImplicitStep::is_length(h)) return false;
     begin(h);
     return prepare_at(u_);
   }
@@ -164,11 +160,11 @@ class ImplicitDynamics {
     place(x);
     deformation_ = body_.elastic->force(trial_, force_);
     if (!deformation_.admissible) return infinity;
-    find_motion();
+    step_.find_motion(trial_, velocity_, acceleration_);
     apply_mass(acceleration_, full_);
-    const double inertia = 0.5 * parameters_.scheme.new_in_u * h_ * h_ * acceleration_.dot(full_);
+    const double inertia = 0.5 / step_.acceleration_per_displacement() * acceleration_.dot(full_);
     apply_damping(velocity_, other_);
-    const double lost = 0.5 * h_ * parameters_.scheme.new_in_u / parameters_.scheme.new_in_v * velocity_.dot(other_);
+    const double lost = 0.5 / step_.velocity_per_displacement() * velocity_.dot(other_);
     scale_ = std::max({force_.norm(), full_.norm(), other_.norm(), load_.norm()});
     full_ = load_ - force_ - full_ - other_;
     body_.conditions.gather(full_, residual);
@@ -181,7 +177,7 @@ class ImplicitDynamics {
   void direction(const VectorX& residual, VectorX& d) noexcept { tangent_.solve(residual, d); }
   double scale() const noexcept { return scale_; }
   double rounding() const noexcept {
-    const double of_inertia = heaviest_ / (parameters_.scheme.new_in_u * h_ * h_) * trial_.norm();
+    const double of_inertia = heaviest_ * step_.acceleration_per_displacement() * trial_.norm();
     return std::max(floor_, 4.0 * std::numeric_limits<double>::epsilon() * std::max(scale_, of_inertia));
   }
 
@@ -190,7 +186,7 @@ class ImplicitDynamics {
   void begin(double h) noexcept {
     end();
     body_.elastic->begin_step(h);
-    h_ = h;
+    step_.set_length(h);
   }
   /// The last step, if there was one, can not be corrected any more.
   void end() noexcept {
@@ -202,24 +198,16 @@ class ImplicitDynamics {
   bool prepare_at(const VectorX& u) noexcept {
     BlockMatrix& k = tangent_.matrix();
     body_.elastic->tangent(u, k);
-    const TimeScheme& s = parameters_.scheme;
-    const double per_u = 1.0 / (s.new_in_u * h_ * h_), per_v = s.new_in_v / (s.new_in_u * h_);
-    add_mass(per_u + parameters_.mass_damping * per_v, k);
+    const double per_v = step_.velocity_per_displacement();
+    add_mass(step_.acceleration_per_displacement() + parameters_.mass_damping * per_v, k);
     if (damping_.size() > 0) k.add(parameters_.stiffness_damping * per_v, damping_);
     return factorised_ = tangent_.factorise();
   }
 
   static DeformableBody checked(DeformableBody body, const DynamicsParameters& p) {
     p.newton.require_usable();
-    for (const double d : {p.mass_damping, p.stiffness_damping})
-      if (!(d >= 0.0 && d < infinity))
-        raise(SetupErrorKind::bad_argument, "a damping of " + number(d), "Give 0 or a positive number");
-    for (const double c : {p.scheme.new_in_u, p.scheme.new_in_v})
-      if (!(c > 0.0)) raise(SetupErrorKind::bad_argument, "the time scheme is explicit", "Use central differences");
-    for (Index i = 0; i < body.lumped.size(); ++i)
-      if (!(body.lumped[i] > 0.0) && body.conditions.constrained[static_cast<std::size_t>(i)] != 7)
-        raise(SetupErrorKind::bad_density, "node " + std::to_string(i) + " has no mass",
-              "Give every region a density in kg/m^3");
+    require_damping(p.mass_damping, p.stiffness_damping);
+    require_mass(body);
     return body;
   }
 
@@ -229,13 +217,6 @@ class ImplicitDynamics {
     trial_ = body_.conditions.prescribed;
     for (Index k = 0; k < size(); ++k) trial_[body_.conditions.free_dofs[static_cast<std::size_t>(k)]] = x[k];
   }
-  /// Acceleration and velocity at the end of the step from the displacement there.
-  void find_motion() noexcept {
-    const TimeScheme& s = parameters_.scheme;
-    acceleration_ = (trial_ - predicted_) / (s.new_in_u * h_ * h_);
-    velocity_ = coasting_ + (s.new_in_v * h_) * acceleration_;
-  }
-
   void accept() noexcept {
     u_ = trial_;
     v_ = velocity_;
@@ -252,8 +233,7 @@ class ImplicitDynamics {
       for (Index p = 0; p < static_cast<Index>(pattern.column.size()); ++p)
         k.block(p).diagonal().array() += factor * body_.mass[p];
     else
-      for (Index i = 0; i < pattern.rows(); ++i)
-        k.block(pattern.diagonal(i)).diagonal().array() += factor * body_.lumped[i];
+      k.add_nodal(factor, body_.lumped);
   }
   void apply_damping(const VectorX& v, VectorX& y) noexcept {
     if (damping_.size() > 0) {
@@ -293,15 +273,16 @@ class ImplicitDynamics {
   DynamicsParameters parameters_;
   DeformableBody body_;
   TangentSolver tangent_;
+  ImplicitStep step_;
   BlockMatrix damping_;
   Newton newton_;
   VectorX u_, v_, a_, load_;
-  VectorX trial_, predicted_, coasting_, velocity_, acceleration_, force_, full_, other_, drag_, x_, residual_;
+  VectorX trial_, velocity_, acceleration_, force_, full_, other_, drag_, x_, residual_;
   VectorX kept_load_, step_load_, change_, start_;  // of corrections
   DeformationReport deformation_;
-  bool stepped_ = false;     // the state is the end of a step of h_
+  bool stepped_ = false;     // the state is the end of step_
   bool factorised_ = false;  // tangent_ is that of this step
-  double h_ = 0.0, time_ = 0.0, scale_ = 0.0, heaviest_ = 0.0, floor_ = 0.0;
+  double time_ = 0.0, scale_ = 0.0, heaviest_ = 0.0, floor_ = 0.0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -16,14 +16,11 @@ namespace palpate::inline PALPATE_ABI {
 class RenewedFactor {
  public:
   RenewedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
-      : conditions_(body.conditions),
+      : turned_(body),
         lumped_(body.lumped),
-        rotations_(body.pattern, body.positions, all_nodes(lumped_.size())),
-        made_{{Made(body, conditions_, limits), Made(body, conditions_, limits)}},
-        turn_(static_cast<std::size_t>(lumped_.size()), Matrix3::Identity()),
+        made_{{Made(body, turned_.conditions(), limits), Made(body, turned_.conditions(), limits)}},
         asked_(VectorX::Zero(3 * lumped_.size())),
-        full_(3 * lumped_.size()),
-        x_(conditions_.free_count()) {
+        rest_(asked_) {
     for (Index e = 0; e < rest.mesh.element_count(); ++e) {
       const PointGeometry<Tet4> g = constant_geometry<Tet4>(rest.mesh, e);
       const Matrix6& c = rest.elasticity[rest.region_of(e)];
@@ -43,39 +40,23 @@ class RenewedFactor {
   void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool anew) noexcept {
     const State state = state_.load(std::memory_order_acquire);
     if (state == State::ready) {
-      if (spare().usable && same(spare().factors, factors)) {
+      if (spare().usable && spare().factors == factors) {
         front_ = 1 - front_;
         ++renewals_;
       }
       state_.store(State::idle, std::memory_order_relaxed);
     }
-    for (std::size_t i = 0; i < turn_.size(); ++i) turn_[i] = rotations_(i, u);
-    if (!same(front().factors, factors)) {
-      full_.setZero();
-      make(front(), factors, full_);
+    if (front().factors != factors) {
+      make(front(), factors, rest_);
     } else if (anew && state != State::asked) {
       asked_ = u;
       spare().factors = factors;
       state_.store(State::asked, std::memory_order_release);
       state_.notify_one();
     }
-    for (std::size_t i = 0; i < turn_.size(); ++i) turn_[i] = turn_[i] * front().turn[i].transpose();
+    turned_.turn(u, front().turn);
   }
-  void apply(const VectorX& r, VectorX& z) const noexcept {
-    for (std::size_t i = 0; i < turn_.size(); ++i) {
-      const auto at = 3 * static_cast<Index>(i);
-      full_.segment<3>(at).noalias() = turn_[i].transpose() * r.segment<3>(at);
-    }
-    conditions_.gather(full_, x_);
-    made_[front_].solver->solve(x_, x_);
-    conditions_.scatter(x_, full_);
-    for (std::size_t i = 0; i < turn_.size(); ++i) {
-      const auto at = 3 * static_cast<Index>(i);
-      z.segment<3>(at).noalias() = turn_[i] * full_.segment<3>(at);
-    }
-    for (Index dof = 0; dof < z.size(); ++dof)
-      if (conditions_.is_constrained(dof)) z[dof] = 0.0;
-  }
+  void apply(const VectorX& r, VectorX& z) const noexcept { turned_.solve(*made_[front_].factor, r, z); }
   /// Factors of the thread taken in so far.
   long renewals() const noexcept { return renewals_; }
 
@@ -88,22 +69,14 @@ class RenewedFactor {
   };
   struct Made {
     Made(const DeformableBody& body, const EssentialConditions& conditions, const SetupLimits& limits)
-        : solver(std::make_unique<TangentSolver>(body.pattern, conditions, body.positions, limits)),
+        : factor(std::make_unique<TangentSolver>(body.pattern, conditions, body.positions, limits)),
           turn(body.positions.size(), Matrix3::Identity()) {}
-    std::unique_ptr<TangentSolver> solver;
+    std::unique_ptr<TangentSolver> factor;
     std::vector<Matrix3> turn;  // of the nodes at its state
     StepFactors factors;
     bool usable = false;
   };
 
-  static std::vector<NodeId> all_nodes(Index count) {
-    std::vector<NodeId> nodes(static_cast<std::size_t>(count));
-    std::iota(nodes.begin(), nodes.end(), NodeId{0});
-    return nodes;
-  }
-  static bool same(const StepFactors& a, const StepFactors& b) noexcept {
-    return a.mass == b.mass && a.stiffness == b.stiffness;
-  }
   Made& front() noexcept { return made_[front_]; }
   Made& spare() noexcept { return made_[1 - front_]; }
 
@@ -131,13 +104,12 @@ class RenewedFactor {
 
   /// A at a state, and its factor.
   void make(Made& made, const StepFactors& factors, const VectorX& u) const noexcept {
-    for (std::size_t i = 0; i < made.turn.size(); ++i) made.turn[i] = rotations_(i, u);
-    BlockMatrix& a = made.solver->matrix();
+    turned_.fit(u, made.turn);
+    BlockMatrix& a = made.factor->matrix();
     a.set_zero();
     for (const TurningElement& e : elements_) add(e, factors.stiffness, u, a);
-    for (Index i = 0; i < lumped_.size(); ++i)
-      a.block(a.pattern().diagonal(i)).diagonal().array() += factors.mass * lumped_[i];
-    made.usable = made.solver->factorise();
+    a.add_nodal(factors.mass, lumped_);
+    made.usable = made.factor->factorise();
     made.factors = factors;
   }
   /// R K R^T of one element.
@@ -157,15 +129,13 @@ class RenewedFactor {
       }
   }
 
-  EssentialConditions conditions_;
+  mutable TurnedSolve turned_;
   VectorX lumped_;
-  NodalRotations rotations_;
   std::vector<TurningElement> elements_;
   std::array<Made, 2> made_;
   std::size_t front_ = 0;
-  std::vector<Matrix3> turn_;  // of the nodes since the state of the front
-  VectorX asked_;              // the thread's while it is asked
-  mutable VectorX full_, x_;
+  VectorX asked_;  // the thread's while it is asked
+  VectorX rest_;   // no displacement
   long renewals_ = 0;
   std::atomic<State> state_{State::idle};
   std::thread thread_;  // last: it uses all the others
