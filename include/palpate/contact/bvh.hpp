@@ -84,20 +84,7 @@ class Bvh {
   template <class Visit>
   void visit_near(const Vector3& centre, double radius, Visit&& visit) const noexcept {
     const double limit = radius * radius;
-    std::array<int, max_depth> stack;
-    int top = 0;
-    if (!nodes_.empty()) stack[static_cast<std::size_t>(top++)] = 0;
-    while (top > 0) {
-      const int i = stack[static_cast<std::size_t>(--top)];
-      const Node& node = nodes_[static_cast<std::size_t>(i)];
-      if (!(node.box.squared_distance(centre) <= limit)) continue;
-      if (node.count > 0) {
-        for (int k = node.first; k < node.first + node.count; ++k) visit(order_[static_cast<std::size_t>(k)]);
-      } else {
-        stack[static_cast<std::size_t>(top++)] = node.first;
-        stack[static_cast<std::size_t>(top++)] = i + 1;
-      }
-    }
+    descend([&](const Box& box) { return box.squared_distance(centre) <= limit; }, visit);
   }
 
   /// Calls visit(triangle) for the triangles of leaves that the way from a point crosses within `margin`. It returns
@@ -105,20 +92,8 @@ class Bvh {
   template <class Visit>
   void visit_along(const Vector3& from, const Vector3& way, double margin, Visit&& visit) const noexcept {
     double until = 1.0;
-    std::array<int, max_depth> stack;
-    int top = 0;
-    if (!nodes_.empty()) stack[static_cast<std::size_t>(top++)] = 0;
-    while (top > 0) {
-      const int i = stack[static_cast<std::size_t>(--top)];
-      const Node& node = nodes_[static_cast<std::size_t>(i)];
-      if (!node.box.is_crossed(from, way, margin, until)) continue;
-      if (node.count > 0) {
-        for (int k = node.first; k < node.first + node.count; ++k) until = visit(order_[static_cast<std::size_t>(k)]);
-      } else {
-        stack[static_cast<std::size_t>(top++)] = node.first;
-        stack[static_cast<std::size_t>(top++)] = i + 1;
-      }
-    }
+    descend([&](const Box& box) { return box.is_crossed(from, way, margin, until); },
+            [&](int triangle) { until = visit(triangle); });
   }
 
   /// Finds the triangle for which squared_distance(triangle) is smallest; ties go to the lowest number. -1 when empty.
@@ -163,6 +138,25 @@ class Bvh {
     int first = 0;  // leaf: first of order_; inner: right child (the left one follows directly)
     int count = 0;  // 0 for inner nodes
   };
+
+  /// Calls visit(triangle) for those of leaves under boxes with reaches(box), left before right.
+  template <class Reaches, class Visit>
+  void descend(Reaches&& reaches, Visit&& visit) const noexcept {
+    std::array<int, max_depth> stack;
+    int top = 0;
+    if (!nodes_.empty()) stack[static_cast<std::size_t>(top++)] = 0;
+    while (top > 0) {
+      const int i = stack[static_cast<std::size_t>(--top)];
+      const Node& node = nodes_[static_cast<std::size_t>(i)];
+      if (!reaches(node.box)) continue;
+      if (node.count > 0) {
+        for (int k = node.first; k < node.first + node.count; ++k) visit(order_[static_cast<std::size_t>(k)]);
+      } else {
+        stack[static_cast<std::size_t>(top++)] = node.first;
+        stack[static_cast<std::size_t>(top++)] = i + 1;
+      }
+    }
+  }
 
   static const Vector3& at(std::span<const Vector3> positions, int i) noexcept {
     return positions[static_cast<std::size_t>(i)];
