@@ -1,0 +1,135 @@
+// Neo-Hookean tissue in explicit steps; the balls push by a penalty, as there is no servo for it.
+#include <palpate/assembly/averaged_tetrahedra.hpp>
+#include <palpate/assembly/batched_tetrahedra.hpp>
+#include <palpate/assembly/element_frequency.hpp>
+#include <palpate/assembly/mass_matrix.hpp>
+#include <palpate/integrator/central_difference.hpp>
+#include <palpate/integrator/explicit_motion.hpp>
+#include <palpate/integrator/semi_implicit_euler.hpp>
+#include <palpate/material/neo_hookean.hpp>
+
+#include "soft.hpp"
+
+namespace tradeoff {
+namespace {
+
+template <class Forces, class Scheme>
+class ExplicitContender : public Contender {
+ public:
+  explicit ExplicitContender(const Bench& bench)
+      : bench_(bench),
+        body_(make_hyperelastic_body(bench.scene.mesh, large_strain_laws<NeoHookean>(bench.scene.materials))),
+        conditions_(
+            resolve_essential(body_.rest.mesh, extract_boundary<Tet4>(body_.rest.mesh), bench.scene.scene(near_group))),
+        mass_(lumped_mass(body_.rest)),
+        motion_(make(drag)),
+        nodes_(bench.scene.mesh.find_group(near_group)->nodes),
+        forces_(bench.scene.balls.size()) {
+    // A millisecond in equal steps of at most 0.7 of the limit: pressed elements allow less than elements at rest.
+    steps_ = static_cast<int>(std::ceil(1e-3 / (0.7 * motion_.limit())));
+  }
+
+  std::span<const Vector3> tick(std::span<const Vector3> centres) override {
+    std::ranges::fill(forces_, Vector3::Zero());
+    const double dt = 1e-3 / steps_;
+    for (int s = 1; s <= steps_; ++s) {
+      push(centres, dt);
+      status_ |= motion_.step(dt);
+    }
+    for (Vector3& f : forces_) f /= steps_;
+    return forces_;
+  }
+  VectorX displacement() override { return motion_.state().displacement; }
+  double own_error() override {
+    Vector3 sum = Vector3::Zero(), contact = Vector3::Zero();
+    for (Index dof = 0; dof < motion_.state().force.size(); ++dof)
+      if (conditions_.is_constrained(dof)) sum[dof % 3] += motion_.state().force[dof];
+    double size = 0.0;
+    for (const Vector3& f : forces_) {
+      contact -= f;
+      size += f.norm();
+    }
+    return (sum + contact).norm() / size;
+  }
+  double energy_drift() override {
+    auto free = make(0.0);
+    free.set(motion_.state().displacement, VectorX::Zero(motion_.state().displacement.size()));
+    const double before = free.stored_energy(), dt = 1e-3 / steps_;
+    Status status;
+    for (double t = 0.0; t < free_swing - 1e-9; t += dt) status |= free.step(dt);
+    return status.has(StatusFlag::step_refused) || status.has(StatusFlag::energy_grew)
+               ? std::numeric_limits<double>::quiet_NaN()
+               : (free.kinetic_energy() + free.stored_energy()) / before - 1.0;
+  }
+  Index nodes() const override { return bench_.scene.mesh.node_count(); }
+  std::string remark() override {
+    std::string text = std::to_string(steps_) + " steps per tick";
+    for (const StatusFlag flag : {StatusFlag::energy_grew, StatusFlag::step_refused, StatusFlag::inverted})
+      if (status_.has(flag)) text += flag == StatusFlag::inverted ? ", inverted" : ", STOPPED by its own watch";
+    return text;
+  }
+
+ private:
+  auto make(double damping) const {
+    ExplicitOptions options;
+    options.damping = damping;
+    return ExplicitMotion<Forces, Scheme>(Forces(body_), mass_, conditions_.free_dofs,
+                                          element_frequency_bound(body_.rest), options);
+  }
+  /// A quarter of the stiffness that a step could bear pushes every node out of the balls.
+  void push(std::span<const Vector3> centres, double dt) {
+    motion_.load().setZero();
+    for (const NodeId node : nodes_)
+      for (std::size_t b = 0; b < centres.size(); ++b) {
+        const Vector3 off = bench_.scene.mesh.position(node) +
+                            motion_.state().displacement.template segment<3>(3 * Index{node}) - centres[b];
+        const double depth = bench_.scene.radius - off.norm();
+        if (!(depth > 0.0)) continue;
+        const Vector3 force = 0.25 * mass_[node] / (dt * dt) * depth * off.normalized();
+        motion_.load().template segment<3>(3 * Index{node}) += force;
+        forces_[b] -= force;
+      }
+  }
+
+  const Bench& bench_;
+  HyperelasticBody<Tet4, NeoHookean> body_;
+  EssentialConditions conditions_;
+  VectorX mass_;
+  ExplicitMotion<Forces, Scheme> motion_;
+  std::vector<NodeId> nodes_;
+  std::vector<Vector3> forces_;
+  int steps_ = 1;
+  Status status_;
+};
+
+template <class Forces, class Scheme>
+void add(const Bench& bench, std::vector<Entry>& entries, const std::string& element, const std::string& forces,
+         const std::string& scheme, const std::string& scalar) {
+  Entry entry;
+  Description& d = entry.description;
+  d.family = "explicit";
+  d.element = element;
+  d.mesh = mesh_name("given");
+  d.kinematics = "neo-Hookean";
+  d.solver = scheme;
+  d.scalar = scalar;
+  d.allowed = 0.05;
+  d.paste = "using Motion = ExplicitMotion<" + forces + ", " + scheme + ">;   // balls by penalty loads";
+  entry.make = [&bench] { return std::make_unique<ExplicitContender<Forces, Scheme>>(bench); };
+  entries.push_back(std::move(entry));
+}
+
+}  // namespace
+
+void add_explicit(const Bench& bench, std::vector<Entry>& entries) {
+  add<BatchedTetrahedra<NeoHookean>, CentralDifference>(bench, entries, "Tet4", "BatchedTetrahedra<NeoHookean>",
+                                                        "CentralDifference", "double");
+  add<BatchedTetrahedra<NeoHookean, float>, CentralDifference>(
+      bench, entries, "Tet4", "BatchedTetrahedra<NeoHookean, float>", "CentralDifference", "float");
+  add<BatchedTetrahedra<NeoHookean, float>, SemiImplicitEuler>(
+      bench, entries, "Tet4", "BatchedTetrahedra<NeoHookean, float>", "SemiImplicitEuler", "float");
+  add<AveragedTetrahedra<NeoHookean, float>, CentralDifference>(
+      bench, entries, "averaged Tet4", "AveragedTetrahedra<NeoHookean, float>", "CentralDifference", "float");
+}
+
+}  // namespace tradeoff

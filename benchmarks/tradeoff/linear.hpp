@@ -1,0 +1,151 @@
+// Linear compositions felt through a servo.
+#pragma once
+
+#include <palpate/element/smoothed.hpp>
+#include <palpate/element/tet10.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/mesh/promote.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+
+#include "contender.hpp"
+
+namespace tradeoff {
+
+/// A servo whose balls are where the device is, without coupling: the force is the tissue's alone.
+template <TissueModel Tissue>
+class Felt {
+ public:
+  Felt(Tissue& tissue, const PressScene& scene)
+      : servo_(tissue, std::vector<SphereTool>(scene.balls.size(), SphereTool{scene.radius}),
+               {.coupling_stiffness = infinity}),
+        states_(scene.balls.size()),
+        forces_(scene.balls.size()) {}
+
+  std::span<const Vector3> tick(std::span<const Vector3> centres) noexcept {
+    for (std::size_t b = 0; b < centres.size(); ++b) {
+      states_[b].position = centres[b];
+      states_[b].time = 1e-3 * static_cast<double>(count_);
+    }
+    ++count_;
+    for (const ToolForce& f : servo_.tick(states_)) status_ |= f.status;
+    for (std::size_t b = 0; b < forces_.size(); ++b) forces_[b] = servo_.contact_force(b);
+    return forces_;
+  }
+  auto& servo() noexcept { return servo_; }
+  std::span<const VertexForce> vertex_forces() { return servo_.read_snapshot().vertex_forces(); }
+  /// What the gate or the contact found to say.
+  std::string remark() const {
+    std::string text;
+    for (int bit = 0; bit < status_flag_count; ++bit) {
+      const auto flag = static_cast<StatusFlag>(1u << bit);
+      const bool of_gate =
+          flag == StatusFlag::saturated || flag == StatusFlag::slew_limited || flag == StatusFlag::ramping;
+      if (status_.has(flag) && !of_gate) text += (text.empty() ? "" : ", ") + std::string(status_flag_name(bit));
+    }
+    return text;
+  }
+
+ private:
+  HapticServo<Tissue> servo_;
+  std::vector<ToolState> states_;
+  std::vector<Vector3> forces_;
+  Status status_;
+  long count_ = 0;
+};
+
+/// The mesh for element E.
+template <Element E>
+auto mesh_for(const Mesh<Tet4>& mesh) {
+  if constexpr (std::same_as<E, Tet10>)
+    return promote<Tet10>(mesh);
+  else
+    return mesh;
+}
+
+/// The part of u, 3 per admitted node, that belongs to the mesh as given.
+inline VectorX of_given_nodes(const VectorX& u, const std::vector<NodeId>& map, Index count) {
+  VectorX given = VectorX::Zero(3 * count);
+  for (Index i = 0; i < count; ++i)
+    if (const NodeId node = map[static_cast<std::size_t>(i)]; node >= 0)
+      given.segment<3>(3 * i) = u.segment<3>(3 * Index{node});
+  return given;
+}
+
+/// HapticFEModel<E, LinearElastic, Policy>, or what `Wrap` makes of it.
+template <class E, class Policy>
+class LinearContender : public Contender {
+ public:
+  using Model = HapticFEModel<E, LinearElastic, Policy>;
+
+  LinearContender(const Bench& bench, const std::string& mesh, const std::string& kept,
+                  const SetupOptions& options = {})
+      : bench_(bench),
+        model_(mesh_for<E>(bench.mesh(mesh)), bench.scene.scene(kept), bench.scene.materials, options),
+        felt_(model_, bench.scene),
+        u_(3 * model_.mesh().node_count()) {}
+
+  std::span<const Vector3> tick(std::span<const Vector3> centres) override { return felt_.tick(centres); }
+  VectorX displacement() override {
+    model_.displacement_with(felt_.vertex_forces(), u_);
+    return of_given_nodes(u_, model_.node_map(), bench_.scene.mesh.node_count());
+  }
+  /// How far the points that press are from the ball when their forces act on the whole body, of the small depth. It
+  /// goes through none of the stored compliance. Contacts that carry next to nothing may still be on their way.
+  double own_error() override {
+    double worst = 0.0, largest = 0.0;
+    for (const Contact& c : felt_.servo().contacts()) largest = std::max(largest, c.force);
+    for (const Contact& c : felt_.servo().contacts()) {
+      if (!(c.force > 0.01 * largest)) continue;
+      Vector3 point = Vector3::Zero();
+      for (std::size_t a = 0; a < 3; ++a) {
+        const NodeId node = model_.touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];
+        point += c.weights[a] * (model_.rest_position(node) + u_.template segment<3>(3 * Index{node}));
+      }
+      worst = std::max(worst, std::abs((felt_.servo().proxy(static_cast<std::size_t>(c.tool)) - point).norm() -
+                                       bench_.scene.radius));
+    }
+    return largest > 0.0 ? worst / bench_.scene.small : infinity;
+  }
+  Index nodes() const override { return model_.mesh().node_count(); }
+  Index kept_dofs() const override { return model_.report().kept_dofs; }
+  std::string remark() override { return felt_.remark(); }
+
+ private:
+  const Bench& bench_;
+  Model model_;
+  Felt<Model> felt_;
+  VectorX u_;
+};
+
+inline const char* kept_name(const std::string& group) {
+  return group == near_group ? "near the tool" : group == wide_group ? "touchable group" : "whole surface";
+}
+inline std::string mesh_name(const std::string& mesh) {
+  return mesh == "near" ? "refined near" : mesh == "all" ? "refined" : "as given";
+}
+
+/// An entry for one composition; `element` and `policy` are how C++ has them.
+template <class E, class Policy>
+Entry linear_entry(const Bench& bench, const std::string& element, const std::string& policy, const std::string& mesh,
+                   const std::string& kept, const SetupOptions& options = {}) {
+  Entry entry;
+  Description& d = entry.description;
+  const bool condensed = policy.starts_with("Condensed");
+  d.family = condensed ? "condensed" : "uncondensed";
+  d.element = element;
+  d.mesh = mesh_name(mesh);
+  d.kinematics = "linear";
+  d.solver = policy;
+  d.kept = condensed ? kept_name(kept) : "";
+  d.scalar = policy.find("Float") != policy.npos ? "float" : "double";
+  if (options.columns == ColumnFill::ahead) d.work = "columns ahead";
+  d.own_core = options.columns == ColumnFill::ahead;
+  d.allowed = policy.find("Gradient") != policy.npos ? 2e-2 : 1e-2;
+  d.paste = "using Model = HapticFEModel<" + element + ", LinearElastic, " + policy + ">;";
+  entry.make = [&bench, mesh, kept, options] {
+    return std::make_unique<LinearContender<E, Policy>>(bench, mesh, kept, options);
+  };
+  return entry;
+}
+
+}  // namespace tradeoff

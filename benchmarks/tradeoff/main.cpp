@@ -1,0 +1,89 @@
+// Speed against accuracy: compositions of element, mesh, material, kinematics, solver, condensation and scalar, and
+// what else is in use, pressed by the same balls and held against the same reference. Every row checks its own answer.
+//   bench_tradeoff [MESH --fix GROUP --touch GROUP] [--scene palpate|retract|grasp] [--budget-us N] [--out FOLDER]
+//                  [--youngs PA] [--poisson NU] [--only WORD] [--full]
+//   bench_tradeoff --required [--out FOLDER]      what it costs to keep more than a scene requires
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+#include "../common/row.hpp"
+#include "required.hpp"
+
+#include <palpate/mesh/refine.hpp>
+
+namespace {
+
+using namespace tradeoff;
+
+SceneOptions scene_options(int argc, char** argv) {
+  SceneOptions o;
+  if (argc > 1 && std::string_view(argv[1]).substr(0, 2) != "--") o.mesh = argv[1];
+  o.held = bench::option(argc, argv, "--fix", "");
+  o.touched = bench::option(argc, argv, "--touch", "");
+  o.kind = bench::option(argc, argv, "--scene", "palpate");
+  o.youngs_modulus = std::stod(bench::option(argc, argv, "--youngs", number(o.youngs_modulus)));
+  o.poisson_ratio = std::stod(bench::option(argc, argv, "--poisson", number(o.poisson_ratio)));
+  return o;
+}
+
+/// The mesh refined everywhere, with the groups that scenes speak of; as given where that would be too many elements.
+Mesh<Tet4> refined(const Mesh<Tet4>& mesh, bool full) {
+  return mesh.element_count() <= (full ? 100000 : 20000) ? refine(mesh) : mesh;
+}
+
+void print(const Row& r) {
+  std::printf("%-100s set-up %8.4g ms  p99 %9.4g us  force %6.2f %% %6.2f %%  felt %6.2f %%  %s%s\n", r.name().c_str(),
+              1e3 * r.setup, 1e6 * r.p99, 100.0 * r.force_small, 100.0 * r.force_large, 100.0 * r.felt,
+              r.verdict.c_str(), r.remark.empty() ? "" : (" (" + r.remark + ")").c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const std::string out = bench::option(argc, argv, "--out", "."), only = bench::option(argc, argv, "--only", "");
+  const double budget = 1e-6 * std::stod(bench::option(argc, argv, "--budget-us", "50"));
+  if (!(budget > 0.0)) raise(SetupErrorKind::bad_argument, "a budget of nothing", "Give microseconds: --budget-us 50");
+  std::filesystem::create_directories(out);
+  const bool full = bench::has_option(argc, argv, "--full");
+  const PressScene scene = make_scene(scene_options(argc, argv));
+  if (bench::has_option(argc, argv, "--required")) {
+    Bench bench{.scene = scene, .reference = {}, .stiffening = {}, .near = {}, .all = {}};
+    return measure_required(bench, out) ? 0 : 1;
+  }
+  Bench bench{.scene = scene,
+              .reference = make_reference(scene, full ? 0.05 : 0.1),
+              .stiffening = scene.balls.size() == 1 ? measure_stiffening(scene) : Stiffening{},
+              .near = refine_near(scene, 0.2 * scene.radius),
+              .all = refined(scene.mesh, full),
+              .full = full};
+  std::printf(
+      "scene %s: balls of %.3g mm, depths %.3g and %.3g mm\nreference: %ld nodes, %.3g s; force %.4g and %.4g N; "
+      "the next coarser mesh is %.2g %% and %.2g %% off\n\n",
+      scene.name.c_str(), 1e3 * scene.radius, 1e3 * scene.small, 1e3 * scene.large,
+      static_cast<long>(bench.reference.nodes), bench.reference.seconds, bench.reference.force(0, scene.small).norm(),
+      bench.reference.force(0, scene.large).norm(), 100.0 * bench.reference.mesh_error_small,
+      100.0 * bench.reference.mesh_error_large);
+  std::fflush(stdout);
+  std::vector<Entry> entries;
+  for (auto* add : {add_tet4, add_tet4_uncondensed, add_smoothed, add_tet10, add_quasi_non_linear, add_soft,
+                    add_corotated, add_explicit, add_particles, add_plain_eigen})
+    add(bench, entries);
+  std::vector<Row> rows;
+  for (const Entry& entry : entries) {
+    const Description& d = entry.description;
+    if (!only.empty() && (d.family + " " + d.name()).find(only) == std::string::npos) continue;
+    rows.push_back(measure(bench, entry));
+    print(rows.back());
+  }
+  const std::string base = out + "/tradeoff-" + scene.name;
+  write_csv(rows, base + ".csv");
+  write_page(bench, rows, budget, base + ".html");
+  std::printf("\n%s\nwritten: %s.html, %s.csv\n", advice(rows, budget).c_str(), base.c_str(), base.c_str());
+  const auto is_bad = [](const Row& r) { return r.verdict.starts_with("NOT"); };
+  return rows.empty() || std::any_of(rows.begin(), rows.end(), is_bad) ? 1 : 0;
+} catch (const std::exception& e) {
+  std::fprintf(stderr, "bench_tradeoff: %s\n", e.what());
+  return 2;
+}

@@ -1,0 +1,249 @@
+// The table as a file, as a page with pictures, and as advice.
+#include <palpate/model/trade_off.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include "contender.hpp"
+
+namespace tradeoff {
+namespace {
+
+struct Measure {
+  const char* title;
+  double Row::*error;
+};
+constexpr std::array<Measure, 3> measures{{{"felt at 1 kHz, in motion", &Row::felt},
+                                           {"held at the small depth", &Row::force_small},
+                                           {"held at the large depth", &Row::force_large}}};
+
+bool is_good(const Row& row) {
+  return row.verdict.empty();
+}
+
+TradeOff trade_off_of(const std::vector<Row>& rows, double Row::*error, bool compositions_only) {
+  TradeOff trade;
+  for (const Row& row : rows)
+    if (is_good(row) && !(compositions_only && row.paste.empty()))
+      trade.add(
+          {row.name(), row.p99, row.*error, row.setup, std::isfinite(row.bytes) ? std::max(0.0, row.bytes) : 0.0});
+  return trade;
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return out;
+}
+std::string figure(double value, const char* format) {
+  if (!std::isfinite(value)) return "";
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+std::string percent(double value) {
+  return figure(100.0 * value, "%.3g");
+}
+
+const char* colour_of(const std::string& family) {
+  return family == "condensed"     ? "#1f5fa8"
+         : family == "uncondensed" ? "#2a9d8f"
+         : family == "moving"      ? "#b5541c"
+         : family == "explicit"    ? "#7b3fa0"
+                                   : "#777";
+}
+
+/// Everything a reader may want to know of a row while the pointer is on it.
+std::string hover(const Row& r) {
+  return escaped(r.name() + "\nset-up " + figure(1e3 * r.setup, "%.3g") + " ms, " + figure(1e-6 * r.bytes, "%.3g") +
+                 " MB\ntick p50 " + figure(1e6 * r.p50, "%.3g") + " us, p99 " + figure(1e6 * r.p99, "%.3g") +
+                 " us\nforce off " + percent(r.force_small) + " % (small), " + percent(r.force_large) +
+                 " % (large), felt " + percent(r.felt) + " %" + (r.verdict.empty() ? "" : "\n" + r.verdict) +
+                 (r.remark.empty() ? "" : "\n" + r.remark));
+}
+
+/// Error over latency, both logarithmic, with the front of what nothing beats.
+class Plot {
+ public:
+  Plot(const std::vector<Row>& rows, double Row::*error) : rows_(rows), error_(error) {
+    for (const Row& r : rows) {
+      if (!(r.p99 > 0.0) || !std::isfinite(r.p99) || !std::isfinite(r.*error) || !(r.*error > 0.0)) continue;
+      low_x_ = std::min(low_x_, std::log10(r.p99));
+      high_x_ = std::max(high_x_, std::log10(r.p99));
+      low_y_ = std::min(low_y_, std::log10(r.*error));
+      high_y_ = std::max(high_y_, std::log10(std::min(r.*error, 10.0)));
+    }
+    low_x_ = std::floor(low_x_ - 0.1);
+    high_x_ = std::ceil(high_x_ + 0.1);
+    low_y_ = std::floor(2.0 * low_y_ - 0.1) / 2.0;
+    high_y_ = std::ceil(2.0 * high_y_ + 0.1) / 2.0;
+  }
+
+  void write(std::ostream& out, const char* title, double budget, double floor) const {
+    out << "<figure><figcaption>Force error, " << title << "</figcaption>\n<svg viewBox='0 0 " << width << ' ' << height
+        << "' role='img'>\n";
+    grid(out);
+    line(out, x(budget), top, x(budget), bottom, "stroke='#c33' stroke-dasharray='5 4'");
+    text(out, x(budget) + 4, top + 12, "budget", "fill='#c33'");
+    if (floor > 0.0 && std::log10(floor) > low_y_) {
+      line(out, left, y(floor), right, y(floor), "stroke='#999' stroke-dasharray='2 3'");
+      text(out, left + 4, y(floor) - 4, "doubt of the reference", "fill='#777'");
+    }
+    out << "<polyline fill='none' stroke='#222' stroke-width='1.2' points='";
+    double last = top;
+    for (const MeasuredComposition& m : trade_off_of(rows_, error_, false).front()) {
+      out << x(m.latency) << ',' << last << ' ' << x(m.latency) << ',' << y(m.error) << ' ';
+      last = y(m.error);
+    }
+    out << right << ',' << last << "'/>\n";
+    for (const Row& r : rows_) point(out, r);
+    out << "</svg></figure>\n";
+  }
+
+ private:
+  static constexpr double width = 860, height = 460, left = 70, right = 840, top = 15, bottom = 410;
+
+  double x(double seconds) const {
+    return left + (right - left) * std::clamp((std::log10(seconds) - low_x_) / (high_x_ - low_x_), 0.0, 1.0);
+  }
+  double y(double error) const {
+    return bottom -
+           (bottom - top) * std::clamp((std::log10(std::max(error, 1e-12)) - low_y_) / (high_y_ - low_y_), 0.0, 1.0);
+  }
+  static void line(std::ostream& out, double x1, double y1, double x2, double y2, const char* style) {
+    out << "<line x1='" << x1 << "' y1='" << y1 << "' x2='" << x2 << "' y2='" << y2 << "' " << style << "/>\n";
+  }
+  static void text(std::ostream& out, double x, double y, const std::string& what, const char* style) {
+    out << "<text x='" << x << "' y='" << y << "' font-size='11' " << style << '>' << what << "</text>\n";
+  }
+  void grid(std::ostream& out) const {
+    for (double e = low_x_; e <= high_x_ + 1e-9; e += 1.0) {
+      const double at = x(std::pow(10.0, e));
+      line(out, at, top, at, bottom, "stroke='#e4e4e4'");
+      text(out, at, bottom + 16, figure(std::pow(10.0, e + 6.0), "%g"), "text-anchor='middle' fill='#555'");
+    }
+    for (double e = low_y_; e <= high_y_ + 1e-9; e += 0.5) {
+      const double at = y(std::pow(10.0, e));
+      line(out, left, at, right, at, "stroke='#e4e4e4'");
+      text(out, left - 6, at + 4, percent(std::pow(10.0, e)) + " %", "text-anchor='end' fill='#555'");
+    }
+    text(out, 0.5 * (left + right), bottom + 36, "p99 of a tick [us]", "text-anchor='middle' fill='#333'");
+  }
+  void point(std::ostream& out, const Row& r) const {
+    if (!std::isfinite(r.p99) || !std::isfinite(r.*error_)) return;
+    const double cx = x(r.p99), cy = y(r.*error_);
+    const std::string look = std::string("fill='") + (is_good(r) ? colour_of(r.family) : "white") + "' stroke='" +
+                             (is_good(r) ? "white" : "#c00") + "'";
+    if (r.family == "baseline")
+      out << "<rect x='" << cx - 5 << "' y='" << cy - 5 << "' width='10' height='10' " << look << '>';
+    else
+      out << "<circle cx='" << cx << "' cy='" << cy << "' r='6' " << look << '>';
+    out << "<title>" << hover(r) << "</title>" << (r.family == "baseline" ? "</rect>\n" : "</circle>\n");
+  }
+
+  const std::vector<Row>& rows_;
+  double Row::*error_;
+  double low_x_ = infinity, high_x_ = -infinity, low_y_ = infinity, high_y_ = -infinity;
+};
+
+void write_table(std::ostream& out, const std::vector<Row>& rows) {
+  out << "<table><thead><tr><th>composition</th><th>nodes</th><th>kept dofs</th><th>set-up [ms]</th><th>memory "
+         "[MB]</th>"
+         "<th>tick p50 [us]</th><th>p99 [us]</th><th>update p99 [ms]</th><th>force small [%]</th><th>large [%]</th>"
+         "<th>felt [%]</th><th>moved small [%]</th><th>large [%]</th><th>volume small [%]</th><th>large [%]</th>"
+         "<th>energy in 0.1 s [%]</th><th>own check</th><th>remark</th></tr></thead><tbody>\n";
+  for (const Row& r : rows) {
+    out << "<tr" << (is_good(r) ? "" : " class='bad'") << "><td style='border-left:6px solid " << colour_of(r.family)
+        << "'>" << escaped(r.name()) << "</td>";
+    for (const std::string& cell :
+         {std::to_string(r.nodes), r.kept_dofs > 0 ? std::to_string(r.kept_dofs) : "", figure(1e3 * r.setup, "%.3g"),
+          figure(1e-6 * r.bytes, "%.3g"), figure(1e6 * r.p50, "%.3g"), figure(1e6 * r.p99, "%.3g"),
+          r.update_p99 > 0.0 ? figure(1e3 * r.update_p99, "%.3g") : "", percent(r.force_small), percent(r.force_large),
+          percent(r.felt), percent(r.moved_small), percent(r.moved_large), percent(r.volume_small),
+          percent(r.volume_large), percent(r.drift), figure(r.own_error, "%.1e"),
+          escaped(r.verdict + (r.verdict.empty() || r.remark.empty() ? "" : "; ") + r.remark)})
+      out << "<td>" << cell << "</td>";
+    out << "</tr>\n";
+  }
+  out << "</tbody></table>\n";
+}
+
+}  // namespace
+
+void write_csv(const std::vector<Row>& rows, const std::string& path) {
+  std::ofstream out(path);
+  out << "family,element,mesh,kinematics,solver,kept,scalar,work,own_core,nodes,kept_dofs,setup_s,peak_bytes,tick_p50_"
+         "s,"
+         "tick_p99_s,update_p99_s,update_period_s,force_error_small,force_error_large,felt_error,displacement_error_"
+         "small,"
+         "displacement_error_large,volume_error_small,volume_error_large,energy_drift,own_error,verdict,remark\n";
+  for (const Row& r : rows) {
+    for (const std::string* text :
+         {&r.family, &r.element, &r.mesh, &r.kinematics, &r.solver, &r.kept, &r.scalar, &r.work})
+      out << '"' << *text << "\",";
+    out << (r.own_core ? 1 : 0) << ',' << r.nodes << ',' << r.kept_dofs;
+    for (const double value :
+         {r.setup, r.bytes, r.p50, r.p99, r.update_p99, r.update_period, r.force_small, r.force_large, r.felt,
+          r.moved_small, r.moved_large, r.volume_small, r.volume_large, r.drift, r.own_error})
+      out << ',' << figure(value, "%.6g");
+    out << ",\"" << r.verdict << "\",\"" << r.remark << "\"\n";
+  }
+}
+
+std::string advice(const std::vector<Row>& rows, double budget) {
+  std::string text;
+  for (const auto& [title, error] : measures) {
+    const auto best = trade_off_of(rows, error, true).most_accurate_within(budget);
+    if (!best) continue;
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.name() == best->name; });
+    text += "// force " + std::string(title) + ": " + percent(best->error) + " % off, p99 " +
+            figure(1e6 * best->latency, "%.3g") + " us, set-up " + figure(1e3 * best->setup_seconds, "%.3g") + " ms" +
+            (row->own_core ? ", a core of its own" : "") + "\n//   mesh " + row->mesh +
+            (row->kept.empty() ? "" : ", touch " + row->kept) + (row->work.empty() ? "" : ", " + row->work) + "\n" +
+            row->paste + "\n";
+  }
+  return text.empty() ? "// nothing measured keeps a budget of " + figure(1e6 * budget, "%.3g") + " us\n" : text;
+}
+
+void write_page(const Bench& bench, const std::vector<Row>& rows, double budget, const std::string& path) {
+  const PressScene& s = bench.scene;
+  const Reference& r = bench.reference;
+  std::ofstream out(path);
+  out << "<!doctype html><html lang='en'><meta charset='utf-8'><title>Speed against accuracy: " << s.name
+      << "</title>\n"
+      << "<style>body{font:14px/1.45 sans-serif;max-width:1200px;margin:2em auto;padding:0 1em;color:#222}"
+         "figure{margin:1.5em 0}figcaption{font-weight:600}table{border-collapse:collapse;font-size:12px}"
+         "th,td{border-bottom:1px solid #ddd;padding:3px 6px;text-align:right}td:first-child,th:first-child,"
+         "td:last-child{text-align:left}tr.bad{background:#fee}pre{background:#f4f4f4;padding:1em;overflow:auto}"
+         "svg text{font-family:sans-serif}svg{width:100%;height:auto}</style>\n<h1>Speed against accuracy: "
+      << s.name << "</h1>\n<p>" << s.balls.size() << " ball" << (s.balls.size() > 1 ? "s" : "") << " of "
+      << figure(2e3 * s.radius, "%.3g") << " mm, pressed in " << figure(1e3 * s.small, "%.3g") << " and "
+      << figure(1e3 * s.large, "%.3g") << " mm and then to and fro. Reference: neo-Hookean, quadratic tetrahedra, "
+      << r.nodes << " nodes, " << figure(r.force(0, s.small).norm(), "%.4g") << " and "
+      << figure(r.force(0, s.large).norm(), "%.4g") << " N; the mesh with edges twice as long is "
+      << percent(r.mesh_error_small) << " and " << percent(r.mesh_error_large)
+      << " % off. Point at a mark for the whole composition; squares are baselines, red rims are rows that failed "
+         "their "
+         "own check.</p>\n";
+  for (const auto& [family, what] : {std::pair{"condensed", "linear, condensed"},
+                                     {"uncondensed", "linear, not condensed"},
+                                     {"moving", "moving tissue under a servo"},
+                                     {"explicit", "explicit steps"},
+                                     {"baseline", "baselines"}})
+    out << "<span style='color:" << colour_of(family) << "'>&#9632; " << what << "</span>&emsp;";
+  for (const auto& [title, error] : measures)
+    Plot(rows, error).write(out, title, budget, error == &Row::force_small ? r.mesh_error_small : r.mesh_error_large);
+  out << "<h2>Within " << figure(1e6 * budget, "%.3g") << " us</h2><pre>" << escaped(advice(rows, budget))
+      << "</pre>\n";
+  write_table(out, rows);
+  out << "<p>Times are processor times of one thread. felt: root mean square of what the device renders a thousand "
+         "times a "
+         "second while the balls move, late ticks and updates included, of the largest force. moved: displacement of "
+         "all "
+         "nodes of the mesh as given. volume: of the volume that the balls press in. energy: what a body that is let "
+         "go "
+         "gains without damping. own check: see the sources of the benchmark.</p></html>\n";
+}
+
+}  // namespace tradeoff

@@ -1,0 +1,200 @@
+// What one writes with Eigen alone: linear tetrahedra on the mesh as given, solved anew in every tick; and the same at
+// its own slow rate, with forces interpolated for the device.
+#include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCholesky>
+
+#include "linear.hpp"
+
+namespace tradeoff {
+namespace {
+
+using Ldlt = Eigen::SimplicialLDLT<SparseMatrix>;
+using Gradients = Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper>;
+
+/// Nodes are kept out of the balls along the normals of the last tick: a solve for each of them, and a small problem
+/// with projected Gauss-Seidel.
+template <class Solver>
+class EveryTick : public Contender {
+ public:
+  explicit EveryTick(const Bench& bench) : bench_(bench) {
+    const Mesh<Tet4>& mesh = bench.scene.mesh;
+    conditions_ = resolve_essential(mesh, extract_boundary<Tet4>(mesh), bench.scene.scene(near_group));
+    const SparseMatrix lower =
+        free_matrix(assemble_stiffness<Tet4>(make_body(mesh, bench.scene.materials), {}), conditions_);
+    stiffness_ = lower.selfadjointView<Eigen::Lower>();
+    if constexpr (std::same_as<Solver, Gradients>) solver_.setTolerance(1e-4);
+    solver_.compute(stiffness_);
+    if (solver_.info() != Eigen::Success) raise(SetupErrorKind::not_positive_definite, "Eigen's solver gave up");
+    for (const NodeId node : mesh.find_group(near_group)->nodes)
+      if (!conditions_.is_constrained(3 * Index{node})) nodes_.push_back(node);
+    columns_.assign(nodes_.size(), VectorX::Zero(stiffness_.rows()));
+    forces_.assign(bench.scene.balls.size(), Vector3::Zero());
+    u_ = VectorX::Zero(stiffness_.rows());
+  }
+
+  std::span<const Vector3> tick(std::span<const Vector3> centres) override {
+    find_rows(centres);
+    for (Point& row : rows_) {
+      VectorX load = VectorX::Zero(u_.size());
+      load.segment<3>(row.at) = row.normal;
+      if constexpr (std::same_as<Solver, Gradients>)
+        columns_[row.node] = solver_.solveWithGuess(load, columns_[row.node]);
+      else
+        columns_[row.node] = solver_.solve(load);
+    }
+    MatrixX w(rows_.size(), rows_.size());
+    VectorX gap(rows_.size());
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      gap[static_cast<Index>(i)] = rows_[i].gap;
+      for (std::size_t j = 0; j < rows_.size(); ++j)
+        w(static_cast<Index>(i), static_cast<Index>(j)) =
+            rows_[i].normal.dot(columns_[rows_[j].node].template segment<3>(rows_[i].at));
+    }
+    const VectorX lambda = push(w, gap);
+    u_.setZero();
+    std::ranges::fill(forces_, Vector3::Zero());
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      u_ += lambda[static_cast<Index>(i)] * columns_[rows_[i].node];
+      forces_[rows_[i].ball] -= lambda[static_cast<Index>(i)] * rows_[i].normal;
+    }
+    return forces_;
+  }
+  VectorX displacement() override {
+    VectorX u = VectorX::Zero(conditions_.dof_count());
+    conditions_.scatter(u_, u);
+    return u;
+  }
+  /// K u against the forces of the balls.
+  double own_error() override {
+    VectorX left = stiffness_ * u_;
+    double size = 0.0;
+    Vector3 sum = Vector3::Zero();
+    for (std::size_t b = 0; b < forces_.size(); ++b) {
+      sum += forces_[b];
+      size += forces_[b].norm();
+    }
+    for (const Point& row : rows_)
+      for (int c = 0; c < 3; ++c) {
+        sum[c] += left[row.at + c];
+        left[row.at + c] = 0.0;
+      }
+    return (sum.norm() + left.norm()) / size;
+  }
+  Index nodes() const override { return bench_.scene.mesh.node_count(); }
+
+ private:
+  struct Point {
+    std::size_t node, ball;
+    Index at;
+    Vector3 normal;
+    double gap;
+  };
+
+  /// Nodes in or near a ball as they lie now; gap [m] is that without any force, along the present normal.
+  void find_rows(std::span<const Vector3> centres) {
+    rows_.clear();
+    for (std::size_t k = 0; k < nodes_.size(); ++k)
+      for (std::size_t b = 0; b < centres.size(); ++b) {
+        const Index at = conditions_.free_index[static_cast<std::size_t>(3 * Index{nodes_[k]})];
+        const Vector3 moved = u_.segment<3>(at), off = bench_.scene.mesh.position(nodes_[k]) + moved - centres[b];
+        const double distance = off.norm();
+        if (distance > bench_.scene.radius + 1e-3 || distance == 0.0) continue;
+        const Vector3 normal = off / distance;
+        rows_.push_back({k, b, at, normal, distance - bench_.scene.radius - normal.dot(moved)});
+      }
+  }
+  /// lambda >= 0, gap + W lambda >= 0, one of them zero.
+  static VectorX push(const MatrixX& w, const VectorX& gap) {
+    VectorX lambda = VectorX::Zero(gap.size());
+    for (int sweep = 0; sweep < 500; ++sweep) {
+      double change = 0.0;
+      for (Index i = 0; i < gap.size(); ++i) {
+        const double next = std::max(0.0, lambda[i] - (gap[i] + w.row(i).dot(lambda)) / w(i, i));
+        change = std::max(change, std::abs(next - lambda[i]));
+        lambda[i] = next;
+      }
+      if (change <= 1e-6 * lambda.maxCoeff()) break;
+    }
+    return lambda;
+  }
+
+  const Bench& bench_;
+  EssentialConditions conditions_;
+  SparseMatrix stiffness_;
+  Solver solver_;
+  std::vector<NodeId> nodes_;
+  std::vector<VectorX> columns_;
+  std::vector<Point> rows_;
+  std::vector<Vector3> forces_;
+  VectorX u_;
+};
+
+/// A slow model in a thread of its own, and for the device the way from its last force but one to its last (Fagerholt
+/// 2005, chapter 1): smooth, and late by an update.
+class Interpolated : public Contender {
+ public:
+  Interpolated(std::unique_ptr<Contender> slow, double period, std::size_t balls)
+      : slow_(std::move(slow)), period_(period), from_(balls, Vector3::Zero()), to_(from_), forces_(from_) {}
+
+  std::span<const Vector3> tick(std::span<const Vector3> centres) override {
+    centres_.assign(centres.begin(), centres.end());
+    ++since_;
+    const double t = std::min(1.0, since_ / std::max(1.0, gap_));
+    for (std::size_t b = 0; b < forces_.size(); ++b) forces_[b] = (1.0 - t) * from_[b] + t * to_[b];
+    return forces_;
+  }
+  double update_period() const override { return period_; }
+  void update() override {
+    if (centres_.empty()) return;
+    const auto fresh = slow_->tick(centres_);
+    from_ = forces_;
+    to_.assign(fresh.begin(), fresh.end());
+    gap_ = since_;
+    since_ = 0.0;
+  }
+  VectorX displacement() override { return slow_->displacement(); }
+  double own_error() override { return slow_->own_error(); }
+  Index nodes() const override { return slow_->nodes(); }
+
+ private:
+  std::unique_ptr<Contender> slow_;
+  double period_, gap_ = 1.0, since_ = 0.0;  // in ticks
+  std::vector<Vector3> centres_, from_, to_, forces_;
+};
+
+Entry plain_entry(const std::string& solver, double allowed) {
+  Entry entry;
+  Description& d = entry.description;
+  d.family = "baseline";
+  d.element = "Tet4";
+  d.mesh = mesh_name("given");
+  d.kinematics = "linear";
+  d.solver = solver;
+  d.scalar = "double";
+  d.allowed = allowed;
+  return entry;
+}
+
+}  // namespace
+
+void add_plain_eigen(const Bench& bench, std::vector<Entry>& entries) {
+  Entry entry = plain_entry("Eigen SimplicialLDLT, solved every tick", 1e-3);
+  entry.make = [&bench] { return std::make_unique<EveryTick<Ldlt>>(bench); };
+  entries.push_back(entry);
+  entry = plain_entry("Eigen ConjugateGradient 1e-4, every tick", 0.05);
+  entry.make = [&bench] { return std::make_unique<EveryTick<Gradients>>(bench); };
+  entries.push_back(entry);
+  entry = plain_entry("Eigen SimplicialLDLT, 30 Hz", 1e-3);
+  entry.description.work = "forces interpolated";
+  entry.description.own_core = true;
+  entry.make = [&bench] {
+    return std::make_unique<Interpolated>(std::make_unique<EveryTick<Ldlt>>(bench), 1.0 / 30.0,
+                                          bench.scene.balls.size());
+  };
+  entries.push_back(entry);
+}
+
+}  // namespace tradeoff

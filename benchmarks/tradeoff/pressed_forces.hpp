@@ -1,0 +1,131 @@
+// Balls pressed into a body, as a stiff potential: for references, which need no tick.
+#pragma once
+
+#include <palpate/model/equilibrium.hpp>
+
+#include <memory>
+
+namespace tradeoff {
+
+using namespace palpate;
+
+/// The forces of a body, and of balls that push its nodes out: k/2 depth^2 for every node inside a ball.
+class PressedForces : public ElasticForces {
+ public:
+  /// `nodes` may be pressed; `stiffness` [N/m] of each.
+  PressedForces(std::unique_ptr<ElasticForces> body, std::vector<NodeId> nodes, std::vector<Vector3> positions,
+                double radius, double stiffness)
+      : body_(std::move(body)),
+        nodes_(std::move(nodes)),
+        positions_(std::move(positions)),
+        radius_(radius),
+        stiffness_(stiffness) {}
+
+  void place(std::vector<Vector3> centres) { centres_ = std::move(centres); }
+  /// Makes the balls softer than they are, for a while.
+  void soften(double share) noexcept { share_ = share; }
+  /// Of the body on every ball [N].
+  std::vector<Vector3> forces_on_balls(const VectorX& u) const {
+    std::vector<Vector3> forces(centres_.size(), Vector3::Zero());
+    for_each_pressed(u, [&](std::size_t ball, NodeId, double depth, const Vector3& out) {
+      forces[ball] -= stiffness() * depth * out;
+    });
+    return forces;
+  }
+  /// How deep a node is in a ball [m].
+  double largest_depth(const VectorX& u) const {
+    double largest = 0.0;
+    for_each_pressed(u, [&](std::size_t, NodeId, double depth, const Vector3&) { largest = std::max(largest, depth); });
+    return largest;
+  }
+  const ElasticForces& body() const noexcept { return *body_; }
+
+  Index size() const noexcept override { return body_->size(); }
+  double energy(const VectorX& u) const noexcept override {
+    double sum = body_->energy(u);
+    for_each_pressed(
+        u, [&](std::size_t, NodeId, double depth, const Vector3&) { sum += 0.5 * stiffness() * depth * depth; });
+    return sum;
+  }
+  DeformationReport force(const VectorX& u, VectorX& f) const noexcept override {
+    const DeformationReport report = body_->force(u, f);
+    for_each_pressed(u, [&](std::size_t, NodeId node, double depth, const Vector3& out) {
+      f.segment<3>(3 * Index{node}) -= stiffness() * depth * out;
+    });
+    return report;
+  }
+  /// Without the part that turns with the node, which is not positive and small where depths are.
+  void tangent(const VectorX& u, BlockMatrix& k) const noexcept override {
+    body_->tangent(u, k);
+    for_each_pressed(u, [&](std::size_t, NodeId node, double, const Vector3& out) {
+      k.block(k.pattern().diagonal(node)) += stiffness() * out * out.transpose();
+    });
+  }
+  double probe_length() const noexcept override { return body_->probe_length(); }
+
+ private:
+  double stiffness() const noexcept { return share_ * stiffness_; }
+  template <class Visit>
+  void for_each_pressed(const VectorX& u, Visit visit) const {
+    for (const NodeId node : nodes_)
+      for (std::size_t b = 0; b < centres_.size(); ++b) {
+        const Vector3 off = positions_[static_cast<std::size_t>(node)] + u.segment<3>(3 * Index{node}) - centres_[b];
+        const double distance = off.norm();
+        if (distance < radius_ && distance > 0.0) visit(b, node, radius_ - distance, Vector3(off / distance));
+      }
+  }
+
+  std::unique_ptr<ElasticForces> body_;
+  std::vector<NodeId> nodes_;
+  std::vector<Vector3> positions_, centres_;
+  double radius_, stiffness_, share_ = 1.0;
+};
+
+/// Bodies in equilibrium with balls in them.
+class PressedEquilibrium {
+ public:
+  PressedEquilibrium(DeformableBody body, std::vector<NodeId> nodes, double radius, double stiffness)
+      : body_(press(std::move(body), std::move(nodes), radius, stiffness, pressed_)) {}
+
+  /// Goes on from where the body is. Throws not_converged.
+  void move_to(std::vector<Vector3> centres) {
+    pressed_->place(std::move(centres));
+    EquilibriumReport report;
+    for (const double share : {0.05, 1.0}) {  // a soft one finds out first which nodes it presses
+      pressed_->soften(share);
+      report = body_.step(
+          0.0, {.newton = {.maximum_iterations = 60, .tolerance = share < 1.0 ? 1e-3 : 1e-6}, .smallest_step = 0.5});
+      iterations += report.iterations;
+    }
+    if (!report.converged || report.deformation.inverted > 0) raise(SetupErrorKind::not_converged, describe(report));
+  }
+  const VectorX& displacement() const noexcept { return body_.displacement(); }
+  std::vector<Vector3> forces_on_balls() const { return pressed_->forces_on_balls(body_.displacement()); }
+  double largest_depth() const { return pressed_->largest_depth(body_.displacement()); }
+  /// Of all supports [N]: what the balls push, they hold.
+  Vector3 support() const {
+    VectorX f(displacement().size());
+    pressed_->body().force(displacement(), f);
+    Vector3 sum = Vector3::Zero();
+    for (Index dof = 0; dof < f.size(); ++dof)
+      if (body_.conditions().is_constrained(dof)) sum[dof % 3] += f[dof];
+    return sum;
+  }
+
+  int iterations = 0;
+
+ private:
+  static DeformableBody press(DeformableBody body, std::vector<NodeId> nodes, double radius, double stiffness,
+                              PressedForces*& pressed) {
+    auto forces =
+        std::make_unique<PressedForces>(std::move(body.elastic), std::move(nodes), body.positions, radius, stiffness);
+    pressed = forces.get();
+    body.elastic = std::move(forces);
+    return body;
+  }
+
+  PressedForces* pressed_ = nullptr;
+  Equilibrium body_;
+};
+
+}  // namespace tradeoff

@@ -1,0 +1,86 @@
+// Cotin's quasi-non-linear elasticity over a linear composition.
+#include <palpate/model/quasi_non_linear.hpp>
+
+#include "linear.hpp"
+
+namespace tradeoff {
+namespace {
+
+/// Curves were measured elsewhere on the same organ; displacements for pictures follow the scale of the force.
+class CotinContender : public Contender {
+ public:
+  using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
+
+  CotinContender(const Bench& bench, const std::string& mesh)
+      : bench_(bench),
+        model_(bench.mesh(mesh), bench.scene.scene(near_group), bench.scene.materials),
+        tissue_(model_, curve(bench.stiffening), curve(bench.stiffening)),
+        felt_(tissue_, bench.scene),
+        u_(3 * model_.mesh().node_count()) {}
+
+  std::span<const Vector3> tick(std::span<const Vector3> centres) override { return felt_.tick(centres); }
+  VectorX displacement() override {
+    // T u(T f), as scale() says
+    std::vector<VertexForce> forces(felt_.vertex_forces().begin(), felt_.vertex_forces().end());
+    for (VertexForce& f : forces) f.force = tissue_.scale() * f.force;
+    model_.displacement_with(forces, u_);
+    for (Index i = 0; i < u_.size() / 3; ++i) u_.segment<3>(3 * i) = (tissue_.scale() * u_.segment<3>(3 * i)).eval();
+    return of_given_nodes(u_, model_.node_map(), bench_.scene.mesh.node_count());
+  }
+  /// How far the pressing nodes are from the ball, as for linear tissue.
+  double own_error() override {
+    double worst = 0.0, largest = 0.0;
+    for (const Contact& c : felt_.servo().contacts()) largest = std::max(largest, c.force);
+    for (const Contact& c : felt_.servo().contacts()) {
+      if (!(c.force > 0.01 * largest)) continue;
+      Vector3 point = Vector3::Zero();
+      for (std::size_t a = 0; a < 3; ++a) {
+        const NodeId node = model_.touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];
+        point += c.weights[a] * (model_.rest_position(node) + u_.segment<3>(3 * Index{node}));
+      }
+      worst = std::max(worst, std::abs((felt_.servo().proxy() - point).norm() - bench_.scene.radius));
+    }
+    return largest > 0.0 ? worst / bench_.scene.small : infinity;
+  }
+  Index nodes() const override { return model_.mesh().node_count(); }
+  Index kept_dofs() const override { return model_.report().kept_dofs; }
+  std::string remark() override { return felt_.remark(); }
+
+ private:
+  static StiffeningCurve curve(const Stiffening& measured) {
+    std::vector<StiffeningCurve::Point> points{{0.0, 1.0}};
+    for (std::size_t i = 0; i < measured.depth.size(); ++i) points.push_back({measured.depth[i], measured.ratio[i]});
+    return StiffeningCurve(points);
+  }
+
+  const Bench& bench_;
+  Model model_;
+  QuasiNonLinear<Model> tissue_;
+  Felt<QuasiNonLinear<Model>> felt_;
+  VectorX u_;
+};
+
+}  // namespace
+
+void add_quasi_non_linear(const Bench& bench, std::vector<Entry>& entries) {
+  if (bench.stiffening.depth.empty()) return;  // measured for one ball
+  for (const std::string mesh : {"given", "near"}) {
+    Entry entry;
+    Description& d = entry.description;
+    d.family = "condensed";
+    d.element = "Smoothed<Tet4>";
+    d.mesh = mesh_name(mesh);
+    d.kinematics = "quasi-non-linear (Cotin)";
+    d.solver = "Condensed<SelectiveInverse>";
+    d.kept = kept_name(near_group);
+    d.scalar = "double";
+    d.allowed = 2e-2;
+    d.paste =
+        "using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;\n"
+        "using Tissue = QuasiNonLinear<Model>;   // with a StiffeningCurve measured on the tissue";
+    entry.make = [&bench, mesh] { return std::make_unique<CotinContender>(bench, mesh); };
+    entries.push_back(std::move(entry));
+  }
+}
+
+}  // namespace tradeoff

@@ -1,0 +1,36 @@
+// What every composition is measured against.
+#pragma once
+
+#include "scene.hpp"
+
+namespace tradeoff {
+
+/// Equilibria of the scene at rising depths.
+struct Reference {
+  struct Point {
+    double depth = 0.0;
+    std::vector<Vector3> force;  ///< on every ball [N]
+  };
+  std::vector<Point> curve;                        ///< from depth 0 on
+  VectorX displacement_small, displacement_large;  ///< of the nodes of the mesh as given [m]
+  double volume_small = 0.0, volume_large = 0.0;   ///< of the body [m^3]
+  Index nodes = 0;
+  double seconds = 0.0;
+  double mesh_error_small = 0.0, mesh_error_large = 0.0;  ///< how far the force is from that of the next coarser mesh
+
+  /// Of ball b at a depth, between the points of the curve by a power law.
+  Vector3 force(std::size_t ball, double depth) const;
+};
+
+/// Neo-Hookean tissue in quadratic tetrahedra, small ones where the balls press, solved to the end. `edge`: of the
+/// elements under the balls, in radii. Throws SetupError where the body or the answer is not as it must be.
+Reference make_reference(const PressScene& scene, double edge);
+
+/// How many times the force of linear tissue the neo-Hookean one takes, by depth [m].
+struct Stiffening {
+  std::vector<double> depth, ratio;
+};
+/// Measured with one ball on the mesh as given, two radii beside the place where the scene presses.
+Stiffening measure_stiffening(const PressScene& scene);
+
+}  // namespace tradeoff

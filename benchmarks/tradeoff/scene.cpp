@@ -1,0 +1,318 @@
+#include "scene.hpp"
+
+#include <palpate/contact/contact_surface.hpp>
+#include <palpate/io/read_mesh.hpp>
+#include <palpate/mesh/selection.hpp>
+
+#include <queue>
+#include <set>
+#include <unordered_map>
+
+namespace tradeoff {
+namespace {
+
+ContactSurface surface_of(const Mesh<Tet4>& mesh) {
+  std::vector<Triangle> triangles;
+  for (const auto& t : boundary_triangles(mesh)) triangles.push_back({t[0], t[1], t[2]});
+  return {mesh.positions, std::move(triangles)};
+}
+
+/// The ball that comes along `towards` and touches at `point`, as far out as it just touches the whole surface.
+Ball ball_at(const ContactSurface& surface, const Vector3& point, const Vector3& towards, double radius) {
+  Ball ball{.touching = Vector3::Zero(), .towards = towards.normalized(), .point = point};
+  double in = 0.0, out = 3.0 * radius;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (in + out);
+    (surface.closest(point - middle * ball.towards).distance < radius ? in : out) = middle;
+  }
+  ball.touching = point - out * ball.towards;
+  return ball;
+}
+
+/// Mean outward normal of the triangles round a point, by area.
+Vector3 outward_at(const Mesh<Tet4>& mesh, const std::vector<std::array<NodeId, 3>>& triangles, const Vector3& point,
+                   double within) {
+  Vector3 sum = Vector3::Zero();
+  for (const auto& t : triangles) {
+    const Vector3 &a = mesh.position(t[0]), &b = mesh.position(t[1]), &c = mesh.position(t[2]);
+    if (((a + b + c) / 3.0 - point).norm() < within) sum += (b - a).cross(c - a);
+  }
+  return sum.normalized();
+}
+
+NodeId nearest(const Mesh<Tet4>& mesh, const std::vector<NodeId>& nodes, const Vector3& to) {
+  return *std::ranges::min_element(nodes, {}, [&](NodeId i) { return (mesh.position(i) - to).squaredNorm(); });
+}
+
+double mean_edge(const Mesh<Tet4>& mesh, const std::vector<BoundaryFace<Tet4>>& faces) {
+  double sum = 0.0;
+  for (const auto& f : faces)
+    for (std::size_t i = 0; i < 3; ++i) sum += (mesh.position(f.nodes[i]) - mesh.position(f.nodes[(i + 1) % 3])).norm();
+  return sum / (3.0 * static_cast<double>(faces.size()));
+}
+
+void add_faces(Mesh<Tet4>& mesh, const std::string& name, const std::vector<BoundaryFace<Tet4>>& faces) {
+  Group& group = mesh.groups.get_or_add(name, 2);
+  for (const auto& f : faces) {
+    group.faces.push_back({f.nodes.begin(), f.nodes.end()});
+    group.nodes.insert(group.nodes.end(), f.nodes.begin(), f.nodes.end());
+  }
+  mesh.groups.tidy();
+}
+
+/// The tip of the thin lobe and a point of the surface `inward` of it, on its upper (+1) or lower (-1) side.
+Vector3 lobe_point(const Mesh<Tet4>& mesh, const std::vector<NodeId>& surface, const ContactSurface& contact,
+                   double inward, double side) {
+  const NodeId tip = *std::ranges::max_element(surface, {}, [&](NodeId i) { return mesh.position(i).x(); });
+  const Vector3 at = mesh.position(tip) - inward * Vector3::UnitX();
+  return contact.closest(at + side * 0.05 * Vector3::UnitZ()).point;
+}
+
+std::vector<Ball> make_balls(const PressScene& scene, const std::string& kind, const std::vector<NodeId>& touched,
+                             const std::vector<NodeId>& surface) {
+  const Mesh<Tet4>& mesh = scene.mesh;
+  const ContactSurface contact = surface_of(mesh);
+  if (kind == "retract")
+    return {ball_at(contact, lobe_point(mesh, surface, contact, 0.028, -1.0), Vector3::UnitZ(), scene.radius)};
+  if (kind == "grasp")
+    return {ball_at(contact, lobe_point(mesh, surface, contact, 0.028, 1.0), -Vector3::UnitZ(), scene.radius),
+            ball_at(contact, lobe_point(mesh, surface, contact, 0.028, -1.0), Vector3::UnitZ(), scene.radius)};
+  Vector3 middle = Vector3::Zero();
+  for (const NodeId i : touched) middle += mesh.position(i) / static_cast<double>(touched.size());
+  const Vector3 point = mesh.position(nearest(mesh, touched, middle));
+  return {ball_along_normal(mesh, point, scene.radius)};
+}
+
+/// The faces that a ball may come to, and their groups.
+void add_touchable(PressScene& scene, const std::vector<BoundaryFace<Tet4>>& boundary,
+                   const std::vector<BoundaryFace<Tet4>>& wide) {
+  std::vector<BoundaryFace<Tet4>> near;
+  for (const auto& f : boundary)
+    if (std::ranges::any_of(scene.balls, [&](const Ball& b) {
+          return std::ranges::any_of(f.nodes,
+                                     [&](NodeId i) { return (scene.mesh.position(i) - b.point).norm() < scene.reach; });
+        }))
+      near.push_back(f);
+  add_faces(scene.mesh, near_group, near);
+  std::vector<BoundaryFace<Tet4>> both = near;
+  both.insert(both.end(), wide.begin(), wide.end());
+  std::ranges::sort(both, {}, [](const auto& f) { return f.key(); });
+  both.erase(std::unique(both.begin(), both.end(), [](const auto& a, const auto& b) { return a.key() == b.key(); }),
+             both.end());
+  add_faces(scene.mesh, wide_group, both);
+}
+
+}  // namespace
+
+std::vector<std::array<NodeId, 3>> boundary_triangles(const Mesh<Tet4>& mesh) {
+  std::vector<std::array<NodeId, 3>> triangles;
+  for (const auto& f : extract_boundary<Tet4>(mesh)) triangles.push_back({f.nodes[0], f.nodes[1], f.nodes[2]});
+  return triangles;
+}
+
+Ball ball_along_normal(const Mesh<Tet4>& mesh, const Vector3& point, double radius) {
+  return ball_at(surface_of(mesh), point, -outward_at(mesh, boundary_triangles(mesh), point, radius), radius);
+}
+
+double volume_of(const Mesh<Tet4>& mesh, const std::vector<std::array<NodeId, 3>>& boundary, const VectorX& u) {
+  const auto at = [&](NodeId i) -> Vector3 { return mesh.position(i) + u.segment<3>(3 * Index{i}); };
+  double volume = 0.0;
+  for (const auto& t : boundary) volume += at(t[0]).dot(at(t[1]).cross(at(t[2]))) / 6.0;
+  return volume;
+}
+
+PressScene make_scene(const SceneOptions& options) {
+  const bool organ = options.mesh.empty();
+  if (!organ && options.kind != "palpate")
+    raise(SetupErrorKind::bad_argument, "the scene '" + options.kind + "' knows the organ of palpate only",
+          "Give no mesh, or --scene palpate");
+  PressScene scene;
+  scene.name = options.kind;
+  scene.mesh = io::read_mesh<Tet4>(organ ? PALPATE_BENCH_DATA "/organ.msh" : options.mesh);
+  const std::string held = organ ? "ligament" : options.held, touched = organ ? "front" : options.touched;
+  const auto boundary = extract_boundary<Tet4>(scene.mesh);
+  if (held.empty() || touched.empty()) {
+    std::string known;
+    for (const Group& g : scene.mesh.groups.all()) known += " '" + g.name + "'";
+    raise(SetupErrorKind::bad_argument, "what is held and what may be touched?",
+          "Give --fix <group> --touch <group>; the mesh has" + (known.empty() ? " none" : known));
+  }
+  const auto wide =
+      resolve_faces(scene.mesh, boundary, held == touched ? Selection(std::string(surface_group)) : touched);
+  const auto touched_nodes = resolve_nodes(scene.mesh, boundary, touched);
+  const auto held_nodes = resolve_nodes(scene.mesh, boundary, held);
+  std::vector<BoundaryFace<Tet4>> held_faces;
+  for (const auto& f : boundary)
+    if (std::ranges::all_of(f.nodes, [&](NodeId i) { return std::ranges::binary_search(held_nodes, i); }))
+      held_faces.push_back(f);
+
+  const LinearElastic tissue{
+      .youngs_modulus = options.youngs_modulus, .poisson_ratio = options.poisson_ratio, .density = options.density};
+  for (const std::string& region : scene.mesh.region_names) {
+    LinearElastic law = tissue;
+    if (organ && region == "lesion" && options.kind == "palpate") law.youngs_modulus *= 10.0;
+    scene.materials.push_back({region, law});
+  }
+  // A ball that facets of this mesh can still resolve (docs/contact.md), pressed by four fifths of its radius.
+  scene.radius = 2.4 * mean_edge(scene.mesh, wide);
+  if (organ) scene.radius = 0.010;
+  scene.small = 0.1 * scene.radius;
+  scene.large = 0.8 * scene.radius;
+  if (options.kind == "retract") {
+    scene.small = 0.2 * scene.radius;
+    scene.large = 2.0 * scene.radius;
+    scene.speed = 0.05;
+  } else if (options.kind == "grasp") {
+    scene.large = 0.4 * scene.radius;
+  }
+  scene.reach = options.kind == "retract" ? 2.4 * scene.radius : 1.8 * scene.radius;
+  scene.balls = make_balls(scene, options.kind, touched_nodes, nodes_of(boundary));
+  scene.mesh.groups = {};
+  if (held_faces.empty())
+    scene.mesh.groups.get_or_add(held_group, 0).nodes = held_nodes;
+  else
+    add_faces(scene.mesh, held_group, held_faces);
+  add_touchable(scene, boundary, wide);
+  scene.mesh.groups.get_or_add(std::string(surface_group), 2);
+  scene.mesh.groups.all().pop_back();  // found by its name alone
+  return scene;
+}
+
+namespace {
+
+/// Tetrahedra that are cut in two at an edge, with all others round it, so that neighbours stay conforming.
+class Bisection {
+ public:
+  explicit Bisection(const Mesh<Tet4>& mesh) : mesh_(mesh) {
+    mesh_.regions.resize(mesh.elements.size(), 0);
+    for (std::size_t e = 0; e < mesh_.elements.size(); ++e) enter(e);
+  }
+
+  /// Cuts edges longer than wanted(middle), the longest first.
+  template <class Wanted>
+  void refine(Wanted wanted) {
+    using Item = std::pair<double, Edge>;
+    std::priority_queue<Item> queue;
+    const auto push = [&](const Edge& e) {
+      if (const double length = length_of(e); length > wanted(middle_of(e))) queue.push({length, e});
+    };
+    for (const auto& [edge, around] : around_) push(edge);
+    while (!queue.empty()) {
+      const Edge wish = queue.top().second;
+      queue.pop();
+      while (around_.contains(wish)) {
+        Edge edge = wish;  // towards the longest edge of all elements round it (Rivara's propagation path)
+        for (Edge longer = longest_round(edge); longer != edge; longer = longest_round(edge)) edge = longer;
+        for (const Edge& fresh : cut(edge)) push(fresh);
+      }
+    }
+  }
+
+  /// Groups of faces are cut along.
+  Mesh<Tet4> take(const Mesh<Tet4>& coarse) {
+    mesh_.groups = {};
+    for (const Group& g : coarse.groups.all()) {
+      Group& fine = mesh_.groups.get_or_add(g.name, g.dimension);
+      fine.nodes = g.nodes;
+      for (const auto& face : g.faces) cut_face({face[0], face[1], face[2]}, fine);
+    }
+    mesh_.groups.tidy();
+    return std::move(mesh_);
+  }
+
+ private:
+  using Edge = std::pair<NodeId, NodeId>;
+  struct Hash {
+    std::size_t operator()(const Edge& e) const noexcept {
+      return std::hash<std::uint64_t>()((static_cast<std::uint64_t>(e.first) << 32) ^
+                                        static_cast<std::uint64_t>(e.second));
+    }
+  };
+  static Edge edge_of(NodeId a, NodeId b) { return std::minmax(a, b); }
+  double length_of(const Edge& e) const { return (mesh_.position(e.first) - mesh_.position(e.second)).norm(); }
+  Vector3 middle_of(const Edge& e) const { return 0.5 * (mesh_.position(e.first) + mesh_.position(e.second)); }
+
+  template <class Visit>
+  void for_each_edge(std::size_t e, Visit visit) const {
+    const auto nodes = mesh_.elements[e];
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t b = a + 1; b < 4; ++b) visit(edge_of(nodes[a], nodes[b]));
+  }
+  void enter(std::size_t e) {
+    for_each_edge(e, [&](const Edge& edge) { around_[edge].insert(e); });
+  }
+  void leave(std::size_t e) {
+    for_each_edge(e, [&](const Edge& edge) {
+      const auto it = around_.find(edge);
+      it->second.erase(e);
+      if (it->second.empty()) around_.erase(it);
+    });
+  }
+  Edge longest_round(const Edge& edge) const {
+    std::pair<double, Edge> longest{length_of(edge) * (1.0 + 1e-9), edge};
+    for (const std::size_t e : around_.at(edge))
+      for_each_edge(e, [&](const Edge& other) { longest = std::max(longest, {length_of(other), other}); });
+    return longest.second;
+  }
+  std::vector<Edge> cut(const Edge& edge) {
+    const auto middle = static_cast<NodeId>(mesh_.positions.size());
+    mesh_.positions.push_back(middle_of(edge));
+    middles_[edge] = middle;
+    std::set<Edge> fresh;
+    const std::set<std::size_t> around = around_.at(edge);
+    for (const std::size_t e : around) {
+      leave(e);
+      auto other = mesh_.elements[e];
+      for (NodeId& n : mesh_.elements[e])
+        if (n == edge.first) n = middle;
+      for (NodeId& n : other)
+        if (n == edge.second) n = middle;
+      mesh_.elements.push_back(other);
+      mesh_.regions.push_back(mesh_.regions[e]);
+      for (const std::size_t part : {e, mesh_.elements.size() - 1}) {
+        enter(part);
+        for_each_edge(part, [&](const Edge& x) {
+          if (x.first == middle || x.second == middle) fresh.insert(x);
+        });
+      }
+    }
+    return {fresh.begin(), fresh.end()};
+  }
+  void cut_face(const std::array<NodeId, 3>& face, Group& group) const {
+    // Several edges of a face may have been cut: the one that was cut first has the smallest middle.
+    NodeId first = -1;
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (const auto it = middles_.find(edge_of(face[i], face[(i + 1) % 3]));
+          it != middles_.end() && (first < 0 || it->second < first)) {
+        first = it->second;
+        at = i;
+      }
+    if (first < 0) {
+      group.faces.push_back({face.begin(), face.end()});
+      return;
+    }
+    group.nodes.push_back(first);
+    const NodeId a = face[at], b = face[(at + 1) % 3], c = face[(at + 2) % 3];
+    cut_face({a, first, c}, group);
+    cut_face({first, b, c}, group);
+  }
+
+  Mesh<Tet4> mesh_;
+  std::unordered_map<Edge, std::set<std::size_t>, Hash> around_;
+  std::unordered_map<Edge, NodeId, Hash> middles_;
+};
+
+}  // namespace
+
+Mesh<Tet4> refine_near(const PressScene& scene, double edge) {
+  Bisection bisection(scene.mesh);
+  bisection.refine([&](const Vector3& p) {
+    double distance = infinity;
+    for (const Ball& b : scene.balls) distance = std::min(distance, (p - b.point).norm());
+    return edge + 0.35 * distance;
+  });
+  return bisection.take(scene.mesh);
+}
+
+}  // namespace tradeoff

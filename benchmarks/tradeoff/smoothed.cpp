@@ -1,0 +1,25 @@
+// Tetrahedra without locking.
+#include "linear.hpp"
+#include "required.hpp"
+
+namespace tradeoff {
+
+void add_smoothed(const Bench& bench, std::vector<Entry>& entries) {
+  using E = Smoothed<Tet4>;
+  const char* name = "Smoothed<Tet4>";
+  const std::string surface(surface_group);
+  for (const std::string& kept : {near_group, wide_group, surface})
+    entries.push_back(
+        linear_entry<E, Condensed<SelectiveInverse>>(bench, name, "Condensed<SelectiveInverse>", "given", kept));
+  for (const char* mesh : {"near", "all"})
+    entries.push_back(
+        linear_entry<E, Condensed<SelectiveInverse>>(bench, name, "Condensed<SelectiveInverse>", mesh, near_group));
+  for (const char* mesh : {"given", "near"})
+    entries.push_back(linear_entry<E, SparseCholesky>(bench, name, "SparseCholesky", mesh, surface));
+}
+
+std::unique_ptr<Contender> make_condensed(const Bench& bench, const std::string& touched) {
+  return std::make_unique<LinearContender<Smoothed<Tet4>, Condensed<SelectiveInverse>>>(bench, "given", touched);
+}
+
+}  // namespace tradeoff

@@ -1,0 +1,32 @@
+// Neo-Hookean tissue that moves by implicit steps with a factor.
+#include <palpate/material/neo_hookean.hpp>
+
+#include "soft.hpp"
+
+namespace tradeoff {
+
+void add_soft(const Bench& bench, std::vector<Entry>& entries) {
+  const auto add = [&]<class E>(const char* element, const char* mesh, double step, int iterations, TimeScheme scheme,
+                                const char* scheme_name) {
+    SoftTissueOptions options;
+    options.step = step;
+    options.motion.newton.maximum_iterations = iterations;
+    options.motion.scheme = scheme;
+    options.motion.mass_damping = drag;
+    const std::string work = number(1e3 * step) + " ms, " + std::to_string(iterations) + " iterations" + scheme_name;
+    entries.push_back(soft_entry<SoftTissue, E, NeoHookean>(
+        bench, element, "neo-Hookean", "SoftTissue", mesh, "double", work, options,
+        "using Tissue = SoftTissue;   // of Mesh<" + std::string(element) + ">, NeoHookean, {.step = " + number(step) +
+            ", .motion = {.mass_damping = " + number(drag) +
+            ", .newton = {.maximum_iterations = " + std::to_string(iterations) + "}}}"));
+  };
+  const TimeScheme euler = TimeScheme::implicit_euler();
+  add.operator()<Tet4>("Tet4", "given", 0.010, 1, euler, "");
+  add.operator()<Tet4>("Tet4", "given", 0.010, 2, euler, "");
+  add.operator()<Tet4>("Tet4", "given", 0.040, 2, euler, "");
+  add.operator()<Tet4>("Tet4", "given", 0.010, 2, TimeScheme::newmark(), ", Newmark");
+  add.operator()<Tet4>("Tet4", "near", 0.040, 2, euler, "");
+  if (bench.full) add.operator()<Tet10>("Tet10", "given", 0.040, 2, euler, "");
+}
+
+}  // namespace tradeoff

@@ -1,0 +1,71 @@
+#!/bin/sh
+# What each policy costs where it is used: seconds to compile, bytes of program, instructions of a tick.
+#   sh measure.sh <source folder> <folder for programs and tiny.csv>
+# Needs g++ or $CXX and Eigen; instructions need perf, else valgrind, else are left out. $EIGEN_INCLUDE: where Eigen is.
+set -eu
+source=$1
+out=$2
+cxx=${CXX:-g++}
+eigen=${EIGEN_INCLUDE:-/usr/include/eigen3}
+mkdir -p "$out"
+
+instructions() {  # <program> <ticks>
+  case $counter in
+    perf) LC_ALL=C perf stat -x, -e instructions:u "$1" "$2" 2>&1 >/dev/null | awk -F, '/instructions/ { print $1 }' ;;
+    valgrind)
+      valgrind --tool=callgrind --callgrind-out-file=/dev/null "$1" "$2" 2>&1 >/dev/null |
+        awk '/Collected/ { print $NF }' ;;
+  esac
+}
+
+cat > "$out/nothing.c" <<'END'
+int main(void) { return 0; }
+END
+${CC:-cc} "$out/nothing.c" -o "$out/nothing"
+counter=none
+if valgrind --version >/dev/null 2>&1; then counter=valgrind; fi
+if perf stat -x, -e instructions:u "$out/nothing" 2>&1 | grep -q '^[0-9][0-9]*,.*instructions'; then counter=perf; fi
+echo "instructions are counted by: $counter"
+
+echo "program,compile_s,bytes,instructions_per_tick,counter,answer" > "$out/tiny.csv"
+failed=0
+row() {  # <name> <macros ...>
+  name=$1
+  shift
+  program=$out/$(echo "$name" | tr -c 'A-Za-z0-9\n' _)
+  # `times` of a shell of its own: its second line is what its children took
+  seconds=$(
+    "$cxx" -std=c++20 -O2 -DNDEBUG "-I$source/include" -isystem "$eigen" "$@" \
+      "$source/benchmarks/tradeoff/tiny/program.cpp" -o "$program" -pthread 2> "$out/messages.txt" || exit 1
+    times > "$out/times.txt"
+    awk -F '[ms ]' 'NR == 2 { print 60 * $1 + $2 }' "$out/times.txt"
+  ) || {
+    cat "$out/messages.txt" >&2
+    echo "\"$name\",,,,,does not compile" >> "$out/tiny.csv"
+    failed=1
+    return 0
+  }
+  strip "$program"
+  bytes=$(wc -c < "$program" | tr -d ' ')
+  answer=$("$program" 1200) || { answer="WRONG: $answer"; failed=1; }
+  per_tick=
+  if [ "$counter" != none ] && [ -n "$answer" ]; then
+    per_tick=$(( ($(instructions "$program" 1200) - $(instructions "$program" 200)) / 1000 ))
+  fi
+  echo "\"$name\",$seconds,$bytes,$per_tick,$counter,\"$answer\"" | tee -a "$out/tiny.csv"
+}
+
+row "a mesh only"
+row "a mesh only, umbrella header" -DTINY_UMBRELLA
+row "Tet4, Condensed<SelectiveInverse>" -DTINY_ELEMENT=Tet4 "-DTINY_SOLVER=Condensed<SelectiveInverse>"
+row "Tet4, Condensed<SelectiveInverse>, umbrella header" -DTINY_UMBRELLA -DTINY_ELEMENT=Tet4 \
+  "-DTINY_SOLVER=Condensed<SelectiveInverse>"
+row "Tet4, Condensed<SelectiveInverseFloat>" -DTINY_ELEMENT=Tet4 "-DTINY_SOLVER=Condensed<SelectiveInverseFloat>"
+row "Smoothed<Tet4>, Condensed<SelectiveInverse>" '-DTINY_ELEMENT_HEADER=<palpate/element/smoothed.hpp>' \
+  "-DTINY_ELEMENT=Smoothed<Tet4>" "-DTINY_SOLVER=Condensed<SelectiveInverse>"
+row "Tet10, Condensed<SelectiveInverse>" '-DTINY_ELEMENT_HEADER=<palpate/element/tet10.hpp>' -DTINY_ELEMENT=Tet10 \
+  -DTINY_PROMOTE "-DTINY_SOLVER=Condensed<SelectiveInverse>"
+row "Tet4, SparseCholesky" -DTINY_ELEMENT=Tet4 -DTINY_SOLVER=SparseCholesky
+row "Tet4, ConjugateGradient" -DTINY_ELEMENT=Tet4 -DTINY_SOLVER=ConjugateGradient
+row "Tet4, neo-Hookean SoftTissue" -DTINY_SOFT
+exit $failed
