@@ -16,8 +16,7 @@ template <TissueModel Tissue>
 class Felt {
  public:
   Felt(Tissue& tissue, const PressScene& scene)
-      : servo_(tissue, std::vector<SphereTool>(scene.balls.size(), SphereTool{scene.radius}),
-               {.coupling_stiffness = infinity}),
+      : servo_(tissue, std::vector<SphereTool>(scene.balls.size(), SphereTool{scene.radius}), uncoupled()),
         states_(scene.balls.size()),
         forces_(scene.balls.size()) {}
 
@@ -46,6 +45,12 @@ class Felt {
   }
 
  private:
+  static ServoOptions uncoupled() {
+    ServoOptions options;
+    options.coupling_stiffness = infinity;
+    return options;
+  }
+
   HapticServo<Tissue> servo_;
   std::vector<ToolState> states_;
   std::vector<Vector3> forces_;
@@ -71,7 +76,7 @@ inline VectorX of_given_nodes(const VectorX& u, const std::vector<NodeId>& map, 
   return given;
 }
 
-/// HapticFEModel<E, LinearElastic, Policy>, or what `Wrap` makes of it.
+/// HapticFEModel<E, LinearElastic, Policy>.
 template <class E, class Policy>
 class LinearContender : public Contender {
  public:

@@ -2,12 +2,16 @@
 // what else is in use, pressed by the same balls and held against the same reference. Every row checks its own answer.
 //   bench_tradeoff [MESH --fix GROUP --touch GROUP] [--scene palpate|retract|grasp] [--budget-us N] [--out FOLDER]
 //                  [--youngs PA] [--poisson NU] [--only WORD] [--full]
-//   bench_tradeoff --required [--out FOLDER]      what it costs to keep more than a scene requires
+//                  [--docs FILE]      also into a document, between <!-- tradeoff SCENE --> and <!-- end -->
+//   bench_tradeoff --required [--out FOLDER] [--docs FILE]      what it costs to keep more than a scene requires
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 
 #include "../common/row.hpp"
+#include "direct_reference.hpp"
+#include "page.hpp"
 #include "required.hpp"
 
 #include <palpate/mesh/refine.hpp>
@@ -32,6 +36,11 @@ Mesh<Tet4> refined(const Mesh<Tet4>& mesh, bool full) {
   return mesh.element_count() <= (full ? 100000 : 20000) ? refine(mesh) : mesh;
 }
 
+std::string contents(const std::string& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 void print(const Row& r) {
   std::printf("%-100s set-up %8.4g ms  p99 %9.4g us  force %6.2f %% %6.2f %%  felt %6.2f %%  %s%s\n", r.name().c_str(),
               1e3 * r.setup, 1e6 * r.p99, 100.0 * r.force_small, 100.0 * r.force_large, 100.0 * r.felt,
@@ -47,13 +56,20 @@ int main(int argc, char** argv) try {
   if (!(budget > 0.0)) raise(SetupErrorKind::bad_argument, "a budget of nothing", "Give microseconds: --budget-us 50");
   std::filesystem::create_directories(out);
   const bool full = bench::has_option(argc, argv, "--full");
+  if (const std::string file = bench::option(argc, argv, "--put", ""); !file.empty()) {
+    put_in_document(bench::option(argc, argv, "--docs", ""), bench::option(argc, argv, "--marker", ""), contents(file));
+    return 0;
+  }
   const PressScene scene = make_scene(scene_options(argc, argv));
   if (bench::has_option(argc, argv, "--required")) {
     Bench bench{.scene = scene, .reference = {}, .stiffening = {}, .near = {}, .all = {}};
-    return measure_required(bench, out) ? 0 : 1;
+    const bool right = measure_required(bench, out);
+    if (const std::string document = bench::option(argc, argv, "--docs", ""); !document.empty())
+      put_in_document(document, "required", contents(out + "/required.md"));
+    return right ? 0 : 1;
   }
   Bench bench{.scene = scene,
-              .reference = make_reference(scene, full ? 0.05 : 0.1),
+              .reference = full ? make_direct_reference(scene, 0.15) : make_reference(scene, 0.15),
               .stiffening = scene.balls.size() == 1 ? measure_stiffening(scene) : Stiffening{},
               .near = refine_near(scene, 0.2 * scene.radius),
               .all = refined(scene.mesh, full),
@@ -73,6 +89,7 @@ int main(int argc, char** argv) try {
   std::vector<Row> rows;
   for (const Entry& entry : entries) {
     const Description& d = entry.description;
+    if (d.mesh == "refined" && bench.all.element_count() == bench.scene.mesh.element_count()) continue;  // too large
     if (!only.empty() && (d.family + " " + d.name()).find(only) == std::string::npos) continue;
     rows.push_back(measure(bench, entry));
     print(rows.back());
@@ -80,6 +97,8 @@ int main(int argc, char** argv) try {
   const std::string base = out + "/tradeoff-" + scene.name;
   write_csv(rows, base + ".csv");
   write_page(bench, rows, budget, base + ".html");
+  if (const std::string document = bench::option(argc, argv, "--docs", ""); !document.empty())
+    put_in_document(document, "tradeoff " + scene.name, summary(bench, rows, budget));
   std::printf("\n%s\nwritten: %s.html, %s.csv\n", advice(rows, budget).c_str(), base.c_str(), base.c_str());
   const auto is_bad = [](const Row& r) { return r.verdict.starts_with("NOT"); };
   return rows.empty() || std::any_of(rows.begin(), rows.end(), is_bad) ? 1 : 0;

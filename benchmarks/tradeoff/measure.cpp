@@ -42,7 +42,7 @@ class Session {
     force_.assign(bench.scene.balls.size(), Vector3::Zero());
   }
 
-  std::vector<double> ticks, updates;  ///< durations [s]
+  std::vector<double> ticks, updates;  ///< durations in motion [s]
   double squared_error = 0.0;          ///< sum over milliseconds of motion
   int judged = 0;
   bool finite = true;
@@ -54,7 +54,7 @@ class Session {
     const double period_of_update = contender_.update_period();
     if (period_of_update > 0.0 && time_ >= next_update_) {
       const double spent = timed([&] { contender_.update(); });
-      updates.push_back(spent);
+      if (judge) updates.push_back(spent);
       // What is published now would have been done by now, had it begun one duration earlier.
       next_update_ = std::max(next_update_ + period_of_update, time_ + spent);
     }
@@ -62,7 +62,7 @@ class Session {
       const std::vector<Vector3> centres = bench_.scene.centres(depth);
       std::span<const Vector3> answer;
       const double spent = timed([&] { answer = contender_.tick(centres); });
-      ticks.push_back(spent);
+      if (judge) ticks.push_back(spent);
       next_tick_ = time_ + spent;
       pending_.assign(answer.begin(), answer.end());
       for (const Vector3& f : pending_) finite = finite && f.allFinite();

@@ -1,26 +1,11 @@
 // The table as a file, as a page with pictures, and as advice.
-#include <palpate/model/trade_off.hpp>
+#include "page.hpp"
 
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 
-#include "contender.hpp"
-
 namespace tradeoff {
-namespace {
-
-struct Measure {
-  const char* title;
-  double Row::*error;
-};
-constexpr std::array<Measure, 3> measures{{{"felt at 1 kHz, in motion", &Row::felt},
-                                           {"held at the small depth", &Row::force_small},
-                                           {"held at the large depth", &Row::force_large}}};
-
-bool is_good(const Row& row) {
-  return row.verdict.empty();
-}
 
 TradeOff trade_off_of(const std::vector<Row>& rows, double Row::*error, bool compositions_only) {
   TradeOff trade;
@@ -30,6 +15,8 @@ TradeOff trade_off_of(const std::vector<Row>& rows, double Row::*error, bool com
           {row.name(), row.p99, row.*error, row.setup, std::isfinite(row.bytes) ? std::max(0.0, row.bytes) : 0.0});
   return trade;
 }
+
+namespace {
 
 std::string escaped(const std::string& text) {
   std::string out;

@@ -4,11 +4,13 @@
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <map>
 
-#include "soft.hpp"
+#include "contender.hpp"
+#include "free_motion.hpp"
 
 namespace tradeoff {
 namespace {
@@ -188,7 +190,8 @@ struct MassSpring {
 
 /// XPBD (Macklin, Mueller and Chentanez 2016) in small steps of one sweep each (Macklin et al. 2019), with the two
 /// constraints of stable neo-Hookean tetrahedra (Macklin and Mueller 2021): sqrt(tr F^T F), compliance 1/(mu V), and
-/// det F - 1 - mu/lambda, compliance 1/(lambda V).
+/// det F - 1 - mu/lambda, compliance 1/(lambda V); lambda is Lame's plus mu, so that E and nu are those at small
+/// strain.
 struct PositionBased {
   struct Element {
     std::array<std::size_t, 4> nodes;
@@ -197,8 +200,6 @@ struct PositionBased {
   };
   Particles particles;
   std::vector<Element> elements;
-  std::vector<double> multiplier;  // of both constraints of every element, in the last step
-  double last_dt = 1.0;
 
   explicit PositionBased(const Bench& bench) : particles(bench) {
     const Mesh<Tet4>& mesh = bench.scene.mesh;
@@ -206,12 +207,11 @@ struct PositionBased {
     for (Index e = 0; e < mesh.element_count(); ++e) {
       const auto g = constant_geometry<Tet4>(mesh, e);
       const LinearElastic& law = laws[static_cast<std::size_t>(mesh.region(e))];
-      Element element{{}, g.gradient, g.volume, law.shear_modulus(), law.lame_lambda()};
+      Element element{{}, g.gradient, g.volume, law.shear_modulus(), law.lame_lambda() + law.shear_modulus()};
       for (int a = 0; a < 4; ++a)
         element.nodes[static_cast<std::size_t>(a)] = static_cast<std::size_t>(mesh.element_node(e, a));
       elements.push_back(element);
     }
-    multiplier.assign(2 * elements.size(), 0.0);
   }
   Matrix3 deformation(const Element& e) const {
     Matrix3 f = Matrix3::Zero();
@@ -225,7 +225,7 @@ struct PositionBased {
     c.col(2) = f.col(0).cross(f.col(1));
     return c;
   }
-  double solve(const Element& e, double constraint, const Matrix3& derivative, double compliance) {
+  void solve(const Element& e, double constraint, const Matrix3& derivative, double compliance) {
     Eigen::Matrix<double, 3, 4> g = derivative * e.gradient.transpose();
     double sum = compliance;
     for (int a = 0; a < 4; ++a)
@@ -235,20 +235,16 @@ struct PositionBased {
       const std::size_t i = e.nodes[static_cast<std::size_t>(a)];
       particles.place[i] += lambda * particles.inverse_mass[i] * g.col(a);
     }
-    return lambda;
   }
   void step(double dt, std::span<const Vector3> centres, std::vector<Vector3>& forces) {
-    last_dt = dt;
     particles.coast(dt);
-    for (std::size_t k = 0; k < elements.size(); ++k) {
-      const Element& e = elements[k];
+    for (const Element& e : elements) {
       Matrix3 f = deformation(e);
       const double length = f.norm();
-      multiplier[2 * k] = solve(e, length, f / length, 1.0 / (e.mu * e.volume * dt * dt));
+      solve(e, length, f / length, 1.0 / (e.mu * e.volume * dt * dt));
       f = deformation(e);
       const Matrix3 c = cofactor(f);
-      multiplier[2 * k + 1] =
-          solve(e, f.col(0).dot(c.col(0)) - 1.0 - e.mu / e.lambda, c, 1.0 / (e.lambda * e.volume * dt * dt));
+      solve(e, f.col(0).dot(c.col(0)) - 1.0 - e.mu / e.lambda, c, 1.0 / (e.lambda * e.volume * dt * dt));
     }
     particles.leave(centres, dt, forces);
     particles.find_velocity(dt);
@@ -263,16 +259,15 @@ struct PositionBased {
     }
     return sum;
   }
-  /// What the constraints of the last step pulled at the held nodes, by their multipliers.
+  /// By the derivative of the energy, which the multipliers meet where a step has converged.
   Vector3 held_force() const {
     Vector3 sum = Vector3::Zero();
-    for (std::size_t k = 0; k < elements.size(); ++k) {
-      const Element& e = elements[k];
-      const Matrix3 f = deformation(e);
-      const Matrix3 pull = multiplier[2 * k] * f / f.norm() + multiplier[2 * k + 1] * cofactor(f);
+    for (const Element& e : elements) {
+      const Matrix3 f = deformation(e), c = cofactor(f);
+      const Matrix3 stress = e.mu * f + e.lambda * (f.col(0).dot(c.col(0)) - 1.0 - e.mu / e.lambda) * c;
       for (int a = 0; a < 4; ++a)
         if (particles.inverse_mass[e.nodes[static_cast<std::size_t>(a)]] == 0.0)
-          sum -= pull * e.gradient.row(a).transpose() / (last_dt * last_dt);
+          sum += e.volume * stress * e.gradient.row(a).transpose();
     }
     return sum;
   }
@@ -283,7 +278,7 @@ Entry particle_entry(const std::string& element, const std::string& kinematics, 
   Description& d = entry.description;
   d.family = "baseline";
   d.element = element;
-  d.mesh = mesh_name("given");
+  d.mesh = "as given";
   d.kinematics = kinematics;
   d.solver = solver;
   d.scalar = "double";
@@ -306,7 +301,7 @@ void add_particles(const Bench& bench, std::vector<Entry>& entries) {
   springs.make = [&bench] {
     const PressScene& scene = bench.scene;
     double factor = 1.0;
-    for (int round = 0; round < 2; ++round) {  // forces of springs are not quite proportional to the factor
+    for (int round = 0; round < 3; ++round) {  // forces of springs are not quite proportional to the factor
       MassSpring body(bench, factor);
       const int steps = body.steps();
       ParticleContender<MassSpring> trial(bench, std::move(body), steps);

@@ -109,6 +109,7 @@ class EveryTick : public Contender {
   /// lambda >= 0, gap + W lambda >= 0, one of them zero.
   static VectorX push(const MatrixX& w, const VectorX& gap) {
     VectorX lambda = VectorX::Zero(gap.size());
+    if (gap.size() == 0) return lambda;
     for (int sweep = 0; sweep < 500; ++sweep) {
       double change = 0.0;
       for (Index i = 0; i < gap.size(); ++i) {

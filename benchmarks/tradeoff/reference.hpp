@@ -16,14 +16,15 @@ struct Reference {
   double volume_small = 0.0, volume_large = 0.0;   ///< of the body [m^3]
   Index nodes = 0;
   double seconds = 0.0;
-  double mesh_error_small = 0.0, mesh_error_large = 0.0;  ///< how far the force is from that of the next coarser mesh
+  double mesh_error_small = 0.0, mesh_error_large = 0.0;  ///< how far a mesh with edges twice as long is, of the force
 
   /// Of ball b at a depth, between the points of the curve by a power law.
   Vector3 force(std::size_t ball, double depth) const;
 };
 
-/// Neo-Hookean tissue in quadratic tetrahedra, small ones where the balls press, solved to the end. `edge`: of the
-/// elements under the balls, in radii. Throws SetupError where the body or the answer is not as it must be.
+/// Neo-Hookean tissue in quadratic tetrahedra, `edge` radii long where the balls press: linear there, with exact
+/// contact, times what large strain changes of the force (and plus what it changes of the displacement) on a mesh of
+/// linear tetrahedra, where that is cheap. Throws SetupError where the body or the answer is not as it must be.
 Reference make_reference(const PressScene& scene, double edge);
 
 /// How many times the force of linear tissue the neo-Hookean one takes, by depth [m].

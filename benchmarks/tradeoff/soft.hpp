@@ -3,13 +3,10 @@
 
 #include <palpate/model/corotated_tissue.hpp>
 
+#include "free_motion.hpp"
 #include "linear.hpp"
 
 namespace tradeoff {
-
-/// Damping that lets a pressed organ come to rest within a few tenths of a second and leaves steady forces alone [1/s].
-inline constexpr double drag = 20.0;
-inline constexpr double free_swing = 0.1;  ///< [s] over which energy is watched
 
 template <class Law>
 RegionMaterials<Law> large_strain_laws(const RegionMaterials<LinearElastic>& materials) {

@@ -68,4 +68,11 @@ row "Tet10, Condensed<SelectiveInverse>" '-DTINY_ELEMENT_HEADER=<palpate/element
 row "Tet4, SparseCholesky" -DTINY_ELEMENT=Tet4 -DTINY_SOLVER=SparseCholesky
 row "Tet4, ConjugateGradient" -DTINY_ELEMENT=Tet4 -DTINY_SOLVER=ConjugateGradient
 row "Tet4, neo-Hookean SoftTissue" -DTINY_SOFT
+
+{
+  echo "| program | compile [s] | size [kB] | instructions per tick |"
+  echo "|---|---|---|---|"
+  sed -e 1d -e 's/, / \& /g' "$out/tiny.csv" | awk -F, '{ gsub(/"/, ""); name = $1; gsub(/ & /, ", ", name)
+    printf "| `%s` | %s | %.0f | %s |\n", name, $2, $3 / 1000, $4 }'
+} > "$out/tiny.md"
 exit $failed

@@ -1,0 +1,31 @@
+// What page and documents share.
+#pragma once
+
+#include <palpate/model/trade_off.hpp>
+
+#include <array>
+
+#include "contender.hpp"
+
+namespace tradeoff {
+
+struct Measure {
+  const char* title;
+  double Row::*error;
+};
+inline constexpr std::array<Measure, 3> measures{{{"felt at 1 kHz, in motion", &Row::felt},
+                                                  {"held at the small depth", &Row::force_small},
+                                                  {"held at the large depth", &Row::force_large}}};
+
+inline bool is_good(const Row& row) {
+  return row.verdict.empty();
+}
+/// Of the rows that are as they must be; baselines too, unless only what can be composed is wanted.
+TradeOff trade_off_of(const std::vector<Row>& rows, double Row::*error, bool compositions_only);
+
+/// What nothing beats in one of the measures, the baselines, and the advice, as Markdown.
+std::string summary(const Bench& bench, const std::vector<Row>& rows, double budget);
+/// Puts `text` into a document between <!-- marker --> and <!-- end -->. Throws bad_argument where these are not.
+void put_in_document(const std::string& document, const std::string& marker, const std::string& text);
+
+}  // namespace tradeoff

@@ -1,0 +1,67 @@
+// What documents say of a run.
+#include <cstdio>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "page.hpp"
+
+namespace tradeoff {
+namespace {
+
+std::string three_digits(double value) {
+  if (!std::isfinite(value)) return "";
+  char text[32];
+  std::snprintf(text, sizeof text, value >= 1000.0 ? "%.0f" : "%.3g", value);
+  return text;
+}
+
+void add_line(std::ostream& out, const Row& r) {
+  const auto code = [](const std::string& s) { return s.find('<') == s.npos ? s : '`' + s + '`'; };
+  out << "| " << code(r.element) << ", " << r.kinematics << ", " << code(r.solver);
+  for (const std::string* part : {&r.kept, &r.work})
+    if (!part->empty()) out << ", " << *part;
+  out << " | " << r.mesh << " | " << three_digits(1e3 * r.setup) << " | " << three_digits(1e6 * r.p99) << " | "
+      << (r.update_p99 > 0.0 ? three_digits(1e3 * r.update_p99) : "") << " | " << three_digits(100.0 * r.force_small)
+      << " | " << three_digits(100.0 * r.force_large) << " | " << three_digits(100.0 * r.felt) << " | "
+      << three_digits(100.0 * r.moved_large) << " | " << three_digits(100.0 * r.volume_large) << " | "
+      << (r.verdict.empty() ? r.remark : r.verdict) << " |\n";
+}
+
+}  // namespace
+
+std::string summary(const Bench& bench, const std::vector<Row>& rows, double budget) {
+  const PressScene& s = bench.scene;
+  const Reference& ref = bench.reference;
+  std::ostringstream out;
+  out << "Written by `sh cmake/run tradeoff --scene " << s.name << " --docs`: " << rows.size() << " rows; balls of "
+      << three_digits(2e3 * s.radius) << " mm at " << three_digits(1e3 * s.small) << " and "
+      << three_digits(1e3 * s.large) << " mm; reference of " << ref.nodes << " nodes, "
+      << three_digits(ref.force(0, s.small).norm()) << " and " << three_digits(ref.force(0, s.large).norm())
+      << " N, in doubt by " << three_digits(100.0 * ref.mesh_error_small) << " and "
+      << three_digits(100.0 * ref.mesh_error_large) << " %.\n\n```cpp\n"
+      << advice(rows, budget) << "```\n\n"
+      << "| composition | mesh | set-up [ms] | tick p99 [us] | update p99 [ms] | force small [%] | large [%] | felt "
+         "[%] | "
+         "moved large [%] | volume large [%] | remark |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+  std::set<std::string> shown;
+  for (const auto& [title, error] : measures)
+    for (const MeasuredComposition& m : trade_off_of(rows, error, true).front()) shown.insert(m.name);
+  for (const Row& r : rows)
+    if (shown.contains(r.name()) || r.family == "baseline") add_line(out, r);
+  return out.str();
+}
+
+void put_in_document(const std::string& document, const std::string& marker, const std::string& text) {
+  std::ifstream in(document);
+  std::string all((std::istreambuf_iterator<char>(in)), {});
+  const std::string begin = "<!-- " + marker + " -->\n", end = "<!-- end -->";
+  const std::size_t from = all.find(begin), to = from == all.npos ? from : all.find(end, from);
+  if (to == all.npos)
+    raise(SetupErrorKind::bad_argument, document + " has no place for '" + marker + "'",
+          "Give it lines <!-- " + marker + " --> and " + end);
+  all.replace(from + begin.size(), to - from - begin.size(), text);
+  std::ofstream(document) << all;
+}
+
+}  // namespace tradeoff
