@@ -189,9 +189,9 @@ struct MassSpring {
 };
 
 /// XPBD (Macklin, Mueller and Chentanez 2016) in small steps of one sweep each (Macklin et al. 2019), with the two
-/// constraints of stable neo-Hookean tetrahedra (Macklin and Mueller 2021): sqrt(tr F^T F), compliance 1/(mu V), and
-/// det F - 1 - mu/lambda, compliance 1/(lambda V); lambda is Lame's plus mu, so that E and nu are those at small
-/// strain.
+/// constraints of stable neo-Hookean tetrahedra (Macklin and Mueller 2021), an element at a time: sqrt(tr F^T F),
+/// compliance 1/(mu V), and det F - 1 - mu/lambda, compliance 1/(lambda V); lambda is Lame's plus mu, so that E and nu
+/// are those at small strain.
 struct PositionBased {
   struct Element {
     std::array<std::size_t, 4> nodes;
@@ -225,27 +225,29 @@ struct PositionBased {
     c.col(2) = f.col(0).cross(f.col(1));
     return c;
   }
-  void solve(const Element& e, double constraint, const Matrix3& derivative, double compliance) {
-    Eigen::Matrix<double, 3, 4> g = derivative * e.gradient.transpose();
-    double sum = compliance;
-    for (int a = 0; a < 4; ++a)
-      sum += particles.inverse_mass[e.nodes[static_cast<std::size_t>(a)]] * g.col(a).squaredNorm();
-    const double lambda = -constraint / sum;
-    for (int a = 0; a < 4; ++a) {
-      const std::size_t i = e.nodes[static_cast<std::size_t>(a)];
-      particles.place[i] += lambda * particles.inverse_mass[i] * g.col(a);
+  /// Both constraints at once: one after the other they would push an element at rest to and fro.
+  void solve(const Element& e, double dt) {
+    const Matrix3 f = deformation(e), c = cofactor(f);
+    const double length = f.norm(), volume = f.col(0).dot(c.col(0));
+    const Eigen::Matrix<double, 3, 4> shape = f / length * e.gradient.transpose(), size = c * e.gradient.transpose();
+    Eigen::Matrix2d a = Eigen::Matrix2d::Zero();
+    a.diagonal() << 1.0 / (e.mu * e.volume * dt * dt), 1.0 / (e.lambda * e.volume * dt * dt);
+    for (int k = 0; k < 4; ++k) {
+      const double w = particles.inverse_mass[e.nodes[static_cast<std::size_t>(k)]];
+      a(0, 0) += w * shape.col(k).squaredNorm();
+      a(1, 1) += w * size.col(k).squaredNorm();
+      a(0, 1) += w * shape.col(k).dot(size.col(k));
+    }
+    a(1, 0) = a(0, 1);
+    const Vector2 multiplier = -a.inverse() * Vector2(length, volume - 1.0 - e.mu / e.lambda);
+    for (int k = 0; k < 4; ++k) {
+      const std::size_t i = e.nodes[static_cast<std::size_t>(k)];
+      particles.place[i] += particles.inverse_mass[i] * (multiplier[0] * shape.col(k) + multiplier[1] * size.col(k));
     }
   }
   void step(double dt, std::span<const Vector3> centres, std::vector<Vector3>& forces) {
     particles.coast(dt);
-    for (const Element& e : elements) {
-      Matrix3 f = deformation(e);
-      const double length = f.norm();
-      solve(e, length, f / length, 1.0 / (e.mu * e.volume * dt * dt));
-      f = deformation(e);
-      const Matrix3 c = cofactor(f);
-      solve(e, f.col(0).dot(c.col(0)) - 1.0 - e.mu / e.lambda, c, 1.0 / (e.lambda * e.volume * dt * dt));
-    }
+    for (const Element& e : elements) solve(e, dt);
     particles.leave(centres, dt, forces);
     particles.find_velocity(dt);
   }

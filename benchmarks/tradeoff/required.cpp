@@ -18,6 +18,7 @@ std::string add_nearest(Mesh<Tet4>& mesh, const Vector3& point, std::size_t coun
   nodes.resize(std::min(count, nodes.size()));
   std::ranges::sort(nodes);
   const std::string name = "nearest " + std::to_string(nodes.size());
+  if (mesh.find_group(name) != nullptr) return name;
   Group& group = mesh.groups.get_or_add(name, 2);
   group.nodes = nodes;
   for (const auto& f : boundary)
