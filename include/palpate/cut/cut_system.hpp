@@ -1,0 +1,435 @@
+// The compliance and the rest shape of a body while it is cut.
+#pragma once
+
+#include <palpate/cut/bordered_update.hpp>
+#include <palpate/cut/cut_base.hpp>
+#include <palpate/cut/element_changes.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// What one cut does to the compliance among kept dofs: C_ij - z_i . y_j for those that were, and columns of their own
+/// for those that came. Immutable; a tick reads it next to the compliance before the cut.
+struct CutStep {
+  std::shared_ptr<const MatrixX> compliance;  ///< before the cut, `old` x `old` [m/N]
+  MatrixX z, y;                               ///< changed dofs x old
+  MatrixX extra;                              ///< all x (all - old), exact
+  Index old = 0, all = 0;                     ///< kept dofs before and after
+  double smallest = 1.0;                      ///< BorderedUpdate::smallest
+
+  /// Displacement of kept dof i per force on j [m/N].
+  double operator()(Index i, Index j) const noexcept {
+    if (j >= old) return extra(i, j - old);
+    if (i >= old) return extra(j, i - old);
+    double value = (*compliance)(i, j);
+    const Index rank = z.rows();
+    const double *a = z.data() + i * rank, *b = y.data() + j * rank;
+    for (Index k = 0; k < rank; ++k) value -= a[k] * b[k];
+    return value;
+  }
+  Index rank() const noexcept { return z.rows(); }
+};
+
+/// A linear body under cuts. The compliance among kept dofs is updated exactly (bordered_update.hpp), by the rows that
+/// a cut changes; the factor stays. Nodes that a cut touches become kept: their columns come from the factor, the same
+/// cuts taken off. A cut among kept nodes needs no solve at all.
+///
+/// What a cut leaves unheld keeps its place in the matrices and hangs on springs, which the rest does not feel, so there
+/// is no singular system: dofs of loose pieces have answers, but these mean nothing.
+template <Element E>
+class CutSystem {
+ public:
+  /// `physics` must outlive it. Throws as CutBase.
+  CutSystem(const CutTopology<E>& topology, const CutPhysics<E>& physics, const std::vector<NodeId>& kept_nodes,
+            const SetupLimits& limits = {})
+      : physics_(&physics), base_(topology, physics, kept_nodes, limits) {
+    compliance_ = base_.compliance();
+    place_.assign(topology.mesh().positions.size(), {-1, -1, -1});
+    for (const auto& dof : base_.kept()) set_place(dof.node, dof.component);
+    source_.resize(place_.size());
+    std::iota(source_.begin(), source_.end(), NodeId{0});
+    displacement_ = base_.displacement();
+    none_ = static_cast<Index>(base_.kept().size());
+  }
+
+  /// Takes in a cut: the step to be read from now on, until `fold`. Strong guarantee. Throws not_positive_definite when
+  /// rounding has eaten what is left (make a new system of the topology), bad_argument when the last step was not
+  /// folded. Cost: solves for changed nodes that were not kept, and O(kept x changed).
+  std::shared_ptr<const CutStep> update(const CutTopology<E>& topology, const TopologyChange<E>& change) {
+    if (step_) raise(SetupErrorKind::bad_argument, "the last cut is not folded in");
+    Plan plan = make_plan(topology, change);
+    const MatrixX columns = columns_of(plan);
+    auto step = std::make_shared<CutStep>();
+    solve_small(plan, columns, *step);
+    accept(topology, plan, *step);
+    step_ = step;
+    return step;
+  }
+
+  /// Makes the last step part of the compliance. O(kept^2 x changed).
+  void fold() {
+    if (!step_) return;
+    auto folded = std::make_shared<MatrixX>(step_->all, step_->all);
+    const Index old = step_->old;
+    folded->topLeftCorner(old, old) = *step_->compliance;
+    if (step_->rank() > 0)
+      folded->topLeftCorner(old, old).template triangularView<Eigen::Lower>() -= step_->z.transpose() * step_->y;
+    folded->rightCols(step_->all - old) = step_->extra;
+    folded->bottomLeftCorner(step_->all - old, old) = step_->extra.topRows(old).transpose();
+    folded->topLeftCorner(old, old).template triangularView<Eigen::StrictlyUpper>() =
+        folded->topLeftCorner(old, old).transpose();
+    compliance_ = std::move(folded);
+    step_.reset();
+  }
+  bool is_folded() const noexcept { return step_ == nullptr; }
+  /// Without any step; what a tick reads after `fold`.
+  std::shared_ptr<const CutStep> folded_step() const {
+    auto step = std::make_shared<CutStep>();
+    step->compliance = compliance_;
+    step->old = step->all = compliance_->rows();
+    return step;
+  }
+
+  /// Number of a dof in the compliance, -1 when it is prescribed or not kept.
+  Index place(NodeId node, int component) const noexcept {
+    const auto i = static_cast<std::size_t>(node);
+    return i < place_.size() ? place_[i][static_cast<std::size_t>(component)] : -1;
+  }
+  Index kept() const noexcept { return static_cast<Index>(dofs_.size()); }
+  /// Dofs that became kept since the factorisation.
+  Index added() const noexcept { return kept() - none_; }
+  /// Under the scene's loads, 3 per node [m]: exact at kept nodes of the held part, elsewhere after `recover`.
+  const VectorX& displacement() const noexcept { return displacement_; }
+  const CutBase<E>& base() const noexcept { return base_; }
+
+  /// Brings all nodes to where they are under the scene's loads. Two substitutions.
+  void recover() { recover_into({}, displacement_, displacement_); }
+
+  /// Displacement with forces on kept nodes, 3 per node [m]. Folds first. O(kept x forces) and two substitutions.
+  template <class Forces>
+  VectorX displacement_with(const Forces& forces) {
+    fold();
+    VectorX u = displacement_;
+    for (const auto& [node, force] : forces)
+      for (int c = 0; c < 3; ++c)
+        if (const Index j = place(node, c); j >= 0)
+          for (Index i = 0; i < kept(); ++i) at(u, i) += (*compliance_)(i, j) * force[c];
+    std::vector<std::pair<NodeId, Vector3>> list;
+    for (const auto& [node, force] : forces) list.push_back({node, force});
+    recover_into(list, u, u);
+    return u;
+  }
+
+  /// How wrong the folded compliance is, measured: a load on all kept dofs, and how far the displacement that follows is
+  /// from what the factor makes of it and of the forces of the cuts, relative. One solve.
+  double measured_error() {
+    fold();
+    const Index n = kept();
+    if (n == 0) return 0.0;
+    MatrixX load(n, 1);
+    for (Index i = 0; i < n; ++i) load(i, 0) = std::sin(1.0 + 3.7 * static_cast<double>(i));
+    const MatrixX x = *compliance_ * load;
+    MatrixX rest = load;
+    changes_.subtract_product(x, rest, places());
+    VectorX b = VectorX::Zero(base_.size()), answer;
+    double wrong = 0.0, border = 0.0;
+    for (Index i = 0; i < n; ++i)
+      if (const Index p = base_place(i); p >= 0) b[p] = rest(i, 0);
+      else border = std::max(border, std::abs(rest(i, 0)));
+    base_.solve(b, answer);
+    for (Index i = 0; i < n; ++i)
+      if (const Index p = base_place(i); p >= 0) wrong = std::max(wrong, std::abs(answer[p] - x(i, 0)));
+    return std::max(wrong / x.cwiseAbs().maxCoeff(), border);
+  }
+
+ private:
+  using Pin = typename ElementChanges<E>::Pin;
+  using Dof = typename CutBase<E>::Dof;
+
+  struct Plan {
+    const TopologyChange<E>* change = nullptr;
+    std::vector<Pin> pins;
+    std::vector<Dof> promoted, fresh;  ///< changed dofs that were not kept; new ones
+    std::vector<Index> changed;        ///< places of all changed dofs that are old, promoted ones counted behind the kept
+    std::vector<std::pair<NodeId, std::array<Index, 3>>> places;  ///< of nodes that get some
+  };
+
+  auto places() const {
+    return [this](NodeId node, int c) { return place(node, c); };
+  }
+  double& at(VectorX& u, Index i) const noexcept {
+    const Dof& d = dofs_[static_cast<std::size_t>(i)];
+    return u[3 * Index{d.node} + d.component];
+  }
+  Index base_place(Index i) const noexcept {
+    const Dof& d = dofs_[static_cast<std::size_t>(i)];
+    return base_.place_of(d.node, d.component);
+  }
+  void set_place(NodeId node, int component) {
+    if (static_cast<std::size_t>(node) >= place_.size())
+      place_.resize(static_cast<std::size_t>(node) + 1, {-1, -1, -1});
+    place_[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] = static_cast<Index>(dofs_.size());
+    dofs_.push_back({node, component});
+  }
+
+  /// Springs for what this cut leaves unheld: all nodes of one element of each piece, and nodes without elements.
+  std::vector<Pin> make_pins(const CutTopology<E>& topology, const TopologyChange<E>& change) const {
+    std::vector<Pin> pins;
+    const auto pin = [&](NodeId node, double stiffness) {
+      const NodeId known = 3 * Index{node} < displacement_.size() ? node : parent_in(change, node);
+      pins.push_back({node, stiffness, displacement_.template segment<3>(3 * Index{known})});
+    };
+    for (const LoosePiece& piece : change.pieces) {
+      Index best = piece.elements.front();
+      int most = -1;
+      for (const Index e : piece.elements) {
+        int known = 0;
+        for (const NodeId node : topology.mesh().elements[static_cast<std::size_t>(e)])
+          if (place(node, 0) >= 0 || 3 * Index{node} >= displacement_.size()) ++known;
+        if (known > most) best = e, most = known;
+      }
+      const double stiffness = physics_->stiffness(best).trace() / (3.0 * E::nodes);
+      for (const NodeId node : topology.mesh().elements[static_cast<std::size_t>(best)]) pin(node, stiffness);
+    }
+    for (const NodeId node : change.bare_nodes)
+      for (const ChangedElement<E>& x : change.elements)
+        if (std::ranges::find(x.before, node) != x.before.end()) {
+          pin(node, physics_->stiffness(x.element).trace() / (3.0 * E::nodes));
+          break;
+        }
+    return pins;
+  }
+  static NodeId parent_in(const TopologyChange<E>& change, NodeId node) {
+    return std::ranges::find(change.copies, node, &NodeCopy::node)->parent;
+  }
+
+  Plan make_plan(const CutTopology<E>& topology, const TopologyChange<E>& change) const {
+    Plan plan;
+    plan.change = &change;
+    plan.pins = make_pins(topology, change);
+    std::vector<NodeId> nodes;
+    for (const ChangedElement<E>& x : change.elements)
+      for (const auto* list : {&x.before, &x.after}) nodes.insert(nodes.end(), list->begin(), list->end());
+    for (const Pin& pin : plan.pins) nodes.push_back(pin.node);
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    for (const bool fresh : {false, true})
+      for (const NodeId node : nodes) {
+        if ((3 * Index{node} >= displacement_.size()) != fresh) continue;
+        std::array<Index, 3> own{-1, -1, -1};
+        bool added = false;
+        for (int c = 0; c < 3; ++c) {
+          Index p = place(node, c);
+          const bool is_free = (topology.constrained()[static_cast<std::size_t>(node)] >> c & 1u) == 0;
+          if (p < 0 && is_free && (fresh || base_.place_of(node, c) >= 0)) {
+            p = kept() + static_cast<Index>(plan.promoted.size() + plan.fresh.size());
+            (fresh ? plan.fresh : plan.promoted).push_back({node, c});
+            added = true;
+          }
+          own[static_cast<std::size_t>(c)] = p;
+          if (!fresh && p >= 0) plan.changed.push_back(p);
+        }
+        if (added) plan.places.push_back({node, own});
+      }
+    return plan;
+  }
+
+  /// Columns of the present inverse for the promoted dofs, over kept and promoted rows.
+  MatrixX columns_of(const Plan& plan) {
+    const Index n = kept(), m = static_cast<Index>(plan.promoted.size());
+    MatrixX x = MatrixX::Zero(n + m, m);
+    if (m == 0) return x;
+    const Index core = static_cast<Index>(base_.kept().size());
+    std::vector<Index> wanted, rows;
+    for (Index i = core; i < n; ++i)
+      if (const Index p = base_place(i); p >= 0) wanted.push_back(p), rows.push_back(i);
+    for (Index k = 0; k < m; ++k) {
+      const Dof& d = plan.promoted[static_cast<std::size_t>(k)];
+      wanted.push_back(base_.place_of(d.node, d.component));
+      rows.push_back(n + k);
+    }
+    const std::size_t first = wanted.size() - static_cast<std::size_t>(m);
+    SparseCholesky& factor = base_.interior();
+    const double one = 1.0;
+    VectorX kept_load(core), answer(static_cast<Index>(wanted.size()));
+    MatrixX loads(core, m);
+    for (Index k = 0; k < m; ++k) {
+      factor.eliminate_path_into({&wanted[first + static_cast<std::size_t>(k)], 1}, {&one, 1}, kept_load);
+      loads.col(k) = kept_load;
+    }
+    x.topRows(core).noalias() = *base_.compliance() * loads;
+    for (Index k = 0; k < m; ++k) {
+      factor.eliminate_path_into({&wanted[first + static_cast<std::size_t>(k)], 1}, {&one, 1}, kept_load);
+      kept_load = x.col(k).head(core);
+      factor.recover_path_into(kept_load, wanted, {answer.data(), wanted.size()});
+      for (std::size_t i = 0; i < rows.size(); ++i) x(rows[i], k) = answer[static_cast<Index>(i)];
+    }
+    take_off_cuts(x);
+    return x;
+  }
+  /// From columns of the factor's inverse to columns of the present one: x + C r, r = - (what changed) x.
+  void take_off_cuts(MatrixX& x) const {
+    if (changes_.empty()) return;
+    const Index n = kept(), m = x.cols();
+    MatrixX r = MatrixX::Zero(n, m);
+    const MatrixX old = x.topRows(n);
+    changes_.subtract_product(old, r, places());
+    const std::vector<Index> rows = changes_.places(places());
+    MatrixX part(n, static_cast<Index>(rows.size())), force(static_cast<Index>(rows.size()), m);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      part.col(static_cast<Index>(k)) = compliance_->col(rows[k]);
+      force.row(static_cast<Index>(k)) = r.row(rows[k]);
+    }
+    x.topRows(n).noalias() += part * force;
+    x.bottomRows(m).noalias() += x.topRows(n).transpose() * r;
+    x.bottomRows(m) = (0.5 * (x.bottomRows(m) + x.bottomRows(m).transpose())).eval();
+  }
+
+  /// Assembles what changed over changed and fresh dofs, solves, and writes the step.
+  void solve_small(const Plan& plan, const MatrixX& columns, CutStep& step) const {
+    const Index n = kept(), m = columns.cols(), old = n + m, fresh = static_cast<Index>(plan.fresh.size());
+    const Index s = static_cast<Index>(plan.changed.size());
+    MatrixX all = MatrixX::Zero(s + fresh, s + fresh);
+    assemble(plan, all);
+    MatrixX z(s, old);
+    for (Index k = 0; k < s; ++k) {
+      const Index p = plan.changed[static_cast<std::size_t>(k)];
+      if (p >= n)
+        z.row(k) = columns.col(p - n).transpose();
+      else
+        z.row(k) << compliance_->col(p).transpose(), columns.row(p);
+    }
+    MatrixX h(s, s);
+    for (Index k = 0; k < s; ++k) h.col(k) = z.col(plan.changed[static_cast<std::size_t>(k)]);
+    const BorderedUpdate u(h, all.topLeftCorner(s, s), all.topRightCorner(s, fresh),
+                           all.bottomRightCorner(fresh, fresh));
+    const MatrixX y = u.q * z;
+    step.compliance = compliance_;
+    step.old = n;
+    step.all = old + fresh;
+    step.smallest = u.smallest;
+    step.extra.resize(step.all, m + fresh);
+    step.extra.topLeftCorner(old, m) = columns - z.transpose() * y.rightCols(m);
+    const MatrixX onto = z - h * y;  // rows of the new inverse at changed dofs
+    step.extra.topRightCorner(old, fresh) = onto.transpose() * u.r.transpose();
+    step.extra.bottomLeftCorner(fresh, m) = u.r * onto.rightCols(m);
+    MatrixX at_changed(s, s);
+    for (Index k = 0; k < s; ++k) at_changed.col(k) = onto.col(plan.changed[static_cast<std::size_t>(k)]);
+    step.extra.bottomRightCorner(fresh, fresh) = u.border_inverse + u.r * at_changed * u.r.transpose();
+    step.z = z.leftCols(n);
+    step.y = y.leftCols(n);
+  }
+
+  void assemble(const Plan& plan, MatrixX& all) const {
+    const Index first_fresh = kept() + static_cast<Index>(plan.promoted.size());
+    std::map<NodeId, std::array<Index, 3>> fresh;
+    for (const auto& [node, own] : plan.places) fresh[node] = own;
+    std::map<Index, Index> row;
+    for (std::size_t k = 0; k < plan.changed.size(); ++k) row[plan.changed[k]] = static_cast<Index>(k);
+    const auto find = [&](NodeId node, int c) -> Index {
+      const auto known = fresh.find(node);
+      const Index p = known != fresh.end() ? known->second[static_cast<std::size_t>(c)] : place(node, c);
+      if (p < 0) return -1;
+      return p >= first_fresh ? p - first_fresh + static_cast<Index>(plan.changed.size()) : row.at(p);
+    };
+    for (const ChangedElement<E>& x : plan.change->elements) {
+      const ElementStiffness<E> k = physics_->stiffness(x.element);
+      const auto add = [&](const auto& nodes, double sign) {
+        const auto at = ElementChanges<E>::places_of(nodes, find);
+        for (std::size_t i = 0; i < at.size(); ++i)
+          for (std::size_t j = 0; j < at.size(); ++j)
+            if (at[i] >= 0 && at[j] >= 0)
+              all(at[i], at[j]) += sign * k(static_cast<Index>(i), static_cast<Index>(j));
+      };
+      add(x.before, -1.0);
+      if (!x.removed) add(x.after, 1.0);
+    }
+    for (const Pin& pin : plan.pins)
+      for (int c = 0; c < 3; ++c)
+        if (const Index p = find(pin.node, c); p >= 0) all(p, p) += pin.stiffness;
+  }
+
+  /// Nothing throws from here on but a lack of memory.
+  void accept(const CutTopology<E>& topology, const Plan& plan, const CutStep& step) {
+    const Index nodes = topology.mesh().node_count(), before = displacement_.size() / 3;
+    displacement_.conservativeResize(3 * nodes);
+    for (Index node = before; node < nodes; ++node) displacement_.template segment<3>(3 * node).setZero();
+    for (const NodeCopy& copy : plan.change->copies) source_.push_back(source_[static_cast<std::size_t>(copy.parent)]);
+    for (const NodeCopy& copy : plan.change->copies)
+      displacement_.template segment<3>(3 * Index{copy.node}) =
+          displacement_.template segment<3>(3 * Index{copy.parent});
+    place_.resize(static_cast<std::size_t>(nodes), {-1, -1, -1});
+    for (const auto* list : {&plan.promoted, &plan.fresh})
+      for (const Dof& d : *list) set_place(d.node, d.component);
+    for (const ChangedElement<E>& x : plan.change->elements)
+      changes_.add(x, physics_->stiffness(x.element), physics_->load_of(x.element));
+    for (const Pin& pin : plan.pins) changes_.add(pin);
+    move(step);
+  }
+  /// Where kept nodes are now: from the rest of the factor, by the forces that all cuts since let loose. Not from where
+  /// they were before this cut, so that nothing piles up.
+  void move(const CutStep& step) {
+    VectorX force = VectorX::Zero(kept());
+    changes_.add_forces([&](NodeId node) { return rest_of(node); },
+                        [&](NodeId node, const Vector3& f) {
+                          for (int c = 0; c < 3; ++c)
+                            if (const Index p = place(node, c); p >= 0) force[p] += f[c];
+                        });
+    const Index old = step.old, rest = step.all - old;
+    VectorX u(step.all);
+    const VectorX head = force.head(old);
+    u.head(old).setZero();
+    for (Index j = 0; j < old; ++j)
+      if (head[j] != 0.0) u.head(old) += head[j] * step.compliance->col(j);
+    u.head(old).noalias() -= step.z.transpose() * VectorX(step.y * head);
+    u.head(old).noalias() += step.extra.topRows(old) * force.tail(rest);
+    u.tail(rest).noalias() = step.extra.topRows(old).transpose() * head + step.extra.bottomRows(rest) * force.tail(rest);
+    for (Index i = 0; i < step.all; ++i) {
+      const Dof& d = dofs_[static_cast<std::size_t>(i)];
+      at(displacement_, i) = rest_of(d.node)[d.component] + u[i];
+    }
+  }
+  /// Displacement of the node that a node is a copy of, as the factor knows it.
+  Vector3 rest_of(NodeId node) const noexcept {
+    return base_.displacement().template segment<3>(3 * Index{source_[static_cast<std::size_t>(node)]});
+  }
+
+  /// All nodes of the factor from what kept nodes do; `forces` that are not in the factor's rest, on nodes.
+  void recover_into(const std::vector<std::pair<NodeId, Vector3>>& forces, const VectorX& known, VectorX& u) {
+    if (base_.size() == 0) return;
+    VectorX load = VectorX::Zero(base_.size()), answer(base_.size());
+    const auto add = [&](NodeId node, const Vector3& f) {
+      for (int c = 0; c < 3; ++c)
+        if (const Index p = base_.place_of(node, c); p >= 0) load[p] += f[c];
+    };
+    changes_.add_forces([&](NodeId node) { return Vector3(known.template segment<3>(3 * Index{node})); }, add);
+    for (const auto& [node, f] : forces) add(node, f);
+    const Index core = static_cast<Index>(base_.kept().size());
+    VectorX scratch(core), moved(core);
+    for (Index i = 0; i < core; ++i) {
+      const Dof& d = dofs_[static_cast<std::size_t>(i)];
+      moved[i] = known[3 * Index{d.node} + d.component] - base_.displacement()[3 * Index{d.node} + d.component];
+    }
+    base_.interior().eliminate_into(load, scratch);
+    base_.interior().recover_into(moved, answer);
+    const VectorX& rest = base_.displacement();
+    for (Index dof = 0; dof < rest.size(); ++dof) {
+      const auto node = static_cast<NodeId>(dof / 3);
+      const int c = static_cast<int>(dof % 3);
+      if (place(node, c) < 0)
+        if (const Index p = base_.place_of(node, c); p >= 0) u[dof] = rest[dof] + answer[p];
+    }
+  }
+
+  const CutPhysics<E>* physics_;
+  CutBase<E> base_;
+  std::shared_ptr<const MatrixX> compliance_;
+  std::shared_ptr<const CutStep> step_;
+  std::vector<std::array<Index, 3>> place_;
+  std::vector<Dof> dofs_;
+  std::vector<NodeId> source_;  // per node the one of the factor that it is a copy of
+  Index none_ = 0;              // kept by the factor
+  VectorX displacement_;
+  ElementChanges<E> changes_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI
