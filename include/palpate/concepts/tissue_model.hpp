@@ -29,6 +29,8 @@ struct VertexForce {
 /// - `begin_tick()`, if there is one, is called before each tick and may bring in what moved since; its Status is part of
 /// the tick's. `end_tick(forces)`, if there is one, is told the forces on the vertices after it, and that there are none
 /// when a session is reset.
+/// - `exchange_contacts(problem)`, if there is one, is called after that, for a tissue whose triangles change: it swaps the
+/// session's contact problem for one of the new surface, which goes on where the old one stood.
 /// - `pose()` maps the model's frame to the world's.
 /// All are noexcept, allocate nothing and take bounded time.
 template <class T>

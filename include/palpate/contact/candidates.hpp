@@ -58,6 +58,36 @@ class Candidates {
   /// back by an unknown amount, and the next update makes another list.
   bool has_lost_forces() const noexcept { return lost_forces_; }
 
+  /// Takes over the points that press from the same body's surface before it was cut: vertices have the same numbers,
+  /// triangles and points need not. What lay on triangles that are gone does not press any more. No allocation.
+  void continue_from(const Candidates& before, const ContactSurface& surface) noexcept {
+    count_ = 0;
+    valid_ = false;
+    for (int i = 0; i < before.count_; ++i) {
+      const Candidate& old = before.items_[static_cast<std::size_t>(i)];
+      if (!(old.force > 0.0)) continue;
+      const int sample = samples_.nearest(surface, before.samples_[old.sample]);
+      if (sample < 0) continue;
+      const auto end = items_.begin() + count_;
+      const auto same = std::find_if(items_.begin(), end,
+                                     [&](const Candidate& c) { return c.sample == sample && c.tool == old.tool; });
+      if (same != end) {
+        same->force += old.force;
+        continue;
+      }
+      Candidate& c = items_[static_cast<std::size_t>(count_++)] = old;
+      c.sample = sample;
+      c.triangle = triangle_of(surface, sample);
+      c.row = c.slot = -1;
+      c.history = {};
+    }
+    proxy_ = before.proxy_;
+    was_active_ = before.was_active_;
+    travel_ = before.travel_;
+    surface_travel_ = before.surface_travel_;
+    revision_ = surface.revision();
+  }
+
   /// Takes in what happened since the last tick: tools put elsewhere, lifted or set down, a moved resting surface.
   void begin_tick(const ContactSurface& surface, std::span<const ContactTool> tools) noexcept {
     if (revision_ != surface.revision()) forget();
@@ -152,6 +182,11 @@ class Candidates {
 
   /// Points this near may be reached while the linearisation settles; leaving one out lets the ball fall through it.
   static double needed(const ContactTool& tool) noexcept { return tool.longest_step() + 0.5 * tool.motion.norm(); }
+  int triangle_of(const ContactSurface& surface, int sample) const noexcept {
+    for (const int t : surface.triangles_at(samples_[sample].vertices[0]))
+      if (samples_.first_of(t) <= sample && sample < samples_.first_of(t + 1)) return t;
+    return 0;
+  }
   double travel(std::size_t tool) const noexcept { return travel_[tool] + surface_travel_; }
 
   template <TissueModel Tissue>

@@ -59,6 +59,16 @@ class ContactProblem {
     return status;
   }
 
+  /// Goes on where the contact problem of the same surface before a cut stands: forces stay on the points that are still
+  /// there, so that the next tick changes them by as much as the cut does. No allocation.
+  void continue_from(const ContactProblem& before, const ContactSurface& surface) noexcept {
+    displacement_.continue_from(before.displacement_);
+    candidates_.continue_from(before.candidates_, surface);
+    rows_.clear();
+    pressing_count_ = violated_count_ = 0;
+    feedback_ = 0.0;
+  }
+
   /// Forgets all contact forces, as when every tool was lifted.
   void clear() noexcept {
     displacement_.clear();

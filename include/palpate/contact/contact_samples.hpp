@@ -49,10 +49,28 @@ class ContactSamples {
   }
   int count() const noexcept { return static_cast<int>(samples_.size()); }
   const ContactSample& operator[](int sample) const noexcept { return samples_[static_cast<std::size_t>(sample)]; }
+  /// The sample nearest to one of another surface whose vertices have the same numbers here, -1 when its triangles are
+  /// gone. Looks at the triangles around a vertex; no allocation.
+  int nearest(const ContactSurface& surface, const ContactSample& wanted) const noexcept {
+    int best = -1;
+    double least = 1.0;  // half of the weight on other vertices is another place
+    for (const int t : surface.triangles_at(wanted.vertices[0]))
+      for (int s = first_of(t); s < first_of(t + 1); ++s)
+        if (const double off = difference((*this)[s], wanted); off < least) least = off, best = s;
+    return best;
+  }
   /// Number of the first sample of a triangle; those of triangle t end where those of t + 1 begin.
   int first_of(int t) const noexcept { return first_[static_cast<std::size_t>(t)]; }
 
  private:
+  /// Sum of the differences of weights.
+  static double difference(const ContactSample& a, const ContactSample& b) noexcept {
+    double sum = 2.0;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        if (a.vertices[i] == b.vertices[j]) sum -= 2.0 * std::min(a.weights[i], b.weights[j]);
+    return sum;
+  }
   static int subdivision(double length, double spacing, int maximum) {
     return static_cast<int>(std::clamp(std::ceil(length / spacing), 1.0, static_cast<double>(maximum)));
   }

@@ -25,6 +25,13 @@ class SurfaceDisplacement {
     if (revision != std::exchange(revision_, revision)) ++generation_;
   }
 
+  /// Takes over the forces of another surface with the same numbers of vertices, and more. No allocation.
+  void continue_from(const SurfaceDisplacement& before) noexcept {
+    forces_ = before.forces_;
+    count_ = before.count_;
+    ++generation_;
+  }
+
   void clear() noexcept {
     count_ = 0;
     ++generation_;

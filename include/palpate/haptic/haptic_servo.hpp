@@ -64,6 +64,8 @@ class HapticServo {
     if (tissue.contact_surface().triangles().empty())
       raise(SetupErrorKind::bad_argument, "nothing of this tissue can be touched",
             "Name a surface group with Scene::touch");
+    if constexpr (requires { tissue.require_tools(0.0, options.contact); })
+      tissue.require_tools(smallest_radius(tools), options.contact);
     const double stiffness = options.coupling_stiffness.value_or(options.device.stiffness);
     if (!(stiffness > 0.0))
       raise(SetupErrorKind::bad_argument, "the coupling stiffness is " + number(stiffness),
@@ -86,6 +88,7 @@ class HapticServo {
     const FlushDenormals flush;
     Status shared;
     if constexpr (MovesByItself<Tissue>) shared |= tissue_->begin_tick();
+    if constexpr (requires { tissue_->exchange_contacts(problem_); }) tissue_->exchange_contacts(problem_);
     for (std::size_t i = 0; i < states_.size(); ++i) read(i, i < states.size() ? states[i] : unreadable());
     shared |= problem_.solve(*tissue_, contact_tools_);
     for (std::size_t i = 0; i < states_.size(); ++i) recover(i);
