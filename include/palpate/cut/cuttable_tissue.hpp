@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/tissue_model.hpp>
+#include <palpate/contact/sphere_tool.hpp>
 #include <palpate/core/spsc_ring.hpp>
 #include <palpate/cut/blade_sweep.hpp>
 #include <palpate/cut/cut_view.hpp>
@@ -10,6 +11,7 @@
 
 #include <chrono>
 #include <mutex>
+#include <optional>
 
 namespace palpate::inline PALPATE_ABI {
 
