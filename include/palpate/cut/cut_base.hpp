@@ -66,6 +66,7 @@ class CutBase {
   const std::vector<Dof>& kept() const noexcept { return kept_; }
   const std::shared_ptr<const MatrixX>& compliance() const noexcept { return compliance_; }
   SparseCholesky& interior() noexcept { return interior_; }
+  const SparseCholesky& interior() const noexcept { return interior_; }
   /// Number of a dof in the factor, -1 when it is prescribed, not held, or younger than the factor.
   Index place_of(NodeId node, int component) const noexcept {
     const auto i = static_cast<std::size_t>(3 * Index{node} + component);

@@ -57,9 +57,11 @@ class CutSystem {
   std::shared_ptr<const CutStep> update(const CutTopology<E>& topology, const TopologyChange<E>& change) {
     if (step_) raise(SetupErrorKind::bad_argument, "the last cut is not folded in");
     Plan plan = make_plan(topology, change);
-    const MatrixX columns = columns_of(plan);
+    ReducedUnits units;
+    const MatrixX columns = columns_of(plan, units);
     auto step = std::make_shared<CutStep>();
     solve_small(plan, columns, *step);
+    if (units.size() > 0) promoted_.push_back({kept(), std::move(units)});
     accept(topology, plan, *step);
     step_ = step;
     return step;
@@ -233,36 +235,21 @@ class CutSystem {
     return plan;
   }
 
-  /// Columns of the present inverse for the promoted dofs, over kept and promoted rows.
-  MatrixX columns_of(const Plan& plan) {
+  /// Columns of the present inverse for the promoted dofs, over kept and promoted rows. `units` keeps what later ones
+  /// need of these.
+  MatrixX columns_of(const Plan& plan, ReducedUnits& units) const {
     const Index n = kept(), m = static_cast<Index>(plan.promoted.size());
     MatrixX x = MatrixX::Zero(n + m, m);
     if (m == 0) return x;
-    const Index core = static_cast<Index>(base_.kept().size());
-    std::vector<Index> wanted, rows;
-    for (Index i = core; i < n; ++i)
-      if (const Index p = base_place(i); p >= 0) wanted.push_back(p), rows.push_back(i);
-    for (Index k = 0; k < m; ++k) {
-      const Dof& d = plan.promoted[static_cast<std::size_t>(k)];
-      wanted.push_back(base_.place_of(d.node, d.component));
-      rows.push_back(n + k);
-    }
-    const std::size_t first = wanted.size() - static_cast<std::size_t>(m);
-    SparseCholesky& factor = base_.interior();
-    const double one = 1.0;
-    VectorX kept_load(core), answer(static_cast<Index>(wanted.size()));
-    MatrixX loads(core, m);
-    for (Index k = 0; k < m; ++k) {
-      factor.eliminate_path_into({&wanted[first + static_cast<std::size_t>(k)], 1}, {&one, 1}, kept_load);
-      loads.col(k) = kept_load;
-    }
-    x.topRows(core).noalias() = *base_.compliance() * loads;
-    for (Index k = 0; k < m; ++k) {
-      factor.eliminate_path_into({&wanted[first + static_cast<std::size_t>(k)], 1}, {&one, 1}, kept_load);
-      kept_load = x.col(k).head(core);
-      factor.recover_path_into(kept_load, wanted, {answer.data(), wanted.size()});
-      for (std::size_t i = 0; i < rows.size(); ++i) x(rows[i], k) = answer[static_cast<Index>(i)];
-    }
+    std::vector<Index> dofs;
+    for (const Dof& d : plan.promoted) dofs.push_back(base_.place_of(d.node, d.component));
+    units = base_.interior().reduce_units(dofs);
+    const Index core = none_;
+    x.topRows(core).noalias() = *base_.compliance() * units.kept_load;
+    const MatrixX onto = x.topRows(core);
+    for (const auto& [first, before] : promoted_)
+      x.middleRows(first, before.size()) = before.products(units) + before.kept_load.transpose() * onto;
+    x.bottomRows(m) = units.products(units) + units.kept_load.transpose() * onto;
     take_off_cuts(x);
     return x;
   }
@@ -428,6 +415,7 @@ class CutSystem {
   std::vector<Dof> dofs_;
   std::vector<NodeId> source_;  // per node the one of the factor that it is a copy of
   Index none_ = 0;              // kept by the factor
+  std::vector<std::pair<Index, ReducedUnits>> promoted_;  // by the place of the first
   VectorX displacement_;
   ElementChanges<E> changes_;
 };
