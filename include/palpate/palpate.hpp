@@ -1,5 +1,5 @@
 // All a haptic session needs. Include single headers to compile less; what looks at results has headers of its own
-// (post/, model/natural_frequencies.hpp).
+// (post/, model/natural_frequencies.hpp), and so have cutting (cut/cuttable_tissue.hpp, cut/cut_thread.hpp, cut/blade.hpp).
 #pragma once
 
 #include <palpate/contact/tissue_group.hpp>
