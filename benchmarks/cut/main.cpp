@@ -116,14 +116,15 @@ Cost measure(const Block& b, const CutOrder& order, int repeats) {
     cost.added = system.added();
     if (i > 0) continue;
     std::unique_ptr<CutSystem<Tet4>> fresh;
-    cost.rebuilt = bench::seconds_of(
-        [&] { fresh = std::make_unique<CutSystem<Tet4>>(topology, b.physics, surface.nodes()); });
+    cost.rebuilt =
+        bench::seconds_of([&] { fresh = std::make_unique<CutSystem<Tet4>>(topology, b.physics, surface.nodes()); });
     cost.error = largest_difference(system, *fresh, topology);
     double sum = 0.0;
     const auto read = [&](const CutView& v) {
       return bench::median_seconds([&] {
                for (int k = 0; k < 10000; ++k) sum += v.compliance(k * 7 % 97, k * 13 % 89)(0, 0);
-             }) / 10000;
+             }) /
+             10000;
     };
     cost.read = read(*view);
     const CutView folded(system, surface, positions_of(topology, surface, system), system.folded_step(), 4e-3, {});
@@ -137,8 +138,7 @@ Cost measure(const Block& b, const CutOrder& order, int repeats) {
 
 void report(bench::RowFile& rows, const std::string& what, const Cost& c, double limit) {
   const std::string error = c.error <= 1e-10 ? "" : "off by " + bench::with_unit(c.error, "");
-  const std::string size =
-      what + " (rank " + std::to_string(c.rank) + ", " + std::to_string(c.added) + " dofs added)";
+  const std::string size = what + " (rank " + std::to_string(c.rank) + ", " + std::to_string(c.added) + " dofs added)";
   rows.add({.target = "q",
             .what = "cut felt: " + size,
             .figure = bench::milliseconds(c.felt),

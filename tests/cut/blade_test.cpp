@@ -28,7 +28,7 @@ TEST_CASE("cutting takes toughness times area", "[cut][blade]") {
   const double hold = 200.0 * 0.01 / p.stiffness;
   CHECK(std::abs(force.norm() - 2.0) < 1e-12);  // 200 J/m^2 x 10 mm
   CHECK(std::abs(blade.area() - 0.01 * (0.02 - hold)) < 1e-12);
-  CHECK(std::abs(blade.work() - 200.0 * blade.area()) < 1e-12);  // of 0.04 J
+  CHECK(std::abs(blade.work() - 200.0 * blade.area()) < 1e-12);    // of 0.04 J
   CHECK(std::abs(work - blade.work() - 0.5 * 2.0 * hold) < 1e-6);  // the rest is in the coupling
   // Back is free, and so is what was cut before.
   for (int i = 0; i < 2000; ++i) CHECK(std::abs(blade.advance(hand += Vector3(0, 0, 1e-5), 0.01)[2]) < 2.0 + 1e-12);

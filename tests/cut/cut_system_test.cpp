@@ -1,5 +1,5 @@
 #include <palpate/cut/blade_sweep.hpp>
-#include <palpate/cut/cut_system.hpp>
+#include <palpate/cut/cut_renewal.hpp>
 #include <palpate/element/hex8.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators_box.hpp>
@@ -146,6 +146,36 @@ TEST_CASE("random cuts until nothing is held: right all the way", "[cut][extreme
     b.system.fold();
     CHECK(b.system.displacement().allFinite());
     CHECK(b.system.folded_step()->compliance->allFinite());
+  }
+}
+
+TEST_CASE("a factor that was begun before the last cuts takes them in as one", "[cut][extreme][F1]") {
+  const auto mesh = box_tet4({0.1, 0.1, 0.1}, {4, 3, 3}, BoxSplit::six);
+  testing::Random random(9);
+  for (int begun = 0; begun < 12; ++begun) {
+    CutBlock<Tet4> b(mesh, hanging(), top_of(mesh));
+    const auto cut = [&] {
+      CutOrder order;
+      for (int k = 0; k < 5; ++k) {
+        const auto e = static_cast<Index>(random.uniform(0.0, static_cast<double>(mesh.element_count())));
+        if (k < 2)
+          order.remove.push_back(e);
+        else
+          for (int f = 0; f < 4; ++f) order.open.push_back({e, f});
+      }
+      b.topology.apply(order);
+    };
+    for (int k = 0; k < begun; ++k) cut();
+    std::vector<NodeId> kept;
+    for (const NodeId node : top_of(mesh))
+      if (b.is_held(node)) kept.push_back(node);
+    CutRenewal<Tet4> renewal(b.topology, b.physics, kept, {});
+    for (int k = 0; k < 6; ++k) cut();
+    while (!renewal.is_done()) std::this_thread::yield();
+    auto made = renewal.take(b.topology);
+    REQUIRE(made);
+    b.system = std::move(*made);
+    CHECK(b.error() < 1e-10);
   }
 }
 

@@ -49,7 +49,8 @@ TEST_CASE("a tissue keeps the laws of tissues while it is cut", "[cut]") {
   Tissue tissue(slab(), held_below(), soft, {.cuttable = Selection("surface")});
   const auto check = [&] {
     tissue.begin_tick();
-    for (const auto& broken : testing::tissue_laws(tissue, used_vertices(tissue, 20))) FAIL_CHECK(broken.law << ' ' << broken.detail);
+    for (const auto& broken : testing::tissue_laws(tissue, used_vertices(tissue, 20)))
+      FAIL_CHECK(broken.law << ' ' << broken.detail);
   };
   check();
   const int vertices = tissue.contact_surface().vertex_count();
@@ -68,8 +69,7 @@ TEST_CASE("a tissue keeps the laws of tissues while it is cut", "[cut]") {
   CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(tissue, SphereTool{.radius = 1e-3}));
 }
 
-TEST_CASE("a cut under the tool: the force goes on, and changes no faster than the gate allows",
-          "[cut][extreme][F3]") {
+TEST_CASE("a cut under the tool: the force goes on, and changes no faster than the gate allows", "[cut][extreme][F3]") {
   Tissue tissue(slab(), held_below(), soft);
   HapticServo servo(tissue, SphereTool{});
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
@@ -132,7 +132,7 @@ TEST_CASE("cut while touched until nothing is left: every force finite and limit
     CutOrder order;
     for (int k = 0; k < 6; ++k) {
       const auto e = static_cast<Index>(random.uniform(0.0, static_cast<double>(mesh.element_count())));
-      random.uniform() < 0.5 || cuts > 60 ? order.remove.push_back(e) : order.open.push_back({e, k % 4});
+      random.uniform()<0.5 || cuts> 60 ? order.remove.push_back(e) : order.open.push_back({e, k % 4});
     }
     if (cuts > 120)
       for (Index e = 0; e < mesh.element_count(); ++e) order.remove.push_back(e);
@@ -175,7 +175,11 @@ TEST_CASE("a thread cuts while another ticks", "[cut][extreme][F3]") {
     const CutThread<Tissue> thread(tissue);
     Vector3 last = Vector3::Zero();
     for (int i = 0; i < 3000; ++i) {
-      if (i % 300 == 100) tissue.stroke({{0.02 + i * 2e-5, -1, 0.03}, {0.02 + i * 2e-5, 2, 0.03}, {0.02 + i * 2e-5, -1, 1}, {0.02 + i * 2e-5, 2, 1}});
+      if (i % 300 == 100)
+        tissue.stroke({{0.02 + i * 2e-5, -1, 0.03},
+                       {0.02 + i * 2e-5, 2, 0.03},
+                       {0.02 + i * 2e-5, -1, 1},
+                       {0.02 + i * 2e-5, 2, 1}});
       const ToolState s = at({0.03 + 1e-5 * i, 0.05, 0.05 + 4e-3 - 3e-3}, 1e-3 * i);
       const ToolForce f = servo.tick({&s, 1})[0];
       REQUIRE(f.force.allFinite());

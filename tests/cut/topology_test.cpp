@@ -35,8 +35,9 @@ struct Volumes {
 Volumes volumes(const CutTopology<Tet4>& t) {
   Volumes v;
   for (Index e = 0; e < t.mesh().element_count(); ++e)
-    (t.state(e) == ElementState::held ? v.held : t.state(e) == ElementState::loose ? v.loose : v.removed) +=
-        t.volume(e);
+    (t.state(e) == ElementState::held    ? v.held
+     : t.state(e) == ElementState::loose ? v.loose
+                                         : v.removed) += t.volume(e);
   return v;
 }
 

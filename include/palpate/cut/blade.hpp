@@ -9,11 +9,11 @@
 namespace palpate::inline PALPATE_ABI {
 
 struct BladeParameters {
-  Vector3 edge{0.0, 0.01, 0.0};      ///< from one end of the sharp edge to the other, world frame [m]
-  Vector3 forward{0.0, 0.0, -1.0};   ///< where it is sharp; the blade goes back without resistance
-  double toughness = 100.0;          ///< work per area of new slit [J/m^2]; soft tissues have some 50 to 500
-  double stiffness = 400.0;          ///< of the coupling between hand and edge [N/m]
-  double stroke = 1e-3;              ///< way of the edge after which the tissue is told [m]
+  Vector3 edge{0.0, 0.01, 0.0};     ///< from one end of the sharp edge to the other, world frame [m]
+  Vector3 forward{0.0, 0.0, -1.0};  ///< where it is sharp; the blade goes back without resistance
+  double toughness = 100.0;         ///< work per area of new slit [J/m^2]; soft tissues have some 50 to 500
+  double stiffness = 400.0;         ///< of the coupling between hand and edge [N/m]
+  double stroke = 1e-3;             ///< way of the edge after which the tissue is told [m]
 };
 
 /// The edge as a slider with a threshold: it holds until the coupling pulls with toughness times the length of the edge

@@ -14,9 +14,7 @@ struct BladeSweep {
   Vector3 a0 = Vector3::Zero(), b0 = Vector3::Zero(), a1 = Vector3::Zero(), b1 = Vector3::Zero();
 
   /// [m^2]
-  double area() const noexcept {
-    return 0.5 * ((b0 - a0).cross(b1 - a0).norm() + (b1 - a0).cross(a1 - a0).norm());
-  }
+  double area() const noexcept { return 0.5 * ((b0 - a0).cross(b1 - a0).norm() + (b1 - a0).cross(a1 - a0).norm()); }
   Box box() const noexcept {
     Box box;
     for (const Vector3& x : {a0, b0, a1, b1}) box.include(x);

@@ -22,8 +22,11 @@ class CutBase {
           const SetupLimits& limits = {}) {
     std::vector<NodeId> node_map;
     std::vector<Index> element_map;
-    Body<E> held{topology.extract(ElementState::held, node_map, element_map), physics.body.elasticity,
-                 physics.body.density, physics.body.initial_strain, {}};
+    Body<E> held{topology.extract(ElementState::held, node_map, element_map),
+                 physics.body.elasticity,
+                 physics.body.density,
+                 physics.body.initial_strain,
+                 {}};
     if (!physics.body.laws.empty())
       for (const Index e : element_map) held.laws.push_back(physics.body.laws[static_cast<std::size_t>(e)]);
     const EssentialConditions conditions = held_conditions(topology, physics, node_map, held.mesh.node_count());

@@ -11,10 +11,10 @@ namespace palpate::inline PALPATE_ABI {
 /// on.
 template <Element E>
 requires(!HasSmoothedStrain<E>) struct CutPhysics {
-  Body<E> body;                        ///< its mesh holds the nodes and elements as they were given
-  VectorX nodal_load;                  ///< point loads, 3 per given node [N]
-  VectorX prescribed;                  ///< displacements, 3 per given node [m]
-  std::vector<ElementNodes<E>> load;   ///< on the nodes of every element, one row per node [N]
+  Body<E> body;                       ///< its mesh holds the nodes and elements as they were given
+  VectorX nodal_load;                 ///< point loads, 3 per given node [N]
+  VectorX prescribed;                 ///< displacements, 3 per given node [m]
+  std::vector<ElementNodes<E>> load;  ///< on the nodes of every element, one row per node [N]
 
   /// Loads of a scene: gravity in the frame of the mesh, body loads, tractions, pressures, initial strains. Throws as
   /// the conditions of a scene do. O(elements).
@@ -33,15 +33,16 @@ requires(!HasSmoothedStrain<E>) struct CutPhysics {
   }
 
   /// [N/m], for nodes where they rest.
-  ElementStiffness<E> stiffness(Index e) const { return element_stiffness<E>(nodes_of_element(e), body.elasticity_of(e)); }
-  /// [kg]
-  double mass(Index e) const {
-    return body.density[body.region_of(e)] * shape_volumes<E>(nodes_of_element(e)).sum();
+  ElementStiffness<E> stiffness(Index e) const {
+    return element_stiffness<E>(nodes_of_element(e), body.elasticity_of(e));
   }
+  /// [kg]
+  double mass(Index e) const { return body.density[body.region_of(e)] * shape_volumes<E>(nodes_of_element(e)).sum(); }
   /// The load of one element as a column, x y z per node.
   Eigen::Matrix<double, 3 * E::nodes, 1> load_of(Index e) const {
     Eigen::Matrix<double, 3 * E::nodes, 1> f;
-    for (int a = 0; a < E::nodes; ++a) f.template segment<3>(3 * a) = load[static_cast<std::size_t>(e)].row(a).transpose();
+    for (int a = 0; a < E::nodes; ++a)
+      f.template segment<3>(3 * a) = load[static_cast<std::size_t>(e)].row(a).transpose();
     return f;
   }
 
@@ -54,8 +55,8 @@ requires(!HasSmoothedStrain<E>) struct CutPhysics {
       const std::size_t region = body.region_of(e);
       Vector3 density = body.density[region] * scene.gravity();
       if (!scene.gravity().isZero(0.0) && !(body.density[region] > 0.0))
-        raise(SetupErrorKind::bad_density, "there is gravity, but region '" + body.mesh.region_names[region] +
-                                               "' has no density");
+        raise(SetupErrorKind::bad_density,
+              "there is gravity, but region '" + body.mesh.region_names[region] + "' has no density");
       for (const auto& b : scene.body_loads())
         if (b.region == everywhere || body.mesh.region_names[region] == b.region) density += b.force_per_volume;
       ElementNodes<E>& f = load[static_cast<std::size_t>(e)];

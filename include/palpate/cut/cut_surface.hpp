@@ -7,9 +7,9 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// Faces a tool may touch, by the elements they belong to, and the vertices of their nodes. Vertices keep their numbers:
-/// new ones are appended, and those of what is gone stay where they were, on no triangle. What a cut exposes can be
-/// touched from then on.
+/// Faces a tool may touch, by the elements they belong to, and the vertices of their nodes. Vertices keep their
+/// numbers: new ones are appended, and those of what is gone stay where they were, on no triangle. What a cut exposes
+/// can be touched from then on.
 template <Element E>
 class CutSurface {
  public:
@@ -36,7 +36,9 @@ class CutSurface {
     for (const ElementFace& f : faces_) {
       const auto face = topology.face_nodes(f);
       for (const NodeId node : face) used_[static_cast<std::size_t>(add(topology, node))] = 1;
-      const auto at = [&](int local) { return vertex_of_[static_cast<std::size_t>(face[static_cast<std::size_t>(local)])]; };
+      const auto at = [&](int local) {
+        return vertex_of_[static_cast<std::size_t>(face[static_cast<std::size_t>(local)])];
+      };
       with_face_element<E>(face.size(), [&]<TriangulatedFace F>() {
         for (const auto& [a, b, c] : F::triangles) triangles_.push_back({at(a), at(b), at(c)});
       });

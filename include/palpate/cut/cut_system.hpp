@@ -33,8 +33,8 @@ struct CutStep {
 /// a cut changes; the factor stays. Nodes that a cut touches become kept: their columns come from the factor, the same
 /// cuts taken off. A cut among kept nodes needs no solve at all.
 ///
-/// What a cut leaves unheld keeps its place in the matrices and hangs on springs, which the rest does not feel, so there
-/// is no singular system: dofs of loose pieces have answers, but these mean nothing.
+/// What a cut leaves unheld keeps its place in the matrices and hangs on springs, which the rest does not feel, so
+/// there is no singular system: dofs of loose pieces have answers, but these mean nothing.
 template <Element E>
 class CutSystem {
  public:
@@ -121,8 +121,8 @@ class CutSystem {
     return u;
   }
 
-  /// How wrong the folded compliance is, measured: a load on all kept dofs, and how far the displacement that follows is
-  /// from what the factor makes of it and of the forces of the cuts, relative. One solve.
+  /// How wrong the folded compliance is, measured: a load on all kept dofs, and how far the displacement that follows
+  /// is from what the factor makes of it and of the forces of the cuts, relative. One solve.
   double measured_error() {
     fold();
     const Index n = kept();
@@ -135,8 +135,10 @@ class CutSystem {
     VectorX b = VectorX::Zero(base_.size()), answer;
     double wrong = 0.0, border = 0.0;
     for (Index i = 0; i < n; ++i)
-      if (const Index p = base_place(i); p >= 0) b[p] = rest(i, 0);
-      else border = std::max(border, std::abs(rest(i, 0)));
+      if (const Index p = base_place(i); p >= 0)
+        b[p] = rest(i, 0);
+      else
+        border = std::max(border, std::abs(rest(i, 0)));
     base_.solve(b, answer);
     for (Index i = 0; i < n; ++i)
       if (const Index p = base_place(i); p >= 0) wrong = std::max(wrong, std::abs(answer[p] - x(i, 0)));
@@ -151,7 +153,7 @@ class CutSystem {
     const TopologyChange<E>* change = nullptr;
     std::vector<Pin> pins;
     std::vector<Dof> promoted, fresh;  ///< changed dofs that were not kept; new ones
-    std::vector<Index> changed;        ///< places of all changed dofs that are old, promoted ones counted behind the kept
+    std::vector<Index> changed;  ///< places of all changed dofs that are old, promoted ones counted behind the kept
     std::vector<std::pair<NodeId, std::array<Index, 3>>> places;  ///< of nodes that get some
   };
 
@@ -324,8 +326,7 @@ class CutSystem {
         const auto at = ElementChanges<E>::places_of(nodes, find);
         for (std::size_t i = 0; i < at.size(); ++i)
           for (std::size_t j = 0; j < at.size(); ++j)
-            if (at[i] >= 0 && at[j] >= 0)
-              all(at[i], at[j]) += sign * k(static_cast<Index>(i), static_cast<Index>(j));
+            if (at[i] >= 0 && at[j] >= 0) all(at[i], at[j]) += sign * k(static_cast<Index>(i), static_cast<Index>(j));
       };
       add(x.before, -1.0);
       if (!x.removed) add(x.after, 1.0);
@@ -369,7 +370,8 @@ class CutSystem {
       if (head[j] != 0.0) u.head(old) += head[j] * step.compliance->col(j);
     u.head(old).noalias() -= step.z.transpose() * VectorX(step.y * head);
     u.head(old).noalias() += step.extra.topRows(old) * force.tail(rest);
-    u.tail(rest).noalias() = step.extra.topRows(old).transpose() * head + step.extra.bottomRows(rest) * force.tail(rest);
+    u.tail(rest).noalias() =
+        step.extra.topRows(old).transpose() * head + step.extra.bottomRows(rest) * force.tail(rest);
     for (Index i = 0; i < step.all; ++i) {
       const Dof& d = dofs_[static_cast<std::size_t>(i)];
       at(displacement_, i) = rest_of(d.node)[d.component] + u[i];
@@ -413,8 +415,8 @@ class CutSystem {
   std::shared_ptr<const CutStep> step_;
   std::vector<std::array<Index, 3>> place_;
   std::vector<Dof> dofs_;
-  std::vector<NodeId> source_;  // per node the one of the factor that it is a copy of
-  Index none_ = 0;              // kept by the factor
+  std::vector<NodeId> source_;                            // per node the one of the factor that it is a copy of
+  Index none_ = 0;                                        // kept by the factor
   std::vector<std::pair<Index, ReducedUnits>> promoted_;  // by the place of the first
   VectorX displacement_;
   ElementChanges<E> changes_;

@@ -36,6 +36,7 @@ class CutTopology {
     list_group_faces();
     parent_.resize(mesh_.positions.size());
     std::iota(parent_.begin(), parent_.end(), NodeId{0});
+    copied_from_ = parent_;
     state_.assign(static_cast<std::size_t>(mesh_.element_count()), ElementState::held);
     TopologyChange<E> split;
     for (NodeId node = 0, count = static_cast<NodeId>(mesh_.node_count()); node < count; ++node)
@@ -69,6 +70,8 @@ class CutTopology {
   const std::vector<std::uint8_t>& constrained() const noexcept { return constrained_; }
   /// The node of the given mesh that a node is a copy of; itself if it is none.
   NodeId origin_of(NodeId node) const noexcept { return parent_[at(node)]; }
+  /// The node that a node was split from; itself if from none.
+  NodeId copied_from(NodeId node) const noexcept { return copied_from_[at(node)]; }
   /// Elements around a node, removed ones excepted.
   const std::vector<Index>& elements_at(NodeId node) const noexcept { return star_[at(node)]; }
   /// Element behind a face, -1 when there is none or the face is open.
@@ -191,6 +194,7 @@ class CutTopology {
       mesh_.positions.push_back(mesh_.position(node));
       constrained_.push_back(constrained_[at(node)]);
       parent_.push_back(parent_[at(node)]);
+      copied_from_.push_back(node);
       bare_.push_back(0);
       change.copies.push_back({copy, node});
       for (const Index e : parts[k]) reconnect(e, node, copy, change);
@@ -270,11 +274,41 @@ class CutTopology {
   std::vector<std::uint8_t> constrained_, bare_;
   std::vector<std::array<Index, faces>> neighbour_;
   std::vector<std::vector<Index>> star_;
-  std::vector<NodeId> parent_;
+  std::vector<NodeId> parent_, copied_from_;
   std::vector<ElementState> state_;
   std::vector<std::array<ElementFace, 2>> welded_;
   std::vector<LoosePiece> loose_;
   std::vector<std::vector<ElementFace>> group_faces_;
 };
+
+/// All cuts between two states of one topology as a single one, for what was held then. O(elements).
+template <Element E>
+TopologyChange<E> difference(const CutTopology<E>& then, const CutTopology<E>& now) {
+  TopologyChange<E> change;
+  const auto old = static_cast<NodeId>(then.mesh().node_count());
+  const auto was_held = [&](Index e) { return then.state(e) == ElementState::held; };
+  for (Index e = 0; e < now.mesh().element_count(); ++e) {
+    if (!was_held(e)) continue;
+    const auto& before = then.mesh().elements[static_cast<std::size_t>(e)];
+    const auto& after = now.mesh().elements[static_cast<std::size_t>(e)];
+    if (now.is_removed(e))
+      change.elements.push_back({e, before, before, true});
+    else if (before != after)
+      change.elements.push_back({e, before, after, false});
+  }
+  for (NodeId node = old; node < now.mesh().node_count(); ++node) {
+    NodeId parent = node;
+    while (parent >= old) parent = now.copied_from(parent);
+    change.copies.push_back({node, parent});
+  }
+  for (const ChangedElement<E>& x : change.elements)
+    for (const NodeId node : x.before)
+      if (now.elements_at(node).empty()) change.bare_nodes.push_back(node);
+  std::ranges::sort(change.bare_nodes);
+  const auto repeated = std::unique(change.bare_nodes.begin(), change.bare_nodes.end());
+  change.bare_nodes.erase(repeated, change.bare_nodes.end());
+  change.pieces = connected_pieces(now, [&](Index e) { return was_held(e) && now.state(e) == ElementState::loose; });
+  return change;
+}
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -5,6 +5,7 @@
 #include <palpate/contact/sphere_tool.hpp>
 #include <palpate/core/spsc_ring.hpp>
 #include <palpate/cut/blade_sweep.hpp>
+#include <palpate/cut/cut_renewal.hpp>
 #include <palpate/cut/cut_view.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
 #include <palpate/mesh/admission.hpp>
@@ -20,8 +21,8 @@ struct CuttableOptions {
   std::optional<Selection> cuttable{};
   double smallest_tool = SphereTool{}.radius;  ///< [m] of the session's tools
   ContactParameters contact{};                 ///< of the session
-  Index most_added = 900;          ///< dofs that cuts may add before a new factor is made
-  double tolerated_error = 1e-10;  ///< measured, relative; beyond it a new factor is made
+  Index most_added = 900;          ///< dofs that cuts may add before a new factor is made, in a thread of its own
+  double tolerated_error = 1e-10;  ///< measured, relative; beyond it a new factor is made at once
   AdmissionPolicy admission{};
   SetupLimits limits{};
 };
@@ -39,11 +40,11 @@ struct CutReport {
   bool failed = false;         ///< what is left cannot be computed; the last good state is felt, degraded_model
 };
 
-/// A linear body of elements E under cuts. `cut` orders; `work` does what is ordered, in a thread of the caller's choice
-/// (CutThread); the tick brings the newest state in at its beginning and never waits. Right after a cut the compliance
-/// is the old one with a correction of low rank, added up in the tick; then the correction is folded in. While an order
-/// is open ticks say degraded_model. Numbers of vertices never change, so contact forces go on across a cut; the force
-/// gate limits how fast they may change.
+/// A linear body of elements E under cuts. `cut` orders; `work` does what is ordered, in a thread of the caller's
+/// choice (CutThread); the tick brings the newest state in at its beginning and never waits. Right after a cut the
+/// compliance is the old one with a correction of low rank, added up in the tick; then the correction is folded in.
+/// While an order is open ticks say degraded_model. Numbers of vertices never change, so contact forces go on across a
+/// cut; the force gate limits how fast they may change.
 ///
 /// Threads: `begin_tick` and the functions of TissueModel belong to the thread that ticks, `stroke` too; all others may
 /// be called from any thread and wait for each other, not for the tick. Satisfies TissueModel; one session at a time.
@@ -85,10 +86,13 @@ class CuttableTissue {
   bool work() {
     const std::scoped_lock lock(system_mutex_);
     const auto start = std::chrono::steady_clock::now();
-    const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+    const auto seconds = [&] {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
     unsigned taken = 0;
+    const bool renewed = take_renewal();
     const CutOrder order = take_orders(taken);
-    if (taken == 0) return false;
+    if (taken == 0) return renewed;
     const TopologyChange<E> change = topology_.apply(order);
     if (!change.empty()) {
       ++report_.cuts;
@@ -111,8 +115,8 @@ class CuttableTissue {
     const std::scoped_lock lock(system_mutex_);
     visit(topology_, physics_);
   }
-  /// Displacement of all nodes with forces on vertices (those of the present surface or an earlier one), 3 per node [m].
-  /// Nodes of loose pieces rest where they were when they came off. O(kept x forces) and two substitutions.
+  /// Displacement of all nodes with forces on vertices (those of the present surface or an earlier one), 3 per node
+  /// [m]. Nodes of loose pieces rest where they were when they came off. O(kept x forces) and two substitutions.
   VectorX displacement_with(std::span<const VertexForce> forces) {
     const std::scoped_lock lock(system_mutex_);
     std::vector<std::pair<NodeId, Vector3>> list;
@@ -150,7 +154,8 @@ class CuttableTissue {
   /// Refuses a session whose tools are not those of the options.
   void require_tools(double smallest_radius, const ContactParameters& contact) const {
     if (smallest_radius != smallest_tool_ || contact.sample_spacing != contact_.sample_spacing ||
-        contact.maximum_iterations != contact_.maximum_iterations || contact.force_tolerance != contact_.force_tolerance)
+        contact.maximum_iterations != contact_.maximum_iterations ||
+        contact.force_tolerance != contact_.force_tolerance)
       raise(SetupErrorKind::bad_argument,
             "the session's smallest tool has a radius of " + number(smallest_radius) + ", the tissue was made for " +
                 number(smallest_tool_),
@@ -276,11 +281,31 @@ class CuttableTissue {
     system_.fold();
     publish_folded();
     report_.error = system_.measured_error();
-    if (!(report_.error <= tolerated_error_) || system_.added() > most_added_) renew();
+    if (!(report_.error <= tolerated_error_))
+      renew();
+    else if (system_.added() > most_added_ && !renewal_)
+      renewal_ = std::make_unique<CutRenewal<E>>(topology_, physics_, kept_nodes(), limits_);
     if (!report_.failed) system_.recover();
     report_.kept = system_.kept();
   }
+  /// Takes over a new factor when one is ready, with what was cut since it was begun.
+  bool take_renewal() {
+    if (!renewal_ || !renewal_->is_done()) return false;
+    try {
+      if (auto made = renewal_->take(topology_)) {
+        system_ = std::move(*made);
+        ++report_.renewals;
+        report_.error = system_.measured_error();
+        system_.recover();
+        publish_folded();
+      }
+    } catch (const SetupError&) {  // the old one goes on
+    }
+    renewal_.reset();
+    return true;
+  }
   void renew() {
+    renewal_.reset();
     try {
       system_ = CutSystem<E>(topology_, physics_, kept_nodes(), limits_);
       ++report_.renewals;
@@ -301,7 +326,8 @@ class CuttableTissue {
   std::unique_ptr<CutView> make_view(std::shared_ptr<const CutStep> step) const {
     std::vector<Vector3> positions;
     for (const NodeId node : touchable_.nodes()) positions.push_back(position(node));
-    return std::make_unique<CutView>(system_, touchable_, std::move(positions), std::move(step), smallest_tool_, contact_);
+    return std::make_unique<CutView>(system_, touchable_, std::move(positions), std::move(step), smallest_tool_,
+                                     contact_);
   }
   void publish_folded() {
     auto made = make_view(system_.folded_step());
@@ -338,6 +364,7 @@ class CuttableTissue {
   TripleBuffer<std::unique_ptr<CutView>> views_;
   std::uint64_t revision_ = 0;
   bool renewed_ = false;
+  std::unique_ptr<CutRenewal<E>> renewal_;  // last: its thread refers to the physics
 };
 
 }  // namespace palpate::inline PALPATE_ABI

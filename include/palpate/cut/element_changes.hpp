@@ -81,7 +81,8 @@ class ElementChanges {
         Values ue;
         for (int a = 0; a < E::nodes; ++a) ue.template segment<3>(3 * a) = u(nodes[static_cast<std::size_t>(a)]);
         const Values f = sign * (c.stiffness * ue - c.load);
-        for (int a = 0; a < E::nodes; ++a) load(nodes[static_cast<std::size_t>(a)], Vector3(f.template segment<3>(3 * a)));
+        for (int a = 0; a < E::nodes; ++a)
+          load(nodes[static_cast<std::size_t>(a)], Vector3(f.template segment<3>(3 * a)));
       };
       scatter(c.before, 1.0);
       if (!c.removed) scatter(c.now, -1.0);

@@ -52,18 +52,16 @@ inline int free_mode_count(std::span<const Vector3> positions, std::span<const N
   return static_cast<int>(detail::free_motions(positions, held, constrained, frame).cols());
 }
 
-/// The pieces of held elements that can move as a whole. O(elements).
-template <Element E>
-std::vector<LoosePiece> unheld_pieces(const CutTopology<E>& topology) {
+/// The elements for which `belongs(element)` in pieces that hang together by faces, all rigid motions free.
+/// O(elements).
+template <Element E, class Belongs>
+std::vector<LoosePiece> connected_pieces(const CutTopology<E>& topology, Belongs&& belongs) {
   const Mesh<E>& mesh = topology.mesh();
-  const auto n = static_cast<std::size_t>(mesh.element_count());
-  std::vector<char> seen(n, 0);
-  std::vector<Index> stack;
-  std::vector<LoosePiece> unheld;
-  std::vector<char> listed(mesh.positions.size(), 0);
+  std::vector<char> seen(static_cast<std::size_t>(mesh.element_count()), 0), listed(mesh.positions.size(), 0);
+  std::vector<LoosePiece> pieces;
   for (Index first = 0; first < mesh.element_count(); ++first) {
-    if (topology.state(first) != ElementState{} || seen[static_cast<std::size_t>(first)] != 0) continue;
-    LoosePiece piece;
+    if (seen[static_cast<std::size_t>(first)] != 0 || !belongs(first)) continue;
+    LoosePiece& piece = pieces.emplace_back();
     seen[static_cast<std::size_t>(first)] = 1;
     piece.elements.push_back(first);
     for (std::size_t k = 0; k < piece.elements.size(); ++k) {
@@ -72,10 +70,19 @@ std::vector<LoosePiece> unheld_pieces(const CutTopology<E>& topology) {
         if (std::exchange(listed[static_cast<std::size_t>(node)], 1) == 0) piece.nodes.push_back(node);
       for (std::size_t f = 0; f < CutTopology<E>::faces; ++f)
         if (const Index other = topology.neighbour(e, f);
-            other >= 0 && std::exchange(seen[static_cast<std::size_t>(other)], 1) == 0)
+            other >= 0 && belongs(other) && std::exchange(seen[static_cast<std::size_t>(other)], 1) == 0)
           piece.elements.push_back(other);
     }
-    piece.free_modes = free_mode_count(mesh.positions, piece.nodes, topology.constrained());
+  }
+  return pieces;
+}
+
+/// The pieces of held elements that can move as a whole. O(elements).
+template <Element E>
+std::vector<LoosePiece> unheld_pieces(const CutTopology<E>& topology) {
+  std::vector<LoosePiece> unheld;
+  for (LoosePiece& piece : connected_pieces(topology, [&](Index e) { return topology.state(e) == ElementState{}; })) {
+    piece.free_modes = free_mode_count(topology.mesh().positions, piece.nodes, topology.constrained());
     if (piece.free_modes == 0) continue;
     std::ranges::sort(piece.elements);
     std::ranges::sort(piece.nodes);

@@ -64,7 +64,8 @@ class UnitReduction {
       for (Index k = 0; k < count; ++k) values_(k, tree_.place_of_dof[part[static_cast<std::size_t>(k)]]) = 1.0;
       for (const Index f : path(part)) forward(tree_.fronts[f]);
       for (std::size_t i = 0; i < out.places.size(); ++i)
-        out.values.row(static_cast<Index>(i)).segment(first, count) = values_.col(out.places[i]).head(count).transpose();
+        out.values.row(static_cast<Index>(i)).segment(first, count) =
+            values_.col(out.places[i]).head(count).transpose();
       for (std::size_t i = 0; i < kept.size(); ++i)
         out.kept_load.row(static_cast<Index>(i)).segment(first, count) =
             values_.col(tree_.place_of_dof[kept[i]]).head(count).transpose();
