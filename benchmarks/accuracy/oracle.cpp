@@ -122,7 +122,7 @@ void compare_with_oracle(const std::string& folder, Checks& checks) {
   std::ranges::sort(folders);
   int found = 0;
   for (const fs::path& one : folders) {
-    const auto file = solve_case::read_case_file((one / "case.json").string());
+    const auto file = solve_case::read_case_files((one / "case.json").string()).front();
     each_element([&]<class E>(std::type_identity<E>) {
       std::string plain = element_name<E>();
       std::ranges::transform(plain, plain.begin(),

@@ -1,5 +1,7 @@
-// Implicit steps of co-rotated tetrahedra: time against plain Eigen and Bullet, and the error of every short cut.
-//   bench_implicit [--build <name of the flags>] [--csv <file to add rows to>] [--quick]
+// Implicit steps: time of co-rotated ones against plain Eigen and Bullet, the error of every short cut, the largest block
+// at 1 kHz, and what long motions keep; with --long over a million steps, and ten thousand scrambled blocks.
+//   bench_implicit [--build <name of the flags>] [--csv <file to add rows to>] [--quick] [--long]
+#include "drift.hpp"
 #include "implicit.hpp"
 
 #include <cstdio>
@@ -13,6 +15,10 @@ int main(int argc, char** argv) try {
   for (const int n : {6, 10, 16}) implicit_path::measure_bullet(rows, n);
   implicit_path::measure_preconditioners(rows, 10);
   implicit_path::measure_largest(rows);
+  const bool all = bench::has_option(argc, argv, "--long");
+  measure_implicit_drift(rows, all ? 1000000 : 20000);
+  measure_implicit_scrambles(rows, all ? 10000 : 50);
+  measure_static_hold(rows, all ? 1000000 : 10000);
   return rows.failed() ? 1 : 0;
 } catch (const std::exception& e) {
   std::fprintf(stderr, "bench_implicit: %s\n", e.what());

@@ -3,6 +3,7 @@
 
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/model/implicit_dynamics.hpp>
+#include <palpate/model/renewed_factor.hpp>
 
 namespace implicit_path {
 namespace {
@@ -172,8 +173,11 @@ void measure_preconditioners(bench::RowFile& rows, int n) {
     CorotatedMotionOptions two = usual();
     two.solve = {2, 0.0};
     const Measured fixed = run_ours<float, TurnedFactor>(pressing, h, two);
+    const Measured renewed = run_ours<float, RenewedFactor>(pressing, h, usual());
     const std::string what = "step of " + bench::milliseconds(h) + ", " + block_of(pressing);
-    for (const auto& [name, m] : {std::pair{"the factor that turns", turned}, {"the same, two iterations", fixed}})
+    for (const auto& [name, m] : {std::pair{"the factor that turns", turned},
+                                  {"the same, two iterations", fixed},
+                                  {"a factor that a thread renews (processor time of both)", renewed}})
       rows.add({.target = "o",
                 .what = what + ", " + name,
                 .figure = m.text(),

@@ -45,21 +45,77 @@ inline palpate::Vector3 read_vector(const json& list) {
   return {list.at(0).get<double>(), list.at(1).get<double>(), list.at(2).get<double>()};
 }
 
-/// Reads the file; one without "load_cases" has none. Throws SetupError(bad_file).
-inline CaseFile read_case_file(const std::string& path) {
+inline CaseFile case_file_on(const json& mesh, const std::filesystem::path& folder) {
+  CaseFile read;
+  const json files = mesh.value("files", json::object());
+  read.element = mesh.at("element").get<std::string>();
+  read.mesh_v22 = (folder / files.value("msh22", "mesh_v22.msh")).string();
+  read.mesh_v41 = (folder / files.value("msh41", "mesh_v41.msh")).string();
+  return read;
+}
+
+inline constexpr const char* cube_in_time = "cube with memory";
+inline constexpr const char* bar_in_time = "bar in motion";
+
+/// A cube that is held, loaded or shaken while it relaxes: every way with every law becomes a load case, on each of the
+/// meshes that is there.
+inline std::vector<CaseFile> read_cube_in_time(const json& file, const std::filesystem::path& folder) {
+  std::vector<CaseFile> read;
+  for (const auto& [element, variant] : file.at("meshes").items()) {
+    if (!std::filesystem::exists(folder / element)) continue;
+    read.push_back(case_file_on(variant.at("mesh"), folder / element));
+    const std::string before = element + "__";
+    const auto add = [&](const std::string& law, const std::string& hold, const std::string& table) {
+      read.back().load_cases.push_back({{"name", before + law + "__" + hold},
+                                        {"analysis", cube_in_time},
+                                        {"material", file.at("material")},
+                                        {"law", law},
+                                        {"hold", hold},
+                                        {"table", (folder / file.at("files").at(table).get<std::string>()).string()}});
+    };
+    for (const auto& [law, text] : file.at("material").at("laws").items())
+      for (const auto& [hold, what] : file.at("cases").items()) add(law, hold, "relaxation");
+    for (const char* hold : {"ramp_shear", "ramp_uniaxial", "creep"}) add("all_moduli", hold, "ramp_creep");
+    add("shear_only", "harmonic", "harmonic");
+  }
+  return read;
+}
+
+/// A bar that is pulled at once, by each of the meshes that is there.
+inline std::vector<CaseFile> read_bar_in_time(const json& file, const std::filesystem::path& folder) {
+  std::vector<CaseFile> read;
+  for (const auto& [element, variant] : file.at("variants").items()) {
+    const auto own = folder / ("bar_" + element);
+    if (!std::filesystem::exists(own)) continue;
+    read.push_back(case_file_on(variant.at("mesh"), own));
+    read.back().load_cases.push_back({{"name", "bar_" + element},
+                                      {"analysis", bar_in_time},
+                                      {"material", file.at("material")},
+                                      {"tip_maximum", file.at("closed_form").at("tip_maximum")},
+                                      {"dt", variant.at("dt")},
+                                      {"table", (own / "history.csv").string()}});
+  }
+  return read;
+}
+
+/// Reads the file, one CaseFile per mesh; of a kind that is not known it has no load cases. Throws
+/// SetupError(bad_file).
+inline std::vector<CaseFile> read_case_files(const std::string& path) {
   const std::string text = palpate::io::read_file(path);
   return checked(path, [&] {
     const json file = json::parse(text);
     const auto folder = std::filesystem::path(path).parent_path();
-    CaseFile read;
-    read.title = file.value("title", path);
-    if (!file.contains("load_cases")) return read;
-    const json& mesh = file.at("mesh");
-    const json files = mesh.value("files", json::object());
-    read.element = mesh.at("element").get<std::string>();
-    read.mesh_v22 = (folder / files.value("msh22", "mesh_v22.msh")).string();
-    read.mesh_v41 = (folder / files.value("msh41", "mesh_v41.msh")).string();
-    read.load_cases = file.at("load_cases").get<std::vector<json>>();
+    std::vector<CaseFile> read;
+    if (file.contains("load_cases")) {
+      read.push_back(case_file_on(file.at("mesh"), folder));
+      read.back().load_cases = file.at("load_cases").get<std::vector<json>>();
+    } else if (file.contains("cases") && file.contains("meshes") && file.at("material").contains("laws")) {
+      read = read_cube_in_time(file, folder);
+    } else if (file.contains("variants") && file.contains("wave_speed")) {
+      read = read_bar_in_time(file, folder);
+    }
+    if (read.empty()) read.emplace_back();
+    for (CaseFile& c : read) c.title = file.value("title", path);
     return read;
   });
 }

@@ -12,13 +12,17 @@
 //      displacement, the strain energy, the sum of the reactions and the time it took.
 //
 // Where the analysis is "geometrically non-linear static, dead loads" it finds the equilibrium of hyperelastic bodies
-// instead (large_strain.hpp). Where it is "linear eigenfrequency" it finds the lowest elastic modes instead (modes.hpp), writes
-// DIR/<load case>_mode<k>_u.csv, shapes normalised by mass, and prints their frequencies; rigid motions of a body that
-// is not held are counted apart.
+// instead (large_strain.hpp). Where it is "linear eigenfrequency" it finds the lowest elastic modes instead
+// (modes.hpp), writes DIR/<load case>_mode<k>_u.csv, shapes normalised by mass, and prints their frequencies; rigid
+// motions of a body that is not held are counted apart.
 //
-// Whatever palpate does not do (another law, an analysis in time, an element it lacks, a group that the mesh
-// does not have) is refused by name in that line, and the next load case is tried: a wrong answer is never printed. The
-// exit code is 0 when every load case was solved or refused, and 2 when the case file or its mesh cannot be read.
+// Two kinds of files have a course in time and a table of what it should be, made by closed forms or another code: a
+// cube that relaxes, creeps or is shaken, and a bar that is pulled at once (in_time.hpp). DIR/<load case>.csv gets the
+// course, and the line says how far it is from the table.
+//
+// Whatever palpate does not do (another law, an element it lacks, a group that the mesh does not have) is refused by
+// name in that line, and the next load case is tried: a wrong answer is never printed. The exit code is 0 when every
+// load case was solved or refused, and 2 when the case file or its mesh cannot be read.
 #include "solve_all.hpp"
 
 using namespace solve_case;
@@ -31,7 +35,7 @@ void refuse_all(const CaseFile& file, const Arguments&) {
   };
   for (const json& load_case : file.load_cases)
     refuse(case_name(load_case), "the element '" + file.element + "'", "palpate has tet4, tet10, hex8 and hex20");
-  if (file.load_cases.empty()) refuse(file.title, "a case file without load_cases", {});
+  if (file.load_cases.empty()) refuse(file.title, "a case file without load cases that are known", {});
 }
 
 /// A new element is one line here and a source file like tet4.cpp.
@@ -66,11 +70,12 @@ Arguments read_arguments(int argc, char** argv) {
 
 int main(int argc, char** argv) try {
   const Arguments arguments = read_arguments(argc, argv);
-  const CaseFile file = read_case_file(arguments.case_file);
   std::filesystem::create_directories(arguments.out);
-  const auto element = std::ranges::find(elements, file.element, [](const auto& e) { return e.first; });
-  const auto run = element != std::end(elements) ? element->second : refuse_all;
-  run(file, arguments);
+  for (const CaseFile& file : read_case_files(arguments.case_file)) {
+    const auto element = std::ranges::find(elements, file.element, [](const auto& e) { return e.first; });
+    const auto run = element != std::end(elements) ? element->second : refuse_all;
+    run(file, arguments);
+  }
   return 0;
 } catch (const std::exception& error) {
   std::cerr << "solve_case: " << error.what() << '\n';

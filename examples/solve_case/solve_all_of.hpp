@@ -1,6 +1,7 @@
 // Defines solve_all for the source files that instantiate it, one per element.
 #pragma once
 
+#include "in_time.hpp"
 #include "large_strain.hpp"
 #include "modes.hpp"
 #include "solve_all.hpp"
@@ -22,6 +23,10 @@ void solve_load_case(const NumberedMesh<E>& numbered, const std::string& element
       run(solve_modes<E>);
     else if (analysis == large_strain_statics)
       run(solve_large_strain<E>);
+    else if (analysis == cube_in_time)
+      run(solve_cube_in_time<E>);
+    else if (analysis == bar_in_time)
+      run(solve_bar_in_time<E>);
     else
       run(solve<E>);
   } catch (const palpate::SetupError& error) {

@@ -7,6 +7,7 @@
 #include <palpate/device/placement.hpp>
 #include <palpate/device/recorder.hpp>
 #include <palpate/device/replay_device.hpp>
+#include <palpate/device/simulated_device.hpp>
 #include <palpate/element/hex20.hpp>
 #include <palpate/element/mean_dilatation.hpp>
 #include <palpate/element/smoothed.hpp>
@@ -14,6 +15,7 @@
 #include <palpate/element/tet4.hpp>
 #include <palpate/element/with_quadrature.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/haptic/passivity_observer.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 #include <palpate/io/gmsh.hpp>
 #include <palpate/io/pvd.hpp>

@@ -12,7 +12,7 @@ using namespace palpate;
 
 namespace {
 
-ContactSurface surface_of(const Mesh<Tet4>& mesh) {
+ContactSurface surface_to_sample(const Mesh<Tet4>& mesh) {
   std::vector<Triangle> triangles;
   for (const auto& face : extract_boundary<Tet4>(mesh))
     triangles.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
@@ -35,7 +35,7 @@ std::vector<Vector3> all_positions(const ContactSurface& surface, const ContactS
 }  // namespace
 
 TEST_CASE("short edges are sampled at their vertices only", "[contact][samples]") {
-  const ContactSurface surface = surface_of(box_tet4(Vector3(1, 1, 1), {4, 4, 4}, BoxSplit::six));
+  const ContactSurface surface = surface_to_sample(box_tet4(Vector3(1, 1, 1), {4, 4, 4}, BoxSplit::six));
   const ContactSamples samples(surface, 0.36);  // diagonals are 0.354
   CHECK(samples.count() == 5 * 5 * 5 - 3 * 3 * 3);
 }
@@ -51,7 +51,7 @@ TEST_CASE("a right triangle gets the lattice of its longest edge, each edge its 
 }
 
 TEST_CASE("every sample belongs to one triangle, with weights of its plane", "[contact][samples]") {
-  const ContactSurface surface = surface_of(box_tet4(Vector3(1, 1, 0.5), {3, 2, 2}, BoxSplit::five_mirrored));
+  const ContactSurface surface = surface_to_sample(box_tet4(Vector3(1, 1, 0.5), {3, 2, 2}, BoxSplit::five_mirrored));
   const ContactSamples samples(surface, 0.1);
   std::set<std::tuple<long, long, long>> places;
   int bad_weights = 0, foreign = 0, total = 0;
@@ -81,7 +81,7 @@ TEST_CASE("no point of the surface is further than the spacing from a sample", "
   testing::Random random(41);
   for (double spacing : {0.05, 0.13, 0.3, 1.0}) {
     // Long thin triangles as well: 0.5 x 0.1 cells.
-    const ContactSurface surface = surface_of(box_tet4(Vector3(1, 1, 0.5), {2, 10, 3}, BoxSplit::six));
+    const ContactSurface surface = surface_to_sample(box_tet4(Vector3(1, 1, 0.5), {2, 10, 3}, BoxSplit::six));
     const ContactSamples samples(surface, spacing);
     const std::vector<Vector3> places = all_positions(surface, samples);
     double farthest = 0.0;

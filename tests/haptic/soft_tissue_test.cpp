@@ -197,6 +197,85 @@ TEST_CASE("steps and bodies that cannot be are refused", "[haptic][soft]") {
   };
   CHECK(kind(pad_scene(), 0.0) == SetupErrorKind::bad_argument);
   CHECK(kind(pad_scene(), std::numeric_limits<double>::quiet_NaN()) == SetupErrorKind::bad_argument);
+  CHECK(kind(Scene().fix("nowhere").touch("z1"), 0.0) == SetupErrorKind::bad_argument);  // before any work
   CHECK(kind(Scene().touch("z1"), 0.01) == SetupErrorKind::unconstrained);
   CHECK(kind(Scene().fix("nowhere").touch("z1"), 0.01) == SetupErrorKind::unknown_group);
+}
+
+TEST_CASE("a tissue that nothing touches says that all is well", "[haptic][soft]") {
+  for (const double g : {0.0, 9.81}) {
+    SoftTissue tissue(pad(), pad_scene().gravity({0.0, 0.0, -g}), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+    for (int k = 0; k < 10; ++k) {
+      tissue.advance();
+      CHECK(tissue.begin_tick().ok());
+      tissue.end_tick({});
+    }
+  }
+}
+
+TEST_CASE("forces that are none are dropped, and said", "[haptic][soft][extreme]") {
+  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  tissue.advance();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const std::array forces{VertexForce{24, {0.0, 0.0, -0.01}}, VertexForce{25, {none, 0.0, 0.0}},
+                          VertexForce{26, {0.0, infinity, 0.0}}};
+  tissue.end_tick(forces);
+  CHECK(tissue.begin_tick().has(StatusFlag::non_finite_force));
+  tissue.advance();
+  CHECK(tissue.motion().displacement().allFinite());
+  CHECK(tissue.motion().displacement().norm() > 0.0);
+  tissue.end_tick({});
+  CHECK_FALSE(tissue.begin_tick().has(StatusFlag::non_finite_force));
+}
+
+TEST_CASE("the compliance is that of the settled body", "[haptic][soft]") {
+  const Scene squeezed = Scene().prescribe("x0", {0.006, 0.0, 0.0}).prescribe("x1", {-0.006, 0.0, 0.0}).touch("z1");
+  SoftTissue tissue(pad(), squeezed, NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  ImplicitDynamics same(
+      make_deformable_body(make_hyperelastic_body(pad(), std::vector<NeoHookean>{{5e3, 0.45, 1000.0}}), squeezed), {});
+  same.set_state(tissue.motion().displacement(), VectorX::Zero(tissue.motion().displacement().size()));
+  REQUIRE(same.prepare_response(0.01));
+  tissue.begin_tick();
+  VectorX force = VectorX::Zero(same.displacement().size()), u(force.size());
+  for (const int j : {16, 24, 30}) {
+    const Index node = tissue.touchable_nodes()[static_cast<std::size_t>(j)];
+    force[3 * node + 2] = 1.0;
+    same.respond(force, u);
+    force[3 * node + 2] = 0.0;
+    const Vector3 expected = u.segment<3>(3 * node), found = tissue.compliance(j, j).col(2);
+    CHECK((found - expected).norm() <= 1e-9 * expected.norm());
+  }
+}
+
+TEST_CASE("a tissue with memory that is held relaxes to the slow equilibrium, whatever the step",
+          "[haptic][soft][viscous]") {
+  const NeoHookean fast{5e3, 0.45, 1000.0};
+  const Viscoelastic<NeoHookean, 1> law{fast, {{{0.6, 0.3}}}};
+  std::vector<double> early, late;
+  for (const double h : {0.02, 0.01, 0.005}) {
+    SoftTissue tissue(pad(), pad_scene(), law, options(h));
+    early.push_back(press(tissue, 500, ramp).force[2]);
+    const Session s = press(tissue, 4000, [](double) { return ramp(1.0); });
+    late.push_back(s.force[2]);
+    CHECK(s.status.ok());
+  }
+  SoftTissue slow(pad(), pad_scene(), NeoHookean{0.4 * 5e3, 0.45, 1000.0}, options(0.01));
+  const double relaxed = press(slow, 3000, ramp).force[2];
+  for (const double f : late) CHECK_THAT(f, WithinRel(relaxed, 2e-3));
+  for (const double f : early) {
+    CHECK_THAT(f, WithinRel(early.back(), 0.02));
+    CHECK(f > 1.2 * relaxed);
+  }
+}
+
+TEST_CASE("small strain with memory is felt as well", "[haptic][soft][viscous]") {
+  const LinearElastic fast{5e3, 0.45, 1000.0};
+  const Viscoelastic<LinearElastic, 1> law{fast, {{{0.6, 0.3}}}};
+  SoftTissue tissue(pad(), pad_scene(), law, options(0.01)), elastic(pad(), pad_scene(), fast, options(0.01));
+  const auto slight = [](double t) { return std::min(0.001, 0.05 * t); };
+  const double at_first = press(tissue, 60, slight).force[2], unrelaxed = press(elastic, 2000, slight).force[2];
+  const double at_last = press(tissue, 4000, [](double) { return 0.001; }).force[2];
+  CHECK(at_first > 0.8 * unrelaxed);
+  SoftTissue slow(pad(), pad_scene(), LinearElastic{0.4 * 5e3, 0.45, 1000.0}, options(0.01));
+  CHECK_THAT(at_last, WithinRel(press(slow, 2000, slight).force[2], 5e-3));
 }

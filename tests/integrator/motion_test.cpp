@@ -113,8 +113,8 @@ TEST_CASE("free fall", "[integrator]") {
   }
 }
 
-TEMPLATE_TEST_CASE("the limit is that of the state: within 5 % of where motion becomes unstable", "[integrator]",
-                   CentralDifference, SemiImplicitEuler) {
+TEMPLATE_TEST_CASE("the limit is that of the state: within 5 % of where motion becomes unstable",
+                   "[integrator][extreme][E2]", CentralDifference, SemiImplicitEuler) {
   const auto body = soft_block(3);
   const Mesh<Tet4>& mesh = body.rest.mesh;
   const std::vector<Index> free = above_ground(mesh);
@@ -149,7 +149,7 @@ TEST_CASE("the bound of the elements is above, and never far", "[integrator]") {
   CHECK(bounded.limit() >= 0.5 * motion.limit());
 }
 
-TEST_CASE("steps that cannot be are refused and change nothing", "[integrator][extremes]") {
+TEST_CASE("steps that cannot be are refused and change nothing", "[integrator][extreme][E1]") {
   const auto body = soft_block(2);
   const Mesh<Tet4>& mesh = body.rest.mesh;
   auto motion = motion_of<CentralDifference>(body, above_ground(mesh));
@@ -179,7 +179,7 @@ TEST_CASE("steps that cannot be are refused and change nothing", "[integrator][e
   CHECK_REFUSED(SetupErrorKind::bad_density, Motion(force, mass, {}));
 }
 
-TEST_CASE("energy from nowhere stops the motion at its last good state", "[integrator][extremes]") {
+TEST_CASE("energy from nowhere stops the motion at its last good state", "[integrator][extreme][E6]") {
   const auto body = soft_block(3);
   const Mesh<Tet4>& mesh = body.rest.mesh;
   ExplicitOptions options;
@@ -211,7 +211,7 @@ TEST_CASE("energy from nowhere stops the motion at its last good state", "[integ
   CHECK(motion.state().displacement.allFinite());
 }
 
-TEST_CASE("scrambled blocks stay finite and come to rest", "[integrator][extremes]") {
+TEST_CASE("scrambled blocks stay finite and come to rest", "[integrator][extreme][E5]") {
   const auto body = soft_block(2);
   const Mesh<Tet4>& mesh = body.rest.mesh;
   ExplicitOptions options;

@@ -123,7 +123,8 @@ TEST_CASE("Newton's method gives up where there is no minimum, and starts over w
 
 TEST_CASE("parameters that mean nothing are refused", "[integrator][newton][extreme]") {
   const auto make = [](const NewtonParameters& p) { Newton newton(2, p); };
-  make({.maximum_iterations = 0, .tolerance = 0.0, .maximum_halvings = 0});
+  make({.maximum_iterations = 1, .tolerance = 0.0, .maximum_halvings = 0});
+  CHECK_REFUSED(SetupErrorKind::bad_argument, make({.maximum_iterations = 0}));
   CHECK_REFUSED(SetupErrorKind::bad_argument, make({.maximum_iterations = -1}));
   CHECK_REFUSED(SetupErrorKind::bad_argument, make({.maximum_halvings = -1}));
   for (const double tolerance : {-1e-10, std::nan(""), infinity})

@@ -13,11 +13,11 @@ using namespace palpate;
 namespace {
 
 /// Dense, with given eigenvalues; preconditioned by its diagonal.
-struct DenseOperator {
+struct GivenSpectrum {
   MatrixX k;
   VectorX diagonal;
 
-  DenseOperator(Index size, double condition) {
+  GivenSpectrum(Index size, double condition) {
     testing::Random random(3);
     const MatrixX a = MatrixX::NullaryExpr(size, size, [&] { return random.uniform(-1.0, 1.0); });
     const MatrixX q = a.householderQr().householderQ();
@@ -31,7 +31,7 @@ struct DenseOperator {
   void precondition(const VectorX& x, VectorX& y) const noexcept { y = x.cwiseQuotient(diagonal); }
 };
 
-double energy_norm(const DenseOperator& op, const VectorX& x) {
+double energy_norm(const GivenSpectrum& op, const VectorX& x) {
   return std::sqrt(x.dot(op.k * x));
 }
 
@@ -39,7 +39,7 @@ double energy_norm(const DenseOperator& op, const VectorX& x) {
 
 TEST_CASE("the energy of the error is below the tolerance, and about what is reported", "[linear][bounded]") {
   for (const double condition : {2.0, 10.0, 100.0}) {
-    const DenseOperator op(60, condition);
+    const GivenSpectrum op(60, condition);
     const VectorX b = VectorX::LinSpaced(60, -1.0, 2.0), exact = op.k.llt().solve(b);
     BoundedConjugateGradient solver(60);
     VectorX x(60);
@@ -56,7 +56,7 @@ TEST_CASE("the energy of the error is below the tolerance, and about what is rep
 }
 
 TEST_CASE("work is bounded, and less work leaves more", "[linear][bounded]") {
-  const DenseOperator op(60, 1e4);
+  const GivenSpectrum op(60, 1e4);
   const VectorX b = VectorX::Ones(60), exact = op.k.llt().solve(b);
   BoundedConjugateGradient solver(60);
   VectorX x(60);
@@ -72,7 +72,7 @@ TEST_CASE("work is bounded, and less work leaves more", "[linear][bounded]") {
 }
 
 TEST_CASE("nothing to solve, nothing finite, and no direction down", "[linear][bounded]") {
-  DenseOperator op(12, 10.0);
+  GivenSpectrum op(12, 10.0);
   BoundedConjugateGradient solver(12);
   VectorX x = VectorX::Ones(12);
   const auto nothing = solver.solve_into(op, VectorX::Zero(12), x, {});
@@ -90,7 +90,7 @@ TEST_CASE("nothing to solve, nothing finite, and no direction down", "[linear][b
 }
 
 TEST_CASE("a bounded solve does not allocate", "[linear][bounded]") {
-  const DenseOperator op(40, 50.0);
+  const GivenSpectrum op(40, 50.0);
   BoundedConjugateGradient solver(40);
   const VectorX b = VectorX::Ones(40);
   VectorX x(40);

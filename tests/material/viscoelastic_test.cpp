@@ -1,6 +1,8 @@
 // Relaxation and creep against closed forms (tests/data/oracle/README.md).
 #include <palpate/material/linear_elastic.hpp>
+#include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
+#include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/viscoelastic.hpp>
 #include <palpate/testing/hyperelastic_laws.hpp>
 #include <palpate/testing/material_laws.hpp>
@@ -134,8 +136,8 @@ TEST_CASE("a long step ends at the slow stress, a short one at the fast: no step
 TEST_CASE("large strain: relaxation of a held deformation, and turning it leaves it alone",
           "[material][viscoelastic][large]") {
   testing::Random random(51);
-  const NeoHookean base{5e3, 0.45, 1060.0};
-  const Viscoelastic<NeoHookean, 2> whole{base, {{{0.3, 0.1}, {0.2, 2.0}}}};
+  const NeoHookeanIsochoric base{5e3, 0.45, 1060.0};  // its energy splits into shape and volume
+  const Viscoelastic<NeoHookeanIsochoric, 2> whole{base, {{{0.3, 0.1}, {0.2, 2.0}}}};
   auto shape = whole;
   shape.relaxation = Relaxation::shape_only;
   CHECK(whole.density == 1060.0);
@@ -163,6 +165,68 @@ TEST_CASE("large strain: relaxation of a held deformation, and turning it leaves
   }
   CHECK_FALSE(whole.admits(Tensor3<double>::diagonal(1, 1, -1)));
   CHECK(whole.admits(Tensor3<double>::diagonal(1, 1, 0.1)));
+}
+
+TEMPLATE_TEST_CASE("within a step the law has an energy, whatever its base and whatever relaxes",
+                   "[material][viscoelastic][large]", NeoHookean, NeoHookeanIsochoric, MooneyRivlin) {
+  testing::Random random(52);
+  TestType base;
+  if constexpr (std::is_same_v<TestType, MooneyRivlin>)
+    base = {.c10 = 600.0, .c01 = 300.0, .bulk_modulus = 2e4, .density = 1060.0};
+  else
+    base = {5e3, 0.45, 1060.0};
+  for (const auto relaxation : {Relaxation::whole_stress, Relaxation::shape_only}) {
+    const Viscoelastic<TestType, 2> m{base, {{{0.3, 0.1}, {0.4, 2.0}}}, relaxation};
+    for (int k = 0; k < 6; ++k) {
+      typename Viscoelastic<TestType, 2>::LargeStrainHistory history;
+      for (const double dt : {0.0, 0.05, 0.7}) m.stress(testing::random_deformation(base, random), history, dt);
+      for (const double dt : {0.0, 0.08, 3.0, infinity}) {
+        const auto step = m.over(dt);
+        const auto law = m.law_of_step(step, m.driving_stress(history, step));
+        const Tensor3<double> f = testing::random_deformation(base, random), p = law.stress(f);
+        const Matrix9 a = law.tangent(f);
+        const double scale = base.tangent(f).norm() + a.norm();
+        CHECK((a - a.transpose()).norm() <= 1e-10 * scale);
+        for (int i = 0; i < 9; ++i) {
+          const double d = 1e-6;
+          Tensor3<double> up = f, down = f;
+          up.e[i] += d;
+          down.e[i] -= d;
+          CHECK_THAT((law.energy(up) - law.energy(down)) / (2.0 * d), WithinAbs(p.e[i], 1e-7 * scale));
+          const Eigen::Matrix<double, 9, 1> change = vector9(law.stress(up) - law.stress(down)) / (2.0 * d);
+          CHECK((change - a.col(i)).norm() <= 1e-6 * scale);
+        }
+        auto moved = history;
+        CHECK(vector9(m.stress(f, moved, dt) - p).norm() <= 1e-12 * scale);
+      }
+    }
+  }
+}
+
+TEST_CASE("a closed path yields no work, not even after a long time", "[material][viscoelastic][large]") {
+  testing::Random random(53);
+  const Viscoelastic<NeoHookean, 1> m{{5e3, 0.45, 1060.0}, {{{0.6, 0.1}}}, Relaxation::shape_only};
+  for (const double dt : {1e-4, 1e-2, 1e2}) {
+    const Tensor3<double> a = testing::random_deformation(m.base, random),
+                          b = testing::random_deformation(m.base, random);
+    const auto at = [&](double t) {  // a loop through rest
+      const double x = 0.5 * (1.0 - std::cos(6.283185307179586 * t)), y = std::sin(6.283185307179586 * t);
+      return Tensor3<double>::identity() + (0.4 * x) * (a - Tensor3<double>::identity()) +
+             (0.2 * y) * (b - Tensor3<double>::identity());
+    };
+    StressHistory<Tensor3<double>, 1> history;
+    double work = 0.0, gross = 0.0;
+    Tensor3<double> last = at(0.0), stress{};
+    for (int k = 1; k <= 4000; ++k) {
+      const Tensor3<double> f = at(1e-3 * k), p = m.stress(f, history, dt);
+      const double done = 0.5 * contract(p + stress, f - last);
+      work += done;
+      gross += std::abs(done);
+      last = f;
+      stress = p;
+    }
+    CHECK(work >= -1e-6 * gross);  // of the trapezoidal rule
+  }
 }
 
 TEST_CASE("at rest it has no stress and no memory; inadmissible series are refused",

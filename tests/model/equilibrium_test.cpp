@@ -120,3 +120,44 @@ TEST_CASE("equilibrium refuses bodies that can move, and initial strains", "[mod
   CHECK(kind(Scene().prescribe("z0", Components{std::nullopt, std::nullopt, 0.0})) == SetupErrorKind::unconstrained);
   CHECK(kind(Scene().fix("z0").expand(std::string(everywhere), 0.01)) == SetupErrorKind::unsupported);
 }
+
+TEST_CASE("parameters with which nothing could be solved are refused", "[model][equilibrium]") {
+  Equilibrium body = pillar(Scene().fix("z0").gravity({0.0, 0.0, -9.81}));
+  const auto kind = [&](const EquilibriumParameters& parameters) {
+    try {
+      body.solve(parameters);
+    } catch (const SetupError& error) {
+      return error.kind();
+    }
+    return SetupErrorKind::cancelled;
+  };
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {0.0, -1.0, none, 2.0}) CHECK(kind({.smallest_step = bad}) == SetupErrorKind::bad_argument);
+  for (const int bad : {0, -3}) {
+    CHECK(kind({.load_steps = bad}) == SetupErrorKind::bad_argument);
+    CHECK(kind({.newton = {.maximum_iterations = bad}}) == SetupErrorKind::bad_argument);
+  }
+  CHECK(kind({.newton = {.tolerance = none}}) == SetupErrorKind::bad_argument);
+  CHECK(kind({}) == SetupErrorKind::cancelled);
+}
+
+TEST_CASE("a tangent that is not positive definite is shifted, within a bound", "[model][equilibrium]") {
+  const Mesh<Tet4> mesh = box_tet4(size, {2, 2, 2});
+  const auto body = make_hyperelastic_body(mesh, std::vector<NeoHookean>{{5e3, 0.45, 0.0}});
+  const auto conditions = resolve_essential(mesh, extract_boundary<Tet4>(mesh), Scene().fix("z0"));
+  TangentSolver solver(block_pattern(mesh), conditions, mesh.positions, {});
+  const BlockMatrix k = assemble_stiffness<Tet4>(body.rest, {});
+  for (const double factor : {1.0, -1.0, -1e-3, -1e3}) {
+    solver.matrix().set_zero();
+    solver.matrix().add(factor, k);
+    REQUIRE(solver.factorise());
+    CHECK((solver.shift() > 0.0) == (factor < 0.0));
+    CHECK(solver.shift() <= 5.0 * solver.largest_diagonal());
+    VectorX r = VectorX::Ones(solver.size()), d(r);
+    solver.solve(r, d);
+    CHECK(r.dot(d) > 0.0);
+  }
+  solver.matrix().block(0)(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  solver.matrix().block(k.pattern().diagonal(mesh.node_count() - 1))(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(solver.factorise());
+}

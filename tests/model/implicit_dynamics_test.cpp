@@ -3,6 +3,7 @@
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
+#include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/model/equilibrium.hpp>
@@ -259,5 +260,71 @@ TEST_CASE("dynamics refuses what cannot move, and negative damping", "[model][dy
   CHECK(kind(oscillator(), {.mass_damping = -1.0}) == SetupErrorKind::bad_argument);
   CHECK(kind(oscillator(), {.stiffness_damping = std::numeric_limits<double>::quiet_NaN()}) ==
         SetupErrorKind::bad_argument);
+  CHECK(kind(oscillator(), {.newton = {.maximum_iterations = 0}}) == SetupErrorKind::bad_argument);
+  CHECK(kind(oscillator(), {.newton = {.tolerance = -1.0}}) == SetupErrorKind::bad_argument);
+  CHECK(kind(oscillator(), {.newton = {.maximum_halvings = -1}}) == SetupErrorKind::bad_argument);
   CHECK(kind(oscillator(), {.scheme = TimeScheme::newmark(0.0, 0.5)}) == SetupErrorKind::bad_argument);
+}
+
+TEST_CASE("a correction is that of the tangent, also after a step that needed no iteration", "[model][dynamics]") {
+  for (const MassKind mass : {MassKind::lumped, MassKind::consistent}) {
+    const Scene scene = Scene().fix("z0");
+    ImplicitDynamics d(make_deformable_body(block(), scene), {.mass = mass});
+    VectorX force = VectorX::Zero(d.displacement().size()), expected(force.size());
+    force[d.body().conditions.free_dofs.back()] = 1e-3;
+    const double h = 5e-3;
+    REQUIRE(d.step(h).newton.iterations == 0);
+    REQUIRE(d.correct(force));
+    ImplicitDynamics fresh(make_deformable_body(block(), scene), {.mass = mass});
+    REQUIRE(fresh.prepare_response(h));
+    fresh.respond(force, expected);
+    REQUIRE(expected.norm() > 0.0);
+    CHECK((d.displacement() - expected).norm() <= 1e-12 * expected.norm());
+    // the same force from the start of the step gives that to first order
+    ImplicitDynamics loaded(make_deformable_body(block(), scene), {.mass = mass});
+    loaded.set_load(1e-3 * force);
+    REQUIRE(loaded.step(h).newton.converged);
+    CHECK((1e3 * loaded.displacement() - expected).norm() <= 1e-3 * expected.norm());
+  }
+}
+
+TEST_CASE("what is no end of a step is not corrected, and no state that cannot be comes of it", "[model][dynamics]") {
+  const auto scene = Scene().fix("z0");
+  ImplicitDynamics d(
+      make_deformable_body(make_hyperelastic_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}),
+                                                  std::vector<NeoHookeanLogarithmic>{{5e3, 0.4, density}}),
+                           scene),
+      {});
+  VectorX force = VectorX::Zero(d.displacement().size());
+  force[force.size() - 1] = 1e-4;
+  CHECK_FALSE(d.correct(force));
+  d.step(5e-3);
+  CHECK(d.correct(force));
+  const VectorX u = d.displacement();
+  REQUIRE(u.norm() > 0.0);
+  for (const double size : {-1e6, 1e300, infinity, std::numeric_limits<double>::quiet_NaN()}) {
+    CHECK_FALSE(d.correct((size / 1e-4) * force));
+    CHECK(d.displacement() == u);
+  }
+  d.prepare_response(1e-3);
+  CHECK_FALSE(d.correct(force));  // of which step?
+  CHECK(d.displacement() == u);
+  REQUIRE(d.step(5e-3).taken);
+  d.set_prescribed(VectorX::Constant(u.size(), std::numeric_limits<double>::quiet_NaN()));
+  const VectorX last = d.displacement();
+  REQUIRE_FALSE(d.step(1e-3).taken);
+  CHECK_FALSE(d.correct(force));
+  CHECK(d.displacement() == last);
+}
+
+TEST_CASE("a state that is set has its prescribed parts where they are prescribed", "[model][dynamics]") {
+  const Scene scene = Scene().fix("z0").prescribe("z1", {0.0, 0.0, -0.02});
+  Equilibrium statics(block(), scene);
+  REQUIRE(statics.solve().converged);
+  ImplicitDynamics d(make_deformable_body(block(), scene), {});
+  d.set_state(statics.displacement(), VectorX::Zero(d.displacement().size()));
+  CHECK(d.displacement() == statics.displacement());
+  CHECK(d.acceleration().norm() <= 1e-6);
+  for (int k = 0; k < 5; ++k) d.step(1e-3);
+  CHECK((d.displacement() - statics.displacement()).norm() <= 1e-9 * statics.displacement().norm());
 }

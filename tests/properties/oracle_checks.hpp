@@ -86,7 +86,7 @@ void check_load_case(const std::string& folder, const solve_case::NumberedMesh<E
 /// are; none when its elements have another name.
 template <Element E, class Check>
 int each_load_case(const std::string& folder, const std::string& element, std::string_view analysis, Check check) {
-  const auto file = solve_case::read_case_file(folder + "/case.json");
+  const auto file = solve_case::read_case_files(folder + "/case.json").front();
   if (file.element != element) return 0;
   solve_case::NumberedMesh<E> mesh;
   mesh.mesh = io::read_mesh<E>(file.mesh_v22, 1.0, &mesh.ids);

@@ -49,7 +49,7 @@ TEST_CASE("Equilibrium at large strain agrees with all further reference results
 
 TEST_CASE("A load case at large strain that says something unknown is refused", "[oracle][large_strain]") {
   const std::string folder = PALPATE_TEST_DATA "/oracle/G_hyperelastic_cube/hex8";
-  const auto file = solve_case::read_case_file(folder + "/case.json");
+  const auto file = solve_case::read_case_files(folder + "/case.json").front();
   const auto mesh = io::read_mesh<Hex8>(file.mesh_v22);
   const auto refusal = [&](const char* pointer, const json& value) {
     json changed = file.load_cases.front();

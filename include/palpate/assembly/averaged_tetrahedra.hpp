@@ -24,15 +24,9 @@ class AveragedTetrahedra {
   using Material = M;
 
   AveragedTetrahedra() = default;
-  /// Throws inverted_element, non_finite, unsupported for a law with fibres on a mesh that has some, or what the law of
-  /// a region says in its check().
+  /// Throws as make_batches.
   explicit AveragedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {})
-      : laws_(body.laws) {
-    for (const M& law : laws_)
-      if (auto problem = law.check()) raise(std::move(*problem));
-    require_no_fibres(body);
-    limits.require_memory(static_cast<double>(body.rest.mesh.element_count()) * 180.0, "the batches of elements");
-    layout_ = TetrahedronBatches<S, N>(body.rest.mesh);
+      : layout_(make_batches<S, N>(body, 180.0, limits)), laws_(body.laws) {
     rows_.assign(4 * layout_.nodes.size(), S(0));
     sums_.assign(layout_.nodes.size(), S(0));
     place_averages();

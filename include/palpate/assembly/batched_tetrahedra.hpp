@@ -20,14 +20,9 @@ class BatchedTetrahedra {
   using Material = M;
 
   BatchedTetrahedra() = default;
-  /// Throws inverted_element, non_finite, unsupported for a law with fibres on a mesh that has some, or what the law of
-  /// a region says in its check().
-  explicit BatchedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {}) : laws_(body.laws) {
-    for (const M& law : laws_)
-      if (auto problem = law.check()) raise(std::move(*problem));
-    require_no_fibres(body);
-    limits.require_memory(static_cast<double>(body.rest.mesh.element_count()) * 160.0, "the batches of elements");
-    layout_ = TetrahedronBatches<S, N>(body.rest.mesh);
+  /// Throws as make_batches.
+  explicit BatchedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {})
+      : layout_(make_batches<S, N>(body, 160.0, limits)), laws_(body.laws) {
     rows_.assign(4 * layout_.nodes.size(), S(0));
     seen_.resize(layout_.blocks.size());
     probe_length_ = std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * shortest_edge(body.rest.mesh);
@@ -76,11 +71,7 @@ class BatchedTetrahedra {
   void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
     layout_.add_up(rows_.data(), first_node, last_node, f);
   }
-  DeformationReport report() const noexcept {
-    DeformationReport all;
-    for (const DeformationReport& part : seen_) detail::add_report(part, all);
-    return all;
-  }
+  DeformationReport report() const noexcept { return detail::report_of(seen_); }
 
  private:
   using Batch = TetrahedronBatch<S, N>;

@@ -101,6 +101,11 @@ class BlockMatrix {
     }
   }
 
+  /// Adds factor x nodal[i] to the three diagonal entries of every node i: a lumped mass.
+  void add_nodal(double factor, const VectorX& nodal) noexcept {
+    for (Index i = 0; i < nodal.size(); ++i) block(pattern().diagonal(i)).diagonal().array() += factor * nodal[i];
+  }
+
   std::vector<Matrix3> diagonal_blocks() const {
     std::vector<Matrix3> d;
     d.reserve(static_cast<std::size_t>(pattern_.rows()));

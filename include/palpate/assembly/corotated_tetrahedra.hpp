@@ -20,14 +20,11 @@ class CorotatedTetrahedra {
   using Material = Corotational<Base>;
 
   CorotatedTetrahedra() = default;
-  /// Throws inverted_element, non_finite, too_large, or what the law of a region says in its check().
-  explicit CorotatedTetrahedra(const HyperelasticBody<Tet4, Material>& body, const SetupLimits& limits = {}) {
-    for (const Material& law : body.laws) {
-      if (auto problem = law.check()) raise(std::move(*problem));
+  /// Throws as make_batches.
+  explicit CorotatedTetrahedra(const HyperelasticBody<Tet4, Material>& body, const SetupLimits& limits = {})
+      : layout_(make_batches<S, N>(body, 280.0, limits)) {
+    for (const Material& law : body.laws)
       laws_.push_back({static_cast<S>(law.base.lame_lambda()), static_cast<S>(law.base.shear_modulus())});
-    }
-    limits.require_memory(static_cast<double>(body.rest.mesh.element_count()) * 280.0, "the batches of elements");
-    layout_ = TetrahedronBatches<S, N>(body.rest.mesh);
     rows_.assign(4 * layout_.nodes.size(), S(0));
     seen_.resize(layout_.blocks.size());
     for (const Batch& batch : layout_.batches) turned_.push_back(at_rest(batch));
@@ -43,9 +40,7 @@ class CorotatedTetrahedra {
     energy = 0.0;
     for (std::size_t b = 0; b < layout_.blocks.size(); ++b) energy += linearise_block(b, u);
     layout_.add_up(rows_.data(), 0, layout_.node_count(), f);
-    DeformationReport report;
-    for (const DeformationReport& part : seen_) detail::add_report(part, report);
-    return report;
+    return detail::report_of(seen_);
   }
 
   /// y = R K R^T x with the rotations taken last.

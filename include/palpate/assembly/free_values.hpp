@@ -30,6 +30,21 @@ class FreeValues {
   void add_to_diagonal(double value) noexcept {
     for (Index j = 0; j < lower_.cols(); ++j) lower_.valuePtr()[lower_.outerIndexPtr()[j]] += value;
   }
+  /// What must be added to the diagonal to make the matrix diagonally dominant, so positive semidefinite (Gershgorin
+  /// 1931); 0 when it is. NaN for a matrix that is not finite. `sums` is room for a number per row.
+  double gershgorin_shift(VectorX& sums) const noexcept {
+    sums.setZero();
+    for (Index j = 0; j < lower_.cols(); ++j) {
+      const Index first = lower_.outerIndexPtr()[j];
+      sums[j] -= lower_.valuePtr()[first];
+      for (Index p = first + 1; p < lower_.outerIndexPtr()[j + 1]; ++p) {
+        const double size = std::abs(lower_.valuePtr()[p]);
+        sums[j] += size;
+        sums[lower_.innerIndexPtr()[p]] += size;
+      }
+    }
+    return sums.allFinite() ? std::max(0.0, sums.maxCoeff()) : std::numeric_limits<double>::quiet_NaN();
+  }
 
  private:
   SparseMatrix lower_;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <palpate/assembly/body.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/material/viscoelastic.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -40,25 +42,32 @@ class ElementLaw {
   Triple<double> along_{};
   bool has_fibre_ = false;
 };
+/// A law for large strain, with memory or without.
+template <class M>
+concept LargeStrainMaterial = HyperelasticMaterial<M> || ViscousMaterial<M>;
 
 /// An admitted mesh, a law per region, and the body as it is at small strain: what stiffness at rest, mass and dead
 /// loads come from.
-template <Element E, HyperelasticMaterial M>
+template <Element E, LargeStrainMaterial M>
 struct HyperelasticBody {
   Body<E> rest;
   std::vector<M> laws;  ///< by region
 
-  /// With the direction of the element's fibres, if mesh and law have any. Refers to the body.
-  ElementLaw<M> law_of(Index e) const noexcept {
-    return {laws[rest.region_of(e)], uses_fibres() ? &rest.mesh.fibre(e) : nullptr};
+  /// The law of a region; an ElementLaw, with the direction of the element's fibres if the mesh has any, for a law that
+  /// asks for them. Refers to the body.
+  decltype(auto) law_of(Index e) const noexcept {
+    if constexpr (FibreHyperelasticMaterial<M>)
+      return ElementLaw<M>(laws[rest.region_of(e)], uses_fibres() ? &rest.mesh.fibre(e) : nullptr);
+    else
+      return (laws[rest.region_of(e)]);
   }
   bool uses_fibres() const noexcept { return FibreHyperelasticMaterial<M> && rest.mesh.has_fibres(); }
 };
 
 /// By region number. Where the mesh has fibres and the law asks for them, every element has its own direction, made a
-/// unit vector to the last bit. Throws as require_material_per_region, and bad_argument for fibres that are no unit
-/// vectors.
-template <Element E, HyperelasticMaterial M>
+/// unit vector to the last bit. Throws as require_material_per_region, bad_argument for fibres that are no unit vectors,
+/// and unsupported for a law with memory of a base that asks for fibres.
+template <Element E, LargeStrainMaterial M>
 HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, std::vector<M> by_region) {
   require_material_per_region(by_region, mesh);
   HyperelasticBody<E, M> body{{std::move(mesh), {}, {}, {}}, std::move(by_region)};
@@ -66,6 +75,10 @@ HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, std::vector<M> by_re
     body.rest.elasticity.push_back(law.rest_elasticity());
     body.rest.density.push_back(law.density);
   }
+  if constexpr (requires(const M& law) { law.base; } && !FibreHyperelasticMaterial<M>)
+    if (FibreHyperelasticMaterial<decltype(M::base)> && body.rest.mesh.has_fibres())
+      raise(SetupErrorKind::unsupported, "a law with memory and a fibre direction per element",
+            "Clear the mesh's fibres so that the law's own direction counts");
   body.rest.initial_strain.assign(body.laws.size(), Vector6::Zero());
   if constexpr (FibreHyperelasticMaterial<M>) {
     require_unit_fibres(body.rest.mesh);
@@ -87,7 +100,7 @@ void require_no_fibres(const HyperelasticBody<E, M>& body) {
 }
 
 /// With materials by name; throws as materials_by_region.
-template <Element E, HyperelasticMaterial M>
+template <Element E, LargeStrainMaterial M>
 HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
   std::vector<M> by_region = materials_by_region(mesh, materials);
   return make_hyperelastic_body(std::move(mesh), std::move(by_region));

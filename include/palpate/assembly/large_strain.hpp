@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/elastic_forces.hpp>
-#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/assembly/point_memory.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/element/mean_dilatation.hpp>
 #include <palpate/element/smoothed.hpp>
@@ -13,14 +13,15 @@ namespace palpate::inline PALPATE_ABI {
 
 /// Integrates a body over its shape at rest (Belytschko, Liu, Moran, Nonlinear Finite Elements, 4.9): F = I + sum u_a
 /// grad N_a, f_a = sum_q P grad N_a dV. Gradients and volumes are computed once: (3 nodes + 1) x 8 bytes per
-/// integration point. Vectors have 3 entries per node, all dofs. No function allocates; sums go by element, so results
-/// do not depend on threads.
-template <Element E, HyperelasticMaterial M>
+/// integration point, and what a law with memory remembers. Vectors have 3 entries per node, all dofs. No function
+/// allocates; sums go by element, so results do not depend on threads.
+template <Element E, LargeStrainMaterial M>
 class LargeStrain final : public ElasticForces {
  public:
   static_assert(!HasSmoothedStrain<E> && !HasMeanDilatation<E>,
                 "palpate: Smoothed and MeanDilatation average strains of small deformations; choose Tet10 or Hex20, or "
                 "AveragedTetrahedra for explicit motion");
+  static constexpr bool remembers = ViscousMaterial<M>;
 
   /// Throws inverted_element or non_finite for a mesh that is so at rest, too_large.
   explicit LargeStrain(HyperelasticBody<E, M> body, const SetupLimits& limits = {}) : body_(std::move(body)) {
@@ -39,6 +40,7 @@ class LargeStrain final : public ElasticForces {
         if (!g.gradient.allFinite()) raise_element(SetupErrorKind::non_finite, e, "has gradients that are not finite");
       }
     }
+    memory_.start(body_, limits);
   }
 
   const HyperelasticBody<E, M>& body() const noexcept { return body_; }
@@ -49,10 +51,10 @@ class LargeStrain final : public ElasticForces {
   double energy(const VectorX& u) const noexcept override {
     double sum = 0.0;
     for (Index e = 0; e < mesh().element_count(); ++e) {
-      const ElementLaw<M> law = body_.law_of(e);
       const Displacements ue = displacements(e, u);
       for (const PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
+        const auto& law = law_at(e, g);
         if (!law.admits(f)) return infinity;
         sum += g.volume * law.energy(f);
       }
@@ -66,13 +68,13 @@ class LargeStrain final : public ElasticForces {
     DeformationReport report;
     all.setZero();
     for (Index e = 0; e < mesh().element_count(); ++e) {
-      const ElementLaw<M> law = body_.law_of(e);
       const Displacements ue = displacements(e, u);
       Displacements fe = Displacements::Zero();
       bool inverted = false;
       for (const PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
         inverted = !see(determinant(f), e, report) || inverted;
+        const auto& law = law_at(e, g);
         if (law.admits(f))
           fe.noalias() += g.volume * matrix3(law.stress(f)) * g.gradient.transpose();
         else
@@ -88,16 +90,27 @@ class LargeStrain final : public ElasticForces {
   void tangent(const VectorX& u, BlockMatrix& k) const noexcept override {
     k.set_zero();
     for (Index e = 0; e < mesh().element_count(); ++e) {
-      const ElementLaw<M> law = body_.law_of(e);
       const Displacements ue = displacements(e, u);
       for (const PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
-        if (law.admits(f)) add_tangent(e, g, law.tangent(f), k);
+        if (const auto& law = law_at(e, g); law.admits(f)) add_tangent(e, g, law.tangent(f), k);
       }
     }
   }
 
   double probe_length() const noexcept override { return probe_length_; }
+
+  void begin_step(double dt) noexcept override {
+    if constexpr (remembers) memory_.begin_step(body_, dt);
+  }
+  void end_step(const VectorX& u) noexcept override {
+    if constexpr (remembers)
+      for (Index e = 0; e < mesh().element_count(); ++e) {
+        const Displacements ue = displacements(e, u);
+        for (const PointGeometry<E>& g : points_of(e))
+          memory_.remember(body_, e, number_of(e, g), deformation_gradient(ue, g));
+      }
+  }
 
  private:
   static constexpr std::size_t point_count = E::Quadrature::points.size();
@@ -105,6 +118,13 @@ class LargeStrain final : public ElasticForces {
   using Displacements = Eigen::Matrix<double, 3, E::nodes>;  // one per column
   using TangentBlock = Eigen::Matrix<double, 9, 3>;
 
+  std::size_t number_of(Index e, const PointGeometry<E>& g) const noexcept {
+    return static_cast<std::size_t>(&g - points_of(e).data());
+  }
+  /// The law of a point: with memory, that of the present step.
+  decltype(auto) law_at(Index e, const PointGeometry<E>& g) const noexcept {
+    return memory_.law(body_, e, number_of(e, g));
+  }
   const Points& points_of(Index e) const noexcept { return points_[static_cast<std::size_t>(e)]; }
 
   Displacements displacements(Index e, const VectorX& u) const noexcept {
@@ -143,6 +163,7 @@ class LargeStrain final : public ElasticForces {
 
   HyperelasticBody<E, M> body_;
   std::vector<Points> points_;
+  [[no_unique_address]] typename detail::PointMemory<M, point_count>::type memory_;
   double probe_length_ = 0.0;
 };
 

@@ -24,6 +24,7 @@ class LinearForces final : public ElasticForces {
   void tangent(const VectorX&, BlockMatrix& k) const noexcept override { k.copy_values(stiffness_); }
   /// Any length would do.
   double probe_length() const noexcept override { return 1.0; }
+  bool is_linear() const noexcept override { return true; }
 
  private:
   BlockMatrix stiffness_;

@@ -3,7 +3,9 @@
 
 #include <palpate/assembly/constant_geometry.hpp>
 #include <palpate/assembly/element_blocks.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/core/lane_rows.hpp>
+#include <palpate/core/setup_options.hpp>
 #include <palpate/core/tensor3.hpp>
 #include <palpate/element/tet4.hpp>
 
@@ -153,5 +155,18 @@ struct TetrahedronBatches {
           static_cast<std::uint16_t>(4 * (std::ranges::lower_bound(local, mesh.element_node(e, a)) - local.begin()));
   }
 };
+
+/// The batches of a body, after its laws were asked whether they hold. Throws inverted_element, non_finite, unsupported
+/// for a law with fibres on a mesh that has some, too_large, or what the law of a region says in its check().
+template <class S, int N, HyperelasticMaterial M>
+TetrahedronBatches<S, N> make_batches(const HyperelasticBody<Tet4, M>& body, double bytes_per_element,
+                                      const SetupLimits& limits) {
+  for (const M& law : body.laws)
+    if (auto problem = law.check()) raise(std::move(*problem));
+  require_no_fibres(body);
+  limits.require_memory(static_cast<double>(body.rest.mesh.element_count()) * bytes_per_element,
+                        "the batches of elements");
+  return TetrahedronBatches<S, N>(body.rest.mesh);
+}
 
 }  // namespace palpate::inline PALPATE_ABI

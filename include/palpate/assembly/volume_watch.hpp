@@ -16,6 +16,13 @@ inline void add_report(const DeformationReport& part, DeformationReport& all) no
   all.admissible = all.admissible && part.admissible;
 }
 
+/// The report of all parts.
+inline DeformationReport report_of(const std::vector<DeformationReport>& parts) noexcept {
+  DeformationReport all;
+  for (const DeformationReport& part : parts) add_report(part, all);
+  return all;
+}
+
 /// Least J of a block, in which batch, how many are positive, and whether one is not finite, per lane.
 template <class S, int N>
 class VolumeWatch {

@@ -33,6 +33,8 @@ struct DeviceLimits {
   double stiffness = 500.0;                         ///< [N/m] the most it renders stably at 1 kHz
   Vector3 workspace_low = Vector3::Constant(-0.1);  ///< [m]
   Vector3 workspace_high = Vector3::Constant(0.1);  ///< [m]
+  double peak_torque = 0.0;                         ///< [N m]; 0: three actuated degrees of freedom, no torque
+  double turning_stiffness = 0.0;                   ///< [N m/rad] the most it renders stably; 0 without torque
 };
 
 /// A device that can be read and written from the haptic thread. `read` and `write` never throw, block, allocate or

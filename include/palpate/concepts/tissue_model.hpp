@@ -29,8 +29,11 @@ struct VertexForce {
 /// - `begin_tick()`, if there is one, is called before each tick and may bring in what moved since; its Status is part of
 /// the tick's. `end_tick(forces)`, if there is one, is told the forces on the vertices after it, and that there are none
 /// when a session is reset.
-/// - `exchange_contacts(problem)`, if there is one, is called after that, for a tissue whose triangles change: it swaps the
-/// session's contact problem for one of the new surface, which goes on where the old one stood.
+/// - `updates()`, if there is one, counts what `begin_tick` has brought in: a servo fades its force when that stands
+/// still for too long.
+/// - `exchange_contacts(problem)`, if there is one, is called after `begin_tick`, for a tissue whose triangles change: it
+/// moves the session's contact problem to the new surface, where it goes on. `require_tools(radius, parameters)` may
+/// refuse a session that this cannot be done for.
 /// - `pose()` maps the model's frame to the world's.
 /// All are noexcept, allocate nothing and take bounded time.
 template <class T>

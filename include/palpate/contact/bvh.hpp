@@ -28,6 +28,20 @@ struct Box {
   double squared_distance(const Vector3& p) const noexcept {
     return (low - p).cwiseMax(p - high).cwiseMax(Vector3::Zero()).squaredNorm();
   }
+  /// Whether the way from a point enters the box, widened by `margin`, before the share `until` of it is gone.
+  bool is_crossed(const Vector3& from, const Vector3& way, double margin, double until) const noexcept {
+    double enter = 0.0, leave = until;
+    for (int k = 0; k < 3; ++k) {
+      const double a = low[k] - margin - from[k], b = high[k] + margin - from[k];
+      if (way[k] == 0.0) {
+        if (a > 0.0 || b < 0.0) return false;
+        continue;
+      }
+      enter = std::max(enter, std::min(a / way[k], b / way[k]));
+      leave = std::min(leave, std::max(a / way[k], b / way[k]));
+    }
+    return enter <= leave;
+  }
 };
 
 using Triangle = std::array<int, 3>;
@@ -70,20 +84,16 @@ class Bvh {
   template <class Visit>
   void visit_near(const Vector3& centre, double radius, Visit&& visit) const noexcept {
     const double limit = radius * radius;
-    std::array<int, max_depth> stack;
-    int top = 0;
-    if (!nodes_.empty()) stack[static_cast<std::size_t>(top++)] = 0;
-    while (top > 0) {
-      const int i = stack[static_cast<std::size_t>(--top)];
-      const Node& node = nodes_[static_cast<std::size_t>(i)];
-      if (!(node.box.squared_distance(centre) <= limit)) continue;
-      if (node.count > 0) {
-        for (int k = node.first; k < node.first + node.count; ++k) visit(order_[static_cast<std::size_t>(k)]);
-      } else {
-        stack[static_cast<std::size_t>(top++)] = node.first;
-        stack[static_cast<std::size_t>(top++)] = i + 1;
-      }
-    }
+    descend([&](const Box& box) { return box.squared_distance(centre) <= limit; }, visit);
+  }
+
+  /// Calls visit(triangle) for the triangles of leaves that the way from a point crosses within `margin`. It returns
+  /// the share of the way beyond which nothing matters any more.
+  template <class Visit>
+  void visit_along(const Vector3& from, const Vector3& way, double margin, Visit&& visit) const noexcept {
+    double until = 1.0;
+    descend([&](const Box& box) { return box.is_crossed(from, way, margin, until); },
+            [&](int triangle) { until = visit(triangle); });
   }
 
   /// Finds the triangle for which squared_distance(triangle) is smallest; ties go to the lowest number. -1 when empty.
@@ -128,6 +138,25 @@ class Bvh {
     int first = 0;  // leaf: first of order_; inner: right child (the left one follows directly)
     int count = 0;  // 0 for inner nodes
   };
+
+  /// Calls visit(triangle) for those of leaves under boxes with reaches(box), left before right.
+  template <class Reaches, class Visit>
+  void descend(Reaches&& reaches, Visit&& visit) const noexcept {
+    std::array<int, max_depth> stack;
+    int top = 0;
+    if (!nodes_.empty()) stack[static_cast<std::size_t>(top++)] = 0;
+    while (top > 0) {
+      const int i = stack[static_cast<std::size_t>(--top)];
+      const Node& node = nodes_[static_cast<std::size_t>(i)];
+      if (!reaches(node.box)) continue;
+      if (node.count > 0) {
+        for (int k = node.first; k < node.first + node.count; ++k) visit(order_[static_cast<std::size_t>(k)]);
+      } else {
+        stack[static_cast<std::size_t>(top++)] = node.first;
+        stack[static_cast<std::size_t>(top++)] = i + 1;
+      }
+    }
+  }
 
   static const Vector3& at(std::span<const Vector3> positions, int i) noexcept {
     return positions[static_cast<std::size_t>(i)];

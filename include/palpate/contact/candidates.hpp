@@ -26,7 +26,19 @@ struct Candidate {
   double force = 0.0;                ///< of the last solution [N]
   Vector3 point = Vector3::Zero();   ///< on the deformed surface [m]
   Vector3 normal = Vector3::Zero();  ///< unit, from the point to the ball's centre
+  double along = 0.0;                ///< where on a capsule's axis that centre lies [m]
   NormalHistory history;
+
+  Vector3 friction = Vector3::Zero();  ///< of the last solution, on the tool [N]
+  Vector3 anchor = Vector3::Zero();    ///< where the point clung to the tool after the last tick, tool's own frame [m]
+  std::uint64_t clung = 0;             ///< the tick after which it did
+  bool grasped = false;                ///< no point near a ball, but one that is held
+
+  /// Forgets what it carried.
+  void lift() noexcept {
+    force = 0.0;
+    clung = 0;
+  }
 };
 
 /// All contact points that a ball can reach within a tick, and some more, so that the list holds for a while: the way
@@ -44,6 +56,7 @@ class Candidates {
   /// Places the samples `spacing` [m] apart. Allocates; for set-up.
   Candidates(const ContactSurface& surface, double spacing) : samples_(surface, spacing) {
     proxy_.fill(Vector3::Zero());
+    axis_.fill(Vector3::Zero());
   }
 
   const ContactSamples& samples() const noexcept { return samples_; }
@@ -58,34 +71,39 @@ class Candidates {
   /// back by an unknown amount, and the next update makes another list.
   bool has_lost_forces() const noexcept { return lost_forces_; }
 
-  /// Takes over the points that press from the same body's surface before it was cut: vertices have the same numbers,
-  /// triangles and points need not. What lay on triangles that are gone does not press any more. No allocation.
-  void continue_from(const Candidates& before, const ContactSurface& surface) noexcept {
-    count_ = 0;
-    valid_ = false;
-    for (int i = 0; i < before.count_; ++i) {
-      const Candidate& old = before.items_[static_cast<std::size_t>(i)];
-      if (!(old.force > 0.0)) continue;
-      const int sample = samples_.nearest(surface, before.samples_[old.sample]);
-      if (sample < 0) continue;
-      const auto end = items_.begin() + count_;
+  /// Goes on on the same body's surface after a cut: vertices have the same numbers, triangles and points need not. What
+  /// lay on triangles that are gone does not press any more. `fresh` was made for that surface and gets the old samples.
+  /// No allocation.
+  void move_to(Candidates& fresh, const ContactSurface& surface) noexcept {
+    std::swap(samples_, fresh.samples_);
+    const ContactSamples& before = fresh.samples_;
+    int kept = 0;
+    for (int i = 0; i < count_; ++i) {
+      Candidate c = items_[static_cast<std::size_t>(i)];
+      if (!(c.force > 0.0) || !move(c, before, surface)) continue;
+      const auto end = items_.begin() + kept;
       const auto same = std::find_if(items_.begin(), end,
-                                     [&](const Candidate& c) { return c.sample == sample && c.tool == old.tool; });
-      if (same != end) {
-        same->force += old.force;
-        continue;
+                                     [&](const Candidate& d) { return d.sample == c.sample && d.tool == c.tool; });
+      if (same == end) {
+        items_[static_cast<std::size_t>(kept++)] = c;
+      } else {
+        same->force += c.force;
+        same->friction += c.friction;
       }
-      Candidate& c = items_[static_cast<std::size_t>(count_++)] = old;
-      c.sample = sample;
-      c.triangle = triangle_of(surface, sample);
-      c.row = c.slot = -1;
-      c.history = {};
     }
-    proxy_ = before.proxy_;
-    was_active_ = before.was_active_;
-    travel_ = before.travel_;
-    surface_travel_ = before.surface_travel_;
+    count_ = kept;
+    next_ = 0;
+    valid_ = false;
     revision_ = surface.revision();
+  }
+  /// Puts a candidate on the sample that lies where its own of another surface lay; false when there is none.
+  bool move(Candidate& c, const ContactSamples& before, const ContactSurface& surface) const noexcept {
+    c.sample = samples_.nearest(surface, before[c.sample]);
+    if (c.sample < 0) return false;
+    c.triangle = triangle_of(surface, c.sample);
+    c.row = c.slot = -1;
+    c.history = {};
+    return true;
   }
 
   /// Takes in what happened since the last tick: tools put elsewhere, lifted or set down, a moved resting surface.
@@ -95,13 +113,17 @@ class Candidates {
     for (std::size_t t = 0; t < tools.size(); ++t) {
       if (tools[t].active != was_active_[t]) forget();
       was_active_[t] = tools[t].active;
-      if (tools[t].active) move_ball(t, tools[t].proxy);
+      if (tools[t].active) move_ball(t, tools[t]);
     }
   }
   /// The ball of a tool is here now.
-  void move_ball(std::size_t tool, const Vector3& proxy) noexcept {
-    travel_[tool] += (proxy - proxy_[tool]).norm();
-    proxy_[tool] = proxy;
+  void move_ball(std::size_t t, const ContactTool& tool) noexcept {
+    travel_[t] += (tool.proxy - proxy_[t]).norm();
+    proxy_[t] = tool.proxy;
+    if (tool.half_length == 0.0) return;
+    const Vector3 axis = tool.axis();
+    travel_[t] += tool.half_length * (axis - axis_[t]).norm();
+    axis_[t] = axis;
   }
   /// No point of the surface has moved farther than this.
   void move_surface(double distance) noexcept { surface_travel_ += distance; }
@@ -141,7 +163,9 @@ class Candidates {
   /// Sets where a candidate's point is.
   void place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept {
     c.point = point;
-    const Vector3 offset = tool.proxy - point;
+    c.along = tool.along(point);
+    const Vector3 offset =
+        c.along != 0.0 ? Vector3(tool.proxy + c.along * tool.axis() - point) : Vector3(tool.proxy - point);
     const double distance = offset.norm();
     c.normal = distance > 0.0 ? Vector3(offset / distance) : Vector3::UnitZ();
     c.gap = distance - tool.radius;
@@ -162,7 +186,7 @@ class Candidates {
       if (moved <= reach_) continue;
       const Vector3 x = displacement.position(tissue, next_);
       for (std::size_t t = 0; t < tools.size(); ++t)
-        if (tools[t].active && (x - tools[t].proxy).norm() < tools[t].radius + range_[t]) {
+        if (tools[t].active && (x - tools[t].proxy).norm() < tools[t].radius + tools[t].half_length + range_[t]) {
           far_ = std::max(far_, 1.1 * moved);
           forget();
         }
@@ -181,7 +205,7 @@ class Candidates {
   static constexpr int per_tick = 2;
 
   /// Points this near may be reached while the linearisation settles; leaving one out lets the ball fall through it.
-  static double needed(const ContactTool& tool) noexcept { return tool.longest_step() + 0.5 * tool.motion.norm(); }
+  static double needed(const ContactTool& tool) noexcept { return tool.longest_step() + 0.5 * tool.way(); }
   int triangle_of(const ContactSurface& surface, int sample) const noexcept {
     for (const int t : surface.triangles_at(samples_[sample].vertices[0]))
       if (samples_.first_of(t) <= sample && sample < samples_.first_of(t + 1)) return t;
@@ -204,10 +228,13 @@ class Candidates {
       range_[t] = needed(tool) + 0.25 * tool.radius;
       built_[t] = travel(t);
       const double far = tool.radius + range_[t] + reach_;
-      surface.bvh().visit_near(tool.proxy, far, [&](int triangle) {
-        for (int s = samples_.first_of(triangle); s < samples_.first_of(triangle + 1); ++s)
-          if ((rest(surface, s) - tool.proxy).squaredNorm() <= far * far)
+      const Vector3 axis = tool.axis();
+      surface.bvh().visit_near(tool.proxy, far + tool.half_length, [&](int triangle) {
+        for (int s = samples_.first_of(triangle); s < samples_.first_of(triangle + 1); ++s) {
+          const Vector3 x = rest(surface, s);
+          if ((x - tool.proxy - tool.along(x) * axis).squaredNorm() <= far * far)
             consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
+        }
       });
     }
     restore_forces(tissue, tools, displacement);
@@ -225,6 +252,9 @@ class Candidates {
                                       [&](const Candidate& c) { return c.sample == old.sample && c.tool == old.tool; });
       if (found != items_.begin() + count_) {
         found->force = old.force;
+        found->friction = old.friction;
+        found->anchor = old.anchor;
+        found->clung = old.clung;
       } else if (count_ < maximum && tools[static_cast<std::size_t>(old.tool)].active) {
         Candidate& c = items_[static_cast<std::size_t>(count_++)] = old;
         evaluate(tissue, tools[static_cast<std::size_t>(c.tool)], displacement, c);
@@ -282,7 +312,7 @@ class Candidates {
   int count_ = 0, loaded_count_ = 0;
   bool valid_ = false, is_new_ = false, lost_forces_ = false;
   std::uint64_t revision_ = 0;
-  std::array<Vector3, maximum_tools> proxy_{};
+  std::array<Vector3, maximum_tools> proxy_{}, axis_{};
   std::array<bool, maximum_tools> was_active_{};
   std::array<double, maximum_tools> range_{}, built_{}, travel_{};  // range: gaps up to which the list was complete
   double surface_travel_ = 0.0;

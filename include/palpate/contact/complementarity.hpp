@@ -31,6 +31,8 @@ class ComplementarityProblem {
   Vector b;        ///< gap without contact force [m]
   Vector lambda;   ///< contact force [N], the answer; start: any sign pattern, positive rows start active
   int pivots = 0;  ///< how many sets were tried
+  /// Rows that hold both ways: g = 0, and lambda has any sign.
+  std::array<bool, static_cast<std::size_t>(Capacity)> bilateral{};
 
   /// Keeps the values of rows that stay.
   void resize(int rows) noexcept {
@@ -56,7 +58,7 @@ class ComplementarityProblem {
   bool pivot_blocks() noexcept {
     order_count_ = factored_ = 0;
     for (int i = 0; i < rows_; ++i) {
-      active_[at(i)] = lambda[i] > 0.0;
+      active_[at(i)] = bilateral[at(i)] || lambda[i] > 0.0;
       if (active_[at(i)]) order_[at(order_count_++)] = i;
     }
     int best = rows_ + 1, patience = 3;
@@ -67,7 +69,8 @@ class ComplementarityProblem {
       for (int p = 0; p < order_count_; ++p) lambda[order_[at(p)]] = answer_[p];
       update_gaps();
       int wrong = 0;
-      for (int i = 0; i < rows_; ++i) wrong += flip_[at(i)] = active_[at(i)] ? lambda[i] < 0.0 : gap_[i] < -tolerance_;
+      for (int i = 0; i < rows_; ++i)
+        wrong += flip_[at(i)] = !bilateral[at(i)] && (active_[at(i)] ? lambda[i] < 0.0 : gap_[i] < -tolerance_);
       if (wrong == 0) return true;
       patience = wrong < best ? 3 : patience - 1;
       best = std::min(best, wrong);
@@ -87,7 +90,10 @@ class ComplementarityProblem {
     order_count_ = factored_ = 0;
     active_.fill(false);
     lambda.setZero();
-    gap_ = b;
+    for (int i = 0; i < rows_; ++i)
+      if (bilateral[at(i)]) add(i);
+    step();
+    update_gaps();
     while (true) {
       int deepest = -1;
       for (int i = 0; i < rows_; ++i)
@@ -109,13 +115,13 @@ class ComplementarityProblem {
     double length = 1.0;
     for (int p = 0; p < order_count_; ++p) {
       const double from = lambda[order_[at(p)]];
-      if (answer_[p] < 0.0) length = std::min(length, from / (from - answer_[p]));
+      if (answer_[p] < 0.0 && !bilateral[at(order_[at(p)])]) length = std::min(length, from / (from - answer_[p]));
     }
     bool whole = true;
     for (int p = order_count_ - 1; p >= 0; --p) {
       const int i = order_[at(p)];
       const double from = lambda[i];
-      const bool leaves = answer_[p] < 0.0 && from <= length * (from - answer_[p]);
+      const bool leaves = !bilateral[at(i)] && answer_[p] < 0.0 && from <= length * (from - answer_[p]);
       lambda[i] = leaves ? 0.0 : from + length * (answer_[p] - from);
       if (!leaves) continue;
       active_[at(i)] = whole = false;

@@ -3,6 +3,8 @@
 
 #include <palpate/contact/bvh.hpp>
 
+#include <Eigen/Geometry>
+
 namespace palpate::inline PALPATE_ABI {
 
 /// How far a tick may go.
@@ -10,12 +12,21 @@ struct ContactParameters {
   int maximum_iterations = 4;     ///< linearisations per tick
   double force_tolerance = 1e-3;  ///< relative change of the force between linearisations that ends the tick
   double sample_spacing = 0.5;    ///< of contact points on the surface, in radii of the smallest tool
+  double friction = 0.0;          ///< Coulomb's coefficient; 0 costs nothing
 };
 
+/// Contacts of one contact problem unless it says otherwise.
+inline constexpr int default_contact_capacity = 64;
 /// Tools of one contact problem.
 inline constexpr std::size_t maximum_tools = 8;
 
-/// A ball as the contact problem knows it, in the model's frame.
+/// The rotation by |v| about v.
+inline Matrix3 rotation_by(const Vector3& v) noexcept {
+  const double angle = v.norm();
+  return angle > 0.0 ? Eigen::AngleAxisd(angle, v / angle).toRotationMatrix() : Matrix3::Identity();
+}
+
+/// A ball or capsule as the contact problem knows it, in the model's frame.
 struct ContactTool {
   Vector3 target = Vector3::Zero();  ///< where the device is [m]
   Vector3 proxy = Vector3::Zero();   ///< where the ball is: on the surface, never in it [m]
@@ -24,11 +35,34 @@ struct ContactTool {
   double compliance = 0.0;           ///< of the coupling between proxy and device [m/N]; 0 is rigid
   Vector3 motion = Vector3::Zero();  ///< of the device since the last tick [m]
   bool active = false;               ///< takes part in this tick
+  bool grasping = false;             ///< holds the point it touched when this became true
+
+  double half_length = 0.0;                       ///< of a capsule's axis [m]; 0 is a ball
+  Vector3 own_axis = Vector3::UnitZ();            ///< of a capsule, in the tool's own frame, unit
+  Matrix3 target_rotation = Matrix3::Identity();  ///< of the device: from the tool's own frame
+  Matrix3 rotation = Matrix3::Identity();         ///< of the proxy
+  Vector3 torque = Vector3::Zero();               ///< of the tissue on the tool, about the proxy [N m]
+  double turning_compliance = 0.0;                ///< of the coupling [rad/(N m)]; 0 is rigid
+  double turned = 0.0;                            ///< way of the capsule's ends round its middle, last tick [m]
+
+  Vector3 drag_way = Vector3::Zero(), drag_turn = Vector3::Zero();  ///< of the coupling under friction [m], [rad]
 
   /// The proxy that a rigid tissue pushing back with `force` would allow.
   Vector3 goal(double floor) const noexcept { return target + (compliance + floor) * force; }
+  /// The same for the rotation.
+  Matrix3 goal_rotation() const noexcept {
+    return turning_compliance > 0.0 ? Matrix3(rotation_by(turning_compliance * torque) * target_rotation)
+                                    : target_rotation;
+  }
+  Vector3 axis() const noexcept { return rotation * own_axis; }
+  /// Where on the axis the point next to `p` lies, from the middle [m].
+  double along(const Vector3& p) const noexcept {
+    return half_length > 0.0 ? std::clamp(axis().dot(p - proxy), -half_length, half_length) : 0.0;
+  }
+  /// Way of the device since the last tick, at the end that moved most, at most [m].
+  double way() const noexcept { return motion.norm() + turned; }
   /// The longest way of the proxy in one linearisation: points that far off are known.
-  double longest_step() const noexcept { return 0.25 * radius + motion.norm(); }
+  double longest_step() const noexcept { return 0.25 * radius + way(); }
 };
 
 /// One contact of one tool: a point of the deformed surface with the three vertices that carry it. The barycentric
@@ -38,11 +72,18 @@ struct Contact {
   int tool = 0;
   Triangle vertices{};
   std::array<double, 3> weights{};
-  Vector3 normal = Vector3::Zero();  ///< unit, from the surface to the ball's centre
-  Vector3 rest = Vector3::Zero();    ///< the point when nothing touches [m]
-  double gap = 0.0;                  ///< at the last linearisation [m]
-  double force = 0.0;                ///< normal force [N], >= 0
-  Vector3 point = Vector3::Zero();   ///< on the deformed surface [m]
+  Vector3 normal = Vector3::Zero();    ///< unit, from the surface to the ball's centre
+  Vector3 rest = Vector3::Zero();      ///< the point when nothing touches [m]
+  double gap = 0.0;                    ///< at the last linearisation [m]
+  double force = 0.0;                  ///< normal force [N], >= 0; of a grasp, along `normal`, any
+  Vector3 point = Vector3::Zero();     ///< on the deformed surface [m]
+  Vector3 friction = Vector3::Zero();  ///< on the tool, across the normal [N]
+  Vector3 arm = Vector3::Zero();       ///< from the proxy to where the tool touches [m]
+  double offset = 0.0;   ///< of that place from the target, along the normal, when the proxy gets there [m]
+  bool grasped = false;  ///< holds both ways: one of three rows of a grasped point
+
+  /// On the tool [N].
+  Vector3 total() const noexcept { return force * normal + friction; }
 };
 
 }  // namespace palpate::inline PALPATE_ABI

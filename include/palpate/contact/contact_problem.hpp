@@ -1,4 +1,4 @@
-// Rigid balls against a deformable surface, solved exactly in every tick.
+// Rigid balls and capsules against a deformable surface, solved exactly in every tick.
 #pragma once
 
 #include <palpate/contact/contact_rows.hpp>
@@ -15,7 +15,7 @@ namespace palpate::inline PALPATE_ABI {
 /// between proxy and device enters as n_i . n_j / k between contacts of one tool: the device never feels more than k,
 /// however many contacts there are, and the proxy never sinks in. docs/contact.md has the law, its limits and figures.
 /// Work is bounded by `Capacity`, iterations, rounds and candidates.
-template <int Capacity = 64>
+template <int Capacity = default_contact_capacity>
 class ContactProblem {
  public:
   /// Places the contact points for balls of at least `smallest_radius` [m]. Allocates workspaces; for set-up.
@@ -24,7 +24,7 @@ class ContactProblem {
       : parameters_(checked(parameters)),
         displacement_(surface.vertex_count()),
         candidates_(surface, parameters.sample_spacing * smallest_radius),
-        rows_(surface.vertex_count()) {}
+        rows_(surface.vertex_count(), parameters.friction) {}
 
   /// Finds the forces for the tools' new targets; updates proxy and force of every active tool. At most
   /// `maximum_tools` tools. Never allocates.
@@ -40,8 +40,12 @@ class ContactProblem {
     candidates_.look_round(tissue, tools, displacement_);
     double change = 0.0, before = 0.0;
     for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
-      for (std::size_t t = 0; t < tools.size(); ++t) start_force_[t] = tools[t].force;
+      for (std::size_t t = 0; t < tools.size(); ++t) {
+        start_force_[t] = tools[t].force;
+        start_torque_[t] = tools[t].torque;
+      }
       status |= candidates_.update(tissue, tools, displacement_);
+      if (iteration == 0) grasp(tissue, tools);
       if (candidates_.is_new()) foresee(tissue);
       status |= solve_linearised(tissue, tools, iteration);
       follow(tools);
@@ -52,19 +56,28 @@ class ContactProblem {
       const double expected = iteration == 0                     ? 10.0 * change
                               : iteration > 1 && change < before ? change * change / (before - change)
                                                                  : change;
-      if (arrived_ && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) return status;
       before = change;
+      if (arrived_ && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) break;
     }
+    rows_.cling(tools);
     if (change > unsettled) status.set(StatusFlag::solver_not_converged);
     return status;
   }
 
-  /// Goes on where the contact problem of the same surface before a cut stands: forces stay on the points that are still
-  /// there, so that the next tick changes them by as much as the cut does. No allocation.
-  void continue_from(const ContactProblem& before, const ContactSurface& surface) noexcept {
-    displacement_.continue_from(before.displacement_);
-    candidates_.continue_from(before.candidates_, surface);
-    rows_.clear();
+  /// Goes on on the same body's surface after a cut, where vertices keep their numbers and there may be more. Forces,
+  /// friction and grasps stay on the points that are still there, so that the next tick changes them by as much as the
+  /// cut does. `fresh` was made for that surface with the same parameters; its workspaces are exchanged for the old ones.
+  /// No allocation.
+  void move_to(ContactProblem& fresh, const ContactSurface& surface) noexcept {
+    displacement_.move_to(fresh.displacement_);
+    candidates_.move_to(fresh.candidates_, surface);
+    for (Grasp& g : grasps_) {
+      if (g.sample < 0) continue;
+      for (Candidate& c : g.rows)
+        if (!candidates_.move(c, fresh.candidates_.samples(), surface)) c.lift();
+      g.sample = g.rows[0].sample;
+    }
+    rows_.move_to(fresh.rows_);
     pressing_count_ = violated_count_ = 0;
     feedback_ = 0.0;
   }
@@ -72,7 +85,8 @@ class ContactProblem {
   /// Forgets all contact forces, as when every tool was lifted.
   void clear() noexcept {
     displacement_.clear();
-    for (Candidate& c : candidates_.items()) c.force = 0.0;
+    for (Candidate& c : candidates_.items()) c.lift();
+    for (Grasp& g : grasps_) g = Grasp{};
     candidates_.forget();
     rows_.clear();
   }
@@ -83,6 +97,8 @@ class ContactProblem {
   std::span<const VertexForce> vertex_forces() const noexcept { return displacement_.forces(); }
   /// Whether a contact point is near a tool's ball.
   bool is_near(int tool) const noexcept { return candidates_.has_any(tool); }
+  /// Whether a tool holds a point.
+  bool is_holding(std::size_t tool) const noexcept { return grasps_[tool].sample >= 0; }
 
  private:
   using Tools = std::span<ContactTool>;
@@ -96,6 +112,42 @@ class ContactProblem {
       tool.proxy += tool.motion - (tool.force.dot(tool.motion) / force) * tool.force;
     }
   }
+
+  /// A point of the surface held by a tool, as three rows that pull as well as push.
+  struct Grasp {
+    bool asked = false;
+    int sample = -1;  // -1: nothing was there to be held
+    std::array<Candidate, 3> rows{};
+  };
+
+  /// Takes hold of the nearest point for every tool that has just begun to grasp, and lets go.
+  template <TissueModel Tissue>
+  void grasp(const Tissue& tissue, Tools tools) noexcept {
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+      const ContactTool& tool = tools[t];
+      Grasp& g = grasps_[t];
+      if (!tool.active || !tool.grasping) g = Grasp{};
+      if (!tool.active || !tool.grasping || g.asked) continue;
+      g.asked = true;
+      const Candidate* nearest = nullptr;
+      for (Candidate& c : candidates_.items()) {
+        if (c.tool != static_cast<int>(t)) continue;
+        if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
+        if (c.facing && c.gap <= grasp_reach * tool.radius && (nearest == nullptr || c.gap < nearest->gap))
+          nearest = &c;
+      }
+      if (nearest == nullptr) continue;
+      g.sample = nearest->sample;
+      for (int k = 0; k < 3; ++k) {
+        Candidate& c = g.rows[at(k)] = *nearest;
+        c.lift();
+        c.grasped = true;
+        c.normal = Vector3::Unit(k);
+        c.anchor = tool.rotation.transpose() * (c.point - tool.proxy);
+      }
+    }
+  }
+  bool is_held(const Candidate& c) const noexcept { return c.sample == grasps_[at(c.tool)].sample; }
 
   /// Tells a tissue that wants to know which vertices lie near the balls.
   template <TissueModel Tissue>
@@ -116,8 +168,13 @@ class ContactProblem {
     gather_pressing(tools);
     predict_normals(iteration);
     rows_.clear();
-    for (int i = 0; i < pressing_count_; ++i) rows_.add(tissue.contact_surface(), candidates_, *pressing_[at(i)]);
-    for (int built = 0;; built = rows_.count()) {
+    for (std::size_t t = 0; t < tools.size(); ++t)
+      for (Candidate& c : grasps_[t].rows)
+        if (is_holding(t)) rows_.add(tissue.contact_surface(), candidates_, c);
+    for (int i = 0; i < pressing_count_ && rows_.count() < Capacity; ++i)
+      if (!is_held(*pressing_[at(i)])) rows_.add(tissue.contact_surface(), candidates_, *pressing_[at(i)]);
+    int built = 0;
+    for (;; built = rows_.count()) {
       if (built > 0 || rows_.count() == 0)
         if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);
       if (rows_.count() == built) {
@@ -133,6 +190,10 @@ class ContactProblem {
       if (!rows_.solve()) status.set(StatusFlag::solver_not_converged);
       rows_.apply(tools, displacement_, candidates_);
     }
+    if (rows_.has_friction() && built > 0 && built == rows_.count()) {
+      if (!rows_.rub()) status.set(StatusFlag::solver_not_converged);
+      rows_.apply(tools, displacement_, candidates_);
+    }
     return status;
   }
 
@@ -146,7 +207,7 @@ class ContactProblem {
       for (int i = 0; i < rows_.count(); ++i) {
         Candidate& c = rows_.candidate(i);
         c.row = -1;
-        if (c.force > 0.0) pressing_[at(pressing_count_++)] = &c;
+        if (c.force > 0.0 && !c.grasped) pressing_[at(pressing_count_++)] = &c;
       }
     }
     for (int i = 0; i < pressing_count_; ++i) {
@@ -180,14 +241,15 @@ class ContactProblem {
   template <TissueModel Tissue>
   bool add_violated(const Tissue& tissue, Tools tools, int& built) noexcept {
     violated_count_ = 0;
+    look_ahead(tools);
     const double allowed = built > 0 ? violation * rows_.deepest_push() : 0.0;
     for (Candidate& c : candidates_.items()) {
-      if (c.row >= 0) continue;
+      if (c.row >= 0 || is_held(c)) continue;
       const ContactTool& tool = tools[at(c.tool)];
-      const Vector3 ahead = tool.goal(floor_) - tool.proxy;
-      if (candidates_.least_gap(c) > ahead.norm()) continue;
+      const Ahead& ahead = ahead_[at(c.tool)];
+      if (candidates_.least_gap(c) > ahead.farthest) continue;
       if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
-      const double gap = c.gap + c.normal.dot(ahead);
+      const double gap = c.gap + c.normal.dot(ahead.way + c.along * ahead.axis);
       if (c.facing && gap < -allowed) violated_[at(violated_count_++)] = {gap, &c};
     }
     const auto wanted = std::min(violated_count_, added_per_round);
@@ -202,18 +264,42 @@ class ContactProblem {
     return room > 0 || wanted == 0;
   }
 
+  /// How far the present forces let the proxies go.
+  void look_ahead(Tools tools) noexcept {
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+      const ContactTool& tool = tools[t];
+      Ahead& ahead = ahead_[t];
+      ahead.way = tool.goal(floor_) - tool.proxy;
+      ahead.farthest = ahead.way.norm();
+      if (tool.half_length == 0.0) continue;
+      ahead.axis = (tool.goal_rotation() - tool.rotation) * tool.own_axis;
+      ahead.farthest += tool.half_length * ahead.axis.norm();
+    }
+  }
+
   /// Moves the proxies to where the answer has them, as far as one linearisation may go.
   void follow(Tools tools) noexcept {
     arrived_ = true;
+    look_ahead(tools);
     for (std::size_t t = 0; t < tools.size(); ++t) {
       ContactTool& tool = tools[t];
       if (!tool.active) continue;
-      const Vector3 step = tool.goal(floor_) - tool.proxy;
-      const double length = step.norm(), longest = tool.longest_step();
-      tool.proxy += length <= longest ? step : Vector3((longest / length) * step);
+      const double length = ahead_[t].farthest, longest = tool.longest_step();
+      const double part = length <= longest ? 1.0 : longest / length;
+      tool.proxy += part * ahead_[t].way;
+      turn(tool, part);
       arrived_ = arrived_ && length <= longest;
-      candidates_.move_ball(t, tool.proxy);
+      candidates_.move_ball(t, tool);
     }
+  }
+  static void turn(ContactTool& tool, double part) noexcept {
+    const Matrix3 goal = tool.goal_rotation();
+    if (part == 1.0) {
+      tool.rotation = goal;
+      return;
+    }
+    const Eigen::AngleAxisd by(Matrix3(goal * tool.rotation.transpose()));
+    tool.rotation = Eigen::AngleAxisd(part * by.angle(), by.axis()) * tool.rotation;
   }
 
   /// Of the tools' forces in this linearisation.
@@ -222,6 +308,8 @@ class ContactProblem {
     for (std::size_t t = 0; t < tools.size(); ++t) {
       change = std::max(change, (tools[t].force - start_force_[t]).norm());
       scale = std::max(scale, tools[t].force.norm());
+      if (!(tools[t].half_length > 0.0)) continue;
+      change = std::max(change, (tools[t].torque - start_torque_[t]).norm() / tools[t].half_length);
     }
     return change > 0.0 ? change / scale : 0.0;
   }
@@ -231,6 +319,8 @@ class ContactProblem {
     if (!(p.sample_spacing >= 0.4 && p.sample_spacing <= 1.0))
       raise(SetupErrorKind::bad_argument, "the sample spacing is " + number(p.sample_spacing) + " radii",
             "Below 0.4 there is no room for all points under a ball, above 1 the ball falls between them");
+    if (!(p.friction >= 0.0 && p.friction <= 4.0))
+      raise(SetupErrorKind::bad_argument, "the coefficient of friction is " + number(p.friction), "Give 0 to 4");
     if (p.maximum_iterations < 1) raise(SetupErrorKind::bad_argument, "a tick needs at least one linearisation");
     return p;
   }
@@ -239,6 +329,11 @@ class ContactProblem {
   static constexpr int added_per_round = 16;  // rows, the deepest ones
   static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
   static constexpr double violation = 1e-5;   // how far a point may sink in, of the deepest push
+  static constexpr double grasp_reach = 0.1;  // gap, in radii, of a point that can be held
+  struct Ahead {
+    Vector3 way = Vector3::Zero(), axis = Vector3::Zero();  // of the proxy; of the end of a capsule's axis of length 1
+    double farthest = 0.0;                                  // way of any of its points, at most [m]
+  };
   struct Violated {
     double gap;
     Candidate* candidate;
@@ -250,7 +345,9 @@ class ContactProblem {
   ContactRows<Capacity> rows_;
   std::array<Candidate*, static_cast<std::size_t>(Capacity)> pressing_{};  // in the last linearisation
   std::array<Violated, static_cast<std::size_t>(Candidates<Capacity>::maximum)> violated_{};
-  std::array<Vector3, maximum_tools> start_force_{};
+  std::array<Vector3, maximum_tools> start_force_{}, start_torque_{};
+  std::array<Ahead, maximum_tools> ahead_{};
+  std::array<Grasp, maximum_tools> grasps_{};
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   bool arrived_ = true;  // at the answer of the last linearisation
   double feedback_ = 0.0;

@@ -25,10 +25,10 @@ class SurfaceDisplacement {
     if (revision != std::exchange(revision_, revision)) ++generation_;
   }
 
-  /// Takes over the forces of another surface with the same numbers of vertices, and more. No allocation.
-  void continue_from(const SurfaceDisplacement& before) noexcept {
-    forces_ = before.forces_;
-    count_ = before.count_;
+  /// Goes on on a surface with the same numbers of vertices, and more, that `fresh` was made for. No allocation.
+  void move_to(SurfaceDisplacement& fresh) noexcept {
+    displacement_.swap(fresh.displacement_);
+    stamp_.swap(fresh.stamp_);
     ++generation_;
   }
 

@@ -145,20 +145,17 @@ class CuttableTissue {
     if (behind) status.set(StatusFlag::degraded_model);
     return status;
   }
-  /// Gives a session the contact problem of a new surface, which goes on where the old one stands.
+  /// Puts a session's contact on a new surface, where it goes on.
   void exchange_contacts(ContactProblem<>& problem) noexcept {
-    if (!std::exchange(renewed_, false)) return;
-    view().problem.continue_from(problem, view().surface);
-    std::swap(problem, view().problem);
+    if (std::exchange(renewed_, false)) problem.move_to(view().problem, view().surface);
   }
   /// Refuses a session whose tools are not those of the options.
   void require_tools(double smallest_radius, const ContactParameters& contact) const {
-    if (smallest_radius != smallest_tool_ || contact.sample_spacing != contact_.sample_spacing ||
-        contact.maximum_iterations != contact_.maximum_iterations ||
-        contact.force_tolerance != contact_.force_tolerance)
+    if (smallest_radius != smallest_tool_ || contact.sample_spacing != contact_.sample_spacing)
       raise(SetupErrorKind::bad_argument,
-            "the session's smallest tool has a radius of " + number(smallest_radius) + ", the tissue was made for " +
-                number(smallest_tool_),
+            "the session's smallest tool has a radius of " + number(smallest_radius) + " and a sample spacing of " +
+                number(contact.sample_spacing) + ", the tissue was made for " + number(smallest_tool_) + " and " +
+                number(contact_.sample_spacing),
             "Give CuttableOptions the same smallest_tool and contact as the session");
   }
   const ContactSurface& contact_surface() const noexcept { return view().surface; }

@@ -66,6 +66,8 @@ struct Placement {
     DeviceLimits scene = device;
     scene.peak_force = device.peak_force / force_scale;
     scene.continuous_force = device.continuous_force / force_scale;
+    scene.peak_torque = device.peak_torque * scale / force_scale;
+    scene.turning_stiffness = device.turning_stiffness * scale / force_scale;
     scene.stiffness = device.stiffness / (scale * force_scale);
     const Vector3 middle = 0.5 * (device.workspace_low + device.workspace_high);
     const Vector3 half = scale * (rotation.cwiseAbs() * (0.5 * (device.workspace_high - device.workspace_low)));

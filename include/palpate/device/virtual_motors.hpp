@@ -42,6 +42,11 @@ class VirtualMotors {
     peak_ = std::max(peak_, force_.norm());
     return status;
   }
+  /// A torque, shortened to the peak torque where one is given.
+  Vector3 torque(const Vector3& wanted) const noexcept {
+    bool shortened = false;
+    return limits_.peak_torque > 0.0 ? limit_length(wanted, limits_.peak_torque, shortened) : wanted;
+  }
   const DeviceLimits& limits() const noexcept { return limits_; }
   const Vector3& force() const noexcept { return force_; }  ///< [N] what is rendered now
   double peak() const noexcept { return peak_; }            ///< [N] the most that was rendered so far

@@ -29,6 +29,9 @@ struct ExplicitOptions {
 /// Cost per step: one force, 1/limit_every forces, 1/energy_every energies, and about 20 numbers per dof.
 template <ForceOperator Force, ExplicitScheme Scheme>
 class ExplicitMotion {
+  static_assert(!requires { requires Force::remembers; },
+                "palpate: explicit steps do not move what a material remembers; use ImplicitDynamics");
+
  public:
   /// `nodal_mass` [kg] per node; `free_dofs` ascending, all others are held where they are (set target() to move them);
   /// `frequency_bound` an upper bound of omega^2 at rest [1/s^2] (element_frequency_bound), which limits the step until

@@ -13,15 +13,14 @@ struct NewtonParameters {
   double tolerance = 1e-10;   ///< of the residual against the problem's scale; 0: as far as rounding lets it
   int maximum_halvings = 12;  ///< of one step
 
-  /// Throws bad_argument for numbers that are negative or, of the tolerance, not finite.
-  void require_valid() const {
-    const auto refuse = [](const char* name, const std::string& value) {
-      raise(SetupErrorKind::bad_argument, std::string("Newton's ") + name + " is " + value,
-            "Give 0 or a positive number");
+  /// Throws bad_argument for parameters with which nothing could be solved.
+  void require_usable() const {
+    const auto refuse = [](const char* name, const std::string& value, const char* hint) {
+      raise(SetupErrorKind::bad_argument, std::string("Newton's ") + name + " is " + value, hint);
     };
-    if (maximum_iterations < 0) refuse("maximum_iterations", std::to_string(maximum_iterations));
-    if (!(tolerance >= 0.0 && tolerance < infinity)) refuse("tolerance", number(tolerance));
-    if (maximum_halvings < 0) refuse("maximum_halvings", std::to_string(maximum_halvings));
+    if (maximum_iterations < 1) refuse("maximum_iterations", std::to_string(maximum_iterations), "Give at least 1");
+    if (!(tolerance >= 0.0 && tolerance < 1.0)) refuse("tolerance", number(tolerance), "Give 0 or a little more");
+    if (maximum_halvings < 0) refuse("maximum_halvings", std::to_string(maximum_halvings), "Give 0 or more");
   }
 };
 
@@ -41,7 +40,7 @@ class Newton {
   /// Throws as NewtonParameters::require_valid. Allocates four vectors.
   explicit Newton(Index size, const NewtonParameters& parameters = {})
       : parameters_(parameters), residual_(size), step_(size), trial_(size), trial_residual_(size) {
-    parameters_.require_valid();
+    parameters_.require_usable();
   }
 
   /// Improves x until the residual is small. x is always inside the domain if it was at the start.

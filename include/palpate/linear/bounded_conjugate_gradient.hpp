@@ -15,7 +15,8 @@ struct BoundedSolveParameters {
 struct BoundedSolveReport {
   bool converged = false;
   int iterations = 0;
-  double error = 0.0;  ///< part of the answer that the last iteration added, in the energy norm
+  double error =
+      infinity;  ///< part of the answer that the last iteration added, in the energy norm; infinite before it
 };
 
 /// K x = b by preconditioned conjugate gradients from zero. Every iteration adds alpha r.z to the squared energy norm
@@ -39,7 +40,7 @@ class BoundedConjugateGradient {
     op.precondition(r_, z_);
     p_ = z_;
     double rz = r_.dot(z_), whole = 0.0;
-    report.converged = rz == 0.0;
+    if (rz == 0.0) return {true, 0, 0.0};
     while (!report.converged && report.iterations < parameters.maximum_iterations) {
       op.apply(p_, q_);
       const double alpha = rz / p_.dot(q_);

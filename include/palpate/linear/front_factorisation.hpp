@@ -50,9 +50,12 @@ class FrontFactorisation {
 
   /// Eliminates all fronts; false when a pivot fails. No allocation.
   bool try_eliminate(double threshold) noexcept {
-    for (Index f = 0; f < tree_.fronts.size(); ++f) eliminate_front(tree_.fronts[f], threshold);
-    for (Index i = 0; i < pivots_.size(); ++i)
-      if (!pivot_is_good(pivots_[i], diagonal_[i], threshold)) return false;
+    for (Index f = 0; f < tree_.fronts.size(); ++f) {
+      const Front& front = tree_.fronts[f];
+      eliminate_front(front, threshold);
+      for (Index i = front.first; i < front.first + front.pivots; ++i)
+        if (!pivot_is_good(pivots_[i], diagonal_[i], threshold)) return false;
+    }
     return true;
   }
 

@@ -43,14 +43,6 @@ class RepeatedCholesky {
     return {true, 0, std::numeric_limits<double>::quiet_NaN()};
   }
 
-  /// Entries `wanted` of K^-1 b, b zero but for `loads` on the dofs `loaded`: walks only the fronts above them. Needs a
-  /// factor.
-  void solve_path_into(std::span<const Index> loaded, std::span<const double> loads, std::span<const Index> wanted,
-                       std::span<double> answer) noexcept {
-    sweeps_.forward_path(loaded, loads);
-    sweeps_.backward_path(wanted, answer);
-  }
-
  private:
   static constexpr Index padding = 64;  // zeros behind the factor, for kernels that read past its end
 

@@ -1,8 +1,8 @@
 // Relaxation: a law whose stress fades after a strain, by a Prony series.
 #pragma once
 
-#include <palpate/concepts/material.hpp>
 #include <palpate/core/voigt.hpp>
+#include <palpate/material/viscous_step.hpp>
 
 #include <array>
 #include <cmath>
@@ -15,6 +15,15 @@ struct PronyTerm {
   double share = 0.0;            ///< g_i [-], of the stress right after a fast strain
   double relaxation_time = 0.0;  ///< tau_i [s]
 };
+
+namespace detail {
+
+/// (1 - exp(-x)) / x, the mean of exp(-t) over 0 ... x.
+inline double mean_decay(double x) noexcept {
+  return x > 0.0 ? -std::expm1(-x) / x : 1.0;
+}
+
+}  // namespace detail
 
 /// What fades: the whole stress, or the part that changes the shape.
 enum class Relaxation { whole_stress, shape_only };
@@ -33,14 +42,24 @@ struct StressHistory {
   }
 };
 
+/// What a series does over a step dt: S = share S0' + sum (decay_i h_i - gain_i S0), h_i' = decay_i h_i + gain_i (S0' -
+/// S0), S0 the stress of the base at the start and S0' at the end.
+template <int Terms>
+struct PronyStep {
+  double share = 1.0;  ///< dS / dS0' [-]
+  std::array<double, Terms> decay{}, gain{};
+};
+
 /// A material with memory: the stress right after a fast strain is that of the base, and in time a share g_i of it
 /// fades as exp(-t / tau_i). Over a step dt, with S0 the stress of the base (Simo 1987; Simo and Hughes 1998, 10.3):
-///   h_i' = exp(-dt / tau_i) h_i + g_i (1 - exp(-dt / tau_i)) tau_i / dt (S0' - S0),   S = (1 - sum g_i) S0' + sum
-///   h_i',
-/// exact where S0 is linear in time over the step and stable for every dt >= 0; dt = 0 is a sudden strain.
-/// Parameters of the base are the fast ones; slow ones are 1 - sum g_i times these. Admissible: base admissible,
-/// g_i >= 0, their sum below 1, tau_i > 0. At large strain S is P turned back by F^-1, which needs J > 0 for every
-/// base.
+///   h_i' = exp(-dt / tau_i) h_i + g_i (1 - exp(-dt / tau_i)) tau_i / dt (S0' - S0),
+///   S = (1 - sum g_i) S0' + sum h_i',
+/// exact where S0 is linear in time over the step and stable for every dt >= 0; dt = 0 is a sudden strain, an infinite
+/// one leaves nothing that fades. Parameters of the base are the fast ones; slow ones are 1 - sum g_i times these.
+/// Admissible: base admissible, g_i >= 0, their sum below 1, tau_i > 0. At large strain S is P turned back by F^-1,
+/// which needs J > 0 for every base. What is left when only the shape relaxes is the stress of a change of volume
+/// alone, that of the base at J^(1/3) I: so that what is left after a long time still comes of an energy, and no closed
+/// path yields any. For a base whose energy splits into shape and volume that is its pressure, untouched.
 template <Material Base, int Terms>
 struct Viscoelastic {
   Base base{};
@@ -59,12 +78,18 @@ struct Viscoelastic {
   }
   /// d stress / d stress of the base over a step [-]: what the tangent of the base is multiplied by (its part of shape,
   /// if only that relaxes).
-  double tangent_share(double dt) const noexcept {
-    double share = long_term_share();
-    for (const PronyTerm& t : terms) share += t.share * mean_decay(dt / t.relaxation_time);
-    return share;
+  double tangent_share(double dt) const noexcept { return over(dt).share; }
+  PronyStep<Terms> over(double dt) const noexcept {
+    PronyStep<Terms> step;
+    step.share = long_term_share();
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      const double x = dt / terms[i].relaxation_time;
+      step.decay[i] = std::exp(-x);
+      step.gain[i] = terms[i].share * detail::mean_decay(x);
+      step.share += step.gain[i];
+    }
+    return step;
   }
-
   /// Stress [Pa] at the end of a step dt [s] that ends at this small strain (Voigt order); moves the history on.
   Vector6 stress(const Vector6& strain, SmallStrainHistory& history,
                  double dt) const noexcept requires LinearMaterial<Base> {
@@ -73,21 +98,41 @@ struct Viscoelastic {
       kept.head<3>().setConstant(fading.head<3>().sum() / 3.0);
       fading -= kept;
     }
-    return kept + advance(fading, history, dt);
+    return kept + advance(fading, history, over(dt));
   }
 
-  /// First Piola-Kirchhoff stress [Pa] at the end of a step dt [s] that ends at F; moves the history on. The part of
-  /// shape is S - (S : C) C^-1 / 3, so that what is kept is a pressure in space.
+  /// First Piola-Kirchhoff stress [Pa] at the end of a step dt [s] that ends at F; moves the history on.
   Tensor3<double> stress(const Tensor3<double>& f, LargeStrainHistory& history,
                          double dt) const noexcept requires HyperelasticMaterial<Base> {
-    const Tensor3<double> c = cofactor(f), inverse = (1.0 / determinant(f, c)) * transpose(c), p = base.stress(f);
-    Tensor3<double> fading = inverse * p, kept{};
-    if (relaxation == Relaxation::shape_only) {
-      kept = (contract(p, f) / 3.0) * (inverse * transpose(inverse));  // S : C = P : F
-      fading = fading - kept;
-    }
-    return f * (kept + advance(fading, history, dt));
+    const Tensor3<double> p = law_of_step(over(dt), driving_stress(history, over(dt))).stress(f);
+    remember(f, history, over(dt));
+    return p;
   }
+
+  // The same in parts, for bodies: within a step the law is hyperelastic.
+
+  /// The part of S [Pa] that what happened before the step leaves at its end.
+  static Tensor3<double> driving_stress(const LargeStrainHistory& history, const PronyStep<Terms>& step) noexcept {
+    Tensor3<double> sum{};
+    for (std::size_t i = 0; i < step.decay.size(); ++i)
+      sum = sum + (step.decay[i] * history.fading[i] - step.gain[i] * history.elastic);
+    return sum;
+  }
+  /// Refers to this material.
+  ViscousStep<Base> law_of_step(const PronyStep<Terms>& step,
+                                const Tensor3<double>& driving) const noexcept requires HyperelasticMaterial<Base> {
+    return {base, step.share, relaxation == Relaxation::shape_only ? 1.0 - step.share : 0.0, driving};
+  }
+  /// Moves the history on over a step that ends at F.
+  void remember(const Tensor3<double>& f, LargeStrainHistory& history,
+                const PronyStep<Terms>& step) const noexcept requires HyperelasticMaterial<Base> {
+    Tensor3<double> p = base.stress(f);
+    if (relaxation == Relaxation::shape_only) p = p - detail::VolumeStress<Base>(base, f).stress();
+    const Tensor3<double> c = cofactor(f);
+    advance((1.0 / determinant(f, c)) * (transpose(c) * p), history, step);
+  }
+  /// Of the fast answer at small strain [Pa].
+  Matrix6 rest_elasticity() const noexcept requires HyperelasticMaterial<Base> { return base.rest_elasticity(); }
 
   bool admits(const Tensor3<double>& f) const noexcept requires HyperelasticMaterial<Base> {
     return base.admits(f) && determinant(f) > 0.0;
@@ -107,17 +152,14 @@ struct Viscoelastic {
   }
 
  private:
-  /// (1 - exp(-x)) / x
-  static double mean_decay(double x) noexcept { return x > 0.0 ? -std::expm1(-x) / x : 1.0; }
-
   template <class Stress>
-  Stress advance(const Stress& elastic, StressHistory<Stress, Terms>& history, double dt) const noexcept {
+  Stress advance(const Stress& elastic, StressHistory<Stress, Terms>& history,
+                 const PronyStep<Terms>& step) const noexcept {
     const Stress change = elastic - history.elastic;
     Stress total = long_term_share() * elastic;
     for (std::size_t i = 0; i < terms.size(); ++i) {
-      const double x = dt / terms[i].relaxation_time;
       Stress& h = history.fading[i];
-      h = std::exp(-x) * h + (terms[i].share * mean_decay(x)) * change;
+      h = step.decay[i] * h + step.gain[i] * change;
       total = total + h;
     }
     history.elastic = elastic;
@@ -129,5 +171,15 @@ struct Viscoelastic {
                              "Shares lie between 0 and 1 and sum to less than 1; times are positive, in s");
   }
 };
+
+// clang-format off
+/// A large-strain material with memory.
+template <class M>
+concept ViscousMaterial =
+    Material<M> && requires(const M& m, const Tensor3<double>& f, typename M::LargeStrainHistory& history) {
+      { m.remember(f, history, m.over(0.0)) } noexcept;
+      { m.law_of_step(m.over(0.0), f).energy(f) } noexcept -> std::same_as<double>;
+    };
+// clang-format on
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/corotated_tetrahedra.hpp>
 #include <palpate/core/realtime.hpp>
-#include <palpate/integrator/time_scheme.hpp>
+#include <palpate/integrator/implicit_step.hpp>
 #include <palpate/linear/bounded_conjugate_gradient.hpp>
 #include <palpate/model/step_preconditioners.hpp>
 
@@ -48,28 +48,33 @@ class CorotatedMotion {
                   const CorotatedMotionOptions& options = {}, const SetupLimits& limits = {})
       : options_(checked(options)),
         tetrahedra_(body, limits),
-        body_(checked(detail::deformable_body(body.rest, scene, limits), scene)),
+        body_(checked(body.rest, scene, limits)),
         mass_(body_.lumped.replicate(1, 3).transpose().reshaped()),
+        step_(options.scheme, mass_.size()),
         preconditioner_(body_, body.rest, limits),
         gradients_(mass_.size()),
         load_(body_.load) {
-    for (VectorX* v : {&u_, &v_, &a_, &predicted_, &coasting_, &trial_, &velocity_, &acceleration_, &increment_,
-                       &force_, &residual_, &drag_, &inertia_})
+    for (VectorX* v :
+         {&u_, &v_, &a_, &trial_, &velocity_, &acceleration_, &increment_, &force_, &residual_, &drag_, &inertia_})
       *v = VectorX::Zero(mass_.size());
     for (Index dof = 0; dof < mass_.size(); ++dof)
       if (body_.conditions.is_constrained(dof)) held_.push_back(dof);
-    set_state(u_, v_);
+    set_state(trial_, velocity_);
   }
+  /// With both in one.
+  explicit CorotatedMotion(const std::pair<HyperelasticBody<Tet4, Corotational<Base>>, Scene>& in,
+                           const CorotatedMotionOptions& options = {}, const SetupLimits& limits = {})
+      : CorotatedMotion(in.first, in.second, options, limits) {}
   CorotatedMotion(const CorotatedMotion&) = delete;
   CorotatedMotion& operator=(const CorotatedMotion&) = delete;
 
   /// Moves on by h [s].
   CorotatedStep step(double h) noexcept {
     CorotatedStep report;
-    if (!(h > 0.0 && h < infinity)) return report;
+    if (!ImplicitStep::is_length(h)) return report;
     const FlushDenormals flush;
-    use_step(h);
-    predict();
+    set_length(h);
+    step_.coast(u_, v_, a_);
     const double highest = options_.check ? limit() : infinity;
     coast();
     double reached = evaluate(report.deformation);
@@ -90,28 +95,29 @@ class CorotatedMotion {
     return report;
   }
 
-  /// Adds what `more` forces [N] change in the step just taken, to first order. One solve; nothing before the first
-  /// step.
-  BoundedSolveReport correct(const VectorX& more) noexcept {
+  /// Adds what `more` forces [N] change in the step just taken, to first order. One solve. False, and nothing changes,
+  /// where no step was taken since the state or the length of steps was changed, and where nothing finite comes of it.
+  bool correct(const VectorX& more) noexcept {
     const FlushDenormals flush;
-    if (!stepped_) return {};
-    const BoundedSolveReport report = respond(more, increment_);
+    if (!stepped_) return false;
+    const BoundedSolveReport report = gradients_.solve_into(*this, more, increment_, options_.solve);
+    if (report.iterations == 0) return report.converged;
     trial_ = u_ + increment_;
     find_motion();
-    if (!trial_.allFinite() || !velocity_.allFinite()) return report;
+    if (!trial_.allFinite() || !velocity_.allFinite()) return false;
     accept();
-    energy_known_ = energy_known_ && report.iterations == 0;
-    return report;
+    energy_known_ = false;
+    return true;
   }
   /// Displacement [m] that forces [N] add at the end of a step, to first order, with the rotations looked at last.
-  BoundedSolveReport respond(const VectorX& forces, VectorX& u) noexcept {
-    return gradients_.solve_into(*this, forces, u, options_.solve);
+  /// Solved to the end, whatever the options say: for set-up.
+  void respond(const VectorX& forces, VectorX& u) noexcept {
+    gradients_.solve_into(*this, forces, u, {1000, sizeof(S) == 8 ? 1e-10 : 1e-6});
   }
   /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
   bool prepare_response(double h) noexcept {
-    if (!(h > 0.0 && h < infinity)) return false;
-    use_step(h);
-    stepped_ = false;
+    if (!ImplicitStep::is_length(h)) return false;
+    set_length(h);
     tetrahedra_.linearise(u_, force_, energy_);
     energy_known_ = true;
     trial_ = u_;
@@ -124,16 +130,22 @@ class CorotatedMotion {
   const VectorX& velocity() const noexcept { return v_; }
   const VectorX& acceleration() const noexcept { return a_; }
   const DeformableBody& body() const noexcept { return body_; }
+  const Preconditioner& preconditioner() const noexcept { return preconditioner_; }
   /// With what force the body answers its state [N], inertia and damping included, as the last step left it: on held
   /// dofs minus the reaction.
   const VectorX& resistance() noexcept {
     tetrahedra_.linearise(u_, force_, energy_);
+    energy_known_ = true;
     damp(v_, drag_);
     return drag_ += force_ + mass_.cwiseProduct(a_);
   }
 
-  /// Changes the state; prescribed components keep their values. The acceleration follows from forces and loads.
+  /// Changes the state; prescribed components rest where they are prescribed. The acceleration follows from the forces.
   void set_state(const VectorX& u, const VectorX& v) noexcept {
+    for (const Index dof : held_) {
+      u_[dof] = body_.conditions.prescribed[dof];
+      v_[dof] = a_[dof] = 0.0;
+    }
     for (const Index dof : body_.conditions.free_dofs) {
       u_[dof] = u[dof];
       v_[dof] = v[dof];
@@ -141,6 +153,7 @@ class CorotatedMotion {
     tetrahedra_.linearise(u_, force_, energy_);
     damp(v_, drag_);
     for (const Index dof : body_.conditions.free_dofs) a_[dof] = (load_[dof] - force_[dof] - drag_[dof]) / mass_[dof];
+    if (!a_.allFinite()) a_.setZero();  // of loads that are none: steps refuse these
     energy_known_ = true;
     stepped_ = false;
     age_ = 0;
@@ -162,56 +175,41 @@ class CorotatedMotion {
 
  private:
   static CorotatedMotionOptions checked(const CorotatedMotionOptions& o) {
-    for (const double d : {o.mass_damping, o.stiffness_damping})
-      if (!(d >= 0.0 && d < infinity))
-        raise(SetupErrorKind::bad_argument, "a damping of " + number(d), "Give 0 or a positive number");
-    for (const double c : {o.scheme.new_in_u, o.scheme.new_in_v})
-      if (!(c > 0.0)) raise(SetupErrorKind::bad_argument, "the time scheme is explicit", "Use central differences");
-    if (o.solve.maximum_iterations < 1 || !(o.solve.tolerance >= 0.0) || o.precondition_every < 1 ||
-        o.maximum_linearisations < 1)
+    require_damping(o.mass_damping, o.stiffness_damping);
+    if (o.solve.maximum_iterations < 1 || !(o.solve.tolerance >= 0.0 && o.solve.tolerance < 1.0) ||
+        o.precondition_every < 1 || o.maximum_linearisations < 1)
       raise(SetupErrorKind::bad_argument, "a step without work",
-            "Give at least one iteration and a tolerance in (0, 1)");
+            "Give at least one of each, and a tolerance from 0 to less than 1");
     return o;
   }
-  static DeformableBody checked(DeformableBody body, const Scene& scene) {
-    if (!scene.initial_strains().empty())
-      raise(SetupErrorKind::unsupported, "initial strains at large deformation", "Use a linear material");
-    for (Index i = 0; i < body.lumped.size(); ++i)
-      if (!(body.lumped[i] > 0.0) && body.conditions.constrained[static_cast<std::size_t>(i)] != 7)
-        raise(SetupErrorKind::bad_density, "node " + std::to_string(i) + " has no mass",
-              "Give every region a density in kg/m^3");
+  static DeformableBody checked(const Body<Tet4>& rest, const Scene& scene, const SetupLimits& limits) {
+    detail::refuse_initial_strains(scene);
+    DeformableBody body = detail::body_with_mass(rest, scene, limits);
+    require_mass(body);
     return body;
   }
 
-  void use_step(double h) noexcept {
-    if (h != h_) age_ = 0;
-    h_ = h;
-    const TimeScheme& s = options_.scheme;
-    const double per_u = 1.0 / (s.new_in_u * h * h), per_v = s.new_in_v / (s.new_in_u * h);
-    factors_ = {per_u + options_.mass_damping * per_v, 1.0 + options_.stiffness_damping * per_v};
+  /// The last step, if there was one, can not be corrected any more.
+  void set_length(double h) noexcept {
+    if (h != step_.length()) age_ = 0;
+    step_.set_length(h);
+    stepped_ = false;
+    const double per_v = step_.velocity_per_displacement();
+    factors_ = {step_.acceleration_per_displacement() + options_.mass_damping * per_v,
+                1.0 + options_.stiffness_damping * per_v};
   }
   void prepare() noexcept {
     preconditioner_.update(tetrahedra_, factors_, trial_, age_ % options_.precondition_every == 0);
     ++age_;
   }
 
-  void predict() noexcept {
-    const TimeScheme& s = options_.scheme;
-    predicted_ = u_ + h_ * v_ + (s.old_in_u * h_ * h_) * a_;
-    coasting_ = v_ + (s.old_in_v * h_) * a_;
-  }
   /// Where the step would end without new acceleration, held dofs where they are told to be.
   void coast() noexcept {
-    trial_ = predicted_;
+    trial_ = step_.predicted();
     for (const Index dof : held_) trial_[dof] = body_.conditions.prescribed[dof];
     find_motion();
   }
-  /// Velocity and acceleration at the end of the step from the displacement there.
-  void find_motion() noexcept {
-    const TimeScheme& s = options_.scheme;
-    acceleration_ = (trial_ - predicted_) / (s.new_in_u * h_ * h_);
-    velocity_ = coasting_ + (s.new_in_v * h_) * acceleration_;
-  }
+  void find_motion() noexcept { step_.find_motion(trial_, velocity_, acceleration_); }
   void accept() noexcept {
     u_ = trial_;
     v_ = velocity_;
@@ -231,11 +229,10 @@ class CorotatedMotion {
 
   /// Potential of the step at trial_, given the energy stored there; leaves drag and inertia.
   double potential(double stored) noexcept {
-    const TimeScheme& s = options_.scheme;
     damp(velocity_, drag_);
     inertia_ = mass_.cwiseProduct(acceleration_);
-    return stored - load_.dot(trial_) + 0.5 * h_ * s.new_in_u / s.new_in_v * velocity_.dot(drag_) +
-           0.5 * s.new_in_u * h_ * h_ * acceleration_.dot(inertia_);
+    return stored - load_.dot(trial_) + 0.5 / step_.velocity_per_displacement() * velocity_.dot(drag_) +
+           0.5 / step_.acceleration_per_displacement() * acceleration_.dot(inertia_);
   }
   /// The same with the force that is left there on free dofs.
   double evaluate(DeformationReport& deformation) noexcept {
@@ -273,17 +270,18 @@ class CorotatedMotion {
   Tetrahedra tetrahedra_;
   DeformableBody body_;
   VectorX mass_;  // of every dof
+  ImplicitStep step_;
   Preconditioner preconditioner_;
   BoundedConjugateGradient gradients_;
   std::vector<Index> held_;
   VectorX u_, v_, a_, load_;
-  VectorX predicted_, coasting_, trial_, velocity_, acceleration_, increment_, force_, residual_, drag_, inertia_;
+  VectorX trial_, velocity_, acceleration_, increment_, force_, residual_, drag_, inertia_;
   StepFactors factors_;
   double energy_ = 0.0, trial_energy_ = 0.0;  // stored
   bool energy_known_ = false;                 // at the present state
-  bool stepped_ = false;                      // since the state was set
+  bool stepped_ = false;                      // the state is the end of step_
   int age_ = 0;                               // of the preconditioner, in steps
-  double h_ = 0.0, time_ = 0.0;
+  double time_ = 0.0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

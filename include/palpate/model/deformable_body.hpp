@@ -6,7 +6,10 @@
 #include <palpate/assembly/linear_forces.hpp>
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
+#include <palpate/assembly/viscous_forces.hpp>
 #include <palpate/mesh/rigid_modes.hpp>
+
+#include <Eigen/Geometry>
 
 #include <memory>
 
@@ -17,38 +20,83 @@ struct DeformableBody {
   std::unique_ptr<ElasticForces> elastic;
   EssentialConditions conditions;
   VectorX load;     ///< dead loads, gravity included [N]
-  MassMatrix mass;  ///< consistent
-  VectorX lumped;   ///< mass per node [kg]
+  MassMatrix mass;  ///< consistent; empty in a body for statics
+  VectorX lumped;   ///< mass per node [kg]; empty in a body for statics
   BlockPattern pattern;
   std::vector<Vector3> positions;  ///< at rest [m]
 };
 
+/// Diagonal of the box round a body [m].
+inline double extent(const std::vector<Vector3>& positions) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3& x : positions) box.extend(x);
+  return box.diagonal().norm();
+}
+
+/// Throws bad_density where a node that may move has no mass.
+inline void require_mass(const DeformableBody& body) {
+  for (Index i = 0; i < body.lumped.size(); ++i)
+    if (!(body.lumped[i] > 0.0) && body.conditions.constrained[static_cast<std::size_t>(i)] != 7)
+      raise(SetupErrorKind::bad_density, "node " + std::to_string(i) + " has no mass",
+            "Give every region a density in kg/m^3");
+}
+
 namespace detail {
 
+/// All but the forces and the mass.
 template <Element E>
-DeformableBody deformable_body(const Body<E>& rest, const Scene& scene, const SetupLimits& limits) {
+DeformableBody body_without_mass(const Body<E>& rest, const Scene& scene) {
   DeformableBody body;
   const auto boundary = extract_boundary<E>(rest.mesh);
   body.conditions = resolve_essential(rest.mesh, boundary, scene);
   body.load = applied_load(rest, boundary, scene);
-  body.mass = assemble_mass(rest, limits);
-  body.lumped = lumped_mass(rest);
-  const VectorX mass = nodal_mass(rest);
-  for (Index i = 0; i < mass.size(); ++i) body.load.template segment<3>(3 * i) += mass[i] * scene.gravity();
+  if (!scene.gravity().isZero(0.0)) {
+    const VectorX mass = nodal_mass(rest);
+    for (Index i = 0; i < mass.size(); ++i) body.load.template segment<3>(3 * i) += mass[i] * scene.gravity();
+  }
   if (!body.load.allFinite()) raise(SetupErrorKind::non_finite, "the loads are not finite");
-  body.pattern = body.mass.pattern();
   body.positions = rest.mesh.positions;
   return body;
+}
+
+template <Element E>
+DeformableBody body_with_mass(const Body<E>& rest, const Scene& scene, const SetupLimits& limits) {
+  DeformableBody body = body_without_mass(rest, scene);
+  body.mass = assemble_mass(rest, limits);
+  body.lumped = lumped_mass(rest);
+  body.pattern = body.mass.pattern();
+  return body;
+}
+
+template <Element E>
+DeformableBody held_body_without_forces(const Body<E>& rest, const Scene& scene) {
+  DeformableBody body = body_without_mass(rest, scene);
+  require_constrained(rest.mesh, body.conditions.constrained);
+  body.pattern = block_pattern(rest.mesh);
+  return body;
+}
+
+inline void refuse_initial_strains(const Scene& scene) {
+  if (!scene.initial_strains().empty())
+    raise(SetupErrorKind::unsupported, "initial strains at large deformation or with memory", "Use a linear material");
 }
 
 }  // namespace detail
 
 /// A hyperelastic body in a scene. Throws what assembly and conditions throw, and unsupported for initial strains.
-template <Element E, HyperelasticMaterial M>
+template <Element E, LargeStrainMaterial M>
 DeformableBody make_deformable_body(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
-  if (!scene.initial_strains().empty())
-    raise(SetupErrorKind::unsupported, "initial strains at large deformation", "Use a linear material");
-  DeformableBody made = detail::deformable_body(body.rest, scene, limits);
+  detail::refuse_initial_strains(scene);
+  DeformableBody made = detail::body_with_mass(body.rest, scene, limits);
+  made.elastic = std::make_unique<LargeStrain<E, M>>(std::move(body), limits);
+  return made;
+}
+
+/// The same for statics: without mass, and unconstrained is thrown where the scene lets it move as a whole.
+template <Element E, LargeStrainMaterial M>
+DeformableBody make_held_body(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
+  detail::refuse_initial_strains(scene);
+  DeformableBody made = detail::held_body_without_forces(body.rest, scene);
   made.elastic = std::make_unique<LargeStrain<E, M>>(std::move(body), limits);
   return made;
 }
@@ -58,9 +106,31 @@ template <Element E>
 DeformableBody make_deformable_body(Body<E> body, const Scene& scene, const SetupLimits& limits = {}) {
   static_assert(!HasSmoothedStrain<E>,
                 "palpate: the stiffness of a smoothed element has another pattern than its mass");
-  DeformableBody made = detail::deformable_body(body, scene, limits);
+  DeformableBody made = detail::body_with_mass(body, scene, limits);
   made.load += initial_strain_load(body, initial_strains_by_region(body.mesh, scene));
   made.elastic = std::make_unique<LinearForces>(assemble_stiffness<E>(body, limits));
+  return made;
+}
+
+/// A body at small strain with memory. Throws also unsupported for initial strains, and what ViscousForces throws.
+template <Element E>
+DeformableBody make_deformable_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {
+  static_assert(!HasSmoothedStrain<E>,
+                "palpate: the stiffness of a smoothed element has another pattern than its mass");
+  detail::refuse_initial_strains(scene);
+  DeformableBody made = detail::body_with_mass(body.fast, scene, limits);
+  made.elastic = std::make_unique<ViscousForces>(std::move(body), limits);
+  return made;
+}
+
+/// The same for statics, as above.
+template <Element E>
+DeformableBody make_held_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {
+  static_assert(!HasSmoothedStrain<E>,
+                "palpate: the stiffness of a smoothed element has another pattern than its mesh");
+  detail::refuse_initial_strains(scene);
+  DeformableBody made = detail::held_body_without_forces(body.fast, scene);
+  made.elastic = std::make_unique<ViscousForces>(std::move(body), limits);
   return made;
 }
 

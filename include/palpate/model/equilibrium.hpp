@@ -5,8 +5,6 @@
 #include <palpate/model/deformable_body.hpp>
 #include <palpate/model/tangent_solver.hpp>
 
-#include <Eigen/Geometry>
-
 namespace palpate::inline PALPATE_ABI {
 
 struct EquilibriumParameters {
@@ -39,62 +37,75 @@ inline std::string describe(const EquilibriumReport& r) {
   return text;
 }
 
-/// A body under dead loads and prescribed displacements. Neither copied nor moved.
+/// A body under dead loads and prescribed displacements, at rest or so slow that inertia does not count. Neither copied
+/// nor moved.
 class Equilibrium {
  public:
   /// Throws what make_deformable_body throws, and unconstrained.
-  template <Element E, HyperelasticMaterial M>
+  template <Element E, LargeStrainMaterial M>
   Equilibrium(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {})
-      : body_(held(std::move(body), scene, limits)),
+      : Equilibrium(make_held_body(std::move(body), scene, limits), limits) {}
+  /// A body that is held, with or without mass, at any strain.
+  explicit Equilibrium(DeformableBody body, const SetupLimits& limits = {})
+      : body_(std::move(body)),
         tangent_(body_.pattern, body_.conditions, body_.positions, limits),
         displacement_(VectorX::Zero(body_.elastic->size())),
         force_(displacement_),
         full_(displacement_),
+        held_(displacement_),
+        load_(displacement_),
+        from_held_(displacement_),
+        from_load_(displacement_),
+        x_(VectorX::Zero(size())),
+        start_(x_),
+        residual_(x_),
+        direction_(x_),
         buckling_(VectorX::NullaryExpr(size(), [](Index i) { return std::sin(1.0 + static_cast<double>(i)); })),
-        trial_(size()) {
-    Eigen::AlignedBox3d box;
-    for (const Vector3& x : body_.positions) box.extend(x);
-    size_ = box.diagonal().norm();
+        trial_(x_),
+        size_(extent(body_.positions)) {
     body_.elastic->tangent(displacement_, tangent_.matrix());
-    rounding_ = std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(size())) *
-                tangent_.largest_diagonal() * size_;
+    if (!body_.elastic->is_linear()) rounding_ = tangent_.rounding(size_);
   }
   Equilibrium(const Equilibrium&) = delete;
   Equilibrium& operator=(const Equilibrium&) = delete;
 
-  /// Raises the loads from none to all. What is reached at the end is in `displacement()`.
+  /// Raises the loads from none to all. What is reached at the end is in `displacement()`. A body with memory is held
+  /// there until nothing fades any more. Throws bad_argument for parameters that cannot be.
   EquilibriumReport solve(const EquilibriumParameters& parameters = {}) {
-    EquilibriumReport report;
-    Newton newton(body_.conditions.free_count(), parameters.newton);
-    displacement_.setZero();
-    fraction_ = 0.0;
-    VectorX x = VectorX::Zero(body_.conditions.free_count()), start = x;
-    double step = 1.0 / std::max(1, parameters.load_steps);
-    while (fraction_ < 1.0) {
-      const double from = fraction_, to = std::min(1.0, from + step);
-      start = x;
-      const NewtonReport found = advance(newton, to, x);
-      report.iterations += found.iterations;
-      if (found.converged) {
-        ++report.load_steps;
-        report.relative_residual = found.relative_residual;
-        if (found.iterations <= 6) step *= 2.0;
-        continue;
-      }
-      ++report.refused_steps;
-      report.relative_residual = found.relative_residual;
-      x = start;
-      fraction_ = from;
-      step *= 0.5;
-      if (step < parameters.smallest_step) break;
+    require_usable(parameters);
+    stepped_ = false;
+    body_.elastic->begin_step(infinity);
+    from_held_.setZero();
+    from_load_.setZero();
+    x_.setZero();
+    return follow_loads(parameters);
+  }
+
+  /// Lets dt >= 0 seconds pass, at the end of which loads and prescribed values are as they are set: relaxation and
+  /// creep without inertia. dt = 0 is a sudden change. Where no equilibrium is found nothing has changed. Throws
+  /// bad_argument.
+  EquilibriumReport step(double dt, const EquilibriumParameters& parameters = {}) {
+    require_usable(parameters);
+    if (!(dt >= 0.0)) raise(SetupErrorKind::bad_argument, "a step of " + number(dt), "Give a time in seconds");
+    end();
+    body_.elastic->begin_step(dt);
+    from_held_ = held_;
+    from_load_ = load_;
+    const VectorX before = x_;
+    const EquilibriumReport report = follow_loads(parameters);
+    if (!report.converged) {
+      x_ = before;
+      go(0.0);
+      place(x_);
+      body_.elastic->begin_step(0.0);
     }
-    report.fraction = fraction_;
-    report.converged = fraction_ == 1.0;
-    place(x);
-    report.deformation = body_.elastic->force(displacement_, force_);
-    report.stable = prepare(x) && tangent_.shift() == 0.0;
     return report;
   }
+
+  /// Dead loads from the next `solve` or `step` on [N].
+  void set_load(const VectorX& load) { body_.load = load; }
+  /// Values of the prescribed components at the end of the next `solve` or `step` [m].
+  void set_prescribed(const VectorX& values) { body_.conditions.prescribed = values; }
 
   const ElasticForces& elastic() const noexcept { return *body_.elastic; }
   const EssentialConditions& conditions() const noexcept { return body_.conditions; }
@@ -107,21 +118,26 @@ class Equilibrium {
   }
   /// Forces of the supports, zero on free dofs, 3 per node [N].
   VectorX reactions() const {
-    VectorX r = internal_force() - fraction_ * body_.load;
+    VectorX r = internal_force() - load_;
     for (const Index dof : body_.conditions.free_dofs) r[dof] = 0.0;
     return r;
   }
+  /// Gives the body away. Nothing else may be called after it.
+  DeformableBody release() && {
+    end();
+    return std::move(body_);
+  }
 
-  // NewtonProblem, at the present fraction of the loads
+  // NewtonProblem, at the present loads
   Index size() const noexcept { return body_.conditions.free_count(); }
   double evaluate(const VectorX& x, VectorX& residual) noexcept {
     place(x);
     const DeformationReport deformation = body_.elastic->force(displacement_, force_);
     if (!deformation.admissible) return infinity;
-    scale_ = std::max(force_.norm(), fraction_ * body_.load.norm());
-    full_ = fraction_ * body_.load - force_;
+    scale_ = std::max(force_.norm(), load_.norm());
+    full_ = load_ - force_;
     body_.conditions.gather(full_, residual);
-    return body_.elastic->energy(displacement_) - fraction_ * body_.load.dot(displacement_);
+    return body_.elastic->energy(displacement_) - load_.dot(displacement_);
   }
   bool prepare(const VectorX& x) noexcept {
     place(x);
@@ -136,33 +152,76 @@ class Equilibrium {
   double rounding() const noexcept { return rounding_; }
 
  private:
-  template <Element E, HyperelasticMaterial M>
-  static DeformableBody held(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits) {
-    const Mesh<E>& mesh = body.rest.mesh;
-    require_constrained(mesh, resolve_essential(mesh, extract_boundary<E>(mesh), scene).constrained);
-    return make_deformable_body(std::move(body), scene, limits);
+  static void require_usable(const EquilibriumParameters& p) {
+    p.newton.require_usable();
+    if (p.load_steps < 1)
+      raise(SetupErrorKind::bad_argument, std::to_string(p.load_steps) + " load steps", "Give at least one");
+    if (!(p.smallest_step > 0.0 && p.smallest_step <= 1.0))
+      raise(SetupErrorKind::bad_argument, "a smallest load step of " + number(p.smallest_step),
+            "Give a part of the loads above 0 and at most 1");
   }
 
-  /// Full displacement from the free dofs, with prescribed ones at the present fraction.
+  void end() noexcept {
+    if (stepped_) body_.elastic->end_step(displacement_);
+    stepped_ = false;
+  }
+
+  /// From the loads and held values at the start to those that are set, in steps that adapt.
+  EquilibriumReport follow_loads(const EquilibriumParameters& parameters) {
+    EquilibriumReport report;
+    Newton newton(size(), parameters.newton);
+    go(0.0);
+    double step = 1.0 / parameters.load_steps;
+    while (report.fraction < 1.0) {
+      const double to = std::min(1.0, report.fraction + step);
+      start_ = x_;
+      const NewtonReport found = advance(newton, to);
+      report.iterations += found.iterations;
+      report.relative_residual = found.relative_residual;
+      if (found.converged) {
+        ++report.load_steps;
+        report.fraction = to;
+        if (found.iterations <= 6) step *= 2.0;
+        continue;
+      }
+      ++report.refused_steps;
+      x_ = start_;
+      go(report.fraction);
+      step *= 0.5;
+      if (step < parameters.smallest_step) break;
+    }
+    report.converged = report.fraction == 1.0;
+    report.stable = prepare(x_) && tangent_.shift() == 0.0;
+    report.deformation = body_.elastic->force(displacement_, force_);
+    stepped_ = report.converged;
+    return report;
+  }
+
+  /// Sets loads and held values to a fraction of the way.
+  void go(double fraction) noexcept {
+    held_ = from_held_ + fraction * (body_.conditions.prescribed - from_held_);
+    load_ = from_load_ + fraction * (body_.load - from_load_);
+  }
+  /// Full displacement from the free dofs, with the present held values.
   void place(const VectorX& x) noexcept {
-    displacement_ = fraction_ * body_.conditions.prescribed;
-    for (Index k = 0; k < body_.conditions.free_count(); ++k)
-      displacement_[body_.conditions.free_dofs[static_cast<std::size_t>(k)]] = x[k];
+    displacement_ = held_;
+    for (Index k = 0; k < size(); ++k) displacement_[body_.conditions.free_dofs[static_cast<std::size_t>(k)]] = x[k];
   }
 
-  /// From equilibrium at the present fraction to equilibrium at another: a step along the tangent, then Newton's
+  /// From equilibrium at the present loads to equilibrium at another fraction: a step along the tangent, then Newton's
   /// method.
-  NewtonReport advance(Newton& newton, double to, VectorX& x) noexcept {
-    if (!prepare(x)) return {};
+  NewtonReport advance(Newton& newton, double to) noexcept {
+    if (!prepare(x_)) return {};
     body_.elastic->force(displacement_, force_);
-    tangent_.matrix().apply((to - fraction_) * body_.conditions.prescribed, full_);
-    full_ = to * body_.load - force_ - full_;
-    VectorX residual(size()), d(size());
-    body_.conditions.gather(full_, residual);
-    direction(residual, d);
-    fraction_ = to;
-    x += d;
-    return newton.solve(*this, x);
+    displacement_ = held_;
+    go(to);
+    displacement_ = held_ - displacement_;
+    tangent_.matrix().apply(displacement_, full_);
+    full_ = load_ - force_ - full_;
+    body_.conditions.gather(full_, residual_);
+    direction(residual_, direction_);
+    x_ += direction_;
+    return newton.solve(*this, x_);
   }
 
   /// Where the tangent is not positive definite the state may be an unstable equilibrium, which the residual alone does
@@ -182,8 +241,10 @@ class Equilibrium {
 
   DeformableBody body_;
   TangentSolver tangent_;
-  VectorX displacement_, force_, full_, buckling_, trial_;
-  double fraction_ = 0.0, scale_ = 0.0, size_ = 0.0, rounding_ = 0.0;
+  VectorX displacement_, force_, full_, held_, load_, from_held_, from_load_;
+  VectorX x_, start_, residual_, direction_, buckling_, trial_;
+  bool stepped_ = false;  // displacement_ is the end of a step
+  double scale_ = 0.0, size_ = 0.0, rounding_ = 0.0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

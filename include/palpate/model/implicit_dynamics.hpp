@@ -1,8 +1,8 @@
 // Motion in time by implicit steps.
 #pragma once
 
+#include <palpate/integrator/implicit_step.hpp>
 #include <palpate/integrator/newton.hpp>
-#include <palpate/integrator/time_scheme.hpp>
 #include <palpate/model/deformable_body.hpp>
 #include <palpate/model/tangent_solver.hpp>
 
@@ -15,7 +15,7 @@ struct DynamicsParameters {
   double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]: drags, also a body that moves freely
   double stiffness_damping = 0.0;  ///< Rayleigh's beta [s], with the tangent at the start of the step
   MassKind mass = MassKind::lumped;
-  NewtonParameters newton{};  ///< `maximum_iterations` bounds the work of a step
+  NewtonParameters newton{};  ///< `maximum_iterations` bounds the work of a step, TangentSolver that of an iteration
 };
 
 /// What a step did.
@@ -31,12 +31,13 @@ struct StepReport {
 class ImplicitDynamics {
  public:
   /// Starts at rest without displacement, but for the initial acceleration, which follows from the loads. Throws
-  /// too_large, bad_density where a free node has no mass, bad_argument for negative damping.
+  /// too_large, bad_density where a free node has no mass, bad_argument for negative damping and useless parameters.
   explicit ImplicitDynamics(DeformableBody body, const DynamicsParameters& parameters = {},
                             const SetupLimits& limits = {})
       : parameters_(parameters),
         body_(checked(std::move(body), parameters)),
         tangent_(body_.pattern, body_.conditions, body_.positions, limits),
+        step_(parameters.scheme, body_.elastic->size()),
         damping_(parameters.stiffness_damping > 0.0 ? make_stiffness(body_.pattern, limits) : BlockMatrix()),
         newton_(size(), parameters.newton),
         u_(VectorX::Zero(body_.elastic->size())),
@@ -44,13 +45,17 @@ class ImplicitDynamics {
         a_(u_),
         load_(body_.load),
         trial_(u_),
-        predicted_(u_),
-        coasting_(u_),
         force_(u_),
         full_(u_),
         other_(u_),
         x_(size()),
+        kept_load_(u_),
+        step_load_(u_),
+        change_(size()),
+        start_(size()),
         heaviest_(body_.lumped.maxCoeff()) {
+    body_.elastic->tangent(u_, tangent_.matrix());
+    if (!body_.elastic->is_linear()) floor_ = tangent_.rounding(extent(body_.positions));
     find_acceleration();
   }
   ImplicitDynamics(const ImplicitDynamics&) = delete;
@@ -59,33 +64,48 @@ class ImplicitDynamics {
   /// Moves on by h [s].
   StepReport step(double h) noexcept {
     StepReport report;
-    if (!(h > 0.0) || !(h < infinity)) return report;
-    h_ = h;
-    const TimeScheme& s = parameters_.scheme;
-    predicted_ = u_ + h * v_ + (s.old_in_u * h * h) * a_;
-    coasting_ = v_ + (s.old_in_v * h) * a_;
+    if (!ImplicitStep::is_length(h)) return report;
+    begin(h);
+    step_.coast(u_, v_, a_);
     if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
-    body_.conditions.gather(predicted_, x_);
+    body_.conditions.gather(step_.predicted(), x_);
     if (!(evaluate(x_, full_free()) < infinity)) body_.conditions.gather(u_, x_);  // the old state holds
     report.newton = newton_.solve(*this, x_);
     if (!(evaluate(x_, full_free()) < infinity)) return report;
     report.taken = true;
     report.deformation = deformation_;
-    find_motion();
     accept();
+    step_load_ = load_;
     stepped_ = true;
     time_ += h;
     return report;
   }
 
-  /// Takes `more` forces [N] into account in the step just taken, to first order: with the tangent of its last
-  /// iteration. One solve; nothing before the first step.
-  void correct(const VectorX& more) noexcept {
-    if (!stepped_) return;
-    respond(more, trial_);
-    trial_ += u_;
-    find_motion();
-    accept();
+  /// Takes `more` forces [N] into account in the step just taken, and what it left, to first order: with the tangent of
+  /// its last iteration, or where it needed none, of its end. One solve and two forces; up to four more where the first
+  /// order leads too far. False, and nothing changes, where no step was taken since the state or the length of steps
+  /// was changed, and where nothing on the way leaves less force than there was.
+  bool correct(const VectorX& more) noexcept {
+    if (!stepped_) return false;
+    if (more.isZero(0.0)) return true;
+    if (!factorised_ && !prepare_at(u_)) return false;
+    body_.conditions.gather(u_, start_);
+    kept_load_ = load_;
+    load_ = step_load_ + more;
+    bool better = false;
+    if (evaluate(start_, residual_) < infinity) {
+      const double before = residual_.norm();
+      tangent_.solve(residual_, change_);
+      for (int halvings = 0; halvings < 5 && !better; ++halvings, change_ *= 0.5) {
+        x_ = start_ + change_;
+        better = evaluate(x_, residual_) < infinity && residual_.norm() <= std::max(before, rounding()) &&
+                 velocity_.allFinite();
+      }
+    }
+    if (better) step_load_ = load_;
+    load_ = kept_load_;
+    if (better) accept();
+    return better;
   }
   /// Displacement [m] that forces [N] add at the end of a step, to first order, as `correct` has it.
   void respond(const VectorX& forces, VectorX& u) noexcept {
@@ -95,10 +115,9 @@ class ImplicitDynamics {
   }
   /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
   bool prepare_response(double h) noexcept {
-    if (!(h > 0.0) || !(h < infinity)) return false;
-    h_ = h;
-    body_.conditions.gather(u_, x_);
-    return prepare(x_);
+    if (!ImplicitStep::is_length(h)) return false;
+    begin(h);
+    return prepare_at(u_);
   }
 
   double time() const noexcept { return time_; }
@@ -107,13 +126,18 @@ class ImplicitDynamics {
   const VectorX& acceleration() const noexcept { return a_; }
   const DeformableBody& body() const noexcept { return body_; }
 
-  /// Changes the state; prescribed components keep their values. The acceleration follows.
+  /// Changes the state; prescribed components rest where they are prescribed. The acceleration follows. For a body with
+  /// memory the change is sudden.
   void set_state(const VectorX& u, const VectorX& v) {
-    for (const Index dof : body_.conditions.free_dofs) {
-      u_[dof] = u[dof];
-      v_[dof] = v[dof];
+    end();
+    body_.elastic->begin_step(0.0);
+    for (Index dof = 0; dof < u_.size(); ++dof) {  // u and v may be those of this motion
+      const bool held = body_.conditions.is_constrained(dof);
+      u_[dof] = held ? body_.conditions.prescribed[dof] : u[dof];
+      v_[dof] = held ? 0.0 : v[dof];
     }
-    stepped_ = false;
+    body_.elastic->end_step(u_);
+    body_.elastic->begin_step(0.0);
     find_acceleration();
   }
   /// Forces from now on instead of the scene's loads [N].
@@ -125,6 +149,7 @@ class ImplicitDynamics {
     apply_mass(v_, full_);
     return 0.5 * v_.dot(full_);
   }
+  /// Stored [J]. For a body with memory: the potential of its last step, which counts what faded in it.
   double elastic_energy() const noexcept { return body_.elastic->energy(u_); }
   /// Kinetic and stored, less the work that the loads can still do [J]: constant without damping.
   double energy() noexcept { return kinetic_energy() + elastic_energy() - load_.dot(u_); }
@@ -135,11 +160,11 @@ class ImplicitDynamics {
     place(x);
     deformation_ = body_.elastic->force(trial_, force_);
     if (!deformation_.admissible) return infinity;
-    find_motion();
+    step_.find_motion(trial_, velocity_, acceleration_);
     apply_mass(acceleration_, full_);
-    const double inertia = 0.5 * parameters_.scheme.new_in_u * h_ * h_ * acceleration_.dot(full_);
+    const double inertia = 0.5 / step_.acceleration_per_displacement() * acceleration_.dot(full_);
     apply_damping(velocity_, other_);
-    const double lost = 0.5 * h_ * parameters_.scheme.new_in_u / parameters_.scheme.new_in_v * velocity_.dot(other_);
+    const double lost = 0.5 / step_.velocity_per_displacement() * velocity_.dot(other_);
     scale_ = std::max({force_.norm(), full_.norm(), other_.norm(), load_.norm()});
     full_ = load_ - force_ - full_ - other_;
     body_.conditions.gather(full_, residual);
@@ -147,32 +172,42 @@ class ImplicitDynamics {
   }
   bool prepare(const VectorX& x) noexcept {
     place(x);
-    BlockMatrix& k = tangent_.matrix();
-    body_.elastic->tangent(trial_, k);
-    const TimeScheme& s = parameters_.scheme;
-    const double per_u = 1.0 / (s.new_in_u * h_ * h_), per_v = s.new_in_v / (s.new_in_u * h_);
-    add_mass(per_u + parameters_.mass_damping * per_v, k);
-    if (damping_.size() > 0) k.add(parameters_.stiffness_damping * per_v, damping_);
-    return tangent_.factorise();
+    return prepare_at(trial_);
   }
   void direction(const VectorX& residual, VectorX& d) noexcept { tangent_.solve(residual, d); }
   double scale() const noexcept { return scale_; }
   double rounding() const noexcept {
-    const double of_inertia = heaviest_ / (parameters_.scheme.new_in_u * h_ * h_) * trial_.norm();
-    return 4.0 * std::numeric_limits<double>::epsilon() * std::max(scale_, of_inertia);
+    const double of_inertia = heaviest_ * step_.acceleration_per_displacement() * trial_.norm();
+    return std::max(floor_, 4.0 * std::numeric_limits<double>::epsilon() * std::max(scale_, of_inertia));
   }
 
  private:
+  /// A step of h starts at the end of the last one.
+  void begin(double h) noexcept {
+    end();
+    body_.elastic->begin_step(h);
+    step_.set_length(h);
+  }
+  /// The last step, if there was one, can not be corrected any more.
+  void end() noexcept {
+    if (stepped_) body_.elastic->end_step(u_);
+    stepped_ = factorised_ = false;
+  }
+
+  /// Factorises the tangent of a step at a displacement.
+  bool prepare_at(const VectorX& u) noexcept {
+    BlockMatrix& k = tangent_.matrix();
+    body_.elastic->tangent(u, k);
+    const double per_v = step_.velocity_per_displacement();
+    add_mass(step_.acceleration_per_displacement() + parameters_.mass_damping * per_v, k);
+    if (damping_.size() > 0) k.add(parameters_.stiffness_damping * per_v, damping_);
+    return factorised_ = tangent_.factorise();
+  }
+
   static DeformableBody checked(DeformableBody body, const DynamicsParameters& p) {
-    for (const double d : {p.mass_damping, p.stiffness_damping})
-      if (!(d >= 0.0 && d < infinity))
-        raise(SetupErrorKind::bad_argument, "a damping of " + number(d), "Give 0 or a positive number");
-    for (const double c : {p.scheme.new_in_u, p.scheme.new_in_v})
-      if (!(c > 0.0)) raise(SetupErrorKind::bad_argument, "the time scheme is explicit", "Use central differences");
-    for (Index i = 0; i < body.lumped.size(); ++i)
-      if (!(body.lumped[i] > 0.0) && body.conditions.constrained[static_cast<std::size_t>(i)] != 7)
-        raise(SetupErrorKind::bad_density, "node " + std::to_string(i) + " has no mass",
-              "Give every region a density in kg/m^3");
+    p.newton.require_usable();
+    require_damping(p.mass_damping, p.stiffness_damping);
+    require_mass(body);
     return body;
   }
 
@@ -182,13 +217,6 @@ class ImplicitDynamics {
     trial_ = body_.conditions.prescribed;
     for (Index k = 0; k < size(); ++k) trial_[body_.conditions.free_dofs[static_cast<std::size_t>(k)]] = x[k];
   }
-  /// Acceleration and velocity at the end of the step from the displacement there.
-  void find_motion() noexcept {
-    const TimeScheme& s = parameters_.scheme;
-    acceleration_ = (trial_ - predicted_) / (s.new_in_u * h_ * h_);
-    velocity_ = coasting_ + (s.new_in_v * h_) * acceleration_;
-  }
-
   void accept() noexcept {
     u_ = trial_;
     v_ = velocity_;
@@ -205,8 +233,7 @@ class ImplicitDynamics {
       for (Index p = 0; p < static_cast<Index>(pattern.column.size()); ++p)
         k.block(p).diagonal().array() += factor * body_.mass[p];
     else
-      for (Index i = 0; i < pattern.rows(); ++i)
-        k.block(pattern.diagonal(i)).diagonal().array() += factor * body_.lumped[i];
+      k.add_nodal(factor, body_.lumped);
   }
   void apply_damping(const VectorX& v, VectorX& y) noexcept {
     if (damping_.size() > 0) {
@@ -229,23 +256,33 @@ class ImplicitDynamics {
     apply_damping(v_, other_);
     full_ = load_ - force_ - other_;
     body_.conditions.gather(full_, residual_);
-    tangent_.matrix().set_zero();
-    add_mass(1.0, tangent_.matrix());
-    if (!tangent_.factorise()) raise(SetupErrorKind::not_positive_definite, "the mass is not positive definite");
-    tangent_.solve(residual_, x_);
+    factorised_ = false;
+    if (parameters_.mass == MassKind::lumped) {
+      for (Index k = 0; k < size(); ++k)
+        x_[k] = residual_[k] / body_.lumped[body_.conditions.free_dofs[static_cast<std::size_t>(k)] / 3];
+    } else {
+      tangent_.matrix().set_zero();
+      add_mass(1.0, tangent_.matrix());
+      if (!tangent_.factorise()) raise(SetupErrorKind::not_positive_definite, "the mass is not positive definite");
+      tangent_.solve(residual_, x_);
+    }
     body_.conditions.scatter(x_, a_);
+    if (!a_.allFinite()) a_.setZero();  // of loads that are none: steps refuse these
   }
 
   DynamicsParameters parameters_;
   DeformableBody body_;
   TangentSolver tangent_;
+  ImplicitStep step_;
   BlockMatrix damping_;
   Newton newton_;
   VectorX u_, v_, a_, load_;
-  VectorX trial_, predicted_, coasting_, velocity_, acceleration_, force_, full_, other_, drag_, x_, residual_;
+  VectorX trial_, velocity_, acceleration_, force_, full_, other_, drag_, x_, residual_;
+  VectorX kept_load_, step_load_, change_, start_;  // of corrections
   DeformationReport deformation_;
-  bool stepped_ = false;  // since the state was set
-  double h_ = 0.0, time_ = 0.0, scale_ = 0.0, heaviest_ = 0.0;
+  bool stepped_ = false;     // the state is the end of step_
+  bool factorised_ = false;  // tangent_ is that of this step
+  double time_ = 0.0, scale_ = 0.0, heaviest_ = 0.0, floor_ = 0.0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

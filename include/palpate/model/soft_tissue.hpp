@@ -1,6 +1,7 @@
 // Tissue at large deformation and in motion, felt at the rate of the device.
 #pragma once
 
+#include <palpate/contact/contact.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/realtime.hpp>
 #include <palpate/concepts/tissue_model.hpp>
@@ -13,60 +14,132 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-struct SoftTissueOptions {
-  double step = 0.01;  ///< of the motion [s]
-  DynamicsParameters motion{.newton = {.maximum_iterations = 2, .tolerance = 1e-9}};
+/// What a moving tissue asks of a motion; specialise for motions of your own.
+///   Parameters, usual_step [s], usual()    what the motion is made with, Motion(source, parameters, limits)
+///   source(body, scene, limits)            what it is made from
+///   settle(source, limits)                 its displacement in equilibrium; throws not_converged
+///   close(report)                          whether a step ended near its answer
+/// The motion itself: step, correct, respond, prepare_response, set_state, set_load, displacement, body, as
+/// ImplicitDynamics has them.
+template <class Motion>
+struct TissueMotion;
+
+namespace detail {
+
+/// Displacement of the equilibrium, or not_converged.
+inline VectorX settled(Equilibrium& statics) {
+  const EquilibriumReport report = statics.solve();
+  if (!report.converged)
+    raise(SetupErrorKind::not_converged, describe(report), "Set settle = false, or hold it better");
+  return statics.displacement();
+}
+
+}  // namespace detail
+
+template <>
+struct TissueMotion<ImplicitDynamics> {
+  using Parameters = DynamicsParameters;
+  using Source = DeformableBody;
+  static constexpr double usual_step = 0.01;
+  static Parameters usual() { return {.newton = {.maximum_iterations = 2, .tolerance = 1e-9}}; }
+
+  template <class Body>
+  static Source source(Body body, const Scene& scene, const SetupLimits& limits) {
+    return make_deformable_body(std::move(body), scene, limits);
+  }
+  static VectorX settle(Source& body, const SetupLimits& limits) {
+    Equilibrium statics(std::move(body), limits);
+    VectorX u = detail::settled(statics);
+    body = std::move(statics).release();
+    return u;
+  }
+  static bool close(const StepReport& r) noexcept {
+    return r.taken && (r.newton.converged || r.newton.relative_residual <= 0.05);
+  }
+};
+
+template <class Motion>
+struct TissueOptions {
+  double step = TissueMotion<Motion>::usual_step;  ///< of the motion [s]
+  typename TissueMotion<Motion>::Parameters motion = TissueMotion<Motion>::usual();
   bool settle = true;  ///< start in equilibrium under the scene's loads
   AdmissionPolicy admission{};
   SetupLimits limits{};
 };
 
-/// A hyperelastic body that moves at its own rate, in a thread of its own, while a servo solves the contact anew in
-/// every tick (the architecture of Duriez et al. 2006 and Courtecuisse et al. 2015).
+namespace detail {
+
+template <Element E, LargeStrainMaterial M>
+auto soft_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
+  return make_hyperelastic_body(std::move(mesh), materials);
+}
+template <Element E, class M>
+auto soft_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
+  return make_body(std::move(mesh), materials);
+}
+template <class Body>
+const auto& mesh_of(const Body& body) noexcept {
+  if constexpr (requires { body.rest.mesh; })
+    return body.rest.mesh;
+  else if constexpr (requires { body.fast.mesh; })
+    return body.fast.mesh;
+  else
+    return body.mesh;
+}
+
+}  // namespace detail
+
+/// A body, hyperelastic or at small strain, with memory or without, that moves at its own rate, in a thread of its own,
+/// while a servo solves the contact anew in every tick (the architecture of Duriez et al. 2006 and Courtecuisse et al.
+/// 2015).
 ///
 /// After every step the tissue publishes where its surface would be without the tools, and how much each vertex has
-/// turned. Between two steps the servo solves the contact on that surface with the compliance of a step at rest, turned
-/// with the vertices: C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). What presses at the end of a
-/// step corrects the step and loads the next one. In a steady hold the force is that of the non-linear equilibrium,
-/// whatever the step and however rough C is: C only says how a change goes on until the next step has seen it.
+/// turned. Between two steps the servo solves the contact on that surface with the compliance of a step as the body
+/// settled, turned with the vertices: C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). What presses at
+/// the end of a step corrects the step and loads the next one. In a steady hold the force is that of the non-linear
+/// equilibrium, whatever the step and however rough C is: C only says how a change goes on until the next step has seen
+/// it.
 ///
 /// Two threads: `advance` belongs to one (see TissueThread), the functions of TissueModel to the one that ticks; they
 /// exchange through triple buffers and never wait for each other. Satisfies TissueModel.
-class SoftTissue {
+template <class Motion>
+class BasicSoftTissue {
  public:
-  static constexpr std::size_t most_forces = 192;  ///< on vertices; of more the first are felt by the tissue
+  using Options = TissueOptions<Motion>;
+  /// On vertices, three to a contact; of more the first are felt by the tissue.
+  static constexpr std::size_t most_forces = 3 * default_contact_capacity;
 
   /// One material everywhere, or one per region. Throws what make_deformable_body and statics throw, bad_argument for a
   /// step that is none, not_converged when there is no equilibrium to settle in. Set-up solves once per touchable dof.
-  template <Element E, HyperelasticMaterial M>
-  SoftTissue(const Mesh<E>& mesh, const Scene& scene, const M& material, const SoftTissueOptions& options = {})
-      : SoftTissue(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options) {}
-  template <Element E, HyperelasticMaterial M>
-  SoftTissue(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-             const SoftTissueOptions& options = {})
-      : SoftTissue(prepare(mesh, scene, materials, options), options) {}
-  SoftTissue(const SoftTissue&) = delete;
-  SoftTissue& operator=(const SoftTissue&) = delete;
+  template <Element E, Material M>
+  BasicSoftTissue(const Mesh<E>& mesh, const Scene& scene, const M& material, const Options& options = {})
+      : BasicSoftTissue(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options) {}
+  template <Element E, Material M>
+  BasicSoftTissue(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                  const Options& options = {})
+      : BasicSoftTissue(prepare(mesh, scene, materials, options), options) {}
+  BasicSoftTissue(const BasicSoftTissue&) = delete;
+  BasicSoftTissue& operator=(const BasicSoftTissue&) = delete;
 
   // The tissue's thread
 
   /// Takes in what pressed since the last step, and moves on by one step. No allocation; as long as it takes.
-  StepReport advance() noexcept {
+  auto advance() noexcept {
     const FlushDenormals flush;
     pressing_.update();
     full_.setZero();
     add(pressing_.front(), 1.0, full_);
     add(used_, -1.0, full_);
-    motion_.correct(full_);
+    const bool corrected = motion_.correct(full_) || full_.isZero(0.0) || steps_ == 0;
     used_ = pressing_.front();
     full_ = motion_.body().load;
     add(used_, 1.0, full_);
     motion_.set_load(full_);
-    const StepReport report = motion_.step(step_);
-    publish(report);
+    const auto report = motion_.step(step_);
+    publish(report, corrected);
     return report;
   }
-  const ImplicitDynamics& motion() const noexcept { return motion_; }
+  const Motion& motion() const noexcept { return motion_; }
   double step() const noexcept { return step_; }
   /// Steps published so far.
   std::uint64_t steps() const noexcept { return steps_; }
@@ -74,24 +147,35 @@ class SoftTissue {
   // TissueModel: the thread that ticks
 
   /// Brings in the newest surface. `inverted` while elements are inside out, solver_not_converged when the last step
-  /// was cut off far from the answer.
+  /// was cut off far from the answer, degraded_model when what pressed since the step before could only be taken in by
+  /// the next, non_finite_force when the last `end_tick` had forces that are none.
   Status begin_tick() noexcept {
     if (views_.update()) {
       surface_.move_to(views_.front().free);
       ++revision_;
     }
-    return views_.front().status;
+    return views_.front().status | ticked_;
   }
+  /// Forces that are not finite are dropped.
   void end_tick(std::span<const VertexForce> forces) noexcept {
     Forces& out = pressing_.back();
-    out.count = std::min(forces.size(), most_forces);
-    std::copy_n(forces.begin(), out.count, out.item.begin());
+    out.count = 0;
+    ticked_ = {};
+    for (const VertexForce& f : forces)
+      if (!f.force.allFinite())
+        ticked_.set(StatusFlag::non_finite_force);
+      else if (out.count < most_forces)
+        out.item[out.count++] = f;
+      else
+        ticked_.set(StatusFlag::degraded_model);
     pressing_.publish();
   }
   const ContactSurface& contact_surface() const noexcept { return surface_; }
   Status require_columns(std::span<const int>) noexcept { return {}; }
   Matrix3 compliance(int i, int j) const noexcept { return warped(views_.front(), i, j); }
   std::uint64_t compliance_revision() const noexcept { return revision_; }
+  /// Surfaces brought in so far.
+  std::uint64_t updates() const noexcept { return revision_; }
   double compliance_bound(int j) const noexcept { return bound_[static_cast<std::size_t>(j)]; }
   double compliance_floor() const noexcept { return floor_; }
   const Eigen::Isometry3d& pose() const noexcept { return world_; }
@@ -110,52 +194,49 @@ class SoftTissue {
     Status status;
   };
   struct Prepared {
-    DeformableBody body;
+    typename TissueMotion<Motion>::Source source;
     Touchable touchable;
     Vector3 origin;
     VectorX settled;
   };
 
-  template <Element E, HyperelasticMaterial M>
+  template <Element E, Material M>
   static Prepared prepare(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-                          const SoftTissueOptions& options) {
+                          const Options& options) {
+    if (!(options.step > 0.0 && options.step < infinity))
+      raise(SetupErrorKind::bad_argument, "a step of " + number(options.step), "Give a positive time in seconds");
     Admitted<E> admitted = admit<E>(mesh, options.admission);
     const Scene mapped = scene.mapped(admitted.node_map);
     Prepared prepared;
     prepared.origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
     for (Vector3& x : admitted.mesh.positions) x -= prepared.origin;
-    auto body = make_hyperelastic_body(std::move(admitted.mesh), materials);
-    prepared.touchable = resolve_touchable(body.rest.mesh, extract_boundary<E>(body.rest.mesh), mapped);
-    prepared.settled = VectorX::Zero(3 * body.rest.mesh.node_count());
-    if (options.settle) {
-      Equilibrium statics(body, mapped, options.limits);
-      const EquilibriumReport report = statics.solve();
-      if (!report.converged)
-        raise(SetupErrorKind::not_converged, describe(report), "Set settle = false, or hold it better");
-      prepared.settled = statics.displacement();
-    }
-    prepared.body = make_deformable_body(std::move(body), mapped, options.limits);
+    auto body = detail::soft_body(std::move(admitted.mesh), materials);
+    const Mesh<E>& rest = detail::mesh_of(body);
+    prepared.touchable = resolve_touchable(rest, extract_boundary<E>(rest), mapped);
+    prepared.settled = VectorX::Zero(3 * rest.node_count());
+    if (options.settle)
+      require_constrained(rest, resolve_essential(rest, extract_boundary<E>(rest), mapped).constrained);
+    prepared.source = TissueMotion<Motion>::source(std::move(body), mapped, options.limits);
+    if (options.settle) prepared.settled = TissueMotion<Motion>::settle(prepared.source, options.limits);
     return prepared;
   }
 
-  SoftTissue(Prepared prepared, const SoftTissueOptions& options)
+  BasicSoftTissue(Prepared prepared, const Options& options)
       : step_(options.step),
         world_(Eigen::Translation3d(prepared.origin)),
         touchable_(std::move(prepared.touchable.nodes)),
-        rotations_(prepared.body.pattern, prepared.body.positions, touchable_),
-        motion_(std::move(prepared.body), options.motion, options.limits),
+        motion_(std::move(prepared.source), options.motion, options.limits),
+        rotations_(motion_.body().pattern, motion_.body().positions, touchable_),
         full_(motion_.displacement()) {
-    if (!(step_ > 0.0 && step_ < infinity))
-      raise(SetupErrorKind::bad_argument, "a step of " + number(step_), "Give a positive time in seconds");
-    store_compliance(options.limits);
     motion_.set_state(prepared.settled, VectorX::Zero(full_.size()));
+    store_compliance(options.limits);
     View view{std::vector<Vector3>(touchable_.size()), std::vector<Matrix3>(touchable_.size()), {}};
     look(view);
     surface_ = ContactSurface(view.free, std::move(prepared.touchable.triangles));
     views_.fill(view);
   }
 
-  /// C0: what a force on each touchable dof moves within a step from rest.
+  /// What a force on each touchable dof moves within a step from the settled state, turned back to the shape at rest.
   void store_compliance(const SetupLimits& limits) {
     const std::size_t n = touchable_.size();
     limits.require_memory(static_cast<double>(n) * static_cast<double>(n) * sizeof(Matrix3), "the contact compliance");
@@ -164,6 +245,8 @@ class SoftTissue {
     if (!motion_.prepare_response(step_))
       raise(SetupErrorKind::not_positive_definite, "the body at rest has no stiffness");
     VectorX force = VectorX::Zero(full_.size()), u(full_.size());
+    std::vector<Matrix3> turned(n);
+    for (std::size_t i = 0; i < n; ++i) turned[i] = rotations_(i, motion_.displacement());
     for (std::size_t j = 0; j < n; ++j) {
       if (j % 64 == 0) limits.advance("compliance", static_cast<double>(j) / static_cast<double>(n));
       for (int c = 0; c < 3; ++c) {
@@ -172,6 +255,8 @@ class SoftTissue {
         force[3 * Index{touchable_[j]} + c] = 0.0;
         for (std::size_t i = 0; i < n; ++i) rest_[i + n * j].col(c) = u.segment<3>(3 * Index{touchable_[i]});
       }
+      for (std::size_t i = 0; i < n; ++i)
+        rest_[i + n * j] = (turned[i].transpose() * rest_[i + n * j] * turned[j]).eval();
       for (std::size_t i = 0; i < n; ++i) bound_[j] = std::max(bound_[j], rest_[i + n * j].norm());
       floor_ = std::max(floor_, 1e-9 * bound_[j]);
     }
@@ -185,28 +270,35 @@ class SoftTissue {
 
   void add(const Forces& forces, double factor, VectorX& load) const noexcept {
     for (std::size_t k = 0; k < forces.count; ++k)
-      load.segment<3>(3 * Index{touchable_[static_cast<std::size_t>(forces.item[k].vertex)]}) +=
-          factor * forces.item[k].force;
+      load.segment<3>(3 * Index{touchable_[vertex(forces.item[k])]}) += factor * forces.item[k].force;
   }
 
   /// Where the surface is without the forces in use, by the compliance that the servo uses: then the same forces bring
   /// it back to where it is.
   void look(View& view) const noexcept {
     const VectorX& u = motion_.displacement();
-    for (std::size_t i = 0; i < touchable_.size(); ++i) view.rotation[i] = rotations_(i, u);
-    for (std::size_t i = 0; i < touchable_.size(); ++i) {
-      view.free[i] =
-          motion_.body().positions[static_cast<std::size_t>(touchable_[i])] + u.segment<3>(3 * Index{touchable_[i]});
+    const std::size_t n = touchable_.size();
+    for (std::size_t i = 0; i < n; ++i) view.rotation[i] = rotations_(i, u);
+    std::array<Vector3, most_forces> turned_back;
+    for (std::size_t k = 0; k < used_.count; ++k)
+      turned_back[k] = view.rotation[vertex(used_.item[k])].transpose() * used_.item[k].force;
+    for (std::size_t i = 0; i < n; ++i) {
+      Vector3 moved = Vector3::Zero();
       for (std::size_t k = 0; k < used_.count; ++k)
-        view.free[i] -= warped(view, static_cast<int>(i), used_.item[k].vertex) * used_.item[k].force;
+        moved.noalias() += rest_[i + n * vertex(used_.item[k])] * turned_back[k];
+      const NodeId node = touchable_[i];
+      view.free[i] = motion_.body().positions[static_cast<std::size_t>(node)] + u.segment<3>(3 * Index{node}) -
+                     view.rotation[i] * moved;
     }
   }
-  void publish(const StepReport& report) noexcept {
+  static std::size_t vertex(const VertexForce& f) noexcept { return static_cast<std::size_t>(f.vertex); }
+  void publish(const auto& report, bool corrected) noexcept {
     View& view = views_.back();
     look(view);
     view.status = {};
     if (report.deformation.inverted > 0) view.status.set(StatusFlag::inverted);
-    if (!report.taken || !(report.newton.relative_residual <= 0.05)) view.status.set(StatusFlag::solver_not_converged);
+    if (!TissueMotion<Motion>::close(report)) view.status.set(StatusFlag::solver_not_converged);
+    if (!corrected) view.status.set(StatusFlag::degraded_model);
     views_.publish();
     ++steps_;
   }
@@ -214,8 +306,8 @@ class SoftTissue {
   double step_;
   Eigen::Isometry3d world_;
   std::vector<NodeId> touchable_;
+  Motion motion_;
   NodalRotations rotations_;
-  ImplicitDynamics motion_;
   VectorX full_;
   std::vector<Matrix3> rest_;  // of vertex i per force on j at i + vertices x j
   std::vector<double> bound_;
@@ -226,7 +318,12 @@ class SoftTissue {
   TripleBuffer<Forces> pressing_;
   ContactSurface surface_;
   std::uint64_t revision_ = 0;
+  Status ticked_;  // of the last end_tick
 };
+
+/// Solved by Newton's method with a factor: any element, law and step; see ImplicitDynamics.
+using SoftTissue = BasicSoftTissue<ImplicitDynamics>;
+using SoftTissueOptions = TissueOptions<ImplicitDynamics>;
 
 static_assert(TissueModel<SoftTissue>);
 

@@ -1,15 +1,17 @@
 // Approximate inverses of what an implicit step of a co-rotated body multiplies its increment by.
 #pragma once
 
-#include <palpate/model/deformable_body.hpp>
-#include <palpate/model/nodal_rotation.hpp>
-#include <palpate/model/tangent_solver.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/model/turned_solve.hpp>
+
+#include <Eigen/LU>
 
 namespace palpate::inline PALPATE_ABI {
 
 /// A = mass M + stiffness K.
 struct StepFactors {
   double mass = 0.0, stiffness = 0.0;
+  friend bool operator==(const StepFactors&, const StepFactors&) = default;
 };
 
 /// What CorotatedMotion wants of a preconditioner P for A:
@@ -79,67 +81,39 @@ class BlockJacobi {
   VectorX straight_, mixed_;
 };
 
-/// The factor of A at rest, between the rotations of the nodes: R (M + K0)^-1 R^T. Exact for a body that turns as a
-/// whole, good where neighbours turn alike; wins where steps are long. Factorised again when the factors of M and K
-/// change, which takes as long as it takes; rotations are fitted in every step.
+/// The factor of A at rest, between the rotations of the nodes: R (M + K0)^-1 R^T. Wins where steps are long.
+/// Factorised again when the factors of M and K change, which takes as long as it takes; rotations are fitted in every
+/// step.
 class TurnedFactor {
  public:
   TurnedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
-      : conditions_(body.conditions),
+      : turned_(body),
         lumped_(body.lumped),
         stiffness_(assemble_stiffness<Tet4>(rest, limits)),
-        solver_(body.pattern, conditions_, body.positions, limits),
-        rotations_(body.pattern, body.positions, all_nodes(lumped_.size())),
-        turn_(static_cast<std::size_t>(lumped_.size()), Matrix3::Identity()),
-        full_(3 * lumped_.size()),
-        x_(conditions_.free_count()) {}
+        factor_(body.pattern, turned_.conditions(), body.positions, limits) {}
   TurnedFactor(const TurnedFactor&) = delete;
   TurnedFactor& operator=(const TurnedFactor&) = delete;
 
   template <class Tetrahedra>
   void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool) noexcept {
-    if (factors.mass != factors_.mass || factors.stiffness != factors_.stiffness) {
-      BlockMatrix& a = solver_.matrix();
+    if (factors != factors_) {
+      BlockMatrix& a = factor_.matrix();
       a.set_zero();
       a.add(factors.stiffness, stiffness_);
-      for (Index i = 0; i < lumped_.size(); ++i)
-        a.block(a.pattern().diagonal(i)).diagonal().array() += factors.mass * lumped_[i];
-      solver_.factorise();
+      a.add_nodal(factors.mass, lumped_);
+      factor_.factorise();
       factors_ = factors;
     }
-    for (std::size_t i = 0; i < turn_.size(); ++i) turn_[i] = rotations_(i, u);
+    turned_.turn(u);
   }
-  void apply(const VectorX& r, VectorX& z) const noexcept {
-    for (std::size_t i = 0; i < turn_.size(); ++i) {
-      const auto at = 3 * static_cast<Index>(i);
-      full_.segment<3>(at).noalias() = turn_[i].transpose() * r.segment<3>(at);
-    }
-    conditions_.gather(full_, x_);
-    solver_.solve(x_, x_);
-    conditions_.scatter(x_, full_);
-    for (std::size_t i = 0; i < turn_.size(); ++i) {
-      const auto at = 3 * static_cast<Index>(i);
-      z.segment<3>(at).noalias() = turn_[i] * full_.segment<3>(at);
-    }
-    for (Index dof = 0; dof < z.size(); ++dof)
-      if (conditions_.is_constrained(dof)) z[dof] = 0.0;
-  }
+  void apply(const VectorX& r, VectorX& z) const noexcept { turned_.solve(factor_, r, z); }
 
  private:
-  static std::vector<NodeId> all_nodes(Index count) {
-    std::vector<NodeId> nodes(static_cast<std::size_t>(count));
-    std::iota(nodes.begin(), nodes.end(), NodeId{0});
-    return nodes;
-  }
-
-  EssentialConditions conditions_;
+  mutable TurnedSolve turned_;
   VectorX lumped_;
   BlockMatrix stiffness_;
-  mutable TangentSolver solver_;
-  NodalRotations rotations_;
-  std::vector<Matrix3> turn_;
+  mutable TangentSolver factor_;
   StepFactors factors_;
-  mutable VectorX full_, x_;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -16,7 +16,8 @@ class TangentSolver {
       : conditions_(conditions),
         matrix_(make_stiffness(std::move(pattern), limits)),
         values_(matrix_, conditions),
-        factor_(CholeskyAnalysis(values_.lower(), layout(conditions, positions), limits), limits) {}
+        factor_(CholeskyAnalysis(values_.lower(), layout(conditions, positions), limits), limits),
+        row_sums_(factor_.size()) {}
   TangentSolver(const TangentSolver&) = delete;
   TangentSolver& operator=(const TangentSolver&) = delete;
 
@@ -25,25 +26,38 @@ class TangentSolver {
   BlockMatrix& matrix() noexcept { return matrix_; }
 
   /// Factorises the free part. One that is not positive definite gets a multiple of the unit matrix added that makes it
-  /// so (Nocedal and Wright, Numerical Optimization, 3.4): see shift(). False when even that fails: it is not finite.
+  /// so (Nocedal and Wright, Numerical Optimization, 3.4): see shift(). Tries none, then from a quarter of the last
+  /// shift on four times as much each, then what Gershgorin's circles say is enough: `most_factorisations` in all.
+  /// False when the matrix is not finite.
   bool factorise() noexcept {
     values_.update(matrix_, conditions_);
     shift_ = 0.0;
     if (factor_.factorise(values_.lower())) return true;
     const double largest = largest_diagonal();
-    for (double next = 1e-3 * largest; next <= 1e2 * largest; next *= 4.0) {
+    const double enough = values_.gershgorin_shift(row_sums_) + 1e-3 * largest;
+    if (!(enough < infinity)) return false;
+    double next = last_shift_ > 0.0 ? std::max(0.25 * last_shift_, 1e-4 * largest) : 1e-3 * largest;
+    for (int k = 2; k <= most_factorisations; ++k, next *= 4.0) {
+      if (k == most_factorisations || next > enough) next = enough;
       values_.add_to_diagonal(next - shift_);
-      shift_ = next;
+      shift_ = last_shift_ = next;
       if (factor_.factorise(values_.lower())) return true;
+      if (next == enough) return false;
     }
     return false;
   }
+  static constexpr int most_factorisations = 6;
   /// What was added to the diagonal; 0 for a positive definite matrix.
   double shift() const noexcept { return shift_; }
 
   /// d = K^-1 r on the free dofs.
   void solve(const VectorX& r, VectorX& d) noexcept { factor_.solve_into(r, d); }
-  RepeatedCholesky& factor() noexcept { return factor_; }
+
+  /// What rounding leaves of a sum of forces [N] in a body of this size [m] with the present matrix.
+  double rounding(double size) const noexcept {
+    return std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(factor_.size())) *
+           largest_diagonal() * size;
+  }
 
   double largest_diagonal() const noexcept {
     double largest = 0.0;
@@ -64,7 +78,8 @@ class TangentSolver {
   BlockMatrix matrix_;
   FreeValues values_;
   RepeatedCholesky factor_;
-  double shift_ = 0.0;
+  VectorX row_sums_;
+  double shift_ = 0.0, last_shift_ = 0.0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

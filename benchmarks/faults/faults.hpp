@@ -1,0 +1,143 @@
+// Faults injected into a session with a tissue that moves at its own rate: what the hand feels of them.
+#pragma once
+
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/material/neo_hookean.hpp>
+#include <palpate/mesh/generators_box.hpp>
+#include <palpate/model/soft_tissue.hpp>
+
+#include <cmath>
+
+namespace faults {
+
+using namespace palpate;
+
+inline constexpr double ball = 0.012, tick = 1e-3, duration = 6.0;
+inline constexpr double stale_after = 0.5005;  // off the grid of ticks, so that rounding decides nothing
+inline const Vector3 pad_size(0.06, 0.06, 0.03);
+
+inline SoftTissue make_pad(double step) {
+  SoftTissueOptions options;
+  options.step = step;
+  return SoftTissue(box_tet4(pad_size, {5, 5, 3}), Scene().fix("z0").touch("z1"), NeoHookean{5e3, 0.45, 1000.0},
+                    options);
+}
+
+/// Once every second, half a second after its beginning.
+struct Fault {
+  double tissue_stall = 0.0;  ///< [s] the tissue's next step comes that much later
+  double device_stall = 0.0;  ///< [s] no ticks for so long
+  bool bad_input = false;     ///< one pose that is no number, one device that cannot be read
+
+  /// Whether forces fade on its account: where the hand moves meanwhile, it may then get back more than it put in.
+  bool fades() const { return tissue_stall > stale_after || device_stall > ForceLimits{}.stale_after || bad_input; }
+};
+
+struct Outcome {
+  double peak = 0.0;       ///< [N] longest force rendered
+  double step = 0.0;       ///< [N] largest change of the rendered force between ticks, but for zeroing on bad input
+  double raw_step = 0.0;   ///< [N] the same before the gate
+  double given = 0.0;      ///< [J] most that the session had given in all, less what the device's own damping took
+  double taken = 0.0;      ///< [J] what that was in the end, the tool free again, taken from the hand
+  double tank = infinity;  ///< [J] lowest level of the energy tank
+  int ticks = 0, not_finite = 0;
+  int stale = 0, missed = 0, disconnected = 0, bad = 0;                  ///< ticks with these flags
+  int stale_due = 0, missed_due = 0, disconnected_due = 0, bad_due = 0;  ///< ticks that must have them
+  double last_force = 0.0;  ///< [N] a second after the last fault, at the same depth as without faults
+};
+
+/// 8 mm deep, breathing by 1.5 mm at 2 Hz; out of the tissue in the last second.
+inline double depth_at(double t) {
+  if (t > duration - 1.0) return -0.002;
+  const double in = std::min(1.0, t / 0.4), out = std::clamp((duration - 1.0 - t) / 0.3, 0.0, 1.0);
+  return -0.002 + std::min(in, out) * (0.010 + 0.0015 * std::sin(4.0 * 3.141592653589793 * t));
+}
+
+inline ServoOptions session_options() {
+  ServoOptions o;
+  o.device.peak_force = 8.0;
+  o.device.continuous_force = 8.0;
+  o.device.stiffness = 1000.0;
+  o.stale_tissue_after = stale_after;
+  return o;
+}
+
+/// Time is simulated, so that the outcome is the same on every machine; threads are tested beside it.
+inline Outcome run(const Fault& fault, double tissue_step) {
+  SoftTissue tissue = make_pad(tissue_step);
+  const ServoOptions options = session_options();
+  HapticServo servo(tissue, SphereTool{.radius = ball}, options, EnergyTank(EnergyLimits::from(options.device)));
+  const ForceLimits limits = ForceLimits::from(options.device);
+  PassivityObserver hand;
+  const double damping = EnergyLimits::from(options.device).damping;
+  double damped = 0.0;
+  Outcome out;
+  double next_step = 0.0, news = 0.0, quiet_until = -1.0;
+  double last_tick = -tick;
+  Vector3 before = Vector3::Zero(), raw_before = Vector3::Zero();
+  int second = -1;
+  bool was_zeroed = false;
+  for (int k = 0; k < static_cast<int>(duration / tick); ++k) {
+    const double t = k * tick;
+    const bool strikes = t >= 0.5 && t < duration - 1.5 && static_cast<int>(t - 0.5 + 1e-9) != second;
+    if (strikes) {
+      second = static_cast<int>(t - 0.5 + 1e-9);
+      next_step += fault.tissue_stall;
+      if (fault.device_stall > 0.0) quiet_until = t + fault.device_stall;
+    }
+    bool has_news = false;
+    while (next_step <= t + 1e-12) {
+      tissue.advance();
+      next_step += tissue.step();
+      has_news = true;
+    }
+    if (t < quiet_until - 1e-9) continue;
+    if (has_news || k == 0) news = t;
+    ToolState state;
+    state.time = t;
+    state.position = {0.5 * pad_size[0], 0.5 * pad_size[1], pad_size[2] + ball - depth_at(t)};
+    const int since = static_cast<int>(std::lround((t - 0.5 - second) / tick));
+    const bool not_a_number = fault.bad_input && second >= 0 && since == 100,
+               unreadable = fault.bad_input && second >= 0 && since == 300;
+    if (not_a_number) state.position[1] = std::numeric_limits<double>::quiet_NaN();
+    if (unreadable) state.valid = false;
+
+    const ToolForce force = servo.tick({&state, 1})[0];
+    const bool is_good = state.valid && state.position.allFinite();
+    if (is_good) {
+      const auto step = hand.moved(state.position, t);
+      if (step.time > 0.0) damped += damping * step.way2 / step.time;
+    } else {
+      hand.forget();
+    }
+    hand.gave(force.force);
+
+    ++out.ticks;
+    out.not_finite += !force.force.allFinite();
+    out.peak = std::max(out.peak, force.force.norm());
+    if (!unreadable && !was_zeroed) out.step = std::max(out.step, (force.force - before).norm());
+    if (!unreadable && !was_zeroed && k > 0)
+      out.raw_step = std::max(out.raw_step, (servo.contact_force() - raw_before).norm());
+    was_zeroed = unreadable;
+    before = force.force;
+    raw_before = servo.contact_force();
+    out.given = std::max(out.given, hand.given() - damped);
+    out.tank = std::min(out.tank, servo.energy().level());
+    out.stale += force.status.has(StatusFlag::stale);
+    out.missed += force.status.has(StatusFlag::deadline_missed);
+    out.disconnected += force.status.has(StatusFlag::disconnected);
+    out.bad += force.status.has(StatusFlag::non_finite_input);
+    // What must be flagged, from the documentation: no news for longer than both limits; a gap longer than the gate's.
+    const double dt = t - last_tick;
+    out.stale_due += t - news > stale_after + limits.stale_after + 1e-9 || dt > limits.stale_after + 1e-9;
+    out.missed_due += dt > 1.5 * tick;
+    out.disconnected_due += unreadable;
+    out.bad_due += not_a_number;
+    if (is_good) last_tick = t;
+    if (std::abs(t - 4.6) < 0.5 * tick) out.last_force = force.force.norm();
+  }
+  out.taken = damped - hand.given();
+  return out;
+}
+
+}  // namespace faults

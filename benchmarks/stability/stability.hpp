@@ -1,0 +1,160 @@
+// The largest stiffness that a simulated device renders calmly: what is varied, and how it is found.
+#pragma once
+
+#include <palpate/haptic/passivity_observer.hpp>
+#include <palpate/testing/stability.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace stability {
+
+using namespace palpate;
+
+struct NamedDevice {
+  const char* name;
+  SimulatedOptions options;
+};
+inline const std::array<NamedDevice, 4>& devices() {
+  static const std::array<NamedDevice, 4> all{{{"stylus", SimulatedOptions::stylus()},
+                                               {"precise stylus", SimulatedOptions::precise_stylus()},
+                                               {"game controller", SimulatedOptions::game_controller()},
+                                               {"parallel arm", SimulatedOptions::parallel_arm()}}};
+  return all;
+}
+struct NamedHand {
+  const char* name;
+  SimulatedHand hand;
+};
+inline constexpr int hand_count = 3;
+inline const std::array<NamedHand, hand_count>& hands() {
+  static const std::array<NamedHand, hand_count> all{
+      {{"no hand", SimulatedHand::none()}, {"light", SimulatedHand::light()}, {"firm", SimulatedHand::firm()}}};
+  return all;
+}
+inline constexpr std::array<double, 4> rates{1000.0, 500.0, 300.0, 60.0};
+inline constexpr std::array<int, 3> delays{0, 1, 2};  ///< ticks
+inline constexpr double highest = 1e6;                ///< [N/m] up to which is searched
+
+/// One place of the map.
+struct Cell {
+  const NamedDevice* device;
+  const NamedHand* hand;
+  double rate;
+  int delay;
+  double linear = 0.0;      ///< [N/m] largest stable stiffness without friction and encoder steps
+  double exact = 0.0;       ///< the same from the eigenvalues of the sampled loop
+  double calm = 0.0;        ///< with both, and the peak force
+  double late = 0.0;        ///< with jitter and stalls
+  double power = 0.0;       ///< [W] of the motors at four times `calm`
+  double power_tank = 0.0;  ///< the same with an energy tank
+
+  SimulatedOptions options() const {
+    SimulatedOptions o = device->options;
+    o.hand = hand->hand;
+    o.rate = rate;
+    o.delay = delay / rate;
+    return o;
+  }
+};
+
+/// A servo with a tank behind it.
+template <class S>
+struct Tanked {
+  S inner;
+  EnergyTank tank;
+  ToolForce force{};
+  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
+    force = inner.tick(tools).front();
+    force.force = tank.limit(force.force, tools.front().position, tools.front().time, force.status);
+    tank.gave(force.force);
+    return {&force, 1};
+  }
+};
+
+/// What a handle does that is pushed into a wall with 1 N, after the first motion has died.
+struct InWall {
+  double travel = 0.0;  ///< [m] in the last half second
+  double power = 0.0;   ///< [W] of the motors, in that time
+};
+/// `late`: every read up to half a period late, and five periods now and then.
+template <class MakeServo>
+InWall in_wall(const Cell& cell, MakeServo make_servo, bool late) {
+  SimulatedOptions o = cell.options();
+  if (late) {
+    o.jitter = 0.5 / o.rate;
+    o.stall = 5.0 / o.rate;
+    o.stall_interval = 0.31;
+  }
+  SimulatedDevice device(o);
+  device.start();
+  device.push(Vector3(0.0, 0.0, -1.0));
+  auto servo = make_servo();
+  const double decay = 2.0 * (o.mass + o.hand.mass) / (o.damping + o.hand.damping), window = 0.5;
+  testing::travel(device, servo, 2.5 + 8.0 * decay);
+  const double before = device.energy().motors;
+  const double travel = testing::travel(device, servo, window);
+  return {travel, (device.energy().motors - before) / window};
+}
+
+/// Two encoder steps are no motion that a hand feels: friction holds the handle, or it turns to and fro on an edge.
+inline double largest_calm(const Cell& cell, bool late) {
+  const double still = 2.0 * cell.device->options.encoder_step;
+  const auto calm = [&](double stiffness) {
+    return in_wall(
+               cell, [=] { return testing::VirtualWall{.stiffness = stiffness}; }, late)
+               .travel <= still;
+  };
+  return testing::largest_that(calm, 0.5 * cell.exact, highest, 0.02);
+}
+
+inline double motor_power(const Cell& cell, double stiffness, bool tanked) {
+  const testing::VirtualWall wall{.stiffness = stiffness};
+  if (!tanked)
+    return in_wall(
+               cell, [=] { return wall; }, false)
+        .power;
+  EnergyLimits limits = EnergyLimits::from(cell.device->options.limits);
+  limits.delay = cell.delay;
+  return in_wall(
+             cell, [&] { return Tanked<testing::VirtualWall>{.inner = wall, .tank = EnergyTank(limits)}; }, false)
+      .power;
+}
+
+/// Without friction and encoder steps, around a wall that pulls as well: does a small motion grow?
+inline double largest_linear(const Cell& cell, double guess) {
+  SimulatedOptions o = cell.options();
+  o.friction = o.encoder_step = 0.0;
+  o.limits.peak_force = 1e9;
+  // Long enough that a stiffness 1 % from the limit shows: some hundred periods of decay of the handle.
+  const double decay = 2.0 * (o.mass + o.hand.mass) / (o.damping + o.hand.damping);
+  const double window = std::max(10.0 / o.rate, decay);
+  const auto stable = [&](double stiffness) {
+    SimulatedDevice device(o);
+    device.start();
+    device.push(Vector3(0.0, 0.0, 1e-6));
+    testing::VirtualWall wall{.stiffness = stiffness, .one_sided = false};
+    testing::travel(device, wall, 5.0 * window);
+    const double early = testing::travel(device, wall, window);
+    testing::travel(device, wall, 60.0 * window);
+    return testing::travel(device, wall, window) <= early * (1.0 + 1e-9);
+  };
+  return testing::largest_that(stable, 0.5 * guess, 2.0 * guess, 1e-3);
+}
+
+/// The same limit from the eigenvalues of handle, hold and delay line, by none of the simulator's code.
+double limit_by_eigenvalues(const SimulatedOptions& device, int delay_ticks);
+
+/// What a tissue of finite elements does at that device.
+struct TissueRow {
+  double youngs_modulus = 0.0;  ///< [Pa]
+  double coupling = 0.0;        ///< [N/m] largest stable; `highest` when all are
+  double felt = 0.0;            ///< [N/m] coupling and tissue in series, at that coupling, measured
+  double soft = 0.0;            ///< [N/m] the tissue alone
+};
+TissueRow measure_tissue(double youngs_modulus, const SimulatedOptions& device);
+
+void write_map(const std::vector<Cell>& cells, const std::string& path);
+
+}  // namespace stability

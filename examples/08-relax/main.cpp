@@ -1,0 +1,105 @@
+// Example 08: hold and feel it give.
+//
+//   example_08_relax [--out DIR]
+//
+// A finger presses 4 mm into a pad of tissue, quickly, and stays. Living tissue gives: the force falls while nothing
+// moves, to 40 % of what it was, with a relaxation time of 0.4 s.
+//
+//   1. `Viscoelastic<NeoHookean, 1>` is NeoHookean of which shares fade. E is the fast modulus.
+//   2. `SoftTissue` moves by implicit steps of 10 ms, in a thread of its own when a `TissueThread` runs it; here both
+//      rates are simulated, so that every run gives the same figures. What a point remembers moves on once per step.
+//   3. `HapticServo` ticks a thousand times a second and solves the contact anew on the newest surface.
+//   4. DIR/report.html has the force over time.
+//
+// The example judges itself. All of the stress relaxes alike and the finger does not move, so the shape of the pad
+// stays and all forces fall alike: the relaxation time of the force must be that of the law. It is measured from three
+// forces at equal distances, (F3 - F2) / (F2 - F1) = exp(-d / tau), which knows nothing of the law. The exit code is 0
+// when they agree within 2 %, 1 when they do not, 2 when the arguments were refused.
+#include "../common/page.hpp"
+
+#include <palpate/mesh/generators.hpp>
+#include <palpate/soft.hpp>
+
+#include <iostream>
+
+using namespace palpate;
+using touch::text;
+
+namespace {
+
+using Law = Viscoelastic<NeoHookean, 1>;
+constexpr PronyTerm term{.share = 0.6, .relaxation_time = 0.4};
+constexpr double depth = 4e-3, fast = 0.05, seconds = 2.5;  // [m], [s] to press, [s] in all
+constexpr SphereTool finger{.radius = 8e-3};
+
+const Law liver{{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}, {{term}}};
+const Vector3 size(0.06, 0.06, 0.03);  // [m]
+
+/// The force of every millisecond [N], before the gate.
+std::vector<double> hold(SoftTissue& pad) {
+  ServoOptions options;
+  options.device = {.peak_force = 20.0, .stiffness = 5e4};  // a finger that does not give way
+  HapticServo servo(pad, finger, options);
+  std::vector<double> force;
+  double next = 0.0;
+  for (int k = 0; k < static_cast<int>(1e3 * seconds); ++k) {
+    const double time = 1e-3 * k, in = depth * std::min(1.0, time / fast);
+    if (time >= next - 1e-9) {
+      pad.advance();
+      next += pad.step();
+    }
+    ToolState state;
+    state.time = time;
+    state.position = {0.5 * size[0], 0.5 * size[1], size[2] + finger.radius - in};
+    servo.tick({&state, 1});
+    force.push_back(servo.contact_force().norm());
+  }
+  return force;
+}
+
+int run_example(const std::filesystem::path& out) {
+  SoftTissue pad(box_tet4(size, {8, 8, 4}), Scene().fix("z0").touch("z1"), liver, {.step = 0.01});
+  const std::vector<double> force = hold(pad);
+
+  const auto at = [&](double t) { return force[static_cast<std::size_t>(1e3 * t)]; };
+  const double d = 0.5, first = 0.2, f1 = at(first), f2 = at(first + d), f3 = at(first + 2.0 * d);
+  const double measured = -d / std::log((f3 - f2) / (f2 - f1));
+  const double left = f1 - (f2 - f1) * (f2 - f1) / (f3 - 2.0 * f2 + f1);  // after a long time (Aitken)
+  const double peak = *std::ranges::max_element(force);
+
+  std::vector<Vector2> line;
+  for (std::size_t k = 0; k < force.size(); k += 5) line.emplace_back(1e-3 * static_cast<double>(k), force[k]);
+  touch::Chart chart("force while held", touch::from_zero("time [s]", seconds), touch::from_zero("force [N]", peak));
+  chart.line(line, "blue");
+  chart.line({{0.0, left}, {seconds, left}}, "grey");
+  const double error = measured / term.relaxation_time - 1.0;
+  const example::Figures figures{
+      {"longest force", text("%.3f N", peak)},
+      {"force at the end, and after a long time", text("%.3f N, %.3f N", force.back(), left)},
+      {"relaxation time of the law", text("%.4f s", term.relaxation_time)},
+      {"relaxation time of the force", text("%.4f s (%+.2f %%)", measured, 100.0 * error)}};
+  example::write_page(
+      out, "Relaxation under a finger",
+      "A finger presses 4 mm into a pad of tissue within 50 ms and stays. The straight line is what is left "
+      "after a long time.",
+      {chart.svg()}, figures);
+  for (const auto& [what, value] : figures) std::cout << what << ": " << value << '\n';
+  std::cout << "wrote " << (out / "report.html").string() << '\n';
+  return std::abs(error) < 0.02 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  const auto out = example::read_out(count, values, "build/relax");
+  if (!out) {
+    std::cerr << "usage: example_08_relax [--out DIR]\n";
+    return 2;
+  }
+  try {
+    return run_example(*out);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 2;
+  }
+}

@@ -1,0 +1,70 @@
+// What the integration points of a body remember.
+#pragma once
+
+#include <palpate/assembly/hyperelastic_body.hpp>
+
+namespace palpate::inline PALPATE_ABI::detail {
+
+/// Nothing: the law of a point is that of its region, and no step costs anything.
+struct NoMemory {
+  template <class Body>
+  void start(const Body&, const SetupLimits&) noexcept {}
+  template <class Body>
+  static decltype(auto) law(const Body& body, Index e, std::size_t) noexcept {
+    return body.law_of(e);
+  }
+};
+
+/// The history of a Prony series: (2 + terms) x 72 bytes per point. No function but `start` allocates.
+template <ViscousMaterial M, std::size_t Points>
+class PronyMemory {
+ public:
+  /// At rest, with a sudden step begun.
+  template <class Body>
+  void start(const Body& body, const SetupLimits& limits) {
+    const auto count = static_cast<std::size_t>(body.rest.mesh.element_count());
+    limits.require_memory(static_cast<double>(count) * Points * sizeof(Point), "what the points remember");
+    points_.resize(count);
+    steps_.resize(body.laws.size());
+    begin_step(body, 0.0);
+  }
+
+  template <class Body>
+  auto law(const Body& body, Index e, std::size_t q) const noexcept {
+    const Point& point = points_[static_cast<std::size_t>(e)][q];
+    return body.law_of(e).law_of_step(steps_[body.rest.region_of(e)], point.driving);
+  }
+
+  template <class Body>
+  void begin_step(const Body& body, double dt) noexcept {
+    for (std::size_t r = 0; r < steps_.size(); ++r) steps_[r] = body.laws[r].over(dt);
+    for (std::size_t e = 0; e < points_.size(); ++e)
+      for (Point& point : points_[e])
+        point.driving = M::driving_stress(point.history, steps_[body.rest.region_of(static_cast<Index>(e))]);
+  }
+  template <class Body>
+  void remember(const Body& body, Index e, std::size_t q, const Tensor3<double>& f) noexcept {
+    if (body.law_of(e).admits(f))
+      body.law_of(e).remember(f, points_[static_cast<std::size_t>(e)][q].history, steps_[body.rest.region_of(e)]);
+  }
+
+ private:
+  struct Point {
+    typename M::LargeStrainHistory history;
+    Tensor3<double> driving{};
+  };
+
+  std::vector<std::array<Point, Points>> points_;
+  std::vector<decltype(std::declval<const M&>().over(0.0))> steps_;  // by region
+};
+
+template <class M, std::size_t Points>
+struct PointMemory {
+  using type = NoMemory;
+};
+template <ViscousMaterial M, std::size_t Points>
+struct PointMemory<M, Points> {
+  using type = PronyMemory<M, Points>;
+};
+
+}  // namespace palpate::inline PALPATE_ABI::detail

@@ -1,0 +1,32 @@
+// A tool with a round cross-section and round ends.
+#pragma once
+
+#include <palpate/contact/sphere_tool.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// A rigid capsule: all points within `radius` of a piece of its axis, from `-half_length` to `half_length` about the
+/// tool's position. The thesis' cylinder, with round ends. Turns with the device's orientation; without length a ball.
+struct CapsuleTool {
+  double radius = 4e-3;             ///< [m]
+  double half_length = 0.0;         ///< [m]
+  Vector3 axis = Vector3::UnitZ();  ///< in the tool's own frame, any length but zero
+
+  CapsuleTool() = default;
+  CapsuleTool(const SphereTool& ball) : radius(ball.radius) {}  // NOLINT(google-explicit-constructor)
+  CapsuleTool(double r, double half, const Vector3& direction = Vector3::UnitZ())
+      : radius(r), half_length(half), axis(direction) {}
+
+  /// Throws bad_argument when the radius is not finite and positive, the axis has no direction, or the capsule is
+  /// longer than 32 radii: more contact points than there is room for would lie under it.
+  void require_valid() const {
+    SphereTool{radius}.require_valid();
+    if (!(half_length >= 0.0 && half_length <= 16.0 * radius))
+      raise(SetupErrorKind::bad_argument, "half the length of a capsule tool is " + number(half_length),
+            "Give 0 to 16 radii, in metres");
+    if (half_length > 0.0 && !(axis.norm() > 0.0 && std::isfinite(axis.norm())))
+      raise(SetupErrorKind::bad_argument, "the axis of a capsule tool has no direction");
+  }
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,130 @@
+// Any device of CHAI3D 3. Needs no header of it: the types come as template arguments. Tested against a fake of our
+// own, never on hardware: run testing/device_laws.hpp on yours, with nobody at the handle.
+#pragma once
+
+#include <palpate/device/virtual_motors.hpp>
+
+#include <Eigen/Geometry>
+
+#include <chrono>
+#include <optional>
+
+namespace palpate::inline PALPATE_ABI {
+
+struct Chai3dOptions {
+  std::optional<DeviceLimits> limits;  ///< instead of CHAI3D's table, which holds peak force, stiffness and radius only
+  bool torque = false;                 ///< the device has motors for torque
+};
+
+/// A cGenericHapticDevice as a HapticDevice, for loops of your own (run_haptic_loop), in CHAI3D's frame: x to the user,
+/// y to the right, z up. SI units. Refers to the device:
+///   Chai3dDevice<chai3d::cGenericHapticDevice, chai3d::cVector3d, chai3d::cMatrix3d> stylus(*device_pointer);
+/// The limits are those of CHAI3D's specification of the device, which CHAI3D itself does not enforce. Its header calls
+/// the force continuous, but the numbers are the makers' peaks (3.3 N for an Omni); a quarter is taken as continuous.
+template <class Device, class Vector, class Matrix>
+class Chai3dDevice {
+ public:
+  /// Opens the device. Throws SetupError(unsupported) when that fails, (bad_argument) when its specification holds no
+  /// positive force, stiffness and workspace (the device without hardware) and no limits are given.
+  explicit Chai3dDevice(Device& device, const Chai3dOptions& options = {})
+      : device_(&device),
+        options_(options),
+        motors_(options.limits ? *options.limits : specified(device, options.torque)) {
+    if (!device.open()) refuse("open the device");
+  }
+  ~Chai3dDevice() {
+    stop();
+    device_->close();
+  }
+  Chai3dDevice(const Chai3dDevice&) = delete;
+  Chai3dDevice& operator=(const Chai3dDevice&) = delete;
+
+  ToolState read() noexcept {
+    ToolState state;
+    Vector position, velocity;
+    Matrix rotation;
+    state.valid = device_->getPosition(position);
+    state.time = std::chrono::duration<double>(std::chrono::steady_clock::now() - origin_).count();
+    const Vector3 p(position.x(), position.y(), position.z());
+    if (!p.allFinite()) state.valid = false;
+    if (state.valid) {
+      state.position = p;
+      if (device_->getLinearVelocity(velocity)) {
+        const Vector3 v(velocity.x(), velocity.y(), velocity.z());
+        if (v.allFinite()) state.velocity = v;
+      }
+      if (device_->getRotation(rotation)) orient(state, rotation);
+      unsigned int buttons = 0;
+      if (device_->getUserSwitches(buttons)) state.buttons = buttons;
+    }
+    motors_.read_was(state.valid);
+    return state;
+  }
+
+  Status write(const Vector3& force, const Vector3& torque) noexcept {
+    Status status = motors_.render(force);
+    const bool turns = options_.torque && torque.allFinite() && running_ && !status.has(StatusFlag::disconnected) &&
+                       !status.has(StatusFlag::non_finite_force);
+    if (!send(motors_.force(), turns ? motors_.torque(torque) : Vector3::Zero())) {
+      status.set(StatusFlag::disconnected);
+      motors_.read_was(false);
+    }
+    return status;
+  }
+
+  DeviceLimits limits() const noexcept { return motors_.limits(); }
+  void start() noexcept {
+    running_ = true;
+    motors_.start();
+  }
+  void stop() noexcept {
+    motors_.stop();
+    if (running_) send(Vector3::Zero(), Vector3::Zero());
+    running_ = false;
+  }
+
+  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] last rendered
+
+ private:
+  [[noreturn]] static void refuse(const char* what) {
+    raise(SetupErrorKind::unsupported, std::string("CHAI3D could not ") + what,
+          "Is it plugged in, and its driver installed?");
+  }
+  static DeviceLimits specified(Device& device, bool torque) {
+    const auto info = device.getSpecifications();
+    const double force = info.m_maxLinearForce, stiffness = info.m_maxLinearStiffness, radius = info.m_workspaceRadius;
+    for (double value : {force, stiffness, radius})
+      if (!(std::isfinite(value) && value > 0.0))
+        raise(SetupErrorKind::bad_argument, "CHAI3D's specification of the device holds " + number(value),
+              "Give Chai3dOptions::limits");
+    return {.peak_force = force,
+            .continuous_force = 0.25 * force,
+            .stiffness = stiffness,
+            .workspace_low = Vector3::Constant(-radius),
+            .workspace_high = Vector3::Constant(radius),
+            .peak_torque = torque ? positive_or_zero(info.m_maxAngularTorque) : 0.0,
+            .turning_stiffness = torque ? positive_or_zero(info.m_maxAngularStiffness) : 0.0};
+  }
+  static double positive_or_zero(double value) noexcept { return std::isfinite(value) && value > 0.0 ? value : 0.0; }
+  static void orient(ToolState& state, const Matrix& m) noexcept {
+    Matrix3 rotation;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) rotation(i, j) = m(static_cast<unsigned>(i), static_cast<unsigned>(j));
+    if (!((rotation.transpose() * rotation - Matrix3::Identity()).norm() < 1e-3)) return;
+    const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
+    state.orientation = {q.w(), q.x(), q.y(), q.z()};
+  }
+  bool send(const Vector3& f, const Vector3& t) const noexcept {
+    const Vector force(f[0], f[1], f[2]);
+    if (!options_.torque) return device_->setForce(force);
+    return device_->setForceAndTorque(force, Vector(t[0], t[1], t[2]));
+  }
+
+  Device* device_;
+  Chai3dOptions options_;
+  VirtualMotors motors_;
+  std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
+  bool running_ = false;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,119 @@
+// Force Dimension (DHD 3): omega, delta, sigma, lambda. Include <dhdc.h> before this header. Tested against a fake of
+// our own, never on hardware: run testing/device_laws.hpp on yours, with nobody at the handle.
+#pragma once
+
+#include <palpate/device/virtual_motors.hpp>
+
+#include <Eigen/Geometry>
+
+#include <chrono>
+
+namespace palpate::inline PALPATE_ABI {
+
+struct ForceDimensionOptions {
+  /// The SDK does not tell them: take them from the data sheet. The defaults are below those of an omega.3.
+  DeviceLimits limits{.peak_force = 12.0,
+                      .continuous_force = 12.0,
+                      .stiffness = 4000.0,
+                      .workspace_low = Vector3::Constant(-0.06),
+                      .workspace_high = Vector3::Constant(0.06)};
+  bool torque = false;  ///< the device has motors for torque
+};
+
+/// A device of DHD as a HapticDevice, for loops of your own (run_haptic_loop), in the device's frame. DHD speaks SI. A
+/// force goes out with every write, a zero too: the SDK computes gravity compensation when it is told a force. The
+/// SDK's own limit is set to the peak force as a second guard; its brakes and its time guard stay as they are.
+class ForceDimensionDevice {
+ public:
+  /// Opens the first device that is free. Throws SetupError(unsupported) with the SDK's words when there is none.
+  explicit ForceDimensionDevice(const ForceDimensionOptions& options = {})
+      : options_(options), motors_(options.limits) {
+    const int id = dhdOpen();
+    if (id < 0) refuse("open a device");
+    id_ = static_cast<char>(id);
+  }
+  ~ForceDimensionDevice() {
+    stop();
+    dhdClose(id_);
+  }
+  ForceDimensionDevice(const ForceDimensionDevice&) = delete;
+  ForceDimensionDevice& operator=(const ForceDimensionDevice&) = delete;
+
+  ToolState read() noexcept {
+    double x = 0.0, y = 0.0, z = 0.0, rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    ToolState state;
+    state.valid = dhdGetPositionAndOrientationFrame(&x, &y, &z, rotation, id_) >= 0;
+    state.time = std::chrono::duration<double>(std::chrono::steady_clock::now() - origin_).count();
+    const Vector3 position(x, y, z);
+    if (!position.allFinite()) state.valid = false;
+    if (state.valid) {
+      state.position = position;
+      orient(state, rotation);
+      Vector3 v;
+      if (dhdGetLinearVelocity(&v[0], &v[1], &v[2], id_) >= 0 && v.allFinite()) state.velocity = v;
+      state.buttons = dhdGetButtonMask(id_);
+    }
+    motors_.read_was(state.valid);
+    return state;
+  }
+
+  Status write(const Vector3& force, const Vector3& torque) noexcept {
+    Status status = motors_.render(force);
+    const bool turns = options_.torque && torque.allFinite() && running_ && !status.has(StatusFlag::disconnected) &&
+                       !status.has(StatusFlag::non_finite_force);
+    const int answer = send(motors_.force(), turns ? motors_.torque(torque) : Vector3::Zero());
+    if (answer < 0) {
+      status.set(StatusFlag::disconnected);
+      motors_.read_was(false);
+    }
+    if (answer == motor_saturated) status.set(StatusFlag::saturated);
+    return status;
+  }
+
+  DeviceLimits limits() const noexcept { return motors_.limits(); }
+  /// Throws SetupError(unsupported) with the SDK's words when it lets no force through.
+  void start() {
+    if (dhdSetMaxForce(motors_.limits().peak_force, id_) < 0) refuse("set the largest force");
+    if (dhdEnableForce(1, id_) < 0) refuse("enable forces");
+    running_ = true;
+    motors_.start();
+  }
+  void stop() noexcept {
+    motors_.stop();
+    if (!running_) return;
+    running_ = false;
+    send(Vector3::Zero(), Vector3::Zero());
+    dhdEnableForce(0, id_);
+  }
+
+  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] last rendered
+
+ private:
+  static constexpr int motor_saturated = 2;  ///< DHD_MOTOR_SATURATED
+
+  [[noreturn]] static void refuse(const std::string& what) {
+    raise(SetupErrorKind::unsupported, "DHD could not " + what + ": " + std::string(dhdErrorGetLastStr()),
+          "Try the device with the vendor's own test program first");
+  }
+  int send(const Vector3& f, const Vector3& t) const noexcept {
+    return options_.torque ? dhdSetForceAndTorque(f[0], f[1], f[2], t[0], t[1], t[2], id_)
+                           : dhdSetForce(f[0], f[1], f[2], id_);
+  }
+  static void orient(ToolState& state, const double (&r)[3][3]) noexcept {
+    Matrix3 rotation;
+    rotation << r[0][0], r[0][1], r[0][2], r[1][0], r[1][1], r[1][2], r[2][0], r[2][1], r[2][2];
+    if (!((rotation.transpose() * rotation - Matrix3::Identity()).norm() < 1e-3)) return;
+    const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
+    state.orientation = {q.w(), q.x(), q.y(), q.z()};
+  }
+
+  ForceDimensionOptions options_;
+  VirtualMotors motors_;
+  std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
+  char id_ = -1;
+  bool running_ = false;
+};
+
+static_assert(HapticDevice<ForceDimensionDevice>);
+
+}  // namespace palpate::inline PALPATE_ABI

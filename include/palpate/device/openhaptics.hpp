@@ -1,0 +1,289 @@
+// OpenHaptics (HDAPI 3): Touch, Phantom Omni, Desktop, Premium. Include <HD/hd.h> before this header, or define
+// PALPATE_INCLUDE_OPENHAPTICS to have it included with what it needs. Link libHD. Tested against a fake of our own,
+// never on hardware: run testing/device_laws.hpp on yours, with nobody at the handle.
+#pragma once
+
+#ifdef PALPATE_INCLUDE_OPENHAPTICS
+#include <cstddef>  // HD_DEFAULT_DEVICE is NULL
+#if defined(__linux__) && !defined(linux)
+#define linux 1  // what the SDK asks for, and strict C++ does not define
+#define PALPATE_DEFINED_LINUX
+#endif
+#include <HD/hd.h>
+#ifdef PALPATE_DEFINED_LINUX
+#undef linux
+#undef PALPATE_DEFINED_LINUX
+#endif
+#endif
+#ifndef HD_CURRENT_POSITION
+#error "palpate/device/openhaptics.hpp: include <HD/hd.h> first, or define PALPATE_INCLUDE_OPENHAPTICS"
+#endif
+
+#include <palpate/concepts/servo.hpp>
+#include <palpate/device/virtual_motors.hpp>
+
+#include <Eigen/Geometry>
+
+#include <atomic>
+#include <chrono>
+#include <optional>
+#include <thread>
+
+namespace palpate::inline PALPATE_ABI {
+
+struct OpenHapticsOptions {
+  const char* name = nullptr;          ///< as in the vendor's set-up tool; none: the default device
+  bool torque = false;                 ///< the device has motors for torque
+  std::optional<DeviceLimits> limits;  ///< instead of what the SDK says
+};
+
+/// A device of HDAPI as a HapticDevice, in the device's frame: x to the right, y up, z to the user. The SDK's
+/// millimetres and newton millimetres end here. `read` begins the SDK's frame and `write` ends it, which sends the
+/// force: call both from the SDK's callback only, as OpenHapticsLoop does, so that a force leaves in the frame that
+/// brought its position. The SDK's errors are looked at twice per frame. The five about force (motors warm, too much
+/// force, impulse or speed) are `saturated`; any other makes the read invalid or the write `disconnected`, without
+/// force.
+class OpenHapticsDevice {
+ public:
+  /// Opens the device and asks for its limits. Throws SetupError(unsupported) with the SDK's words when that fails,
+  /// (bad_argument) when a limit it says is no number or not positive.
+  explicit OpenHapticsDevice(const OpenHapticsOptions& options = {})
+      : options_(options), handle_(open(options.name)), motors_(options.limits.value_or(DeviceLimits{})) {
+    try {
+      motors_ = VirtualMotors(options_.limits ? *options_.limits : asked_limits());
+    } catch (...) {
+      hdDisableDevice(handle_);
+      throw;
+    }
+  }
+  ~OpenHapticsDevice() {
+    stop();
+    hdDisableDevice(handle_);
+  }
+  OpenHapticsDevice(const OpenHapticsDevice&) = delete;
+  OpenHapticsDevice& operator=(const OpenHapticsDevice&) = delete;
+
+  ToolState read() noexcept {
+    if (in_frame_) write(Vector3::Zero(), Vector3::Zero());  // the last one was never written
+    hdBeginFrame(handle_);
+    in_frame_ = true;
+    ToolState state = state_of_frame();
+    const Status errors = take_errors();
+    state.valid = !errors.has(StatusFlag::disconnected) && state.position.allFinite();
+    if (!state.position.allFinite()) state.position.setZero();
+    motors_.read_was(state.valid);
+    return state;
+  }
+
+  Status write(const Vector3& force, const Vector3& torque) noexcept {
+    Status status = motors_.render(force);
+    if (!in_frame_) return status | StatusFlag::disconnected;
+    hdSetDoublev(HD_CURRENT_FORCE, motors_.force().data());
+    if (options_.torque)
+      send_torque(running_ && status.bits() == (status.bits() & saturated) ? torque : Vector3::Zero());
+    hdEndFrame(handle_);
+    in_frame_ = false;
+    return status | take_errors();
+  }
+
+  DeviceLimits limits() const noexcept { return motors_.limits(); }
+
+  /// Lets forces through. Throws SetupError(unsupported) when the SDK does not.
+  void start() {
+    hdMakeCurrentDevice(handle_);
+    hdEnable(HD_FORCE_OUTPUT);
+    require_no_error("enable its force");
+    running_ = true;
+    motors_.start();
+  }
+  /// Takes forces off. For the thread of the callback, or when that has ended.
+  void stop() noexcept {
+    if (in_frame_) write(Vector3::Zero(), Vector3::Zero());
+    if (running_) {
+      hdMakeCurrentDevice(handle_);
+      hdDisable(HD_FORCE_OUTPUT);
+    }
+    running_ = false;
+    motors_.stop();
+  }
+
+  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] last rendered
+  HHD handle() const noexcept { return handle_; }
+  /// The newest error that was not about force, HD_SUCCESS when there was none. For any thread.
+  HDerror last_error() const noexcept { return last_error_.load(std::memory_order_relaxed); }
+
+ private:
+  static constexpr std::uint32_t saturated = static_cast<std::uint32_t>(StatusFlag::saturated);
+
+  [[noreturn]] static void refuse(const std::string& what, const HDErrorInfo& error) {
+    raise(SetupErrorKind::unsupported,
+          "OpenHaptics could not " + what + ": " + std::string(hdGetErrorString(error.errorCode)),
+          "Try the device with the vendor's own diagnostic program first");
+  }
+  static void require_no_error(const std::string& what) {
+    const HDErrorInfo error = hdGetError();
+    if (HD_DEVICE_ERROR(error)) refuse(what, error);
+  }
+  static HHD open(const char* name) {
+    const HHD handle = hdInitDevice(name ? name : HD_DEFAULT_DEVICE);
+    require_no_error("open the device");
+    return handle;
+  }
+
+  static double asked(HDenum parameter, double scale, const char* what) {
+    HDdouble value = 0.0;
+    hdGetDoublev(parameter, &value);
+    require_no_error(std::string("tell its ") + what);
+    if (!(std::isfinite(value) && value > 0.0))
+      raise(SetupErrorKind::bad_argument, std::string("the SDK says that its ") + what + " is " + number(value),
+            "Give OpenHapticsOptions::limits");
+    return scale * value;
+  }
+  DeviceLimits asked_limits() const {
+    hdMakeCurrentDevice(handle_);
+    DeviceLimits limits;
+    limits.peak_force = asked(HD_NOMINAL_MAX_FORCE, 1.0, "largest force");
+    limits.continuous_force =
+        std::min(asked(HD_NOMINAL_MAX_CONTINUOUS_FORCE, 1.0, "continuous force"), limits.peak_force);
+    limits.stiffness = asked(HD_NOMINAL_MAX_STIFFNESS, 1e3, "largest stiffness");  // N/mm
+    std::array<HDdouble, 6> box{};
+    hdGetDoublev(HD_USABLE_WORKSPACE_DIMENSIONS, box.data());
+    require_no_error("tell its workspace");
+    limits.workspace_low = 1e-3 * Vector3(box[0], box[1], box[2]);
+    limits.workspace_high = 1e-3 * Vector3(box[3], box[4], box[5]);
+    if (!((limits.workspace_high - limits.workspace_low).minCoeff() > 0.0))
+      raise(SetupErrorKind::bad_argument, "the SDK says that its workspace is empty",
+            "Give OpenHapticsOptions::limits");
+    return limits;
+  }
+
+  ToolState state_of_frame() const noexcept {
+    std::array<HDdouble, 3> position{}, velocity{};
+    std::array<HDdouble, 16> transform{};
+    HDint buttons = 0;
+    hdGetDoublev(HD_CURRENT_POSITION, position.data());
+    hdGetDoublev(HD_CURRENT_VELOCITY, velocity.data());
+    hdGetDoublev(HD_CURRENT_TRANSFORM, transform.data());
+    hdGetIntegerv(HD_CURRENT_BUTTONS, &buttons);
+    ToolState state;
+    state.time = std::chrono::duration<double>(std::chrono::steady_clock::now() - origin_).count();
+    state.position = 1e-3 * Vector3(position[0], position[1], position[2]);
+    const Vector3 v = 1e-3 * Vector3(velocity[0], velocity[1], velocity[2]);
+    if (v.allFinite()) state.velocity = v;
+    Matrix3 rotation;
+    rotation << transform[0], transform[4], transform[8], transform[1], transform[5], transform[9], transform[2],
+        transform[6], transform[10];
+    if ((rotation.transpose() * rotation - Matrix3::Identity()).norm() < 1e-3) {
+      const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
+      state.orientation = {q.w(), q.x(), q.y(), q.z()};
+    }
+    state.buttons = static_cast<std::uint32_t>(buttons);
+    return state;
+  }
+
+  void send_torque(const Vector3& torque) const noexcept {
+    const Vector3 sent = torque.allFinite() ? Vector3(1e3 * motors_.torque(torque)) : Vector3::Zero();  // mN m
+#ifdef HD_CURRENT_GIMBAL_TORQUE
+    hdSetDoublev(HD_CURRENT_GIMBAL_TORQUE, sent.data());
+#else
+    hdSetDoublev(HD_CURRENT_TORQUE, sent.data());
+#endif
+  }
+
+  static bool is_about_force(HDerror code) noexcept {
+    return code == HD_WARM_MOTORS || code == HD_EXCEEDED_MAX_FORCE || code == HD_EXCEEDED_MAX_FORCE_IMPULSE ||
+           code == HD_EXCEEDED_MAX_VELOCITY || code == HD_FORCE_ERROR;
+  }
+  /// Empties the stack of errors, as far as a tick has time for.
+  Status take_errors() noexcept {
+    Status status;
+    for (int i = 0; i < 16; ++i) {
+      const HDErrorInfo error = hdGetError();
+      if (!(HD_DEVICE_ERROR(error))) break;
+      if (is_about_force(error.errorCode)) {
+        status.set(StatusFlag::saturated);
+      } else {
+        status.set(StatusFlag::disconnected);
+        last_error_.store(error.errorCode, std::memory_order_relaxed);
+      }
+    }
+    return status;
+  }
+
+  OpenHapticsOptions options_;
+  HHD handle_;
+  VirtualMotors motors_;
+  std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
+  std::atomic<HDerror> last_error_{HD_SUCCESS};
+  bool in_frame_ = false, running_ = false;
+};
+
+static_assert(HapticDevice<OpenHapticsDevice>);
+
+/// Runs a servo in the SDK's own thread: one callback of the highest priority that reads, ticks and writes. Ends by
+/// itself, with no force, when the device is lost. Refers to device and servo; take both down after it.
+template <Servo S>
+class OpenHapticsLoop {
+ public:
+  OpenHapticsLoop(OpenHapticsDevice& device, S& servo) : device_(device), servo_(servo) {}
+  ~OpenHapticsLoop() { stop(); }
+  OpenHapticsLoop(const OpenHapticsLoop&) = delete;
+  OpenHapticsLoop& operator=(const OpenHapticsLoop&) = delete;
+
+  /// Schedules the callback, starts device and scheduler at `rate` [1/s] (500 and 1000 are usual) and waits for the
+  /// first tick. Throws SetupError(unsupported) when there is none within a second: after the scheduler has started the
+  /// stack of errors is the callback's, and nobody else asks it.
+  void start(unsigned rate = 1000) {
+    hdSetSchedulerRate(rate);
+    scheduled_ = true;
+    alive_ = true;
+    callback_ = hdScheduleAsynchronous(&OpenHapticsLoop::tick, this, HD_MAX_SCHEDULER_PRIORITY);
+    try {
+      device_.start();
+      hdStartScheduler();
+      for (int i = 0; ticks() == 0 && i < 1000; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      if (ticks() == 0)
+        raise(SetupErrorKind::unsupported, "the scheduler of OpenHaptics does not call",
+              "Is another program using the device, or is " + std::to_string(rate) + " Hz not a rate of it?");
+    } catch (...) {
+      stop();
+      throw;
+    }
+  }
+  void stop() noexcept {
+    if (!scheduled_) return;
+    hdStopScheduler();
+    hdUnschedule(callback_);
+    scheduled_ = false;
+    alive_ = false;
+    device_.stop();
+  }
+
+  bool alive() const noexcept { return alive_.load(); }                ///< false once the device was lost
+  std::uint64_t ticks() const noexcept { return ticks_.load(); }       ///< so far
+  Status last_status() const noexcept { return last_status_.load(); }  ///< of the last tick
+
+ private:
+  static HDCallbackCode HDCALLBACK tick(void* self) { return static_cast<OpenHapticsLoop*>(self)->tick(); }
+  HDCallbackCode tick() noexcept {
+    const ToolState state = device_.read();
+    const std::span<const ToolForce> forces = servo_.tick(std::span<const ToolState>(&state, 1));
+    const ToolForce force = forces.empty() ? ToolForce{} : forces.front();
+    const Status status = force.status | device_.write(force.force, force.torque);
+    last_status_.store(status, std::memory_order_relaxed);
+    ticks_.fetch_add(1, std::memory_order_relaxed);
+    if (state.valid && !status.has(StatusFlag::disconnected)) return HD_CALLBACK_CONTINUE;
+    alive_.store(false);
+    return HD_CALLBACK_DONE;
+  }
+
+  OpenHapticsDevice& device_;
+  S& servo_;
+  HDSchedulerHandle callback_{};
+  std::atomic<std::uint64_t> ticks_{0};
+  std::atomic<Status> last_status_{};
+  std::atomic<bool> alive_{false};
+  bool scheduled_ = false;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,51 @@
+// One step of an implicit scheme: from the displacement at its end to the motion there.
+#pragma once
+
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/integrator/time_scheme.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// What a TimeScheme makes of a length h and a state: where the motion coasts to without new acceleration, and velocity
+/// and acceleration at the end as functions of the displacement there. Vectors have one entry per dof. Allocates when
+/// it is made only.
+class ImplicitStep {
+ public:
+  /// Throws bad_argument for a scheme in which the new acceleration does not count: that one is explicit.
+  ImplicitStep(const TimeScheme& scheme, Index size) : scheme_(scheme), predicted_(size), coasting_(size) {
+    for (const double c : {scheme.new_in_u, scheme.new_in_v})
+      if (!(c > 0.0)) raise(SetupErrorKind::bad_argument, "the time scheme is explicit", "Use central differences");
+  }
+
+  static bool is_length(double h) noexcept { return h > 0.0 && h < infinity; }
+  void set_length(double h) noexcept { h_ = h; }
+  double length() const noexcept { return h_; }  ///< [s]; 0 before the first
+  /// d a / d u at the end [1/s^2], and d v / d u [1/s].
+  double acceleration_per_displacement() const noexcept { return 1.0 / (scheme_.new_in_u * h_ * h_); }
+  double velocity_per_displacement() const noexcept { return scheme_.new_in_v / (scheme_.new_in_u * h_); }
+
+  void coast(const VectorX& u, const VectorX& v, const VectorX& a) noexcept {
+    predicted_ = u + h_ * v + (scheme_.old_in_u * h_ * h_) * a;
+    coasting_ = v + (scheme_.old_in_v * h_) * a;
+  }
+  const VectorX& predicted() const noexcept { return predicted_; }  ///< where it coasts to [m]
+  void find_motion(const VectorX& end, VectorX& velocity, VectorX& acceleration) const noexcept {
+    acceleration = acceleration_per_displacement() * (end - predicted_);
+    velocity = coasting_ + (scheme_.new_in_v * h_) * acceleration;
+  }
+
+ private:
+  TimeScheme scheme_;
+  VectorX predicted_, coasting_;
+  double h_ = 0.0;
+};
+
+/// Throws bad_argument for Rayleigh's coefficients that would add energy, or are none.
+inline void require_damping(double mass_damping, double stiffness_damping) {
+  for (const double d : {mass_damping, stiffness_damping})
+    if (!(d >= 0.0 && d < infinity))
+      raise(SetupErrorKind::bad_argument, "a damping of " + number(d), "Give 0 or a positive number");
+}
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,170 @@
+// Linear tissue that stiffens along measured curves.
+#pragma once
+
+#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/core/setup_error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// How many times the force of the linear tissue a displacement takes: points (displacement [m], ratio [-]), from a
+/// displacement of 0 on, in between straight, beyond the last point constant.
+class StiffeningCurve {
+ public:
+  struct Point {
+    double displacement = 0.0, ratio = 1.0;
+  };
+
+  /// Linear tissue: the ratio is 1 everywhere.
+  StiffeningCurve() : points_{{0.0, 1.0}} {}
+  /// Throws bad_argument for no points, displacements that do not start at 0 and rise, ratios that are not positive,
+  /// and where the force, displacement times ratio, would fall while the displacement rises; value is that
+  /// displacement.
+  explicit StiffeningCurve(std::vector<Point> points) : points_(std::move(points)) {
+    if (points_.empty() || points_.front().displacement != 0.0)
+      refuse("does not start at a displacement of 0", points_.empty() ? 0.0 : points_.front().displacement);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Point& p = points_[i];
+      if (!(p.ratio > 0.0 && p.ratio < infinity)) refuse("has the ratio " + number(p.ratio), p.displacement);
+      if (i == 0) continue;
+      const Point& before = points_[i - 1];
+      if (!(p.displacement > before.displacement && p.displacement < infinity))
+        refuse("has displacements that do not rise", p.displacement);
+      // d(force) / d(displacement) is linear in between: positive everywhere if it is at both ends
+      const double slope = (p.ratio - before.ratio) / (p.displacement - before.displacement);
+      for (const Point& end : {before, p})
+        if (!(end.ratio + slope * end.displacement > 0.0)) refuse("has a force that falls", end.displacement);
+    }
+  }
+
+  /// O(points), no allocation.
+  double ratio(double displacement) const noexcept {
+    if (!(displacement > 0.0)) return points_.front().ratio;
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      const Point &a = points_[i - 1], &b = points_[i];
+      if (displacement < b.displacement)
+        return a.ratio + (displacement - a.displacement) / (b.displacement - a.displacement) * (b.ratio - a.ratio);
+    }
+    return points_.back().ratio;
+  }
+
+ private:
+  [[noreturn]] static void refuse(const std::string& what, double value) {
+    SetupProblem p;
+    p.kind = SetupErrorKind::bad_argument;
+    p.what = "a stiffening curve " + what + ", at " + number(value) + " m";
+    p.hint = "Give points from 0 on with a force that rises";
+    p.value = value;
+    raise(std::move(p));
+  }
+
+  std::vector<Point> points_;
+};
+
+/// The quasi-non-linear elasticity of Cotin, Delingette and Ayache 1999: the force of the linear tissue is scaled by a
+/// curve measured along the direction of pressing (axial) and one measured across it (radial). Written as a compliance,
+///   C'_ij = T C_ij T,   T = n n^T / sqrt(s_axial) + (I - n n^T) / sqrt(s_radial),
+/// n the direction of the sum of the forces, so that it stays symmetric and positive, and contact stays one problem.
+/// The ratios follow the displacements of the loaded vertices, weighed with their forces: half of the way in each tick,
+/// so they arrive within a few. Right where it was measured; elsewhere as good as the measurement applies
+/// (docs/soft.md). Holds a reference to the tissue. Satisfies TissueModel.
+/// Cost: a tick pays the loaded vertices squared, and remembers no compliances from one tick to the next while it
+/// moves.
+template <TissueModel Tissue>
+class QuasiNonLinear {
+ public:
+  QuasiNonLinear(Tissue& tissue, StiffeningCurve axial, StiffeningCurve radial = {})
+      : tissue_(&tissue),
+        axial_(std::move(axial)),
+        radial_(std::move(radial)),
+        along_(axial_.ratio(0.0)),
+        across_(radial_.ratio(0.0)) {
+    set_scale();
+  }
+  QuasiNonLinear(Tissue&&, StiffeningCurve, StiffeningCurve = {}) = delete;
+
+  Status begin_tick() noexcept {
+    if constexpr (requires(Tissue& t) { t.begin_tick(); })
+      return tissue_->begin_tick();
+    else
+      return {};
+  }
+  void end_tick(std::span<const VertexForce> forces) noexcept {
+    follow(forces);
+    if constexpr (requires(Tissue& t) { t.end_tick(forces); }) tissue_->end_tick(forces);
+  }
+  void foresee(std::span<const int> vertices) noexcept {
+    if constexpr (requires(Tissue& t) { t.foresee(vertices); }) tissue_->foresee(vertices);
+  }
+  Status require_columns(std::span<const int> vertices) noexcept { return tissue_->require_columns(vertices); }
+
+  decltype(auto) contact_surface() const noexcept { return std::as_const(*tissue_).contact_surface(); }
+  Matrix3 compliance(int i, int j) const noexcept {
+    const Matrix3 c = std::as_const(*tissue_).compliance(i, j);
+    return scale_ * c * scale_;
+  }
+  std::uint64_t compliance_revision() const noexcept { return revision_ + tissue_->compliance_revision(); }
+  double compliance_bound(int j) const noexcept { return tissue_->compliance_bound(j) / std::min(along_, across_); }
+  double compliance_floor() const noexcept { return tissue_->compliance_floor() / std::max(along_, across_); }
+  const Eigen::Isometry3d& pose() const noexcept { return tissue_->pose(); }
+
+  /// How many times stiffer than linear it is now, along the force and across.
+  double axial_ratio() const noexcept { return along_; }
+  double radial_ratio() const noexcept { return across_; }
+  /// T, for pictures: displacements are T times those of the linear tissue under forces T f.
+  const Matrix3& scale() const noexcept { return scale_; }
+
+ private:
+  /// Moves the ratios towards those of the present displacements.
+  void follow(std::span<const VertexForce> forces) noexcept {
+    Vector3 sum = Vector3::Zero(), moved = Vector3::Zero();
+    double weight = 0.0;
+    for (const VertexForce& f : forces) sum += f.force;
+    const double total = sum.norm();
+    if (!(total > 0.0 && total < infinity)) return settle(axis_, 0.0, 0.0);
+    const Vector3 axis = sum / total;
+    for (const VertexForce& f : forces) {
+      Vector3 u = Vector3::Zero();
+      for (const VertexForce& g : forces) u += compliance(f.vertex, g.vertex) * g.force;
+      const double share = std::max(0.0, f.force.dot(axis));
+      moved += share * u;
+      weight += share;
+    }
+    moved /= weight;
+    const double along = moved.dot(axis);
+    settle(axis, along, (moved - along * axis).norm());
+  }
+  void settle(const Vector3& axis, double along, double across) noexcept {
+    const double next_along = half_way(along_, axial_.ratio(along)),
+                 next_across = half_way(across_, radial_.ratio(across));
+    if (next_along == along_ && next_across == across_ && (along_ == across_ || axis == axis_)) return;
+    along_ = next_along;
+    across_ = next_across;
+    axis_ = axis;
+    set_scale();
+    ++revision_;
+  }
+  /// A change too small to feel is none, so that a hold keeps its compliances.
+  static double half_way(double now, double wanted) noexcept {
+    return std::abs(wanted - now) <= 1e-5 * now ? now : 0.5 * (now + wanted);
+  }
+  void set_scale() noexcept {
+    const double b = 1.0 / std::sqrt(across_);
+    scale_ = (1.0 / std::sqrt(along_) - b) * axis_ * axis_.transpose();
+    scale_.diagonal().array() += b;
+  }
+
+  Tissue* tissue_;
+  StiffeningCurve axial_, radial_;
+  double along_, across_;
+  Vector3 axis_ = Vector3::UnitZ();
+  Matrix3 scale_;
+  std::uint64_t revision_ = 0;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

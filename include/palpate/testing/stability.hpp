@@ -1,0 +1,68 @@
+// Does a device with this servo come to rest?
+#pragma once
+
+#include <palpate/concepts/servo.hpp>
+#include <palpate/device/simulated_device.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::inline PALPATE_ABI::testing {
+
+/// A wall at z = 0 without gate and history: force stiffness * depth, per axis z. What a servo is compared with.
+struct VirtualWall {
+  double stiffness = 500.0;  ///< [N/m]
+  bool one_sided = true;     ///< false: pulls as well, so that the loop is linear
+  ToolForce force{};
+
+  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
+    const double depth = -tools.front().position[2];
+    force.force = Vector3(0.0, 0.0, one_sided && depth < 0.0 ? 0.0 : stiffness * depth);
+    return {&force, 1};
+  }
+};
+
+/// One tick: read, compute, write.
+template <Servo S>
+const ToolForce& tick(SimulatedDevice& device, S& servo) noexcept {
+  const ToolState state = device.read();
+  const ToolForce& force = servo.tick({&state, 1}).front();
+  device.write(force.force, force.torque);
+  return force;
+}
+
+/// Way between the extremes of the exact z position during `seconds` [m]; infinity when it leaves +-1 m.
+template <Servo S>
+double travel(SimulatedDevice& device, S& servo, double seconds) noexcept {
+  double low = infinity, high = -infinity;
+  for (const double end = device.time() + seconds; device.time() < end;) {
+    tick(device, servo);
+    const double z = device.position()[2];
+    if (!(std::abs(z) <= 1.0)) return infinity;
+    low = std::min(low, z);
+    high = std::max(high, z);
+  }
+  return high - low;
+}
+
+/// The largest value in [low, high] for which `holds` is true, if it is true below and false above it: by bisection of
+/// the logarithm, to the relative `tolerance`. `low` when it is never true, `high` when it always is.
+template <class Holds>
+double largest_that(Holds holds, double low, double high, double tolerance = 0.005) {
+  if (!holds(low)) return low;
+  if (holds(high)) return high;
+  while (high > low * (1.0 + tolerance)) {
+    const double middle = std::sqrt(low * high);
+    (holds(middle) ? low : high) = middle;
+  }
+  return std::sqrt(low * high);
+}
+
+/// Largest stiffness [N/m] at which a linear loop (no friction, no encoder steps) does not grow: (b + B) / (T/2 + d)
+/// for a device damping b, a virtual damping B, a period T and a delay d, when b T / m is small (Hulin et al., IEEE
+/// T-CST 2013; Colgate and Schenkel 1997 for d = 0).
+inline double stiffness_limit(double damping, double period, double delay) {
+  return damping / (0.5 * period + delay);
+}
+
+}  // namespace palpate::inline PALPATE_ABI::testing

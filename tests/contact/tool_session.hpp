@@ -1,0 +1,58 @@
+// Tools that are moved in steps over a tissue, as a servo moves them.
+#pragma once
+
+#include "contact/analytic_tissue.hpp"
+
+namespace test {
+
+/// Contact points at the vertices alone, as closed forms have them.
+inline constexpr double at_vertices_only = 1e9;
+
+template <class Tissue = AnalyticTissue, int Capacity = 64>
+struct ToolSession {
+  Tissue& tissue;
+  ContactProblem<Capacity> problem;
+  std::vector<ContactTool> tools;
+  Status status;
+
+  ToolSession(Tissue& t, const std::vector<ContactTool>& start, const ContactParameters& parameters = {})
+      : tissue(t), problem(t.contact_surface(), at_vertices_only, parameters), tools(start) {}
+
+  void tick() { status |= problem.solve(tissue, tools); }
+  /// The device of one tool is elsewhere.
+  void tick(std::size_t i, const Vector3& target, const Matrix3& rotation) {
+    for (ContactTool& t : tools) {
+      t.motion.setZero();
+      t.turned = 0.0;
+    }
+    ContactTool& t = tools[i];
+    t.motion = target - t.target;
+    t.turned = t.half_length * ((rotation - t.target_rotation) * t.own_axis).norm();
+    t.target = target;
+    t.target_rotation = rotation;
+    tick();
+  }
+  void tick(std::size_t i, const Vector3& target) { tick(i, target, tools[i].target_rotation); }
+  void move(std::size_t i, const Vector3& target, int steps) {
+    const Vector3 from = tools[i].target;
+    for (int k = 1; k <= steps; ++k) tick(i, from + (target - from) * k / steps);
+  }
+  void settle(int ticks = 20) {
+    for (int k = 0; k < ticks; ++k) tick(0, tools[0].target);
+  }
+  const Vector3& force(std::size_t i = 0) const { return tools[i].force; }
+};
+
+inline ContactTool round_tool(double radius, const Vector3& at, double compliance, double half_length = 0.0,
+                              const Vector3& axis = Vector3::UnitX()) {
+  ContactTool tool;
+  tool.radius = radius;
+  tool.target = tool.proxy = at;
+  tool.compliance = compliance;
+  tool.half_length = half_length;
+  tool.own_axis = axis.normalized();
+  tool.active = true;
+  return tool;
+}
+
+}  // namespace test

@@ -1,0 +1,122 @@
+// Tissue that steps as often as the device ticks: the same forces as with a factor, and nothing on the heap.
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/haptic/tissue_thread.hpp>
+#include <palpate/mesh/generators.hpp>
+#include <palpate/model/corotated_tissue.hpp>
+#include <palpate/testing/allocation_counter.hpp>
+#include <palpate/testing/tissue_laws.hpp>
+
+#include "catch.hpp"
+#include "refused.hpp"
+
+using namespace palpate;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+using TurningLaw = Corotational<LinearElastic>;
+constexpr double tip = 0.012;
+const Vector3 slab_size(0.06, 0.06, 0.03);
+const TurningLaw soft_law{{5e3, 0.45, 1000.0}};
+
+Mesh<Tet4> slab() {
+  return box_tet4(slab_size, {6, 6, 3});
+}
+Scene slab_scene() {
+  return Scene().fix("z0").touch("z1").gravity({0.0, 0.0, -9.81});
+}
+
+/// Force on a ball that was pressed 4 mm in and held, and what the ticks said in the end.
+template <class Tissue>
+std::pair<Vector3, Status> held_force(Tissue& tissue, int ticks = 1500) {
+  ServoOptions options;
+  options.device.peak_force = 20.0;
+  options.device.stiffness = 2000.0;
+  HapticServo servo(tissue, SphereTool{.radius = tip}, options);
+  Status status;
+  double next = 0.0;
+  for (int k = 0; k < ticks; ++k) {
+    if (1e-3 * k >= next - 1e-9) {
+      tissue.advance();
+      next += tissue.step();
+    }
+    ToolState s;
+    s.time = 1e-3 * k;
+    s.position = {0.5 * slab_size[0], 0.5 * slab_size[1], slab_size[2] + tip - std::min(0.004, 0.02 * s.time)};
+    const ToolForce out = servo.tick({std::array{s}})[0];
+    REQUIRE(servo.contact_force().allFinite());
+    if (k >= ticks - 100) status |= out.status;
+  }
+  return {servo.contact_force(), status};
+}
+
+}  // namespace
+
+TEST_CASE("a co-rotated tissue holds with the force of the solved one, whatever the step", "[haptic][corotated]") {
+  SoftTissue solved(slab(), slab_scene(), soft_law);
+  const double wanted = held_force(solved).first[2];
+  CHECK(wanted > 0.3);
+  for (const double h : {1e-3, 5e-3, 1e-2}) {
+    CorotatedTissue::Options options;
+    options.step = h;
+    CorotatedTissue tissue(slab(), slab_scene(), soft_law, options);
+    const auto [force, status] = held_force(tissue);
+    INFO("step " << h << ", status " << status.bits() << ", inverted " << tissue.advance().deformation.inverted);
+    CHECK_THAT(force[2], WithinRel(wanted, 2e-3));
+    CHECK(status.ok());
+  }
+}
+
+TEST_CASE("a co-rotated tissue is a TissueModel, and ticks and steps do not allocate", "[haptic][corotated]") {
+  CorotatedTissue tissue(slab(), slab_scene(), soft_law);
+  CHECK(testing::describe(testing::tissue_laws(tissue, std::array{0, 24, 30, 48}, {1e-5})) == "");
+  HapticServo servo(tissue, SphereTool{.radius = tip});
+  ToolState s;
+  s.position = {0.03, 0.03, 0.03 + tip - 0.003};
+  servo.tick({std::array{s}});
+  tissue.advance();
+  const testing::AllocationScope scope;
+  for (int k = 1; k < 50; ++k) {
+    s.time = 1e-3 * k;
+    servo.tick({std::array{s}});
+    tissue.advance();
+  }
+  CHECK(scope.allocations() == 0);
+}
+
+TEST_CASE("a co-rotated tissue settles under its weight, and stays", "[haptic][corotated]") {
+  CorotatedTissue tissue(slab(), slab_scene(), soft_law);
+  const VectorX start = tissue.motion().displacement();
+  CHECK(start.minCoeff() < -1e-4);
+  for (int k = 0; k < 500; ++k) {
+    const CorotatedStep step = tissue.advance();
+    REQUIRE(step.taken);
+    CHECK(step.calm);
+  }
+  CHECK((tissue.motion().displacement() - start).norm() <= 1e-3 * start.norm());
+}
+
+TEST_CASE("a co-rotated tissue moves in a thread of its own", "[haptic][corotated]") {
+  CorotatedTissue tissue(slab(), slab_scene(), soft_law);
+  HapticServo servo(tissue, SphereTool{.radius = tip});
+  {
+    TissueThread moving(tissue);
+    ToolState s;
+    s.position = {0.03, 0.03, 0.03 + tip - 0.002};
+    for (int k = 0; k < 200; ++k) {
+      s.time = 1e-3 * k;
+      CHECK(servo.tick({std::array{s}})[0].force.allFinite());
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+    moving.stop();
+    CHECK(moving.report().steps > 0);
+  }
+  CHECK(tissue.steps() > 0);
+}
+
+TEST_CASE("a co-rotated tissue refuses steps that are none, and bodies that nothing holds", "[haptic][corotated]") {
+  CorotatedTissue::Options options;
+  options.step = 0.0;
+  CHECK_REFUSED(SetupErrorKind::bad_argument, CorotatedTissue(slab(), slab_scene(), soft_law, options));
+  CHECK_REFUSED(SetupErrorKind::unconstrained, CorotatedTissue(slab(), Scene().touch("z1"), soft_law));
+}
