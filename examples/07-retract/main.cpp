@@ -17,6 +17,7 @@
 //
 // The example judges itself: all steps arrive, stable and upright, and the work of the hook is the energy that the
 // organ stores. The exit code is 0 when that holds, 1 when it does not, 2 when the mesh or the arguments were refused.
+#include "../common/main_with_out.hpp"
 #include "../common/page.hpp"
 
 #include <palpate/io/pvd.hpp>
@@ -110,7 +111,7 @@ int run_example(const std::filesystem::path& out) {
       out, "Retraction of a lobe",
       "A hook pulls the thin lobe of an organ by 50 mm. The straight line is the stiffness of the first step.",
       {chart.svg()}, figures);
-  for (const auto& [what, value] : figures) std::cout << what << ": " << value << '\n';
+  example::print(figures);
   std::cout << "wrote " << (out / "report.html").string() << " and " << (out / "retract.pvd").string() << '\n';
   if (p.fine && std::abs(missing) < 0.01) return 0;
   std::cerr << "a step did not arrive upright and stable, or the work is not the energy\n";
@@ -119,16 +120,4 @@ int run_example(const std::filesystem::path& out) {
 
 }  // namespace
 
-int main(int count, char** values) {
-  const auto out = example::read_out(count, values, "build/retract");
-  if (!out) {
-    std::cerr << "usage: example_07_retract [--out DIR]\n";
-    return 2;
-  }
-  try {
-    return run_example(*out);
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << '\n';
-    return 2;
-  }
-}
+int main(int count, char** values) { return example::main_with_out(count, values, "build/retract", run_example); }
