@@ -6,13 +6,11 @@
 // a quarter of the organ's length. Linear elasticity would let the lobe grow as it turns; this needs large strain.
 //
 //   1. `make_hyperelastic_body` puts a law on every region, here NeoHookean, and `Equilibrium` finds where the body
-//   rests
-//      under what holds and pulls it: Newton's method on the energy.
+//      rests under what holds and pulls it: Newton's method on the energy.
 //   2. `set_prescribed` moves the nodes in the hook, `step(0.0)` finds the next equilibrium from the last. The body has
 //      no memory here, so no time needs to pass; 08-relax has one.
 //   3. `reactions` are the forces in the supports, so also of the hook. The report of every step says whether it
-//   arrived,
-//      whether the equilibrium is stable, and whether elements are inside out.
+//      arrived, whether the equilibrium is stable, and whether elements are inside out.
 //   4. DIR/report.html has the curve beside that of linear elasticity, DIR/retract.pvd plays in ParaView.
 //
 // The example judges itself: all steps arrive, stable and upright, and the work of the hook is the energy that the

@@ -75,7 +75,7 @@ int run_example(const std::filesystem::path& out) {
   chart.line({{0.0, left}, {seconds, left}}, "grey");
   const double error = measured / term.relaxation_time - 1.0;
   const example::Figures figures{
-      {"longest force", text("%.3f N", peak)},
+      {"largest force", text("%.3f N", peak)},
       {"force at the end, and after a long time", text("%.3f N, %.3f N", force.back(), left)},
       {"relaxation time of the law", text("%.4f s", term.relaxation_time)},
       {"relaxation time of the force", text("%.4f s (%+.2f %%)", measured, 100.0 * error)}};

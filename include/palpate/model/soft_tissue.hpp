@@ -148,7 +148,7 @@ class BasicSoftTissue {
 
   /// Brings in the newest surface. `inverted` while elements are inside out, solver_not_converged when the last step
   /// was cut off far from the answer, degraded_model when what pressed since the step before could only be taken in by
-  /// the next, non_finite_force when the last `end_tick` had forces that are none.
+  /// the next, or was more than most_forces, non_finite_force when the last `end_tick` had forces that are none.
   Status begin_tick() noexcept {
     if (views_.update()) {
       surface_.move_to(views_.front().free);
@@ -251,7 +251,9 @@ class BasicSoftTissue {
       if (j % 64 == 0) limits.advance("compliance", static_cast<double>(j) / static_cast<double>(n));
       for (int c = 0; c < 3; ++c) {
         force[3 * Index{touchable_[j]} + c] = 1.0;
-        motion_.respond(force, u);
+        if (!motion_.respond(force, u))
+          raise(SetupErrorKind::not_converged, "the compliance of node " + std::to_string(touchable_[j]),
+                "Shorten the step, or choose another preconditioner");
         force[3 * Index{touchable_[j]} + c] = 0.0;
         for (std::size_t i = 0; i < n; ++i) rest_[i + n * j].col(c) = u.segment<3>(3 * Index{touchable_[i]});
       }
