@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/model/corotated_motion.hpp>
-#include <palpate/model/soft_tissue.hpp>
+#include <palpate/model/basic_soft_tissue.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
