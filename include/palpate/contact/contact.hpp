@@ -47,6 +47,12 @@ struct ContactTool {
 
   Vector3 drag_way = Vector3::Zero(), drag_turn = Vector3::Zero();  ///< of the coupling under friction [m], [rad]
 
+  /// Takes part in nothing, and nothing presses it.
+  void lift() noexcept {
+    active = grasping = false;
+    force.setZero();
+    torque.setZero();
+  }
   /// The proxy that a rigid tissue pushing back with `force` would allow.
   Vector3 goal(double floor) const noexcept { return target + (compliance + floor) * force; }
   /// The same for the rotation.

@@ -37,7 +37,7 @@ struct NewtonReport {
 class Newton {
  public:
   Newton() = default;
-  /// Throws as NewtonParameters::require_valid. Allocates four vectors.
+  /// Throws as NewtonParameters::require_usable. Allocates four vectors.
   explicit Newton(Index size, const NewtonParameters& parameters = {})
       : parameters_(parameters), residual_(size), step_(size), trial_(size), trial_residual_(size) {
     parameters_.require_usable();
