@@ -45,7 +45,7 @@ class HapticServo {
       raise(SetupErrorKind::bad_argument, "nothing of this tissue can be touched",
             "Name a surface group with Scene::touch");
     if constexpr (requires { tissue.require_tools(0.0, options.contact); })
-      tissue.require_tools(smallest_radius(tools), options.contact);
+      tissue.require_tools(smallest_radius(contact_tools_), options.contact);
     if (!(options.stale_tissue_after > 0.0))
       raise(SetupErrorKind::bad_argument, "stale_tissue_after is " + number(options.stale_tissue_after),
             "It must be positive, in seconds; infinity is allowed");
