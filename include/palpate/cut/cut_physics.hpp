@@ -46,6 +46,18 @@ requires(!HasSmoothedStrain<E>) struct CutPhysics {
     return f;
   }
 
+  /// Of what is left when elements for which gone(element) have left: 3 per given node [N].
+  template <class Gone>
+  VectorX load_left(Gone&& gone) const {
+    VectorX sum = nodal_load;
+    for (Index e = 0; e < body.mesh.element_count(); ++e)
+      if (!gone(e))
+        for (int a = 0; a < E::nodes; ++a)
+          sum.template segment<3>(3 * Index{body.mesh.element_node(e, a)}) +=
+              load[static_cast<std::size_t>(e)].row(a).transpose();
+    return sum;
+  }
+
  private:
   ElementNodes<E> nodes_of_element(Index e) const { return element_nodes<E>(body.mesh, e); }
 
