@@ -71,14 +71,22 @@ class CutSystem {
   void fold() {
     if (!step_) return;
     auto folded = std::make_shared<MatrixX>(step_->all, step_->all);
-    const Index old = step_->old;
-    folded->topLeftCorner(old, old) = *step_->compliance;
-    if (step_->rank() > 0)
-      folded->topLeftCorner(old, old).template triangularView<Eigen::Lower>() -= step_->z.transpose() * step_->y;
+    const Index old = step_->old, panel = 64;
+    for (Index j = 0; j < old;
+         j += panel) {  // a panel of the lower half, and its mirror image while it is in the cache
+      const Index width = std::min(panel, old - j), height = old - j;
+      auto below = folded->block(j, j, height, width);
+      below = step_->compliance->block(j, j, height, width);
+      if (step_->rank() > 0)
+        below.noalias() -= step_->z.middleCols(j, height).transpose() * step_->y.middleCols(j, width);
+      below.topRows(width).template triangularView<Eigen::StrictlyUpper>() = below.topRows(width).transpose();
+      for (Index i = width; i < height; i += panel) {
+        const Index rows = std::min(panel, height - i);
+        folded->block(j, j + i, width, rows) = below.middleRows(i, rows).transpose();
+      }
+    }
     folded->rightCols(step_->all - old) = step_->extra;
     folded->bottomLeftCorner(step_->all - old, old) = step_->extra.topRows(old).transpose();
-    folded->topLeftCorner(old, old).template triangularView<Eigen::StrictlyUpper>() =
-        folded->topLeftCorner(old, old).transpose();
     compliance_ = std::move(folded);
     step_.reset();
   }

@@ -17,6 +17,7 @@ struct CutView {
   double floor = 1e-9;                      ///< [m/N]
   ContactProblem<> problem;
   Status status;
+  std::uint64_t cut = 0;  ///< views of one cut have the same surface and, up to rounding, the same compliance
 
   template <Element E>
   CutView(const CutSystem<E>& system, const CutSurface<E>& touchable, std::vector<Vector3> positions,
@@ -50,6 +51,11 @@ struct CutView {
       const bool known = v < before.size() && std::ranges::all_of(place[v], [&](Index p) { return p < step->old; });
       bound[v] = known ? before[v] + longest * std::sqrt(squares(step->y, place[v])) : exact_bound(v);
     }
+    set_floor();
+  }
+  /// The bounds of the step that was folded in since.
+  void bound_as(const std::vector<double>& before) {
+    bound = before;
     set_floor();
   }
   /// Bounds from the compliance itself. O(vertices^2).

@@ -35,6 +35,7 @@ struct CutReport {
   Index kept = 0;              ///< dofs with a compliance
   double smallest = 1.0;       ///< CutStep::smallest of the last cut
   double error = 0.0;          ///< of the compliance, as last measured, relative
+  int unchecked = 0;           ///< cuts since that
   double felt_seconds = 0.0;   ///< of the last cut: from taking the order to handing the surface to the tick
   double fold_seconds = 0.0;   ///< of the last cut: until nothing was left to add up in the tick
   bool failed = false;         ///< what is left cannot be computed; the last good state is felt, degraded_model
@@ -101,6 +102,8 @@ class CuttableTissue {
       report_.felt_seconds = seconds();
       settle();
       report_.fold_seconds = seconds();
+    } else if (report_.unchecked > 0 && !has_orders()) {
+      check();
     }
     open_.fetch_sub(taken, std::memory_order_release);
     return true;
@@ -137,9 +140,9 @@ class CuttableTissue {
   }
   Status begin_tick() noexcept {
     const bool behind = open_.load(std::memory_order_acquire) != 0;
-    if (views_.update()) {
+    if (views_.update() && view().cut != revision_) {  // folding changes nothing that a session remembers
       renewed_ = true;
-      ++revision_;
+      revision_ = view().cut;
     }
     Status status = view().status;
     if (behind) status.set(StatusFlag::degraded_model);
@@ -226,6 +229,17 @@ class CuttableTissue {
       raise(SetupErrorKind::index_out_of_range, "a cut names element " + std::to_string(e) + " or a face it has not");
   }
 
+  static constexpr int most_unchecked = 8;
+
+  bool has_orders() const {
+    const std::scoped_lock lock(order_mutex_);
+    return !orders_.empty() || !sweeps_.empty() || !strokes_.empty();
+  }
+  void measure() {
+    report_.error = system_.measured_error();
+    report_.unchecked = 0;
+  }
+
   std::vector<NodeId> kept_nodes() const {
     std::vector<NodeId> nodes;
     for (std::size_t v = 0; v < touchable_.nodes().size(); ++v)
@@ -250,6 +264,7 @@ class CuttableTissue {
       sweeps.swap(sweeps_);
     }
     for (BladeSweep stroke; strokes_.pop(stroke); ++taken) sweeps.push_back(stroke);
+    if (!sweeps.empty() && report_.unchecked > 0) system_.recover();
     for (const BladeSweep& s : sweeps) {
       const auto local = [&](const Vector3& x) { return Vector3(x - origin_); };
       const auto faces = swept_faces(topology_, {local(s.a0), local(s.b0), local(s.a1), local(s.b1)},
@@ -262,22 +277,35 @@ class CuttableTissue {
   /// Updates the system and makes it felt; where rounding leaves nothing to stand on, from a new factor.
   void take_in(const TopologyChange<E>& change) {
     try {
+      ++cut_;
       const auto step = system_.update(topology_, change);
       report_.rank = step->rank();
       report_.smallest = step->smallest;
       auto made = make_view(step);
       made->bound_by(bound_);
+      bound_ = made->bound;
       publish(std::move(made));
     } catch (const SetupError&) {
       renew();
     }
   }
-  /// What nobody waits for: folds, measures, renews, and brings nodes inside to where they are.
+  /// Folds; the check is put off, a few times, while another cut is ordered already.
   void settle() {
     if (report_.failed) return;
     system_.fold();
+    report_.kept = system_.kept();
+    if (++report_.unchecked < most_unchecked && has_orders()) {
+      auto made = make_view(system_.folded_step());
+      made->bound_as(bound_);
+      publish(std::move(made));
+    } else {
+      check();
+    }
+  }
+  /// What nobody waits for: bounds, measures, renews, and brings nodes inside to where they are.
+  void check() {
     publish_folded();
-    report_.error = system_.measured_error();
+    measure();
     if (!(report_.error <= tolerated_error_))
       renew();
     else if (system_.added() > most_added_ && !renewal_)
@@ -292,8 +320,9 @@ class CuttableTissue {
       if (auto made = renewal_->take(topology_)) {
         system_ = std::move(*made);
         ++report_.renewals;
-        report_.error = system_.measured_error();
+        measure();
         system_.recover();
+        ++cut_;
         publish_folded();
       }
     } catch (const SetupError&) {  // the old one goes on
@@ -306,7 +335,8 @@ class CuttableTissue {
     try {
       system_ = CutSystem<E>(topology_, physics_, kept_nodes(), limits_);
       ++report_.renewals;
-      report_.error = system_.measured_error();
+      measure();
+      ++cut_;
       publish_folded();
     } catch (const SetupError&) {
       report_.failed = true;
@@ -323,8 +353,10 @@ class CuttableTissue {
   std::unique_ptr<CutView> make_view(std::shared_ptr<const CutStep> step) const {
     std::vector<Vector3> positions;
     for (const NodeId node : touchable_.nodes()) positions.push_back(position(node));
-    return std::make_unique<CutView>(system_, touchable_, std::move(positions), std::move(step), smallest_tool_,
-                                     contact_);
+    auto made = std::make_unique<CutView>(system_, touchable_, std::move(positions), std::move(step), smallest_tool_,
+                                          contact_);
+    made->cut = cut_;
+    return made;
   }
   void publish_folded() {
     auto made = make_view(system_.folded_step());
@@ -352,14 +384,14 @@ class CuttableTissue {
   Index most_added_;
   double tolerated_error_;
   CutReport report_;
-  std::vector<double> bound_;  // of the last folded view
+  std::vector<double> bound_;  // of the last view
   mutable std::mutex order_mutex_, system_mutex_;
   std::vector<CutOrder> orders_;
   std::vector<BladeSweep> sweeps_;
   SpscRing<BladeSweep, 256> strokes_;
   std::atomic<unsigned> open_{0};
   TripleBuffer<std::unique_ptr<CutView>> views_;
-  std::uint64_t revision_ = 0;
+  std::uint64_t cut_ = 0, revision_ = 0;  // made last; seen last by a tick
   bool renewed_ = false;
   std::unique_ptr<CutRenewal<E>> renewal_;  // last: its thread refers to the physics
 };

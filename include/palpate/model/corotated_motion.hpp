@@ -166,9 +166,9 @@ class CorotatedMotion {
     age_ = 0;
   }
   /// Elements for which gone(element) leave where they are, for good, with their mass; `nodal_mass` is what is left
-  /// (lumped_mass(body, gone)), `load` the loads on it [N] (CutPhysics::load_left). Velocities of what is left stay, and
-  /// nodes without mass are held where they are. A preconditioner that can takes it in (BlockJacobi); another goes on
-  /// with what it knows, which is right but slower. Throws bad_argument or bad_density, without a change.
+  /// (lumped_mass(body, gone)), `load` the loads on it [N] (CutPhysics::load_left). Velocities of what is left stay,
+  /// and nodes without mass are held where they are. A preconditioner that can takes it in (BlockJacobi); another goes
+  /// on with what it knows, which is right but slower. Throws bad_argument or bad_density, without a change.
   template <class Gone>
   void remove_elements(Gone&& gone, const VectorX& nodal_mass, const VectorX& load) {
     require_mass_left(nodal_mass, load);
@@ -222,9 +222,8 @@ class CorotatedMotion {
 
   void require_mass_left(const VectorX& mass, const VectorX& load) const {
     if (3 * mass.size() != size() || load.size() != size())
-      raise(SetupErrorKind::bad_argument,
-            std::to_string(mass.size()) + " masses and " + std::to_string(load.size()) + " loads for " +
-                std::to_string(size() / 3) + " nodes");
+      raise(SetupErrorKind::bad_argument, std::to_string(mass.size()) + " masses and " + std::to_string(load.size()) +
+                                              " loads for " + std::to_string(size() / 3) + " nodes");
     for (Index i = 0; i < mass.size(); ++i)
       if (!(mass[i] >= 0.0) || !(mass[i] <= body_.lumped[i] * (1.0 + 1e-9)))
         raise(SetupErrorKind::bad_density,
