@@ -72,7 +72,7 @@ class ImplicitDynamics {
     if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
     start_from_the_lower();
     report.newton = newton_.solve(*this, x_);
-    if (!(evaluate(x_, residual_) < infinity)) return report;
+    if (!std::isfinite(evaluate(x_, residual_)) || !velocity_.allFinite()) return report;
     report.taken = true;
     report.deformation = deformation_;
     accept();
