@@ -97,7 +97,7 @@ class ImplicitDynamics {
     if (evaluate(start_, residual_) < infinity) {
       const double before = residual_.norm();
       tangent_.solve(residual_, change_);
-      for (int halvings = 0; halvings < 5 && !better; ++halvings, change_ *= 0.5) {
+      for (int halvings = 0; halvings < 5 && !better && before < infinity; ++halvings, change_ *= 0.5) {
         x_ = start_ + change_;
         better = evaluate(x_, residual_) < infinity && residual_.norm() <= std::max(before, rounding()) &&
                  velocity_.allFinite();
