@@ -153,12 +153,17 @@ class ContactProblem {
     for (std::size_t t = 0; t < tools.size(); ++t)
       for (Candidate& c : grasps_[t].rows)
         if (is_holding(t)) rows_.add(tissue.contact_surface(), candidates_, c);
-    for (int i = 0; i < pressing_count_ && rows_.count() < Capacity; ++i)
-      if (!is_held(*pressing_[at(i)])) rows_.add(tissue.contact_surface(), candidates_, *pressing_[at(i)]);
+    for (int i = 0; i < pressing_count_; ++i) {
+      Candidate& c = *pressing_[at(i)];
+      if (rows_.count() < Capacity && !is_held(c))
+        rows_.add(tissue.contact_surface(), candidates_, c);
+      else
+        c.lift();  // only rows carry forces
+    }
     int built = 0;
     for (;; built = rows_.count()) {
       if (built > 0 || rows_.count() == 0)
-        if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);
+        if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);  // solved for those that fit
       if (rows_.count() == built) {
         if (built == 0) rows_.apply(tools, displacement_, candidates_);
         break;
@@ -183,20 +188,25 @@ class ContactProblem {
   void gather_pressing(Tools tools) noexcept {
     pressing_count_ = 0;
     if (candidates_.is_new()) {
-      for (Candidate& c : candidates_.items())
-        if (c.force > 0.0) pressing_[at(pressing_count_++)] = &c;
+      for (Candidate& c : candidates_.items()) note_pressing(c);
     } else {
-      for (int i = 0; i < rows_.count(); ++i) {
-        Candidate& c = rows_.candidate(i);
-        c.row = -1;
-        if (c.force > 0.0 && !c.grasped) pressing_[at(pressing_count_++)] = &c;
-      }
+      for (int i = 0; i < rows_.count(); ++i) note_pressing(rows_.candidate(i));
     }
     for (int i = 0; i < pressing_count_; ++i) {
       Candidate& c = *pressing_[at(i)];
       if (!arrived_) c.history.known = 0;
       candidates_.place(c, c.point, tools[at(c.tool)]);
     }
+  }
+
+  /// No more press than had rows: all have room.
+  void note_pressing(Candidate& c) noexcept {
+    c.row = -1;
+    if (c.grasped || !(c.force > 0.0)) return;
+    if (pressing_count_ < Capacity)
+      pressing_[at(pressing_count_++)] = &c;
+    else
+      c.lift();
   }
 
   /// The normals of a linearisation come of the forces of the one before, which come of its normals. `feedback_` is how
@@ -219,7 +229,8 @@ class ContactProblem {
     }
   }
 
-  /// Makes rows of the points that would sink in deepest with the present forces; false when there is no room.
+  /// Makes rows of the points that would sink in deepest with the present forces; false when there is no room, as all
+  /// rows press: those that pressed first keep theirs. `built` is zero when rows had to go.
   template <TissueModel Tissue>
   bool add_violated(const Tissue& tissue, Tools tools, int& built) noexcept {
     violated_count_ = 0;
@@ -237,10 +248,7 @@ class ContactProblem {
     const auto wanted = std::min(violated_count_, added_per_round);
     std::partial_sort(violated_.begin(), violated_.begin() + wanted, violated_.begin() + violated_count_,
                       [](const Violated& a, const Violated& b) { return a.gap < b.gap; });
-    if (rows_.count() + wanted > Capacity) {
-      rows_.drop_idle();
-      built = 0;
-    }
+    if (rows_.count() + wanted > Capacity && rows_.drop_idle()) built = 0;
     const int room = std::min(wanted, Capacity - rows_.count());
     for (int i = 0; i < room; ++i) rows_.add(tissue.contact_surface(), candidates_, *violated_[at(i)].candidate);
     return room > 0 || wanted == 0;
