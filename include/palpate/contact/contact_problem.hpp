@@ -19,12 +19,16 @@ template <int Capacity = default_contact_capacity>
 class ContactProblem {
  public:
   /// Places the contact points for balls of at least `smallest_radius` [m]. Allocates workspaces; for set-up.
-  /// Throws bad_argument unless 0.4 <= sample_spacing <= 1 and there is at least one iteration.
+  /// Throws bad_argument unless 0.4 <= sample_spacing <= 1 and there is at least one iteration, and for an edge of the
+  /// surface longer than 32 radii (ids: its vertices): the lattice of points ends there, and the ball would fall
+  /// through.
   ContactProblem(const ContactSurface& surface, double smallest_radius, ContactParameters parameters = {})
       : parameters_(checked(parameters)),
         displacement_(surface.vertex_count()),
         candidates_(surface, parameters.sample_spacing * smallest_radius),
-        rows_(surface.vertex_count(), parameters.friction) {}
+        rows_(surface.vertex_count(), parameters.friction) {
+    require_dense_points(surface, smallest_radius);
+  }
 
   /// Finds the forces for the tools' new targets; updates proxy and force of every active tool. At most
   /// `maximum_tools` tools. Never allocates.
@@ -313,6 +317,28 @@ class ContactProblem {
       raise(SetupErrorKind::bad_argument, "the coefficient of friction is " + number(p.friction), "Give 0 to 4");
     if (p.maximum_iterations < 1) raise(SetupErrorKind::bad_argument, "a tick needs at least one linearisation");
     return p;
+  }
+
+  /// Points on the longest edge must not lie farther apart than a radius.
+  static void require_dense_points(const ContactSurface& surface, double radius) {
+    const double most = ContactSamples::maximum_subdivision * radius;
+    SetupProblem problem;
+    problem.value = problem.threshold = most;
+    for (const Triangle& t : surface.triangles())
+      for (std::size_t i = 0; i < 3; ++i) {
+        const int a = t[i], b = t[(i + 1) % 3];
+        const double length = (surface.position(a) - surface.position(b)).norm();
+        if (!(length > problem.value)) continue;
+        problem.value = length;
+        problem.ids = {a, b};
+      }
+    if (problem.ids.empty()) return;
+    problem.count = 2;
+    problem.what = "an edge of the touchable surface is " + number(problem.value) + " m long, more than " +
+                   std::to_string(ContactSamples::maximum_subdivision) + " radii of the smallest tool (" +
+                   number(radius) + " m): it would fall through";
+    problem.hint = "Refine the mesh where tools touch, or take a larger tool";
+    raise(std::move(problem));
   }
 
   static constexpr int maximum_rounds = 12;   // solutions of the contact problem per tick

@@ -32,8 +32,8 @@ struct EnergyLimits {
 };
 
 /// Passivity observer (Hannaford and Ryu, IEEE T-RA 18(1), 2002): the work of the forces on the tool as the samples
-/// show it, f(n-1) . (x(n) - x(n-1)), with the force that acted in between. Steps that are not finite count for
-/// nothing.
+/// show it, f(n-1) . (x(n) - x(n-1)), with the force that acted in between. Steps that are not finite, or would
+/// make the sum infinite, count for nothing.
 class PassivityObserver {
  public:
   /// `delay` in whole ticks, 0 to 32.
@@ -55,7 +55,7 @@ class PassivityObserver {
       step.work = work;
       step.way2 = way2;
       if (dt > 0.0 && std::isfinite(dt)) step.time = dt;
-      given_ += work;
+      add(work);
     }
     known_ = position.allFinite();
     last_ = position;
@@ -63,9 +63,7 @@ class PassivityObserver {
     return step;
   }
   /// Takes in work of another kind: of a torque.
-  void moved_by(double work) noexcept {
-    if (std::isfinite(work)) given_ += work;
-  }
+  void moved_by(double work) noexcept { add(work); }
   /// The force that was rendered upon that sample.
   void gave(const Vector3& force) noexcept {
     newest_ = (newest_ + 1) % forces_.size();
@@ -74,12 +72,16 @@ class PassivityObserver {
   /// The way to the next sample does not count: the device was lost, or the tool jumped.
   void forget() noexcept { known_ = false; }
 
-  /// [J] given to the tool since construction; below zero: taken from it.
+  /// [J] given to the tool since construction; below zero: taken from it. Always finite.
   double given() const noexcept { return given_; }
   /// [N] the force that acts until the next sample.
   const Vector3& acting() const noexcept { return forces_[(newest_ + forces_.size() - delay_) % forces_.size()]; }
 
  private:
+  void add(double work) noexcept {
+    if (std::isfinite(given_ + work)) given_ += work;
+  }
+
   std::array<Vector3, 33> forces_ = zeros();
   std::size_t delay_, newest_ = 0;
   Vector3 last_ = Vector3::Zero();
