@@ -46,8 +46,8 @@ struct Candidate {
 /// of ball and surface since then is summed up and the list made anew when the margin is used up (as neighbour lists in
 /// molecular dynamics, Verlet 1967). A point is evaluated again only when that way could have closed its gap. The
 /// search on the resting surface reaches as far as the surface has moved (SurfaceDisplacement::reach); a round over all
-/// vertices, a few per tick, finds what moved farther. No allocation; work bounded by `maximum` and the triangles in
-/// reach. `Capacity` is that of the contact problem.
+/// vertices, a few per tick, finds what moved farther. No allocation; work bounded by `maximum` and, when the
+/// list is made anew, by the samples of all triangles in reach: each is looked at. `Capacity` is that of the contact problem.
 template <int Capacity>
 class Candidates {
  public:

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact_rows.hpp>
-#include <palpate/core/setup_error.hpp>
+#include <palpate/contact/grasp.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -99,13 +99,6 @@ class ContactProblem {
     }
   }
 
-  /// A point of the surface held by a tool, as three rows that pull as well as push.
-  struct Grasp {
-    bool asked = false;
-    int sample = -1;  // -1: nothing was there to be held
-    std::array<Candidate, 3> rows{};
-  };
-
   /// Takes hold of the nearest point for every tool that has just begun to grasp, and lets go.
   template <TissueModel Tissue>
   void grasp(const Tissue& tissue, Tools tools) noexcept {
@@ -119,18 +112,10 @@ class ContactProblem {
       for (Candidate& c : candidates_.items()) {
         if (c.tool != static_cast<int>(t)) continue;
         if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
-        if (c.facing && c.gap <= grasp_reach * tool.radius && (nearest == nullptr || c.gap < nearest->gap))
+        if (c.facing && c.gap <= Grasp::reach * tool.radius && (nearest == nullptr || c.gap < nearest->gap))
           nearest = &c;
       }
-      if (nearest == nullptr) continue;
-      g.sample = nearest->sample;
-      for (int k = 0; k < 3; ++k) {
-        Candidate& c = g.rows[at(k)] = *nearest;
-        c.lift();
-        c.grasped = true;
-        c.normal = Vector3::Unit(k);
-        c.anchor = tool.rotation.transpose() * (c.point - tool.proxy);
-      }
+      if (nearest != nullptr) g.hold(*nearest, tool);
     }
   }
   bool is_held(const Candidate& c) const noexcept { return c.sample == grasps_[at(c.tool)].sample; }
@@ -319,33 +304,10 @@ class ContactProblem {
     return p;
   }
 
-  /// Points on the longest edge must not lie farther apart than a radius.
-  static void require_dense_points(const ContactSurface& surface, double radius) {
-    const double most = ContactSamples::maximum_subdivision * radius;
-    SetupProblem problem;
-    problem.value = problem.threshold = most;
-    for (const Triangle& t : surface.triangles())
-      for (std::size_t i = 0; i < 3; ++i) {
-        const int a = t[i], b = t[(i + 1) % 3];
-        const double length = (surface.position(a) - surface.position(b)).norm();
-        if (!(length > problem.value)) continue;
-        problem.value = length;
-        problem.ids = {a, b};
-      }
-    if (problem.ids.empty()) return;
-    problem.count = 2;
-    problem.what = "an edge of the touchable surface is " + number(problem.value) + " m long, more than " +
-                   std::to_string(ContactSamples::maximum_subdivision) + " radii of the smallest tool (" +
-                   number(radius) + " m): it would fall through";
-    problem.hint = "Refine the mesh where tools touch, or take a larger tool";
-    raise(std::move(problem));
-  }
-
   static constexpr int maximum_rounds = 12;   // solutions of the contact problem per tick
   static constexpr int added_per_round = 16;  // rows, the deepest ones
   static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
   static constexpr double violation = 1e-5;   // how far a point may sink in, of the deepest push
-  static constexpr double grasp_reach = 0.1;  // gap, in radii, of a point that can be held
   struct Ahead {
     Vector3 way = Vector3::Zero(), axis = Vector3::Zero();  // of the proxy; of the end of a capsule's axis of length 1
     double farthest = 0.0;                                  // way of any of its points, at most [m]

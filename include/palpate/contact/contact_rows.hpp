@@ -45,7 +45,6 @@ class ContactRows {
     row.normal = c.normal;
     row.rest = candidates.rest(surface, c.sample);
     row.point = c.point;
-    row.gap = c.gap;
     row.force = c.force;
     row.grasped = c.grasped;
   }
@@ -172,7 +171,6 @@ class ContactRows {
       }
       candidates.place(c, rows_[at(i)].point, tools[at(c.tool)]);
       if (c.force == 0.0) c.history.known = 0;
-      rows_[at(i)].gap = c.gap;
     }
   }
 

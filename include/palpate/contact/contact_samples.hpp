@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact_surface.hpp>
+#include <palpate/core/setup_error.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -75,5 +76,28 @@ class ContactSamples {
   std::vector<ContactSample> samples_;
   std::vector<int> first_;  // per triangle, one past the end last
 };
+
+/// Throws SetupError(bad_argument) when the longest edge is longer than the lattice covers at one radius between points
+/// (ids: its vertices).
+inline void require_dense_points(const ContactSurface& surface, double radius) {
+  const double most = ContactSamples::maximum_subdivision * radius;
+  SetupProblem problem;
+  problem.value = problem.threshold = most;
+  for (const Triangle& t : surface.triangles())
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int a = t[i], b = t[(i + 1) % 3];
+      const double length = (surface.position(a) - surface.position(b)).norm();
+      if (!(length > problem.value)) continue;
+      problem.value = length;
+      problem.ids = {a, b};
+    }
+  if (problem.ids.empty()) return;
+  problem.count = 2;
+  problem.what = "an edge of the touchable surface is " + number(problem.value) + " m long, more than " +
+                 std::to_string(ContactSamples::maximum_subdivision) + " radii of the smallest tool (" +
+                 number(radius) + " m): it would fall through";
+  problem.hint = "Refine the mesh where tools touch, or take a larger tool";
+  raise(std::move(problem));
+}
 
 }  // namespace palpate::inline PALPATE_ABI

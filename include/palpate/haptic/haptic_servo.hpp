@@ -4,7 +4,7 @@
 #include <palpate/concepts/servo.hpp>
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/core/realtime.hpp>
-#include <palpate/haptic/passivity_observer.hpp>
+#include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
 #include <palpate/haptic/tool_input.hpp>
@@ -59,12 +59,12 @@ class HapticServo {
 
   /// One tick: a force for every tool, in order; the span is valid until the next tick. States beyond the number of
   /// tools are ignored, missing ones count as unreadable. Never throws, allocates, locks or waits; bounded by contact
-  /// capacity and iterations.
+  /// capacity, iterations and, when a list of points near the tools is made anew, the points in their reach.
   std::span<const ToolForce> tick(std::span<const ToolState> states) noexcept {
     const FlushDenormals flush;
     ++ticks_;
     Status shared;
-    if constexpr (MovesByItself<Tissue>) shared |= tissue_->begin_tick();
+    if constexpr (AnnouncesChanges<Tissue>) shared |= tissue_->begin_tick();
     for (std::size_t i = 0; i < inputs_.size(); ++i) take(i, i < states.size() ? states[i] : unreadable());
     note_updates();
     shared |= problem_.solve(*tissue_, contact_tools_);
