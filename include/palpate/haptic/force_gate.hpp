@@ -125,7 +125,7 @@ class ForceGate {
   double time_since_last_tick(double now) noexcept {
     const double dt = now - last_now_;
     if (std::isfinite(now)) last_now_ = now;
-    return dt > 0.0 && std::isfinite(dt) ? dt : 0.0;
+    return std::isfinite(dt) ? std::max(0.0, dt) : 0.0;
   }
 
   /// The part of dt that is later than `stale_after` after the newest fresh input or, in a stall, after the last tick;
