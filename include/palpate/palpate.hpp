@@ -14,8 +14,8 @@
 #include <palpate/element/tet10.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/element/with_quadrature.hpp>
+#include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/haptic/passivity_observer.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 #include <palpate/io/gmsh.hpp>
 #include <palpate/io/pvd.hpp>

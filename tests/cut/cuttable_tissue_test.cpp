@@ -16,7 +16,7 @@ using namespace palpate;
 namespace {
 
 using Tissue = CuttableTissue<Tet4>;
-static_assert(TissueModel<Tissue> && MovesByItself<Tissue>);
+static_assert(TissueModel<Tissue> && AnnouncesChanges<Tissue>);
 
 const LinearElastic soft{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0};
 

@@ -49,7 +49,7 @@ concept TissueModel = requires(T& tissue, const T& constant, int i, std::span<co
 
 /// A tissue whose surface or compliance changes between ticks, and which says so before each (SoftTissue).
 template <class T>
-concept MovesByItself = requires(T& tissue) {
+concept AnnouncesChanges = requires(T& tissue) {
   tissue.begin_tick();
 };
 

@@ -13,6 +13,7 @@ struct ExplicitOptions {
   double margin = 0.07;       ///< the stable limit is taken this much smaller than estimated
   int first_iterations = 40;  ///< of the estimate at set-up
   int limit_every = 16;       ///< steps between two iterations of the estimate, each of which costs one force; 0: never
+                              ///< but by estimate_limit()
   int energy_every = 16;  ///< steps between two looks at the stored energy; the kinetic is seen every step. 0: never
   double energy_growth = 1.5;  ///< how many times the energy that explains itself may be there before motion stops
 };
@@ -79,11 +80,11 @@ class ExplicitMotion {
     state_.target = displacement;
     restart();
   }
-  /// Forgets work done so far, estimates the limit anew, which takes some 20 to 40 forces, and lets a stopped motion go
-  /// on.
+  /// Forgets work done so far, estimates the limit anew, which takes some 20 to 40 forces, unless limit_every is 0, and
+  /// lets a stopped motion go on.
   void restart() noexcept {
     begin();
-    estimate_limit(std::max(options_.first_iterations, StepLimit::settled));
+    if (options_.limit_every > 0) estimate_limit(std::max(options_.first_iterations, StepLimit::settled));
   }
 
   /// Elements for which gone(element) leave where they are, for good, with their mass; `nodal_mass` is what is left

@@ -52,7 +52,8 @@ class Newton {
     for (;;) {
       const double norm = residual_.norm();
       report.relative_residual = norm > 0.0 ? norm / problem.scale() : 0.0;
-      report.converged = report.relative_residual <= parameters_.tolerance || norm <= problem.rounding();
+      report.converged =
+          norm < infinity && (report.relative_residual <= parameters_.tolerance || norm <= problem.rounding());
       if (report.converged || report.iterations == parameters_.maximum_iterations) return report;
       if (!problem.prepare(x)) return report;
       ++report.iterations;

@@ -72,7 +72,7 @@ class ImplicitDynamics {
     if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
     start_from_the_lower();
     report.newton = newton_.solve(*this, x_);
-    if (!(evaluate(x_, residual_) < infinity)) return report;
+    if (!std::isfinite(evaluate(x_, residual_)) || !velocity_.allFinite()) return report;
     report.taken = true;
     report.deformation = deformation_;
     accept();
@@ -97,7 +97,7 @@ class ImplicitDynamics {
     if (evaluate(start_, residual_) < infinity) {
       const double before = residual_.norm();
       tangent_.solve(residual_, change_);
-      for (int halvings = 0; halvings < 5 && !better; ++halvings, change_ *= 0.5) {
+      for (int halvings = 0; halvings < 5 && !better && before < infinity; ++halvings, change_ *= 0.5) {
         x_ = start_ + change_;
         better = evaluate(x_, residual_) < infinity && residual_.norm() <= std::max(before, rounding()) &&
                  velocity_.allFinite();
