@@ -1,5 +1,7 @@
 // What a cut costs until it is felt, beside making everything anew; every figure is checked against a new system.
-//   bench_cut [--build <name of the flags>] [--csv <file to add rows to>] [--long]
+//   bench_cut [--build <name of the flags>] [--csv <file to add rows to>] [--trace <file for forces>] [--organ]
+//   [--long]
+// --organ: only what is cut in real time.
 #include <palpate/cut/blade_sweep.hpp>
 #include <palpate/cut/cut_view.hpp>
 #include <palpate/element/tet4.hpp>
@@ -12,6 +14,7 @@
 
 #include "../common/row.hpp"
 #include "../common/timing.hpp"
+#include "organ.hpp"
 
 namespace {
 
@@ -204,6 +207,8 @@ void measure_block(bench::RowFile& rows, int n, double limit, bool with_eigen) {
 
 int main(int argc, char** argv) try {
   bench::RowFile rows(bench::option(argc, argv, "--csv", ""), bench::option(argc, argv, "--build", "this"));
+  measure_organ(rows, bench::option(argc, argv, "--trace", ""));
+  if (bench::has_option(argc, argv, "--organ")) return rows.failed() ? 1 : 0;
   measure_block(rows, 10, 0.016, true);
   measure_block(rows, 16, 0.016, true);
   measure_block(rows, 24, 0.05, bench::has_option(argc, argv, "--long"));
