@@ -6,6 +6,7 @@
 #include <palpate/condensation/schur.hpp>
 #include <palpate/cut/cut_physics.hpp>
 #include <palpate/cut/cut_topology.hpp>
+#include <palpate/cut/kept_dofs.hpp>
 #include <palpate/linear/spd_inverse.hpp>
 
 #include <memory>
@@ -58,15 +59,9 @@ class CutBase {
     solve_statics(topology, physics, load);
   }
 
-  /// A node and a component.
-  struct Dof {
-    NodeId node = 0;
-    int component = 0;
-  };
-
   Index size() const noexcept { return size_; }
   /// Free dofs of the kept nodes, in the order of the compliance.
-  const std::vector<Dof>& kept() const noexcept { return kept_; }
+  const std::vector<NodeDof>& kept() const noexcept { return kept_; }
   const std::shared_ptr<const MatrixX>& compliance() const noexcept { return compliance_; }
   SparseCholesky& interior() noexcept { return interior_; }
   const SparseCholesky& interior() const noexcept { return interior_; }
@@ -138,7 +133,7 @@ class CutBase {
 
   Index size_ = 0;
   std::vector<Index> place_;
-  std::vector<Dof> kept_;
+  std::vector<NodeDof> kept_;
   SparseCholesky interior_;
   std::shared_ptr<const MatrixX> compliance_;
   VectorX displacement_, kept_load_;

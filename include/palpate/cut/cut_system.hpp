@@ -2,32 +2,10 @@
 #pragma once
 
 #include <palpate/cut/bordered_update.hpp>
-#include <palpate/cut/cut_base.hpp>
-#include <palpate/cut/element_changes.hpp>
+#include <palpate/cut/cut_plan.hpp>
+#include <palpate/cut/cut_step.hpp>
 
 namespace palpate::inline PALPATE_ABI {
-
-/// What one cut does to the compliance among kept dofs: C_ij - z_i . y_j for those that were, and columns of their own
-/// for those that came. Immutable; a tick reads it next to the compliance before the cut.
-struct CutStep {
-  std::shared_ptr<const MatrixX> compliance;  ///< before the cut, `old` x `old` [m/N]
-  MatrixX z, y;                               ///< changed dofs x old
-  MatrixX extra;                              ///< all x (all - old), exact
-  Index old = 0, all = 0;                     ///< kept dofs before and after
-  double smallest = 1.0;                      ///< BorderedUpdate::smallest
-
-  /// Displacement of kept dof i per force on j [m/N].
-  double operator()(Index i, Index j) const noexcept {
-    if (j >= old) return extra(i, j - old);
-    if (i >= old) return extra(j, i - old);
-    double value = (*compliance)(i, j);
-    const Index rank = z.rows();
-    const double *a = z.data() + i * rank, *b = y.data() + j * rank;
-    for (Index k = 0; k < rank; ++k) value -= a[k] * b[k];
-    return value;
-  }
-  Index rank() const noexcept { return z.rows(); }
-};
 
 /// A linear body under cuts. The compliance among kept dofs is updated exactly (bordered_update.hpp), by the rows that
 /// a cut changes; the factor stays. Nodes that a cut touches become kept: their columns come from the factor, the same
@@ -43,9 +21,8 @@ class CutSystem {
             const SetupLimits& limits = {})
       : physics_(&physics), base_(topology, physics, kept_nodes, limits) {
     compliance_ = base_.compliance();
-    place_.assign(topology.mesh().positions.size(), {-1, -1, -1});
-    for (const auto& dof : base_.kept()) set_place(dof.node, dof.component);
-    source_.resize(place_.size());
+    for (const NodeDof& dof : base_.kept()) dofs_.add(dof);
+    source_.resize(topology.mesh().positions.size());
     std::iota(source_.begin(), source_.end(), NodeId{0});
     displacement_ = base_.displacement();
     none_ = static_cast<Index>(base_.kept().size());
@@ -56,7 +33,7 @@ class CutSystem {
   /// folded. Cost: solves for changed nodes that were not kept, and O(kept x changed).
   std::shared_ptr<const CutStep> update(const CutTopology<E>& topology, const TopologyChange<E>& change) {
     if (step_) raise(SetupErrorKind::bad_argument, "the last cut is not folded in");
-    Plan plan = make_plan(topology, change);
+    const CutPlan<E> plan(topology, change, *physics_, base_, dofs_, displacement_);
     ReducedUnits units;
     const MatrixX columns = columns_of(plan, units);
     auto step = std::make_shared<CutStep>();
@@ -100,11 +77,8 @@ class CutSystem {
   }
 
   /// Number of a dof in the compliance, -1 when it is prescribed or not kept.
-  Index place(NodeId node, int component) const noexcept {
-    const auto i = static_cast<std::size_t>(node);
-    return i < place_.size() ? place_[i][static_cast<std::size_t>(component)] : -1;
-  }
-  Index kept() const noexcept { return static_cast<Index>(dofs_.size()); }
+  Index place(NodeId node, int component) const noexcept { return dofs_.place(node, component); }
+  Index kept() const noexcept { return dofs_.size(); }
   /// Dofs that became kept since the factorisation.
   Index added() const noexcept { return kept() - none_; }
   /// Under the scene's loads, 3 per node [m]: exact at kept nodes of the held part, elsewhere after `recover`.
@@ -122,7 +96,7 @@ class CutSystem {
     for (const auto& [node, force] : forces)
       for (int c = 0; c < 3; ++c)
         if (const Index j = place(node, c); j >= 0)
-          for (Index i = 0; i < kept(); ++i) at(u, i) += (*compliance_)(i, j) * force[c];
+          for (Index i = 0; i < kept(); ++i) dofs_.at(u, i) += (*compliance_)(i, j) * force[c];
     std::vector<std::pair<NodeId, Vector3>> list;
     for (const auto& [node, force] : forces) list.push_back({node, force});
     recover_into(list, u, u);
@@ -154,105 +128,19 @@ class CutSystem {
   }
 
  private:
-  using Pin = typename ElementChanges<E>::Pin;
-  using Dof = typename CutBase<E>::Dof;
-
-  struct Plan {
-    const TopologyChange<E>* change = nullptr;
-    std::vector<Pin> pins;
-    std::vector<Dof> promoted, fresh;  ///< changed dofs that were not kept; new ones
-    std::vector<Index> changed;  ///< places of all changed dofs that are old, promoted ones counted behind the kept
-    std::vector<std::pair<NodeId, std::array<Index, 3>>> places;  ///< of nodes that get some
-  };
-
   auto places() const {
     return [this](NodeId node, int c) { return place(node, c); };
   }
-  double& at(VectorX& u, Index i) const noexcept {
-    const Dof& d = dofs_[static_cast<std::size_t>(i)];
-    return u[3 * Index{d.node} + d.component];
-  }
-  Index base_place(Index i) const noexcept {
-    const Dof& d = dofs_[static_cast<std::size_t>(i)];
-    return base_.place_of(d.node, d.component);
-  }
-  void set_place(NodeId node, int component) {
-    if (static_cast<std::size_t>(node) >= place_.size())
-      place_.resize(static_cast<std::size_t>(node) + 1, {-1, -1, -1});
-    place_[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] = static_cast<Index>(dofs_.size());
-    dofs_.push_back({node, component});
-  }
-
-  /// Springs for what this cut leaves unheld: all nodes of one element of each piece, and nodes without elements.
-  std::vector<Pin> make_pins(const CutTopology<E>& topology, const TopologyChange<E>& change) const {
-    std::vector<Pin> pins;
-    const auto pin = [&](NodeId node, double stiffness) {
-      const NodeId known = 3 * Index{node} < displacement_.size() ? node : parent_in(change, node);
-      pins.push_back({node, stiffness, displacement_.template segment<3>(3 * Index{known})});
-    };
-    for (const LoosePiece& piece : change.pieces) {
-      Index best = piece.elements.front();
-      int most = -1;
-      for (const Index e : piece.elements) {
-        int known = 0;
-        for (const NodeId node : topology.mesh().elements[static_cast<std::size_t>(e)])
-          if (place(node, 0) >= 0 || 3 * Index{node} >= displacement_.size()) ++known;
-        if (known > most) best = e, most = known;
-      }
-      const double stiffness = physics_->stiffness(best).trace() / (3.0 * E::nodes);
-      for (const NodeId node : topology.mesh().elements[static_cast<std::size_t>(best)]) pin(node, stiffness);
-    }
-    for (const NodeId node : change.bare_nodes)
-      for (const ChangedElement<E>& x : change.elements)
-        if (std::ranges::find(x.before, node) != x.before.end()) {
-          pin(node, physics_->stiffness(x.element).trace() / (3.0 * E::nodes));
-          break;
-        }
-    return pins;
-  }
-  static NodeId parent_in(const TopologyChange<E>& change, NodeId node) {
-    return std::ranges::find(change.copies, node, &NodeCopy::node)->parent;
-  }
-
-  Plan make_plan(const CutTopology<E>& topology, const TopologyChange<E>& change) const {
-    Plan plan;
-    plan.change = &change;
-    plan.pins = make_pins(topology, change);
-    std::vector<NodeId> nodes;
-    for (const ChangedElement<E>& x : change.elements)
-      for (const auto* list : {&x.before, &x.after}) nodes.insert(nodes.end(), list->begin(), list->end());
-    for (const Pin& pin : plan.pins) nodes.push_back(pin.node);
-    std::ranges::sort(nodes);
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    for (const bool fresh : {false, true})
-      for (const NodeId node : nodes) {
-        if ((3 * Index{node} >= displacement_.size()) != fresh) continue;
-        std::array<Index, 3> own{-1, -1, -1};
-        bool added = false;
-        for (int c = 0; c < 3; ++c) {
-          Index p = place(node, c);
-          const bool is_free = (topology.constrained()[static_cast<std::size_t>(node)] >> c & 1u) == 0;
-          if (p < 0 && is_free && (fresh || base_.place_of(node, c) >= 0)) {
-            p = kept() + static_cast<Index>(plan.promoted.size() + plan.fresh.size());
-            (fresh ? plan.fresh : plan.promoted).push_back({node, c});
-            added = true;
-          }
-          own[static_cast<std::size_t>(c)] = p;
-          if (!fresh && p >= 0) plan.changed.push_back(p);
-        }
-        if (added) plan.places.push_back({node, own});
-      }
-    return plan;
-  }
+  Index base_place(Index i) const noexcept { return base_.place_of(dofs_[i].node, dofs_[i].component); }
 
   /// Columns of the present inverse for the promoted dofs, over kept and promoted rows. `units` keeps what later ones
   /// need of these.
-  MatrixX columns_of(const Plan& plan, ReducedUnits& units) const {
+  MatrixX columns_of(const CutPlan<E>& plan, ReducedUnits& units) const {
     const Index n = kept(), m = static_cast<Index>(plan.promoted.size());
     MatrixX x = MatrixX::Zero(n + m, m);
     if (m == 0) return x;
     std::vector<Index> dofs;
-    for (const Dof& d : plan.promoted) dofs.push_back(base_.place_of(d.node, d.component));
+    for (const NodeDof& d : plan.promoted) dofs.push_back(base_.place_of(d.node, d.component));
     units = base_.interior().reduce_units(dofs);
     const Index core = none_;
     x.topRows(core).noalias() = *base_.compliance() * units.kept_load;
@@ -282,11 +170,10 @@ class CutSystem {
   }
 
   /// Assembles what changed over changed and fresh dofs, solves, and writes the step.
-  void solve_small(const Plan& plan, const MatrixX& columns, CutStep& step) const {
+  void solve_small(const CutPlan<E>& plan, const MatrixX& columns, CutStep& step) const {
     const Index n = kept(), m = columns.cols(), old = n + m, fresh = static_cast<Index>(plan.fresh.size());
     const Index s = static_cast<Index>(plan.changed.size());
-    MatrixX all = MatrixX::Zero(s + fresh, s + fresh);
-    assemble(plan, all);
+    const MatrixX all = plan.assemble();
     MatrixX z(s, old);
     for (Index k = 0; k < s; ++k) {
       const Index p = plan.changed[static_cast<std::size_t>(k)];
@@ -316,36 +203,8 @@ class CutSystem {
     step.y = y.leftCols(n);
   }
 
-  void assemble(const Plan& plan, MatrixX& all) const {
-    const Index first_fresh = kept() + static_cast<Index>(plan.promoted.size());
-    std::map<NodeId, std::array<Index, 3>> fresh;
-    for (const auto& [node, own] : plan.places) fresh[node] = own;
-    std::map<Index, Index> row;
-    for (std::size_t k = 0; k < plan.changed.size(); ++k) row[plan.changed[k]] = static_cast<Index>(k);
-    const auto find = [&](NodeId node, int c) -> Index {
-      const auto known = fresh.find(node);
-      const Index p = known != fresh.end() ? known->second[static_cast<std::size_t>(c)] : place(node, c);
-      if (p < 0) return -1;
-      return p >= first_fresh ? p - first_fresh + static_cast<Index>(plan.changed.size()) : row.at(p);
-    };
-    for (const ChangedElement<E>& x : plan.change->elements) {
-      const ElementStiffness<E> k = physics_->stiffness(x.element);
-      const auto add = [&](const auto& nodes, double sign) {
-        const auto at = ElementChanges<E>::places_of(nodes, find);
-        for (std::size_t i = 0; i < at.size(); ++i)
-          for (std::size_t j = 0; j < at.size(); ++j)
-            if (at[i] >= 0 && at[j] >= 0) all(at[i], at[j]) += sign * k(static_cast<Index>(i), static_cast<Index>(j));
-      };
-      add(x.before, -1.0);
-      if (!x.removed) add(x.after, 1.0);
-    }
-    for (const Pin& pin : plan.pins)
-      for (int c = 0; c < 3; ++c)
-        if (const Index p = find(pin.node, c); p >= 0) all(p, p) += pin.stiffness;
-  }
-
   /// Nothing throws from here on but a lack of memory.
-  void accept(const CutTopology<E>& topology, const Plan& plan, const CutStep& step) {
+  void accept(const CutTopology<E>& topology, const CutPlan<E>& plan, const CutStep& step) {
     const Index nodes = topology.mesh().node_count(), before = displacement_.size() / 3;
     displacement_.conservativeResize(3 * nodes);
     for (Index node = before; node < nodes; ++node) displacement_.template segment<3>(3 * node).setZero();
@@ -353,12 +212,11 @@ class CutSystem {
     for (const NodeCopy& copy : plan.change->copies)
       displacement_.template segment<3>(3 * Index{copy.node}) =
           displacement_.template segment<3>(3 * Index{copy.parent});
-    place_.resize(static_cast<std::size_t>(nodes), {-1, -1, -1});
     for (const auto* list : {&plan.promoted, &plan.fresh})
-      for (const Dof& d : *list) set_place(d.node, d.component);
+      for (const NodeDof& d : *list) dofs_.add(d);
     for (const ChangedElement<E>& x : plan.change->elements)
       changes_.add(x, physics_->stiffness(x.element), physics_->load_of(x.element));
-    for (const Pin& pin : plan.pins) changes_.add(pin);
+    for (const auto& pin : plan.pins) changes_.add(pin);
     move(step);
   }
   /// Where kept nodes are now: from the rest of the factor, by the forces that all cuts since let loose. Not from where
@@ -381,8 +239,8 @@ class CutSystem {
     u.tail(rest).noalias() =
         step.extra.topRows(old).transpose() * head + step.extra.bottomRows(rest) * force.tail(rest);
     for (Index i = 0; i < step.all; ++i) {
-      const Dof& d = dofs_[static_cast<std::size_t>(i)];
-      at(displacement_, i) = rest_of(d.node)[d.component] + u[i];
+      const NodeDof& d = dofs_[i];
+      dofs_.at(displacement_, i) = rest_of(d.node)[d.component] + u[i];
     }
   }
   /// Displacement of the node that a node is a copy of, as the factor knows it.
@@ -402,10 +260,7 @@ class CutSystem {
     for (const auto& [node, f] : forces) add(node, f);
     const Index core = static_cast<Index>(base_.kept().size());
     VectorX scratch(core), moved(core);
-    for (Index i = 0; i < core; ++i) {
-      const Dof& d = dofs_[static_cast<std::size_t>(i)];
-      moved[i] = known[3 * Index{d.node} + d.component] - base_.displacement()[3 * Index{d.node} + d.component];
-    }
+    for (Index i = 0; i < core; ++i) moved[i] = dofs_.at(known, i) - dofs_.at(base_.displacement(), i);
     base_.interior().eliminate_into(load, scratch);
     base_.interior().recover_into(moved, answer);
     const VectorX& rest = base_.displacement();
@@ -421,8 +276,7 @@ class CutSystem {
   CutBase<E> base_;
   std::shared_ptr<const MatrixX> compliance_;
   std::shared_ptr<const CutStep> step_;
-  std::vector<std::array<Index, 3>> place_;
-  std::vector<Dof> dofs_;
+  KeptDofs dofs_;
   std::vector<NodeId> source_;                            // per node the one of the factor that it is a copy of
   Index none_ = 0;                                        // kept by the factor
   std::vector<std::pair<Index, ReducedUnits>> promoted_;  // by the place of the first
