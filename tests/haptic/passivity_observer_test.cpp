@@ -21,7 +21,7 @@ const EnergyLimits limits = EnergyLimits::from(DeviceLimits{});
 /// A source of force with a tank for the usual device behind it.
 template <class Source>
 struct Tanked : testing::Tanked<Source> {
-  explicit Tanked(const Source& source = {}) : testing::Tanked<Source>{.source = source, .tank = EnergyTank(limits)} {}
+  explicit Tanked(const Source& made = {}) : testing::Tanked<Source>{.source = made, .tank = EnergyTank(limits)} {}
 };
 
 /// Pushes out, and not in: each time round it gives a newton times the way.

@@ -40,20 +40,19 @@ struct Tools {
 
 }  // namespace
 
-TEST_CASE("a tool that lost the surface is found whatever its number, while the others are in the air",
+TEST_CASE("a tool that lost the surface is found whatever its number, while the other is in the air",
           "[haptic][servo][extreme]") {
-  for (const std::size_t lost : {0u, 1u, 2u}) {
-    Tools tools(3);
-    for (std::size_t i = 0; i < 3; ++i)
-      tools.states[i].position = Vector3(0.05, 0.0, 0.05 + 0.02 * static_cast<double>(i));
+  for (const std::size_t lost : {0u, 1u}) {
+    Tools tools(2);
+    tools.states[0].position = Vector3(0.05, 0.0, 0.05);
+    tools.states[1].position = Vector3(0.05, 0.0, 0.07);
     tools.tick();
     tools.move(lost, {0.05, 0.0, -0.05}, 30);  // round the border of the sheet
     tools.move(lost, {0.0, 0.0, -0.05}, 15);
     for (int k = 0; k < 20; ++k) tools.tick();
     INFO("tool " << lost);
     CHECK(tools.reacquired[lost] > 0);
-    for (std::size_t i = 0; i < 3; ++i)
-      if (i != lost) CHECK(tools.reacquired[i] == 0);
+    CHECK(tools.reacquired[1 - lost] == 0);
     CHECK(tools.servo.contact_force(lost).z() > 0.0);
   }
 }
