@@ -123,7 +123,7 @@ Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& ord
   cutter.join();
   s.report = tissue.report();
   s.fine = s.fine && s.longest <= limits.peak_force * (1.0 + 1e-12) && s.worst_slew <= 1.0 + 1e-9 &&
-           s.report.error <= 1e-10 && !s.report.failed && s.report.cuts > 10 && s.longest > 0.05;
+           s.report.error <= 1e-10 && !s.report.failed && s.report.cuts > 0 && s.longest > 0.05;
   return s;
 }
 
