@@ -76,7 +76,8 @@ class ElementChanges {
   /// under `u(node)` to `load(node, force)`.
   template <class Displacement, class Load>
   void add_forces(Displacement&& u, Load&& load) const {
-    for (const auto& [e, c] : changed_) {
+    for (const auto& entry : changed_) {
+      const Changed& c = entry.second;
       const auto scatter = [&](const Connectivity& nodes, double sign) {
         Values ue;
         for (int a = 0; a < E::nodes; ++a) ue.template segment<3>(3 * a) = u(nodes[static_cast<std::size_t>(a)]);
