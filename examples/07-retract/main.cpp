@@ -6,17 +6,16 @@
 // a quarter of the organ's length. Linear elasticity would let the lobe grow as it turns; this needs large strain.
 //
 //   1. `make_hyperelastic_body` puts a law on every region, here NeoHookean, and `Equilibrium` finds where the body
-//   rests
-//      under what holds and pulls it: Newton's method on the energy.
+//      rests under what holds and pulls it: Newton's method on the energy.
 //   2. `set_prescribed` moves the nodes in the hook, `step(0.0)` finds the next equilibrium from the last. The body has
 //      no memory here, so no time needs to pass; 08-relax has one.
 //   3. `reactions` are the forces in the supports, so also of the hook. The report of every step says whether it
-//   arrived,
-//      whether the equilibrium is stable, and whether elements are inside out.
+//      arrived, whether the equilibrium is stable, and whether elements are inside out.
 //   4. DIR/report.html has the curve beside that of linear elasticity, DIR/retract.pvd plays in ParaView.
 //
 // The example judges itself: all steps arrive, stable and upright, and the work of the hook is the energy that the
 // organ stores. The exit code is 0 when that holds, 1 when it does not, 2 when the mesh or the arguments were refused.
+#include "../common/main_with_out.hpp"
 #include "../common/page.hpp"
 
 #include <palpate/io/pvd.hpp>
@@ -110,7 +109,7 @@ int run_example(const std::filesystem::path& out) {
       out, "Retraction of a lobe",
       "A hook pulls the thin lobe of an organ by 50 mm. The straight line is the stiffness of the first step.",
       {chart.svg()}, figures);
-  for (const auto& [what, value] : figures) std::cout << what << ": " << value << '\n';
+  example::print(figures);
   std::cout << "wrote " << (out / "report.html").string() << " and " << (out / "retract.pvd").string() << '\n';
   if (p.fine && std::abs(missing) < 0.01) return 0;
   std::cerr << "a step did not arrive upright and stable, or the work is not the energy\n";
@@ -119,16 +118,4 @@ int run_example(const std::filesystem::path& out) {
 
 }  // namespace
 
-int main(int count, char** values) {
-  const auto out = example::read_out(count, values, "build/retract");
-  if (!out) {
-    std::cerr << "usage: example_07_retract [--out DIR]\n";
-    return 2;
-  }
-  try {
-    return run_example(*out);
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << '\n';
-    return 2;
-  }
-}
+int main(int count, char** values) { return example::main_with_out(count, values, "build/retract", run_example); }

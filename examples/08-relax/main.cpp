@@ -15,6 +15,7 @@
 // stays and all forces fall alike: the relaxation time of the force must be that of the law. It is measured from three
 // forces at equal distances, (F3 - F2) / (F2 - F1) = exp(-d / tau), which knows nothing of the law. The exit code is 0
 // when they agree within 2 %, 1 when they do not, 2 when the arguments were refused.
+#include "../common/main_with_out.hpp"
 #include "../common/page.hpp"
 
 #include <palpate/mesh/generators.hpp>
@@ -74,7 +75,7 @@ int run_example(const std::filesystem::path& out) {
   chart.line({{0.0, left}, {seconds, left}}, "grey");
   const double error = measured / term.relaxation_time - 1.0;
   const example::Figures figures{
-      {"longest force", text("%.3f N", peak)},
+      {"largest force", text("%.3f N", peak)},
       {"force at the end, and after a long time", text("%.3f N, %.3f N", force.back(), left)},
       {"relaxation time of the law", text("%.4f s", term.relaxation_time)},
       {"relaxation time of the force", text("%.4f s (%+.2f %%)", measured, 100.0 * error)}};
@@ -83,23 +84,11 @@ int run_example(const std::filesystem::path& out) {
       "A finger presses 4 mm into a pad of tissue within 50 ms and stays. The straight line is what is left "
       "after a long time.",
       {chart.svg()}, figures);
-  for (const auto& [what, value] : figures) std::cout << what << ": " << value << '\n';
+  example::print(figures);
   std::cout << "wrote " << (out / "report.html").string() << '\n';
   return std::abs(error) < 0.02 ? 0 : 1;
 }
 
 }  // namespace
 
-int main(int count, char** values) {
-  const auto out = example::read_out(count, values, "build/relax");
-  if (!out) {
-    std::cerr << "usage: example_08_relax [--out DIR]\n";
-    return 2;
-  }
-  try {
-    return run_example(*out);
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << '\n';
-    return 2;
-  }
-}
+int main(int count, char** values) { return example::main_with_out(count, values, "build/relax", run_example); }

@@ -14,10 +14,10 @@
 #include <palpate/post/stress.hpp>
 
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 
+#include "../common/main_with_out.hpp"
 #include "picture.hpp"
 
 using namespace palpate;
@@ -100,11 +100,7 @@ bool check(bool holds, const char* what) {
   return holds;
 }
 
-}  // namespace
-
-int main(int count, char** values) {
-  const bool given = count == 3 && std::strcmp(values[1], "--out") == 0;
-  const std::filesystem::path folder = given ? values[2] : ".";
+int run_example(const std::filesystem::path& folder) {
   Scene scene;
   scene.fix("z0").touch("z1");
   Tissue tissue(box_tet4(size, {24, 18, 8}), scene,
@@ -131,3 +127,7 @@ int main(int count, char** values) {
   right = check(free.force.norm() == 0.0, "lifted, nothing is left") && right;
   return right ? 0 : 1;
 }
+
+}  // namespace
+
+int main(int count, char** values) { return example::main_with_out(count, values, "build/probe", run_example); }

@@ -6,6 +6,7 @@
 #include <palpate/io/file.hpp>
 
 #include <filesystem>
+#include <iostream>
 #include <utility>
 
 #ifndef PALPATE_EXAMPLE_DATA
@@ -29,11 +30,8 @@ inline void write_page(const std::filesystem::path& folder, const std::string& t
   palpate::io::write_file((folder / "report.html").string(), {page + "</table></main></html>\n"});
 }
 
-/// The only argument there is: --out DIR. Nothing when there is another.
-inline std::optional<std::filesystem::path> read_out(int count, char** values, const char* fallback) {
-  if (count == 1) return fallback;
-  if (count == 3 && std::string_view(values[1]) == "--out") return values[2];
-  return {};
+inline void print(const Figures& figures) {
+  for (const auto& [what, value] : figures) std::cout << what << ": " << value << '\n';
 }
 
 }  // namespace example

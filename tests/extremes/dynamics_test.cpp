@@ -170,15 +170,18 @@ TEST_CASE("a motion whose loads are no numbers stays where it is, and says so", 
   ImplicitDynamics d(jelly_body(Scene().fix("z0").gravity({0.0, 0.0, -9.81})), {});
   for (int k = 0; k < 5; ++k) REQUIRE(d.step(0.01).taken);
   const VectorX u = d.displacement(), v = d.velocity(), load = d.body().load;
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, 1e308}) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity}) {
     d.set_load(VectorX::Constant(u.size(), bad));
-    const StepReport report = d.step(0.01);
-    CHECK((!report.taken || !report.newton.converged || d.displacement().allFinite()));
-    REQUIRE(d.displacement().allFinite());
-    REQUIRE(d.velocity().allFinite());
-    if (report.taken) d.set_state(u, v);
+    CHECK_FALSE(d.step(0.01).taken);
     CHECK(d.displacement() == u);
+    CHECK(d.velocity() == v);
   }
+  d.set_load(VectorX::Constant(u.size(), 1e308));  // a number, but its square is none
+  const StepReport report = d.step(0.01);
+  CHECK((!report.taken || !report.newton.converged));
+  REQUIRE(d.displacement().allFinite());
+  REQUIRE(d.velocity().allFinite());
+  d.set_state(u, v);
   d.set_load(load);
   CHECK(d.step(0.01).taken);
 }

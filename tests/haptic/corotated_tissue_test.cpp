@@ -3,6 +3,7 @@
 #include <palpate/haptic/tissue_thread.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/corotated_tissue.hpp>
+#include <palpate/model/soft_tissue.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 

@@ -211,6 +211,58 @@ TEST_CASE("energy from nowhere stops the motion at its last good state", "[integ
   CHECK(motion.state().displacement.allFinite());
 }
 
+TEST_CASE("a motion that was stopped goes on, with the limit of the state it is given", "[integrator][extreme][E2]") {
+  const auto body = soft_block(3);
+  const Mesh<Tet4>& mesh = body.rest.mesh;
+  const VectorX still = VectorX::Zero(3 * mesh.node_count());
+  ExplicitOptions options;
+  options.limit_every = 1;  // looks at every state, also those that are no numbers
+  auto motion = motion_of<CentralDifference>(body, above_ground(mesh), options);
+  const double at_rest = motion.limit();
+  const VectorX load = motion.load();
+  motion.load()[still.size() - 1] = std::nan("");
+  Status status;
+  for (int k = 0; k < 40 && !status.has(StatusFlag::energy_grew); ++k) status = motion.step(0.5 * at_rest);
+  REQUIRE(status.has(StatusFlag::energy_grew));
+  motion.load() = load;
+  motion.restart();
+  CHECK(motion.limit() >= 0.95 * at_rest);
+  for (int k = 0; k < 20; ++k) REQUIRE(motion.step(0.5 * at_rest).ok());
+
+  motion.set(pressed(mesh, 0.5), still);
+  const double limit = motion.limit();
+  CHECK(limit < 0.85 * at_rest);
+  CHECK(limit <= 1.05 * motion.estimate_limit(200));
+}
+
+TEST_CASE("the watch over a linear body sees the first steps that are too long", "[integrator][extreme][E6]") {
+  const auto body = make_body(box_tet4(Vector3(0.1, 0.1, 0.1), {3, 3, 3}), LinearElastic{3e3, 0.45, 1000.0});
+  const Mesh<Tet4>& mesh = body.mesh;
+  ExplicitOptions options;
+  options.limit_every = 0;
+  options.first_iterations = 0;
+  ExplicitMotion<LinearForces, CentralDifference> motion(LinearForces(assemble_stiffness<Tet4>(body, {})),
+                                                         lumped_mass(body), above_ground(mesh),
+                                                         0.01 * element_frequency_bound(body), options);
+  motion.set(VectorX::Zero(3 * mesh.node_count()), velocity_field(mesh, swirl));
+  const double energy = motion.kinetic_energy();
+  int steps = 0;
+  while (!motion.step(motion.limit()).has(StatusFlag::energy_grew) && steps < 100) ++steps;
+  CHECK(steps <= 3);
+  CHECK(motion.kinetic_energy() + motion.stored_energy() <= 100.0 * energy);
+}
+
+TEST_CASE("explicit steps do not allocate", "[integrator][allocation]") {
+  const auto body = soft_block(3);
+  auto motion = motion_of<CentralDifference>(body, above_ground(body.rest.mesh));
+  motion.load().setConstant(1e-4);
+  const testing::AllocationScope scope;
+  for (int k = 0; k < 40; ++k) motion.step(0.5 * motion.limit());
+  motion.restart();
+  CHECK(scope.allocations() == 0);
+  CHECK(motion.state().time > 0.0);
+}
+
 TEST_CASE("scrambled blocks stay finite and come to rest", "[integrator][extreme][E5]") {
   const auto body = soft_block(2);
   const Mesh<Tet4>& mesh = body.rest.mesh;

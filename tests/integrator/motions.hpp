@@ -11,6 +11,7 @@
 #include <palpate/integrator/semi_implicit_euler.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators_box.hpp>
+#include <palpate/testing/allocation_counter.hpp>
 
 #include "assembly/bodies.hpp"
 

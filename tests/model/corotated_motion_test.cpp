@@ -6,6 +6,7 @@
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"
+#include "refused.hpp"
 
 using namespace palpate;
 using Catch::Matchers::WithinAbs;
@@ -265,4 +266,45 @@ TEST_CASE("co-rotated motion refuses what it cannot do", "[model][corotated]") {
   auto weightless = pad();
   weightless.rest.density[0] = 0.0;
   CHECK(kind(weightless, standing(), {}) == "bad_density");
+}
+
+TEST_CASE("a correction that was not solved is not made", "[model][corotated]") {
+  CorotatedMotionOptions options;
+  options.solve.maximum_iterations = 1;
+  CorotatedMotion<LinearElastic, double> motion(pad(), standing(), options);
+  REQUIRE(motion.step(1e-2).taken);
+  const VectorX u = motion.displacement(), load = motion.body().load;
+  CHECK_FALSE(motion.correct(load));
+  CHECK(motion.displacement() == u);
+}
+
+TEST_CASE("a body at rest leaves no force, a damped one no more than all of it", "[model][corotated]") {
+  Scene scene;
+  scene.fix("z0");
+  CorotatedMotion<> still(pad(), scene);
+  CHECK(still.step(1e-3).residual == 0.0);
+  CorotatedMotionOptions options;
+  options.mass_damping = 1e5;
+  CorotatedMotion<> damped(pad(), standing(), options);
+  damped.set_state(damped.displacement(), VectorX::Constant(damped.size(), 1.0));
+  for (int k = 0; k < 5; ++k) CHECK(damped.step(1e-3).residual <= 1.0);
+}
+
+TEST_CASE("after a refused step the next is as if there had been none", "[model][corotated][E6]") {
+  CorotatedMotionOptions options = to_the_end();
+  options.stiffness_damping = 1e-3;
+  Exact motion(pad(), standing(), options), same(pad(), standing(), options);
+  for (int k = 0; k < 10; ++k)
+    for (Exact* m : {&motion, &same}) REQUIRE(m->step(5e-3).taken);
+  const VectorX good = VectorX::Zero(motion.size());
+  motion.set_prescribed(VectorX::Constant(motion.size(), std::numeric_limits<double>::quiet_NaN()));
+  REQUIRE_FALSE(motion.step(5e-3).taken);
+  motion.set_prescribed(good);
+  const CorotatedStep a = motion.step(5e-3), b = same.step(5e-3);
+  CHECK(a.calm);
+  CHECK(a.linearisations == b.linearisations);
+  CHECK((motion.displacement() - same.displacement()).norm() <= 1e-10 * same.displacement().norm());
+  CHECK_REFUSED(SetupErrorKind::bad_argument, motion.set_load(good.head(3)));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, motion.set_prescribed(good.head(3)));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, motion.set_state(good, good.head(3)));
 }

@@ -4,6 +4,7 @@
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
+#include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/model/equilibrium.hpp>
@@ -13,6 +14,7 @@
 #include <numbers>
 
 #include "catch.hpp"
+#include "refused.hpp"
 
 using namespace palpate;
 using Catch::Matchers::WithinAbs;
@@ -302,7 +304,7 @@ TEST_CASE("what is no end of a step is not corrected, and no state that cannot b
   CHECK(d.correct(force));
   const VectorX u = d.displacement();
   REQUIRE(u.norm() > 0.0);
-  for (const double size : {-1e6, 1e300, infinity, std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double size : {-1e6, 1e300, 1e308, infinity, std::numeric_limits<double>::quiet_NaN()}) {
     CHECK_FALSE(d.correct((size / 1e-4) * force));
     CHECK(d.displacement() == u);
   }
@@ -327,4 +329,75 @@ TEST_CASE("a state that is set has its prescribed parts where they are prescribe
   CHECK(d.acceleration().norm() <= 1e-6);
   for (int k = 0; k < 5; ++k) d.step(1e-3);
   CHECK((d.displacement() - statics.displacement()).norm() <= 1e-9 * statics.displacement().norm());
+}
+
+TEST_CASE("a correction leaves held nodes where the step put them", "[model][dynamics]") {
+  const Scene scene = Scene().fix("z0").prescribe("z1", {0.0, 0.0, 0.0});
+  ImplicitDynamics d(make_deformable_body(block(), scene), {}), same(make_deformable_body(block(), scene), {});
+  VectorX force = VectorX::Zero(d.displacement().size());
+  force[d.body().conditions.free_dofs.front()] = 1e-3;
+  for (ImplicitDynamics* motion : {&d, &same}) REQUIRE(motion->step(5e-3).taken);
+  d.set_prescribed(0.01 * VectorX::Ones(force.size()));  // of the next step
+  REQUIRE(d.correct(force));
+  REQUIRE(same.correct(force));
+  CHECK(d.displacement() == same.displacement());
+}
+
+TEST_CASE("a response needs a step, and is that of its tangent, also where it took no iteration", "[model][dynamics]") {
+  for (const MassKind mass : {MassKind::lumped, MassKind::consistent}) {
+    ImplicitDynamics d(make_deformable_body(block(), Scene().fix("z0")), {.mass = mass}),
+        fresh(make_deformable_body(block(), Scene().fix("z0")), {.mass = mass});
+    VectorX force = VectorX::Zero(d.displacement().size()), u(force.size()), expected(force.size());
+    force[d.body().conditions.free_dofs.back()] = 1e-3;
+    CHECK_FALSE(d.respond(force, u));
+    REQUIRE(d.step(5e-3).newton.iterations == 0);
+    REQUIRE(d.respond(force, u));
+    REQUIRE(fresh.prepare_response(5e-3));
+    REQUIRE(fresh.respond(force, expected));
+    REQUIRE(expected.norm() > 0.0);
+    CHECK((u - expected).norm() <= 1e-12 * expected.norm());
+  }
+}
+
+TEST_CASE("a step ends no higher than it began, however far the body would fly in it", "[model][dynamics][E1]") {
+  const auto body = make_hyperelastic_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}),
+                                           std::vector<StVenantKirchhoff>{{5e3, 0.4, density}});
+  for (const double h : {1e-3, 1e-2, 1e-1, 1.0}) {
+    ImplicitDynamics d(make_deformable_body(body, Scene().fix("z0")), {.newton = {.maximum_iterations = 2}});
+    const VectorX start = VectorX::Zero(d.displacement().size());
+    d.set_state(start, VectorX::Constant(start.size(), 10.0));
+    const VectorX v = d.velocity();
+    const double potential = d.kinetic_energy() + d.elastic_energy();  // v is what the step would lose by stopping
+    REQUIRE(d.step(h).taken);
+    double left = d.elastic_energy();
+    for (Index i = 0; i < start.size(); ++i) {
+      const double lost = d.velocity()[i] - v[i];
+      left += 0.5 * d.body().lumped[i / 3] * lost * lost;
+    }
+    CHECK(left <= (1.0 + 1e-12) * potential);
+  }
+}
+
+TEST_CASE("vectors of another size are refused by motions and equilibria", "[model][dynamics][extreme]") {
+  const Scene scene = Scene().fix("z0");
+  ImplicitDynamics d(make_deformable_body(block(), scene), {});
+  Equilibrium statics(block(), scene);
+  const VectorX wrong = VectorX::Zero(d.displacement().size() + 3), right = d.displacement();
+  CHECK_REFUSED(SetupErrorKind::bad_argument, d.set_load(wrong));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, d.set_prescribed(wrong));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, d.set_state(wrong, right));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, d.set_state(right, wrong));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, statics.set_load(wrong));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, statics.set_prescribed(wrong));
+  CHECK(d.step(1e-3).taken);
+  CHECK(statics.solve().converged);
+}
+
+TEST_CASE("a linear body at rest is an equilibrium like any other", "[model][equilibrium]") {
+  const auto body = make_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}), LinearElastic{5e3, 0.4, density});
+  const Scene scene = Scene().fix("z0").gravity({0.0, 0.0, -9.81});
+  Equilibrium statics(make_held_body(body, scene));
+  REQUIRE(statics.solve().converged);
+  CHECK_THAT(statics.reactions().sum(), WithinRel(density * 0.04 * 0.04 * 0.08 * 9.81, 1e-9));
+  CHECK_REFUSED(SetupErrorKind::unconstrained, make_held_body(body, Scene().gravity({0.0, 0.0, -9.81})));
 }

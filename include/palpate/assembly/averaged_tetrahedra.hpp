@@ -142,7 +142,7 @@ class AveragedTetrahedra {
     clear(sums_);
     for (const TetrahedronBlock& block : layout_.blocks) {
       detail::VolumeWatch<S, N> watch;
-      for_each_of(block, u, [&](const Batch& batch, const Gradient& gradient) {
+      layout_.for_each_gradient(block, u, [&](const Batch& batch, const Gradient& gradient) {
         const Number j = determinant(gradient);
         watch.see(j, batch.volume);
         add_to_rows(batch, sums_.data() + block.first_row, batch.volume * j);
@@ -154,19 +154,10 @@ class AveragedTetrahedra {
     return report;
   }
   template <class Visit>
-  PALPATE_ALWAYS_INLINE void for_each_of(const TetrahedronBlock& block, const VectorX& u,
-                                         Visit&& visit) const noexcept {
-    alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
-    layout_.load_displacements(block, u, local);
-    for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
-      const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
-      visit(batch, batch.deformation_gradient(local));
-    }
-  }
-  template <class Visit>
   PALPATE_ALWAYS_INLINE void for_each_element(const VectorX& u, Visit&& visit) const noexcept {
     for (const TetrahedronBlock& block : layout_.blocks)
-      for_each_of(block, u, [&](const Batch& batch, const Gradient& gradient) { visit(block, batch, gradient); });
+      layout_.for_each_gradient(block, u,
+                                [&](const Batch& batch, const Gradient& gradient) { visit(block, batch, gradient); });
   }
 
   TetrahedronBatches<S, N> layout_;

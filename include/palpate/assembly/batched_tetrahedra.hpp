@@ -30,7 +30,6 @@ class BatchedTetrahedra {
 
   Index size() const noexcept { return 3 * layout_.node_count(); }
   Index block_count() const noexcept { return static_cast<Index>(layout_.blocks.size()); }
-  std::size_t bytes() const noexcept { return layout_.bytes() + rows_.size() * sizeof(S); }
 
   /// force = internal force at displacement u [N]. A law that does not hold adds whatever it gives; the report says so:
   /// det F <= 0 where the law needs more, or not finite. (Narrower bounds of a law are seen by LargeStrain only.)
@@ -40,13 +39,21 @@ class BatchedTetrahedra {
     return report();
   }
 
+  /// Elements for which gone(element) leave, for good: no force, no energy, not in the report. O(elements), no
+  /// allocation. Pieces that come apart share blocks: S = float then loses digits as they fly off.
+  template <class Gone>
+  void remove_if(Gone&& gone) {
+    layout_.remove_if(gone, [](std::size_t, int) {});
+  }
+
   /// Stored energy [J].
   double energy(const VectorX& u) noexcept {
     double sum = 0.0;
     for (const TetrahedronBlock& block : layout_.blocks) {
       const M law = laws_[static_cast<std::size_t>(block.region)];
       Lanes<S, N> part(S(0));
-      for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) { part += batch.volume * law.energy(f); });
+      layout_.for_each_gradient(block, u,
+                                [&](const Batch& batch, const Gradient& f) { part += batch.volume * law.energy(f); });
       for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(part[lane]);
     }
     return sum;
@@ -58,11 +65,10 @@ class BatchedTetrahedra {
   /// The three parts of force(), for several threads: every block once, in any order; then every node; then the report.
   void compute_block(Index index, const VectorX& u) noexcept {
     const TetrahedronBlock block = layout_.blocks[static_cast<std::size_t>(index)];
-    S* const rows = rows_.data() + 4 * block.first_row;
-    std::fill(rows, rows + 4 * block.row_count, S(0));
+    S* const rows = layout_.cleared(block, rows_);
     const M law = laws_[static_cast<std::size_t>(block.region)];
     detail::VolumeWatch<S, N> watch;
-    for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
+    layout_.for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
       watch.see(determinant(f, cofactor(f)), batch.volume);
       batch.add_force(law.stress(f), rows);
     });
@@ -76,17 +82,6 @@ class BatchedTetrahedra {
  private:
   using Batch = TetrahedronBatch<S, N>;
   using Gradient = Tensor3<Lanes<S, N>>;
-
-  template <class Visit>
-  PALPATE_ALWAYS_INLINE void for_each_gradient(const TetrahedronBlock& block, const VectorX& u,
-                                               Visit&& visit) const noexcept {
-    alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
-    layout_.load_displacements(block, u, local);
-    for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
-      const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
-      visit(batch, batch.deformation_gradient(local));
-    }
-  }
 
   TetrahedronBatches<S, N> layout_;
   std::vector<M> laws_;                  // by region

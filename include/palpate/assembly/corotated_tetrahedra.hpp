@@ -23,19 +23,23 @@ class CorotatedTetrahedra {
   /// Throws as make_batches.
   explicit CorotatedTetrahedra(const HyperelasticBody<Tet4, Material>& body, const SetupLimits& limits = {})
       : layout_(make_batches<S, N>(body, 280.0, limits)) {
-    for (const Material& law : body.laws)
-      laws_.push_back({static_cast<S>(law.base.lame_lambda()), static_cast<S>(law.base.shear_modulus())});
+    for (const Material& law : body.laws) laws_.push_back(detail::lame<Lane>(law.base));
     rows_.assign(4 * layout_.nodes.size(), S(0));
     seen_.resize(layout_.blocks.size());
     for (const Batch& batch : layout_.batches) turned_.push_back(at_rest(batch));
   }
 
   Index size() const noexcept { return 3 * layout_.node_count(); }
-  std::size_t bytes() const noexcept {
-    return layout_.bytes() + turned_.size() * sizeof(turned_[0]) + rows_.size() * sizeof(S);
+  /// Elements for which gone(element) leave, for good, as in BatchedTetrahedra. O(elements), no allocation.
+  template <class Gone>
+  void remove_if(Gone&& gone) {
+    layout_.remove_if(gone, [this](std::size_t batch, int lane) {
+      for (Vector& g : turned_[batch].gradient) TetrahedronBatches<S, N>::clear_lane(g, lane);
+      turned_[batch].root_volume.set(lane, S(0));
+    });
   }
 
-  /// Takes the rotations at u; f = internal force there [N], energy [J]. Finite for every finite u.
+  /// Takes the rotations at u; f = internal force there [N], energy [J]. Finite where the square of F is, in S.
   DeformationReport linearise(const VectorX& u, VectorX& f, double& energy) noexcept {
     energy = 0.0;
     for (std::size_t b = 0; b < layout_.blocks.size(); ++b) energy += linearise_block(b, u);
@@ -67,9 +71,6 @@ class CorotatedTetrahedra {
   using Batch = TetrahedronBatch<S, N>;
   using Lane = Lanes<S, N>;
   using Vector = Triple<Lane>;
-  struct Lame {
-    S lambda, mu;
-  };
   struct TurnedBatch {
     Vector gradient[3];  // R grad N_a sqrt(V)
     Lane root_volume;    // sqrt(V)
@@ -89,18 +90,12 @@ class CorotatedTetrahedra {
     for (int a = 0; a < 3; ++a) to.gradient[a] = scaled * batch.gradient[a];
   }
 
-  S* cleared_rows(const TetrahedronBlock& block) const noexcept {
-    S* const rows = rows_.data() + 4 * block.first_row;
-    std::fill(rows, rows + 4 * block.row_count, S(0));
-    return rows;
-  }
-
   double linearise_block(std::size_t index, const VectorX& u) noexcept {
     const TetrahedronBlock block = layout_.blocks[index];
     alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
     layout_.load_displacements(block, u, local);
-    S* const rows = cleared_rows(block);
-    const auto [lambda, mu] = laws_[static_cast<std::size_t>(block.region)];
+    S* const rows = layout_.cleared(block, rows_);
+    const detail::Lame<Lane> law = laws_[static_cast<std::size_t>(block.region)];
     detail::VolumeWatch<S, N> watch;
     Lane stored(S(0));
     for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
@@ -108,9 +103,8 @@ class CorotatedTetrahedra {
       TurnedBatch& turned = turned_[static_cast<std::size_t>(b)];
       const Tensor3<Lane> f = batch.deformation_gradient(local), r = tracked_rotation(f, turned.turn), d = f - r;
       watch.see(determinant(f, cofactor(f)), batch.volume);
-      const Lane pressure = Lane(lambda) * contract(r, d);
-      stored += batch.volume * (Lane(mu) * contract(d, d) + S(0.5f) * pressure * contract(r, d));
-      batch.add_force(Lane(S(2) * mu) * d + pressure * r, rows);
+      stored += batch.volume * detail::corotated_energy(law, r, d);
+      batch.add_force(detail::corotated_stress(law, r, d), rows);
       turn_gradients(r, batch, turned);
     }
     seen_[index] = watch.summary(layout_, block, true);
@@ -122,7 +116,7 @@ class CorotatedTetrahedra {
   void apply_block(const TetrahedronBlock& block, const VectorX& x) const noexcept {
     alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
     layout_.load_displacements(block, x, local);
-    S* const rows = cleared_rows(block);
+    S* const rows = layout_.cleared(block, rows_);
     const auto [lambda, mu] = laws_[static_cast<std::size_t>(block.region)];
     for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
       const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
@@ -139,7 +133,7 @@ class CorotatedTetrahedra {
   template <class Part>
   void add_diagonals(Part part, VectorX& to) const noexcept {
     for (const TetrahedronBlock& block : layout_.blocks) {
-      S* const rows = cleared_rows(block);
+      S* const rows = layout_.cleared(block, rows_);
       const auto [lambda, mu] = laws_[static_cast<std::size_t>(block.region)];
       for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
         const Vector(&g)[3] = turned_[static_cast<std::size_t>(b)].gradient;
@@ -154,7 +148,7 @@ class CorotatedTetrahedra {
   }
 
   TetrahedronBatches<S, N> layout_;
-  std::vector<Lame> laws_;  // by region
+  std::vector<detail::Lame<Lane>> laws_;  // by region
   std::vector<TurnedBatch> turned_;
   mutable std::vector<S> rows_;          // force on every row, four numbers: a workspace
   std::vector<DeformationReport> seen_;  // by block

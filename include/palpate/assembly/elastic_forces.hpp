@@ -20,8 +20,6 @@ class ElasticForces {
   virtual DeformationReport force(const VectorX& u, VectorX& f) const noexcept = 0;
   /// Derivative of the internal force, into a matrix on the pattern of the mesh. Not always positive definite.
   virtual void tangent(const VectorX& u, BlockMatrix& k) const noexcept = 0;
-  /// A displacement [m] small against the elements, with which differences of forces still have half their digits.
-  virtual double probe_length() const noexcept = 0;
   /// Whether forces are as small as displacements are. Where they come of a deformation gradient, 1 and a little, they
   /// carry its rounding also at rest.
   virtual bool is_linear() const noexcept { return false; }
@@ -34,7 +32,5 @@ class ElasticForces {
   /// The step that was begun ends at u: what is remembered moves on. The next call is begin_step.
   virtual void end_step(const VectorX&) noexcept {}
 };
-
-static_assert(ForceOperator<ElasticForces>);
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -20,6 +20,11 @@ struct EssentialConditions {
   void gather(const VectorX& full, VectorX& free_part) const noexcept {
     for (Index k = 0; k < free_count(); ++k) free_part[k] = full[free_dofs[static_cast<std::size_t>(k)]];
   }
+  /// Full vector of free entries, and of another full vector on prescribed dofs.
+  void place(const VectorX& free_part, const VectorX& held, VectorX& full) const noexcept {
+    full = held;
+    for (Index k = 0; k < free_count(); ++k) full[free_dofs[static_cast<std::size_t>(k)]] = free_part[k];
+  }
   /// Full vector with zeros on prescribed dofs.
   void scatter(const VectorX& free_part, VectorX& full) const noexcept {
     full.setZero();

@@ -98,7 +98,8 @@ class LargeStrain final : public ElasticForces {
     }
   }
 
-  double probe_length() const noexcept override { return probe_length_; }
+  /// A small part of the shortest edge [m]: differences of forces then keep half their digits.
+  double probe_length() const noexcept { return probe_length_; }
 
   void begin_step(double dt) noexcept override {
     if constexpr (remembers) memory_.begin_step(body_, dt);

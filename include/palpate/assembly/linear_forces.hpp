@@ -23,12 +23,14 @@ class LinearForces final : public ElasticForces {
   }
   void tangent(const VectorX&, BlockMatrix& k) const noexcept override { k.copy_values(stiffness_); }
   /// Any length would do.
-  double probe_length() const noexcept override { return 1.0; }
+  double probe_length() const noexcept { return 1.0; }
   bool is_linear() const noexcept override { return true; }
 
  private:
   BlockMatrix stiffness_;
   mutable VectorX force_;
 };
+
+static_assert(ForceOperator<LinearForces>);
 
 }  // namespace palpate::inline PALPATE_ABI

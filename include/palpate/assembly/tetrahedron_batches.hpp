@@ -84,9 +84,23 @@ struct TetrahedronBatches {
   }
 
   Index node_count() const noexcept { return static_cast<Index>(first_copy.size()) - 1; }
-  std::size_t bytes() const noexcept {
-    return batches.size() * (sizeof(batches[0]) + sizeof(elements[0])) + nodes.size() * 2 * sizeof(NodeId) +
-           first_copy.size() * sizeof(Index);
+
+  /// Elements for which gone(element) leave: their lanes become lanes without an element. visit(batch, lane) for every
+  /// one that was there. O(elements), no allocation.
+  template <class Gone, class Visit>
+  void remove_if(Gone&& gone, Visit&& visit) {
+    for (std::size_t b = 0; b < batches.size(); ++b)
+      for (std::size_t lane = 0; lane < static_cast<std::size_t>(N); ++lane) {
+        NodeId& e = elements[b][lane];
+        if (e < 0 || !gone(Index{e})) continue;
+        e = -1;
+        for (Triple<Lanes<S, N>>& g : batches[b].gradient) clear_lane(g, static_cast<int>(lane));
+        batches[b].volume.set(static_cast<int>(lane), S(0));
+        visit(b, static_cast<int>(lane));
+      }
+  }
+  static void clear_lane(Triple<Lanes<S, N>>& v, int lane) noexcept {
+    for (Lanes<S, N>* x : {&v.x, &v.y, &v.z}) x->set(lane, S(0));
   }
 
   /// Displacements of a block's nodes less that of the first: single precision then keeps digits of strain, not of
@@ -101,6 +115,23 @@ struct TetrahedronBatches {
       for (int c = 0; c < 3; ++c) local[4 * r + c] = static_cast<S>(ur[c] - origin[c]);
       local[4 * r + 3] = S(0);
     }
+  }
+  /// Calls visit(batch, F) for every batch of a block at a displacement.
+  template <class Visit>
+  PALPATE_ALWAYS_INLINE void for_each_gradient(const TetrahedronBlock& block, const VectorX& u,
+                                               Visit&& visit) const noexcept {
+    alignas(64) S local[4 * most_rows];
+    load_displacements(block, u, local);
+    for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
+      const TetrahedronBatch<S, N>& batch = batches[static_cast<std::size_t>(b)];
+      visit(batch, batch.deformation_gradient(local));
+    }
+  }
+  /// The rows of a block, set to zero.
+  static S* cleared(const TetrahedronBlock& block, std::vector<S>& rows) noexcept {
+    S* const first = rows.data() + 4 * block.first_row;
+    std::fill(first, first + 4 * block.row_count, S(0));
+    return first;
   }
   /// f = for every node of a range, the sum of its rows of four numbers.
   void add_up(const S* rows, Index first_node, Index last_node, VectorX& f) const noexcept {

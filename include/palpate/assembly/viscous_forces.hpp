@@ -126,8 +126,6 @@ class ViscousForces final : public ElasticForces {
     return report;
   }
   void tangent(const VectorX&, BlockMatrix& k) const noexcept override { k.copy_values(step_); }
-  /// Any length would do.
-  double probe_length() const noexcept override { return 1.0; }
   bool is_linear() const noexcept override { return true; }
 
   void begin_step(double dt) noexcept override {

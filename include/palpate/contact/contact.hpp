@@ -47,6 +47,12 @@ struct ContactTool {
 
   Vector3 drag_way = Vector3::Zero(), drag_turn = Vector3::Zero();  ///< of the coupling under friction [m], [rad]
 
+  /// Takes part in nothing, and nothing presses it.
+  void lift() noexcept {
+    active = grasping = false;
+    force.setZero();
+    torque.setZero();
+  }
   /// The proxy that a rigid tissue pushing back with `force` would allow.
   Vector3 goal(double floor) const noexcept { return target + (compliance + floor) * force; }
   /// The same for the rotation.
@@ -74,7 +80,6 @@ struct Contact {
   std::array<double, 3> weights{};
   Vector3 normal = Vector3::Zero();    ///< unit, from the surface to the ball's centre
   Vector3 rest = Vector3::Zero();      ///< the point when nothing touches [m]
-  double gap = 0.0;                    ///< at the last linearisation [m]
   double force = 0.0;                  ///< normal force [N], >= 0; of a grasp, along `normal`, any
   Vector3 point = Vector3::Zero();     ///< on the deformed surface [m]
   Vector3 friction = Vector3::Zero();  ///< on the tool, across the normal [N]

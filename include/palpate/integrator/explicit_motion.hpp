@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/core/realtime.hpp>
-#include <palpate/core/setup_error.hpp>
 #include <palpate/core/status.hpp>
+#include <palpate/integrator/requirements.hpp>
 #include <palpate/integrator/step_limit.hpp>
 
 namespace palpate::inline PALPATE_ABI {
@@ -13,6 +13,7 @@ struct ExplicitOptions {
   double margin = 0.07;       ///< the stable limit is taken this much smaller than estimated
   int first_iterations = 40;  ///< of the estimate at set-up
   int limit_every = 16;       ///< steps between two iterations of the estimate, each of which costs one force; 0: never
+                              ///< but by estimate_limit()
   int energy_every = 16;  ///< steps between two looks at the stored energy; the kinetic is seen every step. 0: never
   double energy_growth = 1.5;  ///< how many times the energy that explains itself may be there before motion stops
 };
@@ -29,8 +30,9 @@ struct ExplicitOptions {
 /// Cost per step: one force, 1/limit_every forces, 1/energy_every energies, and about 20 numbers per dof.
 template <ForceOperator Force, ExplicitScheme Scheme>
 class ExplicitMotion {
-  static_assert(!requires { requires Force::remembers; },
-                "palpate: explicit steps do not move what a material remembers; use ImplicitDynamics");
+  static_assert(
+      !requires { requires Force::remembers; },
+      "palpate: explicit steps do not move what a material remembers; use ImplicitDynamics");
 
  public:
   /// `nodal_mass` [kg] per node; `free_dofs` ascending, all others are held where they are (set target() to move them);
@@ -56,7 +58,7 @@ class ExplicitMotion {
     state_.damping = options.damping;
     total_mass_ = nodal_mass.sum();
     state_.held_speed = reactions_ = held_before_ = VectorX::Zero(static_cast<Index>(state_.held.size()));
-    restart();
+    begin();
     limit_.iterate(force_, state_, options_.first_iterations);
   }
 
@@ -69,27 +71,42 @@ class ExplicitMotion {
   /// Where held dofs are at the end of the next step [m]; they go there at constant speed. Keep the size.
   VectorX& target() noexcept { return state_.target; }
 
-  /// Sets displacement and velocity (of the same time), forgets work done so far, and lets a stopped motion go on.
-  /// Throws bad_argument, without a change, for vectors that have not one entry per dof.
+  /// Sets displacement and velocity (of the same time), and restarts. Throws bad_argument, without a change, for
+  /// vectors that have not one entry per dof.
   void set(const VectorX& displacement, const VectorX& velocity) {
-    for (const VectorX* v : {&displacement, &velocity})
-      if (v->size() != force_.size())
-        raise(SetupErrorKind::bad_argument,
-              std::to_string(v->size()) + " entries for " + std::to_string(force_.size()) + " dofs",
-              "Give displacement and velocity three per node");
+    for (const VectorX* v : {&displacement, &velocity}) require_entries(*v, force_.size());
     state_.displacement = displacement;
     state_.velocity = velocity;
     state_.target = displacement;
     restart();
   }
+  /// Forgets work done so far, estimates the limit anew, which takes some 20 to 40 forces, unless limit_every is 0, and
+  /// lets a stopped motion go on.
   void restart() noexcept {
-    state_.deformation = force_.force(state_.displacement, state_.force);
-    work_ = 0.0;
-    gross_ = 0.0;
-    start_energy_ = kinetic_energy() + std::abs(force_.energy(state_.displacement));
-    stopped_ = false;
-    steps_ = 0;
-    keep();
+    begin();
+    if (options_.limit_every > 0) estimate_limit(std::max(options_.first_iterations, StepLimit::settled));
+  }
+
+  /// Elements for which gone(element) leave where they are, for good, with their mass; `nodal_mass` is what is left
+  /// (lumped_mass(body, gone)). Velocities of what is left stay, and nodes without mass stop where they are. load()
+  /// remains the caller's: where there is gravity, less of it. The limit is estimated anew as by restart() and may be
+  /// shorter: a light node on a stiff element; at rest no shorter than what the elements' bound says. Work counts from
+  /// here; a stopped motion stays stopped. Throws bad_argument or bad_density, without a change.
+  template <class Gone>
+  requires requires(Force& f, Gone gone) { f.remove_if(gone); }
+  void remove_elements(Gone&& gone, const VectorX& nodal_mass) {
+    require_mass_left(nodal_mass);
+    force_.remove_if(gone);
+    state_.mass = nodal_mass.replicate(1, 3).transpose().reshaped();
+    std::erase_if(state_.free, [&](Index dof) { return !(state_.mass[dof] > 0.0); });
+    for (Index dof = 0; dof < state_.mass.size(); ++dof)
+      if (!(state_.mass[dof] > 0.0)) state_.velocity[dof] = state_.inverse_mass[dof] = 0.0;
+    for (const Index dof : state_.free) state_.inverse_mass[dof] = 1.0 / state_.mass[dof];
+    total_mass_ = nodal_mass.sum();
+    const bool stopped = stopped_;
+    limit_.restart();
+    restart();
+    stopped_ = stopped;
   }
 
   /// Largest step that is accepted [s], from the state of at most limit_every steps ago.
@@ -121,8 +138,10 @@ class ExplicitMotion {
                  [this]() noexcept { state_.deformation = force_.force(state_.displacement, state_.force); });
     after_step();
     ++steps_;
-    if (options_.limit_every > 0 && steps_ % options_.limit_every == 0) limit_.iterate(force_, state_, 1);
-    if (options_.energy_every == 0 || energy_explained(dt)) return seen();
+    if (options_.energy_every == 0 || energy_explained(dt)) {
+      if (options_.limit_every > 0 && steps_ % options_.limit_every == 0) limit_.iterate(force_, state_, 1);
+      return seen();
+    }
     state_.displacement = good_.displacement;
     state_.velocity = good_.velocity;
     state_.force = good_.force;
@@ -172,6 +191,27 @@ class ExplicitMotion {
             "Give a bound of omega^2, or " + std::to_string(StepLimit::settled) + " first_iterations or more");
   }
 
+  /// Work and energy count from the present state.
+  void begin() noexcept {
+    state_.deformation = force_.force(state_.displacement, state_.force);
+    work_ = gross_ = 0.0;
+    start_energy_ = kinetic_energy() + std::abs(force_.energy(state_.displacement));
+    stopped_ = false;
+    steps_ = 0;
+    keep();
+  }
+
+  /// No node may have got heavier, or lighter than nothing.
+  void require_mass_left(const VectorX& mass) const {
+    if (3 * mass.size() != force_.size())
+      raise(SetupErrorKind::bad_argument,
+            "there are " + std::to_string(mass.size()) + " masses for " + std::to_string(force_.size() / 3) + " nodes");
+    for (Index i = 0; i < mass.size(); ++i)
+      if (!(mass[i] >= 0.0) || !(mass[i] <= state_.mass[3 * i] * (1.0 + 1e-9)))
+        raise(SetupErrorKind::bad_density,
+              "node " + std::to_string(i) + " has the mass " + number(mass[i]) + " after elements have left",
+              "Give lumped_mass(body, gone)");
+  }
   Status seen() const noexcept {
     Status status;
     if (state_.deformation.inverted > 0) status.set(StatusFlag::inverted);
@@ -205,8 +245,11 @@ class ExplicitMotion {
     keep();
     return true;
   }
-  /// Energy of a motion by the length that differences of forces can still see.
+  /// Energy of a motion by the length that differences of forces can still see; a linear force is as exact as it is
+  /// small.
   double rounding() const noexcept {
+    if constexpr (requires { force_.is_linear(); })
+      if (force_.is_linear()) return 0.0;
     return 0.5 * limit_.largest_square() * total_mass_ * force_.probe_length() * force_.probe_length();
   }
   void keep() noexcept {

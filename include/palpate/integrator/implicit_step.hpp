@@ -1,8 +1,7 @@
 // One step of an implicit scheme: from the displacement at its end to the motion there.
 #pragma once
 
-#include <palpate/core/setup_error.hpp>
-#include <palpate/core/types.hpp>
+#include <palpate/integrator/requirements.hpp>
 #include <palpate/integrator/time_scheme.hpp>
 
 namespace palpate::inline PALPATE_ABI {
@@ -34,18 +33,17 @@ class ImplicitStep {
     acceleration = acceleration_per_displacement() * (end - predicted_);
     velocity = coasting_ + (scheme_.new_in_v * h_) * acceleration;
   }
+  /// What inertia M a and damping D v at the end add to the potential of the step [J].
+  double potential(const VectorX& velocity, const VectorX& drag, const VectorX& acceleration,
+                   const VectorX& inertia) const noexcept {
+    return 0.5 / velocity_per_displacement() * velocity.dot(drag) +
+           0.5 / acceleration_per_displacement() * acceleration.dot(inertia);
+  }
 
  private:
   TimeScheme scheme_;
   VectorX predicted_, coasting_;
   double h_ = 0.0;
 };
-
-/// Throws bad_argument for Rayleigh's coefficients that would add energy, or are none.
-inline void require_damping(double mass_damping, double stiffness_damping) {
-  for (const double d : {mass_damping, stiffness_damping})
-    if (!(d >= 0.0 && d < infinity))
-      raise(SetupErrorKind::bad_argument, "a damping of " + number(d), "Give 0 or a positive number");
-}
 
 }  // namespace palpate::inline PALPATE_ABI

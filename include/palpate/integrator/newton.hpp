@@ -37,7 +37,7 @@ struct NewtonReport {
 class Newton {
  public:
   Newton() = default;
-  /// Throws as NewtonParameters::require_valid. Allocates four vectors.
+  /// Throws as NewtonParameters::require_usable. Allocates four vectors.
   explicit Newton(Index size, const NewtonParameters& parameters = {})
       : parameters_(parameters), residual_(size), step_(size), trial_(size), trial_residual_(size) {
     parameters_.require_usable();
@@ -52,7 +52,8 @@ class Newton {
     for (;;) {
       const double norm = residual_.norm();
       report.relative_residual = norm > 0.0 ? norm / problem.scale() : 0.0;
-      report.converged = report.relative_residual <= parameters_.tolerance || norm <= problem.rounding();
+      report.converged =
+          norm < infinity && (report.relative_residual <= parameters_.tolerance || norm <= problem.rounding());
       if (report.converged || report.iterations == parameters_.maximum_iterations) return report;
       if (!problem.prepare(x)) return report;
       ++report.iterations;

@@ -15,8 +15,7 @@ struct BoundedSolveParameters {
 struct BoundedSolveReport {
   bool converged = false;
   int iterations = 0;
-  double error =
-      infinity;  ///< part of the answer that the last iteration added, in the energy norm; infinite before it
+  double error = infinity;  ///< part of the answer that the last iteration added, in the energy norm; before: infinite
 };
 
 /// K x = b by preconditioned conjugate gradients from zero. Every iteration adds alpha r.z to the squared energy norm
@@ -27,8 +26,6 @@ class BoundedConjugateGradient {
  public:
   BoundedConjugateGradient() = default;
   explicit BoundedConjugateGradient(Index size) : r_(size), z_(size), p_(size), q_(size) {}
-
-  std::size_t bytes() const noexcept { return static_cast<std::size_t>(4 * r_.size()) * sizeof(double); }
 
   /// x stays finite for a finite b: a direction without positive curvature ends it.
   template <SpdOperator Op>

@@ -7,6 +7,21 @@
 
 namespace palpate::inline PALPATE_ABI {
 
+namespace detail {
+
+/// Energy density and stress by the closest rotation R and D = F - R; constants in the number type of the lanes.
+template <class S>
+PALPATE_ALWAYS_INLINE S corotated_energy(const Lame<S>& c, const Tensor3<S>& r, const Tensor3<S>& d) noexcept {
+  const S swelling = contract(r, d);
+  return c.mu * contract(d, d) + S(0.5f) * c.lambda * swelling * swelling;
+}
+template <class S>
+PALPATE_ALWAYS_INLINE Tensor3<S> corotated_stress(const Lame<S>& c, const Tensor3<S>& r, const Tensor3<S>& d) noexcept {
+  return S(2) * c.mu * d + (c.lambda * contract(r, d)) * r;
+}
+
+}  // namespace detail
+
 /// W = mu |F - R|^2 + lambda/2 tr(R^T F - I)^2 with the rotation R closest to F (core/rotation.hpp): Hooke's law for
 /// large rotations, not for large strains. Finite for every F and inverted elements are pushed back; where the closest
 /// rotation is not unique (an element pressed to a line, or so far inside out that two stretches cancel) the stress
@@ -34,22 +49,14 @@ struct Corotational {
 
   template <class S>
   PALPATE_ALWAYS_INLINE S energy(const Tensor3<S>& f) const noexcept {
-    const auto [lambda, mu] = detail::lame<S>(base);
-    const Tensor3<S> r = closest_rotation(f), d = f - r;
-    const S swelling = contract(r, d);
-    return mu * contract(d, d) + S(0.5f) * lambda * swelling * swelling;
+    const Tensor3<S> r = closest_rotation(f);
+    return detail::corotated_energy(detail::lame<S>(base), r, f - r);
   }
 
   template <class S>
   PALPATE_ALWAYS_INLINE Tensor3<S> stress(const Tensor3<S>& f) const noexcept {
-    return stress(f, closest_rotation(f));
-  }
-  /// With a rotation that is at hand.
-  template <class S>
-  PALPATE_ALWAYS_INLINE Tensor3<S> stress(const Tensor3<S>& f, const Tensor3<S>& r) const noexcept {
-    const auto [lambda, mu] = detail::lame<S>(base);
-    const Tensor3<S> d = f - r;
-    return S(2) * mu * d + (lambda * contract(r, d)) * r;
+    const Tensor3<S> r = closest_rotation(f);
+    return detail::corotated_stress(detail::lame<S>(base), r, f - r);
   }
 
   /// Exact, with dR/dF. Indefinite under pressure, where mu (si + sj - 2) + lambda (s1 + s2 + s3 - 3) < 0. dR/dF is

@@ -24,9 +24,9 @@ struct CorotatedStep {
   bool taken = false;  ///< false: the step was not a positive number, or nothing finite came of it; nothing has changed
   BoundedSolveReport solve{};  ///< the last one
   int linearisations = 0;
-  bool calm = true;            ///< false: checked, and the energy is still above that at the start of the step
-  double residual = infinity;  ///< force left over, of the largest force of the step; infinite without the check
-  DeformationReport deformation{};
+  bool calm = true;                 ///< false: checked, and the energy is still above that at the start of the step
+  double residual = infinity;       ///< force left over, of the largest force of the step; infinite without the check
+  DeformationReport deformation{};  ///< at the end; without the check where it coasts to
 };
 
 /// M a + D v + f(u) = load for linear tetrahedra that turn (CorotatedTetrahedra), linearised at the state the motion
@@ -40,6 +40,8 @@ template <class Base = LinearElastic, class S = float, class Preconditioner = Bl
 class CorotatedMotion {
  public:
   using Tetrahedra = CorotatedTetrahedra<Base, S>;
+  /// Of an increment, in the energy norm: with more a step is not close to its answer, and a correction not made.
+  static constexpr double tolerable_error = 0.05;
   static_assert(StepPreconditioner<Preconditioner, Tetrahedra>);
 
   /// Starts at rest without displacement. Throws what Tetrahedra and conditions throw, unsupported for initial strains,
@@ -78,6 +80,7 @@ class CorotatedMotion {
     const double highest = options_.check ? limit() : infinity;
     coast();
     double reached = evaluate(report.deformation);
+    energy_known_ = false;  // rotations are no longer those of the present state
     if (!std::isfinite(reached)) return report;
     do {
       prepare();
@@ -96,12 +99,14 @@ class CorotatedMotion {
   }
 
   /// Adds what `more` forces [N] change in the step just taken, to first order. One solve. False, and nothing changes,
-  /// where no step was taken since the state or the length of steps was changed, and where nothing finite comes of it.
+  /// where no step was taken since the state or the length of steps was changed, and where the solve does not end
+  /// within tolerable_error.
   bool correct(const VectorX& more) noexcept {
     const FlushDenormals flush;
     if (!stepped_) return false;
     const BoundedSolveReport report = gradients_.solve_into(*this, more, increment_, options_.solve);
     if (report.iterations == 0) return report.converged;
+    if (!(report.error <= tolerable_error)) return false;
     trial_ = u_ + increment_;
     find_motion();
     if (!trial_.allFinite() || !velocity_.allFinite()) return false;
@@ -110,9 +115,9 @@ class CorotatedMotion {
     return true;
   }
   /// Displacement [m] that forces [N] add at the end of a step, to first order, with the rotations looked at last.
-  /// Solved to the end, whatever the options say: for set-up.
-  void respond(const VectorX& forces, VectorX& u) noexcept {
-    gradients_.solve_into(*this, forces, u, {1000, sizeof(S) == 8 ? 1e-10 : 1e-6});
+  /// Solved to the end, whatever the options say: for set-up. False where it does not get there.
+  bool respond(const VectorX& forces, VectorX& u) noexcept {
+    return gradients_.solve_into(*this, forces, u, {1000, sizeof(S) == 8 ? 1e-10 : 1e-6}).converged;
   }
   /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
   bool prepare_response(double h) noexcept {
@@ -132,7 +137,7 @@ class CorotatedMotion {
   const DeformableBody& body() const noexcept { return body_; }
   const Preconditioner& preconditioner() const noexcept { return preconditioner_; }
   /// With what force the body answers its state [N], inertia and damping included, as the last step left it: on held
-  /// dofs minus the reaction.
+  /// dofs the reaction and the load there.
   const VectorX& resistance() noexcept {
     tetrahedra_.linearise(u_, force_, energy_);
     energy_known_ = true;
@@ -141,7 +146,9 @@ class CorotatedMotion {
   }
 
   /// Changes the state; prescribed components rest where they are prescribed. The acceleration follows from the forces.
-  void set_state(const VectorX& u, const VectorX& v) noexcept {
+  /// Throws bad_argument, without a change, for vectors of another size.
+  void set_state(const VectorX& u, const VectorX& v) {
+    for (const VectorX* given : {&u, &v}) require_entries(*given, u_.size());
     for (const Index dof : held_) {
       u_[dof] = body_.conditions.prescribed[dof];
       v_[dof] = a_[dof] = 0.0;
@@ -158,10 +165,31 @@ class CorotatedMotion {
     stepped_ = false;
     age_ = 0;
   }
-  /// Forces from now on instead of the scene's loads [N].
-  void set_load(const VectorX& load) noexcept { load_ = load; }
-  /// Values of the prescribed components at the end of the next step [m].
-  void set_prescribed(const VectorX& values) noexcept { body_.conditions.prescribed = values; }
+  /// Elements for which gone(element) leave where they are, for good, with their mass; `nodal_mass` is what is left
+  /// (lumped_mass(body, gone)), `load` the loads on it [N] (CutPhysics::load_left). Velocities of what is left stay,
+  /// and nodes without mass are held where they are. A preconditioner that can takes it in (BlockJacobi); another goes
+  /// on with what it knows, which is right but slower. Throws bad_argument or bad_density, without a change.
+  template <class Gone>
+  void remove_elements(Gone&& gone, const VectorX& nodal_mass, const VectorX& load) {
+    require_mass_left(nodal_mass, load);
+    tetrahedra_.remove_if(gone);
+    hold_bare(nodal_mass);
+    body_.lumped = nodal_mass;
+    mass_ = nodal_mass.replicate(1, 3).transpose().reshaped();
+    load_ = body_.load = load;
+    if constexpr (requires { preconditioner_.change(body_); }) preconditioner_.change(body_);
+    set_state(u_, v_);
+  }
+  /// Forces from now on instead of the scene's loads [N]. Throws bad_argument for another size; does not allocate.
+  void set_load(const VectorX& load) {
+    require_entries(load, u_.size());
+    load_ = load;
+  }
+  /// Values of the prescribed components at the end of the next step [m]. Throws as set_load.
+  void set_prescribed(const VectorX& values) {
+    require_entries(values, u_.size());
+    body_.conditions.prescribed = values;
+  }
 
   double kinetic_energy() const noexcept { return 0.5 * v_.dot(mass_.cwiseProduct(v_)); }
 
@@ -171,7 +199,10 @@ class CorotatedMotion {
     tetrahedra_.apply(x, y);
     y = factors_.stiffness * y + factors_.mass * mass_.cwiseProduct(x);
   }
-  void precondition(const VectorX& r, VectorX& z) const noexcept { preconditioner_.apply(r, z); }
+  void precondition(const VectorX& r, VectorX& z) const noexcept {
+    preconditioner_.apply(r, z);
+    for (const Index dof : bare_) z[dof] = 0.0;
+  }
 
  private:
   static CorotatedMotionOptions checked(const CorotatedMotionOptions& o) {
@@ -187,6 +218,32 @@ class CorotatedMotion {
     DeformableBody body = detail::body_with_mass(rest, scene, limits);
     require_mass(body);
     return body;
+  }
+
+  void require_mass_left(const VectorX& mass, const VectorX& load) const {
+    if (3 * mass.size() != size() || load.size() != size())
+      raise(SetupErrorKind::bad_argument, std::to_string(mass.size()) + " masses and " + std::to_string(load.size()) +
+                                              " loads for " + std::to_string(size() / 3) + " nodes");
+    for (Index i = 0; i < mass.size(); ++i)
+      if (!(mass[i] >= 0.0) || !(mass[i] <= body_.lumped[i] * (1.0 + 1e-9)))
+        raise(SetupErrorKind::bad_density,
+              "node " + std::to_string(i) + " has the mass " + number(mass[i]) + " after elements have left",
+              "Give lumped_mass(body, gone)");
+  }
+  /// Holds the nodes that no element is left at.
+  void hold_bare(const VectorX& mass) {
+    EssentialConditions& c = body_.conditions;
+    for (Index dof = 0; dof < size(); ++dof) {
+      if (mass[dof / 3] > 0.0 || !(body_.lumped[dof / 3] > 0.0)) continue;
+      bare_.push_back(dof);
+      c.prescribed[dof] = u_[dof];
+      c.constrained[static_cast<std::size_t>(dof / 3)] = 7;
+      if (!c.is_constrained(dof)) held_.push_back(dof);
+      c.free_index[static_cast<std::size_t>(dof)] = -1;
+    }
+    std::erase_if(c.free_dofs, [&c](Index dof) { return c.is_constrained(dof); });
+    for (std::size_t i = 0; i < c.free_dofs.size(); ++i)
+      c.free_index[static_cast<std::size_t>(c.free_dofs[i])] = static_cast<Index>(i);
   }
 
   /// The last step, if there was one, can not be corrected any more.
@@ -231,8 +288,7 @@ class CorotatedMotion {
   double potential(double stored) noexcept {
     damp(velocity_, drag_);
     inertia_ = mass_.cwiseProduct(acceleration_);
-    return stored - load_.dot(trial_) + 0.5 / step_.velocity_per_displacement() * velocity_.dot(drag_) +
-           0.5 / step_.acceleration_per_displacement() * acceleration_.dot(inertia_);
+    return stored - load_.dot(trial_) + step_.potential(velocity_, drag_, acceleration_, inertia_);
   }
   /// The same with the force that is left there on free dofs.
   double evaluate(DeformationReport& deformation) noexcept {
@@ -262,7 +318,8 @@ class CorotatedMotion {
       trial_ -= increment_;
       find_motion();
     }
-    report.residual = residual_.norm() / std::max({force_.norm(), inertia_.norm(), load_.norm()});
+    const double left = residual_.norm();
+    report.residual = left > 0.0 ? left / std::max({force_.norm(), inertia_.norm(), drag_.norm(), load_.norm()}) : 0.0;
     return reached <= highest + noise;
   }
 
@@ -273,7 +330,7 @@ class CorotatedMotion {
   ImplicitStep step_;
   Preconditioner preconditioner_;
   BoundedConjugateGradient gradients_;
-  std::vector<Index> held_;
+  std::vector<Index> held_, bare_;  // dofs; bare ones belong to nodes without an element
   VectorX u_, v_, a_, load_;
   VectorX trial_, velocity_, acceleration_, increment_, force_, residual_, drag_, inertia_;
   StepFactors factors_;

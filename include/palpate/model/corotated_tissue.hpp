@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/model/corotated_motion.hpp>
-#include <palpate/model/soft_tissue.hpp>
+#include <palpate/model/basic_soft_tissue.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -24,7 +24,9 @@ struct TissueMotion<CorotatedMotion<Base, S, Preconditioner>> {
     Equilibrium statics(make_held_body(source.first, source.second, limits), limits);
     return detail::settled(statics);
   }
-  static bool close(const CorotatedStep& r) noexcept { return r.taken && r.calm && r.solve.error <= 0.05; }
+  static bool close(const CorotatedStep& r) noexcept {
+    return r.taken && r.calm && r.solve.error <= CorotatedMotion<Base, S, Preconditioner>::tolerable_error;
+  }
 };
 
 /// A tissue of Tet4 and Corotational<LinearElastic> that steps without a factor, in single precision: 1 kHz up to some

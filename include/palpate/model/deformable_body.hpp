@@ -112,6 +112,16 @@ DeformableBody make_deformable_body(Body<E> body, const Scene& scene, const Setu
   return made;
 }
 
+/// The same for statics, as above.
+template <Element E>
+DeformableBody make_held_body(Body<E> body, const Scene& scene, const SetupLimits& limits = {}) {
+  static_assert(!HasSmoothedStrain<E>, "palpate: statics at small strain with smoothed elements is HapticFEModel's");
+  DeformableBody made = detail::held_body_without_forces(body, scene);
+  made.load += initial_strain_load(body, initial_strains_by_region(body.mesh, scene));
+  made.elastic = std::make_unique<LinearForces>(assemble_stiffness<E>(body, limits));
+  return made;
+}
+
 /// A body at small strain with memory. Throws also unsupported for initial strains, and what ViscousForces throws.
 template <Element E>
 DeformableBody make_deformable_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {

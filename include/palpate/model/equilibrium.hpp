@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/integrator/newton.hpp>
+#include <palpate/integrator/requirements.hpp>
 #include <palpate/model/deformable_body.hpp>
 #include <palpate/model/tangent_solver.hpp>
 
@@ -102,12 +103,17 @@ class Equilibrium {
     return report;
   }
 
-  /// Dead loads from the next `solve` or `step` on [N].
-  void set_load(const VectorX& load) { body_.load = load; }
-  /// Values of the prescribed components at the end of the next `solve` or `step` [m].
-  void set_prescribed(const VectorX& values) { body_.conditions.prescribed = values; }
+  /// Dead loads from the next `solve` or `step` on [N]. Throws bad_argument for another size.
+  void set_load(const VectorX& load) {
+    require_entries(load, displacement_.size());
+    body_.load = load;
+  }
+  /// Values of the prescribed components at the end of the next `solve` or `step` [m]. Throws as set_load.
+  void set_prescribed(const VectorX& values) {
+    require_entries(values, displacement_.size());
+    body_.conditions.prescribed = values;
+  }
 
-  const ElasticForces& elastic() const noexcept { return *body_.elastic; }
   const EssentialConditions& conditions() const noexcept { return body_.conditions; }
   const VectorX& displacement() const noexcept { return displacement_; }
   double energy() const noexcept { return body_.elastic->energy(displacement_); }
@@ -203,10 +209,7 @@ class Equilibrium {
     load_ = from_load_ + fraction * (body_.load - from_load_);
   }
   /// Full displacement from the free dofs, with the present held values.
-  void place(const VectorX& x) noexcept {
-    displacement_ = held_;
-    for (Index k = 0; k < size(); ++k) displacement_[body_.conditions.free_dofs[static_cast<std::size_t>(k)]] = x[k];
-  }
+  void place(const VectorX& x) noexcept { body_.conditions.place(x, held_, displacement_); }
 
   /// From equilibrium at the present loads to equilibrium at another fraction: a step along the tangent, then Newton's
   /// method.

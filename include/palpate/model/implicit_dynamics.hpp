@@ -26,8 +26,8 @@ struct StepReport {
 };
 
 /// M a + D v + f(u) = load: every step minimises its incremental potential (Ortiz and Stainier 1999; Gast et al. 2015),
-/// so a step never ends at a state worse than where it began. A step neither allocates nor throws. Neither copied nor
-/// moved. Vectors have 3 entries per node.
+/// so a step never ends at a higher potential than where it began. A step neither allocates nor throws. Neither copied
+/// nor moved. Vectors have 3 entries per node.
 class ImplicitDynamics {
  public:
   /// Starts at rest without displacement, but for the initial acceleration, which follows from the loads. Throws
@@ -44,6 +44,7 @@ class ImplicitDynamics {
         v_(u_),
         a_(u_),
         load_(body_.load),
+        held_(body_.conditions.prescribed),
         trial_(u_),
         force_(u_),
         full_(u_),
@@ -67,11 +68,11 @@ class ImplicitDynamics {
     if (!ImplicitStep::is_length(h)) return report;
     begin(h);
     step_.coast(u_, v_, a_);
+    held_ = body_.conditions.prescribed;
     if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
-    body_.conditions.gather(step_.predicted(), x_);
-    if (!(evaluate(x_, full_free()) < infinity)) body_.conditions.gather(u_, x_);  // the old state holds
+    start_from_the_lower();
     report.newton = newton_.solve(*this, x_);
-    if (!(evaluate(x_, full_free()) < infinity)) return report;
+    if (!std::isfinite(evaluate(x_, residual_)) || !velocity_.allFinite()) return report;
     report.taken = true;
     report.deformation = deformation_;
     accept();
@@ -96,7 +97,7 @@ class ImplicitDynamics {
     if (evaluate(start_, residual_) < infinity) {
       const double before = residual_.norm();
       tangent_.solve(residual_, change_);
-      for (int halvings = 0; halvings < 5 && !better; ++halvings, change_ *= 0.5) {
+      for (int halvings = 0; halvings < 5 && !better && before < infinity; ++halvings, change_ *= 0.5) {
         x_ = start_ + change_;
         better = evaluate(x_, residual_) < infinity && residual_.norm() <= std::max(before, rounding()) &&
                  velocity_.allFinite();
@@ -107,11 +108,14 @@ class ImplicitDynamics {
     if (better) accept();
     return better;
   }
-  /// Displacement [m] that forces [N] add at the end of a step, to first order, as `correct` has it.
-  void respond(const VectorX& forces, VectorX& u) noexcept {
+  /// Displacement [m] that forces [N] add at the end of a step, to first order, as `correct` has it. False where there
+  /// is no step, or its tangent has no factor.
+  bool respond(const VectorX& forces, VectorX& u) noexcept {
+    if (!factorised_ && (step_.length() == 0.0 || !prepare_at(u_))) return false;
     body_.conditions.gather(forces, residual_);
     tangent_.solve(residual_, x_);
     body_.conditions.scatter(x_, u);
+    return true;
   }
   /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
   bool prepare_response(double h) noexcept {
@@ -127,8 +131,9 @@ class ImplicitDynamics {
   const DeformableBody& body() const noexcept { return body_; }
 
   /// Changes the state; prescribed components rest where they are prescribed. The acceleration follows. For a body with
-  /// memory the change is sudden.
+  /// memory the change is sudden. Throws bad_argument, without a change, for vectors of another size.
   void set_state(const VectorX& u, const VectorX& v) {
+    for (const VectorX* given : {&u, &v}) require_entries(*given, u_.size());
     end();
     body_.elastic->begin_step(0.0);
     for (Index dof = 0; dof < u_.size(); ++dof) {  // u and v may be those of this motion
@@ -140,10 +145,16 @@ class ImplicitDynamics {
     body_.elastic->begin_step(0.0);
     find_acceleration();
   }
-  /// Forces from now on instead of the scene's loads [N].
-  void set_load(const VectorX& load) noexcept { load_ = load; }
-  /// Values of the prescribed components at the end of the next step [m].
-  void set_prescribed(const VectorX& values) noexcept { body_.conditions.prescribed = values; }
+  /// Forces from now on instead of the scene's loads [N]. Throws bad_argument for another size; does not allocate.
+  void set_load(const VectorX& load) {
+    require_entries(load, u_.size());
+    load_ = load;
+  }
+  /// Values of the prescribed components at the end of the next step [m]. Throws as set_load.
+  void set_prescribed(const VectorX& values) {
+    require_entries(values, u_.size());
+    body_.conditions.prescribed = values;
+  }
 
   double kinetic_energy() noexcept {
     apply_mass(v_, full_);
@@ -157,21 +168,20 @@ class ImplicitDynamics {
   // NewtonProblem: one step
   Index size() const noexcept { return body_.conditions.free_count(); }
   double evaluate(const VectorX& x, VectorX& residual) noexcept {
-    place(x);
+    body_.conditions.place(x, held_, trial_);
     deformation_ = body_.elastic->force(trial_, force_);
     if (!deformation_.admissible) return infinity;
     step_.find_motion(trial_, velocity_, acceleration_);
     apply_mass(acceleration_, full_);
-    const double inertia = 0.5 / step_.acceleration_per_displacement() * acceleration_.dot(full_);
     apply_damping(velocity_, other_);
-    const double lost = 0.5 / step_.velocity_per_displacement() * velocity_.dot(other_);
+    const double moving = step_.potential(velocity_, other_, acceleration_, full_);
     scale_ = std::max({force_.norm(), full_.norm(), other_.norm(), load_.norm()});
     full_ = load_ - force_ - full_ - other_;
     body_.conditions.gather(full_, residual);
-    return inertia + lost + body_.elastic->energy(trial_) - load_.dot(trial_);
+    return moving + body_.elastic->energy(trial_) - load_.dot(trial_);
   }
   bool prepare(const VectorX& x) noexcept {
-    place(x);
+    body_.conditions.place(x, held_, trial_);
     return prepare_at(trial_);
   }
   void direction(const VectorX& residual, VectorX& d) noexcept { tangent_.solve(residual, d); }
@@ -211,11 +221,12 @@ class ImplicitDynamics {
     return body;
   }
 
-  VectorX& full_free() noexcept { return residual_; }
-
-  void place(const VectorX& x) noexcept {
-    trial_ = body_.conditions.prescribed;
-    for (Index k = 0; k < size(); ++k) trial_[body_.conditions.free_dofs[static_cast<std::size_t>(k)]] = x[k];
+  /// x_ is where the body coasts to, or where it is: wherever the potential of the step is lower.
+  void start_from_the_lower() noexcept {
+    body_.conditions.gather(step_.predicted(), x_);
+    body_.conditions.gather(u_, start_);
+    const double coasted = evaluate(x_, residual_);
+    if (!(coasted <= evaluate(start_, residual_))) x_ = start_;
   }
   void accept() noexcept {
     u_ = trial_;
@@ -277,6 +288,7 @@ class ImplicitDynamics {
   BlockMatrix damping_;
   Newton newton_;
   VectorX u_, v_, a_, load_;
+  VectorX held_;  // prescribed components at the end of the last step
   VectorX trial_, velocity_, acceleration_, force_, full_, other_, drag_, x_, residual_;
   VectorX kept_load_, step_load_, change_, start_;  // of corrections
   DeformationReport deformation_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/constant_geometry.hpp>
+#include <palpate/local/isotropic.hpp>
 #include <palpate/model/step_preconditioners.hpp>
 
 #include <atomic>
@@ -23,8 +24,8 @@ class RenewedFactor {
         rest_(asked_) {
     for (Index e = 0; e < rest.mesh.element_count(); ++e) {
       const PointGeometry<Tet4> g = constant_geometry<Tet4>(rest.mesh, e);
-      const Matrix6& c = rest.elasticity[rest.region_of(e)];
-      elements_.push_back({rest.mesh.elements[static_cast<std::size_t>(e)], g.gradient, g.volume, c(0, 1), c(3, 3)});
+      elements_.push_back({rest.mesh.elements[static_cast<std::size_t>(e)], g.gradient, g.volume,
+                           *lame_constants(rest.elasticity[rest.region_of(e)])});  // Corotational is isotropic
     }
     thread_ = std::thread([this] { work(); });
   }
@@ -65,7 +66,8 @@ class RenewedFactor {
   struct TurningElement {
     std::array<NodeId, 4> nodes;
     Eigen::Matrix<double, 4, 3> gradient;
-    double volume, lambda, mu;
+    double volume;
+    LameConstants law;
   };
   struct Made {
     Made(const DeformableBody& body, const EssentialConditions& conditions, const SetupLimits& limits)
@@ -123,8 +125,8 @@ class RenewedFactor {
       for (int j = 0; j < 4; ++j) {
         const NodeId row = e.nodes[static_cast<std::size_t>(i)], column = e.nodes[static_cast<std::size_t>(j)];
         if (column > row) continue;
-        Matrix3 block = e.lambda * g.row(i).transpose() * g.row(j) + e.mu * g.row(j).transpose() * g.row(i);
-        block.diagonal().array() += e.mu * g.row(i).dot(g.row(j));
+        Matrix3 block = Matrix3::Zero();
+        add_isotropic_block(e.law, g.row(i), g.row(j), block.data());
         a.block(a.pattern().find(row, column)) += factor * e.volume * block;
       }
   }

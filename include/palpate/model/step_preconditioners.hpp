@@ -15,19 +15,19 @@ struct StepFactors {
 };
 
 /// What CorotatedMotion wants of a preconditioner P for A:
-///   P(body, rest, limits)                          set-up
-///   update(tetrahedra, factors, u, anew) noexcept  before the solves of a step; `anew` when it is due, or factors
-///   changed apply(r, z) noexcept                           z = P^-1 r; zero on held dofs
+/// - `P(body, rest, limits)` is its set-up.
+/// - `update(tetrahedra, factors, u, anew)`, before the solves of a step; `anew` when it is due.
+/// - `apply(r, z)`: z = P^-1 r, zero on held dofs.
+/// - `change(body)`, if there is one, is told when elements have left: lumped mass and conditions are others then.
+// clang-format off
 template <class P, class Tetrahedra>
-concept StepPreconditioner = std::constructible_from < P,
-        const DeformableBody&, const Body<Tet4>
-&, const SetupLimits& > &&requires(P& p, const P& fixed, const Tetrahedra& tetrahedra, const StepFactors& factors,
-                                   const VectorX& u, VectorX& z) {
-  { p.update(tetrahedra, factors, u, true) }
-  noexcept;
-  { fixed.apply(u, z) }
-  noexcept;
-};
+concept StepPreconditioner =
+    std::constructible_from<P, const DeformableBody&, const Body<Tet4>&, const SetupLimits&> &&
+    requires(P& p, const P& fixed, const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX& u, VectorX& z) {
+      { p.update(tetrahedra, factors, u, true) } noexcept;
+      { fixed.apply(u, z) } noexcept;
+    };
+// clang-format on
 
 /// The inverse 3 x 3 blocks of A on the diagonal, looked at when due. One product of blocks per application.
 class BlockJacobi {
@@ -40,6 +40,11 @@ class BlockJacobi {
     inverse_.resize(constrained_.size(), Matrix3::Zero());
   }
 
+  /// Another mass, and other dofs held; the next update must be anew.
+  void change(const DeformableBody& body) {
+    lumped_ = body.lumped;
+    constrained_ = body.conditions.constrained;
+  }
   template <class Tetrahedra>
   void update(const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX&, bool anew) noexcept {
     if (!anew) return;

@@ -1,0 +1,40 @@
+// What a moving tissue asks of the motion below it.
+#pragma once
+
+#include <palpate/mesh/admission.hpp>
+#include <palpate/model/equilibrium.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// What a moving tissue asks of a motion; specialise for motions of your own.
+///   Parameters, usual_step [s], usual()    what the motion is made with, Motion(source, parameters, limits)
+///   source(body, scene, limits)            what it is made from
+///   settle(source, limits)                 its displacement in equilibrium; throws not_converged
+///   close(report)                          whether a step ended near its answer
+/// The motion itself: step, correct, respond, prepare_response, set_state, set_load, displacement, body, as
+/// ImplicitDynamics has them.
+template <class Motion>
+struct TissueMotion;
+
+namespace detail {
+
+/// Displacement of the equilibrium, or not_converged.
+inline VectorX settled(Equilibrium& statics) {
+  const EquilibriumReport report = statics.solve();
+  if (!report.converged)
+    raise(SetupErrorKind::not_converged, describe(report), "Set settle = false, or hold it better");
+  return statics.displacement();
+}
+
+}  // namespace detail
+
+template <class Motion>
+struct TissueOptions {
+  double step = TissueMotion<Motion>::usual_step;  ///< of the motion [s]
+  typename TissueMotion<Motion>::Parameters motion = TissueMotion<Motion>::usual();
+  bool settle = true;  ///< start in equilibrium under the scene's loads
+  AdmissionPolicy admission{};
+  SetupLimits limits{};
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,70 @@
+// Contact compliance of a body that turns.
+#pragma once
+
+#include <palpate/core/setup_options.hpp>
+#include <palpate/model/nodal_rotation.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// What a force on a touchable vertex moves the others within a step, as the body settled, turned on with the vertices:
+/// C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). Holds 72 bytes per pair of vertices.
+class WarpedCompliance {
+ public:
+  WarpedCompliance() = default;
+  /// Of a motion in its present state for steps of h [s]: one `respond` per dof of `nodes`. Throws too_large,
+  /// not_positive_definite for a body without stiffness, not_converged where a response was not found.
+  template <class Motion>
+  WarpedCompliance(Motion& motion, double h, const std::vector<NodeId>& nodes, const NodalRotations& rotations,
+                   const SetupLimits& limits)
+      : count_(nodes.size()) {
+    limits.require_memory(static_cast<double>(count_) * static_cast<double>(count_) * sizeof(Matrix3),
+                          "the contact compliance");
+    rest_.resize(count_ * count_);
+    if (!motion.prepare_response(h)) raise(SetupErrorKind::not_positive_definite, "the body at rest has no stiffness");
+    std::vector<Matrix3> turned(count_);
+    for (std::size_t i = 0; i < count_; ++i) turned[i] = rotations(i, motion.displacement());
+    VectorX force = VectorX::Zero(motion.displacement().size()), u(force.size());
+    for (std::size_t j = 0; j < count_; ++j) {
+      if (j % 64 == 0) limits.advance("compliance", static_cast<double>(j) / static_cast<double>(count_));
+      for (int c = 0; c < 3; ++c) {
+        force[3 * Index{nodes[j]} + c] = 1.0;
+        if (!motion.respond(force, u))
+          raise(SetupErrorKind::not_converged, "the compliance of node " + std::to_string(nodes[j]),
+                "Shorten the step, or choose another preconditioner");
+        force[3 * Index{nodes[j]} + c] = 0.0;
+        for (std::size_t i = 0; i < count_; ++i) rest_[i + count_ * j].col(c) = u.segment<3>(3 * Index{nodes[i]});
+      }
+      for (std::size_t i = 0; i < count_; ++i)
+        rest_[i + count_ * j] = (turned[i].transpose() * rest_[i + count_ * j] * turned[j]).eval();
+    }
+    find_bounds();
+  }
+
+  /// Turned back to the shape at rest [m/N].
+  const Matrix3& at_rest(std::size_t i, std::size_t j) const noexcept { return rest_[i + count_ * j]; }
+  /// Where vertices have turned by `rotation`.
+  Matrix3 turned(const std::vector<Matrix3>& rotation, int i, int j) const noexcept {
+    const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+    return rotation[a] * at_rest(a, b) * rotation[b].transpose();
+  }
+  /// As TissueModel has them.
+  double bound(int j) const noexcept { return bound_[static_cast<std::size_t>(j)]; }
+  double floor() const noexcept { return floor_; }
+
+ private:
+  void find_bounds() {
+    bound_.assign(count_, 0.0);
+    for (std::size_t j = 0; j < count_; ++j) {
+      for (std::size_t i = 0; i < count_; ++i) bound_[j] = std::max(bound_[j], at_rest(i, j).norm());
+      floor_ = std::max(floor_, 1e-9 * bound_[j]);
+    }
+    if (floor_ == 0.0) floor_ = 1e-9;
+  }
+
+  std::size_t count_ = 0;
+  std::vector<Matrix3> rest_;  // of vertex i per force on j at i + count x j
+  std::vector<double> bound_;
+  double floor_ = 0.0;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

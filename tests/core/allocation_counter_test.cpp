@@ -1,0 +1,23 @@
+// Tests that count allocations must be able to fail.
+#include <palpate/testing/allocation_counter.hpp>
+
+#include <vector>
+
+#include "catch.hpp"
+
+using namespace palpate;
+
+TEST_CASE("what is allocated is counted, where malloc can be replaced", "[core][allocation]") {
+#if defined(__GLIBC__) && !defined(PALPATE_SANITIZER_HAS_MALLOC)
+  REQUIRE(testing::allocations_are_counted());
+  const testing::AllocationScope scope;
+  std::vector<double> some(100, 1.0);
+  some.shrink_to_fit();
+  CHECK(scope.allocations() == 1);
+  some.resize(1000);
+  CHECK(scope.allocations() == 2);
+  CHECK(scope.frees() == 1);
+#else
+  SUCCEED("not counted here");
+#endif
+}

@@ -1,3 +1,0 @@
-// The one file of this program that replaces malloc by a counting one.
-#define PALPATE_COUNT_ALLOCATIONS
-#include <palpate/testing/allocation_counter.hpp>
