@@ -47,7 +47,7 @@ struct Description {
 struct Row : Description {
   Index nodes = 0, kept_dofs = 0;
   double setup = 0.0, bytes = 0.0;                ///< [s], at the peak of set-up
-  double p50 = 0.0, p99 = 0.0;                    ///< of a tick [s]
+  double p50 = 0.0, p99 = 0.0, worst = 0.0;       ///< of a tick [s]
   double update_p99 = 0.0, update_period = 0.0;   ///< [s]
   double force_small = 0.0, force_large = 0.0;    ///< in holds
   double felt = 0.0;                              ///< root mean square in motion, of the largest force

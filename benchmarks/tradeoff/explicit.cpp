@@ -5,7 +5,6 @@
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
-#include <palpate/integrator/semi_implicit_euler.hpp>
 #include <palpate/material/neo_hookean.hpp>
 
 #include "soft.hpp"
@@ -126,8 +125,6 @@ void add_explicit(const Bench& bench, std::vector<Entry>& entries) {
                                                         "CentralDifference", "double");
   add<BatchedTetrahedra<NeoHookean, float>, CentralDifference>(
       bench, entries, "Tet4", "BatchedTetrahedra<NeoHookean, float>", "CentralDifference", "float");
-  add<BatchedTetrahedra<NeoHookean, float>, SemiImplicitEuler>(
-      bench, entries, "Tet4", "BatchedTetrahedra<NeoHookean, float>", "SemiImplicitEuler", "float");
   add<AveragedTetrahedra<NeoHookean, float>, CentralDifference>(
       bench, entries, "averaged Tet4", "AveragedTetrahedra<NeoHookean, float>", "CentralDifference", "float");
 }

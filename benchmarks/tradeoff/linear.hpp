@@ -76,6 +76,26 @@ inline VectorX of_given_nodes(const VectorX& u, const std::vector<NodeId>& map, 
   return given;
 }
 
+/// How far the points that press are from the ball when their forces act on the whole body (u, 3 per admitted node), of
+/// the small depth. It goes through none of the stored compliance. Contacts that carry next to nothing may still be on
+/// their way.
+template <class Model, class Servo>
+double distance_from_balls(const Model& model, const Servo& servo, const VectorX& u, const PressScene& scene) {
+  double worst = 0.0, largest = 0.0;
+  for (const Contact& c : servo.contacts()) largest = std::max(largest, c.force);
+  for (const Contact& c : servo.contacts()) {
+    if (!(c.force > 0.01 * largest)) continue;
+    Vector3 point = Vector3::Zero();
+    for (std::size_t a = 0; a < 3; ++a) {
+      const NodeId node = model.touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];
+      point += c.weights[a] * (model.rest_position(node) + u.segment<3>(3 * Index{node}));
+    }
+    const double distance = (servo.proxy(static_cast<std::size_t>(c.tool)) - point).norm();
+    worst = std::max(worst, std::abs(distance - scene.radius));
+  }
+  return largest > 0.0 ? worst / scene.small : infinity;
+}
+
 /// HapticFEModel<E, LinearElastic, Policy>.
 template <class E, class Policy>
 class LinearContender : public Contender {
@@ -94,23 +114,7 @@ class LinearContender : public Contender {
     model_.displacement_with(felt_.vertex_forces(), u_);
     return of_given_nodes(u_, model_.node_map(), bench_.scene.mesh.node_count());
   }
-  /// How far the points that press are from the ball when their forces act on the whole body, of the small depth. It
-  /// goes through none of the stored compliance. Contacts that carry next to nothing may still be on their way.
-  double own_error() override {
-    double worst = 0.0, largest = 0.0;
-    for (const Contact& c : felt_.servo().contacts()) largest = std::max(largest, c.force);
-    for (const Contact& c : felt_.servo().contacts()) {
-      if (!(c.force > 0.01 * largest)) continue;
-      Vector3 point = Vector3::Zero();
-      for (std::size_t a = 0; a < 3; ++a) {
-        const NodeId node = model_.touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];
-        point += c.weights[a] * (model_.rest_position(node) + u_.template segment<3>(3 * Index{node}));
-      }
-      worst = std::max(worst, std::abs((felt_.servo().proxy(static_cast<std::size_t>(c.tool)) - point).norm() -
-                                       bench_.scene.radius));
-    }
-    return largest > 0.0 ? worst / bench_.scene.small : infinity;
-  }
+  double own_error() override { return distance_from_balls(model_, felt_.servo(), u_, bench_.scene); }
   Index nodes() const override { return model_.mesh().node_count(); }
   Index kept_dofs() const override { return model_.report().kept_dofs; }
   std::string remark() override { return felt_.remark(); }

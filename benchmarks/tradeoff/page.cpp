@@ -45,9 +45,18 @@ const char* colour_of(const std::string& family) {
 std::string hover(const Row& r) {
   return escaped(r.name() + "\nset-up " + figure(1e3 * r.setup, "%.3g") + " ms, " + figure(1e-6 * r.bytes, "%.3g") +
                  " MB\ntick p50 " + figure(1e6 * r.p50, "%.3g") + " us, p99 " + figure(1e6 * r.p99, "%.3g") +
-                 " us\nforce off " + percent(r.force_small) + " % (small), " + percent(r.force_large) +
-                 " % (large), felt " + percent(r.felt) + " %" + (r.verdict.empty() ? "" : "\n" + r.verdict) +
-                 (r.remark.empty() ? "" : "\n" + r.remark));
+                 " us, worst " + figure(1e6 * r.worst, "%.3g") + " us\nforce off " + percent(r.force_small) +
+                 " % (small), " + percent(r.force_large) + " % (large), felt " + percent(r.felt) + " %" +
+                 (r.verdict.empty() ? "" : "\n" + r.verdict) + (r.remark.empty() ? "" : "\n" + r.remark));
+}
+
+/// What tells the rows of a front apart at a glance.
+std::string label(const Row& r) {
+  std::string text = r.element;
+  if (r.mesh != "as given") text += ", " + r.mesh;
+  if (r.kinematics != "linear") text += ", " + r.kinematics;
+  if (!r.solver.starts_with("Condensed")) text += ", " + r.solver;
+  return text;
 }
 
 /// Error over latency, both logarithmic, with the front of what nothing beats.
@@ -79,12 +88,16 @@ class Plot {
     }
     out << "<polyline fill='none' stroke='#222' stroke-width='1.2' points='";
     double last = top;
-    for (const MeasuredComposition& m : trade_off_of(rows_, error_, false).front()) {
+    const auto front = trade_off_of(rows_, error_, false).front();
+    for (const MeasuredComposition& m : front) {
       out << x(m.latency) << ',' << last << ' ' << x(m.latency) << ',' << y(m.error) << ' ';
       last = y(m.error);
     }
     out << right << ',' << last << "'/>\n";
     for (const Row& r : rows_) point(out, r);
+    for (const Row& r : rows_)
+      if (std::ranges::count(front, r.name(), &MeasuredComposition::name) > 0)
+        text(out, x(r.p99) + 7, y(r.*error_) - 7, escaped(label(r)), "fill='#222'");
     out << "</svg></figure>\n";
   }
 
@@ -104,16 +117,23 @@ class Plot {
   static void text(std::ostream& out, double x, double y, const std::string& what, const char* style) {
     out << "<text x='" << x << "' y='" << y << "' font-size='11' " << style << '>' << what << "</text>\n";
   }
+  /// 1, 2, 5, 10, ... between two powers of ten.
+  static std::vector<double> round_values(double low, double high) {
+    std::vector<double> values;
+    for (double e = std::floor(low); e <= high; e += 1.0)
+      for (const double digit : {1.0, 2.0, 5.0})
+        if (const double at = e + std::log10(digit); at > low - 1e-9 && at < high + 1e-9)
+          values.push_back(digit * std::pow(10.0, e));
+    return values;
+  }
   void grid(std::ostream& out) const {
-    for (double e = low_x_; e <= high_x_ + 1e-9; e += 1.0) {
-      const double at = x(std::pow(10.0, e));
-      line(out, at, top, at, bottom, "stroke='#e4e4e4'");
-      text(out, at, bottom + 16, figure(std::pow(10.0, e + 6.0), "%g"), "text-anchor='middle' fill='#555'");
+    for (const double at : round_values(low_x_ + 6.0, high_x_ + 6.0)) {
+      line(out, x(1e-6 * at), top, x(1e-6 * at), bottom, "stroke='#e4e4e4'");
+      text(out, x(1e-6 * at), bottom + 16, figure(at, "%g"), "text-anchor='middle' fill='#555'");
     }
-    for (double e = low_y_; e <= high_y_ + 1e-9; e += 0.5) {
-      const double at = y(std::pow(10.0, e));
-      line(out, left, at, right, at, "stroke='#e4e4e4'");
-      text(out, left - 6, at + 4, percent(std::pow(10.0, e)) + " %", "text-anchor='end' fill='#555'");
+    for (const double at : round_values(low_y_ + 2.0, high_y_ + 2.0)) {
+      line(out, left, y(1e-2 * at), right, y(1e-2 * at), "stroke='#e4e4e4'");
+      text(out, left - 6, y(1e-2 * at) + 4, figure(at, "%g") + " %", "text-anchor='end' fill='#555'");
     }
     text(out, 0.5 * (left + right), bottom + 36, "p99 of a tick [us]", "text-anchor='middle' fill='#333'");
   }
@@ -135,20 +155,23 @@ class Plot {
 };
 
 void write_table(std::ostream& out, const std::vector<Row>& rows) {
-  out << "<table><thead><tr><th>composition</th><th>nodes</th><th>kept dofs</th><th>set-up [ms]</th><th>memory "
-         "[MB]</th>"
-         "<th>tick p50 [us]</th><th>p99 [us]</th><th>update p99 [ms]</th><th>force small [%]</th><th>large [%]</th>"
-         "<th>felt [%]</th><th>moved small [%]</th><th>large [%]</th><th>volume small [%]</th><th>large [%]</th>"
-         "<th>energy in 0.1 s [%]</th><th>own check</th><th>remark</th></tr></thead><tbody>\n";
+  out << "<table><thead><tr>";
+  for (const char* head :
+       {"composition", "nodes", "kept dofs", "set-up [ms]", "memory [MB]", "tick p50 [us]", "p99 [us]", "worst [us]",
+        "update p99 [ms]", "force small [%]", "large [%]", "felt [%]", "moved small [%]", "large [%]",
+        "volume small [%]", "large [%]", "energy in 0.1 s [%]", "own check", "remark"})
+    out << "<th>" << head << "</th>";
+  out << "</tr></thead><tbody>\n";
   for (const Row& r : rows) {
     out << "<tr" << (is_good(r) ? "" : " class='bad'") << "><td style='border-left:6px solid " << colour_of(r.family)
         << "'>" << escaped(r.name()) << "</td>";
     for (const std::string& cell :
          {std::to_string(r.nodes), r.kept_dofs > 0 ? std::to_string(r.kept_dofs) : "", figure(1e3 * r.setup, "%.3g"),
           figure(1e-6 * r.bytes, "%.3g"), figure(1e6 * r.p50, "%.3g"), figure(1e6 * r.p99, "%.3g"),
-          r.update_p99 > 0.0 ? figure(1e3 * r.update_p99, "%.3g") : "", percent(r.force_small), percent(r.force_large),
-          percent(r.felt), percent(r.moved_small), percent(r.moved_large), percent(r.volume_small),
-          percent(r.volume_large), percent(r.drift), figure(r.own_error, "%.1e"),
+          figure(1e6 * r.worst, "%.3g"), r.update_p99 > 0.0 ? figure(1e3 * r.update_p99, "%.3g") : "",
+          percent(r.force_small), percent(r.force_large), percent(r.felt), percent(r.moved_small),
+          percent(r.moved_large), percent(r.volume_small), percent(r.volume_large), percent(r.drift),
+          figure(r.own_error, "%.1e"),
           escaped(r.verdict + (r.verdict.empty() || r.remark.empty() ? "" : "; ") + r.remark)})
       out << "<td>" << cell << "</td>";
     out << "</tr>\n";
@@ -160,18 +183,17 @@ void write_table(std::ostream& out, const std::vector<Row>& rows) {
 
 void write_csv(const std::vector<Row>& rows, const std::string& path) {
   std::ofstream out(path);
-  out << "family,element,mesh,kinematics,solver,kept,scalar,work,own_core,nodes,kept_dofs,setup_s,peak_bytes,tick_p50_"
-         "s,"
-         "tick_p99_s,update_p99_s,update_period_s,force_error_small,force_error_large,felt_error,displacement_error_"
-         "small,"
-         "displacement_error_large,volume_error_small,volume_error_large,energy_drift,own_error,verdict,remark\n";
+  out << "family,element,mesh,kinematics,solver,kept,scalar,work,own_core,nodes,kept_dofs,setup_s,peak_bytes,"
+      << "tick_p50_s,tick_p99_s,tick_worst_s,update_p99_s,update_period_s,force_error_small,force_error_large,"
+      << "felt_error,displacement_error_small,displacement_error_large,volume_error_small,volume_error_large,"
+      << "energy_drift,own_error,verdict,remark\n";
   for (const Row& r : rows) {
     for (const std::string* text :
          {&r.family, &r.element, &r.mesh, &r.kinematics, &r.solver, &r.kept, &r.scalar, &r.work})
       out << '"' << *text << "\",";
     out << (r.own_core ? 1 : 0) << ',' << r.nodes << ',' << r.kept_dofs;
     for (const double value :
-         {r.setup, r.bytes, r.p50, r.p99, r.update_p99, r.update_period, r.force_small, r.force_large, r.felt,
+         {r.setup, r.bytes, r.p50, r.p99, r.worst, r.update_p99, r.update_period, r.force_small, r.force_large, r.felt,
           r.moved_small, r.moved_large, r.volume_small, r.volume_large, r.drift, r.own_error})
       out << ',' << figure(value, "%.6g");
     out << ",\"" << r.verdict << "\",\"" << r.remark << "\"\n";
@@ -187,8 +209,8 @@ std::string advice(const std::vector<Row>& rows, double budget) {
     text += "// force " + std::string(title) + ": " + percent(best->error) + " % off, p99 " +
             figure(1e6 * best->latency, "%.3g") + " us, set-up " + figure(1e3 * best->setup_seconds, "%.3g") + " ms" +
             (row->own_core ? ", a core of its own" : "") + "\n//   mesh " + row->mesh +
-            (row->kept.empty() ? "" : ", touch " + row->kept) + (row->work.empty() ? "" : ", " + row->work) + "\n" +
-            row->paste + "\n";
+            (row->kept.empty() ? "" : ", touch " + row->kept) + (row->work.empty() ? "" : ", " + row->work) +
+            (row->remark.empty() ? "" : "; " + row->remark) + "\n" + row->paste + "\n";
   }
   return text.empty() ? "// nothing measured keeps a budget of " + figure(1e6 * budget, "%.3g") + " us\n" : text;
 }
@@ -210,9 +232,8 @@ void write_page(const Bench& bench, const std::vector<Row>& rows, double budget,
       << r.nodes << " nodes, " << figure(r.force(0, s.small).norm(), "%.4g") << " and "
       << figure(r.force(0, s.large).norm(), "%.4g") << " N; the mesh with edges twice as long is "
       << percent(r.mesh_error_small) << " and " << percent(r.mesh_error_large)
-      << " % off. Point at a mark for the whole composition; squares are baselines, red rims are rows that failed "
-         "their "
-         "own check.</p>\n";
+      << " % off. Point at a mark for the whole composition; squares are baselines, marks with a red rim failed their "
+         "own check, the line joins what nothing beats.</p>\n";
   for (const auto& [family, what] : {std::pair{"condensed", "linear, condensed"},
                                      {"uncondensed", "linear, not condensed"},
                                      {"moving", "moving tissue under a servo"},
@@ -225,12 +246,10 @@ void write_page(const Bench& bench, const std::vector<Row>& rows, double budget,
       << "</pre>\n";
   write_table(out, rows);
   out << "<p>Times are processor times of one thread. felt: root mean square of what the device renders a thousand "
-         "times a "
-         "second while the balls move, late ticks and updates included, of the largest force. moved: displacement of "
-         "all "
-         "nodes of the mesh as given. volume: of the volume that the balls press in. energy: what a body that is let "
-         "go "
-         "gains without damping. own check: see the sources of the benchmark.</p></html>\n";
+         "times "
+         "a second while the balls move, late ticks and updates included, of the largest force. moved: displacement of "
+         "all nodes of the mesh as given. volume: of the volume that the balls press in. energy: what a body that is "
+         "let go gains without damping. own check: how far the row is from its own formula.</p></html>\n";
 }
 
 }  // namespace tradeoff

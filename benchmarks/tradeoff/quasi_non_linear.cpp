@@ -27,21 +27,7 @@ class CotinContender : public Contender {
     for (Index i = 0; i < u_.size() / 3; ++i) u_.segment<3>(3 * i) = (tissue_.scale() * u_.segment<3>(3 * i)).eval();
     return of_given_nodes(u_, model_.node_map(), bench_.scene.mesh.node_count());
   }
-  /// How far the pressing nodes are from the ball, as for linear tissue.
-  double own_error() override {
-    double worst = 0.0, largest = 0.0;
-    for (const Contact& c : felt_.servo().contacts()) largest = std::max(largest, c.force);
-    for (const Contact& c : felt_.servo().contacts()) {
-      if (!(c.force > 0.01 * largest)) continue;
-      Vector3 point = Vector3::Zero();
-      for (std::size_t a = 0; a < 3; ++a) {
-        const NodeId node = model_.touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];
-        point += c.weights[a] * (model_.rest_position(node) + u_.segment<3>(3 * Index{node}));
-      }
-      worst = std::max(worst, std::abs((felt_.servo().proxy() - point).norm() - bench_.scene.radius));
-    }
-    return largest > 0.0 ? worst / bench_.scene.small : infinity;
-  }
+  double own_error() override { return distance_from_balls(model_, felt_.servo(), u_, bench_.scene); }
   Index nodes() const override { return model_.mesh().node_count(); }
   Index kept_dofs() const override { return model_.report().kept_dofs; }
   std::string remark() override { return felt_.remark(); }

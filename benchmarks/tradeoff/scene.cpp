@@ -161,7 +161,6 @@ PressScene make_scene(const SceneOptions& options) {
   if (options.kind == "retract") {
     scene.small = 0.2 * scene.radius;
     scene.large = 2.0 * scene.radius;
-    scene.speed = 0.05;
   } else if (options.kind == "grasp") {
     scene.large = 0.4 * scene.radius;
   }

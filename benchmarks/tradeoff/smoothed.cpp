@@ -12,10 +12,9 @@ void add_smoothed(const Bench& bench, std::vector<Entry>& entries) {
     entries.push_back(
         linear_entry<E, Condensed<SelectiveInverse>>(bench, name, "Condensed<SelectiveInverse>", "given", kept));
   for (const char* mesh : {"near", "all"})
-    entries.push_back(
-        linear_entry<E, Condensed<SelectiveInverse>>(bench, name, "Condensed<SelectiveInverse>", mesh, near_group));
-  for (const char* mesh : {"given", "near"})
-    entries.push_back(linear_entry<E, SparseCholesky>(bench, name, "SparseCholesky", mesh, surface));
+    if (bench.full || mesh == std::string("near"))
+      entries.push_back(
+          linear_entry<E, Condensed<SelectiveInverse>>(bench, name, "Condensed<SelectiveInverse>", mesh, near_group));
 }
 
 std::unique_ptr<Contender> make_condensed(const Bench& bench, const std::string& touched) {

@@ -5,14 +5,15 @@ namespace tradeoff {
 
 void add_tet10(const Bench& bench, std::vector<Entry>& entries) {
   const char* name = "Tet10";
-  for (const std::string& kept : {near_group, wide_group})
+  const auto add = [&](const char* mesh, const std::string& kept) {
     entries.push_back(
-        linear_entry<Tet10, Condensed<SelectiveInverse>>(bench, name, "Condensed<SelectiveInverse>", "given", kept));
-  entries.push_back(
-      linear_entry<Tet10, Condensed<SelectiveInverse>>(bench, name, "Condensed<SelectiveInverse>", "near", near_group));
-  if (bench.full)
-    entries.push_back(linear_entry<Tet10, Condensed<SelectiveInverse>>(bench, name, "Condensed<SelectiveInverse>",
-                                                                       "all", near_group));
+        linear_entry<Tet10, Condensed<SelectiveInverse>>(bench, name, "Condensed<SelectiveInverse>", mesh, kept));
+  };
+  add("given", near_group);
+  add("near", near_group);
+  if (!bench.full) return;
+  add("given", wide_group);
+  add("all", near_group);
 }
 
 }  // namespace tradeoff
