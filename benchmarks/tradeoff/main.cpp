@@ -78,9 +78,8 @@ int main(int argc, char** argv) try {
               .all = refined(scene.mesh, full),
               .full = full};
   std::printf(
-      "scene %s: balls of radius %.3g mm, depths %.3g and %.3g mm\nreference: %ld nodes, %.3g s; force %.4g and %.4g "
-      "N; "
-      "the next coarser mesh is %.2g %% and %.2g %% off\n\n",
+      "scene %s: balls of radius %.3g mm, depths %.3g and %.3g mm\n"
+      "reference: %ld nodes, %.3g s; force %.4g and %.4g N; the next coarser mesh is %.2g %% and %.2g %% off\n\n",
       scene.name.c_str(), 1e3 * scene.radius, 1e3 * scene.small, 1e3 * scene.large,
       static_cast<long>(bench.reference.nodes), bench.reference.seconds, bench.reference.force(0, scene.small).norm(),
       bench.reference.force(0, scene.large).norm(), 100.0 * bench.reference.mesh_error_small,
@@ -101,8 +100,11 @@ int main(int argc, char** argv) try {
   const std::string base = out + "/tradeoff-" + scene.name;
   write_csv(rows, base + ".csv");
   write_page(bench, rows, budget, base + ".html");
-  if (const std::string document = bench::option(argc, argv, "--docs", ""); !document.empty())
+  if (const std::string document = bench::option(argc, argv, "--docs", ""); !document.empty()) {
     put_in_document(document, "tradeoff " + scene.name, summary(bench, rows, budget));
+    const auto picture = std::filesystem::path(document).replace_filename("tradeoff-" + scene.name + ".svg");
+    write_picture(bench, rows, budget, picture.string());
+  }
   std::printf("\n%s\nwritten after %.0f s: %s.html, %s.csv\n", advice(rows, budget).c_str(),
               1e-9 * static_cast<double>(platform::wall_ns() - start), base.c_str(), base.c_str());
   const auto is_bad = [](const Row& r) { return r.verdict.starts_with("NOT"); };

@@ -76,9 +76,10 @@ class Plot {
     high_y_ = std::ceil(2.0 * high_y_ + 0.1) / 2.0;
   }
 
-  void write(std::ostream& out, const char* title, double budget, double floor) const {
-    out << "<figure><figcaption>Force error, " << title << "</figcaption>\n<svg viewBox='0 0 " << width << ' ' << height
-        << "' role='img'>\n";
+  /// As SVG, by itself or in a page.
+  void write(std::ostream& out, double budget, double floor) const {
+    out << "<svg xmlns='http://www.w3.org/2000/svg' font-family='sans-serif' viewBox='0 0 " << width << ' ' << height
+        << "' role='img'>\n<rect width='" << width << "' height='" << height << "' fill='white'/>\n";
     grid(out);
     line(out, x(budget), top, x(budget), bottom, "stroke='#c33' stroke-dasharray='5 4'");
     text(out, x(budget) + 4, top + 12, "budget", "fill='#c33'");
@@ -98,7 +99,7 @@ class Plot {
     for (const Row& r : rows_)
       if (std::ranges::count(front, r.name(), &MeasuredComposition::name) > 0)
         text(out, x(r.p99) + 7, y(r.*error_) - 7, escaped(label(r)), "fill='#222'");
-    out << "</svg></figure>\n";
+    out << "</svg>\n";
   }
 
  private:
@@ -153,6 +154,10 @@ class Plot {
   double Row::*error_;
   double low_x_ = infinity, high_x_ = -infinity, low_y_ = infinity, high_y_ = -infinity;
 };
+
+double doubt(const Reference& reference, double Row::*error) {
+  return error == &Row::force_small ? reference.mesh_error_small : reference.mesh_error_large;
+}
 
 void write_table(std::ostream& out, const std::vector<Row>& rows) {
   out << "<table><thead><tr>";
@@ -215,6 +220,11 @@ std::string advice(const std::vector<Row>& rows, double budget) {
   return text.empty() ? "// nothing measured keeps a budget of " + figure(1e6 * budget, "%.3g") + " us\n" : text;
 }
 
+void write_picture(const Bench& bench, const std::vector<Row>& rows, double budget, const std::string& path) {
+  std::ofstream out(path);
+  Plot(rows, &Row::felt).write(out, budget, doubt(bench.reference, &Row::felt));
+}
+
 void write_page(const Bench& bench, const std::vector<Row>& rows, double budget, const std::string& path) {
   const PressScene& s = bench.scene;
   const Reference& r = bench.reference;
@@ -225,7 +235,7 @@ void write_page(const Bench& bench, const std::vector<Row>& rows, double budget,
          "figure{margin:1.5em 0}figcaption{font-weight:600}table{border-collapse:collapse;font-size:12px}"
          "th,td{border-bottom:1px solid #ddd;padding:3px 6px;text-align:right}td:first-child,th:first-child,"
          "td:last-child{text-align:left}tr.bad{background:#fee}pre{background:#f4f4f4;padding:1em;overflow:auto}"
-         "svg text{font-family:sans-serif}svg{width:100%;height:auto}</style>\n<h1>Speed against accuracy: "
+         "svg{width:100%;height:auto}</style>\n<h1>Speed against accuracy: "
       << s.name << "</h1>\n<p>" << s.balls.size() << " ball" << (s.balls.size() > 1 ? "s" : "") << " of "
       << figure(2e3 * s.radius, "%.3g") << " mm, pressed in " << figure(1e3 * s.small, "%.3g") << " and "
       << figure(1e3 * s.large, "%.3g") << " mm and then to and fro. Reference: neo-Hookean, quadratic tetrahedra, "
@@ -240,8 +250,11 @@ void write_page(const Bench& bench, const std::vector<Row>& rows, double budget,
                                      {"explicit", "explicit steps"},
                                      {"baseline", "baselines"}})
     out << "<span style='color:" << colour_of(family) << "'>&#9632; " << what << "</span>&emsp;";
-  for (const auto& [title, error] : measures)
-    Plot(rows, error).write(out, title, budget, error == &Row::force_small ? r.mesh_error_small : r.mesh_error_large);
+  for (const auto& [title, error] : measures) {
+    out << "<figure><figcaption>Force error, " << title << "</figcaption>\n";
+    Plot(rows, error).write(out, budget, doubt(r, error));
+    out << "</figure>\n";
+  }
   out << "<h2>Within " << figure(1e6 * budget, "%.3g") << " us</h2><pre>" << escaped(advice(rows, budget))
       << "</pre>\n";
   write_table(out, rows);
