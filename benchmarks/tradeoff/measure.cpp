@@ -1,6 +1,6 @@
 // How a contender is driven and judged.
 #include <palpate/core/platform.hpp>
-#include <palpate/haptic/realtime_thread.hpp>
+#include <palpate/haptic/run_haptic_loop.hpp>
 
 #include <algorithm>
 #include <numbers>

@@ -61,7 +61,6 @@ class PressedForces : public ElasticForces {
       k.block(k.pattern().diagonal(node)) += stiffness() * out * out.transpose();
     });
   }
-  double probe_length() const noexcept override { return body_->probe_length(); }
 
  private:
   double stiffness() const noexcept { return share_ * stiffness_; }
