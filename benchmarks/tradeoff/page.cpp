@@ -130,7 +130,8 @@ class Plot {
   void grid(std::ostream& out) const {
     for (const double at : round_values(low_x_ + 6.0, high_x_ + 6.0)) {
       line(out, x(1e-6 * at), top, x(1e-6 * at), bottom, "stroke='#e4e4e4'");
-      text(out, x(1e-6 * at), bottom + 16, figure(at, "%g"), "text-anchor='middle' fill='#555'");
+      const bool crowded = high_x_ - low_x_ > 3.0 && std::abs(std::remainder(std::log10(at), 1.0)) > 1e-9;
+      if (!crowded) text(out, x(1e-6 * at), bottom + 16, figure(at, "%g"), "text-anchor='middle' fill='#555'");
     }
     for (const double at : round_values(low_y_ + 2.0, high_y_ + 2.0)) {
       line(out, left, y(1e-2 * at), right, y(1e-2 * at), "stroke='#e4e4e4'");
