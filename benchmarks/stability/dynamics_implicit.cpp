@@ -16,6 +16,8 @@ struct ImplicitMove {
       said = "step not taken";
     else if (!report.newton.converged)
       said = "Newton not converged";
+    else if (!report.calm)
+      said = "energy grew";
     else if (report.deformation.inverted > 0)
       said = "inverted";
     return report.taken;

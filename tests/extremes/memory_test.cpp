@@ -2,75 +2,11 @@
 // again.
 #include "extremes/verdict.hpp"
 
-#include <cerrno>
+#include <palpate/testing/allocation_counter.hpp>
+
 #include <cstdio>
 
 using namespace test;
-
-namespace {
-
-/// Heap calls of this thread while `counting`; the one with the number `fails_at` fails, and with `all_after` every
-/// later one too.
-struct FailingHeap {
-  std::int64_t calls = 0, fails_at = -1;
-  std::int64_t live = 0;  ///< blocks
-  bool counting = false, all_after = false;
-
-  bool refuses() noexcept {
-    if (!counting) return false;
-    const std::int64_t number = calls++;
-    return fails_at >= 0 && (number == fails_at || (all_after && number > fails_at));
-  }
-};
-constinit thread_local FailingHeap heap{};
-
-}  // namespace
-
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define PALPATE_TEST_HEAP_FAILS
-
-extern "C" {
-void* __libc_malloc(std::size_t);
-void* __libc_calloc(std::size_t, std::size_t);
-void* __libc_realloc(void*, std::size_t);
-void* __libc_memalign(std::size_t, std::size_t);
-void __libc_free(void*);
-
-static void* counted(void* block) noexcept {
-  if (block != nullptr) ++heap.live;
-  return block;
-}
-void* malloc(std::size_t size) noexcept {
-  return heap.refuses() ? nullptr : counted(__libc_malloc(size));
-}
-void* calloc(std::size_t count, std::size_t size) noexcept {
-  return heap.refuses() ? nullptr : counted(__libc_calloc(count, size));
-}
-void* realloc(void* block, std::size_t size) noexcept {
-  if (heap.refuses()) return nullptr;
-  void* const got = __libc_realloc(block, size);
-  if (block == nullptr) return counted(got);
-  if (size == 0) --heap.live;
-  return got;
-}
-void* memalign(std::size_t alignment, std::size_t size) noexcept {
-  return heap.refuses() ? nullptr : counted(__libc_memalign(alignment, size));
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
-  return memalign(alignment, size);
-}
-int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexcept {
-  void* const got = memalign(alignment, size);
-  if (got == nullptr) return ENOMEM;
-  *block = got;
-  return 0;
-}
-void free(void* block) noexcept {
-  if (block != nullptr) --heap.live;
-  __libc_free(block);
-}
-}
-#endif
 
 namespace {
 
@@ -78,21 +14,21 @@ struct Attempt {
   bool finished = false, out_of_memory = false;
   std::int64_t calls = 0, leaked = 0;
 };
-/// Runs work() with the heap failing at a number; -1: never.
+/// Runs work() with the heap failing at a number, or at that and all later ones; without one: with a heap that holds.
 template <class Work>
-Attempt with_failing_heap(std::int64_t at, bool all_after, Work work) {
+Attempt with_failing_heap(std::optional<std::int64_t> at, bool and_later, Work work) {
   Attempt a;
-  const std::int64_t before = heap.live;
-  heap = {.calls = 0, .fails_at = at, .live = before, .counting = true, .all_after = all_after};
+  const testing::AllocationScope scope;
   try {
+    std::optional<testing::FailingHeap> failing;
+    if (at) failing.emplace(static_cast<std::uint64_t>(*at), and_later);
     work();
     a.finished = true;
   } catch (const std::bad_alloc&) {
     a.out_of_memory = true;
   } catch (...) {}
-  heap.counting = false;
-  a.calls = heap.calls;
-  a.leaked = heap.live - before;
+  a.calls = static_cast<std::int64_t>(scope.allocations());
+  a.leaked = scope.live();
   return a;
 }
 
@@ -102,10 +38,9 @@ Scene small_scene(double pull) {
 
 }  // namespace
 
-#ifdef PALPATE_TEST_HEAP_FAILS
-
 TEST_CASE("a set-up in which any one allocation fails, or all from some on, throws bad_alloc and leaks nothing",
           "[extreme][E10]") {
+  if (!testing::allocations_are_counted()) return;
   const LinearElastic material{5e3, 0.3, 1000.0};
   const Mesh<Tet4> mesh = two_cubes();
   std::int64_t tried = 0, survived = 0;
@@ -115,7 +50,7 @@ TEST_CASE("a set-up in which any one allocation fails, or all from some on, thro
     const auto set_up = [&] { answer = make_model(policy, mesh, small_scene(0.1), material)->displacement(); };
     set_up();  // what is made once per program is made now
     const VectorX expected = answer;
-    const Attempt whole = with_failing_heap(-1, false, set_up);
+    const Attempt whole = with_failing_heap({}, false, set_up);
     REQUIRE(whole.finished);
     REQUIRE(whole.leaked == 0);
     REQUIRE(whole.calls > 100);
@@ -142,13 +77,14 @@ TEST_CASE("a set-up in which any one allocation fails, or all from some on, thro
 }
 
 TEST_CASE("a model whose change runs out of memory is as it was", "[extreme][E10]") {
+  if (!testing::allocations_are_counted()) return;
   for (PolicyName policy : extreme_policies) {
     INFO(name(policy));
     const auto model = make_model(policy, two_cubes(), small_scene(0.1), LinearElastic{5e3, 0.3, 1000.0});
     const VectorX before = model->displacement();
     const Matrix3 compliance = model->compliance(0, 1);
     const Scene other = small_scene(0.4);
-    const Attempt whole = with_failing_heap(-1, false, [&] { model->set_conditions(other); });
+    const Attempt whole = with_failing_heap({}, false, [&] { model->set_conditions(other); });
     REQUIRE(whole.finished);
     const VectorX after = model->displacement();
     REQUIRE(after != before);
@@ -166,5 +102,3 @@ TEST_CASE("a model whose change runs out of memory is as it was", "[extreme][E10
     CHECK(model->displacement() == after);
   }
 }
-
-#endif

@@ -32,12 +32,14 @@ std::string line_with(const std::string& text, const std::string& key) {
   return found;
 }
 
-/// A figure that another command makes: from what it printed into build/reliability/<id>.txt.
+/// A figure that another command makes: the last line with `key` of what it printed into build/reliability/<id>.txt.
+/// Any line with `bad` is a failure, and shown instead.
 Figure from_other(const Places& p, const std::string& id, const std::string& what, const std::string& command,
-                  const std::string& key) {
+                  const std::string& key, const std::string& bad = {}) {
   const std::string path = "build/reliability/" + id + ".txt";
-  const std::string line = line_with(read_text(p.others / "reliability" / (id + ".txt")), key);
-  if (!line.empty()) return {id, what, line};
+  const std::string text = read_text(p.others / "reliability" / (id + ".txt"));
+  if (const std::string line = bad.empty() ? bad : line_with(text, bad); !line.empty()) return {id, what, line, true};
+  if (const std::string line = line_with(text, key); !line.empty()) return {id, what, line};
   return {id, what, "not run: `" + command + " \\| tee " + path + "`"};
 }
 
@@ -142,15 +144,29 @@ Figure anomalies(const Places& p) {
 }
 
 Figure maps(const Places& p) {
-  Figure f{"map", "stability map: cells of the library that are WRONG", "not run: `sh cmake/run stability`"};
+  Figure f{"R13", "stability maps, devices in hands among them", "not run: `sh cmake/run stability`"};
   const std::string text = read_text(p.others / "stability" / "summary.txt");
   if (text.empty()) return f;
   f.value.clear();
-  for (const std::string& line : lines_of(text)) f.value += (f.value.empty() ? "" : "<br>") + line;
+  for (const std::string& line : lines_of(text)) {
+    f.value += (f.value.empty() ? "" : "<br>") + line;
+    if (line.find(" WRONG (") != line.npos && line.find(", 0 WRONG (") == line.npos) f.failed = true;
+    if (line.find(" figures off") != line.npos && line.find(", 0 figures off") == line.npos) f.failed = true;
+  }
   return f;
 }
 
 }  // namespace
+
+std::string compiler() {
+#if defined(__clang__)
+  return __VERSION__;
+#elif defined(__GNUC__)
+  return "g++ " __VERSION__;
+#else
+  return "unknown compiler";
+#endif
+}
 
 int run(const std::string& command, const std::filesystem::path& log) {
   return std::system((command + " >" + quoted(log) + " 2>&1").c_str());
@@ -163,18 +179,23 @@ std::vector<Figure> figures_of(const Places& p, const std::vector<TestResult>& r
                  "made by hand, see [the fuzzers](../tests/fuzz/README.md)"});
   all.push_back(
       from_other(p, "R4", "coverage of the gate: lines, branches, MC/DC", "sh tests/gate/coverage.sh", "TOTAL"));
-  all.push_back(from_other(p, "R5", "mutants of the gate killed", "python3 tests/gate/mutants.py", "mutants killed"));
-  all.push_back(from_other(p, "R6", "sanitizers: the last check", "sh tests/sanitize.sh", "lean:"));
+  all.push_back(
+      from_other(p, "R5", "mutants of the gate killed", "python3 tests/gate/mutants.py", "mutants killed", "SURVIVED"));
+  all.push_back(from_other(p, "R6", "sanitizers: the last check", "sh tests/sanitize.sh", "clean:", "NOT C"));
   all.push_back(tests_with("R7", "ticks, displacements and steps that allocate nothing, counted", results, "allocation",
                            " tests pass: 0 allocations"));
   all.push_back(from_other(p, "R8", "latency of ticks beside an empty thread", "sh cmake/run demo", "tick"));
   all.push_back(random_ticks(p, gate_ticks));
   all.push_back(printed_by_tests(p, "R10", "allocations of set-ups made to fail one by one, survived"));
   all.push_back(relations(results));
-  all.push_back(
-      from_other(p, "R12", "tables of accuracy and orders of convergence", "sh cmake/run accuracy", "checks,"));
+  Figure accuracy =
+      from_other(p, "R12", "tables of accuracy, orders of convergence", "sh cmake/run accuracy", "checks,");
+  accuracy.failed =
+      accuracy.value.find("checks,") != std::string::npos && accuracy.value.find(", 0 failed") == std::string::npos;
+  all.push_back(std::move(accuracy));
   all.push_back(maps(p));
   all.push_back(must_not_compile(p));
+  all.push_back({"R15", "compilers", "this run: " + compiler() + "; further ones by `CXX=... sh cmake/run extremes`"});
   all.push_back(anomalies(p));
   return all;
 }

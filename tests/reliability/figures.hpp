@@ -19,6 +19,9 @@ struct Places {
   std::filesystem::path others;   ///< build/, where other commands leave their output
 };
 
+/// Of this program, which the tests share.
+std::string compiler();
+
 /// Runs a program and keeps what it prints; its exit code, or that of the shell.
 int run(const std::string& command, const std::filesystem::path& log);
 

@@ -88,15 +88,6 @@ std::string processor() {
     if (line.compare(0, 10, "model name") == 0) return line.substr(line.find(':') + 2);
   return "unknown processor";
 }
-std::string compiler() {
-#if defined(__clang__)
-  return __VERSION__;
-#elif defined(__GNUC__)
-  return "g++ " __VERSION__;
-#else
-  return "unknown compiler";
-#endif
-}
 std::string today() {
   char text[40];
   const std::time_t now = std::time(nullptr);
@@ -139,6 +130,7 @@ int measure(int argc, char** argv) {
                 option(argc, argv, "--reports", "reports"), option(argc, argv, "--source", "."),
                 option(argc, argv, "--others", "build")};
   std::filesystem::create_directories(places.reports);
+  std::filesystem::create_directories(places.others / "reliability");
   const bool only_read = has_option(argc, argv, "--read");
   const Ran ran = run_all(places, only_read);
   if (ran.results.empty()) {
