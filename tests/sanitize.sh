@@ -39,6 +39,8 @@ check address-contact "$undefined" "" contact/friction_test.cpp contact/capsule_
   contact/contact_problem_test.cpp
 check address-devices "$undefined" "" device/chai3d_test.cpp device/force_dimension_test.cpp device/openhaptics_test.cpp
 check address-faults "$undefined" "" haptic/faults_test.cpp
+check address-cut "$undefined" "" cut/cut_system_test.cpp cut/cuttable_tissue_test.cpp cut/leaving_elements_test.cpp
+check threads-cut "-fsanitize=thread" "" cut/cuttable_tissue_test.cpp
 check threads "-fsanitize=thread" "" haptic/triple_buffer_test.cpp haptic/lifetimes_test.cpp haptic/faults_test.cpp
 
 cxx=

@@ -68,7 +68,7 @@ void check_rated() {
       SimulatedDevice handle(o);
       handle.start();
       const double rated = o.limits.stiffness;
-      Tanked<testing::VirtualWall> wall{.inner = {.stiffness = rated},
+      testing::Tanked<testing::VirtualWall> wall{.source = {.stiffness = rated},
                                         .tank = EnergyTank(EnergyLimits::from(o.limits))};
       double least = infinity;
       for (int i = 0; i < 20000; ++i) {  // pressed harder and softer, 0 to 2 N

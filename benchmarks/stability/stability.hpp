@@ -1,7 +1,7 @@
 // The largest stiffness that a simulated device renders calmly: what is varied, and how it is found.
 #pragma once
 
-#include <palpate/haptic/passivity_observer.hpp>
+#include <palpate/haptic/energy_tank.hpp>
 #include <palpate/testing/stability.hpp>
 
 #include "grid.hpp"
@@ -61,20 +61,6 @@ struct Cell {
   }
 };
 
-/// A servo with a tank behind it.
-template <class S>
-struct Tanked {
-  S inner;
-  EnergyTank tank;
-  ToolForce force{};
-  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
-    force = inner.tick(tools).front();
-    force.force = tank.limit(force.force, tools.front().position, tools.front().time, force.status);
-    tank.gave(force.force);
-    return {&force, 1};
-  }
-};
-
 /// What a handle does that is pushed into a wall with 1 N, after the first motion has died.
 struct InWall {
   double travel = 0.0;  ///< [m] in the last half second
@@ -120,7 +106,8 @@ inline double motor_power(const Cell& cell, double stiffness, bool tanked) {
   EnergyLimits limits = EnergyLimits::from(cell.device->options.limits);
   limits.delay = cell.delay;
   return in_wall(
-             cell, [&] { return Tanked<testing::VirtualWall>{.inner = wall, .tank = EnergyTank(limits)}; }, false)
+             cell, [&] { return testing::Tanked<testing::VirtualWall>{.source = wall, .tank = EnergyTank(limits)}; },
+             false)
       .power;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/device/virtual_motors.hpp>
+#include <palpate/device/render_limits.hpp>
 
 namespace own {
 
@@ -34,10 +34,8 @@ class HeldStylus {
   }
 
   /// The device is the last to touch the force: finite, within the peak, and zero unless running and readable. That the
-  /// servo has a gate of its own is no excuse. VirtualMotors sees to it here; with real ones these are your lines.
-  Status write(const Vector3& force, const Vector3& /*torque: there is no motor for it*/) noexcept {
-    return motors_.render(force);
-  }
+  /// servo has a gate of its own is no excuse. RenderLimits sees to it; with real motors you pass on what it leaves of both.
+  Status write(const Vector3& force, const Vector3& torque) noexcept { return motors_.render(force, torque); }
 
   /// From the data sheet, or better from the SDK. `stiffness` bounds what is felt: the servo couples tool and tissue
   /// with it. Too high and a real device buzzes.
@@ -73,7 +71,7 @@ class HeldStylus {
   Vector3 start_, goal_, position_, velocity_ = Vector3::Zero();
   double time_ = 0.0;
   bool plugged_ = true;
-  palpate::VirtualMotors motors_{{.peak_force = 3.3,
+  palpate::RenderLimits motors_{{.peak_force = 3.3,
                                   .continuous_force = 0.88,
                                   .stiffness = 500.0,
                                   .workspace_low = Vector3(-0.1, -0.1, -0.05),

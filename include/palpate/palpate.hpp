@@ -1,5 +1,5 @@
 // All a haptic session needs. Include single headers to compile less; what looks at results has headers of its own
-// (post/, model/natural_frequencies.hpp).
+// (post/, model/natural_frequencies.hpp), and so have cutting (cut/cuttable_tissue.hpp, cut/cut_thread.hpp, cut/blade.hpp).
 #pragma once
 
 #include <palpate/contact/tissue_group.hpp>
@@ -14,8 +14,8 @@
 #include <palpate/element/tet10.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/element/with_quadrature.hpp>
+#include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/haptic/passivity_observer.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 #include <palpate/io/gmsh.hpp>
 #include <palpate/io/pvd.hpp>

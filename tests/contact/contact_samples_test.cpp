@@ -1,5 +1,5 @@
 // Where contact points lie and what they belong to.
-#include <palpate/contact/contact_samples.hpp>
+#include <palpate/contact/contact_problem.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/testing/random.hpp>
 
@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "catch.hpp"
+#include "refused.hpp"
 
 using namespace palpate;
 
@@ -126,10 +127,24 @@ TEST_CASE("samples on a line of the mesh are not further apart than the spacing"
   }
 }
 
+TEST_CASE("a surface so coarse that a ball would fall between its points is refused", "[contact][samples][extreme]") {
+  const auto sample = [](double edge, double radius) {
+    const ContactSurface surface({{0, 0, 0}, {edge, 0, 0}, {0, edge / 2, 0}, {0, 0, edge / 4}}, {{0, 1, 2}, {0, 2, 3}});
+    ContactProblem<8>(surface, radius);
+  };
+  sample(0.1, 1.01 * std::hypot(0.1, 0.05) / 32);
+  const SetupProblem refused = test::refusal([&] { sample(0.1, 1e-3); });
+  CHECK(refused.kind == SetupErrorKind::bad_argument);
+  CHECK(refused.ids == std::vector<std::int64_t>{1, 2});
+  CHECK(refused.count == 2);
+  CHECK(std::abs(refused.value - std::hypot(0.1, 0.05)) < 1e-15);
+  CHECK(std::abs(refused.threshold - 0.032) < 1e-15);
+  CHECK(!refused.hint.empty());
+}
+
 TEST_CASE("the lattice of a huge triangle is bounded", "[contact][samples][extreme]") {
   const ContactSurface huge({{0, 0, 0}, {1e6, 0, 0}, {0, 1e6, 0}}, {{0, 1, 2}});
   CHECK(ContactSamples(huge, 1e-3).count() == 33 * 34 / 2);
-  CHECK(ContactSamples(huge, 1e-3, 4).count() == 5 * 6 / 2);
   CHECK(ContactSamples(huge, 1e-300).count() == 33 * 34 / 2);
   CHECK(ContactSamples(huge, 1e308).count() == 3);
   CHECK(ContactSamples(ContactSurface(), 1.0).count() == 0);

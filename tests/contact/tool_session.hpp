@@ -15,8 +15,10 @@ struct ToolSession {
   std::vector<ContactTool> tools;
   Status status;
 
-  ToolSession(Tissue& t, const std::vector<ContactTool>& start, const ContactParameters& parameters = {})
-      : tissue(t), problem(t.contact_surface(), at_vertices_only, parameters), tools(start) {}
+  /// Contact points for balls of the radius `sampled_for`.
+  ToolSession(Tissue& t, const std::vector<ContactTool>& start, const ContactParameters& parameters = {},
+              double sampled_for = at_vertices_only)
+      : tissue(t), problem(t.contact_surface(), sampled_for, parameters), tools(start) {}
 
   void tick() { status |= problem.solve(tissue, tools); }
   /// The device of one tool is elsewhere.

@@ -69,8 +69,11 @@ struct FakeDevice {
 using Stylus = Chai3dDevice<FakeDevice, FakeVector, FakeMatrix>;
 static_assert(HapticDevice<Stylus>);
 
+Vector3 chai_vector(const FakeVector& v) {
+  return Vector3(v.x(), v.y(), v.z());
+}
 Vector3 chai_force(const FakeDevice& d) {
-  return Vector3(d.force.x(), d.force.y(), d.force.z());
+  return chai_vector(d.force);
 }
 
 template <class F>
@@ -107,12 +110,17 @@ TEST_CASE("chai3d: states and limits", "[device][chai3d]") {
 }
 
 TEST_CASE("chai3d: keeps the laws of devices", "[device][chai3d][laws]") {
-  FakeDevice fake;
-  Stylus stylus(fake);
-  testing::DeviceProbe<Stylus> probe;
-  probe.rendered = [&](const Stylus&) { return chai_force(fake); };
-  probe.break_reads = [&](Stylus&, bool broken) { fake.reads = !broken; };
-  CHECK(testing::describe(testing::device_laws(stylus, probe, 1000)) == "");
+  for (const bool torque : {false, true}) {
+    FakeDevice fake;
+    Chai3dOptions options;
+    options.torque = torque;
+    Stylus stylus(fake, options);
+    testing::DeviceProbe<Stylus> probe;
+    probe.rendered = [&](const Stylus&) { return chai_force(fake); };
+    probe.rendered_torque = [&](const Stylus&) { return chai_vector(fake.torque); };
+    probe.break_reads = [&](Stylus&, bool broken) { fake.reads = !broken; };
+    CHECK(testing::describe(testing::device_laws(stylus, probe, 1000)) == "");
+  }
 }
 
 TEST_CASE("chai3d: what fails takes the force off", "[device][chai3d][extreme][D6]") {
@@ -156,10 +164,31 @@ TEST_CASE("chai3d: torque where there are motors", "[device][chai3d]") {
   CHECK(fake.torque.y() == 0.02);
   CHECK(stylus.limits().peak_torque == 0.1);
   CHECK(stylus.limits().turning_stiffness == 1.5);
-  stylus.write(Vector3(1.0, 0.0, 0.0), Vector3(0.0, 3.0, 0.0));
+  CHECK(stylus.write(Vector3(1.0, 0.0, 0.0), Vector3(0.0, 3.0, 0.0)) == Status(StatusFlag::saturated));
   CHECK_THAT(fake.torque.y(), WithinAbs(0.1, 1e-15));
-  stylus.write(Vector3(1.0, 0.0, 0.0), Vector3(0.0, infinity, 0.0));
+  CHECK(stylus.write(Vector3(1.0, 0.0, 0.0), Vector3(0.0, infinity, 0.0)) == Status(StatusFlag::non_finite_force));
   CHECK(fake.torque.y() == 0.0);
+  CHECK(chai_force(fake) == Vector3::Zero());
+}
+
+TEST_CASE("chai3d: torque without limits of it is refused, limits without torque are none", "[device][chai3d]") {
+  FakeDevice fake;
+  Chai3dOptions options;
+  options.torque = true;
+  for (double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), infinity}) {
+    fake.info.m_maxAngularTorque = bad;
+    CHECK(chai_refusal([&] { Stylus stylus(fake, options); }) == SetupErrorKind::bad_argument);
+    fake.info.m_maxAngularTorque = 0.1;
+    fake.info.m_maxAngularStiffness = bad;
+    CHECK(chai_refusal([&] { Stylus stylus(fake, options); }) == SetupErrorKind::bad_argument);
+    fake.info.m_maxAngularStiffness = 1.0;
+  }
+  options.limits = DeviceLimits{};
+  CHECK(chai_refusal([&] { Stylus stylus(fake, options); }) == SetupErrorKind::bad_argument);
+  CHECK(!fake.is_open);
+  options.torque = false;
+  options.limits->peak_torque = options.limits->turning_stiffness = 0.1;
+  CHECK(Stylus(fake, options).limits().peak_torque == 0.0);
 }
 
 TEST_CASE("chai3d: no device, or one without a specification, is refused", "[device][chai3d]") {

@@ -77,6 +77,55 @@ struct KeepsForceWhenLost : Good {
     return s;
   }
 };
+/// A good device with motors for torque; those below differ in one thing.
+struct Turns : Good {
+  Status write(const Vector3& wanted, const Vector3& turning) noexcept {
+    torque.setZero();
+    Status status = Good::write(turning.allFinite() ? wanted : turning, turning);
+    if (running && status.bits() == (status.bits() & static_cast<std::uint32_t>(StatusFlag::saturated)))
+      turn(turning, status);
+    return status;
+  }
+  void turn(const Vector3& wanted, Status& status) noexcept {
+    bool shortened = false;
+    torque = limit_length(wanted, 0.1, shortened);
+    if (shortened) status.set(StatusFlag::saturated);
+  }
+  ToolState read() noexcept {
+    const ToolState s = Good::read();
+    if (!readable) torque.setZero();
+    return s;
+  }
+  void stop() noexcept {
+    Good::stop();
+    torque.setZero();
+  }
+  DeviceLimits limits() const noexcept { return {.peak_torque = 0.1, .turning_stiffness = 1.0}; }
+  const Vector3& last_torque() const noexcept { return torque; }
+  Vector3 torque = Vector3::Zero();
+};
+struct UnlimitedTorque : Turns {
+  Status write(const Vector3& wanted, const Vector3& turning) noexcept {
+    const Status status = Turns::write(wanted, turning);
+    if (status.has(StatusFlag::saturated)) torque = turning;
+    return status;
+  }
+};
+struct TorqueWithoutLimit : Turns {  // as if no limit were no bound
+  DeviceLimits limits() const noexcept { return {}; }
+};
+struct QuietTorque : Turns {
+  Status write(const Vector3& wanted, const Vector3& turning) noexcept {
+    Turns::write(wanted, turning);
+    return Good::write(wanted, turning);
+  }
+};
+struct TurnsAfterStop : Turns {
+  void stop() noexcept { Good::stop(); }
+};
+struct NoTurningStiffness : Turns {
+  DeviceLimits limits() const noexcept { return {.peak_torque = 0.1}; }
+};
 struct Weak : Good {
   Status write(const Vector3& wanted, const Vector3& torque) noexcept { return Good::write(0.9 * wanted, torque); }
 };
@@ -138,12 +187,15 @@ std::string broken(Device device) {
 
 TEST_CASE("good devices keep the laws", "[device][laws]") {
   CHECK(broken(Good{}) == "");
+  CHECK(broken(Turns{}) == "");
   CHECK(broken(MockDevice(trajectory::poke())) == "");
   CHECK(broken(MockDevice(trajectory::press_drag_release())) == "");
   CHECK(broken(MockDevice([](double t) { return Vector3(std::sin(t), 0.0, 0.0); })) == "");
   MockOptions options;
   options.clock = DeviceClock::wall;
   options.limits.peak_force = 12.0;
+  options.limits.peak_torque = 0.2;
+  options.limits.turning_stiffness = 2.0;
   CHECK(broken(MockDevice(trajectory::poke(), options)) == "");
 }
 
@@ -172,6 +224,12 @@ TEST_CASE("each kind of bad device is caught", "[device][laws][extreme][D6][D7]"
   CHECK(breaks<KeepsForceAfterStop>("zero after stop"));
   CHECK(breaks<RendersAfterStop>("zero after stop"));
   CHECK(breaks<KeepsForceWhenLost>("zero after an invalid read"));
+  CHECK(breaks<UnlimitedTorque>("torque within its peak"));
+  CHECK(breaks<TorqueWithoutLimit>("torque within its peak"));
+  CHECK(breaks<QuietTorque>("says that it saturates"));
+  CHECK(breaks<QuietTorque>("says that the torque is not finite"));
+  CHECK(breaks<TurnsAfterStop>("zero after stop"));
+  CHECK(breaks<NoTurningStiffness>("limits are sane"));
   CHECK(breaks<Weak>("renders what it can"));
   CHECK(breaks<SaysNothing>("says that it saturates"));
   CHECK(breaks<SaysNothing>("says that the force is not finite"));

@@ -15,6 +15,14 @@ Vector3 dhd_force() {
   return Vector3(fake_dhd::sdk().force.data());
 }
 
+ForceDimensionOptions dhd_with_torque() {
+  ForceDimensionOptions options;
+  options.torque = true;
+  options.limits.peak_torque = 0.1;
+  options.limits.turning_stiffness = 1.0;
+  return options;
+}
+
 template <class F>
 std::string dhd_refusal(F f) {
   try {
@@ -45,19 +53,22 @@ TEST_CASE("force dimension: states are SI as they come", "[device][force_dimensi
 }
 
 TEST_CASE("force dimension: keeps the laws of devices", "[device][force_dimension][laws]") {
-  fake_dhd::Scope sdk;
-  ForceDimensionDevice device;
-  testing::DeviceProbe<ForceDimensionDevice> probe;
-  probe.rendered = [](const ForceDimensionDevice&) { return dhd_force(); };
-  probe.break_reads = [&](ForceDimensionDevice&, bool broken) { sdk.sdk.read_answer = broken ? -1 : 0; };
-  CHECK(testing::describe(testing::device_laws(device, probe, 1000)) == "");
+  for (const bool torque : {false, true}) {
+    fake_dhd::Scope sdk;
+    ForceDimensionDevice device(torque ? dhd_with_torque() : ForceDimensionOptions());
+    testing::DeviceProbe<ForceDimensionDevice> probe;
+    probe.rendered = [](const ForceDimensionDevice&) { return dhd_force(); };
+    probe.rendered_torque = [&](const ForceDimensionDevice&) { return Vector3(sdk.sdk.torque.data()); };
+    probe.break_reads = [&](ForceDimensionDevice&, bool broken) { sdk.sdk.read_answer = broken ? -1 : 0; };
+    CHECK(testing::describe(testing::device_laws(device, probe, 1000)) == "");
+  }
 }
 
 TEST_CASE("force dimension: answers of the SDK", "[device][force_dimension][extreme][D6]") {
   fake_dhd::Scope sdk;
   ForceDimensionDevice device;
   device.start();
-  CHECK(sdk.sdk.max_force == 12.0);
+  CHECK(sdk.sdk.max_force == 3.0);
   const Vector3 force(0.0, 1.0, 0.0);
   sdk.sdk.read_answer = sdk.sdk.velocity_answer = 1;  // the time guard: data are fresh
   CHECK(device.read().valid);
@@ -104,16 +115,19 @@ TEST_CASE("force dimension: a force with every write, zero and stopped too", "[d
 
 TEST_CASE("force dimension: torque where there are motors, and only finite", "[device][force_dimension]") {
   fake_dhd::Scope sdk;
-  ForceDimensionOptions options;
-  options.torque = true;
-  ForceDimensionDevice device(options);
+  ForceDimensionDevice device(dhd_with_torque());
   device.start();
   device.read();
   device.write(Vector3(1.0, 0.0, 0.0), Vector3(0.0, 0.02, 0.0));
   CHECK(sdk.sdk.torque == std::array{0.0, 0.02, 0.0});
-  device.write(Vector3(1.0, 0.0, 0.0), Vector3(0.0, infinity, 0.0));
+  CHECK(device.write(Vector3(1.0, 0.0, 0.0), Vector3(0.0, 5.0, 0.0)) == Status(StatusFlag::saturated));
+  CHECK_THAT(sdk.sdk.torque[1], WithinAbs(0.1, 1e-15));
+  CHECK(device.write(Vector3(1.0, 0.0, 0.0), Vector3(0.0, infinity, 0.0)) == Status(StatusFlag::non_finite_force));
   CHECK(sdk.sdk.torque == std::array{0.0, 0.0, 0.0});
-  CHECK(dhd_force() == Vector3(1.0, 0.0, 0.0));
+  CHECK(dhd_force() == Vector3::Zero());
+  ForceDimensionOptions unlimited;
+  unlimited.torque = true;
+  CHECK_THAT(dhd_refusal([&] { ForceDimensionDevice other(unlimited); }), test::contains("peak torque of 0 N m"));
 }
 
 TEST_CASE("force dimension: what the SDK refuses is refused in its words", "[device][force_dimension]") {

@@ -19,6 +19,12 @@ Vector3 hd_force() {
   const auto& f = fake_hd::sdk().force;
   return Vector3(f[0], f[1], f[2]);
 }
+OpenHapticsOptions hd_with_torque() {
+  OpenHapticsOptions options;
+  options.torque = true;
+  options.limits = DeviceLimits{.peak_torque = 0.1, .turning_stiffness = 1.0};
+  return options;
+}
 /// A wall at y = 0 with a gate.
 struct GatedWall {
   ForceGate gate{};
@@ -69,16 +75,27 @@ TEST_CASE("openhaptics: millimetres, degrees of freedom and buttons at the borde
 
 TEST_CASE("openhaptics: torque in newton millimetres where there are motors", "[device][openhaptics]") {
   fake_hd::Scope sdk;
-  OpenHapticsOptions options;
-  options.torque = true;
-  OpenHapticsDevice device(options);
+  OpenHapticsDevice device(hd_with_torque());
   device.start();
   device.read();
   device.write(Vector3(0.0, 0.0, 1.0), Vector3(0.01, 0.0, -0.02));
   CHECK((Vector3(sdk.sdk.torque.data()) - Vector3(10.0, 0.0, -20.0)).norm() < 1e-12);
   device.read();
-  device.write(Vector3(0.0, 0.0, 1.0), Vector3(0.01, infinity, 0.0));
+  CHECK(device.write(Vector3(0.0, 0.0, 1.0), Vector3(0.0, -7.0, 0.0)) == Status(StatusFlag::saturated));
+  CHECK((Vector3(sdk.sdk.torque.data()) - Vector3(0.0, -100.0, 0.0)).norm() < 1e-12);
+  device.read();
+  CHECK(device.write(Vector3(0.0, 0.0, 1.0), Vector3(0.01, infinity, 0.0)) == Status(StatusFlag::non_finite_force));
   CHECK(sdk.sdk.torque == std::array<double, 3>{});
+  CHECK(hd_force() == Vector3::Zero());
+}
+
+TEST_CASE("openhaptics: torque without limits of it is refused", "[device][openhaptics]") {
+  fake_hd::Scope sdk;
+  OpenHapticsOptions options;
+  options.torque = true;  // the SDK is not asked for limits of torque
+  CHECK_THAT(hd_refusal([&] { OpenHapticsDevice device(options); }), contains("peak torque of 0 N m"));
+  options.limits = DeviceLimits{.peak_torque = 0.1};
+  CHECK_THAT(hd_refusal([&] { OpenHapticsDevice device(options); }), contains("turning stiffness of 0"));
 }
 
 TEST_CASE("openhaptics: limits are asked from the SDK", "[device][openhaptics]") {
@@ -107,10 +124,9 @@ TEST_CASE("openhaptics: the device that is not there is refused in the SDK's wor
 }
 
 TEST_CASE("openhaptics: keeps the laws of devices", "[device][openhaptics][laws]") {
+  const bool torque = GENERATE(false, true);
   fake_hd::Scope sdk;
-  OpenHapticsDevice device;
-  testing::DeviceProbe<OpenHapticsDevice> probe;
-  probe.rendered = [](const OpenHapticsDevice&) { return hd_force(); };
+  OpenHapticsDevice device(torque ? hd_with_torque() : OpenHapticsOptions());
   // Laws write many times per read: the adapter sends a force only at the end of a frame, so each write has its own.
   struct Framed {
     OpenHapticsDevice& inner;
@@ -129,6 +145,7 @@ TEST_CASE("openhaptics: keeps the laws of devices", "[device][openhaptics][laws]
   } framed{device};
   testing::DeviceProbe<Framed> framed_probe;
   framed_probe.rendered = [](const Framed&) { return hd_force(); };
+  framed_probe.rendered_torque = [](const Framed&) -> Vector3 { return 1e-3 * Vector3(fake_hd::sdk().torque.data()); };
   framed_probe.break_reads = [](Framed&, bool broken) { fake_hd::sdk().broken = broken; };
   CHECK(testing::describe(testing::device_laws(framed, framed_probe, 1000)) == "");
   CHECK(fake_hd::sdk().misuse == 0);
@@ -214,7 +231,7 @@ TEST_CASE("openhaptics: the loop begins, reads, sets and ends, in this order, an
   CHECK(s.misuse == 0);
   CHECK(s.errors_asked_elsewhere == 0);
   const std::string all = hd_calls();
-  CHECK(all.starts_with("init, schedule, enable, start scheduler, begin, read, force, end, begin, read, force, end, "));
+  CHECK(all.starts_with("init, enable, schedule, start scheduler, begin, read, force, end, begin, read, force, end, "));
   CHECK(all.ends_with("begin, read, force, end, stop scheduler, unschedule, disable, disable device, "));
 }
 
@@ -233,11 +250,53 @@ TEST_CASE("openhaptics: a lost device ends the loop without force", "[device][op
   loop.start();
   for (int i = 0; loop.alive() && i < 5000; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   CHECK(!loop.alive());
-  loop.stop();
   CHECK(hd_force() == Vector3::Zero());
+  loop.stop();
   CHECK(servo.ticks == 51);
   CHECK(loop.last_status().has(StatusFlag::disconnected));
   CHECK(device.last_error() == HD_COMM_ERROR);
+}
+
+TEST_CASE("openhaptics: a frame that fails while it sends ends the loop without force, too",
+          "[device][openhaptics][extreme][D6]") {
+  fake_hd::Scope sdk;
+  struct FailsBehind {
+    ToolForce force{.force = Vector3(0.0, 2.0, 0.0), .status = {}};
+    std::atomic<int> ticks{0};
+    std::span<const ToolForce> tick(std::span<const ToolState>) noexcept {
+      if (++ticks == 50) fake_hd::fail(HD_COMM_ERROR);  // the read is over: the write finds it
+      return {&force, 1};
+    }
+  } servo;
+  OpenHapticsDevice device;
+  OpenHapticsLoop loop(device, servo);
+  loop.start();
+  for (int i = 0; loop.alive() && i < 5000; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  CHECK(!loop.alive());
+  CHECK(hd_force() == Vector3::Zero());  // before anything is disabled
+  CHECK(servo.ticks == 50);
+  loop.stop();
+  CHECK(fake_hd::sdk().misuse == 0);
+}
+
+TEST_CASE("openhaptics: a loop is stopped before it is started again, and then ticks anew", "[device][openhaptics]") {
+  fake_hd::Scope sdk;
+  GatedWall wall;
+  OpenHapticsDevice device;
+  OpenHapticsLoop loop(device, wall);
+  loop.start();
+  CHECK_THAT(hd_refusal([&] { loop.start(); }), contains("stop()"));
+  CHECK(loop.alive());
+  loop.stop();
+  fake_hd::sdk().calls_back = false;  // ticks of the first time are none of the second
+  CHECK_THAT(hd_refusal([&] { loop.start(); }), contains("does not call"));
+  fake_hd::sdk().calls_back = true;
+  loop.start();
+  CHECK(loop.ticks() > 0);
+  loop.stop();
+  const std::string all = hd_calls();
+  CHECK(all.find("enable, schedule") != std::string::npos);
+  CHECK(fake_hd::sdk().misuse == 0);
 }
 
 TEST_CASE("openhaptics: a scheduler that does not call is refused", "[device][openhaptics]") {

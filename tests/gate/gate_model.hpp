@@ -56,11 +56,12 @@ class Model {
     Answer a;
     double elapsed = now - now_before_;
     if (std::isfinite(now)) now_before_ = now;
-    if (!(elapsed > 0.0) || std::isinf(elapsed)) elapsed = l_.period;
+    const bool guessed = !(elapsed > 0.0) || std::isinf(elapsed);
+    if (guessed) elapsed = l_.period;
     const double part = elapsed > l_.heating ? 1.0 : elapsed / l_.heating;
     double square = 0.0;
     for (double x : force_) square += x * x;
-    heat_ = heat_ + part * (square - heat_);
+    if (!guessed || square > heat_) heat_ = heat_ + part * (square - heat_);
     const double overdue = how_late(elapsed, now, stamp);
     if (elapsed > 1.5 * l_.period) a.status |= deadline_missed;
 

@@ -192,6 +192,31 @@ void check_heat() {
   expect(std::abs(push(3.0, 700.0, 701.0) - 3.0) < 1e-12, "time does");
 }
 
+/// A device that is lost for a while, or whose last state is held: motors cool by the time that went, not twice.
+void check_held_input() {
+  ForceLimits limits;
+  limits.peak_force = 3.0;
+  limits.continuous_force = 1.0;
+  for (const bool valid : {false, true}) {
+    ForceGate held(limits), seen(limits);
+    const auto both = [&](double newtons, double t) {
+      const double a = held.apply({0.0, 0.0, newtons}, t, t, true, false).force[2];
+      const double b = seen.apply({0.0, 0.0, newtons}, t, t, true, false).force[2];
+      return std::abs(a - b);
+    };
+    double t = 0.0;
+    for (; t < 20.0; t += 1e-3) both(3.0, t);  // hot
+    const double last = t - 1e-3;
+    for (int k = 0; k < 4000; ++k, t += 1e-3) {
+      held.apply(Vector3::Zero(), last, last, valid, false);
+      seen.apply(Vector3::Zero(), t, t, valid, false);
+    }
+    double difference = 0.0;  // in what they let through, after both ramps
+    for (const double end = t + 0.2; t < end; t += 1e-3) difference = both(3.0, t);
+    expect(difference < 0.05, "a clock that stands still cools no motor before it goes on");
+  }
+}
+
 /// Both gates through the same ticks; a fresh pair now and then, one of them by reset.
 void compare(const gate::Limits& chosen, std::uint64_t ticks) {
   const ForceLimits limits{chosen.peak,   chosen.slew,   chosen.ramp,       chosen.stale,  chosen.fade,
@@ -267,6 +292,7 @@ int main(int argc, char** argv) {
   check_defaults();
   check_start();
   check_heat();
+  check_held_input();
   const std::uint64_t ticks = is_long ? static_cast<std::uint64_t>(std::atof(argv[2])) : 1'000'000;
   compare(exact, ticks / 2);
   compare(plain, ticks - ticks / 2);

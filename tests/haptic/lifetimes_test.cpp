@@ -18,7 +18,6 @@ namespace {
 using PadServo = HapticServo<test::Pad>;
 static_assert(!std::is_move_constructible_v<PadServo> && !std::is_move_assignable_v<PadServo>);
 static_assert(!std::is_copy_constructible_v<PadServo> && !std::is_copy_assignable_v<PadServo>);
-static_assert(!std::is_constructible_v<PadServo, test::Pad&&, SphereTool>);  // of a model that is gone at once
 
 constexpr int session_ticks = 1500;
 

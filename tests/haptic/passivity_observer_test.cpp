@@ -18,24 +18,10 @@ namespace {
 
 const EnergyLimits limits = EnergyLimits::from(DeviceLimits{});
 
-/// A wall or whatever else computes a force, with a tank behind it.
+/// A source of force with a tank for the usual device behind it.
 template <class Source>
-struct Tanked {
-  Source source;
-  EnergyTank tank{limits};
-  ToolForce force{};
-  std::uint64_t limited = 0;
-  double lowest = infinity;
-
-  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
-    const ToolState& tool = tools.front();
-    force.status = {};
-    force.force = tank.limit(source.tick(tools).front().force, tool.position, tool.time, force.status);
-    tank.gave(force.force);
-    lowest = std::min(lowest, tank.level());
-    if (force.status.has(StatusFlag::energy_injected)) ++limited;
-    return {&force, 1};
-  }
+struct Tanked : testing::Tanked<Source> {
+  explicit Tanked(const Source& made = {}) : testing::Tanked<Source>{.source = made, .tank = EnergyTank(limits)} {}
 };
 
 /// Pushes out, and not in: each time round it gives a newton times the way.
@@ -84,7 +70,7 @@ TEST_CASE("a wall at the rated stiffness never empties the tank, whatever moves 
   const auto encoder_step = GENERATE(0.0, 55e-6, 1e-3);
   testing::Random random(8);
   for (double stiffness : {500.0, 100.0, 1.0}) {
-    Tanked<testing::VirtualWall> wall{.source = {.stiffness = stiffness}};
+    Tanked<testing::VirtualWall> wall({.stiffness = stiffness});
     double z = 0.01, t = 0.0, fastest = 1e-6;
     for (int i = 0; i < 200'000; ++i) {
       if (i % 50 == 0) fastest = std::pow(10.0, random.uniform(-7.0, -2.3));  // 0.1 mm/s to 5 m/s
@@ -100,13 +86,13 @@ TEST_CASE("a wall at the rated stiffness never empties the tank, whatever moves 
 
 TEST_CASE("a wall stiffer than that is caught when it gives", "[haptic][energy]") {
   testing::Random random(8);
-  Tanked<testing::VirtualWall> wall{.source = {.stiffness = 1500.0}};
+  Tanked<testing::VirtualWall> wall({.stiffness = 1500.0});
   for (int i = 0; i < 5000; ++i) at(wall, random.uniform(-2e-3, -1e-3), 1e-3 * i);  // as if shaken without inertia
   CHECK(wall.limited > 1000);
 }
 
 TEST_CASE("slow motion over encoder steps passes to the bit", "[haptic][energy]") {
-  Tanked<testing::VirtualWall> wall{.source = {.stiffness = 500.0}};
+  Tanked<testing::VirtualWall> wall({.stiffness = 500.0});
   testing::VirtualWall bare{.stiffness = 500.0};
   testing::Random random(12);
   for (int i = 0; i < 100'000; ++i) {
@@ -174,7 +160,7 @@ TEST_CASE("simulated: what moves the handle is bounded by the tank, in true ener
       SimulatedDevice device(o);
       device.start();
       device.push(Vector3(0.0, 0.0, -0.5));
-      Tanked<testing::VirtualWall> wall{.source = {.stiffness = stiffness}};
+      Tanked<testing::VirtualWall> wall({.stiffness = stiffness});
       double over = -infinity;
       for (int i = 0; i < 5000; ++i) {
         if (tanked)
@@ -219,7 +205,7 @@ TEST_CASE("special values leave the level within bounds and the gain a gain", "[
     tank.gave(Vector3(any(), any(), any()));
     if (!(tank.level() >= -limits.allowance && tank.level() <= limits.capacity)) FAIL("level " << tank.level());
     if (f.allFinite() && !out.allFinite()) FAIL("made " << out.transpose());
-    if (!std::isfinite(tank.observer().given()) && i < 10) FAIL("given " << tank.observer().given());
+    if (!std::isfinite(tank.observer().given())) FAIL("given " << tank.observer().given());
   }
   tank.reset();
   CHECK(tank.level() == limits.allowance);

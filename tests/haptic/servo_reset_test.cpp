@@ -22,8 +22,8 @@ struct ListeningTissue : test::AnalyticTissue {
   Vector3 pressing = Vector3::Zero();
   int told = 0;
 };
-static_assert(TissueModel<ListeningTissue> && MovesByItself<ListeningTissue>);
-static_assert(!MovesByItself<test::AnalyticTissue>);
+static_assert(TissueModel<ListeningTissue> && AnnouncesChanges<ListeningTissue>);
+static_assert(!AnnouncesChanges<test::AnalyticTissue>);
 
 }  // namespace
 
@@ -38,7 +38,10 @@ TEST_CASE("a reset tells the tissue that nothing presses any more", "[haptic][se
   }
   CHECK(tissue.told == 50);
   CHECK(tissue.pressing.z() < -1e-3);
+  CHECK(!servo.read_snapshot().vertex_forces().empty());
   servo.reset();
+  CHECK(servo.read_snapshot().vertex_forces().empty());  // a renderer shows no dent any more
+  CHECK(servo.read_snapshot().tool_contacts().empty());
   CHECK(tissue.told == 51);
   CHECK(tissue.pressing == Vector3::Zero());
   CHECK(servo.contacts().empty());

@@ -30,6 +30,15 @@ class CorotatedTetrahedra {
   }
 
   Index size() const noexcept { return 3 * layout_.node_count(); }
+  /// Elements for which gone(element) leave, for good, as in BatchedTetrahedra. O(elements), no allocation.
+  template <class Gone>
+  void remove_if(Gone&& gone) {
+    layout_.remove_if(gone, [this](std::size_t batch, int lane) {
+      for (Vector& g : turned_[batch].gradient) TetrahedronBatches<S, N>::clear_lane(g, lane);
+      turned_[batch].root_volume.set(lane, S(0));
+    });
+  }
+
   /// Takes the rotations at u; f = internal force there [N], energy [J]. Finite where the square of F is, in S.
   DeformationReport linearise(const VectorX& u, VectorX& f, double& energy) noexcept {
     energy = 0.0;

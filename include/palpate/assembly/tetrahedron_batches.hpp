@@ -85,6 +85,24 @@ struct TetrahedronBatches {
 
   Index node_count() const noexcept { return static_cast<Index>(first_copy.size()) - 1; }
 
+  /// Elements for which gone(element) leave: their lanes become lanes without an element. visit(batch, lane) for every
+  /// one that was there. O(elements), no allocation.
+  template <class Gone, class Visit>
+  void remove_if(Gone&& gone, Visit&& visit) {
+    for (std::size_t b = 0; b < batches.size(); ++b)
+      for (std::size_t lane = 0; lane < static_cast<std::size_t>(N); ++lane) {
+        NodeId& e = elements[b][lane];
+        if (e < 0 || !gone(Index{e})) continue;
+        e = -1;
+        for (Triple<Lanes<S, N>>& g : batches[b].gradient) clear_lane(g, static_cast<int>(lane));
+        batches[b].volume.set(static_cast<int>(lane), S(0));
+        visit(b, static_cast<int>(lane));
+      }
+  }
+  static void clear_lane(Triple<Lanes<S, N>>& v, int lane) noexcept {
+    for (Lanes<S, N>* x : {&v.x, &v.y, &v.z}) x->set(lane, S(0));
+  }
+
   /// Displacements of a block's nodes less that of the first: single precision then keeps digits of strain, not of
   /// place.
   void load_displacements(const TetrahedronBlock& block, const VectorX& u, S* local) const noexcept {

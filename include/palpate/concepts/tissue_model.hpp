@@ -31,6 +31,9 @@ struct VertexForce {
 /// when a session is reset.
 /// - `updates()`, if there is one, counts what `begin_tick` has brought in: a servo fades its force when that stands
 /// still for too long.
+/// - `exchange_contacts(problem)`, if there is one, is called after `begin_tick`, for a tissue whose triangles change: it
+/// moves the session's contact problem to the new surface, where it goes on. `require_tools(radius, parameters)` may
+/// refuse a session that this cannot be done for.
 /// - `pose()` maps the model's frame to the world's.
 /// All are noexcept, allocate nothing and take bounded time.
 template <class T>
@@ -46,7 +49,7 @@ concept TissueModel = requires(T& tissue, const T& constant, int i, std::span<co
 
 /// A tissue whose surface or compliance changes between ticks, and which says so before each (SoftTissue).
 template <class T>
-concept MovesByItself = requires(T& tissue) {
+concept AnnouncesChanges = requires(T& tissue) {
   tissue.begin_tick();
 };
 

@@ -128,7 +128,6 @@ class Bvh {
   }
 
   const Box& bounds() const noexcept { return nodes_.front().box; }
-  bool empty() const noexcept { return nodes_.empty(); }
 
  private:
   // Median splits halve the count, so depth is at most log2(2^31); two entries per level may wait on the stack.

@@ -38,6 +38,7 @@ struct Candidate {
   void lift() noexcept {
     force = 0.0;
     clung = 0;
+    history.known = 0;
   }
 };
 
@@ -45,8 +46,8 @@ struct Candidate {
 /// of ball and surface since then is summed up and the list made anew when the margin is used up (as neighbour lists in
 /// molecular dynamics, Verlet 1967). A point is evaluated again only when that way could have closed its gap. The
 /// search on the resting surface reaches as far as the surface has moved (SurfaceDisplacement::reach); a round over all
-/// vertices, a few per tick, finds what moved farther. No allocation; work bounded by `maximum` and the triangles in
-/// reach. `Capacity` is that of the contact problem.
+/// vertices, a few per tick, finds what moved farther. No allocation; work bounded by `maximum` and, when the
+/// list is made anew, by the samples of all triangles in reach: each is looked at. `Capacity` is that of the contact problem.
 template <int Capacity>
 class Candidates {
  public:
@@ -70,6 +71,41 @@ class Candidates {
   /// Whether the last list has no place for a force of the one before: its tool was lifted. The surface then springs
   /// back by an unknown amount, and the next update makes another list.
   bool has_lost_forces() const noexcept { return lost_forces_; }
+
+  /// Goes on on the same body's surface after a cut: vertices have the same numbers, triangles and points need not. What
+  /// lay on triangles that are gone does not press any more. `fresh` was made for that surface and gets the old samples.
+  /// No allocation.
+  void move_to(Candidates& fresh, const ContactSurface& surface) noexcept {
+    std::swap(samples_, fresh.samples_);
+    const ContactSamples& before = fresh.samples_;
+    int kept = 0;
+    for (int i = 0; i < count_; ++i) {
+      Candidate c = items_[static_cast<std::size_t>(i)];
+      if (!(c.force > 0.0) || !move(c, before, surface)) continue;
+      const auto end = items_.begin() + kept;
+      const auto same = std::find_if(items_.begin(), end,
+                                     [&](const Candidate& d) { return d.sample == c.sample && d.tool == c.tool; });
+      if (same == end) {
+        items_[static_cast<std::size_t>(kept++)] = c;
+      } else {
+        same->force += c.force;
+        same->friction += c.friction;
+      }
+    }
+    count_ = kept;
+    next_ = 0;
+    valid_ = false;
+    revision_ = surface.revision();
+  }
+  /// Puts a candidate on the sample that lies where its own of another surface lay; false when there is none.
+  bool move(Candidate& c, const ContactSamples& before, const ContactSurface& surface) const noexcept {
+    c.sample = samples_.nearest(surface, before[c.sample]);
+    if (c.sample < 0) return false;
+    c.triangle = triangle_of(surface, c.sample);
+    c.row = c.slot = -1;
+    c.history = {};
+    return true;
+  }
 
   /// Takes in what happened since the last tick: tools put elsewhere, lifted or set down, a moved resting surface.
   void begin_tick(const ContactSurface& surface, std::span<const ContactTool> tools) noexcept {
@@ -171,14 +207,19 @@ class Candidates {
 
   /// Points this near may be reached while the linearisation settles; leaving one out lets the ball fall through it.
   static double needed(const ContactTool& tool) noexcept { return tool.longest_step() + 0.5 * tool.way(); }
+  int triangle_of(const ContactSurface& surface, int sample) const noexcept {
+    for (const int t : surface.triangles_at(samples_[sample].vertices[0]))
+      if (samples_.first_of(t) <= sample && sample < samples_.first_of(t + 1)) return t;
+    return 0;
+  }
   double travel(std::size_t tool) const noexcept { return travel_[tool] + surface_travel_; }
 
   template <TissueModel Tissue>
   void build(const Tissue& tissue, std::span<const ContactTool> tools, Displacement& displacement) noexcept {
     loaded_count_ = 0;
     for (const Candidate& c : items())
-      if (c.force > 0.0) loaded_[static_cast<std::size_t>(loaded_count_++)] = c;
-    count_ = 0;
+      if (c.force > 0.0 && loaded_count_ < Capacity) loaded_[static_cast<std::size_t>(loaded_count_++)] = c;
+    keep_loaded(tissue, tools, displacement);
     is_new_ = true;
     reach_ = std::max({displacement.reach(tissue), far_, far_last_round_});
     const ContactSurface& surface = tissue.contact_surface();
@@ -197,34 +238,33 @@ class Candidates {
         }
       });
     }
-    restore_forces(tissue, tools, displacement);
     valid_ = !lost_forces_;
   }
 
-  /// Gives the candidates of a new list the forces they had in the old one. Those that press stay in the list however
-  /// far the ball is still from where it goes.
+  /// Begins a new list with what presses, and goes on pressing however far the ball is still from where it goes.
   template <TissueModel Tissue>
-  void restore_forces(const Tissue& tissue, std::span<const ContactTool> tools, Displacement& displacement) noexcept {
+  void keep_loaded(const Tissue& tissue, std::span<const ContactTool> tools, Displacement& displacement) noexcept {
     lost_forces_ = false;
+    count_ = 0;
     for (int i = 0; i < loaded_count_; ++i) {
       const Candidate& old = loaded_[static_cast<std::size_t>(i)];
-      const auto found = std::find_if(items_.begin(), items_.begin() + count_,
-                                      [&](const Candidate& c) { return c.sample == old.sample && c.tool == old.tool; });
-      if (found != items_.begin() + count_) {
-        found->force = old.force;
-        found->friction = old.friction;
-        found->anchor = old.anchor;
-        found->clung = old.clung;
-      } else if (count_ < maximum && tools[static_cast<std::size_t>(old.tool)].active) {
-        Candidate& c = items_[static_cast<std::size_t>(count_++)] = old;
-        evaluate(tissue, tools[static_cast<std::size_t>(c.tool)], displacement, c);
-      } else {
-        lost_forces_ = true;
-      }
+      const ContactTool& tool = tools[static_cast<std::size_t>(old.tool)];
+      lost_forces_ = lost_forces_ || !tool.active;
+      if (!tool.active) continue;
+      Candidate& c = items_[static_cast<std::size_t>(count_++)] = old;
+      c.row = -1;
+      c.history.known = 0;
+      evaluate(tissue, tool, displacement, c);
     }
+    loaded_count_ = count_;
+  }
+  bool is_loaded(int tool, int sample) const noexcept {
+    return std::any_of(items_.begin(), items_.begin() + loaded_count_,
+                       [=](const Candidate& c) { return c.sample == sample && c.tool == tool; });
   }
 
   /// Takes a sample into the list if it is near; when the list is full, it holds as far as the nearest one left out.
+  /// What presses stays.
   template <TissueModel Tissue>
   void consider(const Tissue& tissue, const ContactTool& tool, int t, int triangle, int sample,
                 Displacement& displacement) noexcept {
@@ -234,12 +274,13 @@ class Candidates {
     c.tool = t;
     evaluate(tissue, tool, displacement, c);
     double& range = range_[static_cast<std::size_t>(t)];
-    if (!(c.gap <= range)) return;
+    if (!(c.gap <= range) || is_loaded(t, sample)) return;
     if (count_ < maximum) {
       items_[static_cast<std::size_t>(count_++)] = c;
       return;
     }
-    Candidate& farthest = *std::ranges::max_element(items_, {}, &Candidate::gap);
+    Candidate& farthest = *std::max_element(items_.begin() + loaded_count_, items_.end(),
+                                            [](const Candidate& a, const Candidate& b) { return a.gap < b.gap; });
     double& lost = range_[static_cast<std::size_t>(farthest.gap > c.gap ? farthest.tool : t)];
     lost = std::min(lost, std::max(c.gap, farthest.gap));
     if (farthest.gap > c.gap) farthest = c;

@@ -80,7 +80,6 @@ struct Contact {
   std::array<double, 3> weights{};
   Vector3 normal = Vector3::Zero();    ///< unit, from the surface to the ball's centre
   Vector3 rest = Vector3::Zero();      ///< the point when nothing touches [m]
-  double gap = 0.0;                    ///< at the last linearisation [m]
   double force = 0.0;                  ///< normal force [N], >= 0; of a grasp, along `normal`, any
   Vector3 point = Vector3::Zero();     ///< on the deformed surface [m]
   Vector3 friction = Vector3::Zero();  ///< on the tool, across the normal [N]

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact_rows.hpp>
-#include <palpate/core/setup_error.hpp>
+#include <palpate/contact/grasp.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -19,12 +19,16 @@ template <int Capacity = default_contact_capacity>
 class ContactProblem {
  public:
   /// Places the contact points for balls of at least `smallest_radius` [m]. Allocates workspaces; for set-up.
-  /// Throws bad_argument unless 0.4 <= sample_spacing <= 1 and there is at least one iteration.
+  /// Throws bad_argument unless 0.4 <= sample_spacing <= 1 and there is at least one iteration, and for an edge of the
+  /// surface longer than 32 radii (ids: its vertices): the lattice of points ends there, and the ball would fall
+  /// through.
   ContactProblem(const ContactSurface& surface, double smallest_radius, ContactParameters parameters = {})
       : parameters_(checked(parameters)),
         displacement_(surface.vertex_count()),
         candidates_(surface, parameters.sample_spacing * smallest_radius),
-        rows_(surface.vertex_count(), parameters.friction) {}
+        rows_(surface.vertex_count(), parameters.friction) {
+    require_dense_points(surface, smallest_radius);
+  }
 
   /// Finds the forces for the tools' new targets; updates proxy and force of every active tool. At most
   /// `maximum_tools` tools. Never allocates.
@@ -64,6 +68,24 @@ class ContactProblem {
     return status;
   }
 
+  /// Goes on on the same body's surface after a cut, where vertices keep their numbers and there may be more. Forces,
+  /// friction and grasps stay on the points that are still there, so that the next tick changes them by as much as the
+  /// cut does. `fresh` was made for that surface with the same parameters; its workspaces are exchanged for the old ones.
+  /// No allocation.
+  void move_to(ContactProblem& fresh, const ContactSurface& surface) noexcept {
+    displacement_.move_to(fresh.displacement_);
+    candidates_.move_to(fresh.candidates_, surface);
+    for (Grasp& g : grasps_) {
+      if (g.sample < 0) continue;
+      for (Candidate& c : g.rows)
+        if (!candidates_.move(c, fresh.candidates_.samples(), surface)) c.lift();
+      g.sample = g.rows[0].sample;
+    }
+    rows_.move_to(fresh.rows_);
+    pressing_count_ = violated_count_ = 0;
+    feedback_ = 0.0;
+  }
+
   /// Forgets all contact forces, as when every tool was lifted.
   void clear() noexcept {
     displacement_.clear();
@@ -95,13 +117,6 @@ class ContactProblem {
     }
   }
 
-  /// A point of the surface held by a tool, as three rows that pull as well as push.
-  struct Grasp {
-    bool asked = false;
-    int sample = -1;  // -1: nothing was there to be held
-    std::array<Candidate, 3> rows{};
-  };
-
   /// Takes hold of the nearest point for every tool that has just begun to grasp, and lets go.
   template <TissueModel Tissue>
   void grasp(const Tissue& tissue, Tools tools) noexcept {
@@ -115,18 +130,10 @@ class ContactProblem {
       for (Candidate& c : candidates_.items()) {
         if (c.tool != static_cast<int>(t)) continue;
         if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
-        if (c.facing && c.gap <= grasp_reach * tool.radius && (nearest == nullptr || c.gap < nearest->gap))
+        if (c.facing && c.gap <= Grasp::reach * tool.radius && (nearest == nullptr || c.gap < nearest->gap))
           nearest = &c;
       }
-      if (nearest == nullptr) continue;
-      g.sample = nearest->sample;
-      for (int k = 0; k < 3; ++k) {
-        Candidate& c = g.rows[at(k)] = *nearest;
-        c.lift();
-        c.grasped = true;
-        c.normal = Vector3::Unit(k);
-        c.anchor = tool.rotation.transpose() * (c.point - tool.proxy);
-      }
+      if (nearest != nullptr) g.hold(*nearest, tool);
     }
   }
   bool is_held(const Candidate& c) const noexcept { return c.sample == grasps_[at(c.tool)].sample; }
@@ -153,12 +160,17 @@ class ContactProblem {
     for (std::size_t t = 0; t < tools.size(); ++t)
       for (Candidate& c : grasps_[t].rows)
         if (is_holding(t)) rows_.add(tissue.contact_surface(), candidates_, c);
-    for (int i = 0; i < pressing_count_ && rows_.count() < Capacity; ++i)
-      if (!is_held(*pressing_[at(i)])) rows_.add(tissue.contact_surface(), candidates_, *pressing_[at(i)]);
+    for (int i = 0; i < pressing_count_; ++i) {
+      Candidate& c = *pressing_[at(i)];
+      if (rows_.count() < Capacity && !is_held(c))
+        rows_.add(tissue.contact_surface(), candidates_, c);
+      else
+        c.lift();  // only rows carry forces
+    }
     int built = 0;
     for (;; built = rows_.count()) {
       if (built > 0 || rows_.count() == 0)
-        if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);
+        if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);  // solved for those that fit
       if (rows_.count() == built) {
         if (built == 0) rows_.apply(tools, displacement_, candidates_);
         break;
@@ -183,20 +195,25 @@ class ContactProblem {
   void gather_pressing(Tools tools) noexcept {
     pressing_count_ = 0;
     if (candidates_.is_new()) {
-      for (Candidate& c : candidates_.items())
-        if (c.force > 0.0) pressing_[at(pressing_count_++)] = &c;
+      for (Candidate& c : candidates_.items()) note_pressing(c);
     } else {
-      for (int i = 0; i < rows_.count(); ++i) {
-        Candidate& c = rows_.candidate(i);
-        c.row = -1;
-        if (c.force > 0.0 && !c.grasped) pressing_[at(pressing_count_++)] = &c;
-      }
+      for (int i = 0; i < rows_.count(); ++i) note_pressing(rows_.candidate(i));
     }
     for (int i = 0; i < pressing_count_; ++i) {
       Candidate& c = *pressing_[at(i)];
       if (!arrived_) c.history.known = 0;
       candidates_.place(c, c.point, tools[at(c.tool)]);
     }
+  }
+
+  /// No more press than had rows: all have room.
+  void note_pressing(Candidate& c) noexcept {
+    c.row = -1;
+    if (c.grasped || !(c.force > 0.0)) return;
+    if (pressing_count_ < Capacity)
+      pressing_[at(pressing_count_++)] = &c;
+    else
+      c.lift();
   }
 
   /// The normals of a linearisation come of the forces of the one before, which come of its normals. `feedback_` is how
@@ -219,7 +236,8 @@ class ContactProblem {
     }
   }
 
-  /// Makes rows of the points that would sink in deepest with the present forces; false when there is no room.
+  /// Makes rows of the points that would sink in deepest with the present forces; false when there is no room, as all
+  /// rows press: those that pressed first keep theirs. `built` is zero when rows had to go.
   template <TissueModel Tissue>
   bool add_violated(const Tissue& tissue, Tools tools, int& built) noexcept {
     violated_count_ = 0;
@@ -237,10 +255,7 @@ class ContactProblem {
     const auto wanted = std::min(violated_count_, added_per_round);
     std::partial_sort(violated_.begin(), violated_.begin() + wanted, violated_.begin() + violated_count_,
                       [](const Violated& a, const Violated& b) { return a.gap < b.gap; });
-    if (rows_.count() + wanted > Capacity) {
-      rows_.drop_idle();
-      built = 0;
-    }
+    if (rows_.count() + wanted > Capacity && rows_.drop_idle()) built = 0;
     const int room = std::min(wanted, Capacity - rows_.count());
     for (int i = 0; i < room; ++i) rows_.add(tissue.contact_surface(), candidates_, *violated_[at(i)].candidate);
     return room > 0 || wanted == 0;
@@ -311,7 +326,6 @@ class ContactProblem {
   static constexpr int added_per_round = 16;  // rows, the deepest ones
   static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
   static constexpr double violation = 1e-5;   // how far a point may sink in, of the deepest push
-  static constexpr double grasp_reach = 0.1;  // gap, in radii, of a point that can be held
   struct Ahead {
     Vector3 way = Vector3::Zero(), axis = Vector3::Zero();  // of the proxy; of the end of a capsule's axis of length 1
     double farthest = 0.0;                                  // way of any of its points, at most [m]

@@ -27,6 +27,12 @@ class ContactRows {
     count_ = 0;
     compliance_.begin_rows();
   }
+  /// Without rows, on a surface with more vertices, that `fresh` was made for.
+  void move_to(ContactRows& fresh) noexcept {
+    clear();
+    compliance_.forget();
+    slot_.swap(fresh.slot_);
+  }
 
   int count() const noexcept { return count_; }
   std::span<const Contact> contacts() const noexcept { return {rows_.data(), at(count_)}; }
@@ -45,24 +51,28 @@ class ContactRows {
     row.normal = c.normal;
     row.rest = candidates.rest(surface, c.sample);
     row.point = c.point;
-    row.gap = c.gap;
     row.force = c.force;
     row.grasped = c.grasped;
   }
 
-  /// Rows without force make room; W has to be built anew.
-  void drop_idle() noexcept {
+  /// Rows without force make room; W has to be built anew. False when there are none.
+  bool drop_idle() noexcept {
+    const auto works = [this](int i) { return rows_[at(i)].force > 0.0 || candidate_[at(i)]->grasped; };
     int kept = 0;
+    while (kept < count_ && works(kept)) ++kept;
+    if (kept == count_) return false;
+    kept = 0;
     compliance_.begin_rows();
     for (int i = 0; i < count_; ++i) {
       Candidate& c = *candidate_[at(i)];
-      c.row = rows_[at(i)].force > 0.0 || c.grasped ? kept : -1;
+      c.row = works(i) ? kept : -1;
       if (c.row < 0) continue;
       c.slot = compliance_.slot_of(c.sample, c.slot);
       candidate_[at(kept)] = &c;
       rows_[at(kept++)] = rows_[at(i)];
     }
     count_ = kept;
+    return true;
   }
 
   /// Asks for the compliance columns of all vertices that carry rows.
@@ -167,7 +177,6 @@ class ContactRows {
       }
       candidates.place(c, rows_[at(i)].point, tools[at(c.tool)]);
       if (c.force == 0.0) c.history.known = 0;
-      rows_[at(i)].gap = c.gap;
     }
   }
 

@@ -26,8 +26,10 @@ class PointCompliance {
   void begin_tick(std::uint64_t revision) noexcept {
     if (revision == revision_) return;
     revision_ = revision;
-    sample_.fill(-1);
+    forget();
   }
+  /// Points have other numbers from here on.
+  void forget() noexcept { sample_.fill(-1); }
   /// From here on points asked for are in use and keep their slots; those before need not.
   void begin_rows() noexcept { ++rows_; }
 

@@ -25,6 +25,13 @@ class SurfaceDisplacement {
     if (revision != std::exchange(revision_, revision)) ++generation_;
   }
 
+  /// Goes on on a surface with the same numbers of vertices, and more, that `fresh` was made for. No allocation.
+  void move_to(SurfaceDisplacement& fresh) noexcept {
+    displacement_.swap(fresh.displacement_);
+    stamp_.swap(fresh.stamp_);
+    ++generation_;
+  }
+
   void clear() noexcept {
     count_ = 0;
     ++generation_;

@@ -92,7 +92,7 @@ class TissueGroup {
   template <class T>
   void add(T& tissue) {
     static_assert(
-        !MovesByItself<T>,
+        !AnnouncesChanges<T>,
         "palpate: a tissue that moves by itself cannot be in a TissueGroup; give it a HapticServo of its own");
     const ContactSurface& surface = tissue.contact_surface();
     const int first = members_.empty() ? 0 : members_.back().first + members_.back().count;

@@ -5,7 +5,7 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// The vector, shortened to length `most` > 0 if it is longer; its direction is kept. `shortened` says whether. For any
+/// The vector, shortened to length `most` >= 0 if it is longer; its direction is kept. `shortened` says whether. For any
 /// finite vector: it is divided by its largest component first, because the square of 1e308 is infinite.
 inline Vector3 limit_length(const Vector3& v, double most, bool& shortened) noexcept {
   const double largest = v.cwiseAbs().maxCoeff();

@@ -29,6 +29,8 @@ class SpscRing {
     head_.store(head + 1, std::memory_order_release);
     return true;
   }
+  /// For the thread that pops.
+  bool empty() const noexcept { return head_.load(std::memory_order_relaxed) == tail_.load(std::memory_order_acquire); }
 
  private:
   std::array<T, Capacity> items_{};

@@ -2,18 +2,16 @@
 // own, never on hardware: run testing/device_laws.hpp on yours, with nobody at the handle.
 #pragma once
 
-#include <palpate/device/virtual_motors.hpp>
+#include <palpate/device/render_limits.hpp>
+#include <palpate/device/sdk_state.hpp>
 
-#include <Eigen/Geometry>
-
-#include <chrono>
 #include <optional>
 
 namespace palpate::inline PALPATE_ABI {
 
 struct Chai3dOptions {
   std::optional<DeviceLimits> limits;  ///< instead of CHAI3D's table, which holds peak force, stiffness and radius only
-  bool torque = false;                 ///< the device has motors for torque
+  bool torque = false;                 ///< the device has motors for torque, and limits say what they can take
 };
 
 /// A cGenericHapticDevice as a HapticDevice, for loops of your own (run_haptic_loop), in CHAI3D's frame: x to the user,
@@ -25,11 +23,12 @@ template <class Device, class Vector, class Matrix>
 class Chai3dDevice {
  public:
   /// Opens the device. Throws SetupError(unsupported) when that fails, (bad_argument) when its specification holds no
-  /// positive force, stiffness and workspace (the device without hardware) and no limits are given.
+  /// positive force, stiffness and workspace (the device without hardware) and no limits are given, or none for a
+  /// torque that is asked for.
   explicit Chai3dDevice(Device& device, const Chai3dOptions& options = {})
       : device_(&device),
         options_(options),
-        motors_(options.limits ? *options.limits : specified(device, options.torque)) {
+        rendered_(with_torque(options.limits ? *options.limits : specified(device), options.torque)) {
     if (!device.open()) refuse("open the device");
   }
   ~Chai3dDevice() {
@@ -44,7 +43,7 @@ class Chai3dDevice {
     Vector position, velocity;
     Matrix rotation;
     state.valid = device_->getPosition(position);
-    state.time = std::chrono::duration<double>(std::chrono::steady_clock::now() - origin_).count();
+    state.time = clock_.now();
     const Vector3 p(position.x(), position.y(), position.z());
     if (!p.allFinite()) state.valid = false;
     if (state.valid) {
@@ -57,40 +56,39 @@ class Chai3dDevice {
       unsigned int buttons = 0;
       if (device_->getUserSwitches(buttons)) state.buttons = buttons;
     }
-    motors_.read_was(state.valid);
+    rendered_.read_was(state.valid);
     return state;
   }
 
   Status write(const Vector3& force, const Vector3& torque) noexcept {
-    Status status = motors_.render(force);
-    const bool turns = options_.torque && torque.allFinite() && running_ && !status.has(StatusFlag::disconnected) &&
-                       !status.has(StatusFlag::non_finite_force);
-    if (!send(motors_.force(), turns ? motors_.torque(torque) : Vector3::Zero())) {
+    Status status = rendered_.render(force, torque);
+    if (!send(rendered_.force(), rendered_.torque())) {
       status.set(StatusFlag::disconnected);
-      motors_.read_was(false);
+      rendered_.read_was(false);
     }
     return status;
   }
 
-  DeviceLimits limits() const noexcept { return motors_.limits(); }
+  DeviceLimits limits() const noexcept { return rendered_.limits(); }
   void start() noexcept {
     running_ = true;
-    motors_.start();
+    rendered_.start();
   }
   void stop() noexcept {
-    motors_.stop();
+    rendered_.stop();
     if (running_) send(Vector3::Zero(), Vector3::Zero());
     running_ = false;
   }
 
-  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] last rendered
+  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] last rendered
+  const Vector3& last_torque() const noexcept { return rendered_.torque(); }  ///< [N m] the same
 
  private:
   [[noreturn]] static void refuse(const char* what) {
     raise(SetupErrorKind::unsupported, std::string("CHAI3D could not ") + what,
           "Is it plugged in, and its driver installed?");
   }
-  static DeviceLimits specified(Device& device, bool torque) {
+  static DeviceLimits specified(Device& device) {
     const auto info = device.getSpecifications();
     const double force = info.m_maxLinearForce, stiffness = info.m_maxLinearStiffness, radius = info.m_workspaceRadius;
     for (double value : {force, stiffness, radius})
@@ -102,17 +100,14 @@ class Chai3dDevice {
             .stiffness = stiffness,
             .workspace_low = Vector3::Constant(-radius),
             .workspace_high = Vector3::Constant(radius),
-            .peak_torque = torque ? positive_or_zero(info.m_maxAngularTorque) : 0.0,
-            .turning_stiffness = torque ? positive_or_zero(info.m_maxAngularStiffness) : 0.0};
+            .peak_torque = info.m_maxAngularTorque,
+            .turning_stiffness = info.m_maxAngularStiffness};
   }
-  static double positive_or_zero(double value) noexcept { return std::isfinite(value) && value > 0.0 ? value : 0.0; }
   static void orient(ToolState& state, const Matrix& m) noexcept {
     Matrix3 rotation;
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) rotation(i, j) = m(static_cast<unsigned>(i), static_cast<unsigned>(j));
-    if (!((rotation.transpose() * rotation - Matrix3::Identity()).norm() < 1e-3)) return;
-    const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
-    state.orientation = {q.w(), q.x(), q.y(), q.z()};
+    detail::orient(state, rotation);
   }
   bool send(const Vector3& f, const Vector3& t) const noexcept {
     const Vector force(f[0], f[1], f[2]);
@@ -122,8 +117,8 @@ class Chai3dDevice {
 
   Device* device_;
   Chai3dOptions options_;
-  VirtualMotors motors_;
-  std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
+  RenderLimits rendered_;
+  detail::SteadyStamp clock_;
   bool running_ = false;
 };
 

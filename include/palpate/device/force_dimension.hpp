@@ -2,22 +2,20 @@
 // our own, never on hardware: run testing/device_laws.hpp on yours, with nobody at the handle.
 #pragma once
 
-#include <palpate/device/virtual_motors.hpp>
-
-#include <Eigen/Geometry>
-
-#include <chrono>
+#include <palpate/device/render_limits.hpp>
+#include <palpate/device/sdk_state.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
 struct ForceDimensionOptions {
-  /// The SDK does not tell them: take them from the data sheet. The defaults are below those of an omega.3.
-  DeviceLimits limits{.peak_force = 12.0,
-                      .continuous_force = 12.0,
-                      .stiffness = 4000.0,
+  /// The SDK does not tell them: take them from the data sheet. The default forces are a quarter of an omega.3's (12
+  /// N).
+  DeviceLimits limits{.peak_force = 3.0,
+                      .continuous_force = 3.0,
+                      .stiffness = 1000.0,
                       .workspace_low = Vector3::Constant(-0.06),
                       .workspace_high = Vector3::Constant(0.06)};
-  bool torque = false;  ///< the device has motors for torque
+  bool torque = false;  ///< the device has motors for torque, and `limits` say what they can take
 };
 
 /// A device of DHD as a HapticDevice, for loops of your own (run_haptic_loop), in the device's frame. DHD speaks SI. A
@@ -25,9 +23,10 @@ struct ForceDimensionOptions {
 /// SDK's own limit is set to the peak force as a second guard; its brakes and its time guard stay as they are.
 class ForceDimensionDevice {
  public:
-  /// Opens the first device that is free. Throws SetupError(unsupported) with the SDK's words when there is none.
+  /// Opens the first device that is free. Throws SetupError(unsupported) with the SDK's words when there is none,
+  /// (bad_argument) for torque without limits of it.
   explicit ForceDimensionDevice(const ForceDimensionOptions& options = {})
-      : options_(options), motors_(options.limits) {
+      : options_(options), rendered_(with_torque(options.limits, options.torque)) {
     const int id = dhdOpen();
     if (id < 0) refuse("open a device");
     id_ = static_cast<char>(id);
@@ -43,7 +42,7 @@ class ForceDimensionDevice {
     double x = 0.0, y = 0.0, z = 0.0, rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     ToolState state;
     state.valid = dhdGetPositionAndOrientationFrame(&x, &y, &z, rotation, id_) >= 0;
-    state.time = std::chrono::duration<double>(std::chrono::steady_clock::now() - origin_).count();
+    state.time = clock_.now();
     const Vector3 position(x, y, z);
     if (!position.allFinite()) state.valid = false;
     if (state.valid) {
@@ -53,40 +52,39 @@ class ForceDimensionDevice {
       if (dhdGetLinearVelocity(&v[0], &v[1], &v[2], id_) >= 0 && v.allFinite()) state.velocity = v;
       state.buttons = dhdGetButtonMask(id_);
     }
-    motors_.read_was(state.valid);
+    rendered_.read_was(state.valid);
     return state;
   }
 
   Status write(const Vector3& force, const Vector3& torque) noexcept {
-    Status status = motors_.render(force);
-    const bool turns = options_.torque && torque.allFinite() && running_ && !status.has(StatusFlag::disconnected) &&
-                       !status.has(StatusFlag::non_finite_force);
-    const int answer = send(motors_.force(), turns ? motors_.torque(torque) : Vector3::Zero());
+    Status status = rendered_.render(force, torque);
+    const int answer = send(rendered_.force(), rendered_.torque());
     if (answer < 0) {
       status.set(StatusFlag::disconnected);
-      motors_.read_was(false);
+      rendered_.read_was(false);
     }
     if (answer == motor_saturated) status.set(StatusFlag::saturated);
     return status;
   }
 
-  DeviceLimits limits() const noexcept { return motors_.limits(); }
+  DeviceLimits limits() const noexcept { return rendered_.limits(); }
   /// Throws SetupError(unsupported) with the SDK's words when it lets no force through.
   void start() {
-    if (dhdSetMaxForce(motors_.limits().peak_force, id_) < 0) refuse("set the largest force");
+    if (dhdSetMaxForce(rendered_.limits().peak_force, id_) < 0) refuse("set the largest force");
     if (dhdEnableForce(1, id_) < 0) refuse("enable forces");
     running_ = true;
-    motors_.start();
+    rendered_.start();
   }
   void stop() noexcept {
-    motors_.stop();
+    rendered_.stop();
     if (!running_) return;
     running_ = false;
     send(Vector3::Zero(), Vector3::Zero());
     dhdEnableForce(0, id_);
   }
 
-  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] last rendered
+  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] last rendered
+  const Vector3& last_torque() const noexcept { return rendered_.torque(); }  ///< [N m] the same
 
  private:
   static constexpr int motor_saturated = 2;  ///< DHD_MOTOR_SATURATED
@@ -102,14 +100,12 @@ class ForceDimensionDevice {
   static void orient(ToolState& state, const double (&r)[3][3]) noexcept {
     Matrix3 rotation;
     rotation << r[0][0], r[0][1], r[0][2], r[1][0], r[1][1], r[1][2], r[2][0], r[2][1], r[2][2];
-    if (!((rotation.transpose() * rotation - Matrix3::Identity()).norm() < 1e-3)) return;
-    const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
-    state.orientation = {q.w(), q.x(), q.y(), q.z()};
+    detail::orient(state, rotation);
   }
 
   ForceDimensionOptions options_;
-  VirtualMotors motors_;
-  std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
+  RenderLimits rendered_;
+  detail::SteadyStamp clock_;
   char id_ = -1;
   bool running_ = false;
 };

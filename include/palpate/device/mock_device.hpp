@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/device/trajectory.hpp>
-#include <palpate/device/virtual_motors.hpp>
+#include <palpate/device/render_limits.hpp>
 
 #include <chrono>
 #include <thread>
@@ -45,7 +45,7 @@ template <class Path = Trajectory>
 class MockDevice {
  public:
   explicit MockDevice(Path path, MockOptions options = {})
-      : path_(std::move(path)), options_(std::move(options)), motors_(options_.limits) {
+      : path_(std::move(path)), options_(std::move(options)), rendered_(options_.limits) {
     if (!(options_.rate > 0.0 && std::isfinite(options_.rate)))
       raise(SetupErrorKind::bad_argument, "a mock device's rate of " + number(options_.rate) + " Hz", "Give 1000");
   }
@@ -63,19 +63,19 @@ class MockDevice {
     for (const DeviceFault& f : options_.faults)
       if (hits(f, n)) corrupt(state, f);
     if (unplugged_) state.valid = false;
-    motors_.read_was(state.valid);
+    rendered_.read_was(state.valid);
     return state;
   }
-  /// Torque has no motors.
-  Status write(const Vector3& force, const Vector3& /*torque*/) noexcept { return motors_.render(force); }
-  DeviceLimits limits() const noexcept { return motors_.limits(); }
-  void start() noexcept { motors_.start(); }
-  void stop() noexcept { motors_.stop(); }
+  Status write(const Vector3& force, const Vector3& torque) noexcept { return rendered_.render(force, torque); }
+  DeviceLimits limits() const noexcept { return rendered_.limits(); }
+  void start() noexcept { rendered_.start(); }
+  void stop() noexcept { rendered_.stop(); }
 
   /// While unplugged, reads are invalid. Call from the thread that reads.
   void unplug(bool unplugged = true) noexcept { unplugged_ = unplugged; }
-  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] what is rendered now
-  double peak_force() const noexcept { return motors_.peak(); }           ///< [N] the most that was rendered
+  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] what is rendered now
+  const Vector3& last_torque() const noexcept { return rendered_.torque(); }  ///< [N m] the same
+  double peak_force() const noexcept { return rendered_.peak(); }             ///< [N] the most that was rendered
   std::uint64_t reads() const noexcept { return reads_; }
 
  private:
@@ -108,7 +108,7 @@ class MockDevice {
 
   Path path_;
   MockOptions options_;
-  VirtualMotors motors_;
+  RenderLimits rendered_;
   ToolState last_;
   Steady::time_point origin_ = Steady::now();
   double delay_ = 0.0;  ///< [s] sum of simulated stalls

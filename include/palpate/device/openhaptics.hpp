@@ -20,12 +20,10 @@
 #endif
 
 #include <palpate/concepts/servo.hpp>
-#include <palpate/device/virtual_motors.hpp>
-
-#include <Eigen/Geometry>
+#include <palpate/device/render_limits.hpp>
+#include <palpate/device/sdk_state.hpp>
 
 #include <atomic>
-#include <chrono>
 #include <optional>
 #include <thread>
 
@@ -33,8 +31,8 @@ namespace palpate::inline PALPATE_ABI {
 
 struct OpenHapticsOptions {
   const char* name = nullptr;          ///< as in the vendor's set-up tool; none: the default device
-  bool torque = false;                 ///< the device has motors for torque
-  std::optional<DeviceLimits> limits;  ///< instead of what the SDK says
+  bool torque = false;                 ///< the device has motors for torque; needs `limits`
+  std::optional<DeviceLimits> limits;  ///< instead of what the SDK says, which is nothing about torque
 };
 
 /// A device of HDAPI as a HapticDevice, in the device's frame: x to the right, y up, z to the user. The SDK's
@@ -46,11 +44,11 @@ struct OpenHapticsOptions {
 class OpenHapticsDevice {
  public:
   /// Opens the device and asks for its limits. Throws SetupError(unsupported) with the SDK's words when that fails,
-  /// (bad_argument) when a limit it says is no number or not positive.
+  /// (bad_argument) when a limit it says is no number or not positive, and for torque without limits of it.
   explicit OpenHapticsDevice(const OpenHapticsOptions& options = {})
-      : options_(options), handle_(open(options.name)), motors_(options.limits.value_or(DeviceLimits{})) {
+      : options_(options), handle_(open(options.name)), rendered_(DeviceLimits{}) {
     try {
-      motors_ = VirtualMotors(options_.limits ? *options_.limits : asked_limits());
+      rendered_ = RenderLimits(with_torque(options_.limits ? *options_.limits : asked_limits(), options_.torque));
     } catch (...) {
       hdDisableDevice(handle_);
       throw;
@@ -71,22 +69,21 @@ class OpenHapticsDevice {
     const Status errors = take_errors();
     state.valid = !errors.has(StatusFlag::disconnected) && state.position.allFinite();
     if (!state.position.allFinite()) state.position.setZero();
-    motors_.read_was(state.valid);
+    rendered_.read_was(state.valid);
     return state;
   }
 
   Status write(const Vector3& force, const Vector3& torque) noexcept {
-    Status status = motors_.render(force);
+    const Status status = rendered_.render(force, torque);
     if (!in_frame_) return status | StatusFlag::disconnected;
-    hdSetDoublev(HD_CURRENT_FORCE, motors_.force().data());
-    if (options_.torque)
-      send_torque(running_ && status.bits() == (status.bits() & saturated) ? torque : Vector3::Zero());
+    hdSetDoublev(HD_CURRENT_FORCE, rendered_.force().data());
+    if (options_.torque) send_torque(rendered_.torque());
     hdEndFrame(handle_);
     in_frame_ = false;
     return status | take_errors();
   }
 
-  DeviceLimits limits() const noexcept { return motors_.limits(); }
+  DeviceLimits limits() const noexcept { return rendered_.limits(); }
 
   /// Lets forces through. Throws SetupError(unsupported) when the SDK does not.
   void start() {
@@ -94,7 +91,7 @@ class OpenHapticsDevice {
     hdEnable(HD_FORCE_OUTPUT);
     require_no_error("enable its force");
     running_ = true;
-    motors_.start();
+    rendered_.start();
   }
   /// Takes forces off. For the thread of the callback, or when that has ended.
   void stop() noexcept {
@@ -104,17 +101,16 @@ class OpenHapticsDevice {
       hdDisable(HD_FORCE_OUTPUT);
     }
     running_ = false;
-    motors_.stop();
+    rendered_.stop();
   }
 
-  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] last rendered
+  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] last rendered
+  const Vector3& last_torque() const noexcept { return rendered_.torque(); }  ///< [N m] the same
   HHD handle() const noexcept { return handle_; }
   /// The newest error that was not about force, HD_SUCCESS when there was none. For any thread.
   HDerror last_error() const noexcept { return last_error_.load(std::memory_order_relaxed); }
 
  private:
-  static constexpr std::uint32_t saturated = static_cast<std::uint32_t>(StatusFlag::saturated);
-
   [[noreturn]] static void refuse(const std::string& what, const HDErrorInfo& error) {
     raise(SetupErrorKind::unsupported,
           "OpenHaptics could not " + what + ": " + std::string(hdGetErrorString(error.errorCode)),
@@ -166,23 +162,20 @@ class OpenHapticsDevice {
     hdGetDoublev(HD_CURRENT_TRANSFORM, transform.data());
     hdGetIntegerv(HD_CURRENT_BUTTONS, &buttons);
     ToolState state;
-    state.time = std::chrono::duration<double>(std::chrono::steady_clock::now() - origin_).count();
+    state.time = clock_.now();
     state.position = 1e-3 * Vector3(position[0], position[1], position[2]);
     const Vector3 v = 1e-3 * Vector3(velocity[0], velocity[1], velocity[2]);
     if (v.allFinite()) state.velocity = v;
     Matrix3 rotation;
     rotation << transform[0], transform[4], transform[8], transform[1], transform[5], transform[9], transform[2],
         transform[6], transform[10];
-    if ((rotation.transpose() * rotation - Matrix3::Identity()).norm() < 1e-3) {
-      const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
-      state.orientation = {q.w(), q.x(), q.y(), q.z()};
-    }
+    detail::orient(state, rotation);
     state.buttons = static_cast<std::uint32_t>(buttons);
     return state;
   }
 
   void send_torque(const Vector3& torque) const noexcept {
-    const Vector3 sent = torque.allFinite() ? Vector3(1e3 * motors_.torque(torque)) : Vector3::Zero();  // mN m
+    const Vector3 sent = 1e3 * torque;  // mN m
 #ifdef HD_CURRENT_GIMBAL_TORQUE
     hdSetDoublev(HD_CURRENT_GIMBAL_TORQUE, sent.data());
 #else
@@ -212,8 +205,8 @@ class OpenHapticsDevice {
 
   OpenHapticsOptions options_;
   HHD handle_;
-  VirtualMotors motors_;
-  std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
+  RenderLimits rendered_;
+  detail::SteadyStamp clock_;
   std::atomic<HDerror> last_error_{HD_SUCCESS};
   bool in_frame_ = false, running_ = false;
 };
@@ -221,7 +214,8 @@ class OpenHapticsDevice {
 static_assert(HapticDevice<OpenHapticsDevice>);
 
 /// Runs a servo in the SDK's own thread: one callback of the highest priority that reads, ticks and writes. Ends by
-/// itself, with no force, when the device is lost. Refers to device and servo; take both down after it.
+/// itself, with no force, when the device is lost. Refers to device and servo; take both down after it. One loop per
+/// process at a time: scheduler, rate and stack of errors are the process's.
 template <Servo S>
 class OpenHapticsLoop {
  public:
@@ -230,16 +224,20 @@ class OpenHapticsLoop {
   OpenHapticsLoop(const OpenHapticsLoop&) = delete;
   OpenHapticsLoop& operator=(const OpenHapticsLoop&) = delete;
 
-  /// Schedules the callback, starts device and scheduler at `rate` [1/s] (500 and 1000 are usual) and waits for the
+  /// Starts the device, then the callback and the scheduler at `rate` [1/s] (500 and 1000 are usual), and waits for the
   /// first tick. Throws SetupError(unsupported) when there is none within a second: after the scheduler has started the
-  /// stack of errors is the callback's, and nobody else asks it.
+  /// stack of errors is the callback's, and nobody else asks it; (bad_argument) after a start without a stop.
   void start(unsigned rate = 1000) {
+    if (scheduled_)
+      raise(SetupErrorKind::bad_argument, "this loop of OpenHaptics has been started already", "Call stop() first");
+    device_.start();
+    ticks_ = 0;
+    last_status_ = Status();
     hdSetSchedulerRate(rate);
     scheduled_ = true;
     alive_ = true;
     callback_ = hdScheduleAsynchronous(&OpenHapticsLoop::tick, this, HD_MAX_SCHEDULER_PRIORITY);
     try {
-      device_.start();
       hdStartScheduler();
       for (int i = 0; ticks() == 0 && i < 1000; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       if (ticks() == 0)
@@ -260,7 +258,7 @@ class OpenHapticsLoop {
   }
 
   bool alive() const noexcept { return alive_.load(); }                ///< false once the device was lost
-  std::uint64_t ticks() const noexcept { return ticks_.load(); }       ///< so far
+  std::uint64_t ticks() const noexcept { return ticks_.load(); }       ///< since the start
   Status last_status() const noexcept { return last_status_.load(); }  ///< of the last tick
 
  private:
@@ -273,6 +271,10 @@ class OpenHapticsLoop {
     last_status_.store(status, std::memory_order_relaxed);
     ticks_.fetch_add(1, std::memory_order_relaxed);
     if (state.valid && !status.has(StatusFlag::disconnected)) return HD_CALLBACK_CONTINUE;
+    if (state.valid) {  // this frame has sent its force although it failed: one more takes that off
+      device_.read();
+      device_.write(Vector3::Zero(), Vector3::Zero());
+    }
     alive_.store(false);
     return HD_CALLBACK_DONE;
   }

@@ -128,7 +128,7 @@ class ReplayDevice {
  public:
   /// Throws SetupError(bad_argument) when there is nothing to play.
   explicit ReplayDevice(std::vector<RecordedTick> ticks, const DeviceLimits& limits = {})
-      : ticks_(std::move(ticks)), motors_(limits) {
+      : ticks_(std::move(ticks)), rendered_(limits) {
     if (ticks_.empty()) raise(SetupErrorKind::bad_argument, "a recording without ticks");
   }
   /// Plays a file; throws as read_recording.
@@ -141,25 +141,25 @@ class ReplayDevice {
       state.valid = false;
     else
       ++next_;
-    motors_.read_was(state.valid);
+    rendered_.read_was(state.valid);
     return state;
   }
-  /// Torque has no motors.
-  Status write(const Vector3& force, const Vector3& /*torque*/) noexcept { return motors_.render(force); }
-  DeviceLimits limits() const noexcept { return motors_.limits(); }
-  void start() noexcept { motors_.start(); }
-  void stop() noexcept { motors_.stop(); }
+  Status write(const Vector3& force, const Vector3& torque) noexcept { return rendered_.render(force, torque); }
+  DeviceLimits limits() const noexcept { return rendered_.limits(); }
+  void start() noexcept { rendered_.start(); }
+  void stop() noexcept { rendered_.stop(); }
 
   void rewind() noexcept { next_ = 0; }
   bool finished() const noexcept { return next_ == ticks_.size(); }  ///< every state was read
   std::span<const RecordedTick> recorded() const noexcept { return ticks_; }
-  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] what is rendered now
-  double peak_force() const noexcept { return motors_.peak(); }           ///< [N] the most that was rendered
+  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] what is rendered now
+  const Vector3& last_torque() const noexcept { return rendered_.torque(); }  ///< [N m] the same
+  double peak_force() const noexcept { return rendered_.peak(); }             ///< [N] the most that was rendered
 
  private:
   std::vector<RecordedTick> ticks_;
   std::size_t next_ = 0;
-  VirtualMotors motors_;
+  RenderLimits rendered_;
 };
 
 static_assert(HapticDevice<ReplayDevice>);

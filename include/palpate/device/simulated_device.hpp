@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/device/simulated_mechanics.hpp>
-#include <palpate/device/virtual_motors.hpp>
+#include <palpate/device/render_limits.hpp>
 
 #include <array>
 #include <utility>
@@ -66,7 +66,7 @@ class SimulatedDevice {
   explicit SimulatedDevice(const SimulatedOptions& options = {})
       : options_(options),
         mechanics_(options.mass, options.damping, options.friction, options.hand, options.start),
-        motors_(options.limits),
+        rendered_(with_torque(options.limits, false)),
         random_(options.seed) {
     const SimulatedOptions& o = options;
     require(o.rate >= 0.1 && o.rate <= 1e6, "rate", o.rate, "Give 0.1 to 1e6 1/s");
@@ -85,21 +85,21 @@ class SimulatedDevice {
     state.time = now_;
     state.position = measured(mechanics_.position());
     state.valid = !unplugged_;
-    motors_.read_was(state.valid);
+    rendered_.read_was(state.valid);
     if (!state.valid) silence();
     ++reads_;
     return state;
   }
   /// Torque has no motors.
-  Status write(const Vector3& force, const Vector3& /*torque*/) noexcept {
-    const Status status = motors_.render(force);
-    schedule({now_ + options_.delay, motors_.force()});
+  Status write(const Vector3& force, const Vector3& torque) noexcept {
+    const Status status = rendered_.render(force, torque);
+    schedule({now_ + options_.delay, rendered_.force()});
     return status;
   }
-  DeviceLimits limits() const noexcept { return motors_.limits(); }
-  void start() noexcept { motors_.start(); }
+  DeviceLimits limits() const noexcept { return rendered_.limits(); }
+  void start() noexcept { rendered_.start(); }
   void stop() noexcept {
-    motors_.stop();
+    rendered_.stop();
     silence();
   }
 
@@ -112,9 +112,9 @@ class SimulatedDevice {
   const Vector3& position() const noexcept { return mechanics_.position(); }  ///< [m] exact, not that of the encoder
   const Vector3& velocity() const noexcept { return mechanics_.velocity(); }  ///< [m/s] exact
   const SimulatedEnergy& energy() const noexcept { return mechanics_.energy(); }
-  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] last written, limited
-  const Vector3& motor_force() const noexcept { return acting_; }         ///< [N] what pushes now, after the delay
-  double time() const noexcept { return now_; }                           ///< [s] of the last sample
+  const Vector3& last_force() const noexcept { return rendered_.force(); }  ///< [N] last written, limited
+  const Vector3& motor_force() const noexcept { return acting_; }           ///< [N] what pushes now, after the delay
+  double time() const noexcept { return now_; }                             ///< [s] of the last sample
   std::uint64_t reads() const noexcept { return reads_; }
   const SimulatedOptions& options() const noexcept { return options_; }
 
@@ -183,7 +183,7 @@ class SimulatedDevice {
 
   SimulatedOptions options_;
   SimulatedMechanics mechanics_;
-  VirtualMotors motors_;
+  RenderLimits rendered_;
   std::array<Pending, 40> pending_{};
   std::size_t first_ = 0, count_ = 0;
   Vector3 acting_ = Vector3::Zero();

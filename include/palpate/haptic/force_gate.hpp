@@ -40,7 +40,7 @@ struct ForceLimits {
 ///  1. A force or torque that is not finite, or invalid input: zero at once, and the ramp starts anew. Nothing is known
 ///     that could justify even the old force for one tick more, so this zeroing alone ignores the slew limit.
 ///  2. Longer than the peak: shortened to it, direction kept. From 3/4 of the heat of the continuous force on, the peak
-///     falls, down to the continuous force when all of it is there.
+///     falls, down to the continuous force when all of it is there. Only time that the clock tells cools.
 ///  3. Multiplied by a gain in [0, 1]: zero on start and restart, rising over `ramp_time`; falling over `fade_time`
 ///     while fresh input, or the tick itself, is later than `stale_after`. The clamp comes first: after the gain, a
 ///     huge force would stay at the peak throughout ramp and fade.
@@ -73,8 +73,10 @@ class ForceGate {
   ToolForce apply(const Vector3& wanted, const Vector3& torque, double now, double input_time, bool input_valid,
                   bool restart) noexcept {
     ToolForce out;
-    const double dt = time_since_last_tick(now);
-    heat_ += (last_.squaredNorm() - heat_) * std::min(1.0, dt / limits_.heating_time);
+    const double told = time_since_last_tick(now);
+    const double dt = told > 0.0 ? told : limits_.period;
+    const double warming = (last_.squaredNorm() - heat_) * std::min(1.0, dt / limits_.heating_time);
+    heat_ += told > 0.0 ? warming : std::max(0.0, warming);
     const double overdue = time_overdue(dt, now, input_time);
     if (dt > late_factor * limits_.period) out.status.set(StatusFlag::deadline_missed);
 
@@ -118,11 +120,12 @@ class ForceGate {
     if (!holds) raise(SetupErrorKind::bad_argument, what, hint);
   }
 
-  /// Finite and positive always: a clock that stands still, runs backwards or is no number counts as one period.
+  /// Zero when a clock does not tell: it stands still, runs backwards or is no number. That counts as one period, but
+  /// for cooling: where the clock goes on later, the whole gap will.
   double time_since_last_tick(double now) noexcept {
     const double dt = now - last_now_;
     if (std::isfinite(now)) last_now_ = now;
-    return dt > 0.0 && std::isfinite(dt) ? dt : limits_.period;
+    return std::isfinite(dt) ? std::max(0.0, dt) : 0.0;
   }
 
   /// The part of dt that is later than `stale_after` after the newest fresh input or, in a stall, after the last tick;

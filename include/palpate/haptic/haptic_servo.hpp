@@ -4,7 +4,7 @@
 #include <palpate/concepts/servo.hpp>
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/core/realtime.hpp>
-#include <palpate/haptic/passivity_observer.hpp>
+#include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
 #include <palpate/haptic/tool_input.hpp>
@@ -44,6 +44,8 @@ class HapticServo {
     if (tissue.contact_surface().triangles().empty())
       raise(SetupErrorKind::bad_argument, "nothing of this tissue can be touched",
             "Name a surface group with Scene::touch");
+    if constexpr (requires { tissue.require_tools(0.0, options.contact); })
+      tissue.require_tools(smallest_radius(contact_tools_), options.contact);
     if (!(options.stale_tissue_after > 0.0))
       raise(SetupErrorKind::bad_argument, "stale_tissue_after is " + number(options.stale_tissue_after),
             "It must be positive, in seconds; infinity is allowed");
@@ -59,11 +61,13 @@ class HapticServo {
 
   /// One tick: a force for every tool, in order; the span is valid until the next tick. States beyond the number of
   /// tools are ignored, missing ones count as unreadable. Never throws, allocates, locks or waits; bounded by contact
-  /// capacity and iterations.
+  /// capacity, iterations and, when a list of points near the tools is made anew, the points in their reach.
   std::span<const ToolForce> tick(std::span<const ToolState> states) noexcept {
     const FlushDenormals flush;
+    ++ticks_;
     Status shared;
-    if constexpr (MovesByItself<Tissue>) shared |= tissue_->begin_tick();
+    if constexpr (AnnouncesChanges<Tissue>) shared |= tissue_->begin_tick();
+    if constexpr (requires { tissue_->exchange_contacts(problem_); }) tissue_->exchange_contacts(problem_);
     for (std::size_t i = 0; i < inputs_.size(); ++i) take(i, i < states.size() ? states[i] : unreadable());
     note_updates();
     shared |= problem_.solve(*tissue_, contact_tools_);
@@ -75,8 +79,8 @@ class HapticServo {
     return forces_;
   }
 
-  /// Lifts all tools, tells the tissue that nothing presses, and closes the gates; the next tick starts anew with the
-  /// ramp. For the tick's own thread.
+  /// Lifts all tools, tells the tissue and the reader of snapshots that nothing presses, and closes the gates; the next
+  /// tick starts anew with the ramp. For the tick's own thread.
   void reset() noexcept {
     problem_.clear();
     started_ = false;
@@ -86,6 +90,7 @@ class HapticServo {
     if constexpr (requires { tissue_->end_tick(problem_.vertex_forces()); })
       tissue_->end_tick(std::span<const VertexForce>());
     for (Energy& energy : energies_) energy.reset();
+    publish();
   }
 
   /// Contacts of the last tick, model frame. For the tick's own thread.
@@ -148,8 +153,8 @@ class HapticServo {
   void recover(std::size_t i) noexcept {
     const ContactTool& tool = contact_tools_[i];
     if (!tool.active || !tool.force.isZero(0.0)) return;
-    // Far from all contact points nothing changes fast: one look in a while is enough.
-    if (!problem_.is_near(static_cast<int>(i)) && ++ticks_ % 16 != 0) return;
+    // Far from all contact points nothing changes fast: one look in a while is enough, for one tool after the other.
+    if (!problem_.is_near(static_cast<int>(i)) && (ticks_ + i) % 16 != 0) return;
     bool inside = false;
     for (const double s : {0.0, -tool.half_length, tool.half_length}) {
       inside = inside || tissue_->contact_surface().closest(tool.target + s * tool.axis()).distance < 0.0;
@@ -179,14 +184,7 @@ class HapticServo {
 
   void publish() noexcept {
     Snapshot& s = snapshots_.back();
-    const auto forces = problem_.vertex_forces();
-    std::ranges::copy(forces, s.forces.begin());
-    s.force_count = forces.size();
-    s.contact_count = 0;
-    for (const Contact& c : problem_.contacts())
-      if (c.force > 0.0)
-        s.contacts[s.contact_count++] = {c.tool, tissue_->pose() * c.point, tissue_->pose().linear() * c.normal,
-                                         c.force, tissue_->pose().linear() * c.friction};
+    s.note(problem_.contacts(), problem_.vertex_forces(), tissue_->pose());
     for (std::size_t i = 0; i < contact_tools_.size(); ++i) {
       s.proxies[i] = proxy(i);
       s.axes[i] = proxy_axis(i);
@@ -206,7 +204,7 @@ class HapticServo {
   std::uint64_t updates_ = 0;
   bool started_ = false;
   TripleBuffer<Snapshot> snapshots_;
-  unsigned ticks_ = 0;
+  std::size_t ticks_ = 0;
 };
 
 }  // namespace palpate::inline PALPATE_ABI

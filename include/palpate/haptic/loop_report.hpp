@@ -1,44 +1,15 @@
-// What a haptic loop is asked for, and what it has to say afterwards.
+// What a haptic loop has to say afterwards.
 #pragma once
 
-#include <palpate/core/platform.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/haptic/duration_histogram.hpp>
+#include <palpate/haptic/realtime_thread.hpp>
 
 #include <cstdio>
-#include <functional>
 #include <ostream>
 #include <string>
 
 namespace palpate::inline PALPATE_ABI {
-
-/// What was asked of the operating system and what it gave. Memory stays locked after the loop: unlocking could undo a
-/// lock of the caller's own.
-struct RealtimeGrant {
-  bool requested = false;
-  bool fifo = false;           ///< SCHED_FIFO, priority 50; on Windows time-critical priority
-  bool memory_locked = false;  ///< the pages mapped at the start
-  int cpu = -1;                ///< pinned to this one
-  std::string refusals;        ///< one sentence per refusal, with the system's reason
-};
-
-/// Where a loop stands.
-struct LoopProgress {
-  double elapsed = 0.0;   ///< [s] of its duration
-  double fraction = 0.0;  ///< 0 ... 1
-  std::uint64_t ticks = 0;
-  double force = 0.0;  ///< [N] of the last tick
-};
-
-struct LoopOptions {
-  double rate = 1000.0;    ///< [1/s]
-  double duration = 10.0;  ///< [s]
-  bool paced = true;       ///< false: rate * duration ticks as fast as they go, for devices in simulated time
-  bool real_time = false;  ///< ask for SCHED_FIFO and locked memory; not if unpaced: it would starve other threads
-  int cpu = -1;            ///< pin the thread to this processor
-  /// Called at most 10 times per second, in the caller's thread; false ends the loop.
-  std::function<bool(const LoopProgress&)> progress{};
-};
 
 struct LoopReport {
   double rate = 0.0;     ///< [1/s] asked for

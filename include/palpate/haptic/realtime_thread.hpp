@@ -1,10 +1,24 @@
-// Real-time privileges of the thread that runs a loop, and what its clock costs.
+// Real-time privileges of the thread that runs a loop.
 #pragma once
 
 #include <palpate/core/platform.hpp>
-#include <palpate/haptic/loop_report.hpp>
+#include <palpate/haptic/loop_options.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+#include <string>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// What was asked of the operating system and what it gave. Memory stays locked after the loop: unlocking could undo a
+/// lock of the caller's own.
+struct RealtimeGrant {
+  bool requested = false;
+  bool fifo = false;           ///< SCHED_FIFO, priority 50; on Windows time-critical priority
+  bool memory_locked = false;  ///< the pages mapped at the start
+  int cpu = -1;                ///< pinned to this one
+  std::string refusals;        ///< one sentence per refusal, with the system's reason
+};
+
+namespace detail {
 
 /// Asks for what the options say, for this thread. What is refused is in the grant.
 inline RealtimeGrant request_realtime(const LoopOptions& options) {
@@ -22,13 +36,6 @@ inline RealtimeGrant request_realtime(const LoopOptions& options) {
   return grant;
 }
 
-inline double measured_clock_cost() noexcept {
-  DurationHistogram cost;
-  for (int i = 0; i < 1001; ++i) {
-    const std::int64_t start = platform::compute_ns();
-    cost.record(1e-9 * static_cast<double>(platform::compute_ns() - start));
-  }
-  return cost.percentile(0.5);
-}
+}  // namespace detail
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}  // namespace palpate::inline PALPATE_ABI

@@ -4,7 +4,7 @@
 #include <palpate/concepts/servo.hpp>
 #include <palpate/core/realtime.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/haptic/realtime_thread.hpp>
+#include <palpate/haptic/loop_report.hpp>
 
 #include <atomic>
 #include <condition_variable>
@@ -13,6 +13,16 @@
 namespace palpate::inline PALPATE_ABI {
 
 namespace detail {
+
+/// [s] median of two clock readings in a row.
+inline double measured_clock_cost() noexcept {
+  DurationHistogram cost;
+  for (int i = 0; i < 1001; ++i) {
+    const std::int64_t start = platform::compute_ns();
+    cost.record(1e-9 * static_cast<double>(platform::compute_ns() - start));
+  }
+  return cost.percentile(0.5);
+}
 
 /// What the two threads share while the loop runs.
 struct LoopShared {

@@ -1,6 +1,7 @@
 // What a renderer or a log needs of a tick.
 #pragma once
 
+#include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact.hpp>
 
 #include <array>
@@ -8,16 +9,18 @@
 
 namespace palpate::inline PALPATE_ABI {
 
-/// A contact that presses, world frame.
+/// A contact that presses, or a point that is held, world frame. Those of a tool add up to its contact force.
 struct ToolContact {
   int tool = 0;
   Vector3 point = Vector3::Zero();     ///< on the deformed surface [m]
-  Vector3 normal = Vector3::Zero();    ///< unit, from the surface to the ball's centre
+  Vector3 normal = Vector3::Zero();    ///< unit, from the surface to the ball's centre; of a held point along its force
   double force = 0.0;                  ///< of the tissue on the ball along the normal, before the gate [N]
   Vector3 friction = Vector3::Zero();  ///< across it [N]
+  bool grasped = false;                ///< a point that is held
 };
 
-/// What a renderer needs of a tick: forces on the contact surface, contacts and proxies of the tools in the world.
+/// What a renderer needs of a tick, or of a reset, which leaves nothing pressing: forces on the contact surface,
+/// contacts and proxies of the tools in the world.
 template <int Capacity>
 struct ServoSnapshot {
   std::array<VertexForce, 3 * Capacity> forces;
@@ -26,9 +29,36 @@ struct ServoSnapshot {
   std::size_t contact_count = 0;
   std::array<Vector3, maximum_tools> proxies{};  ///< middle of every tool, world frame [m]
   std::array<Vector3, maximum_tools> axes{};     ///< of capsules, unit, world frame
-  double time = 0.0;
+  double time = 0.0;                             ///< [s] of the state that the tick took
+
+  /// Takes over what presses, of contacts in the frame of a model at `pose`.
+  void note(std::span<const Contact> all, std::span<const VertexForce> on_vertices,
+            const Eigen::Isometry3d& pose) noexcept {
+    std::ranges::copy(on_vertices, forces.begin());
+    force_count = on_vertices.size();
+    contact_count = 0;
+    for (const Contact& c : all)
+      if (c.force > 0.0 && !c.grasped)
+        contacts[contact_count++] = {c.tool, pose * c.point, pose.linear() * c.normal, c.force,
+                                     pose.linear() * c.friction};
+    for (std::size_t i = 0; i + 2 < all.size(); ++i) {
+      if (!all[i].grasped) continue;
+      const Vector3 total = all[i].total() + all[i + 1].total() + all[i + 2].total();
+      note_held(all[i].tool, pose * all[i].point, pose.linear() * total);
+      i += 2;
+    }
+  }
   std::span<const VertexForce> vertex_forces() const noexcept { return {forces.data(), force_count}; }
   std::span<const ToolContact> tool_contacts() const noexcept { return {contacts.data(), contact_count}; }
+
+ private:
+  /// The three rows of a held point as the one force that they are.
+  void note_held(int tool, const Vector3& point, const Vector3& total) noexcept {
+    const double force = total.norm();
+    if (!(force > 0.0)) return;
+    ToolContact& held = contacts[contact_count++];
+    held = {tool, point, total / force, force, Vector3::Zero(), true};
+  }
 };
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -87,6 +87,28 @@ class ExplicitMotion {
     if (options_.limit_every > 0) estimate_limit(std::max(options_.first_iterations, StepLimit::settled));
   }
 
+  /// Elements for which gone(element) leave where they are, for good, with their mass; `nodal_mass` is what is left
+  /// (lumped_mass(body, gone)). Velocities of what is left stay, and nodes without mass stop where they are. load()
+  /// remains the caller's: where there is gravity, less of it. The limit is estimated anew as by restart() and may be
+  /// shorter: a light node on a stiff element; at rest no shorter than what the elements' bound says. Work counts from
+  /// here; a stopped motion stays stopped. Throws bad_argument or bad_density, without a change.
+  template <class Gone>
+  requires requires(Force& f, Gone gone) { f.remove_if(gone); }
+  void remove_elements(Gone&& gone, const VectorX& nodal_mass) {
+    require_mass_left(nodal_mass);
+    force_.remove_if(gone);
+    state_.mass = nodal_mass.replicate(1, 3).transpose().reshaped();
+    std::erase_if(state_.free, [&](Index dof) { return !(state_.mass[dof] > 0.0); });
+    for (Index dof = 0; dof < state_.mass.size(); ++dof)
+      if (!(state_.mass[dof] > 0.0)) state_.velocity[dof] = state_.inverse_mass[dof] = 0.0;
+    for (const Index dof : state_.free) state_.inverse_mass[dof] = 1.0 / state_.mass[dof];
+    total_mass_ = nodal_mass.sum();
+    const bool stopped = stopped_;
+    limit_.restart();
+    restart();
+    stopped_ = stopped;
+  }
+
   /// Largest step that is accepted [s], from the state of at most limit_every steps ago.
   double limit() const noexcept { return limit_.step(); }
   /// Estimates the limit anew, from the present state; one force per iteration.
@@ -179,6 +201,17 @@ class ExplicitMotion {
     keep();
   }
 
+  /// No node may have got heavier, or lighter than nothing.
+  void require_mass_left(const VectorX& mass) const {
+    if (3 * mass.size() != force_.size())
+      raise(SetupErrorKind::bad_argument,
+            "there are " + std::to_string(mass.size()) + " masses for " + std::to_string(force_.size() / 3) + " nodes");
+    for (Index i = 0; i < mass.size(); ++i)
+      if (!(mass[i] >= 0.0) || !(mass[i] <= state_.mass[3 * i] * (1.0 + 1e-9)))
+        raise(SetupErrorKind::bad_density,
+              "node " + std::to_string(i) + " has the mass " + number(mass[i]) + " after elements have left",
+              "Give lumped_mass(body, gone)");
+  }
   Status seen() const noexcept {
     Status status;
     if (state_.deformation.inverted > 0) status.set(StatusFlag::inverted);

@@ -21,7 +21,13 @@ class StepLimit {
   /// stiffer than the bound says.
   StepLimit(Index dofs, double bound, double margin = 0.07)
       : vector_(dofs), moved_(dofs), force_(dofs), bound_(bound), margin_(margin) {
-    for (Index i = 0; i < dofs; ++i) vector_[i] = start_value(static_cast<std::uint64_t>(i));
+    restart();
+  }
+  /// From a random start, for a body that has become another. A bound from the elements holds for any part of them.
+  void restart() noexcept {
+    for (Index i = 0; i < vector_.size(); ++i) vector_[i] = start_value(static_cast<std::uint64_t>(i));
+    square_ = 0.0;
+    iterations_ = 0;
   }
 
   /// Iterates; `state.force` must belong to `state.displacement`. One force per iteration; no allocation. A force that

@@ -5,6 +5,7 @@
 #include <palpate/core/binary_io.hpp>
 #include <palpate/linear/front_block_substitution.hpp>
 #include <palpate/linear/front_factorisation.hpp>
+#include <palpate/linear/front_reduction.hpp>
 #include <palpate/linear/front_sweeps.hpp>
 
 #include <span>
@@ -98,6 +99,20 @@ class SparseCholesky {
     for (Index i = 0; i < kept(); ++i) sweeps_.values()[kept_place(i)] = kept_answer[i];
     sweeps_.backward_all();
     sweeps_.gather(x.data());
+  }
+
+  /// Interior factor: unit loads on `dofs`, none of them kept, half the way through. Walks only the fronts above them.
+  /// Allocates a workspace.
+  ReducedUnits reduce_units(std::span<const Index> dofs) const {
+    const auto run = [&](auto packets) {
+      return detail::UnitReduction<decltype(packets)::value>(factor_->analysis.tree(), factor_->values.data(),
+                                                            factor_->fronts)
+          .reduce(dofs, factor_->analysis.kept());
+    };
+    const auto count = static_cast<Index>(dofs.size());
+    if (count <= detail::packet_size) return run(std::integral_constant<int, 1>());
+    if (count <= 2 * detail::packet_size) return run(std::integral_constant<int, 2>());
+    return run(std::integral_constant<int, 3>());
   }
 
   /// Entries `wanted` of K^-1 b, b zero but for `loads` on the dofs `loaded`. Walks up from the loaded dofs and down to

@@ -165,6 +165,21 @@ class CorotatedMotion {
     stepped_ = false;
     age_ = 0;
   }
+  /// Elements for which gone(element) leave where they are, for good, with their mass; `nodal_mass` is what is left
+  /// (lumped_mass(body, gone)), `load` the loads on it [N] (CutPhysics::load_left). Velocities of what is left stay,
+  /// and nodes without mass are held where they are. A preconditioner that can takes it in (BlockJacobi); another goes
+  /// on with what it knows, which is right but slower. Throws bad_argument or bad_density, without a change.
+  template <class Gone>
+  void remove_elements(Gone&& gone, const VectorX& nodal_mass, const VectorX& load) {
+    require_mass_left(nodal_mass, load);
+    tetrahedra_.remove_if(gone);
+    hold_bare(nodal_mass);
+    body_.lumped = nodal_mass;
+    mass_ = nodal_mass.replicate(1, 3).transpose().reshaped();
+    load_ = body_.load = load;
+    if constexpr (requires { preconditioner_.change(body_); }) preconditioner_.change(body_);
+    set_state(u_, v_);
+  }
   /// Forces from now on instead of the scene's loads [N]. Throws bad_argument for another size; does not allocate.
   void set_load(const VectorX& load) {
     require_entries(load, u_.size());
@@ -184,7 +199,10 @@ class CorotatedMotion {
     tetrahedra_.apply(x, y);
     y = factors_.stiffness * y + factors_.mass * mass_.cwiseProduct(x);
   }
-  void precondition(const VectorX& r, VectorX& z) const noexcept { preconditioner_.apply(r, z); }
+  void precondition(const VectorX& r, VectorX& z) const noexcept {
+    preconditioner_.apply(r, z);
+    for (const Index dof : bare_) z[dof] = 0.0;
+  }
 
  private:
   static CorotatedMotionOptions checked(const CorotatedMotionOptions& o) {
@@ -200,6 +218,32 @@ class CorotatedMotion {
     DeformableBody body = detail::body_with_mass(rest, scene, limits);
     require_mass(body);
     return body;
+  }
+
+  void require_mass_left(const VectorX& mass, const VectorX& load) const {
+    if (3 * mass.size() != size() || load.size() != size())
+      raise(SetupErrorKind::bad_argument, std::to_string(mass.size()) + " masses and " + std::to_string(load.size()) +
+                                              " loads for " + std::to_string(size() / 3) + " nodes");
+    for (Index i = 0; i < mass.size(); ++i)
+      if (!(mass[i] >= 0.0) || !(mass[i] <= body_.lumped[i] * (1.0 + 1e-9)))
+        raise(SetupErrorKind::bad_density,
+              "node " + std::to_string(i) + " has the mass " + number(mass[i]) + " after elements have left",
+              "Give lumped_mass(body, gone)");
+  }
+  /// Holds the nodes that no element is left at.
+  void hold_bare(const VectorX& mass) {
+    EssentialConditions& c = body_.conditions;
+    for (Index dof = 0; dof < size(); ++dof) {
+      if (mass[dof / 3] > 0.0 || !(body_.lumped[dof / 3] > 0.0)) continue;
+      bare_.push_back(dof);
+      c.prescribed[dof] = u_[dof];
+      c.constrained[static_cast<std::size_t>(dof / 3)] = 7;
+      if (!c.is_constrained(dof)) held_.push_back(dof);
+      c.free_index[static_cast<std::size_t>(dof)] = -1;
+    }
+    std::erase_if(c.free_dofs, [&c](Index dof) { return c.is_constrained(dof); });
+    for (std::size_t i = 0; i < c.free_dofs.size(); ++i)
+      c.free_index[static_cast<std::size_t>(c.free_dofs[i])] = static_cast<Index>(i);
   }
 
   /// The last step, if there was one, can not be corrected any more.
@@ -286,7 +330,7 @@ class CorotatedMotion {
   ImplicitStep step_;
   Preconditioner preconditioner_;
   BoundedConjugateGradient gradients_;
-  std::vector<Index> held_;
+  std::vector<Index> held_, bare_;  // dofs; bare ones belong to nodes without an element
   VectorX u_, v_, a_, load_;
   VectorX trial_, velocity_, acceleration_, increment_, force_, residual_, drag_, inertia_;
   StepFactors factors_;

@@ -18,6 +18,7 @@ struct StepFactors {
 /// - `P(body, rest, limits)` is its set-up.
 /// - `update(tetrahedra, factors, u, anew)`, before the solves of a step; `anew` when it is due.
 /// - `apply(r, z)`: z = P^-1 r, zero on held dofs.
+/// - `change(body)`, if there is one, is told when elements have left: lumped mass and conditions are others then.
 // clang-format off
 template <class P, class Tetrahedra>
 concept StepPreconditioner =
@@ -39,6 +40,11 @@ class BlockJacobi {
     inverse_.resize(constrained_.size(), Matrix3::Zero());
   }
 
+  /// Another mass, and other dofs held; the next update must be anew.
+  void change(const DeformableBody& body) {
+    lumped_ = body.lumped;
+    constrained_ = body.conditions.constrained;
+  }
   template <class Tetrahedra>
   void update(const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX&, bool anew) noexcept {
     if (!anew) return;

@@ -15,6 +15,7 @@ namespace palpate::inline PALPATE_ABI::testing {
 template <class Device>
 struct DeviceProbe {
   std::function<Vector3(const Device&)> rendered;
+  std::function<Vector3(const Device&)> rendered_torque{};  ///< the same [N m]; empty: laws of torque are not tested
   std::function<void(Device&, bool)> break_reads{};
   double tolerance = 1e-12;
 };
@@ -24,6 +25,8 @@ template <class Device>
 DeviceProbe<Device> default_probe() {
   DeviceProbe<Device> probe;
   probe.rendered = [](const Device& device) -> Vector3 { return device.last_force(); };
+  if constexpr (requires(const Device& device) { device.last_torque(); })
+    probe.rendered_torque = [](const Device& device) -> Vector3 { return device.last_torque(); };
   if constexpr (requires(Device & device) { device.unplug(true); })
     probe.break_reads = [](Device& device, bool broken) { device.unplug(broken); };
   return probe;
@@ -43,6 +46,10 @@ class DeviceLaws {
     static_cast<void>(device_.read());
     saturates();
     rejects_what_is_not_finite();
+    if (probe_.rendered_torque) {
+      limits_torque();
+      rejects_torque_that_is_not_finite();
+    }
     if (probe_.break_reads) zero_after_invalid_read();
     survives(reads);
     zero_after_stop();
@@ -51,7 +58,12 @@ class DeviceLaws {
 
  private:
   Status write(const Vector3& force) { return device_.write(force, Vector3::Zero()); }
+  /// With half of the peak torque.
+  Status turn(const Vector3& force) { return device_.write(force, Vector3(0.0, 0.0, 0.5 * limits_.peak_torque)); }
   Vector3 rendered() const { return probe_.rendered(device_); }
+  Vector3 torque() const { return probe_.rendered_torque ? probe_.rendered_torque(device_) : Vector3::Zero(); }
+  /// Zero when neither force nor torque is rendered.
+  double anything() const { return rendered().norm() + torque().norm(); }
 
   void sane_limits() {
     expect_above(violations_, "limits are sane", limits_.peak_force, 0.0, "peak force");
@@ -59,6 +71,44 @@ class DeviceLaws {
     expect_at_most(violations_, "limits are sane", limits_.continuous_force, limits_.peak_force, "continuous force");
     const Vector3 workspace = limits_.workspace_high - limits_.workspace_low;
     expect_above(violations_, "limits are sane", workspace.minCoeff(), 0.0, "workspace");
+    expect_at_least(violations_, "limits are sane", limits_.peak_torque, 0.0, "peak torque");
+    expect_at_most(violations_, "limits are sane", limits_.peak_torque, 1e4, "peak torque");
+    if (limits_.peak_torque > 0.0)
+      expect_above(violations_, "limits are sane", limits_.turning_stiffness, 0.0, "turning stiffness");
+  }
+
+  /// A device without motors for torque renders none, whatever it is told.
+  void limits_torque() {
+    const double peak = limits_.peak_torque;
+    for (const Vector3& direction : {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(1, 2, -3)})
+      for (double size : {0.0, 0.5, 0.999, 1.001, 2.0, 1e6, 1e300}) {
+        const Vector3 unit = direction.normalized();
+        const Vector3 wanted = unit * (size * (peak > 0.0 ? peak : 1.0));
+        const Status status = device_.write(Vector3::Zero(), wanted);
+        const Vector3 given = torque();
+        const std::string detail = "torque, " + number(size) + " times the peak";
+        expect_at_most(violations_, "torque within its peak", given.norm(), peak * (1.0 + probe_.tolerance), detail);
+        if (peak == 0.0) continue;
+        if (size < 1.0)
+          expect_at_most(violations_, "renders what it can", (given - wanted).norm(), probe_.tolerance * peak, detail);
+        if (size <= 1.0) continue;
+        expect_at_least(violations_, "saturates at the peak", given.norm(), peak * (1.0 - probe_.tolerance), detail);
+        expect_at_least(violations_, "keeps the direction", unit.dot(given.normalized()), 1.0 - 1e-12, detail);
+        expect_true(violations_, "says that it saturates", status.has(StatusFlag::saturated), detail);
+      }
+  }
+
+  void rejects_torque_that_is_not_finite() {
+    for (double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})
+      for (int axis = 0; axis < 3; ++axis) {
+        turn(Vector3::Zero());
+        Vector3 wanted = Vector3::Constant(0.2 * limits_.peak_torque);
+        wanted[axis] = bad;
+        const Status status = device_.write(Vector3::Zero(), wanted);
+        expect_at_most(violations_, "torque not finite renders zero", torque().norm(), 0.0, number(bad));
+        const bool said = status.has(StatusFlag::non_finite_force);
+        expect_true(violations_, "says that the torque is not finite", said, number(bad));
+      }
   }
 
   void saturates() {
@@ -95,12 +145,12 @@ class DeviceLaws {
 
   void zero_after_invalid_read() {
     const Vector3 force = Vector3(0.0, 0.0, 0.5 * limits_.peak_force);
-    write(force);
+    turn(force);
     probe_.break_reads(device_, true);
     const ToolState state = device_.read();
     expect_true(violations_, "says that a read failed", !state.valid);
-    const Status status = write(force);
-    expect_at_most(violations_, "zero after an invalid read", rendered().norm(), 0.0);
+    const Status status = turn(force);
+    expect_at_most(violations_, "zero after an invalid read", anything(), 0.0);
     expect_true(violations_, "says that it is disconnected", status.has(StatusFlag::disconnected));
     probe_.break_reads(device_, false);
     const bool mended = device_.read().valid;
@@ -134,13 +184,13 @@ class DeviceLaws {
 
   void zero_after_stop() {
     const Vector3 force = Vector3(0.0, 0.5 * limits_.peak_force, 0.0);
-    write(force);
+    turn(force);
     device_.stop();
-    expect_at_most(violations_, "zero after stop", rendered().norm(), 0.0, "at once");
-    write(force);
-    expect_at_most(violations_, "zero after stop", rendered().norm(), 0.0, "although written to");
+    expect_at_most(violations_, "zero after stop", anything(), 0.0, "at once");
+    turn(force);
+    expect_at_most(violations_, "zero after stop", anything(), 0.0, "although written to");
     device_.stop();
-    expect_at_most(violations_, "zero after stop", rendered().norm(), 0.0, "stopped twice");
+    expect_at_most(violations_, "zero after stop", anything(), 0.0, "stopped twice");
   }
 
   Device& device_;
@@ -155,7 +205,9 @@ class DeviceLaws {
 /// written. Laws: "limits are sane", "never above the peak", "renders what it can", "saturates at the peak", "keeps the
 /// direction", "says that it saturates", "not finite renders zero", "says that the force is not finite", "says that a
 /// read failed", "zero after an invalid read", "says that it is disconnected", "renders again when reads are valid",
-/// "valid states are finite", "time does not run backwards", "zero after stop". The concept checks that nothing throws.
+/// "valid states are finite", "time does not run backwards", "zero after stop"; where the probe tells the torque,
+/// "torque within its peak", "torque not finite renders zero", "says that the torque is not finite", and those of force
+/// for torque. The concept checks that nothing throws.
 template <HapticDevice Device>
 Violations device_laws(Device& device, const DeviceProbe<Device>& probe = default_probe<Device>(), int reads = 10'000) {
   return detail::DeviceLaws<Device>(device, probe).run(reads);

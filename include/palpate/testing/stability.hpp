@@ -3,6 +3,7 @@
 
 #include <palpate/concepts/servo.hpp>
 #include <palpate/device/simulated_device.hpp>
+#include <palpate/haptic/energy_tank.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,26 @@ struct VirtualWall {
   std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
     const double depth = -tools.front().position[2];
     force.force = Vector3(0.0, 0.0, one_sided && depth < 0.0 ? 0.0 : stiffness * depth);
+    return {&force, 1};
+  }
+};
+
+/// A wall, or whatever else computes a force, with an energy tank behind it.
+template <class Source>
+struct Tanked {
+  Source source;
+  EnergyTank tank{};
+  ToolForce force{};
+  std::uint64_t limited = 0;  ///< ticks
+  double lowest = infinity;   ///< level of the tank [J]
+
+  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
+    const ToolState& tool = tools.front();
+    force = source.tick(tools).front();
+    force.force = tank.limit(force.force, tool.position, tool.time, force.status);
+    tank.gave(force.force);
+    lowest = std::min(lowest, tank.level());
+    if (force.status.has(StatusFlag::energy_injected)) ++limited;
     return {&force, 1};
   }
 };

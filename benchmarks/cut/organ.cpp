@@ -1,0 +1,196 @@
+#include "organ.hpp"
+
+#include <palpate/cut/cuttable_tissue.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/io/read_mesh.hpp>
+#include <palpate/material/linear_elastic.hpp>
+
+#include <cstdio>
+#include <functional>
+#include <thread>
+
+#include "../common/timing.hpp"
+
+namespace {
+
+using namespace palpate;
+using Tissue = CuttableTissue<Tet4>;
+using Clock = std::chrono::steady_clock;
+
+const Vector3 middle(-0.0285, -0.0298, 0.0405), outward(0.076, -0.408, 0.910);  // of the touchable patch
+constexpr double smallest_tool = 4e-3;
+
+/// Processor time of this thread [s].
+double thread_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// It lies on its underside, as in example 01, and sags under its weight.
+Scene lying(const Mesh<Tet4>& mesh) {
+  std::vector<NodeId> below;
+  for (const auto& face : extract_boundary<Tet4>(mesh)) {
+    const Vector3 a = mesh.position(face.nodes[0]), b = mesh.position(face.nodes[1]), c = mesh.position(face.nodes[2]);
+    if ((b - a).cross(c - a).normalized().z() < -0.5) below.insert(below.end(), face.nodes.begin(), face.nodes.end());
+  }
+  return Scene().fix("ligament").fix(below).touch("front").gravity({0.0, 0.0, -9.81});
+}
+/// Where the surface is now, next to the middle of the patch [m].
+Vector3 on_surface(const Tissue& tissue) {
+  Vector3 best = Vector3::Constant(infinity);
+  for (const Vector3& x : tissue.contact_surface().positions()) {
+    const Vector3 p = tissue.pose() * x;
+    if ((p - middle).head<2>().norm() < (best - middle).head<2>().norm()) best = p;
+  }
+  return best;
+}
+
+/// Nodes near the line of the cut: their compliance is kept ready.
+std::vector<NodeId> along_the_cut(const Mesh<Tet4>& mesh) {
+  std::vector<NodeId> nodes;
+  for (NodeId node = 0; node < mesh.node_count(); ++node) {
+    const Vector3 x = mesh.position(node) - middle;
+    const Vector3 across = outward.cross(Vector3::UnitX()).normalized();
+    if (std::abs(x[0]) < 0.028 && std::abs(x.dot(across)) < 7e-3 && x.dot(outward) > -0.014) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+struct Session {
+  std::vector<double> ticks, cuts, felt, late;  // [s]: of processor; of processor; from order to a tick; of the clock
+  std::uint64_t orders = 0;
+  CutReport report;
+  double worst_slew = 0.0, longest = 0.0, largest_step = 0.0;
+  bool fine = true;
+};
+
+/// One session; `order(tissue, k)` gives the k-th cut.
+Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& order, std::FILE* trace,
+            const char* name) {
+  Tissue tissue(mesh, lying(mesh), LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0},
+                {.cuttable = Selection(along_the_cut(mesh)), .smallest_tool = smallest_tool});
+  HapticServo servo(tissue, SphereTool{.radius = smallest_tool});
+  const ForceLimits limits = ForceLimits::from(DeviceLimits{});
+  Session s;
+  std::atomic<bool> stop{false};
+  std::thread cutter([&] {
+    while (!stop.load()) {
+      const double start = thread_seconds();
+      if (tissue.work())
+        s.cuts.push_back(thread_seconds() - start);
+      else
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+  });
+  const Vector3 across = outward.cross(Vector3::UnitX()).normalized(), top = on_surface(tissue);
+  Vector3 last = Vector3::Zero();
+  std::uint64_t revision = 0;
+  double ordered = -1.0;
+  const auto start = Clock::now();
+  for (int i = 0; i < 2500; ++i) {
+    std::this_thread::sleep_until(start + std::chrono::milliseconds(i));
+    const double now = 1e-3 * i;
+    s.late.push_back(std::chrono::duration<double>(Clock::now() - start).count() - now);
+    if (i >= 400 && i < 2400 && (i - 400) * 60 / 1000 >= static_cast<int>(s.orders)) {
+      order(tissue, static_cast<int>(s.orders++));
+      if (ordered < 0.0) ordered = now;
+    }
+    ToolState state;  // beside the cut, pressed in, going to and fro
+    state.position = top + (smallest_tool - std::min(4e-3, 1e-5 * i)) * outward.normalized() + 5e-3 * across;
+    state.position[0] += 4e-3 * std::sin(6.0 * now);
+    state.time = now;
+    const double before = thread_seconds();
+    const ToolForce f = servo.tick({&state, 1})[0];
+    s.ticks.push_back(thread_seconds() - before);
+    if (tissue.compliance_revision() != revision) {
+      revision = tissue.compliance_revision();
+      if (ordered >= 0.0) s.felt.push_back(now - ordered);
+      ordered = -1.0;
+    }
+    s.fine = s.fine && f.force.allFinite() && !f.status.has(StatusFlag::non_finite_force);
+    s.worst_slew = std::max(s.worst_slew, (f.force - last).norm() / (limits.slew_rate * limits.period));
+    s.largest_step = std::max(s.largest_step, (f.force - last).norm());
+    s.longest = std::max(s.longest, f.force.norm());
+    last = f.force;
+    if (trace != nullptr)
+      std::fprintf(trace, "%s,%d,%.6f,%.6f,%.6f,%.6f,%llu,%u\n", name, i, f.force.norm(), servo.contact_force().norm(),
+                   1e6 * s.ticks.back(), 1e3 * s.late.back(), static_cast<unsigned long long>(revision),
+                   f.status.bits());
+  }
+  stop = true;
+  cutter.join();
+  s.report = tissue.report();
+  s.fine = s.fine && s.longest <= limits.peak_force * (1.0 + 1e-12) && s.worst_slew <= 1.0 + 1e-9 &&
+           s.report.error <= 1e-10 && !s.report.failed && s.report.cuts > 0 && s.longest > 0.05;
+  return s;
+}
+
+void report(bench::RowFile& rows, const std::string& what, const Session& s) {
+  const auto share = [](const std::vector<double>& v, double p) { return bench::percentile(v, p); };
+  const std::string error = s.fine ? "" : "a force, a limit or the compliance is wrong";
+  const double frame = 1.0 / 60.0;
+  rows.add({.target = "q",
+            .what = "organ at 60 Hz, " + what + ": worst frame of " + std::to_string(s.cuts.size()) + " (" +
+                    std::to_string(s.report.cuts) + " changed something, " + std::to_string(s.report.kept) +
+                    " dofs kept), median behind it",
+            .figure = bench::milliseconds(share(s.cuts, 1.0)) + ", " + bench::milliseconds(share(s.cuts, 0.5)),
+            .baseline = bench::milliseconds(frame),
+            .ratio = share(s.cuts, 1.0) / frame,
+            .bound = bench::at_most(1.0),
+            .error = error});
+  rows.add({.target = "q",
+            .what = "organ at 60 Hz, " + what + ": worst tick, 99 % and median behind it",
+            .figure = bench::microseconds(share(s.ticks, 1.0)) + ", " + bench::microseconds(share(s.ticks, 0.99)) +
+                      ", " + bench::microseconds(share(s.ticks, 0.5)),
+            .baseline = "1000 us",
+            .ratio = share(s.ticks, 1.0) / 1e-3,
+            .bound = bench::at_most(1.0),
+            .error = error});
+  rows.add({.target = "q",
+            .what = "organ at 60 Hz, " + what +
+                    ": by the clock, from order to the tick that feels it, median and worst; "
+                    "the latest tick of the loop",
+            .figure = bench::milliseconds(share(s.felt, 0.5)) + ", " + bench::milliseconds(share(s.felt, 1.0)),
+            .baseline = bench::milliseconds(share(s.late, 1.0)),
+            .bound = {},
+            .error = error});
+  rows.add({.target = "q",
+            .what = "organ at 60 Hz, " + what + ": largest change of force in a tick, of " +
+                    bench::with_unit(s.longest, "N") + " at most; share of the slew limit",
+            .figure = bench::with_unit(s.largest_step, "N"),
+            .baseline = "",
+            .ratio = s.worst_slew,
+            .bound = bench::at_most(1.0 + 1e-9),
+            .error = error});
+}
+
+}  // namespace
+
+void measure_organ(bench::RowFile& rows, const std::string& trace) {
+  const auto mesh = io::read_mesh<Tet4>(PALPATE_BENCH_DATA "/organ.msh");
+  std::FILE* file = trace.empty() ? nullptr : std::fopen(trace.c_str(), "w");
+  if (file != nullptr) std::fputs("run,tick,force_N,contact_N,tick_us,late_ms,revision,status\n", file);
+  const auto slit = [](Tissue& tissue, int k) {  // 40 mm long and 8 mm deep after two seconds
+    const Vector3 from = middle + Vector3(-0.02 + 0.04 * k / 120.0, 0, 0), to = from + Vector3(0.04 / 120.0, 0, 0);
+    tissue.cut(BladeSweep{from - 8e-3 * outward, from + 0.01 * outward, to - 8e-3 * outward, to + 0.01 * outward});
+  };
+  report(rows, "a slit", run(mesh, slit, file, "slit"));
+  std::vector<std::pair<double, Index>> nearest;  // to a line under the surface, in the order it is gone along
+  for (Index e = 0; e < mesh.element_count(); ++e) {
+    const Vector3 x = element_nodes<Tet4>(mesh, e).colwise().mean().transpose() - middle;
+    if (std::abs(x[0]) < 0.022 && (x - x[0] * Vector3::UnitX() + 3e-3 * outward).norm() < 6e-3)
+      nearest.push_back({x[0], e});
+  }
+  std::ranges::sort(nearest);
+  const auto burn = [&](Tissue& tissue, int k) {
+    const std::size_t share = nearest.size() * static_cast<std::size_t>(k) / 120,
+                      next = nearest.size() * static_cast<std::size_t>(k + 1) / 120;
+    CutOrder order;
+    for (std::size_t i = share; i < next; ++i) order.remove.push_back(nearest[i].second);
+    tissue.cut(order);
+  };
+  report(rows, "burning", run(mesh, burn, file, "burn"));
+  if (file != nullptr) std::fclose(file);
+}

@@ -1,0 +1,71 @@
+// Which faces a blade opens.
+#pragma once
+
+#include <palpate/cut/cut_topology.hpp>
+#include <palpate/contact/bvh.hpp>
+
+#include <Eigen/Geometry>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// What the edge of a blade sweeps between two places: the quadrilateral from edge (a0, b0) to edge (a1, b1) [m], as
+/// two triangles. The frame is that of the positions it is asked about.
+struct BladeSweep {
+  Vector3 a0 = Vector3::Zero(), b0 = Vector3::Zero(), a1 = Vector3::Zero(), b1 = Vector3::Zero();
+
+  /// [m^2]
+  double area() const noexcept { return 0.5 * ((b0 - a0).cross(b1 - a0).norm() + (b1 - a0).cross(a1 - a0).norm()); }
+  Box box() const noexcept {
+    Box box;
+    for (const Vector3& x : {a0, b0, a1, b1}) box.include(x);
+    return box;
+  }
+  /// Whether the way from p to q crosses it. A point on the sheet counts as on its front side, and a way through the
+  /// sheet's edge as a crossing: what lies on two sides of a closed sheet is never left connected.
+  bool crosses(const Vector3& p, const Vector3& q) const noexcept {
+    return crosses_triangle(p, q, a0, b0, b1) || crosses_triangle(p, q, a0, b1, a1);
+  }
+
+ private:
+  static double volume(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) noexcept {
+    return (b - a).cross(c - a).dot(d - a);
+  }
+  static bool crosses_triangle(const Vector3& p, const Vector3& q, const Vector3& x, const Vector3& y,
+                               const Vector3& z) noexcept {
+    if ((volume(x, y, z, p) >= 0.0) == (volume(x, y, z, q) >= 0.0)) return false;
+    const double u = volume(p, q, x, y), v = volume(p, q, y, z), w = volume(p, q, z, x);
+    return (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
+  }
+};
+
+/// The faces between elements whose centres lie on two sides of the sheet, joined by a way through it: the elements'
+/// own faces nearest to the cut. The mesh keeps its elements and their quality, and the slit follows the sheet within
+/// half an element. `position(node)` is where a node is now. The same sweep gives the same faces; one of no area, or
+/// one beside the body, none. O(elements).
+template <Element E, class Position>
+std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const BladeSweep& sweep, Position&& position) {
+  std::vector<ElementFace> open;
+  if (!(sweep.area() > 0.0)) return open;
+  const Mesh<E>& mesh = topology.mesh();
+  const auto centre = [&](Index e) {
+    Vector3 sum = Vector3::Zero();
+    for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)]) sum += position(node);
+    return Vector3(sum / E::nodes);
+  };
+  const Box near = sweep.box();
+  for (Index e = 0; e < mesh.element_count(); ++e) {
+    if (topology.is_removed(e)) continue;
+    Box own;
+    for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)]) own.include(position(node));
+    const double reach = (own.high - own.low).norm();
+    const Vector3 x = centre(e);
+    if (!(near.squared_distance(x) <= 4.0 * reach * reach)) continue;
+    for (std::size_t f = 0; f < E::faces.size(); ++f) {
+      const Index other = topology.neighbour(e, f);
+      if (other > e && sweep.crosses(x, centre(other))) open.push_back({e, static_cast<int>(f)});
+    }
+  }
+  return open;
+}
+
+}  // namespace palpate::inline PALPATE_ABI

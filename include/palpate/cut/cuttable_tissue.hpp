@@ -1,0 +1,399 @@
+// A linear tissue that can be touched while it is cut.
+#pragma once
+
+#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/contact/sphere_tool.hpp>
+#include <palpate/core/spsc_ring.hpp>
+#include <palpate/cut/blade_sweep.hpp>
+#include <palpate/cut/cut_renewal.hpp>
+#include <palpate/cut/cut_view.hpp>
+#include <palpate/haptic/triple_buffer.hpp>
+#include <palpate/mesh/admission.hpp>
+
+#include <chrono>
+#include <mutex>
+#include <optional>
+
+namespace palpate::inline PALPATE_ABI {
+
+struct CuttableOptions {
+  /// Group, region or nodes whose compliance is kept ready beside that of the touchable ones: cuts there need no solve.
+  std::optional<Selection> cuttable{};
+  double smallest_tool = SphereTool{}.radius;  ///< [m] of the session's tools
+  ContactParameters contact{};                 ///< of the session
+  Index most_added = 900;          ///< dofs that cuts may add before a new factor is made, in a thread of its own
+  double tolerated_error = 1e-10;  ///< measured, relative; beyond it a new factor is made at once
+  AdmissionPolicy admission{};
+  SetupLimits limits{};
+};
+
+/// What cutting has cost.
+struct CutReport {
+  std::uint64_t cuts = 0;      ///< that changed something
+  std::uint64_t renewals = 0;  ///< new factors
+  Index rank = 0;              ///< rows that the last cut changed
+  Index kept = 0;              ///< dofs with a compliance
+  double smallest = 1.0;       ///< CutStep::smallest of the last cut
+  double error = 0.0;          ///< of the compliance, as last measured, relative
+  int unchecked = 0;           ///< cuts since that
+  double felt_seconds = 0.0;   ///< of the last cut: from taking the order to handing the surface to the tick
+  double fold_seconds = 0.0;   ///< of the last cut: until nothing was left to add up in the tick
+  bool failed = false;         ///< what is left cannot be computed; the last good state is felt, degraded_model
+};
+
+/// A linear body of elements E under cuts. `cut` orders; `work` does what is ordered, in a thread of the caller's
+/// choice (CutThread); the tick brings the newest state in at its beginning and never waits. Right after a cut the
+/// compliance is the old one with a correction of low rank, added up in the tick; then the correction is folded in.
+/// While an order is open ticks say degraded_model. Numbers of vertices never change, so contact forces go on across a
+/// cut; the force gate limits how fast they may change.
+///
+/// Threads: `begin_tick` and the functions of TissueModel belong to the thread that ticks, `stroke` too; all others may
+/// be called from any thread and wait for each other, not for the tick. Satisfies TissueModel; one session at a time.
+template <Element E>
+class CuttableTissue {
+ public:
+  /// One material everywhere, or one per region. Throws what admission, assembly and factorisation throw; unconstrained
+  /// when a part is not held.
+  template <LinearMaterial M>
+  CuttableTissue(const Mesh<E>& mesh, const Scene& scene, const M& material, const CuttableOptions& options = {})
+      : CuttableTissue(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options) {}
+  template <LinearMaterial M>
+  CuttableTissue(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                 const CuttableOptions& options = {})
+      : CuttableTissue(prepare(mesh, scene, materials, options), options) {}
+  CuttableTissue(const CuttableTissue&) = delete;
+  CuttableTissue& operator=(const CuttableTissue&) = delete;
+
+  // Any thread
+
+  /// Orders a cut. Throws index_out_of_range at once for ids outside.
+  void cut(CutOrder order) {
+    const std::scoped_lock lock(order_mutex_);
+    const auto outside = [&](Index e) { return e < 0 || e >= elements_; };
+    for (const Index e : order.remove) require_element(!outside(e), e);
+    for (const ElementFace& f : order.open)
+      require_element(!outside(f.element) && f.face >= 0 && f.face < static_cast<int>(E::faces.size()), f.element);
+    orders_.push_back(std::move(order));
+    open_.fetch_add(1, std::memory_order_release);
+  }
+  /// Orders a cut along what a blade sweeps, in the world's frame, through the body as it is deformed by its loads.
+  void cut(const BladeSweep& sweep) {
+    const std::scoped_lock lock(order_mutex_);
+    sweeps_.push_back(sweep);
+    open_.fetch_add(1, std::memory_order_release);
+  }
+
+  /// Does all that is ordered as one cut and makes it felt, then folds it in; true when there was something to do.
+  bool work() {
+    const std::scoped_lock lock(system_mutex_);
+    const auto start = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    unsigned taken = 0;
+    const bool renewed = take_renewal();
+    const CutOrder order = take_orders(taken);
+    if (taken == 0) return renewed;
+    const TopologyChange<E> change = topology_.apply(order);
+    if (!change.empty()) {
+      ++report_.cuts;
+      touchable_.update(topology_, change);
+      take_in(change);
+      report_.felt_seconds = seconds();
+      settle();
+      report_.fold_seconds = seconds();
+    } else if (report_.unchecked > 0 && !has_orders()) {
+      check();
+    }
+    open_.fetch_sub(taken, std::memory_order_release);
+    return true;
+  }
+  CutReport report() const {
+    const std::scoped_lock lock(system_mutex_);
+    return report_;
+  }
+  /// Visits topology and physics while nothing is cut.
+  template <class Visit>
+  void read(Visit&& visit) const {
+    const std::scoped_lock lock(system_mutex_);
+    visit(topology_, physics_);
+  }
+  /// Displacement of all nodes with forces on vertices (those of the present surface or an earlier one), 3 per node
+  /// [m]. Nodes of loose pieces rest where they were when they came off. O(kept x forces) and two substitutions.
+  VectorX displacement_with(std::span<const VertexForce> forces) {
+    const std::scoped_lock lock(system_mutex_);
+    std::vector<std::pair<NodeId, Vector3>> list;
+    for (const VertexForce& f : forces)
+      list.push_back({touchable_.nodes()[static_cast<std::size_t>(f.vertex)], f.force});
+    return system_.displacement_with(list);
+  }
+  /// Where the mesh's frame lies in that of the mesh as given [m].
+  const Vector3& origin() const noexcept { return origin_; }
+
+  // The thread that ticks
+
+  /// Orders a cut from a tick; false when too many are waiting. Never waits.
+  bool stroke(const BladeSweep& sweep) noexcept {
+    if (!strokes_.push(sweep)) return false;
+    open_.fetch_add(1, std::memory_order_release);
+    return true;
+  }
+  Status begin_tick() noexcept {
+    const bool behind = open_.load(std::memory_order_acquire) != 0;
+    if (views_.update() && view().cut != revision_) {  // folding changes nothing that a session remembers
+      renewed_ = true;
+      revision_ = view().cut;
+    }
+    Status status = view().status;
+    if (behind) status.set(StatusFlag::degraded_model);
+    return status;
+  }
+  /// Puts a session's contact on a new surface, where it goes on.
+  void exchange_contacts(ContactProblem<>& problem) noexcept {
+    if (std::exchange(renewed_, false)) problem.move_to(view().problem, view().surface);
+  }
+  /// Refuses a session whose tools are not those of the options.
+  void require_tools(double smallest_radius, const ContactParameters& contact) const {
+    if (smallest_radius != smallest_tool_ || contact.sample_spacing != contact_.sample_spacing)
+      raise(SetupErrorKind::bad_argument,
+            "the session's smallest tool has a radius of " + number(smallest_radius) + " and a sample spacing of " +
+                number(contact.sample_spacing) + ", the tissue was made for " + number(smallest_tool_) + " and " +
+                number(contact_.sample_spacing),
+            "Give CuttableOptions the same smallest_tool and contact as the session");
+  }
+  const ContactSurface& contact_surface() const noexcept { return view().surface; }
+  Status require_columns(std::span<const int>) noexcept { return {}; }
+  Matrix3 compliance(int i, int j) const noexcept { return view().compliance(i, j); }
+  std::uint64_t compliance_revision() const noexcept { return revision_; }
+  double compliance_bound(int j) const noexcept { return view().bound[static_cast<std::size_t>(j)]; }
+  double compliance_floor() const noexcept { return view().floor; }
+  const Eigen::Isometry3d& pose() const noexcept { return world_; }
+  /// Dofs whose correction a tick adds up at present.
+  Index open_rank() const noexcept { return view().step->rank(); }
+
+ private:
+  struct Prepared {
+    CutPhysics<E> physics;
+    CutTopology<E> topology;
+    CutSurface<E> touchable;
+    std::vector<NodeId> cuttable;
+    Vector3 origin;
+  };
+
+  template <LinearMaterial M>
+  static Prepared prepare(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                          const CuttableOptions& options) {
+    Admitted<E> admitted = admit<E>(mesh, options.admission);
+    const Scene mapped = scene.mapped(admitted.node_map);
+    const Vector3 origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
+    for (Vector3& x : admitted.mesh.positions) x -= origin;
+    const auto boundary = extract_boundary<E>(admitted.mesh);
+    CutTopology<E> topology(admitted.mesh, resolve_essential(admitted.mesh, boundary, mapped).constrained);
+    if (!topology.loose_pieces().empty())
+      raise(SetupErrorKind::unconstrained,
+            "a part of " + std::to_string(topology.loose_pieces()[0].elements.size()) + " elements is not held",
+            "Parts that hang together by nodes or edges only are separate here; hold each");
+    CutSurface<E> touchable(topology, boundary, mapped);
+    std::vector<NodeId> cuttable;
+    if (options.cuttable) {
+      Selection wanted = *options.cuttable;
+      if (auto* list = std::get_if<std::vector<NodeId>>(&wanted))
+        wanted = std::get<std::vector<NodeId>>(Scene().touch(*list).mapped(admitted.node_map).touched()[0]);
+      cuttable = resolve_nodes(admitted.mesh, boundary, wanted);
+    }
+    CutPhysics<E> physics(make_body(std::move(admitted.mesh), materials), boundary, mapped);
+    return {std::move(physics), std::move(topology), std::move(touchable), std::move(cuttable), origin};
+  }
+
+  CuttableTissue(Prepared prepared, const CuttableOptions& options)
+      : physics_(std::move(prepared.physics)),
+        topology_(std::move(prepared.topology)),
+        touchable_(std::move(prepared.touchable)),
+        cuttable_(std::move(prepared.cuttable)),
+        limits_(options.limits),
+        system_(topology_, physics_, kept_nodes(), limits_),
+        origin_(prepared.origin),
+        world_(Eigen::Translation3d(prepared.origin)),
+        elements_(topology_.mesh().element_count()),
+        smallest_tool_(options.smallest_tool),
+        contact_(options.contact),
+        most_added_(options.most_added),
+        tolerated_error_(options.tolerated_error) {
+    report_.kept = system_.kept();
+    publish_folded();
+    views_.update();
+  }
+
+  static void require_element(bool holds, Index e) {
+    if (!holds)
+      raise(SetupErrorKind::index_out_of_range, "a cut names element " + std::to_string(e) + " or a face it has not");
+  }
+
+  static constexpr int most_unchecked = 8;
+
+  bool has_orders() const {
+    const std::scoped_lock lock(order_mutex_);
+    return !orders_.empty() || !sweeps_.empty() || !strokes_.empty();
+  }
+  void measure() {
+    report_.error = system_.measured_error();
+    report_.unchecked = 0;
+  }
+
+  std::vector<NodeId> kept_nodes() const {
+    std::vector<NodeId> nodes;
+    for (std::size_t v = 0; v < touchable_.nodes().size(); ++v)
+      if (touchable_.is_used(v)) nodes.push_back(touchable_.nodes()[v]);
+    for (NodeId node = 0; node < topology_.mesh().node_count(); ++node)
+      if (std::ranges::binary_search(cuttable_, topology_.origin_of(node))) nodes.push_back(node);
+    sort_unique(nodes);
+    return nodes;
+  }
+
+  CutOrder take_orders(unsigned& taken) {
+    CutOrder all;
+    std::vector<BladeSweep> sweeps;
+    {
+      const std::scoped_lock lock(order_mutex_);
+      taken = static_cast<unsigned>(orders_.size() + sweeps_.size());
+      for (const CutOrder& order : orders_) {
+        all.remove.insert(all.remove.end(), order.remove.begin(), order.remove.end());
+        all.open.insert(all.open.end(), order.open.begin(), order.open.end());
+      }
+      orders_.clear();
+      sweeps.swap(sweeps_);
+    }
+    for (BladeSweep stroke; strokes_.pop(stroke); ++taken) sweeps.push_back(stroke);
+    if (!sweeps.empty() && report_.unchecked > 0) system_.recover();
+    for (const BladeSweep& s : sweeps) {
+      const auto local = [&](const Vector3& x) { return Vector3(x - origin_); };
+      const auto faces = swept_faces(topology_, {local(s.a0), local(s.b0), local(s.a1), local(s.b1)},
+                                     [&](NodeId node) { return position(node); });
+      all.open.insert(all.open.end(), faces.begin(), faces.end());
+    }
+    return all;
+  }
+
+  /// Updates the system and makes it felt; where rounding leaves nothing to stand on, from a new factor.
+  void take_in(const TopologyChange<E>& change) {
+    try {
+      ++cut_;
+      const auto step = system_.update(topology_, change);
+      report_.rank = step->rank();
+      report_.smallest = step->smallest;
+      auto made = make_view(step);
+      made->bound_by(bound_);
+      bound_ = made->bound;
+      publish(std::move(made));
+    } catch (const SetupError&) {
+      renew();
+    }
+  }
+  /// Folds; the check is put off, a few times, while another cut is ordered already.
+  void settle() {
+    if (report_.failed) return;
+    system_.fold();
+    report_.kept = system_.kept();
+    if (++report_.unchecked < most_unchecked && has_orders()) {
+      auto made = make_view(system_.folded_step());
+      made->bound_as(bound_);
+      publish(std::move(made));
+    } else {
+      check();
+    }
+  }
+  /// What nobody waits for: bounds, measures, renews, and brings nodes inside to where they are.
+  void check() {
+    publish_folded();
+    measure();
+    if (!(report_.error <= tolerated_error_))
+      renew();
+    else if (system_.added() > most_added_ && !renewal_)
+      renewal_ = std::make_unique<CutRenewal<E>>(topology_, physics_, kept_nodes(), limits_);
+    if (!report_.failed) system_.recover();
+    report_.kept = system_.kept();
+  }
+  /// Takes over a new factor when one is ready, with what was cut since it was begun.
+  bool take_renewal() {
+    if (!renewal_ || !renewal_->is_done()) return false;
+    try {
+      if (auto made = renewal_->take(topology_)) {
+        system_ = std::move(*made);
+        ++report_.renewals;
+        measure();
+        system_.recover();
+        ++cut_;
+        publish_folded();
+      }
+    } catch (const SetupError&) {  // the old one goes on
+    }
+    renewal_.reset();
+    return true;
+  }
+  void renew() {
+    renewal_.reset();
+    try {
+      system_ = CutSystem<E>(topology_, physics_, kept_nodes(), limits_);
+      ++report_.renewals;
+      measure();
+      ++cut_;
+      publish_folded();
+    } catch (const SetupError&) {
+      report_.failed = true;
+      open_.fetch_add(1, std::memory_order_release);  // never closed: ticks go on saying degraded_model
+    }
+  }
+
+  Vector3 position(NodeId node) const noexcept {
+    const Index dof = 3 * Index{node};
+    Vector3 x = topology_.mesh().position(node);
+    if (dof < system_.displacement().size()) x += system_.displacement().template segment<3>(dof);
+    return x;
+  }
+  std::unique_ptr<CutView> make_view(std::shared_ptr<const CutStep> step) const {
+    std::vector<Vector3> positions;
+    for (const NodeId node : touchable_.nodes()) positions.push_back(position(node));
+    auto made = std::make_unique<CutView>(system_, touchable_, std::move(positions), std::move(step), smallest_tool_,
+                                          contact_);
+    made->cut = cut_;
+    return made;
+  }
+  void publish_folded() {
+    auto made = make_view(system_.folded_step());
+    made->bound_exactly();
+    bound_ = made->bound;
+    publish(std::move(made));
+  }
+  void publish(std::unique_ptr<CutView> made) {
+    views_.back() = std::move(made);  // frees a view that no tick can see any more
+    views_.publish();
+  }
+  CutView& view() const noexcept { return *views_.front(); }
+
+  CutPhysics<E> physics_;
+  CutTopology<E> topology_;
+  CutSurface<E> touchable_;
+  std::vector<NodeId> cuttable_;  // sorted, of the given mesh
+  SetupLimits limits_;
+  CutSystem<E> system_;
+  Vector3 origin_;
+  Eigen::Isometry3d world_;
+  Index elements_;
+  double smallest_tool_;
+  ContactParameters contact_;
+  Index most_added_;
+  double tolerated_error_;
+  CutReport report_;
+  std::vector<double> bound_;  // of the last view
+  mutable std::mutex order_mutex_, system_mutex_;
+  std::vector<CutOrder> orders_;
+  std::vector<BladeSweep> sweeps_;
+  SpscRing<BladeSweep, 256> strokes_;
+  std::atomic<unsigned> open_{0};
+  TripleBuffer<std::unique_ptr<CutView>> views_;
+  std::uint64_t cut_ = 0, revision_ = 0;  // made last; seen last by a tick
+  bool renewed_ = false;
+  std::unique_ptr<CutRenewal<E>> renewal_;  // last: its thread refers to the physics
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,30 @@
+// What adapters share in making a state of what an SDK says.
+#pragma once
+
+#include <palpate/concepts/haptic_device.hpp>
+
+#include <Eigen/Geometry>
+
+#include <chrono>
+
+namespace palpate::inline PALPATE_ABI::detail {
+
+/// Seconds of the steady clock since construction.
+class SteadyStamp {
+ public:
+  double now() const noexcept {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - origin_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
+};
+
+/// The orientation of a state from a rotation matrix; a matrix that is none leaves it as it is.
+inline void orient(ToolState& state, const Matrix3& rotation) noexcept {
+  if (!((rotation.transpose() * rotation - Matrix3::Identity()).norm() < 1e-3)) return;
+  const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
+  state.orientation = {q.w(), q.x(), q.y(), q.z()};
+}
+
+}  // namespace palpate::inline PALPATE_ABI::detail

@@ -1,0 +1,100 @@
+// More points than rows: what is kept, what friction does, and that nothing is written where no row is.
+#include "contact/tool_session.hpp"
+
+#include "catch.hpp"
+
+using namespace palpate;
+using Catch::Matchers::WithinRel;
+using test::AnalyticTissue;
+using test::round_tool;
+using test::ToolSession;
+
+namespace {
+
+constexpr int row_count = 8;
+using Crowd = ToolSession<AnalyticTissue, row_count>;
+
+constexpr double spring = 1e-2;  // [m/N]
+
+/// Sum of what the contacts press with, along z.
+double pressed(const Crowd& s) {
+  double sum = 0.0;
+  for (const Contact& c : s.problem.contacts()) sum += c.total()[2];
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("full rows: a point that gives its row to a grasp gives its force too", "[contact][rows][grasp][extreme]") {
+  // Four columns of four points, 0.4 mm apart; a capsule along them presses two columns, as many points as rows.
+  AnalyticTissue tissue(3, 1.2e-3, spring);
+  const double radius = 10e-3, height = radius - 4e-6, away = 0.2e-3;
+  ContactTool capsule = round_tool(radius, {-0.4e-3, 0.0, radius + 1e-4}, 0.0, 2e-3, Vector3::UnitY());
+  ContactTool other = round_tool(radius, {0.0, 0.0, 0.5}, 0.0);
+  other.active = false;
+  Crowd s(tissue, {capsule, other});
+  s.move(0, {-0.4e-3, 0.0, height}, 20);
+  REQUIRE(s.problem.contacts().size() == row_count);
+  CHECK(s.status.ok());
+  s.tools[0].grasping = true;  // three rows for the held point, five for the other seven
+  s.tick(0, s.tools[0].target);
+  REQUIRE(s.problem.is_holding(0));
+  CHECK(s.status.has(StatusFlag::degraded_model));
+  CHECK(s.problem.contacts().size() == row_count);
+  s.move(0, {0.4e-3, 0.0, height}, 40);  // over to the two columns that nothing pressed yet
+  s.tools[0].grasping = false;
+  s.settle(2);
+  s.tools[1].active = true;  // another list of points near the tools
+  s.settle(2);
+  const double distance = std::hypot(height, away);
+  const double exact = row_count * (radius - distance) / spring * height / distance;
+  CHECK(s.problem.contacts().size() == row_count);
+  CHECK_THAT(s.force()[2], WithinRel(exact, 1e-5));
+  CHECK_THAT(pressed(s), WithinRel(exact, 1e-5));
+  CHECK(s.force(1) == Vector3::Zero());
+  CHECK((s.tools[0].proxy - s.tools[0].target).norm() <= 1e-12);
+}
+
+TEST_CASE("full rows: those that press keep them, and the answer for them is exact", "[contact][rows][extreme][D4]") {
+  AnalyticTissue tissue(60, 0.02, spring);  // a third of a millimetre apart
+  const double radius = 4e-3;
+  Crowd s(tissue, {round_tool(radius, {5e-5, 2e-5, radius + 1e-4}, 0.0)});
+  s.move(0, {5e-5, 2e-5, radius - 1e-3}, 25);
+  s.settle();
+  CHECK(s.status == Status(StatusFlag::degraded_model));
+  REQUIRE(s.problem.contacts().size() == row_count);
+  for (const Contact& c : s.problem.contacts()) {
+    const Vector3 way = s.tools[0].proxy - c.rest;
+    CHECK_THAT(c.force, WithinRel((radius - way.norm()) / spring, 1e-6));  // independent springs
+    CHECK(c.rest.head<2>().norm() < 2e-3);  // those met first, below the middle of a ball that has come straight down
+  }
+}
+
+TEST_CASE("full rows: friction acts on those that press", "[contact][rows][friction][D4]") {
+  AnalyticTissue tissue(60, 0.02, spring);
+  const double radius = 4e-3, mu = 0.3;
+  ContactParameters rough;
+  rough.friction = mu;
+  Crowd s(tissue, {round_tool(radius, {0.0, 0.0, radius + 1e-4}, 1e-3)}, rough);
+  s.move(0, {0.0, 0.0, radius - 4e-4}, 25);
+  s.settle(5);
+  CHECK(s.problem.contacts().size() == row_count);
+  CHECK(s.force().head<2>().norm() < 0.02 * s.force()[2]);
+  double least = infinity, most = 0.0;
+  s.status = {};
+  for (int k = 1; k <= 200; ++k) {
+    s.tick(0, {2e-6 * k, 0.0, radius - 4e-4});
+    double pressing = 0.0, drag = 0.0;
+    for (const Contact& c : s.problem.contacts()) {
+      pressing += c.force;
+      drag -= c.friction[0];
+    }
+    if (k <= 100) continue;
+    least = std::min(least, drag / pressing);
+    most = std::max(most, drag / pressing);
+  }
+  CHECK(s.status == Status(StatusFlag::degraded_model));
+  INFO("drag over press: " << least << " to " << most);
+  CHECK(least > 0.7 * mu);
+  CHECK(most <= mu * (1.0 + 1e-9));
+}

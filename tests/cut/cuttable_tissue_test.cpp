@@ -1,0 +1,194 @@
+#include <palpate/cut/cut_thread.hpp>
+#include <palpate/cut/cuttable_tissue.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/mesh/generators.hpp>
+#include <palpate/testing/allocation_counter.hpp>
+#include <palpate/testing/random.hpp>
+#include <palpate/testing/tissue_laws.hpp>
+
+#include "catch.hpp"
+#include "refused.hpp"
+
+using namespace palpate;
+
+namespace {
+
+using Tissue = CuttableTissue<Tet4>;
+static_assert(TissueModel<Tissue> && AnnouncesChanges<Tissue>);
+
+const LinearElastic soft{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0};
+
+Mesh<Tet4> slab() {
+  return box_tet4({0.1, 0.1, 0.05}, {8, 8, 4}, BoxSplit::six);
+}
+Scene held_below() {
+  return Scene().fix("z0").touch("surface").gravity({0.0, 0.0, -9.81});
+}
+BladeSweep slit_at(double x, double bottom) {
+  return {{x, -1, bottom}, {x, 2, bottom}, {x, -1, 1}, {x, 2, 1}};
+}
+std::vector<int> used_vertices(const Tissue& tissue, std::size_t most) {
+  std::vector<int> used;
+  for (int v = 0; v < tissue.contact_surface().vertex_count(); v += 7)
+    if (!tissue.contact_surface().triangles_at(v).empty() && used.size() < most) used.push_back(v);
+  return used;
+}
+ToolState at(const Vector3& x, double time) {
+  ToolState s;
+  s.position = x;
+  s.time = time;
+  s.valid = true;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("a tissue keeps the laws of tissues while it is cut", "[cut]") {
+  Tissue tissue(slab(), held_below(), soft, {.cuttable = Selection("surface")});
+  const auto check = [&] {
+    tissue.begin_tick();
+    for (const auto& broken : testing::tissue_laws(tissue, used_vertices(tissue, 20)))
+      FAIL_CHECK(broken.law << ' ' << broken.detail);
+  };
+  check();
+  const int vertices = tissue.contact_surface().vertex_count();
+  tissue.cut(slit_at(0.052, 0.02));
+  CHECK(tissue.begin_tick().has(StatusFlag::degraded_model));
+  CHECK(tissue.work());
+  CHECK(!tissue.work());
+  CHECK(tissue.begin_tick().ok());
+  CHECK(tissue.contact_surface().vertex_count() > vertices);  // the wound's walls can be touched
+  CHECK(tissue.report().error < 1e-10);
+  check();
+  tissue.cut(CutOrder{{0, 1, 2, 3, 4, 5}, {}});
+  tissue.work();
+  check();
+  CHECK_REFUSED(SetupErrorKind::index_out_of_range, tissue.cut(CutOrder{{1000000}, {}}));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(tissue, SphereTool{.radius = 1e-3}));
+}
+
+TEST_CASE("a cut under the tool: the force goes on, and changes no faster than the gate allows", "[cut][extreme][F3]") {
+  Tissue tissue(slab(), held_below(), soft);
+  HapticServo servo(tissue, SphereTool{});
+  const ForceLimits limits = ForceLimits::from(DeviceLimits{});
+  double time = 0.0, before = 0.0, longest_step = 0.0;
+  Vector3 last = Vector3::Zero(), contact_before = Vector3::Zero();
+  const auto tick = [&](double depth) {
+    const ToolState s = at({0.052, 0.05, 0.05 + 4e-3 - depth}, time += 1e-3);
+    const testing::AllocationScope scope;
+    const ToolForce f = servo.tick({&s, 1})[0];
+    const auto calls = scope.allocations() + scope.frees();
+    CHECK(calls == 0);
+    REQUIRE(f.force.allFinite());
+    REQUIRE(f.force.norm() <= limits.peak_force * (1.0 + 1e-12));
+    longest_step = std::max(longest_step, (f.force - last).norm());
+    last = f.force;
+    return f;
+  };
+  for (int i = 0; i < 300; ++i) tick(std::min(6e-3, 1e-3 + i * 4e-5));
+  before = last.norm();
+  contact_before = servo.contact_force();
+  REQUIRE(before > 0.05);
+  tissue.cut(slit_at(0.052, 0.012));
+  CHECK(tick(6e-3).status.has(StatusFlag::degraded_model));  // behind, and says so
+  CHECK(std::abs(servo.contact_force().norm() - contact_before.norm()) < 0.02 * contact_before.norm());
+  tissue.work();
+  const ToolForce after = tick(6e-3);
+  CHECK(!after.status.has(StatusFlag::degraded_model));
+  CHECK(servo.contact_force().norm() > 0.2 * contact_before.norm());  // it has not lost the surface
+  CHECK(servo.contact_force().norm() < contact_before.norm());        // a slit body is softer
+  for (int i = 0; i < 100; ++i) tick(6e-3);
+  CHECK(last.norm() < before);
+  CHECK(longest_step <= limits.slew_rate * 1e-3 * (1.0 + 1e-9));
+  // What is felt now is what a session that begins on the cut body feels.
+  Tissue fresh(slab(), held_below(), soft);
+  fresh.cut(slit_at(0.052, 0.012));
+  fresh.work();
+  fresh.begin_tick();
+  HapticServo other(fresh, SphereTool{});
+  Vector3 settled = Vector3::Zero();
+  for (int i = 0; i < 400; ++i) {
+    const ToolState s = at({0.052, 0.05, 0.05 + 4e-3 - std::min(6e-3, 1e-3 + i * 4e-5)}, 1e-3 * i);
+    settled = other.tick({&s, 1})[0].force;
+  }
+  CHECK((settled - last).norm() < 0.1 * last.norm());
+}
+
+TEST_CASE("cut while touched until nothing is left: every force finite and limited", "[cut][extreme][F1][F3]") {
+  const auto mesh = box_tet4({0.05, 0.05, 0.05}, {4, 4, 4});
+  Tissue tissue(mesh, held_below(), soft);
+  HapticServo servo(tissue, SphereTool{});
+  const ForceLimits limits = ForceLimits::from(DeviceLimits{});
+  testing::Random random(3);
+  double time = 0.0, whole = 0.0, left = 1.0;
+  tissue.read([&](const auto& t, const auto& p) {
+    for (Index e = 0; e < t.mesh().element_count(); ++e) whole += p.mass(e);
+  });
+  Vector3 last = Vector3::Zero();
+  int cuts = 0;
+  while (left > 0.0) {
+    CutOrder order;
+    for (int k = 0; k < 6; ++k) {
+      const auto e = static_cast<Index>(random.uniform(0.0, static_cast<double>(mesh.element_count())));
+      random.uniform()<0.5 || cuts> 60 ? order.remove.push_back(e) : order.open.push_back({e, k % 4});
+    }
+    if (cuts > 120)
+      for (Index e = 0; e < mesh.element_count(); ++e) order.remove.push_back(e);
+    tissue.cut(order);
+    ++cuts;
+    for (int i = 0; i < 4; ++i) {
+      if (i == 2) tissue.work();
+      const ToolState s = at({random.uniform(0.0, 0.05), random.uniform(0.0, 0.05), 0.05}, time += 1e-3);
+      const ToolForce f = servo.tick({&s, 1})[0];
+      REQUIRE(f.force.allFinite());
+      REQUIRE(f.force.norm() <= limits.peak_force * (1.0 + 1e-12));
+      REQUIRE((f.force - last).norm() <= limits.slew_rate * 1e-3 * (1.0 + 1e-9));
+      REQUIRE(f.status.bits() < (1u << status_flag_count));
+      REQUIRE(!f.status.has(StatusFlag::non_finite_force));
+      last = f.force;
+    }
+    double held = 0.0, loose = 0.0, removed = 0.0;
+    tissue.read([&](const auto& t, const auto& p) {
+      for (Index e = 0; e < t.mesh().element_count(); ++e)
+        (t.state(e) == ElementState::held ? held : t.state(e) == ElementState::loose ? loose : removed) += p.mass(e);
+    });
+    REQUIRE(std::abs(held + loose + removed - whole) < 1e-12 * whole);
+    left = held + loose;
+    if (held > 0.0) REQUIRE(!tissue.report().failed);
+  }
+  CHECK(tissue.contact_surface().triangles().empty());
+  for (int i = 0; i < 200; ++i) {
+    const ToolState s = at({0.02, 0.02, 0.03}, time += 1e-3);
+    last = servo.tick({&s, 1})[0].force;
+  }
+  CHECK(last.norm() == 0.0);  // nothing is there to touch
+}
+
+TEST_CASE("a thread cuts while another ticks", "[cut][extreme][F3]") {
+  Tissue tissue(slab(), held_below(), soft);
+  HapticServo servo(tissue, SphereTool{});
+  const ForceLimits limits = ForceLimits::from(DeviceLimits{});
+  testing::Random random(8);
+  {
+    const CutThread<Tissue> thread(tissue);
+    Vector3 last = Vector3::Zero();
+    for (int i = 0; i < 3000; ++i) {
+      if (i % 300 == 100)
+        tissue.stroke({{0.02 + i * 2e-5, -1, 0.03},
+                       {0.02 + i * 2e-5, 2, 0.03},
+                       {0.02 + i * 2e-5, -1, 1},
+                       {0.02 + i * 2e-5, 2, 1}});
+      const ToolState s = at({0.03 + 1e-5 * i, 0.05, 0.05 + 4e-3 - 3e-3}, 1e-3 * i);
+      const ToolForce f = servo.tick({&s, 1})[0];
+      REQUIRE(f.force.allFinite());
+      REQUIRE((f.force - last).norm() <= limits.slew_rate * 1e-3 * (1.0 + 1e-9));
+      last = f.force;
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+  }
+  tissue.work();
+  CHECK(tissue.report().cuts > 2);
+  CHECK(tissue.report().error < 1e-10);
+}

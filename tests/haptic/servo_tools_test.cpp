@@ -1,0 +1,96 @@
+// Several tools of one servo, points that are held, and what a snapshot tells of both.
+#include <palpate/haptic/haptic_servo.hpp>
+
+#include "contact/analytic_tissue.hpp"
+
+#include "catch.hpp"
+
+using namespace palpate;
+
+namespace {
+
+constexpr double round_radius = 5e-3;
+
+/// A servo on springs and its tools' states, one tick after the other.
+struct Tools {
+  test::AnalyticTissue tissue;
+  HapticServo<test::AnalyticTissue> servo;
+  std::vector<ToolState> states;
+  std::vector<int> reacquired;
+
+  explicit Tools(std::size_t count, const ServoOptions& options = {})
+      : tissue(10, 0.04, 1e-3),
+        servo(tissue, std::vector<SphereTool>(count, SphereTool{.radius = round_radius}), options),
+        states(count),
+        reacquired(count) {}
+  void tick() {
+    for (ToolState& s : states) s.time += 1e-3;
+    const auto forces = servo.tick(states);
+    for (std::size_t i = 0; i < forces.size(); ++i)
+      if (forces[i].status.has(StatusFlag::reacquired)) ++reacquired[i];
+  }
+  void move(std::size_t i, const Vector3& to, int ticks) {
+    const Vector3 from = states[i].position;
+    for (int k = 1; k <= ticks; ++k) {
+      states[i].position = from + (to - from) * k / ticks;
+      tick();
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a tool that lost the surface is found whatever its number, while the other is in the air",
+          "[haptic][servo][extreme]") {
+  for (const std::size_t lost : {0u, 1u}) {
+    Tools tools(2);
+    tools.states[0].position = Vector3(0.05, 0.0, 0.05);
+    tools.states[1].position = Vector3(0.05, 0.0, 0.07);
+    tools.tick();
+    tools.move(lost, {0.05, 0.0, -0.05}, 30);  // round the border of the sheet
+    tools.move(lost, {0.0, 0.0, -0.05}, 15);
+    for (int k = 0; k < 20; ++k) tools.tick();
+    INFO("tool " << lost);
+    CHECK(tools.reacquired[lost] > 0);
+    CHECK(tools.reacquired[1 - lost] == 0);
+    CHECK(tools.servo.contact_force(lost).z() > 0.0);
+  }
+}
+
+TEST_CASE("a snapshot's contacts add up to the contact force, held points too", "[haptic][servo][grasp]") {
+  ServoOptions options;
+  options.grasp_buttons = 1;
+  options.contact.friction = 0.3;
+  Tools tools(2, options);
+  tools.states[0].position = Vector3(-0.008, 0.0, round_radius + 1e-4);
+  tools.states[1].position = Vector3(0.008, 0.001, round_radius + 1e-4);
+  tools.tick();
+  tools.move(0, {-0.008, 0.0, round_radius - 1e-3}, 40);
+  tools.move(1, {0.008, 0.001, round_radius - 1e-3}, 40);
+  tools.states[0].buttons = 1;
+  const auto look = [&](std::size_t held) {
+    const auto& snapshot = tools.servo.read_snapshot();
+    std::array<Vector3, 2> sum{Vector3::Zero(), Vector3::Zero()};
+    std::size_t grasped = 0;
+    for (const ToolContact& c : snapshot.tool_contacts()) {
+      sum[static_cast<std::size_t>(c.tool)] += c.force * c.normal + c.friction;
+      CHECK(c.force > 0.0);
+      CHECK(std::abs(c.normal.norm() - 1.0) < 1e-12);
+      if (c.grasped) ++grasped;
+    }
+    CHECK(grasped == held);
+    for (std::size_t i : {0u, 1u})
+      CHECK((sum[i] - tools.servo.contact_force(i)).norm() <= 1e-9 * tools.servo.contact_force(i).norm());
+  };
+  look(0);
+  tools.move(0, {-0.007, 0.0006, round_radius - 1e-3}, 20);  // drags
+  REQUIRE(tools.servo.is_holding(0));
+  look(1);
+  tools.move(0, {-0.008, -0.0005, round_radius + 3e-3}, 40);  // pulls: nothing but the held point, towards the surface
+  CHECK(tools.servo.contact_force(0).z() < 0.0);
+  look(1);
+  tools.move(1, {0.009, 0.001, round_radius - 8e-4}, 20);
+  tools.states[1].buttons = 1;
+  tools.move(1, {0.009, 0.001, round_radius + 2e-3}, 20);
+  look(2);
+}
