@@ -69,7 +69,7 @@ void check_rated() {
       handle.start();
       const double rated = o.limits.stiffness;
       testing::Tanked<testing::VirtualWall> wall{.source = {.stiffness = rated},
-                                        .tank = EnergyTank(EnergyLimits::from(o.limits))};
+                                                 .tank = EnergyTank(EnergyLimits::from(o.limits))};
       double least = infinity;
       for (int i = 0; i < 20000; ++i) {  // pressed harder and softer, 0 to 2 N
         handle.push(Vector3(0.0, 0.0, -1.0 + std::cos(6e-3 * i)));
