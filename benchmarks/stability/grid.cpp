@@ -7,12 +7,19 @@
 namespace maps {
 namespace {
 
-constexpr double side = 15, above = 22, below = 46, right = 14;
+constexpr double side = 15, above = 22, right = 14;
 
-double left_of(const Grid& g) {
+/// Room for the longest of some labels.
+double room(const std::vector<std::string>& labels) {
   std::size_t longest = 0;
-  for (const std::string& row : g.rows) longest = std::max(longest, row.size());
+  for (const std::string& label : labels) longest = std::max(longest, label.size());
   return 8.0 + 6.2 * static_cast<double>(longest);
+}
+double left_of(const Grid& g) {
+  return std::max(room(g.rows), 54.0);  // and for the axis' name
+}
+double below_of(const Grid& g) {
+  return 16.0 + room(g.columns);
 }
 
 void draw(std::ostream& out, double x, double y, const Square& s) {
@@ -76,9 +83,9 @@ void draw(std::ostream& out, double x, double y, const Grid& g, const std::strin
         << "</text>";
   }
   draw_line(out, g, x0, y0);
-  out << "<text x='" << x0 + side * static_cast<double>(g.columns.size()) << "' y='" << bottom + below - 2
-      << "' text-anchor='end' class='axis'>" << escaped(x_name) << "</text><text x='" << x << "' y='" << y0 - 6
-      << "' class='axis'>" << escaped(y_name) << "</text>\n";
+  out << "<text x='" << x0 + side * static_cast<double>(g.columns.size()) << "' y='" << bottom + below_of(g) - 10
+      << "' text-anchor='end' class='axis'>" << escaped(x_name) << "</text><text x='" << x0 - 4 << "' y='"
+      << bottom + 11 << "' text-anchor='end' class='axis'>" << escaped(y_name) << "</text>\n";
 }
 
 }  // namespace
@@ -99,7 +106,7 @@ std::string svg_of(const std::vector<Grid>& grids, int per_row, const std::strin
   for (const Grid& g : grids) {
     w = std::max(w, left_of(g) + side * static_cast<double>(g.columns.size()) + right);
     w = std::max(w, left_of(g) + 6.6 * static_cast<double>(g.title.size()) + right);
-    h = std::max(h, above + side * static_cast<double>(g.rows.size()) + below);
+    h = std::max(h, above + side * static_cast<double>(g.rows.size()) + below_of(g));
   }
   const int count = static_cast<int>(grids.size()), across = std::min(per_row, count);
   const double width = w * across, height = h * ((count + per_row - 1) / per_row);

@@ -25,7 +25,7 @@ struct Grid {
 /// Panels side by side, as many per row as asked for, with names of both axes.
 std::string svg_of(const std::vector<Grid>& grids, int per_row, const std::string& x_name, const std::string& y_name);
 
-/// 0 for an error of 1e-14 and less, 7 for 1 and more.
+/// 0 for an error below 1e-14, then one more for every two powers of ten, 7 from 1e-2 on.
 int shade_of_error(double error);
 
 /// For text between tags and in titles.

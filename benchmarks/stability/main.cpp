@@ -48,9 +48,16 @@ int main(int argc, char** argv) try {
   std::ofstream summary(out + "/summary.txt");
   print(summary, "statics", page.statics.score);
   print(summary, "dynamics", page.dynamics.score);
-  if (!page.haptics.empty())
-    summary << "haptics: " << page.haptics.size() << " devices and grips, " << failures
-            << " figures off their formula\n";
+  if (!page.haptics.empty()) {
+    int cells = 0, calm = 0;
+    for (const maps::Grid& grid : page.haptics)
+      for (const maps::Square& s : grid.squares) {
+        ++cells;
+        calm += s.verdict == maps::Verdict::ok ? 1 : 0;
+      }
+    summary << "haptics: " << cells << " cells of " << page.haptics.size() << " devices and grips, " << calm
+            << " calm, " << cells - calm << " buzz, " << failures << " figures off their formula\n";
+  }
   const int wrong = page.statics.score.wrong() + page.dynamics.score.wrong();
   std::printf("palpate: %d cells WRONG, %d figures off their formula\n", wrong, failures);
   return wrong + failures == 0 ? 0 : 1;

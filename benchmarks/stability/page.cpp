@@ -38,7 +38,7 @@ std::string key(const char* shape, const char* what) {
 std::string keys() {
   return "<p>" +
          key("<rect x='1' y='1' width='13' height='13' class='s2'/>",
-             "within its bound; colour: error, pale 1e-14, strong 1") +
+             "within its bound; colour: error, pale 1e-14, amber from 1e-4") +
          key("<rect x='1' y='1' width='13' height='13' class='s5'/><path d='M7.5 4L11.5 11L3.5 11Z' class='flag'/>",
              "flagged: answered, and said how far to trust it") +
          key("<rect x='1' y='1' width='13' height='13' class='refused'/><path d='M4 11L11 4' class='slash'/>",
