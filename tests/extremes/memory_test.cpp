@@ -83,11 +83,14 @@ TEST_CASE("a model whose change runs out of memory is as it was", "[extreme][E10
     const auto model = make_model(policy, two_cubes(), small_scene(0.1), LinearElastic{5e3, 0.3, 1000.0});
     const VectorX before = model->displacement();
     const Matrix3 compliance = model->compliance(0, 1);
-    const Scene other = small_scene(0.4);
+    const auto remarks = model->report().remarks;
+    const Scene other = small_scene(4e3);
     const Attempt whole = with_failing_heap({}, false, [&] { model->set_conditions(other); });
     REQUIRE(whole.finished);
     const VectorX after = model->displacement();
+    const auto remarks_after = model->report().remarks;
     REQUIRE(after != before);
+    REQUIRE(remarks_after != remarks);
     model->reset();
     REQUIRE(model->displacement() == before);
     for (std::int64_t at = 0; at < whole.calls; ++at) {
@@ -96,6 +99,7 @@ TEST_CASE("a model whose change runs out of memory is as it was", "[extreme][E10
       CHECK(a.out_of_memory != a.finished);
       REQUIRE(model->displacement() == (a.finished ? after : before));
       REQUIRE(model->compliance(0, 1) == compliance);
+      REQUIRE(model->report().remarks == (a.finished ? remarks_after : remarks));
       if (a.finished) model->reset();
     }
     model->set_conditions(other);
