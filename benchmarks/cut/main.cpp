@@ -104,18 +104,21 @@ Cost measure(const Block& b, const CutOrder& order, int repeats) {
     CutSurface<Tet4> surface = b.surface;
     CutSystem<Tet4> system = b.system;
     const std::vector<double> bounds(b.surface.nodes().size(), 1.0);
-    std::unique_ptr<CutView> view;
+    CutView view;
+    const auto contact = [&] {
+      return std::make_shared<CutContact>(system, surface, positions_of(topology, surface, system), 4e-3,
+                                          ContactParameters{}, 1);
+    };
     TopologyChange<Tet4> change;
     felt.push_back(bench::seconds_of([&] {
       change = topology.apply(order);
       surface.update(topology, change);
       const auto step = system.update(topology, change);
-      view = std::make_unique<CutView>(system, surface, positions_of(topology, surface, system), step, 4e-3,
-                                       ContactParameters{});
-      view->bound_by(bounds);
+      view = {contact(), step};
+      view.bound_by(bounds);
     }));
     folds.push_back(bench::seconds_of([&] { system.fold(); }));
-    cost.rank = view->step->rank();
+    cost.rank = view.step->rank();
     cost.added = system.added();
     if (i > 0) continue;
     std::unique_ptr<CutSystem<Tet4>> fresh;
@@ -129,8 +132,8 @@ Cost measure(const Block& b, const CutOrder& order, int repeats) {
              }) /
              10000;
     };
-    cost.read = read(*view);
-    const CutView folded(system, surface, positions_of(topology, surface, system), system.folded_step(), 4e-3, {});
+    cost.read = read(view);
+    const CutView folded{view.contact, system.folded_step()};
     cost.read_folded = read(folded);
     if (!std::isfinite(sum)) cost.error = infinity;
   }

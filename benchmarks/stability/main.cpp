@@ -1,144 +1,66 @@
-// Z-width: how stiff a wall may be before a device buzzes, for devices, grips, rates and delays, simulated. Every
-// figure that has a formula is checked against it; the program fails when they disagree.
-//   bench_stability [--out <folder for stability.csv and stability.svg>]
+// Where answers hold: maps of statics, dynamics and haptics, each cell ok, flagged, refused or WRONG, on one page.
+//   bench_stability [--out <folder>] [--only statics|dynamics|haptics] [--full]
+// Writes statics.csv, dynamics.csv, stability.csv, stability.svg, stability.html and summary.txt. Returns 1 when a cell
+// of the library is WRONG, or a figure of the haptic map disagrees with its formula.
 #include "../common/row.hpp"
+#include "page.hpp"
 #include "stability.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <fstream>
 
-namespace stability {
 namespace {
 
-int failures = 0;
-void expect(bool holds, const Cell& c, const char* what, double got, double wanted) {
-  if (holds) return;
-  ++failures;
-  std::printf("WRONG %s, %s, %g Hz, %d ticks: %s is %.5g, not %.5g\n", c.device->name, c.hand->name, c.rate, c.delay,
-              what, got, wanted);
-}
-
-void measure(Cell& c) {
-  c.exact = limit_by_eigenvalues(c.options(), c.delay);
-  c.linear = largest_linear(c, c.exact);
-  expect(std::abs(c.linear - c.exact) <= 0.01 * c.exact, c, "limit of the linear loop", c.linear, c.exact);
-  const double b = c.device->options.damping, period = 1.0 / c.rate;
-  if (c.hand->hand.mass <= 0.0 && b * period / c.device->options.mass < 0.02) {
-    const double formula = testing::stiffness_limit(b, period, c.delay * period);
-    expect(std::abs(c.linear - formula) <= 0.02 * formula, c, "limit without a hand", c.linear, formula);
-  }
-  c.calm = largest_calm(c, false);
-  c.late = largest_calm(c, true);
-  c.power = motor_power(c, 4.0 * c.calm, false);
-  c.power_tank = motor_power(c, 4.0 * c.calm, true);
-  // Softer walls than 20 N/m are pressed in by 1 N until they end.
-  if (c.exact > 20.0) expect(c.calm >= 0.9 * c.linear, c, "limit with friction", c.calm, c.linear);
-}
-
-std::vector<Cell> measure_all() {
-  std::vector<Cell> cells;
-  for (const NamedDevice& device : devices()) {
-    const SimulatedOptions& o = device.options;
-    std::printf("\n%s: mass %.3g kg, damping %.3g N s/m, friction %.3g N, encoder %.3g um, rated %.4g N/m at 1 kHz\n",
-                device.name, o.mass, o.damping, o.friction, 1e6 * o.encoder_step, o.limits.stiffness);
-    std::printf("passive up to 2b/T = %.4g N/m at 1 kHz and 2f/step = %.4g N/m\n", 2e3 * o.damping,
-                2.0 * o.friction / o.encoder_step);
-    std::printf("%-8s %6s %6s | %9s %9s | %9s %9s | motors at 4x calm, and with tank [mW]\n", "hand", "rate", "delay",
-                "linear", "exact", "calm", "late");
-    for (const NamedHand& hand : hands())
-      for (double rate : rates)
-        for (int delay : delays) {
-          Cell c{.device = &device, .hand = &hand, .rate = rate, .delay = delay};
-          measure(c);
-          std::printf("%-8s %6.0f %6d | %9.4g %9.4g | %9.3g %9.3g | %9.3g %9.3g\n", hand.name, rate, delay, c.linear,
-                      c.exact, c.calm, c.late, 1e3 * c.power, 1e3 * c.power_tank);
-          std::fflush(stdout);
-          cells.push_back(c);
-        }
-  }
-  return cells;
-}
-
-/// At the stiffness the device is rated for the tank must do nothing at 1 kHz, in every hand.
-void check_rated() {
-  for (const NamedDevice& device : devices())
-    for (const NamedHand& hand : hands()) {
-      Cell c{.device = &device, .hand = &hand, .rate = 1000.0, .delay = 0};
-      SimulatedOptions o = c.options();
-      SimulatedDevice handle(o);
-      handle.start();
-      const double rated = o.limits.stiffness;
-      testing::Tanked<testing::VirtualWall> wall{.source = {.stiffness = rated},
-                                                 .tank = EnergyTank(EnergyLimits::from(o.limits))};
-      double least = infinity;
-      for (int i = 0; i < 20000; ++i) {  // pressed harder and softer, 0 to 2 N
-        handle.push(Vector3(0.0, 0.0, -1.0 + std::cos(6e-3 * i)));
-        testing::tick(handle, wall);
-        least = std::min(least, wall.tank.gain());
+/// One line per solver or scheme; the sums of ours go to summary.txt, for the scoreboard of reliability.
+void print(std::ostream& summary, const char* map, const maps::Score& score) {
+  if (score.ours.empty()) return;
+  maps::Counts ours, others;
+  const auto add = [map](const char* whose, const auto& scores, maps::Counts& sum) {
+    for (const auto& [who, counts] : scores) {
+      std::printf("%-9s %-8s %-40s", map, whose, who.c_str());
+      for (std::size_t v = 0; v < maps::verdict_count; ++v) {
+        std::printf(" %s %d", maps::verdict_names[v], counts.of[v]);
+        sum.of[v] += counts.of[v];
       }
-      expect(least >= 1.0, c, "least gain of the tank at the rated stiffness", least, 1.0);
+      std::printf("\n");
     }
-}
-
-void measure_tissues() {
-  SimulatedOptions o = SimulatedOptions::stylus();
-  const double limit = testing::stiffness_limit(o.damping, 1.0 / o.rate, 0.0);
-  std::printf("\nblock of 9 216 Tet4 under a ball of 4 mm, 0.1 N, stylus without hand, friction and encoder steps:\n");
-  Cell c{.device = devices().data(), .hand = hands().data(), .rate = o.rate, .delay = 0};
-  for (double e : {30e3, 100e3, 300e3, 1e6}) {
-    const TissueRow row = measure_tissue(e, o);
-    std::printf(
-        "E %6.0f kPa: tissue alone %7.4g N/m; largest stable coupling %9.4g N/m, then felt %7.4g N/m "
-        "(limit of a wall %.4g)\n",
-        1e-3 * e, row.soft, row.coupling, row.felt, limit);
-    if (row.soft < 0.9 * limit)  // soft enough for any coupling
-      expect(row.felt >= 0.99 * row.soft, c, "stiffness felt of a soft tissue", row.felt, row.soft);
-    else
-      expect(std::abs(row.felt - limit) <= 0.1 * limit, c, "stiffness felt at the limit", row.felt, limit);
-  }
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
-void summarise(const std::vector<Cell>& cells) {
-  std::vector<double> bare, tanked, late;
-  for (const Cell& c : cells)
-    if (c.rate > 999.0) {
-      bare.push_back(1e3 * c.power);
-      tanked.push_back(1e3 * c.power_tank);
-      late.push_back(c.late / c.calm);
-    }
-  std::printf(
-      "\nmedians at 1 kHz: motors at 4x calm %.3g mW, with a tank %.3g mW; late reads leave %.2f of the stiffness\n",
-      median(bare), median(tanked), median(late));
-}
-
-void write_csv(const std::vector<Cell>& cells, const std::string& path) {
-  std::ofstream out(path);
-  out << "device,hand,rate_hz,delay_ticks,linear,exact,calm,late,motors_4x_w,motors_4x_tank_w\n";
-  for (const Cell& c : cells)
-    out << c.device->name << ',' << c.hand->name << ',' << c.rate << ',' << c.delay << ',' << c.linear << ',' << c.exact
-        << ',' << c.calm << ',' << c.late << ',' << c.power << ',' << c.power_tank << '\n';
+  };
+  add("palpate", score.ours, ours);
+  add("others", score.others, others);
+  summary << map << ": " << ours.all() << " cells, " << ours[maps::Verdict::ok] << " ok, "
+          << ours[maps::Verdict::flagged] << " flagged, " << ours[maps::Verdict::refused] << " refused, "
+          << ours[maps::Verdict::unjudged] << " unjudged, " << ours[maps::Verdict::wrong]
+          << " WRONG (others: " << others[maps::Verdict::wrong] << " WRONG of " << others.all() << ")\n";
 }
 
 }  // namespace
-}  // namespace stability
 
 int main(int argc, char** argv) try {
-  const std::string out = bench::option(argc, argv, "--out", ".");
-  const auto cells = stability::measure_all();
-  stability::write_csv(cells, out + "/stability.csv");
-  stability::write_map(cells, out + "/stability.svg");
-  stability::summarise(cells);
-  stability::check_rated();
-  stability::measure_tissues();
-  std::printf("\n%d figures disagree with their formula; written: %s/stability.svg, stability.csv\n",
-              stability::failures, out.c_str());
-  return stability::failures == 0 ? 0 : 1;
+  const std::string out = bench::option(argc, argv, "--out", "."), only = bench::option(argc, argv, "--only", "");
+  const bool full = bench::has_option(argc, argv, "--full");
+  maps::Page page;
+  if (only.empty() || only == "statics") page.statics = maps::measure_statics(full ? 6 : 4, out);
+  if (only.empty() || only == "dynamics") page.dynamics = maps::measure_dynamics(full ? 4 : 2, full ? 400 : 100, out);
+  int failures = 0;
+  if (only.empty() || only == "haptics") failures = stability::measure_haptics(out, page.haptics);
+  maps::write_page(page, out + "/stability.html");
+  std::ofstream summary(out + "/summary.txt");
+  print(summary, "statics", page.statics.score);
+  print(summary, "dynamics", page.dynamics.score);
+  if (!page.haptics.empty()) {
+    int cells = 0, calm = 0;
+    for (const maps::Grid& grid : page.haptics)
+      for (const maps::Square& s : grid.squares) {
+        ++cells;
+        calm += s.verdict == maps::Verdict::ok ? 1 : 0;
+      }
+    summary << "haptics: " << cells << " cells of " << page.haptics.size() << " devices and grips, " << calm
+            << " calm, " << cells - calm << " buzz, " << failures << " figures off their formula\n";
+  }
+  const int wrong = page.statics.score.wrong() + page.dynamics.score.wrong();
+  std::printf("palpate: %d cells WRONG, %d figures off their formula\n", wrong, failures);
+  return wrong + failures == 0 ? 0 : 1;
 } catch (const std::exception& e) {
   std::fprintf(stderr, "bench_stability: %s\n", e.what());
   return 1;

@@ -4,6 +4,8 @@
 #include <palpate/haptic/energy_tank.hpp>
 #include <palpate/testing/stability.hpp>
 
+#include "grid.hpp"
+
 #include <array>
 #include <string>
 #include <vector>
@@ -143,5 +145,8 @@ struct TissueRow {
 TissueRow measure_tissue(double youngs_modulus, const SimulatedOptions& device);
 
 void write_map(const std::vector<Cell>& cells, const std::string& path);
+
+/// Writes stability.csv and stability.svg; returns how many figures disagree with their formula.
+int measure_haptics(const std::string& folder, std::vector<maps::Grid>& grids);
 
 }  // namespace stability

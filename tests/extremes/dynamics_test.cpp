@@ -186,6 +186,37 @@ TEST_CASE("a motion whose loads are no numbers stays where it is, and says so", 
   CHECK(d.step(0.01).taken);
 }
 
+TEST_CASE("energy from nowhere is said, and nothing else is", "[extreme][E6]") {
+  const auto run = [](const TimeScheme& scheme, double young, double nu, double h) {
+    const NeoHookean law{young, nu, 1000.0};
+    ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(box_tet4({0.1, 0.1, 0.1}, {2, 2, 2}, BoxSplit::six),
+                                                                   std::vector{law}),
+                                            Scene().fix("z0").gravity({9.81, 0.0, 0.0})),
+                       {.scheme = scheme});
+    double most_work = 0.0, most_energy = 0.0;
+    int said = 0;
+    for (int k = 0; k < 100; ++k) {
+      const StepReport report = d.step(h);
+      REQUIRE(report.taken);
+      most_work = std::max(most_work, std::abs(d.body().load.dot(d.displacement())));
+      most_energy = std::max(most_energy, d.kinetic_energy() + d.elastic_energy());
+      if (!report.calm) ++said;
+      if (said == 0) CHECK(most_energy <= 10.0 * most_work);
+    }
+    return std::pair(said, most_energy / most_work);
+  };
+  // Newmark at large strain, steps of a hundred periods.
+  const auto [said, energy] = run(TimeScheme::newmark(), 1e4, 0.4999, 0.0316);
+  CHECK(said > 0);
+  CHECK(energy > 10.0);
+  for (double h : {1e-6, 1e-3, 0.03, 1.0})
+    for (double young : {1e3, 1e5, 1e8}) {
+      INFO(h << " s, " << young << " Pa");
+      CHECK(run(TimeScheme::implicit_euler(), young, 0.45, h).first == 0);
+      if (h <= 1e-3) CHECK(run(TimeScheme::newmark(), young, 0.45, h).first == 0);
+    }
+}
+
 TEST_CASE("a motion that dies away leaves no denormal numbers", "[extreme][E8]") {
   SoftTissue tissue(box_tet4({0.02, 0.02, 0.02}, {1, 1, 1}), Scene().fix("z0").touch("z1"), jelly,
                     {.step = 0.05, .motion = {.mass_damping = 50.0}});

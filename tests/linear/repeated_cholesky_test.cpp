@@ -1,20 +1,12 @@
 // Factorising again and again into the same memory.
 #include <palpate/linear/repeated_cholesky.hpp>
 #include <palpate/testing/allocation_counter.hpp>
-#include <palpate/testing/random.hpp>
 
 #include "linear/sparse_cases.hpp"
 
 using namespace test;
 
 namespace {
-
-VectorX random_vector(Index n, std::uint64_t seed) {
-  testing::Random random(seed);
-  VectorX v(n);
-  for (Index i = 0; i < n; ++i) v[i] = random.uniform(-1.0, 1.0);
-  return v;
-}
 
 /// The entry (j, j) of a lower half.
 double& diagonal(SparseMatrix& lower, Index j) {

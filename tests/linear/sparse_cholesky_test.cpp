@@ -15,13 +15,6 @@ SparseCholesky factored(const SparseCase& c) {
   return {CholeskyAnalysis(c.lower, c.layout), c.lower, {}};
 }
 
-VectorX random_vector(Index n, std::uint64_t seed) {
-  testing::Random random(seed);
-  VectorX v(n);
-  for (Index i = 0; i < n; ++i) v[i] = random.uniform(-1.0, 1.0);
-  return v;
-}
-
 /// |b - K x| against what rounding allows.
 double residual(const SparseMatrix& lower, const VectorX& b, const VectorX& x) {
   const MatrixX k = full(lower);

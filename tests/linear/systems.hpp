@@ -18,6 +18,14 @@ inline SparseMatrix ball_stiffness(int refinement, const LinearElastic& m = live
   return free_matrix(assemble_stiffness<Tet4>(body, {}), conditions_of(body.mesh, Scene().fix(below)));
 }
 
+/// Entries between -1 and 1.
+inline VectorX random_vector(Index n, std::uint64_t seed) {
+  testing::Random random(seed);
+  VectorX v(n);
+  for (Index i = 0; i < n; ++i) v[i] = random.uniform(-1.0, 1.0);
+  return v;
+}
+
 /// A full symmetric matrix from its lower half.
 inline MatrixX full(const SparseMatrix& lower) {
   return MatrixX(MatrixX(lower).selfadjointView<Eigen::Lower>());

@@ -10,13 +10,8 @@ using namespace palpate;
 using Model = HapticFEModel<Tet4, LinearElastic>;
 Model make_model();
 
-void touch() {
 #ifdef PALPATE_GOOD_TWIN
-  Model liver = make_model();
-  HapticServo<Model> servo(liver, SphereTool{4e-3});
+static_assert(std::is_constructible_v<HapticServo<Model>, Model&, SphereTool>);
 #else
-  HapticServo<Model> servo(make_model(), SphereTool{4e-3});
+HapticServo<Model> servo(make_model(), SphereTool{4e-3});
 #endif
-  const ToolState tool;
-  servo.tick({&tool, 1});
-}

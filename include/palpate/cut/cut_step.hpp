@@ -10,7 +10,7 @@ namespace palpate::inline PALPATE_ABI {
 /// What one cut does to the compliance among kept dofs: C_ij - z_i . y_j for those that were, and columns of their own
 /// for those that came. Immutable; a tick reads it next to the compliance before the cut.
 struct CutStep {
-  std::shared_ptr<const MatrixX> compliance;  ///< before the cut, `old` x `old` [m/N]
+  std::shared_ptr<const MatrixX> compliance;  ///< before the cut; the first `old` rows and columns count [m/N]
   MatrixX z, y;                               ///< changed dofs x old
   MatrixX extra;                              ///< all x (all - old), exact
   Index old = 0, all = 0;                     ///< kept dofs before and after
@@ -26,7 +26,20 @@ struct CutStep {
     for (Index k = 0; k < rank; ++k) value -= a[k] * b[k];
     return value;
   }
+  /// sum_i += C_ij^2 for all i.
+  void add_squares(Index j, VectorX& sum) const noexcept {
+    if (j >= old) {
+      sum.array() += extra.col(j - old).array().square();
+    } else if (rank() == 0) {
+      sum.head(old).array() += compliance->col(j).head(old).array().square();
+      if (all > old) sum.tail(all - old).array() += extra.row(j).transpose().array().square();
+    } else {
+      for (Index i = 0; i < all; ++i) sum[i] += (*this)(i, j) * (*this)(i, j);
+    }
+  }
   Index rank() const noexcept { return z.rows(); }
+  /// The compliance before the cut.
+  auto before() const noexcept { return compliance->topLeftCorner(old, old); }
 };
 
 }  // namespace palpate::inline PALPATE_ABI

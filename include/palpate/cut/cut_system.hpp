@@ -4,6 +4,7 @@
 #include <palpate/cut/bordered_update.hpp>
 #include <palpate/cut/cut_plan.hpp>
 #include <palpate/cut/cut_step.hpp>
+#include <palpate/cut/matrix_pool.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -26,6 +27,7 @@ class CutSystem {
     std::iota(source_.begin(), source_.end(), NodeId{0});
     displacement_ = base_.displacement();
     none_ = static_cast<Index>(base_.kept().size());
+    pool_.prepare(none_, 3);  // one to write, and what a tick and the buffer between may hold
   }
 
   /// Takes in a cut: the step to be read from now on, until `fold`. Strong guarantee. Throws not_positive_definite when
@@ -47,10 +49,10 @@ class CutSystem {
   /// Makes the last step part of the compliance. O(kept^2 x changed).
   void fold() {
     if (!step_) return;
-    auto folded = std::make_shared<MatrixX>(step_->all, step_->all);
-    const Index old = step_->old, panel = 64;
-    for (Index j = 0; j < old;
-         j += panel) {  // a panel of the lower half, and its mirror image while it is in the cache
+    const auto folded = pool_.take(step_->all);
+    const Index old = step_->old, rest = step_->all - old, panel = 64;
+    // A panel of the lower half, and its mirror image while it is in the cache.
+    for (Index j = 0; j < old; j += panel) {
       const Index width = std::min(panel, old - j), height = old - j;
       auto below = folded->block(j, j, height, width);
       below = step_->compliance->block(j, j, height, width);
@@ -62,17 +64,17 @@ class CutSystem {
         folded->block(j, j + i, width, rows) = below.middleRows(i, rows).transpose();
       }
     }
-    folded->rightCols(step_->all - old) = step_->extra;
-    folded->bottomLeftCorner(step_->all - old, old) = step_->extra.topRows(old).transpose();
-    compliance_ = std::move(folded);
+    folded->block(0, old, step_->all, rest) = step_->extra;
+    folded->block(old, 0, rest, old) = step_->extra.topRows(old).transpose();
+    compliance_ = folded;
     step_.reset();
   }
   bool is_folded() const noexcept { return step_ == nullptr; }
-  /// Without any step; what a tick reads after `fold`.
+  /// Without any step; what a tick reads after `fold`. Folded systems only.
   std::shared_ptr<const CutStep> folded_step() const {
     auto step = std::make_shared<CutStep>();
     step->compliance = compliance_;
-    step->old = step->all = compliance_->rows();
+    step->old = step->all = kept();
     return step;
   }
 
@@ -111,7 +113,7 @@ class CutSystem {
     if (n == 0) return 0.0;
     MatrixX load(n, 1);
     for (Index i = 0; i < n; ++i) load(i, 0) = std::sin(1.0 + 3.7 * static_cast<double>(i));
-    const MatrixX x = *compliance_ * load;
+    const MatrixX x = compliance_->topLeftCorner(n, n) * load;
     MatrixX rest = load;
     changes_.subtract_product(x, rest, places());
     VectorX b = VectorX::Zero(base_.size()), answer;
@@ -143,7 +145,10 @@ class CutSystem {
     for (const NodeDof& d : plan.promoted) dofs.push_back(base_.place_of(d.node, d.component));
     units = base_.interior().reduce_units(dofs);
     const Index core = none_;
-    x.topRows(core).noalias() = *base_.compliance() * units.kept_load;
+    if (m > 16)
+      x.topRows(core).noalias() = *base_.compliance() * units.kept_load;
+    else  // one pass over a symmetric matrix; a general product would first copy all of it
+      for (Index j = 0; j < core; ++j) x.row(j).noalias() = base_.compliance()->col(j).transpose() * units.kept_load;
     const MatrixX onto = x.topRows(core);
     for (const auto& [first, before] : promoted_)
       x.middleRows(first, before.size()) = before.products(units) + before.kept_load.transpose() * onto;
@@ -161,7 +166,7 @@ class CutSystem {
     const std::vector<Index> rows = changes_.places(places());
     MatrixX part(n, static_cast<Index>(rows.size())), force(static_cast<Index>(rows.size()), m);
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      part.col(static_cast<Index>(k)) = compliance_->col(rows[k]);
+      part.col(static_cast<Index>(k)) = compliance_->col(rows[k]).head(n);
       force.row(static_cast<Index>(k)) = r.row(rows[k]);
     }
     x.topRows(n).noalias() += part * force;
@@ -180,7 +185,7 @@ class CutSystem {
       if (p >= n)
         z.row(k) = columns.col(p - n).transpose();
       else
-        z.row(k) << compliance_->col(p).transpose(), columns.row(p);
+        z.row(k) << compliance_->col(p).head(n).transpose(), columns.row(p);
     }
     MatrixX h(s, s);
     for (Index k = 0; k < s; ++k) h.col(k) = z.col(plan.changed[static_cast<std::size_t>(k)]);
@@ -233,7 +238,7 @@ class CutSystem {
     const VectorX head = force.head(old);
     u.head(old).setZero();
     for (Index j = 0; j < old; ++j)
-      if (head[j] != 0.0) u.head(old) += head[j] * step.compliance->col(j);
+      if (head[j] != 0.0) u.head(old) += head[j] * step.compliance->col(j).head(old);
     u.head(old).noalias() -= step.z.transpose() * VectorX(step.y * head);
     u.head(old).noalias() += step.extra.topRows(old) * force.tail(rest);
     u.tail(rest).noalias() =
@@ -274,8 +279,9 @@ class CutSystem {
 
   const CutPhysics<E>* physics_;
   CutBase<E> base_;
-  std::shared_ptr<const MatrixX> compliance_;
+  std::shared_ptr<const MatrixX> compliance_;  // among the first kept() dofs when there is no step
   std::shared_ptr<const CutStep> step_;
+  MatrixPool pool_;
   KeptDofs dofs_;
   std::vector<NodeId> source_;                            // per node the one of the factor that it is a copy of
   Index none_ = 0;                                        // kept by the factor

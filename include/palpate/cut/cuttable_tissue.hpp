@@ -83,7 +83,8 @@ class CuttableTissue {
     open_.fetch_add(1, std::memory_order_release);
   }
 
-  /// Does all that is ordered as one cut and makes it felt, then folds it in; true when there was something to do.
+  /// Does all that is ordered as one cut and makes it felt, then folds it in. When nothing is ordered, one of the
+  /// things that nobody waits for: measuring the error, bounds, nodes inside. True when there was something to do.
   bool work() {
     const std::scoped_lock lock(system_mutex_);
     const auto start = std::chrono::steady_clock::now();
@@ -93,7 +94,7 @@ class CuttableTissue {
     unsigned taken = 0;
     const bool renewed = take_renewal();
     const CutOrder order = take_orders(taken);
-    if (taken == 0) return renewed;
+    if (taken == 0) return check_next() || renewed;
     const TopologyChange<E> change = topology_.apply(order);
     if (!change.empty()) {
       ++report_.cuts;
@@ -102,8 +103,6 @@ class CuttableTissue {
       report_.felt_seconds = seconds();
       settle();
       report_.fold_seconds = seconds();
-    } else if (report_.unchecked > 0 && !has_orders()) {
-      check();
     }
     open_.fetch_sub(taken, std::memory_order_release);
     return true;
@@ -140,28 +139,28 @@ class CuttableTissue {
   }
   Status begin_tick() noexcept {
     const bool behind = open_.load(std::memory_order_acquire) != 0;
-    if (views_.update() && view().cut != revision_) {  // folding changes nothing that a session remembers
+    if (views_.update() && contact().cut != revision_) {  // folding changes nothing that a session remembers
       renewed_ = true;
-      revision_ = view().cut;
+      revision_ = contact().cut;
     }
-    Status status = view().status;
-    if (behind) status.set(StatusFlag::degraded_model);
+    Status status;
+    if (behind || contact().left_out) status.set(StatusFlag::degraded_model);
     return status;
   }
   /// Puts a session's contact on a new surface, where it goes on.
   void exchange_contacts(ContactProblem<>& problem) noexcept {
-    if (std::exchange(renewed_, false)) problem.move_to(view().problem, view().surface);
+    if (std::exchange(renewed_, false)) problem.move_to(contact().problem, contact().surface);
   }
   /// Refuses a session whose tools are not those of the options.
   void require_tools(double smallest_radius, const ContactParameters& contact) const {
-    if (smallest_radius != smallest_tool_ || contact.sample_spacing != contact_.sample_spacing)
+    if (smallest_radius != smallest_tool_ || contact.sample_spacing != parameters_.sample_spacing)
       raise(SetupErrorKind::bad_argument,
             "the session's smallest tool has a radius of " + number(smallest_radius) + " and a sample spacing of " +
                 number(contact.sample_spacing) + ", the tissue was made for " + number(smallest_tool_) + " and " +
-                number(contact_.sample_spacing),
+                number(parameters_.sample_spacing),
             "Give CuttableOptions the same smallest_tool and contact as the session");
   }
-  const ContactSurface& contact_surface() const noexcept { return view().surface; }
+  const ContactSurface& contact_surface() const noexcept { return contact().surface; }
   Status require_columns(std::span<const int>) noexcept { return {}; }
   Matrix3 compliance(int i, int j) const noexcept { return view().compliance(i, j); }
   std::uint64_t compliance_revision() const noexcept { return revision_; }
@@ -216,11 +215,14 @@ class CuttableTissue {
         world_(Eigen::Translation3d(prepared.origin)),
         elements_(topology_.mesh().element_count()),
         smallest_tool_(options.smallest_tool),
-        contact_(options.contact),
+        parameters_(options.contact),
         most_added_(options.most_added),
         tolerated_error_(options.tolerated_error) {
     report_.kept = system_.kept();
-    publish_folded();
+    make_contact();
+    if (contact_->left_out)
+      require_dense_points({contact_->surface.positions(), touchable_.triangles()}, smallest_tool_);
+    publish_exactly();
     views_.update();
   }
 
@@ -229,12 +231,12 @@ class CuttableTissue {
       raise(SetupErrorKind::index_out_of_range, "a cut names element " + std::to_string(e) + " or a face it has not");
   }
 
+  /// What is put off while cuts wait.
+  enum class Check { error, inside, bounds };
+  static constexpr std::size_t checks = 3;
   static constexpr int most_unchecked = 8;
 
-  bool has_orders() const {
-    const std::scoped_lock lock(order_mutex_);
-    return !orders_.empty() || !sweeps_.empty() || !strokes_.empty();
-  }
+  bool& is_due(Check check) noexcept { return due_[static_cast<std::size_t>(check)]; }
   void measure() {
     report_.error = system_.measured_error();
     report_.unchecked = 0;
@@ -264,7 +266,7 @@ class CuttableTissue {
       sweeps.swap(sweeps_);
     }
     for (BladeSweep stroke; strokes_.pop(stroke); ++taken) sweeps.push_back(stroke);
-    if (!sweeps.empty() && report_.unchecked > 0) system_.recover();
+    if (!sweeps.empty() && std::exchange(is_due(Check::inside), false)) system_.recover();
     for (const BladeSweep& s : sweeps) {
       const auto local = [&](const Vector3& x) { return Vector3(x - origin_); };
       const auto faces = swept_faces(topology_, {local(s.a0), local(s.b0), local(s.a1), local(s.b1)},
@@ -281,50 +283,57 @@ class CuttableTissue {
       const auto step = system_.update(topology_, change);
       report_.rank = step->rank();
       report_.smallest = step->smallest;
-      auto made = make_view(step);
-      made->bound_by(bound_);
-      bound_ = made->bound;
+      make_contact();
+      CutView made{contact_, step};
+      made.bound_by(bound_);
       publish(std::move(made));
     } catch (const SetupError&) {
       renew();
     }
   }
-  /// Folds; the check is put off, a few times, while another cut is ordered already.
+  /// Folds. What is put off comes in turn from the eighth cut on, however many wait.
   void settle() {
     if (report_.failed) return;
     system_.fold();
     report_.kept = system_.kept();
-    if (++report_.unchecked < most_unchecked && has_orders()) {
-      auto made = make_view(system_.folded_step());
-      made->bound_as(bound_);
-      publish(std::move(made));
-    } else {
-      check();
-    }
+    CutView made{contact_, system_.folded_step()};
+    made.bound_as(bound_);
+    publish(std::move(made));
+    due_.fill(true);
+    if (++report_.unchecked >= most_unchecked) check_next();
   }
-  /// What nobody waits for: bounds, measures, renews, and brings nodes inside to where they are.
-  void check() {
-    publish_folded();
+  /// Does the next of what is due; false when nothing is.
+  bool check_next() {
+    for (std::size_t k = 0; k < checks; ++k) {
+      last_check_ = (last_check_ + 1) % checks;
+      if (!std::exchange(due_[last_check_], false)) continue;
+      switch (static_cast<Check>(last_check_)) {
+        case Check::error:
+          check_error();
+          break;
+        case Check::inside:
+          system_.recover();
+          break;
+        case Check::bounds:
+          publish_exactly();
+          break;
+      }
+      return true;
+    }
+    return false;
+  }
+  void check_error() {
     measure();
     if (!(report_.error <= tolerated_error_))
       renew();
     else if (system_.added() > most_added_ && !renewal_)
       renewal_ = std::make_unique<CutRenewal<E>>(topology_, physics_, kept_nodes(), limits_);
-    if (!report_.failed) system_.recover();
-    report_.kept = system_.kept();
   }
   /// Takes over a new factor when one is ready, with what was cut since it was begun.
   bool take_renewal() {
     if (!renewal_ || !renewal_->is_done()) return false;
     try {
-      if (auto made = renewal_->take(topology_)) {
-        system_ = std::move(*made);
-        ++report_.renewals;
-        measure();
-        system_.recover();
-        ++cut_;
-        publish_folded();
-      }
+      if (auto made = renewal_->take(topology_)) take_over(std::move(*made));
     } catch (const SetupError&) {  // the old one goes on
     }
     renewal_.reset();
@@ -333,15 +342,23 @@ class CuttableTissue {
   void renew() {
     renewal_.reset();
     try {
-      system_ = CutSystem<E>(topology_, physics_, kept_nodes(), limits_);
-      ++report_.renewals;
-      measure();
-      ++cut_;
-      publish_folded();
+      take_over(CutSystem<E>(topology_, physics_, kept_nodes(), limits_));
     } catch (const SetupError&) {
       report_.failed = true;
+      due_.fill(false);
       open_.fetch_add(1, std::memory_order_release);  // never closed: ticks go on saying degraded_model
     }
+  }
+  void take_over(CutSystem<E>&& fresh) {
+    system_ = std::move(fresh);
+    ++report_.renewals;
+    ++cut_;
+    report_.kept = system_.kept();
+    measure();
+    system_.recover();
+    make_contact();
+    publish_exactly();
+    due_.fill(false);
   }
 
   Vector3 position(NodeId node) const noexcept {
@@ -350,25 +367,24 @@ class CuttableTissue {
     if (dof < system_.displacement().size()) x += system_.displacement().template segment<3>(dof);
     return x;
   }
-  std::unique_ptr<CutView> make_view(std::shared_ptr<const CutStep> step) const {
+  void make_contact() {
     std::vector<Vector3> positions;
     for (const NodeId node : touchable_.nodes()) positions.push_back(position(node));
-    auto made = std::make_unique<CutView>(system_, touchable_, std::move(positions), std::move(step), smallest_tool_,
-                                          contact_);
-    made->cut = cut_;
-    return made;
+    contact_ =
+        std::make_shared<CutContact>(system_, touchable_, std::move(positions), smallest_tool_, parameters_, cut_);
   }
-  void publish_folded() {
-    auto made = make_view(system_.folded_step());
-    made->bound_exactly();
-    bound_ = made->bound;
+  void publish_exactly() {
+    CutView made{contact_, system_.folded_step()};
+    made.bound_exactly();
     publish(std::move(made));
   }
-  void publish(std::unique_ptr<CutView> made) {
-    views_.back() = std::move(made);  // frees a view that no tick can see any more
+  void publish(CutView&& made) {
+    bound_ = made.bound;
+    views_.back() = std::move(made);  // frees what no tick can see any more
     views_.publish();
   }
-  CutView& view() const noexcept { return *views_.front(); }
+  const CutView& view() const noexcept { return views_.front(); }
+  CutContact& contact() const noexcept { return *view().contact; }
 
   CutPhysics<E> physics_;
   CutTopology<E> topology_;
@@ -380,17 +396,20 @@ class CuttableTissue {
   Eigen::Isometry3d world_;
   Index elements_;
   double smallest_tool_;
-  ContactParameters contact_;
+  ContactParameters parameters_;
   Index most_added_;
   double tolerated_error_;
   CutReport report_;
-  std::vector<double> bound_;  // of the last view
+  std::shared_ptr<CutContact> contact_;  // of the last cut
+  std::vector<double> bound_;            // of the last view
+  std::array<bool, checks> due_{};
+  std::size_t last_check_ = 0;
   mutable std::mutex order_mutex_, system_mutex_;
   std::vector<CutOrder> orders_;
   std::vector<BladeSweep> sweeps_;
   SpscRing<BladeSweep, 256> strokes_;
   std::atomic<unsigned> open_{0};
-  TripleBuffer<std::unique_ptr<CutView>> views_;
+  TripleBuffer<CutView> views_;
   std::uint64_t cut_ = 0, revision_ = 0;  // made last; seen last by a tick
   bool renewed_ = false;
   std::unique_ptr<CutRenewal<E>> renewal_;  // last: its thread refers to the physics

@@ -82,18 +82,21 @@ class HapticFEModel {
   /// guarantee.
   void set_conditions(const Scene& scene) {
     const Scene mapped = scene.mapped(node_map_);
-    statics_->set_conditions(mapped, pose_.linear().transpose() * scene.gravity());
+    SetupReport report = report_;
+    statics_->set_conditions(mapped, pose_.linear().transpose() * scene.gravity(), reporting_to(report));
     gravity_ = scene.gravity();
-    accept_displacement();
+    accept_displacement(report);
   }
-  /// Gravity [m/s^2] in the world's frame.
+  /// Gravity [m/s^2] in the world's frame. Strong guarantee.
   void set_gravity(const Vector3& gravity) {
     if (!gravity.allFinite()) raise(SetupErrorKind::non_finite, "gravity is not finite");
-    statics_->set_gravity(pose_.linear().transpose() * gravity);
+    SetupReport report = report_;
+    statics_->set_gravity(pose_.linear().transpose() * gravity, reporting_to(report));
     gravity_ = gravity;
-    accept_displacement();
+    accept_displacement(report);
   }
-  /// Where the organ lies in the world; turns gravity with it. Throws bad_argument unless it is a rigid motion.
+  /// Where the organ lies in the world; turns gravity with it. Throws bad_argument unless it is a rigid motion. Strong
+  /// guarantee.
   void set_pose(const Eigen::Isometry3d& pose) {
     const bool rigid = pose.matrix().allFinite() &&
                        (pose.linear().transpose() * pose.linear() - Matrix3::Identity()).norm() < 1e-9 &&
@@ -101,18 +104,18 @@ class HapticFEModel {
     if (!rigid)
       raise(SetupErrorKind::bad_argument, "the pose is not a rigid motion",
             "Give a proper rotation and a finite translation");
-    if (!gravity_.isZero(0.0)) statics_->set_gravity(pose.linear().transpose() * gravity_);
-    pose_ = pose;
-    world_ = pose_ * Eigen::Translation3d(origin_);
-    accept_displacement();
+    SetupReport report = report_;
+    if (!gravity_.isZero(0.0)) statics_->set_gravity(pose.linear().transpose() * gravity_, reporting_to(report));
+    place(pose);
+    accept_displacement(report);
   }
-  /// Back to the scene and pose of construction.
+  /// Back to the scene and pose of construction. Strong guarantee.
   void reset() {
-    pose_.setIdentity();
-    world_ = pose_ * Eigen::Translation3d(origin_);
-    statics_->set_conditions(scene_, scene_.gravity());
+    SetupReport report = report_;
+    statics_->set_conditions(scene_, scene_.gravity(), reporting_to(report));
+    place(Eigen::Isometry3d::Identity());
     gravity_ = scene_.gravity();
-    accept_displacement();
+    accept_displacement(report);
   }
 
   // TissueModel
@@ -156,9 +159,8 @@ class HapticFEModel {
     seen_ = resolve_seen(body.mesh, boundary, scene_);
     statics_ = std::make_unique<Statics<E, Solver>>(std::move(body), scene_, std::move(boundary), touchable_, limits_,
                                                     options.cache_file, report_);
-    statics_->set_conditions(scene_, scene_.gravity());
+    statics_->set_conditions(scene_, scene_.gravity(), reporting_to(report_));
     gravity_ = scene_.gravity();
-    report_displacement(statics_->body().mesh.positions, displacement(), report_);
     prepare_contact(touchable.triangles, options);
   }
 
@@ -216,9 +218,17 @@ class HapticFEModel {
   Vector3 deformed(NodeId node) const noexcept {
     return mesh().position(node) + displacement().template segment<3>(3 * Index{node});
   }
-  void accept_displacement() {
+  /// For changes of the loads: what is to be said of their displacement is said before they are accepted.
+  auto reporting_to(SetupReport& report) const {
+    return [this, &report](const VectorX& u) { report_displacement(statics_->body().mesh.positions, u, report); };
+  }
+  void accept_displacement(SetupReport& report) noexcept {
+    std::swap(report_, report);
     move_surface();
-    report_displacement(statics_->body().mesh.positions, displacement(), report_);
+  }
+  void place(const Eigen::Isometry3d& pose) noexcept {
+    pose_ = pose;
+    world_ = pose_ * Eigen::Translation3d(origin_);
   }
   void move_surface() noexcept {
     for (std::size_t v = 0; v < touchable_.size(); ++v) moved_[v] = deformed(touchable_[v]);

@@ -39,8 +39,8 @@ struct SetupReport {
   std::vector<std::pair<SetupFlag, std::string>> remarks;  ///< a sentence per flag
 
   void set(SetupFlag flag, std::string remark) {
-    flags |= static_cast<std::uint32_t>(flag);
     remarks.emplace_back(flag, std::move(remark));
+    flags |= static_cast<std::uint32_t>(flag);
   }
   void clear(SetupFlag flag) {
     flags &= ~static_cast<std::uint32_t>(flag);

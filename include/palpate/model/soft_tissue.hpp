@@ -24,7 +24,7 @@ struct TissueMotion<ImplicitDynamics> {
     return u;
   }
   static bool close(const StepReport& r) noexcept {
-    return r.taken && (r.newton.converged || r.newton.relative_residual <= 0.05);
+    return r.taken && r.calm && (r.newton.converged || r.newton.relative_residual <= 0.05);
   }
 };
 

@@ -47,9 +47,10 @@ class Statics {
   Statics(const Statics&) = delete;
   Statics& operator=(const Statics&) = delete;
 
-  /// Loads, prescribed values and initial strains of a scene; `gravity` [m/s^2] in the body's frame. Solves once.
-  /// Strong guarantee.
-  void set_conditions(const Scene& scene, const Vector3& gravity) {
+  /// Loads, prescribed values and initial strains of a scene; `gravity` [m/s^2] in the body's frame. Solves once, and
+  /// shows the new displacement to `look`, which may throw, before anything is changed. Strong guarantee.
+  template <class Look>
+  void set_conditions(const Scene& scene, const Vector3& gravity, Look look) {
     EssentialConditions conditions = resolve_essential(body_.mesh, boundary_, scene);
     if (conditions.constrained != conditions_.constrained)
       raise(SetupErrorKind::unsupported,
@@ -59,6 +60,7 @@ class Statics {
     VectorX strain_load = initial_strain_load(body_, strains);
     VectorX applied = applied_load(body_, boundary_, scene);
     Loaded loaded = solve_loads(applied, strain_load, conditions.prescribed, gravity);
+    look(std::as_const(loaded.displacement));
     conditions_.prescribed.swap(conditions.prescribed);
     body_.initial_strain.swap(strains);
     strain_load_.swap(strain_load);
@@ -66,10 +68,12 @@ class Statics {
     accept(loaded);
   }
 
-  /// Changes gravity [m/s^2], body frame, and solves once. Throws bad_density when some region has none. Strong
-  /// guarantee.
-  void set_gravity(const Vector3& gravity) {
+  /// Changes gravity [m/s^2], body frame, and solves once; `look` as above. Throws bad_density when some region has
+  /// none. Strong guarantee.
+  template <class Look>
+  void set_gravity(const Vector3& gravity, Look look) {
     Loaded loaded = solve_loads(applied_, strain_load_, conditions_.prescribed, gravity);
+    look(std::as_const(loaded.displacement));
     accept(loaded);
   }
 

@@ -1,5 +1,5 @@
-// Counts the heap calls of a thread, to show that a tick makes none. Eigen calls malloc, so counting operator new is
-// not enough: malloc and its relatives themselves are replaced.
+// Counts the heap calls of a thread, to show that a tick makes none, and lets one fail, to show what a set-up does then.
+// Eigen calls malloc, so counting operator new is not enough: malloc and its relatives themselves are replaced.
 //
 // In exactly one source file of a test program, and nowhere in a library:
 //   #define PALPATE_COUNT_ALLOCATIONS
@@ -16,19 +16,37 @@
 
 namespace palpate::inline PALPATE_ABI::testing {
 
-/// Heap calls of this thread since it started.
+/// Heap calls of this thread since it started. A realloc of a block is one of each.
 struct HeapCalls {
   std::uint64_t allocations = 0;
   std::uint64_t frees = 0;
+  std::uint64_t failed = 0;  ///< allocations that were made to fail
+};
+
+/// What is to fail in this thread: the allocation with this number, counted as HeapCalls does; with `and_later` all
+/// after it, too.
+struct HeapFailure {
+  std::uint64_t number = 0;
+  bool armed = false, and_later = false;
 };
 
 namespace detail {
 inline constinit thread_local HeapCalls heap_calls{};
+inline constinit thread_local HeapFailure heap_failure{};
+
+/// Counts an allocation; false when it is one that is to fail.
+inline bool heap_allows() noexcept {
+  const std::uint64_t number = heap_calls.allocations++;
+  const volatile HeapFailure& f = heap_failure;
+  if (!f.armed || number < f.number || (number > f.number && !f.and_later)) return true;
+  ++heap_calls.failed;
+  return false;
+}
 
 /// Read as volatile: compilers know malloc and conclude that a call of it cannot change a variable of ours.
 inline HeapCalls heap_calls_now() noexcept {
   const volatile HeapCalls& now = heap_calls;
-  return {now.allocations, now.frees};
+  return {now.allocations, now.frees, now.failed};
 }
 }  // namespace detail
 
@@ -46,9 +64,34 @@ class AllocationScope {
  public:
   std::uint64_t allocations() const noexcept { return detail::heap_calls_now().allocations - start_.allocations; }
   std::uint64_t frees() const noexcept { return detail::heap_calls_now().frees - start_.frees; }
+  /// Blocks taken and not given back; below zero when blocks from before were.
+  std::int64_t live() const noexcept {
+    const HeapCalls now = detail::heap_calls_now();
+    return static_cast<std::int64_t>(now.allocations - start_.allocations) -
+           static_cast<std::int64_t>(now.frees - start_.frees) - static_cast<std::int64_t>(now.failed - start_.failed);
+  }
 
  private:
   HeapCalls start_ = detail::heap_calls_now();
+};
+
+/// Lets the n-th allocation of this thread from now on fail (n counts from zero), and all later ones if so wanted, until
+/// it goes out of scope:
+///   { FailingHeap failing(n); try { set_up(); } catch (const std::bad_alloc&) {} }
+class FailingHeap {
+ public:
+  explicit FailingHeap(std::uint64_t n, bool and_later = false) noexcept {
+    volatile HeapFailure& failure = detail::heap_failure;  // as for heap_calls_now
+    failure.number = detail::heap_calls_now().allocations + n;
+    failure.and_later = and_later;
+    failure.armed = true;
+  }
+  FailingHeap(const FailingHeap&) = delete;
+  FailingHeap& operator=(const FailingHeap&) = delete;
+  ~FailingHeap() {
+    volatile HeapFailure& failure = detail::heap_failure;
+    failure.armed = false;
+  }
 };
 
 }  // namespace palpate::inline PALPATE_ABI::testing
@@ -73,20 +116,18 @@ void* __libc_memalign(std::size_t, std::size_t);
 void __libc_free(void*);
 
 void* malloc(std::size_t size) noexcept {
-  ++palpate::testing::detail::heap_calls.allocations;
-  return __libc_malloc(size);
+  return palpate::testing::detail::heap_allows() ? __libc_malloc(size) : nullptr;
 }
 void* calloc(std::size_t count, std::size_t size) noexcept {
-  ++palpate::testing::detail::heap_calls.allocations;
-  return __libc_calloc(count, size);
+  return palpate::testing::detail::heap_allows() ? __libc_calloc(count, size) : nullptr;
 }
 void* realloc(void* memory, std::size_t size) noexcept {
-  ++palpate::testing::detail::heap_calls.allocations;
+  if (!palpate::testing::detail::heap_allows()) return nullptr;
+  if (memory != nullptr) ++palpate::testing::detail::heap_calls.frees;
   return __libc_realloc(memory, size);
 }
 void* memalign(std::size_t alignment, std::size_t size) noexcept {
-  ++palpate::testing::detail::heap_calls.allocations;
-  return __libc_memalign(alignment, size);
+  return palpate::testing::detail::heap_allows() ? __libc_memalign(alignment, size) : nullptr;
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
   return memalign(alignment, size);

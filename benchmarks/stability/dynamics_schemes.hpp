@@ -1,0 +1,28 @@
+// Schemes that are compiled apart, and the bodies they move.
+#pragma once
+
+#include "dynamics.hpp"
+
+#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/material/corotational.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/material/neo_hookean.hpp>
+
+namespace maps {
+
+inline HyperelasticBody<Tet4, NeoHookean> neo_hookean(const DynamicProblem& p) {
+  return make_hyperelastic_body<Tet4, NeoHookean>(p.mesh, std::vector<NeoHookean>{{p.young, p.nu, p.density}});
+}
+inline HyperelasticBody<Tet4, Corotational<LinearElastic>> corotational(const DynamicProblem& p) {
+  return make_hyperelastic_body<Tet4, Corotational<LinearElastic>>(
+      p.mesh, std::vector<Corotational<LinearElastic>>{{{p.young, p.nu, p.density}}});
+}
+
+Moved by_central_difference(const DynamicProblem& problem, double dt);
+Moved by_semi_implicit_euler(const DynamicProblem& problem, double dt);
+Moved by_implicit_euler(const DynamicProblem& problem, double dt);
+Moved by_newmark(const DynamicProblem& problem, double dt);
+Moved by_corotated_euler(const DynamicProblem& problem, double dt);
+Moved by_corotated_newmark(const DynamicProblem& problem, double dt);
+
+}  // namespace maps

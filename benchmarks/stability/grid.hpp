@@ -1,0 +1,34 @@
+// Panels of cells as SVG. Colours are classes, so that the page gives them for light and for dark.
+#pragma once
+
+#include "verdict.hpp"
+
+#include <string>
+#include <vector>
+
+namespace maps {
+
+struct Square {
+  Verdict verdict = Verdict::ok;
+  int shade = 0;    ///< 0 pale to 7 strong
+  std::string tip;  ///< shown by the browser
+};
+
+/// A panel: squares row by row, the first row at the bottom.
+struct Grid {
+  std::string title;
+  std::vector<std::string> columns, rows;
+  std::vector<Square> squares;
+  std::vector<std::array<double, 2>> line{};  ///< in columns and rows, 0 at the middle of the first
+};
+
+/// Panels side by side, as many per row as asked for, with names of both axes.
+std::string svg_of(const std::vector<Grid>& grids, int per_row, const std::string& x_name, const std::string& y_name);
+
+/// 0 for an error below 1e-14, then one more for every two powers of ten, 7 from 1e-2 on.
+int shade_of_error(double error);
+
+/// For text between tags and in titles.
+std::string escaped(const std::string& text);
+
+}  // namespace maps

@@ -1,0 +1,12 @@
+// Policies that are compiled apart.
+#pragma once
+
+#include "statics_answer.hpp"
+
+namespace maps {
+
+Answer by_condensed(const StaticProblem& problem);
+Answer by_condensed_float(const StaticProblem& problem);
+Answer by_condensed_gradients(const StaticProblem& problem);
+
+}  // namespace maps

@@ -1,0 +1,41 @@
+// Storage for matrices that are made again with every cut.
+#pragma once
+
+#include <palpate/core/types.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// Square matrices that nobody reads any more are used again, with room to grow: the pages of a new one cost as much as
+/// what is written on them. Not for several threads; who reads a matrix in another thread must hand its pointer back to
+/// the one that takes.
+class MatrixPool {
+ public:
+  /// Makes `count` matrices ready, their pages touched.
+  void prepare(Index size, int count) {
+    for (int k = 0; k < count; ++k) {
+      all_.push_back(make(size));
+      all_.back()->setZero();
+    }
+  }
+  /// At least size x size; what is in it is left over. Allocates when all are in use or too small.
+  std::shared_ptr<MatrixX> take(Index size) {
+    for (const auto& m : all_)
+      if (m.use_count() == 1 && m->rows() >= size) return m;
+    std::erase_if(all_, [](const auto& m) { return m.use_count() == 1; });
+    all_.push_back(make(size));
+    return all_.back();
+  }
+
+ private:
+  static std::shared_ptr<MatrixX> make(Index size) {
+    const Index room = size + size / 8;
+    return std::make_shared<MatrixX>(room, room);
+  }
+
+  std::vector<std::shared_ptr<MatrixX>> all_;
+};
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,35 @@
+// What test programs report: Catch2's XML (v2.13 and v3) and ctest's JUnit.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace reliability {
+
+struct TestResult {
+  std::string program, name;
+  std::vector<std::string> tags;
+  bool passed = false;
+};
+
+/// All test cases of a report. One without a result, where the program ended, has failed. `ended` is false when the
+/// report itself has no end: whatever came after was not run.
+std::vector<TestResult> read_catch(const std::string& xml, const std::string& program, bool& ended);
+
+/// The same of ctest. The tag is the second part of a name such as extreme.E9.flags. What was not run is left out.
+std::vector<TestResult> read_junit(const std::string& xml);
+
+std::string read_text(const std::filesystem::path& path);  ///< empty when there is none
+
+/// Of one id.
+struct Standing {
+  int passed = 0, failed = 0;
+  std::vector<std::string> failures;  ///< program: name
+  const char* word() const { return failed > 0 ? "FAILED" : passed > 0 ? "passed" : "absent"; }
+};
+/// Of every id of the catalogue, absent ones too.
+std::map<std::string, Standing> standings_of(const std::vector<TestResult>& results);
+
+}  // namespace reliability
