@@ -23,18 +23,24 @@ class ExplicitContender : public Contender {
         mass_(lumped_mass(body_.rest)),
         motion_(make(drag)),
         nodes_(bench.scene.mesh.find_group(near_group)->nodes),
-        forces_(bench.scene.balls.size()) {
+        forces_(bench.scene.balls.size()),
+        now_(forces_) {
     // A millisecond in equal steps of at most 0.7 of the limit: pressed elements allow less than elements at rest.
     steps_ = static_cast<int>(std::ceil(1e-3 / (0.7 * motion_.limit())));
   }
 
+  /// The balls go evenly through a tick: a jump in its first step would be a blow.
   std::span<const Vector3> tick(std::span<const Vector3> centres) override {
+    if (before_.empty()) before_.assign(centres.begin(), centres.end());
     std::ranges::fill(forces_, Vector3::Zero());
     const double dt = 1e-3 / steps_;
     for (int s = 1; s <= steps_; ++s) {
-      push(centres, dt);
+      for (std::size_t b = 0; b < now_.size(); ++b)
+        now_[b] = before_[b] + static_cast<double>(s) / steps_ * (centres[b] - before_[b]);
+      push(now_, dt);
       status_ |= motion_.step(dt);
     }
+    before_.assign(centres.begin(), centres.end());
     for (Vector3& f : forces_) f /= steps_;
     return forces_;
   }
@@ -96,7 +102,7 @@ class ExplicitContender : public Contender {
   VectorX mass_;
   ExplicitMotion<Forces, Scheme> motion_;
   std::vector<NodeId> nodes_;
-  std::vector<Vector3> forces_;
+  std::vector<Vector3> forces_, now_, before_;  // of the balls; where they are in a step, where they were last
   int steps_ = 1;
   Status status_;
 };

@@ -39,8 +39,11 @@ struct Motion {
 /// the device with the last force meanwhile, and updates come when their thread would have them done.
 class Session {
  public:
-  Session(const Bench& bench, Contender& contender)
-      : bench_(bench), contender_(contender), clock_cost_(palpate::detail::measured_clock_cost()) {
+  Session(const Bench& bench, Contender& contender, bool has_inertia)
+      : bench_(bench),
+        contender_(contender),
+        has_inertia_(has_inertia),
+        clock_cost_(palpate::detail::measured_clock_cost()) {
     force_.assign(bench.scene.balls.size(), Vector3::Zero());
   }
 
@@ -65,7 +68,7 @@ class Session {
       std::span<const Vector3> answer;
       const double spent = timed([&] { answer = contender_.tick(centres); });
       if (judge) ticks.push_back(spent);
-      next_tick_ = time_ + spent;
+      next_tick_ = judge ? time_ + spent : time_;  // at rest nobody waits
       pending_.assign(answer.begin(), answer.end());
       for (const Vector3& f : pending_) finite = finite && f.allFinite();
     }
@@ -108,6 +111,7 @@ class Session {
  private:
   /// Milliseconds over which a force at rest must stand still.
   int window() const noexcept {
+    if (!has_inertia_) return 4;
     const double u = contender_.update_period();
     return std::max(40, static_cast<int>(std::ceil(3.0 * u / period)));
   }
@@ -120,6 +124,7 @@ class Session {
 
   const Bench& bench_;
   Contender& contender_;
+  bool has_inertia_;
   double clock_cost_;
   double time_ = 0.0, next_tick_ = 0.0, next_update_ = 0.0;
   std::vector<Vector3> force_, pending_;
@@ -153,12 +158,14 @@ HoldErrors judge_hold(const Bench& bench, const VectorX& u, const VectorX& right
 void judge(const Bench& bench, Contender& contender, Row& row) {
   const PressScene& scene = bench.scene;
   const Motion motion{scene.small, scene.large, scene.speed};
-  Session session(bench, contender);
+  const bool has_inertia =
+      row.family == "moving" || row.family == "explicit" || row.element == "mass-spring" || row.element == "XPBD";
+  Session session(bench, contender, has_inertia);
   double time = 0.0;
   const auto follow = [&](double until) {
     for (; time < until; time += period) session.advance(motion.depth(time), true);
   };
-  const double patience = bench.full ? 120.0 : 10.0;  // [s] of work per hold
+  const double patience = bench.full ? 120.0 : 20.0;  // [s] of work per hold
   std::string unsettled;
   const auto hold = [&](double depth, const VectorX& right, double volume, double& force, double& moved,
                         double& change) {
