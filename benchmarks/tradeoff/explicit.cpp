@@ -81,17 +81,19 @@ class ExplicitContender : public Contender {
     return ExplicitMotion<Forces, Scheme>(Forces(body_), mass_, conditions_.free_dofs,
                                           element_frequency_bound(body_.rest), options);
   }
-  /// A quarter of the stiffness that a step could bear pushes every node out of the balls.
+  /// Half of the stiffness that a step could bear pushes every node out of the balls: by where it will be after the
+  /// step, as the load of a step acts at its end. Forces that lag behind would feed a motion.
   void push(std::span<const Vector3> centres, double dt) {
     motion_.load().setZero();
     for (const NodeId node : nodes_)
       for (std::size_t b = 0; b < centres.size(); ++b) {
-        const Vector3 off = bench_.scene.mesh.position(node) +
-                            motion_.state().displacement.template segment<3>(3 * Index{node}) - centres[b];
+        const Index dof = 3 * Index{node};
+        const Vector3 off = bench_.scene.mesh.position(node) + motion_.state().displacement.template segment<3>(dof) +
+                            dt * motion_.state().velocity.template segment<3>(dof) - centres[b];
         const double depth = bench_.scene.radius - off.norm();
         if (!(depth > 0.0)) continue;
-        const Vector3 force = 0.25 * mass_[node] / (dt * dt) * depth * off.normalized();
-        motion_.load().template segment<3>(3 * Index{node}) += force;
+        const Vector3 force = 0.5 * mass_[node] / (dt * dt) * depth * off.normalized();
+        motion_.load().template segment<3>(dof) += force;
         forces_[b] -= force;
       }
   }
