@@ -165,7 +165,7 @@ void judge(const Bench& bench, Contender& contender, Row& row) {
   const auto follow = [&](double until) {
     for (; time < until; time += period) session.advance(motion.depth(time), true);
   };
-  const double patience = bench.full ? 120.0 : 20.0;  // [s] of work per hold
+  const double patience = bench.full ? 120.0 : 12.0;  // [s] of work per hold
   std::string unsettled;
   const auto hold = [&](double depth, const VectorX& right, double volume, double& force, double& moved,
                         double& change) {

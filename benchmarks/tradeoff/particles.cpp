@@ -317,7 +317,10 @@ void add_particles(const Bench& bench, std::vector<Entry>& entries) {
       double force = 0.0;
       for (int i = 0; i < 600; ++i)
         force = trial.tick(scene.centres(std::min(1.0, i / 100.0) * scene.small)).front().norm();
-      factor *= bench.reference.force(0, scene.small).norm() / force;
+      const double wanted = bench.reference.force(0, scene.small).norm();
+      if (!(force > 0.01 * wanted))
+        raise(SetupErrorKind::not_converged, "springs cannot be tuned: the ball at the small depth meets no node");
+      factor *= wanted / force;
     }
     MassSpring body(bench, factor);
     const int steps = body.steps();
