@@ -3,6 +3,7 @@
 
 #include <palpate/contact/contact_rows.hpp>
 #include <palpate/contact/grasp.hpp>
+#include <palpate/contact/proxy_motion.hpp>
 
 namespace palpate::inline PALPATE_ABI {
 
@@ -39,21 +40,18 @@ class ContactProblem {
     rounds_left_ = maximum_rounds;
     rows_.begin_tick(tissue.compliance_revision());
     displacement_.begin_tick(tissue.compliance_revision());
-    slide(tools);
+    ProxyMotion::slide(tools);
     candidates_.begin_tick(tissue.contact_surface(), tools);
     candidates_.look_round(tissue, tools, displacement_);
     double change = 0.0, before = 0.0;
     for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
-      for (std::size_t t = 0; t < tools.size(); ++t) {
-        start_force_[t] = tools[t].force;
-        start_torque_[t] = tools[t].torque;
-      }
+      proxies_.begin(tools);
       status |= candidates_.update(tissue, tools, displacement_);
       if (iteration == 0) grasp(tissue, tools);
       if (candidates_.is_new()) foresee(tissue);
       status |= solve_linearised(tissue, tools, iteration);
       follow(tools);
-      change = relative_change(tools);
+      change = proxies_.relative_change(tools);
       // Each step is smaller than the last by about the same ratio (the curvature of the ball is left out of the
       // linearisation), so that the steps still to come sum to this. The first step is the hand's, so that the second
       // says nothing about the ratio yet.
@@ -70,8 +68,8 @@ class ContactProblem {
 
   /// Goes on on the same body's surface after a cut, where vertices keep their numbers and there may be more. Forces,
   /// friction and grasps stay on the points that are still there, so that the next tick changes them by as much as the
-  /// cut does. `fresh` was made for that surface with the same parameters; its workspaces are exchanged for the old ones.
-  /// No allocation.
+  /// cut does. `fresh` was made for that surface with the same parameters; its workspaces are exchanged for the old
+  /// ones. No allocation.
   void move_to(ContactProblem& fresh, const ContactSurface& surface) noexcept {
     displacement_.move_to(fresh.displacement_);
     candidates_.move_to(fresh.candidates_, surface);
@@ -105,17 +103,7 @@ class ContactProblem {
   bool is_holding(std::size_t tool) const noexcept { return grasps_[tool].sample >= 0; }
 
  private:
-  using Tools = std::span<ContactTool>;
-
-  /// Takes the proxies along with their devices, across the contact force: from there the first linearisation is nearly
-  /// right for a ball that slides.
-  static void slide(Tools tools) noexcept {
-    for (ContactTool& tool : tools) {
-      const double force = tool.force.squaredNorm();
-      if (!tool.active || force == 0.0 || tool.motion.norm() > 0.1 * tool.radius) continue;
-      tool.proxy += tool.motion - (tool.force.dot(tool.motion) / force) * tool.force;
-    }
-  }
+  using Tools = ProxyMotion::Tools;
 
   /// Takes hold of the nearest point for every tool that has just begun to grasp, and lets go.
   template <TissueModel Tissue>
@@ -241,12 +229,12 @@ class ContactProblem {
   template <TissueModel Tissue>
   bool add_violated(const Tissue& tissue, Tools tools, int& built) noexcept {
     violated_count_ = 0;
-    look_ahead(tools);
+    proxies_.look_ahead(tools, floor_);
     const double allowed = built > 0 ? violation * rows_.deepest_push() : 0.0;
     for (Candidate& c : candidates_.items()) {
       if (c.row >= 0 || is_held(c)) continue;
       const ContactTool& tool = tools[at(c.tool)];
-      const Ahead& ahead = ahead_[at(c.tool)];
+      const ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
       if (candidates_.least_gap(c) > ahead.farthest) continue;
       if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
       const double gap = c.gap + c.normal.dot(ahead.way + c.along * ahead.axis);
@@ -261,54 +249,10 @@ class ContactProblem {
     return room > 0 || wanted == 0;
   }
 
-  /// How far the present forces let the proxies go.
-  void look_ahead(Tools tools) noexcept {
-    for (std::size_t t = 0; t < tools.size(); ++t) {
-      const ContactTool& tool = tools[t];
-      Ahead& ahead = ahead_[t];
-      ahead.way = tool.goal(floor_) - tool.proxy;
-      ahead.farthest = ahead.way.norm();
-      if (tool.half_length == 0.0) continue;
-      ahead.axis = (tool.goal_rotation() - tool.rotation) * tool.own_axis;
-      ahead.farthest += tool.half_length * ahead.axis.norm();
-    }
-  }
-
-  /// Moves the proxies to where the answer has them, as far as one linearisation may go.
   void follow(Tools tools) noexcept {
-    arrived_ = true;
-    look_ahead(tools);
-    for (std::size_t t = 0; t < tools.size(); ++t) {
-      ContactTool& tool = tools[t];
-      if (!tool.active) continue;
-      const double length = ahead_[t].farthest, longest = tool.longest_step();
-      const double part = length <= longest ? 1.0 : longest / length;
-      tool.proxy += part * ahead_[t].way;
-      turn(tool, part);
-      arrived_ = arrived_ && length <= longest;
-      candidates_.move_ball(t, tool);
-    }
-  }
-  static void turn(ContactTool& tool, double part) noexcept {
-    const Matrix3 goal = tool.goal_rotation();
-    if (part == 1.0) {
-      tool.rotation = goal;
-      return;
-    }
-    const Eigen::AngleAxisd by(Matrix3(goal * tool.rotation.transpose()));
-    tool.rotation = Eigen::AngleAxisd(part * by.angle(), by.axis()) * tool.rotation;
-  }
-
-  /// Of the tools' forces in this linearisation.
-  double relative_change(Tools tools) const noexcept {
-    double change = 0.0, scale = 0.0;
-    for (std::size_t t = 0; t < tools.size(); ++t) {
-      change = std::max(change, (tools[t].force - start_force_[t]).norm());
-      scale = std::max(scale, tools[t].force.norm());
-      if (!(tools[t].half_length > 0.0)) continue;
-      change = std::max(change, (tools[t].torque - start_torque_[t]).norm() / tools[t].half_length);
-    }
-    return change > 0.0 ? change / scale : 0.0;
+    arrived_ = proxies_.follow(tools, floor_);
+    for (std::size_t t = 0; t < tools.size(); ++t)
+      if (tools[t].active) candidates_.move_ball(t, tools[t]);
   }
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -326,10 +270,6 @@ class ContactProblem {
   static constexpr int added_per_round = 16;  // rows, the deepest ones
   static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
   static constexpr double violation = 1e-5;   // how far a point may sink in, of the deepest push
-  struct Ahead {
-    Vector3 way = Vector3::Zero(), axis = Vector3::Zero();  // of the proxy; of the end of a capsule's axis of length 1
-    double farthest = 0.0;                                  // way of any of its points, at most [m]
-  };
   struct Violated {
     double gap;
     Candidate* candidate;
@@ -341,8 +281,7 @@ class ContactProblem {
   ContactRows<Capacity> rows_;
   std::array<Candidate*, static_cast<std::size_t>(Capacity)> pressing_{};  // in the last linearisation
   std::array<Violated, static_cast<std::size_t>(Candidates<Capacity>::maximum)> violated_{};
-  std::array<Vector3, maximum_tools> start_force_{}, start_torque_{};
-  std::array<Ahead, maximum_tools> ahead_{};
+  ProxyMotion proxies_;
   std::array<Grasp, maximum_tools> grasps_{};
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   bool arrived_ = true;  // at the answer of the last linearisation
