@@ -38,8 +38,6 @@ struct CutStep {
     }
   }
   Index rank() const noexcept { return z.rows(); }
-  /// The compliance before the cut.
-  auto before() const noexcept { return compliance->topLeftCorner(old, old); }
 };
 
 }  // namespace palpate::inline PALPATE_ABI

@@ -27,7 +27,9 @@ class CutSystem {
     std::iota(source_.begin(), source_.end(), NodeId{0});
     displacement_ = base_.displacement();
     none_ = static_cast<Index>(base_.kept().size());
-    pool_.prepare(none_, 3);  // one to write, and what a tick and the buffer between may hold
+    constexpr int spare = 3;  // one to write, and what a tick and the buffer between may hold
+    limits.require_memory(MatrixPool::bytes(none_, spare), "storage for the compliances of cuts");
+    pool_.prepare(none_, spare);
   }
 
   /// Takes in a cut: the step to be read from now on, until `fold`. Strong guarantee. Throws not_positive_definite when

@@ -13,6 +13,11 @@ namespace palpate::inline PALPATE_ABI {
 /// the one that takes.
 class MatrixPool {
  public:
+  /// What `count` matrices take.
+  static double bytes(Index size, int count) noexcept {
+    const auto rows = static_cast<double>(room(size));
+    return static_cast<double>(count) * rows * rows * sizeof(double);
+  }
   /// Makes `count` matrices ready, their pages touched.
   void prepare(Index size, int count) {
     for (int k = 0; k < count; ++k) {
@@ -30,10 +35,8 @@ class MatrixPool {
   }
 
  private:
-  static std::shared_ptr<MatrixX> make(Index size) {
-    const Index room = size + size / 8;
-    return std::make_shared<MatrixX>(room, room);
-  }
+  static Index room(Index size) noexcept { return size + size / 8; }
+  static std::shared_ptr<MatrixX> make(Index size) { return std::make_shared<MatrixX>(room(size), room(size)); }
 
   std::vector<std::shared_ptr<MatrixX>> all_;
 };
