@@ -2,44 +2,15 @@
 #pragma once
 
 #include <palpate/concepts/tissue_model.hpp>
-#include <palpate/contact/sphere_tool.hpp>
-#include <palpate/core/spsc_ring.hpp>
-#include <palpate/cut/blade_sweep.hpp>
+#include <palpate/cut/cut_orders.hpp>
+#include <palpate/cut/cut_preparation.hpp>
 #include <palpate/cut/cut_renewal.hpp>
 #include <palpate/cut/cut_view.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
-#include <palpate/mesh/admission.hpp>
 
 #include <chrono>
-#include <mutex>
-#include <optional>
 
 namespace palpate::inline PALPATE_ABI {
-
-struct CuttableOptions {
-  /// Group, region or nodes whose compliance is kept ready beside that of the touchable ones: cuts there need no solve.
-  std::optional<Selection> cuttable{};
-  double smallest_tool = SphereTool{}.radius;  ///< [m] of the session's tools
-  ContactParameters contact{};                 ///< of the session
-  Index most_added = 900;          ///< dofs that cuts may add before a new factor is made, in a thread of its own
-  double tolerated_error = 1e-10;  ///< measured, relative; beyond it a new factor is made at once
-  AdmissionPolicy admission{};
-  SetupLimits limits{};
-};
-
-/// What cutting has cost.
-struct CutReport {
-  std::uint64_t cuts = 0;      ///< that changed something
-  std::uint64_t renewals = 0;  ///< new factors
-  Index rank = 0;              ///< rows that the last cut changed
-  Index kept = 0;              ///< dofs with a compliance
-  double smallest = 1.0;       ///< CutStep::smallest of the last cut
-  double error = 0.0;          ///< of the compliance, as last measured, relative
-  int unchecked = 0;           ///< cuts since that
-  double felt_seconds = 0.0;   ///< of the last cut: from taking the order to handing the surface to the tick
-  double fold_seconds = 0.0;   ///< of the last cut: until nothing was left to add up in the tick
-  bool failed = false;         ///< what is left cannot be computed; the last good state is felt, degraded_model
-};
 
 /// A linear body of elements E under cuts. `cut` orders; `work` does what is ordered, in a thread of the caller's
 /// choice (CutThread); the tick brings the newest state in at its beginning and never waits. Right after a cut the
@@ -60,7 +31,7 @@ class CuttableTissue {
   template <LinearMaterial M>
   CuttableTissue(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
                  const CuttableOptions& options = {})
-      : CuttableTissue(prepare(mesh, scene, materials, options), options) {}
+      : CuttableTissue(prepare_cut(mesh, scene, materials, options), options) {}
   CuttableTissue(const CuttableTissue&) = delete;
   CuttableTissue& operator=(const CuttableTissue&) = delete;
 
@@ -68,20 +39,14 @@ class CuttableTissue {
 
   /// Orders a cut. Throws index_out_of_range at once for ids outside.
   void cut(CutOrder order) {
-    const std::scoped_lock lock(order_mutex_);
     const auto outside = [&](Index e) { return e < 0 || e >= elements_; };
     for (const Index e : order.remove) require_element(!outside(e), e);
     for (const ElementFace& f : order.open)
       require_element(!outside(f.element) && f.face >= 0 && f.face < static_cast<int>(E::faces.size()), f.element);
-    orders_.push_back(std::move(order));
-    open_.fetch_add(1, std::memory_order_release);
+    orders_.add(std::move(order));
   }
   /// Orders a cut along what a blade sweeps, in the world's frame, through the body as it is deformed by its loads.
-  void cut(const BladeSweep& sweep) {
-    const std::scoped_lock lock(order_mutex_);
-    sweeps_.push_back(sweep);
-    open_.fetch_add(1, std::memory_order_release);
-  }
+  void cut(const BladeSweep& sweep) { orders_.add(sweep); }
 
   /// Does all that is ordered as one cut and makes it felt, then folds it in. When nothing is ordered, one of the
   /// things that nobody waits for: measuring the error, bounds, nodes inside. True when there was something to do.
@@ -91,11 +56,10 @@ class CuttableTissue {
     const auto seconds = [&] {
       return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
-    unsigned taken = 0;
     const bool renewed = take_renewal();
-    const CutOrder order = take_orders(taken);
-    if (taken == 0) return check_next() || renewed;
-    const TopologyChange<E> change = topology_.apply(order);
+    const CutOrders::Taken taken = orders_.take();
+    if (taken.count == 0) return check_next() || renewed;
+    const TopologyChange<E> change = topology_.apply(order_of(taken));
     if (!change.empty()) {
       ++report_.cuts;
       touchable_.update(topology_, change);
@@ -104,7 +68,7 @@ class CuttableTissue {
       settle();
       report_.fold_seconds = seconds();
     }
-    open_.fetch_sub(taken, std::memory_order_release);
+    orders_.done(taken);
     return true;
   }
   CutReport report() const {
@@ -132,13 +96,9 @@ class CuttableTissue {
   // The thread that ticks
 
   /// Orders a cut from a tick; false when too many are waiting. Never waits.
-  bool stroke(const BladeSweep& sweep) noexcept {
-    if (!strokes_.push(sweep)) return false;
-    open_.fetch_add(1, std::memory_order_release);
-    return true;
-  }
+  bool stroke(const BladeSweep& sweep) noexcept { return orders_.stroke(sweep); }
   Status begin_tick() noexcept {
-    const bool behind = open_.load(std::memory_order_acquire) != 0;
+    const bool behind = orders_.are_open() || failed_.load(std::memory_order_acquire);
     if (views_.update() && contact().cut != revision_) {  // folding changes nothing that a session remembers
       renewed_ = true;
       revision_ = contact().cut;
@@ -171,40 +131,7 @@ class CuttableTissue {
   Index open_rank() const noexcept { return view().step->rank(); }
 
  private:
-  struct Prepared {
-    CutPhysics<E> physics;
-    CutTopology<E> topology;
-    CutSurface<E> touchable;
-    std::vector<NodeId> cuttable;
-    Vector3 origin;
-  };
-
-  template <LinearMaterial M>
-  static Prepared prepare(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-                          const CuttableOptions& options) {
-    Admitted<E> admitted = admit<E>(mesh, options.admission);
-    const Scene mapped = scene.mapped(admitted.node_map);
-    const Vector3 origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
-    for (Vector3& x : admitted.mesh.positions) x -= origin;
-    const auto boundary = extract_boundary<E>(admitted.mesh);
-    CutTopology<E> topology(admitted.mesh, resolve_essential(admitted.mesh, boundary, mapped).constrained);
-    if (!topology.loose_pieces().empty())
-      raise(SetupErrorKind::unconstrained,
-            "a part of " + std::to_string(topology.loose_pieces()[0].elements.size()) + " elements is not held",
-            "Parts that hang together by nodes or edges only are separate here; hold each");
-    CutSurface<E> touchable(topology, boundary, mapped);
-    std::vector<NodeId> cuttable;
-    if (options.cuttable) {
-      Selection wanted = *options.cuttable;
-      if (auto* list = std::get_if<std::vector<NodeId>>(&wanted))
-        wanted = std::get<std::vector<NodeId>>(Scene().touch(*list).mapped(admitted.node_map).touched()[0]);
-      cuttable = resolve_nodes(admitted.mesh, boundary, wanted);
-    }
-    CutPhysics<E> physics(make_body(std::move(admitted.mesh), materials), boundary, mapped);
-    return {std::move(physics), std::move(topology), std::move(touchable), std::move(cuttable), origin};
-  }
-
-  CuttableTissue(Prepared prepared, const CuttableOptions& options)
+  CuttableTissue(CutPreparation<E> prepared, const CuttableOptions& options)
       : physics_(std::move(prepared.physics)),
         topology_(std::move(prepared.topology)),
         touchable_(std::move(prepared.touchable)),
@@ -252,22 +179,11 @@ class CuttableTissue {
     return nodes;
   }
 
-  CutOrder take_orders(unsigned& taken) {
-    CutOrder all;
-    std::vector<BladeSweep> sweeps;
-    {
-      const std::scoped_lock lock(order_mutex_);
-      taken = static_cast<unsigned>(orders_.size() + sweeps_.size());
-      for (const CutOrder& order : orders_) {
-        all.remove.insert(all.remove.end(), order.remove.begin(), order.remove.end());
-        all.open.insert(all.open.end(), order.open.begin(), order.open.end());
-      }
-      orders_.clear();
-      sweeps.swap(sweeps_);
-    }
-    for (BladeSweep stroke; strokes_.pop(stroke); ++taken) sweeps.push_back(stroke);
-    if (!sweeps.empty() && std::exchange(is_due(Check::inside), false)) system_.recover();
-    for (const BladeSweep& s : sweeps) {
+  /// As faces and elements: blades cut the body as it lies now.
+  CutOrder order_of(const CutOrders::Taken& taken) {
+    CutOrder all = taken.order;
+    if (!taken.sweeps.empty() && std::exchange(is_due(Check::inside), false)) system_.recover();
+    for (const BladeSweep& s : taken.sweeps) {
       const auto local = [&](const Vector3& x) { return Vector3(x - origin_); };
       const auto faces = swept_faces(topology_, {local(s.a0), local(s.b0), local(s.a1), local(s.b1)},
                                      [&](NodeId node) { return position(node); });
@@ -346,7 +262,7 @@ class CuttableTissue {
     } catch (const SetupError&) {
       report_.failed = true;
       due_.fill(false);
-      open_.fetch_add(1, std::memory_order_release);  // never closed: ticks go on saying degraded_model
+      failed_.store(true, std::memory_order_release);  // ticks go on saying degraded_model
     }
   }
   void take_over(CutSystem<E>&& fresh) {
@@ -404,11 +320,9 @@ class CuttableTissue {
   std::vector<double> bound_;            // of the last view
   std::array<bool, checks> due_{};
   std::size_t last_check_ = 0;
-  mutable std::mutex order_mutex_, system_mutex_;
-  std::vector<CutOrder> orders_;
-  std::vector<BladeSweep> sweeps_;
-  SpscRing<BladeSweep, 256> strokes_;
-  std::atomic<unsigned> open_{0};
+  mutable std::mutex system_mutex_;
+  CutOrders orders_;
+  std::atomic<bool> failed_{false};
   TripleBuffer<CutView> views_;
   std::uint64_t cut_ = 0, revision_ = 0;  // made last; seen last by a tick
   bool renewed_ = false;

@@ -1,0 +1,46 @@
+// From a mesh as given to a body that can be cut.
+#pragma once
+
+#include <palpate/cut/cut_physics.hpp>
+#include <palpate/cut/cut_surface.hpp>
+#include <palpate/cut/cuttable_options.hpp>
+
+namespace palpate::inline PALPATE_ABI {
+
+/// A body in a frame of its own, and what of it can be touched and will be cut.
+template <Element E>
+struct CutPreparation {
+  CutPhysics<E> physics;
+  CutTopology<E> topology;
+  CutSurface<E> touchable;
+  std::vector<NodeId> cuttable;  ///< sorted
+  Vector3 origin;                ///< of the frame, in that of the mesh as given [m]
+};
+
+/// Throws what admission and the scene's selections throw; unconstrained when a part is not held.
+template <Element E, LinearMaterial M>
+CutPreparation<E> prepare_cut(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                              const CuttableOptions& options) {
+  Admitted<E> admitted = admit<E>(mesh, options.admission);
+  const Scene mapped = scene.mapped(admitted.node_map);
+  const Vector3 origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
+  for (Vector3& x : admitted.mesh.positions) x -= origin;
+  const auto boundary = extract_boundary<E>(admitted.mesh);
+  CutTopology<E> topology(admitted.mesh, resolve_essential(admitted.mesh, boundary, mapped).constrained);
+  if (!topology.loose_pieces().empty())
+    raise(SetupErrorKind::unconstrained,
+          "a part of " + std::to_string(topology.loose_pieces()[0].elements.size()) + " elements is not held",
+          "Parts that hang together by nodes or edges only are separate here; hold each");
+  CutSurface<E> touchable(topology, boundary, mapped);
+  std::vector<NodeId> cuttable;
+  if (options.cuttable) {
+    Selection wanted = *options.cuttable;
+    if (auto* list = std::get_if<std::vector<NodeId>>(&wanted))
+      wanted = std::get<std::vector<NodeId>>(Scene().touch(*list).mapped(admitted.node_map).touched()[0]);
+    cuttable = resolve_nodes(admitted.mesh, boundary, wanted);
+  }
+  CutPhysics<E> physics(make_body(std::move(admitted.mesh), materials), boundary, mapped);
+  return {std::move(physics), std::move(topology), std::move(touchable), std::move(cuttable), origin};
+}
+
+}  // namespace palpate::inline PALPATE_ABI

@@ -1,0 +1,39 @@
+// What a tissue that is cut may be told, and what it says of its cuts.
+#pragma once
+
+#include <palpate/contact/contact.hpp>
+#include <palpate/contact/sphere_tool.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/mesh/admission.hpp>
+#include <palpate/mesh/scene.hpp>
+
+#include <optional>
+
+namespace palpate::inline PALPATE_ABI {
+
+struct CuttableOptions {
+  /// Group, region or nodes whose compliance is kept ready beside that of the touchable ones: cuts there need no solve.
+  std::optional<Selection> cuttable{};
+  double smallest_tool = SphereTool{}.radius;  ///< [m] of the session's tools
+  ContactParameters contact{};                 ///< of the session
+  Index most_added = 900;          ///< dofs that cuts may add before a new factor is made, in a thread of its own
+  double tolerated_error = 1e-10;  ///< measured, relative; beyond it a new factor is made at once
+  AdmissionPolicy admission{};
+  SetupLimits limits{};
+};
+
+/// What cutting has cost.
+struct CutReport {
+  std::uint64_t cuts = 0;      ///< that changed something
+  std::uint64_t renewals = 0;  ///< new factors
+  Index rank = 0;              ///< rows that the last cut changed
+  Index kept = 0;              ///< dofs with a compliance
+  double smallest = 1.0;       ///< CutStep::smallest of the last cut
+  double error = 0.0;          ///< of the compliance, as last measured, relative
+  int unchecked = 0;           ///< cuts since that
+  double felt_seconds = 0.0;   ///< of the last cut: from taking the order to handing the surface to the tick
+  double fold_seconds = 0.0;   ///< of the last cut: until nothing was left to add up in the tick
+  bool failed = false;         ///< what is left cannot be computed; the last good state is felt, degraded_model
+};
+
+}  // namespace palpate::inline PALPATE_ABI
