@@ -1,4 +1,4 @@
-# Shared by the scripts of this folder: compile() and link_program(), in WORK, with COMPILER, FLAGS, INCLUDES and
+# Shared by scripts that call the compiler: compile() and link_program(), in WORK, with COMPILER, FLAGS, INCLUDES and
 # SYSTEM_INCLUDES.
 set(ENV{LC_ALL} C)  # plain quotes in the messages
 separate_arguments(FLAGS NATIVE_COMMAND "${FLAGS}")

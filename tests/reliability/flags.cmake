@@ -2,19 +2,12 @@
 # prints the same numbers, to the bound that the program itself knows.
 #   cmake -DCOMPILER= -DINCLUDES= -DSYSTEM_INCLUDES= -DWORK= -P flags.cmake
 cmake_minimum_required(VERSION 3.21)
-file(MAKE_DIRECTORY ${WORK})
-set(command ${COMPILER} -std=c++20 -w)
-foreach(folder IN LISTS INCLUDES)
-  list(APPEND command -I${folder})
-endforeach()
-foreach(folder IN LISTS SYSTEM_INCLUDES)
-  list(APPEND command -isystem ${folder})
-endforeach()
+include(${CMAKE_CURRENT_LIST_DIR}/../linking/compiler.cmake)
 set(source ${CMAKE_CURRENT_LIST_DIR}/flags/main.cpp)
 
 # build(<flags...>): compiles and links; `result` and `text` say what came of it.
 macro(build)
-  execute_process(COMMAND ${command} ${ARGN} ${source} -o ${WORK}/flags RESULT_VARIABLE result OUTPUT_VARIABLE text
+  execute_process(COMMAND ${base} -w ${search} ${ARGN} ${source} -o ${WORK}/flags RESULT_VARIABLE result OUTPUT_VARIABLE text
                   ERROR_VARIABLE text)
 endmacro()
 
@@ -28,7 +21,8 @@ foreach(flag -ffast-math -Ofast -ffinite-math-only)
 endforeach()
 
 set(sets "-O0" "-O2" "-O3 -fno-rtti" "-O1 -fno-exceptions -fno-rtti" "-O2 -ffp-contract=off")
-if(CMAKE_HOST_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+cmake_host_system_information(RESULT processor QUERY OS_PLATFORM)
+if(processor MATCHES "^(x86_64|AMD64|amd64)$")
   list(APPEND sets "-O2 -march=x86-64" "-O2 -march=native")
 endif()
 set(first "")

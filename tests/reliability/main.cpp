@@ -156,9 +156,13 @@ bool write(std::ostream& out, const Ran& ran, const std::vector<Figure>& figures
 }
 
 int measure(int argc, char** argv) {
-  Places places{option(argc, argv, "--tests", "."), option(argc, argv, "--build", ""),
-                option(argc, argv, "--reports", "reports"), option(argc, argv, "--source", "."),
-                option(argc, argv, "--others", "build")};
+  // Absolute: ctest takes them from its own folder.
+  const auto folder = [&](const char* name, const char* otherwise) {
+    const std::string given = option(argc, argv, name, otherwise);
+    return given.empty() ? std::filesystem::path() : std::filesystem::absolute(given);
+  };
+  Places places{folder("--tests", "."), folder("--build", ""), folder("--reports", "reports"), folder("--source", "."),
+                folder("--others", "build")};
   std::filesystem::create_directories(places.reports);
   std::filesystem::create_directories(places.others / "reliability");
   const bool only_read = has_option(argc, argv, "--read");
