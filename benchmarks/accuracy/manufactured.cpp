@@ -1,6 +1,7 @@
 // Convergence on a manufactured solution.
 #include "manufactured.hpp"
 
+#include "../common/markup.hpp"
 #include "elements.hpp"
 #include "order_plot.hpp"
 #include "parts.hpp"
@@ -10,12 +11,6 @@
 namespace accuracy {
 
 namespace {
-
-std::string escaped(std::string name) {
-  for (const auto& [from, to] : {std::pair{'<', "&lt;"}, std::pair{'>', "&gt;"}})
-    for (std::size_t at = 0; (at = name.find(from)) != name.npos;) name.replace(at, 1, to);
-  return name;
-}
 
 /// All refinements of one element.
 template <Element E>
@@ -47,8 +42,8 @@ void refine(bool distorted, const std::string& colour, Table& table, OrderPlot& 
   checks.expect(order_u > expected_u - 0.2, name + " " + kind + ": displacement of order " + text(order_u));
   checks.expect(order_e > expected_e - 0.1, name + " " + kind + ": energy of order " + text(order_e));
   checks.expect(before.displacement < 0.05, name + " " + kind + ": the displacement does not converge to the solution");
-  displacement.add(escaped(name) + (distorted ? ", distorted" : ""), colour, distorted, std::move(curve_u));
-  energy.add(escaped(name) + (distorted ? ", distorted" : ""), colour, distorted, std::move(curve_e));
+  displacement.add(bench::escaped(name) + (distorted ? ", distorted" : ""), colour, distorted, std::move(curve_u));
+  energy.add(bench::escaped(name) + (distorted ? ", distorted" : ""), colour, distorted, std::move(curve_e));
 }
 
 }  // namespace

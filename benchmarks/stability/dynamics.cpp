@@ -41,12 +41,6 @@ double stable_step(const DynamicProblem& p) {
   return 2.0 / std::sqrt(eigen.eigenvalues().maxCoeff());
 }
 
-/// A power of ten, in halves.
-std::string power(int halves) {
-  const int whole = static_cast<int>(std::floor(0.5 * halves));
-  return (halves % 2 == 0 ? "1e" : "3e") + std::to_string(whole);
-}
-
 }  // namespace
 
 DynamicMap measure_dynamics(int cells, int steps, const std::string& folder) {
@@ -60,7 +54,7 @@ DynamicMap measure_dynamics(int cells, int steps, const std::string& folder) {
       std::array<char, 80> title{};
       std::snprintf(title.data(), title.size(), "%s, nu %g", scheme.name.c_str(), nu);
       Grid grid{.title = title.data(), .columns = {}, .rows = {}, .squares = {}};
-      for (int d = 2 * lowest_dt; d <= 2 * highest_dt; ++d) grid.columns.push_back(power(d));
+      for (int d = 2 * lowest_dt; d <= 2 * highest_dt; ++d) grid.columns.push_back(power_of_ten(d));
       for (int decade = lowest_young; decade <= highest_young; ++decade) {
         grid.rows.push_back("1e" + std::to_string(decade));
         const DynamicProblem problem = block(cells, steps, std::pow(10.0, decade), nu);

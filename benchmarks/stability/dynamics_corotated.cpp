@@ -8,29 +8,10 @@ namespace {
 
 using Motion = CorotatedMotion<LinearElastic, float>;
 
-struct CorotatedMove {
-  Motion& motion;
-  double dt;
-
-  bool operator()(std::string& said) {
-    const CorotatedStep report = motion.step(dt);
-    if (!report.taken)
-      said = "step not taken";
-    else if (!report.solve.converged)
-      said = "solve not converged";
-    else if (!report.calm)
-      said = "not calm";
-    else if (report.deformation.inverted > 0)
-      said = "inverted";
-    return report.taken;
-  }
-  bool holds(EnergyWatch& watch) const { return watch.holds(motion.displacement(), motion.velocity()); }
-};
-
 Moved move(const DynamicProblem& problem, double dt, const TimeScheme& scheme) {
   Motion motion(corotational(problem), problem.scene, {.scheme = scheme});
   return run(problem, EnergyWatch(make_deformable_body(corotational(problem), problem.scene)),
-             CorotatedMove{motion, dt});
+             ReportedSteps{motion, dt, [](const CorotatedStep& report) { return report.solve.converged; }});
 }
 
 }  // namespace

@@ -6,28 +6,10 @@
 namespace maps {
 namespace {
 
-struct ImplicitMove {
-  ImplicitDynamics& motion;
-  double dt;
-
-  bool operator()(std::string& said) {
-    const StepReport report = motion.step(dt);
-    if (!report.taken)
-      said = "step not taken";
-    else if (!report.newton.converged)
-      said = "Newton not converged";
-    else if (!report.calm)
-      said = "energy grew";
-    else if (report.deformation.inverted > 0)
-      said = "inverted";
-    return report.taken;
-  }
-  bool holds(EnergyWatch& watch) const { return watch.holds(motion.displacement(), motion.velocity()); }
-};
-
 Moved move(const DynamicProblem& problem, double dt, const TimeScheme& scheme) {
   ImplicitDynamics motion(make_deformable_body(neo_hookean(problem), problem.scene), {.scheme = scheme});
-  return run(problem, EnergyWatch(make_deformable_body(neo_hookean(problem), problem.scene)), ImplicitMove{motion, dt});
+  return run(problem, EnergyWatch(make_deformable_body(neo_hookean(problem), problem.scene)),
+             ReportedSteps{motion, dt, [](const StepReport& report) { return report.newton.converged; }});
 }
 
 }  // namespace

@@ -18,6 +18,28 @@ inline HyperelasticBody<Tet4, Corotational<LinearElastic>> corotational(const Dy
       p.mesh, std::vector<Corotational<LinearElastic>>{{{p.young, p.nu, p.density}}});
 }
 
+/// Steps that are reported on; `converged` finds that in the report.
+template <class Motion, class Converged>
+struct ReportedSteps {
+  Motion& motion;
+  double dt;
+  Converged converged;
+
+  bool operator()(std::string& said) {
+    const auto report = motion.step(dt);
+    if (!report.taken)
+      said = "step not taken";
+    else if (!converged(report))
+      said = "not converged";
+    else if (!report.calm)
+      said = "energy grew";
+    else if (report.deformation.inverted > 0)
+      said = "inverted";
+    return report.taken;
+  }
+  bool holds(EnergyWatch& watch) const { return watch.holds(motion.displacement(), motion.velocity()); }
+};
+
 Moved by_central_difference(const DynamicProblem& problem, double dt);
 Moved by_semi_implicit_euler(const DynamicProblem& problem, double dt);
 Moved by_implicit_euler(const DynamicProblem& problem, double dt);

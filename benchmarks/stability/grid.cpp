@@ -4,7 +4,12 @@
 #include <cmath>
 #include <sstream>
 
+#include "../common/markup.hpp"
+
 namespace maps {
+
+using bench::escaped;
+
 namespace {
 
 constexpr double side = 15, above = 22, right = 14;
@@ -95,10 +100,9 @@ int shade_of_error(double error) {
   return std::clamp(static_cast<int>(std::floor((std::log10(error) + 14.0) / 2.0)) + 1, 0, 7);
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (char c : text) out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return out;
+std::string power_of_ten(int halves) {
+  const int whole = static_cast<int>(std::floor(0.5 * halves));
+  return (halves % 2 == 0 ? "1e" : "3e") + std::to_string(whole);
 }
 
 std::string svg_of(const std::vector<Grid>& grids, int per_row, const std::string& x_name, const std::string& y_name) {

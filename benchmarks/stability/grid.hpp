@@ -28,7 +28,7 @@ std::string svg_of(const std::vector<Grid>& grids, int per_row, const std::strin
 /// 0 for an error below 1e-14, then one more for every two powers of ten, 7 from 1e-2 on.
 int shade_of_error(double error);
 
-/// For text between tags and in titles.
-std::string escaped(const std::string& text);
+/// A power of ten, in halves, to label axes: 1e-2, 3e-2, 1e-1.
+std::string power_of_ten(int halves);
 
 }  // namespace maps

@@ -130,7 +130,7 @@ std::vector<maps::Grid> grids_of(const std::vector<Cell>& cells) {
   std::vector<double> stiffness;
   for (int halves = 2; halves <= 12; ++halves) {
     stiffness.push_back(std::pow(10.0, 0.5 * halves));
-    rows.push_back((halves % 2 == 0 ? "1e" : "3e") + std::to_string(halves / 2));
+    rows.push_back(maps::power_of_ten(halves));
   }
   const std::size_t columns = rates.size() * delays.size();
   for (std::size_t first = 0; first < cells.size(); first += columns) {

@@ -3,7 +3,12 @@
 #include <ctime>
 #include <fstream>
 
+#include "../common/markup.hpp"
+
 namespace maps {
+
+using bench::escaped;
+
 namespace {
 
 #if defined(__clang__)
@@ -66,6 +71,15 @@ void write_score(std::ostream& out, const Score& score) {
   out << "</table>\n";
 }
 
+/// The score of a map, its panels, and those of others.
+template <class Map>
+void write_panels(std::ostream& out, const Map& map, const char* others, const char* x_name, const char* y_name) {
+  write_score(out, map.score);
+  out << "<h3>palpate</h3>\n"
+      << svg_of(map.ours, 4, x_name, y_name) << "<h3>Others: " << others << "</h3>\n"
+      << svg_of(map.others, 4, x_name, y_name);
+}
+
 }  // namespace
 
 void write_page(const Page& page, const std::string& path) {
@@ -83,22 +97,14 @@ void write_page(const Page& page, const std::string& path) {
            "a dense Cholesky in long double of a stiffness made in long double; bound 1e-5, in float 1e-3. A flag "
            "counts if the error is at "
            "most 100 times what the report estimates.</p>\n";
-    write_score(out, page.statics.score);
-    out << "<h3>palpate</h3>\n"
-        << svg_of(page.statics.ours, 4, "Poisson's ratio", "contrast")
-        << "<h3>Others: the same equations, info() asked and nothing else</h3>\n"
-        << svg_of(page.statics.others, 4, "Poisson's ratio", "contrast") << "<h3>Input without an answer</h3>\n"
-        << svg_of(page.statics.defects, 1, "", "");
+    write_panels(out, page.statics, "the same equations, info() asked and nothing else", "Poisson's ratio", "contrast");
+    out << "<h3>Input without an answer</h3>\n" << svg_of(page.statics.defects, 1, "", "");
   }
   if (!page.dynamics.ours.empty()) {
     out << "<h2>Dynamics</h2>\n<p>A block that is held below starts to fall sideways. WRONG: ten times the energy that "
            "the load has put in, or no number, and no word. Colour: how far the energy is from the work. Line: "
            "2/omega_max at rest, from a dense eigenproblem.</p>\n";
-    write_score(out, page.dynamics.score);
-    out << "<h3>palpate</h3>\n"
-        << svg_of(page.dynamics.ours, 4, "step [s]", "E [Pa]")
-        << "<h3>Others: the same forces, no limit, no line search, no watch</h3>\n"
-        << svg_of(page.dynamics.others, 4, "step [s]", "E [Pa]");
+    write_panels(out, page.dynamics, "the same forces, no limit, no line search, no watch", "step [s]", "E [Pa]");
   }
   if (!page.haptics.empty())
     out << "<h2>Haptics</h2>\n<p>A wall rendered by simulated devices in simulated hands: pale passive, strong calm "
