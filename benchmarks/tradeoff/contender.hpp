@@ -18,6 +18,8 @@ class Contender {
   /// What goes on in a thread of its own: seconds between two updates, none with 0.
   virtual double update_period() const { return 0.0; }
   virtual void update() {}
+  /// Does it take time to come to rest?
+  virtual bool has_inertia() const { return false; }
   /// Of the nodes of the mesh as given [m]; called after a hold.
   virtual VectorX displacement() = 0;
   /// How far the state of a hold is from its own formula, relative: contacts off the ball, forces out of balance.
@@ -78,6 +80,14 @@ struct Bench {
   }
 };
 
+/// Names of meshes for what touches with nodes alone: also the refined one where the mesh as given is so coarse that a
+/// ball falls between its nodes.
+std::vector<std::string> meshes_for_node_contact(const Bench& bench);
+
+inline std::string mesh_name(const std::string& mesh) {
+  return mesh == "near" ? "refined near" : mesh == "all" ? "refined" : "as given";
+}
+
 /// Makes, drives and judges one contender.
 Row measure(const Bench& bench, const Entry& entry);
 
@@ -90,7 +100,8 @@ void add_quasi_non_linear(const Bench& bench, std::vector<Entry>& entries);
 void add_soft(const Bench& bench, std::vector<Entry>& entries);
 void add_corotated(const Bench& bench, std::vector<Entry>& entries);
 void add_explicit(const Bench& bench, std::vector<Entry>& entries);
-void add_particles(const Bench& bench, std::vector<Entry>& entries);
+void add_springs(const Bench& bench, std::vector<Entry>& entries);
+void add_position_based(const Bench& bench, std::vector<Entry>& entries);
 void add_plain_eigen(const Bench& bench, std::vector<Entry>& entries);
 
 /// The table as comma-separated values, and as a page with pictures. `budget` [s] of a tick.

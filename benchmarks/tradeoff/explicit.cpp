@@ -15,14 +15,14 @@ namespace {
 template <class Forces, class Scheme>
 class ExplicitContender : public Contender {
  public:
-  explicit ExplicitContender(const Bench& bench)
+  ExplicitContender(const Bench& bench, const std::string& mesh)
       : bench_(bench),
-        body_(make_hyperelastic_body(bench.scene.mesh, large_strain_laws<NeoHookean>(bench.scene.materials))),
+        body_(make_hyperelastic_body(bench.mesh(mesh), large_strain_laws<NeoHookean>(bench.scene.materials))),
         conditions_(
             resolve_essential(body_.rest.mesh, extract_boundary<Tet4>(body_.rest.mesh), bench.scene.scene(near_group))),
         mass_(lumped_mass(body_.rest)),
         motion_(make(drag)),
-        nodes_(bench.scene.mesh.find_group(near_group)->nodes),
+        nodes_(body_.rest.mesh.find_group(near_group)->nodes),
         forces_(bench.scene.balls.size()),
         now_(forces_) {
     // A millisecond in equal steps of at most 0.7 of the limit: pressed elements allow less than elements at rest.
@@ -44,7 +44,8 @@ class ExplicitContender : public Contender {
     for (Vector3& f : forces_) f /= steps_;
     return forces_;
   }
-  VectorX displacement() override { return motion_.state().displacement; }
+  bool has_inertia() const override { return true; }
+  VectorX displacement() override { return motion_.state().displacement.head(3 * bench_.scene.mesh.node_count()); }
   double own_error() override {
     Vector3 sum = Vector3::Zero(), contact = Vector3::Zero();
     for (Index dof = 0; dof < motion_.state().force.size(); ++dof)
@@ -66,7 +67,7 @@ class ExplicitContender : public Contender {
                ? std::numeric_limits<double>::quiet_NaN()
                : (free.kinetic_energy() + free.stored_energy()) / before - 1.0;
   }
-  Index nodes() const override { return bench_.scene.mesh.node_count(); }
+  Index nodes() const override { return body_.rest.mesh.node_count(); }
   std::string remark() override {
     std::string text = std::to_string(steps_) + " steps per tick";
     for (const StatusFlag flag : {StatusFlag::energy_grew, StatusFlag::step_refused, StatusFlag::inverted})
@@ -88,7 +89,7 @@ class ExplicitContender : public Contender {
     for (const NodeId node : nodes_)
       for (std::size_t b = 0; b < centres.size(); ++b) {
         const Index dof = 3 * Index{node};
-        const Vector3 off = bench_.scene.mesh.position(node) + motion_.state().displacement.template segment<3>(dof) +
+        const Vector3 off = body_.rest.mesh.position(node) + motion_.state().displacement.template segment<3>(dof) +
                             dt * motion_.state().velocity.template segment<3>(dof) - centres[b];
         const double depth = bench_.scene.radius - off.norm();
         if (!(depth > 0.0)) continue;
@@ -110,31 +111,33 @@ class ExplicitContender : public Contender {
 };
 
 template <class Forces, class Scheme>
-void add(const Bench& bench, std::vector<Entry>& entries, const std::string& element, const std::string& forces,
-         const std::string& scheme, const std::string& scalar) {
+void add(const Bench& bench, std::vector<Entry>& entries, const std::string& mesh, const std::string& element,
+         const std::string& forces, const std::string& scheme, const std::string& scalar) {
   Entry entry;
   Description& d = entry.description;
   d.family = "explicit";
   d.element = element;
-  d.mesh = mesh_name("given");
+  d.mesh = mesh_name(mesh);
   d.kinematics = "neo-Hookean";
   d.solver = scheme;
   d.scalar = scalar;
   d.allowed = 0.05;
   d.paste = "using Motion = ExplicitMotion<" + forces + ", " + scheme + ">;   // balls by penalty loads";
-  entry.make = [&bench] { return std::make_unique<ExplicitContender<Forces, Scheme>>(bench); };
+  entry.make = [&bench, mesh] { return std::make_unique<ExplicitContender<Forces, Scheme>>(bench, mesh); };
   entries.push_back(std::move(entry));
 }
 
 }  // namespace
 
 void add_explicit(const Bench& bench, std::vector<Entry>& entries) {
-  add<BatchedTetrahedra<NeoHookean>, CentralDifference>(bench, entries, "Tet4", "BatchedTetrahedra<NeoHookean>",
-                                                        "CentralDifference", "double");
-  add<BatchedTetrahedra<NeoHookean, float>, CentralDifference>(
-      bench, entries, "Tet4", "BatchedTetrahedra<NeoHookean, float>", "CentralDifference", "float");
-  add<AveragedTetrahedra<NeoHookean, float>, CentralDifference>(
-      bench, entries, "averaged Tet4", "AveragedTetrahedra<NeoHookean, float>", "CentralDifference", "float");
+  add<BatchedTetrahedra<NeoHookean>, CentralDifference>(bench, entries, "given", "Tet4",
+                                                        "BatchedTetrahedra<NeoHookean>", "CentralDifference", "double");
+  for (const std::string& mesh : meshes_for_node_contact(bench)) {
+    add<BatchedTetrahedra<NeoHookean, float>, CentralDifference>(
+        bench, entries, mesh, "Tet4", "BatchedTetrahedra<NeoHookean, float>", "CentralDifference", "float");
+    add<AveragedTetrahedra<NeoHookean, float>, CentralDifference>(
+        bench, entries, mesh, "averaged Tet4", "AveragedTetrahedra<NeoHookean, float>", "CentralDifference", "float");
+  }
 }
 
 }  // namespace tradeoff

@@ -96,18 +96,15 @@ double distance_from_balls(const Model& model, const Servo& servo, const VectorX
   return largest > 0.0 ? worst / scene.small : infinity;
 }
 
-/// HapticFEModel<E, LinearElastic, Policy>.
-template <class E, class Policy>
+/// HapticFEModel<E, LinearElastic, Policy>, felt itself or through what `Over` makes of it.
+template <class E, class Policy, class Over = HapticFEModel<E, LinearElastic, Policy>&>
 class LinearContender : public Contender {
  public:
   using Model = HapticFEModel<E, LinearElastic, Policy>;
 
   LinearContender(const Bench& bench, const std::string& mesh, const std::string& kept,
                   const SetupOptions& options = {})
-      : bench_(bench),
-        model_(mesh_for<E>(bench.mesh(mesh)), bench.scene.scene(kept), bench.scene.materials, options),
-        felt_(model_, bench.scene),
-        u_(3 * model_.mesh().node_count()) {}
+      : LinearContender(bench, mesh, kept, options, [](Model& model) -> Model& { return model; }) {}
 
   std::span<const Vector3> tick(std::span<const Vector3> centres) override { return felt_.tick(centres); }
   VectorX displacement() override {
@@ -119,18 +116,26 @@ class LinearContender : public Contender {
   Index kept_dofs() const override { return model_.report().kept_dofs; }
   std::string remark() override { return felt_.remark(); }
 
- private:
+ protected:
+  /// `over` makes what is felt of the model.
+  template <class Make>
+  LinearContender(const Bench& bench, const std::string& mesh, const std::string& kept, const SetupOptions& options,
+                  Make over)
+      : bench_(bench),
+        model_(mesh_for<E>(bench.mesh(mesh)), bench.scene.scene(kept), bench.scene.materials, options),
+        tissue_(over(model_)),
+        felt_(tissue_, bench.scene),
+        u_(3 * model_.mesh().node_count()) {}
+
   const Bench& bench_;
   Model model_;
-  Felt<Model> felt_;
+  Over tissue_;
+  Felt<std::remove_reference_t<Over>> felt_;
   VectorX u_;
 };
 
 inline const char* kept_name(const std::string& group) {
   return group == near_group ? "near the tool" : group == wide_group ? "touchable group" : "whole surface";
-}
-inline std::string mesh_name(const std::string& mesh) {
-  return mesh == "near" ? "refined near" : mesh == "all" ? "refined" : "as given";
 }
 
 /// An entry for one composition; `element` and `policy` are how C++ has them.

@@ -1,17 +1,12 @@
 // How a contender is driven and judged.
-#include <palpate/core/platform.hpp>
-#include <palpate/haptic/run_haptic_loop.hpp>
-
 #include <algorithm>
 #include <numbers>
 
 #include "../common/timing.hpp"
-#include "contender.hpp"
+#include "session.hpp"
 
 namespace tradeoff {
 namespace {
-
-constexpr double period = 1e-3;  // of ticks [s]
 
 /// Depth over time: to the small depth, a rest, to the large depth, a rest; then between the two, to and fro, one and a
 /// half times, at most 1.65 times as fast.
@@ -33,101 +28,6 @@ struct Motion {
     return small +
            0.5 * (large - small) * (1.0 + std::cos(2.0 * std::numbers::pi * swing_frequency() * (t - leave_large())));
   }
-};
-
-/// A device that asks a thousand times a second, on simulated time: a tick that takes longer than a millisecond leaves
-/// the device with the last force meanwhile, and updates come when their thread would have them done.
-class Session {
- public:
-  Session(const Bench& bench, Contender& contender, bool has_inertia)
-      : bench_(bench),
-        contender_(contender),
-        has_inertia_(has_inertia),
-        clock_cost_(palpate::detail::measured_clock_cost()) {
-    force_.assign(bench.scene.balls.size(), Vector3::Zero());
-  }
-
-  std::vector<double> ticks, updates;  ///< durations in motion [s]
-  double squared_error = 0.0;          ///< sum over milliseconds of motion
-  int judged = 0;
-  bool finite = true;
-
-  const std::vector<Vector3>& force() const noexcept { return force_; }
-
-  /// A millisecond of the device with the balls at a depth.
-  void advance(double depth, bool judge) {
-    const double period_of_update = contender_.update_period();
-    if (period_of_update > 0.0 && time_ >= next_update_) {
-      const double spent = timed([&] { contender_.update(); });
-      if (judge) updates.push_back(spent);
-      // What is published now would have been done by now, had it begun one duration earlier.
-      next_update_ = std::max(next_update_ + period_of_update, time_ + spent);
-    }
-    if (time_ >= next_tick_) {
-      const std::vector<Vector3> centres = bench_.scene.centres(depth);
-      std::span<const Vector3> answer;
-      const double spent = timed([&] { answer = contender_.tick(centres); });
-      if (judge) ticks.push_back(spent);
-      next_tick_ = judge ? time_ + spent : time_;  // at rest nobody waits
-      pending_.assign(answer.begin(), answer.end());
-      for (const Vector3& f : pending_) finite = finite && f.allFinite();
-    }
-    if (!pending_.empty() && next_tick_ <= time_ + period) {  // done within this millisecond
-      force_ = pending_;
-      pending_.clear();
-    }
-    if (judge) {
-      for (std::size_t b = 0; b < force_.size(); ++b)
-        squared_error += (force_[b] - bench_.reference.force(b, depth)).squaredNorm();
-      judged += static_cast<int>(force_.size());
-    }
-    time_ += period;
-  }
-  /// Rests until the force does for two windows, at most `most` milliseconds and seconds of work. Tissue that has left
-  /// the ball is still on its way.
-  bool settle(double depth, int most, double seconds) {
-    const double start = bench::process_seconds();
-    std::vector<Vector3> before = force_;
-    int still = 0;
-    for (int i = 1; i <= most && bench::process_seconds() - start < seconds; ++i) {
-      // Slow updates and ticks are not waited for: each counts for the time it stands for.
-      next_tick_ = std::min(next_tick_, time_);
-      const double u = contender_.update_period();
-      next_update_ = std::min(next_update_, time_ + (u > 0.0 ? u : period));
-      advance(depth, false);
-      if (i % window() != 0) continue;
-      double change = 0.0, size = 0.0;
-      for (std::size_t b = 0; b < force_.size(); ++b) {
-        change = std::max(change, (force_[b] - before[b]).norm());
-        size = std::max(size, force_[b].norm());
-      }
-      before = force_;
-      still = size > 0.0 && change <= 2e-4 * size ? still + 1 : 0;
-      if (still == 2) return true;
-    }
-    return false;
-  }
-
- private:
-  /// Milliseconds over which a force at rest must stand still.
-  int window() const noexcept {
-    if (!has_inertia_) return 4;
-    const double u = contender_.update_period();
-    return std::max(40, static_cast<int>(std::ceil(3.0 * u / period)));
-  }
-  template <class Work>
-  double timed(Work&& work) const {
-    const std::int64_t start = platform::compute_ns();
-    work();
-    return std::max(0.0, 1e-9 * static_cast<double>(platform::compute_ns() - start) - clock_cost_);
-  }
-
-  const Bench& bench_;
-  Contender& contender_;
-  bool has_inertia_;
-  double clock_cost_;
-  double time_ = 0.0, next_tick_ = 0.0, next_update_ = 0.0;
-  std::vector<Vector3> force_, pending_;
 };
 
 double force_error(const Bench& bench, const std::vector<Vector3>& force, double depth) {
@@ -158,9 +58,7 @@ HoldErrors judge_hold(const Bench& bench, const VectorX& u, const VectorX& right
 void judge(const Bench& bench, Contender& contender, Row& row) {
   const PressScene& scene = bench.scene;
   const Motion motion{scene.small, scene.large, scene.speed};
-  const bool has_inertia =
-      row.family == "moving" || row.family == "explicit" || row.element == "mass-spring" || row.element == "XPBD";
-  Session session(bench, contender, has_inertia);
+  Session session(bench, contender);
   double time = 0.0;
   const auto follow = [&](double until) {
     for (; time < until; time += period) session.advance(motion.depth(time), true);
@@ -169,7 +67,10 @@ void judge(const Bench& bench, Contender& contender, Row& row) {
   std::string unsettled;
   const auto hold = [&](double depth, const VectorX& right, double volume, double& force, double& moved,
                         double& change) {
-    if (!session.settle(depth, 4000, patience)) unsettled = "DID NOT COME TO REST at " + number(1e3 * depth) + " mm";
+    const Session::Rest rest = session.settle(depth, 4000, patience);
+    if (rest != Session::Rest::reached)
+      unsettled = (rest == Session::Rest::lost ? "LOST THE TISSUE at " : "DID NOT COME TO REST at ") +
+                  number(1e3 * depth) + " mm";
     force = force_error(bench, session.force(), depth);
     const HoldErrors errors = judge_hold(bench, contender.displacement(), right, volume, depth);
     moved = errors.moved;
@@ -216,6 +117,17 @@ std::string Description::name() const {
   for (const std::string* part : {&mesh, &kinematics, &solver, &kept, &scalar, &work})
     if (!part->empty()) text += ", " + *part;
   return text;
+}
+
+std::vector<std::string> meshes_for_node_contact(const Bench& bench) {
+  constexpr int enough = 6;  // nodes, within a radius of where a ball touches first
+  const Mesh<Tet4>& mesh = bench.scene.mesh;
+  for (const Ball& ball : bench.scene.balls)
+    if (std::ranges::count_if(mesh.find_group(near_group)->nodes, [&](NodeId node) {
+          return (mesh.position(node) - ball.point).norm() < bench.scene.radius;
+        }) < enough)
+      return {"given", "near"};
+  return {"given"};
 }
 
 Row measure(const Bench& bench, const Entry& entry) {

@@ -4,6 +4,7 @@
 #include <palpate/model/trade_off.hpp>
 
 #include <array>
+#include <iosfwd>
 
 #include "contender.hpp"
 
@@ -20,8 +21,16 @@ inline constexpr std::array<Measure, 3> measures{{{"felt at 1 kHz, in motion", &
 inline bool is_good(const Row& row) {
   return row.verdict.empty();
 }
+/// Three significant digits; empty for what is not a number.
+std::string three_digits(double value);
+std::string percent(double value);
+const char* colour_of(const std::string& family);
+
 /// Of the rows that are as they must be; baselines too, unless only what can be composed is wanted.
 TradeOff trade_off_of(const std::vector<Row>& rows, double Row::*error, bool compositions_only);
+
+/// Error over latency as SVG, by itself or in a page. `floor`: how far the reference itself is in doubt.
+void write_plot(std::ostream& out, const std::vector<Row>& rows, double Row::*error, double budget, double floor);
 
 /// What nothing beats in one of the measures, the baselines, and the advice, as Markdown.
 std::string summary(const Bench& bench, const std::vector<Row>& rows, double budget);

@@ -7,6 +7,7 @@
 #include <Eigen/SparseCholesky>
 
 #include "linear.hpp"
+#include "push_apart.hpp"
 
 namespace tradeoff {
 namespace {
@@ -19,8 +20,7 @@ using Gradients = Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::U
 template <class Solver>
 class EveryTick : public Contender {
  public:
-  explicit EveryTick(const Bench& bench) : bench_(bench) {
-    const Mesh<Tet4>& mesh = bench.scene.mesh;
+  EveryTick(const Bench& bench, const Mesh<Tet4>& mesh) : bench_(bench), mesh_(mesh) {
     conditions_ = resolve_essential(mesh, extract_boundary<Tet4>(mesh), bench.scene.scene(near_group));
     const SparseMatrix lower =
         free_matrix(assemble_stiffness<Tet4>(make_body(mesh, bench.scene.materials), {}), conditions_);
@@ -53,7 +53,8 @@ class EveryTick : public Contender {
         w(static_cast<Index>(i), static_cast<Index>(j)) =
             rows_[i].normal.dot(columns_[rows_[j].node].template segment<3>(rows_[i].at));
     }
-    const VectorX lambda = push(w, gap);
+    VectorX lambda = VectorX::Zero(gap.size());
+    push_apart(w, gap, lambda, {.sweeps = 500, .tolerance = 1e-6});
     u_.setZero();
     std::ranges::fill(forces_, Vector3::Zero());
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -65,7 +66,7 @@ class EveryTick : public Contender {
   VectorX displacement() override {
     VectorX u = VectorX::Zero(conditions_.dof_count());
     conditions_.scatter(u_, u);
-    return u;
+    return u.head(3 * bench_.scene.mesh.node_count());
   }
   /// K u against the forces of the balls.
   double own_error() override {
@@ -83,7 +84,7 @@ class EveryTick : public Contender {
       }
     return (sum.norm() + left.norm()) / size;
   }
-  Index nodes() const override { return bench_.scene.mesh.node_count(); }
+  Index nodes() const override { return mesh_.node_count(); }
 
  private:
   struct Point {
@@ -99,30 +100,15 @@ class EveryTick : public Contender {
     for (std::size_t k = 0; k < nodes_.size(); ++k)
       for (std::size_t b = 0; b < centres.size(); ++b) {
         const Index at = conditions_.free_index[static_cast<std::size_t>(3 * Index{nodes_[k]})];
-        const Vector3 moved = u_.segment<3>(at), off = bench_.scene.mesh.position(nodes_[k]) + moved - centres[b];
+        const Vector3 moved = u_.segment<3>(at), off = mesh_.position(nodes_[k]) + moved - centres[b];
         const double distance = off.norm();
         if (distance > bench_.scene.radius + 1e-3 || distance == 0.0) continue;
         const Vector3 normal = off / distance;
         rows_.push_back({k, b, at, normal, distance - bench_.scene.radius - normal.dot(moved)});
       }
   }
-  /// lambda >= 0, gap + W lambda >= 0, one of them zero.
-  static VectorX push(const MatrixX& w, const VectorX& gap) {
-    VectorX lambda = VectorX::Zero(gap.size());
-    if (gap.size() == 0) return lambda;
-    for (int sweep = 0; sweep < 500; ++sweep) {
-      double change = 0.0;
-      for (Index i = 0; i < gap.size(); ++i) {
-        const double next = std::max(0.0, lambda[i] - (gap[i] + w.row(i).dot(lambda)) / w(i, i));
-        change = std::max(change, std::abs(next - lambda[i]));
-        lambda[i] = next;
-      }
-      if (change <= 1e-6 * lambda.maxCoeff()) break;
-    }
-    return lambda;
-  }
-
   const Bench& bench_;
+  const Mesh<Tet4>& mesh_;
   EssentialConditions conditions_;
   SparseMatrix stiffness_;
   Solver solver_;
@@ -166,12 +152,12 @@ class Interpolated : public Contender {
   std::vector<Vector3> centres_, from_, to_, forces_;
 };
 
-Entry plain_entry(const std::string& solver, double allowed) {
+Entry plain_entry(const std::string& mesh, const std::string& solver, double allowed) {
   Entry entry;
   Description& d = entry.description;
   d.family = "baseline";
   d.element = "Tet4";
-  d.mesh = mesh_name("given");
+  d.mesh = mesh_name(mesh);
   d.kinematics = "linear";
   d.solver = solver;
   d.scalar = "double";
@@ -182,20 +168,23 @@ Entry plain_entry(const std::string& solver, double allowed) {
 }  // namespace
 
 void add_plain_eigen(const Bench& bench, std::vector<Entry>& entries) {
-  Entry entry = plain_entry("Eigen SimplicialLDLT, solved every tick", 1e-3);
-  entry.make = [&bench] { return std::make_unique<EveryTick<Ldlt>>(bench); };
-  entries.push_back(entry);
-  entry = plain_entry("Eigen ConjugateGradient 1e-4, every tick", 0.05);
-  entry.make = [&bench] { return std::make_unique<EveryTick<Gradients>>(bench); };
-  entries.push_back(entry);
-  entry = plain_entry("Eigen SimplicialLDLT, 30 Hz", 1e-3);
-  entry.description.work = "forces interpolated";
-  entry.description.own_core = true;
-  entry.make = [&bench] {
-    return std::make_unique<Interpolated>(std::make_unique<EveryTick<Ldlt>>(bench), 1.0 / 30.0,
-                                          bench.scene.balls.size());
-  };
-  entries.push_back(entry);
+  for (const std::string& mesh : meshes_for_node_contact(bench)) {
+    Entry entry = plain_entry(mesh, "Eigen SimplicialLDLT, solved every tick", 1e-3);
+    entry.make = [&bench, mesh] { return std::make_unique<EveryTick<Ldlt>>(bench, bench.mesh(mesh)); };
+    entries.push_back(entry);
+    if (mesh != "given" && !bench.full) continue;
+    entry = plain_entry(mesh, "Eigen ConjugateGradient 1e-4, every tick", 0.05);
+    entry.make = [&bench, mesh] { return std::make_unique<EveryTick<Gradients>>(bench, bench.mesh(mesh)); };
+    entries.push_back(entry);
+    entry = plain_entry(mesh, "Eigen SimplicialLDLT, 30 Hz", 1e-3);
+    entry.description.work = "forces interpolated";
+    entry.description.own_core = true;
+    entry.make = [&bench, mesh] {
+      return std::make_unique<Interpolated>(std::make_unique<EveryTick<Ldlt>>(bench, bench.mesh(mesh)), 1.0 / 30.0,
+                                            bench.scene.balls.size());
+    };
+    entries.push_back(entry);
+  }
 }
 
 }  // namespace tradeoff

@@ -6,19 +6,22 @@
 namespace tradeoff {
 namespace {
 
+using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
+
+StiffeningCurve curve(const Stiffening& measured) {
+  std::vector<StiffeningCurve::Point> points{{0.0, 1.0}};
+  for (std::size_t i = 0; i < measured.depth.size(); ++i) points.push_back({measured.depth[i], measured.ratio[i]});
+  return StiffeningCurve(points);
+}
+
 /// Curves were measured elsewhere on the same organ; displacements for pictures follow the scale of the force.
-class CotinContender : public Contender {
+class CotinContender : public LinearContender<Smoothed<Tet4>, Condensed<SelectiveInverse>, QuasiNonLinear<Model>> {
  public:
-  using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
-
   CotinContender(const Bench& bench, const std::string& mesh)
-      : bench_(bench),
-        model_(bench.mesh(mesh), bench.scene.scene(near_group), bench.scene.materials),
-        tissue_(model_, curve(bench.stiffening), curve(bench.stiffening)),
-        felt_(tissue_, bench.scene),
-        u_(3 * model_.mesh().node_count()) {}
+      : LinearContender(bench, mesh, near_group, {}, [&](Model& model) {
+          return QuasiNonLinear<Model>(model, curve(bench.stiffening), curve(bench.stiffening));
+        }) {}
 
-  std::span<const Vector3> tick(std::span<const Vector3> centres) override { return felt_.tick(centres); }
   VectorX displacement() override {
     // T u(T f), as scale() says
     std::vector<VertexForce> forces(felt_.vertex_forces().begin(), felt_.vertex_forces().end());
@@ -27,23 +30,6 @@ class CotinContender : public Contender {
     for (Index i = 0; i < u_.size() / 3; ++i) u_.segment<3>(3 * i) = (tissue_.scale() * u_.segment<3>(3 * i)).eval();
     return of_given_nodes(u_, model_.node_map(), bench_.scene.mesh.node_count());
   }
-  double own_error() override { return distance_from_balls(model_, felt_.servo(), u_, bench_.scene); }
-  Index nodes() const override { return model_.mesh().node_count(); }
-  Index kept_dofs() const override { return model_.report().kept_dofs; }
-  std::string remark() override { return felt_.remark(); }
-
- private:
-  static StiffeningCurve curve(const Stiffening& measured) {
-    std::vector<StiffeningCurve::Point> points{{0.0, 1.0}};
-    for (std::size_t i = 0; i < measured.depth.size(); ++i) points.push_back({measured.depth[i], measured.ratio[i]});
-    return StiffeningCurve(points);
-  }
-
-  const Bench& bench_;
-  Model model_;
-  QuasiNonLinear<Model> tissue_;
-  Felt<QuasiNonLinear<Model>> felt_;
-  VectorX u_;
 };
 
 }  // namespace

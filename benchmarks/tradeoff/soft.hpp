@@ -36,6 +36,7 @@ class SoftContender : public Contender {
   std::span<const Vector3> tick(std::span<const Vector3> centres) override { return felt_.tick(centres); }
   double update_period() const override { return options_.step; }
   void update() override { tissue_.advance(); }
+  bool has_inertia() const override { return true; }
   VectorX displacement() override { return tissue_.motion().displacement().head(3 * bench_.scene.mesh.node_count()); }
   /// How far the supports, by the exact law, are from holding what the balls push, of the contact force.
   double own_error() override {

@@ -1,5 +1,4 @@
 // What documents say of a run.
-#include <cstdio>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -8,13 +7,6 @@
 
 namespace tradeoff {
 namespace {
-
-std::string three_digits(double value) {
-  if (!std::isfinite(value)) return "";
-  char text[32];
-  std::snprintf(text, sizeof text, value >= 1000.0 ? "%.0f" : "%.3g", value);
-  return text;
-}
 
 void add_line(std::ostream& out, const Row& r) {
   const auto code = [](const std::string& s) { return s.find('<') == s.npos ? s : '`' + s + '`'; };

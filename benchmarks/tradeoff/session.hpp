@@ -1,0 +1,109 @@
+// A contender on simulated time.
+#pragma once
+
+#include <palpate/core/platform.hpp>
+#include <palpate/haptic/run_haptic_loop.hpp>
+
+#include <algorithm>
+
+#include "../common/timing.hpp"
+#include "contender.hpp"
+
+namespace tradeoff {
+
+inline constexpr double period = 1e-3;  ///< of ticks [s]
+
+/// A device that asks a thousand times a second, on simulated time: a tick that takes longer than a millisecond leaves
+/// the device with the last force meanwhile, and updates come when their thread would have them done.
+class Session {
+ public:
+  Session(const Bench& bench, Contender& contender)
+      : bench_(bench), contender_(contender), clock_cost_(palpate::detail::measured_clock_cost()) {
+    force_.assign(bench.scene.balls.size(), Vector3::Zero());
+  }
+
+  std::vector<double> ticks, updates;  ///< durations in motion [s]
+  double squared_error = 0.0;          ///< sum over milliseconds of motion
+  int judged = 0;
+  bool finite = true;
+
+  const std::vector<Vector3>& force() const noexcept { return force_; }
+
+  /// A millisecond of the device with the balls at a depth.
+  void advance(double depth, bool judge) {
+    const double period_of_update = contender_.update_period();
+    if (period_of_update > 0.0 && time_ >= next_update_) {
+      const double spent = timed([&] { contender_.update(); });
+      if (judge) updates.push_back(spent);
+      // What is published now would have been done by now, had it begun one duration earlier.
+      next_update_ = std::max(next_update_ + period_of_update, time_ + spent);
+    }
+    if (time_ >= next_tick_) {
+      const std::vector<Vector3> centres = bench_.scene.centres(depth);
+      std::span<const Vector3> answer;
+      const double spent = timed([&] { answer = contender_.tick(centres); });
+      if (judge) ticks.push_back(spent);
+      next_tick_ = judge ? time_ + spent : time_;  // at rest nobody waits
+      pending_.assign(answer.begin(), answer.end());
+      for (const Vector3& f : pending_) finite = finite && f.allFinite();
+    }
+    if (!pending_.empty() && next_tick_ <= time_ + period) {  // done within this millisecond
+      force_ = pending_;
+      pending_.clear();
+    }
+    if (judge) {
+      for (std::size_t b = 0; b < force_.size(); ++b)
+        squared_error += (force_[b] - bench_.reference.force(b, depth)).squaredNorm();
+      judged += static_cast<int>(force_.size());
+    }
+    time_ += period;
+  }
+  enum class Rest { reached, moving, lost };
+  /// Rests until the force does for two windows, at most `most` milliseconds and seconds of work. Tissue that has left
+  /// the ball is still on its way, and lost after ten windows.
+  Rest settle(double depth, int most, double seconds) {
+    const double start = bench::process_seconds();
+    std::vector<Vector3> before = force_;
+    int still = 0, away = 0;
+    for (int i = 1; i <= most && bench::process_seconds() - start < seconds; ++i) {
+      // Slow updates and ticks are not waited for: each counts for the time it stands for.
+      next_tick_ = std::min(next_tick_, time_);
+      const double u = contender_.update_period();
+      next_update_ = std::min(next_update_, time_ + (u > 0.0 ? u : period));
+      advance(depth, false);
+      if (i % window() != 0) continue;
+      double change = 0.0, size = 0.0;
+      for (std::size_t b = 0; b < force_.size(); ++b) {
+        change = std::max(change, (force_[b] - before[b]).norm());
+        size = std::max(size, force_[b].norm());
+      }
+      before = force_;
+      still = size > 0.0 && change <= 2e-4 * size ? still + 1 : 0;
+      away = size > 0.0 ? 0 : away + 1;
+      if (still == 2) return Rest::reached;
+      if (away == 10) return Rest::lost;
+    }
+    return Rest::moving;
+  }
+
+ private:
+  /// Milliseconds over which a force at rest must stand still.
+  int window() const noexcept {
+    const double three_updates = 3.0 * contender_.update_period() / period;
+    return std::max(contender_.has_inertia() ? 40 : 4, static_cast<int>(std::ceil(three_updates)));
+  }
+  template <class Work>
+  double timed(Work&& work) const {
+    const std::int64_t start = platform::compute_ns();
+    work();
+    return std::max(0.0, 1e-9 * static_cast<double>(platform::compute_ns() - start) - clock_cost_);
+  }
+
+  const Bench& bench_;
+  Contender& contender_;
+  double clock_cost_;
+  double time_ = 0.0, next_tick_ = 0.0, next_update_ = 0.0;
+  std::vector<Vector3> force_, pending_;
+};
+
+}  // namespace tradeoff
