@@ -154,7 +154,8 @@ TEST_CASE("a cut under the tool: the force goes on, and changes no faster than t
   CHECK((settled - last).norm() < 0.1 * last.norm());
 }
 
-TEST_CASE("cut while touched until nothing is left: every force finite and limited", "[cut][extreme][F1][F3]") {
+TEST_CASE("cut while touched until nothing is left: every force finite and limited, no mass lost",
+          "[cut][extreme][F1][F3][M15]") {
   const auto mesh = box_tet4({0.05, 0.05, 0.05}, {4, 4, 4});
   Tissue tissue(mesh, held_below(), soft);
   HapticServo servo(tissue, SphereTool{});
@@ -170,7 +171,10 @@ TEST_CASE("cut while touched until nothing is left: every force finite and limit
     CutOrder order;
     for (int k = 0; k < 6; ++k) {
       const auto e = static_cast<Index>(random.uniform(0.0, static_cast<double>(mesh.element_count())));
-      random.uniform()<0.5 || cuts> 60 ? order.remove.push_back(e) : order.open.push_back({e, k % 4});
+      if (random.uniform() < 0.5 || cuts > 60)
+        order.remove.push_back(e);
+      else
+        order.open.push_back({e, k % 4});
     }
     if (cuts > 120)
       for (Index e = 0; e < mesh.element_count(); ++e) order.remove.push_back(e);

@@ -44,6 +44,26 @@ TEST_CASE("columns computed ahead end at the force of columns computed in the ti
   }
 }
 
+TEST_CASE("columns computed by a thread are those computed in the tick, bit for bit", "[haptic][columns][M13]") {
+  Sparse ahead = make_model(ColumnFill::ahead), in_tick = make_model(ColumnFill::in_tick);
+  const int count = static_cast<int>(in_tick.contact_surface().vertex_count());
+  REQUIRE(count > 100);
+  REQUIRE(count <= 256);
+  for (int first = 0; first < count; first += 8) {
+    std::vector<int> some(static_cast<std::size_t>(std::min(8, count - first)));
+    std::iota(some.begin(), some.end(), first);
+    REQUIRE(!in_tick.require_columns(some).has(StatusFlag::degraded_model));
+    bool complete = false;
+    for (int i = 0; i < 20'000 && !complete; ++i) {
+      complete = !ahead.require_columns(some).has(StatusFlag::degraded_model);
+      if (!complete) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+    REQUIRE(complete);
+    for (const int i : some)
+      for (const int j : some) REQUIRE(Matrix3(ahead.compliance(i, j)) == Matrix3(in_tick.compliance(i, j)));
+  }
+}
+
 TEST_CASE("a column that is not there yet is flagged, and the force stays finite and soft",
           "[haptic][columns][extreme]") {
   Sparse ahead = make_model(ColumnFill::ahead), in_tick = make_model(ColumnFill::in_tick);
