@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "../common/timing.hpp"
+#include "page.hpp"
 #include "session.hpp"
 
 namespace tradeoff {
@@ -97,7 +98,7 @@ void judge(const Bench& bench, Contender& contender, Row& row) {
     row.update_period = contender.update_period();
     if (const double usual = bench::percentile(session.updates, 0.5); usual > row.update_period)
       row.remark += (row.remark.empty() ? "" : "; ") +
-                    ("slow motion: " + number(std::round(1e3 * usual)) + " ms for " + number(1e3 * row.update_period));
+                    ("slow motion: " + three_digits(1e3 * usual) + " ms for " + three_digits(1e3 * row.update_period));
   }
   const bool finite = session.finite && std::isfinite(row.felt) && std::isfinite(row.force_small) &&
                       std::isfinite(row.force_large) && std::isfinite(row.moved_small) &&
@@ -107,7 +108,7 @@ void judge(const Bench& bench, Contender& contender, Row& row) {
   else if (!unsettled.empty())
     row.verdict = unsettled;
   else if (!(row.own_error <= row.allowed))
-    row.verdict = "OFF ITS OWN FORMULA by " + number(row.own_error);
+    row.verdict = "OFF ITS OWN FORMULA by " + three_digits(row.own_error);
 }
 
 }  // namespace

@@ -117,7 +117,7 @@ class Plot {
   }
 
  private:
-  static constexpr double width = 860, height = 460, left = 70, right = 840, top = 15, bottom = 410;
+  static constexpr double width = 880, height = 460, left = 70, right = 840, top = 15, bottom = 410;
 
   double x(double seconds) const {
     return left + (right - left) * std::clamp((std::log10(seconds) - low_x_) / (high_x_ - low_x_), 0.0, 1.0);
