@@ -55,10 +55,12 @@ measure() {  # <name> <macros ...>: a line of tiny.csv
 # One for every processor at a time: what is counted is processor time. Lines keep their order.
 jobs=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 rows=0
+rm -f "$out"/row_*
 row() {
+  while [ $((rows - $(find "$out" -name 'row_*.done' | wc -l))) -ge "$jobs" ]; do sleep 1; done
   rows=$((rows + 1))
-  measure "$@" > "$out/row_$rows.txt" &
-  if [ $((rows % jobs)) -eq 0 ]; then wait; fi
+  line=$out/row_$rows
+  { measure "$@" > "$line.txt"; : > "$line.done"; } &
 }
 
 row "a mesh only"

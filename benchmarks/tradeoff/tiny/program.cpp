@@ -43,7 +43,12 @@ int press(Servo& servo, int ticks) {
 
 int main(int argc, char** argv) {
   const int ticks = argc > 1 ? std::atoi(argv[1]) : 1000;
-  const Mesh<Tet4> mesh = box_tet4(Vector3(0.032, 0.032, 0.012), {16, 16, 6}, BoxSplit::six);
+#ifdef TINY_PROMOTE
+  const std::array<int, 3> cells{8, 8, 3};  // as many nodes as the others have
+#else
+  const std::array<int, 3> cells{16, 16, 6};
+#endif
+  const Mesh<Tet4> mesh = box_tet4(Vector3(0.032, 0.032, 0.012), cells, BoxSplit::six);
   Scene scene;
   scene.fix("z0").touch("z1");
 #ifdef TINY_SOFT
