@@ -27,7 +27,7 @@ double spectral_radius(const SimulatedOptions& o, int delay, double stiffness) {
   if (delay == 0) {
     loop.col(0) -= stiffness * over.col(2).head<2>();
   } else {
-    loop.block(0, 2, 2, 1) = over.col(2).head<2>();
+    loop.block<2, 1>(0, 2) = over.col(2).head<2>();
     for (int i = 0; i + 1 < delay; ++i) loop(2 + i, 3 + i) = 1.0;
     loop(1 + delay, 0) = -stiffness;
   }

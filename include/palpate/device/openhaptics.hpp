@@ -23,6 +23,7 @@
 #include <palpate/device/render_limits.hpp>
 #include <palpate/device/sdk_state.hpp>
 
+#include <array>
 #include <atomic>
 #include <optional>
 #include <thread>
@@ -127,8 +128,9 @@ class OpenHapticsDevice {
   }
 
   static double asked(HDenum parameter, double scale, const char* what) {
-    HDdouble value = 0.0;
-    hdGetDoublev(parameter, &value);
+    std::array<HDdouble, 16> values{};  // room for the largest that may be asked, should a driver write too much
+    hdGetDoublev(parameter, values.data());
+    const HDdouble value = values[0];
     require_no_error(std::string("tell its ") + what);
     if (!(std::isfinite(value) && value > 0.0))
       raise(SetupErrorKind::bad_argument, std::string("the SDK says that its ") + what + " is " + number(value),
