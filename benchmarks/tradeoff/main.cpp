@@ -3,16 +3,15 @@
 //   bench_tradeoff [MESH --fix GROUP --touch GROUP] [--scene palpate|retract|grasp] [--budget-us N] [--out FOLDER]
 //                  [--youngs PA] [--poisson NU] [--only WORD] [--full]
 //                  [--docs FILE]      also into a document, between <!-- tradeoff SCENE --> and <!-- end -->
-//   bench_tradeoff --required [--out FOLDER] [--docs FILE]      what it costs to keep more than a scene requires
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 
+#include "../common/document.hpp"
 #include "../common/row.hpp"
 #include "direct_reference.hpp"
 #include "page.hpp"
-#include "required.hpp"
 
 #include <palpate/core/platform.hpp>
 #include <palpate/mesh/refine.hpp>
@@ -37,11 +36,6 @@ Mesh<Tet4> refined(const Mesh<Tet4>& mesh, bool full) {
   return mesh.element_count() <= (full ? 100000 : 20000) ? refine(mesh) : mesh;
 }
 
-std::string contents(const std::string& path) {
-  std::ifstream in(path);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 void print(const Row& r) {
   std::printf("%-100s set-up %8.4g ms  p99 %9.4g us  force %6.2f %% %6.2f %%  felt %6.2f %%  %s%s\n", r.name().c_str(),
               1e3 * r.setup, 1e6 * r.p99, 100.0 * r.force_small, 100.0 * r.force_large, 100.0 * r.felt,
@@ -57,19 +51,8 @@ int main(int argc, char** argv) try {
   if (!(budget > 0.0)) raise(SetupErrorKind::bad_argument, "a budget of nothing", "Give microseconds: --budget-us 50");
   std::filesystem::create_directories(out);
   const bool full = bench::has_option(argc, argv, "--full");
-  if (const std::string file = bench::option(argc, argv, "--put", ""); !file.empty()) {
-    put_in_document(bench::option(argc, argv, "--docs", ""), bench::option(argc, argv, "--marker", ""), contents(file));
-    return 0;
-  }
   const std::int64_t start = platform::wall_ns();
   const PressScene scene = make_scene(scene_options(argc, argv));
-  if (bench::has_option(argc, argv, "--required")) {
-    Bench bench{.scene = scene, .reference = {}, .stiffening = {}, .near = {}, .all = {}};
-    const bool right = measure_required(bench, out);
-    if (const std::string document = bench::option(argc, argv, "--docs", ""); !document.empty())
-      put_in_document(document, "required", contents(out + "/required.md"));
-    return right ? 0 : 1;
-  }
   Bench bench{.scene = scene,
               .reference = full ? make_direct_reference(scene, 0.15) : make_reference(scene, 0.15),
               // curves are measured by pressing along the normal: they know nothing of lifting and pinching a lobe
@@ -101,7 +84,7 @@ int main(int argc, char** argv) try {
   write_csv(rows, base + ".csv");
   write_page(bench, rows, budget, base + ".html");
   if (const std::string document = bench::option(argc, argv, "--docs", ""); !document.empty()) {
-    put_in_document(document, "tradeoff " + scene.name, summary(bench, rows, budget));
+    bench::put_in_document(document, "tradeoff " + scene.name, summary(bench, rows, budget));
     const auto picture = std::filesystem::path(document).replace_filename("tradeoff-" + scene.name + ".svg");
     write_picture(bench, rows, budget, picture.string());
   }

@@ -36,7 +36,5 @@ void write_plot(std::ostream& out, const std::vector<Row>& rows, double Row::*er
 std::string summary(const Bench& bench, const std::vector<Row>& rows, double budget);
 /// The plot of what is felt, as SVG.
 void write_picture(const Bench& bench, const std::vector<Row>& rows, double budget, const std::string& path);
-/// Puts `text` into a document between <!-- marker --> and <!-- end -->. Throws bad_argument where these are not.
-void put_in_document(const std::string& document, const std::string& marker, const std::string& text);
 
 }  // namespace tradeoff

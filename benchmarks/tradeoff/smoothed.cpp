@@ -1,6 +1,5 @@
 // Tetrahedra without locking.
 #include "linear.hpp"
-#include "required.hpp"
 
 namespace tradeoff {
 
@@ -15,10 +14,6 @@ void add_smoothed(const Bench& bench, std::vector<Entry>& entries) {
     if (bench.full || mesh == std::string("near"))
       entries.push_back(
           linear_entry<E, Condensed<SelectiveInverse>>(bench, name, "Condensed<SelectiveInverse>", mesh, near_group));
-}
-
-std::unique_ptr<Contender> make_condensed(const Bench& bench, const std::string& touched) {
-  return std::make_unique<LinearContender<Smoothed<Tet4>, Condensed<SelectiveInverse>>>(bench, "given", touched);
 }
 
 }  // namespace tradeoff

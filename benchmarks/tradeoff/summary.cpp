@@ -45,16 +45,4 @@ std::string summary(const Bench& bench, const std::vector<Row>& rows, double bud
   return out.str();
 }
 
-void put_in_document(const std::string& document, const std::string& marker, const std::string& text) {
-  std::ifstream in(document);
-  std::string all((std::istreambuf_iterator<char>(in)), {});
-  const std::string begin = "<!-- " + marker + " -->\n", end = "<!-- end -->";
-  const std::size_t from = all.find(begin), to = from == all.npos ? from : all.find(end, from);
-  if (to == all.npos)
-    raise(SetupErrorKind::bad_argument, document + " has no place for '" + marker + "'",
-          "Give it lines <!-- " + marker + " --> and " + end);
-  all.replace(from + begin.size(), to - from - begin.size(), text);
-  std::ofstream(document) << all;
-}
-
 }  // namespace tradeoff

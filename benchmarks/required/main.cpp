@@ -1,14 +1,26 @@
-#include "required.hpp"
-
+// Only what the scene requires, measured: what it costs to keep more of a body than is touched. Smoothed<Tet4>,
+// LinearElastic, Condensed<SelectiveInverse> on the organ, from the ten nodes nearest to the ball to the whole surface.
+//   bench_required [--out FOLDER] [--docs FILE]                  the table, also into a document
+//   bench_required --put FILE --marker WORD --docs FILE          another table into a document
+// Returns 1 when the force depends on what else is kept, which it must not.
 #include <palpate/mesh/selection.hpp>
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
+#include "../common/document.hpp"
+#include "../common/row.hpp"
 #include "../common/timing.hpp"
+#include "../tradeoff/linear.hpp"
 
-namespace tradeoff {
 namespace {
+
+using namespace tradeoff;
+
+std::unique_ptr<Contender> make_condensed(const Bench& bench, const std::string& touched) {
+  return std::make_unique<LinearContender<Smoothed<Tet4>, Condensed<SelectiveInverse>>>(bench, "given", touched);
+}
 
 /// A group of the boundary nodes nearest to the ball and the faces between them. Its name.
 std::string add_nearest(Mesh<Tet4>& mesh, const Vector3& point, std::size_t count) {
@@ -60,9 +72,8 @@ Required measure_touched(const Bench& bench, const std::string& group) {
   return r;
 }
 
-}  // namespace
-
-bool measure_required(Bench& bench, const std::string& out) {
+/// required.csv and required.md in `out`. False when the force depends on what else is kept.
+bool measure(Bench& bench, const std::string& out) {
   std::vector<std::string> groups;
   for (const std::size_t count :
        {std::size_t{10}, std::size_t{30}, std::size_t{100}, std::size_t{300}, std::numeric_limits<std::size_t>::max()})
@@ -91,4 +102,20 @@ bool measure_required(Bench& bench, const std::string& out) {
   return same;
 }
 
-}  // namespace tradeoff
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const std::string out = bench::option(argc, argv, "--out", "."), docs = bench::option(argc, argv, "--docs", "");
+  if (const std::string file = bench::option(argc, argv, "--put", ""); !file.empty()) {
+    bench::put_in_document(docs, bench::option(argc, argv, "--marker", ""), bench::contents(file));
+    return 0;
+  }
+  std::filesystem::create_directories(out);
+  Bench bench{.scene = make_scene({}), .reference = {}, .stiffening = {}, .near = {}, .all = {}};
+  const bool right = measure(bench, out);
+  if (!docs.empty()) bench::put_in_document(docs, "required", bench::contents(out + "/required.md"));
+  return right ? 0 : 1;
+} catch (const std::exception& e) {
+  std::fprintf(stderr, "bench_required: %s\n", e.what());
+  return 2;
+}
