@@ -12,7 +12,7 @@ macro(build)
 endmacro()
 
 foreach(flag -ffast-math -Ofast -ffinite-math-only)
-  build(-O1 ${flag} -fsyntax-only)
+  build(-O1 ${flag} -fsyntax-only -Wfatal-errors)
   if(result EQUAL 0 OR NOT text MATCHES "palpate refuses -ffast-math")
     message("${text}")
     message(FATAL_ERROR "${flag} is not refused")
