@@ -142,7 +142,8 @@ class QuasiNonLinear {
   void settle(const Vector3& axis, double along, double across) noexcept {
     const double next_along = half_way(along_, axial_.ratio(along)),
                  next_across = half_way(across_, radial_.ratio(across));
-    if (next_along == along_ && next_across == across_ && (along_ == across_ || axis == axis_)) return;
+    const bool same_axis = along_ == across_ || (axis - axis_).norm() <= unfelt;
+    if (next_along == along_ && next_across == across_ && same_axis) return;
     along_ = next_along;
     across_ = next_across;
     axis_ = axis;
@@ -151,13 +152,15 @@ class QuasiNonLinear {
   }
   /// A change too small to feel is none, so that a hold keeps its compliances.
   static double half_way(double now, double wanted) noexcept {
-    return std::abs(wanted - now) <= 1e-5 * now ? now : 0.5 * (now + wanted);
+    return std::abs(wanted - now) <= unfelt * now ? now : 0.5 * (now + wanted);
   }
   void set_scale() noexcept {
     const double b = 1.0 / std::sqrt(across_);
     scale_ = (1.0 / std::sqrt(along_) - b) * axis_ * axis_.transpose();
     scale_.diagonal().array() += b;
   }
+
+  static constexpr double unfelt = 1e-5;  // relative, and radians of the axis
 
   Tissue* tissue_;
   StiffeningCurve axial_, radial_;
