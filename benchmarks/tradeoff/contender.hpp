@@ -36,9 +36,9 @@ class Contender {
 
 /// What a row says before it is measured.
 struct Description {
-  std::string family;  ///< condensed, uncondensed, moving, explicit, baseline
-  std::string element, mesh, kinematics, solver, kept, scalar, work;
-  std::string paste;      ///< the composition as C++, empty for baselines
+  std::string family{};  ///< condensed, uncondensed, moving, explicit, baseline
+  std::string element{}, mesh{}, kinematics{}, solver{}, kept{}, scalar{}, work{};
+  std::string paste{};    ///< the composition as C++, empty for baselines
   double allowed = 1e-3;  ///< of own_error
   bool own_core = false;  ///< needs a thread beside the one that ticks
 
@@ -63,8 +63,8 @@ struct Row : Description {
 
 /// A way to make a contender.
 struct Entry {
-  Description description;
-  std::function<std::unique_ptr<Contender>()> make;
+  Description description{};
+  std::function<std::unique_ptr<Contender>()> make{};
 };
 
 /// What all contenders share.
@@ -86,6 +86,18 @@ std::vector<std::string> meshes_for_node_contact(const Bench& bench);
 
 inline std::string mesh_name(const std::string& mesh) {
   return mesh == "near" ? "refined near" : mesh == "all" ? "refined" : "as given";
+}
+
+/// What is in use elsewhere, in double; `allowed` of its own error.
+inline Description baseline(const std::string& mesh, const std::string& element, const std::string& kinematics,
+                            const std::string& solver, double allowed) {
+  return {.family = "baseline",
+          .element = element,
+          .mesh = mesh_name(mesh),
+          .kinematics = kinematics,
+          .solver = solver,
+          .scalar = "double",
+          .allowed = allowed};
 }
 
 /// Makes, drives and judges one contender.

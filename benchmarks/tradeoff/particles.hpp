@@ -119,18 +119,4 @@ class ParticleContender : public Contender {
   std::vector<Vector3> forces_, now_, before_;  // of the balls; where they are in a step, where they were last
 };
 
-inline Entry particle_entry(const std::string& mesh, const std::string& element, const std::string& kinematics,
-                            const std::string& solver) {
-  Entry entry;
-  Description& d = entry.description;
-  d.family = "baseline";
-  d.element = element;
-  d.mesh = mesh_name(mesh);
-  d.kinematics = kinematics;
-  d.solver = solver;
-  d.scalar = "double";
-  d.allowed = 0.05;
-  return entry;
-}
-
 }  // namespace tradeoff

@@ -152,31 +152,18 @@ class Interpolated : public Contender {
   std::vector<Vector3> centres_, from_, to_, forces_;
 };
 
-Entry plain_entry(const std::string& mesh, const std::string& solver, double allowed) {
-  Entry entry;
-  Description& d = entry.description;
-  d.family = "baseline";
-  d.element = "Tet4";
-  d.mesh = mesh_name(mesh);
-  d.kinematics = "linear";
-  d.solver = solver;
-  d.scalar = "double";
-  d.allowed = allowed;
-  return entry;
-}
-
 }  // namespace
 
 void add_plain_eigen(const Bench& bench, std::vector<Entry>& entries) {
   for (const std::string& mesh : meshes_for_node_contact(bench)) {
-    Entry entry = plain_entry(mesh, "Eigen SimplicialLDLT, solved every tick", 1e-3);
+    Entry entry{baseline(mesh, "Tet4", "linear", "Eigen SimplicialLDLT, solved every tick", 1e-3)};
     entry.make = [&bench, mesh] { return std::make_unique<EveryTick<Ldlt>>(bench, bench.mesh(mesh)); };
     entries.push_back(entry);
     if (mesh != "given" && !bench.full) continue;
-    entry = plain_entry(mesh, "Eigen ConjugateGradient 1e-4, every tick", 0.05);
+    entry.description = baseline(mesh, "Tet4", "linear", "Eigen ConjugateGradient 1e-4, every tick", 0.05);
     entry.make = [&bench, mesh] { return std::make_unique<EveryTick<Gradients>>(bench, bench.mesh(mesh)); };
     entries.push_back(entry);
-    entry = plain_entry(mesh, "Eigen SimplicialLDLT, 30 Hz", 1e-3);
+    entry.description = baseline(mesh, "Tet4", "linear", "Eigen SimplicialLDLT, 30 Hz", 1e-3);
     entry.description.work = "forces interpolated";
     entry.description.own_core = true;
     entry.make = [&bench, mesh] {

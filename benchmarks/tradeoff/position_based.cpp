@@ -102,8 +102,8 @@ void add_position_based(const Bench& bench, std::vector<Entry>& entries) {
   for (const std::string& mesh : meshes_for_node_contact(bench))
     for (const int steps : {1, 5, 20}) {
       if (mesh != "given" && steps != 5 && !bench.full) continue;
-      Entry entry =
-          particle_entry(mesh, "XPBD", "neo-Hookean constraints", std::to_string(steps) + " substeps of one sweep");
+      Entry entry{
+          baseline(mesh, "XPBD", "neo-Hookean constraints", std::to_string(steps) + " substeps of one sweep", 0.05)};
       entry.make = [&bench, mesh, steps] {
         return std::make_unique<ParticleContender<PositionBased>>(bench, PositionBased(bench, bench.mesh(mesh)), steps);
       };

@@ -99,19 +99,17 @@ template <class Tissue, class E, class Law>
 Entry soft_entry(const Bench& bench, const std::string& element, const std::string& law, const std::string& solver,
                  const std::string& mesh, const std::string& scalar, const std::string& work,
                  const typename Tissue::Options& options, const std::string& paste) {
-  Entry entry;
-  Description& d = entry.description;
-  d.family = "moving";
-  d.element = element;
-  d.mesh = mesh_name(mesh);
-  d.kinematics = law;
-  d.solver = solver;
-  d.kept = kept_name(near_group);
-  d.scalar = scalar;
-  d.work = work;
-  d.paste = paste;
-  d.allowed = 0.05;
-  d.own_core = true;
+  Entry entry{{.family = "moving",
+               .element = element,
+               .mesh = mesh_name(mesh),
+               .kinematics = law,
+               .solver = solver,
+               .kept = kept_name(near_group),
+               .scalar = scalar,
+               .work = work,
+               .paste = paste,
+               .allowed = 0.05,
+               .own_core = true}};
   entry.make = [&bench, mesh, options] {
     return std::make_unique<SoftContender<Tissue, E, Law>>(bench, mesh, options);
   };

@@ -105,7 +105,7 @@ std::unique_ptr<Contender> make_tuned_springs(const Bench& bench, const Mesh<Tet
 
 void add_springs(const Bench& bench, std::vector<Entry>& entries) {
   for (const std::string& mesh : meshes_for_node_contact(bench)) {
-    Entry springs = particle_entry(mesh, "mass-spring", "Van Gelder's stiffness", "semi-implicit Euler");
+    Entry springs{baseline(mesh, "mass-spring", "Van Gelder's stiffness", "semi-implicit Euler", 0.05)};
     springs.make = [&bench, mesh] { return make_springs(bench, bench.mesh(mesh)); };
     entries.push_back(springs);
     springs.description.kinematics = "stiffness tuned at the small depth";
