@@ -169,6 +169,15 @@ TEST_CASE("a tissue that has stiffened keeps the laws of tissues", "[model][quas
   const std::uint64_t still = tissue.compliance_revision();
   settled_force(tissue, node, {0, 1, 2}, {2e-3, 1e-3, -4e-3});
   CHECK(tissue.compliance_revision() == still);  // a hold keeps its compliances
+  const Vector3 force = settled_force(tissue, node, {0, 1, 2}, {2e-3, 1e-3, -4e-3});
+  for (const double turn : {1e-9, -1e-9, 0.0}) {  // as rounding does, and a shaking sensor
+    const VertexForce turned{node, force + turn * force.unitOrthogonal() * force.norm()};
+    tissue.end_tick({&turned, 1});
+  }
+  CHECK(tissue.compliance_revision() == still);
+  const VertexForce elsewhere{node, force + 0.1 * force.norm() * force.unitOrthogonal()};
+  tissue.end_tick({&elsewhere, 1});
+  CHECK(tissue.compliance_revision() != still);
   const double none = std::numeric_limits<double>::quiet_NaN();
   const VertexForce bad{node, {none, 0.0, 0.0}};
   tissue.end_tick({&bad, 1});
