@@ -6,7 +6,7 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/local/isotropic.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Spatial gradients of all elements, times the root of the volume: what K_ab is a sum of products of.
 template <ConstantGradient E>
@@ -57,4 +57,4 @@ void assemble_rows(const Mesh<E>& mesh, const NodeElements& around, const std::v
   }
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -8,7 +8,7 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/local/isotropic.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(StiffnessOperator<BlockMatrix>);
 
@@ -62,4 +62,4 @@ struct Assembled {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

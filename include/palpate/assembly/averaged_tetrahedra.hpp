@@ -6,7 +6,7 @@
 #include <palpate/assembly/volume_watch.hpp>
 #include <palpate/mesh/quality.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Linear tetrahedra with the average nodal Jacobian of Joldes, Wittek and Miller (2009): J of a node is the mean of
 /// the elements around it by volume, J' of an element the mean of its nodes, and the law sees F' = (J'/J)^(1/3) F.
@@ -168,4 +168,4 @@ class AveragedTetrahedra {
   double probe_length_ = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/mesh/quality.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Total Lagrangian force of linear tetrahedra (Miller, Joldes, Lance, Wittek 2007): F from gradients at rest, f_a = V
 /// P grad N_a, Lanes<S, N> of elements at once. Elements lie in blocks of 512 that are added up in the cache first,
@@ -90,4 +90,4 @@ class BatchedTetrahedra {
   double probe_length_ = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

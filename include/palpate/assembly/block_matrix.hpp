@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Which node pairs share an element: per row (node) the sorted columns <= row, the diagonal last. Computed once per
 /// mesh.
@@ -125,4 +125,4 @@ inline BlockMatrix make_stiffness(BlockPattern pattern, const SetupLimits& limit
   return BlockMatrix(std::move(pattern));
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

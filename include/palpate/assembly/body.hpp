@@ -8,7 +8,7 @@
 
 #include <utility>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// One material per region, by name; the name `everywhere` stands for all regions not named.
 template <Material M>
@@ -138,4 +138,4 @@ Body<E> make_body(Mesh<E> mesh, const M& material) {
   return make_body(std::move(mesh), RegionMaterials<M>{{everywhere, material}});
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

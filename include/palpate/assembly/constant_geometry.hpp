@@ -4,7 +4,7 @@
 #include <palpate/assembly/body.hpp>
 #include <palpate/local/geometry.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Elements with one integration point: their gradients are constant (Tet4).
 template <class E>
@@ -22,4 +22,4 @@ PointGeometry<E> constant_geometry(const Mesh<E>& mesh, Index e) {
   return g;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 #include <palpate/core/tracked_rotation.hpp>
 #include <palpate/material/corotational.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The body of `Corotational` at a displacement, several elements at once: energy, force, and products with its
 /// stiffness at held rotations, R K R^T of Mueller and Gross (2004), which is positive semidefinite whatever the state.
@@ -154,4 +154,4 @@ class CorotatedTetrahedra {
   std::vector<DeformationReport> seen_;  // by block
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

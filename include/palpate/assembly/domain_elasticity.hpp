@@ -4,7 +4,7 @@
 #include <palpate/assembly/strain_domains.hpp>
 #include <palpate/local/split_elasticity.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The part of the elasticity [Pa] that acts in each domain of a body. Where the law changes from element to element
 /// (along fibres), the mean over the domain by volume: 288 bytes per domain.
@@ -53,4 +53,4 @@ class DomainElasticity {
   std::vector<Matrix6> elasticity_;  // of every domain, or both parts of every region
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/concepts/integrator.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Energy, force and tangent of a body at a displacement u, all dofs, 3 per node [m]. Called once per iteration or step
 /// for the whole body, so a virtual call costs nothing, and what is built on it is compiled once for all elements and
@@ -33,4 +33,4 @@ class ElasticForces {
   virtual void end_step(const VectorX&) noexcept {}
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

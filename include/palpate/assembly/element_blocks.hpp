@@ -7,7 +7,7 @@
 #include <numeric>
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Neighbouring elements of one region.
 struct ElementBlock {
@@ -63,4 +63,4 @@ std::vector<ElementBlock> element_blocks(const Mesh<E>& mesh, Index most, Index 
   return blocks;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

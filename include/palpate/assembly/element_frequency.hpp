@@ -7,7 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Upper bound of omega^2 [1/s^2] of a body at rest with lumped mass (lumped_mass): that of its worst element alone
 /// (Irons and Treharne 1971). Up to twice the true one in good meshes, more where there are slivers. Held or not. 10 us
@@ -32,4 +32,4 @@ double element_frequency_bound(const Body<E>& body) {
   return largest;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

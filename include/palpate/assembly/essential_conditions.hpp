@@ -3,7 +3,7 @@
 
 #include <palpate/mesh/selection.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Numbering of the free dofs of a mesh and the values of the others. Dof 3 i + c is component c of node i.
 struct EssentialConditions {
@@ -64,4 +64,4 @@ EssentialConditions resolve_essential(const Mesh<E>& mesh, const std::vector<Bou
   return c;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -11,7 +11,7 @@
 
 #include <numeric>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
@@ -117,4 +117,4 @@ inline double free_norm(const BlockMatrix& k, const EssentialConditions& conditi
   return sums.size() > 0 ? sums.maxCoeff() : 0.0;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/free_stiffness.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Lower half of K_ff on a pattern made once; new values are copied without allocation or search. 8 bytes per entry
 /// beside the matrix.
@@ -51,4 +51,4 @@ class FreeValues {
   std::vector<Index> place_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

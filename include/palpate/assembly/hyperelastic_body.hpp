@@ -5,7 +5,7 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/material/viscoelastic.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The law of one element: along the element's own fibres where there are some, else as the law has it.
 template <HyperelasticMaterial M>
@@ -106,4 +106,4 @@ HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, const RegionMaterial
   return make_hyperelastic_body(std::move(mesh), std::move(by_region));
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

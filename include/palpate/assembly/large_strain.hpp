@@ -9,7 +9,7 @@
 #include <palpate/local/geometry.hpp>
 #include <palpate/mesh/quality.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Integrates a body over its shape at rest (Belytschko, Liu, Moran, Nonlinear Finite Elements, 4.9): F = I + sum u_a
 /// grad N_a, f_a = sum_q P grad N_a dV. Gradients and volumes are computed once: (3 nodes + 1) x 8 bytes per
@@ -168,4 +168,4 @@ class LargeStrain final : public ElasticForces {
   double probe_length_ = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/elastic_forces.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// f = K u with a constant stiffness. Right for small displacements only; nothing is ever inside out.
 class LinearForces final : public ElasticForces {
@@ -33,4 +33,4 @@ class LinearForces final : public ElasticForces {
 
 static_assert(ForceOperator<LinearForces>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

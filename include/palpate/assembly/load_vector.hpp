@@ -5,7 +5,7 @@
 #include <palpate/local/loads.hpp>
 #include <palpate/mesh/selection.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Coordinates of a boundary face's nodes, one per row [m].
 template <FaceElement F, Element E>
@@ -114,4 +114,4 @@ double strain_energy(const Body<E>& body, const VectorX& u) {
   return energy;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

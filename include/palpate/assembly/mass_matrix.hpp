@@ -6,7 +6,7 @@
 #include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/local/mass.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The consistent mass matrix [kg]: one number per pair of neighbouring nodes, lower half stored; every block is that
 /// number times the identity. A ninth of the memory of a BlockMatrix.
@@ -114,4 +114,4 @@ void for_each_free_entry(const MassMatrix& m, const EssentialConditions& conditi
       }
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

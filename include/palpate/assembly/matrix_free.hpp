@@ -7,7 +7,7 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/local/stiffness.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// K x by gathering each element's displacements, computing its stress and scattering its nodal forces. Keeps gradients
 /// and volumes only.
@@ -97,4 +97,4 @@ struct MatrixFree {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

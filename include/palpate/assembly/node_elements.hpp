@@ -8,7 +8,7 @@
 #include <numeric>
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Elements around every node, ascending. O(elements), allocates 4 bytes per element and node of it.
 class NodeElements {
@@ -40,4 +40,4 @@ class NodeElements {
   std::vector<NodeId> element_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

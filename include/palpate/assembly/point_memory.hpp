@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/hyperelastic_body.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Nothing: the law of a point is that of its region, and no step costs anything.
 struct NoMemory {
@@ -67,4 +67,4 @@ struct PointMemory<M, Points> {
   using type = PronyMemory<M, Points>;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

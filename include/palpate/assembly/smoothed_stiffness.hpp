@@ -5,7 +5,7 @@
 #include <palpate/assembly/domain_elasticity.hpp>
 #include <palpate/local/isotropic.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Pattern of nodes that share a domain: those of elements around a common node. O(nodes x neighbours^2), allocates.
 template <HasSmoothedStrain E>
@@ -108,4 +108,4 @@ class SmoothedStiffness {
   DomainElasticity elasticity_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/domain_elasticity.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Calls visit(domain, stress, strain) for every domain of a body: the elastic strain under displacements u [m],
 /// initial strains per region taken off, and the part of the stress [Pa] it makes.
@@ -66,4 +66,4 @@ SmoothedState smoothed_state(const Body<E>& body, const VectorX& u) {
   return state;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 #include <palpate/core/voigt.hpp>
 #include <palpate/element/smoothed.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Which part of the elasticity acts on the strain of a domain.
 enum class StrainPart : std::uint8_t { deviatoric, volumetric };
@@ -157,4 +157,4 @@ class StrainDomains {
   std::vector<Share> shares_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -9,7 +9,7 @@
 #include <palpate/core/tensor3.hpp>
 #include <palpate/element/tet4.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// N tetrahedra of one region. Lanes without an element have zero gradients and volume, so F = I there.
 template <class S, int N>
@@ -200,4 +200,4 @@ TetrahedronBatches<S, N> make_batches(const HyperelasticBody<Tet4, M>& body, dou
   return TetrahedronBatches<S, N>(body.rest.mesh);
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

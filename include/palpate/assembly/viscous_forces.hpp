@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A body at small strain with the Prony series of its regions.
 template <Element E>
@@ -162,4 +162,4 @@ class ViscousForces final : public ElasticForces {
   double dt_ = -1.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

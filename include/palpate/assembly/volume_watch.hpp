@@ -4,7 +4,7 @@
 #include <palpate/assembly/tetrahedron_batches.hpp>
 #include <palpate/concepts/integrator.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The report of two parts of a body.
 inline void add_report(const DeformationReport& part, DeformationReport& all) noexcept {
@@ -62,4 +62,4 @@ class VolumeWatch {
   S at_ = S(0);
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The stiffness of all dofs of a mesh, constrained ones included (x y z per node). `apply` computes y = K x [N]
 /// without allocating; `diagonal_blocks` returns the 3 x 3 block of every node. Laws: testing/assembler_laws.hpp.
@@ -17,4 +17,4 @@ concept StiffnessOperator = requires(const K& k, const VectorX& x, VectorX& y) {
   { k.bytes() } -> std::convertible_to<std::size_t>;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -5,7 +5,7 @@
 
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A prepared static system over the free dofs with some of them kept. `solve_into` gives the exact displacement under
 /// any load (loads on condensed dofs included); `compliance_column(j, c)` writes the response of the kept dofs to a
@@ -17,4 +17,4 @@ concept StaticSystem = LinearSolver<S> && requires(S& system, Index j, VectorX& 
   { system.bytes() } -> std::convertible_to<std::size_t>;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 #include <array>
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A surface element: `nodes` shape functions of two reference coordinates.
 /// `shape(xi)` is nodes x 1, `gradient(xi)` nodes x 2, `reference_nodes()` nodes x 2.
@@ -87,4 +87,4 @@ constexpr decltype(auto) with_face_element([[maybe_unused]] std::size_t nodes, V
 template <class E>
 using ElementNodes = Eigen::Matrix<double, E::nodes, 3>;
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 
 #include <array>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What a device says about its tool. SI units, the device's own frame.
 struct ToolState {
@@ -49,4 +49,4 @@ concept HapticDevice = requires(D& device, const D& constant, const Vector3& v) 
   { device.stop() } noexcept;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

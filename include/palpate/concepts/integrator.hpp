@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// How far a state is from inside out.
 struct DeformationReport {
@@ -70,4 +70,4 @@ concept NewtonProblem = requires(P& p, const VectorX& x, VectorX& y) {
   { p.rounding() } noexcept -> std::convertible_to<double>;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

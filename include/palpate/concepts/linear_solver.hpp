@@ -4,7 +4,7 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What a solve says about itself.
 struct SolveReport {
@@ -30,4 +30,4 @@ concept LinearSolver = requires(S& solver, const VectorX& b, VectorX& x) {
   { solver.solve_into(b, x) } noexcept -> std::same_as<SolveReport>;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 
 #include <optional>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The problem with a parameter of a material; `what` names it.
 inline SetupProblem parameter_problem(SetupErrorKind kind, const std::string& what, double value, double threshold,
@@ -82,4 +82,4 @@ concept FibreHyperelasticMaterial =
       { m.admits(f, fibre) } -> std::same_as<bool>;
     };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A named part of a mesh. A condition on a group applies to all its `nodes`; loads per area use its `faces`, loads per
 /// volume its `elements`. Any of the three may be empty.
@@ -46,4 +46,4 @@ concept FibreMesh = MeshView<M> && requires(const M& m, Index e) {
 template <class M, class E>
 concept MeshOf = MeshView<M> && M::nodes_per_element == E::nodes;
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

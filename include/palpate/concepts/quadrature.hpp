@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// One point of a rule: reference coordinates and weight.
 template <int Dimension>
@@ -24,4 +24,4 @@ concept Quadrature = requires {
                         std::array<QuadraturePoint<Q::dimension>, Q::points.size()>>;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

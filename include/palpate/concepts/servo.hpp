@@ -6,7 +6,7 @@
 #include <concepts>
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Something that turns the states of all tools into the forces on all tools, once per tick. `tick` gets one state per
 /// tool and returns one force per tool in the same order; the span stays valid until the next tick. It never throws,
@@ -16,4 +16,4 @@ concept Servo = requires(S& servo, std::span<const ToolState> tools) {
   { servo.tick(tools) } noexcept -> std::same_as<std::span<const ToolForce>>;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

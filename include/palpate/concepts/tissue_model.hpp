@@ -8,7 +8,7 @@
 
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A force on one vertex of the touchable surface, model frame.
 struct VertexForce {
@@ -60,4 +60,4 @@ concept MovingTissue = requires(T& tissue, const T& constant) {
   { constant.step() } -> std::convertible_to<double>;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

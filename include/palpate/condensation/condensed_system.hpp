@@ -4,7 +4,7 @@
 #include <palpate/concepts/condensation.hpp>
 #include <palpate/condensation/schur.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A Schur complement with a dense solver for it. Kept dofs are answered by the dense solver alone; `solve_into`
 /// recovers the condensed ones by back-substitution, at visual rate. Satisfies StaticSystem. Copies share the factors.
@@ -63,4 +63,4 @@ class CondensedSystem {
   VectorX kept_load_, kept_answer_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -5,7 +5,7 @@
 #include <palpate/linear/conjugate_gradient.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A solver that finds few entries of the answer to few loads faster than all of it.
 template <class S>
@@ -73,4 +73,4 @@ class IterativeSolver {
   ConjugateGradientSolver solver_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// An axis-aligned box.
 struct Box {
@@ -184,4 +184,4 @@ class Bvh {
   std::vector<Node> nodes_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

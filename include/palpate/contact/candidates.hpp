@@ -5,7 +5,7 @@
 #include <palpate/contact/contact_samples.hpp>
 #include <palpate/contact/surface_displacement.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What a row was linearised with and what came of it, of the last linearisation and the one before.
 struct NormalHistory {
@@ -321,4 +321,4 @@ class Candidates {
   int next_ = 0;  // vertex of the round
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/contact/sphere_tool.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A rigid capsule: all points within `radius` of a piece of its axis, from `-half_length` to `half_length` about the
 /// tool's position. The thesis' cylinder, with round ends. Turns with the device's orientation; without length a ball.
@@ -29,4 +29,4 @@ struct CapsuleTool {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

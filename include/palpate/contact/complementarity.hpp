@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Solves lambda >= 0, g = b + W lambda >= 0, lambda . g = 0 for a symmetric positive (semi)definite W of at most
 /// `Capacity` rows, exactly. First by block principal pivoting (Kostreva 1978; Judice and Pires 1994): whole sets of
@@ -218,4 +218,4 @@ class ComplementarityProblem {
   double tolerance_ = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

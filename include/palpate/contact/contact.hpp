@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// How far a tick may go.
 struct ContactParameters {
@@ -91,4 +91,4 @@ struct Contact {
   Vector3 total() const noexcept { return force * normal + friction; }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -5,7 +5,7 @@
 #include <palpate/contact/grasp.hpp>
 #include <palpate/contact/proxy_motion.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// All contacts of all tools with one tissue. The surface is held off the ball at material points: vertices, and a
 /// lattice on edges longer than `sample_spacing` radii. Points fixed in the material meet a sliding ball one after the
@@ -289,4 +289,4 @@ class ContactProblem {
   double floor_ = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 #include <palpate/contact/coulomb_friction.hpp>
 #include <palpate/contact/point_compliance.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Up to `Capacity` candidates that press or might, as rows of W lambda + b: adds and drops them, builds W from the
 /// tissue's compliance, solves, and hands forces and displaced points back. Nothing allocates after construction.
@@ -293,4 +293,4 @@ class ContactRows {
   int count_ = 0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/setup_error.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A material point of the contact surface: three vertices and the weights by which it reads their displacement and
 /// spreads its force.
@@ -118,4 +118,4 @@ inline void require_dense_points(const ContactSurface& surface, double radius) {
   raise(std::move(problem));
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -8,7 +8,7 @@
 
 #include <map>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Vertices and outward triangles of the touchable surface where it rests under its loads, no tool touching.
 class ContactSurface {
@@ -155,4 +155,4 @@ class ContactSurface {
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20; -1 at the rim
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Coulomb's law over one tick: contact i drags with t_i across its normal, |t_i| <= mu lambda_i, so that it does not
 /// slip, or against the slip with all of mu lambda_i. Slips are s_i = d_i + sum_j W_ij (lambda_j n_j + t_j), where d_i
@@ -119,4 +119,4 @@ class CoulombFriction {
   std::array<double, capacity> step_{};
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

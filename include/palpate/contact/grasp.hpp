@@ -3,7 +3,7 @@
 
 #include <palpate/contact/candidates.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A point of the surface held by a tool, as three rows that pull as well as push. No row of its own is left to it.
 struct Grasp {
@@ -26,4 +26,4 @@ struct Grasp {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// J_p C J_q^T [m/N], the displacement of point p per force on point q, 3 x 3, for up to `Capacity` points at a time.
 /// Contact points are fixed in the material: as long as they press, only directions change, and this does not. A point
@@ -84,4 +84,4 @@ class PointCompliance {
   int next_ = 0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

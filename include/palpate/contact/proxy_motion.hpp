@@ -8,7 +8,7 @@
 #include <array>
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Moves the proxies of all tools: along with their devices, then from linearisation to linearisation to where the
 /// answer has them. Says how far the next step goes and how much forces changed in the last. No allocation.
@@ -97,4 +97,4 @@ class ProxyMotion {
   std::array<Ahead, maximum_tools> ahead_{};
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A rigid ball at the tool's position.
 struct SphereTool {
@@ -20,4 +20,4 @@ struct SphereTool {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

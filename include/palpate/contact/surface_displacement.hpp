@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Forces on vertices, and the displacement of any vertex under them, computed when asked for and remembered until the
 /// forces change. `Capacity` bounds the number of loaded vertices.
@@ -83,4 +83,4 @@ class SurfaceDisplacement {
   std::uint64_t generation_ = 1, revision_ = 0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

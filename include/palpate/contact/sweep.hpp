@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// When a ball whose centre goes from `from` along `way` comes within `radius` of a point, as a share of the way;
 /// infinity when it does not, or moves away from it.
@@ -67,4 +67,4 @@ inline double first_touch(const ContactSurface& surface, const Vector3& from, co
   return first;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Tissues of any types that do not move by themselves as one TissueModel in the world's frame: a ball that touches two
 /// organs is one contact problem, with one force and one gate. Vertices are those of the members one after the other.
@@ -146,4 +146,4 @@ class TissueGroup {
 
 static_assert(TissueModel<TissueGroup>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/sweep.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Centres of the balls that stand for a capsule where single points are looked at: the ends, and between them no
 /// farther apart than a radius. Calls look(place on the axis from the middle [m]) for each.
@@ -58,4 +58,4 @@ inline void sweep(ContactTool& tool, const ContactSurface& surface, const Vector
   tool.torque.setZero();
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Where on a triangle a closest point lies: inside, on edge (i, i + 1) or at vertex i.
 enum class TriangleFeature : std::uint8_t { face, edge01, edge12, edge20, vertex0, vertex1, vertex2 };
@@ -77,4 +77,4 @@ inline TrianglePoint closest_point(const Vector3& p, const Vector3& a, const Vec
   return {{1.0 - v - w, v, w}, TriangleFeature::face};
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

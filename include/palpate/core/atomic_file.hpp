@@ -10,7 +10,7 @@
 #include <optional>
 #include <thread>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Writes under a name nobody else uses, `<path>.tmp-<16 hexadecimal digits>`, and renames at the end, which replaces
 /// an older file at once: who opens `path` finds the old file or the new one, and of several writers the last one
@@ -103,4 +103,4 @@ class AtomicFile {
   bool open_ = false;  // there is a temporary file
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -10,7 +10,7 @@
 #include <string>
 #include <system_error>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(std::numeric_limits<double>::is_iec559 && std::numeric_limits<float>::is_iec559,
               "binary files hold IEEE 754 numbers");
@@ -133,4 +133,4 @@ class BinaryReader {
   ReadFailure failure_ = ReadFailure::none;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

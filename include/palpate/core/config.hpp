@@ -14,17 +14,30 @@
 #error "palpate refuses -ffast-math: it removes the NaN checks that guard the device. Build without it."
 #endif
 
-// Layout of fixed-size Eigen members depends on compiler flags (-mavx512f changes their alignment), and what a refused
-// set-up does on -fno-exceptions. Both are part of the namespace, so translation units that differ fail to link instead
-// of corrupting memory or missing an exception. See docs/linking.md.
+// A header x.hpp declares; x.ipp beside it defines what is no template. Header-only (palpate::palpate), x.hpp includes
+// x.ipp at its end and every definition is inline. The target palpate::compiled defines PALPATE_COMPILED: its library
+// holds the definitions, and no other program compiles them.
+#if defined(PALPATE_COMPILED)
+#define PALPATE_HEADER_ONLY 0
+#define PALPATE_INLINE
+#define PALPATE_ABI_COMPILED _compiled
+#else
+#define PALPATE_HEADER_ONLY 1
+#define PALPATE_INLINE inline
+#define PALPATE_ABI_COMPILED
+#endif
+
+// Layout of fixed-size Eigen members depends on compiler flags (-mavx512f changes their alignment), what a refused
+// set-up does on -fno-exceptions, and where definitions are on the target. All three are part of the namespace, so
+// translation units that differ fail to link instead of corrupting memory or missing an exception. See docs/linking.md.
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
 #define PALPATE_HAS_EXCEPTIONS 1
-#define PALPATE_ABI_PASTE(align) v0_align##align
+#define PALPATE_ABI_PASTE(align, compiled) v0_align##align##compiled
 #else
-#define PALPATE_ABI_PASTE(align) v0_align##align##_no_exceptions
+#define PALPATE_ABI_PASTE(align, compiled) v0_align##align##_no_exceptions##compiled
 #endif
-#define PALPATE_ABI_NAME(align) PALPATE_ABI_PASTE(align)
-#define PALPATE_ABI PALPATE_ABI_NAME(EIGEN_MAX_STATIC_ALIGN_BYTES)
+#define PALPATE_ABI_NAME(align, compiled) PALPATE_ABI_PASTE(align, compiled)
+#define PALPATE_ABI PALPATE_ABI_NAME(EIGEN_MAX_STATIC_ALIGN_BYTES, PALPATE_ABI_COMPILED)
 
 #if defined(__GNUC__) || defined(__clang__)
 #define PALPATE_COLD [[gnu::cold, gnu::noinline]]

@@ -9,7 +9,7 @@
 #include <span>
 #include <string_view>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Types without padding, whose bytes are their value. Floating point counts: that 0 and -0 differ does no harm.
 template <class T>
@@ -74,4 +74,4 @@ class ContentHash {
   std::array<std::uint64_t, lane_count> lanes_{first_prime, second_prime, ~first_prime, ~second_prime};
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

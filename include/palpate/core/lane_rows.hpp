@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 template <class S, int N, class Id>
 PALPATE_ALWAYS_INLINE Triple<Lanes<S, N>> load_rows_by_loops(const S* rows, const Id* row) noexcept {
@@ -135,9 +135,9 @@ struct RowTranspose;
 
 #endif
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Reads x, y, z of N rows of four numbers: lane i gets the row that starts at rows[row[i]]. Transposed in registers.
 template <class S, int N, class Id>
@@ -171,4 +171,4 @@ PALPATE_ALWAYS_INLINE void add_rows(S* rows, const Id* row, const Triple<Lanes<S
                                       detail::part<W>(t.z, first));
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

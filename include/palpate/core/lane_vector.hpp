@@ -8,7 +8,7 @@
 #include <iterator>
 #include <type_traits>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(PALPATE_LANES_BY_LOOPS)
 
@@ -64,4 +64,4 @@ inline void select_lanes(const I& mask, const V& yes, const V& no, V& to) noexce
 
 #endif
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

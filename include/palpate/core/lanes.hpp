@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What a comparison of lanes gives: yes or no in each.
 template <class S, int N>
@@ -136,4 +136,4 @@ PALPATE_ALWAYS_INLINE bool all(const LaneMask<S, N>& mask) noexcept {
   return !any(!mask);
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/core/types.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The vector, shortened to length `most` >= 0 if it is longer; its direction is kept. `shortened` says whether. For any
 /// finite vector: it is divided by its largest component first, because the square of 1e308 is infinite.
@@ -18,4 +18,4 @@ inline Vector3 limit_length(const Vector3& v, double most, bool& shortened) noex
   return scaled * (most / length);
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -53,7 +53,7 @@ __declspec(dllimport) unsigned long __stdcall SetThreadAffinityMask(void*, unsig
 
 /// Every function of a system that lacks the thing does nothing and says so. Errors are the system's own numbers, 0 for
 /// none.
-namespace palpate::inline PALPATE_ABI::platform {
+namespace palpate { inline namespace PALPATE_ABI { namespace platform {
 
 inline constexpr int not_supported = -1;
 
@@ -241,4 +241,4 @@ inline void set_float_mode(std::uint64_t) noexcept {}
 inline constexpr std::uint64_t flush_denormals = 0;
 #endif
 
-}  // namespace palpate::inline PALPATE_ABI::platform
+}}}  // namespace palpate::platform

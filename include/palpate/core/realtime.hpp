@@ -3,7 +3,7 @@
 
 #include <palpate/core/platform.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Flushes denormals to zero (FTZ and DAZ) while it lives and restores the thread's mode afterwards. A body coming to
 /// rest decays into denormals, which cost 20 to 130 times a normal multiplication. Does nothing on processors it does
@@ -21,4 +21,4 @@ class FlushDenormals {
   std::uint64_t saved_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A rotation as four numbers, real part first; of unit length where not said otherwise.
 template <class S>
@@ -220,4 +220,4 @@ PALPATE_ALWAYS_INLINE Tensor3<S> closest_rotation(const Tensor3<S>& f) noexcept 
   return detail::rotation_of(closest_quaternion(f));
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 enum class SetupErrorKind {
   bad_argument,
@@ -172,4 +172,4 @@ inline SetupFailureHandler& setup_failure_handler() {
   raise(std::move(p));
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Where set-up stands.
 struct Progress {
@@ -44,4 +44,4 @@ struct SetupLimits {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

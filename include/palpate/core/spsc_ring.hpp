@@ -7,7 +7,7 @@
 #include <atomic>
 #include <cstddef>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Bounded first-in first-out queue, one thread pushes and one pops. Neither waits, locks or allocates.
 template <class T, std::size_t Capacity>
@@ -38,4 +38,4 @@ class SpscRing {
   alignas(64) std::atomic<std::size_t> tail_{0};
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

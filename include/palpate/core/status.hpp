@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 enum class StatusFlag : std::uint32_t {
   non_finite_input = 1u << 0,      ///< the device gave NaN, infinity or an impossible rotation
@@ -77,4 +77,4 @@ class StatusCounters {
   std::array<std::uint64_t, status_flag_count> counts_{};
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/core/lanes.hpp>
 #include <palpate/core/types.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Three numbers: a direction.
 template <class S>
@@ -128,4 +128,4 @@ inline bool all_finite(const Tensor3<double>& t) noexcept {
   return vector9(t).allFinite();
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

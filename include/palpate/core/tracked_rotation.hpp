@@ -3,7 +3,7 @@
 
 #include <palpate/core/rotation.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -48,4 +48,4 @@ PALPATE_ALWAYS_INLINE Tensor3<S> tracked_rotation(const Tensor3<S>& f, Quaternio
   return detail::rotation_of(q);
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

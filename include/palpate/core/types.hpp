@@ -8,7 +8,7 @@
 #include <limits>
 #include <type_traits>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Counts and offsets. 64 bit: (3 x surface nodes)^2 overflows 32 bits from 15 447 nodes on.
 using Index = std::int64_t;
@@ -53,4 +53,4 @@ concept FixedExpression = requires {
 template <class V, int N>
 concept FixedVector = FixedMatrix<V, N, 1>;
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/core/config.hpp>
 
 /// The library computes in m, N, Pa, kg and s. Where a source gives something else, say so: `5.4 * units::kPa`.
-namespace palpate::inline PALPATE_ABI::units {
+namespace palpate { inline namespace PALPATE_ABI { namespace units {
 
 inline constexpr double kPa = 1e3, MPa = 1e6, GPa = 1e9;                 ///< [Pa]
 inline constexpr double mm = 1e-3, cm = 1e-2, um = 1e-6, inch = 0.0254;  ///< [m]
@@ -14,4 +14,4 @@ inline constexpr double g_per_cm3 = 1e3;                                 ///< [k
 inline constexpr double ms = 1e-3;                                       ///< [s]
 inline constexpr double N_per_mm = 1e3;                                  ///< [N/m]
 
-}  // namespace palpate::inline PALPATE_ABI::units
+}}}  // namespace palpate::units

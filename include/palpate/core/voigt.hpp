@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI::voigt {
+namespace palpate { inline namespace PALPATE_ABI { namespace voigt {
 
 inline constexpr int xx = 0, yy = 1, zz = 2, xy = 3, xz = 4, yz = 5;
 
@@ -47,4 +47,4 @@ inline double von_mises(const Vector6& s) {
   return std::sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * shear);
 }
 
-}  // namespace palpate::inline PALPATE_ABI::voigt
+}}}  // namespace palpate::voigt

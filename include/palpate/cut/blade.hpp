@@ -6,7 +6,7 @@
 #include <palpate/core/realtime.hpp>
 #include <palpate/haptic/force_gate.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 struct BladeParameters {
   Vector3 edge{0.0, 0.01, 0.0};     ///< from one end of the sharp edge to the other, world frame [m]
@@ -147,4 +147,4 @@ class BladeServo {
   bool told_known_ = false;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What the edge of a blade sweeps between two places: the quadrilateral from edge (a0, b0) to edge (a1, b1) [m], as
 /// two triangles. The frame is that of the positions it is asked about.
@@ -68,4 +68,4 @@ std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const Blade
   return open;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

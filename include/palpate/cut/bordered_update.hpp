@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// K, symmetric positive definite, becomes [K + P A P^T, P B; B^T P^T, D]: rows P change, new ones are bordered on.
 /// With H = P^T K^-1 P the new inverse is, by block elimination of the new rows and the formula of Sherman, Morrison
@@ -79,4 +79,4 @@ struct BorderedUpdate {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -11,7 +11,7 @@
 
 #include <memory>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Stiffness of the held part of a topology, factorised with some nodes kept, and the compliance among these.
 template <Element E>
@@ -139,4 +139,4 @@ class CutBase {
   VectorX displacement_, kept_load_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Orders from any thread, and strokes from the one that ticks, which never waits. `take` hands out all there are; they
 /// count as open until they are done.
@@ -64,4 +64,4 @@ class CutOrders {
   std::atomic<unsigned> open_{0};
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -5,7 +5,7 @@
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/local/stiffness.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Material and loads by element: what an element carries leaves with it. Point loads stay with the node they were put
 /// on.
@@ -95,4 +95,4 @@ requires(!HasSmoothedStrain<E>) struct CutPhysics {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

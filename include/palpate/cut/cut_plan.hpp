@@ -4,7 +4,7 @@
 #include <palpate/cut/cut_base.hpp>
 #include <palpate/cut/element_changes.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The small problem of one cut. Refers to what it is made of.
 template <Element E>
@@ -114,4 +114,4 @@ class CutPlan {
   std::map<NodeId, std::array<Index, 3>> places_;  // of nodes that get some
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -5,7 +5,7 @@
 #include <palpate/cut/cut_surface.hpp>
 #include <palpate/cut/cuttable_options.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A body in a frame of its own, and what of it can be touched and will be cut.
 template <Element E>
@@ -43,4 +43,4 @@ CutPreparation<E> prepare_cut(const Mesh<E>& mesh, const Scene& scene, const Reg
   return {std::move(physics), std::move(topology), std::move(touchable), std::move(cuttable), origin};
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

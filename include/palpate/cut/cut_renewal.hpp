@@ -6,7 +6,7 @@
 #include <atomic>
 #include <thread>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Makes a system of a topology as it is now, in a thread of its own. Cuts may go on meanwhile: `take` adds all that
 /// came since as one. The destructor waits for what is in work. `physics` must outlive it.
@@ -49,4 +49,4 @@ class CutRenewal {
   std::thread thread_;  // last: it uses all the others
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

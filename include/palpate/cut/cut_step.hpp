@@ -5,7 +5,7 @@
 
 #include <memory>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What one cut does to the compliance among kept dofs: C_ij - z_i . y_j for those that were, and columns of their own
 /// for those that came. Immutable; a tick reads it next to the compliance before the cut.
@@ -40,4 +40,4 @@ struct CutStep {
   Index rank() const noexcept { return z.rows(); }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -5,7 +5,7 @@
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/model/touchable.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Faces a tool may touch, by the elements they belong to, and the vertices of their nodes. Vertices keep their
 /// numbers: new ones are appended, and those of what is gone stay where they were, on no triangle. What a cut exposes
@@ -77,4 +77,4 @@ class CutSurface {
   std::vector<Triangle> triangles_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 #include <palpate/cut/cut_step.hpp>
 #include <palpate/cut/matrix_pool.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A linear body under cuts. The compliance among kept dofs is updated exactly (bordered_update.hpp), by the rows that
 /// a cut changes; the factor stays. Nodes that a cut touches become kept: their columns come from the factor, the same
@@ -292,4 +292,4 @@ class CutSystem {
   ElementChanges<E> changes_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 #include <palpate/core/config.hpp>
 #include <thread>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Calls `work()` of a tissue whenever something is ordered, from construction to destruction. Refers to the tissue,
 /// which must outlive it.
@@ -32,4 +32,4 @@ class CutThread {
   std::thread thread_;  // last: it uses all the others
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Where an element is.
 enum class ElementState : std::uint8_t { held, loose, removed };
@@ -311,4 +311,4 @@ TopologyChange<E> difference(const CutTopology<E>& then, const CutTopology<E>& n
   return change;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

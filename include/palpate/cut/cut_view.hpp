@@ -5,7 +5,7 @@
 #include <palpate/cut/cut_surface.hpp>
 #include <palpate/cut/cut_system.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Surface and contact problem after a cut, and where its vertices are in the compliance: the same while the cut is
 /// folded in. Made by the thread that cuts, driven by the one that ticks. Triangles that hang from so little that they
@@ -120,4 +120,4 @@ struct CutView {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

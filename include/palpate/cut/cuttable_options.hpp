@@ -9,7 +9,7 @@
 
 #include <optional>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 struct CuttableOptions {
   /// Group, region or nodes whose compliance is kept ready beside that of the touchable ones: cuts there need no solve.
@@ -36,4 +36,4 @@ struct CutReport {
   bool failed = false;         ///< what is left cannot be computed; the last good state is felt, degraded_model
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -10,7 +10,7 @@
 
 #include <chrono>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A linear body of elements E under cuts. `cut` orders; `work` does what is ordered, in a thread of the caller's
 /// choice (CutThread); the tick brings the newest state in at its beginning and never waits. Right after a cut the
@@ -329,4 +329,4 @@ class CuttableTissue {
   std::unique_ptr<CutRenewal<E>> renewal_;  // last: its thread refers to the physics
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

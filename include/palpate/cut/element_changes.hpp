@@ -6,7 +6,7 @@
 
 #include <map>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Difference between a stiffness now and when it was factorised: minus the elements that changed, plus those of them
 /// that are still there on the nodes they have now, plus springs on what nothing holds. Dofs are looked up by
@@ -116,4 +116,4 @@ class ElementChanges {
   std::vector<Pin> pins_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

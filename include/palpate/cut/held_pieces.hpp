@@ -5,7 +5,7 @@
 #include <palpate/mesh/quality.hpp>
 #include <palpate/mesh/rigid_modes.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 template <Element E>
 class CutTopology;
@@ -92,4 +92,4 @@ std::vector<LoosePiece> unheld_pieces(const CutTopology<E>& topology) {
   return unheld;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

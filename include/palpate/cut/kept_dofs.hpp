@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A node and a component.
 struct NodeDof {
@@ -39,4 +39,4 @@ class KeptDofs {
   std::vector<NodeDof> dofs_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Square matrices that nobody reads any more are used again, with room to grow: the pages of a new one cost as much as
 /// what is written on them. Not for several threads; who reads a matrix in another thread must hand its pointer back to
@@ -41,4 +41,4 @@ class MatrixPool {
   std::vector<std::shared_ptr<MatrixX>> all_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/cut/cut_topology.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The part of a cut topology that is in one state, as a mesh of its own, and how vectors of an earlier mesh come onto
 /// it. Opened faces change how many nodes there are, so a motion is made anew on `mesh()`, in any thread; `carried`
@@ -49,4 +49,4 @@ class MotionOfPart {
   std::vector<std::vector<NodeId>> source_;  // per node: itself, what it was split from, and so on
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/mesh/mesh.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A face of an element by its place in E::faces.
 struct ElementFace {
@@ -54,4 +54,4 @@ struct TopologyChange {
   bool empty() const noexcept { return elements.empty() && loose_elements.empty(); }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

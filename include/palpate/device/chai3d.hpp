@@ -7,7 +7,7 @@
 
 #include <optional>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 struct Chai3dOptions {
   std::optional<DeviceLimits> limits;  ///< instead of CHAI3D's table, which holds peak force, stiffness and radius only
@@ -122,4 +122,4 @@ class Chai3dDevice {
   bool running_ = false;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

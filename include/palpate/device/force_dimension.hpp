@@ -5,7 +5,7 @@
 #include <palpate/device/render_limits.hpp>
 #include <palpate/device/sdk_state.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 struct ForceDimensionOptions {
   /// The SDK does not tell them: take them from the data sheet. The default forces are a quarter of an omega.3's (12
@@ -112,4 +112,4 @@ class ForceDimensionDevice {
 
 static_assert(HapticDevice<ForceDimensionDevice>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Something that goes wrong with reads number `first` ... `first + count - 1`, counted from 0.
 struct DeviceFault {
@@ -118,4 +118,4 @@ class MockDevice {
 
 static_assert(HapticDevice<MockDevice<>>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -28,7 +28,7 @@
 #include <optional>
 #include <thread>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 struct OpenHapticsOptions {
   const char* name = nullptr;          ///< as in the vendor's set-up tool; none: the default device
@@ -290,4 +290,4 @@ class OpenHapticsLoop {
   bool scheduled_ = false;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Scene position = scene_origin + scale rotation (device position - device_origin). A force of the scene reaches the
 /// hand as force_scale rotation^T force. With scale s and force scale f a hand feels a stiffness s f times that of the
@@ -116,4 +116,4 @@ class PlacedDevice {
   Placement placement_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -22,7 +22,7 @@
 #include <sstream>
 #endif
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// One read and the write that followed it.
 struct RecordedTick {
@@ -145,4 +145,4 @@ class Recorder {
   std::uint64_t count_ = 0;  ///< reads so far
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The limits of a device that is told to render torque, or none: without, it has no peak torque and no turning
 /// stiffness. Throws SetupError(bad_argument) when it is, and one of the two is not positive and finite.
@@ -81,4 +81,4 @@ class RenderLimits {
   bool running_ = false, readable_ = true;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <cerrno>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -165,4 +165,4 @@ class ReplayDevice {
 static_assert(HapticDevice<ReplayDevice>);
 static_assert(HapticDevice<Recorder<ReplayDevice>>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 
 #include <chrono>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Seconds of the steady clock since construction.
 class SteadyStamp {
@@ -27,4 +27,4 @@ inline void orient(ToolState& state, const Matrix3& rotation) noexcept {
   state.orientation = {q.w(), q.x(), q.y(), q.z()};
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A device to simulate. Masses and limits are those of real devices; nobody publishes the viscous damping of a device,
 /// so that of the presets is a guess, and what follows from it (the largest stable stiffness) is a comparison, not a
@@ -195,4 +195,4 @@ class SimulatedDevice {
 
 static_assert(HapticDevice<SimulatedDevice>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

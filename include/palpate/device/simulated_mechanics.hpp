@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A hand moves with the handle it holds: its mass is added to the handle's, its damper and spring act towards the
 /// place where it wants to be. Motion of the skin on the handle is not in it.
@@ -142,4 +142,4 @@ class SimulatedMechanics {
   SimulatedEnergy energy_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A path through timed waypoints. Between two it takes the minimum-jerk profile: smooth, at rest in every waypoint,
 /// on the straight line. Before the first and after the last waypoint it stands still.
@@ -99,4 +99,4 @@ inline Trajectory press_drag_release(const PressDragRelease& p = {}) {
 
 }  // namespace trajectory
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

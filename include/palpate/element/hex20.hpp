@@ -4,7 +4,7 @@
 #include <palpate/element/hex8.hpp>
 #include <palpate/element/quad8.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Quadratic serendipity hexahedron on [-1, 1]^3: the corners of Hex8, then the middles of its `edges` in the order of
 /// VTK and CalculiX: round the bottom, round the top, upwards (Gmsh has an order of its own). Its edges may be curved.
@@ -39,4 +39,4 @@ struct Hex20 {
 
 static_assert(Element<Hex20>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/element/quad4.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Trilinear hexahedron on [-1, 1]^3: bottom (w = -1) counter-clockwise seen from above, then top; 2 x 2 x 2 points.
 /// The plain, fully integrated brick: it locks near incompressibility, and results above `locking_poisson_ratio` are
@@ -43,4 +43,4 @@ struct Hex8 {
 
 static_assert(Element<Hex8>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/concepts/element.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// `E` with the change of volume taken as its mean over the element, the shear strain in every point: B-bar, equal to a
 /// constant pressure per element (Nagtegaal, Parks and Rice 1974; Hughes 1980). `MeanDilatation<Hex8>` holds to any
@@ -21,4 +21,4 @@ concept HasMeanDilatation = Element<E> && requires {
   requires E::mean_dilatation;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/quadrature/tensor.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Bilinear quadrilateral on [-1, 1]^2 with nodes (-1, -1), (1, -1), (1, 1), (-1, 1): N = (1 + s u)(1 + t v) / 4.
 struct Quad4 {
@@ -33,4 +33,4 @@ struct Quad4 {
 
 static_assert(TriangulatedFace<Quad4>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/element/quad4.hpp>
 #include <palpate/element/serendipity.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Quadratic serendipity quadrilateral on [-1, 1]^2: the corners of Quad4, then the middles of its edges.
 struct Quad8 {
@@ -27,4 +27,4 @@ struct Quad8 {
 
 static_assert(TriangulatedFace<Quad8>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

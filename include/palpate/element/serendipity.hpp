@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace palpate::inline PALPATE_ABI::serendipity {
+namespace palpate { inline namespace PALPATE_ABI { namespace serendipity {
 
 template <int Nodes, int Dimension>
 using Table = Eigen::Matrix<double, Nodes, Dimension>;
@@ -61,4 +61,4 @@ Table<Nodes, Dimension> with_middles(const Table<Nodes - static_cast<int>(Edges)
   return x;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::serendipity
+}}}  // namespace palpate::serendipity

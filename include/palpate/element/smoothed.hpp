@@ -3,7 +3,7 @@
 
 #include <palpate/concepts/element.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// `E`, a linear tetrahedron, with its strain averaged over neighbours: the change of shape over the elements around
 /// every edge (edge-based smoothing, Liu and Nguyen-Thoi), the change of volume over those around every node (nodal
@@ -24,4 +24,4 @@ concept HasSmoothedStrain = Element<E> && requires {
   requires E::smoothed_strain;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

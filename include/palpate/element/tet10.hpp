@@ -4,7 +4,7 @@
 #include <palpate/element/tet4.hpp>
 #include <palpate/element/tri6.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Quadratic tetrahedron on the unit tetrahedron, L = (1 - u - v - w, u, v, w): corners L (2 L - 1), then 4 L_i L_j on
 /// the `edges`, in the order of VTK and CalculiX (Gmsh swaps the last two). Usable to a Poisson ratio of 0.499.
@@ -59,4 +59,4 @@ struct Tet10 {
 
 static_assert(Element<Tet10>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

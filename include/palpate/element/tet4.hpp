@@ -5,7 +5,7 @@
 #include <palpate/element/tri3.hpp>
 #include <palpate/quadrature/tetrahedron.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Linear tetrahedron on the unit tetrahedron (0, e1, e2, e3): N = (1 - u - v - w, u, v, w). The thesis (3.3.2) uses a
 /// regular reference tetrahedron instead; the element is the same, its printed shape functions are corrected in
@@ -39,4 +39,4 @@ struct Tet4 {
 
 static_assert(Element<Tet4>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/quadrature/triangle.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Linear triangle on the unit triangle (0, e1, e2): N = (1 - u - v, u, v).
 struct Tri3 {
@@ -29,4 +29,4 @@ struct Tri3 {
 
 static_assert(TriangulatedFace<Tri3>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/element/tri3.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Quadratic triangle on the unit triangle, L = (1 - u - v, u, v): corners L (2 L - 1), then 4 L_i L_j on the edges.
 struct Tri6 {
@@ -40,4 +40,4 @@ struct Tri6 {
 
 static_assert(TriangulatedFace<Tri6>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

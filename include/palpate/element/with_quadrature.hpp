@@ -3,7 +3,7 @@
 
 #include <palpate/concepts/element.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// `E` whose stiffness, initial strain and energy are integrated with `Rule`, for instance
 /// `WithQuadrature<Tet10, TetrahedronRule<5>>` where edges are strongly curved. A rule on another domain breaks
@@ -14,4 +14,4 @@ requires(Rule::dimension == 3) struct WithQuadrature : E {
   using Quadrature = Rule;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

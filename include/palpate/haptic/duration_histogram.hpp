@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Histogram of durations from 1 ns to 18 min in bins at most 1.6 % wide. `record` costs a few instructions.
 class DurationHistogram {
@@ -56,4 +56,4 @@ class DurationHistogram {
   double max_ = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -5,7 +5,7 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/passivity_observer.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What a session may give to a tool.
 struct EnergyLimits {
@@ -105,4 +105,4 @@ struct NoEnergyTank {
   void reset() noexcept {}
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

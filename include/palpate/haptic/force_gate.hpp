@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What the gate lets through; ForceGate's constructor says how the values must fit together.
 struct ForceLimits {
@@ -179,4 +179,4 @@ class ForceGate {
   double last_input_ = std::numeric_limits<double>::quiet_NaN();
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

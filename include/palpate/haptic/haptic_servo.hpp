@@ -10,7 +10,7 @@
 #include <palpate/haptic/tool_input.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Contact state and force gate of one session. `tick` computes the force in the tick that brought the pose and passes
 /// it through the gate: no way to the device goes round it. Refers to the tissue, which must outlive it; neither copied
@@ -207,4 +207,4 @@ class HapticServo {
   std::size_t ticks_ = 0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

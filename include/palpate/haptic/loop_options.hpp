@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <functional>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Where a loop stands.
 struct LoopProgress {
@@ -26,4 +26,4 @@ struct LoopOptions {
   std::function<bool(const LoopProgress&)> progress{};
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

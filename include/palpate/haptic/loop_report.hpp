@@ -9,7 +9,7 @@
 #include <ostream>
 #include <string>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 struct LoopReport {
   double rate = 0.0;     ///< [1/s] asked for
@@ -59,4 +59,4 @@ inline std::ostream& operator<<(std::ostream& out, const LoopReport& r) {
   return out << text << '\n';
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Passivity observer (Hannaford and Ryu, IEEE T-RA 18(1), 2002): the work of the forces on the tool as the samples
 /// show it, f(n-1) . (x(n) - x(n-1)), with the force that acted in between. Steps that are not finite, or would
@@ -73,4 +73,4 @@ class PassivityObserver {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

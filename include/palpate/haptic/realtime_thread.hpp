@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What was asked of the operating system and what it gave. Memory stays locked after the loop: unlocking could undo a
 /// lock of the caller's own.
@@ -38,4 +38,4 @@ inline RealtimeGrant request_realtime(const LoopOptions& options) {
 
 }  // namespace detail
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -10,7 +10,7 @@
 #include <condition_variable>
 #include <mutex>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -173,4 +173,4 @@ LoopReport run_haptic_loop(Device& device, S& servo, const LoopOptions& options 
   return report;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

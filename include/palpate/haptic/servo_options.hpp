@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What a session may choose.
 struct ServoOptions {
@@ -56,4 +56,4 @@ inline std::vector<ContactTool> make_contact_tools(const std::vector<CapsuleTool
   return made;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

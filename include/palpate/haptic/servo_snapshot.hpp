@@ -7,7 +7,7 @@
 #include <array>
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A contact that presses, or a point that is held, world frame. Those of a tool add up to its contact force.
 struct ToolContact {
@@ -61,4 +61,4 @@ struct ServoSnapshot {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <thread>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What a tissue's thread has done.
 struct TissueThreadReport {
@@ -69,4 +69,4 @@ class TissueThread {
   std::thread thread_;  // last: it uses all the others
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Follows one tool from tick to tick: is its pose readable, finite, continuous with the last? Where it is not, the
 /// last good pose is held, or the tool acquires the surface anew. All on the tick: no throw, no allocation.
@@ -131,4 +131,4 @@ class ToolInput {
   Status status_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 #include <array>
 #include <atomic>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Single writer, single reader, lock-free, never waits: the writer fills `back()` and publishes, the reader gets the
 /// newest complete value. Both sides own one slot, the third changes hands atomically.
@@ -36,4 +36,4 @@ class TripleBuffer {
   unsigned front_ = 2;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

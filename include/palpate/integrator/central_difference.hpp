@@ -3,7 +3,7 @@
 
 #include <palpate/concepts/integrator.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -47,4 +47,4 @@ struct CentralDifference {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

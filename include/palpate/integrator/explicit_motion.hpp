@@ -6,7 +6,7 @@
 #include <palpate/integrator/requirements.hpp>
 #include <palpate/integrator/step_limit.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 struct ExplicitOptions {
   double damping = 0.0;       ///< alpha of the mass-proportional damping [1/s]
@@ -271,4 +271,4 @@ class ExplicitMotion {
   bool stopped_ = false;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

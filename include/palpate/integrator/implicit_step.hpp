@@ -4,7 +4,7 @@
 #include <palpate/integrator/requirements.hpp>
 #include <palpate/integrator/time_scheme.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What a TimeScheme makes of a length h and a state: where the motion coasts to without new acceleration, and velocity
 /// and acceleration at the end as functions of the displacement there. Vectors have one entry per dof. Allocates when
@@ -46,4 +46,4 @@ class ImplicitStep {
   double h_ = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 struct NewtonParameters {
   int maximum_iterations = 40;
@@ -89,4 +89,4 @@ class Newton {
   VectorX residual_, step_, trial_, trial_residual_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Throws bad_argument for Rayleigh's coefficients that would add energy, or are none.
 inline void require_damping(double mass_damping, double stiffness_damping) {
@@ -20,4 +20,4 @@ inline void require_entries(const VectorX& v, Index dofs) {
           "Give three per node");
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/integrator/central_difference.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Semi-implicit Euler, as in Bro-Nielsen's models: v_n+1 = (v_n + dt (R - F(u_n)) / m) / (1 + alpha dt), u_n+1 = u_n +
 /// dt v_n+1. Order 1, symplectic; its displacements are those of central differences that start half a step off. Stable
@@ -24,4 +24,4 @@ struct SemiImplicitEuler {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

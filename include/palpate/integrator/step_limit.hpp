@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Power iteration on M^-1 K, K times a vector being a difference of two forces. Held dofs do not move. The vector is
 /// kept, so that a few iterations per call follow a body that stiffens as it is pressed. The estimate comes from below:
@@ -87,4 +87,4 @@ class StepLimit {
   std::int64_t iterations_ = 0;  // since the last start
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/core/config.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// u' = u + h v + h^2 (p a + q a'),  v' = v + h (r a + s a'), with a' the acceleration at the end of the step.
 struct TimeScheme {
@@ -19,4 +19,4 @@ struct TimeScheme {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

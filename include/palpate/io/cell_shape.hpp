@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// A shape with its number of nodes. The order of nodes inside this folder is VTK's (The VTK User's Guide, "VTK File
 /// Formats", figures of the linear and quadratic cells); every format has a NodeOrder that leads to it.
@@ -103,4 +103,4 @@ constexpr CellShape face_shape(CellShape solid) noexcept {
 /// order[k] is the place in the file's node list of VTK's node k; empty when the two agree.
 using NodeOrder = std::span<const std::uint8_t>;
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

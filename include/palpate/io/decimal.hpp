@@ -16,7 +16,7 @@
 #include <sstream>
 #endif
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// Sets `value` to the double that the whole of `token` spells. invalid_argument when it is no number (hexadecimal and
 /// decimal commas are none), result_out_of_range when no double is near it. "nan" and "inf" may be accepted.
@@ -47,4 +47,4 @@ inline std::string to_decimal(double value) {
 #endif
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <initializer_list>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// The whole of a file. Throws bad_file when it cannot be read or is a folder.
 inline std::string read_file(const std::string& path) {
@@ -38,4 +38,4 @@ inline void write_file(const std::string& path, std::initializer_list<std::strin
   if (!stream) raise(SetupErrorKind::bad_file, path + ": writing failed");
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

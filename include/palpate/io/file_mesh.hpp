@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 inline constexpr Index max_tag = std::numeric_limits<Index>::max();
 inline constexpr Index max_int = std::numeric_limits<int>::max();
@@ -89,4 +89,4 @@ inline std::string fill_command(const std::string& surface) {
          "Physical Volume(\"body\") = {1};' > solid.geo && gmsh solid.geo -3 -o solid.msh";
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

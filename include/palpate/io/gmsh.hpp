@@ -3,8 +3,8 @@
 
 #include <palpate/io/read_mesh.hpp>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 using GmshNumbering = MeshNumbering;
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

@@ -4,7 +4,7 @@
 #include <palpate/io/gmsh_msh2.hpp>
 #include <palpate/io/gmsh_msh4.hpp>
 
-namespace palpate::inline PALPATE_ABI::io::gmsh {
+namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh {
 
 /// The command that turns any mesh Gmsh can open into one that is read here.
 inline std::string convert_command(const std::string& name) {
@@ -132,4 +132,4 @@ inline FileMesh parse(std::string_view text, const std::string& name) {
   return std::move(state.mesh);
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io::gmsh
+}}}  // namespace palpate::io::gmsh

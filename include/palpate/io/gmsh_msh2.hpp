@@ -3,7 +3,7 @@
 
 #include <palpate/io/gmsh_types.hpp>
 
-namespace palpate::inline PALPATE_ABI::io::gmsh::msh2 {
+namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh::msh2 {
 
 /// Nodes: `id x y z` each.
 template <class In>
@@ -97,4 +97,4 @@ inline void read_elements(TextReader& in, State& state) {
   }
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io::gmsh::msh2
+}}}  // namespace palpate::io::gmsh::msh2

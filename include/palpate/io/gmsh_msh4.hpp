@@ -3,7 +3,7 @@
 
 #include <palpate/io/gmsh_types.hpp>
 
-namespace palpate::inline PALPATE_ABI::io::gmsh::msh4 {
+namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh::msh4 {
 
 /// An entity: `tag box nphys phys... [nbound bound...]`; the box has 3 numbers for a point and 6 for the others. Gmsh
 /// writes boxes that overflow for empty entities, so they are not looked at. Elements belong to groups only by way of
@@ -145,4 +145,4 @@ void read_elements(In in, State& state) {
   check_total(in.in, "elements", count, state.mesh.cells.size());
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io::gmsh::msh4
+}}}  // namespace palpate::io::gmsh::msh4

@@ -7,7 +7,7 @@
 
 #include <cstdlib>
 
-namespace palpate::inline PALPATE_ABI::io::gmsh {
+namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh {
 
 /// An element type: its number in the file, its shape and the order of its nodes.
 struct Type {
@@ -104,4 +104,4 @@ inline Index read_count(TextReader& in, std::string_view what, Index bytes_each)
   return count;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io::gmsh
+}}}  // namespace palpate::io::gmsh

@@ -7,7 +7,7 @@
 
 #include <set>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// Turns a parsed file into a mesh of E.
 template <Element E>
@@ -195,4 +195,4 @@ Mesh<E> build_mesh(FileMesh file, double scale, MeshNumbering* numbering) {
   return mesh;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

@@ -3,7 +3,7 @@
 
 #include <palpate/io/file_mesh.hpp>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// Free when the ids are 1 ... n in order, else a binary search.
 class NodeIds {
@@ -39,4 +39,4 @@ class NodeIds {
   std::vector<std::pair<Index, NodeId>> sorted_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// Gmsh: the last two edges of the tetrahedron are swapped, the edges of the hexahedron sorted by their first corner
 /// (Gmsh reference manual, "Node ordering").
@@ -84,4 +84,4 @@ std::array<int, static_cast<std::size_t>(E::nodes)> vtk_order() {
   return order;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

@@ -4,7 +4,7 @@
 #include <palpate/io/file_mesh.hpp>
 #include <palpate/io/node_order.hpp>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// The first id of a file with numbered lines; all further ids follow it one by one.
 class RowNumbers {
@@ -85,4 +85,4 @@ struct CellHeader {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstring>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// The raw bytes of a T, turned round if `swap`.
 template <class T>
@@ -81,4 +81,4 @@ struct BinaryNumbers {
   void skip_reals(int count, std::string_view what) const { in.take(static_cast<std::size_t>(count) * 8, what); }
 };
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

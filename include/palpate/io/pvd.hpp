@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// A PVD file: a time series of VTU files that ParaView opens and plays as one. The file on disk is complete after
 /// every call.
@@ -47,4 +47,4 @@ class PvdSeries {
   Index size_ = 0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

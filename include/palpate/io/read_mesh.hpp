@@ -7,7 +7,7 @@
 #include <palpate/io/veg.hpp>
 #include <palpate/io/vtk_legacy.hpp>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// What a reader should do beyond reading.
 struct ReadOptions {
@@ -122,4 +122,4 @@ Mesh<E> read_mesh(const std::string& path, double scale, MeshNumbering* numberin
   return read_mesh<E>(path, ReadOptions{scale, numbering});
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

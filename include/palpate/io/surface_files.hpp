@@ -9,7 +9,7 @@
 
 #include <bit>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// The boundary of a mesh as triangles, outward by the right-hand rule: faces with more than three nodes are cut up,
 /// mid-edge nodes included.
@@ -82,4 +82,4 @@ void write_stl(const std::string& path, const Mesh<E>& mesh, const VectorX& disp
   write_file(path, {text});
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

@@ -4,7 +4,7 @@
 #include <palpate/io/file.hpp>
 #include <palpate/io/numbered_rows.hpp>
 
-namespace palpate::inline PALPATE_ABI::io::tetgen {
+namespace palpate { inline namespace PALPATE_ABI { namespace io::tetgen {
 
 /// The texts of the files of one mesh; `name` is what they are called without their endings.
 struct Texts {
@@ -128,4 +128,4 @@ inline FileMesh read(const std::string& path) {
   return parse({name, node, ele, face});
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io::tetgen
+}}}  // namespace palpate::io::tetgen

@@ -12,7 +12,7 @@
 #include <limits>
 #include <string>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// `file:12` for place 12, `file:byte 345` for place -345: lines mean nothing once binary data has begun.
 inline std::string place_text(const std::string& file, Index place) {
@@ -195,4 +195,4 @@ class TextReader {
   bool is_binary_ = false;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

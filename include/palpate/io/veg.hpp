@@ -7,7 +7,7 @@
 
 #include <set>
 
-namespace palpate::inline PALPATE_ABI::io::veg {
+namespace palpate { inline namespace PALPATE_ABI { namespace io::veg {
 
 /// Parses one file: *VERTICES, *ELEMENTS, then *MATERIAL, *SET and *REGION in any number.
 class Parser {
@@ -184,4 +184,4 @@ inline FileMesh read(const std::string& path) {
   });
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io::veg
+}}}  // namespace palpate::io::veg

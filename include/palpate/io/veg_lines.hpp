@@ -6,7 +6,7 @@
 #include <functional>
 #include <list>
 
-namespace palpate::inline PALPATE_ABI::io::veg {
+namespace palpate { inline namespace PALPATE_ABI { namespace io::veg {
 
 /// Fetches the text of an included file; throws SetupError when it cannot.
 using Include = std::function<std::string(const std::string& name)>;
@@ -78,4 +78,4 @@ class Lines {
   bool held_ = false;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::io::veg
+}}}  // namespace palpate::io::veg

@@ -3,7 +3,7 @@
 
 #include <palpate/io/vtk_types.hpp>
 
-namespace palpate::inline PALPATE_ABI::io::vtk {
+namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
 
 /// Cell arrays that are taken for region numbers, in this order; the second is what Gmsh writes.
 inline constexpr std::array<std::string_view, 6> region_arrays{"region",   "CellEntityIds", "gmsh:physical",
@@ -120,4 +120,4 @@ class AttributeReader {
   Index count_ = 0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::io::vtk
+}}}  // namespace palpate::io::vtk

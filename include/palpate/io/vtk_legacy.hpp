@@ -4,7 +4,7 @@
 #include <palpate/io/mesh_builder.hpp>
 #include <palpate/io/vtk_attributes.hpp>
 
-namespace palpate::inline PALPATE_ABI::io::vtk {
+namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
 
 /// Parses one file ("VTK File Formats" of the VTK User's Guide; the layout of CELLS changed with 5.0).
 class LegacyParser {
@@ -194,4 +194,4 @@ inline FileMesh parse(std::string_view text, const std::string& name) {
   return LegacyParser(text, name).parse();
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io::vtk
+}}}  // namespace palpate::io::vtk

@@ -5,7 +5,7 @@
 #include <palpate/io/node_order.hpp>
 #include <palpate/io/numbers.hpp>
 
-namespace palpate::inline PALPATE_ABI::io::vtk {
+namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
 
 /// A cell type: its number in the file, its shape and the order of its nodes.
 struct CellType {
@@ -155,4 +155,4 @@ class NumberStream {
   static constexpr bool swap_ = std::endian::native == std::endian::little;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::io::vtk
+}}}  // namespace palpate::io::vtk

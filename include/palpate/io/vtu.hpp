@@ -6,7 +6,7 @@
 #include <palpate/io/vtk_types.hpp>
 #include <palpate/mesh/mesh.hpp>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// A field to write: `values` holds the components of node or element 0, then of 1, and so on. How many components
 /// there are follows from the length: 1 is a scalar, 3 a vector such as a displacement.
@@ -136,4 +136,4 @@ void write_vtu(const std::string& path, const Mesh<E>& mesh, const VtuFields& fi
   write_vtu<E, Mesh<E>>(path, mesh, fields);
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

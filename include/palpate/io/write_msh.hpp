@@ -6,7 +6,7 @@
 #include <palpate/io/gmsh_types.hpp>
 #include <palpate/mesh/mesh.hpp>
 
-namespace palpate::inline PALPATE_ABI::io {
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// Puts the parts of an MSH 2.2 file together. Region r is physical volume r + 1; group g has the physical tag
 /// regions + g + 1 in every dimension in which it holds something.
@@ -126,4 +126,4 @@ void write_msh(const std::string& path, const Mesh<E>& mesh) {
   write_file(path, {MshText<E>(mesh).text()});
 }
 
-}  // namespace palpate::inline PALPATE_ABI::io
+}}}  // namespace palpate::io

@@ -7,7 +7,7 @@
 #include <memory>
 #include <new>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 struct AlignedDelete {
   std::size_t alignment = 64;
@@ -37,4 +37,4 @@ class BigArray {
   Index size_ = 0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -3,7 +3,7 @@
 
 #include <palpate/linear/indexed_vector.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Edges between `left` and `right` nodes, each numbered from 0; the smallest set of nodes that meets every edge.
 class BipartiteCover {
@@ -111,4 +111,4 @@ class BipartiteCover {
   IndexedVector<char> right_reached_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Eigenpairs K x = lambda M x of a pencil shifted to K - sigma M: largest theta = 1 / (lambda - sigma) first.
 struct LanczosPairs {
@@ -142,4 +142,4 @@ class BlockLanczos {
   std::uint64_t random_ = 20250101;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

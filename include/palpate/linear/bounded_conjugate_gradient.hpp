@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// When to stop, and what was left.
 struct BoundedSolveParameters {
@@ -62,4 +62,4 @@ class BoundedConjugateGradient {
   VectorX r_, z_, p_, q_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -8,7 +8,7 @@
 
 #include <memory>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Elimination order, fronts and memory of a factorisation, for any values on one pattern. Copies share everything.
 class CholeskyAnalysis {
@@ -100,4 +100,4 @@ class CholeskyAnalysis {
   std::shared_ptr<const Data> data_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Estimate of |K^-1|_1 for symmetric K from a handful of solves (Hager 1984, Higham 1988; usually within a factor 3,
 /// always a lower bound). Allocates; NaN when a solve is not finite.
@@ -48,4 +48,4 @@ double probe_error(const Op& op, S& solver) {
   return std::isfinite(error) ? error : infinity;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

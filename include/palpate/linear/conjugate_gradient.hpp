@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// When to stop.
 struct ConjugateGradientParameters {
@@ -81,4 +81,4 @@ class ConjugateGradientSolver {
   VectorX r_, z_, p_, q_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

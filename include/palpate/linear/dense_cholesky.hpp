@@ -8,7 +8,7 @@
 
 #include <memory>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// L L^T of a dense SPD matrix with checked pivots. `solve_into` does not allocate: n^2 multiply-adds. Copies share the
 /// factor.
@@ -60,4 +60,4 @@ class DenseCholesky {
 
 static_assert(LinearSolver<DenseCholesky>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

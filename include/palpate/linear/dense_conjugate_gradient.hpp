@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A dense SPD matrix with its diagonal as preconditioner. Satisfies SpdOperator. Copies share the matrix.
 class DenseOperator {
@@ -50,4 +50,4 @@ class DenseConjugateGradient {
 
 static_assert(LinearSolver<DenseConjugateGradient>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -8,7 +8,7 @@
 #include <array>
 #include <memory>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The inverse of a dense SPD matrix, built in double and stored as Scalar. `solve_into` multiplies with the columns of
 /// non-zero loads only: n multiply-adds per loaded dof. Copies share the matrix.
@@ -79,4 +79,4 @@ class DenseInverse {
 
 static_assert(LinearSolver<DenseInverse<float>>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/core/binary_io.hpp>
 #include <palpate/core/setup_options.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// All entries, columns first; null counts as empty.
 template <class Matrix>
@@ -26,4 +26,4 @@ Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> read_dense(BinaryReader& i
   return matrix;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

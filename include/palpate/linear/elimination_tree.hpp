@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Nodes in a postorder of the elimination tree, so that every subtree is contiguous.
 struct EliminationTree {
@@ -122,4 +122,4 @@ inline EliminationTree elimination_tree(const NodeGraph& g, const NodeVector& or
   return t;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -3,7 +3,7 @@
 
 #include <palpate/linear/front_substitution.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// `Packets` packets of right-hand sides, interleaved: x holds one row of them per row of the front.
 template <int Packets>
@@ -83,4 +83,4 @@ struct FrontBlock {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -6,7 +6,7 @@
 #include <palpate/linear/front_kernels.hpp>
 #include <palpate/linear/pivot_check.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Eliminates front after front into `factor`. May be used again for other values on the same pattern.
 class FrontFactorisation {
@@ -180,4 +180,4 @@ class FrontFactorisation {
   std::vector<Match> matched_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

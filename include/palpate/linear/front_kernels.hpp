@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Receives every pivot before its root is taken; returns what to scale its column with.
 struct PivotSink {
@@ -163,4 +163,4 @@ inline void factor_front(double* front, Index pivots, Index rows, double* update
   }
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// L^-1 e of unit loads e on some dofs of an interior factor, where it is not zero, and what they condense to on the
 /// kept dofs. Entries of the inverse follow without going back: with F the condensed loads and C the compliance of the
@@ -105,4 +105,4 @@ class UnitReduction {
 
 }  // namespace detail
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/linear/lower_panels.hpp>
 #include <palpate/linear/tile.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// v -= A y for `Width` columns of A; rows from `first`, the rest of an aligned block one by one.
 template <int Width>
@@ -114,4 +114,4 @@ inline void backward_front(const double* l, const LowerPanels& shape, double* v)
   }
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -6,7 +6,7 @@
 
 #include <span>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Workspace of one solve at a time. Refers to the tree and the factor, which must outlive it.
 class FrontSweeps {
@@ -176,4 +176,4 @@ inline void solve_block(const FrontTree& tree, const double* factor, Index front
   if (b.cols() > begin) run(std::integral_constant<int, 1>());
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -4,7 +4,7 @@
 #include <palpate/linear/indexed_vector.hpp>
 #include <palpate/linear/lower_panels.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A stretch of consecutive places in the elimination order.
 struct Run {
@@ -56,4 +56,4 @@ struct FrontTree {
   double nonzeros = 0.0, flops = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

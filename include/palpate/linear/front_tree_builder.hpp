@@ -4,7 +4,7 @@
 #include <palpate/linear/front_tree.hpp>
 #include <palpate/linear/supernodes.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Builds a FrontTree from supernodes.
 class FrontTreeBuilder {
@@ -156,4 +156,4 @@ class FrontTreeBuilder {
   NodeVector position_, front_of_position_, place_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// std::vector whose subscript is signed, so that offsets and counts need no casts.
 template <class T>
@@ -46,4 +46,4 @@ inline void accumulate_offsets(OffsetVector& start) noexcept {
   for (Index i = 1; i < start.size(); ++i) start[i] += start[i - 1];
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

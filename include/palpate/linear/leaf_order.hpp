@@ -6,7 +6,7 @@
 #include <array>
 #include <bit>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Orders the small parts that nested dissection leaves. Nodes outside that a part touches count in the degrees, as
 /// far as they fit into the bit sets. O(nodes x neighbours) operations on bit sets.
@@ -100,4 +100,4 @@ class LeafOrder {
   std::array<int, max_nodes> degree_{};
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -3,7 +3,7 @@
 
 #include <palpate/linear/part_lists.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Sorts a part along three "axes" found by breadth-first search: from one end to the other, from a node far from both,
 /// and by the difference of the distances from the ends. O(edges) a part.
@@ -59,4 +59,4 @@ class LevelOrder {
   NodeVector near_, far_, nodes_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The leading columns of a lower triangle, cut into panels of `width` columns that each start at their first diagonal
 /// entry; column major inside a panel. Wastes half a panel a column where a plain square wastes half of everything.
@@ -38,4 +38,4 @@ struct LowerPanels {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -7,7 +7,7 @@
 
 #include <numeric>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -104,4 +104,4 @@ inline detail::NodeVector nested_dissection(const NodeGraph& graph) {
   return detail::NestedDissection(graph).run();
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <Eigen/SparseCore>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Lower half of a symmetric matrix, compressed. Entries above the diagonal are ignored.
 using SparseLower = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
@@ -155,4 +155,4 @@ inline NodeGraph node_graph(const SparseLower& lower, const DofLayout& layout) {
   return g;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

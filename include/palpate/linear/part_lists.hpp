@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A part of the graph: the nodes with `label`, listed in several orders between `begin` and `end`.
 struct Part {
@@ -41,4 +41,4 @@ inline double separator_score(const std::array<Index, 3>& sizes, Index all) noex
                         0.5 * static_cast<double>(sizes[0] - sizes[1]) / static_cast<double>(all));
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -4,7 +4,7 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/linear/indexed_vector.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 inline bool pivot_is_good(double pivot, double diagonal, double threshold) noexcept {
   return std::isfinite(pivot) && pivot > 0.0 && pivot > threshold * diagonal;
@@ -40,4 +40,4 @@ inline void check_pivots(const VectorX& pivots, const VectorX& diagonal, const N
   raise(std::move(p));
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -3,7 +3,7 @@
 
 #include <palpate/linear/sparse_cholesky.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// K = L L^T again and again on one analysis, into the same memory: what an iteration or a time step needs. Neither
 /// factorising nor solving allocates or throws. Not to be used from two threads at once; neither copied nor moved.
@@ -60,4 +60,4 @@ class RepeatedCholesky {
 
 static_assert(LinearSolver<RepeatedCholesky>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/linear/bipartite_cover.hpp>
 #include <palpate/linear/separator_refinement.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Cuts a part after one of its sorted lists: looks at every position of every list at once, then replaces the layer of
 /// nodes at the best ones by a minimum vertex cover of the edges cut. O(edges) and the matching.
@@ -145,4 +145,4 @@ class SeparatorFinder {
   NodeVector left_, right_, number_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

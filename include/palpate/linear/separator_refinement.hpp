@@ -3,7 +3,7 @@
 
 #include <palpate/linear/part_lists.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Moves nodes out of a separator to either side, which draws their neighbours on the other side into it, best gain
 /// first and through some losses; keeps the best state seen. O(separator x neighbours x log) a pass.
@@ -115,4 +115,4 @@ class SeparatorRefinement {
   int pass_ = 0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -10,7 +10,7 @@
 
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// K = L L^T of a sparse SPD matrix, checked pivot by pivot. Factorisation allocates what the analysis predicted;
 /// `solve_into` reads every entry of L twice and allocates nothing. Copies share the factor and own their workspace, so
@@ -191,4 +191,4 @@ class SparseCholesky {
 
 static_assert(LinearSolver<SparseCholesky>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

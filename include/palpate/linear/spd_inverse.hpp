@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Replaces the lower half of an SPD matrix by that of its inverse, in halves: with S the Schur complement of A_11,
 /// B_22 = S^-1, B_21 = -B_22 T, B_11 = A_11^-1 + T^T B_22 T, T = A_21 A_11^-1. About n^3 multiplications and additions
@@ -75,4 +75,4 @@ class SpdInverse {
   double worst_ = 1.0;  // smallest pivot so far, of its diagonal entry; NaN ends it
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/linear/elimination_tree.hpp>
 #include <palpate/linear/lower_panels.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Supernodes in the order of their elimination, children before parents.
 struct Supernodes {
@@ -174,4 +174,4 @@ class SupernodeBuilder {
   IndexedVector<double> zeros_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -3,7 +3,7 @@
 
 #include <palpate/core/types.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A few doubles in one register, as many as the flags of the compiler allow.
 using Packet = Eigen::internal::packet_traits<double>::type;
@@ -78,4 +78,4 @@ inline void subtract_tile(Index packets, Index steps, Steps a, Steps b, double* 
     subtract_tile<1, tile_columns, Mode>(steps, a, b, 1, c, c_stride, valid);
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Shape function gradients in space at one quadrature point, and the volume the point stands for.
 template <Element E>
@@ -46,4 +46,4 @@ bool is_positively_oriented(const ElementNodes<E>& x) noexcept {
   return true;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

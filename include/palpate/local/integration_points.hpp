@@ -6,7 +6,7 @@
 #include <palpate/local/geometry.hpp>
 #include <palpate/local/strain_displacement.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A point of the element's rule. With a mean change of volume (element/mean_dilatation.hpp) also the mean over the
 /// element of the gradients, which gives it.
@@ -89,4 +89,4 @@ Eigen::Matrix<double, 6, 3> strain_block(const IntegrationPoint<E>& point, int a
   return b;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The two constants of an isotropic law [Pa].
 struct LameConstants {
@@ -78,4 +78,4 @@ ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const LameConsta
   return k;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 
 #include <palpate/local/integration_points.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Integral of every shape function over the element [m^3]: times a body force it is the load f_l (3.44), times density
 /// the row-sum mass.
@@ -59,4 +59,4 @@ ElementNodes<E> initial_strain_load(const ElementNodes<E>& x, const Matrix6& d, 
   return f;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

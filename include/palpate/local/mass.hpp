@@ -3,7 +3,7 @@
 
 #include <palpate/local/geometry.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// One number per pair of nodes: the three components of a node do not mix.
 template <Element E>
@@ -31,4 +31,4 @@ Eigen::Matrix<double, E::nodes, 1> lumped_element_mass(const ElementNodes<E>& x)
   return m.diagonal() * (m.sum() / m.trace());
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// D = deviatoric + volumetric, the latter kappa m m^T with m = (1 1 1 0 0 0) and kappa = 1 / (m . D^-1 m), the bulk
 /// modulus under hydrostatic pressure. That is the largest kappa that leaves the rest positive semidefinite; of an
@@ -48,4 +48,4 @@ inline double equivalent_poisson_ratio(const Matrix6& d) noexcept {
   return bulk > 0.0 && std::isfinite(bulk) ? (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear)) : 0.5;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/local/integration_points.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Stiffness matrix of an element, node-major (x y z per node).
 template <Element E>
@@ -22,4 +22,4 @@ ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const Matrix6& d
   return k;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

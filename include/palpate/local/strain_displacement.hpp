@@ -3,7 +3,7 @@
 
 #include <palpate/core/voigt.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The 6 x 3 block B_a of the strain-displacement matrix for a node with spatial gradient g [1/m] (thesis 3.16, 3.20):
 /// strain = sum B_a u_a, Voigt order of core/voigt.hpp.
@@ -30,4 +30,4 @@ Vector6 strain(const Eigen::MatrixBase<Displacements>& u, const Eigen::MatrixBas
   return e;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

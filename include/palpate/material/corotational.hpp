@@ -5,7 +5,7 @@
 #include <palpate/material/deformation.hpp>
 #include <palpate/material/small_strain.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -109,4 +109,4 @@ struct Corotational {
 
 static_assert(HyperelasticMaterial<Corotational<LinearElastic>>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

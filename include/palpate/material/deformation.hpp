@@ -3,7 +3,7 @@
 
 #include <palpate/core/tensor3.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// J - 1 of F = I + h without the digits that det F - 1 loses at small strain.
 template <class S>
@@ -63,4 +63,4 @@ inline void add_strain_product(Matrix9& b, double factor, const Tensor3<double>&
           b(i + 3 * j, k + 3 * l) += factor * (f(i, l) * f(k, j) + (j == l ? left(i, k) : 0.0));
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

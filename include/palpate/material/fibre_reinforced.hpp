@@ -4,7 +4,7 @@
 #include <palpate/material/deformation.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// W = base + k1 / (2 k2) (exp(k2 E^2) - 1) where E = |F a|^2 - 1 > 0, a the unit vector along the fibres at rest
 /// (Holzapfel, Gasser and Ogden 2000, one family, without dispersion). The whole stretch counts, not its part at
@@ -108,4 +108,4 @@ struct FibreReinforced {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

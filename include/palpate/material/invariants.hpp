@@ -3,7 +3,7 @@
 
 #include <palpate/material/deformation.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// First derivatives of W by I, II and J, and the second ones that are not zero in the laws of this folder.
 struct InvariantDerivatives {
@@ -31,4 +31,4 @@ inline Matrix9 tangent_of_invariants(const Tensor3<double>& f, const InvariantDe
   return t;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Isotropic Hooke's law, small strain: sigma = D (epsilon - epsilon_0).
 /// Admissible: youngs_modulus > 0, -1 < poisson_ratio < 0.5, density >= 0, all finite; anything else is refused, never
@@ -56,4 +56,4 @@ struct LinearElastic {
 
 static_assert(LinearMaterial<LinearElastic>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/material/invariants.hpp>
 #include <palpate/material/small_strain.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// W = c10 (J^(-2/3) |F|^2 - 3) + c01 (J^(-4/3) |cof F|^2 - 3) + K/2 (J - 1)^2 (Mooney 1940, Rivlin 1948, shape and
 /// volume apart as in Abaqus and CalculiX, whose D1 is 2 / K). At small strain mu = 2 (c10 + c01).
@@ -91,4 +91,4 @@ struct MooneyRivlin {
 
 static_assert(HyperelasticMaterial<MooneyRivlin>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

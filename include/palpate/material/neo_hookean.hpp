@@ -4,7 +4,7 @@
 #include <palpate/material/deformation.hpp>
 #include <palpate/material/small_strain.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// W = mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2 with Lame's constants of small strain: the volume term
 /// carries lambda + mu, because the one in J - 1 takes mu away again. A polynomial: finite for every F, and a flat or
@@ -57,4 +57,4 @@ struct NeoHookean {
 
 static_assert(HyperelasticMaterial<NeoHookean>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

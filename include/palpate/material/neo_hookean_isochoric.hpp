@@ -4,7 +4,7 @@
 #include <palpate/material/invariants.hpp>
 #include <palpate/material/small_strain.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// W = mu/2 (J^(-2/3) |F|^2 - 3) + K/2 (J - 1)^2, the neo-Hookean law of Abaqus and CalculiX with C10 = mu / 2 and
 /// D1 = 2 / K, where mu and K = lambda + 2/3 mu are those of small strain. J <= 0 is refused.
@@ -65,4 +65,4 @@ struct NeoHookeanIsochoric {
 
 static_assert(HyperelasticMaterial<NeoHookeanIsochoric>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/material/invariants.hpp>
 #include <palpate/material/small_strain.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// W = mu/2 (|F|^2 - 3) - mu ln J + lambda/2 (ln J)^2 with Lame's constants of small strain as they are (Bonet and Wood
 /// 1997). The energy grows without bound as an element is pressed flat, slowly, if lambda >= 0; J <= 0 and nu < 0 are
@@ -65,4 +65,4 @@ struct NeoHookeanLogarithmic {
 
 static_assert(HyperelasticMaterial<NeoHookeanLogarithmic>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <string>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Hooke's law with nine constants along the material's own axes 1 2 3. A pull along i contracts j by nu_ij sigma_i /
 /// E_i, and nu_ji / E_j = nu_ij / E_i (Lekhnitskii 1963; Jones 1999, eq. 2.25). Admissible: all E and G positive, the
@@ -88,4 +88,4 @@ struct Orthotropic {
 
 static_assert(LinearMaterial<Orthotropic>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

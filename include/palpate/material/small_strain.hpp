@@ -4,7 +4,7 @@
 #include <palpate/core/tensor3.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
-namespace palpate::inline PALPATE_ABI::detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Lame's constants [Pa] for a kernel on S.
 template <class S>
@@ -18,4 +18,4 @@ PALPATE_ALWAYS_INLINE Lame<S> lame(const LinearElastic& law) noexcept {
   return {static_cast<scalar_of<S>>(law.lame_lambda()), static_cast<scalar_of<S>>(law.shear_modulus())};
 }
 
-}  // namespace palpate::inline PALPATE_ABI::detail
+}}}  // namespace palpate::detail

@@ -4,7 +4,7 @@
 #include <palpate/material/deformation.hpp>
 #include <palpate/material/small_strain.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// W = lambda/2 tr(E)^2 + mu E : E with E = (F^T F - I)/2. For large rotations and small to moderate strains. Under
 /// pressure it softens (a bar held sideways has its largest force at 58 % of its length) and inside out it is at rest
@@ -63,4 +63,4 @@ struct StVenantKirchhoff {
 
 static_assert(HyperelasticMaterial<StVenantKirchhoff>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

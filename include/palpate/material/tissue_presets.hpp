@@ -7,7 +7,7 @@
 #include <array>
 #include <string_view>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What one source measured of one tissue, for small strain. A start value, not the truth: sources differ by a factor
 /// of three and more with perfusion, preconditioning, rate and method (in skin by a factor of thousands; indentation
@@ -59,4 +59,4 @@ inline const TissuePreset& tissue_preset(std::string_view name) {
   raise(SetupErrorKind::bad_argument, "there is no preset for '" + std::string(name) + "'", "There are " + known);
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Hooke's law with five constants: stiffer (or softer) along the fibres, the same in all directions across them;
 /// muscle, tendon. Where the mesh has a fibre direction per element (`Mesh::fibres`) that counts, elsewhere `fibre`.
@@ -58,4 +58,4 @@ struct TransverselyIsotropic {
 
 static_assert(FibreMaterial<TransverselyIsotropic>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

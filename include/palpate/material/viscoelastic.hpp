@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// One term of a Prony series: `share` of the stress fades with this time.
 struct PronyTerm {
@@ -182,4 +182,4 @@ concept ViscousMaterial =
     };
 // clang-format on
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -74,4 +74,4 @@ struct ViscousStep {
   bool admits(const Tensor3<double>& f) const noexcept { return base.admits(f) && determinant(f) > 0.0; }
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

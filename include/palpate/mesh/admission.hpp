@@ -6,7 +6,7 @@
 #include <palpate/mesh/fibres.hpp>
 #include <palpate/mesh/repair.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A mesh that passed. Maps lead from the mesh as given to this one; -1 means dropped, welded nodes share an id.
 template <Element E>
@@ -172,4 +172,4 @@ Admitted<E> admit(const M& view, const AdmissionPolicy& policy = {}, const std::
   return result;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

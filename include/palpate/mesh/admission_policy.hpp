@@ -3,7 +3,7 @@
 
 #include <palpate/mesh/diagnosis.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What to do about a defect: refuse the mesh, mend it, or take it as it is. All three report it in the diagnosis.
 enum class Admission { refuse, repair, accept };
@@ -88,4 +88,4 @@ inline void require_usable(const AdmissionPolicy& policy) {
 }
 
 }  // namespace detail
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/mesh/surface.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -29,4 +29,4 @@ void add_boundary_group(Mesh<E>& mesh, const std::vector<BoundaryFace<E>>& bound
 
 }  // namespace detail
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

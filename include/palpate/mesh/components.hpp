@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The parts of a mesh that share no node. Numbered from zero by their lowest node; -1 marks a node that no element
 /// uses.
@@ -52,4 +52,4 @@ MeshComponents connected_components(const M& mesh) {
   return components;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

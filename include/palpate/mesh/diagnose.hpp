@@ -6,7 +6,7 @@
 #include <palpate/mesh/duplicates.hpp>
 #include <palpate/mesh/quality.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -143,4 +143,4 @@ MeshDiagnosis diagnose(const M& mesh, const MeshThresholds& thresholds = {}) {
   return d;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

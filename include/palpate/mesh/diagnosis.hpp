@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Bounds of the mesh checks. All are ratios, so that micrometres and kilometres are judged alike, except the one that
 /// guesses units.
@@ -104,4 +104,4 @@ inline std::string describe(const MeshDiagnosis& d) {
   return text;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <numeric>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Local length at each node [m]: the least longest edge of the elements around it, not counting elements of size zero.
 /// Zero where there is none. O(elements).
@@ -145,4 +145,4 @@ std::vector<Index> first_equal_elements(const M& mesh) {
   return first;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Reference coordinates of the point p [m] in the element with nodes x, or beyond it, by Newton's method. Nothing when
 /// there are none to be found: a point far off a curved element.
@@ -127,4 +127,4 @@ class ElementSearch {
   std::vector<Index> start_, element_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

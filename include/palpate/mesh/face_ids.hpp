@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Up to N node ids, compared like a word.
 template <std::size_t N>
@@ -54,4 +54,4 @@ FaceIds<E> face_ids(const M& mesh, Index e, std::size_t f) {
   return ids;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

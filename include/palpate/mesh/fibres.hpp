@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// How far from one the length of a fibre direction may be: files print six digits or fewer. Laws use it normalised.
 inline constexpr double fibre_length_tolerance = 1e-5;
@@ -43,4 +43,4 @@ void require_unit_fibres(const M& mesh) {
   }
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// How a box cell is cut. `five_mirrored`: four corners and a regular core, neighbouring cells mirrored in a
 /// three-dimensional checkerboard (the same block repeated would not conform); no preferred direction. `six`: Kuhn's
@@ -162,4 +162,4 @@ inline Mesh<Tet4> two_cubes() {
   return mesh;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

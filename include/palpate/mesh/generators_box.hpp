@@ -4,7 +4,7 @@
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/promote.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Box of hexahedra with nodes at every combination of the given coordinates [m], which must rise. Nodes, groups,
 /// region and refusals as in box_tet4.
@@ -42,4 +42,4 @@ inline Mesh<Tet10> box_tet10(const Vector3& size, std::array<int, 3> cells, BoxS
   return promote<Tet10>(box_tet4(size, cells, split, origin));
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -184,4 +184,4 @@ inline Mesh<Tet4> cylinder_tet4(double radius, double height, int n) {
   return mesh;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Name of the group every mesh has without saying so: its whole boundary.
 inline constexpr std::string_view surface_group = "surface";
@@ -46,4 +46,4 @@ class GroupTable {
   std::vector<Group> groups_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 
 #include <array>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A mesh of elements E that owns its arrays. A plain aggregate of public arrays: fill it, then hand it to `admit()` or
 /// to a model.
@@ -79,4 +79,4 @@ Mesh<E> copy_mesh(const M& view, const std::vector<std::string>& group_names = {
   return mesh;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

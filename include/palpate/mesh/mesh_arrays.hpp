@@ -8,7 +8,7 @@
 #include <ranges>
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// An argument that a view may refer to: an lvalue, or a range that does not own its elements.
 template <class Range>
@@ -109,4 +109,4 @@ class MeshArrays {
   GroupTable groups_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

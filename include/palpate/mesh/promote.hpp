@@ -9,7 +9,7 @@
 #include <optional>
 #include <set>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A quadratic element over a linear one: the nodes of `Linear`, then one in the middle of each of `edges`.
 template <class E>
@@ -118,4 +118,4 @@ Mesh<To> promote(const Mesh<typename To::Linear>& linear) {
   return mesh;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

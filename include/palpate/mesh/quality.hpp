@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Shape of one element. `relative_volume` and `quality` do not change when the mesh is moved, turned or scaled.
 struct ElementShape {
@@ -111,4 +111,4 @@ ElementShape element_shape(const ElementNodes<E>& nodes) noexcept {
   return shape;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/mesh/promote.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -65,4 +65,4 @@ inline Mesh<Tet4> refine(const Mesh<Tet4>& coarse) {
   return fine;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

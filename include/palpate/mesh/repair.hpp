@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -107,4 +107,4 @@ void reorient(Mesh<E>& mesh, const std::vector<Index>& elements) {
   }
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

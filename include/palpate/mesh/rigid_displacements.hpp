@@ -3,7 +3,7 @@
 
 #include <palpate/mesh/rigid_modes.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A basis of the rigid motions that the constraints leave to each component of a mesh: 3 nodes x modes, u = t + w x p
 /// with p the offset from the component's centre over its size; zero on the other components. Six columns for a free
@@ -33,4 +33,4 @@ MatrixX rigid_displacements(const Mesh<E>& mesh, std::span<const std::uint8_t> c
   return modes;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

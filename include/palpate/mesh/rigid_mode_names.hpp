@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -88,4 +88,4 @@ inline std::vector<std::string> name_rigid_motions(const RigidMotions& motions, 
 
 }  // namespace detail
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <span>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The rigid motions that a component can still make.
 struct FreeRigidModes {
@@ -169,4 +169,4 @@ void require_constrained(const Mesh<E>& mesh, std::span<const std::uint8_t> cons
   require_constrained(mesh.positions, connected_components<E>(mesh).of_node, constrained);
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Part of a mesh: the name of a group (or of a region, or "surface"), or a list of nodes.
 using Selection = std::variant<std::string, std::vector<NodeId>>;
@@ -193,4 +193,4 @@ class Scene {
   Vector3 gravity_ = Vector3::Zero();
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

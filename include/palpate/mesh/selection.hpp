@@ -4,7 +4,7 @@
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Text for messages.
 inline std::string selection_name(const Selection& s) {
@@ -95,4 +95,4 @@ void require_region(const Mesh<E>& mesh, const std::string& name) {
     raise(SetupErrorKind::unknown_group, "the mesh has no region '" + name + "'");
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

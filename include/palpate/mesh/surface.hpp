@@ -9,7 +9,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A face of the boundary: its nodes, outward by the right-hand rule, and the element it belongs to.
 template <Element E>
@@ -104,4 +104,4 @@ std::vector<NodeId> nodes_of(const std::vector<BoundaryFace<E>>& faces) {
   return nodes;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

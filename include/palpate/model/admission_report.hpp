@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Sizes, quality and findings of an admitted mesh.
 template <Element E>
@@ -68,4 +68,4 @@ inline void report_displacement(const std::vector<Vector3>& positions, const Vec
                                                   " of the body's diagonal: too far for linear elasticity");
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

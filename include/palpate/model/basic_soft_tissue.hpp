@@ -10,7 +10,7 @@
 #include <palpate/model/touchable.hpp>
 #include <palpate/model/warped_compliance.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
@@ -232,4 +232,4 @@ class BasicSoftTissue {
   Status ticked_;  // of the last end_tick
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 #include <palpate/core/content_hash.hpp>
 #include <palpate/model/cache_report.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Everything that decides the numbers in a cache file, part by part, so that a mismatch has a name. The stiffness
 /// matrix is hashed as well, value by value: whatever the parts may miss (an element or law whose code was changed,
@@ -124,4 +124,4 @@ inline CacheMismatch compare(const CacheKey& file, const CacheKey& here, std::st
   return first;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -5,7 +5,7 @@
 
 #include <ostream>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Why a cache file was not used, the first reason found.
 enum class CacheMismatch : std::uint8_t {
@@ -51,4 +51,4 @@ inline std::ostream& operator<<(std::ostream& out, const CacheReport& r) {
   return out << r.file << " could not be written because " << r.problem;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <thread>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A vertex and the slot for its column.
 struct ColumnOrder {
@@ -59,4 +59,4 @@ class ColumnWorker {
   std::thread thread_;  // last: it uses all the others
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Slots for compliance columns: per loaded vertex nine values for every touchable vertex, in one piece, as a tick
 /// reads single blocks of it. Stored as Scalar. A slot is written by one thread at a time.
@@ -63,4 +63,4 @@ class ComplianceColumns {
   std::vector<double> bound_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

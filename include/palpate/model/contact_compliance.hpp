@@ -7,7 +7,7 @@
 #include <array>
 #include <memory>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// When a solver that does not store the whole compliance computes a column.
 enum class ColumnFill : std::uint8_t {
@@ -141,4 +141,4 @@ class ContactCompliance {
   std::unique_ptr<ColumnWorker<System, Scalar>> worker_;  // last: it ends before what it writes to
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 #include <palpate/linear/bounded_conjugate_gradient.hpp>
 #include <palpate/model/step_preconditioners.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 struct CorotatedMotionOptions {
   TimeScheme scheme = TimeScheme::implicit_euler();
@@ -341,4 +341,4 @@ class CorotatedMotion {
   double time_ = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

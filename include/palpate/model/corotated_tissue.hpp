@@ -4,7 +4,7 @@
 #include <palpate/model/corotated_motion.hpp>
 #include <palpate/model/basic_soft_tissue.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 template <class Base, class S, class Preconditioner>
 struct TissueMotion<CorotatedMotion<Base, S, Preconditioner>> {
@@ -33,4 +33,4 @@ struct TissueMotion<CorotatedMotion<Base, S, Preconditioner>> {
 /// ten thousand elements on a core; see CorotatedMotion.
 using CorotatedTissue = BasicSoftTissue<CorotatedMotion<>>;
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

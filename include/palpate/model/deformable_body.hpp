@@ -13,7 +13,7 @@
 
 #include <memory>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What holds and moves a body, without its elements and laws. Vectors have 3 entries per node.
 struct DeformableBody {
@@ -144,4 +144,4 @@ DeformableBody make_held_body(ViscousBody<E> body, const Scene& scene, const Set
   return made;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

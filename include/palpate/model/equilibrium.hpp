@@ -6,7 +6,7 @@
 #include <palpate/model/deformable_body.hpp>
 #include <palpate/model/tangent_solver.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 struct EquilibriumParameters {
   NewtonParameters newton{};
@@ -250,4 +250,4 @@ class Equilibrium {
   double scale_ = 0.0, size_ = 0.0, rounding_ = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

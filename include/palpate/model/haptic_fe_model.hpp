@@ -9,7 +9,7 @@
 
 #include <memory>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What a caller may decide about a model's set-up.
 struct SetupOptions {
@@ -249,4 +249,4 @@ class HapticFEModel {
   std::vector<Vector3> moved_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

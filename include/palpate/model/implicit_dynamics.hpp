@@ -6,7 +6,7 @@
 #include <palpate/model/deformable_body.hpp>
 #include <palpate/model/tangent_solver.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 enum class MassKind { lumped, consistent };
 
@@ -336,4 +336,4 @@ class ImplicitDynamics {
   double start_energy_ = 0.0, stored_ = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

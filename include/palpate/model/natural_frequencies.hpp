@@ -8,7 +8,7 @@
 
 #include <numbers>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The lowest elastic modes of a body, ascending, and the rigid motions it is left with.
 struct NaturalFrequencies {
@@ -191,4 +191,4 @@ NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, 
   return result;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

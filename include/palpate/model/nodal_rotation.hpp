@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// For chosen nodes the rotation of the deformation that fits the motion of their neighbours best (shape matching,
 /// Mueller et al. 2005, over one ring). O(neighbours), no allocation after set-up.
@@ -53,4 +53,4 @@ class NodalRotations {
   std::vector<Vector3> offset_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

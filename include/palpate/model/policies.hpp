@@ -12,7 +12,7 @@
 
 #include <utility>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Conjugate gradients; matrix-free unless WithAssembly says otherwise.
 struct ConjugateGradient {};
@@ -160,4 +160,4 @@ concept CacheablePolicy = SolverPolicy<P> &&
   SolverTraits<P>::read(in, k, conditions, layout, limits).write(out);
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

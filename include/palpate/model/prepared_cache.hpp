@@ -5,7 +5,7 @@
 #include <palpate/model/cache_key.hpp>
 #include <palpate/version.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// The first bytes of a cache file, in the byte order of the machine that wrote it; no padding. Behind it come the
 /// numbers and, as last eight bytes, their ContentHash.
@@ -143,4 +143,4 @@ class PreparedCache {
   std::optional<BinaryReader> reader_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 #include <palpate/model/prepared_cache.hpp>
 #include <palpate/model/stage_timer.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What a system is prepared from. Refers to all of it.
 template <Element E, SolverPolicy Policy>
@@ -119,4 +119,4 @@ struct SystemSource {
   static constexpr double refused_probe_error = 1e-3;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// How many times the force of the linear tissue a displacement takes: points (displacement [m], ratio [-]), from a
 /// displacement of 0 on, in between straight, beyond the last point constant.
@@ -170,4 +170,4 @@ class QuasiNonLinear {
   std::uint64_t revision_ = 0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -8,7 +8,7 @@
 #include <atomic>
 #include <thread>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Preconditioner of CorotatedMotion: the factor of A at a recent state, turned on from there with the nodes,
 /// (R R_s^T) A_s^-1 (R R_s^T)^T (asynchronous preconditioning, Courtecuisse et al. 2010). When it is due and the thread
@@ -143,4 +143,4 @@ class RenewedFactor {
   std::thread thread_;  // last: it uses all the others
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 #include <ostream>
 #include <utility>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Things a set-up accepts but does not keep quiet about.
 enum class SetupFlag : std::uint32_t {
@@ -73,4 +73,4 @@ inline std::ostream& operator<<(std::ostream& out, const SetupReport& r) {
   return out;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/model/implicit_dynamics.hpp>
 #include <palpate/model/basic_soft_tissue.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 template <>
 struct TissueMotion<ImplicitDynamics> {
@@ -34,4 +34,4 @@ using SoftTissueOptions = TissueOptions<ImplicitDynamics>;
 
 static_assert(TissueModel<SoftTissue>);
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

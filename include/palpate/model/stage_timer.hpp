@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Adds the time since its construction to a report when it goes. Its line in the report is made at once: a destructor
 /// must not run out of memory.
@@ -27,4 +27,4 @@ class StageTimer {
   std::chrono::steady_clock::time_point start_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

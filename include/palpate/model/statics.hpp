@@ -5,7 +5,7 @@
 #include <palpate/mesh/rigid_modes.hpp>
 #include <palpate/model/prepared_system.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Stiffness, essential conditions, loads and prepared solver of a body. Neither copied nor moved: the solver refers to
 /// its members.
@@ -174,4 +174,4 @@ class Statics {
   VectorX free_load_, free_answer_, scratch_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

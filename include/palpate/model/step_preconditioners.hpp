@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A = mass M + stiffness K.
 struct StepFactors {
@@ -121,4 +121,4 @@ class TurnedFactor {
   StepFactors factors_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

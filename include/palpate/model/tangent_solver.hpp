@@ -4,7 +4,7 @@
 #include <palpate/assembly/free_values.hpp>
 #include <palpate/linear/repeated_cholesky.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A matrix on the pattern of a mesh, its free part and its factor. After the constructor nothing allocates or throws.
 /// Refers to `conditions`; neither copied nor moved.
@@ -82,4 +82,4 @@ class TangentSolver {
   double shift_ = 0.0, last_shift_ = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

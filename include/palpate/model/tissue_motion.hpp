@@ -4,7 +4,7 @@
 #include <palpate/mesh/admission.hpp>
 #include <palpate/model/equilibrium.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What a moving tissue asks of a motion; specialise for motions of your own.
 ///   Parameters, usual_step [s], usual()    what the motion is made with, Motion(source, parameters, limits)
@@ -37,4 +37,4 @@ struct TissueOptions {
   SetupLimits limits{};
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/contact/bvh.hpp>
 #include <palpate/mesh/selection.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Whether all faces of E can be touched.
 template <Element E>
@@ -69,4 +69,4 @@ std::vector<NodeId> resolve_seen(const Mesh<E>& mesh, const std::vector<Boundary
   return seen;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

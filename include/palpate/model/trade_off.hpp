@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What was measured of one composition of element, material and solver in one scene. All figures are finite and not
 /// negative.
@@ -104,4 +104,4 @@ class TradeOff {
   std::vector<MeasuredComposition> all_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -7,7 +7,7 @@
 
 #include <numeric>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// z = R A^-1 R^T r with a factor of A and a rotation per node. Exact for a body that turns as a whole, good where
 /// neighbours turn alike. O(nodes) beside the solve; allocates when it is made only.
@@ -64,4 +64,4 @@ class TurnedSolve {
   VectorX full_, x_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 #include <palpate/mesh/element_search.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Triangles over points that a renderer draws. `positions` in the frame of the mesh as given [m].
 struct VisualMesh {
@@ -192,4 +192,4 @@ class VisualSurface {
   VectorX displacement_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

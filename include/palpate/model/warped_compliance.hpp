@@ -4,7 +4,7 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/model/nodal_rotation.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// What a force on a touchable vertex moves the others within a step, as the body settled, turned on with the vertices:
 /// C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). Holds 72 bytes per pair of vertices.
@@ -67,4 +67,4 @@ class WarpedCompliance {
   double floor_ = 0.0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

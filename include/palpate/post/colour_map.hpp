@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// A colour as screens take it: sRGB, components 0 ... 1.
 using Rgb = std::array<double, 3>;
@@ -147,4 +147,4 @@ class ColourScale {
   ColourMap map_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -5,7 +5,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Estimate of the discretisation error in the energy norm |e| = (integral of e_sigma : D^-1 : e_sigma)^1/2, the square
 /// root of twice its strain energy [J^1/2].
@@ -81,4 +81,4 @@ ErrorEstimate estimate_error(const Body<E>& body, const VectorX& u) {
   return estimate_error(body, u, patch_recovery(body, u));
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -6,7 +6,7 @@
 #include <Eigen/QR>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Coordinates in which a patch of elements is about a unit ball round its centre, however stretched it is.
 struct PatchFrame {
@@ -99,4 +99,4 @@ requires(Degree == 1 || Degree == 2) class PatchPolynomial {
   bool complete_ = false;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

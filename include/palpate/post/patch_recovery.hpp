@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Stress at the nodes [Pa], one column per node and region of an element around it: between two materials the stress
 /// jumps, and a node there has two.
@@ -230,4 +230,4 @@ NodalStress patch_recovery(const Body<E>& body, const VectorX& u) {
   return detail::PatchRecovery<E>(body, u).recover();
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

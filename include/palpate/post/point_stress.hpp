@@ -4,7 +4,7 @@
 #include <palpate/assembly/smoothed_strain.hpp>
 #include <palpate/local/integration_points.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// One stress per column [Pa], Voigt order of core/voigt.hpp.
 using StressColumns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
@@ -117,4 +117,4 @@ class ElementStress {
   [[no_unique_address]] std::conditional_t<HasSmoothedStrain<E>, SmoothedState, Nothing> smoothed_;
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

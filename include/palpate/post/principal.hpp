@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <limits>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Principal values of a symmetric tensor, falling, and their directions.
 struct Principal {
@@ -47,4 +47,4 @@ inline Principal principal_strain(Vector6 strain) noexcept {
   return principal(voigt::stress_tensor(strain));
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -4,7 +4,7 @@
 
 #include <palpate/post/point_stress.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Equivalent (von Mises) stress [Pa] of every column.
 inline void von_mises(const StressColumns& stress, VectorX& equivalent) {
@@ -57,4 +57,4 @@ StressField stress_field(const Body<E>& body, const VectorX& u) {
   return field;
 }
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/concepts/quadrature.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// N-point rule on [-1, 1], exact to degree 2N - 1. Abscissae and weights: roots of the Legendre polynomial, e.g.
 /// Abramowitz and Stegun, table 25.4.
@@ -49,4 +49,4 @@ struct GaussLegendre<5> {
                                                              {{0.90617984593866399280}, 0.23692688505618908751}}};
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/quadrature/gauss_legendre.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// N points per axis, the first coordinate running fastest; exact to degree 2 N - 1 in every coordinate.
 template <int N, int Dimension>
@@ -33,4 +33,4 @@ using QuadrilateralRule = TensorRule<N, 2>;
 template <int N>
 using HexahedronRule = TensorRule<N, 3>;
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

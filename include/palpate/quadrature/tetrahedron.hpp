@@ -3,7 +3,7 @@
 
 #include <palpate/concepts/quadrature.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Rule exact to `Degree`. Degrees 1, 2, 3 and 5 exist. Degree 3 has one negative weight.
 template <int Degree>
@@ -57,4 +57,4 @@ struct TetrahedronRule<5> {
                                                               {{d, d, c}, wc}}};
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/concepts/quadrature.hpp>
 
-namespace palpate::inline PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI {
 
 /// Rule exact to `Degree`, all weights positive. Degrees 1, 2, 4 and 5 exist.
 template <int Degree>
@@ -47,4 +47,4 @@ struct TriangleRule<5> {
                                                              {{b, b2}, wb}}};
 };
 
-}  // namespace palpate::inline PALPATE_ABI
+}}  // namespace palpate

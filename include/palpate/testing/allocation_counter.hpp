@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// Heap calls of this thread since it started. A realloc of a block is one of each.
 struct HeapCalls {
@@ -94,7 +94,7 @@ class FailingHeap {
   }
 };
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define PALPATE_SANITIZER_HAS_MALLOC 1

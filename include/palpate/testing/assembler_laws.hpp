@@ -8,7 +8,7 @@
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/violation.hpp>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// All columns of an operator, by `apply`. For small ones.
 template <class Op>
@@ -182,4 +182,4 @@ Violations same_stiffness_laws(const A& a, const B& b, double tolerance = 1e-13)
   return v;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

@@ -6,7 +6,7 @@
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/violation.hpp>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// The inverse of a small operator by dense Cholesky, column by column: the answer that condensing must not change.
 template <SpdOperator Op>
@@ -93,4 +93,4 @@ Violations condensation_laws(const Op& op, S& system, std::span<const Index> kep
   return v;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

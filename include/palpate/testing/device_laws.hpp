@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <functional>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// How to look behind a device. `rendered` tells what its motors get [N]; an adapter of an SDK asks the SDK, or a fake
 /// of it. `break_reads(device, true)` makes reads invalid, `false` mends them; empty: that law is not tested.
@@ -213,4 +213,4 @@ Violations device_laws(Device& device, const DeviceProbe<Device>& probe = defaul
   return detail::DeviceLaws<Device>(device, probe).run(reads);
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

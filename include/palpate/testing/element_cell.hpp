@@ -5,7 +5,7 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/testing/reference_cell.hpp>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// True when every face lists nodes the element has.
 template <Element E>
@@ -80,4 +80,4 @@ std::optional<ReferenceCell<2>> cell_of() {
   return cell_with_corners<2>(corners);
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

@@ -4,7 +4,7 @@
 #include <palpate/testing/face_laws.hpp>
 #include <palpate/testing/quadrature_laws.hpp>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// Laws of the triangles of a face: "triangles name nodes of the face", "triangles are turned as the face is",
 /// "triangles cover the face" (their areas sum to its own), "every node is a vertex of a triangle, and lies on no
@@ -138,4 +138,4 @@ Violations element_laws() {
   return v;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

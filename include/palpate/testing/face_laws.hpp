@@ -5,7 +5,7 @@
 #include <palpate/testing/quadrature_laws.hpp>
 #include <palpate/testing/shape_laws.hpp>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// Cross product of two vectors (Eigen's needs a larger header).
 inline Vector3 cross(const Vector3& a, const Vector3& b) {
@@ -117,4 +117,4 @@ Violations face_laws() {
   return v;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

@@ -6,7 +6,7 @@
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/violation.hpp>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// What a law for large strain says of itself beyond its concept.
 struct HyperelasticClaims {
@@ -229,4 +229,4 @@ Violations hyperelastic_material_laws(const M& material, HyperelasticClaims clai
   return v;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

@@ -7,7 +7,7 @@
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/violation.hpp>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// What a linear material says of itself beyond its concept.
 struct LinearMaterialClaims {
@@ -105,4 +105,4 @@ Violations admission_laws(const std::vector<M>& admissible, const std::vector<M>
   return v;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

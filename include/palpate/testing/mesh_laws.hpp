@@ -5,7 +5,7 @@
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/testing/face_laws.hpp>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 // Broken laws are counted and one offender is named, so that a bad mesh of a million elements gives a short list.
 
@@ -167,4 +167,4 @@ Violations mesh_laws(const M& mesh) {
   return v;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

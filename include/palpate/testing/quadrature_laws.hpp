@@ -5,7 +5,7 @@
 #include <palpate/testing/reference_cell.hpp>
 #include <palpate/testing/violation.hpp>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// Reference coordinates of a quadrature point as a vector.
 template <std::size_t Dim>
@@ -79,4 +79,4 @@ Violations quadrature_laws(Domain domain) {
   return v;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <palpate/core/types.hpp>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// SplitMix64 (Steele, Lea and Flood 2014). The distributions of <random> differ between standard libraries; this does
 /// not.
@@ -51,4 +51,4 @@ inline Matrix3 random_rotation(Random& random) {
   return r;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

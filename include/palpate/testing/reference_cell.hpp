@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// [-1,1], the unit triangle and tetrahedron (0, e1, e2, e3), [-1,1]^2 and [-1,1]^3.
 enum class Domain { interval, triangle, tetrahedron, quadrilateral, hexahedron };
@@ -137,4 +137,4 @@ double integrate(const ReferenceCell<Dim>& cell, F f) {
   return sum;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

@@ -5,7 +5,7 @@
 #include <palpate/testing/reference_cell.hpp>
 #include <palpate/testing/violation.hpp>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// Interior points of an element: its centroid and random convex combinations of its nodes, always the same.
 template <int Nodes, int Dim>
@@ -104,4 +104,4 @@ Violations completeness_laws(int order) {
   return v;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

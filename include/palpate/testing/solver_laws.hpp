@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// What a solver promises beyond its concept.
 struct SolverClaims {
@@ -110,4 +110,4 @@ Violations accuracy_laws(const Op& op, S& solver, double bound) {
   return v;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// A wall at z = 0 without gate and history: force stiffness * depth, per axis z. What a servo is compared with.
 struct VirtualWall {
@@ -86,4 +86,4 @@ inline double stiffness_limit(double damping, double period, double delay) {
   return damping / (0.5 * period + delay);
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

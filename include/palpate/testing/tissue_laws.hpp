@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// How far a tissue may be from its laws.
 struct TissueClaims {
@@ -92,4 +92,4 @@ Violations tissue_laws(T& tissue, std::span<const int> vertices, TissueClaims cl
   return v;
 }
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing

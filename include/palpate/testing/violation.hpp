@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate::inline PALPATE_ABI::testing {
+namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// One broken law: its name, where it broke, the value found and the bound it had to keep.
 struct Violation {
@@ -94,4 +94,4 @@ class Worst {
   std::int64_t count_ = 0;
 };
 
-}  // namespace palpate::inline PALPATE_ABI::testing
+}}}  // namespace palpate::testing
