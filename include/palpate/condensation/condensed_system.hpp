@@ -3,31 +3,42 @@
 
 #include <palpate/concepts/condensation.hpp>
 #include <palpate/condensation/schur.hpp>
+#include <palpate/linear/any_solver.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+/// What solves a condensed system: made from its matrix, and read back from what it wrote.
+template <class S>
+concept DenseSolver = LinearSolver<S> &&
+    requires(MatrixX matrix, BinaryReader& in, BinaryWriter& out, const S& solver, const SetupLimits& limits) {
+  S(std::move(matrix), limits);
+  solver.write(out);
+  { S::read(in, Index{}, limits) } -> std::same_as<S>;
+};
+
 /// A Schur complement with a dense solver for it. Kept dofs are answered by the dense solver alone; `solve_into`
 /// recovers the condensed ones by back-substitution, at visual rate. Satisfies StaticSystem. Copies share the factors.
-template <LinearSolver Dense>
 class CondensedSystem {
  public:
   CondensedSystem() = default;
-  CondensedSystem(SchurComplement schur, const SetupLimits& limits) : interior_(std::move(schur.interior)) {
+
+  /// The system solved by `Dense`: DenseCholesky, DenseInverse or DenseConjugateGradient. Throws what making that
+  /// throws.
+  template <DenseSolver Dense>
+  static CondensedSystem with(SchurComplement schur, const SetupLimits& limits) {
     limits.advance("compliance", 0.0);
-    make_room(schur.stiffness.rows());
-    dense_ = Dense(std::move(schur.stiffness), limits);
+    CondensedSystem made(std::move(schur.interior), schur.stiffness.rows());
+    made.dense_ = Dense(std::move(schur.stiffness), limits);
+    return made;
   }
 
-  void write(BinaryWriter& out) const {
-    interior_.write(out);
-    dense_.write(out);
-  }
-  /// What `write` stored of a system with this analysis; usable only when the reader is good. Throws too_large.
+  void write(BinaryWriter& out) const;
+  /// What `write` stored of a system with this analysis, solved by `Dense`; usable only when the reader is good. Throws
+  /// too_large.
+  template <DenseSolver Dense>
   static CondensedSystem read(BinaryReader& in, CholeskyAnalysis analysis, const SetupLimits& limits) {
-    CondensedSystem read;
-    read.make_room(static_cast<Index>(analysis.kept().size()));
-    read.interior_ = SparseCholesky::read(in, std::move(analysis), true, limits);
-    if (in.good()) read.dense_ = Dense::read(in, read.kept(), limits);
+    CondensedSystem read = read_interior(in, std::move(analysis), limits);
+    if (is_good(in)) read.dense_ = Dense::read(in, read.kept(), limits);
     return read;
   }
 
@@ -37,30 +48,24 @@ class CondensedSystem {
 
   /// x = K^-1 b for a load on any dof, condensed ones included: u_k from f_k + P_f f_c, then u_c = K_cc^-1 (f_c - K_ck
   /// u_k). No allocation.
-  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept {
-    interior_.eliminate_into(b, kept_load_);
-    const SolveReport report = dense_.solve_into(kept_load_, kept_answer_);
-    kept_load_.setZero();
-    interior_.recover_into(kept_answer_, x);
-    return report;
-  }
-
-  SolveReport compliance_column(Index j, VectorX& column) noexcept {
-    kept_load_[j] = 1.0;
-    const SolveReport report = dense_.solve_into(kept_load_, column);
-    kept_load_[j] = 0.0;
-    return report;
-  }
+  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept;
+  /// Responses of the kept dofs to a unit force on kept dof j. No allocation.
+  SolveReport compliance_column(Index j, VectorX& column) noexcept;
 
  private:
-  void make_room(Index kept) {
-    kept_load_ = VectorX::Zero(kept);
-    kept_answer_.resize(kept);
-  }
+  CondensedSystem(SparseCholesky interior, Index kept);
+  static CondensedSystem read_interior(BinaryReader& in, CholeskyAnalysis analysis, const SetupLimits& limits);
+  static bool is_good(const BinaryReader& in) noexcept;
 
   SparseCholesky interior_;
-  Dense dense_;
+  AnySolver dense_;
   VectorX kept_load_, kept_answer_;
 };
 
+static_assert(StaticSystem<CondensedSystem>);
+
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/condensation/condensed_system.ipp>
+#endif

@@ -3,8 +3,6 @@
 
 #include <palpate/linear/sparse_cholesky.hpp>
 
-#include <utility>
-
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// K split into kept and condensed dofs. With P_f = -K_kc K_cc^-1 the condensed system is P_u u_k = f_k + P_f f_c,
@@ -17,14 +15,12 @@ struct SchurComplement {
 
 /// Condenses the matrix whose lower half is given onto `layout.kept` (in that order). Cost: one factorisation. Throws
 /// not_positive_definite, too_large or cancelled.
-inline SchurComplement condense(const SparseLower& lower, const DofLayout& layout, const SetupLimits& limits) {
-  SchurComplement s;
-  s.interior = SparseCholesky::interior(CholeskyAnalysis(lower, layout, limits), lower, s.stiffness, limits);
-  return s;
-}
+SchurComplement condense(const SparseLower& lower, const DofLayout& layout, const SetupLimits& limits);
 /// The same, nothing known of nodes and positions.
-inline SchurComplement condense(const SparseLower& lower, std::vector<Index> kept, const SetupLimits& limits) {
-  return condense(lower, DofLayout{{}, {}, std::move(kept)}, limits);
-}
+SchurComplement condense(const SparseLower& lower, std::vector<Index> kept, const SetupLimits& limits);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/condensation/schur.ipp>
+#endif

@@ -1,7 +1,6 @@
 // Large blocks of doubles that are not filled before they are used.
 #pragma once
 
-#include <palpate/core/platform.hpp>
 #include <palpate/core/types.hpp>
 
 #include <memory>
@@ -11,7 +10,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 struct AlignedDelete {
   std::size_t alignment = 64;
-  void operator()(double* p) const noexcept { ::operator delete (p, std::align_val_t{alignment}); }
+  void operator()(double* p) const noexcept { ::operator delete(p, std::align_val_t{alignment}); }
 };
 
 /// Uninitialised doubles, aligned for any packet. On Linux large ones ask for huge pages, for fewer page faults while a
@@ -19,11 +18,7 @@ struct AlignedDelete {
 class BigArray {
  public:
   BigArray() = default;
-  explicit BigArray(Index size) : size_(size) {
-    const std::size_t alignment = bytes() >= 2 * huge_page ? huge_page : line;
-    data_ = {static_cast<double*>(::operator new (bytes(), std::align_val_t{alignment})), AlignedDelete{alignment}};
-    if (alignment == huge_page) platform::prefer_huge_pages(data_.get(), bytes());
-  }
+  explicit BigArray(Index size);
 
   double* data() noexcept { return data_.get(); }
   const double* data() const noexcept { return data_.get(); }
@@ -31,10 +26,12 @@ class BigArray {
   std::size_t bytes() const noexcept { return static_cast<std::size_t>(size_) * sizeof(double); }
 
  private:
-  static constexpr std::size_t huge_page = std::size_t{1} << 21, line = 64;
-
   std::unique_ptr<double, AlignedDelete> data_;
   Index size_ = 0;
 };
 
 }}}  // namespace palpate::detail
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/big_array.ipp>
+#endif

@@ -1,9 +1,7 @@
 // Conjugate gradients for a step of time: a bounded number of iterations, and what they leave.
 #pragma once
 
-#include <palpate/concepts/linear_solver.hpp>
-
-#include <cmath>
+#include <palpate/linear/operator_view.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -28,38 +26,15 @@ class BoundedConjugateGradient {
   explicit BoundedConjugateGradient(Index size) : r_(size), z_(size), p_(size), q_(size) {}
 
   /// x stays finite for a finite b: a direction without positive curvature ends it.
-  template <SpdOperator Op>
-  BoundedSolveReport solve_into(const Op& op, const VectorX& b, VectorX& x,
-                                const BoundedSolveParameters& parameters) noexcept {
-    BoundedSolveReport report;
-    x.setZero();
-    r_ = b;
-    op.precondition(r_, z_);
-    p_ = z_;
-    double rz = r_.dot(z_), whole = 0.0;
-    if (rz == 0.0) return {true, 0, 0.0};
-    while (!report.converged && report.iterations < parameters.maximum_iterations) {
-      op.apply(p_, q_);
-      const double alpha = rz / p_.dot(q_);
-      if (!(alpha > 0.0 && alpha < infinity && rz < infinity)) return report;
-      x.noalias() += alpha * p_;
-      ++report.iterations;
-      whole += alpha * rz;
-      report.error = std::sqrt(alpha * rz / whole);
-      report.converged = report.error <= parameters.tolerance;
-      if (report.converged) break;
-      r_.noalias() -= alpha * q_;
-      op.precondition(r_, z_);
-      const double next = r_.dot(z_);
-      p_ = z_ + (next / rz) * p_;
-      rz = next;
-      if (rz == 0.0) report.converged = true;
-    }
-    return report;
-  }
+  BoundedSolveReport solve_into(const OperatorView& op, const VectorX& b, VectorX& x,
+                                const BoundedSolveParameters& parameters) noexcept;
 
  private:
   VectorX r_, z_, p_, q_;
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/bounded_conjugate_gradient.ipp>
+#endif

@@ -2,26 +2,23 @@
 #pragma once
 
 #include <palpate/linear/conjugate_gradient.hpp>
-#include <palpate/linear/dense_io.hpp>
 
 #include <memory>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+class BinaryReader;
+
 /// A dense SPD matrix with its diagonal as preconditioner. Satisfies SpdOperator. Copies share the matrix.
 class DenseOperator {
  public:
   DenseOperator() = default;
-  explicit DenseOperator(MatrixX matrix)
-      : matrix_(std::make_shared<const MatrixX>(std::move(matrix))),
-        inverse_diagonal_(matrix_->diagonal().cwiseInverse()) {}
+  explicit DenseOperator(MatrixX matrix);
   Index size() const noexcept { return inverse_diagonal_.size(); }
   const MatrixX* matrix() const noexcept { return matrix_.get(); }
   std::size_t bytes() const noexcept { return static_cast<std::size_t>(size() * size()) * sizeof(double); }
-  void apply(const VectorX& x, VectorX& y) const noexcept {
-    y.noalias() = matrix_->selfadjointView<Eigen::Lower>() * x;
-  }
-  void precondition(const VectorX& x, VectorX& y) const noexcept { y = inverse_diagonal_.cwiseProduct(x); }
+  void apply(const VectorX& x, VectorX& y) const noexcept;
+  void precondition(const VectorX& x, VectorX& y) const noexcept;
 
  private:
   std::shared_ptr<const MatrixX> matrix_;
@@ -33,11 +30,9 @@ class DenseConjugateGradient {
  public:
   DenseConjugateGradient() = default;
   DenseConjugateGradient(MatrixX matrix, const SetupLimits&) : op_(std::move(matrix)), solver_(op_.size()) {}
-  void write(BinaryWriter& out) const { detail::write_dense(out, op_.matrix()); }
+  void write(BinaryWriter& out) const;
   /// What `write` stored of a system of this size; usable only when the reader is good. Throws too_large.
-  static DenseConjugateGradient read(BinaryReader& in, Index size, const SetupLimits& limits) {
-    return {detail::read_dense<double>(in, size, limits), limits};
-  }
+  static DenseConjugateGradient read(BinaryReader& in, Index size, const SetupLimits& limits);
 
   Index size() const noexcept { return op_.size(); }
   std::size_t bytes() const noexcept { return op_.bytes() + solver_.bytes(); }
@@ -51,3 +46,7 @@ class DenseConjugateGradient {
 static_assert(LinearSolver<DenseConjugateGradient>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/dense_conjugate_gradient.ipp>
+#endif

@@ -4,7 +4,9 @@
 #include <palpate/linear/big_array.hpp>
 #include <palpate/linear/cholesky_analysis.hpp>
 #include <palpate/linear/front_kernels.hpp>
+#include <palpate/linear/front_tree.hpp>
 #include <palpate/linear/pivot_check.hpp>
+#include <palpate/linear/vector_kernels.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
@@ -19,7 +21,7 @@ class FrontFactorisation {
         node_of_dof_(analysis.node_of_dof()),
         local_(analysis.size(), 0),
         pivots_(analysis.size()),
-        diagonal_(VectorX::Zero(analysis.size())) {
+        diagonal_(zeros(analysis.size())) {
     Index most = 0;
     for (Index f = 0; f < tree_.fronts.size(); ++f)
       most = std::max<Index>(most, tree_.fronts[f].run_end - tree_.fronts[f].run_begin);

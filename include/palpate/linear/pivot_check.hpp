@@ -1,8 +1,9 @@
 // The refusal of a matrix that is not positive definite.
 #pragma once
 
-#include <palpate/core/setup_options.hpp>
 #include <palpate/linear/indexed_vector.hpp>
+
+#include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
@@ -13,31 +14,11 @@ inline bool pivot_is_good(double pivot, double diagonal, double threshold) noexc
 /// Throws not_positive_definite when a pivot is not finite, not positive or not more than `threshold` of its own
 /// diagonal entry. `pivots` and `diagonal` go by place in the elimination order; the ids are nodes where
 /// `node_of_dof` has them, dofs where it is empty.
-inline void check_pivots(const VectorX& pivots, const VectorX& diagonal, const NodeVector& place_of_dof,
-                         const std::vector<Index>& node_of_dof, Index checked, double threshold) {
-  std::vector<Index> bad;
-  Index count = 0;
-  double worst = infinity;
-  for (Index dof = 0; dof < place_of_dof.size(); ++dof) {
-    const Index i = place_of_dof[dof];
-    if (i >= checked || pivot_is_good(pivots[i], diagonal[i], threshold)) continue;
-    const double ratio = pivots[i] / std::abs(diagonal[i]);
-    if (!(ratio >= worst)) worst = ratio;
-    ++count;
-    bad.push_back(node_of_dof.empty() ? dof : node_of_dof[static_cast<std::size_t>(dof)]);
-  }
-  if (bad.empty()) return;
-  std::ranges::sort(bad);
-  bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
-  SetupProblem p;
-  p.kind = SetupErrorKind::not_positive_definite;
-  p.what = "the stiffness matrix is not positive definite: " + std::to_string(count) + " pivots fail" +
-           (node_of_dof.empty() ? "; the ids are dofs" : ", at " + std::to_string(bad.size()) + " nodes");
-  p.hint = "Look there for a body that is not held, an inverted element or a Poisson ratio at its limit";
-  p.value = worst;
-  p.threshold = threshold;
-  p.set_ids(bad);
-  raise(std::move(p));
-}
+void check_pivots(const VectorX& pivots, const VectorX& diagonal, const NodeVector& place_of_dof,
+                         const std::vector<Index>& node_of_dof, Index checked, double threshold);
 
 }}}  // namespace palpate::detail
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/pivot_check.ipp>
+#endif

@@ -1,0 +1,81 @@
+// Definitions of dense_inverse.hpp.
+#pragma once
+
+#include <palpate/linear/dense_inverse.hpp>
+#include <palpate/linear/dense_io.hpp>
+#include <palpate/linear/spd_inverse.hpp>
+
+#include <algorithm>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+namespace detail {
+
+/// x += columns of an n x n matrix times their loads. A plain loop, which compilers vectorise with the change of
+/// precision in it; Eigen's casts of mixed width are scalar.
+template <int N, class Scalar>
+void add_loaded_columns(const Scalar* matrix, Index n, const Index* columns, const double* b, double* x) noexcept {
+  const Scalar* column[N];
+  double load[N];
+  for (int k = 0; k < N; ++k) {
+    column[k] = matrix + columns[k] * n;
+    load[k] = b[columns[k]];
+  }
+  for (Index i = 0; i < n; ++i) {
+    double sum = x[i];
+    for (int k = 0; k < N; ++k) sum += load[k] * static_cast<double>(column[k][i]);
+    x[i] = sum;
+  }
+}
+
+}  // namespace detail
+
+template <std::floating_point Scalar>
+DenseInverse<Scalar>::DenseInverse(MatrixX matrix, const SetupLimits&) {
+  SpdInverse::invert(matrix, 1e-15, "the condensed stiffness is not positive definite");
+  if constexpr (std::same_as<Scalar, double>) {
+    inverse_ = std::make_shared<const Matrix>(std::move(matrix));
+  } else {
+    Matrix rounded(matrix.rows(), matrix.cols());
+    for (Index i = 0; i < matrix.size(); ++i) rounded.data()[i] = static_cast<Scalar>(matrix.data()[i]);
+    inverse_ = std::make_shared<const Matrix>(std::move(rounded));
+  }
+}
+
+template <std::floating_point Scalar>
+void DenseInverse<Scalar>::write(BinaryWriter& out) const {
+  detail::write_dense(out, inverse_.get());
+}
+
+template <std::floating_point Scalar>
+DenseInverse<Scalar> DenseInverse<Scalar>::read(BinaryReader& in, Index size, const SetupLimits& limits) {
+  DenseInverse read;
+  read.inverse_ = std::make_shared<const Matrix>(detail::read_dense<Scalar>(in, size, limits));
+  return read;
+}
+
+template <std::floating_point Scalar>
+SolveReport DenseInverse<Scalar>::solve_into(const VectorX& b, VectorX& x) noexcept {
+  constexpr int most = 8;  // columns in one pass: x goes through the registers once for all of them
+  const Scalar* const matrix = inverse_ ? inverse_->data() : nullptr;
+  const Index n = size();
+  std::fill_n(x.data(), x.size(), 0.0);
+  Index loaded[most];
+  int count = 0;
+  for (Index j = 0; j < n; ++j) {
+    if (b.data()[j] == 0.0) continue;
+    loaded[count++] = j;
+    if (count < most) continue;
+    detail::add_loaded_columns<most>(matrix, n, loaded, b.data(), x.data());
+    count = 0;
+  }
+  for (int k = 0; k < count; ++k) detail::add_loaded_columns<1>(matrix, n, loaded + k, b.data(), x.data());
+  return {true, 0, std::numeric_limits<double>::quiet_NaN()};
+}
+
+#if !PALPATE_HEADER_ONLY
+template class DenseInverse<double>;
+template class DenseInverse<float>;
+#endif
+
+}}  // namespace palpate

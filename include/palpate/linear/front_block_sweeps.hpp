@@ -1,0 +1,36 @@
+// Blocks of right-hand sides through the fronts of a multifrontal factor.
+#pragma once
+
+#include <palpate/linear/big_array.hpp>
+#include <palpate/linear/front_tree.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// Workspace of a block of right-hand sides, interleaved: `width()` values per row, a few packets of them.
+class FrontBlockSweeps {
+ public:
+  /// For up to `columns` right-hand sides at once, three packets at most.
+  FrontBlockSweeps(const FrontTree& tree, const double* factor, Index columns);
+
+  Index width() const noexcept { return width_; }
+  /// Values of one place in the elimination order.
+  double* row(Index place) noexcept { return values_.data() + place * width_; }
+  void clear(Index first, Index count) noexcept;
+  void forward(const Front& f) noexcept;
+  void backward(const Front& f) noexcept;
+
+ private:
+  const FrontTree& tree_;
+  const double* factor_;
+  Index width_;
+  BigArray values_, local_;
+};
+
+/// x = K^-1 b for all columns. The front after the first `fronts` ones is held at zero.
+void solve_block(const FrontTree& tree, const double* factor, Index fronts, const MatrixX& b, MatrixX& x);
+
+}}}  // namespace palpate::detail
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/front_block_sweeps.ipp>
+#endif

@@ -1,0 +1,54 @@
+// Definitions of repeated_cholesky.hpp.
+#pragma once
+
+#include <palpate/linear/front_factorisation.hpp>
+#include <palpate/linear/front_sweeps.hpp>
+#include <palpate/linear/repeated_cholesky.hpp>
+#include <palpate/linear/sparse_cholesky.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+struct RepeatedCholesky::Factor {
+  explicit Factor(const CholeskyAnalysis& analysis)
+      : values(analysis.tree().factor_size + padding),
+        factorisation(analysis, values.data()),
+        sweeps(analysis.tree(), values.data(), analysis.front_count()) {
+    std::fill_n(values.data() + values.size() - padding, padding, 0.0);
+  }
+
+  static constexpr Index padding = 64;  // zeros behind the factor, for kernels that read past its end
+  detail::BigArray values;
+  detail::FrontFactorisation factorisation;
+  detail::FrontSweeps sweeps;
+};
+
+PALPATE_INLINE RepeatedCholesky::RepeatedCholesky(CholeskyAnalysis analysis, const SetupLimits& limits)
+    : analysis_(std::move(analysis)) {
+  limits.require_memory(analysis_.peak_bytes(), "the sparse factor");
+  factor_ = std::make_unique<Factor>(analysis_);
+}
+PALPATE_INLINE RepeatedCholesky::~RepeatedCholesky() = default;
+
+PALPATE_INLINE bool RepeatedCholesky::factorise(const SparseLower& lower) noexcept {
+  factor_->factorisation.take(lower);
+  return ready_ = factor_->factorisation.try_eliminate(SparseCholesky::pivot_threshold);
+}
+
+PALPATE_INLINE std::size_t RepeatedCholesky::bytes() const noexcept {
+  return factor_->values.bytes();
+}
+
+PALPATE_INLINE SolveReport RepeatedCholesky::solve_into(const VectorX& b, VectorX& x) noexcept {
+  if (!ready_) return {false, 0, std::numeric_limits<double>::quiet_NaN()};
+  detail::FrontSweeps& sweeps = factor_->sweeps;
+  sweeps.scatter(b.data());
+  sweeps.forward_all();
+  sweeps.backward_all();
+  sweeps.gather(x.data());
+  return {true, 0, std::numeric_limits<double>::quiet_NaN()};
+}
+
+}}  // namespace palpate

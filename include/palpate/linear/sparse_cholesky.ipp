@@ -1,0 +1,170 @@
+// Definitions of sparse_cholesky.hpp.
+#pragma once
+
+#include <palpate/core/binary_io.hpp>
+#include <palpate/linear/front_block_sweeps.hpp>
+#include <palpate/linear/front_factorisation.hpp>
+#include <palpate/linear/sparse_cholesky.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+struct SparseCholesky::Factor {
+  CholeskyAnalysis analysis;
+  detail::BigArray values;
+  Index fronts = 0;  // eliminated
+  Index kept = 0;    // dofs that were not
+
+  static constexpr Index padding = 64;  // zeros behind the factor, for kernels that read past its end
+
+  const detail::FrontTree& tree() const noexcept { return analysis.tree(); }
+  Index stored() const noexcept { return values.size() - padding; }
+  Index kept_place(Index i) const noexcept { return tree().place_of_dof[analysis.kept()[static_cast<std::size_t>(i)]]; }
+};
+
+PALPATE_INLINE SparseCholesky::SparseCholesky(const Matrix& lower, const SetupLimits& limits)
+    : SparseCholesky(CholeskyAnalysis(lower, {}, limits), lower, limits) {}
+
+PALPATE_INLINE SparseCholesky::SparseCholesky(CholeskyAnalysis analysis, const Matrix& lower, const SetupLimits& limits)
+    : SparseCholesky(std::move(analysis), lower, nullptr, limits) {}
+
+PALPATE_INLINE SparseCholesky SparseCholesky::interior(CholeskyAnalysis analysis, const Matrix& lower, MatrixX& schur,
+                                                       const SetupLimits& limits) {
+  return SparseCholesky(std::move(analysis), lower, &schur, limits);
+}
+
+PALPATE_INLINE SparseCholesky::SparseCholesky(CholeskyAnalysis analysis, const Matrix& lower, MatrixX* schur,
+                                              const SetupLimits& limits) {
+  if (!lower.isCompressed() || !analysis.fits(lower))
+    raise(SetupErrorKind::bad_argument, "the matrix does not have the pattern that was analysed",
+          "Compress the matrix and analyse it again");
+  limits.advance("factorisation", 0.0);
+  limits.require_memory(schur != nullptr ? analysis.interior_peak_bytes() : analysis.peak_bytes(), "the sparse factor");
+  auto made = allocate(analysis, schur != nullptr);
+  detail::FrontFactorisation factorisation(analysis, made->values.data());
+  factorisation.take(lower);
+  factorisation.eliminate(made->fronts, pivot_threshold, limits);
+  if (schur != nullptr) *schur = factorisation.schur(analysis.kept());
+  adopt(std::move(made), std::move(analysis));
+  limits.advance("factorisation", 1.0);
+}
+
+/// A factor without numbers; its last front left out when interior and something is kept.
+PALPATE_INLINE std::shared_ptr<SparseCholesky::Factor> SparseCholesky::allocate(const CholeskyAnalysis& analysis,
+                                                                                bool interior) {
+  const detail::FrontTree& tree = analysis.tree();
+  auto made = std::make_shared<Factor>();
+  made->fronts = tree.fronts.size();
+  Index stored = tree.factor_size;
+  if (interior && !analysis.kept().empty()) {
+    made->kept = static_cast<Index>(analysis.kept().size());
+    stored = tree.fronts[--made->fronts].factor;
+  }
+  made->values = detail::BigArray(stored + Factor::padding);
+  std::fill_n(made->values.data() + stored, Factor::padding, 0.0);
+  return made;
+}
+
+PALPATE_INLINE void SparseCholesky::adopt(std::shared_ptr<Factor> made, CholeskyAnalysis analysis) {
+  made->analysis = std::move(analysis);
+  sweeps_ = detail::FrontSweeps(made->tree(), made->values.data(), made->fronts);
+  factor_ = std::move(made);
+}
+
+PALPATE_INLINE void SparseCholesky::write(BinaryWriter& out) const {
+  out.value(factor_->analysis.order_hash());
+  out.array(std::span<const double>(factor_->values.data(), static_cast<std::size_t>(factor_->stored())));
+}
+
+PALPATE_INLINE SparseCholesky SparseCholesky::read(BinaryReader& in, CholeskyAnalysis analysis, bool interior,
+                                                   const SetupLimits& limits) {
+  limits.require_memory(analysis.factor_bytes(), "the sparse factor");
+  SparseCholesky read;
+  if (!in.expect(analysis.order_hash(), ReadFailure::unfit)) return read;
+  auto made = allocate(analysis, interior);
+  in.array(std::span<double>(made->values.data(), static_cast<std::size_t>(made->stored())));
+  read.adopt(std::move(made), std::move(analysis));
+  return read;
+}
+
+PALPATE_INLINE Index SparseCholesky::size() const noexcept {
+  return factor_ ? factor_->analysis.size() : 0;
+}
+PALPATE_INLINE Index SparseCholesky::kept() const noexcept {
+  return factor_ ? factor_->kept : 0;
+}
+PALPATE_INLINE const CholeskyAnalysis& SparseCholesky::analysis() const noexcept {
+  return factor_->analysis;
+}
+PALPATE_INLINE Index SparseCholesky::factor_nonzeros() const noexcept {
+  return factor_ ? static_cast<Index>(factor_->analysis.nonzeros()) : 0;
+}
+PALPATE_INLINE std::size_t SparseCholesky::bytes() const noexcept {
+  return factor_ ? factor_->values.bytes() : 0;
+}
+
+PALPATE_INLINE SolveReport SparseCholesky::solve_into(const VectorX& b, VectorX& x) noexcept {
+  if (factor_) {
+    sweeps_.scatter(b.data());
+    sweeps_.forward_all();
+    hold_kept();
+    sweeps_.backward_all();
+    sweeps_.gather(x.data());
+  }
+  return {true, 0, std::numeric_limits<double>::quiet_NaN()};
+}
+
+PALPATE_INLINE MatrixX SparseCholesky::solve(const MatrixX& b) const {
+  MatrixX x(b.rows(), b.cols());
+  if (factor_) detail::solve_block(factor_->tree(), factor_->values.data(), factor_->fronts, b, x);
+  return x;
+}
+
+PALPATE_INLINE void SparseCholesky::eliminate_into(const VectorX& b, VectorX& kept_load) noexcept {
+  sweeps_.scatter(b.data());
+  sweeps_.forward_all();
+  take_kept(kept_load);
+}
+PALPATE_INLINE void SparseCholesky::recover_into(const VectorX& kept_answer, VectorX& x) noexcept {
+  give_kept(kept_answer);
+  sweeps_.backward_all();
+  sweeps_.gather(x.data());
+}
+
+PALPATE_INLINE ReducedUnits SparseCholesky::reduce_units(std::span<const Index> dofs) const {
+  return detail::reduce_units(factor_->tree(), factor_->values.data(), factor_->fronts, dofs,
+                              factor_->analysis.kept());
+}
+
+PALPATE_INLINE void SparseCholesky::solve_path_into(std::span<const Index> loaded, std::span<const double> loads,
+                                                    std::span<const Index> wanted, std::span<double> answer) noexcept {
+  sweeps_.forward_path(loaded, loads);
+  hold_kept();
+  sweeps_.backward_path(wanted, answer);
+}
+PALPATE_INLINE void SparseCholesky::eliminate_path_into(std::span<const Index> loaded, std::span<const double> loads,
+                                                        VectorX& kept_load) noexcept {
+  sweeps_.forward_path(loaded, loads);
+  take_kept(kept_load);
+}
+PALPATE_INLINE void SparseCholesky::recover_path_into(const VectorX& kept_answer, std::span<const Index> wanted,
+                                                      std::span<double> answer) noexcept {
+  give_kept(kept_answer);
+  sweeps_.backward_path(wanted, answer);
+}
+
+PALPATE_INLINE void SparseCholesky::take_kept(VectorX& kept_load) noexcept {
+  const double* const values = sweeps_.values().data();
+  for (Index i = 0; i < kept(); ++i) kept_load.data()[i] = values[factor_->kept_place(i)];
+}
+PALPATE_INLINE void SparseCholesky::give_kept(const VectorX& kept_answer) noexcept {
+  double* const values = sweeps_.values().data();
+  for (Index i = 0; i < kept(); ++i) values[factor_->kept_place(i)] = kept_answer.data()[i];
+}
+PALPATE_INLINE void SparseCholesky::hold_kept() noexcept {
+  std::fill_n(sweeps_.values().data() + size() - kept(), kept(), 0.0);
+}
+
+}}  // namespace palpate
