@@ -187,7 +187,7 @@ TEST_CASE("Mid-edge nodes of real files lie on their edges", "[io]") {
 TEST_CASE("A file written for Gmsh comes back with every element type", "[io]") {
   const auto there_and_back = [](const auto& mesh, auto element) {
     using E = decltype(element);
-    const std::string text = io::MshText<E>(mesh).text();
+    const std::string text = io::msh_text(mesh);
     const auto back = build<E>("msh2", text);
     CHECK(back.elements == mesh.elements);
     CHECK(back.positions == mesh.positions);

@@ -1,7 +1,7 @@
 // Cell shapes that mesh files hold, and where their nodes sit.
 #pragma once
 
-#include <palpate/concepts/element.hpp>
+#include <palpate/mesh/element_layout.hpp>
 
 #include <array>
 #include <cstdint>
@@ -76,14 +76,10 @@ constexpr const ShapeFacts& facts(CellShape shape) noexcept {
   return shape_facts[static_cast<std::size_t>(shape)];
 }
 
-/// The shape of element E: known by its nodes and faces, so an element needs no entry anywhere to be read.
-template <Element E>
-constexpr CellShape solid_shape() {
-  constexpr std::size_t faces = E::faces.size();
-  static_assert((faces == 4 && (E::nodes == 4 || E::nodes == 10)) || (faces == 6 && (E::nodes == 8 || E::nodes == 20)),
-                "files are read into tetrahedra of 4 or 10 nodes and hexahedra of 8 or 20 nodes");
-  if constexpr (faces == 4) return E::nodes == 4 ? CellShape::tetrahedron4 : CellShape::tetrahedron10;
-  return E::nodes == 8 ? CellShape::hexahedron8 : CellShape::hexahedron20;
+/// The shape of an element: known by its nodes and faces, so an element needs no entry anywhere to be read.
+constexpr CellShape solid_shape(const ElementLayout& element) noexcept {
+  if (element.face_count == 4) return element.nodes == 4 ? CellShape::tetrahedron4 : CellShape::tetrahedron10;
+  return element.nodes == 8 ? CellShape::hexahedron8 : CellShape::hexahedron20;
 }
 
 /// The shape of the faces of a solid.
@@ -100,7 +96,18 @@ constexpr CellShape face_shape(CellShape solid) noexcept {
   }
 }
 
+/// The shape of element E; refuses one that no file holds when it is compiled.
+template <Element E>
+constexpr CellShape solid_shape() {
+  constexpr std::size_t faces = E::faces.size();
+  static_assert((faces == 4 && (E::nodes == 4 || E::nodes == 10)) || (faces == 6 && (E::nodes == 8 || E::nodes == 20)),
+                "files are read into tetrahedra of 4 or 10 nodes and hexahedra of 8 or 20 nodes");
+  constexpr CellShape shape = solid_shape(element_layout<E>);
+  static_assert(facts(shape).nodes == E::nodes && facts(face_shape(shape)).nodes == E::Face::nodes);
+  return shape;
+}
+
 /// order[k] is the place in the file's node list of VTK's node k; empty when the two agree.
 using NodeOrder = std::span<const std::uint8_t>;
 
-}}}  // namespace palpate::io
+}}}  // namespace palpate::PALPATE_ABI::io

@@ -4,8 +4,7 @@
 #include <palpate/io/cell_shape.hpp>
 #include <palpate/io/text_reader.hpp>
 
-#include <map>
-#include <utility>
+#include <limits>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
@@ -33,7 +32,7 @@ struct FileCell {
 /// A parsed file, whatever its format. Nodes count from zero, those of a cell come in VTK's order. A tag puts a cell
 /// into the group of its dimension and tag; the lowest tag of a solid cell is its region.
 struct FileMesh {
-  explicit FileMesh(std::string name) : files{std::move(name)} {}
+  explicit FileMesh(std::string name);
 
   std::vector<std::string> files;  ///< names, for messages
   std::vector<Vector3> positions;
@@ -46,32 +45,8 @@ struct FileMesh {
   int last_region = static_cast<int>(max_int);  ///< tags above it make groups but no regions
 
   /// Adds a cell whose nodes were read in the order of the file into the end of cell_nodes.
-  void add_cell(Index tag, Index place, CellShape shape, std::uint32_t tag_set, NodeOrder order,
-                std::uint8_t file = 0) {
-    const std::size_t count = static_cast<std::size_t>(facts(shape).nodes), first = cell_nodes.size() - count;
-    cells.push_back({tag, place, first, tag_set, shape, file});
-    if (order.empty()) return;
-    std::array<NodeId, 32> read{};
-    std::copy_n(cell_nodes.begin() + static_cast<std::ptrdiff_t>(first), count, read.begin());
-    for (std::size_t k = 0; k < count; ++k) cell_nodes[first + k] = read[order[k]];
-  }
-
-  /// The entry of tag_sets that holds `tags`; the caller keeps the map. O(log n).
-  std::uint32_t set_of(std::map<std::vector<int>, std::uint32_t>& known, const std::vector<int>& tags) {
-    if (tags.empty()) return 0;
-    const auto [set, is_new] = known.try_emplace(tags, static_cast<std::uint32_t>(tag_sets.size()));
-    if (is_new) tag_sets.push_back(tags);
-    return set->second;
-  }
+  void add_cell(Index tag, Index place, CellShape shape, std::uint32_t tag_set, NodeOrder order, std::uint8_t file = 0);
 };
-
-/// Reads three coordinates.
-template <class In>
-Vector3 read_point(In& in) {
-  Vector3 x;
-  for (int i = 0; i < 3; ++i) x[i] = in.real("a coordinate");
-  return x;
-}
 
 /// The ids a mesh file uses: entry i belongs to node i or element i of the mesh.
 struct MeshNumbering {
@@ -83,10 +58,10 @@ struct MeshNumbering {
 inline constexpr std::size_t max_groups = 10000;
 
 /// The command that fills a closed surface with tetrahedra.
-inline std::string fill_command(const std::string& surface) {
-  return "Fill it: echo 'Merge \"" + surface +
-         "\"; Surface Loop(1) = Surface{:}; Volume(1) = {1}; "
-         "Physical Volume(\"body\") = {1};' > solid.geo && gmsh solid.geo -3 -o solid.msh";
-}
+std::string fill_command(const std::string& surface);
 
-}}}  // namespace palpate::io
+}}}  // namespace palpate::PALPATE_ABI::io
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/io/file_mesh.ipp>
+#endif

@@ -7,4 +7,4 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 using GmshNumbering = MeshNumbering;
 
-}}}  // namespace palpate::io
+}}}  // namespace palpate::PALPATE_ABI::io

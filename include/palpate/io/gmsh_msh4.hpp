@@ -1,148 +1,21 @@
 // The entity, node and element sections of Gmsh's format 4.1.
 #pragma once
 
-#include <palpate/io/gmsh_types.hpp>
+#include <palpate/io/gmsh_state.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh::msh4 {
 
-/// An entity: `tag box nphys phys... [nbound bound...]`; the box has 3 numbers for a point and 6 for the others. Gmsh
-/// writes boxes that overflow for empty entities, so they are not looked at. Elements belong to groups only by way of
-/// their entity.
-template <class In>
-void read_entity(In& in, int dimension, State& state) {
-  in.begin("an entity");
-  const Index tag = in.integer("an entity tag", -max_int, max_int);
-  in.skip_reals(dimension == 0 ? 3 : 6, "a bounding box");
-  std::vector<int> physical;
-  const Index count = in.long_integer("a number of physical tags", 0, max_int, SetupErrorKind::count_too_large);
-  for (Index i = 0; i < count; ++i)
-    if (const int group = read_physical(in); group != 0) physical.push_back(group);
-  if (dimension > 0) {
-    const Index bounds = in.long_integer("a number of bounding entities", 0, max_int, SetupErrorKind::count_too_large);
-    for (Index i = 0; i < bounds; ++i) in.integer("a bounding entity", -max_int, max_int);
-  }
-  in.end("an entity");
-  std::ranges::sort(physical);
-  physical.erase(std::unique(physical.begin(), physical.end()), physical.end());
-  if (!state.entities.emplace(std::pair{dimension, tag}, state.mesh.set_of(state.sets, physical)).second)
-    in.in.refuse(SetupErrorKind::bad_file, "every entity once",
-                 "entity " + std::to_string(tag) + " of dimension " + std::to_string(dimension) + " twice");
-}
-
 /// $Entities: numbers of points, curves, surfaces and volumes, then the entities.
-template <class In>
-void read_entities(In in, State& state) {
-  in.begin("the numbers of entities");
-  std::array<Index, 4> counts{};
-  for (std::size_t d = 0; d < 4; ++d) counts[d] = in.count("a number of entities", d == 0 ? 10 : 18, d == 0 ? 36 : 68);
-  in.end("the numbers of entities");
-  for (int d = 0; d < 4; ++d)
-    for (Index i = 0; i < counts[static_cast<std::size_t>(d)]; ++i) read_entity(in, d, state);
-}
-
-/// The first record of $Nodes and $Elements: `blocks things min max`. Returns blocks and things.
-template <class In>
-std::pair<Index, Index> read_header(In& in, std::string_view what, Index text_bytes, Index binary_bytes) {
-  in.begin(what);
-  const Index blocks = in.count("a number of blocks", 8, 20);
-  const Index things = in.count(what, text_bytes, binary_bytes);
-  for (int i = 0; i < 2; ++i) in.long_integer("the smallest and largest tag", 0, max_tag);
-  in.end(what);
-  return {blocks, things};
-}
-
-/// Refuses blocks that together do not hold what the header of the section said.
-inline void check_total(const TextReader& in, std::string_view what, Index expected, std::size_t found) {
-  if (static_cast<Index>(found) != expected)
-    in.refuse(SetupErrorKind::bad_file, std::to_string(expected) + ' ' + std::string(what),
-              std::to_string(found) + " in the blocks");
-}
-
-/// A block of nodes: `dimension entity parametric count`, then `count` ids, then `count` positions with `dimension`
-/// parameters behind each if parametric.
-template <class In>
-void read_node_block(In& in, FileMesh& mesh) {
-  in.begin("a block of nodes");
-  const Index dimension = in.integer("a dimension", 0, 3);
-  in.integer("an entity tag", -max_int, max_int);
-  const Index parameters = in.integer("0 or 1 for parametric", 0, 1) * dimension;
-  const Index count = in.count("a number of nodes", 8, 32);
-  in.end("a block of nodes");
-  for (Index i = 0; i < count; ++i) {
-    in.begin("a node id");
-    mesh.node_tags.push_back(in.long_integer("a node id", 1, max_tag));
-    in.end("a node id");
-  }
-  for (Index i = 0; i < count; ++i) {
-    in.begin("a position");
-    mesh.positions.push_back(read_point(in));
-    for (Index p = 0; p < parameters; ++p) in.real("a parameter");
-    in.end("a position");
-  }
-}
+void read_entities(TextReader& in, State& state);
 
 /// $Nodes.
-template <class In>
-void read_nodes(In in, State& state) {
-  const auto [blocks, count] = read_header(in, "a number of nodes", 8, 32);
-  state.mesh.positions.reserve(static_cast<std::size_t>(count));
-  state.mesh.node_tags.reserve(static_cast<std::size_t>(count));
-  for (Index b = 0; b < blocks; ++b) read_node_block(in, state.mesh);
-  check_total(in.in, "nodes", count, state.mesh.node_tags.size());
-}
-
-/// The physical tags of an entity. Without $Entities there are none; an entity missing from $Entities is refused.
-inline std::uint32_t physical_set(const TextReader& in, const State& state, int dimension, Index tag) {
-  if (state.entities.empty()) return 0;
-  const auto it = state.entities.find({dimension, tag});
-  if (it == state.entities.end())
-    in.refuse(SetupErrorKind::index_out_of_range, "an entity of $Entities",
-              "entity " + std::to_string(tag) + " of dimension " + std::to_string(dimension));
-  return it->second;
-}
-
-/// Counts the groups of `count` elements more. A few bytes can put every element into thousands of groups; what that
-/// takes must stay in proportion to the file.
-inline void add_memberships(const TextReader& in, State& state, std::uint32_t set, Index count) {
-  const auto limit = static_cast<Index>(in.size());
-  state.memberships += count * static_cast<Index>(state.mesh.tag_sets[set].size());
-  if (state.memberships > limit)
-    in.refuse(SetupErrorKind::count_too_large, "elements in groups at most " + std::to_string(limit) + " times",
-              std::to_string(state.memberships));
-}
-
-/// A block of elements: `dimension entity type count`, then `id nodes...` each.
-template <class In>
-void read_element_block(In& in, const NodeIds& nodes, State& state) {
-  in.begin("a block of elements");
-  const auto dimension = static_cast<int>(in.integer("a dimension", 0, 3));
-  const Index entity = in.integer("an entity tag", -max_int, max_int);
-  const Type* type = read_type(in, in.in);
-  const Index count = in.count("a number of elements", 4, 16);
-  in.end("a block of elements");
-  if (facts(type->shape).dimension != dimension)
-    in.in.refuse(SetupErrorKind::bad_file, "elements of dimension " + std::to_string(dimension),
-                 facts(type->shape).name);
-  const std::uint32_t set = physical_set(in.in, state, dimension, entity);
-  add_memberships(in.in, state, set, count);
-  for (Index i = 0; i < count; ++i) {
-    in.begin("an element");
-    const Index place = in.in.place(), tag = in.long_integer("an element id", 1, max_tag);
-    for (int a = 0; a < facts(type->shape).nodes; ++a)
-      state.mesh.cell_nodes.push_back(nodes.find(in.long_integer("a node id", 1, nodes.last()), in.in));
-    state.mesh.add_cell(tag, place, type->shape, set, type->order);
-    in.end("an element");
-  }
-}
+void read_nodes(TextReader& in, State& state);
 
 /// $Elements.
-template <class In>
-void read_elements(In in, State& state) {
-  const NodeIds nodes(state.mesh.node_tags, in.in);
-  const auto [blocks, count] = read_header(in, "a number of elements", 4, 16);
-  state.mesh.cells.reserve(static_cast<std::size_t>(count));
-  for (Index b = 0; b < blocks; ++b) read_element_block(in, nodes, state);
-  check_total(in.in, "elements", count, state.mesh.cells.size());
-}
+void read_elements(TextReader& in, State& state);
 
-}}}  // namespace palpate::io::gmsh::msh4
+}}}  // namespace palpate::PALPATE_ABI::io::gmsh::msh4
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/io/gmsh_msh4.ipp>
+#endif

@@ -1,11 +1,7 @@
-// Element type numbers and small parts that all Gmsh formats share.
+// Element type numbers of Gmsh.
 #pragma once
 
-#include <palpate/io/node_ids.hpp>
 #include <palpate/io/node_order.hpp>
-#include <palpate/io/numbers.hpp>
-
-#include <cstdlib>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh {
 
@@ -52,56 +48,9 @@ constexpr const Type* find_type(Index number) noexcept {
 
 /// The type of that shape.
 constexpr const Type& type_of(CellShape shape) noexcept {
-  return *std::ranges::find(types, shape, &Type::shape);
+  const Type* t = types.data();
+  while (t->shape != shape) ++t;
+  return *t;
 }
 
-/// The version of the format, and how numbers are written.
-struct Format {
-  int major = 4;
-  bool is_binary = false;
-  bool swap = false;  ///< binary numbers of the other byte order
-};
-
-/// A file under way.
-struct State {
-  explicit State(const std::string& name) : mesh(name) {}
-  Format format;
-  FileMesh mesh;
-  bool has_names = false, has_entities = false, has_nodes = false, has_elements = false;
-  std::map<std::vector<int>, std::uint32_t> sets;
-  std::map<std::pair<int, Index>, std::uint32_t> entities;  ///< MSH 4: (dimension, entity tag) -> set of physical tags
-  Index memberships = 0;                                    ///< MSH 4: of elements in groups
-};
-
-/// Reads an element type number; refuses one that is not in `types`.
-template <class In>
-const Type* read_type(In& in, const TextReader& text) {
-  const Index wanted = in.integer("an element type", 1, max_int);
-  const Type* type = find_type(wanted);
-  if (type == nullptr)
-    text.refuse(SetupErrorKind::unsupported, "a known Gmsh element type", '\'' + std::to_string(wanted) + '\'',
-                "Mesh again with elements of first or second order");
-  return type;
-}
-
-/// Reads a physical tag. A minus sign only says that Gmsh turned the orientation round.
-template <class In>
-int read_physical(In& in) {
-  return static_cast<int>(std::abs(in.integer("a physical tag", -max_int, max_int)));
-}
-
-/// Requires the line `mark`.
-inline void need_mark(TextReader& in, std::string_view mark) {
-  in.need_line(mark);
-  if (in.line() != mark) in.refuse(SetupErrorKind::bad_file, mark, TextReader::quoted(in.line()));
-}
-
-/// Reads a line that holds a count and nothing else.
-inline Index read_count(TextReader& in, std::string_view what, Index bytes_each) {
-  in.need_line(what);
-  const Index count = in.count(what, bytes_each);
-  in.end_line(what);
-  return count;
-}
-
-}}}  // namespace palpate::io::gmsh
+}}}  // namespace palpate::PALPATE_ABI::io::gmsh

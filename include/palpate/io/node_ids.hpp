@@ -9,17 +9,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 class NodeIds {
  public:
   /// Refuses an id that occurs twice. O(n log n) unless the ids are 1 ... n.
-  NodeIds(const std::vector<Index>& tags, const TextReader& in) : count_(static_cast<Index>(tags.size())) {
-    for (std::size_t i = 0; i < tags.size() && in_order_; ++i) in_order_ = tags[i] == static_cast<Index>(i) + 1;
-    if (count_ > max_int) raise(SetupErrorKind::too_large, in.name() + ": " + std::to_string(count_) + " nodes");
-    if (in_order_) return;
-    sorted_.reserve(tags.size());
-    for (std::size_t i = 0; i < tags.size(); ++i) sorted_.emplace_back(tags[i], static_cast<NodeId>(i));
-    std::ranges::sort(sorted_);
-    const auto twice = std::ranges::adjacent_find(sorted_, {}, &std::pair<Index, NodeId>::first);
-    if (twice != sorted_.end())
-      in.refuse(SetupErrorKind::bad_file, "every node id once", "node " + std::to_string(twice->first) + " twice");
-  }
+  NodeIds(const std::vector<Index>& tags, const TextReader& in);
 
   /// The largest id that can be there.
   Index last() const noexcept { return in_order_ ? count_ : max_tag; }
@@ -27,16 +17,23 @@ class NodeIds {
   /// The node of that id; refuses one that the file does not hold as index_out_of_range.
   NodeId find(Index tag, const TextReader& in) const {
     if (in_order_ && tag >= 1 && tag <= count_) return static_cast<NodeId>(tag - 1);
-    const auto it = std::ranges::lower_bound(sorted_, tag, {}, &std::pair<Index, NodeId>::first);
-    if (it == sorted_.end() || it->first != tag)
-      in.refuse(SetupErrorKind::index_out_of_range, "the id of a node of this file", '\'' + std::to_string(tag) + '\'');
-    return it->second;
+    return search(tag, in);
   }
 
  private:
+  struct Entry {
+    Index tag;
+    NodeId node;
+  };
+  NodeId search(Index tag, const TextReader& in) const;
+
   Index count_;
   bool in_order_ = true;
-  std::vector<std::pair<Index, NodeId>> sorted_;
+  std::vector<Entry> sorted_;
 };
 
-}}}  // namespace palpate::io
+}}}  // namespace palpate::PALPATE_ABI::io
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/io/node_ids.ipp>
+#endif

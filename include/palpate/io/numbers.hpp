@@ -12,73 +12,65 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 template <class T>
 T from_bytes(std::string_view raw, bool swap) {
   std::array<char, sizeof(T)> bytes{};
-  std::copy_n(raw.begin(), sizeof(T), bytes.begin());
-  if (swap) std::reverse(bytes.begin(), bytes.end());
+  for (std::size_t i = 0; i < sizeof(T); ++i) bytes[i] = raw[swap ? sizeof(T) - 1 - i : i];
   return std::bit_cast<T>(bytes);
 }
 
+/// A binary number of `bits` bits and how it is written.
+struct BinaryLayout {
+  int bits;
+  bool is_signed;
+  bool swap;  ///< the other byte order than that of this machine
+};
+
 /// A binary integer between `low` and `high`. Unsigned numbers beyond 2^63 are refused like negative ones.
-template <class T>
-Index binary_integer(TextReader& in, bool swap, std::string_view what, Index low, Index high, SetupErrorKind kind) {
-  const auto value = static_cast<Index>(from_bytes<T>(in.take(sizeof(T), what), swap));
-  if (value < low || value > high)
-    in.refuse(kind, std::string(what) + TextReader::range(low, high), '\'' + std::to_string(value) + '\'');
-  return value;
-}
+Index binary_integer(TextReader& in, const BinaryLayout& layout, std::string_view what, Index low, Index high,
+                     SetupErrorKind kind);
 
-/// A finite binary number.
-template <class T>
-double binary_real(TextReader& in, bool swap, std::string_view what) {
-  const auto value = static_cast<double>(from_bytes<T>(in.take(sizeof(T), what), swap));
-  if (!std::isfinite(value))
-    in.refuse(SetupErrorKind::non_finite, std::string(what) + " in the range of a double", '\'' + number(value) + '\'');
-  return value;
-}
+/// A finite binary number of 32 or 64 bits.
+double binary_real(TextReader& in, const BinaryLayout& layout, std::string_view what);
 
-/// Records of text: a line each.
-struct TextNumbers {
+/// Records of numbers: a line each in text; in binary data an `int` takes 4 bytes, what is long 8, a real 8.
+class Numbers {
+ public:
+  /// Binary numbers are read with their bytes turned round if `swap`.
+  explicit Numbers(TextReader& reader, bool is_binary = false, bool swap = false)
+      : in(reader), is_binary_(is_binary), swap_(swap) {}
+
   TextReader& in;
 
-  void begin(std::string_view what) const { in.need_line(what); }
-  void end(std::string_view what) const { in.end_line(what); }
+  void begin(std::string_view what) const {
+    if (!is_binary_) in.need_line(what);
+  }
+  void end(std::string_view what) const {
+    if (!is_binary_) in.end_line(what);
+  }
   Index integer(std::string_view what, Index low, Index high,
                 SetupErrorKind kind = SetupErrorKind::index_out_of_range) const {
-    return in.integer(what, low, high, kind);
+    return is_binary_ ? binary_integer(in, {32, true, swap_}, what, low, high, kind)
+                      : in.integer(what, low, high, kind);
   }
   Index long_integer(std::string_view what, Index low, Index high,
                      SetupErrorKind kind = SetupErrorKind::index_out_of_range) const {
-    return in.integer(what, low, high, kind);
+    return is_binary_ ? binary_integer(in, {64, false, swap_}, what, low, high, kind)
+                      : in.integer(what, low, high, kind);
+  }
+  double real(std::string_view what) const {
+    return is_binary_ ? binary_real(in, {64, true, swap_}, what) : in.real(what);
   }
   /// A count of things that take `text` bytes or more as text and `binary` bytes or more as binary data.
-  Index count(std::string_view what, Index text, Index) const { return in.count(what, text); }
-  double real(std::string_view what) const { return in.real(what); }
+  Index count(std::string_view what, Index text, Index binary) const;
+  /// Three coordinates.
+  Vector3 point() const;
   /// Reals that nobody looks at.
-  void skip_reals(int count, std::string_view what) const {
-    for (int i = 0; i < count; ++i)
-      if (in.token().empty()) in.refuse(SetupErrorKind::bad_file, what, TextReader::quoted({}));
-  }
+  void skip_reals(int count, std::string_view what) const;
+
+ private:
+  bool is_binary_, swap_;
 };
 
-/// Binary records: `int` is 4 bytes, what is long 8, a real 8.
-struct BinaryNumbers {
-  TextReader& in;
-  bool swap;
+}}}  // namespace palpate::PALPATE_ABI::io
 
-  void begin(std::string_view) const noexcept {}
-  void end(std::string_view) const noexcept {}
-  Index integer(std::string_view what, Index low, Index high,
-                SetupErrorKind kind = SetupErrorKind::index_out_of_range) const {
-    return binary_integer<std::int32_t>(in, swap, what, low, high, kind);
-  }
-  Index long_integer(std::string_view what, Index low, Index high,
-                     SetupErrorKind kind = SetupErrorKind::index_out_of_range) const {
-    return binary_integer<std::uint64_t>(in, swap, what, low, high, kind);
-  }
-  Index count(std::string_view what, Index, Index binary) const {
-    return long_integer(what, 0, static_cast<Index>(in.bytes_left()) / binary, SetupErrorKind::count_too_large);
-  }
-  double real(std::string_view what) const { return binary_real<double>(in, swap, what); }
-  void skip_reals(int count, std::string_view what) const { in.take(static_cast<std::size_t>(count) * 8, what); }
-};
-
-}}}  // namespace palpate::io
+#if PALPATE_HEADER_ONLY
+#include <palpate/io/numbers.ipp>
+#endif

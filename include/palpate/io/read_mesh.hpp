@@ -19,69 +19,13 @@ struct ReadOptions {
 enum class MeshFormat { gmsh, tetgen, vtk, veg, surface, unknown };
 
 /// The format of a text: by its first word, else by the ending of its name.
-inline MeshFormat format_of(std::string_view text, const std::string& name) {
-  TextReader in(text, name, {'\0', false});
-  in.next_line();
-  if (in.line().starts_with("# vtk DataFile")) return MeshFormat::vtk;
-  if (in.line() == "$MeshFormat" || in.line() == "$NOD") return MeshFormat::gmsh;
-  while (in.line().starts_with('#') && in.next_line()) {}
-  if (in.line().starts_with("*VERTICES") || in.line().starts_with("*INCLUDE")) return MeshFormat::veg;
-  const std::string ending = vtk::lower(std::filesystem::path(name).extension().string());
-  for (const auto& [known, format] :
-       std::array<std::pair<std::string_view, MeshFormat>, 14>{{{".msh", MeshFormat::gmsh},
-                                                                {".vtk", MeshFormat::vtk},
-                                                                {".veg", MeshFormat::veg},
-                                                                {".node", MeshFormat::tetgen},
-                                                                {".ele", MeshFormat::tetgen},
-                                                                {".face", MeshFormat::tetgen},
-                                                                {".stl", MeshFormat::surface},
-                                                                {".obj", MeshFormat::surface},
-                                                                {".ply", MeshFormat::surface},
-                                                                {".off", MeshFormat::surface},
-                                                                {".poly", MeshFormat::surface},
-                                                                {".smesh", MeshFormat::surface},
-                                                                {".edge", MeshFormat::surface},
-                                                                {".gltf", MeshFormat::surface}}})
-    if (ending == known) return format;
-  return MeshFormat::unknown;
-}
-
-/// Refuses a file that holds a surface, with the command that meshes it.
-[[noreturn]] inline void refuse_surface(const std::string& name) {
-  const std::string ending = vtk::lower(std::filesystem::path(name).extension().string());
-  std::string hint = "Fill it: tetgen -pq " + name + ", then read the .ele file it writes";
-  if (ending == ".stl" || ending == ".ply") hint = fill_command(name);
-  if (ending == ".obj" || ending == ".gltf")
-    hint = "First: meshio convert " + name + " surface.stl. " + fill_command("surface.stl");
-  if (ending == ".edge") hint = "Read the .ele file beside it";
-  raise(SetupErrorKind::unsupported, name + ":1: expected solid elements, found a surface", hint);
-}
-
-/// Refuses a file of no known format.
-[[noreturn]] inline void refuse_unknown(std::string_view text, const std::string& name) {
-  TextReader in(text, name);
-  in.next_line();
-  in.refuse(SetupErrorKind::bad_file, "a Gmsh, TetGen, legacy VTK or VegaFEM mesh", TextReader::quoted(in.line()),
-            "meshio and gmsh convert others: meshio convert " + name + " converted.msh");
-}
+MeshFormat format_of(std::string_view text, const std::string& name);
 
 /// The parsed text of one file, whatever its format. TetGen needs several files: see tetgen::parse.
-inline FileMesh parse_file(std::string_view text, const std::string& name) {
-  switch (format_of(text, name)) {
-    case MeshFormat::gmsh:
-      return gmsh::parse(text, name);
-    case MeshFormat::vtk:
-      return vtk::parse(text, name);
-    case MeshFormat::veg:
-      return veg::parse(text, name, [&](const std::string& other) -> std::string {
-        raise(SetupErrorKind::unsupported, name + ": *INCLUDE " + other + " in a text that is no file");
-      });
-    case MeshFormat::surface:
-      refuse_surface(name);
-    default:
-      refuse_unknown(text, name);
-  }
-}
+FileMesh parse_file(std::string_view text, const std::string& name);
+
+/// The parsed file of any format, with the files that belong to it.
+FileMesh read_file_mesh(const std::string& path);
 
 /// Reads a mesh from a text that holds a whole file; `name` stands for the file in messages and tells the format where
 /// the text does not. For the rest see read_mesh.
@@ -108,12 +52,7 @@ Mesh<E> parse_mesh(std::string_view text, const std::string& name = "text", cons
 /// the file before anything is allocated.
 template <Element E>
 Mesh<E> read_mesh(const std::string& path, const ReadOptions& options = {}) {
-  const std::string ending = vtk::lower(std::filesystem::path(path).extension().string());
-  if (ending == ".node" || ending == ".ele" || ending == ".face")
-    return build_mesh<E>(tetgen::read(path), options.scale, options.numbering);
-  const std::string text = read_file(path);
-  if (format_of(text, path) == MeshFormat::veg) return build_mesh<E>(veg::read(path), options.scale, options.numbering);
-  return parse_mesh<E>(text, path, options);
+  return build_mesh<E>(read_file_mesh(path), options.scale, options.numbering);
 }
 
 /// The same with the scale and the numbering alone.
@@ -122,4 +61,8 @@ Mesh<E> read_mesh(const std::string& path, double scale, MeshNumbering* numberin
   return read_mesh<E>(path, ReadOptions{scale, numbering});
 }
 
-}}}  // namespace palpate::io
+}}}  // namespace palpate::PALPATE_ABI::io
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/io/read_mesh.ipp>
+#endif

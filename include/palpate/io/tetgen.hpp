@@ -1,8 +1,7 @@
 // Reads what TetGen writes: x.node with x.ele and, if it is there, x.face.
 #pragma once
 
-#include <palpate/io/file.hpp>
-#include <palpate/io/numbered_rows.hpp>
+#include <palpate/io/file_mesh.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::tetgen {
 
@@ -12,120 +11,16 @@ struct Texts {
   std::string_view node, ele, face;  ///< face may be empty
 };
 
-inline constexpr TextSyntax syntax{'#', false};
-
-/// A file of the mesh under way.
-struct State {
-  explicit State(const std::string& name) : mesh(name + ".node") {
-    mesh.files.push_back(name + ".ele");
-    mesh.files.push_back(name + ".face");
-  }
-  FileMesh mesh;
-  Index base = 0;  ///< the id of the first node
-  bool is_second_order = false;
-  std::map<std::vector<int>, std::uint32_t> sets;
-};
-
-/// Refuses lines behind the last one announced, and a last one that is cut.
-inline void need_end(TextReader& in, std::string_view what, Index count) {
-  if (in.next_line())
-    in.refuse(SetupErrorKind::bad_file, "the end of the file after " + std::to_string(count) + ' ' + std::string(what),
-              TextReader::quoted(in.line()));
-  in.need_last_line_end();
-}
-
-/// x.node. A node with a boundary marker other than 0 becomes a point of that tag.
-inline void read_nodes(TextReader& in, State& state) {
-  in.need_line("the header of the nodes");
-  const NodeHeader header = NodeHeader::read(in, in.bytes_left());
-  RowNumbers numbers;
-  for (Index i = 0; i < header.count; ++i) {
-    in.need_line("a node");
-    const int marker = read_node_row(in, header, numbers, state.mesh);
-    if (marker == 0) continue;
-    state.mesh.cell_nodes.push_back(static_cast<NodeId>(i));
-    state.mesh.add_cell(i, in.place(), CellShape::point, state.mesh.set_of(state.sets, {marker}), {});
-  }
-  need_end(in, "nodes", header.count);
-  state.base = std::max<Index>(numbers.base(), 0);
-}
-
-/// Reads the attributes of a tetrahedron: the first is its region, a whole number.
-inline int read_region(TextReader& in, Index attributes) {
-  int region = 0;
-  for (Index i = 0; i < attributes; ++i) {
-    const double value = in.real("an attribute");
-    if (i > 0) continue;
-    if (value != std::floor(value) || std::abs(value) > static_cast<double>(max_int))
-      in.refuse(SetupErrorKind::unsupported, "a whole number for the region", number(value),
-                "Number the regions with whole numbers (tetgen -A)");
-    region = static_cast<int>(value);
-  }
-  return region;
-}
-
-/// x.ele.
-inline void read_elements(TextReader& in, State& state) {
-  in.need_line("the header of the elements");
-  const CellHeader header = CellHeader::read(in, CellShape::tetrahedron4, in.bytes_left());
-  state.is_second_order = header.shape == CellShape::tetrahedron10;
-  for (Index i = 0; i < header.count; ++i) {
-    in.need_line("an element");
-    const Index place = in.place(),
-                id = in.integer("an element id counted like the nodes", state.base + i, state.base + i);
-    read_cell_nodes(in, facts(header.shape).nodes, state.base, state.mesh);
-    const int region = read_region(in, header.attributes);
-    in.end_line("an element");
-    const auto set = region == 0 ? 0 : state.mesh.set_of(state.sets, {region});
-    state.mesh.add_cell(id, place, header.shape, set, header.order, 1);
-  }
-  need_end(in, "elements", header.count);
-}
-
-/// x.face: `count markers`, then `id nodes... [marker] [neighbours]`. Faces without a marker belong to no group.
-inline void read_faces(TextReader& in, State& state) {
-  in.need_line("the header of the faces");
-  const Index count = in.count("a number of faces", 7);
-  const Index markers = in.rest().empty() ? 0 : in.integer("0 or 1 for boundary markers", 0, 1);
-  in.end_line("the header of the faces");
-  const CellShape shape = state.is_second_order ? CellShape::triangle6 : CellShape::triangle3;
-  for (Index i = 0; i < count; ++i) {
-    in.need_line("a face");
-    const Index place = in.place(), id = in.integer("a face id counted like the nodes", state.base + i, state.base + i);
-    read_cell_nodes(in, facts(shape).nodes, state.base, state.mesh);
-    const auto marker = markers == 0 ? 0 : static_cast<int>(in.integer("a boundary marker", -max_int, max_int));
-    for (int n = 0; n < 2 && !in.rest().empty(); ++n) in.integer("a neighbour", -1, max_int);
-    in.end_line("a face");
-    const auto set = marker == 0 ? 0 : state.mesh.set_of(state.sets, {marker});
-    state.mesh.add_cell(id, place, shape, set, {}, 2);
-  }
-  need_end(in, "faces", count);
-}
-
 /// Reads the files. Ids count from 0 or 1, as the first node says. Tags are boundary markers and region attributes:
 /// groups "point 1", "surface 7", "volume 3". Errors: bad_file, index_out_of_range, count_too_large, non_finite,
 /// unsupported, with file and line. Linear in the size of the texts.
-inline FileMesh parse(const Texts& texts) {
-  State state(texts.name);
-  TextReader nodes(texts.node, texts.name + ".node", syntax), elements(texts.ele, texts.name + ".ele", syntax);
-  read_nodes(nodes, state);
-  read_elements(elements, state);
-  TextReader faces(texts.face, texts.name + ".face", syntax);
-  if (!texts.face.empty()) read_faces(faces, state);
-  return std::move(state.mesh);
-}
+FileMesh parse(const Texts& texts);
 
 /// Reads the files of the mesh to which x.node, x.ele or x.face belongs.
-inline FileMesh read(const std::string& path) {
-  const std::string name = std::filesystem::path(path).replace_extension().string();
-  std::error_code ignored;
-  if (!std::filesystem::exists(name + ".ele", ignored))
-    raise(SetupErrorKind::unsupported, name + ".ele: expected the elements of " + path + ", found no such file",
-          "Nodes and faces alone are a surface; tetgen -pq " + name + ".poly fills one");
-  const std::string node = read_file(name + ".node"), ele = read_file(name + ".ele");
-  const bool has_faces = std::filesystem::exists(name + ".face", ignored);
-  const std::string face = has_faces ? read_file(name + ".face") : std::string{};
-  return parse({name, node, ele, face});
-}
+FileMesh read(const std::string& path);
 
-}}}  // namespace palpate::io::tetgen
+}}}  // namespace palpate::PALPATE_ABI::io::tetgen
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/io/tetgen.ipp>
+#endif

@@ -1,7 +1,8 @@
 // The data behind the grid of a legacy VTK file: the regions are kept, the rest is passed over.
 #pragma once
 
-#include <palpate/io/vtk_types.hpp>
+#include <palpate/io/file_mesh.hpp>
+#include <palpate/io/vtk_numbers.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
 
@@ -15,109 +16,34 @@ class AttributeReader {
   AttributeReader(TextReader& in, NumberStream& numbers) : in_(in), numbers_(numbers) {}
 
   /// Reads the rest of the line `CELL_DATA count` or `POINT_DATA count`.
-  void begin(bool of_cells, Index expected) {
-    count_ = in_.integer("the number of cells or points", expected, expected, SetupErrorKind::bad_file);
-    in_.end_line("the number of data");
-    of_cells_ = of_cells;
-    has_begun_ = true;
-  }
+  void begin(bool of_cells, Index expected);
 
   /// Reads the part of which `keyword` is the first word.
-  void read(const std::string& keyword) {
-    if (keyword == "field")
-      read_field();
-    else if (keyword == "metadata")
-      skip_metadata();
-    else
-      read_attribute(keyword);
-  }
+  void read(const std::string& keyword);
 
   std::vector<int> regions;  ///< of each cell; empty when the file names none
 
  private:
-  void skip_metadata() {
-    while (in_.next_raw_line() && !in_.line().empty()) {}
-  }
+  void skip_metadata();
 
   /// Reads an array if it holds the regions, else skips it.
-  void read_array(std::string_view name, const NumberType& type, Index components, Index tuples) {
-    const auto rank = std::ranges::find(region_arrays, name) - region_arrays.begin();
-    const bool is_region = of_cells_ && components == 1 && tuples == count_ && type.kind != NumberType::real &&
-                           type.bits > 1 && rank < region_rank_;
-    if (tuples > 0 && components > static_cast<Index>(in_.bytes_left()) * 8 / tuples)
-      in_.refuse(SetupErrorKind::count_too_large, "an array that fits into the file",
-                 std::to_string(components) + " x " + std::to_string(tuples));
-    if (!is_region) return numbers_.skip(type, components * tuples);
-    region_rank_ = rank;
-    regions.clear();
-    for (Index i = 0; i < tuples; ++i)
-      regions.push_back(static_cast<int>(numbers_.integer(type, "a region number", -max_int, max_int)));
-    numbers_.end("the region numbers");
-  }
+  void read_array(std::string_view name, const NumberType& type, Index components, Index tuples);
 
   /// `FIELD name arrays`, then `name components tuples type` and the numbers of each.
-  void read_field() {
-    in_.token();
-    const Index arrays = in_.count("a number of arrays", 1);
-    in_.end_line("the number of arrays");
-    for (Index i = 0; i < arrays; ++i) {
-      in_.need_line("an array");
-      if (lower(in_.line()) == "metadata") {
-        skip_metadata();
-        in_.need_line("an array");
-      }
-      const std::string name(in_.token());
-      const Index components = in_.integer("a number of components", 0, max_int);
-      const Index tuples = in_.integer("a number of tuples", 0, max_int);
-      const NumberType& type = numbers_.read_type();
-      in_.end_line("the type of an array");
-      read_array(name, type, components, tuples);
-    }
-  }
+  void read_field();
 
   /// The attributes with a keyword of their own.
-  void read_attribute(const std::string& keyword) {
-    if (!has_begun_)
-      in_.refuse(SetupErrorKind::bad_file, "a section such as POINTS or CELLS", TextReader::quoted(in_.line()));
-    const std::string name(in_.token());
-    if (keyword == "lookup_table" || keyword == "color_scalars") {
-      const Index size = in_.integer("a size", 0, max_int);
-      in_.end_line("a size");
-      const Index values = keyword == "lookup_table" ? 4 * size : size * count_;
-      return numbers_.skip(number_types[1], values);  // real numbers in ASCII, bytes in binary files
-    }
-    constexpr std::array<std::pair<std::string_view, Index>, 9> kinds{{{"vectors", 3},
-                                                                       {"normals", 3},
-                                                                       {"tensors", 9},
-                                                                       {"tensors6", 6},
-                                                                       {"global_ids", 1},
-                                                                       {"pedigree_ids", 1},
-                                                                       {"edge_flags", 1},
-                                                                       {"texture_coordinates", 0},
-                                                                       {"scalars", 0}}};
-    const auto kind = std::ranges::find(kinds, std::string_view(keyword), &std::pair<std::string_view, Index>::first);
-    if (kind == kinds.end())
-      in_.refuse(SetupErrorKind::bad_file, "data such as SCALARS", TextReader::quoted(in_.line()));
-    Index components = kind->second;
-    if (keyword == "texture_coordinates") components = in_.integer("a number of components", 1, 3);
-    const NumberType& type = numbers_.read_type();
-    if (keyword == "scalars") components = in_.rest().empty() ? 1 : in_.integer("a number of components", 1, 4);
-    in_.end_line("the type of the data");
-    if (keyword == "scalars") {
-      in_.need_line("LOOKUP_TABLE");
-      if (lower(in_.token()) != "lookup_table")
-        in_.refuse(SetupErrorKind::bad_file, "LOOKUP_TABLE", TextReader::quoted(in_.line()));
-      in_.token();
-      in_.end_line("the name of a table");
-    }
-    read_array(name, type, components, count_);
-  }
+  void read_attribute(const std::string& keyword);
 
   TextReader& in_;
   NumberStream& numbers_;
-  std::ptrdiff_t region_rank_ = static_cast<std::ptrdiff_t>(region_arrays.size());  ///< of the array in `regions`
+  std::size_t region_rank_ = region_arrays.size();  ///< of the array in `regions`
   bool has_begun_ = false, of_cells_ = false;
   Index count_ = 0;
 };
 
-}}}  // namespace palpate::io::vtk
+}}}  // namespace palpate::PALPATE_ABI::io::vtk
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/io/vtk_attributes.ipp>
+#endif

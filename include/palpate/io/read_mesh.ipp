@@ -1,0 +1,100 @@
+// Definitions of read_mesh.hpp.
+#pragma once
+
+#include <palpate/io/file.hpp>
+#include <palpate/io/read_mesh.hpp>
+#include <palpate/io/vtk_numbers.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
+
+namespace detail {
+
+inline std::string small_ending(const std::string& path) {
+  return vtk::lower(ending_of(path));
+}
+
+inline MeshFormat format_of_ending(std::string_view ending) {
+  struct Ending {
+    std::string_view text;
+    MeshFormat format;
+  };
+  constexpr std::array<Ending, 14> endings{{{".msh", MeshFormat::gmsh},
+                                            {".vtk", MeshFormat::vtk},
+                                            {".veg", MeshFormat::veg},
+                                            {".node", MeshFormat::tetgen},
+                                            {".ele", MeshFormat::tetgen},
+                                            {".face", MeshFormat::tetgen},
+                                            {".stl", MeshFormat::surface},
+                                            {".obj", MeshFormat::surface},
+                                            {".ply", MeshFormat::surface},
+                                            {".off", MeshFormat::surface},
+                                            {".poly", MeshFormat::surface},
+                                            {".smesh", MeshFormat::surface},
+                                            {".edge", MeshFormat::surface},
+                                            {".gltf", MeshFormat::surface}}};
+  for (const Ending& known : endings)
+    if (ending == known.text) return known.format;
+  return MeshFormat::unknown;
+}
+
+/// Refuses a file that holds a surface, with the command that meshes it.
+[[noreturn]] inline void refuse_surface(const std::string& name) {
+  const std::string ending = small_ending(name);
+  std::string hint = joined({"Fill it: tetgen -pq ", name, ", then read the .ele file it writes"});
+  if (ending == ".stl" || ending == ".ply") hint = fill_command(name);
+  if (ending == ".obj" || ending == ".gltf")
+    hint = joined({"First: meshio convert ", name, " surface.stl. ", fill_command("surface.stl")});
+  if (ending == ".edge") hint = "Read the .ele file beside it";
+  raise(SetupErrorKind::unsupported, joined({name, ":1: expected solid elements, found a surface"}), hint);
+}
+
+/// Refuses a file of no known format.
+[[noreturn]] inline void refuse_unknown(std::string_view text, const std::string& name) {
+  TextReader in(text, name);
+  in.next_line();
+  in.refuse_word(SetupErrorKind::bad_file, "a Gmsh, TetGen, legacy VTK or VegaFEM mesh", in.line(),
+                 joined({"meshio and gmsh convert others: meshio convert ", name, " converted.msh"}));
+}
+
+/// Stands for the files that a text on its own cannot include.
+struct RefuseInclude {
+  std::string name;
+  [[noreturn]] std::string operator()(const std::string& other) const {
+    raise(SetupErrorKind::unsupported, joined({name, ": *INCLUDE ", other, " in a text that is no file"}));
+  }
+};
+
+}  // namespace detail
+
+PALPATE_INLINE MeshFormat format_of(std::string_view text, const std::string& name) {
+  TextReader in(text, name, {'\0', false});
+  in.next_line();
+  if (in.line().starts_with("# vtk DataFile")) return MeshFormat::vtk;
+  if (in.line() == "$MeshFormat" || in.line() == "$NOD") return MeshFormat::gmsh;
+  while (in.line().starts_with('#') && in.next_line()) {}
+  if (in.line().starts_with("*VERTICES") || in.line().starts_with("*INCLUDE")) return MeshFormat::veg;
+  return detail::format_of_ending(detail::small_ending(name));
+}
+
+PALPATE_INLINE FileMesh parse_file(std::string_view text, const std::string& name) {
+  switch (format_of(text, name)) {
+    case MeshFormat::gmsh:
+      return gmsh::parse(text, name);
+    case MeshFormat::vtk:
+      return vtk::parse(text, name);
+    case MeshFormat::veg:
+      return veg::parse(text, name, detail::RefuseInclude{name});
+    case MeshFormat::surface:
+      detail::refuse_surface(name);
+    default:
+      detail::refuse_unknown(text, name);
+  }
+}
+
+PALPATE_INLINE FileMesh read_file_mesh(const std::string& path) {
+  if (detail::format_of_ending(detail::small_ending(path)) == MeshFormat::tetgen) return tetgen::read(path);
+  const std::string text = read_file(path);
+  return format_of(text, path) == MeshFormat::veg ? veg::read(path) : parse_file(text, path);
+}
+
+}}}  // namespace palpate::PALPATE_ABI::io

@@ -1,0 +1,218 @@
+// Definitions of vtk_legacy.hpp.
+#pragma once
+
+#include <palpate/io/tag_sets.hpp>
+#include <palpate/io/vtk_attributes.hpp>
+#include <palpate/io/vtk_legacy.hpp>
+#include <palpate/io/vtk_types.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
+
+namespace detail {
+
+/// Parses one file ("VTK File Formats" of the VTK User's Guide; the layout of CELLS changed with 5.0).
+class LegacyParser {
+ public:
+  LegacyParser(std::string_view text, const std::string& name)
+      : in_(text, name), numbers_(in_), attributes_(in_, numbers_), mesh_(name) {}
+
+  FileMesh parse();
+
+ private:
+  void read_head();
+
+  void read_section();
+
+  void once(bool& seen, bool in_place, std::string_view order);
+
+  void read_points();
+
+  void add_node(const NumberType& type);
+
+  /// `CELLS cells numbers`, then `count nodes...` each; since version 5 OFFSETS and CONNECTIVITY.
+  void read_cells();
+
+  const NumberType& read_array_head(std::string_view keyword);
+
+  void read_offsets();
+
+  Index cell_count() const noexcept { return static_cast<Index>(places_.size()); }
+
+  void read_types();
+
+  void add_cells();
+
+  TextReader in_;
+  NumberStream numbers_;
+  AttributeReader attributes_;
+  FileMesh mesh_;
+  double version_ = 0.0;
+  bool has_points_ = false, has_cells_ = false, has_types_ = false;
+  std::vector<Index> offsets_, places_;  ///< per cell: its nodes in FileMesh::cell_nodes, and where it stands
+  std::vector<const CellType*> types_;
+};
+
+inline FileMesh LegacyParser::parse() {
+  read_head();
+  while (in_.next_line()) read_section();
+  if (!has_types_) in_.refuse(SetupErrorKind::bad_file, "POINTS, CELLS and CELL_TYPES", "the end of the file");
+  if (!numbers_.is_binary) in_.need_last_line_end();
+  add_cells();
+  return std::move(mesh_);
+}
+
+inline void LegacyParser::read_head() {
+  constexpr std::string_view head = "# vtk DataFile Version";
+  if (!in_.next_raw_line() || !in_.line().starts_with(head))
+    in_.refuse_word(SetupErrorKind::bad_file, head, in_.line());
+  for (int i = 0; i < 4; ++i) in_.token();
+  version_ = in_.real("a version number");
+  if (!(version_ >= 1.0 && version_ < 6.0)) in_.refuse(SetupErrorKind::unsupported, "version 1 to 5", number(version_));
+  in_.next_raw_line();  // the title, possibly blank
+  in_.need_line("ASCII or BINARY");
+  const std::string coding = lower(in_.line());
+  if (coding != "ascii" && coding != "binary") in_.refuse_word(SetupErrorKind::bad_file, "ASCII or BINARY", in_.line());
+  numbers_.is_binary = coding == "binary";
+  in_.need_line("DATASET UNSTRUCTURED_GRID");
+  const bool is_dataset = lower(in_.token()) == "dataset";
+  const std::string kind = lower(in_.token());
+  if (!is_dataset) in_.refuse_word(SetupErrorKind::bad_file, "DATASET UNSTRUCTURED_GRID", in_.line());
+  if (kind == "polydata")
+    in_.refuse(SetupErrorKind::unsupported, "solid elements", "a surface (POLYDATA)", fill_command(in_.name()));
+  if (kind != "unstructured_grid")
+    in_.refuse(SetupErrorKind::unsupported, "UNSTRUCTURED_GRID", TextReader::quoted(kind),
+               joined({"Convert it: meshio convert ", in_.name(), " converted.msh"}));
+}
+
+inline void LegacyParser::read_section() {
+  const std::string keyword = lower(in_.token());
+  if (keyword == "points") {
+    read_points();
+  } else if (keyword == "cells") {
+    read_cells();
+  } else if (keyword == "cell_types") {
+    read_types();
+  } else if (keyword == "cell_data" || keyword == "point_data") {
+    if (!has_types_) in_.refuse_word(SetupErrorKind::bad_file, "CELL_TYPES before data", in_.line());
+    const bool of_cells = keyword == "cell_data";
+    attributes_.begin(of_cells, of_cells ? cell_count() : static_cast<Index>(mesh_.positions.size()));
+  } else {
+    attributes_.read(keyword);
+  }
+}
+
+inline void LegacyParser::once(bool& seen, bool in_place, std::string_view order) {
+  if (seen)
+    in_.refuse(SetupErrorKind::bad_file, "every section once", joined({TextReader::quoted(in_.line()), " again"}));
+  if (!in_place) in_.refuse_word(SetupErrorKind::bad_file, order, in_.line());
+  seen = true;
+}
+
+inline void LegacyParser::read_points() {
+  once(has_points_, true, {});
+  const Index count = numbers_.count("a number of points", 3);
+  const NumberType& type = numbers_.read_type();
+  in_.end_line("the number of points");
+  if (type.kind != NumberType::real)
+    in_.refuse(SetupErrorKind::unsupported, "points of type float or double", type.name);
+  mesh_.positions.reserve(static_cast<std::size_t>(count));
+  for (Index i = 0; i < count; ++i) {
+    Vector3 x;
+    for (int c = 0; c < 3; ++c) x[c] = numbers_.real(type, "a coordinate");
+    mesh_.node_tags.push_back(i);
+    mesh_.positions.push_back(x);
+  }
+  numbers_.end("the points");
+}
+
+inline void LegacyParser::add_node(const NumberType& type) {
+  const Index last = static_cast<Index>(mesh_.positions.size()) - 1;
+  mesh_.cell_nodes.push_back(static_cast<NodeId>(numbers_.integer(type, "a node", 0, last)));
+}
+
+inline void LegacyParser::read_cells() {
+  once(has_cells_, has_points_, "POINTS before CELLS");
+  if (version_ >= 5.0) return read_offsets();
+  const Index count = numbers_.count("a number of cells", 2), total = numbers_.count("a number of numbers", 1);
+  in_.end_line("the number of numbers");
+  const NumberType& type = number_types[7];
+  offsets_.assign(1, 0);
+  for (Index c = 0, left = total; c < count; ++c) {
+    if (!numbers_.is_binary) in_.need_more("a cell");
+    places_.push_back(in_.place());
+    const Index nodes = numbers_.integer(type, "a number of nodes of a cell", 0, left - 1);
+    for (Index a = 0; a < nodes; ++a) add_node(type);
+    offsets_.push_back(static_cast<Index>(mesh_.cell_nodes.size()));
+    left -= nodes + 1;
+  }
+  numbers_.end("the cells");
+  if (const Index found = offsets_.back() + count; found != total)
+    in_.refuse(SetupErrorKind::bad_file, joined({total, " numbers in CELLS"}), joined({found}));
+}
+
+inline const NumberType& LegacyParser::read_array_head(std::string_view keyword) {
+  in_.need_line(keyword);
+  if (lower(in_.token()) != lower(keyword)) in_.refuse_word(SetupErrorKind::bad_file, keyword, in_.line());
+  const NumberType& type = numbers_.read_type();
+  in_.end_line(keyword);
+  if (type.kind == NumberType::real || type.bits == 1)
+    in_.refuse(SetupErrorKind::bad_file, "a type of integers", type.name);
+  return type;
+}
+
+inline void LegacyParser::read_offsets() {
+  const Index count = numbers_.count("a number of offsets", 1), total = numbers_.count("a number of nodes", 1);
+  in_.end_line("the number of nodes");
+  const NumberType& offset_type = read_array_head("OFFSETS");
+  for (Index i = 0; i < count; ++i)
+    offsets_.push_back(numbers_.integer(offset_type, "an offset", i == 0 ? 0 : offsets_.back(), i == 0 ? 0 : total));
+  numbers_.end("the offsets");
+  if (count > 0 && offsets_.back() != total)
+    in_.refuse(SetupErrorKind::bad_file, joined({"a last offset of ", total}), joined({offsets_.back()}));
+  if (count == 0) offsets_.assign(1, 0);
+  const NumberType& node_type = read_array_head("CONNECTIVITY");
+  for (std::size_t c = 1; c < offsets_.size(); ++c) {
+    if (!numbers_.is_binary && offsets_[c] > offsets_[c - 1]) in_.need_more("a node");
+    places_.push_back(in_.place());
+    for (Index a = offsets_[c - 1]; a < offsets_[c]; ++a) add_node(node_type);
+  }
+  numbers_.end("the nodes of the cells");
+}
+
+inline void LegacyParser::read_types() {
+  once(has_types_, has_cells_, "CELLS before CELL_TYPES");
+  const Index count = in_.integer("a number of cells", cell_count(), cell_count(), SetupErrorKind::bad_file);
+  in_.end_line("the number of cells");
+  for (Index c = 0; c < count; ++c) {
+    const Index wanted = numbers_.integer(number_types[7], "a cell type", 0, 255);
+    types_.push_back(find_cell_type(wanted));
+    if (types_.back() == nullptr)
+      in_.refuse(SetupErrorKind::unsupported, "a cell type of first or second order", joined({"'", wanted, "'"}));
+    const Index nodes = offsets_[static_cast<std::size_t>(c) + 1] - offsets_[static_cast<std::size_t>(c)];
+    const ShapeFacts& shape = facts(types_.back()->shape);
+    if (nodes != shape.nodes)
+      in_.refuse(SetupErrorKind::bad_file, joined({shape.nodes, " nodes for a ", shape.name}),
+                 joined({nodes, " in cell ", c}));
+  }
+  numbers_.end("the cell types");
+}
+
+inline void LegacyParser::add_cells() {
+  TagSets sets;
+  std::vector<NodeId> all;
+  all.swap(mesh_.cell_nodes);
+  for (std::size_t c = 0; c < types_.size(); ++c) {
+    mesh_.cell_nodes.insert(mesh_.cell_nodes.end(), all.begin() + offsets_[c], all.begin() + offsets_[c + 1]);
+    const int region = attributes_.regions.empty() ? 0 : attributes_.regions[c];
+    const std::uint32_t set = sets.find_or_add(mesh_, region);
+    mesh_.add_cell(static_cast<Index>(c), places_[c], types_[c]->shape, set, types_[c]->order);
+  }
+}
+
+}  // namespace detail
+
+PALPATE_INLINE FileMesh parse(std::string_view text, const std::string& name) {
+  return detail::LegacyParser(text, name).parse();
+}
+
+}}}  // namespace palpate::PALPATE_ABI::io::vtk
