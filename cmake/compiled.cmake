@@ -60,6 +60,9 @@ if(NOT sources)
   palpate_source(nothing version.hpp)
 endif()
 
+list(JOIN sources "\n" lines)
+file(WRITE ${PROJECT_BINARY_DIR}/compiled/units.txt "${lines}\n")  # for sh cmake/run compile-time
+
 # Static, or what BUILD_SHARED_LIBS says. Where it is a guest's, or not wanted, it is built when somebody links it.
 add_library(palpate_compiled ${sources})
 add_library(palpate::compiled ALIAS palpate_compiled)
