@@ -1,4 +1,5 @@
-# Installs the headers and the package, so that find_package(palpate) works. Nothing in it depends on the processor.
+# Installs the headers and the package, so that find_package(palpate) works. Nothing of these depends on the processor or
+# needs to be built; palpate::compiled comes along, as a component, when it was built.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/palpate)
@@ -11,8 +12,17 @@ else()
 endif()
 install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${package_dir})
 
+if(PALPATE_BUILD_COMPILED)
+  install(TARGETS palpate_compiled EXPORT palpateCompiledTargets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} OPTIONAL
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} OPTIONAL
+          RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} OPTIONAL)
+  install(EXPORT palpateCompiledTargets NAMESPACE palpate:: DESTINATION ${package_dir})
+endif()
+
 configure_package_config_file(cmake/palpateConfig.cmake.in ${PROJECT_BINARY_DIR}/palpateConfig.cmake
-                              INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
+                              INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_LIBDIR
+                              NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES ${PROJECT_BINARY_DIR}/palpateConfig.cmake ${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake
@@ -20,7 +30,13 @@ install(FILES ${PROJECT_BINARY_DIR}/palpateConfig.cmake ${PROJECT_BINARY_DIR}/pa
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/palpate)
 
 # pkg-config: finds its way from where it lies, so that the installed folder may be moved.
-file(RELATIVE_PATH PALPATE_PC_TO_PREFIX ${CMAKE_INSTALL_FULL_DATADIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
-string(REGEX REPLACE "/$" "" PALPATE_PC_TO_PREFIX "${PALPATE_PC_TO_PREFIX}")
-configure_file(cmake/palpate.pc.in ${PROJECT_BINARY_DIR}/palpate.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/palpate.pc DESTINATION ${CMAKE_INSTALL_DATADIR}/pkgconfig)
+function(palpate_pc name folder)
+  file(RELATIVE_PATH PALPATE_PC_TO_PREFIX ${CMAKE_INSTALL_FULL_${folder}}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+  string(REGEX REPLACE "/$" "" PALPATE_PC_TO_PREFIX "${PALPATE_PC_TO_PREFIX}")
+  configure_file(cmake/${name}.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_${folder}}/pkgconfig)
+endfunction()
+palpate_pc(palpate DATADIR)
+if(PALPATE_BUILD_COMPILED)
+  palpate_pc(palpate-compiled LIBDIR)
+endif()

@@ -1,5 +1,5 @@
-# Configures, builds and runs tests/consumer, getting palpate in the way WAY. TISSUE_OBJECT: its other object is already
-# here. Needs GENERATOR, COMPILER, FLAGS, WORK, SOURCE (of palpate), PREFIX (where it is installed) and EIGEN_DIR.
+# Configures, builds and runs tests/consumer, getting palpate in the way WAY, and linking LIBRARY (palpate::palpate when it
+# is empty). TISSUE_OBJECT: its other object is already here. Needs GENERATOR, COMPILER, FLAGS, WORK, SOURCE (of palpate), PREFIX (where it is installed) and EIGEN_DIR.
 cmake_minimum_required(VERSION 3.21)
 
 function(step what)
@@ -17,6 +17,9 @@ elseif(WAY STREQUAL "add_subdirectory")
 else()
   set(way -DFETCHCONTENT_SOURCE_DIR_PALPATE=${SOURCE})
 endif()
+if(LIBRARY)
+  list(APPEND way -DPALPATE_TARGET=${LIBRARY})
+endif()
 if(TISSUE_OBJECT)
   list(APPEND way -DTISSUE_OBJECT=${TISSUE_OBJECT})
 endif()
@@ -33,5 +36,14 @@ if(WAY STREQUAL "find_package")
   file(STRINGS ${WORK}/CMakeCache.txt found REGEX "^palpate_DIR:")
   if(NOT found MATCHES "=${PREFIX}/")
     message(FATAL_ERROR "${found} is not below ${PREFIX}")
+  endif()
+endif()
+
+# Who links no library builds none.
+if(NOT "${LIBRARY}" STREQUAL "palpate::compiled")
+  file(GLOB_RECURSE built ${WORK}/*palpate_compiled.*)
+  list(FILTER built INCLUDE REGEX "\\.(a|so|dylib)$")
+  if(built)
+    message(FATAL_ERROR "${built} was built, and nobody links it")
   endif()
 endif()

@@ -8,7 +8,8 @@ endif()
 file(RENAME ${PREFIX}-first ${PREFIX})
 
 # All of the headers, and nothing that names a folder of the machine it was built on.
-file(GLOB_RECURSE headers RELATIVE ${SOURCE}/include ${SOURCE}/include/palpate/*.hpp)
+file(GLOB_RECURSE headers RELATIVE ${SOURCE}/include ${SOURCE}/include/palpate/*.hpp
+     ${SOURCE}/include/palpate/*.ipp)
 foreach(header IN LISTS headers)
   if(NOT EXISTS ${PREFIX}/include/${header})
     message(FATAL_ERROR "${header} is not installed")

@@ -1,4 +1,4 @@
-# The same program without CMake: pkg-config and one line for the compiler.
+# The same program without CMake: pkg-config and one line for the compiler. PACKAGE: palpate, or palpate-compiled.
 cmake_minimum_required(VERSION 3.21)
 find_program(PKG_CONFIG pkg-config)
 if(NOT PKG_CONFIG)
@@ -13,12 +13,17 @@ endif()
 include(${CMAKE_CURRENT_LIST_DIR}/compiler.cmake)
 set(search "")  # pkg-config says where the headers are, and nothing else
 
-set(ENV{PKG_CONFIG_PATH} ${PREFIX}/share/pkgconfig)
+if(NOT PACKAGE)
+  set(PACKAGE palpate)
+endif()
+file(GLOB folders ${PREFIX}/share/pkgconfig ${PREFIX}/lib*/pkgconfig ${PREFIX}/lib/*/pkgconfig)
+list(JOIN folders ":" folders)
+set(ENV{PKG_CONFIG_PATH} ${folders})
 foreach(what cflags libs)
-  execute_process(COMMAND ${PKG_CONFIG} --${what} palpate RESULT_VARIABLE failed OUTPUT_VARIABLE ${what}
+  execute_process(COMMAND ${PKG_CONFIG} --${what} ${PACKAGE} RESULT_VARIABLE failed OUTPUT_VARIABLE ${what}
                   OUTPUT_STRIP_TRAILING_WHITESPACE)
   if(failed)
-    message(FATAL_ERROR "pkg-config --${what} palpate failed")
+    message(FATAL_ERROR "pkg-config --${what} ${PACKAGE} failed")
   endif()
   separate_arguments(${what} UNIX_COMMAND "${${what}}")
 endforeach()

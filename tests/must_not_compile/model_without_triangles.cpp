@@ -5,14 +5,14 @@
 
 using namespace palpate;
 
-struct Face : Tri3 {
+struct FlatFace : Tri3 {
 #ifndef PALPATE_GOOD_TWIN
   static constexpr int triangles = 1;  // not a list
 #endif
 };
 
 struct Mine : Tet4 {
-  using Face = ::Face;
+  using Face = FlatFace;
 };
 
 using Model = HapticFEModel<Mine, LinearElastic>;

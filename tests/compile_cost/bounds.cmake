@@ -1,0 +1,11 @@
+# What compiling may cost at most, without a clock. All bounds are here; a change that needs a higher one says why.
+#
+# <program>_<mode>_percent    what the preprocessor hands to the compiler, in percent of what it hands over for a sparse
+#                             solve with plain Eigen (benchmarks/compile_time/programs/unit.cpp)
+# <program>_compiled_functions    functions of palpate and Eigen that the program compiles for itself (-O0: nothing inlined)
+set(readme_compiled_percent 1000)
+set(readme_header_only_percent 1000)
+set(readme_compiled_functions 100000)
+set(mesh_only_compiled_percent 1000)
+set(mesh_only_header_only_percent 1000)
+set(mesh_only_compiled_functions 100000)

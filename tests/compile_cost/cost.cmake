@@ -1,0 +1,48 @@
+# Counts what PROGRAM (readme or mesh_only) costs to compile, and compares it with bounds.cmake.
+cmake_minimum_required(VERSION 3.21)
+include(${CMAKE_CURRENT_LIST_DIR}/../linking/compiler.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/bounds.cmake)
+
+set(source ${PROGRAMS}/${PROGRAM}.cpp)
+if(PROGRAM STREQUAL "readme")
+  set(source ${WORK}/readme.cpp)
+  must_succeed("README.md has no program" ${CMAKE_COMMAND} -DREADME=${README} -DSOURCE=${source}
+               -P ${CMAKE_CURRENT_LIST_DIR}/../readme/extract.cmake)
+endif()
+
+# preprocess(<source> <variable for the bytes> <flags...>)
+function(preprocess source bytes)
+  must_succeed("${source} is not preprocessed" ${base} ${search} ${ARGN} -E -P ${source} -o ${WORK}/preprocessed.ii)
+  file(SIZE ${WORK}/preprocessed.ii size)
+  set(${bytes} ${size} PARENT_SCOPE)
+endfunction()
+
+# hold(<bound> <value>): says both; sets failed when the value is larger.
+macro(hold bound value)
+  message(STATUS "${bound}: ${value}, at most ${${bound}}")
+  if("${${bound}}" STREQUAL "" OR ${value} GREATER "${${bound}}")
+    set(failed TRUE)
+  endif()
+endmacro()
+
+set(failed FALSE)
+preprocess(${PROGRAMS}/unit.cpp unit)
+preprocess(${source} header_only)
+preprocess(${source} compiled -DPALPATE_COMPILED)
+message(STATUS "bytes after the preprocessor: unit ${unit}, header-only ${header_only}, compiled ${compiled}")
+foreach(mode header_only compiled)
+  math(EXPR percent "100 * ${${mode}} / ${unit}")
+  hold(${PROGRAM}_${mode}_percent ${percent})
+endforeach()
+
+compile(${source} program.o -w -DPALPATE_COMPILED)
+execute_process(COMMAND ${NM} -C --defined-only ${WORK}/program.o RESULT_VARIABLE result OUTPUT_VARIABLE symbols)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "nm: ${result}")
+endif()
+string(REGEX MATCHALL "\n[0-9a-f]+ [TtWw] [^\n]*(palpate|Eigen)::" functions "${symbols}")
+list(LENGTH functions functions)
+hold(${PROGRAM}_compiled_functions ${functions})
+if(failed)
+  message(FATAL_ERROR "it costs more than tests/compile_cost/bounds.cmake allows")
+endif()
