@@ -108,7 +108,7 @@ class Touching {
   static constexpr int ticks_around = 31;
 
   Model model_;
-  HapticServo<Model> servo_;
+  HapticServo servo_;
   double depth_ = 0.0;
   int count_ = 0;
 };

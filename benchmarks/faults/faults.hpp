@@ -122,7 +122,7 @@ inline Outcome run(const Fault& fault, double tissue_step) {
     before = force.force;
     raw_before = servo.contact_force();
     out.given = std::max(out.given, hand.given() - damped);
-    out.tank = std::min(out.tank, servo.energy().level());
+    out.tank = std::min(out.tank, servo.energy()->level());
     out.stale += force.status.has(StatusFlag::stale);
     out.missed += force.status.has(StatusFlag::deadline_missed);
     out.disconnected += force.status.has(StatusFlag::disconnected);

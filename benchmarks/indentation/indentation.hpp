@@ -62,7 +62,7 @@ struct Session {
   using Model = palpate::HapticFEModel<E, palpate::LinearElastic>;
 
   Model model;
-  palpate::HapticServo<Model> servo;
+  palpate::HapticServo servo;
   palpate::ToolState state;
   palpate::Status status;
 

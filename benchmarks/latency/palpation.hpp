@@ -92,7 +92,7 @@ class Palpation {
 
   palpate::Mesh<palpate::Tet4> mesh_;
   Model model_;
-  palpate::HapticServo<Model> servo_;
+  palpate::HapticServo servo_;
   palpate::ToolState state_;
   double depth_ = 0.0;
   int count_ = 0;

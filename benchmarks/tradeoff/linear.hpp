@@ -51,7 +51,7 @@ class Felt {
     return options;
   }
 
-  HapticServo<Tissue> servo_;
+  HapticServo servo_;
   std::vector<ToolState> states_;
   std::vector<Vector3> forces_;
   Status status_;

@@ -32,7 +32,7 @@ inline bool show_progress(const LoopProgress& p) {
 
 /// Takes the newest snapshot that the haptic thread left and computes the displacement of all nodes from it: one
 /// back-substitution. Neither thread waits for the other.
-inline bool look(Organ& organ, HapticServo<Organ>& servo, double not_before, Frame& frame) {
+inline bool look(Organ& organ, HapticServo& servo, double not_before, Frame& frame) {
   const auto& snapshot = servo.read_snapshot();
   if (snapshot.time < not_before) return false;
   frame.time = snapshot.time;

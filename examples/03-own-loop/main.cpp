@@ -64,7 +64,7 @@ struct Session {
     return o;
   }
 
-  HapticServo<Organ> servo;
+  HapticServo servo;
   SdkDevice device;
   double seconds;
   std::uint64_t ticks = 0;
@@ -114,7 +114,7 @@ bool on_servo_tick(void* user) {
 }
 
 /// What a renderer does between two pictures. Returns how far the organ has moved at most [m].
-double look(Organ& organ, HapticServo<Organ>& servo, VectorX& u) {
+double look(Organ& organ, HapticServo& servo, VectorX& u) {
   organ.displacement_with(servo.read_snapshot().vertex_forces(), u);
   return u.cwiseAbs().maxCoeff();
 }

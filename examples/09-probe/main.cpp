@@ -40,7 +40,7 @@ ServoOptions options() {
 /// The probe's device: where it is, how far it is tilted about y.
 class Hand {
  public:
-  Hand(HapticServo<Tissue>& servo, const Vector3& from) : servo_(servo) { state_.position = from; }
+  Hand(HapticServo& servo, const Vector3& from) : servo_(servo) { state_.position = from; }
 
   ToolForce move(const Vector3& to, double tilt, int ticks) {
     const Vector3 from = state_.position;
@@ -58,7 +58,7 @@ class Hand {
   }
 
  private:
-  HapticServo<Tissue>& servo_;
+  HapticServo& servo_;
   ToolState state_;
   double tilt_ = 0.0;
 };
@@ -68,7 +68,7 @@ void say(const char* what, const ToolForce& f) {
               f.force[2], f.torque[0], f.torque[1], f.torque[2]);
 }
 
-void draw(Tissue& tissue, HapticServo<Tissue>& servo, const std::filesystem::path& folder, double force) {
+void draw(Tissue& tissue, HapticServo& servo, const std::filesystem::path& folder, double force) {
   const auto& snapshot = servo.read_snapshot();
   VectorX u(3 * tissue.mesh().node_count());
   tissue.displacement_with(snapshot.vertex_forces(), u);

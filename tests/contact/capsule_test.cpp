@@ -47,7 +47,7 @@ TEST_CASE("a capsule on springs: force and torque of the closed form, however it
     const double angle = random.uniform(0.0, 6.28);
     const Vector3 axis(std::cos(angle), std::sin(angle), random.uniform(-0.15, 0.15));
     const Vector3 end(random.uniform(-2e-3, 2e-3), random.uniform(-2e-3, 2e-3), radius - random.uniform(2e-4, 1e-3));
-    ToolSession<> s(tissue, {round_tool(radius, end + Vector3(0, 0, 3e-3), 0.0, half, axis)});
+    ToolSession s(tissue, {round_tool(radius, end + Vector3(0, 0, 3e-3), 0.0, half, axis)});
     s.move(0, end, 100);
     s.settle();
     const Wrench exact = wrench_of_springs(tissue, end, axis.normalized(), half, radius);
@@ -65,7 +65,7 @@ TEST_CASE("a capsule on springs: force and torque of the closed form, however it
 TEST_CASE("a capsule that turns over springs", "[contact][capsule]") {
   const double radius = 3e-3, half = 6e-3;
   AnalyticTissue tissue(20, 0.03, 2e-2);
-  ToolSession<> s(tissue, {round_tool(radius, {3e-4, 2e-4, 3.1e-3}, 0.0, half)});
+  ToolSession s(tissue, {round_tool(radius, {3e-4, 2e-4, 3.1e-3}, 0.0, half)});
   s.move(0, {3e-4, 2e-4, 2.3e-3}, 100);
   double worst = 0.0;
   for (int k = 1; k <= 500; ++k) {  // half a turn about the vertical, nodding
@@ -87,7 +87,7 @@ TEST_CASE("the coupling for rotations is a spring in series", "[contact][capsule
   AnalyticTissue tissue(2, 2.0 * a, own);  // at -a, 0, a
   ContactTool tool = round_tool(radius, {0, 0, radius + 1e-3}, coupling, half);
   tool.turning_compliance = turning;
-  ToolSession<> s(tissue, {tool});
+  ToolSession s(tissue, {tool});
   s.move(0, {0, 0, radius - depth}, 100);
   CHECK(s.tools[0].torque.norm() <= 1e-9);
   for (int k = 1; k <= 20; ++k) s.tick(0, s.tools[0].target, rotation_by(Vector3(0, 0.05 * k * tilt, 0)));
@@ -105,7 +105,7 @@ TEST_CASE("the coupling for rotations is a spring in series", "[contact][capsule
 
 TEST_CASE("a capsule without length is a ball, bit by bit", "[contact][capsule]") {
   AnalyticTissue tissue(20, 0.02, 2e-2, 1e-3);
-  ToolSession<> ball(tissue, {round_tool(4e-3, {0, 0, 4.1e-3}, 1e-3)}),
+  ToolSession ball(tissue, {round_tool(4e-3, {0, 0, 4.1e-3}, 1e-3)}),
       capsule(tissue, {round_tool(4e-3, {0, 0, 4.1e-3}, 1e-3, 0.0, {1, 2, 3})});
   for (int k = 0; k < 200; ++k) {
     const Vector3 to(1e-5 * k, 3e-6 * k, 4.1e-3 - 4e-6 * k);
@@ -128,7 +128,7 @@ TEST_CASE("capsules that cannot be are refused", "[contact][capsule]") {
 TEST_CASE("a grasped point follows both ways: pull, push and drag are one spring", "[contact][grasp]") {
   const double own = 1e-3, common = 5e-4, coupling = 2e-3, soft = own + common + coupling, radius = 4e-3;
   AnalyticTissue tissue(4, 0.2, own, common);
-  ToolSession<> s(tissue, {round_tool(radius, {0, 0, radius + 1e-4}, coupling)});
+  ToolSession s(tissue, {round_tool(radius, {0, 0, radius + 1e-4}, coupling)});
   s.tick();
   CHECK_FALSE(s.problem.is_holding(0));
   s.tools[0].grasping = true;  // a tenth of a millimetre away: near enough
@@ -156,7 +156,7 @@ TEST_CASE("a grasped point follows both ways: pull, push and drag are one spring
 TEST_CASE("one tool pulls a fold while another presses beside it", "[contact][grasp]") {
   const double own = 1e-3, common = 5e-4, radius = 4e-3;
   AnalyticTissue tissue(4, 0.2, own, common);  // vertices at -0.05, 0, 0.05
-  ToolSession<> s(tissue,
+  ToolSession s(tissue,
                   {round_tool(radius, {-0.05, 0, radius}, 0.0), round_tool(radius, {0.05, 0, radius + 1e-4}, 0.0)});
   s.tools[0].grasping = true;
   s.tick();
@@ -175,7 +175,7 @@ TEST_CASE("one tool pulls a fold while another presses beside it", "[contact][gr
 TEST_CASE("a capsule that grasps with its end carries a torque", "[contact][grasp][torque]") {
   AnalyticTissue tissue(4, 0.2, 1e-3);
   const double radius = 4e-3, half = 0.02;
-  ToolSession<> s(tissue, {round_tool(radius, {0, 0, radius + half}, 0.0, half, Vector3::UnitZ())});
+  ToolSession s(tissue, {round_tool(radius, {0, 0, radius + half}, 0.0, half, Vector3::UnitZ())});
   s.tools[0].grasping = true;
   s.tick();
   REQUIRE(s.problem.is_holding(0));

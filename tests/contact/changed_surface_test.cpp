@@ -50,7 +50,7 @@ struct OverTriangles {
       : parameters{.maximum_iterations = 20, .force_tolerance = 1e-9, .friction = friction} {}
   ContactParameters parameters;
   ChangingTissue tissue;
-  ContactProblem<> problem{tissue.contact_surface(), 3e-3, parameters};
+  ContactProblem problem{tissue.contact_surface(), 3e-3, parameters};
   std::array<ContactTool, 1> tools{test::round_tool(radius, {0.0, 0.0, radius + 1e-4}, 1e-3)};
   Status status;
 
@@ -62,7 +62,7 @@ struct OverTriangles {
   template <class Leaves>
   void change(Leaves&& leaves) {
     tissue.change(leaves);
-    ContactProblem<> fresh(tissue.contact_surface(), 3e-3, parameters);
+    ContactProblem fresh(tissue.contact_surface(), 3e-3, parameters);
     problem.move_to(fresh, tissue.contact_surface());
   }
 };

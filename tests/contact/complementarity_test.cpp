@@ -11,7 +11,10 @@ using namespace palpate;
 namespace {
 
 constexpr double relaxation = 1e-6;  // what solve() adds to the diagonal, relative
-using Problem = ComplementarityProblem<48>;
+struct Problem : ComplementarityProblem {
+  Problem() : ComplementarityProblem(48) {}
+  VectorX forces() const { return Eigen::Map<const VectorX>(lambda.data(), rows()); }
+};
 
 struct Case {
   MatrixX w;
@@ -58,11 +61,18 @@ Case ball_case(testing::Random& random, int n, double own) {
   return c;
 }
 
+void start_from(Problem& problem, const VectorX& lambda) {
+  std::copy(lambda.begin(), lambda.end(), problem.lambda.begin());
+}
+
 void load(Problem& problem, const Case& c) {
-  problem.resize(static_cast<int>(c.b.size()));
-  problem.w.topLeftCorner(c.b.size(), c.b.size()) = c.w;
-  problem.b = c.b;
-  problem.lambda.setZero();
+  const int n = static_cast<int>(c.b.size());
+  problem.resize(n);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) problem.w(i, j) = c.w(i, j);
+    problem.b[static_cast<std::size_t>(i)] = c.b[i];
+  }
+  start_from(problem, VectorX::Zero(n));
 }
 
 /// The solution for which all conditions hold, by trying all 2^n active sets.
@@ -94,7 +104,7 @@ VectorX enumerate(const Case& c) {
 /// Largest violation of lambda >= 0, gap >= 0, lambda * gap = 0, all as gaps relative to max |b|; the relaxed diagonal
 /// is allowed for.
 double violation(const Case& c, const Problem& problem) {
-  const VectorX lambda = problem.lambda;
+  const VectorX lambda = problem.forces();
   MatrixX w = c.w;
   w.diagonal() *= 1.0 + relaxation;
   const VectorX gap = c.b + w * lambda;
@@ -123,7 +133,7 @@ TEST_CASE("up to 8 contacts: the answer of all active sets tried", "[contact][co
       const VectorX expected = enumerate(c);
       const double softest = Eigen::SelfAdjointEigenSolver<MatrixX>(c.w).eigenvalues()[0];
       const double allowed = 2.0 * relaxation * c.w.diagonal().maxCoeff() * expected.norm() / softest + 1e-12;
-      worst = std::max(worst, (problem.lambda - expected).norm() / allowed);
+      worst = std::max(worst, (problem.forces() - expected).norm() / allowed);
     }
   CHECK(unsolved == 0);
   CHECK(worst <= 1.0);
@@ -160,7 +170,7 @@ TEST_CASE("more contacts than degrees of freedom, copies among them", "[contact]
       worst = std::max(worst, violation(c, problem));
       most = std::max(most, problem.pivots);
       // The tool's displacement is unique even where the forces are not: the gaps of the unrelaxed problem hold.
-      const VectorX gap = c.b + c.w * problem.lambda;
+      const VectorX gap = c.b + c.w * problem.forces();
       worst_sum = std::max(worst_sum, -gap.minCoeff() / c.b.cwiseAbs().maxCoeff());
     }
   INFO("most pivots of 900 redundant problems: " << most << ", worst violation " << worst << ", deepest gap "
@@ -178,17 +188,17 @@ TEST_CASE("any start leads to the same answer", "[contact][complementarity]") {
     Problem problem;
     load(problem, c);
     if (!problem.solve()) ++unsolved;
-    const VectorX answer = problem.lambda;
+    const VectorX answer = problem.forces();
     cold += problem.pivots;
     load(problem, c);
-    problem.lambda = answer;
+    start_from(problem, answer);
     if (!problem.solve()) ++unsolved;
     warm += problem.pivots;
-    if (!(problem.lambda - answer).isZero(1e-12 * answer.norm())) ++different;
+    if (!(problem.forces() - answer).isZero(1e-12 * answer.norm())) ++different;
     load(problem, c);
-    for (Index i = 0; i < 24; ++i) problem.lambda[i] = random.uniform(-1.0, 1.0) * 1e3;
+    for (std::size_t i = 0; i < 24; ++i) problem.lambda[i] = random.uniform(-1.0, 1.0) * 1e3;
     if (!problem.solve()) ++unsolved;
-    if (!(problem.lambda - answer).isZero(1e-9 * answer.norm())) ++different;
+    if (!(problem.forces() - answer).isZero(1e-9 * answer.norm())) ++different;
   }
   CHECK(unsolved == 0);
   CHECK(different == 0);
@@ -202,13 +212,13 @@ TEST_CASE("without penetration there is no force", "[contact][complementarity]")
     c.b = c.b.cwiseAbs().array() + 1e-6;
     Problem problem;
     load(problem, c);
-    problem.lambda.setConstant(1.0);
+    start_from(problem, VectorX::Constant(n, 1.0));
     CHECK(problem.solve());
-    CHECK(problem.lambda.isZero(0.0));
+    CHECK(problem.forces().isZero(0.0));
     c.b.setZero();
     load(problem, c);
     CHECK(problem.solve());
-    CHECK(problem.lambda.isZero(1e-12));
+    CHECK(problem.forces().isZero(1e-12));
   }
   Problem nothing;
   nothing.resize(0);
@@ -237,9 +247,9 @@ TEST_CASE("pivots are bounded and the result finite whatever the sizes", "[conta
     Problem problem;
     load(problem, c);
     problem.solve();
-    if (!problem.lambda.allFinite()) ++not_finite;
-    if (problem.lambda.minCoeff() < 0.0) ++negative;
-    if (problem.pivots > Problem::maximum_pivots) ++too_many;
+    if (!problem.forces().allFinite()) ++not_finite;
+    if (problem.forces().minCoeff() < 0.0) ++negative;
+    if (problem.pivots > problem.maximum_pivots()) ++too_many;
   }
   CHECK(not_finite == 0);
   CHECK(negative == 0);
@@ -249,12 +259,13 @@ TEST_CASE("pivots are bounded and the result finite whatever the sizes", "[conta
 TEST_CASE("rows without compliance get no force and spoil no other", "[contact][complementarity][extreme]") {
   Problem problem;
   problem.resize(3);
-  problem.w.setZero();
-  problem.w(0, 0) = 2.0;
-  problem.b = Eigen::Vector3d(-1.0, -1.0, 1.0);
-  problem.lambda.setZero();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) problem.w(i, j) = i == 0 && j == 0 ? 2.0 : 0.0;
+  problem.b[0] = problem.b[1] = -1.0;
+  problem.b[2] = 1.0;
+  start_from(problem, VectorX::Zero(3));
   problem.solve();
-  CHECK(problem.lambda.allFinite());
+  CHECK(problem.forces().allFinite());
   CHECK_THAT(problem.lambda[0], Catch::Matchers::WithinAbs(0.5, 1e-6));
 }
 
@@ -270,8 +281,8 @@ TEST_CASE("NaN and infinity end the solve and are not called solved", "[contact]
       if (where == 1) problem.w(5, 5) = bad;
       if (where == 2) problem.w(2, 7) = problem.w(7, 2) = bad;
       const bool solved = problem.solve();
-      CHECK(problem.pivots <= Problem::maximum_pivots);
-      const bool no_lie = !solved || problem.lambda.allFinite();
+      CHECK(problem.pivots <= problem.maximum_pivots());
+      const bool no_lie = !solved || problem.forces().allFinite();
       INFO("value " << bad << " at place " << where);
       CHECK(no_lie);
     }

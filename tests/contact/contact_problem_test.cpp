@@ -24,16 +24,14 @@ std::vector<ContactTool> balls(const std::vector<Vector3>& start, double couplin
 }
 
 /// One or more balls that are moved in steps, like a servo does.
-template <int Capacity = 48>
-struct Session : test::ToolSession<AnalyticTissue, Capacity> {
-  using Base = test::ToolSession<AnalyticTissue, Capacity>;
+struct Session : test::ToolSession {
   Session(AnalyticTissue& t, const std::vector<Vector3>& start, double coupling_compliance,
-          double sampled_for = vertices_only, const ContactParameters& parameters = {})
-      : Base(t, balls(start, coupling_compliance), parameters, sampled_for) {}
+          double sampled_for = vertices_only, const ContactParameters& parameters = {.capacity = 48})
+      : ToolSession(t, balls(start, coupling_compliance), parameters, sampled_for) {}
   /// In equal steps of at most `step`.
   void move(std::size_t i, const Vector3& target, double step = 5e-5) {
-    const double way = (target - this->tools[i].target).norm();
-    Base::move(i, target, std::max(1, static_cast<int>(std::ceil(way / step))));
+    const double way = (target - tools[i].target).norm();
+    ToolSession::move(i, target, std::max(1, static_cast<int>(std::ceil(way / step))));
   }
 };
 
@@ -44,7 +42,7 @@ TEST_CASE("one contact: force is penetration over tissue plus coupling complianc
     for (double coupling : {0.0, 2e-3, 1e-1}) {
       AnalyticTissue tissue(4, 0.2, own);  // vertices 50 mm apart
       for (double depth : {1e-6, 1e-4, 1e-3, 3e-3}) {
-        Session<> s(tissue, {Vector3(0, 0, radius + 1e-4)}, coupling);
+        Session s(tissue, {Vector3(0, 0, radius + 1e-4)}, coupling);
         s.move(0, Vector3(0, 0, radius - depth));
         INFO("own " << own << ", coupling " << coupling << ", depth " << depth);
         CHECK_THAT(s.force()[2], WithinRel(depth / (own + coupling), 1e-5));
@@ -58,7 +56,7 @@ TEST_CASE("one contact: force is penetration over tissue plus coupling complianc
 TEST_CASE("a touch off the vertex pushes along the line to the ball", "[contact][problem]") {
   AnalyticTissue tissue(4, 0.2, 1e-3);
   const Vector3 direction = Vector3(0.3, -0.2, 1.0).normalized();
-  Session<> s(tissue, {direction * (radius + 1e-4)}, 0.0);
+  Session s(tissue, {direction * (radius + 1e-4)}, 0.0);
   s.move(0, direction * (radius - 5e-4));
   s.settle();
   CHECK((s.force() - direction * 0.5).norm() <= 1e-5);
@@ -75,7 +73,7 @@ TEST_CASE("many contacts: the force of the closed form", "[contact][problem]") {
         const Vector3 start(random.uniform(-3e-3, 3e-3), random.uniform(-3e-3, 3e-3), radius + 1e-4);
         const Vector3 end =
             start + Vector3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), -random.uniform(2e-4, 1.5e-3));
-        Session<> s(tissue, {start}, coupling);
+        Session s(tissue, {start}, coupling);
         s.move(0, end);
         s.settle();
         const Vector3 exact = tissue.exact_force(end, radius, coupling);
@@ -91,7 +89,7 @@ TEST_CASE("many contacts: the force of the closed form", "[contact][problem]") {
 
 TEST_CASE("a static ball gives the same force in every tick", "[contact][problem][M10]") {
   AnalyticTissue tissue(20, 0.02, 2e-2, 1e-3);
-  Session<> s(tissue, {Vector3(2e-4, -3e-4, radius + 1e-4)}, 2e-3);
+  Session s(tissue, {Vector3(2e-4, -3e-4, radius + 1e-4)}, 2e-3);
   s.move(0, Vector3(5e-4, -1e-4, radius - 1e-3));
   const Vector3 first = s.force();
   s.settle(10);
@@ -104,12 +102,12 @@ TEST_CASE("a static ball gives the same force in every tick", "[contact][problem
 TEST_CASE("two balls: alone when far apart on independent springs", "[contact][problem]") {
   AnalyticTissue tissue(40, 0.04, 2e-2);
   const Vector3 a(-0.01, 2e-4, radius + 1e-4), b(0.01, -1e-4, radius + 1e-4), down(0, 0, -1.1e-3);
-  Session<> one(tissue, {a}, 1e-3), other(tissue, {b}, 1e-3), both(tissue, {a, b}, 1e-3);
+  Session one(tissue, {a}, 1e-3), other(tissue, {b}, 1e-3), both(tissue, {a, b}, 1e-3);
   one.move(0, a + down);
   other.move(0, b + down);
   both.move(0, a + down);
   both.move(1, b + down);
-  for (Session<>* s : {&one, &other, &both}) s->settle();
+  for (Session* s : {&one, &other, &both}) s->settle();
   CHECK(one.force().norm() > 0.1);
   CHECK((both.force(0) - one.force()).norm() <= 1e-9);
   CHECK((both.force(1) - other.force()).norm() <= 1e-9);
@@ -119,7 +117,7 @@ TEST_CASE("two balls on a common spring relieve each other as computed by hand",
   const double own = 1e-3, common = 2e-3, coupling = 5e-4, depth = 1e-3;
   AnalyticTissue tissue(4, 0.2, own, common);
   const Vector3 a(-0.05, 0, radius + 1e-4), b(0.05, 0, radius + 1e-4);
-  Session<> s(tissue, {a, b}, coupling);
+  Session s(tissue, {a, b}, coupling);
   s.move(0, Vector3(-0.05, 0, radius - depth));
   CHECK_THAT(s.force(0)[2], WithinRel(depth / (own + common + coupling), 1e-5));
   CHECK(s.force(1) == Vector3::Zero());
@@ -140,7 +138,7 @@ TEST_CASE("the rendered stiffness never exceeds the coupling, however many conta
       std::size_t most = 0;
       for (int i = 0; i < 10; ++i) {
         const Vector3 start(random.uniform(-3e-3, 3e-3), random.uniform(-3e-3, 3e-3), radius + 1e-4);
-        Session<> s(tissue, {start}, 1.0 / k, radius);
+        Session s(tissue, {start}, 1.0 / k, radius);
         Vector3 before = Vector3::Zero();
         for (int n = 0; n < 60; ++n) {
           s.tick(0, start - Vector3(0, 0, 2e-5 * n));
@@ -169,7 +167,7 @@ TEST_CASE("the ball sinks into no contact point and is pushed out, not in", "[co
     int inward = 0, pulling = 0, touching = 0;
     for (int i = 0; i < 60; ++i) {
       const Vector3 start(random.uniform(-5e-3, 5e-3), random.uniform(-5e-3, 5e-3), radius + 1e-4);
-      Session<> s(tissue, {start}, i % 2 == 0 ? 0.0 : 2e-3, sampled_for);
+      Session s(tissue, {start}, i % 2 == 0 ? 0.0 : 2e-3, sampled_for);
       s.move(0,
              start + Vector3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), -random.uniform(2e-4, 1.2e-3)));
       s.settle();
@@ -189,7 +187,7 @@ TEST_CASE("the ball sinks into no contact point and is pushed out, not in", "[co
 
 TEST_CASE("forces on the tissue are the forces on the balls, and balance them", "[contact][problem]") {
   AnalyticTissue tissue(16, 0.02, 1e-2, 1e-3);
-  Session<> s(tissue, {Vector3(-3e-3, 0, radius + 1e-4), Vector3(4e-3, 1e-3, radius + 1e-4)}, 1e-3, radius);
+  Session s(tissue, {Vector3(-3e-3, 0, radius + 1e-4), Vector3(4e-3, 1e-3, radius + 1e-4)}, 1e-3, radius);
   s.move(0, Vector3(-2.9e-3, 1e-4, radius - 8e-4));
   s.move(1, Vector3(4.1e-3, 1e-3, radius - 4e-4));
   Vector3 on_tissue = Vector3::Zero(), on_contacts = Vector3::Zero();
@@ -209,7 +207,7 @@ namespace {
 /// the work of the press. Trapezoid rule.
 double work_of_loop(const ContactParameters& parameters, double sampled_for, int cells, double step) {
   AnalyticTissue tissue(cells, 0.02, 2e-2);
-  Session<> s(tissue, {Vector3(-1.3e-3, -4e-4, radius + 1e-4)}, 0.0, sampled_for, parameters);
+  Session s(tissue, {Vector3(-1.3e-3, -4e-4, radius + 1e-4)}, 0.0, sampled_for, parameters);
   double work = 0.0;
   const auto go = [&](const Vector3& by) {
     const Vector3 from = s.tools[0].target;
@@ -260,7 +258,7 @@ TEST_CASE("a closed loop under rigid coupling gives no work", "[contact][problem
 TEST_CASE("the work of a press is the stored energy", "[contact][problem][energy]") {
   AnalyticTissue tissue(20, 0.02, 2e-2);
   const Vector3 start(3e-4, 2e-4, radius + 1e-4), end(1e-3, 2e-4, radius - 1e-3);
-  Session<> s(tissue, {start}, 0.0);
+  Session s(tissue, {start}, 0.0);
   double work = 0.0;
   for (int k = 1; k <= 2000; ++k) {
     const Vector3 before = s.force(), at = s.tools[0].target;
@@ -272,7 +270,7 @@ TEST_CASE("the work of a press is the stored energy", "[contact][problem][energy
 
 TEST_CASE("more contacts than fit: flagged, the nearest kept, still finite", "[contact][problem][extreme][D4]") {
   AnalyticTissue tissue(60, 0.02, 2e-2);  // a third of a millimetre apart
-  Session<8> s(tissue, {Vector3(0, 0, radius + 1e-4)}, 2e-3);
+  Session s(tissue, {Vector3(0, 0, radius + 1e-4)}, 2e-3, vertices_only, {.capacity = 8});
   s.move(0, Vector3(0, 0, radius - 1e-3));
   CHECK(s.status == Status(StatusFlag::degraded_model));                                // solved for those that fit
   for (const Contact& c : s.problem.contacts()) CHECK(c.rest.head<2>().norm() < 1e-3);  // below the ball, not beside it
@@ -284,7 +282,7 @@ TEST_CASE("more contacts than fit: flagged, the nearest kept, still finite", "[c
 
 TEST_CASE("a ball in the air has exactly no force and no contacts", "[contact][problem]") {
   AnalyticTissue tissue(20, 0.02, 2e-2);
-  Session<> s(tissue, {Vector3(0, 0, 0.05)}, 2e-3, radius);
+  Session s(tissue, {Vector3(0, 0, 0.05)}, 2e-3, radius);
   s.move(0, Vector3(3e-3, 0, 0.02), 1e-3);
   s.settle(3);
   CHECK(s.force() == Vector3::Zero());
@@ -299,11 +297,11 @@ TEST_CASE("a ball in the air has exactly no force and no contacts", "[contact][p
 TEST_CASE("bad targets leave no trace", "[contact][problem][extreme][D1]") {
   AnalyticTissue tissue(20, 0.02, 2e-2);
   const Vector3 above(2e-4, 1e-4, radius + 1e-4), pressed(2e-4, 1e-4, radius - 8e-4);
-  Session<> reference(tissue, {above}, 2e-3);
+  Session reference(tissue, {above}, 2e-3);
   reference.move(0, pressed);
   reference.settle();
   for (double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, 1e308}) {
-    Session<> s(tissue, {above}, 2e-3);
+    Session s(tissue, {above}, 2e-3);
     s.move(0, pressed);
     s.tick(0, Vector3(0.0, bad, 0.0));
     // As a servo does when it starts anew.

@@ -36,7 +36,7 @@ TEST_CASE("one point sticks like a spring up to mu N, slips at mu N, and sticks 
       for (const double mu : {0.1, 0.5, 1.2}) {
         AnalyticTissue tissue(4, 0.2, own);  // 50 mm apart: the ball reaches one
         const double depth = 1e-4, soft = own + coupling, press = depth / soft;
-        ToolSession<> s(tissue, {round_tool(flat, {0, 0, flat + 1e-5}, coupling)}, rough(mu));
+        ToolSession s(tissue, {round_tool(flat, {0, 0, flat + 1e-5}, coupling)}, rough(mu));
         s.move(0, {0, 0, flat - depth}, 50);
         s.settle(3);
         INFO("own " << own << ", coupling " << coupling << ", mu " << mu);
@@ -81,7 +81,7 @@ TEST_CASE("many points together drag with mu N in any direction", "[contact][fri
     for (const double mu : {0.05, 0.3, 0.8})
       for (int run = 0; run < 4; ++run) {
         AnalyticTissue tissue(6, 0.06, 2e-3, common);  // 10 mm apart
-        ToolSession<> s(tissue, {round_tool(2.0, {0, 0, 2.0 + 1e-5}, 2e-3)}, rough(mu));
+        ToolSession s(tissue, {round_tool(2.0, {0, 0, 2.0 + 1e-5}, 2e-3)}, rough(mu));
         s.move(0, {0, 0, 2.0 - 4e-4}, 100);
         const double angle = random.uniform(0.0, 6.28);
         const Vector3 along(std::cos(angle), std::sin(angle), 0.0), start = s.tools[0].target;
@@ -108,7 +108,7 @@ TEST_CASE("many points together drag with mu N in any direction", "[contact][fri
 
 TEST_CASE("a ball of 4 mm that slides over a bed of points drags smoothly", "[contact][friction]") {
   AnalyticTissue tissue(40, 0.02, 2e-2, 1e-3);  // half a millimetre apart
-  ToolSession<> s(tissue, {round_tool(4e-3, {-4e-3, 0, 4.1e-3}, 2e-3)}, rough(0.4));
+  ToolSession s(tissue, {round_tool(4e-3, {-4e-3, 0, 4.1e-3}, 2e-3)}, rough(0.4));
   s.move(0, {-4e-3, 0, 3.4e-3}, 100);
   double sum = 0.0, roughest = 0.0, press = 0.0;
   Vector3 before = s.force();
@@ -134,7 +134,7 @@ TEST_CASE("friction never gives energy, wherever the hand goes", "[contact][fric
   testing::Random random(72);
   for (const double coupling : {0.0, 2e-3}) {
     AnalyticTissue tissue(6, 0.06, 5e-4, 5e-4);
-    ToolSession<> s(tissue, {round_tool(2.0, {0, 0, 2.0 + 1e-4}, coupling)}, rough(0.6));
+    ToolSession s(tissue, {round_tool(2.0, {0, 0, 2.0 + 1e-4}, coupling)}, rough(0.6));
     const Vector3 home(0, 0, 2.0 + 1e-4);
     Vector3 velocity = Vector3::Zero();
     double work = 0.0, taken = 0.0;
@@ -162,7 +162,7 @@ TEST_CASE("friction never gives energy, wherever the hand goes", "[contact][fric
 TEST_CASE("a ball spins against friction: torque about its centre", "[contact][friction][torque]") {
   AnalyticTissue tissue(4, 0.2, 1e-3);
   const double radius = 0.01, depth = 2e-5, mu = 0.5;
-  ToolSession<> s(tissue, {round_tool(radius, {0, 0, radius + 1e-5}, 0.0)}, rough(mu));
+  ToolSession s(tissue, {round_tool(radius, {0, 0, radius + 1e-5}, 0.0)}, rough(mu));
   s.move(0, {0, 0, radius - depth}, 20);
   const double press = s.force()[2];
   Matrix3 turn = Matrix3::Identity();
@@ -178,7 +178,7 @@ TEST_CASE("a ball spins against friction: torque about its centre", "[contact][f
 TEST_CASE("two tools with friction far apart are two problems", "[contact][friction]") {
   AnalyticTissue tissue(40, 0.04, 2e-2);
   const auto at = [](double x) { return round_tool(4e-3, {x, 2e-4, 4.1e-3}, 1e-3); };
-  ToolSession<> both(tissue, {at(-0.01), at(0.01)}, rough(0.5)), one(tissue, {at(-0.01)}, rough(0.5)),
+  ToolSession both(tissue, {at(-0.01), at(0.01)}, rough(0.5)), one(tissue, {at(-0.01)}, rough(0.5)),
       other(tissue, {at(0.01)}, rough(0.5));
   for (int k = 1; k <= 200; ++k) {
     const Vector3 by(5e-6 * k, -2e-6 * k, -3e-6 * k);
@@ -198,5 +198,5 @@ TEST_CASE("two tools with friction far apart are two problems", "[contact][frict
 TEST_CASE("coefficients of friction that make no sense are refused", "[contact][friction]") {
   AnalyticTissue tissue(4, 0.02, 1e-3);
   for (const double bad : {-0.1, 4.1, infinity, std::numeric_limits<double>::quiet_NaN()})
-    CHECK_THROWS_AS(ToolSession<>(tissue, {}, rough(bad)), SetupError);
+    CHECK_THROWS_AS(ToolSession(tissue, {}, rough(bad)), SetupError);
 }

@@ -12,7 +12,15 @@ using test::ToolSession;
 namespace {
 
 constexpr int row_count = 8;
-using Crowd = ToolSession<AnalyticTissue, row_count>;
+/// A session with few rows.
+struct Crowd : ToolSession {
+  Crowd(AnalyticTissue& t, const std::vector<ContactTool>& start, ContactParameters parameters = {})
+      : ToolSession(t, start, few(parameters)) {}
+  static ContactParameters few(ContactParameters parameters) {
+    parameters.capacity = row_count;
+    return parameters;
+  }
+};
 
 constexpr double spring = 1e-2;  // [m/N]
 

@@ -55,11 +55,11 @@ Matrix3 expected(const CountingTissue& tissue, const ContactSample& p, const Con
 }  // namespace
 
 TEST_CASE("compliance between points is J C J^T whatever was asked before", "[contact][point_compliance]") {
-  const CountingTissue tissue;
+  CountingTissue tissue;
   const ContactSamples samples(tissue.surface, 0.004);
   const int count = samples.first_of(static_cast<int>(tissue.surface.triangles().size()));
   REQUIRE(count > 24);
-  PointCompliance<8> compliance;
+  PointCompliance compliance(8);
   testing::Random random(61);
   std::vector<int> hint(static_cast<std::size_t>(count), -1);
   double worst = 0.0;
@@ -87,7 +87,7 @@ TEST_CASE("compliance between points is J C J^T whatever was asked before", "[co
 TEST_CASE("what is known is not read again, until the tissue says so", "[contact][point_compliance]") {
   CountingTissue tissue;
   const ContactSamples samples(tissue.surface, 0.004);
-  PointCompliance<8> compliance;
+  PointCompliance compliance(8);
   const auto read = [&](int first) {
     tissue.reads = 0;
     compliance.begin_tick(tissue.compliance_revision());

@@ -44,7 +44,7 @@ inline ForceLimits open_gate() {
 /// A servo, its tools and a clock of 1 kHz.
 template <class Model>
 struct ServoSession {
-  HapticServo<Model> servo;
+  HapticServo servo;
   std::vector<ToolState> states;
   std::vector<ToolForce> forces;
   double period = 1e-3;

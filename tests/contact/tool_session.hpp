@@ -8,15 +8,14 @@ namespace test {
 /// Contact points at the vertices alone, as closed forms have them.
 inline constexpr double at_vertices_only = 1e9;
 
-template <class Tissue = AnalyticTissue, int Capacity = 64>
 struct ToolSession {
-  Tissue& tissue;
-  ContactProblem<Capacity> problem;
+  AnalyticTissue& tissue;
+  ContactProblem problem;
   std::vector<ContactTool> tools;
   Status status;
 
   /// Contact points for balls of the radius `sampled_for`.
-  ToolSession(Tissue& t, const std::vector<ContactTool>& start, const ContactParameters& parameters = {},
+  ToolSession(AnalyticTissue& t, const std::vector<ContactTool>& start, const ContactParameters& parameters = {},
               double sampled_for = at_vertices_only)
       : tissue(t), problem(t.contact_surface(), sampled_for, parameters), tools(start) {}
 

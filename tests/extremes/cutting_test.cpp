@@ -13,7 +13,7 @@ using namespace palpate;
 
 namespace {
 
-using CutSession = HapticServo<CuttableTissue<Tet4>, EnergyTank>;
+using CutSession = HapticServo;
 
 struct ManyCuts {
   int cuts = 0, bodies = 0, loose = 0;

@@ -15,7 +15,7 @@ using namespace palpate;
 
 namespace {
 
-using PadServo = HapticServo<test::Pad>;
+using PadServo = HapticServo;
 static_assert(!std::is_move_constructible_v<PadServo> && !std::is_move_assignable_v<PadServo>);
 static_assert(!std::is_copy_constructible_v<PadServo> && !std::is_copy_assignable_v<PadServo>);
 

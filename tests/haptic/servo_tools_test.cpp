@@ -14,7 +14,7 @@ constexpr double round_radius = 5e-3;
 /// A servo on springs and its tools' states, one tick after the other.
 struct Tools {
   test::AnalyticTissue tissue;
-  HapticServo<test::AnalyticTissue> servo;
+  HapticServo servo;
   std::vector<ToolState> states;
   std::vector<int> reacquired;
 

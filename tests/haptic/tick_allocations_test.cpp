@@ -23,7 +23,7 @@ struct Seen {
 /// Presses, drags, releases, jumps, and sends NaN and failed reads in between, over and over.
 template <class Model>
 Seen abuse(Model& model, int ticks, const ServoOptions& options) {
-  HapticServo<Model> servo(model, std::vector<SphereTool>(2, SphereTool{.radius = ball_radius}), options);
+  HapticServo servo(model, std::vector<SphereTool>(2, SphereTool{.radius = ball_radius}), options);
   std::array<ToolState, 2> states;
   testing::Random random(91);
   Seen seen;

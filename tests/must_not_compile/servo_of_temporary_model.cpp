@@ -11,7 +11,7 @@ using Model = HapticFEModel<Tet4, LinearElastic>;
 Model make_model();
 
 #ifdef PALPATE_GOOD_TWIN
-static_assert(std::is_constructible_v<HapticServo<Model>, Model&, SphereTool>);
+static_assert(std::is_constructible_v<HapticServo, Model&, SphereTool>);
 #else
-HapticServo<Model> servo(make_model(), SphereTool{4e-3});
+HapticServo servo(make_model(), SphereTool{4e-3});
 #endif

@@ -22,7 +22,7 @@ namespace {
 
 using namespace palpate;
 using Model = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
-using Session = HapticServo<Model, EnergyTank>;
+using Session = HapticServo;
 
 double tick(Session& servo, const std::array<ToolState, 2>& tools) noexcept NONBLOCKING {
   double sum = 0.0;

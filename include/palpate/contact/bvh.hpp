@@ -1,11 +1,10 @@
 // A bounding volume hierarchy of axis-aligned boxes over triangles.
 #pragma once
 
-#include <palpate/core/types.hpp>
+#include <palpate/contact/triangle.hpp>
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -16,17 +15,12 @@ struct Box {
   Vector3 low = Vector3::Constant(infinity);
   Vector3 high = Vector3::Constant(-infinity);
 
-  void include(const Vector3& p) noexcept {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  void include(const Box& b) noexcept {
-    low = low.cwiseMin(b.low);
-    high = high.cwiseMax(b.high);
-  }
+  void include(const Vector3& p) noexcept { include(p, p); }
+  void include(const Box& b) noexcept { include(b.low, b.high); }
   /// Squared distance of a point, 0 inside.
   double squared_distance(const Vector3& p) const noexcept {
-    return (low - p).cwiseMax(p - high).cwiseMax(Vector3::Zero()).squaredNorm();
+    const double x = off(p, 0), y = off(p, 1), z = off(p, 2);
+    return x * x + (y * y + z * z);
   }
   /// Whether the way from a point enters the box, widened by `margin`, before the share `until` of it is gone.
   bool is_crossed(const Vector3& from, const Vector3& way, double margin, double until) const noexcept {
@@ -42,9 +36,19 @@ struct Box {
     }
     return enter <= leave;
   }
-};
 
-using Triangle = std::array<int, 3>;
+ private:
+  void include(const Vector3& lowest, const Vector3& highest) noexcept {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], lowest[k]);
+      high[k] = std::max(high[k], highest[k]);
+    }
+  }
+  double off(const Vector3& p, int k) const noexcept {
+    const double side = std::max(low[k] - p[k], p[k] - high[k]);
+    return side > 0.0 ? side : 0.0;
+  }
+};
 
 /// Boxes over triangles, split at the median of the longest axis; leaves hold up to four triangles. Queries are O(log n
 /// + hits), do not allocate and visit triangles in a fixed order.
@@ -53,32 +57,10 @@ class Bvh {
   Bvh() = default;
 
   /// Builds over triangles of `positions`. O(n log n), allocates.
-  Bvh(std::span<const Triangle> triangles, std::span<const Vector3> positions) : order_(triangles.size()) {
-    std::iota(order_.begin(), order_.end(), 0);
-    std::vector<Vector3> centre;
-    centre.reserve(triangles.size());
-    for (const Triangle& t : triangles)
-      centre.push_back(at(positions, t[0]) + at(positions, t[1]) + at(positions, t[2]));
-    nodes_.reserve(2 * triangles.size() + 1);
-    if (!triangles.empty()) build(0, static_cast<int>(triangles.size()), centre);
-    refit(triangles, positions);
-  }
+  Bvh(std::span<const Triangle> triangles, std::span<const Vector3> positions);
 
   /// Recomputes all boxes for moved positions. O(n), no allocation.
-  void refit(std::span<const Triangle> triangles, std::span<const Vector3> positions) noexcept {
-    for (std::size_t i = nodes_.size(); i-- > 0;) {
-      Node& node = nodes_[i];
-      node.box = Box{};
-      if (node.count > 0) {
-        for (int k = node.first; k < node.first + node.count; ++k)
-          for (int v : triangles[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])])
-            node.box.include(at(positions, v));
-      } else {
-        node.box.include(nodes_[i + 1].box);
-        node.box.include(nodes_[static_cast<std::size_t>(node.first)].box);
-      }
-    }
-  }
+  void refit(std::span<const Triangle> triangles, std::span<const Vector3> positions) noexcept;
 
   /// Calls visit(triangle) for every triangle of a leaf whose box comes within `radius` of `centre`.
   template <class Visit>
@@ -161,27 +143,14 @@ class Bvh {
     return positions[static_cast<std::size_t>(i)];
   }
 
-  void build(int begin, int end, const std::vector<Vector3>& centre) {
-    const std::size_t self = nodes_.size();
-    nodes_.push_back({Box{}, begin, end - begin});
-    if (end - begin <= 4) return;
-    Box box;
-    for (int k = begin; k < end; ++k) box.include(at(centre, order_[static_cast<std::size_t>(k)]));
-    int axis = 0;
-    (box.high - box.low).maxCoeff(&axis);
-    const int middle = begin + (end - begin) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int a, int b) {
-      const double x = at(centre, a)[axis], y = at(centre, b)[axis];
-      return x < y || (x == y && a < b);
-    });
-    nodes_[self].count = 0;
-    build(begin, middle, centre);
-    nodes_[self].first = static_cast<int>(nodes_.size());
-    build(middle, end, centre);
-  }
+  void build(int begin, int end, const std::vector<Vector3>& centre);
 
   std::vector<int> order_;
   std::vector<Node> nodes_;
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/bvh.ipp>
+#endif

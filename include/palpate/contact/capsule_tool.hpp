@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/sphere_tool.hpp>
+#include <palpate/core/types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -19,14 +20,11 @@ struct CapsuleTool {
 
   /// Throws bad_argument when the radius is not finite and positive, the axis has no direction, or the capsule is
   /// longer than 32 radii: more contact points than there is room for would lie under it.
-  void require_valid() const {
-    SphereTool{radius}.require_valid();
-    if (!(half_length >= 0.0 && half_length <= 16.0 * radius))
-      raise(SetupErrorKind::bad_argument, "half the length of a capsule tool is " + number(half_length),
-            "Give 0 to 16 radii, in metres");
-    if (half_length > 0.0 && !(axis.norm() > 0.0 && std::isfinite(axis.norm())))
-      raise(SetupErrorKind::bad_argument, "the axis of a capsule tool has no direction");
-  }
+  void require_valid() const;
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/capsule_tool.ipp>
+#endif

@@ -1,30 +1,26 @@
 // Tools and contacts as the contact problem knows them.
 #pragma once
 
-#include <palpate/contact/bvh.hpp>
-
-#include <Eigen/Geometry>
+#include <palpate/contact/triangle.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-/// How far a tick may go.
-struct ContactParameters {
-  int maximum_iterations = 4;     ///< linearisations per tick
-  double force_tolerance = 1e-3;  ///< relative change of the force between linearisations that ends the tick
-  double sample_spacing = 0.5;    ///< of contact points on the surface, in radii of the smallest tool
-  double friction = 0.0;          ///< Coulomb's coefficient; 0 costs nothing
-};
 
 /// Contacts of one contact problem unless it says otherwise.
 inline constexpr int default_contact_capacity = 64;
 /// Tools of one contact problem.
 inline constexpr std::size_t maximum_tools = 8;
 
+/// How far a tick may go.
+struct ContactParameters {
+  int maximum_iterations = 4;               ///< linearisations per tick
+  double force_tolerance = 1e-3;            ///< relative change of the force between linearisations that ends the tick
+  double sample_spacing = 0.5;              ///< of contact points on the surface, in radii of the smallest tool
+  double friction = 0.0;                    ///< Coulomb's coefficient; 0 costs nothing
+  int capacity = default_contact_capacity;  ///< contacts of all tools; more are left out (degraded_model)
+};
+
 /// The rotation by |v| about v.
-inline Matrix3 rotation_by(const Vector3& v) noexcept {
-  const double angle = v.norm();
-  return angle > 0.0 ? Eigen::AngleAxisd(angle, v / angle).toRotationMatrix() : Matrix3::Identity();
-}
+Matrix3 rotation_by(const Vector3& v) noexcept;
 
 /// A ball or capsule as the contact problem knows it, in the model's frame.
 struct ContactTool {
@@ -48,27 +44,21 @@ struct ContactTool {
   Vector3 drag_way = Vector3::Zero(), drag_turn = Vector3::Zero();  ///< of the coupling under friction [m], [rad]
 
   /// Takes part in nothing, and nothing presses it.
-  void lift() noexcept {
-    active = grasping = false;
-    force.setZero();
-    torque.setZero();
-  }
+  void lift() noexcept;
   /// The proxy that a rigid tissue pushing back with `force` would allow.
-  Vector3 goal(double floor) const noexcept { return target + (compliance + floor) * force; }
+  Vector3 goal(double floor) const noexcept;
   /// The same for the rotation.
-  Matrix3 goal_rotation() const noexcept {
-    return turning_compliance > 0.0 ? Matrix3(rotation_by(turning_compliance * torque) * target_rotation)
-                                    : target_rotation;
-  }
-  Vector3 axis() const noexcept { return rotation * own_axis; }
+  Matrix3 goal_rotation() const noexcept;
+  Vector3 axis() const noexcept;
   /// Where on the axis the point next to `p` lies, from the middle [m].
-  double along(const Vector3& p) const noexcept {
-    return half_length > 0.0 ? std::clamp(axis().dot(p - proxy), -half_length, half_length) : 0.0;
-  }
+  double along(const Vector3& p) const noexcept { return half_length > 0.0 ? along_capsule(p) : 0.0; }
   /// Way of the device since the last tick, at the end that moved most, at most [m].
-  double way() const noexcept { return motion.norm() + turned; }
+  double way() const noexcept;
   /// The longest way of the proxy in one linearisation: points that far off are known.
   double longest_step() const noexcept { return 0.25 * radius + way(); }
+
+ private:
+  double along_capsule(const Vector3& p) const noexcept;
 };
 
 /// One contact of one tool: a point of the deformed surface with the three vertices that carry it. The barycentric
@@ -88,7 +78,11 @@ struct Contact {
   bool grasped = false;  ///< holds both ways: one of three rows of a grasped point
 
   /// On the tool [N].
-  Vector3 total() const noexcept { return force * normal + friction; }
+  Vector3 total() const noexcept;
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/contact.ipp>
+#endif

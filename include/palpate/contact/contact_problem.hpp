@@ -15,84 +15,33 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// are the points that pressed last and those the answer would let sink in, added until there are none. The coupling
 /// between proxy and device enters as n_i . n_j / k between contacts of one tool: the device never feels more than k,
 /// however many contacts there are, and the proxy never sinks in. docs/contact.md has the law, its limits and figures.
-/// Work is bounded by `Capacity`, iterations, rounds and candidates.
-template <int Capacity = default_contact_capacity>
+/// Work is bounded by `ContactParameters::capacity`, iterations, rounds and candidates.
 class ContactProblem {
  public:
+  /// The most that ContactParameters::capacity may be.
+  static constexpr int maximum_capacity = 1024;
+
   /// Places the contact points for balls of at least `smallest_radius` [m]. Allocates workspaces; for set-up.
-  /// Throws bad_argument unless 0.4 <= sample_spacing <= 1 and there is at least one iteration, and for an edge of the
-  /// surface longer than 32 radii (ids: its vertices): the lattice of points ends there, and the ball would fall
-  /// through.
-  ContactProblem(const ContactSurface& surface, double smallest_radius, ContactParameters parameters = {})
-      : parameters_(checked(parameters)),
-        displacement_(surface.vertex_count()),
-        candidates_(surface, parameters.sample_spacing * smallest_radius),
-        rows_(surface.vertex_count(), parameters.friction) {
-    require_dense_points(surface, smallest_radius);
-  }
+  /// Throws bad_argument unless 0.4 <= sample_spacing <= 1, there is at least one iteration and room for a contact, and
+  /// for an edge of the surface longer than 32 radii (ids: its vertices): the lattice of points ends there, and the
+  /// ball would fall through.
+  ContactProblem(const ContactSurface& surface, double smallest_radius, const ContactParameters& parameters = {});
 
   /// Finds the forces for the tools' new targets; updates proxy and force of every active tool. At most
-  /// `maximum_tools` tools. Never allocates.
-  template <TissueModel Tissue>
-  Status solve(Tissue& tissue, std::span<ContactTool> tools) noexcept {
-    Status status;
-    floor_ = tissue.compliance_floor();
-    rounds_left_ = maximum_rounds;
-    rows_.begin_tick(tissue.compliance_revision());
-    displacement_.begin_tick(tissue.compliance_revision());
-    ProxyMotion::slide(tools);
-    candidates_.begin_tick(tissue.contact_surface(), tools);
-    candidates_.look_round(tissue, tools, displacement_);
-    double change = 0.0, before = 0.0;
-    for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
-      proxies_.begin(tools);
-      status |= candidates_.update(tissue, tools, displacement_);
-      if (iteration == 0) grasp(tissue, tools);
-      if (candidates_.is_new()) foresee(tissue);
-      status |= solve_linearised(tissue, tools, iteration);
-      follow(tools);
-      change = proxies_.relative_change(tools);
-      // Each step is smaller than the last by about the same ratio (the curvature of the ball is left out of the
-      // linearisation), so that the steps still to come sum to this. The first step is the hand's, so that the second
-      // says nothing about the ratio yet.
-      const double expected = iteration == 0                     ? 10.0 * change
-                              : iteration > 1 && change < before ? change * change / (before - change)
-                                                                 : change;
-      before = change;
-      if (arrived_ && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) break;
-    }
-    rows_.cling(tools);
-    if (change > unsettled) status.set(StatusFlag::solver_not_converged);
-    return status;
-  }
+  /// `maximum_tools` tools. Any TissueModel is a TissueView. Never allocates.
+  Status solve(const TissueView& tissue, std::span<ContactTool> tools) noexcept;
 
   /// Goes on on the same body's surface after a cut, where vertices keep their numbers and there may be more. Forces,
   /// friction and grasps stay on the points that are still there, so that the next tick changes them by as much as the
   /// cut does. `fresh` was made for that surface with the same parameters; its workspaces are exchanged for the old
   /// ones. No allocation.
-  void move_to(ContactProblem& fresh, const ContactSurface& surface) noexcept {
-    displacement_.move_to(fresh.displacement_);
-    candidates_.move_to(fresh.candidates_, surface);
-    for (Grasp& g : grasps_) {
-      if (g.sample < 0) continue;
-      for (Candidate& c : g.rows)
-        if (!candidates_.move(c, fresh.candidates_.samples(), surface)) c.lift();
-      g.sample = g.rows[0].sample;
-    }
-    rows_.move_to(fresh.rows_);
-    pressing_count_ = violated_count_ = 0;
-    feedback_ = 0.0;
-  }
+  void move_to(ContactProblem& fresh, const ContactSurface& surface) noexcept;
 
   /// Forgets all contact forces, as when every tool was lifted.
-  void clear() noexcept {
-    displacement_.clear();
-    for (Candidate& c : candidates_.items()) c.lift();
-    for (Grasp& g : grasps_) g = Grasp{};
-    candidates_.forget();
-    rows_.clear();
-  }
+  void clear() noexcept;
 
+  /// How many contacts there is room for.
+  int capacity() const noexcept { return rows_.capacity(); }
   /// Rows of the last linearisation: what presses, and what would have sunk in without; some without force.
   std::span<const Contact> contacts() const noexcept { return rows_.contacts(); }
   /// The forces of the last tick on the vertices.
@@ -104,183 +53,33 @@ class ContactProblem {
 
  private:
   using Tools = ProxyMotion::Tools;
-
-  /// Takes hold of the nearest point for every tool that has just begun to grasp, and lets go.
-  template <TissueModel Tissue>
-  void grasp(const Tissue& tissue, Tools tools) noexcept {
-    for (std::size_t t = 0; t < tools.size(); ++t) {
-      const ContactTool& tool = tools[t];
-      Grasp& g = grasps_[t];
-      if (!tool.active || !tool.grasping) g = Grasp{};
-      if (!tool.active || !tool.grasping || g.asked) continue;
-      g.asked = true;
-      const Candidate* nearest = nullptr;
-      for (Candidate& c : candidates_.items()) {
-        if (c.tool != static_cast<int>(t)) continue;
-        if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
-        if (c.facing && c.gap <= Grasp::reach * tool.radius && (nearest == nullptr || c.gap < nearest->gap))
-          nearest = &c;
-      }
-      if (nearest != nullptr) g.hold(*nearest, tool);
-    }
-  }
-  bool is_held(const Candidate& c) const noexcept { return c.sample == grasps_[at(c.tool)].sample; }
-
-  /// Tells a tissue that wants to know which vertices lie near the balls.
-  template <TissueModel Tissue>
-  void foresee(Tissue& tissue) noexcept {
-    if constexpr (requires(std::span<const int> vertices) { tissue.foresee(vertices); })
-      for (const Candidate& c : candidates_.items()) {
-        const ContactSample& sample = candidates_.samples()[c.sample];
-        for (std::size_t a = 0; a < 3; ++a)
-          if (sample.weights[a] > 0.0) tissue.foresee({&sample.vertices[a], 1});
-      }
-  }
-
-  /// One Signorini problem at the present proxies; updates the forces of points, vertices and tools. Rows are added
-  /// until no point sinks in.
-  template <TissueModel Tissue>
-  Status solve_linearised(Tissue& tissue, Tools tools, int iteration) noexcept {
-    Status status;
-    gather_pressing(tools);
-    predict_normals(iteration);
-    rows_.clear();
-    for (std::size_t t = 0; t < tools.size(); ++t)
-      for (Candidate& c : grasps_[t].rows)
-        if (is_holding(t)) rows_.add(tissue.contact_surface(), candidates_, c);
-    for (int i = 0; i < pressing_count_; ++i) {
-      Candidate& c = *pressing_[at(i)];
-      if (rows_.count() < Capacity && !is_held(c))
-        rows_.add(tissue.contact_surface(), candidates_, c);
-      else
-        c.lift();  // only rows carry forces
-    }
-    int built = 0;
-    for (;; built = rows_.count()) {
-      if (built > 0 || rows_.count() == 0)
-        if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);  // solved for those that fit
-      if (rows_.count() == built) {
-        if (built == 0) rows_.apply(tools, displacement_, candidates_);
-        break;
-      }
-      if (rounds_left_-- <= 0) {
-        status.set(StatusFlag::solver_not_converged);
-        break;
-      }
-      status |= rows_.require_columns(tissue);
-      rows_.build(tissue, candidates_.samples(), tools, floor_, built);
-      if (!rows_.solve()) status.set(StatusFlag::solver_not_converged);
-      rows_.apply(tools, displacement_, candidates_);
-    }
-    if (rows_.has_friction() && built > 0 && built == rows_.count()) {
-      if (!rows_.rub()) status.set(StatusFlag::solver_not_converged);
-      rows_.apply(tools, displacement_, candidates_);
-    }
-    return status;
-  }
-
-  /// Lists the candidates that press and puts them where ball and surface are now.
-  void gather_pressing(Tools tools) noexcept {
-    pressing_count_ = 0;
-    if (candidates_.is_new()) {
-      for (Candidate& c : candidates_.items()) note_pressing(c);
-    } else {
-      for (int i = 0; i < rows_.count(); ++i) note_pressing(rows_.candidate(i));
-    }
-    for (int i = 0; i < pressing_count_; ++i) {
-      Candidate& c = *pressing_[at(i)];
-      if (!arrived_) c.history.known = 0;
-      candidates_.place(c, c.point, tools[at(c.tool)]);
-    }
-  }
-
-  /// No more press than had rows: all have room.
-  void note_pressing(Candidate& c) noexcept {
-    c.row = -1;
-    if (c.grasped || !(c.force > 0.0)) return;
-    if (pressing_count_ < Capacity)
-      pressing_[at(pressing_count_++)] = &c;
-    else
-      c.lift();
-  }
-
-  /// The normals of a linearisation come of the forces of the one before, which come of its normals. `feedback_` is how
-  /// much of a change of normals comes back; a step of Newton's method on that scalar leads on to where they settle.
-  void predict_normals(int iteration) noexcept {
-    double back = 0.0, changed = 0.0;
-    for (int i = 0; i < pressing_count_ && iteration >= 2; ++i) {
-      const Candidate& c = *pressing_[at(i)];
-      if (c.history.known < 2) continue;
-      const Vector3 before = c.history.used - c.history.used_before;
-      back += c.force * before.dot(c.normal - c.history.made_before);
-      changed += c.force * before.squaredNorm();
-    }
-    if (changed > 1e-16) feedback_ = std::clamp(back / changed, 0.0, 0.75);
-    for (int i = 0; i < pressing_count_; ++i) {
-      Candidate& c = *pressing_[at(i)];
-      const Vector3 made = c.normal;
-      if (c.history.known > 0) c.normal = (made + feedback_ / (1.0 - feedback_) * (made - c.history.used)).normalized();
-      c.history = {c.normal, c.history.used, made, std::min(c.history.known + 1, 2)};
-    }
-  }
-
-  /// Makes rows of the points that would sink in deepest with the present forces; false when there is no room, as all
-  /// rows press: those that pressed first keep theirs. `built` is zero when rows had to go.
-  template <TissueModel Tissue>
-  bool add_violated(const Tissue& tissue, Tools tools, int& built) noexcept {
-    violated_count_ = 0;
-    proxies_.look_ahead(tools, floor_);
-    const double allowed = built > 0 ? violation * rows_.deepest_push() : 0.0;
-    for (Candidate& c : candidates_.items()) {
-      if (c.row >= 0 || is_held(c)) continue;
-      const ContactTool& tool = tools[at(c.tool)];
-      const ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
-      if (candidates_.least_gap(c) > ahead.farthest) continue;
-      if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
-      const double gap = c.gap + c.normal.dot(ahead.way + c.along * ahead.axis);
-      if (c.facing && gap < -allowed) violated_[at(violated_count_++)] = {gap, &c};
-    }
-    const auto wanted = std::min(violated_count_, added_per_round);
-    std::partial_sort(violated_.begin(), violated_.begin() + wanted, violated_.begin() + violated_count_,
-                      [](const Violated& a, const Violated& b) { return a.gap < b.gap; });
-    if (rows_.count() + wanted > Capacity && rows_.drop_idle()) built = 0;
-    const int room = std::min(wanted, Capacity - rows_.count());
-    for (int i = 0; i < room; ++i) rows_.add(tissue.contact_surface(), candidates_, *violated_[at(i)].candidate);
-    return room > 0 || wanted == 0;
-  }
-
-  void follow(Tools tools) noexcept {
-    arrived_ = proxies_.follow(tools, floor_);
-    for (std::size_t t = 0; t < tools.size(); ++t)
-      if (tools[t].active) candidates_.move_ball(t, tools[t]);
-  }
-
-  static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-  static ContactParameters checked(const ContactParameters& p) {
-    if (!(p.sample_spacing >= 0.4 && p.sample_spacing <= 1.0))
-      raise(SetupErrorKind::bad_argument, "the sample spacing is " + number(p.sample_spacing) + " radii",
-            "Below 0.4 there is no room for all points under a ball, above 1 the ball falls between them");
-    if (!(p.friction >= 0.0 && p.friction <= 4.0))
-      raise(SetupErrorKind::bad_argument, "the coefficient of friction is " + number(p.friction), "Give 0 to 4");
-    if (p.maximum_iterations < 1) raise(SetupErrorKind::bad_argument, "a tick needs at least one linearisation");
-    return p;
-  }
-
-  static constexpr int maximum_rounds = 12;   // solutions of the contact problem per tick
-  static constexpr int added_per_round = 16;  // rows, the deepest ones
-  static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
-  static constexpr double violation = 1e-5;   // how far a point may sink in, of the deepest push
   struct Violated {
     double gap;
     Candidate* candidate;
   };
+  static constexpr int maximum_rounds = 12;   // solutions of the contact problem per tick
+  static constexpr int added_per_round = 16;  // rows, the deepest ones
+  static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
+  static constexpr double violation = 1e-5;   // how far a point may sink in, of the deepest push
+
+  static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+  static ContactParameters checked(const ContactParameters& p);
+  void grasp(const TissueView& tissue, Tools tools) noexcept;
+  inline bool is_held(const Candidate& c) const noexcept;
+  void foresee(const TissueView& tissue) noexcept;
+  Status solve_linearised(const TissueView& tissue, Tools tools, int iteration) noexcept;
+  void gather_pressing(Tools tools) noexcept;
+  inline void note_pressing(Candidate& c) noexcept;
+  void predict_normals(int iteration) noexcept;
+  bool add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
+  void follow(Tools tools) noexcept;
 
   ContactParameters parameters_;
-  SurfaceDisplacement<3 * Capacity> displacement_;
-  Candidates<Capacity> candidates_;
-  ContactRows<Capacity> rows_;
-  std::array<Candidate*, static_cast<std::size_t>(Capacity)> pressing_{};  // in the last linearisation
-  std::array<Violated, static_cast<std::size_t>(Candidates<Capacity>::maximum)> violated_{};
+  SurfaceDisplacement displacement_;
+  Candidates candidates_;
+  ContactRows rows_;
+  std::vector<Candidate*> pressing_;  // in the last linearisation
+  std::vector<Violated> violated_;
   ProxyMotion proxies_;
   std::array<Grasp, maximum_tools> grasps_{};
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
@@ -290,3 +89,7 @@ class ContactProblem {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/contact_problem.ipp>
+#endif

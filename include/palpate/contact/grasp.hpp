@@ -14,16 +14,11 @@ struct Grasp {
   std::array<Candidate, 3> rows{};
 
   /// Holds this point where it is on the tool now.
-  void hold(const Candidate& point, const ContactTool& tool) noexcept {
-    sample = point.sample;
-    for (int k = 0; k < 3; ++k) {
-      Candidate& c = rows[static_cast<std::size_t>(k)] = point;
-      c.lift();
-      c.grasped = true;
-      c.normal = Vector3::Unit(k);
-      c.anchor = tool.rotation.transpose() * (c.point - tool.proxy);
-    }
-  }
+  void hold(const Candidate& point, const ContactTool& tool) noexcept;
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/grasp.ipp>
+#endif

@@ -1,10 +1,7 @@
 // A spherical tool tip.
 #pragma once
 
-#include <palpate/core/setup_error.hpp>
-#include <palpate/core/types.hpp>
-
-#include <cmath>
+#include <palpate/core/config.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -13,11 +10,11 @@ struct SphereTool {
   double radius = 4e-3;  ///< [m]
 
   /// Throws bad_argument when the radius is not finite and positive.
-  void require_valid() const {
-    if (!(std::isfinite(radius) && radius > 0.0))
-      raise(SetupErrorKind::bad_argument, "the radius of a sphere tool is " + number(radius),
-            "It must be finite and positive, in metres");
-  }
+  void require_valid() const;
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/sphere_tool.ipp>
+#endif

@@ -28,7 +28,7 @@ struct CutContact {
   bool left_out = false;  ///< whether a triangle is
   ContactSurface surface;
   std::vector<std::array<Index, 3>> place;  ///< per vertex its dofs in the compliance, -1: held, or gone
-  ContactProblem<> problem;
+  ContactProblem problem;
   std::uint64_t cut = 0;  ///< number of the cut
 
   template <Element E>

@@ -144,7 +144,7 @@ class CuttableTissue {
     return status;
   }
   /// Puts a session's contact on a new surface, where it goes on.
-  void exchange_contacts(ContactProblem<>& problem) noexcept {
+  void exchange_contacts(ContactProblem& problem) noexcept {
     if (std::exchange(renewed_, false)) problem.move_to(contact().problem, contact().surface);
   }
   /// Refuses a session whose tools are not those of the options.

@@ -2,11 +2,8 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/core/limit_length.hpp>
-#include <palpate/core/setup_error.hpp>
 
-#include <algorithm>
-#include <cmath>
+#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -23,16 +20,7 @@ struct ForceLimits {
   double heating_time = 60.0;     ///< [s] time constant of that
 
   /// The defaults scaled to a device's limits and the rate of its loop [1/s].
-  static ForceLimits from(const DeviceLimits& device, double rate = 1000.0) {
-    ForceLimits limits;
-    limits.peak_force = device.peak_force;
-    limits.slew_rate = 500.0 * device.peak_force;
-    limits.period = 1.0 / rate;
-    limits.stale_after = std::max(limits.stale_after, 3.0 * limits.period);
-    limits.peak_torque = device.peak_torque;
-    limits.continuous_force = device.continuous_force;
-    return limits;
-  }
+  static ForceLimits from(const DeviceLimits& device, double rate = 1000.0);
 };
 
 /// Makes any computed force safe to render: whatever comes in (NaN, infinity, 1e308, clocks that stop or run back),
@@ -52,60 +40,18 @@ class ForceGate {
   /// Throws SetupError(bad_argument) unless every limit is between 1e-9 and 1e9, the slew limit lets the fade happen
   /// (slew_rate * fade_time >= peak_force), and a tick in time is not stale (stale_after >= 1.5 * period). The peak
   /// torque may be zero.
-  explicit ForceGate(const ForceLimits& limits = {}) : limits_(limits) {
-    const ForceLimits& l = limits;
-    for (double value : {l.peak_force, l.slew_rate, l.ramp_time, l.stale_after, l.fade_time, l.period,
-                         l.continuous_force, l.heating_time, l.peak_torque == 0.0 ? l.period : l.peak_torque})
-      require(value >= 1e-9 && value <= 1e9, "a force limit is " + number(value), "Give 1e-9 to 1e9, in SI units");
-    require(l.slew_rate * l.fade_time >= l.peak_force * (1.0 - 1e-9),
-            "slew_rate * fade_time is less than peak_force, " + number(l.peak_force) + " N", "Raise one of the two");
-    require(l.stale_after >= late_factor * l.period, "stale_after is less than 1.5 periods: " + number(l.stale_after),
-            "Use ForceLimits::from(device, rate)");
-  }
+  explicit ForceGate(const ForceLimits& limits = {});
 
   /// The force to render instead of `wanted` [N]. `now` and `input_time` [s] are of one clock; a caller without a clock
   /// of its own passes input_time twice: input that repeats its stamp still goes stale. `input_valid` is false when the
   /// device could not be read or its pose is not finite; `restart` is true when contact starts anew (tool jumped).
-  ToolForce apply(const Vector3& wanted, double now, double input_time, bool input_valid, bool restart) noexcept {
-    return apply(wanted, Vector3::Zero(), now, input_time, input_valid, restart);
-  }
+  ToolForce apply(const Vector3& wanted, double now, double input_time, bool input_valid, bool restart) noexcept;
   /// The same with a torque [N m] about the tool's position.
   ToolForce apply(const Vector3& wanted, const Vector3& torque, double now, double input_time, bool input_valid,
-                  bool restart) noexcept {
-    ToolForce out;
-    const double told = time_since_last_tick(now);
-    const double dt = told > 0.0 ? told : limits_.period;
-    const double warming = (last_.squaredNorm() - heat_) * std::min(1.0, dt / limits_.heating_time);
-    heat_ += told > 0.0 ? warming : std::max(0.0, warming);
-    const double overdue = time_overdue(dt, now, input_time);
-    if (dt > late_factor * limits_.period) out.status.set(StatusFlag::deadline_missed);
-
-    const bool finite = is_finite(wanted) && is_finite(torque);
-    if (!finite) out.status.set(StatusFlag::non_finite_force);
-    if (!input_valid) out.status.set(StatusFlag::disconnected);
-    if (!finite || !input_valid) {
-      gain_ = 0.0;
-      last_.setZero();
-      last_torque_.setZero();
-      return out;
-    }
-    if (restart) gain_ = 0.0;
-    const double step = std::min(dt, limits_.period), most = limits_.slew_rate * step;
-    const double gain = update_gain(overdue, step, out.status);
-    last_ = out.force = limit_slew(last_, clamp(wanted, allowed_force(), out.status) * gain, most, out.status);
-    if (limits_.peak_torque > 0.0)
-      last_torque_ = out.torque = limit_slew(last_torque_, clamp(torque, limits_.peak_torque, out.status) * gain,
-                                             most * (limits_.peak_torque / limits_.peak_force), out.status);
-    return out;
-  }
+                  bool restart) noexcept;
 
   /// Back to the state after construction, but for the heat of the motors: the next force is zero, at once.
-  void reset() noexcept {
-    last_.setZero();
-    last_torque_.setZero();
-    gain_ = age_ = 0.0;
-    last_now_ = last_input_ = std::numeric_limits<double>::quiet_NaN();
-  }
+  void reset() noexcept;
   const ForceLimits& limits() const noexcept { return limits_; }
   const Vector3& last_force() const noexcept { return last_; }          ///< [N] what the last tick let through
   const Vector3& last_torque() const noexcept { return last_torque_; }  ///< [N m] the same
@@ -113,62 +59,25 @@ class ForceGate {
  private:
   static constexpr double late_factor = 1.5;
   static constexpr double warm = 0.75;  // of the heat of the continuous force, from where the peak falls
-  static bool is_finite(const Vector3& v) noexcept {
-    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-  }
-  static void require(bool holds, const std::string& what, const char* hint) {
-    if (!holds) raise(SetupErrorKind::bad_argument, what, hint);
-  }
+  static bool is_finite(const Vector3& v) noexcept;
+  static void require(bool holds, const std::string& what, const char* hint);
 
   /// Zero when a clock does not tell: it stands still, runs backwards or is no number. That counts as one period, but
   /// for cooling: where the clock goes on later, the whole gap will.
-  double time_since_last_tick(double now) noexcept {
-    const double dt = now - last_now_;
-    if (std::isfinite(now)) last_now_ = now;
-    return std::isfinite(dt) ? std::max(0.0, dt) : 0.0;
-  }
+  double time_since_last_tick(double now) noexcept;
 
   /// The part of dt that is later than `stale_after` after the newest fresh input or, in a stall, after the last tick;
   /// <= 0 when all is well. Fresh is a stamp that changed and is not from the future; NaN is neither.
-  double time_overdue(double dt, double now, double input_time) noexcept {
-    const bool fresh = input_time != last_input_ && input_time <= now + limits_.stale_after;
-    age_ = fresh ? std::max(0.0, now - input_time) : age_ + dt;
-    if (fresh) last_input_ = input_time;
-    return std::min(dt, (fresh ? std::max(age_, dt) : age_) - limits_.stale_after);
-  }
+  double time_overdue(double dt, double now, double input_time) noexcept;
 
-  double update_gain(double overdue, double step, Status& status) noexcept {
-    const double gain = gain_;
-    if (!(overdue <= 0.0)) {
-      status.set(StatusFlag::stale);
-      return gain_ = std::max(0.0, gain - overdue / limits_.fade_time);
-    }
-    if (gain < 1.0) status.set(StatusFlag::ramping);
-    gain_ = std::min(1.0, gain + step / limits_.ramp_time);
-    return gain;
-  }
+  double update_gain(double overdue, double step, Status& status) noexcept;
 
   /// What motors this hot may render [N].
-  double allowed_force() const noexcept {
-    const double most = std::min(limits_.continuous_force, limits_.peak_force);
-    const double cold = (1.0 - heat_ / (most * most)) / (1.0 - warm);
-    return most + (limits_.peak_force - most) * std::clamp(cold, 0.0, 1.0);
-  }
+  double allowed_force() const noexcept;
 
-  static Vector3 clamp(const Vector3& wanted, double most, Status& status) noexcept {
-    bool shortened = false;
-    const Vector3 force = limit_length(wanted, most, shortened);
-    if (shortened) status.set(StatusFlag::saturated);
-    return force;
-  }
+  static Vector3 clamp(const Vector3& wanted, double most, Status& status) noexcept;
 
-  static Vector3 limit_slew(const Vector3& last, const Vector3& target, double most, Status& status) noexcept {
-    const Vector3 change = target - last;
-    const double length = change.norm();
-    if (length <= most) return target;
-    status.set(StatusFlag::slew_limited);
-    return last + change * (most / length);
-  }
+  static Vector3 limit_slew(const Vector3& last, const Vector3& target, double most, Status& status) noexcept;
 
   ForceLimits limits_;
   Vector3 last_ = Vector3::Zero(), last_torque_ = Vector3::Zero();
@@ -180,3 +89,7 @@ class ForceGate {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/haptic/force_gate.ipp>
+#endif

@@ -3,9 +3,7 @@
 
 #include <palpate/core/types.hpp>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -15,7 +13,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 class PassivityObserver {
  public:
   /// `delay` in whole ticks, 0 to 32.
-  explicit PassivityObserver(int delay = 0) noexcept : delay_(static_cast<std::size_t>(std::clamp(delay, 0, 32))) {}
+  explicit PassivityObserver(int delay = 0) noexcept;
 
   /// One interval between two samples.
   struct Step {
@@ -25,52 +23,31 @@ class PassivityObserver {
   };
 
   /// Takes in a new sample.
-  Step moved(const Vector3& position, double time) noexcept {
-    Step step;
-    const Vector3 way = position - last_;
-    const double work = acting().dot(way), way2 = way.squaredNorm(), dt = time - last_time_;
-    if (known_ && std::isfinite(work) && std::isfinite(way2)) {
-      step.work = work;
-      step.way2 = way2;
-      if (dt > 0.0 && std::isfinite(dt)) step.time = dt;
-      add(work);
-    }
-    known_ = position.allFinite();
-    last_ = position;
-    last_time_ = time;
-    return step;
-  }
+  Step moved(const Vector3& position, double time) noexcept;
   /// Takes in work of another kind: of a torque.
-  void moved_by(double work) noexcept { add(work); }
+  void moved_by(double work) noexcept;
   /// The force that was rendered upon that sample.
-  void gave(const Vector3& force) noexcept {
-    newest_ = (newest_ + 1) % forces_.size();
-    forces_[newest_] = force;
-  }
+  void gave(const Vector3& force) noexcept;
   /// The way to the next sample does not count: the device was lost, or the tool jumped.
   void forget() noexcept { known_ = false; }
 
   /// [J] given to the tool since construction; below zero: taken from it. Always finite.
   double given() const noexcept { return given_; }
   /// [N] the force that acts until the next sample.
-  const Vector3& acting() const noexcept { return forces_[(newest_ + forces_.size() - delay_) % forces_.size()]; }
+  const Vector3& acting() const noexcept;
 
  private:
-  void add(double work) noexcept {
-    if (std::isfinite(given_ + work)) given_ += work;
-  }
+  void add(double work) noexcept;
 
-  std::array<Vector3, 33> forces_ = zeros();
+  std::array<Vector3, 33> forces_;
   std::size_t delay_, newest_ = 0;
   Vector3 last_ = Vector3::Zero();
   double last_time_ = 0.0, given_ = 0.0;
   bool known_ = false;
-
-  static std::array<Vector3, 33> zeros() noexcept {
-    std::array<Vector3, 33> z;
-    z.fill(Vector3::Zero());
-    return z;
-  }
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/haptic/passivity_observer.ipp>
+#endif

@@ -1,7 +1,6 @@
 // Real-time privileges of the thread that runs a loop.
 #pragma once
 
-#include <palpate/core/platform.hpp>
 #include <palpate/haptic/loop_options.hpp>
 
 #include <string>
@@ -21,21 +20,12 @@ struct RealtimeGrant {
 namespace detail {
 
 /// Asks for what the options say, for this thread. What is refused is in the grant.
-inline RealtimeGrant request_realtime(const LoopOptions& options) {
-  RealtimeGrant grant;
-  grant.requested = options.real_time && options.paced;
-  const auto granted = [&](int error, const char* what) {
-    if (error != 0) grant.refusals += std::string(what) + ": " + platform::error_text(error) + ". ";
-    return error == 0;
-  };
-  if (options.cpu >= 0 && granted(platform::pin_this_thread(options.cpu), "pinning")) grant.cpu = options.cpu;
-  platform::ask_for_exact_sleeps();
-  if (!grant.requested) return grant;
-  grant.fifo = granted(platform::ask_for_realtime_scheduling(), platform::realtime_scheduling);
-  grant.memory_locked = granted(platform::lock_memory(), "locking memory");
-  return grant;
-}
+RealtimeGrant request_realtime(const LoopOptions& options);
 
 }  // namespace detail
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/haptic/realtime_thread.ipp>
+#endif

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -21,44 +22,31 @@ struct ToolContact {
 
 /// What a renderer needs of a tick, or of a reset, which leaves nothing pressing: forces on the contact surface,
 /// contacts and proxies of the tools in the world.
-template <int Capacity>
 struct ServoSnapshot {
-  std::array<VertexForce, 3 * Capacity> forces;
+  std::vector<VertexForce> forces;  ///< the first `force_count`
   std::size_t force_count = 0;
-  std::array<ToolContact, Capacity> contacts;
+  std::vector<ToolContact> contacts;  ///< the first `contact_count`
   std::size_t contact_count = 0;
-  std::array<Vector3, maximum_tools> proxies{};  ///< middle of every tool, world frame [m]
-  std::array<Vector3, maximum_tools> axes{};     ///< of capsules, unit, world frame
-  double time = 0.0;                             ///< [s] of the state that the tick took
+  std::array<Vector3, maximum_tools> proxies;  ///< middle of every tool, world frame [m]
+  std::array<Vector3, maximum_tools> axes;     ///< of capsules, unit, world frame
+  double time = 0.0;                           ///< [s] of the state that the tick took
+
+  /// Room for that many contacts. Allocates; `note` does not.
+  explicit ServoSnapshot(int capacity);
+  ServoSnapshot() : ServoSnapshot(default_contact_capacity) {}
 
   /// Takes over what presses, of contacts in the frame of a model at `pose`.
   void note(std::span<const Contact> all, std::span<const VertexForce> on_vertices,
-            const Eigen::Isometry3d& pose) noexcept {
-    std::ranges::copy(on_vertices, forces.begin());
-    force_count = on_vertices.size();
-    contact_count = 0;
-    for (const Contact& c : all)
-      if (c.force > 0.0 && !c.grasped)
-        contacts[contact_count++] = {c.tool, pose * c.point, pose.linear() * c.normal, c.force,
-                                     pose.linear() * c.friction};
-    for (std::size_t i = 0; i + 2 < all.size(); ++i) {
-      if (!all[i].grasped) continue;
-      const Vector3 total = all[i].total() + all[i + 1].total() + all[i + 2].total();
-      note_held(all[i].tool, pose * all[i].point, pose.linear() * total);
-      i += 2;
-    }
-  }
+            const Eigen::Isometry3d& pose) noexcept;
   std::span<const VertexForce> vertex_forces() const noexcept { return {forces.data(), force_count}; }
   std::span<const ToolContact> tool_contacts() const noexcept { return {contacts.data(), contact_count}; }
 
  private:
-  /// The three rows of a held point as the one force that they are.
-  void note_held(int tool, const Vector3& point, const Vector3& total) noexcept {
-    const double force = total.norm();
-    if (!(force > 0.0)) return;
-    ToolContact& held = contacts[contact_count++];
-    held = {tool, point, total / force, force, Vector3::Zero(), true};
-  }
+  void note_held(int tool, const Vector3& point, const Vector3& total) noexcept;
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/haptic/servo_snapshot.ipp>
+#endif

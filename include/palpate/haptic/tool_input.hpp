@@ -2,7 +2,10 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/contact/tool_placement.hpp>
+#include <palpate/contact/contact_surface.hpp>
+#include <palpate/contact/contact.hpp>
+
+#include <Eigen/Geometry>
 
 #include <span>
 
@@ -20,49 +23,16 @@ class ToolInput {
   /// Takes in a state, world frame, for a tissue at `pose` with this surface and the contacts of the last tick, and
   /// moves the tool's target. Sets `status` to what was wrong with it.
   void take(const ToolState& state, const Eigen::Isometry3d& pose, const ContactSurface& surface,
-            std::span<const Contact> contacts, ContactTool& tool) noexcept {
-    status_ = {};
-    readable_ = state.valid;
-    restarted_ = false;
-    rotation_.setZero();
-    tool.motion.setZero();
-    tool.turned = 0.0;
-    if (!state.valid) {
-      known_ = false;
-      tool.lift();
-      return;
-    }
-    const Vector3 position = pose.inverse() * state.position;
-    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
-    if (turns_) {
-      const auto& q = state.orientation;
-      turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-    }
-    if (!is_sound(position, turn, state.time)) {
-      // The last good pose is held; its old time stamp makes the gate fade the force.
-      status_.set(StatusFlag::non_finite_input);
-      readable_ = known_;
-      return;
-    }
-    time_ = state.time;
-    tool.grasping = (state.buttons & grasp_buttons_) != 0;
-    if (turns_) rotate(turn.normalized(), pose, tool);
-    follow(position, surface, contacts, tool);
-  }
+            std::span<const Contact> contacts, ContactTool& tool) noexcept;
 
   /// Notes whether the tissue was heard of in the tick of this state.
-  void note_tissue(bool has_news) noexcept {
-    if (has_news || !(news_ <= time_)) news_ = time_;
-  }
+  void note_tissue(bool has_news) noexcept;
   /// What the gate takes for the time of the state: it stands still once the tissue was silent for `patience` [s].
-  double stamp(double patience) const noexcept { return std::min(time_, news_ + patience); }
+  double stamp(double patience) const noexcept { return time_ < news_ + patience ? time_ : news_ + patience; }
 
   /// The tool has lost the surface: it is put back in the next tick.
-  void lose() noexcept {
-    known_ = false;
-    status_.set(StatusFlag::reacquired);
-  }
-  void reset() noexcept { *this = ToolInput(number_, turns_, grasp_buttons_); }
+  void lose() noexcept;
+  void reset() noexcept;
 
   const Vector3& position() const noexcept { return position_; }  ///< last good one, model frame [m]
   const Vector3& rotation() const noexcept { return rotation_; }  ///< since the last good one, world frame [rad]
@@ -74,52 +44,17 @@ class ToolInput {
 
  private:
   /// Beyond 1e6 m no workspace reaches, and squares keep clear of overflow.
-  static bool is_sound(const Vector3& position, const Eigen::Quaterniond& turn, double time) noexcept {
-    const double length = turn.norm();
-    return position.allFinite() && position.cwiseAbs().maxCoeff() < 1e6 && std::isfinite(time) && length > 0.5 &&
-           length < 2.0;
-  }
+  static bool is_sound(const Vector3& position, const Eigen::Quaterniond& turn, double time) noexcept;
 
-  void rotate(const Eigen::Quaterniond& turn, const Eigen::Isometry3d& pose, ContactTool& tool) noexcept {
-    const Matrix3 rotation = pose.linear().transpose() * turn.toRotationMatrix();
-    if (known_) {
-      const Eigen::AngleAxisd by(Matrix3(rotation * tool.target_rotation.transpose()));
-      rotation_ = by.angle() * (pose.linear() * by.axis());
-      tool.turned = tool.half_length * ((rotation - tool.target_rotation) * tool.own_axis).norm();
-    }
-    tool.target_rotation = rotation;
-  }
+  void rotate(const Eigen::Quaterniond& turn, const Eigen::Isometry3d& pose, ContactTool& tool) noexcept;
 
   /// A tool that moved farther than its diameter starts anew where its way first met the surface, else where it is:
   /// however fast it is, it gets through nothing.
   void follow(const Vector3& position, const ContactSurface& surface, std::span<const Contact> contacts,
-              ContactTool& tool) noexcept {
-    const Vector3 motion = position - position_;
-    restarted_ = !known_;
-    if (!known_) {
-      place_beside(tool, surface, position);
-    } else if (motion.norm() + tool.turned > 2.0 * tool.radius) {
-      sweep(tool, surface, off_surface(contacts, tool), position);
-      tool.turned = 0.0;
-      tool.grasping = false;
-      restarted_ = true;
-      status_.set(StatusFlag::reacquired);
-    } else {
-      tool.motion = motion;
-    }
-    position_ = tool.target = position;
-    known_ = tool.active = true;
-  }
+              ContactTool& tool) noexcept;
 
   /// The proxy, lifted as far as the surface that it presses in will spring back.
-  Vector3 off_surface(std::span<const Contact> contacts, const ContactTool& tool) const noexcept {
-    const double force = tool.force.norm();
-    if (!(force > 0.0)) return tool.proxy;
-    double dent = 0.0;
-    for (const Contact& c : contacts)
-      if (c.tool == number_ && c.force > 0.0) dent = std::max(dent, (c.rest - c.point).dot(tool.force) / force);
-    return tool.proxy + (dent / force) * tool.force;
-  }
+  Vector3 off_surface(std::span<const Contact> contacts, const ContactTool& tool) const noexcept;
 
   int number_;
   Vector3 position_ = Vector3::Zero(), rotation_ = Vector3::Zero();
@@ -132,3 +67,7 @@ class ToolInput {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/haptic/tool_input.ipp>
+#endif

@@ -1,0 +1,42 @@
+// Definitions of contact.hpp.
+#pragma once
+
+#include <palpate/contact/contact.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE Matrix3 rotation_by(const Vector3& v) noexcept {
+  const double angle = v.norm();
+  return angle > 0.0 ? Eigen::AngleAxisd(angle, v / angle).toRotationMatrix() : Matrix3(Matrix3::Identity());
+}
+
+PALPATE_INLINE void ContactTool::lift() noexcept {
+  active = grasping = false;
+  force.setZero();
+  torque.setZero();
+}
+PALPATE_INLINE Vector3 ContactTool::goal(double floor) const noexcept {
+  return target + (compliance + floor) * force;
+}
+PALPATE_INLINE Matrix3 ContactTool::goal_rotation() const noexcept {
+  return turning_compliance > 0.0 ? Matrix3(rotation_by(turning_compliance * torque) * target_rotation)
+                                  : target_rotation;
+}
+PALPATE_INLINE Vector3 ContactTool::axis() const noexcept {
+  return rotation * own_axis;
+}
+PALPATE_INLINE double ContactTool::along_capsule(const Vector3& p) const noexcept {
+  return std::clamp(axis().dot(p - proxy), -half_length, half_length);
+}
+PALPATE_INLINE double ContactTool::way() const noexcept {
+  return motion.norm() + turned;
+}
+PALPATE_INLINE Vector3 Contact::total() const noexcept {
+  return force * normal + friction;
+}
+
+}}  // namespace palpate

@@ -1,0 +1,123 @@
+// Definitions of contact_surface.hpp.
+#pragma once
+
+#include <palpate/contact/contact_surface.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE ContactSurface::ContactSurface(std::vector<Vector3> positions, std::vector<Triangle> triangles)
+    : positions_(std::move(positions)),
+      triangles_(std::move(triangles)),
+      bvh_(triangles_, positions_),
+      normals_(triangles_.size()),
+      vertex_normals_(positions_.size()),
+      rim_vertex_(positions_.size(), false),
+      neighbour_(triangles_.size()) {
+  list_triangles();
+  list_neighbours();
+  update_normals();
+}
+
+PALPATE_INLINE void ContactSurface::list_triangles() {
+  first_at_.assign(positions_.size() + 1, 0);
+  for (const Triangle& t : triangles_)
+    for (int v : t) ++first_at_[static_cast<std::size_t>(v) + 1];
+  for (std::size_t v = 1; v < first_at_.size(); ++v) first_at_[v] += first_at_[v - 1];
+  triangles_at_.resize(3 * triangles_.size());
+  std::vector<int> next(first_at_.begin(), first_at_.end() - 1);
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    for (int v : triangles_[t])
+      triangles_at_[static_cast<std::size_t>(next[static_cast<std::size_t>(v)]++)] = static_cast<int>(t);
+}
+
+PALPATE_INLINE void ContactSurface::list_neighbours() {
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int own = static_cast<int>(t), a = triangles_[t][i], b = triangles_[t][(i + 1) % 3];
+      int first = -1, other = -1, sharing = 0;
+      for (const int s : triangles_at(a)) {
+        const Triangle& v = triangle(s);
+        if (v[0] != b && v[1] != b && v[2] != b) continue;
+        if (sharing++ == 0) first = s;
+        if (s != own) other = s;
+      }
+      neighbour_[t][i] = sharing == 2 ? other : -1;
+      if (sharing > 2 && first == own) ++crowded_edges_;
+      if (sharing == 1) rim_vertex_[static_cast<std::size_t>(a)] = rim_vertex_[static_cast<std::size_t>(b)] = true;
+    }
+}
+
+PALPATE_INLINE void ContactSurface::update_normals() noexcept {
+  for (Vector3& n : vertex_normals_) n.setZero();
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const Triangle& v = triangles_[t];
+    normals_[t] = (position(v[1]) - position(v[0])).cross(position(v[2]) - position(v[0])).normalized();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector3 a = (position(v[(i + 1) % 3]) - position(v[i])).normalized(),
+                    b = (position(v[(i + 2) % 3]) - position(v[i])).normalized();
+      vertex_normals_[static_cast<std::size_t>(v[i])] += std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * normals_[t];
+    }
+  }
+  for (Vector3& n : vertex_normals_) n.normalize();
+}
+
+PALPATE_INLINE void ContactSurface::move_to(std::span<const Vector3> positions) noexcept {
+  std::copy(positions.begin(), positions.end(), positions_.begin());
+  ++revision_;
+  bvh_.refit(triangles_, positions_);
+  update_normals();
+}
+
+inline TrianglePoint ContactSurface::closest_on(int t, const Vector3& p) const noexcept {
+  const Triangle& v = triangle(t);
+  return closest_point(p, position(v[0]), position(v[1]), position(v[2]));
+}
+
+inline Vector3 ContactSurface::point_on(int t, const TrianglePoint& on) const noexcept {
+  const Triangle& v = triangle(t);
+  return on.weights[0] * position(v[0]) + on.weights[1] * position(v[1]) + on.weights[2] * position(v[2]);
+}
+
+PALPATE_INLINE Vector3 ContactSurface::feature_normal(int t, TriangleFeature feature) const noexcept {
+  const auto index = static_cast<std::size_t>(feature);
+  const Vector3& own = normals_[static_cast<std::size_t>(t)];
+  if (feature == TriangleFeature::face) return own;
+  if (index >= static_cast<std::size_t>(TriangleFeature::vertex0))
+    return vertex_normals_[static_cast<std::size_t>(
+        triangle(t)[index - static_cast<std::size_t>(TriangleFeature::vertex0)])];
+  const int other = neighbour_[static_cast<std::size_t>(t)][index - static_cast<std::size_t>(TriangleFeature::edge01)];
+  return other < 0 ? own : (own + normals_[static_cast<std::size_t>(other)]).normalized();
+}
+
+PALPATE_INLINE bool ContactSurface::is_rim(int t, TriangleFeature feature) const noexcept {
+  const auto index = static_cast<std::size_t>(feature);
+  if (feature == TriangleFeature::face) return false;
+  if (index >= static_cast<std::size_t>(TriangleFeature::vertex0))
+    return rim_vertex_[static_cast<std::size_t>(
+        triangle(t)[index - static_cast<std::size_t>(TriangleFeature::vertex0)])];
+  return neighbour_[static_cast<std::size_t>(t)][index - static_cast<std::size_t>(TriangleFeature::edge01)] < 0;
+}
+
+PALPATE_INLINE ContactSurface::Closest ContactSurface::closest(const Vector3& p) const noexcept {
+  Closest result;
+  result.triangle = bvh_.nearest(p, [&](int t) { return (p - point_on(t, closest_on(t, p))).squaredNorm(); });
+  if (result.triangle < 0) return result;
+  const TrianglePoint on = closest_on(result.triangle, p);
+  result.point = point_on(result.triangle, on);
+  const Vector3 offset = p - result.point, normal = feature_normal(result.triangle, on.feature);
+  const double length = offset.norm();
+  const bool outside = offset.dot(normal) >= 0.0 || is_rim(result.triangle, on.feature);
+  result.distance = outside ? length : -length;
+  // Nearer than the rounding of positions the offset points anywhere.
+  const bool on_surface = length <= 1e-12 * (bvh_.bounds().high - bvh_.bounds().low).norm();
+  result.outward = on_surface ? normal : Vector3(offset / result.distance);
+  return result;
+}
+
+}}  // namespace palpate

@@ -1,0 +1,87 @@
+// Definitions of tissue_group.hpp.
+#pragma once
+
+#include <palpate/contact/tissue_group.hpp>
+#include <palpate/core/setup_error.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+static_assert(TissueModel<TissueGroup>);
+
+PALPATE_INLINE void TissueGroup::add(const TissueView& tissue) {
+  const ContactSurface& surface = tissue.contact_surface();
+  const int first = members_.empty() ? 0 : members_.back().first + members_.back().count;
+  members_.push_back({tissue, first, surface.vertex_count()});
+  for (const Vector3& x : surface.positions()) moved_.push_back(tissue.pose() * x);
+  for (const Triangle& t : surface.triangles()) triangles_.push_back({t[0] + first, t[1] + first, t[2] + first});
+  floor_ = std::min(floor_, tissue.compliance_floor());  // tiny beside the hardest of them, too
+}
+PALPATE_INLINE void TissueGroup::build() {
+  if (members_.empty()) raise(SetupErrorKind::bad_argument, "a group of no tissues");
+  surface_ = ContactSurface(moved_, std::move(triangles_));
+  own_.resize(moved_.size());
+}
+
+PALPATE_INLINE void TissueGroup::update() noexcept {
+  for (Member& m : members_) {
+    m.tissue.look();
+    const Eigen::Isometry3d& pose = m.tissue.pose();
+    for (int v = 0; v < m.count; ++v) moved_[at(m.first + v)] = pose * m.tissue.contact_surface().position(v);
+  }
+  surface_.move_to(moved_);
+  ++updates_;
+}
+
+PALPATE_INLINE std::size_t TissueGroup::forces_on(int member, std::span<const VertexForce> forces,
+                                                  std::span<VertexForce> own) const noexcept {
+  const Member& m = members_[at(member)];
+  const Matrix3 turn = m.tissue.pose().linear();
+  std::size_t count = 0;
+  for (const VertexForce& f : forces)
+    if (m.has(f.vertex) && count < own.size()) own[count++] = {f.vertex - m.first, turn.transpose() * f.force};
+  return count;
+}
+
+PALPATE_INLINE Status TissueGroup::require_columns(std::span<const int> vertices) noexcept {
+  Status status;
+  for (const Member& m : members_)
+    if (const std::span<const int> own = part_of(m, vertices); !own.empty()) status |= m.tissue.require_columns(own);
+  return status;
+}
+PALPATE_INLINE void TissueGroup::foresee(std::span<const int> vertices) noexcept {
+  for (const Member& m : members_)
+    if (const std::span<const int> own = part_of(m, vertices); !own.empty()) m.tissue.foresee(own);
+}
+PALPATE_INLINE Matrix3 TissueGroup::compliance(int i, int j) const noexcept {
+  const Member& m = member_of(j);
+  if (!m.has(i)) return Matrix3::Zero();
+  const Matrix3 turn = m.tissue.pose().linear();
+  return turn * m.tissue.compliance(i - m.first, j - m.first) * turn.transpose();
+}
+PALPATE_INLINE double TissueGroup::compliance_bound(int j) const noexcept {
+  const Member& m = member_of(j);
+  return m.tissue.compliance_bound(j - m.first);
+}
+PALPATE_INLINE std::uint64_t TissueGroup::compliance_revision() const noexcept {
+  std::uint64_t revision = updates_;  // of poses; numbers of members are spread, so that changes do not cancel
+  for (const Member& m : members_) revision = revision * 0x9e3779b97f4a7c15u + m.tissue.compliance_revision();
+  return revision;
+}
+
+PALPATE_INLINE const TissueGroup::Member& TissueGroup::member_of(int vertex) const noexcept {
+  std::size_t k = 0;
+  while (!members_[k].has(vertex)) ++k;
+  return members_[k];
+}
+/// The member's own numbers of those vertices that are its.
+PALPATE_INLINE std::span<const int> TissueGroup::part_of(const Member& m, std::span<const int> vertices) noexcept {
+  std::size_t count = 0;
+  for (const int v : vertices)
+    if (m.has(v) && count < own_.size()) own_[count++] = v - m.first;
+  return {own_.data(), count};
+}
+
+}}  // namespace palpate

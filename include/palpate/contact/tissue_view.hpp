@@ -1,0 +1,185 @@
+// A tissue of any type, as code that is no template sees it.
+#pragma once
+
+#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/contact/contact_samples.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+class ContactProblem;
+struct ContactParameters;
+
+namespace detail {
+
+/// The functions of a tissue. What a tick asks for in a loop, a function gives in one call, so that the loop is
+/// compiled with the tissue; null: the tissue has no such function.
+struct TissueFunctions {
+  const ContactSurface& (*contact_surface)(const void*) noexcept;
+  const Eigen::Isometry3d& (*pose)(const void*) noexcept;
+  Status (*require_columns)(void*, std::span<const int>) noexcept;
+  void (*compliance)(const void*, int, int, double*) noexcept;
+  void (*between)(const void*, const ContactSample&, const ContactSample&, double*) noexcept;
+  void (*displacement)(const void*, int, std::span<const VertexForce>, double*) noexcept;
+  std::uint64_t (*compliance_revision)(const void*) noexcept;
+  double (*compliance_bound)(const void*, int) noexcept;
+  double (*compliance_floor)(const void*) noexcept;
+  void (*foresee)(void*, std::span<const int>) noexcept;
+  Status (*begin_tick)(void*) noexcept;
+  void (*end_tick)(void*, std::span<const VertexForce>) noexcept;
+  std::uint64_t (*updates)(const void*) noexcept;
+  void (*exchange_contacts)(void*, ContactProblem&) noexcept;
+  void (*require_tools)(const void*, double, const ContactParameters&);
+};
+
+template <class T>
+struct TissueCalls {
+  using Block = std::remove_cvref_t<decltype(std::declval<const T&>().compliance(0, 0))>;
+  /// Numbers in memory are read where they lie; other expressions are evaluated once.
+  using Read = std::conditional_t<(int{Block::Flags} & Eigen::DirectAccessBit) != 0, const Block&, const Matrix3>;
+
+  static const T& of(const void* tissue) noexcept { return *static_cast<const T*>(tissue); }
+  static T& of(void* tissue) noexcept { return *static_cast<T*>(tissue); }
+
+  static const ContactSurface& contact_surface(const void* t) noexcept { return of(t).contact_surface(); }
+  static const Eigen::Isometry3d& pose(const void* t) noexcept { return of(t).pose(); }
+  static Status require_columns(void* t, std::span<const int> v) noexcept { return of(t).require_columns(v); }
+  static void compliance(const void* t, int i, int j, double* out) noexcept {
+    Read c = of(t).compliance(i, j);
+    for (int k = 0; k < 3; ++k, out += 3) {
+      out[0] = c.coeff(0, k);
+      out[1] = c.coeff(1, k);
+      out[2] = c.coeff(2, k);
+    }
+  }
+  static void between(const void* t, const ContactSample& p, const ContactSample& q, double* out) noexcept {
+    for (int k = 0; k < 9; ++k) out[k] = 0.0;
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b) {
+        const double weight = p.weights[a] * q.weights[b];
+        if (!(weight > 0.0)) continue;
+        Read c = of(t).compliance(p.vertices[a], q.vertices[b]);
+        for (int k = 0; k < 3; ++k) {
+          out[3 * k] += weight * c.coeff(0, k);
+          out[3 * k + 1] += weight * c.coeff(1, k);
+          out[3 * k + 2] += weight * c.coeff(2, k);
+        }
+      }
+  }
+  static void displacement(const void* t, int vertex, std::span<const VertexForce> forces, double* out) noexcept {
+    double x = 0.0, y = 0.0, z = 0.0;
+    for (const VertexForce& f : forces) {
+      Read c = of(t).compliance(vertex, f.vertex);
+      const double* n = f.force.data();
+      x += c.coeff(0, 0) * n[0] + (c.coeff(0, 1) * n[1] + c.coeff(0, 2) * n[2]);
+      y += c.coeff(1, 0) * n[0] + (c.coeff(1, 1) * n[1] + c.coeff(1, 2) * n[2]);
+      z += c.coeff(2, 0) * n[0] + (c.coeff(2, 1) * n[1] + c.coeff(2, 2) * n[2]);
+    }
+    out[0] = x, out[1] = y, out[2] = z;
+  }
+  static std::uint64_t compliance_revision(const void* t) noexcept { return of(t).compliance_revision(); }
+  static double compliance_bound(const void* t, int j) noexcept { return of(t).compliance_bound(j); }
+  static double compliance_floor(const void* t) noexcept { return of(t).compliance_floor(); }
+
+  static constexpr TissueFunctions table() noexcept {
+    TissueFunctions f{contact_surface,
+                      pose,
+                      require_columns,
+                      compliance,
+                      between,
+                      displacement,
+                      compliance_revision,
+                      compliance_bound,
+                      compliance_floor,
+                      nullptr,
+                      nullptr,
+                      nullptr,
+                      nullptr,
+                      nullptr,
+                      nullptr};
+    if constexpr (requires(T & t, std::span<const int> v) { t.foresee(v); })
+      f.foresee = [](void* t, std::span<const int> v) noexcept { of(t).foresee(v); };
+    if constexpr (AnnouncesChanges<T>) f.begin_tick = [](void* t) noexcept -> Status { return of(t).begin_tick(); };
+    if constexpr (requires(T & t, std::span<const VertexForce> v) { t.end_tick(v); })
+      f.end_tick = [](void* t, std::span<const VertexForce> v) noexcept { of(t).end_tick(v); };
+    if constexpr (requires(const T& t) { t.updates(); })
+      f.updates = [](const void* t) noexcept -> std::uint64_t { return of(t).updates(); };
+    if constexpr (requires(T & t, ContactProblem & p) { t.exchange_contacts(p); })
+      f.exchange_contacts = [](void* t, ContactProblem& p) noexcept { of(t).exchange_contacts(p); };
+    if constexpr (requires(const T& t, const ContactParameters& p) { t.require_tools(0.0, p); })
+      f.require_tools = [](const void* t, double radius, const ContactParameters& p) {
+        of(t).require_tools(radius, p);
+      };
+    return f;
+  }
+  static constexpr TissueFunctions functions = table();
+};
+
+}  // namespace detail
+
+/// Any TissueModel by reference: where it is, and a table of its functions. Two pointers wide and a third for the
+/// surface, which is asked for once: `look` again when the tissue may have another one. The tissue must outlive it.
+/// Functions are those of TissueModel, and cost a call through a pointer; what the tissue lacks does nothing.
+class TissueView {
+ public:
+  template <class T>
+  requires(!std::same_as<std::remove_cv_t<T>, TissueView> && TissueModel<T>) TissueView(T& tissue)
+  noexcept  // NOLINT(google-explicit-constructor)
+      : tissue_(const_cast<std::remove_const_t<T>*>(&tissue)), functions_(&detail::TissueCalls<T>::functions) {
+    look();
+  }
+
+  /// Takes in where the surface is now.
+  void look() noexcept { surface_ = &functions_->contact_surface(tissue_); }
+  const ContactSurface& contact_surface() const noexcept { return *surface_; }
+  const Eigen::Isometry3d& pose() const noexcept { return functions_->pose(tissue_); }
+
+  Status require_columns(std::span<const int> vertices) const noexcept {
+    return functions_->require_columns(tissue_, vertices);
+  }
+  Matrix3 compliance(int i, int j) const noexcept {
+    Matrix3 block;
+    functions_->compliance(tissue_, i, j, block.data());
+    return block;
+  }
+  /// J_p C J_q^T: displacement of a point per force on another [m/N].
+  void between(const ContactSample& p, const ContactSample& q, Matrix3& block) const noexcept {
+    functions_->between(tissue_, p, q, block.data());
+  }
+  /// Displacement of a vertex under forces on vertices [m].
+  void displacement(int vertex, std::span<const VertexForce> forces, Vector3& u) const noexcept {
+    functions_->displacement(tissue_, vertex, forces, u.data());
+  }
+  std::uint64_t compliance_revision() const noexcept { return functions_->compliance_revision(tissue_); }
+  double compliance_bound(int j) const noexcept { return functions_->compliance_bound(tissue_, j); }
+  double compliance_floor() const noexcept { return functions_->compliance_floor(tissue_); }
+
+  bool foresees() const noexcept { return functions_->foresee != nullptr; }
+  void foresee(std::span<const int> vertices) const noexcept {
+    if (foresees()) functions_->foresee(tissue_, vertices);
+  }
+  /// Whether the tissue moves by itself.
+  bool announces_changes() const noexcept { return functions_->begin_tick != nullptr; }
+  /// `begin_tick` and, for a session with this contact problem, `exchange_contacts`; then looks.
+  Status begin_tick(ContactProblem& problem) noexcept {
+    const Status status = announces_changes() ? functions_->begin_tick(tissue_) : Status{};
+    if (functions_->exchange_contacts != nullptr) functions_->exchange_contacts(tissue_, problem);
+    look();
+    return status;
+  }
+  void end_tick(std::span<const VertexForce> forces) const noexcept {
+    if (functions_->end_tick != nullptr) functions_->end_tick(tissue_, forces);
+  }
+  bool has_updates() const noexcept { return functions_->updates != nullptr; }
+  std::uint64_t updates() const noexcept { return has_updates() ? functions_->updates(tissue_) : 0; }
+  /// Throws what the tissue throws.
+  void require_tools(double smallest_radius, const ContactParameters& parameters) const {
+    if (functions_->require_tools != nullptr) functions_->require_tools(tissue_, smallest_radius, parameters);
+  }
+
+ private:
+  void* tissue_;
+  const detail::TissueFunctions* functions_;
+  const ContactSurface* surface_;
+};
+
+}}  // namespace palpate

@@ -1,0 +1,158 @@
+// Definitions of haptic_servo.hpp.
+#pragma once
+
+#include <palpate/core/realtime.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+static_assert(Servo<HapticServo>);
+
+namespace detail {
+
+inline double smallest_radius(const std::vector<ContactTool>& tools) noexcept {
+  double radius = infinity;
+  for (const ContactTool& tool : tools) radius = std::min(radius, tool.radius);
+  return radius;
+}
+inline ToolState unreadable() noexcept {
+  ToolState s;
+  s.valid = false;
+  return s;
+}
+inline bool is_zero(const Vector3& v) noexcept {
+  return v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0;
+}
+
+}  // namespace detail
+
+PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const std::vector<CapsuleTool>& tools,
+                                        const ServoOptions& options, const Energy& energy)
+    : tissue_(tissue),
+      contact_tools_(make_contact_tools(tools, options)),
+      problem_(tissue.contact_surface(), detail::smallest_radius(contact_tools_), options.contact),
+      forces_(tools.size()),
+      stale_tissue_after_(options.stale_tissue_after) {
+  if (tissue.contact_surface().triangles().empty())
+    raise(SetupErrorKind::bad_argument, "nothing of this tissue can be touched",
+          "Name a surface group with Scene::touch");
+  tissue.require_tools(detail::smallest_radius(contact_tools_), options.contact);
+  if (!(options.stale_tissue_after > 0.0))
+    raise(SetupErrorKind::bad_argument, "stale_tissue_after is " + number(options.stale_tissue_after),
+          "It must be positive, in seconds; infinity is allowed");
+  if (energy) energies_.assign(tools.size(), *energy);
+  const ForceLimits limits = options.limits();
+  gates_.assign(tools.size(), ForceGate(limits));
+  for (const CapsuleTool& tool : tools)
+    inputs_.emplace_back(static_cast<int>(inputs_.size()), tool.half_length > 0.0 || limits.peak_torque > 0.0,
+                         options.grasp_buttons);
+  snapshots_.fill(Snapshot(options.contact.capacity));
+}
+
+PALPATE_INLINE std::span<const ToolForce> HapticServo::tick(std::span<const ToolState> states) noexcept {
+  const FlushDenormals flush;
+  ++ticks_;
+  Status shared = tissue_.begin_tick(problem_);
+  for (std::size_t i = 0; i < inputs_.size(); ++i) take(i, i < states.size() ? states[i] : detail::unreadable());
+  note_updates();
+  shared |= problem_.solve(tissue_, contact_tools_);
+  for (std::size_t i = 0; i < inputs_.size(); ++i) recover(i);
+  for (std::size_t i = 0; i < inputs_.size(); ++i) pass(i, shared);
+  tissue_.end_tick(problem_.vertex_forces());
+  publish();
+  return forces_;
+}
+
+PALPATE_INLINE void HapticServo::reset() noexcept {
+  problem_.clear();
+  started_ = false;
+  for (ToolInput& input : inputs_) input.reset();
+  for (ContactTool& tool : contact_tools_) tool.lift();
+  for (ForceGate& gate : gates_) gate.reset();
+  tissue_.end_tick({});
+  for (EnergyTank& energy : energies_) energy.reset();
+  publish();
+}
+
+PALPATE_INLINE Vector3 HapticServo::proxy(std::size_t tool) const noexcept {
+  return tissue_.pose() * contact_tools_[tool].proxy;
+}
+PALPATE_INLINE Vector3 HapticServo::contact_force(std::size_t tool) const noexcept {
+  return tissue_.pose().linear() * contact_tools_[tool].force;
+}
+PALPATE_INLINE Vector3 HapticServo::contact_torque(std::size_t tool) const noexcept {
+  return tissue_.pose().linear() * contact_tools_[tool].torque;
+}
+PALPATE_INLINE Vector3 HapticServo::proxy_axis(std::size_t tool) const noexcept {
+  return tissue_.pose().linear() * contact_tools_[tool].axis();
+}
+
+/// Notes when a tissue that moves by itself was last heard of.
+PALPATE_INLINE void HapticServo::note_updates() noexcept {
+  if (!tissue_.has_updates()) return;
+  const std::uint64_t updates = tissue_.updates();
+  const bool has_news = !started_ || updates != updates_;
+  updates_ = updates;
+  started_ = true;
+  for (ToolInput& input : inputs_) input.note_tissue(has_news);
+}
+
+PALPATE_INLINE void HapticServo::take(std::size_t i, const ToolState& state) noexcept {
+  inputs_[i].take(state, tissue_.pose(), tissue_.contact_surface(), problem_.contacts(), contact_tools_[i]);
+  if (!energies_.empty()) energies_[i].turned(gates_[i].last_torque().dot(inputs_[i].rotation()));
+}
+
+/// A ball whose centre is in the body without any contact has lost the surface: it is put back in the next tick, with
+/// the ramp.
+PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
+  const ContactTool& tool = contact_tools_[i];
+  if (!tool.active || !detail::is_zero(tool.force)) return;
+  // Far from all contact points nothing changes fast: one look in a while is enough, for one tool after the other.
+  if (!problem_.is_near(static_cast<int>(i)) && (ticks_ + i) % 16 != 0) return;
+  bool inside = false;
+  for (const double s : {0.0, -tool.half_length, tool.half_length}) {
+    const Vector3 centre = tool.target + s * tool.axis();
+    inside = inside || tissue_.contact_surface().closest(centre).distance < 0.0;
+    if (tool.half_length == 0.0) break;
+  }
+  if (inside) inputs_[i].lose();
+}
+
+/// The force of contact through energy tank, which is told of what is limited further, and gate.
+PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
+  const ContactTool& tool = contact_tools_[i];
+  const ToolInput& input = inputs_[i];
+  EnergyTank* const energy = energies_.empty() ? nullptr : &energies_[i];
+  const Eigen::Isometry3d& pose = tissue_.pose();
+  Vector3 force(0.0, 0.0, 0.0), torque(0.0, 0.0, 0.0);
+  if (tool.active) force = pose.linear() * tool.force;
+  if (tool.active && input.turns()) torque = pose.linear() * tool.torque;
+  Status limited;
+  if (energy != nullptr) {
+    if (!input.readable() || input.restarted()) energy->forget();
+    force = energy->limit(force, pose * input.position(), input.time(), limited);
+    torque *= energy->gain();
+  }
+  const double time = tissue_.has_updates() ? input.stamp(stale_tissue_after_) : input.time();
+  forces_[i] = gates_[i].apply(force, torque, input.time(), time, input.readable(), input.restarted());
+  if (energy != nullptr) energy->gave(forces_[i].force);
+  forces_[i].status |= input.status() | shared | limited;
+}
+
+PALPATE_INLINE void HapticServo::publish() noexcept {
+  Snapshot& s = snapshots_.back();
+  s.note(problem_.contacts(), problem_.vertex_forces(), tissue_.pose());
+  for (std::size_t i = 0; i < contact_tools_.size(); ++i) {
+    s.proxies[i] = proxy(i);
+    s.axes[i] = proxy_axis(i);
+  }
+  s.time = inputs_.front().time();
+  snapshots_.publish();
+}
+
+}}  // namespace palpate

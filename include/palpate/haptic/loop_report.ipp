@@ -1,0 +1,46 @@
+// Definitions of loop_report.hpp.
+#pragma once
+
+#include <palpate/core/platform.hpp>
+#include <palpate/haptic/loop_report.hpp>
+
+#include <array>
+#include <cstdio>
+#include <ostream>
+#include <string>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const LoopReport& r) {
+  std::array<char, 160> line{};
+  std::string text;
+  const auto print = [&](const char* format, auto... values) {
+    std::snprintf(line.data(), line.size(), format, values...);
+    text += line.data();
+  };
+  const auto row = [&](const char* name, const DurationHistogram& h) {
+    print("  %-16s %10.2f %10.2f %10.2f %10.2f\n", name, 1e6 * h.percentile(0.5), 1e6 * h.percentile(0.99),
+          1e6 * h.percentile(0.999), 1e6 * h.max());
+  };
+  print("haptic loop: %llu ticks in %.3f s, %s %g Hz%s\n", static_cast<unsigned long long>(r.ticks), r.elapsed,
+        r.paced ? "paced at" : "not paced, simulating", r.rate, r.cancelled ? ", cancelled" : "");
+  print("  %-16s %10s %10s %10s %10s\n", "[us]", "p50", "p99", "p99.9", "max");
+  row("tick compute", r.compute);
+  if (r.paced) row("wake-up lateness", r.lateness);
+  print("  missed deadlines %llu, peak force %.3f N, clock reading %.2f us\n",
+        static_cast<unsigned long long>(r.missed_deadlines), r.peak_force, 1e6 * r.clock_cost);
+  text += "  status:";
+  const std::size_t before = text.size();
+  for (int bit = 0; bit < status_flag_count; ++bit)
+    if (r.status.at(bit) > 0) text += ' ' + std::string(status_flag_name(bit)) + ' ' + std::to_string(r.status.at(bit));
+  if (text.size() == before) text += " clean";
+  text += "\n  real time: ";
+  const RealtimeGrant& g = r.real_time;
+  text += !g.requested ? "not requested" : g.fifo ? platform::realtime_scheduling : "normal scheduling";
+  if (g.memory_locked) text += ", memory locked";
+  if (g.cpu >= 0) text += ", on processor " + std::to_string(g.cpu);
+  if (!g.refusals.empty()) text += "; refused: " + g.refusals;
+  return out << text << '\n';
+}
+
+}}  // namespace palpate
