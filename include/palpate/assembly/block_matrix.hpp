@@ -68,8 +68,10 @@ class BlockMatrix {
   std::size_t bytes() const noexcept;
 
   /// Block at a position given by the pattern.
-  Eigen::Map<Matrix3> block(Index position) noexcept;
-  Eigen::Map<const Matrix3> block(Index position) const noexcept;
+  Eigen::Map<Matrix3> block(Index position) noexcept { return Eigen::Map<Matrix3>(values_.data() + 9 * position); }
+  Eigen::Map<const Matrix3> block(Index position) const noexcept {
+    return Eigen::Map<const Matrix3>(values_.data() + 9 * position);
+  }
 
   void set_zero() noexcept { std::ranges::fill(values_, 0.0); }
   /// Adds `factor` times a matrix on the same pattern. No allocation.

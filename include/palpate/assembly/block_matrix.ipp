@@ -16,14 +16,6 @@ PALPATE_INLINE std::size_t BlockMatrix::bytes() const noexcept {
          pattern_.row_start.size() * sizeof(Index);
 }
 
-PALPATE_INLINE Eigen::Map<Matrix3> BlockMatrix::block(Index position) noexcept {
-  return Eigen::Map<Matrix3>(values_.data() + 9 * position);
-}
-
-PALPATE_INLINE Eigen::Map<const Matrix3> BlockMatrix::block(Index position) const noexcept {
-  return Eigen::Map<const Matrix3>(values_.data() + 9 * position);
-}
-
 PALPATE_INLINE void BlockMatrix::add(double factor, const BlockMatrix& other) noexcept {
   for (std::size_t i = 0; i < values_.size(); ++i) values_[i] += factor * other.values_[i];
 }

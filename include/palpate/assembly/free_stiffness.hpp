@@ -1,17 +1,17 @@
 // The stiffness seen by the free dofs.
 #pragma once
 
+#include <palpate/assembly/any_stiffness.hpp>
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
-#include <palpate/concepts/assembler.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
-#include <Eigen/LU>
 #include <Eigen/SparseCore>
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -21,49 +21,20 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 /// K restricted to the free dofs, as an operator with a block Jacobi preconditioner. Refers to `stiffness` and
 /// `conditions`, which must outlive it. Satisfies SpdOperator; owns two workspaces, so it is not to be used from two
 /// threads at once.
-template <StiffnessOperator Stiffness>
 class FreeStiffness {
  public:
   FreeStiffness() = default;
-  FreeStiffness(const Stiffness& stiffness, const EssentialConditions& conditions)
-      : stiffness_(&stiffness),
-        conditions_(&conditions),
-        inverse_blocks_(stiffness.diagonal_blocks()),
-        in_(stiffness.size()),
-        out_(stiffness.size()) {
-    for (std::size_t i = 0; i < inverse_blocks_.size(); ++i) {
-      Matrix3& block = inverse_blocks_[i];
-      for (int c = 0; c < 3; ++c)
-        if ((conditions.constrained[i] & (1u << c)) != 0) {
-          block.row(c).setZero();
-          block.col(c).setZero();
-          block(c, c) = 1.0;
-        }
-      block = block.inverse().eval();
-    }
-  }
+  FreeStiffness(StiffnessView stiffness, const EssentialConditions& conditions);
 
   Index size() const noexcept { return conditions_ != nullptr ? conditions_->free_count() : 0; }
-  const Stiffness& stiffness() const noexcept { return *stiffness_; }
-  const EssentialConditions& conditions() const noexcept { return *conditions_; }
 
   /// y = K_ff x. No allocation.
-  void apply(const VectorX& x, VectorX& y) const noexcept {
-    conditions_->scatter(x, in_);
-    stiffness_->apply(in_, out_);
-    conditions_->gather(out_, y);
-  }
+  void apply(const VectorX& x, VectorX& y) const noexcept;
   /// y = P^-1 x with P the 3 x 3 diagonal blocks. No allocation.
-  void precondition(const VectorX& x, VectorX& y) const noexcept {
-    conditions_->scatter(x, in_);
-    for (std::size_t i = 0; i < inverse_blocks_.size(); ++i)
-      out_.segment<3>(3 * static_cast<Index>(i)).noalias() =
-          inverse_blocks_[i] * in_.segment<3>(3 * static_cast<Index>(i));
-    conditions_->gather(out_, y);
-  }
+  void precondition(const VectorX& x, VectorX& y) const noexcept;
 
  private:
-  const Stiffness* stiffness_ = nullptr;
+  std::optional<StiffnessView> stiffness_;
   const EssentialConditions* conditions_ = nullptr;
   std::vector<Matrix3> inverse_blocks_;
   mutable VectorX in_, out_;

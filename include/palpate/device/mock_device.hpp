@@ -1,6 +1,7 @@
 // A device without hardware: it moves along a given trajectory, can fail on schedule, and remembers what it was told.
 #pragma once
 
+#include <palpate/core/setup_error.hpp>
 #include <palpate/device/trajectory.hpp>
 #include <palpate/device/render_limits.hpp>
 

@@ -39,13 +39,6 @@ struct CacheKey {
 
 namespace detail {
 
-template <class T>
-std::uint64_t hash_of(const std::vector<T>& values) noexcept {
-  ContentHash hash;
-  hash.add(std::span<const T>(values));
-  return hash.digest();
-}
-
 template <class Matrix>
 void add_entries(ContentHash& hash, const Matrix& m) noexcept {
   hash.add(std::span<const double>(m.data(), static_cast<std::size_t>(m.size())));
@@ -76,28 +69,24 @@ std::uint64_t hash_of_mesh(const Mesh<E>& mesh) noexcept {
   return hash.digest();
 }
 
-std::uint64_t hash_of_stiffness(const BlockMatrix& k) noexcept;
-
 }  // namespace detail
 
-/// The key of a body held at `conditions` and touched at `kept`, for a solver. Cost: one pass over mesh and stiffness.
+/// What of a key depends on the body alone. Cost: one pass over the mesh.
 template <Element E>
-CacheKey cache_key(const Body<E>& body, const EssentialConditions& conditions, const std::vector<NodeId>& kept,
-                   const BlockMatrix& stiffness, std::string_view policy, std::size_t scalar_bytes) noexcept {
+CacheKey body_key(const Body<E>& body) noexcept {
   CacheKey key;
-  key.set_policy(policy);
-  key.scalar_bytes = scalar_bytes;
   key.element = detail::hash_of_element<E>();
   key.mesh = detail::hash_of_mesh(body.mesh);
   ContentHash material;
   for (const Matrix6& d : body.elasticity) detail::add_entries(material, d);
   material.add(std::span<const std::int32_t>(body.laws));
   key.material = material.digest();
-  key.conditions = detail::hash_of(conditions.constrained);
-  key.touched = detail::hash_of(kept);
-  key.stiffness = detail::hash_of_stiffness(stiffness);
   return key;
 }
+
+/// The key of a body held at `conditions` and touched at `kept`, for a solver. Cost: one pass over the stiffness.
+CacheKey cache_key(CacheKey of_body, const EssentialConditions& conditions, const std::vector<NodeId>& kept,
+                   const BlockMatrix& stiffness, std::string_view policy, std::size_t scalar_bytes) noexcept;
 
 /// Compares the key in a file with the one at hand: the first part that differs, and in `why` all of them.
 CacheMismatch compare(const CacheKey& file, const CacheKey& here, std::string& why);

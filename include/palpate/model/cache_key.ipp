@@ -21,7 +21,14 @@ PALPATE_INLINE std::string_view CacheKey::policy_name() const noexcept {
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-PALPATE_INLINE std::uint64_t hash_of_stiffness(const BlockMatrix& k) noexcept {
+template <class T>
+std::uint64_t hash_of(const std::vector<T>& values) noexcept {
+  ContentHash hash;
+  hash.add(std::span<const T>(values));
+  return hash.digest();
+}
+
+inline std::uint64_t hash_of_stiffness(const BlockMatrix& k) noexcept {
   ContentHash hash;
   hash.add(std::span<const Index>(k.pattern().row_start));
   hash.add(std::span<const NodeId>(k.pattern().column));
@@ -32,6 +39,18 @@ PALPATE_INLINE std::uint64_t hash_of_stiffness(const BlockMatrix& k) noexcept {
 }}}  // namespace palpate::detail
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE CacheKey cache_key(CacheKey of_body, const EssentialConditions& conditions,
+                                  const std::vector<NodeId>& kept, const BlockMatrix& stiffness,
+                                  std::string_view policy, std::size_t scalar_bytes) noexcept {
+  CacheKey key = of_body;
+  key.set_policy(policy);
+  key.scalar_bytes = scalar_bytes;
+  key.conditions = detail::hash_of(conditions.constrained);
+  key.touched = detail::hash_of(kept);
+  key.stiffness = detail::hash_of_stiffness(stiffness);
+  return key;
+}
 
 PALPATE_INLINE CacheMismatch compare(const CacheKey& file, const CacheKey& here, std::string& why) {
   CacheMismatch first = CacheMismatch::none;

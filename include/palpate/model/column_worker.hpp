@@ -7,9 +7,7 @@
 #include <palpate/model/compliance_columns.hpp>
 
 #include <atomic>
-#include <chrono>
 #include <thread>
-#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -22,18 +20,14 @@ struct ColumnOrder {
 
 /// A thread that fills slots as ordered. Orders and answers pass through queues: who orders never waits. An ordered
 /// slot belongs to the thread until its answer is taken. The destructor waits for the column in work.
-template <class System, std::floating_point Scalar>
+template <std::floating_point Scalar>
 class ColumnWorker {
  public:
   static constexpr std::size_t most_orders = 1024;
 
   /// `system` is a copy that the thread keeps; `columns` must outlive it.
-  ColumnWorker(System system, ComplianceColumns<Scalar>& columns)
-      : system_(std::move(system)), columns_(&columns), column_(system_.kept()), thread_([this] { work(); }) {}
-  ~ColumnWorker() {
-    stop_.store(true, std::memory_order_relaxed);
-    thread_.join();
-  }
+  ColumnWorker(AnyStaticSystem system, ComplianceColumns<Scalar>& columns);
+  ~ColumnWorker();
   ColumnWorker(const ColumnWorker&) = delete;
   ColumnWorker& operator=(const ColumnWorker&) = delete;
 
@@ -43,19 +37,9 @@ class ColumnWorker {
   bool take(ColumnOrder& done) noexcept { return answers_.pop(done); }
 
  private:
-  void work() noexcept {
-    ColumnOrder next;
-    while (!stop_.load(std::memory_order_relaxed)) {
-      if (!orders_.pop(next)) {
-        std::this_thread::sleep_for(std::chrono::microseconds(200));
-        continue;
-      }
-      next.converged = columns_->fill(system_, next.vertex, next.slot, column_);
-      while (!answers_.push(next) && !stop_.load(std::memory_order_relaxed)) std::this_thread::yield();
-    }
-  }
+  void work() noexcept;
 
-  System system_;
+  AnyStaticSystem system_;
   ComplianceColumns<Scalar>* columns_;
   VectorX column_;
   SpscRing<ColumnOrder, most_orders> orders_, answers_;
@@ -64,3 +48,7 @@ class ColumnWorker {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/column_worker.ipp>
+#endif

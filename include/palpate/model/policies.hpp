@@ -2,30 +2,17 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
-#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/assembly/matrix_free.hpp>
-#include <palpate/concepts/assembler.hpp>
 #include <palpate/condensation/condensed_system.hpp>
-#include <palpate/condensation/schur.hpp>
 #include <palpate/condensation/uncondensed.hpp>
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/core/types.hpp>
-#include <palpate/linear/cholesky_analysis.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
-#include <palpate/linear/dense_conjugate_gradient.hpp>
-#include <palpate/linear/dense_inverse.hpp>
-#include <palpate/linear/node_graph.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 
-#include <Eigen/SparseCore>
-
+#include <concepts>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -51,8 +38,29 @@ struct Condensed {
 template <class Policy, class Assembly>
 struct WithAssembly {};
 
+namespace detail {
+
+/// The dense solvers of shipped policies.
+enum class DenseKind { inverse, inverse_float, cholesky, conjugate_gradient };
+template <std::floating_point S>
+inline constexpr DenseKind inverse_kind = std::same_as<S, float> ? DenseKind::inverse_float : DenseKind::inverse;
+
+Uncondensed make_iterative(StiffnessView k, const EssentialConditions& conditions, DofLayout layout);
+Uncondensed make_inverse(DenseKind kind, const BlockMatrix& k, const EssentialConditions& conditions, DofLayout layout,
+                         const SetupLimits& limits);
+Uncondensed read_inverse(DenseKind kind, BinaryReader& in, const EssentialConditions& conditions, DofLayout layout,
+                         const SetupLimits& limits);
+CondensedSystem make_condensed(DenseKind kind, const BlockMatrix& k, const EssentialConditions& conditions,
+                               const DofLayout& layout, const SetupLimits& limits);
+CondensedSystem read_condensed(DenseKind kind, BinaryReader& in, const BlockMatrix& k,
+                               const EssentialConditions& conditions, const DofLayout& layout,
+                               const SetupLimits& limits);
+
+}  // namespace detail
+
 /// What a policy means: `Assembly`, `Scalar` of the contact compliance, whether it is `eager` (computed at set-up), and
-/// how to make the prepared system from the stiffness and what is known of its dofs. Specialise it for a solver of your
+/// how to make the prepared system from the stiffness (a BlockMatrix when Assembly is Assembled, else a StiffnessView)
+/// and what is known of its dofs. Specialise it for a solver of your
 /// own. With `cache_name` and `read` (see CacheablePolicy) the system can be kept in a cache file.
 template <class Policy>
 struct SolverTraits;
@@ -62,20 +70,11 @@ struct SolverTraits<SparseCholesky> {
   using Assembly = Assembled;
   using Scalar = double;
   static constexpr bool eager = false;
-  static Uncondensed<SparseCholesky> make(const BlockMatrix& k, const EssentialConditions& conditions, DofLayout layout,
-                                          const SetupLimits& limits) {
-    std::vector<Index> kept = std::exchange(layout.kept, {});  // asked for, but nothing is condensed onto them
-    const SparseMatrix lower = free_matrix(k, conditions);
-    return {SparseCholesky(CholeskyAnalysis(lower, layout, limits), lower, limits), std::move(kept)};
-  }
-
   static constexpr std::string_view cache_name = "SparseCholesky";
-  static Uncondensed<SparseCholesky> read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
-                                          DofLayout layout, const SetupLimits& limits) {
-    std::vector<Index> kept = std::exchange(layout.kept, {});
-    const SparseMatrix lower = free_matrix(k, conditions);
-    return {SparseCholesky::read(in, CholeskyAnalysis(lower, layout, limits), false, limits), std::move(kept)};
-  }
+  static Uncondensed make(const BlockMatrix& k, const EssentialConditions& conditions, DofLayout layout,
+                          const SetupLimits& limits);
+  static Uncondensed read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
+                          DofLayout layout, const SetupLimits& limits);
 };
 
 template <class AssemblyPolicy>
@@ -83,10 +82,9 @@ struct SolverTraits<WithAssembly<ConjugateGradient, AssemblyPolicy>> {
   using Assembly = AssemblyPolicy;
   using Scalar = double;
   static constexpr bool eager = false;
-  template <StiffnessOperator Stiffness>
-  static auto make(const Stiffness& k, const EssentialConditions& conditions, DofLayout layout, const SetupLimits&) {
-    using Solver = IterativeSolver<FreeStiffness<Stiffness>>;
-    return Uncondensed<Solver>(Solver(FreeStiffness<Stiffness>(k, conditions), {}), std::move(layout.kept));
+  static Uncondensed make(StiffnessView k, const EssentialConditions& conditions, DofLayout layout,
+                          const SetupLimits&) {
+    return detail::make_iterative(k, conditions, std::move(layout));
   }
 };
 template <>
@@ -97,17 +95,15 @@ struct SolverTraits<BasicSelectiveInverse<S>> {
   using Assembly = Assembled;
   using Scalar = S;
   static constexpr bool eager = true;
-  static Uncondensed<DenseInverse<S>> make(const BlockMatrix& k, const EssentialConditions& conditions,
-                                           DofLayout layout, const SetupLimits& limits) {
-    const double n = static_cast<double>(conditions.free_count());
-    limits.require_memory(3.0 * n * n * sizeof(double), "the inverse of the whole stiffness");
-    return {DenseInverse<S>(MatrixX(free_matrix(k, conditions)), limits), std::move(layout.kept)};
-  }
-
   static constexpr std::string_view cache_name = "SelectiveInverse";
-  static Uncondensed<DenseInverse<S>> read(BinaryReader& in, const BlockMatrix&, const EssentialConditions& conditions,
-                                           DofLayout layout, const SetupLimits& limits) {
-    return {DenseInverse<S>::read(in, conditions.free_count(), limits), std::move(layout.kept)};
+  static constexpr detail::DenseKind kind = detail::inverse_kind<S>;
+  static Uncondensed make(const BlockMatrix& k, const EssentialConditions& conditions, DofLayout layout,
+                          const SetupLimits& limits) {
+    return detail::make_inverse(kind, k, conditions, std::move(layout), limits);
+  }
+  static Uncondensed read(BinaryReader& in, const BlockMatrix&, const EssentialConditions& conditions,
+                          DofLayout layout, const SetupLimits& limits) {
+    return detail::read_inverse(kind, in, conditions, std::move(layout), limits);
   }
 };
 
@@ -116,22 +112,22 @@ template <class Inner>
 struct CondensedTraits;
 template <std::floating_point S>
 struct CondensedTraits<BasicSelectiveInverse<S>> {
-  using Solver = DenseInverse<S>;
   using Scalar = S;
+  static constexpr detail::DenseKind kind = detail::inverse_kind<S>;
   static constexpr bool eager = true;
   static constexpr std::string_view cache_name = "Condensed<SelectiveInverse>";
 };
 template <>
 struct CondensedTraits<DenseCholesky> {
-  using Solver = DenseCholesky;
   using Scalar = double;
+  static constexpr detail::DenseKind kind = detail::DenseKind::cholesky;
   static constexpr bool eager = false;
   static constexpr std::string_view cache_name = "Condensed<DenseCholesky>";
 };
 template <>
 struct CondensedTraits<ConjugateGradient> {
-  using Solver = DenseConjugateGradient;
   using Scalar = double;
+  static constexpr detail::DenseKind kind = detail::DenseKind::conjugate_gradient;
   static constexpr bool eager = false;
   static constexpr std::string_view cache_name = "Condensed<ConjugateGradient>";
 };
@@ -142,16 +138,14 @@ struct SolverTraits<Condensed<Inner>> {
   using Assembly = Assembled;
   using Scalar = typename CondensedTraits<Inner>::Scalar;
   static constexpr bool eager = CondensedTraits<Inner>::eager;
-  using System = CondensedSystem<typename CondensedTraits<Inner>::Solver>;
-  static System make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
-                     const SetupLimits& limits) {
-    return {condense(free_matrix(k, conditions), layout, limits), limits};
-  }
-
   static constexpr std::string_view cache_name = CondensedTraits<Inner>::cache_name;
-  static System read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
-                     const DofLayout& layout, const SetupLimits& limits) {
-    return System::read(in, CholeskyAnalysis(free_matrix(k, conditions), layout, limits), limits);
+  static CondensedSystem make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+                              const SetupLimits& limits) {
+    return detail::make_condensed(CondensedTraits<Inner>::kind, k, conditions, layout, limits);
+  }
+  static CondensedSystem read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
+                              const DofLayout& layout, const SetupLimits& limits) {
+    return detail::read_condensed(CondensedTraits<Inner>::kind, in, k, conditions, layout, limits);
   }
 };
 
@@ -176,3 +170,7 @@ concept CacheablePolicy = SolverPolicy<P> &&
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/policies.ipp>
+#endif

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,26 +58,7 @@ class PreparedCache {
   bool reject(CacheMismatch mismatch, std::string why);
 
   /// Writes header, what `write(BinaryWriter&)` writes, and its hash; replaces the file when all is there.
-  template <class Write>
-  void store(Write&& write) {
-    if (report_->mismatch == CacheMismatch::foreign) {  // somebody's mesh, given by mistake
-      report_->problem = report_->why + " and was left alone: remove it or give another name";
-      return;
-    }
-    AtomicFile file(report_->file);
-    if (file.stream() == nullptr) return fail(file.error());
-    CacheHeader header{.key = key_};
-    header.hash = header.right_hash();
-    errno = 0;
-    if (std::fwrite(&header, sizeof header, 1, file.stream()) != 1) return fail(detail::system_message(errno));
-    BinaryWriter out(file.stream());
-    write(out);
-    out.value(out.digest());
-    if (!out.good()) return fail(detail::system_message(out.error()));
-    if (!file.commit()) return fail(file.error());
-    report_->written = true;
-    report_->bytes = sizeof header + static_cast<std::size_t>(out.written());
-  }
+  void store(const std::function<void(BinaryWriter&)>& write);
 
  private:
   void fail(std::string problem) { report_->problem = std::move(problem); }

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+#include <cerrno>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -86,6 +87,26 @@ PALPATE_INLINE bool PreparedCache::reject(CacheMismatch mismatch, std::string wh
   report_->mismatch = mismatch;
   report_->why = std::move(why);
   return false;
+}
+
+PALPATE_INLINE void PreparedCache::store(const std::function<void(BinaryWriter&)>& write) {
+  if (report_->mismatch == CacheMismatch::foreign) {  // somebody's mesh, given by mistake
+    report_->problem = report_->why + " and was left alone: remove it or give another name";
+    return;
+  }
+  AtomicFile file(report_->file);
+  if (file.stream() == nullptr) return fail(file.error());
+  CacheHeader header{.key = key_};
+  header.hash = header.right_hash();
+  errno = 0;
+  if (std::fwrite(&header, sizeof header, 1, file.stream()) != 1) return fail(detail::system_message(errno));
+  BinaryWriter out(file.stream());
+  write(out);
+  out.value(out.digest());
+  if (!out.good()) return fail(detail::system_message(out.error()));
+  if (!file.commit()) return fail(file.error());
+  report_->written = true;
+  report_->bytes = sizeof header + static_cast<std::size_t>(out.written());
 }
 
 }}  // namespace palpate

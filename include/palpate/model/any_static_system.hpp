@@ -1,0 +1,70 @@
+// A prepared static system of any type as a value.
+#pragma once
+
+#include <palpate/concepts/condensation.hpp>
+
+#include <concepts>
+#include <memory>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+class BinaryWriter;
+
+/// Owns any StaticSystem that can be copied. A copy has workspaces of its own; systems share factors among copies. One
+/// indirect call per solve.
+class AnyStaticSystem {
+ public:
+  AnyStaticSystem() = default;
+  template <StaticSystem S>
+  requires(!std::same_as<S, AnyStaticSystem>) explicit AnyStaticSystem(S system)
+      : system_(std::make_unique<Holder<S>>(std::move(system))) {}
+  AnyStaticSystem(const AnyStaticSystem& other) : system_(other.system_ ? other.system_->copy() : nullptr) {}
+  AnyStaticSystem(AnyStaticSystem&&) noexcept = default;
+  AnyStaticSystem& operator=(AnyStaticSystem other) noexcept {
+    system_ = std::move(other.system_);
+    return *this;
+  }
+
+  Index size() const noexcept { return system_ ? system_->size() : 0; }
+  Index kept() const noexcept { return system_ ? system_->kept() : 0; }
+  std::size_t bytes() const noexcept { return system_ ? system_->bytes() : 0; }
+  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return system_->solve_into(b, x); }
+  SolveReport compliance_column(Index j, VectorX& column) noexcept { return system_->compliance_column(j, column); }
+  /// For systems that can be stored; nothing is written of others.
+  void write(BinaryWriter& out) const { system_->write(out); }
+
+ private:
+  struct Base {
+    virtual ~Base() = default;
+    virtual std::unique_ptr<Base> copy() const = 0;
+    virtual Index size() const noexcept = 0;
+    virtual Index kept() const noexcept = 0;
+    virtual std::size_t bytes() const noexcept = 0;
+    virtual SolveReport solve_into(const VectorX& b, VectorX& x) noexcept = 0;
+    virtual SolveReport compliance_column(Index j, VectorX& column) noexcept = 0;
+    virtual void write(BinaryWriter& out) const = 0;
+  };
+  template <class S>
+  struct Holder final : Base {
+    explicit Holder(S given) : system(std::move(given)) {}
+    std::unique_ptr<Base> copy() const override { return std::make_unique<Holder>(system); }
+    Index size() const noexcept override { return static_cast<Index>(system.size()); }
+    Index kept() const noexcept override { return static_cast<Index>(system.kept()); }
+    std::size_t bytes() const noexcept override { return static_cast<std::size_t>(system.bytes()); }
+    SolveReport solve_into(const VectorX& b, VectorX& x) noexcept override { return system.solve_into(b, x); }
+    SolveReport compliance_column(Index j, VectorX& column) noexcept override {
+      return system.compliance_column(j, column);
+    }
+    void write([[maybe_unused]] BinaryWriter& out) const override {
+      if constexpr (requires { system.write(out); }) system.write(out);
+    }
+    S system;
+  };
+
+  std::unique_ptr<Base> system_;
+};
+
+static_assert(StaticSystem<AnyStaticSystem>);
+
+}}  // namespace palpate

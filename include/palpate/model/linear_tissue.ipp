@@ -1,0 +1,190 @@
+// Definitions of linear_tissue.hpp.
+#pragma once
+
+#include <palpate/model/linear_tissue.hpp>
+
+#include <palpate/model/elastic_body.hpp>
+#include <palpate/model/stage_timer.hpp>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+template <std::floating_point Scalar>
+LinearTissue<Scalar>::LinearTissue(const SetupOptions& options)
+    : limits_{options.progress, options.memory_limit, options.threads} {}
+template <std::floating_point Scalar>
+LinearTissue<Scalar>::LinearTissue(LinearTissue&&) noexcept = default;
+template <std::floating_point Scalar>
+LinearTissue<Scalar>& LinearTissue<Scalar>::operator=(LinearTissue&&) noexcept = default;
+template <std::floating_point Scalar>
+LinearTissue<Scalar>::~LinearTissue() = default;
+
+template <std::floating_point Scalar>
+Vector3 LinearTissue<Scalar>::rest_position(NodeId node) const noexcept {
+  return origin_ + statics_->body().positions()[static_cast<std::size_t>(node)];
+}
+template <std::floating_point Scalar>
+double LinearTissue<Scalar>::strain_energy() const {
+  return statics_->body().strain_energy(statics_->displacement());
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::place_nodes(const Scene& scene, std::vector<NodeId> node_map, const Vector3& centre,
+                                       std::vector<Vector3>& positions) {
+  node_map_ = std::move(node_map);
+  scene_ = scene.mapped(node_map_);
+  origin_ = centre;
+  for (Vector3& x : positions) x -= origin_;
+  world_ = pose_ * Eigen::Translation3d(origin_);
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::prepare(std::unique_ptr<ElasticBody> body, const Statics::MakeStiffness& make_stiffness,
+                                   const SolverRecipe& recipe, const SetupOptions& options) {
+  body->report_locking(report_);
+  const Touchable touchable = body->touchable(scene_);
+  touchable_ = touchable.nodes;
+  seen_ = body->seen(scene_);
+  statics_ = std::make_unique<Statics>(std::move(body), scene_, touchable_, make_stiffness, recipe, limits_,
+                                       options.cache_file, report_);
+  statics_->set_conditions(scene_, scene_.gravity(), reporting_to(report_));
+  gravity_ = scene_.gravity();
+  prepare_contact(touchable.triangles, recipe.eager, options);
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::set_conditions(const Scene& scene) {
+  const Scene mapped = scene.mapped(node_map_);
+  SetupReport report = report_;
+  statics_->set_conditions(mapped, pose_.linear().transpose() * scene.gravity(), reporting_to(report));
+  gravity_ = scene.gravity();
+  accept_displacement(report);
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::set_gravity(const Vector3& gravity) {
+  if (!gravity.allFinite()) raise(SetupErrorKind::non_finite, "gravity is not finite");
+  SetupReport report = report_;
+  statics_->set_gravity(pose_.linear().transpose() * gravity, reporting_to(report));
+  gravity_ = gravity;
+  accept_displacement(report);
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::set_pose(const Eigen::Isometry3d& pose) {
+  const bool rigid = pose.matrix().allFinite() &&
+                     (pose.linear().transpose() * pose.linear() - Matrix3::Identity()).norm() < 1e-9 &&
+                     pose.linear().determinant() > 0.0;
+  if (!rigid)
+    raise(SetupErrorKind::bad_argument, "the pose is not a rigid motion",
+          "Give a proper rotation and a finite translation");
+  SetupReport report = report_;
+  if (!gravity_.isZero(0.0)) statics_->set_gravity(pose.linear().transpose() * gravity_, reporting_to(report));
+  place(pose);
+  accept_displacement(report);
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::reset() {
+  SetupReport report = report_;
+  statics_->set_conditions(scene_, scene_.gravity(), reporting_to(report));
+  place(Eigen::Isometry3d::Identity());
+  gravity_ = scene_.gravity();
+  accept_displacement(report);
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::prepare_contact(const std::vector<Triangle>& triangles, bool eager,
+                                           const SetupOptions& options) {
+  const StageTimer timer(report_, "compliance");
+  const int vertices = static_cast<int>(touchable_.size());
+  compliance_ =
+      ContactCompliance<Scalar>(statics_->system(), kept_index(), eager ? vertices : options.compliance_slots, limits_);
+  if (eager)
+    for (int v = 0; v < vertices; ++v) {
+      if (v % 64 == 0) limits_.advance("compliance", static_cast<double>(v) / static_cast<double>(vertices));
+      require_columns({&v, 1});
+    }
+  else if (vertices > 0)
+    sample_columns(options.columns);
+  // A thousandth of a millionth of the tissue's own compliance, or a nanometre per newton where nothing moves.
+  for (int v = 0; v < vertices; ++v) compliance_floor_ = std::max(compliance_floor_, 1e-9 * compliance_.bound(v));
+  if (compliance_floor_ == 0.0) compliance_floor_ = 1e-9;
+  std::vector<Vector3> positions;
+  for (NodeId node : touchable_) positions.push_back(deformed(node));
+  surface_ = ContactSurface(positions, triangles);
+  moved_ = std::move(positions);
+  if (const int edges = surface_.crowded_edges())
+    report_.set(SetupFlag::non_manifold, "more than two touchable triangles meet at " + std::to_string(edges) +
+                                             " edges: contact does not pass across them smoothly");
+  report_.touchable_vertices = vertices;
+  report_.seen_nodes = static_cast<Index>(seen_.size());
+  report_.compliance_bytes = compliance_.bytes();
+  limits_.advance("checks", 1.0);
+}
+
+template <std::floating_point Scalar>
+std::vector<Index> LinearTissue<Scalar>::kept_index() const {
+  std::vector<Index> index(3 * touchable_.size(), -1);
+  Index kept = 0;
+  for (std::size_t i = 0; i < index.size(); ++i)
+    if (!statics_->conditions().is_constrained(3 * Index{touchable_[i / 3]} + static_cast<Index>(i % 3)))
+      index[i] = kept++;
+  return index;
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::sample_columns(ColumnFill fill) {
+  const int vertices = static_cast<int>(touchable_.size());
+  const std::array sampled{0, vertices / 2, vertices - 1};
+  const auto start = std::chrono::steady_clock::now();
+  require_columns(sampled);
+  report_.column_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 3.0;
+  double softest = 0.0;
+  for (int v : sampled) softest = std::max(softest, compliance_.bound(v));
+  compliance_.assume(softest / std::sqrt(3.0));
+  if (fill == ColumnFill::ahead) compliance_.fill_ahead();
+}
+
+template <std::floating_point Scalar>
+Vector3 LinearTissue<Scalar>::deformed(NodeId node) const noexcept {
+  return statics_->body().positions()[static_cast<std::size_t>(node)] +
+         displacement().template segment<3>(3 * Index{node});
+}
+
+template <std::floating_point Scalar>
+Statics::Look LinearTissue<Scalar>::reporting_to(SetupReport& report) const {
+  return [this, &report](const VectorX& u) { report_displacement(statics_->body().positions(), u, report); };
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::accept_displacement(SetupReport& report) noexcept {
+  std::swap(report_, report);
+  move_surface();
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::place(const Eigen::Isometry3d& pose) noexcept {
+  pose_ = pose;
+  world_ = pose_ * Eigen::Translation3d(origin_);
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::move_surface() noexcept {
+  for (std::size_t v = 0; v < touchable_.size(); ++v) moved_[v] = deformed(touchable_[v]);
+  surface_.move_to(moved_);
+}
+
+#if !PALPATE_HEADER_ONLY
+template class LinearTissue<float>;
+template class LinearTissue<double>;
+#endif
+
+}}  // namespace palpate

@@ -1,0 +1,91 @@
+// Definitions of policies.hpp.
+#pragma once
+
+#include <palpate/model/policies.hpp>
+
+#include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/condensation/schur.hpp>
+#include <palpate/core/binary_io.hpp>
+#include <palpate/linear/conjugate_gradient.hpp>
+#include <palpate/linear/dense_conjugate_gradient.hpp>
+#include <palpate/linear/dense_inverse.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::make(const BlockMatrix& k,
+                                                              const EssentialConditions& conditions, DofLayout layout,
+                                                              const SetupLimits& limits) {
+  std::vector<Index> kept = std::exchange(layout.kept, {});  // asked for, but nothing is condensed onto them
+  const SparseMatrix lower = free_matrix(k, conditions);
+  return {SparseCholesky(CholeskyAnalysis(lower, layout, limits), lower, limits), std::move(kept)};
+}
+
+PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::read(BinaryReader& in, const BlockMatrix& k,
+                                                              const EssentialConditions& conditions, DofLayout layout,
+                                                              const SetupLimits& limits) {
+  std::vector<Index> kept = std::exchange(layout.kept, {});
+  const SparseMatrix lower = free_matrix(k, conditions);
+  return {SparseCholesky::read(in, CholeskyAnalysis(lower, layout, limits), false, limits), std::move(kept)};
+}
+
+namespace detail {
+
+PALPATE_INLINE Uncondensed make_iterative(StiffnessView k, const EssentialConditions& conditions, DofLayout layout) {
+  return {IterativeSolver(FreeStiffness(k, conditions), {}), std::move(layout.kept)};
+}
+
+PALPATE_INLINE Uncondensed make_inverse(DenseKind kind, const BlockMatrix& k, const EssentialConditions& conditions,
+                                        DofLayout layout, const SetupLimits& limits) {
+  const Index n = conditions.free_count();
+  limits.require_memory(3.0 * static_cast<double>(n) * static_cast<double>(n) * sizeof(double),
+                        "the inverse of the whole stiffness");
+  MatrixX lower = MatrixX::Zero(n, n);
+  for_each_free_entry(k, conditions, [&](Index row, Index column, double value) { lower(row, column) = value; });
+  if (kind == DenseKind::inverse_float) return {DenseInverse<float>(std::move(lower), limits), std::move(layout.kept)};
+  return {DenseInverse<double>(std::move(lower), limits), std::move(layout.kept)};
+}
+
+PALPATE_INLINE Uncondensed read_inverse(DenseKind kind, BinaryReader& in, const EssentialConditions& conditions,
+                                        DofLayout layout, const SetupLimits& limits) {
+  if (kind == DenseKind::inverse_float)
+    return {DenseInverse<float>::read(in, conditions.free_count(), limits), std::move(layout.kept)};
+  return {DenseInverse<double>::read(in, conditions.free_count(), limits), std::move(layout.kept)};
+}
+
+PALPATE_INLINE CondensedSystem make_condensed(DenseKind kind, const BlockMatrix& k,
+                                              const EssentialConditions& conditions, const DofLayout& layout,
+                                              const SetupLimits& limits) {
+  SchurComplement schur = condense(free_matrix(k, conditions), layout, limits);
+  switch (kind) {
+    case DenseKind::inverse_float:
+      return CondensedSystem::with<DenseInverse<float>>(std::move(schur), limits);
+    case DenseKind::cholesky:
+      return CondensedSystem::with<DenseCholesky>(std::move(schur), limits);
+    case DenseKind::conjugate_gradient:
+      return CondensedSystem::with<DenseConjugateGradient>(std::move(schur), limits);
+    case DenseKind::inverse:
+      break;
+  }
+  return CondensedSystem::with<DenseInverse<double>>(std::move(schur), limits);
+}
+
+PALPATE_INLINE CondensedSystem read_condensed(DenseKind kind, BinaryReader& in, const BlockMatrix& k,
+                                              const EssentialConditions& conditions, const DofLayout& layout,
+                                              const SetupLimits& limits) {
+  CholeskyAnalysis analysis(free_matrix(k, conditions), layout, limits);
+  switch (kind) {
+    case DenseKind::inverse_float:
+      return CondensedSystem::read<DenseInverse<float>>(in, std::move(analysis), limits);
+    case DenseKind::cholesky:
+      return CondensedSystem::read<DenseCholesky>(in, std::move(analysis), limits);
+    case DenseKind::conjugate_gradient:
+      return CondensedSystem::read<DenseConjugateGradient>(in, std::move(analysis), limits);
+    case DenseKind::inverse:
+      break;
+  }
+  return CondensedSystem::read<DenseInverse<double>>(in, std::move(analysis), limits);
+}
+
+}  // namespace detail
+
+}}  // namespace palpate
