@@ -47,16 +47,16 @@ struct SolverTraits<SparseCholesky> {
   using Assembly = Assembled;
   using Scalar = double;
   static constexpr bool eager = false;
-  static Uncondensed<SparseCholesky> make(const BlockMatrix& k, const EssentialConditions& conditions, DofLayout layout,
-                                          const SetupLimits& limits) {
+  static Uncondensed make(const BlockMatrix& k, const EssentialConditions& conditions, DofLayout layout,
+                          const SetupLimits& limits) {
     std::vector<Index> kept = std::exchange(layout.kept, {});  // asked for, but nothing is condensed onto them
     const SparseMatrix lower = free_matrix(k, conditions);
     return {SparseCholesky(CholeskyAnalysis(lower, layout, limits), lower, limits), std::move(kept)};
   }
 
   static constexpr std::string_view cache_name = "SparseCholesky";
-  static Uncondensed<SparseCholesky> read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
-                                          DofLayout layout, const SetupLimits& limits) {
+  static Uncondensed read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
+                          DofLayout layout, const SetupLimits& limits) {
     std::vector<Index> kept = std::exchange(layout.kept, {});
     const SparseMatrix lower = free_matrix(k, conditions);
     return {SparseCholesky::read(in, CholeskyAnalysis(lower, layout, limits), false, limits), std::move(kept)};
@@ -70,8 +70,7 @@ struct SolverTraits<WithAssembly<ConjugateGradient, AssemblyPolicy>> {
   static constexpr bool eager = false;
   template <StiffnessOperator Stiffness>
   static auto make(const Stiffness& k, const EssentialConditions& conditions, DofLayout layout, const SetupLimits&) {
-    using Solver = IterativeSolver<FreeStiffness<Stiffness>>;
-    return Uncondensed<Solver>(Solver(FreeStiffness<Stiffness>(k, conditions), {}), std::move(layout.kept));
+    return Uncondensed(IterativeSolver(FreeStiffness<Stiffness>(k, conditions), {}), std::move(layout.kept));
   }
 };
 template <>
@@ -82,16 +81,16 @@ struct SolverTraits<BasicSelectiveInverse<S>> {
   using Assembly = Assembled;
   using Scalar = S;
   static constexpr bool eager = true;
-  static Uncondensed<DenseInverse<S>> make(const BlockMatrix& k, const EssentialConditions& conditions,
-                                           DofLayout layout, const SetupLimits& limits) {
+  static Uncondensed make(const BlockMatrix& k, const EssentialConditions& conditions, DofLayout layout,
+                          const SetupLimits& limits) {
     const double n = static_cast<double>(conditions.free_count());
     limits.require_memory(3.0 * n * n * sizeof(double), "the inverse of the whole stiffness");
     return {DenseInverse<S>(MatrixX(free_matrix(k, conditions)), limits), std::move(layout.kept)};
   }
 
   static constexpr std::string_view cache_name = "SelectiveInverse";
-  static Uncondensed<DenseInverse<S>> read(BinaryReader& in, const BlockMatrix&, const EssentialConditions& conditions,
-                                           DofLayout layout, const SetupLimits& limits) {
+  static Uncondensed read(BinaryReader& in, const BlockMatrix&, const EssentialConditions& conditions, DofLayout layout,
+                          const SetupLimits& limits) {
     return {DenseInverse<S>::read(in, conditions.free_count(), limits), std::move(layout.kept)};
   }
 };
@@ -127,16 +126,16 @@ struct SolverTraits<Condensed<Inner>> {
   using Assembly = Assembled;
   using Scalar = typename CondensedTraits<Inner>::Scalar;
   static constexpr bool eager = CondensedTraits<Inner>::eager;
-  using System = CondensedSystem<typename CondensedTraits<Inner>::Solver>;
-  static System make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
-                     const SetupLimits& limits) {
-    return {condense(free_matrix(k, conditions), layout, limits), limits};
+  using Solver = typename CondensedTraits<Inner>::Solver;
+  static CondensedSystem make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+                              const SetupLimits& limits) {
+    return CondensedSystem::with<Solver>(condense(free_matrix(k, conditions), layout, limits), limits);
   }
 
   static constexpr std::string_view cache_name = CondensedTraits<Inner>::cache_name;
-  static System read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
-                     const DofLayout& layout, const SetupLimits& limits) {
-    return System::read(in, CholeskyAnalysis(free_matrix(k, conditions), layout, limits), limits);
+  static CondensedSystem read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
+                              const DofLayout& layout, const SetupLimits& limits) {
+    return CondensedSystem::read<Solver>(in, CholeskyAnalysis(free_matrix(k, conditions), layout, limits), limits);
   }
 };
 
