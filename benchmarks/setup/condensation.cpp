@@ -28,7 +28,7 @@ void measure_condensation(Session& session) {
     const VectorX b = bench::random_matrix(system.lower.rows(), 1);
     VectorX expected(b.size()), x(b.size());
     whole.solve_into(b, expected);
-    CondensedSystem<DenseCholesky> solver({std::move(schur), std::move(interior)}, {});
+    CondensedSystem solver = CondensedSystem::with<DenseCholesky>({std::move(schur), std::move(interior)}, {});
     solver.solve_into(b, x);
     const std::string what = "onto " + std::to_string(system.patch.size() / 3) + " nodes / plain factorisation";
     session.rows.add({.target = "f",

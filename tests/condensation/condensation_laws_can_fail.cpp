@@ -45,7 +45,7 @@ class Wrong {
 
  private:
   What what_;
-  Uncondensed<DenseCholesky> right_{DenseCholesky(k, {}), kept_dofs};
+  Uncondensed right_{DenseCholesky(k, {}), kept_dofs};
   int calls_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <palpate/linear/condition.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/dense_inverse.hpp>
+#include <palpate/linear/sparse_cholesky.hpp>
 #include <palpate/testing/solver_laws.hpp>
 
 #include <thread>

@@ -24,8 +24,7 @@ class AnyOperator {
  public:
   AnyOperator() = default;
   template <SpdOperator Op>
-    requires(!std::same_as<Op, AnyOperator>)
-  AnyOperator(Op op) : op_(std::make_unique<Holder<Op>>(std::move(op))) {}
+  requires(!std::same_as<Op, AnyOperator>) AnyOperator(Op op) : op_(std::make_unique<Holder<Op>>(std::move(op))) {}
   AnyOperator(const AnyOperator& other) : op_(other.op_ ? other.op_->copy() : nullptr) {}
   AnyOperator(AnyOperator&&) noexcept = default;
   AnyOperator& operator=(AnyOperator other) noexcept {
@@ -64,8 +63,7 @@ class AnySolver {
  public:
   AnySolver() = default;
   template <LinearSolver S>
-    requires(!std::same_as<S, AnySolver>)
-  AnySolver(S solver) : solver_(std::make_unique<Holder<S>>(std::move(solver))) {}
+  requires(!std::same_as<S, AnySolver>) AnySolver(S solver) : solver_(std::make_unique<Holder<S>>(std::move(solver))) {}
   AnySolver(const AnySolver& other) : solver_(other.solver_ ? other.solver_->copy() : nullptr) {}
   AnySolver(AnySolver&&) noexcept = default;
   AnySolver& operator=(AnySolver other) noexcept {
@@ -111,7 +109,9 @@ class AnySolver {
       return PathSolver<S>;
     }
     bool write(BinaryWriter& out) const override {
-      constexpr bool storable = requires { solver.write(out); };
+      constexpr bool storable = requires {
+        solver.write(out);
+      };
       if constexpr (storable) solver.write(out);
       return storable;
     }

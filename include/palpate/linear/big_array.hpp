@@ -10,7 +10,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 struct AlignedDelete {
   std::size_t alignment = 64;
-  void operator()(double* p) const noexcept { ::operator delete(p, std::align_val_t{alignment}); }
+  void operator()(double* p) const noexcept { ::operator delete (p, std::align_val_t{alignment}); }
 };
 
 /// Uninitialised doubles, aligned for any packet. On Linux large ones ask for huge pages, for fewer page faults while a

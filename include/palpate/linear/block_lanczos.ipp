@@ -127,8 +127,8 @@ PALPATE_INLINE void BlockLanczos::append_column(double* v, double* mass_v, doubl
   std::vector<double> part(static_cast<std::size_t>(size_));
   for (int twice = 0; twice < 2; ++twice) {
     detail::sparse_symmetric_product(mass_, v, mass_v);
-    for (Index k = 0; k < size_; ++k) part[static_cast<std::size_t>(k)] = detail::dot(basis(k), mass_v, n);
-    for (Index k = 0; k < size_; ++k) detail::add_scaled(v, -part[static_cast<std::size_t>(k)], basis(k), n);
+    detail::transposed_product(basis_.data(), n, size_, mass_v, part.data());
+    detail::subtract_product(basis_.data(), n, size_, part.data(), v);
   }
   detail::sparse_symmetric_product(mass_, v, mass_v);
   const double norm = std::sqrt(std::max(0.0, detail::dot(v, mass_v, n)));

@@ -33,8 +33,7 @@ PALPATE_INLINE SolveReport ConjugateGradientSolver::solve_into(const OperatorVie
     detail::subtract(b, q_, r_);
     report.relative_residual = detail::norm(r_) / b_norm;
     if (report.relative_residual <= parameters_.tolerance) break;
-    if (!(report.relative_residual < 0.5 * best) || report.iterations == before)
-      break;  // rounding floor, or breakdown
+    if (!(report.relative_residual < 0.5 * best) || report.iterations == before) break;  // rounding floor, or breakdown
     best = report.relative_residual;
   }
   report.converged = report.relative_residual <= parameters_.tolerance;

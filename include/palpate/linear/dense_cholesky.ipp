@@ -29,7 +29,7 @@ PALPATE_INLINE DenseCholesky::DenseCholesky(const MatrixX& matrix, const SetupLi
   detail::factor_front(l, n, 0, nullptr, 0, {pivots.data(), diagonal.data(), pivot_threshold}, packed.data());
   double worst = infinity;
   for (Index j = 0; j < n; ++j) {
-    const double ratio = pivots.data()[j] / diagonal.data()[j];
+    const double ratio = pivots.data()[j] / std::abs(diagonal.data()[j]);
     if (!(std::isfinite(ratio) && ratio >= worst)) worst = ratio;
     if (!(worst > pivot_threshold)) break;
   }

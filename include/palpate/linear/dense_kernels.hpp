@@ -28,6 +28,9 @@ void add_product(const Target& c, double factor, const Operand& a, const Operand
 MatrixX product(const MatrixX& a, const MatrixX& b);
 MatrixX transposed_product(const MatrixX& a, const MatrixX& b);
 
+/// y = y - a x and y = a^T x of a stored column by column. No allocation.
+void subtract_product(const double* a, Index rows, Index columns, const double* x, double* y) noexcept;
+void transposed_product(const double* a, Index rows, Index columns, const double* x, double* y) noexcept;
 /// y = a x of a symmetric matrix, lower half read once. No allocation.
 void symmetric_product(const MatrixX& a, const double* x, double* y) noexcept;
 

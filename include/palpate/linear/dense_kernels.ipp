@@ -56,7 +56,7 @@ inline void subtract_tile_within(const Target& c, Index i, Index j, Index steps,
 }
 
 PALPATE_INLINE void add_product(const Target& c, double factor, const Operand& a, const Operand& b, Index depth) {
-  constexpr Index deep = LowerPanels::width;                      // steps at a time
+  constexpr Index deep = LowerPanels::width;                       // steps at a time
   constexpr Index block = (deep * 5 / 3) / tile_rows * tile_rows;  // rows that stay in the cache
   const Index most = std::min(deep, depth);
   const Operand b_transposed = transposed(b);
@@ -90,45 +90,96 @@ PALPATE_INLINE MatrixX transposed_product(const MatrixX& a, const MatrixX& b) {
   return c;
 }
 
+template <int Columns>
+inline void subtract_few(const double* a, Index rows, const double* x, double* y) noexcept {
+  Packet minus_x[Columns];
+  for (int c = 0; c < Columns; ++c) minus_x[c] = broadcast(-x[c]);
+  Index i = 0;
+  for (; i + packet_size <= rows; i += packet_size) {
+    Packet out = load(y + i);
+    for (int c = 0; c < Columns; ++c) out = multiply_add(load(a + i + c * rows), minus_x[c], out);
+    store(y + i, out);
+  }
+  for (; i < rows; ++i)
+    for (int c = 0; c < Columns; ++c) y[i] -= a[i + c * rows] * x[c];
+}
+
+template <int Columns>
+inline void multiply_few(const double* a, Index rows, const double* x, double* y) noexcept {
+  Packet sum[Columns];
+  for (Packet& s : sum) s = broadcast(0.0);
+  Index i = 0;
+  for (; i + packet_size <= rows; i += packet_size) {
+    const Packet here = load(x + i);
+    for (int c = 0; c < Columns; ++c) sum[c] = multiply_add(load(a + i + c * rows), here, sum[c]);
+  }
+  for (int c = 0; c < Columns; ++c) {
+    y[c] = Eigen::internal::predux(sum[c]);
+    for (Index r = i; r < rows; ++r) y[c] += a[r + c * rows] * x[r];
+  }
+}
+
+PALPATE_INLINE void subtract_product(const double* a, Index rows, Index columns, const double* x, double* y) noexcept {
+  Index j = 0;
+  for (; j + 4 <= columns; j += 4) subtract_few<4>(a + j * rows, rows, x + j, y);
+  for (; j < columns; ++j) subtract_few<1>(a + j * rows, rows, x + j, y);
+}
+
+PALPATE_INLINE void transposed_product(const double* a, Index rows, Index columns, const double* x,
+                                       double* y) noexcept {
+  Index j = 0;
+  for (; j + 4 <= columns; j += 4) multiply_few<4>(a + j * rows, rows, x, y + j);
+  for (; j < columns; ++j) multiply_few<1>(a + j * rows, rows, x, y + j);
+}
+
 /// The part of `Columns` columns from j on, and of the same rows.
 template <int Columns>
 inline void add_symmetric_columns(const double* a, Index n, Index j, const double* x, double* y) noexcept {
   const double* const from = a + j * n;
-  Packet load_of[Columns], sum[Columns];
-  double tail[Columns];
+  double in[Columns], out[Columns], tail[Columns];
   for (int c = 0; c < Columns; ++c) {
-    load_of[c] = broadcast(x[j + c]);
-    sum[c] = broadcast(0.0);
-    tail[c] = from[j + c + c * n] * x[j + c];
+    in[c] = x[j + c];
+    out[c] = y[j + c];
+    tail[c] = 0.0;
+  }
+  for (int c = 0; c < Columns; ++c) {
+    out[c] += from[j + c + c * n] * in[c];
     for (int r = c + 1; r < Columns; ++r) {
-      y[j + r] += from[j + r + c * n] * x[j + c];
-      tail[c] += from[j + r + c * n] * x[j + r];
+      const double entry = from[j + r + c * n];
+      out[r] += entry * in[c];
+      tail[c] += entry * in[r];
     }
+  }
+  Packet load_of[Columns], sum[Columns];
+  for (int c = 0; c < Columns; ++c) {
+    load_of[c] = broadcast(in[c]);
+    sum[c] = broadcast(0.0);
   }
   Index i = j + Columns;
   for (; i + packet_size <= n; i += packet_size) {
     const Packet here = load(x + i);
-    Packet out = load(y + i);
+    Packet there = load(y + i);
     for (int c = 0; c < Columns; ++c) {
       const Packet entries = load(from + i + c * n);
-      out = multiply_add(entries, load_of[c], out);
+      there = multiply_add(entries, load_of[c], there);
       sum[c] = multiply_add(entries, here, sum[c]);
     }
-    store(y + i, out);
+    store(y + i, there);
   }
   for (; i < n; ++i)
     for (int c = 0; c < Columns; ++c) {
-      y[i] += from[i + c * n] * x[j + c];
+      y[i] += from[i + c * n] * in[c];
       tail[c] += from[i + c * n] * x[i];
     }
-  for (int c = 0; c < Columns; ++c) y[j + c] += tail[c] + Eigen::internal::predux(sum[c]);
+  for (int c = 0; c < Columns; ++c) y[j + c] = out[c] + tail[c] + Eigen::internal::predux(sum[c]);
 }
 
 PALPATE_INLINE void symmetric_product(const MatrixX& a, const double* x, double* y) noexcept {
+  constexpr int few = tile_columns;  // a multiple of a packet, so that packets of y stay aligned
   const Index n = a.rows();
   std::fill_n(y, n, 0.0);
   Index j = 0;
-  for (; j + 4 <= n; j += 4) add_symmetric_columns<4>(a.data(), n, j, x, y);
+  for (; j + few <= n; j += few) add_symmetric_columns<few>(a.data(), n, j, x, y);
   for (; j < n; ++j) add_symmetric_columns<1>(a.data(), n, j, x, y);
 }
 

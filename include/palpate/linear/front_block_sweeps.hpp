@@ -1,7 +1,6 @@
 // Blocks of right-hand sides through the fronts of a multifrontal factor.
 #pragma once
 
-#include <palpate/linear/big_array.hpp>
 #include <palpate/linear/front_tree.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
@@ -23,7 +22,7 @@ class FrontBlockSweeps {
   const FrontTree& tree_;
   const double* factor_;
   Index width_;
-  BigArray values_, local_;
+  VectorX values_, local_;
 };
 
 /// x = K^-1 b for all columns. The front after the first `fronts` ones is held at zero.

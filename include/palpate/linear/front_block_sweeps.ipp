@@ -13,29 +13,38 @@ inline Index block_packets(Index columns) noexcept {
   return columns <= packet_size ? 1 : columns <= 2 * packet_size ? 2 : 3;
 }
 
+/// Copies whole packets; returns the end of what was written. Stretches are too short for memmove to pay.
+inline double* copy_packets(const double* from, Index count, double* to) noexcept {
+  for (Index i = 0; i < count; i += packet_size) store(to + i, load(from + i));
+  return to + count;
+}
+inline double* clear_packets(double* to, Index count) noexcept {
+  for (Index i = 0; i < count; i += packet_size) store(to + i, broadcast(0.0));
+  return to + count;
+}
+
 PALPATE_INLINE FrontBlockSweeps::FrontBlockSweeps(const FrontTree& tree, const double* factor, Index columns)
     : tree_(tree),
       factor_(factor),
       width_(block_packets(columns) * packet_size),
-      values_(width_ * std::max<Index>(1, tree.place_of_dof.size())),
+      values_(width_ * tree.place_of_dof.size()),
       local_(width_ * (LowerPanels::padded(tree.largest_front) + LowerPanels::alignment)) {}
 
 PALPATE_INLINE void FrontBlockSweeps::clear(Index first, Index count) noexcept {
-  std::fill_n(row(first), count * width_, 0.0);
+  clear_packets(row(first), count * width_);
 }
 
 PALPATE_INLINE void FrontBlockSweeps::forward(const Front& f) noexcept {
   const LowerPanels shape = f.panels();
   double* const x = local_.data();
-  std::copy_n(row(f.first), f.pivots * width_, x);
-  std::fill_n(x + f.pivots * width_, (shape.height - f.pivots) * width_, 0.0);
+  clear_packets(copy_packets(row(f.first), f.pivots * width_, x), (shape.height - f.pivots) * width_);
   if (width_ == packet_size)
     FrontBlock<1>::forward(factor_ + f.factor, shape, x);
   else if (width_ == 2 * packet_size)
     FrontBlock<2>::forward(factor_ + f.factor, shape, x);
   else
     FrontBlock<3>::forward(factor_ + f.factor, shape, x);
-  std::copy_n(x, f.pivots * width_, row(f.first));
+  copy_packets(x, f.pivots * width_, row(f.first));
   const double* from = x + f.pivots * width_;
   for (Index r = f.run_begin; r < f.run_end; ++r) {
     double* const to = row(tree_.runs[r].first);
@@ -48,17 +57,17 @@ PALPATE_INLINE void FrontBlockSweeps::forward(const Front& f) noexcept {
 PALPATE_INLINE void FrontBlockSweeps::backward(const Front& f) noexcept {
   const LowerPanels shape = f.panels();
   double* const x = local_.data();
-  double* to = std::copy_n(row(f.first), f.pivots * width_, x);
+  double* to = copy_packets(row(f.first), f.pivots * width_, x);
   for (Index r = f.run_begin; r < f.run_end; ++r)
-    to = std::copy_n(row(tree_.runs[r].first), tree_.runs[r].count * width_, to);
-  std::fill(to, x + shape.height * width_, 0.0);
+    to = copy_packets(row(tree_.runs[r].first), tree_.runs[r].count * width_, to);
+  clear_packets(to, x + shape.height * width_ - to);
   if (width_ == packet_size)
     FrontBlock<1>::backward(factor_ + f.factor, shape, x);
   else if (width_ == 2 * packet_size)
     FrontBlock<2>::backward(factor_ + f.factor, shape, x);
   else
     FrontBlock<3>::backward(factor_ + f.factor, shape, x);
-  std::copy_n(x, f.pivots * width_, row(f.first));
+  copy_packets(x, f.pivots * width_, row(f.first));
 }
 
 /// Columns begin ... begin + count of b into x, count at most the width.

@@ -51,11 +51,13 @@ PALPATE_INLINE ReducedUnits reduce_units(const FrontTree& tree, const double* fa
     if (fronts < tree.fronts.size()) clear(fronts);
     for (Index k = 0; k < count; ++k) sweeps.row(tree.place_of_dof[part[static_cast<std::size_t>(k)]])[k] = 1.0;
     for (const Index f : fronts_above(tree, fronts, part)) sweeps.forward(tree.fronts[f]);
-    for (Index k = 0; k < count; ++k) {
-      double* const value = out.values.data() + (first + k) * rows;
-      for (Index i = 0; i < rows; ++i) value[i] = sweeps.row(out.places[static_cast<std::size_t>(i)])[k];
-      double* const load = out.kept_load.data() + (first + k) * kept_rows;
-      for (Index i = 0; i < kept_rows; ++i) load[i] = sweeps.row(tree.place_of_dof[kept[static_cast<std::size_t>(i)]])[k];
+    for (Index i = 0; i < rows; ++i) {
+      const double* const row = sweeps.row(out.places[static_cast<std::size_t>(i)]);
+      for (Index k = 0; k < count; ++k) out.values.data()[i + (first + k) * rows] = row[k];
+    }
+    for (Index i = 0; i < kept_rows; ++i) {
+      const double* const row = sweeps.row(tree.place_of_dof[kept[static_cast<std::size_t>(i)]]);
+      for (Index k = 0; k < count; ++k) out.kept_load.data()[i + (first + k) * kept_rows] = row[k];
     }
   }
   return out;

@@ -15,7 +15,7 @@ inline bool pivot_is_good(double pivot, double diagonal, double threshold) noexc
 /// diagonal entry. `pivots` and `diagonal` go by place in the elimination order; the ids are nodes where
 /// `node_of_dof` has them, dofs where it is empty.
 void check_pivots(const VectorX& pivots, const VectorX& diagonal, const NodeVector& place_of_dof,
-                         const std::vector<Index>& node_of_dof, Index checked, double threshold);
+                  const std::vector<Index>& node_of_dof, Index checked, double threshold);
 
 }}}  // namespace palpate::detail
 

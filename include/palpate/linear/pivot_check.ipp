@@ -10,7 +10,7 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE void check_pivots(const VectorX& pivots, const VectorX& diagonal, const NodeVector& place_of_dof,
-                         const std::vector<Index>& node_of_dof, Index checked, double threshold) {
+                                 const std::vector<Index>& node_of_dof, Index checked, double threshold) {
   std::vector<Index> bad;
   Index count = 0;
   double worst = infinity;

@@ -134,8 +134,7 @@ PALPATE_INLINE void SparseCholesky::recover_into(const VectorX& kept_answer, Vec
 }
 
 PALPATE_INLINE ReducedUnits SparseCholesky::reduce_units(std::span<const Index> dofs) const {
-  return detail::reduce_units(factor_->tree(), factor_->values.data(), factor_->fronts, dofs,
-                              factor_->analysis.kept());
+  return detail::reduce_units(factor_->tree(), factor_->values.data(), factor_->fronts, dofs, factor_->analysis.kept());
 }
 
 PALPATE_INLINE void SparseCholesky::solve_path_into(std::span<const Index> loaded, std::span<const double> loads,

@@ -151,7 +151,7 @@ NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, 
   const EssentialConditions conditions = resolve_essential(body.mesh, extract_boundary<E>(body.mesh), scene);
   const MatrixX rigid_motions = rigid_displacements(body.mesh, conditions.constrained);
   detail::require_count(count, conditions.free_count() - rigid_motions.cols());
-  limits.require_memory(BlockLanczos<>::bytes(conditions.free_count(), rigid_motions.cols(), count), "the modes");
+  limits.require_memory(BlockLanczos::bytes(conditions.free_count(), rigid_motions.cols(), count), "the modes");
 
   detail::ModalProblem problem{free_matrix(assemble_stiffness<E>(body, limits), conditions),
                                free_matrix(assemble_mass<E>(body, limits), conditions),
