@@ -73,7 +73,7 @@ class MeshBuilder {
   void scale_positions(double scale);
   void name_regions();
   void tidy_groups();
-  [[noreturn]] void refuse_shape(const FileCell& cell, CellShape wanted, const std::string& hint) const;
+  [[noreturn]] void refuse_shape(const FileCell& cell, CellShape wanted, const Pieces& hint) const;
   [[noreturn]] void refuse_without_solids() const;
 
   const std::vector<int>& tags(const FileCell& cell) const { return file_.tag_sets[cell.tag_set]; }
@@ -91,7 +91,7 @@ class MeshBuilder {
 
 inline PlainMesh MeshBuilder::build(double scale) {
   if (!(scale > 0.0) || !std::isfinite(scale))
-    raise(SetupErrorKind::bad_argument, joined({"a mesh cannot be scaled by ", number(scale)}));
+    refuse(SetupErrorKind::bad_argument, {"a mesh cannot be scaled by ", scale});
   check_solid_shapes();
   declare_groups();
   for (const FileCell& cell : file_.cells) {
@@ -109,9 +109,8 @@ inline PlainMesh MeshBuilder::build(double scale) {
 inline void MeshBuilder::check_solid_shapes() const {
   for (const FileCell& cell : file_.cells)
     if (facts(cell.shape).dimension == 3 && cell.shape != solid_)
-      refuse_shape(
-          cell, solid_,
-          joined({"Read it as its own element type, or mesh again: gmsh model.geo -3 -order ", element_.order}));
+      refuse_shape(cell, solid_,
+                   {"Read it as its own element type, or mesh again: gmsh model.geo -3 -order ", element_.order});
 }
 
 /// (dimension, tag) of all cells.
@@ -131,16 +130,15 @@ inline PairMap MeshBuilder::used_tags() const {
 }
 
 /// One group per name in the order of the file, then one per tag without a name: "volume 3" or "surface 1".
-inline void MeshBuilder::declare_groups() {
+PALPATE_COLD inline void MeshBuilder::declare_groups() {
   const PairMap used = used_tags();
   if (used.size() > max_groups || file_.names.size() > max_groups)
-    raise(SetupErrorKind::count_too_large,
-          joined({file_.files[0], ": expected at most ", max_groups, " groups, found more"}));
+    refuse(SetupErrorKind::count_too_large, {file_.files[0], ": expected at most ", max_groups, " groups, found more"});
   for (const TagName& n : file_.names) {
     const std::uint32_t group = group_index(n.name, n.dimension);
     if (!group_of_.try_emplace(std::pair<Index, Index>(n.dimension, n.tag), group).second)
-      raise(SetupErrorKind::bad_file,
-            joined({file_.files[0], ": tag ", n.tag, " of dimension ", n.dimension, " has two names"}));
+      refuse(SetupErrorKind::bad_file,
+             {file_.files[0], ": tag ", n.tag, " of dimension ", n.dimension, " has two names"});
   }
   constexpr std::array<std::string_view, 4> kinds{"point ", "curve ", "surface ", "volume "};
   for (const auto& [key, unused] : used)
@@ -150,7 +148,7 @@ inline void MeshBuilder::declare_groups() {
     }
 }
 
-inline std::uint32_t MeshBuilder::group_index(const std::string& name, int dimension) {
+PALPATE_COLD inline std::uint32_t MeshBuilder::group_index(const std::string& name, int dimension) {
   const Group& group = mesh_.groups.get_or_add(name, dimension);
   return static_cast<std::uint32_t>(&group - mesh_.groups.all().data());
 }
@@ -193,7 +191,7 @@ inline void MeshBuilder::add_to_groups(const FileCell& cell) {
 
 inline void MeshBuilder::add_face(Group& group, const FileCell& cell) {
   if (cell.shape != face_)
-    refuse_shape(cell, face_, joined({"The faces of group '", group.name, "' must be faces of the solid elements"}));
+    refuse_shape(cell, face_, {"The faces of group '", group.name, "' must be faces of the solid elements"});
   group.faces.emplace_back(nodes(cell), nodes(cell) + element_.face.nodes);
 }
 
@@ -203,8 +201,7 @@ inline void MeshBuilder::scale_positions(double scale) {
     for (int c = 0; c < 3; ++c) {
       x.data()[c] *= scale;
       if (!std::isfinite(x.data()[c]))
-        raise(SetupErrorKind::non_finite,
-              joined({file_.files[0], ": a coordinate times ", number(scale), " is not finite"}));
+        refuse(SetupErrorKind::non_finite, {file_.files[0], ": a coordinate times ", scale, " is not finite"});
     }
 }
 
@@ -242,20 +239,20 @@ inline void MeshBuilder::tidy_groups() {
   }
 }
 
-inline void MeshBuilder::refuse_shape(const FileCell& cell, CellShape wanted, const std::string& hint) const {
-  raise(SetupErrorKind::unsupported,
-        joined({place_text(file_.files[cell.file], cell.place), ": expected a ", facts(wanted).name, ", found a ",
-                facts(cell.shape).name}),
-        hint);
+PALPATE_COLD inline void MeshBuilder::refuse_shape(const FileCell& cell, CellShape wanted, const Pieces& hint) const {
+  refuse(SetupErrorKind::unsupported,
+         {place_text(file_.files[cell.file], cell.place), ": expected a ", facts(wanted).name, ", found a ",
+          facts(cell.shape).name},
+         hint);
 }
 
-inline void MeshBuilder::refuse_without_solids() const {
+PALPATE_COLD inline void MeshBuilder::refuse_without_solids() const {
   Index faces = 0;
   for (const FileCell& cell : file_.cells) faces += facts(cell.shape).dimension == 2 ? 1 : 0;
-  if (faces == 0) raise(SetupErrorKind::empty_mesh, joined({file_.files[0], ": expected solid elements, found none"}));
-  raise(SetupErrorKind::unsupported,
-        joined({file_.files[0], ": expected solid elements, found a surface of ", faces, " faces"}),
-        fill_command(file_.files[0]));
+  if (faces == 0) refuse(SetupErrorKind::empty_mesh, {file_.files[0], ": expected solid elements, found none"});
+  refuse(SetupErrorKind::unsupported,
+         {file_.files[0], ": expected solid elements, found a surface of ", faces, " faces"},
+         fill_command(file_.files[0]));
 }
 
 }  // namespace detail

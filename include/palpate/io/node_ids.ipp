@@ -10,7 +10,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 PALPATE_INLINE NodeIds::NodeIds(const std::vector<Index>& tags, const TextReader& in)
     : count_(static_cast<Index>(tags.size())) {
   for (std::size_t i = 0; i < tags.size() && in_order_; ++i) in_order_ = tags[i] == static_cast<Index>(i) + 1;
-  if (count_ > max_int) raise(SetupErrorKind::too_large, joined({in.name(), ": ", count_, " nodes"}));
+  if (count_ > max_int) refuse(SetupErrorKind::too_large, {in.name(), ": ", count_, " nodes"});
   if (in_order_) return;
   sorted_.reserve(tags.size());
   bool is_sorted = true;
@@ -22,7 +22,7 @@ PALPATE_INLINE NodeIds::NodeIds(const std::vector<Index>& tags, const TextReader
   std::sort(sorted_.begin(), sorted_.end(), [](const Entry& a, const Entry& b) { return a.tag < b.tag; });
   for (std::size_t i = 1; i < sorted_.size(); ++i)
     if (sorted_[i - 1].tag == sorted_[i].tag)
-      in.refuse(SetupErrorKind::bad_file, "every node id once", joined({"node ", sorted_[i].tag, " twice"}));
+      in.refuse(SetupErrorKind::bad_file, "every node id once", {"node ", sorted_[i].tag, " twice"});
 }
 
 PALPATE_INLINE NodeId NodeIds::search(Index tag, const TextReader& in) const {
@@ -35,7 +35,7 @@ PALPATE_INLINE NodeId NodeIds::search(Index tag, const TextReader& in) const {
       high = middle;
   }
   if (low == sorted_.size() || sorted_[low].tag != tag)
-    in.refuse(SetupErrorKind::index_out_of_range, "the id of a node of this file", joined({"'", tag, "'"}));
+    in.refuse(SetupErrorKind::index_out_of_range, "the id of a node of this file", {"'", tag, "'"});
   return sorted_[low].node;
 }
 
