@@ -2,8 +2,7 @@
 #pragma once
 
 #include <palpate/io/gmsh_msh4.hpp>
-
-#include <algorithm>
+#include <palpate/io/sorting.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh::msh4 {
 
@@ -25,8 +24,7 @@ PALPATE_COLD inline void read_entity(const Numbers& in, int dimension, State& st
     for (Index i = 0; i < bounds; ++i) in.integer("a bounding entity", -max_int, max_int);
   }
   in.end("an entity");
-  std::sort(physical.begin(), physical.end());
-  physical.erase(std::unique(physical.begin(), physical.end()), physical.end());
+  sort_unique(physical);
   const std::uint32_t set = state.sets.find_or_add(state.mesh, physical);
   if (!state.entities.try_emplace(std::pair<Index, Index>(dimension, tag), set).second)
     in.in.refuse(SetupErrorKind::bad_file, "every entity once",

@@ -3,6 +3,7 @@
 
 #include <palpate/io/mesh_builder.hpp>
 #include <palpate/io/node_order.hpp>
+#include <palpate/io/sorting.hpp>
 #include <palpate/io/tag_sets.hpp>
 
 #include <algorithm>
@@ -12,35 +13,37 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 namespace detail {
 
-/// Drops faces that came before, in whatever order of nodes. Keeps the order of the others.
+/// Drops faces that came before, in whatever order of nodes; all have as many nodes. Keeps the order of the others.
 inline void drop_repeated_faces(std::vector<std::vector<NodeId>>& faces) {
-  struct Key {
-    NodeId low, high;  ///< two nodes tell nearly all faces apart
-    std::size_t face;
-  };
+  if (faces.empty()) return;
+  const std::size_t each = faces[0].size();
   std::vector<NodeId> nodes;  ///< sorted within each face
-  std::vector<Key> keys;
-  const std::size_t each = faces.empty() ? 0 : faces[0].size();
   nodes.reserve(each * faces.size());
-  keys.reserve(faces.size());
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    nodes.insert(nodes.end(), faces[i].begin(), faces[i].end());
-    std::sort(nodes.end() - static_cast<std::ptrdiff_t>(each), nodes.end());
-    keys.push_back({nodes[i * each], nodes.back(), i});
+  for (const std::vector<NodeId>& face : faces)
+    for (std::size_t a = 0; a < each; ++a) {
+      nodes.push_back(face[a]);
+      for (std::size_t k = nodes.size() - 1, left = a; left > 0 && nodes[k] < nodes[k - 1]; --k, --left)
+        std::swap(nodes[k], nodes[k - 1]);
+    }
+  // By the last two nodes first, then keeping that order by those before them.
+  std::vector<Ranked> order(faces.size()), sorted;
+  for (std::size_t i = 0; i < faces.size(); ++i) order[i].key = static_cast<Index>(i);
+  for (std::size_t pair = (each + 1) / 2; pair-- > 0;) {
+    sorted = order;
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      const NodeId* face = nodes.data() + static_cast<std::size_t>(order[i].key) * each;
+      const Index second = 2 * pair + 1 < each ? face[2 * pair + 1] : 0;
+      sorted[i] = {Index{face[2 * pair]} << 32 | second, static_cast<Index>(i)};
+    }
+    sort_ranked(sorted);
+    for (Ranked& r : sorted) r.key = order[static_cast<std::size_t>(r.id)].key;
+    order.swap(sorted);
   }
-  const auto order = [&](const Key& a, const Key& b) {
-    if (a.low != b.low) return a.low < b.low ? -1 : 1;
-    if (a.high != b.high) return a.high < b.high ? -1 : 1;
-    for (std::size_t k = 1; k + 1 < each; ++k)
-      if (const NodeId x = nodes[a.face * each + k], y = nodes[b.face * each + k]; x != y) return x < y ? -1 : 1;
-    return 0;
-  };
-  std::sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
-    const int known = order(a, b);
-    return known != 0 ? known < 0 : a.face < b.face;
-  });
-  std::vector<char> is_again(keys.size());
-  for (std::size_t i = 1; i < keys.size(); ++i) is_again[keys[i].face] = order(keys[i - 1], keys[i]) == 0;
+  std::vector<char> is_again(faces.size());
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const auto face = static_cast<std::size_t>(order[i].key), before = static_cast<std::size_t>(order[i - 1].key);
+    is_again[face] = std::equal(&nodes[face * each], &nodes[face * each] + each, &nodes[before * each]);
+  }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < faces.size(); ++i)
     if (is_again[i] == 0) faces[kept++].swap(faces[i]);
@@ -230,10 +233,9 @@ inline void MeshBuilder::name_regions() {
 
 /// A group is a set: a node, face or element that several tags of one name hold counts once.
 inline void MeshBuilder::tidy_groups() {
-  mesh_.groups.tidy();
   for (Group& group : mesh_.groups.all()) {
-    if (!std::is_sorted(group.elements.begin(), group.elements.end()))
-      std::sort(group.elements.begin(), group.elements.end());
+    sort_unique(group.nodes);
+    // Elements come in rising order.
     group.elements.erase(std::unique(group.elements.begin(), group.elements.end()), group.elements.end());
     drop_repeated_faces(group.faces);
   }
