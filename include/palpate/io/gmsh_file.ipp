@@ -19,7 +19,7 @@ PALPATE_COLD inline void read_byte_order(TextReader& in, Format& format) {
   const std::string_view raw = in.take(4, "the integer 1");
   format.swap = from_bytes<std::int32_t>(raw, false) != 1;
   if (from_bytes<std::int32_t>(raw, format.swap) != 1)
-    in.refuse(SetupErrorKind::bad_file, "the integer 1", quoted(raw));
+    in.refuse(SetupErrorKind::bad_file, "the integer 1", in_quotes(raw));
 }
 
 /// Reads $MeshFormat; MSH 1 has none and its $NOD stays the current line. Refuses MSH 3 and 4.0 as unsupported, with
@@ -27,7 +27,7 @@ PALPATE_COLD inline void read_byte_order(TextReader& in, Format& format) {
 PALPATE_COLD inline Format read_format(TextReader& in) {
   in.need_line("$MeshFormat or $NOD");
   if (in.line() == "$NOD") return {1, false, false};
-  if (in.line() != "$MeshFormat") in.refuse(SetupErrorKind::bad_file, "$MeshFormat or $NOD", quoted(in.line()));
+  if (in.line() != "$MeshFormat") in.refuse(SetupErrorKind::bad_file, "$MeshFormat or $NOD", in_quotes(in.line()));
   in.need_line("a version number");
   const double version = in.real("a version number");
   const bool is2 = version >= 2.0 && version <= 2.2;
@@ -54,15 +54,15 @@ PALPATE_COLD inline void read_physical_names(TextReader& in, State& state) {
     const auto tag = static_cast<int>(in.integer("a physical tag", 1, max_int));
     const std::string_view name = in.rest();
     if (name.size() < 3 || name.front() != '"' || name.back() != '"')
-      in.refuse(SetupErrorKind::bad_file, "a name in double quotes", quoted(name));
+      in.refuse(SetupErrorKind::bad_file, "a name in double quotes", in_quotes(name));
     state.mesh.names.push_back({dimension, tag, std::string(name.substr(1, name.size() - 2))});
   }
 }
 
 /// Refuses a section that came before, or that comes at the wrong place; else notes that it is there.
 PALPATE_COLD inline void check_order(const TextReader& in, bool& seen, bool in_place, std::string_view order) {
-  if (seen) in.refuse(SetupErrorKind::bad_file, "every section once", {quoted(in.line()), " again"});
-  if (!in_place) in.refuse(SetupErrorKind::bad_file, order, quoted(in.line()));
+  if (seen) in.refuse(SetupErrorKind::bad_file, "every section once", {in_quotes(in.line()), " again"});
+  if (!in_place) in.refuse(SetupErrorKind::bad_file, order, in_quotes(in.line()));
   seen = true;
 }
 
@@ -77,7 +77,7 @@ inline void read_section(TextReader& in, State& state) {
   const std::string_view section = in.line();
   const bool is1 = state.format.major == 1;
   if (section.size() < 2 || section.front() != '$' || section.starts_with("$End") || section.starts_with("$END"))
-    in.refuse(SetupErrorKind::bad_file, "the start of a section such as $Nodes", quoted(in.line()));
+    in.refuse(SetupErrorKind::bad_file, "the start of a section such as $Nodes", in_quotes(in.line()));
   const std::string end = joined({is1 ? "$END" : "$End", section.substr(1)});
   if (section == "$PhysicalNames") {
     check_order(in, state.has_names, true, {});

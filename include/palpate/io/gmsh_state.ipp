@@ -21,7 +21,7 @@ PALPATE_INLINE int read_physical(const Numbers& in) {
 
 PALPATE_COLD PALPATE_INLINE void need_mark(TextReader& in, std::string_view mark) {
   in.need_line(mark);
-  if (in.line() != mark) in.refuse(SetupErrorKind::bad_file, mark, quoted(in.line()));
+  if (in.line() != mark) in.refuse(SetupErrorKind::bad_file, mark, in_quotes(in.line()));
 }
 
 PALPATE_COLD PALPATE_INLINE Index read_count(TextReader& in, std::string_view what, Index bytes_each) {

@@ -63,7 +63,7 @@ std::string joined(const Pieces& pieces);
 void append(std::string& text, std::initializer_list<Piece> pieces);
 
 /// A word for a message: in quotes, shortened, printable.
-constexpr Piece quoted(std::string_view word) noexcept {
+constexpr Piece in_quotes(std::string_view word) noexcept {
   return {word, Piece::Kind::quoted};
 }
 

@@ -62,7 +62,7 @@ PALPATE_INLINE void Numbers::skip_reals(int count, std::string_view what) const 
     return;
   }
   for (int i = 0; i < count; ++i)
-    if (in.token().empty()) in.refuse(SetupErrorKind::bad_file, what, quoted({}));
+    if (in.token().empty()) in.refuse(SetupErrorKind::bad_file, what, in_quotes({}));
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io

@@ -51,7 +51,7 @@ PALPATE_COLD inline MeshFormat format_of_ending(const std::string& name) {
 [[noreturn]] PALPATE_COLD inline void refuse_unknown(std::string_view text, const std::string& name) {
   TextReader in(text, name);
   in.next_line();
-  in.refuse(SetupErrorKind::bad_file, "a Gmsh, TetGen, legacy VTK or VegaFEM mesh", quoted(in.line()),
+  in.refuse(SetupErrorKind::bad_file, "a Gmsh, TetGen, legacy VTK or VegaFEM mesh", in_quotes(in.line()),
             {"meshio and gmsh convert others: meshio convert ", name, " converted.msh"});
 }
 

@@ -29,7 +29,7 @@ struct State {
 /// Refuses lines behind the last one announced, and a last one that is cut.
 PALPATE_COLD inline void need_end(TextReader& in, std::string_view what, Index count) {
   if (in.next_line())
-    in.refuse(SetupErrorKind::bad_file, {"the end of the file after ", count, " ", what}, quoted(in.line()));
+    in.refuse(SetupErrorKind::bad_file, {"the end of the file after ", count, " ", what}, in_quotes(in.line()));
   in.need_last_line_end();
 }
 

@@ -81,9 +81,9 @@ PALPATE_INLINE Index TextReader::integer(std::string_view what, Index low, Index
   Index value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error == std::errc::invalid_argument || end != word.data() + word.size())
-    refuse(SetupErrorKind::bad_file, what, quoted(word));
+    refuse(SetupErrorKind::bad_file, what, in_quotes(word));
   if (error == std::errc::result_out_of_range || value < low || value > high)
-    refuse_range(kind, what, low, high, quoted(word));
+    refuse_range(kind, what, low, high, in_quotes(word));
   return value;
 }
 
@@ -97,15 +97,15 @@ PALPATE_INLINE double TextReader::real(std::string_view what) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   double value = 0.0;
   const std::errc error = parse_decimal(word, value);
-  if (error == std::errc::invalid_argument) refuse(SetupErrorKind::bad_file, what, quoted(whole));
+  if (error == std::errc::invalid_argument) refuse(SetupErrorKind::bad_file, what, in_quotes(whole));
   if (error != std::errc{} || !std::isfinite(value))
-    refuse(SetupErrorKind::non_finite, {what, " in the range of a double"}, quoted(whole));
+    refuse(SetupErrorKind::non_finite, {what, " in the range of a double"}, in_quotes(whole));
   return value;
 }
 
 PALPATE_INLINE void TextReader::end_line(std::string_view what) {
   const std::string_view word = token();
-  if (!word.empty()) refuse(SetupErrorKind::bad_file, {"the end of the line after ", what}, quoted(word));
+  if (!word.empty()) refuse(SetupErrorKind::bad_file, {"the end of the line after ", what}, in_quotes(word));
 }
 
 PALPATE_COLD PALPATE_INLINE void TextReader::refuse(SetupErrorKind kind, const Pieces& expected, const Pieces& found,

@@ -82,7 +82,7 @@ inline FileMesh Parser::parse() {
 
 PALPATE_COLD inline void Parser::need_keyword(std::string_view keyword) {
   lines_.need_line(keyword);
-  if (in().line() != keyword) in().refuse(SetupErrorKind::bad_file, keyword, quoted(in().line()));
+  if (in().line() != keyword) in().refuse(SetupErrorKind::bad_file, keyword, in_quotes(in().line()));
 }
 
 inline void Parser::read_vertices() {
@@ -100,7 +100,7 @@ inline void Parser::read_elements() {
   lines_.need_line("TET or CUBIC");
   const std::string_view type = in().line();
   const bool is_cubic = type.starts_with("CUBIC");
-  if (!is_cubic && !type.starts_with("TET")) in().refuse(SetupErrorKind::unsupported, "TET or CUBIC", quoted(type));
+  if (!is_cubic && !type.starts_with("TET")) in().refuse(SetupErrorKind::unsupported, "TET or CUBIC", in_quotes(type));
   lines_.need_line("the header of the elements");
   const CellHeader header = CellHeader::read(in(), is_cubic ? CellShape::hexahedron8 : CellShape::tetrahedron4,
                                              std::min(any_size, static_cast<std::size_t>(max_int) * 9));
@@ -123,13 +123,13 @@ PALPATE_COLD inline void Parser::read_section() {
   } else if (keyword == "*REGION") {
     read_region();
   } else {
-    in().refuse(SetupErrorKind::bad_file, "*MATERIAL, *SET or *REGION", quoted(keyword));
+    in().refuse(SetupErrorKind::bad_file, "*MATERIAL, *SET or *REGION", in_quotes(keyword));
   }
 }
 
 PALPATE_COLD inline std::string Parser::read_name(std::string_view what) {
   const std::string name(in().token());
-  if (name.empty()) in().refuse(SetupErrorKind::bad_file, what, quoted(name));
+  if (name.empty()) in().refuse(SetupErrorKind::bad_file, what, in_quotes(name));
   in().end_line(what);
   return name;
 }
@@ -139,7 +139,7 @@ PALPATE_COLD inline void Parser::read_material() {
   lines_.need_line("a material such as ENU, density, E, nu");
   const std::string_view type = in().token();
   if (type.empty() || type.front() == '*')
-    in().refuse(SetupErrorKind::bad_file, "a material such as ENU, density, E, nu", quoted(type));
+    in().refuse(SetupErrorKind::bad_file, "a material such as ENU, density, E, nu", in_quotes(type));
   while (!in().rest().empty()) in().real("a material constant");
 }
 
@@ -152,7 +152,7 @@ PALPATE_COLD inline Parser::Set& Parser::add_set(const std::string& name) {
 inline void Parser::read_set() {
   const std::string name = read_name("the name of a set");
   if (set_of_name_.find(name) != set_of_name_.end())
-    in().refuse(SetupErrorKind::bad_file, "a new set", {quoted(name), " again"});
+    in().refuse(SetupErrorKind::bad_file, "a new set", {in_quotes(name), " again"});
   std::vector<Index>& set = add_set(name).elements;
   const Index base = std::max<Index>(elements_.base(), 0), count = elements_.count();
   while (lines_.next_line()) {
@@ -166,9 +166,9 @@ PALPATE_COLD inline void Parser::read_region() {
   lines_.need_line("a set and a material");
   const std::string set(in().token()), material(in().token());
   const auto known = set_of_name_.find(set);
-  if (known == set_of_name_.end()) in().refuse(SetupErrorKind::bad_file, "a set of this file", quoted(set));
+  if (known == set_of_name_.end()) in().refuse(SetupErrorKind::bad_file, "a set of this file", in_quotes(set));
   if (materials_.find(material) == materials_.end())
-    in().refuse(SetupErrorKind::bad_file, "a material of this file", quoted(material));
+    in().refuse(SetupErrorKind::bad_file, "a material of this file", in_quotes(material));
   in().end_line("a region");
   regions_.push_back(known->second);
 }

@@ -38,7 +38,7 @@ PALPATE_COLD PALPATE_INLINE void Lines::open() {
     at.refuse(SetupErrorKind::unsupported, "at most 8 files inside each other and 64 in all", "one more");
   if (name.empty() || name.front() == '/' || name.front() == '\\' || name.find("..") != name.npos ||
       name.find(':') != name.npos)
-    at.refuse(SetupErrorKind::unsupported, "a file in the folder of this one", quoted(name));
+    at.refuse(SetupErrorKind::unsupported, "a file in the folder of this one", in_quotes(name));
   open_.push_back({include_(name), TextReader({}, name)});
   open_.back().reader = TextReader(open_.back().text, name, syntax);
   file_.push_back(static_cast<std::uint8_t>(names.size()));

@@ -61,7 +61,7 @@ PALPATE_COLD PALPATE_INLINE void AttributeReader::read_field() {
 }
 
 PALPATE_COLD PALPATE_INLINE void AttributeReader::read_attribute(std::string_view keyword) {
-  if (!has_begun_) in_.refuse(SetupErrorKind::bad_file, "a section such as POINTS or CELLS", quoted(in_.line()));
+  if (!has_begun_) in_.refuse(SetupErrorKind::bad_file, "a section such as POINTS or CELLS", in_quotes(in_.line()));
   const std::string_view name = in_.token();
   if (same_word(keyword, "lookup_table") || same_word(keyword, "color_scalars")) {
     const Index size = in_.integer("a size", 0, max_int);
@@ -84,7 +84,7 @@ PALPATE_COLD PALPATE_INLINE void AttributeReader::read_attribute(std::string_vie
                                        {"scalars", 0}}};
   std::size_t kind = 0;
   while (kind < kinds.size() && !same_word(kinds[kind].name, keyword)) ++kind;
-  if (kind == kinds.size()) in_.refuse(SetupErrorKind::bad_file, "data such as SCALARS", quoted(in_.line()));
+  if (kind == kinds.size()) in_.refuse(SetupErrorKind::bad_file, "data such as SCALARS", in_quotes(in_.line()));
   Index components = kinds[kind].components;
   if (same_word(keyword, "texture_coordinates")) components = in_.integer("a number of components", 1, 3);
   const NumberType& type = numbers_.read_type();
@@ -93,7 +93,7 @@ PALPATE_COLD PALPATE_INLINE void AttributeReader::read_attribute(std::string_vie
   if (same_word(keyword, "scalars")) {
     in_.need_line("LOOKUP_TABLE");
     if (!same_word(in_.token(), "lookup_table"))
-      in_.refuse(SetupErrorKind::bad_file, "LOOKUP_TABLE", quoted(in_.line()));
+      in_.refuse(SetupErrorKind::bad_file, "LOOKUP_TABLE", in_quotes(in_.line()));
     in_.token();
     in_.end_line("the name of a table");
   }

@@ -64,7 +64,7 @@ inline FileMesh LegacyParser::parse() {
 PALPATE_COLD inline void LegacyParser::read_head() {
   constexpr std::string_view head = "# vtk DataFile Version";
   if (!in_.next_raw_line() || !in_.line().starts_with(head))
-    in_.refuse(SetupErrorKind::bad_file, head, quoted(in_.line()));
+    in_.refuse(SetupErrorKind::bad_file, head, in_quotes(in_.line()));
   for (int i = 0; i < 4; ++i) in_.token();
   version_ = in_.real("a version number");
   if (!(version_ >= 1.0 && version_ < 6.0)) in_.refuse(SetupErrorKind::unsupported, "version 1 to 5", version_);
@@ -73,15 +73,15 @@ PALPATE_COLD inline void LegacyParser::read_head() {
   const std::string_view coding = in_.line();
   numbers_.is_binary = same_word(coding, "binary");
   if (!numbers_.is_binary && !same_word(coding, "ascii"))
-    in_.refuse(SetupErrorKind::bad_file, "ASCII or BINARY", quoted(in_.line()));
+    in_.refuse(SetupErrorKind::bad_file, "ASCII or BINARY", in_quotes(in_.line()));
   in_.need_line("DATASET UNSTRUCTURED_GRID");
   const bool is_dataset = same_word(in_.token(), "dataset");
   const std::string_view kind = in_.token();
-  if (!is_dataset) in_.refuse(SetupErrorKind::bad_file, "DATASET UNSTRUCTURED_GRID", quoted(in_.line()));
+  if (!is_dataset) in_.refuse(SetupErrorKind::bad_file, "DATASET UNSTRUCTURED_GRID", in_quotes(in_.line()));
   if (same_word(kind, "polydata"))
     in_.refuse(SetupErrorKind::unsupported, "solid elements", "a surface (POLYDATA)", fill_command(in_.name()));
   if (!same_word(kind, "unstructured_grid"))
-    in_.refuse(SetupErrorKind::unsupported, "UNSTRUCTURED_GRID", quoted(lower(kind)),
+    in_.refuse(SetupErrorKind::unsupported, "UNSTRUCTURED_GRID", in_quotes(lower(kind)),
                {"Convert it: meshio convert ", in_.name(), " converted.msh"});
 }
 
@@ -94,7 +94,7 @@ inline void LegacyParser::read_section() {
   } else if (same_word(keyword, "cell_types")) {
     read_types();
   } else if (same_word(keyword, "cell_data") || same_word(keyword, "point_data")) {
-    if (!has_types_) in_.refuse(SetupErrorKind::bad_file, "CELL_TYPES before data", quoted(in_.line()));
+    if (!has_types_) in_.refuse(SetupErrorKind::bad_file, "CELL_TYPES before data", in_quotes(in_.line()));
     const bool of_cells = same_word(keyword, "cell_data");
     attributes_.begin(of_cells, of_cells ? cell_count() : static_cast<Index>(mesh_.positions.size()));
   } else {
@@ -103,8 +103,8 @@ inline void LegacyParser::read_section() {
 }
 
 PALPATE_COLD inline void LegacyParser::once(bool& seen, bool in_place, std::string_view order) {
-  if (seen) in_.refuse(SetupErrorKind::bad_file, "every section once", {quoted(in_.line()), " again"});
-  if (!in_place) in_.refuse(SetupErrorKind::bad_file, order, quoted(in_.line()));
+  if (seen) in_.refuse(SetupErrorKind::bad_file, "every section once", {in_quotes(in_.line()), " again"});
+  if (!in_place) in_.refuse(SetupErrorKind::bad_file, order, in_quotes(in_.line()));
   seen = true;
 }
 
@@ -152,7 +152,7 @@ inline void LegacyParser::read_cells() {
 
 PALPATE_COLD inline const NumberType& LegacyParser::read_array_head(std::string_view keyword) {
   in_.need_line(keyword);
-  if (!same_word(in_.token(), keyword)) in_.refuse(SetupErrorKind::bad_file, keyword, quoted(in_.line()));
+  if (!same_word(in_.token(), keyword)) in_.refuse(SetupErrorKind::bad_file, keyword, in_quotes(in_.line()));
   const NumberType& type = numbers_.read_type();
   in_.end_line(keyword);
   if (type.kind == NumberType::real || type.bits == 1)

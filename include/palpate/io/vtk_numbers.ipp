@@ -34,7 +34,7 @@ PALPATE_COLD PALPATE_INLINE const NumberType& NumberStream::read_type() {
   const std::string_view word = in_.token();
   for (const NumberType& t : number_types)
     if (same_word(t.name, word)) return t;
-  in_.refuse(SetupErrorKind::bad_file, "a type of numbers such as double", quoted(lower(word)));
+  in_.refuse(SetupErrorKind::bad_file, "a type of numbers such as double", in_quotes(lower(word)));
 }
 
 PALPATE_INLINE Index NumberStream::integer(const NumberType& type, std::string_view what, Index low, Index high) {
