@@ -5,6 +5,7 @@
 #include <palpate/io/surface_files.hpp>
 #include <palpate/io/write_msh.hpp>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 using namespace palpate;

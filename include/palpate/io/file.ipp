@@ -33,9 +33,9 @@ struct OpenFile {
 
 PALPATE_INLINE std::string read_file(const std::string& path) {
   if (detail::file_kind(path) == static_cast<unsigned>(S_IFDIR))
-    raise(SetupErrorKind::bad_file, joined({path, ": expected a file, found a folder"}));
+    refuse(SetupErrorKind::bad_file, {path, ": expected a file, found a folder"});
   detail::OpenFile file(path, "rb");
-  if (file.stream == nullptr) raise(SetupErrorKind::bad_file, joined({path, ": cannot be opened for reading"}));
+  if (file.stream == nullptr) refuse(SetupErrorKind::bad_file, {path, ": cannot be opened for reading"});
   std::string text;
   constexpr std::size_t block = std::size_t{1} << 20;
   for (std::size_t read = block; read == block;) {
@@ -45,28 +45,28 @@ PALPATE_INLINE std::string read_file(const std::string& path) {
     text.resize(size + read);
   }
   if (std::ferror(file.stream) != 0)
-    raise(SetupErrorKind::bad_file, joined({path, ": reading stopped after ", text.size(), " bytes"}));
+    refuse(SetupErrorKind::bad_file, {path, ": reading stopped after ", text.size(), " bytes"});
   return text;
 }
 
 PALPATE_INLINE void write_file(const std::string& path, std::initializer_list<std::string_view> parts) {
   detail::OpenFile file(path, "wb");
-  if (file.stream == nullptr) raise(SetupErrorKind::bad_file, joined({path, ": cannot be opened for writing"}));
+  if (file.stream == nullptr) refuse(SetupErrorKind::bad_file, {path, ": cannot be opened for writing"});
   bool is_whole = true;
   for (const std::string_view part : parts)
     is_whole = is_whole && std::fwrite(part.data(), 1, part.size(), file.stream) == part.size();
-  if (!file.close() || !is_whole) raise(SetupErrorKind::bad_file, joined({path, ": writing failed"}));
+  if (!file.close() || !is_whole) refuse(SetupErrorKind::bad_file, {path, ": writing failed"});
 }
 
-PALPATE_INLINE bool is_there(const std::string& path) {
+PALPATE_COLD PALPATE_INLINE bool is_there(const std::string& path) {
   return detail::file_kind(path) != 0;
 }
 
-PALPATE_INLINE bool is_regular_file(const std::string& path) {
+PALPATE_COLD PALPATE_INLINE bool is_regular_file(const std::string& path) {
   return detail::file_kind(path) == static_cast<unsigned>(S_IFREG);
 }
 
-PALPATE_INLINE std::string_view folder_of(std::string_view path) noexcept {
+PALPATE_COLD PALPATE_INLINE std::string_view folder_of(std::string_view path) noexcept {
 #ifdef _WIN32
   const std::size_t end = path.find_last_of("/\\:");
 #else
@@ -75,7 +75,7 @@ PALPATE_INLINE std::string_view folder_of(std::string_view path) noexcept {
   return path.substr(0, end == path.npos ? 0 : end + 1);
 }
 
-PALPATE_INLINE std::string_view ending_of(std::string_view path) noexcept {
+PALPATE_COLD PALPATE_INLINE std::string_view ending_of(std::string_view path) noexcept {
   const std::string_view name = path.substr(folder_of(path).size());
   const std::size_t dot = name.rfind('.');
   return dot == name.npos || dot == 0 || name == ".." ? std::string_view{} : name.substr(dot);

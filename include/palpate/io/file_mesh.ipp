@@ -19,7 +19,7 @@ PALPATE_INLINE void FileMesh::add_cell(Index tag, Index place, CellShape shape, 
   for (std::size_t k = 0; k < count; ++k) cell_nodes[first + k] = read[order[k]];
 }
 
-PALPATE_INLINE std::string fill_command(const std::string& surface) {
+PALPATE_COLD PALPATE_INLINE std::string fill_command(const std::string& surface) {
   return joined({"Fill it: echo 'Merge \"", surface,
                  "\"; Surface Loop(1) = Surface{:}; Volume(1) = {1}; "
                  "Physical Volume(\"body\") = {1};' > solid.geo && gmsh solid.geo -3 -o solid.msh"});

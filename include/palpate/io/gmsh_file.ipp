@@ -10,35 +10,35 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh {
 namespace detail {
 
 /// The command that turns any mesh Gmsh can open into one that is read here.
-inline std::string convert_command(const std::string& name) {
+PALPATE_COLD inline std::string convert_command(const std::string& name) {
   return joined({"Convert it: gmsh ", name, " -save -format msh41 -o converted.msh"});
 }
 
 /// Reads what follows the version of a binary file: the integer 1, which tells the byte order.
-inline void read_byte_order(TextReader& in, Format& format) {
+PALPATE_COLD inline void read_byte_order(TextReader& in, Format& format) {
   const std::string_view raw = in.take(4, "the integer 1");
   format.swap = from_bytes<std::int32_t>(raw, false) != 1;
-  if (from_bytes<std::int32_t>(raw, format.swap) != 1) in.refuse_word(SetupErrorKind::bad_file, "the integer 1", raw);
+  if (from_bytes<std::int32_t>(raw, format.swap) != 1)
+    in.refuse(SetupErrorKind::bad_file, "the integer 1", in_quotes(raw));
 }
 
 /// Reads $MeshFormat; MSH 1 has none and its $NOD stays the current line. Refuses MSH 3 and 4.0 as unsupported, with
 /// the command that converts them.
-inline Format read_format(TextReader& in) {
+PALPATE_COLD inline Format read_format(TextReader& in) {
   in.need_line("$MeshFormat or $NOD");
   if (in.line() == "$NOD") return {1, false, false};
-  if (in.line() != "$MeshFormat") in.refuse_word(SetupErrorKind::bad_file, "$MeshFormat or $NOD", in.line());
+  if (in.line() != "$MeshFormat") in.refuse(SetupErrorKind::bad_file, "$MeshFormat or $NOD", in_quotes(in.line()));
   in.need_line("a version number");
   const double version = in.real("a version number");
   const bool is2 = version >= 2.0 && version <= 2.2;
   if (!is2 && version != 4.1)
-    in.refuse(SetupErrorKind::unsupported, "MSH 1, 2.2 or 4.1", joined({"MSH ", number(version)}),
-              convert_command(in.name()));
+    in.refuse(SetupErrorKind::unsupported, "MSH 1, 2.2 or 4.1", {"MSH ", version}, convert_command(in.name()));
   Format format{is2 ? 2 : 4, in.integer("0 for ASCII or 1 for binary", 0, 1) == 1, false};
   const Index size = in.integer("a data size", 1, 16);
   in.end_line("the data size");
   if (format.is_binary) {
     if (size != 8)
-      in.refuse(SetupErrorKind::unsupported, "binary numbers of 8 bytes", joined({size}), convert_command(in.name()));
+      in.refuse(SetupErrorKind::unsupported, "binary numbers of 8 bytes", {size}, convert_command(in.name()));
     read_byte_order(in, format);
   }
   need_mark(in, "$EndMeshFormat");
@@ -46,7 +46,7 @@ inline Format read_format(TextReader& in) {
 }
 
 /// $PhysicalNames: `count`, then `dimension tag "name"` per line; text in binary files too.
-inline void read_physical_names(TextReader& in, State& state) {
+PALPATE_COLD inline void read_physical_names(TextReader& in, State& state) {
   const Index count = read_count(in, "a number of physical names", 6);
   for (Index i = 0; i < count; ++i) {
     in.need_line("a physical name");
@@ -54,16 +54,15 @@ inline void read_physical_names(TextReader& in, State& state) {
     const auto tag = static_cast<int>(in.integer("a physical tag", 1, max_int));
     const std::string_view name = in.rest();
     if (name.size() < 3 || name.front() != '"' || name.back() != '"')
-      in.refuse_word(SetupErrorKind::bad_file, "a name in double quotes", name);
+      in.refuse(SetupErrorKind::bad_file, "a name in double quotes", in_quotes(name));
     state.mesh.names.push_back({dimension, tag, std::string(name.substr(1, name.size() - 2))});
   }
 }
 
 /// Refuses a section that came before, or that comes at the wrong place; else notes that it is there.
-inline void check_order(const TextReader& in, bool& seen, bool in_place, std::string_view order) {
-  if (seen)
-    in.refuse(SetupErrorKind::bad_file, "every section once", joined({TextReader::quoted(in.line()), " again"}));
-  if (!in_place) in.refuse_word(SetupErrorKind::bad_file, order, in.line());
+PALPATE_COLD inline void check_order(const TextReader& in, bool& seen, bool in_place, std::string_view order) {
+  if (seen) in.refuse(SetupErrorKind::bad_file, "every section once", {in_quotes(in.line()), " again"});
+  if (!in_place) in.refuse(SetupErrorKind::bad_file, order, in_quotes(in.line()));
   seen = true;
 }
 
@@ -75,11 +74,11 @@ inline void skip_section(TextReader& in, const State& state, const std::string& 
 
 /// Reads the section whose first line is the current one; skips those nobody needs.
 inline void read_section(TextReader& in, State& state) {
-  const std::string section(in.line());
+  const std::string_view section = in.line();
   const bool is1 = state.format.major == 1;
   if (section.size() < 2 || section.front() != '$' || section.starts_with("$End") || section.starts_with("$END"))
-    in.refuse_word(SetupErrorKind::bad_file, "the start of a section such as $Nodes", in.line());
-  const std::string end = joined({is1 ? "$END" : "$End", std::string_view(section).substr(1)});
+    in.refuse(SetupErrorKind::bad_file, "the start of a section such as $Nodes", in_quotes(in.line()));
+  const std::string end = joined({is1 ? "$END" : "$End", section.substr(1)});
   if (section == "$PhysicalNames") {
     check_order(in, state.has_names, true, {});
     read_physical_names(in, state);

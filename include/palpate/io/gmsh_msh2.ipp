@@ -54,7 +54,7 @@ inline void read_old_row(const Numbers& in, const NodeIds& nodes, State& state) 
   const int physical = read_tags(in, 2);
   const ShapeFacts& shape = facts(type.shape);
   if (const Index given = in.integer("a number of nodes", 1, max_int); given != shape.nodes)
-    in.in.refuse(SetupErrorKind::bad_file, joined({shape.nodes, " nodes for a ", shape.name}), joined({given}));
+    in.in.refuse(SetupErrorKind::bad_file, {shape.nodes, " nodes for a ", shape.name}, {given});
   add_element(in, nodes, state, type, tag, physical);
 }
 

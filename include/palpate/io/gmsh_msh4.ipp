@@ -2,8 +2,7 @@
 #pragma once
 
 #include <palpate/io/gmsh_msh4.hpp>
-
-#include <algorithm>
+#include <palpate/io/sorting.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh::msh4 {
 
@@ -12,7 +11,7 @@ namespace detail {
 /// An entity: `tag box nphys phys... [nbound bound...]`; the box has 3 numbers for a point and 6 for the others. Gmsh
 /// writes boxes that overflow for empty entities, so they are not looked at. Elements belong to groups only by way of
 /// their entity.
-inline void read_entity(const Numbers& in, int dimension, State& state) {
+PALPATE_COLD inline void read_entity(const Numbers& in, int dimension, State& state) {
   in.begin("an entity");
   const Index tag = in.integer("an entity tag", -max_int, max_int);
   in.skip_reals(dimension == 0 ? 3 : 6, "a bounding box");
@@ -25,12 +24,11 @@ inline void read_entity(const Numbers& in, int dimension, State& state) {
     for (Index i = 0; i < bounds; ++i) in.integer("a bounding entity", -max_int, max_int);
   }
   in.end("an entity");
-  std::sort(physical.begin(), physical.end());
-  physical.erase(std::unique(physical.begin(), physical.end()), physical.end());
+  sort_unique(physical);
   const std::uint32_t set = state.sets.find_or_add(state.mesh, physical);
   if (!state.entities.try_emplace(std::pair<Index, Index>(dimension, tag), set).second)
     in.in.refuse(SetupErrorKind::bad_file, "every entity once",
-                 joined({"entity ", tag, " of dimension ", dimension, " twice"}));
+                 {"entity ", tag, " of dimension ", dimension, " twice"});
 }
 
 /// The numbers in the first record of $Nodes and $Elements: `blocks things min max`.
@@ -38,7 +36,8 @@ struct SectionHeader {
   Index blocks, things;
 };
 
-inline SectionHeader read_header(const Numbers& in, std::string_view what, Index text_bytes, Index binary_bytes) {
+PALPATE_COLD inline SectionHeader read_header(const Numbers& in, std::string_view what, Index text_bytes,
+                                              Index binary_bytes) {
   in.begin(what);
   const Index blocks = in.count("a number of blocks", 8, 20);
   const Index things = in.count(what, text_bytes, binary_bytes);
@@ -48,9 +47,9 @@ inline SectionHeader read_header(const Numbers& in, std::string_view what, Index
 }
 
 /// Refuses blocks that together do not hold what the header of the section said.
-inline void check_total(const TextReader& in, std::string_view what, Index expected, std::size_t found) {
+PALPATE_COLD inline void check_total(const TextReader& in, std::string_view what, Index expected, std::size_t found) {
   if (static_cast<Index>(found) != expected)
-    in.refuse(SetupErrorKind::bad_file, joined({expected, " ", what}), joined({found, " in the blocks"}));
+    in.refuse(SetupErrorKind::bad_file, {expected, " ", what}, {found, " in the blocks"});
 }
 
 /// A block of nodes: `dimension entity parametric count`, then `count` ids, then `count` positions with `dimension`
@@ -76,12 +75,12 @@ inline void read_node_block(const Numbers& in, FileMesh& mesh) {
 }
 
 /// The physical tags of an entity. Without $Entities there are none; an entity missing from $Entities is refused.
-inline std::uint32_t physical_set(const TextReader& in, const State& state, int dimension, Index tag) {
+PALPATE_COLD inline std::uint32_t physical_set(const TextReader& in, const State& state, int dimension, Index tag) {
   if (state.entities.empty()) return 0;
   const auto it = state.entities.find(std::pair<Index, Index>(dimension, tag));
   if (it == state.entities.end())
     in.refuse(SetupErrorKind::index_out_of_range, "an entity of $Entities",
-              joined({"entity ", tag, " of dimension ", dimension}));
+              {"entity ", tag, " of dimension ", dimension});
   return it->second;
 }
 
@@ -91,8 +90,7 @@ inline void add_memberships(const TextReader& in, State& state, std::uint32_t se
   const auto limit = static_cast<Index>(in.size());
   state.memberships += count * static_cast<Index>(state.mesh.tag_sets[set].size());
   if (state.memberships > limit)
-    in.refuse(SetupErrorKind::count_too_large, joined({"elements in groups at most ", limit, " times"}),
-              joined({state.memberships}));
+    in.refuse(SetupErrorKind::count_too_large, {"elements in groups at most ", limit, " times"}, {state.memberships});
 }
 
 /// A block of elements: `dimension entity type count`, then `id nodes...` each.
@@ -105,7 +103,7 @@ inline void read_element_block(const Numbers& in, const NodeIds& nodes, State& s
   in.end("a block of elements");
   const ShapeFacts& shape = facts(type.shape);
   if (shape.dimension != dimension)
-    in.in.refuse(SetupErrorKind::bad_file, joined({"elements of dimension ", dimension}), shape.name);
+    in.in.refuse(SetupErrorKind::bad_file, {"elements of dimension ", dimension}, shape.name);
   const std::uint32_t set = physical_set(in.in, state, dimension, entity);
   add_memberships(in.in, state, set, count);
   for (Index i = 0; i < count; ++i) {
@@ -120,7 +118,7 @@ inline void read_element_block(const Numbers& in, const NodeIds& nodes, State& s
 
 }  // namespace detail
 
-PALPATE_INLINE void read_entities(TextReader& in, State& state) {
+PALPATE_COLD PALPATE_INLINE void read_entities(TextReader& in, State& state) {
   const Numbers numbers(in, state.format.is_binary, state.format.swap);
   numbers.begin("the numbers of entities");
   std::array<Index, 4> counts{};

@@ -9,7 +9,7 @@ PALPATE_INLINE const Type& read_type(const Numbers& in) {
   const Index wanted = in.integer("an element type", 1, max_int);
   const Type* type = find_type(wanted);
   if (type == nullptr)
-    in.in.refuse(SetupErrorKind::unsupported, "a known Gmsh element type", joined({"'", wanted, "'"}),
+    in.in.refuse(SetupErrorKind::unsupported, "a known Gmsh element type", {"'", wanted, "'"},
                  "Mesh again with elements of first or second order");
   return *type;
 }
@@ -19,12 +19,12 @@ PALPATE_INLINE int read_physical(const Numbers& in) {
   return tag < 0 ? -tag : tag;
 }
 
-PALPATE_INLINE void need_mark(TextReader& in, std::string_view mark) {
+PALPATE_COLD PALPATE_INLINE void need_mark(TextReader& in, std::string_view mark) {
   in.need_line(mark);
-  if (in.line() != mark) in.refuse_word(SetupErrorKind::bad_file, mark, in.line());
+  if (in.line() != mark) in.refuse(SetupErrorKind::bad_file, mark, in_quotes(in.line()));
 }
 
-PALPATE_INLINE Index read_count(TextReader& in, std::string_view what, Index bytes_each) {
+PALPATE_COLD PALPATE_INLINE Index read_count(TextReader& in, std::string_view what, Index bytes_each) {
   in.need_line(what);
   const Index count = in.count(what, bytes_each);
   in.end_line(what);

@@ -3,6 +3,7 @@
 
 #include <palpate/io/mesh_builder.hpp>
 #include <palpate/io/node_order.hpp>
+#include <palpate/io/sorting.hpp>
 #include <palpate/io/tag_sets.hpp>
 
 #include <algorithm>
@@ -12,35 +13,37 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 namespace detail {
 
-/// Drops faces that came before, in whatever order of nodes. Keeps the order of the others.
+/// Drops faces that came before, in whatever order of nodes; all have as many nodes. Keeps the order of the others.
 inline void drop_repeated_faces(std::vector<std::vector<NodeId>>& faces) {
-  struct Key {
-    NodeId low, high;  ///< two nodes tell nearly all faces apart
-    std::size_t face;
-  };
+  if (faces.empty()) return;
+  const std::size_t each = faces[0].size();
   std::vector<NodeId> nodes;  ///< sorted within each face
-  std::vector<Key> keys;
-  const std::size_t each = faces.empty() ? 0 : faces[0].size();
   nodes.reserve(each * faces.size());
-  keys.reserve(faces.size());
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    nodes.insert(nodes.end(), faces[i].begin(), faces[i].end());
-    std::sort(nodes.end() - static_cast<std::ptrdiff_t>(each), nodes.end());
-    keys.push_back({nodes[i * each], nodes.back(), i});
+  for (const std::vector<NodeId>& face : faces)
+    for (std::size_t a = 0; a < each; ++a) {
+      nodes.push_back(face[a]);
+      for (std::size_t k = nodes.size() - 1, left = a; left > 0 && nodes[k] < nodes[k - 1]; --k, --left)
+        std::swap(nodes[k], nodes[k - 1]);
+    }
+  // By the last two nodes first, then keeping that order by those before them.
+  std::vector<Ranked> order(faces.size()), sorted;
+  for (std::size_t i = 0; i < faces.size(); ++i) order[i].key = static_cast<Index>(i);
+  for (std::size_t pair = (each + 1) / 2; pair-- > 0;) {
+    sorted = order;
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      const NodeId* face = nodes.data() + static_cast<std::size_t>(order[i].key) * each;
+      const Index second = 2 * pair + 1 < each ? face[2 * pair + 1] : 0;
+      sorted[i] = {Index{face[2 * pair]} << 32 | second, static_cast<Index>(i)};
+    }
+    sort_ranked(sorted);
+    for (Ranked& r : sorted) r.key = order[static_cast<std::size_t>(r.id)].key;
+    order.swap(sorted);
   }
-  const auto order = [&](const Key& a, const Key& b) {
-    if (a.low != b.low) return a.low < b.low ? -1 : 1;
-    if (a.high != b.high) return a.high < b.high ? -1 : 1;
-    for (std::size_t k = 1; k + 1 < each; ++k)
-      if (const NodeId x = nodes[a.face * each + k], y = nodes[b.face * each + k]; x != y) return x < y ? -1 : 1;
-    return 0;
-  };
-  std::sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
-    const int known = order(a, b);
-    return known != 0 ? known < 0 : a.face < b.face;
-  });
-  std::vector<char> is_again(keys.size());
-  for (std::size_t i = 1; i < keys.size(); ++i) is_again[keys[i].face] = order(keys[i - 1], keys[i]) == 0;
+  std::vector<char> is_again(faces.size());
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const auto face = static_cast<std::size_t>(order[i].key), before = static_cast<std::size_t>(order[i - 1].key);
+    is_again[face] = std::equal(&nodes[face * each], &nodes[face * each] + each, &nodes[before * each]);
+  }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < faces.size(); ++i)
     if (is_again[i] == 0) faces[kept++].swap(faces[i]);
@@ -73,7 +76,7 @@ class MeshBuilder {
   void scale_positions(double scale);
   void name_regions();
   void tidy_groups();
-  [[noreturn]] void refuse_shape(const FileCell& cell, CellShape wanted, const std::string& hint) const;
+  [[noreturn]] void refuse_shape(const FileCell& cell, CellShape wanted, const Pieces& hint) const;
   [[noreturn]] void refuse_without_solids() const;
 
   const std::vector<int>& tags(const FileCell& cell) const { return file_.tag_sets[cell.tag_set]; }
@@ -91,7 +94,7 @@ class MeshBuilder {
 
 inline PlainMesh MeshBuilder::build(double scale) {
   if (!(scale > 0.0) || !std::isfinite(scale))
-    raise(SetupErrorKind::bad_argument, joined({"a mesh cannot be scaled by ", number(scale)}));
+    refuse(SetupErrorKind::bad_argument, {"a mesh cannot be scaled by ", scale});
   check_solid_shapes();
   declare_groups();
   for (const FileCell& cell : file_.cells) {
@@ -109,9 +112,8 @@ inline PlainMesh MeshBuilder::build(double scale) {
 inline void MeshBuilder::check_solid_shapes() const {
   for (const FileCell& cell : file_.cells)
     if (facts(cell.shape).dimension == 3 && cell.shape != solid_)
-      refuse_shape(
-          cell, solid_,
-          joined({"Read it as its own element type, or mesh again: gmsh model.geo -3 -order ", element_.order}));
+      refuse_shape(cell, solid_,
+                   {"Read it as its own element type, or mesh again: gmsh model.geo -3 -order ", element_.order});
 }
 
 /// (dimension, tag) of all cells.
@@ -131,16 +133,15 @@ inline PairMap MeshBuilder::used_tags() const {
 }
 
 /// One group per name in the order of the file, then one per tag without a name: "volume 3" or "surface 1".
-inline void MeshBuilder::declare_groups() {
+PALPATE_COLD inline void MeshBuilder::declare_groups() {
   const PairMap used = used_tags();
   if (used.size() > max_groups || file_.names.size() > max_groups)
-    raise(SetupErrorKind::count_too_large,
-          joined({file_.files[0], ": expected at most ", max_groups, " groups, found more"}));
+    refuse(SetupErrorKind::count_too_large, {file_.files[0], ": expected at most ", max_groups, " groups, found more"});
   for (const TagName& n : file_.names) {
     const std::uint32_t group = group_index(n.name, n.dimension);
     if (!group_of_.try_emplace(std::pair<Index, Index>(n.dimension, n.tag), group).second)
-      raise(SetupErrorKind::bad_file,
-            joined({file_.files[0], ": tag ", n.tag, " of dimension ", n.dimension, " has two names"}));
+      refuse(SetupErrorKind::bad_file,
+             {file_.files[0], ": tag ", n.tag, " of dimension ", n.dimension, " has two names"});
   }
   constexpr std::array<std::string_view, 4> kinds{"point ", "curve ", "surface ", "volume "};
   for (const auto& [key, unused] : used)
@@ -150,7 +151,7 @@ inline void MeshBuilder::declare_groups() {
     }
 }
 
-inline std::uint32_t MeshBuilder::group_index(const std::string& name, int dimension) {
+PALPATE_COLD inline std::uint32_t MeshBuilder::group_index(const std::string& name, int dimension) {
   const Group& group = mesh_.groups.get_or_add(name, dimension);
   return static_cast<std::uint32_t>(&group - mesh_.groups.all().data());
 }
@@ -193,7 +194,7 @@ inline void MeshBuilder::add_to_groups(const FileCell& cell) {
 
 inline void MeshBuilder::add_face(Group& group, const FileCell& cell) {
   if (cell.shape != face_)
-    refuse_shape(cell, face_, joined({"The faces of group '", group.name, "' must be faces of the solid elements"}));
+    refuse_shape(cell, face_, {"The faces of group '", group.name, "' must be faces of the solid elements"});
   group.faces.emplace_back(nodes(cell), nodes(cell) + element_.face.nodes);
 }
 
@@ -203,8 +204,7 @@ inline void MeshBuilder::scale_positions(double scale) {
     for (int c = 0; c < 3; ++c) {
       x.data()[c] *= scale;
       if (!std::isfinite(x.data()[c]))
-        raise(SetupErrorKind::non_finite,
-              joined({file_.files[0], ": a coordinate times ", number(scale), " is not finite"}));
+        refuse(SetupErrorKind::non_finite, {file_.files[0], ": a coordinate times ", scale, " is not finite"});
     }
 }
 
@@ -233,29 +233,28 @@ inline void MeshBuilder::name_regions() {
 
 /// A group is a set: a node, face or element that several tags of one name hold counts once.
 inline void MeshBuilder::tidy_groups() {
-  mesh_.groups.tidy();
   for (Group& group : mesh_.groups.all()) {
-    if (!std::is_sorted(group.elements.begin(), group.elements.end()))
-      std::sort(group.elements.begin(), group.elements.end());
+    sort_unique(group.nodes);
+    // Elements come in rising order.
     group.elements.erase(std::unique(group.elements.begin(), group.elements.end()), group.elements.end());
     drop_repeated_faces(group.faces);
   }
 }
 
-inline void MeshBuilder::refuse_shape(const FileCell& cell, CellShape wanted, const std::string& hint) const {
-  raise(SetupErrorKind::unsupported,
-        joined({place_text(file_.files[cell.file], cell.place), ": expected a ", facts(wanted).name, ", found a ",
-                facts(cell.shape).name}),
-        hint);
+PALPATE_COLD inline void MeshBuilder::refuse_shape(const FileCell& cell, CellShape wanted, const Pieces& hint) const {
+  refuse(SetupErrorKind::unsupported,
+         {place_text(file_.files[cell.file], cell.place), ": expected a ", facts(wanted).name, ", found a ",
+          facts(cell.shape).name},
+         hint);
 }
 
-inline void MeshBuilder::refuse_without_solids() const {
+PALPATE_COLD inline void MeshBuilder::refuse_without_solids() const {
   Index faces = 0;
   for (const FileCell& cell : file_.cells) faces += facts(cell.shape).dimension == 2 ? 1 : 0;
-  if (faces == 0) raise(SetupErrorKind::empty_mesh, joined({file_.files[0], ": expected solid elements, found none"}));
-  raise(SetupErrorKind::unsupported,
-        joined({file_.files[0], ": expected solid elements, found a surface of ", faces, " faces"}),
-        fill_command(file_.files[0]));
+  if (faces == 0) refuse(SetupErrorKind::empty_mesh, {file_.files[0], ": expected solid elements, found none"});
+  refuse(SetupErrorKind::unsupported,
+         {file_.files[0], ": expected solid elements, found a surface of ", faces, " faces"},
+         fill_command(file_.files[0]));
 }
 
 }  // namespace detail

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/io/file_mesh.hpp>
+#include <palpate/io/sorting.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
@@ -21,15 +22,11 @@ class NodeIds {
   }
 
  private:
-  struct Entry {
-    Index tag;
-    NodeId node;
-  };
   NodeId search(Index tag, const TextReader& in) const;
 
   Index count_;
   bool in_order_ = true;
-  std::vector<Entry> sorted_;
+  std::vector<Ranked> sorted_;  ///< id in the file, node
 };
 
 }}}  // namespace palpate::PALPATE_ABI::io

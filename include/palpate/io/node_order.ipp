@@ -25,18 +25,21 @@ inline double dot_product(const Point& a, const Point& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Where VTK's node k sits on the domain of nodes_on_unit_domain.
-inline Point vtk_node(bool is_tetrahedron, int k) {
-  const int corners = is_tetrahedron ? 4 : 8;
-  if (k >= corners) {
-    const auto& ends = is_tetrahedron ? tetrahedron_edges[static_cast<std::size_t>(k - 4)]
-                                      : hexahedron_edges[static_cast<std::size_t>(k - 8)];
-    const Point a = vtk_node(is_tetrahedron, ends[0]), b = vtk_node(is_tetrahedron, ends[1]);
-    return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
-  }
+/// Where VTK's corner k sits on the domain of nodes_on_unit_domain.
+inline Point vtk_corner(bool is_tetrahedron, int k) {
   if (is_tetrahedron) return {k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0, k == 3 ? 1.0 : 0.0};
   const auto& x = hexahedron_corners[static_cast<std::size_t>(k)];
   return {static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])};
+}
+
+/// The same for any node.
+PALPATE_COLD inline Point vtk_node(bool is_tetrahedron, int k) {
+  const int corners = is_tetrahedron ? 4 : 8;
+  if (k < corners) return vtk_corner(is_tetrahedron, k);
+  const auto& ends = is_tetrahedron ? tetrahedron_edges[static_cast<std::size_t>(k - 4)]
+                                    : hexahedron_edges[static_cast<std::size_t>(k - 8)];
+  const Point a = vtk_corner(is_tetrahedron, ends[0]), b = vtk_corner(is_tetrahedron, ends[1]);
+  return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
 }
 
 /// Solves for the weights of the edges from the first node to the next three.
@@ -67,7 +70,7 @@ inline void to_unit_cube(double* xyz, int nodes) {
 
 }  // namespace detail
 
-PALPATE_INLINE void nodes_on_unit_domain(const ElementLayout& element, double* xyz) {
+PALPATE_COLD PALPATE_INLINE void nodes_on_unit_domain(const ElementLayout& element, double* xyz) {
   element.reference_nodes(xyz);
   if (element.face_count == 4)
     detail::to_unit_tetrahedron(xyz, element.nodes);
@@ -75,7 +78,7 @@ PALPATE_INLINE void nodes_on_unit_domain(const ElementLayout& element, double* x
     detail::to_unit_cube(xyz, element.nodes);
 }
 
-PALPATE_INLINE std::vector<int> element_order(const ElementLayout& element) {
+PALPATE_COLD PALPATE_INLINE std::vector<int> element_order(const ElementLayout& element) {
   std::vector<double> xyz(3 * static_cast<std::size_t>(element.nodes));
   nodes_on_unit_domain(element, xyz.data());
   std::vector<int> order(static_cast<std::size_t>(element.nodes));
@@ -88,14 +91,14 @@ PALPATE_INLINE std::vector<int> element_order(const ElementLayout& element) {
     int k = 0;
     while (k < element.nodes && !is_at(k)) ++k;
     if (k == element.nodes)
-      raise(SetupErrorKind::bad_argument,
-            joined({"reference node ", a, " of the element is neither a corner nor the middle of an edge"}));
+      refuse(SetupErrorKind::bad_argument,
+             {"reference node ", a, " of the element is neither a corner nor the middle of an edge"});
     order[static_cast<std::size_t>(a)] = k;
   }
   return order;
 }
 
-PALPATE_INLINE std::vector<int> vtk_order(const ElementLayout& element) {
+PALPATE_COLD PALPATE_INLINE std::vector<int> vtk_order(const ElementLayout& element) {
   const std::vector<int> from = element_order(element);
   std::vector<int> order(from.size());
   for (std::size_t a = 0; a < from.size(); ++a) order[static_cast<std::size_t>(from[a])] = static_cast<int>(a);

@@ -15,7 +15,7 @@ PALPATE_INLINE Index RowNumbers::read(TextReader& in, std::string_view what) {
   return id;
 }
 
-PALPATE_INLINE NodeHeader NodeHeader::read(TextReader& in, std::size_t bytes_left) {
+PALPATE_COLD PALPATE_INLINE NodeHeader NodeHeader::read(TextReader& in, std::size_t bytes_left) {
   NodeHeader h;
   h.count = in.integer("a number of nodes", 0, static_cast<Index>(bytes_left) / 7, SetupErrorKind::count_too_large);
   if (!in.rest().empty() && in.integer("the dimension", 2, 3) != 3)
@@ -43,7 +43,7 @@ PALPATE_INLINE void read_cell_nodes(TextReader& in, int nodes, Index base, FileM
     mesh.cell_nodes.push_back(static_cast<NodeId>(in.integer("a node id", base, base + count - 1) - base));
 }
 
-PALPATE_INLINE CellHeader CellHeader::read(TextReader& in, CellShape shape, std::size_t bytes_left) {
+PALPATE_COLD PALPATE_INLINE CellHeader CellHeader::read(TextReader& in, CellShape shape, std::size_t bytes_left) {
   CellHeader h{0, 0, shape, {}};
   h.count = in.integer("a number of elements", 0, static_cast<Index>(bytes_left) / 9, SetupErrorKind::count_too_large);
   const Index nodes = in.rest().empty() ? facts(shape).nodes : in.integer("nodes of an element", 1, 64);
@@ -51,7 +51,7 @@ PALPATE_INLINE CellHeader CellHeader::read(TextReader& in, CellShape shape, std:
     h.shape = CellShape::tetrahedron10;
     h.order = tetgen_tetrahedron10;
   } else if (nodes != facts(shape).nodes) {
-    in.refuse(SetupErrorKind::bad_file, joined({facts(shape).nodes, " nodes of an element"}), joined({nodes}));
+    in.refuse(SetupErrorKind::bad_file, {facts(shape).nodes, " nodes of an element"}, {nodes});
   }
   if (!in.rest().empty()) h.attributes = in.integer("a number of attributes", 0, max_int);
   in.end_line("the header of the elements");

@@ -32,7 +32,7 @@ PALPATE_INLINE Index binary_integer(TextReader& in, const BinaryLayout& layout, 
   const bool is_negative = layout.is_signed && ((bits >> (layout.bits - 1)) & 1U) != 0;
   if (is_negative && layout.bits < 64) bits |= ~std::uint64_t{0} << layout.bits;
   const auto value = static_cast<Index>(bits);
-  if (value < low || value > high) in.refuse_range(kind, what, low, high, joined({"'", value, "'"}));
+  if (value < low || value > high) in.refuse_range(kind, what, low, high, {"'", value, "'"});
   return value;
 }
 
@@ -41,8 +41,7 @@ PALPATE_INLINE double binary_real(TextReader& in, const BinaryLayout& layout, st
   const double value = layout.bits == 32 ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
                                          : std::bit_cast<double>(bits);
   if (!std::isfinite(value))
-    in.refuse(SetupErrorKind::non_finite, joined({what, " in the range of a double"}),
-              joined({"'", number(value), "'"}));
+    in.refuse(SetupErrorKind::non_finite, {what, " in the range of a double"}, {"'", value, "'"});
   return value;
 }
 
@@ -63,7 +62,7 @@ PALPATE_INLINE void Numbers::skip_reals(int count, std::string_view what) const 
     return;
   }
   for (int i = 0; i < count; ++i)
-    if (in.token().empty()) in.refuse_word(SetupErrorKind::bad_file, what, {});
+    if (in.token().empty()) in.refuse(SetupErrorKind::bad_file, what, in_quotes({}));
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io

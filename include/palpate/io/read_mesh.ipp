@@ -9,11 +9,11 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 namespace detail {
 
-inline std::string small_ending(const std::string& path) {
-  return vtk::lower(ending_of(path));
+inline bool has_ending(const std::string& name, std::string_view ending) {
+  return vtk::same_word(ending_of(name), ending);
 }
 
-inline MeshFormat format_of_ending(std::string_view ending) {
+PALPATE_COLD inline MeshFormat format_of_ending(const std::string& name) {
   struct Ending {
     std::string_view text;
     MeshFormat format;
@@ -33,47 +33,46 @@ inline MeshFormat format_of_ending(std::string_view ending) {
                                             {".edge", MeshFormat::surface},
                                             {".gltf", MeshFormat::surface}}};
   for (const Ending& known : endings)
-    if (ending == known.text) return known.format;
+    if (has_ending(name, known.text)) return known.format;
   return MeshFormat::unknown;
 }
 
 /// Refuses a file that holds a surface, with the command that meshes it.
-[[noreturn]] inline void refuse_surface(const std::string& name) {
-  const std::string ending = small_ending(name);
+[[noreturn]] PALPATE_COLD inline void refuse_surface(const std::string& name) {
   std::string hint = joined({"Fill it: tetgen -pq ", name, ", then read the .ele file it writes"});
-  if (ending == ".stl" || ending == ".ply") hint = fill_command(name);
-  if (ending == ".obj" || ending == ".gltf")
+  if (has_ending(name, ".stl") || has_ending(name, ".ply")) hint = fill_command(name);
+  if (has_ending(name, ".obj") || has_ending(name, ".gltf"))
     hint = joined({"First: meshio convert ", name, " surface.stl. ", fill_command("surface.stl")});
-  if (ending == ".edge") hint = "Read the .ele file beside it";
-  raise(SetupErrorKind::unsupported, joined({name, ":1: expected solid elements, found a surface"}), hint);
+  if (has_ending(name, ".edge")) hint = "Read the .ele file beside it";
+  refuse(SetupErrorKind::unsupported, {name, ":1: expected solid elements, found a surface"}, hint);
 }
 
 /// Refuses a file of no known format.
-[[noreturn]] inline void refuse_unknown(std::string_view text, const std::string& name) {
+[[noreturn]] PALPATE_COLD inline void refuse_unknown(std::string_view text, const std::string& name) {
   TextReader in(text, name);
   in.next_line();
-  in.refuse_word(SetupErrorKind::bad_file, "a Gmsh, TetGen, legacy VTK or VegaFEM mesh", in.line(),
-                 joined({"meshio and gmsh convert others: meshio convert ", name, " converted.msh"}));
+  in.refuse(SetupErrorKind::bad_file, "a Gmsh, TetGen, legacy VTK or VegaFEM mesh", in_quotes(in.line()),
+            {"meshio and gmsh convert others: meshio convert ", name, " converted.msh"});
 }
 
 /// Stands for the files that a text on its own cannot include.
 struct RefuseInclude {
   std::string name;
   [[noreturn]] std::string operator()(const std::string& other) const {
-    raise(SetupErrorKind::unsupported, joined({name, ": *INCLUDE ", other, " in a text that is no file"}));
+    refuse(SetupErrorKind::unsupported, {name, ": *INCLUDE ", other, " in a text that is no file"});
   }
 };
 
 }  // namespace detail
 
-PALPATE_INLINE MeshFormat format_of(std::string_view text, const std::string& name) {
+PALPATE_COLD PALPATE_INLINE MeshFormat format_of(std::string_view text, const std::string& name) {
   TextReader in(text, name, {'\0', false});
   in.next_line();
   if (in.line().starts_with("# vtk DataFile")) return MeshFormat::vtk;
   if (in.line() == "$MeshFormat" || in.line() == "$NOD") return MeshFormat::gmsh;
   while (in.line().starts_with('#') && in.next_line()) {}
   if (in.line().starts_with("*VERTICES") || in.line().starts_with("*INCLUDE")) return MeshFormat::veg;
-  return detail::format_of_ending(detail::small_ending(name));
+  return detail::format_of_ending(name);
 }
 
 PALPATE_INLINE FileMesh parse_file(std::string_view text, const std::string& name) {
@@ -92,7 +91,7 @@ PALPATE_INLINE FileMesh parse_file(std::string_view text, const std::string& nam
 }
 
 PALPATE_INLINE FileMesh read_file_mesh(const std::string& path) {
-  if (detail::format_of_ending(detail::small_ending(path)) == MeshFormat::tetgen) return tetgen::read(path);
+  if (detail::format_of_ending(path) == MeshFormat::tetgen) return tetgen::read(path);
   const std::string text = read_file(path);
   return format_of(text, path) == MeshFormat::veg ? veg::read(path) : parse_file(text, path);
 }

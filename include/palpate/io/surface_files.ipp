@@ -14,7 +14,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 PALPATE_INLINE void check_displacement(Index size, Index nodes) {
   if (size != 0 && size != 3 * nodes)
-    raise(SetupErrorKind::bad_argument, joined({"a displacement of ", size, " numbers for ", nodes, " nodes"}));
+    refuse(SetupErrorKind::bad_argument, {"a displacement of ", size, " numbers for ", nodes, " nodes"});
 }
 
 PALPATE_INLINE void add_triangles(const FaceLayout& layout, const NodeId* face,

@@ -15,7 +15,7 @@ PALPATE_INLINE std::uint32_t TagSets::find_or_add(FileMesh& mesh, std::span<cons
   }
   if (at != 0 && set_of_[at] == 0) {
     set_of_[at] = static_cast<std::uint32_t>(mesh.tag_sets.size());
-    mesh.tag_sets.emplace_back(tags.begin(), tags.end());
+    mesh.tag_sets.push_back(std::vector<int>(tags.begin(), tags.end()));
   }
   return set_of_[at];
 }

@@ -27,9 +27,9 @@ struct State {
 };
 
 /// Refuses lines behind the last one announced, and a last one that is cut.
-inline void need_end(TextReader& in, std::string_view what, Index count) {
+PALPATE_COLD inline void need_end(TextReader& in, std::string_view what, Index count) {
   if (in.next_line())
-    in.refuse_word(SetupErrorKind::bad_file, joined({"the end of the file after ", count, " ", what}), in.line());
+    in.refuse(SetupErrorKind::bad_file, {"the end of the file after ", count, " ", what}, in_quotes(in.line()));
   in.need_last_line_end();
 }
 
@@ -56,7 +56,7 @@ inline int read_region(TextReader& in, Index attributes) {
     const double value = in.real("an attribute");
     if (i > 0) continue;
     if (value != std::floor(value) || std::abs(value) > static_cast<double>(max_int))
-      in.refuse(SetupErrorKind::unsupported, "a whole number for the region", number(value),
+      in.refuse(SetupErrorKind::unsupported, "a whole number for the region", value,
                 "Number the regions with whole numbers (tetgen -A)");
     region = static_cast<int>(value);
   }
@@ -118,8 +118,8 @@ PALPATE_INLINE FileMesh read(const std::string& path) {
   const std::string name = path.substr(0, path.size() - ending_of(path).size());
   const std::string ele_file = joined({name, ".ele"}), face_file = joined({name, ".face"});
   if (!is_there(ele_file))
-    raise(SetupErrorKind::unsupported, joined({ele_file, ": expected the elements of ", path, ", found no such file"}),
-          joined({"Nodes and faces alone are a surface; tetgen -pq ", name, ".poly fills one"}));
+    refuse(SetupErrorKind::unsupported, {ele_file, ": expected the elements of ", path, ", found no such file"},
+           {"Nodes and faces alone are a surface; tetgen -pq ", name, ".poly fills one"});
   const std::string node = read_file(joined({name, ".node"})), ele = read_file(ele_file);
   const std::string face = is_there(face_file) ? read_file(face_file) : std::string{};
   return parse({name, node, ele, face});

@@ -77,22 +77,12 @@ class TextReader {
   void end_line(std::string_view what);
 
   /// Throws `name:line: expected ..., found ...`.
-  [[noreturn]] void refuse(SetupErrorKind kind, std::string_view expected, std::string_view found,
-                           std::string_view hint = {}) const;
-
-  /// The same with the found word quoted.
-  [[noreturn]] void refuse_word(SetupErrorKind kind, std::string_view expected, std::string_view found,
-                                std::string_view hint = {}) const;
+  [[noreturn]] void refuse(SetupErrorKind kind, const Pieces& expected, const Pieces& found,
+                           const Pieces& hint = {}) const;
 
   /// Refuses a number that is not between `low` and `high`; `found` as it stands in the file.
   [[noreturn]] void refuse_range(SetupErrorKind kind, std::string_view what, Index low, Index high,
-                                 std::string_view found) const;
-
-  /// A word for a message: in quotes, shortened, printable.
-  static std::string quoted(std::string_view word);
-
-  /// " between low and high", for a message.
-  static std::string range(Index low, Index high);
+                                 const Pieces& found) const;
 
  private:
   bool is_blank(char c) const noexcept {

@@ -14,7 +14,7 @@ PALPATE_COLD PALPATE_INLINE std::string place_text(const std::string& file, Inde
   return joined({file, place < 0 ? ":byte " : ":", place < 0 ? -place : place});
 }
 
-PALPATE_INLINE TextReader::TextReader(std::string_view text, std::string name, TextSyntax syntax)
+PALPATE_COLD PALPATE_INLINE TextReader::TextReader(std::string_view text, std::string name, TextSyntax syntax)
     : text_(text), name_(std::move(name)), syntax_(syntax) {
   if (text_.starts_with("\xEF\xBB\xBF")) next_ = 3;
 }
@@ -47,22 +47,21 @@ PALPATE_INLINE void TextReader::need_more(std::string_view expected) {
 PALPATE_INLINE std::string_view TextReader::take(std::size_t bytes, std::string_view what) {
   is_binary_ = true;
   if (bytes > bytes_left())
-    refuse(SetupErrorKind::bad_file, what,
-           joined({"the end of the file after ", bytes_left(), " of ", bytes, " bytes"}));
+    refuse(SetupErrorKind::bad_file, what, {"the end of the file after ", bytes_left(), " of ", bytes, " bytes"});
   const std::string_view raw = text_.substr(next_, bytes);
   next_ += bytes;
   line_ = rest_ = {};
   return raw;
 }
 
-PALPATE_INLINE void TextReader::skip_to(const std::string& mark) {
+PALPATE_COLD PALPATE_INLINE void TextReader::skip_to(const std::string& mark) {
   const std::size_t at = text_.find(joined({"\n", mark}), next_ - std::min<std::size_t>(next_, 1));
   if (at == text_.npos) refuse(SetupErrorKind::bad_file, mark, "the end of the file");
   next_ = at + 1;
   next_raw_line();
 }
 
-PALPATE_INLINE void TextReader::need_last_line_end() const {
+PALPATE_COLD PALPATE_INLINE void TextReader::need_last_line_end() const {
   if (!text_.empty() && text_.back() != '\n')
     refuse(SetupErrorKind::bad_file, "a line end after the last line", "the end of the file",
            "If the file is whole, add an empty line");
@@ -82,9 +81,9 @@ PALPATE_INLINE Index TextReader::integer(std::string_view what, Index low, Index
   Index value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error == std::errc::invalid_argument || end != word.data() + word.size())
-    refuse_word(SetupErrorKind::bad_file, what, word);
+    refuse(SetupErrorKind::bad_file, what, in_quotes(word));
   if (error == std::errc::result_out_of_range || value < low || value > high)
-    refuse_range(kind, what, low, high, quoted(word));
+    refuse_range(kind, what, low, high, in_quotes(word));
   return value;
 }
 
@@ -98,43 +97,27 @@ PALPATE_INLINE double TextReader::real(std::string_view what) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   double value = 0.0;
   const std::errc error = parse_decimal(word, value);
-  if (error == std::errc::invalid_argument) refuse_word(SetupErrorKind::bad_file, what, whole);
+  if (error == std::errc::invalid_argument) refuse(SetupErrorKind::bad_file, what, in_quotes(whole));
   if (error != std::errc{} || !std::isfinite(value))
-    refuse_word(SetupErrorKind::non_finite, joined({what, " in the range of a double"}), whole);
+    refuse(SetupErrorKind::non_finite, {what, " in the range of a double"}, in_quotes(whole));
   return value;
 }
 
 PALPATE_INLINE void TextReader::end_line(std::string_view what) {
   const std::string_view word = token();
-  if (!word.empty()) refuse_word(SetupErrorKind::bad_file, joined({"the end of the line after ", what}), word);
+  if (!word.empty()) refuse(SetupErrorKind::bad_file, {"the end of the line after ", what}, in_quotes(word));
 }
 
-PALPATE_COLD PALPATE_INLINE void TextReader::refuse(SetupErrorKind kind, std::string_view expected,
-                                                    std::string_view found, std::string_view hint) const {
-  raise(kind, joined({place_text(name_, place()), ": expected ", expected, ", found ", found}), std::string(hint));
-}
-
-PALPATE_COLD PALPATE_INLINE void TextReader::refuse_word(SetupErrorKind kind, std::string_view expected,
-                                                         std::string_view found, std::string_view hint) const {
-  refuse(kind, expected, quoted(found), hint);
+PALPATE_COLD PALPATE_INLINE void TextReader::refuse(SetupErrorKind kind, const Pieces& expected, const Pieces& found,
+                                                    const Pieces& hint) const {
+  io::refuse(kind, {place_text(name_, place()), ": expected ", joined(expected), ", found ", joined(found)},
+             joined(hint));
 }
 
 PALPATE_COLD PALPATE_INLINE void TextReader::refuse_range(SetupErrorKind kind, std::string_view what, Index low,
-                                                          Index high, std::string_view found) const {
-  refuse(kind, joined({what, range(low, high)}), found);
-}
-
-PALPATE_COLD PALPATE_INLINE std::string TextReader::quoted(std::string_view word) {
-  if (word.empty()) return "the end of the line";
-  std::string text(word.substr(0, 40));
-  for (char& c : text)
-    if (c < ' ' || c > '~') c = '?';
-  return joined({"'", text, word.size() > 40 ? "...'" : "'"});
-}
-
-PALPATE_COLD PALPATE_INLINE std::string TextReader::range(Index low, Index high) {
-  if (high == std::numeric_limits<Index>::max()) return joined({" of at least ", low});
-  return joined({" between ", low, " and ", high});
+                                                          Index high, const Pieces& found) const {
+  if (high == std::numeric_limits<Index>::max()) refuse(kind, {what, " of at least ", low}, found);
+  refuse(kind, {what, " between ", low, " and ", high}, found);
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io

@@ -76,13 +76,13 @@ inline FileMesh Parser::parse() {
   add_set("allElements");
   while (lines_.next_line()) read_section();
   add_tags();
-  mesh_.files = lines_.names;
+  mesh_.files = std::move(lines_.names);
   return std::move(mesh_);
 }
 
-inline void Parser::need_keyword(std::string_view keyword) {
+PALPATE_COLD inline void Parser::need_keyword(std::string_view keyword) {
   lines_.need_line(keyword);
-  if (in().line() != keyword) in().refuse_word(SetupErrorKind::bad_file, keyword, in().line());
+  if (in().line() != keyword) in().refuse(SetupErrorKind::bad_file, keyword, in_quotes(in().line()));
 }
 
 inline void Parser::read_vertices() {
@@ -100,7 +100,7 @@ inline void Parser::read_elements() {
   lines_.need_line("TET or CUBIC");
   const std::string_view type = in().line();
   const bool is_cubic = type.starts_with("CUBIC");
-  if (!is_cubic && !type.starts_with("TET")) in().refuse_word(SetupErrorKind::unsupported, "TET or CUBIC", type);
+  if (!is_cubic && !type.starts_with("TET")) in().refuse(SetupErrorKind::unsupported, "TET or CUBIC", in_quotes(type));
   lines_.need_line("the header of the elements");
   const CellHeader header = CellHeader::read(in(), is_cubic ? CellShape::hexahedron8 : CellShape::tetrahedron4,
                                              std::min(any_size, static_cast<std::size_t>(max_int) * 9));
@@ -114,8 +114,8 @@ inline void Parser::read_elements() {
   }
 }
 
-inline void Parser::read_section() {
-  const std::string keyword(in().token());
+PALPATE_COLD inline void Parser::read_section() {
+  const std::string_view keyword = in().token();
   if (keyword == "*MATERIAL") {
     read_material();
   } else if (keyword == "*SET") {
@@ -123,27 +123,27 @@ inline void Parser::read_section() {
   } else if (keyword == "*REGION") {
     read_region();
   } else {
-    in().refuse_word(SetupErrorKind::bad_file, "*MATERIAL, *SET or *REGION", keyword);
+    in().refuse(SetupErrorKind::bad_file, "*MATERIAL, *SET or *REGION", in_quotes(keyword));
   }
 }
 
-inline std::string Parser::read_name(std::string_view what) {
+PALPATE_COLD inline std::string Parser::read_name(std::string_view what) {
   const std::string name(in().token());
-  if (name.empty()) in().refuse_word(SetupErrorKind::bad_file, what, name);
+  if (name.empty()) in().refuse(SetupErrorKind::bad_file, what, in_quotes(name));
   in().end_line(what);
   return name;
 }
 
-inline void Parser::read_material() {
+PALPATE_COLD inline void Parser::read_material() {
   materials_.try_emplace(read_name("the name of a material"), materials_.size());
   lines_.need_line("a material such as ENU, density, E, nu");
   const std::string_view type = in().token();
   if (type.empty() || type.front() == '*')
-    in().refuse_word(SetupErrorKind::bad_file, "a material such as ENU, density, E, nu", type);
+    in().refuse(SetupErrorKind::bad_file, "a material such as ENU, density, E, nu", in_quotes(type));
   while (!in().rest().empty()) in().real("a material constant");
 }
 
-inline Parser::Set& Parser::add_set(const std::string& name) {
+PALPATE_COLD inline Parser::Set& Parser::add_set(const std::string& name) {
   set_of_name_.try_emplace(name, sets_.size());
   sets_.emplace_back().name = name;
   return sets_.back();
@@ -152,7 +152,7 @@ inline Parser::Set& Parser::add_set(const std::string& name) {
 inline void Parser::read_set() {
   const std::string name = read_name("the name of a set");
   if (set_of_name_.find(name) != set_of_name_.end())
-    in().refuse(SetupErrorKind::bad_file, "a new set", joined({TextReader::quoted(name), " again"}));
+    in().refuse(SetupErrorKind::bad_file, "a new set", {in_quotes(name), " again"});
   std::vector<Index>& set = add_set(name).elements;
   const Index base = std::max<Index>(elements_.base(), 0), count = elements_.count();
   while (lines_.next_line()) {
@@ -161,14 +161,14 @@ inline void Parser::read_set() {
   }
 }
 
-inline void Parser::read_region() {
+PALPATE_COLD inline void Parser::read_region() {
   in().end_line("*REGION");
   lines_.need_line("a set and a material");
   const std::string set(in().token()), material(in().token());
   const auto known = set_of_name_.find(set);
-  if (known == set_of_name_.end()) in().refuse_word(SetupErrorKind::bad_file, "a set of this file", set);
+  if (known == set_of_name_.end()) in().refuse(SetupErrorKind::bad_file, "a set of this file", in_quotes(set));
   if (materials_.find(material) == materials_.end())
-    in().refuse_word(SetupErrorKind::bad_file, "a material of this file", material);
+    in().refuse(SetupErrorKind::bad_file, "a material of this file", in_quotes(material));
   in().end_line("a region");
   regions_.push_back(known->second);
 }
@@ -214,7 +214,7 @@ PALPATE_INLINE FileMesh read(const std::string& path) {
   return parse(read_file(path), path, [&](const std::string& name) {
     const std::string other = joined({folder_of(path), name});
     if (!is_regular_file(other))
-      raise(SetupErrorKind::bad_file, joined({path, ": *INCLUDE ", name, ": there is no such file"}));
+      refuse(SetupErrorKind::bad_file, {path, ": *INCLUDE ", name, ": there is no such file"});
     return read_file(other);
   });
 }

@@ -5,7 +5,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::veg {
 
-PALPATE_INLINE Lines::Lines(std::string_view text, const std::string& name, Include include)
+PALPATE_COLD PALPATE_INLINE Lines::Lines(std::string_view text, const std::string& name, Include include)
     : include_(std::move(include)) {
   open_.push_back({{}, TextReader(text, name, syntax)});
   names.push_back(name);
@@ -30,7 +30,7 @@ PALPATE_INLINE void Lines::need_line(std::string_view expected) {
   if (!next_line()) in().refuse(SetupErrorKind::bad_file, expected, "the end of the file");
 }
 
-PALPATE_INLINE void Lines::open() {
+PALPATE_COLD PALPATE_INLINE void Lines::open() {
   TextReader& at = in();
   at.token();
   const std::string name(at.rest());
@@ -38,7 +38,7 @@ PALPATE_INLINE void Lines::open() {
     at.refuse(SetupErrorKind::unsupported, "at most 8 files inside each other and 64 in all", "one more");
   if (name.empty() || name.front() == '/' || name.front() == '\\' || name.find("..") != name.npos ||
       name.find(':') != name.npos)
-    at.refuse_word(SetupErrorKind::unsupported, "a file in the folder of this one", name);
+    at.refuse(SetupErrorKind::unsupported, "a file in the folder of this one", in_quotes(name));
   open_.push_back({include_(name), TextReader({}, name)});
   open_.back().reader = TextReader(open_.back().text, name, syntax);
   file_.push_back(static_cast<std::uint8_t>(names.size()));

@@ -19,7 +19,7 @@ class AttributeReader {
   void begin(bool of_cells, Index expected);
 
   /// Reads the part of which `keyword` is the first word.
-  void read(const std::string& keyword);
+  void read(std::string_view keyword);
 
   std::vector<int> regions;  ///< of each cell; empty when the file names none
 
@@ -33,7 +33,7 @@ class AttributeReader {
   void read_field();
 
   /// The attributes with a keyword of their own.
-  void read_attribute(const std::string& keyword);
+  void read_attribute(std::string_view keyword);
 
   TextReader& in_;
   NumberStream& numbers_;

@@ -61,50 +61,50 @@ inline FileMesh LegacyParser::parse() {
   return std::move(mesh_);
 }
 
-inline void LegacyParser::read_head() {
+PALPATE_COLD inline void LegacyParser::read_head() {
   constexpr std::string_view head = "# vtk DataFile Version";
   if (!in_.next_raw_line() || !in_.line().starts_with(head))
-    in_.refuse_word(SetupErrorKind::bad_file, head, in_.line());
+    in_.refuse(SetupErrorKind::bad_file, head, in_quotes(in_.line()));
   for (int i = 0; i < 4; ++i) in_.token();
   version_ = in_.real("a version number");
-  if (!(version_ >= 1.0 && version_ < 6.0)) in_.refuse(SetupErrorKind::unsupported, "version 1 to 5", number(version_));
+  if (!(version_ >= 1.0 && version_ < 6.0)) in_.refuse(SetupErrorKind::unsupported, "version 1 to 5", version_);
   in_.next_raw_line();  // the title, possibly blank
   in_.need_line("ASCII or BINARY");
-  const std::string coding = lower(in_.line());
-  if (coding != "ascii" && coding != "binary") in_.refuse_word(SetupErrorKind::bad_file, "ASCII or BINARY", in_.line());
-  numbers_.is_binary = coding == "binary";
+  const std::string_view coding = in_.line();
+  numbers_.is_binary = same_word(coding, "binary");
+  if (!numbers_.is_binary && !same_word(coding, "ascii"))
+    in_.refuse(SetupErrorKind::bad_file, "ASCII or BINARY", in_quotes(in_.line()));
   in_.need_line("DATASET UNSTRUCTURED_GRID");
-  const bool is_dataset = lower(in_.token()) == "dataset";
-  const std::string kind = lower(in_.token());
-  if (!is_dataset) in_.refuse_word(SetupErrorKind::bad_file, "DATASET UNSTRUCTURED_GRID", in_.line());
-  if (kind == "polydata")
+  const bool is_dataset = same_word(in_.token(), "dataset");
+  const std::string_view kind = in_.token();
+  if (!is_dataset) in_.refuse(SetupErrorKind::bad_file, "DATASET UNSTRUCTURED_GRID", in_quotes(in_.line()));
+  if (same_word(kind, "polydata"))
     in_.refuse(SetupErrorKind::unsupported, "solid elements", "a surface (POLYDATA)", fill_command(in_.name()));
-  if (kind != "unstructured_grid")
-    in_.refuse(SetupErrorKind::unsupported, "UNSTRUCTURED_GRID", TextReader::quoted(kind),
-               joined({"Convert it: meshio convert ", in_.name(), " converted.msh"}));
+  if (!same_word(kind, "unstructured_grid"))
+    in_.refuse(SetupErrorKind::unsupported, "UNSTRUCTURED_GRID", in_quotes(lower(kind)),
+               {"Convert it: meshio convert ", in_.name(), " converted.msh"});
 }
 
 inline void LegacyParser::read_section() {
-  const std::string keyword = lower(in_.token());
-  if (keyword == "points") {
+  const std::string_view keyword = in_.token();
+  if (same_word(keyword, "points")) {
     read_points();
-  } else if (keyword == "cells") {
+  } else if (same_word(keyword, "cells")) {
     read_cells();
-  } else if (keyword == "cell_types") {
+  } else if (same_word(keyword, "cell_types")) {
     read_types();
-  } else if (keyword == "cell_data" || keyword == "point_data") {
-    if (!has_types_) in_.refuse_word(SetupErrorKind::bad_file, "CELL_TYPES before data", in_.line());
-    const bool of_cells = keyword == "cell_data";
+  } else if (same_word(keyword, "cell_data") || same_word(keyword, "point_data")) {
+    if (!has_types_) in_.refuse(SetupErrorKind::bad_file, "CELL_TYPES before data", in_quotes(in_.line()));
+    const bool of_cells = same_word(keyword, "cell_data");
     attributes_.begin(of_cells, of_cells ? cell_count() : static_cast<Index>(mesh_.positions.size()));
   } else {
     attributes_.read(keyword);
   }
 }
 
-inline void LegacyParser::once(bool& seen, bool in_place, std::string_view order) {
-  if (seen)
-    in_.refuse(SetupErrorKind::bad_file, "every section once", joined({TextReader::quoted(in_.line()), " again"}));
-  if (!in_place) in_.refuse_word(SetupErrorKind::bad_file, order, in_.line());
+PALPATE_COLD inline void LegacyParser::once(bool& seen, bool in_place, std::string_view order) {
+  if (seen) in_.refuse(SetupErrorKind::bad_file, "every section once", {in_quotes(in_.line()), " again"});
+  if (!in_place) in_.refuse(SetupErrorKind::bad_file, order, in_quotes(in_.line()));
   seen = true;
 }
 
@@ -147,12 +147,12 @@ inline void LegacyParser::read_cells() {
   }
   numbers_.end("the cells");
   if (const Index found = offsets_.back() + count; found != total)
-    in_.refuse(SetupErrorKind::bad_file, joined({total, " numbers in CELLS"}), joined({found}));
+    in_.refuse(SetupErrorKind::bad_file, {total, " numbers in CELLS"}, {found});
 }
 
-inline const NumberType& LegacyParser::read_array_head(std::string_view keyword) {
+PALPATE_COLD inline const NumberType& LegacyParser::read_array_head(std::string_view keyword) {
   in_.need_line(keyword);
-  if (lower(in_.token()) != lower(keyword)) in_.refuse_word(SetupErrorKind::bad_file, keyword, in_.line());
+  if (!same_word(in_.token(), keyword)) in_.refuse(SetupErrorKind::bad_file, keyword, in_quotes(in_.line()));
   const NumberType& type = numbers_.read_type();
   in_.end_line(keyword);
   if (type.kind == NumberType::real || type.bits == 1)
@@ -168,7 +168,7 @@ inline void LegacyParser::read_offsets() {
     offsets_.push_back(numbers_.integer(offset_type, "an offset", i == 0 ? 0 : offsets_.back(), i == 0 ? 0 : total));
   numbers_.end("the offsets");
   if (count > 0 && offsets_.back() != total)
-    in_.refuse(SetupErrorKind::bad_file, joined({"a last offset of ", total}), joined({offsets_.back()}));
+    in_.refuse(SetupErrorKind::bad_file, {"a last offset of ", total}, {offsets_.back()});
   if (count == 0) offsets_.assign(1, 0);
   const NumberType& node_type = read_array_head("CONNECTIVITY");
   for (std::size_t c = 1; c < offsets_.size(); ++c) {
@@ -187,12 +187,11 @@ inline void LegacyParser::read_types() {
     const Index wanted = numbers_.integer(number_types[7], "a cell type", 0, 255);
     types_.push_back(find_cell_type(wanted));
     if (types_.back() == nullptr)
-      in_.refuse(SetupErrorKind::unsupported, "a cell type of first or second order", joined({"'", wanted, "'"}));
+      in_.refuse(SetupErrorKind::unsupported, "a cell type of first or second order", {"'", wanted, "'"});
     const Index nodes = offsets_[static_cast<std::size_t>(c) + 1] - offsets_[static_cast<std::size_t>(c)];
     const ShapeFacts& shape = facts(types_.back()->shape);
     if (nodes != shape.nodes)
-      in_.refuse(SetupErrorKind::bad_file, joined({shape.nodes, " nodes for a ", shape.name}),
-                 joined({nodes, " in cell ", c}));
+      in_.refuse(SetupErrorKind::bad_file, {shape.nodes, " nodes for a ", shape.name}, {nodes, " in cell ", c});
   }
   numbers_.end("the cell types");
 }

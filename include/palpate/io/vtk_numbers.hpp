@@ -35,6 +35,9 @@ inline constexpr std::array number_types{
 /// ASCII letters in small, whatever the locale.
 std::string lower(std::string_view text);
 
+/// Whether two words are the same but for small and capital letters.
+bool same_word(std::string_view a, std::string_view b) noexcept;
+
 /// Reads numbers that follow each other on any number of lines, or as big-endian binary data.
 class NumberStream {
  public:

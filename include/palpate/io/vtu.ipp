@@ -59,9 +59,8 @@ inline void VtuText::fields(const std::vector<VtuField>& all, Index count) {
   for (const VtuField& f : all) {
     const Index size = f.values.size();
     if (size % places != 0 || (size == 0) != (count == 0))
-      raise(SetupErrorKind::bad_argument,
-            joined({"field '", f.name, "' holds ", size, " numbers for ", count, " places"}),
-            "It needs one or more components for each");
+      refuse(SetupErrorKind::bad_argument, {"field '", f.name, "' holds ", size, " numbers for ", count, " places"},
+             "It needs one or more components for each");
     array("Float64", f.name, size / places, f.values.data(), static_cast<std::size_t>(size) * sizeof(double));
   }
 }

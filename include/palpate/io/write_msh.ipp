@@ -55,7 +55,7 @@ inline bool MshText::is_nameless(int r) const {
 
 inline void MshText::add_name(int dimension, int tag, const std::string& name) {
   if (name.empty() || name.find_first_of("\"\n\r") != name.npos)
-    raise(SetupErrorKind::bad_argument, joined({"the name '", name, "' cannot be written to a Gmsh file"}));
+    refuse(SetupErrorKind::bad_argument, {"the name '", name, "' cannot be written to a Gmsh file"});
   append(names_, {dimension, " ", tag, " \"", name, "\"\n"});
   ++name_count_;
 }
