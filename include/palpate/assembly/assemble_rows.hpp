@@ -3,8 +3,17 @@
 
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/constant_geometry.hpp>
+#include <palpate/assembly/node_elements.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/local/geometry.hpp>
 #include <palpate/local/isotropic.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <cmath>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

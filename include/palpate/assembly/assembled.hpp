@@ -2,11 +2,23 @@
 #pragma once
 
 #include <palpate/assembly/assemble_rows.hpp>
+#include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
+#include <palpate/assembly/constant_geometry.hpp>
+#include <palpate/assembly/node_elements.hpp>
 #include <palpate/assembly/smoothed_stiffness.hpp>
 #include <palpate/concepts/assembler.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/local/geometry.hpp>
 #include <palpate/local/isotropic.hpp>
+#include <palpate/local/stiffness.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <optional>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

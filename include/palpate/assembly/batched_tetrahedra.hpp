@@ -1,11 +1,24 @@
 // Internal force of tetrahedra at any strain, several elements at once: the force of explicit integration.
 #pragma once
 
-#include <palpate/assembly/large_strain.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/assembly/tetrahedron_batches.hpp>
 #include <palpate/assembly/volume_watch.hpp>
 #include <palpate/concepts/integrator.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/lane_rows.hpp>
+#include <palpate/core/lanes.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/tet4.hpp>
 #include <palpate/mesh/quality.hpp>
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

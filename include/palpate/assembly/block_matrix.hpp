@@ -2,10 +2,14 @@
 #pragma once
 
 #include <palpate/assembly/node_elements.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -21,11 +25,7 @@ struct BlockPattern {
   Index diagonal(Index row) const noexcept { return row_start[static_cast<std::size_t>(row) + 1] - 1; }
 
   /// Position of block (row, col), col <= row; binary search.
-  Index find(NodeId row, NodeId col) const noexcept {
-    const auto begin = column.begin() + row_start[static_cast<std::size_t>(row)];
-    const auto end = column.begin() + row_start[static_cast<std::size_t>(row) + 1];
-    return std::lower_bound(begin, end, col) - column.begin();
-  }
+  Index find(NodeId row, NodeId col) const noexcept;
 };
 
 /// Pattern of a mesh with the elements around its nodes. O(elements x nodes_per_element^2), allocates.
@@ -65,54 +65,25 @@ class BlockMatrix {
 
   Index size() const noexcept { return 3 * pattern_.rows(); }
   const BlockPattern& pattern() const noexcept { return pattern_; }
-  std::size_t bytes() const noexcept {
-    return values_.size() * sizeof(double) + pattern_.column.size() * sizeof(NodeId) +
-           pattern_.row_start.size() * sizeof(Index);
-  }
+  std::size_t bytes() const noexcept;
 
   /// Block at a position given by the pattern.
-  Eigen::Map<Matrix3> block(Index position) noexcept { return Eigen::Map<Matrix3>(values_.data() + 9 * position); }
-  Eigen::Map<const Matrix3> block(Index position) const noexcept {
-    return Eigen::Map<const Matrix3>(values_.data() + 9 * position);
-  }
+  Eigen::Map<Matrix3> block(Index position) noexcept;
+  Eigen::Map<const Matrix3> block(Index position) const noexcept;
 
   void set_zero() noexcept { std::ranges::fill(values_, 0.0); }
   /// Adds `factor` times a matrix on the same pattern. No allocation.
-  void add(double factor, const BlockMatrix& other) noexcept {
-    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] += factor * other.values_[i];
-  }
+  void add(double factor, const BlockMatrix& other) noexcept;
   /// Takes the values of a matrix on the same pattern. No allocation.
   void copy_values(const BlockMatrix& other) noexcept { std::ranges::copy(other.values_, values_.begin()); }
 
   /// y = K x; x and y hold size() entries. No allocation; reads every stored block once.
-  void apply(const VectorX& x, VectorX& y) const noexcept {
-    y.setZero();
-    for (Index i = 0; i < pattern_.rows(); ++i) {
-      const Index last = pattern_.row_start[static_cast<std::size_t>(i) + 1] - 1;
-      const Vector3 xi = x.segment<3>(3 * i);
-      Vector3 yi = block(last) * xi;
-      for (Index p = pattern_.row_start[static_cast<std::size_t>(i)]; p < last; ++p) {
-        const Index j = pattern_.column[static_cast<std::size_t>(p)];
-        const auto k = block(p);
-        yi.noalias() += k * x.segment<3>(3 * j);
-        y.segment<3>(3 * j).noalias() += k.transpose() * xi;
-      }
-      y.segment<3>(3 * i) += yi;
-    }
-  }
+  void apply(const VectorX& x, VectorX& y) const noexcept;
 
   /// Adds factor x nodal[i] to the three diagonal entries of every node i: a lumped mass.
-  void add_nodal(double factor, const VectorX& nodal) noexcept {
-    for (Index i = 0; i < nodal.size(); ++i) block(pattern().diagonal(i)).diagonal().array() += factor * nodal[i];
-  }
+  void add_nodal(double factor, const VectorX& nodal) noexcept;
 
-  std::vector<Matrix3> diagonal_blocks() const {
-    std::vector<Matrix3> d;
-    d.reserve(static_cast<std::size_t>(pattern_.rows()));
-    for (Index i = 0; i < pattern_.rows(); ++i)
-      d.push_back(block(pattern_.row_start[static_cast<std::size_t>(i) + 1] - 1));
-    return d;
-  }
+  std::vector<Matrix3> diagonal_blocks() const;
 
  private:
   BlockPattern pattern_;
@@ -120,9 +91,10 @@ class BlockMatrix {
 };
 
 /// A zero matrix on a pattern, or too_large.
-inline BlockMatrix make_stiffness(BlockPattern pattern, const SetupLimits& limits) {
-  limits.require_memory(static_cast<double>(pattern.column.size()) * 9 * sizeof(double), "the stiffness");
-  return BlockMatrix(std::move(pattern));
-}
+BlockMatrix make_stiffness(BlockPattern pattern, const SetupLimits& limits);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/block_matrix.ipp>
+#endif

@@ -1,12 +1,21 @@
 // A mesh with its materials evaluated: what is integrated over.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
 #include <palpate/concepts/material.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/lanes.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/fibres.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
 
+#include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -33,14 +42,7 @@ struct Body {
 };
 
 /// Refuses with the id of one element.
-[[noreturn]] PALPATE_COLD inline void raise_element(SetupErrorKind kind, Index e, const char* what) {
-  SetupProblem p;
-  p.kind = kind;
-  p.what = "element " + std::to_string(e) + ' ' + what;
-  p.ids = {e};
-  p.count = 1;
-  raise(std::move(p));
-}
+[[noreturn]] PALPATE_COLD void raise_element(SetupErrorKind kind, Index e, const char* what);
 
 /// Refuses a material that its own check() refuses, with the region's number and name.
 template <Material M, MeshView Mesh>
@@ -139,3 +141,7 @@ Body<E> make_body(Mesh<E> mesh, const M& material) {
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/body.ipp>
+#endif

@@ -2,7 +2,13 @@
 #pragma once
 
 #include <palpate/assembly/body.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/local/geometry.hpp>
+#include <palpate/mesh/mesh.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -2,10 +2,28 @@
 #pragma once
 
 #include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/assembly/tetrahedron_batches.hpp>
 #include <palpate/assembly/volume_watch.hpp>
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/lane_rows.hpp>
+#include <palpate/core/lanes.hpp>
+#include <palpate/core/rotation.hpp>
 #include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
 #include <palpate/core/tracked_rotation.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/tet4.hpp>
 #include <palpate/material/corotational.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/material/small_strain.hpp>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <cmath>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

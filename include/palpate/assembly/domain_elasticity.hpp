@@ -1,8 +1,16 @@
 // The elasticity of the domains over which a strain is averaged.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/constant_geometry.hpp>
 #include <palpate/assembly/strain_domains.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/smoothed.hpp>
 #include <palpate/local/split_elasticity.hpp>
+
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -39,18 +47,17 @@ class DomainElasticity {
 
   std::size_t bytes() const noexcept { return elasticity_.size() * sizeof(Matrix6); }
   /// Of domain number d.
-  const Matrix6& operator()(Index d, const StrainDomain& domain) const noexcept {
-    return elasticity_[by_domain_ ? static_cast<std::size_t>(d)
-                                  : place(static_cast<std::size_t>(domain.region), domain.part)];
-  }
+  const Matrix6& operator()(Index d, const StrainDomain& domain) const noexcept;
 
  private:
-  static std::size_t place(std::size_t law, StrainPart part) noexcept {
-    return 2 * law + (part == StrainPart::volumetric ? 1 : 0);
-  }
+  static std::size_t place(std::size_t law, StrainPart part) noexcept;
 
   bool by_domain_ = false;
   std::vector<Matrix6> elasticity_;  // of every domain, or both parts of every region
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/domain_elasticity.ipp>
+#endif

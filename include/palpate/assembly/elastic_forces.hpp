@@ -3,6 +3,8 @@
 
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/concepts/integrator.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,11 +1,14 @@
 // Elements in blocks that lie together, so that what one block reads and writes stays in the first level of the cache.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
 
 #include <algorithm>
-#include <numeric>
 #include <span>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -19,30 +22,8 @@ namespace detail {
 
 /// Halves along the longest side of the box of the centres until a part has at most `most` elements. Cuts are at
 /// multiples of `group`.
-inline void bisect_elements(std::span<NodeId> elements, const std::vector<Vector3>& centre, Index most, Index group,
-                            int region, std::vector<ElementBlock>& blocks) {
-  const auto count = static_cast<Index>(elements.size());
-  if (count <= most) {
-    blocks.push_back({region, {elements.begin(), elements.end()}});
-    return;
-  }
-  Vector3 low = Vector3::Constant(infinity), high = -low;
-  for (NodeId e : elements) {
-    low = low.cwiseMin(centre[static_cast<std::size_t>(e)]);
-    high = high.cwiseMax(centre[static_cast<std::size_t>(e)]);
-  }
-  int axis = 0;
-  (high - low).maxCoeff(&axis);
-  const Index half = std::max(group, (count / 2 + group / 2) / group * group);
-  const auto before = [&](NodeId a, NodeId b) {
-    const double xa = centre[static_cast<std::size_t>(a)][axis], xb = centre[static_cast<std::size_t>(b)][axis];
-    return xa < xb || (xa == xb && a < b);
-  };
-  std::nth_element(elements.begin(), elements.begin() + half, elements.end(), before);
-  const auto middle = static_cast<std::size_t>(half);
-  bisect_elements(elements.subspan(0, middle), centre, most, group, region, blocks);
-  bisect_elements(elements.subspan(middle), centre, most, group, region, blocks);
-}
+void bisect_elements(std::span<NodeId> elements, const std::vector<Vector3>& centre, Index most, Index group,
+                            int region, std::vector<ElementBlock>& blocks);
 
 }  // namespace detail
 
@@ -64,3 +45,7 @@ std::vector<ElementBlock> element_blocks(const Mesh<E>& mesh, Index most, Index 
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/element_blocks.ipp>
+#endif

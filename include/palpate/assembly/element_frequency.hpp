@@ -2,10 +2,19 @@
 #pragma once
 
 #include <palpate/assembly/body.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/local/geometry.hpp>
 #include <palpate/local/mass.hpp>
 #include <palpate/local/stiffness.hpp>
+#include <palpate/mesh/mesh.hpp>
 
 #include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,7 +1,17 @@
 // Prescribed displacements: which dofs are free, which are given (thesis 3.4.3, BCEssensiell).
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/selection.hpp>
+#include <palpate/mesh/surface.hpp>
+
+#include <string>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -17,19 +27,11 @@ struct EssentialConditions {
   Index free_count() const noexcept { return static_cast<Index>(free_dofs.size()); }
 
   /// Entries of the free dofs of a full vector. No allocation when `free_part` has its size.
-  void gather(const VectorX& full, VectorX& free_part) const noexcept {
-    for (Index k = 0; k < free_count(); ++k) free_part[k] = full[free_dofs[static_cast<std::size_t>(k)]];
-  }
+  void gather(const VectorX& full, VectorX& free_part) const noexcept;
   /// Full vector of free entries, and of another full vector on prescribed dofs.
-  void place(const VectorX& free_part, const VectorX& held, VectorX& full) const noexcept {
-    full = held;
-    for (Index k = 0; k < free_count(); ++k) full[free_dofs[static_cast<std::size_t>(k)]] = free_part[k];
-  }
+  void place(const VectorX& free_part, const VectorX& held, VectorX& full) const noexcept;
   /// Full vector with zeros on prescribed dofs.
-  void scatter(const VectorX& free_part, VectorX& full) const noexcept {
-    full.setZero();
-    for (Index k = 0; k < free_count(); ++k) full[free_dofs[static_cast<std::size_t>(k)]] = free_part[k];
-  }
+  void scatter(const VectorX& free_part, VectorX& full) const noexcept;
 };
 
 /// Resolves the prescribed conditions of a scene. Throws unknown_group, empty_group, or conflicting_conditions when one
@@ -65,3 +67,7 @@ EssentialConditions resolve_essential(const Mesh<E>& mesh, const std::vector<Bou
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/essential_conditions.ipp>
+#endif

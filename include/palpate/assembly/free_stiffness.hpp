@@ -4,12 +4,15 @@
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/concepts/assembler.hpp>
-#include <palpate/concepts/linear_solver.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 
 #include <Eigen/LU>
 #include <Eigen/SparseCore>
 
+#include <algorithm>
 #include <numeric>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -108,13 +111,10 @@ SparseMatrix free_matrix(const Matrix& k, const EssentialConditions& conditions)
 }
 
 /// 1-norm of K_ff. O(entries).
-inline double free_norm(const BlockMatrix& k, const EssentialConditions& conditions) {
-  VectorX sums = VectorX::Zero(conditions.free_count());
-  for_each_free_entry(k, conditions, [&](Index row, Index column, double value) {
-    sums[column] += std::abs(value);
-    if (row != column) sums[row] += std::abs(value);
-  });
-  return sums.size() > 0 ? sums.maxCoeff() : 0.0;
-}
+double free_norm(const BlockMatrix& k, const EssentialConditions& conditions);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/free_stiffness.ipp>
+#endif

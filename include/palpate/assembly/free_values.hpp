@@ -1,7 +1,15 @@
 // The free part of a matrix whose values change.
 #pragma once
 
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+
+#include <Eigen/SparseCore>
+
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -10,41 +18,17 @@ namespace palpate { inline namespace PALPATE_ABI {
 class FreeValues {
  public:
   FreeValues() = default;
-  FreeValues(const BlockMatrix& k, const EssentialConditions& conditions) : lower_(free_matrix(k, conditions)) {
-    place_.reserve(static_cast<std::size_t>(lower_.nonZeros()));
-    std::vector<Index> next(lower_.outerIndexPtr(), lower_.outerIndexPtr() + lower_.cols());
-    for_each_free_entry(k, conditions, [&](Index, Index column, double) {
-      place_.push_back(next[static_cast<std::size_t>(column)]++);
-    });
-  }
+  FreeValues(const BlockMatrix& k, const EssentialConditions& conditions);
 
   const SparseMatrix& lower() const noexcept { return lower_; }
 
   /// Takes the values of a matrix on the same pattern with the same conditions.
-  void update(const BlockMatrix& k, const EssentialConditions& conditions) noexcept {
-    auto place = place_.begin();
-    double* const values = lower_.valuePtr();
-    for_each_free_entry(k, conditions, [&](Index, Index, double value) { values[*place++] = value; });
-  }
+  void update(const BlockMatrix& k, const EssentialConditions& conditions) noexcept;
   /// The diagonal comes first in a column of the lower half.
-  void add_to_diagonal(double value) noexcept {
-    for (Index j = 0; j < lower_.cols(); ++j) lower_.valuePtr()[lower_.outerIndexPtr()[j]] += value;
-  }
+  void add_to_diagonal(double value) noexcept;
   /// What must be added to the diagonal to make the matrix diagonally dominant, so positive semidefinite (Gershgorin
   /// 1931); 0 when it is. NaN for a matrix that is not finite. `sums` is room for a number per row.
-  double gershgorin_shift(VectorX& sums) const noexcept {
-    sums.setZero();
-    for (Index j = 0; j < lower_.cols(); ++j) {
-      const Index first = lower_.outerIndexPtr()[j];
-      sums[j] -= lower_.valuePtr()[first];
-      for (Index p = first + 1; p < lower_.outerIndexPtr()[j + 1]; ++p) {
-        const double size = std::abs(lower_.valuePtr()[p]);
-        sums[j] += size;
-        sums[lower_.innerIndexPtr()[p]] += size;
-      }
-    }
-    return sums.allFinite() ? std::max(0.0, sums.maxCoeff()) : std::numeric_limits<double>::quiet_NaN();
-  }
+  double gershgorin_shift(VectorX& sums) const noexcept;
 
  private:
   SparseMatrix lower_;
@@ -52,3 +36,7 @@ class FreeValues {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/free_values.ipp>
+#endif

@@ -2,8 +2,18 @@
 #pragma once
 
 #include <palpate/assembly/body.hpp>
-#include <palpate/core/setup_options.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/material/viscoelastic.hpp>
+#include <palpate/mesh/fibres.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

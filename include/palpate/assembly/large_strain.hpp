@@ -1,13 +1,33 @@
 // Energy, force and tangent stiffness of a body at any deformation: total Lagrangian.
 #pragma once
 
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/body.hpp>
 #include <palpate/assembly/elastic_forces.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/assembly/point_memory.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/lanes.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/element/mean_dilatation.hpp>
 #include <palpate/element/smoothed.hpp>
 #include <palpate/local/geometry.hpp>
+#include <palpate/material/viscoelastic.hpp>
+#include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/quality.hpp>
+
+#include <Eigen/LU>
+
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

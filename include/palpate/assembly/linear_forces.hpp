@@ -1,7 +1,13 @@
 // Small strain as an elastic body like any other.
 #pragma once
 
+#include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/elastic_forces.hpp>
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -11,16 +17,8 @@ class LinearForces final : public ElasticForces {
   explicit LinearForces(BlockMatrix stiffness) : stiffness_(std::move(stiffness)), force_(stiffness_.size()) {}
 
   Index size() const noexcept override { return stiffness_.size(); }
-  double energy(const VectorX& u) const noexcept override {
-    stiffness_.apply(u, force_);
-    return 0.5 * u.dot(force_);
-  }
-  DeformationReport force(const VectorX& u, VectorX& f) const noexcept override {
-    stiffness_.apply(u, f);
-    DeformationReport report;
-    report.smallest_volume_ratio = 1.0;
-    return report;
-  }
+  double energy(const VectorX& u) const noexcept override;
+  DeformationReport force(const VectorX& u, VectorX& f) const noexcept override;
   void tangent(const VectorX&, BlockMatrix& k) const noexcept override { k.copy_values(stiffness_); }
   /// Any length would do.
   double probe_length() const noexcept { return 1.0; }
@@ -34,3 +32,7 @@ class LinearForces final : public ElasticForces {
 static_assert(ForceOperator<LinearForces>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/linear_forces.ipp>
+#endif

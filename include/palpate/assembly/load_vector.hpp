@@ -1,9 +1,22 @@
 // Nodal loads of a whole scene (thesis 3.38, 3.47; BCNaturlig, EksternLast, InitToyning).
 #pragma once
 
+#include <palpate/assembly/body.hpp>
 #include <palpate/assembly/smoothed_strain.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/local/integration_points.hpp>
 #include <palpate/local/loads.hpp>
+#include <palpate/local/strain_displacement.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/selection.hpp>
+#include <palpate/mesh/surface.hpp>
+
+#include <algorithm>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -3,8 +3,18 @@
 
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/local/mass.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -17,29 +27,14 @@ class MassMatrix {
 
   Index size() const noexcept { return 3 * pattern_.rows(); }
   const BlockPattern& pattern() const noexcept { return pattern_; }
-  std::size_t bytes() const noexcept {
-    return values_.size() * (sizeof(double) + sizeof(NodeId)) + pattern_.row_start.size() * sizeof(Index);
-  }
+  std::size_t bytes() const noexcept;
 
   /// Mass of a pair of nodes at a position given by the pattern [kg].
   double& operator[](Index position) noexcept { return values_[static_cast<std::size_t>(position)]; }
   double operator[](Index position) const noexcept { return values_[static_cast<std::size_t>(position)]; }
 
   /// y = M x; x and y hold size() entries. No allocation.
-  void apply(const VectorX& x, VectorX& y) const noexcept {
-    y.setZero();
-    for (Index i = 0; i < pattern_.rows(); ++i) {
-      const Index last = pattern_.row_start[static_cast<std::size_t>(i) + 1] - 1;
-      const Vector3 xi = x.segment<3>(3 * i);
-      Vector3 yi = (*this)[last] * xi;
-      for (Index p = pattern_.row_start[static_cast<std::size_t>(i)]; p < last; ++p) {
-        const Index j = pattern_.column[static_cast<std::size_t>(p)];
-        yi += (*this)[p] * x.segment<3>(3 * j);
-        y.segment<3>(3 * j) += (*this)[p] * xi;
-      }
-      y.segment<3>(3 * i) += yi;
-    }
-  }
+  void apply(const VectorX& x, VectorX& y) const noexcept;
 
  private:
   BlockPattern pattern_;
@@ -49,10 +44,7 @@ class MassMatrix {
 namespace detail {
 
 /// Refuses a mass that cannot be: an inverted element, or numbers that are not finite.
-inline void require_mass(double volume, double mass, Index e) {
-  if (!std::isfinite(mass)) raise_element(SetupErrorKind::non_finite, e, "has a mass that is not finite");
-  if (!(volume > 0.0)) raise_element(SetupErrorKind::inverted_element, e, "has no positive volume");
-}
+void require_mass(double volume, double mass, Index e);
 
 }  // namespace detail
 
@@ -115,3 +107,7 @@ void for_each_free_entry(const MassMatrix& m, const EssentialConditions& conditi
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/mass_matrix.ipp>
+#endif

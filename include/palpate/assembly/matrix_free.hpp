@@ -3,9 +3,18 @@
 
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/smoothed_stiffness.hpp>
-#include <palpate/concepts/assembler.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/local/stiffness.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/local/integration_points.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 
 #include <limits>
 #include <numeric>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -30,10 +34,7 @@ class NodeElements {
             static_cast<NodeId>(e);
   }
 
-  std::span<const NodeId> of(Index node) const noexcept {
-    const auto i = static_cast<std::size_t>(node);
-    return {element_.data() + first_[i], static_cast<std::size_t>(first_[i + 1] - first_[i])};
-  }
+  std::span<const NodeId> of(Index node) const noexcept;
 
  private:
   std::vector<Index> first_;
@@ -41,3 +42,7 @@ class NodeElements {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/node_elements.ipp>
+#endif

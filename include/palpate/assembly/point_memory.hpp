@@ -1,7 +1,15 @@
 // What the integration points of a body remember.
 #pragma once
 
-#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/material/viscoelastic.hpp>
+
+#include <array>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 

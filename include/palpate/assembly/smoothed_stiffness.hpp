@@ -2,8 +2,22 @@
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/body.hpp>
 #include <palpate/assembly/domain_elasticity.hpp>
+#include <palpate/assembly/node_elements.hpp>
+#include <palpate/assembly/strain_domains.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/smoothed.hpp>
 #include <palpate/local/isotropic.hpp>
+#include <palpate/local/strain_displacement.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,7 +1,16 @@
 // Loads, energy and stress of elements whose strain is an average over neighbours.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
 #include <palpate/assembly/domain_elasticity.hpp>
+#include <palpate/assembly/strain_domains.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/local/strain_displacement.hpp>
+
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

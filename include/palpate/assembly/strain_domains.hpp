@@ -3,9 +3,17 @@
 
 #include <palpate/assembly/constant_geometry.hpp>
 #include <palpate/assembly/node_elements.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/core/voigt.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/element/smoothed.hpp>
+#include <palpate/local/geometry.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <algorithm>
+#include <span>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -23,17 +31,9 @@ struct StrainDomain {
   StrainPart part = StrainPart::deviatoric;
 
   /// Mean strain under nodal displacements u, 3 per node of the mesh [m].
-  Vector6 strain(const VectorX& u) const noexcept {
-    Matrix3 h = Matrix3::Zero();
-    for (std::size_t a = 0; a < nodes.size(); ++a)
-      h.noalias() += u.segment<3>(3 * Index{nodes[a]}) * gradients[a].transpose();
-    return voigt::strain_vector(Matrix3(0.5 * (h + h.transpose())));
-  }
+  Vector6 strain(const VectorX& u) const noexcept;
   /// Adds the nodal forces of a stress [Pa] to f, 3 per node of the mesh [N].
-  void add_force(const Vector6& stress, VectorX& f) const noexcept {
-    const Matrix3 tensor = volume * voigt::stress_tensor(stress);
-    for (std::size_t a = 0; a < nodes.size(); ++a) f.segment<3>(3 * Index{nodes[a]}).noalias() += tensor * gradients[a];
-  }
+  void add_force(const Vector6& stress, VectorX& f) const noexcept;
 };
 
 /// All domains of a mesh: for every edge a deviatoric one, for every node a volumetric one, per region. About 2 kB per
@@ -158,3 +158,7 @@ class StrainDomains {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/strain_domains.ipp>
+#endif

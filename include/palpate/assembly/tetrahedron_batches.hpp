@@ -4,10 +4,23 @@
 #include <palpate/assembly/constant_geometry.hpp>
 #include <palpate/assembly/element_blocks.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/lane_rows.hpp>
+#include <palpate/core/lanes.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/local/geometry.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

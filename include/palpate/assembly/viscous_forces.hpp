@@ -2,10 +2,24 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/body.hpp>
 #include <palpate/assembly/elastic_forces.hpp>
+#include <palpate/assembly/smoothed_stiffness.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/material/viscoelastic.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/scene.hpp>
 
-#include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -45,14 +59,7 @@ std::vector<Matrix6> shares_of_elasticity(const ViscousBody<E>& body, double kep
 }
 
 /// Every relaxation time once.
-inline std::vector<double> distinct_times(const std::vector<std::vector<PronyTerm>>& by_region) {
-  std::vector<double> times;
-  for (const auto& terms : by_region)
-    for (const PronyTerm& t : terms) times.push_back(t.relaxation_time);
-  std::ranges::sort(times);
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  return times;
-}
+std::vector<double> distinct_times(const std::vector<std::vector<PronyTerm>>& by_region);
 
 }  // namespace detail
 
@@ -114,44 +121,16 @@ class ViscousForces final : public ElasticForces {
   }
 
   Index size() const noexcept override { return step_.size(); }
-  double energy(const VectorX& u) const noexcept override {
-    step_.apply(u, product_);
-    return u.dot(0.5 * product_ + past_);
-  }
-  DeformationReport force(const VectorX& u, VectorX& f) const noexcept override {
-    step_.apply(u, f);
-    f += past_;
-    DeformationReport report;
-    report.smallest_volume_ratio = 1.0;
-    return report;
-  }
+  double energy(const VectorX& u) const noexcept override;
+  DeformationReport force(const VectorX& u, VectorX& f) const noexcept override;
   void tangent(const VectorX&, BlockMatrix& k) const noexcept override { k.copy_values(step_); }
   bool is_linear() const noexcept override { return true; }
 
-  void begin_step(double dt) noexcept override {
-    if (dt != dt_) set_length(dt);
-    past_.setZero();
-    for (std::size_t i = 0; i < times_.size(); ++i) {
-      trial_ = decay_[i] * memory_[i] - gain_[i] * last_;
-      fading_[i].apply(trial_, product_);
-      past_ += product_;
-    }
-  }
-  void end_step(const VectorX& u) noexcept override {
-    for (std::size_t i = 0; i < times_.size(); ++i) memory_[i] = decay_[i] * memory_[i] + gain_[i] * (u - last_);
-    last_ = u;
-  }
+  void begin_step(double dt) noexcept override;
+  void end_step(const VectorX& u) noexcept override;
 
  private:
-  void set_length(double dt) noexcept {
-    dt_ = dt;
-    step_.copy_values(slow_);
-    for (std::size_t i = 0; i < times_.size(); ++i) {
-      decay_[i] = std::exp(-dt / times_[i]);
-      gain_[i] = detail::mean_decay(dt / times_[i]);
-      step_.add(gain_[i], fading_[i]);
-    }
-  }
+  void set_length(double dt) noexcept;
 
   std::vector<double> times_, decay_, gain_;
   BlockMatrix slow_, step_;
@@ -163,3 +142,7 @@ class ViscousForces final : public ElasticForces {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/viscous_forces.ipp>
+#endif

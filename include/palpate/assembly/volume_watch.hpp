@@ -3,25 +3,20 @@
 
 #include <palpate/assembly/tetrahedron_batches.hpp>
 #include <palpate/concepts/integrator.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/lane_rows.hpp>
+#include <palpate/core/lanes.hpp>
+#include <palpate/core/types.hpp>
+
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The report of two parts of a body.
-inline void add_report(const DeformationReport& part, DeformationReport& all) noexcept {
-  if (part.smallest_volume_ratio < all.smallest_volume_ratio) {
-    all.smallest_volume_ratio = part.smallest_volume_ratio;
-    all.worst_element = part.worst_element;
-  }
-  all.inverted += part.inverted;
-  all.admissible = all.admissible && part.admissible;
-}
+void add_report(const DeformationReport& part, DeformationReport& all) noexcept;
 
 /// The report of all parts.
-inline DeformationReport report_of(const std::vector<DeformationReport>& parts) noexcept {
-  DeformationReport all;
-  for (const DeformationReport& part : parts) add_report(part, all);
-  return all;
-}
+DeformationReport report_of(const std::vector<DeformationReport>& parts) noexcept;
 
 /// Least J of a block, in which batch, how many are positive, and whether one is not finite, per lane.
 template <class S, int N>
@@ -63,3 +58,7 @@ class VolumeWatch {
 };
 
 }}}  // namespace palpate::detail
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/volume_watch.ipp>
+#endif

@@ -1,6 +1,7 @@
 // What the stiffness of a whole mesh is, stored or not.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
 #include <vector>

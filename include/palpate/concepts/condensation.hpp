@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
-
-#include <span>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

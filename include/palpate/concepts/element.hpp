@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
 #include <array>

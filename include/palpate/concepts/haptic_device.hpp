@@ -2,6 +2,7 @@
 // borders.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
 

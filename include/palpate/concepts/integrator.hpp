@@ -1,6 +1,7 @@
 // What is integrated in time by explicit steps, and by what; what Newton's method minimises.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
 #include <vector>

@@ -1,7 +1,7 @@
 // What a linear solver is.
 #pragma once
 
-#include <palpate/core/setup_options.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {

@@ -1,25 +1,20 @@
 // What a material is.
 #pragma once
 
+#include <palpate/core/config.hpp>
+#include <palpate/core/lanes.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 
 #include <optional>
+#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// The problem with a parameter of a material; `what` names it.
-inline SetupProblem parameter_problem(SetupErrorKind kind, const std::string& what, double value, double threshold,
-                                      const char* hint) {
-  SetupProblem p;
-  p.kind = kind;
-  p.what = what + " is " + number(value);
-  p.hint = hint;
-  p.value = value;
-  p.threshold = threshold;
-  return p;
-}
+SetupProblem parameter_problem(SetupErrorKind kind, const std::string& what, double value, double threshold,
+                                      const char* hint);
 
 /// An aggregate of named parameters that can say whether they are admissible. `density` is in kg/m^3; `check()` returns
 /// the problem or nothing and is called once per region at set-up.
@@ -83,3 +78,7 @@ concept FibreHyperelasticMaterial =
     };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/concepts/material.ipp>
+#endif

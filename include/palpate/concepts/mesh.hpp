@@ -1,6 +1,7 @@
 // What a mesh is: a read-only view, so that a simulator's own arrays serve without a copy.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
 #include <string>

@@ -1,7 +1,7 @@
 // What a quadrature rule is.
 #pragma once
 
-#include <palpate/core/types.hpp>
+#include <palpate/core/config.hpp>
 
 #include <array>
 

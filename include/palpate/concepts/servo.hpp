@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
+#include <palpate/core/config.hpp>
 
 #include <concepts>
 #include <span>

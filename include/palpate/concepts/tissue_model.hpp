@@ -1,6 +1,7 @@
 // What a haptic session needs of a tissue.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
 

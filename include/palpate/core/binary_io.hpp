@@ -1,14 +1,15 @@
 // Arrays to and from a binary file, in bulk and hashed on the way.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/content_hash.hpp>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <memory>
+#include <span>
 #include <string>
-#include <system_error>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -23,12 +24,7 @@ struct FileClose {
 using File = std::unique_ptr<std::FILE, FileClose>;
 
 /// What the operating system said last, in words.
-inline std::string system_message(int error) {
-  return error == 0 ? std::string("an unknown error") : std::generic_category().message(error);
-}
-
-/// Bytes hashed and passed on at once: they stay in the cache between the two. Part of the file format.
-inline constexpr std::size_t binary_chunk = std::size_t{1} << 18;
+std::string system_message(int error);
 
 }  // namespace detail
 
@@ -57,16 +53,7 @@ class BinaryWriter {
  private:
   static constexpr int no_error = -1;
 
-  void bytes(const void* data, std::size_t size) noexcept {
-    const auto* from = static_cast<const char*>(data);
-    for (std::size_t n = 0; size > 0 && good(); from += n, size -= n) {
-      n = std::min(size, detail::binary_chunk);
-      hash_.add(std::span<const char>(from, n));
-      errno = 0;
-      if (std::fwrite(from, 1, n, file_) != n) error_ = errno;
-      written_ += n;
-    }
-  }
+  void bytes(const void* data, std::size_t size) noexcept;
 
   std::FILE* file_;
   ContentHash hash_;
@@ -113,19 +100,7 @@ class BinaryReader {
   std::uint64_t bytes_read() const noexcept { return read_; }
 
  private:
-  bool bytes(void* data, std::size_t size) noexcept {
-    auto* to = static_cast<char*>(data);
-    for (std::size_t n = 0; size > 0 && good(); to += n, size -= n) {
-      n = std::min(size, detail::binary_chunk);
-      if (std::fread(to, 1, n, file_) != n) {
-        failure_ = ReadFailure::ended;
-        break;
-      }
-      hash_.add(std::span<const char>(to, n));
-      read_ += n;
-    }
-    return good();
-  }
+  bool bytes(void* data, std::size_t size) noexcept;
 
   std::FILE* file_;
   ContentHash hash_;
@@ -134,3 +109,7 @@ class BinaryReader {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/core/binary_io.ipp>
+#endif

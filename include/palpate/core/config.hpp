@@ -40,9 +40,7 @@
 #define PALPATE_ABI PALPATE_ABI_NAME(EIGEN_MAX_STATIC_ALIGN_BYTES, PALPATE_ABI_COMPILED)
 
 #if defined(__GNUC__) || defined(__clang__)
-#define PALPATE_COLD [[gnu::cold, gnu::noinline]]
-#elif defined(_MSC_VER)
-#define PALPATE_COLD __declspec(noinline)
+#define PALPATE_COLD [[gnu::cold]]
 #else
 #define PALPATE_COLD
 #endif

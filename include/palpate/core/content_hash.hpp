@@ -1,11 +1,10 @@
 // A quick hash of arrays, to notice what changed.
 #pragma once
 
-#include <palpate/core/types.hpp>
+#include <palpate/core/config.hpp>
 
 #include <array>
 #include <bit>
-#include <cstring>
 #include <span>
 #include <string_view>
 
@@ -32,13 +31,7 @@ class ContentHash {
   }
   void add(std::string_view text) noexcept { add_bytes(text.data(), text.size()); }
 
-  std::uint64_t digest() const noexcept {
-    std::uint64_t hash = 0;
-    for (const std::uint64_t lane : lanes_) hash = mixed(hash, lane);
-    hash ^= hash >> 29;  // each line is a bijection: all bits come to depend on all
-    hash *= second_prime;
-    return hash ^ (hash >> 32);
-  }
+  std::uint64_t digest() const noexcept;
 
  private:
   static constexpr std::size_t lane_count = 4, word = sizeof(std::uint64_t), stripe = lane_count * word;
@@ -49,29 +42,15 @@ class ContentHash {
     return std::rotl(state + value * second_prime, 31) * first_prime;
   }
 
-  static void add_stripe(std::array<std::uint64_t, lane_count>& lanes, const unsigned char* bytes) noexcept {
-    for (std::size_t i = 0; i < lane_count; ++i) {
-      std::uint64_t value;
-      std::memcpy(&value, bytes + i * word, word);
-      lanes[i] = mixed(lanes[i], value);
-    }
-  }
+  static void add_stripe(std::array<std::uint64_t, lane_count>& lanes, const unsigned char* bytes) noexcept;
 
-  void add_bytes(const void* data, std::size_t size) noexcept {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    std::array<std::uint64_t, lane_count> lanes = lanes_;
-    const std::size_t stripes = size / stripe, rest = size % stripe;
-    for (std::size_t s = 0; s < stripes; ++s) add_stripe(lanes, bytes + s * stripe);
-    if (rest > 0) {
-      std::array<unsigned char, stripe> last{};
-      std::memcpy(last.data(), bytes + stripes * stripe, rest);
-      add_stripe(lanes, last.data());
-    }
-    lanes[0] = mixed(lanes[0], static_cast<std::uint64_t>(size));
-    lanes_ = lanes;
-  }
+  void add_bytes(const void* data, std::size_t size) noexcept;
 
   std::array<std::uint64_t, lane_count> lanes_{first_prime, second_prime, ~first_prime, ~second_prime};
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/core/content_hash.ipp>
+#endif

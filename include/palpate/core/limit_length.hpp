@@ -1,6 +1,7 @@
 // Shortening a vector without overflow.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {

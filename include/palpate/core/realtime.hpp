@@ -1,6 +1,7 @@
 // What the tick needs from the processor: denormals flushed to zero inside a scope.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/platform.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {

@@ -1,8 +1,15 @@
 // The rotation of a deformation: the proper rotation closest to any 3 x 3 tensor.
 #pragma once
 
+#include <palpate/core/config.hpp>
+#include <palpate/core/lanes.hpp>
 #include <palpate/core/tensor3.hpp>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace palpate { inline namespace PALPATE_ABI {

@@ -3,12 +3,8 @@
 
 #include <palpate/core/config.hpp>
 
-#include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -98,37 +94,14 @@ struct SetupProblem {
   static constexpr std::size_t max_ids = 16;
 
   /// Keeps the first `max_ids` of `all` and their number.
-  void set_ids(std::span<const std::int64_t> all) {
-    count = static_cast<std::int64_t>(all.size());
-    ids.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), max_ids)));
-  }
+  void set_ids(std::span<const std::int64_t> all);
 };
 
 /// A number for a message: nine significant digits, enough to tell 0.4999999 from 0.5.
-inline std::string number(double value) {
-  std::array<char, 40> text{};
-#if defined(__cpp_lib_to_chars)
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 9).ptr;
-  return {text.data(), end};
-#else
-  std::snprintf(text.data(), text.size(), "%.9g", value);
-  return text.data();
-#endif
-}
+std::string number(double value);
 
 /// One line: kind, sentence, first ids, hint.
-inline std::string describe(const SetupProblem& p) {
-  std::string text(to_string(p.kind));
-  text += ": " + p.what;
-  if (!p.ids.empty()) {
-    text += " [ids";
-    for (auto id : p.ids) text += ' ' + std::to_string(id);
-    if (p.count > static_cast<std::int64_t>(p.ids.size())) text += " ... " + std::to_string(p.count) + " in all";
-    text += ']';
-  }
-  if (!p.hint.empty()) text += ". " + p.hint;
-  return text;
-}
+std::string describe(const SetupProblem& p);
 
 /// Thrown by every set-up function that refuses its input. Objects under construction leave nothing behind; existing
 /// ones are unchanged.
@@ -148,28 +121,15 @@ class SetupError : public std::runtime_error {
 using SetupFailureHandler = void (*)(const SetupProblem&);
 
 /// Assign to replace it, before the first set-up and not while another thread is in one.
-inline SetupFailureHandler& setup_failure_handler() {
-  static SetupFailureHandler handler = nullptr;
-  return handler;
-}
+SetupFailureHandler& setup_failure_handler();
 
 /// Refuses: throws SetupError, or without exceptions calls the failure handler.
-[[noreturn]] PALPATE_COLD inline void raise(SetupProblem problem) {
-#if defined(PALPATE_HAS_EXCEPTIONS)
-  throw SetupError(std::move(problem));
-#else
-  if (setup_failure_handler() != nullptr) setup_failure_handler()(problem);
-  std::fprintf(stderr, "palpate: %s\n", describe(problem).c_str());
-  std::abort();
-#endif
-}
+[[noreturn]] PALPATE_COLD void raise(SetupProblem problem);
 
-[[noreturn]] PALPATE_COLD inline void raise(SetupErrorKind kind, std::string what, std::string hint = {}) {
-  SetupProblem p;
-  p.kind = kind;
-  p.what = std::move(what);
-  p.hint = std::move(hint);
-  raise(std::move(p));
-}
+[[noreturn]] PALPATE_COLD void raise(SetupErrorKind kind, std::string what, std::string hint = {});
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/core/setup_error.ipp>
+#endif

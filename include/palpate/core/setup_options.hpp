@@ -1,10 +1,10 @@
 // What the caller may decide about set-up: progress, cancelling, memory, threads.
 #pragma once
 
-#include <palpate/core/setup_error.hpp>
-#include <palpate/core/types.hpp>
+#include <palpate/core/config.hpp>
 
 #include <functional>
+#include <string_view>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -25,23 +25,14 @@ struct SetupLimits {
   int threads = 1;  ///< upper bound; one thread is used where more do not pay
 
   /// Reports progress; throws SetupError(cancelled) when the callback says stop.
-  void advance(std::string_view stage, double fraction) const {
-    if (progress && !progress({stage, fraction}))
-      raise(SetupErrorKind::cancelled, "set-up was cancelled during " + std::string(stage));
-  }
+  void advance(std::string_view stage, double fraction) const;
 
   /// Throws SetupError(too_large) when `bytes` more than the limit are about to be allocated for `what`.
-  void require_memory(double bytes, const char* what) const {
-    if (bytes <= static_cast<double>(memory)) return;
-    SetupProblem p;
-    p.kind = SetupErrorKind::too_large;
-    p.what =
-        std::string(what) + " needs " + number(bytes) + " bytes, the limit is " + number(static_cast<double>(memory));
-    p.hint = "Touch fewer nodes, condense, or raise the memory limit";
-    p.value = bytes;
-    p.threshold = static_cast<double>(memory);
-    raise(std::move(p));
-  }
+  void require_memory(double bytes, const char* what) const;
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/core/setup_options.ipp>
+#endif

@@ -4,7 +4,6 @@
 #include <palpate/core/config.hpp>
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <string_view>
 
@@ -64,13 +63,8 @@ constexpr std::string_view status_flag_name(int bit) {
 /// How often each flag was raised; one add per set flag and tick.
 class StatusCounters {
  public:
-  void count(Status status) noexcept {
-    for (std::uint32_t bits = status.bits(); bits != 0; bits &= bits - 1)
-      ++counts_[static_cast<std::size_t>(std::countr_zero(bits))];
-  }
-  std::uint64_t operator[](StatusFlag flag) const noexcept {
-    return counts_[static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(flag)))];
-  }
+  void count(Status status) noexcept;
+  std::uint64_t operator[](StatusFlag flag) const noexcept;
   std::uint64_t at(int bit) const noexcept { return counts_[static_cast<std::size_t>(bit)]; }
 
  private:
@@ -78,3 +72,7 @@ class StatusCounters {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/core/status.ipp>
+#endif

@@ -1,8 +1,9 @@
 // Vectors and 3 x 3 tensors of one number type or of lanes (core/lanes.hpp), for the kernels of material laws.
 #pragma once
 
-#include <palpate/core/lanes.hpp>
-#include <palpate/core/types.hpp>
+#include <palpate/core/config.hpp>
+
+#include <Eigen/LU>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

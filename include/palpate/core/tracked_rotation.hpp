@@ -1,7 +1,13 @@
 // The rotation of a deformation, from the one it had a moment ago.
 #pragma once
 
+#include <palpate/core/config.hpp>
+#include <palpate/core/lanes.hpp>
 #include <palpate/core/rotation.hpp>
+#include <palpate/core/tensor3.hpp>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -3,6 +3,7 @@
 // and output uses it.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
 #include <cmath>

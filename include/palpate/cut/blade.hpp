@@ -1,10 +1,16 @@
 // A blade in the hand: what it cuts, and how that feels.
 #pragma once
 
-#include <palpate/cut/blade_sweep.hpp>
-#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/concepts/haptic_device.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/realtime.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/haptic/force_gate.hpp>
+
+#include <Eigen/LU>
+
+#include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -23,46 +29,11 @@ struct BladeParameters {
 class BladeCut {
  public:
   /// Throws bad_argument for an edge or forward direction without length, or other values that are not positive.
-  explicit BladeCut(const BladeParameters& parameters) : parameters_(parameters) {
-    const BladeParameters& p = parameters;
-    for (const double value : {p.edge.norm(), p.forward.norm(), p.stiffness, p.stroke})
-      if (!(value > 0.0 && value < infinity))
-        raise(SetupErrorKind::bad_argument, "a parameter of the blade is " + number(value), "Give positive SI values");
-    if (!(p.toughness >= 0.0 && p.toughness < infinity))
-      raise(SetupErrorKind::bad_argument, "the toughness is " + number(p.toughness));
-    parameters_.forward.normalize();
-  }
+  explicit BladeCut(const BladeParameters& parameters);
 
   /// Moves the edge with the hand at `hand` [m]; `width` of the edge is in tissue [m]. Returns the force on the hand
   /// [N]. Where this blade has been before, it goes free.
-  Vector3 advance(const Vector3& hand, double width) noexcept {
-    if (!known_) {
-      edge_ = hand;
-      known_ = true;
-      deepest_ = -infinity;
-    }
-    const Vector3& forward = parameters_.forward;
-    const double pull = (hand - edge_).dot(forward), depth = edge_.dot(forward);
-    const Vector3 along = hand - edge_ - pull * forward;
-    if ((edge_ - line_ - (edge_ - line_).dot(forward) * forward).norm() > 0.5 * parameters_.edge.norm())
-      deepest_ = -infinity;  // beside the slit
-    edge_ += along;
-    const double threshold = parameters_.toughness * width;
-    if (pull <= 0.0 || threshold == 0.0) {
-      edge_ = hand;
-    } else {
-      const double free = std::clamp(deepest_ - depth, 0.0, pull);
-      const double hold = threshold / parameters_.stiffness, way = std::max(0.0, pull - free - hold);
-      edge_ += (free + way) * forward;
-      work_ += threshold * way;
-      area_ += width * way;
-    }
-    if (width > 0.0 && edge_.dot(forward) > deepest_) {
-      deepest_ = edge_.dot(forward);
-      line_ = edge_;
-    }
-    return -parameters_.stiffness * (hand - edge_);
-  }
+  Vector3 advance(const Vector3& hand, double width) noexcept;
   void lift() noexcept { known_ = false; }
 
   const BladeParameters& parameters() const noexcept { return parameters_; }
@@ -148,3 +119,7 @@ class BladeServo {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/cut/blade.ipp>
+#endif

@@ -1,10 +1,16 @@
 // Which faces a blade opens.
 #pragma once
 
-#include <palpate/cut/cut_topology.hpp>
+#include <palpate/concepts/element.hpp>
 #include <palpate/contact/bvh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/cut/cut_topology.hpp>
+#include <palpate/cut/held_pieces.hpp>
+#include <palpate/cut/topology_change.hpp>
+#include <palpate/mesh/mesh.hpp>
 
-#include <Eigen/Geometry>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -14,28 +20,16 @@ struct BladeSweep {
   Vector3 a0 = Vector3::Zero(), b0 = Vector3::Zero(), a1 = Vector3::Zero(), b1 = Vector3::Zero();
 
   /// [m^2]
-  double area() const noexcept { return 0.5 * ((b0 - a0).cross(b1 - a0).norm() + (b1 - a0).cross(a1 - a0).norm()); }
-  Box box() const noexcept {
-    Box box;
-    for (const Vector3& x : {a0, b0, a1, b1}) box.include(x);
-    return box;
-  }
+  double area() const noexcept;
+  Box box() const noexcept;
   /// Whether the way from p to q crosses it. A point on the sheet counts as on its front side, and a way through the
   /// sheet's edge as a crossing: what lies on two sides of a closed sheet is never left connected.
-  bool crosses(const Vector3& p, const Vector3& q) const noexcept {
-    return crosses_triangle(p, q, a0, b0, b1) || crosses_triangle(p, q, a0, b1, a1);
-  }
+  bool crosses(const Vector3& p, const Vector3& q) const noexcept;
 
  private:
-  static double volume(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) noexcept {
-    return (b - a).cross(c - a).dot(d - a);
-  }
+  static double volume(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) noexcept;
   static bool crosses_triangle(const Vector3& p, const Vector3& q, const Vector3& x, const Vector3& y,
-                               const Vector3& z) noexcept {
-    if ((volume(x, y, z, p) >= 0.0) == (volume(x, y, z, q) >= 0.0)) return false;
-    const double u = volume(p, q, x, y), v = volume(p, q, y, z), w = volume(p, q, z, x);
-    return (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
-  }
+                               const Vector3& z) noexcept;
 };
 
 /// The faces between elements whose centres lie on two sides of the sheet, joined by a way through it: the elements'
@@ -69,3 +63,7 @@ std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const Blade
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/cut/blade_sweep.ipp>
+#endif

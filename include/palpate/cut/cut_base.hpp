@@ -2,14 +2,30 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/assembly/smoothed_stiffness.hpp>
+#include <palpate/concepts/element.hpp>
 #include <palpate/condensation/schur.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/cut/cut_physics.hpp>
 #include <palpate/cut/cut_topology.hpp>
+#include <palpate/cut/held_pieces.hpp>
 #include <palpate/cut/kept_dofs.hpp>
+#include <palpate/linear/node_graph.hpp>
+#include <palpate/linear/sparse_cholesky.hpp>
 #include <palpate/linear/spd_inverse.hpp>
+#include <palpate/linear/tile.hpp>
 
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

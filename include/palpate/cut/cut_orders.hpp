@@ -1,8 +1,10 @@
 // Cuts that wait to be done.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/spsc_ring.hpp>
 #include <palpate/cut/blade_sweep.hpp>
+#include <palpate/cut/topology_change.hpp>
 
 #include <atomic>
 #include <mutex>
@@ -20,39 +22,13 @@ class CutOrders {
     unsigned count = 0;
   };
 
-  void add(CutOrder order) {
-    const std::scoped_lock lock(mutex_);
-    orders_.push_back(std::move(order));
-    open_.fetch_add(1, std::memory_order_release);
-  }
-  void add(const BladeSweep& sweep) {
-    const std::scoped_lock lock(mutex_);
-    sweeps_.push_back(sweep);
-    open_.fetch_add(1, std::memory_order_release);
-  }
+  void add(CutOrder order);
+  void add(const BladeSweep& sweep);
   /// From the thread that ticks; false when 256 are waiting. Neither waits nor allocates.
-  bool stroke(const BladeSweep& sweep) noexcept {
-    if (!strokes_.push(sweep)) return false;
-    open_.fetch_add(1, std::memory_order_release);
-    return true;
-  }
+  bool stroke(const BladeSweep& sweep) noexcept;
 
   /// One thread at a time.
-  Taken take() {
-    Taken taken;
-    {
-      const std::scoped_lock lock(mutex_);
-      taken.count = static_cast<unsigned>(orders_.size() + sweeps_.size());
-      for (const CutOrder& order : orders_) {
-        taken.order.remove.insert(taken.order.remove.end(), order.remove.begin(), order.remove.end());
-        taken.order.open.insert(taken.order.open.end(), order.open.begin(), order.open.end());
-      }
-      orders_.clear();
-      taken.sweeps.swap(sweeps_);
-    }
-    for (BladeSweep stroke; strokes_.pop(stroke); ++taken.count) taken.sweeps.push_back(stroke);
-    return taken;
-  }
+  Taken take();
   void done(const Taken& taken) noexcept { open_.fetch_sub(taken.count, std::memory_order_release); }
   bool are_open() const noexcept { return open_.load(std::memory_order_acquire) != 0; }
 
@@ -65,3 +41,7 @@ class CutOrders {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/cut/cut_orders.ipp>
+#endif

@@ -1,9 +1,27 @@
 // What the elements of a body that is cut are made of and carry.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/load_vector.hpp>
+#include <palpate/assembly/smoothed_strain.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/local/isotropic.hpp>
+#include <palpate/local/loads.hpp>
 #include <palpate/local/stiffness.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/selection.hpp>
+#include <palpate/mesh/surface.hpp>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,9 +1,28 @@
 // From a mesh as given to a body that can be cut.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/cut/cut_physics.hpp>
 #include <palpate/cut/cut_surface.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/cuttable_options.hpp>
+#include <palpate/cut/held_pieces.hpp>
+#include <palpate/mesh/admission.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/selection.hpp>
+#include <palpate/mesh/surface.hpp>
+
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,10 +1,21 @@
 // A new factor of a body that goes on being cut.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/cut/cut_physics.hpp>
 #include <palpate/cut/cut_system.hpp>
+#include <palpate/cut/cut_topology.hpp>
+#include <palpate/cut/held_pieces.hpp>
+#include <palpate/linear/tile.hpp>
 
 #include <atomic>
+#include <memory>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

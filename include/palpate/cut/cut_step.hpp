@@ -1,6 +1,7 @@
 // What one cut does to a compliance.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
 #include <memory>
@@ -17,27 +18,14 @@ struct CutStep {
   double smallest = 1.0;                      ///< BorderedUpdate::smallest
 
   /// Displacement of kept dof i per force on j [m/N].
-  double operator()(Index i, Index j) const noexcept {
-    if (j >= old) return extra(i, j - old);
-    if (i >= old) return extra(j, i - old);
-    double value = (*compliance)(i, j);
-    const Index rank = z.rows();
-    const double *a = z.data() + i * rank, *b = y.data() + j * rank;
-    for (Index k = 0; k < rank; ++k) value -= a[k] * b[k];
-    return value;
-  }
+  double operator()(Index i, Index j) const noexcept;
   /// sum_i += C_ij^2 for all i.
-  void add_squares(Index j, VectorX& sum) const noexcept {
-    if (j >= old) {
-      sum.array() += extra.col(j - old).array().square();
-    } else if (rank() == 0) {
-      sum.head(old).array() += compliance->col(j).head(old).array().square();
-      if (all > old) sum.tail(all - old).array() += extra.row(j).transpose().array().square();
-    } else {
-      for (Index i = 0; i < all; ++i) sum[i] += (*this)(i, j) * (*this)(i, j);
-    }
-  }
+  void add_squares(Index j, VectorX& sum) const noexcept;
   Index rank() const noexcept { return z.rows(); }
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/cut/cut_step.ipp>
+#endif

@@ -1,9 +1,21 @@
 // The touchable surface of a body that is cut.
 #pragma once
 
-#include <palpate/contact/contact_surface.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/contact/bvh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/cut/cut_topology.hpp>
-#include <palpate/model/touchable.hpp>
+#include <palpate/cut/held_pieces.hpp>
+#include <palpate/cut/topology_change.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/selection.hpp>
+#include <palpate/mesh/surface.hpp>
+
+#include <algorithm>
+#include <tuple>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

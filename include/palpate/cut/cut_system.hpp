@@ -1,10 +1,33 @@
 // The compliance and the rest shape of a body while it is cut.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/lanes.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/cut/bordered_update.hpp>
+#include <palpate/cut/cut_base.hpp>
+#include <palpate/cut/cut_physics.hpp>
 #include <palpate/cut/cut_plan.hpp>
 #include <palpate/cut/cut_step.hpp>
+#include <palpate/cut/cut_topology.hpp>
+#include <palpate/cut/element_changes.hpp>
+#include <palpate/cut/held_pieces.hpp>
+#include <palpate/cut/kept_dofs.hpp>
 #include <palpate/cut/matrix_pool.hpp>
+#include <palpate/cut/topology_change.hpp>
+#include <palpate/linear/front_reduction.hpp>
+#include <palpate/linear/tile.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

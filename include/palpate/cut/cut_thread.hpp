@@ -1,9 +1,10 @@
 // Cuts beside the tick.
 #pragma once
 
+#include <palpate/core/config.hpp>
+
 #include <atomic>
 #include <chrono>
-#include <palpate/core/config.hpp>
 #include <thread>
 
 namespace palpate { inline namespace PALPATE_ABI {

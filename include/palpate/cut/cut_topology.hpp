@@ -1,10 +1,24 @@
 // A mesh that is cut: elements leave, faces open, parts come off.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/cut/held_pieces.hpp>
+#include <palpate/cut/topology_change.hpp>
+#include <palpate/mesh/face_ids.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/quality.hpp>
 #include <palpate/mesh/surface.hpp>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

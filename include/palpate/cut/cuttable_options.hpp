@@ -3,8 +3,10 @@
 
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/sphere_tool.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/mesh/admission.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/admission_policy.hpp>
 #include <palpate/mesh/scene.hpp>
 
 #include <optional>

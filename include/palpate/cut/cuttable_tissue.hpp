@@ -1,14 +1,50 @@
 // A linear tissue that can be touched while it is cut.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/material.hpp>
 #include <palpate/concepts/tissue_model.hpp>
+#include <palpate/contact/contact.hpp>
+#include <palpate/contact/contact_problem.hpp>
+#include <palpate/contact/contact_samples.hpp>
+#include <palpate/contact/contact_surface.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/lanes.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/cut/blade_sweep.hpp>
 #include <palpate/cut/cut_orders.hpp>
+#include <palpate/cut/cut_physics.hpp>
 #include <palpate/cut/cut_preparation.hpp>
 #include <palpate/cut/cut_renewal.hpp>
+#include <palpate/cut/cut_surface.hpp>
+#include <palpate/cut/cut_system.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/cut_view.hpp>
+#include <palpate/cut/cuttable_options.hpp>
+#include <palpate/cut/held_pieces.hpp>
+#include <palpate/cut/topology_change.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
+#include <palpate/linear/tile.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/model/touchable.hpp>
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <chrono>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,10 +1,17 @@
 // What cuts have changed of a stiffness since it was factorised, element by element.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/cut/topology_change.hpp>
 #include <palpate/local/stiffness.hpp>
+#include <palpate/mesh/mesh.hpp>
 
+#include <algorithm>
+#include <array>
 #include <map>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,9 +1,16 @@
 // Which elements hang together, and which of the pieces are held.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/cut/topology_change.hpp>
-#include <palpate/mesh/quality.hpp>
-#include <palpate/mesh/rigid_modes.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -42,15 +49,8 @@ std::vector<std::vector<Index>> star_parts(const CutTopology<E>& topology, NodeI
 }
 
 /// How many rigid motions the constraints leave to a set of nodes, all in one rigid piece.
-inline int free_mode_count(std::span<const Vector3> positions, std::span<const NodeId> nodes,
-                           std::span<const std::uint8_t> constrained) {
-  std::vector<NodeId> held;
-  for (const NodeId node : nodes)
-    if ((constrained[static_cast<std::size_t>(node)] & 7u) != 0) held.push_back(node);
-  if (held.empty()) return 6;
-  const detail::RigidFrame frame(positions, nodes, constrained);
-  return static_cast<int>(detail::free_motions(positions, held, constrained, frame).cols());
-}
+int free_mode_count(std::span<const Vector3> positions, std::span<const NodeId> nodes,
+                           std::span<const std::uint8_t> constrained);
 
 /// The elements for which `belongs(element)` in pieces that hang together by faces, all rigid motions free.
 /// O(elements).
@@ -93,3 +93,7 @@ std::vector<LoosePiece> unheld_pieces(const CutTopology<E>& topology) {
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/cut/held_pieces.ipp>
+#endif

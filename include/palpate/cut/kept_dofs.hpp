@@ -1,7 +1,8 @@
 // Which dofs have a compliance.
 #pragma once
 
-#include <palpate/mesh/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 
 #include <array>
 #include <vector>
@@ -20,16 +21,8 @@ class KeptDofs {
   Index size() const noexcept { return static_cast<Index>(dofs_.size()); }
   const NodeDof& operator[](Index i) const noexcept { return dofs_[static_cast<std::size_t>(i)]; }
   /// Number of a dof, -1 when it is not kept.
-  Index place(NodeId node, int component) const noexcept {
-    const auto i = static_cast<std::size_t>(node);
-    return i < place_.size() ? place_[i][static_cast<std::size_t>(component)] : -1;
-  }
-  void add(const NodeDof& dof) {
-    const auto i = static_cast<std::size_t>(dof.node);
-    if (i >= place_.size()) place_.resize(i + 1, {-1, -1, -1});
-    place_[i][static_cast<std::size_t>(dof.component)] = size();
-    dofs_.push_back(dof);
-  }
+  Index place(NodeId node, int component) const noexcept;
+  void add(const NodeDof& dof);
   /// Its entry in a vector with three per node.
   double& at(VectorX& u, Index i) const noexcept { return u[3 * Index{(*this)[i].node} + (*this)[i].component]; }
   double at(const VectorX& u, Index i) const noexcept { return u[3 * Index{(*this)[i].node} + (*this)[i].component]; }
@@ -40,3 +33,7 @@ class KeptDofs {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/cut/kept_dofs.ipp>
+#endif

@@ -1,6 +1,7 @@
 // Storage for matrices that are made again with every cut.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
 #include <memory>
@@ -14,25 +15,11 @@ namespace palpate { inline namespace PALPATE_ABI {
 class MatrixPool {
  public:
   /// What `count` matrices take.
-  static double bytes(Index size, int count) noexcept {
-    const auto rows = static_cast<double>(room(size));
-    return static_cast<double>(count) * rows * rows * sizeof(double);
-  }
+  static double bytes(Index size, int count) noexcept;
   /// Makes `count` matrices ready, their pages touched.
-  void prepare(Index size, int count) {
-    for (int k = 0; k < count; ++k) {
-      all_.push_back(make(size));
-      all_.back()->setZero();
-    }
-  }
+  void prepare(Index size, int count);
   /// At least size x size; what is in it is left over. Allocates when all are in use or too small.
-  std::shared_ptr<MatrixX> take(Index size) {
-    for (const auto& m : all_)
-      if (m.use_count() == 1 && m->rows() >= size) return m;
-    std::erase_if(all_, [](const auto& m) { return m.use_count() == 1; });
-    all_.push_back(make(size));
-    return all_.back();
-  }
+  std::shared_ptr<MatrixX> take(Index size);
 
  private:
   static Index room(Index size) noexcept { return size + size / 8; }
@@ -42,3 +29,7 @@ class MatrixPool {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/cut/matrix_pool.ipp>
+#endif

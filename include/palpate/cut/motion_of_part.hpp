@@ -1,7 +1,14 @@
 // A motion that goes on after nodes were split: on the mesh as it is then.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/cut/cut_topology.hpp>
+#include <palpate/cut/held_pieces.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,7 +1,12 @@
 // What a cut asks for, and what it did to a mesh.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
+
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

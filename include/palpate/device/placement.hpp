@@ -2,13 +2,12 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/core/setup_error.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/core/types.hpp>
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-
-#include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -24,68 +23,25 @@ struct Placement {
   double force_scale = 1.0;                 ///< device newtons per scene newton
 
   /// Throws bad_argument unless origins are finite, both scales positive and `rotation` is one.
-  void require_valid() const {
-    const auto positive = [](double s) { return std::isfinite(s) && s > 0.0; };
-    if (!device_origin.allFinite() || !scene_origin.allFinite())
-      raise(SetupErrorKind::bad_argument, "an origin of the placement is not finite");
-    if (!positive(scale) || !positive(force_scale))
-      raise(SetupErrorKind::bad_argument,
-            "the placement scales motion by " + number(scale) + " and force by " + number(force_scale),
-            "Both must be finite and positive");
-    if (!((rotation.transpose() * rotation - Matrix3::Identity()).norm() < 1e-9) || !(rotation.determinant() > 0.0))
-      raise(SetupErrorKind::bad_argument, "the rotation of the placement is none",
-            "Give three orthogonal unit columns, right-handed");
-  }
+  void require_valid() const;
 
-  Vector3 to_scene(const Vector3& device) const noexcept {
-    return scene_origin + scale * (rotation * (device - device_origin));
-  }
-  Vector3 to_device(const Vector3& scene) const noexcept {
-    return device_origin + rotation.transpose() * (scene - scene_origin) / scale;
-  }
+  Vector3 to_scene(const Vector3& device) const noexcept;
+  Vector3 to_device(const Vector3& scene) const noexcept;
   /// What the hand feels of a stiffness in the scene [N/m].
   double felt_stiffness(double scene_stiffness) const noexcept { return scale * force_scale * scene_stiffness; }
 
   /// The state of a tool in the scene: position, velocity and orientation.
-  ToolState to_scene(ToolState state) const noexcept {
-    state.position = to_scene(state.position);
-    state.velocity = scale * (rotation * state.velocity);
-    const auto& q = state.orientation;
-    const Eigen::Quaterniond turned = Eigen::Quaterniond(rotation) * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-    state.orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
-    return state;
-  }
-  Vector3 force_to_device(const Vector3& force) const noexcept { return force_scale * (rotation.transpose() * force); }
+  ToolState to_scene(ToolState state) const noexcept;
+  Vector3 force_to_device(const Vector3& force) const noexcept;
   /// The work of a torque is scaled as that of a force; angles are not scaled.
-  Vector3 torque_to_device(const Vector3& torque) const noexcept {
-    return (force_scale / scale) * (rotation.transpose() * torque);
-  }
+  Vector3 torque_to_device(const Vector3& torque) const noexcept;
 
   /// A device's limits as the scene sees them: a servo that keeps within these keeps within the device's.
-  DeviceLimits limits_in_scene(const DeviceLimits& device) const noexcept {
-    DeviceLimits scene = device;
-    scene.peak_force = device.peak_force / force_scale;
-    scene.continuous_force = device.continuous_force / force_scale;
-    scene.peak_torque = device.peak_torque * scale / force_scale;
-    scene.turning_stiffness = device.turning_stiffness * scale / force_scale;
-    scene.stiffness = device.stiffness / (scale * force_scale);
-    const Vector3 middle = 0.5 * (device.workspace_low + device.workspace_high);
-    const Vector3 half = scale * (rotation.cwiseAbs() * (0.5 * (device.workspace_high - device.workspace_low)));
-    scene.workspace_low = to_scene(middle) - half;
-    scene.workspace_high = to_scene(middle) + half;
-    return scene;
-  }
+  DeviceLimits limits_in_scene(const DeviceLimits& device) const noexcept;
 
   /// A sentence for the user when a stiffness of the scene [N/m], such as the servo's coupling, is more than the device
   /// renders stably; nothing when it is not. NaN counts as too much.
-  std::optional<std::string> warning(const DeviceLimits& device, double scene_stiffness) const {
-    const double felt = felt_stiffness(scene_stiffness);
-    if (felt <= device.stiffness) return std::nullopt;
-    return "the hand would feel " + number(felt) + " N/m (" + number(scene_stiffness) + " N/m times scale " +
-           number(scale) + " times force_scale " + number(force_scale) + "), the device renders " +
-           number(device.stiffness) + " N/m stably: make scale or force_scale " + number(device.stiffness / felt) +
-           " times as large, or set coupling_stiffness to " + number(device.stiffness / (scale * force_scale)) + " N/m";
-  }
+  std::optional<std::string> warning(const DeviceLimits& device, double scene_stiffness) const;
 };
 
 /// A device placed in a scene; a HapticDevice that speaks the scene's coordinates. Its limits are those of the scene
@@ -117,3 +73,7 @@ class PlacedDevice {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/device/placement.ipp>
+#endif

@@ -34,63 +34,9 @@ struct RecordedTick {
 /// First line of a recording. SI units; valid is 0 or 1; buttons and status are bit masks.
 inline constexpr std::string_view recording_header = "time,x,y,z,vx,vy,vz,qw,qx,qy,qz,buttons,valid,fx,fy,fz,status";
 
-namespace detail {
-
-/// The shortest decimal text that reads back as exactly `value`, with a decimal point in every locale.
-inline void append_number(std::string& text, double value) {
-  if (std::isnan(value)) {
-    text += "nan";  // sign and payload of NaN are not kept
-    return;
-  }
-#ifdef __cpp_lib_to_chars
-  std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  text.append(digits.data(), end);
-#else
-  if (std::isinf(value)) {
-    text += value > 0.0 ? "inf" : "-inf";
-    return;
-  }
-  std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream.precision(17);
-  stream << value;
-  text += stream.str();
-#endif
-}
-
-inline void append_tick(std::string& text, const RecordedTick& tick) {
-  const ToolState& s = tick.state;
-  append_number(text, s.time);
-  const auto add = [&](double value) { append_number(text += ',', value); };
-  for (double x : s.position) add(x);
-  for (double v : s.velocity) add(v);
-  for (double q : s.orientation) add(q);
-  text += ',' + std::to_string(s.buttons) + (s.valid ? ",1" : ",0");
-  for (double f : tick.force) add(f);
-  text += ',' + std::to_string(tick.status.bits()) + '\n';
-}
-
-}  // namespace detail
-
 /// Writes a recording as CSV: every number reads back bit by bit (a NaN as a NaN), whatever the locale. Throws
 /// SetupError(bad_file) when the file cannot be written.
-inline void write_recording(const std::string& path, std::span<const RecordedTick> ticks) {
-  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-  if (!stream)
-    raise(SetupErrorKind::bad_file, path + ": not open for writing: " + std::generic_category().message(errno));
-  std::string text(recording_header);
-  text += '\n';
-  for (const RecordedTick& tick : ticks) {
-    detail::append_tick(text, tick);
-    if (text.size() < std::size_t{1} << 20) continue;
-    stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-    text.clear();
-  }
-  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  stream.close();
-  if (!stream) raise(SetupErrorKind::bad_file, path + ": writing failed", "Is the disk full?");
-}
+void write_recording(const std::string& path, std::span<const RecordedTick> ticks);
 
 /// A HapticDevice that passes everything on to another one and keeps the last `capacity` ticks. The memory is taken and
 /// touched at construction; a tick copies 150 bytes into it. The device must outlive the recorder.
@@ -146,3 +92,7 @@ class Recorder {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/device/recorder.ipp>
+#endif

@@ -1,11 +1,14 @@
 // A device that is not there: its mechanics, its electronics and the hand that holds it, simulated.
 #pragma once
 
-#include <palpate/device/simulated_mechanics.hpp>
+#include <palpate/concepts/haptic_device.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/device/render_limits.hpp>
+#include <palpate/device/simulated_mechanics.hpp>
 
 #include <array>
-#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -30,29 +33,11 @@ struct SimulatedOptions {
   /// A small desktop stylus, 3.3 N.
   static SimulatedOptions stylus() { return {}; }
   /// A larger, nearly frictionless stylus, 8.5 N.
-  static SimulatedOptions precise_stylus() {
-    return {.mass = 0.075,
-            .damping = 0.05,
-            .friction = 0.04,
-            .encoder_step = 30e-6,
-            .limits = {.peak_force = 8.5, .continuous_force = 1.4, .stiffness = 800.0}};
-  }
+  static SimulatedOptions precise_stylus();
   /// A game controller with three arms, 8 N; mass and friction guessed.
-  static SimulatedOptions game_controller() {
-    return {.mass = 0.1,
-            .damping = 0.3,
-            .friction = 0.4,
-            .encoder_step = 63.5e-6,
-            .limits = {.peak_force = 8.0, .continuous_force = 4.0, .stiffness = 3000.0}};
-  }
+  static SimulatedOptions game_controller();
   /// A stiff parallel device, 12 N; mass and friction guessed.
-  static SimulatedOptions parallel_arm() {
-    return {.mass = 0.22,
-            .damping = 0.2,
-            .friction = 0.3,
-            .encoder_step = 10e-6,
-            .limits = {.peak_force = 12.0, .continuous_force = 12.0, .stiffness = 5000.0}};
-  }
+  static SimulatedOptions parallel_arm();
 };
 
 /// A HapticDevice with mechanics (simulated_mechanics.hpp), for trying a tissue without hardware: does it stay calm at
@@ -63,45 +48,14 @@ struct SimulatedOptions {
 class SimulatedDevice {
  public:
   /// Throws SetupError(bad_argument) for values that make no device.
-  explicit SimulatedDevice(const SimulatedOptions& options = {})
-      : options_(options),
-        mechanics_(options.mass, options.damping, options.friction, options.hand, options.start),
-        rendered_(with_torque(options.limits, false)),
-        random_(options.seed) {
-    const SimulatedOptions& o = options;
-    require(o.rate >= 0.1 && o.rate <= 1e6, "rate", o.rate, "Give 0.1 to 1e6 1/s");
-    require(o.encoder_step >= 0.0 && o.encoder_step <= 1.0, "encoder step", o.encoder_step, "Give 0 to 1 m");
-    require(o.delay >= 0.0 && o.delay * o.rate <= 32.0, "delay", o.delay, "Give up to 32 periods");
-    require(o.jitter >= 0.0 && o.jitter * o.rate < 1.0, "jitter", o.jitter, "Give less than a period");
-    require(o.stall >= 0.0 && o.stall <= 1e3, "stall", o.stall, "Give 0 to 1000 s");
-    require(o.stall_interval >= 0.0 && o.stall_interval <= 1e9, "stall interval", o.stall_interval, "Give seconds");
-    next_stall_ = o.stall_interval > 0.0 ? o.stall_interval : infinity;
-    mechanics_.friction_step(0.05 / o.rate);
-  }
+  explicit SimulatedDevice(const SimulatedOptions& options = {});
 
-  ToolState read() noexcept {
-    advance_to(next_sample());
-    ToolState state;
-    state.time = now_;
-    state.position = measured(mechanics_.position());
-    state.valid = !unplugged_;
-    rendered_.read_was(state.valid);
-    if (!state.valid) silence();
-    ++reads_;
-    return state;
-  }
+  ToolState read() noexcept;
   /// Torque has no motors.
-  Status write(const Vector3& force, const Vector3& torque) noexcept {
-    const Status status = rendered_.render(force, torque);
-    schedule({now_ + options_.delay, rendered_.force()});
-    return status;
-  }
+  Status write(const Vector3& force, const Vector3& torque) noexcept;
   DeviceLimits limits() const noexcept { return rendered_.limits(); }
   void start() noexcept { rendered_.start(); }
-  void stop() noexcept {
-    rendered_.stop();
-    silence();
-  }
+  void stop() noexcept;
 
   /// While unplugged, reads are invalid and the motors without force; the hand goes on.
   void unplug(bool unplugged = true) noexcept { unplugged_ = unplugged; }
@@ -123,63 +77,19 @@ class SimulatedDevice {
     double time = 0.0;
     Vector3 force = Vector3::Zero();
   };
-  static void require(bool holds, const char* what, double value, const char* hint) {
-    if (!holds)
-      raise(SetupErrorKind::bad_argument, "the " + std::string(what) + " of a simulated device is " + number(value),
-            hint);
-  }
+  static void require(bool holds, const char* what, double value, const char* hint);
 
   /// Samples lie on a grid of periods, each late by its jitter; a stall covers grid points, which are left out.
-  double next_sample() noexcept {
-    const double period = 1.0 / options_.rate;
-    double t = static_cast<double>(++slot_) * period + options_.jitter * uniform();
-    if (t >= next_stall_) {
-      t += options_.stall;
-      next_stall_ = t + options_.stall_interval;
-      slot_ = static_cast<std::int64_t>(t * options_.rate);
-    }
-    return t;
-  }
+  double next_sample() noexcept;
   /// In [0, 1). Steele, Lea and Flood 2014 (SplitMix64).
-  double uniform() noexcept {
-    std::uint64_t z = (random_ += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-  }
+  double uniform() noexcept;
 
-  void advance_to(double t) noexcept {
-    while (now_ < t) {
-      while (count_ > 0 && pending_[first_].time <= now_) take_next();
-      const double next = count_ > 0 ? std::min(t, pending_[first_].time) : t;
-      mechanics_.advance(next - now_, acting_);
-      now_ = next;
-    }
-  }
-  void take_next() noexcept {
-    acting_ = pending_[first_].force;
-    first_ = (first_ + 1) % pending_.size();
-    --count_;
-  }
+  void advance_to(double t) noexcept;
+  void take_next() noexcept;
   /// Reads of 32 periods fit; a caller that writes more than once per read replaces its last force.
-  void schedule(const Pending& p) noexcept {
-    if (count_ > 0) {
-      Pending& newest = pending_[(first_ + count_ - 1) % pending_.size()];
-      if (newest.time >= p.time || count_ == pending_.size()) {
-        newest = p;
-        return;
-      }
-    }
-    pending_[(first_ + count_++) % pending_.size()] = p;
-  }
-  void silence() noexcept {
-    count_ = 0;
-    acting_.setZero();
-  }
-  Vector3 measured(const Vector3& x) const noexcept {
-    const double step = options_.encoder_step;
-    return step > 0.0 ? Vector3(step * (x / step).array().round().matrix()) : x;
-  }
+  void schedule(const Pending& p) noexcept;
+  void silence() noexcept;
+  Vector3 measured(const Vector3& x) const noexcept;
 
   SimulatedOptions options_;
   SimulatedMechanics mechanics_;
@@ -196,3 +106,7 @@ class SimulatedDevice {
 static_assert(HapticDevice<SimulatedDevice>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/device/simulated_device.ipp>
+#endif

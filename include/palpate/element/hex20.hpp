@@ -1,8 +1,16 @@
 // The twenty-node hexahedron.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/element/hex8.hpp>
 #include <palpate/element/quad8.hpp>
+#include <palpate/element/serendipity.hpp>
+#include <palpate/quadrature/tensor.hpp>
+
+#include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -26,17 +34,15 @@ struct Hex20 {
   using Quadrature = HexahedronRule<3>;
   using MassQuadrature = HexahedronRule<3>;
 
-  static Eigen::Matrix<double, 20, 1> shape(const Vector3& xi) noexcept {
-    return serendipity::shape<20, 3>(reference_nodes(), xi);
-  }
-  static Eigen::Matrix<double, 20, 3> gradient(const Vector3& xi) noexcept {
-    return serendipity::gradient<20, 3>(reference_nodes(), xi);
-  }
-  static Eigen::Matrix<double, 20, 3> reference_nodes() noexcept {
-    return serendipity::with_middles<20, 3>(Hex8::reference_nodes(), edges);
-  }
+  static Eigen::Matrix<double, 20, 1> shape(const Vector3& xi) noexcept;
+  static Eigen::Matrix<double, 20, 3> gradient(const Vector3& xi) noexcept;
+  static Eigen::Matrix<double, 20, 3> reference_nodes() noexcept;
 };
 
 static_assert(Element<Hex20>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/element/hex20.ipp>
+#endif

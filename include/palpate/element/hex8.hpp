@@ -1,7 +1,14 @@
 // The eight-node hexahedron.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/element/quad4.hpp>
+#include <palpate/quadrature/tensor.hpp>
+
+#include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -19,28 +26,17 @@ struct Hex8 {
   using Quadrature = HexahedronRule<2>;
   using MassQuadrature = HexahedronRule<2>;
 
-  static Eigen::Matrix<double, 8, 1> shape(const Vector3& xi) noexcept {
-    const Eigen::Vector4d n = Quad4::shape(xi.head<2>());
-    Eigen::Matrix<double, 8, 1> result;
-    result << 0.5 * (1.0 - xi[2]) * n, 0.5 * (1.0 + xi[2]) * n;
-    return result;
-  }
+  static Eigen::Matrix<double, 8, 1> shape(const Vector3& xi) noexcept;
 
-  static Eigen::Matrix<double, 8, 3> gradient(const Vector3& xi) noexcept {
-    const Eigen::Vector4d n = Quad4::shape(xi.head<2>());
-    const Eigen::Matrix<double, 4, 2> d = Quad4::gradient(xi.head<2>());
-    Eigen::Matrix<double, 8, 3> g;
-    g << 0.5 * (1.0 - xi[2]) * d, -0.5 * n, 0.5 * (1.0 + xi[2]) * d, 0.5 * n;
-    return g;
-  }
+  static Eigen::Matrix<double, 8, 3> gradient(const Vector3& xi) noexcept;
 
-  static Eigen::Matrix<double, 8, 3> reference_nodes() noexcept {
-    Eigen::Matrix<double, 8, 3> x;
-    x << Quad4::reference_nodes(), -Eigen::Vector4d::Ones(), Quad4::reference_nodes(), Eigen::Vector4d::Ones();
-    return x;
-  }
+  static Eigen::Matrix<double, 8, 3> reference_nodes() noexcept;
 };
 
 static_assert(Element<Hex8>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/element/hex8.ipp>
+#endif

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,8 +1,13 @@
 // The eight-node quadrilateral: the face of Hex20.
 #pragma once
 
-#include <palpate/element/quad4.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/element/serendipity.hpp>
+#include <palpate/quadrature/tensor.hpp>
+
+#include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -14,17 +19,15 @@ struct Quad8 {
       {{0, 4, 7}, {4, 1, 5}, {5, 2, 6}, {7, 6, 3}, {4, 5, 6}, {4, 6, 7}}};
   using Quadrature = QuadrilateralRule<3>;
 
-  static Eigen::Matrix<double, 8, 1> shape(const Eigen::Vector2d& xi) noexcept {
-    return serendipity::shape<8, 2>(reference_nodes(), xi);
-  }
-  static Eigen::Matrix<double, 8, 2> gradient(const Eigen::Vector2d& xi) noexcept {
-    return serendipity::gradient<8, 2>(reference_nodes(), xi);
-  }
-  static Eigen::Matrix<double, 8, 2> reference_nodes() noexcept {
-    return serendipity::with_middles<8, 2>(Quad4::reference_nodes(), edges);
-  }
+  static Eigen::Matrix<double, 8, 1> shape(const Eigen::Vector2d& xi) noexcept;
+  static Eigen::Matrix<double, 8, 2> gradient(const Eigen::Vector2d& xi) noexcept;
+  static Eigen::Matrix<double, 8, 2> reference_nodes() noexcept;
 };
 
 static_assert(TriangulatedFace<Quad8>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/element/quad8.ipp>
+#endif

@@ -1,7 +1,7 @@
 // The quadratic serendipity functions of squares and cubes, shared by Quad8 and Hex20.
 #pragma once
 
-#include <palpate/core/types.hpp>
+#include <palpate/core/config.hpp>
 
 #include <array>
 
@@ -11,12 +11,8 @@ template <int Nodes, int Dimension>
 using Table = Eigen::Matrix<double, Nodes, Dimension>;
 
 /// Factor of a shape function along one axis for a node at s (-1, 0 or 1): (1 + s x) / 2, or 1 - x^2 in the middle.
-inline double factor(double s, double x) noexcept {
-  return s == 0.0 ? 1.0 - x * x : 0.5 * (1.0 + s * x);
-}
-inline double factor_derivative(double s, double x) noexcept {
-  return s == 0.0 ? -2.0 * x : 0.5 * s;
-}
+double factor(double s, double x) noexcept;
+double factor_derivative(double s, double x) noexcept;
 
 /// Functions of nodes at `s` (rows of -1, 0, 1; at most one 0): the product of factors, at corners times
 /// (sum s_i x_i - (Dimension - 1)) (Zienkiewicz and Taylor, The Finite Element Method, serendipity family).
@@ -62,3 +58,7 @@ Table<Nodes, Dimension> with_middles(const Table<Nodes - static_cast<int>(Edges)
 }
 
 }}}  // namespace palpate::serendipity
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/element/serendipity.ipp>
+#endif

@@ -1,8 +1,15 @@
 // The ten-node tetrahedron.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/element/tri6.hpp>
+#include <palpate/quadrature/tetrahedron.hpp>
+
+#include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -23,40 +30,17 @@ struct Tet10 {
   using Quadrature = TetrahedronRule<2>;
   using MassQuadrature = TetrahedronRule<5>;
 
-  static Eigen::Matrix<double, 10, 1> shape(const Vector3& xi) noexcept {
-    const Eigen::Vector4d l = Tet4::shape(xi);
-    Eigen::Matrix<double, 10, 1> n;
-    n.head<4>() = l.cwiseProduct(2.0 * l - Eigen::Vector4d::Ones());
-    for (int a = 0; a < 6; ++a) {
-      const auto [i, j] = edges[static_cast<std::size_t>(a)];
-      n[4 + a] = 4.0 * l[i] * l[j];
-    }
-    return n;
-  }
+  static Eigen::Matrix<double, 10, 1> shape(const Vector3& xi) noexcept;
 
-  static Eigen::Matrix<double, 10, 3> gradient(const Vector3& xi) noexcept {
-    const Eigen::Vector4d l = Tet4::shape(xi);
-    const Eigen::Matrix<double, 4, 3> d = Tet4::gradient(xi);
-    Eigen::Matrix<double, 10, 3> g;
-    for (int a = 0; a < 4; ++a) g.row(a) = (4.0 * l[a] - 1.0) * d.row(a);
-    for (int a = 0; a < 6; ++a) {
-      const auto [i, j] = edges[static_cast<std::size_t>(a)];
-      g.row(4 + a) = 4.0 * (l[i] * d.row(j) + l[j] * d.row(i));
-    }
-    return g;
-  }
+  static Eigen::Matrix<double, 10, 3> gradient(const Vector3& xi) noexcept;
 
-  static Eigen::Matrix<double, 10, 3> reference_nodes() noexcept {
-    Eigen::Matrix<double, 10, 3> x;
-    x.topRows<4>() = Tet4::reference_nodes();
-    for (int a = 0; a < 6; ++a) {
-      const auto [i, j] = edges[static_cast<std::size_t>(a)];
-      x.row(4 + a) = 0.5 * (x.row(i) + x.row(j));
-    }
-    return x;
-  }
+  static Eigen::Matrix<double, 10, 3> reference_nodes() noexcept;
 };
 
 static_assert(Element<Tet10>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/element/tet10.ipp>
+#endif

@@ -2,8 +2,13 @@
 #pragma once
 
 #include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/element/tri3.hpp>
 #include <palpate/quadrature/tetrahedron.hpp>
+
+#include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -20,23 +25,17 @@ struct Tet4 {
   using Quadrature = TetrahedronRule<1>;
   using MassQuadrature = TetrahedronRule<2>;
 
-  static Eigen::Vector4d shape(const Vector3& xi) noexcept {
-    return {1.0 - xi[0] - xi[1] - xi[2], xi[0], xi[1], xi[2]};
-  }
+  static Eigen::Vector4d shape(const Vector3& xi) noexcept;
 
-  static Eigen::Matrix<double, 4, 3> gradient(const Vector3&) noexcept {
-    Eigen::Matrix<double, 4, 3> g;
-    g << -1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1;
-    return g;
-  }
+  static Eigen::Matrix<double, 4, 3> gradient(const Vector3&) noexcept;
 
-  static Eigen::Matrix<double, 4, 3> reference_nodes() noexcept {
-    Eigen::Matrix<double, 4, 3> x;
-    x << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
-    return x;
-  }
+  static Eigen::Matrix<double, 4, 3> reference_nodes() noexcept;
 };
 
 static_assert(Element<Tet4>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/element/tet4.ipp>
+#endif

@@ -2,7 +2,11 @@
 #pragma once
 
 #include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/quadrature/triangle.hpp>
+
+#include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -14,19 +18,15 @@ struct Tri3 {
 
   static Eigen::Vector3d shape(const Eigen::Vector2d& xi) noexcept { return {1.0 - xi[0] - xi[1], xi[0], xi[1]}; }
 
-  static Eigen::Matrix<double, 3, 2> gradient(const Eigen::Vector2d&) noexcept {
-    Eigen::Matrix<double, 3, 2> g;
-    g << -1, -1, 1, 0, 0, 1;
-    return g;
-  }
+  static Eigen::Matrix<double, 3, 2> gradient(const Eigen::Vector2d&) noexcept;
 
-  static Eigen::Matrix<double, 3, 2> reference_nodes() noexcept {
-    Eigen::Matrix<double, 3, 2> x;
-    x << 0, 0, 1, 0, 0, 1;
-    return x;
-  }
+  static Eigen::Matrix<double, 3, 2> reference_nodes() noexcept;
 };
 
 static_assert(TriangulatedFace<Tri3>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/element/tri3.ipp>
+#endif

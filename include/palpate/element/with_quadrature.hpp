@@ -2,6 +2,8 @@
 #pragma once
 
 #include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -2,26 +2,17 @@
 #pragma once
 
 #include <palpate/concepts/integrator.hpp>
+#include <palpate/core/config.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
 /// Held dofs stay out of what all dofs do: their inverse mass is zero, and so is their velocity meanwhile.
-inline void leave_out_held(MotionState& s) noexcept {
-  for (Index dof : s.held) s.velocity[dof] = 0.0;
-}
+void leave_out_held(MotionState& s) noexcept;
 /// They go to their targets at constant speed.
-inline void move_held(MotionState& s, double dt) noexcept {
-  for (std::size_t k = 0; k < s.held.size(); ++k) {
-    const Index dof = s.held[k];
-    s.held_speed[static_cast<Index>(k)] = (s.target[dof] - s.displacement[dof]) / dt;
-    s.displacement[dof] = s.target[dof];
-  }
-}
-inline void show_held(MotionState& s) noexcept {
-  for (std::size_t k = 0; k < s.held.size(); ++k) s.velocity[s.held[k]] = s.held_speed[static_cast<Index>(k)];
-}
+void move_held(MotionState& s, double dt) noexcept;
+void show_held(MotionState& s) noexcept;
 
 }  // namespace detail
 
@@ -48,3 +39,7 @@ struct CentralDifference {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/integrator/central_difference.ipp>
+#endif

@@ -1,10 +1,20 @@
 // A body in explicit motion: steps within the stable limit, and a watch over its energy.
 #pragma once
 
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/realtime.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/status.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/integrator/requirements.hpp>
 #include <palpate/integrator/step_limit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,7 +1,8 @@
 // One step of an implicit scheme: from the displacement at its end to the motion there.
 #pragma once
 
-#include <palpate/integrator/requirements.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/integrator/time_scheme.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -12,10 +13,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 class ImplicitStep {
  public:
   /// Throws bad_argument for a scheme in which the new acceleration does not count: that one is explicit.
-  ImplicitStep(const TimeScheme& scheme, Index size) : scheme_(scheme), predicted_(size), coasting_(size) {
-    for (const double c : {scheme.new_in_u, scheme.new_in_v})
-      if (!(c > 0.0)) raise(SetupErrorKind::bad_argument, "the time scheme is explicit", "Use central differences");
-  }
+  ImplicitStep(const TimeScheme& scheme, Index size);
 
   static bool is_length(double h) noexcept { return h > 0.0 && h < infinity; }
   void set_length(double h) noexcept { h_ = h; }
@@ -24,21 +22,12 @@ class ImplicitStep {
   double acceleration_per_displacement() const noexcept { return 1.0 / (scheme_.new_in_u * h_ * h_); }
   double velocity_per_displacement() const noexcept { return scheme_.new_in_v / (scheme_.new_in_u * h_); }
 
-  void coast(const VectorX& u, const VectorX& v, const VectorX& a) noexcept {
-    predicted_ = u + h_ * v + (scheme_.old_in_u * h_ * h_) * a;
-    coasting_ = v + (scheme_.old_in_v * h_) * a;
-  }
+  void coast(const VectorX& u, const VectorX& v, const VectorX& a) noexcept;
   const VectorX& predicted() const noexcept { return predicted_; }  ///< where it coasts to [m]
-  void find_motion(const VectorX& end, VectorX& velocity, VectorX& acceleration) const noexcept {
-    acceleration = acceleration_per_displacement() * (end - predicted_);
-    velocity = coasting_ + (scheme_.new_in_v * h_) * acceleration;
-  }
+  void find_motion(const VectorX& end, VectorX& velocity, VectorX& acceleration) const noexcept;
   /// What inertia M a and damping D v at the end add to the potential of the step [J].
   double potential(const VectorX& velocity, const VectorX& drag, const VectorX& acceleration,
-                   const VectorX& inertia) const noexcept {
-    return 0.5 / velocity_per_displacement() * velocity.dot(drag) +
-           0.5 / acceleration_per_displacement() * acceleration.dot(inertia);
-  }
+                   const VectorX& inertia) const noexcept;
 
  private:
   TimeScheme scheme_;
@@ -47,3 +36,7 @@ class ImplicitStep {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/integrator/implicit_step.ipp>
+#endif

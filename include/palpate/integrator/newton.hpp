@@ -2,7 +2,8 @@
 #pragma once
 
 #include <palpate/concepts/integrator.hpp>
-#include <palpate/core/setup_error.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 
 #include <cmath>
 
@@ -14,14 +15,7 @@ struct NewtonParameters {
   int maximum_halvings = 12;  ///< of one step
 
   /// Throws bad_argument for parameters with which nothing could be solved.
-  void require_usable() const {
-    const auto refuse = [](const char* name, const std::string& value, const char* hint) {
-      raise(SetupErrorKind::bad_argument, std::string("Newton's ") + name + " is " + value, hint);
-    };
-    if (maximum_iterations < 1) refuse("maximum_iterations", std::to_string(maximum_iterations), "Give at least 1");
-    if (!(tolerance >= 0.0 && tolerance < 1.0)) refuse("tolerance", number(tolerance), "Give 0 or a little more");
-    if (maximum_halvings < 0) refuse("maximum_halvings", std::to_string(maximum_halvings), "Give 0 or more");
-  }
+  void require_usable() const;
 };
 
 struct NewtonReport {
@@ -38,10 +32,7 @@ class Newton {
  public:
   Newton() = default;
   /// Throws as NewtonParameters::require_usable. Allocates four vectors.
-  explicit Newton(Index size, const NewtonParameters& parameters = {})
-      : parameters_(parameters), residual_(size), step_(size), trial_(size), trial_residual_(size) {
-    parameters_.require_usable();
-  }
+  explicit Newton(Index size, const NewtonParameters& parameters = {});
 
   /// Improves x until the residual is small. x is always inside the domain if it was at the start.
   template <NewtonProblem P>
@@ -90,3 +81,7 @@ class Newton {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/integrator/newton.ipp>
+#endif

@@ -1,6 +1,8 @@
 // Explicit integration of order one: the velocity first, then the place.
 #pragma once
 
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/integrator/central_difference.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {

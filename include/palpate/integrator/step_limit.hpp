@@ -2,6 +2,8 @@
 #pragma once
 
 #include <palpate/concepts/integrator.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,16 +21,9 @@ class StepLimit {
   /// `bound` is an upper bound of omega^2 [1/s^2] at rest, such as that of the worst element, or infinite. Until the
   /// estimate has settled the larger of the two counts; from then on the estimate alone, because a deformed body may be
   /// stiffer than the bound says.
-  StepLimit(Index dofs, double bound, double margin = 0.07)
-      : vector_(dofs), moved_(dofs), force_(dofs), bound_(bound), margin_(margin) {
-    restart();
-  }
+  StepLimit(Index dofs, double bound, double margin = 0.07);
   /// From a random start, for a body that has become another. A bound from the elements holds for any part of them.
-  void restart() noexcept {
-    for (Index i = 0; i < vector_.size(); ++i) vector_[i] = start_value(static_cast<std::uint64_t>(i));
-    square_ = 0.0;
-    iterations_ = 0;
-  }
+  void restart() noexcept;
 
   /// Iterates; `state.force` must belong to `state.displacement`. One force per iteration; no allocation. A force that
   /// is not finite makes the limit zero.
@@ -38,23 +33,13 @@ class StepLimit {
   }
 
   /// Estimate of omega_max^2 [1/s^2].
-  double largest_square() const noexcept {
-    return iterations_ < settled && square_ < bound_ ? bound_ : square_;  // NaN stays
-  }
+  double largest_square() const noexcept;
   /// Largest step [s]: (1 - margin) 2 / omega_max.
-  double step() const noexcept {
-    const double square = largest_square();
-    return std::isfinite(square) ? (1.0 - margin_) * 2.0 / std::sqrt(square) : 0.0;
-  }
+  double step() const noexcept;
 
  private:
   /// Between -1 and 1, without pattern (the finaliser of SplitMix64).
-  static double start_value(std::uint64_t i) noexcept {
-    std::uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
-  }
+  static double start_value(std::uint64_t i) noexcept;
 
   template <ForceOperator F>
   void once(F& force, const MotionState& s) noexcept {
@@ -88,3 +73,7 @@ class StepLimit {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/integrator/step_limit.ipp>
+#endif

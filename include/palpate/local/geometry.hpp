@@ -2,6 +2,9 @@
 #pragma once
 
 #include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 
 #include <Eigen/LU>
 

@@ -1,10 +1,16 @@
 // All integration points of an element, and strain, stress and force in them.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/core/voigt.hpp>
 #include <palpate/element/mean_dilatation.hpp>
 #include <palpate/local/geometry.hpp>
 #include <palpate/local/strain_displacement.hpp>
+
+#include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

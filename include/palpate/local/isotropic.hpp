@@ -1,6 +1,12 @@
 // Isotropic laws need two constants, and less work per element.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/mean_dilatation.hpp>
+#include <palpate/local/integration_points.hpp>
 #include <palpate/local/stiffness.hpp>
 
 #include <optional>

@@ -2,7 +2,14 @@
 // measure is the length of the cross product).
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/local/geometry.hpp>
 #include <palpate/local/integration_points.hpp>
+
+#include <Eigen/Geometry>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

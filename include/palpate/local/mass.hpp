@@ -1,6 +1,9 @@
 // Mass of one element, per unit density.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/local/geometry.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {

@@ -1,6 +1,9 @@
 // Stiffness of one element.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/local/integration_points.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {

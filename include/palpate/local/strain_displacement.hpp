@@ -1,6 +1,8 @@
 // Strain from displacement.
 #pragma once
 
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/core/voigt.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {

@@ -1,9 +1,18 @@
 // A linear isotropic law in the frame that turns with the element.
 #pragma once
 
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/rotation.hpp>
-#include <palpate/material/deformation.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/small_strain.hpp>
+
+#include <Eigen/LU>
+
+#include <optional>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

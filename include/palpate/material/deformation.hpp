@@ -1,7 +1,11 @@
 // What the laws for large strain take from a deformation gradient, and their derivatives.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+
+#include <Eigen/LU>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 

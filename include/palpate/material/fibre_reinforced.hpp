@@ -1,8 +1,17 @@
 // Fibres that resist being pulled, in a law without a direction.
 #pragma once
 
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/lanes.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/material/deformation.hpp>
-#include <palpate/material/linear_elastic.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

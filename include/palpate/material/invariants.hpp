@@ -1,6 +1,9 @@
 // Isotropic laws written in the invariants I = |F|^2, II = |cof F|^2 and J = det F.
 #pragma once
 
+#include <palpate/core/config.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/material/deformation.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {

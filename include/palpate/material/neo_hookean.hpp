@@ -1,8 +1,18 @@
 // The neo-Hookean law without inverse: the one for 1 kHz.
 #pragma once
 
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/material/deformation.hpp>
+#include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/small_strain.hpp>
+
+#include <Eigen/LU>
+
+#include <optional>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -41,16 +51,7 @@ struct NeoHookean {
     return mu * f + ((lambda + mu) * determinant(f, c) - (lambda + S(2) * mu)) * c;
   }
 
-  Matrix9 tangent(const Tensor3<double>& f) const noexcept {
-    const auto [lambda, mu] = detail::lame<double>(small_strain());
-    const double l = lambda + mu;
-    const Tensor3<double> c = cofactor(f);
-    const Eigen::Matrix<double, 9, 1> column = vector9(c);
-    Matrix9 t = (l * (determinant(f, c) - 1.0) - mu) * detail::cofactor_derivative(f);
-    t += (l * column) * column.transpose();
-    t.diagonal().array() += mu;
-    return t;
-  }
+  Matrix9 tangent(const Tensor3<double>& f) const noexcept;
 
   bool admits(const Tensor3<double>& f) const noexcept { return all_finite(f); }
 };
@@ -58,3 +59,7 @@ struct NeoHookean {
 static_assert(HyperelasticMaterial<NeoHookean>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/material/neo_hookean.ipp>
+#endif

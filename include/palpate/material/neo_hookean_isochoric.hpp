@@ -1,8 +1,20 @@
 // The neo-Hookean law with shape and volume apart.
 #pragma once
 
-#include <palpate/material/invariants.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/lanes.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/material/deformation.hpp>
+#include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/small_strain.hpp>
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <optional>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -43,16 +55,7 @@ struct NeoHookeanIsochoric {
     return a * f + pressure * c;
   }
 
-  Matrix9 tangent(const Tensor3<double>& f) const noexcept {
-    const auto [lambda, mu] = detail::lame<double>(small_strain());
-    const double j = determinant(f), root = std::cbrt(1.0 / j), first = contract(f, f), bulk = lambda + 2.0 / 3.0 * mu;
-    detail::InvariantDerivatives w;
-    w.first = 0.5 * mu * root * root;
-    w.first_volume = -2.0 / 3.0 * w.first / j;
-    w.volume = w.first_volume * first + bulk * (j - 1.0);
-    w.volume_volume = -5.0 / 3.0 * w.first_volume * first / j + bulk;
-    return detail::tangent_of_invariants(f, w);
-  }
+  Matrix9 tangent(const Tensor3<double>& f) const noexcept;
 
   bool admits(const Tensor3<double>& f) const noexcept { return detail::has_volume(f); }
 
@@ -66,3 +69,7 @@ struct NeoHookeanIsochoric {
 static_assert(HyperelasticMaterial<NeoHookeanIsochoric>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/material/neo_hookean_isochoric.ipp>
+#endif

@@ -1,8 +1,19 @@
 // The neo-Hookean law with logarithms of the volume.
 #pragma once
 
-#include <palpate/material/invariants.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/material/deformation.hpp>
+#include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/small_strain.hpp>
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <optional>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -21,16 +32,7 @@ struct NeoHookeanLogarithmic {
   LinearElastic small_strain() const noexcept { return {youngs_modulus, poisson_ratio, density}; }
   Matrix6 rest_elasticity() const noexcept { return small_strain().elasticity(); }
   /// As LinearElastic, and nu >= 0.
-  std::optional<SetupProblem> check() const {
-    auto problem = small_strain().check();
-    if (problem || poisson_ratio >= 0.0) return problem;
-    problem.emplace();
-    problem->kind = SetupErrorKind::bad_poisson_ratio;
-    problem->what = "poisson_ratio is " + number(poisson_ratio);
-    problem->hint = "The logarithmic law needs nu >= 0: otherwise pressing it flat sets energy free without bound";
-    problem->value = poisson_ratio;
-    return problem;
-  }
+  std::optional<SetupProblem> check() const;
 
   template <class S>
   PALPATE_ALWAYS_INLINE S energy(const Tensor3<S>& f) const noexcept {
@@ -50,15 +52,7 @@ struct NeoHookeanLogarithmic {
     return mu * f + ((lambda * log(j) - mu) / j) * c;
   }
 
-  Matrix9 tangent(const Tensor3<double>& f) const noexcept {
-    const auto [lambda, mu] = detail::lame<double>(small_strain());
-    const double j = determinant(f), log_volume = std::log(j);
-    detail::InvariantDerivatives w;
-    w.first = 0.5 * mu;
-    w.volume = (lambda * log_volume - mu) / j;
-    w.volume_volume = (lambda * (1.0 - log_volume) + mu) / j / j;
-    return detail::tangent_of_invariants(f, w);
-  }
+  Matrix9 tangent(const Tensor3<double>& f) const noexcept;
 
   bool admits(const Tensor3<double>& f) const noexcept { return detail::has_volume(f); }
 };
@@ -66,3 +60,7 @@ struct NeoHookeanLogarithmic {
 static_assert(HyperelasticMaterial<NeoHookeanLogarithmic>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/material/neo_hookean_logarithmic.ipp>
+#endif

@@ -1,7 +1,8 @@
 // Lame's constants in the number type of a kernel.
 #pragma once
 
-#include <palpate/core/tensor3.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/lanes.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {

@@ -1,8 +1,16 @@
 // Hooke's law for the Green-Lagrange strain.
 #pragma once
 
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/material/deformation.hpp>
+#include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/small_strain.hpp>
+
+#include <optional>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -35,14 +43,7 @@ struct StVenantKirchhoff {
     return f * second_stress(f);
   }
 
-  Matrix9 tangent(const Tensor3<double>& f) const noexcept {
-    const auto [lambda, mu] = detail::lame<double>(small_strain());
-    const Eigen::Matrix<double, 9, 1> column = vector9(f);
-    Matrix9 t = (lambda * column) * column.transpose();
-    detail::add_strain_product(t, mu, f);
-    detail::add_right_product(t, 1.0, second_stress(f));
-    return t;
-  }
+  Matrix9 tangent(const Tensor3<double>& f) const noexcept;
 
   bool admits(const Tensor3<double>& f) const noexcept { return detail::has_volume(f); }
 
@@ -64,3 +65,7 @@ struct StVenantKirchhoff {
 static_assert(HyperelasticMaterial<StVenantKirchhoff>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/material/st_venant_kirchhoff.ipp>
+#endif

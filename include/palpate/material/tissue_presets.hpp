@@ -1,6 +1,7 @@
 // Elastic constants of tissues from the literature, to start from.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/units.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
@@ -50,13 +51,10 @@ inline constexpr std::array<TissuePreset, 8> tissue_presets{{
 }};
 
 /// The preset of that name. Throws bad_argument with all names.
-inline const TissuePreset& tissue_preset(std::string_view name) {
-  std::string known;
-  for (const TissuePreset& preset : tissue_presets) {
-    if (preset.name == name) return preset;
-    known += (known.empty() ? "'" : ", '") + std::string(preset.name) + "'";
-  }
-  raise(SetupErrorKind::bad_argument, "there is no preset for '" + std::string(name) + "'", "There are " + known);
-}
+const TissuePreset& tissue_preset(std::string_view name);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/material/tissue_presets.ipp>
+#endif

@@ -1,11 +1,18 @@
 // Relaxation: a law whose stress fades after a strain, by a Prony series.
 #pragma once
 
-#include <palpate/core/voigt.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/material/viscous_step.hpp>
+
+#include <Eigen/LU>
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -19,9 +26,7 @@ struct PronyTerm {
 namespace detail {
 
 /// (1 - exp(-x)) / x, the mean of exp(-t) over 0 ... x.
-inline double mean_decay(double x) noexcept {
-  return x > 0.0 ? -std::expm1(-x) / x : 1.0;
-}
+double mean_decay(double x) noexcept;
 
 }  // namespace detail
 
@@ -183,3 +188,7 @@ concept ViscousMaterial =
 // clang-format on
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/material/viscoelastic.ipp>
+#endif

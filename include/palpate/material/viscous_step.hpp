@@ -1,8 +1,12 @@
 // A law with memory over one step: a hyperelastic one.
 #pragma once
 
-#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/material/deformation.hpp>
+
+#include <Eigen/LU>
 
 #include <cmath>
 

@@ -1,10 +1,25 @@
 // The door of the library: a mesh is refused, repaired or let in, and what was found is reported.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/admission_policy.hpp>
 #include <palpate/mesh/diagnose.hpp>
+#include <palpate/mesh/diagnosis.hpp>
+#include <palpate/mesh/duplicates.hpp>
 #include <palpate/mesh/fibres.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/quality.hpp>
 #include <palpate/mesh/repair.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,7 +1,11 @@
 // What happens to a defective mesh: the decisions a caller can take, and how a refusal is worded.
 #pragma once
 
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/mesh/diagnosis.hpp>
+
+#include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -61,31 +65,15 @@ inline constexpr std::array<AdmissionRule, 11> admission_rules{{
 }};
 
 /// A finding as a refusal.
-PALPATE_COLD inline SetupProblem make_problem(const AdmissionRule& rule, const Finding& finding) {
-  SetupProblem p;
-  p.kind = rule.kind;
-  p.what = std::to_string(finding.count) + ' ' + rule.what + ", worst " + number(finding.worst) + ", bound " +
-           number(finding.threshold);
-  p.hint = rule.hint;
-  p.ids = finding.ids;
-  p.count = finding.count;
-  p.value = finding.worst;
-  p.threshold = finding.threshold;
-  return p;
-}
+PALPATE_COLD SetupProblem make_problem(const AdmissionRule& rule, const Finding& finding);
 
 /// Refuses a policy that asks for a repair nobody can make, or whose bounds are no numbers: NaN would let everything
 /// pass.
-inline void require_usable(const AdmissionPolicy& policy) {
-  const MeshThresholds& t = policy.thresholds;
-  for (double bound : {t.degenerate, t.poor_quality, t.quality_floor, t.coincidence, t.millimetres})
-    if (!(bound >= 0.0))
-      raise(SetupErrorKind::bad_argument, "a mesh threshold is " + number(bound), "Give zero or more");
-  for (const AdmissionRule& rule : admission_rules)
-    if (rule.decision != nullptr && !rule.can_repair && policy.*(rule.decision) == Admission::repair)
-      raise(SetupErrorKind::unsupported, "there is no repair for " + std::string(to_string(rule.kind)),
-            "Choose refuse or accept");
-}
+void require_usable(const AdmissionPolicy& policy);
 
 }  // namespace detail
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/admission_policy.ipp>
+#endif

@@ -1,7 +1,16 @@
 // Groups made of boundary faces.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/surface.hpp>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

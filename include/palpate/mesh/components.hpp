@@ -1,9 +1,14 @@
 // Connected components of a mesh.
 #pragma once
 
-#include <palpate/mesh/mesh.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 
+#include <algorithm>
 #include <numeric>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -17,11 +22,7 @@ struct MeshComponents {
 namespace detail {
 
 /// Root of a node's tree; halves the path on the way.
-inline NodeId find_root(std::vector<NodeId>& parent, NodeId node) noexcept {
-  const auto at = [&](NodeId i) -> NodeId& { return parent[static_cast<std::size_t>(i)]; };
-  while (at(node) != node) node = at(node) = at(at(node));
-  return node;
-}
+NodeId find_root(std::vector<NodeId>& parent, NodeId node) noexcept;
 
 }  // namespace detail
 
@@ -53,3 +54,7 @@ MeshComponents connected_components(const M& mesh) {
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/components.ipp>
+#endif

@@ -1,10 +1,21 @@
 // Measures a mesh: indices, positions, orientation, quality, duplicates, orphans, components, units.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/components.hpp>
 #include <palpate/mesh/diagnosis.hpp>
 #include <palpate/mesh/duplicates.hpp>
+#include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/quality.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -64,23 +75,10 @@ void check_positions(const M& mesh, const MeshThresholds& thresholds, MeshDiagno
 }
 
 /// -1 inverted, 0 flat, 1 sound.
-inline int orientation(const ElementShape& shape, const MeshThresholds& thresholds) noexcept {
-  if (std::abs(shape.relative_volume) <= thresholds.degenerate + shape.resolution) return 0;
-  return shape.relative_volume < 0.0 ? -1 : 1;
-}
+int orientation(const ElementShape& shape, const MeshThresholds& thresholds) noexcept;
 
 /// Puts one element in its categories. Inverted and flat elements are no slivers besides.
-inline void classify(Index e, const ElementShape& shape, const MeshThresholds& thresholds, MeshDiagnosis& d) {
-  d.volume += shape.volume;
-  d.min_quality = std::min(d.min_quality, shape.quality);
-  d.mean_quality += shape.quality;
-  ++d.quality_histogram[static_cast<std::size_t>(std::clamp(shape.quality * 10.0, 0.0, 9.0))];
-  const int sign = orientation(shape, thresholds);
-  if (sign == 0) return d.degenerate.add(e, shape.relative_volume, thresholds.degenerate + shape.resolution);
-  if (sign < 0) return d.inverted.add(e, shape.relative_volume, 0.0);
-  if (shape.quality < thresholds.poor_quality) d.poor_quality.add(e, shape.quality, thresholds.poor_quality);
-  if (shape.quality < thresholds.quality_floor) d.slivers.add(e, shape.quality, thresholds.quality_floor);
-}
+void classify(Index e, const ElementShape& shape, const MeshThresholds& thresholds, MeshDiagnosis& d);
 
 template <Element E, MeshOf<E> M>
 void check_elements(const M& mesh, const MeshThresholds& thresholds, MeshDiagnosis& d) {
@@ -144,3 +142,7 @@ MeshDiagnosis diagnose(const M& mesh, const MeshThresholds& thresholds = {}) {
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/diagnose.ipp>
+#endif

@@ -1,10 +1,17 @@
 // Coincident nodes and repeated elements.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/quality.hpp>
 
+#include <algorithm>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

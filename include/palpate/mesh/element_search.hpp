@@ -1,14 +1,22 @@
 // Which element a point lies in, and where in it.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 #include <optional>
-#include <span>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -3,8 +3,10 @@
 
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 
-#include <algorithm>
+#include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

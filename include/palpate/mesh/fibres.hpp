@@ -1,10 +1,15 @@
 // Fibre directions that can be used.
 #pragma once
 
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/mesh/mesh.hpp>
+#include <palpate/core/types.hpp>
 
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,12 +1,17 @@
 // Boxes of tetrahedra and the two cubes of the thesis.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/boundary_groups.hpp>
 #include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/surface.hpp>
 
-#include <Eigen/Geometry>
-#include <cmath>
+#include <array>
+#include <string>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -18,49 +23,17 @@ enum class BoxSplit { five_mirrored, six };
 namespace detail {
 
 /// Appends a tetrahedron, with its last two nodes swapped if it would be inverted.
-inline void add_oriented(Mesh<Tet4>& mesh, NodeId a, NodeId b, NodeId c, NodeId d) {
-  const auto edge = [&](NodeId to) -> Vector3 {
-    return (mesh.positions[static_cast<std::size_t>(to)] - mesh.positions[static_cast<std::size_t>(a)]).normalized();
-  };
-  const bool inverted = edge(b).cross(edge(c)).dot(edge(d)) < 0.0;
-  mesh.elements.push_back(inverted ? Mesh<Tet4>::Connectivity{a, b, d, c} : Mesh<Tet4>::Connectivity{a, b, c, d});
-}
+void add_oriented(Mesh<Tet4>& mesh, NodeId a, NodeId b, NodeId c, NodeId d);
 
 /// Node numbers of a grid of boxes: x runs fastest.
 struct BoxGrid {
   std::array<NodeId, 3> cells;
 
   NodeId node(std::array<NodeId, 3> i) const noexcept { return i[0] + (cells[0] + 1) * (i[1] + (cells[1] + 1) * i[2]); }
-  std::array<NodeId, 3> place(NodeId n) const noexcept {
-    return {n % (cells[0] + 1), n / (cells[0] + 1) % (cells[1] + 1), n / ((cells[0] + 1) * (cells[1] + 1))};
-  }
+  std::array<NodeId, 3> place(NodeId n) const noexcept;
   /// Corner of a cell; bit a of `corner` selects the far side along axis a.
-  NodeId corner(std::array<NodeId, 3> cell, unsigned corner) const noexcept {
-    for (unsigned a = 0; a < 3; ++a) cell[a] += static_cast<NodeId>(corner >> a & 1u);
-    return node(cell);
-  }
+  NodeId corner(std::array<NodeId, 3> cell, unsigned corner) const noexcept;
 };
-
-/// A core between the four corners whose grid indices sum to an even number: neighbours then agree on the diagonal of
-/// their face.
-inline void split_in_five(Mesh<Tet4>& mesh, const BoxGrid& grid, std::array<NodeId, 3> cell) {
-  const unsigned odd = static_cast<unsigned>(cell[0] + cell[1] + cell[2]) & 1u;
-  const auto at = [&](unsigned corner) { return grid.corner(cell, corner); };
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    const unsigned bits = (corner & 1u) + (corner >> 1 & 1u) + (corner >> 2);
-    if (((bits + odd) & 1u) != 0) add_oriented(mesh, at(corner), at(corner ^ 1u), at(corner ^ 2u), at(corner ^ 4u));
-  }
-  const unsigned first = odd;  // one of the core's corners; the others differ from it in two axes
-  add_oriented(mesh, at(first), at(first ^ 3u), at(first ^ 5u), at(first ^ 6u));
-}
-
-/// One tetrahedron per order in which the axes can be walked from the first corner to the last.
-inline void split_in_six(Mesh<Tet4>& mesh, const BoxGrid& grid, std::array<NodeId, 3> cell) {
-  for (unsigned a : {1u, 2u, 4u})
-    for (unsigned b : {1u, 2u, 4u})
-      if (a != b)
-        add_oriented(mesh, grid.corner(cell, 0), grid.corner(cell, a), grid.corner(cell, a | b), grid.corner(cell, 7));
-}
 
 /// Nodes at every combination of the coordinates, x running fastest.
 template <Element E>
@@ -82,26 +55,10 @@ void add_box_groups(Mesh<E>& mesh, const BoxGrid& grid) {
 }
 
 /// Number of cells along an axis. Refuses coordinates that do not rise.
-inline NodeId count_cells(const std::vector<double>& x) {
-  bool fine = x.size() >= 2;
-  for (std::size_t i = 0; i < x.size(); ++i) fine = fine && std::isfinite(x[i]) && (i == 0 || x[i] > x[i - 1]);
-  if (!fine)
-    raise(SetupErrorKind::bad_argument, "the coordinates of a box must be finite and rise",
-          "Give two or more per axis");
-  if (x.size() > 1'000'000)
-    raise(SetupErrorKind::count_too_large, std::to_string(x.size()) + " coordinates along one axis");
-  return static_cast<NodeId>(x.size() - 1);
-}
+NodeId count_cells(const std::vector<double>& x);
 
 /// `cells` + 1 equidistant coordinates.
-inline std::vector<double> even_coordinates(double origin, double size, int cells) {
-  if (!(size > 0.0) || cells < 1 || !std::isfinite(size) || !std::isfinite(origin))
-    raise(SetupErrorKind::bad_argument, "a box of size " + number(size) + " in " + std::to_string(cells) + " cells",
-          "Sizes and numbers of cells must be positive");
-  std::vector<double> x;
-  for (int i = 0; i <= cells; ++i) x.push_back(origin + size * i / cells);
-  return x;
-}
+std::vector<double> even_coordinates(double origin, double size, int cells);
 
 }  // namespace detail
 
@@ -109,57 +66,20 @@ inline std::vector<double> even_coordinates(double origin, double size, int cell
 /// Groups "x0", "x1", "y0", "y1", "z0", "z1" hold the nodes and outward faces of its sides, region "body" all elements.
 /// Elements are positively oriented. Refuses bad coordinates as bad_argument, more than 2^31 nodes or elements as
 /// count_too_large.
-inline Mesh<Tet4> box_tet4(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z,
-                           BoxSplit split = BoxSplit::five_mirrored) {
-  const detail::BoxGrid grid{{detail::count_cells(x), detail::count_cells(y), detail::count_cells(z)}};
-  if (6.0 * static_cast<double>(x.size()) * static_cast<double>(y.size()) * static_cast<double>(z.size()) >
-      2147483647.0)
-    raise(SetupErrorKind::count_too_large, "the box would have more than 2^31 elements");
-  Mesh<Tet4> mesh;
-  detail::add_grid_nodes(mesh, x, y, z);
-  for (NodeId k = 0; k < grid.cells[2]; ++k)
-    for (NodeId j = 0; j < grid.cells[1]; ++j)
-      for (NodeId i = 0; i < grid.cells[0]; ++i)
-        split == BoxSplit::six ? detail::split_in_six(mesh, grid, {i, j, k})
-                               : detail::split_in_five(mesh, grid, {i, j, k});
-  detail::add_box_groups(mesh, grid);
-  return mesh;
-}
+Mesh<Tet4> box_tet4(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z,
+                           BoxSplit split = BoxSplit::five_mirrored);
 
 /// Box of `size` [m] from `origin`, in equal cells. Otherwise as above.
-inline Mesh<Tet4> box_tet4(const Vector3& size, std::array<int, 3> cells, BoxSplit split = BoxSplit::five_mirrored,
-                           const Vector3& origin = Vector3::Zero()) {
-  return box_tet4(detail::even_coordinates(origin[0], size[0], cells[0]),
-                  detail::even_coordinates(origin[1], size[1], cells[1]),
-                  detail::even_coordinates(origin[2], size[2], cells[2]), split);
-}
+Mesh<Tet4> box_tet4(const Vector3& size, std::array<int, 3> cells, BoxSplit split = BoxSplit::five_mirrored,
+                           const Vector3& origin = Vector3::Zero());
 
 /// The two unit cubes of the thesis side by side along x: 12 nodes, 10 elements, the second cube mirrored. Groups
 /// "fixed" (x = 0), "end" (x = 2), "side" (the rest of the surface), all with outward faces, and "load_point", the node
 /// (2, 1, 1). Regions "cube_a", "cube_b".
-inline Mesh<Tet4> two_cubes() {
-  Mesh<Tet4> mesh;
-  for (double x : {0.0, 1.0, 2.0})
-    for (double y : {0.0, 1.0})
-      for (double z : {0.0, 1.0}) mesh.positions.emplace_back(x, y, z);
-  mesh.elements = {{0, 4, 2, 1},  {6, 2, 4, 7},  {5, 4, 1, 7}, {3, 7, 1, 2},   {4, 2, 1, 7},
-                   {8, 10, 4, 9}, {6, 4, 10, 7}, {5, 9, 4, 7}, {11, 9, 7, 10}, {4, 9, 10, 7}};
-  mesh.regions = {0, 0, 0, 0, 0, 1, 1, 1, 1, 1};
-  mesh.region_names = {"cube_a", "cube_b"};
-  mesh.groups.get_or_add("load_point", 0).nodes = {11};
-  const auto add = [&](std::string_view name, std::vector<std::vector<NodeId>> faces) {
-    Group& group = mesh.groups.get_or_add(name, 2);
-    for (const auto& face : faces) group.nodes.insert(group.nodes.end(), face.begin(), face.end());
-    group.faces = std::move(faces);
-  };
-  add("fixed", {{0, 1, 2}, {3, 2, 1}});
-  add("end", {{10, 9, 8}, {9, 10, 11}});
-  // clang-format off
-  add("side", {{2, 4, 0},  {4, 1, 0},  {4, 2, 6},  {2, 7, 6},  {1, 4, 5},  {5, 7, 1},  {1, 7, 3},   {7, 2, 3},
-               {4, 10, 8}, {8, 9, 4},  {10, 4, 6}, {6, 7, 10}, {4, 9, 5},  {9, 7, 5},  {7, 9, 11},  {11, 10, 7}});
-  // clang-format on
-  mesh.groups.tidy();
-  return mesh;
-}
+Mesh<Tet4> two_cubes();
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/generators.ipp>
+#endif

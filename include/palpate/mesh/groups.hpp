@@ -2,9 +2,10 @@
 #pragma once
 
 #include <palpate/concepts/mesh.hpp>
-#include <palpate/core/setup_error.hpp>
+#include <palpate/core/config.hpp>
 
-#include <algorithm>
+#include <string_view>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -15,29 +16,13 @@ inline constexpr std::string_view surface_group = "surface";
 class GroupTable {
  public:
   /// nullptr when there is no such group. Linear in the number of groups.
-  const Group* find(std::string_view name) const noexcept {
-    const auto it = std::ranges::find(groups_, name, &Group::name);
-    return it == groups_.end() ? nullptr : &*it;
-  }
+  const Group* find(std::string_view name) const noexcept;
 
   /// The group of that name, created empty if new.
-  Group& get_or_add(std::string_view name, int dimension) {
-    const auto it = std::ranges::find(groups_, name, &Group::name);
-    if (it != groups_.end()) {
-      it->dimension = std::max(it->dimension, dimension);
-      return *it;
-    }
-    groups_.push_back({std::string(name), dimension, {}, {}, {}});
-    return groups_.back();
-  }
+  Group& get_or_add(std::string_view name, int dimension);
 
   /// Sorts and deduplicates the node lists; call once after filling.
-  void tidy() {
-    for (Group& g : groups_) {
-      std::ranges::sort(g.nodes);
-      g.nodes.erase(std::unique(g.nodes.begin(), g.nodes.end()), g.nodes.end());
-    }
-  }
+  void tidy();
 
   const std::vector<Group>& all() const noexcept { return groups_; }
   std::vector<Group>& all() noexcept { return groups_; }
@@ -47,3 +32,7 @@ class GroupTable {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/groups.ipp>
+#endif

@@ -3,9 +3,14 @@
 
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/groups.hpp>
 
 #include <array>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

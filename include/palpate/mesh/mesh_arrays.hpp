@@ -3,10 +3,17 @@
 
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/groups.hpp>
 
-#include <ranges>
+#include <algorithm>
 #include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

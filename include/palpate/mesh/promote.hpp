@@ -1,13 +1,19 @@
 // From linear to quadratic elements: a node in the middle of every edge.
 #pragma once
 
-#include <palpate/element/hex20.hpp>
-#include <palpate/element/tet10.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
 
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -41,11 +47,7 @@ class EdgeMiddles {
   const std::vector<Edge>& edges() const noexcept { return edges_; }
 
   /// The node in the middle of two nodes, if these are an edge.
-  std::optional<NodeId> find(NodeId a, NodeId b) const {
-    const auto it = std::ranges::lower_bound(edges_, Edge(std::minmax({a, b})));
-    if (it == edges_.end() || *it != Edge(std::minmax({a, b}))) return std::nullopt;
-    return first_ + static_cast<NodeId>(it - edges_.begin());
-  }
+  std::optional<NodeId> find(NodeId a, NodeId b) const;
 
  private:
   NodeId first_ = 0;
@@ -53,16 +55,7 @@ class EdgeMiddles {
 };
 
 /// Adds to a face the middles of its edges, which run from corner to corner.
-inline void promote_face(std::vector<NodeId>& face, const EdgeMiddles& middles, const std::string& group) {
-  const std::size_t corners = face.size();
-  for (std::size_t i = 0; i < corners; ++i) {
-    const auto middle = middles.find(face[i], face[(i + 1) % corners]);
-    if (!middle)
-      raise(SetupErrorKind::unsupported, "group '" + group + "' has a face that is no face of an element",
-            "Remove it before promotion");
-    face.push_back(*middle);
-  }
-}
+void promote_face(std::vector<NodeId>& face, const EdgeMiddles& middles, const std::string& group);
 
 template <QuadraticElement E>
 void promote_group(Group& group, const Mesh<E>& mesh, const EdgeMiddles& middles) {
@@ -119,3 +112,7 @@ Mesh<To> promote(const Mesh<typename To::Linear>& linear) {
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/promote.ipp>
+#endif

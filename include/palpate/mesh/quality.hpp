@@ -1,11 +1,14 @@
 // How an element is shaped: orientation, flatness and quality, free of scale and of position.
 #pragma once
 
-#include <palpate/mesh/mesh.hpp>
 #include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/mesh/mesh.hpp>
 
 #include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

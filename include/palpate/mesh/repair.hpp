@@ -1,11 +1,17 @@
 // Changes to an owning mesh that keep its groups and regions in step.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
 
+#include <array>
 #include <optional>
-#include <set>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -13,24 +19,7 @@ namespace detail {
 
 /// Renumbers a group's nodes and faces. A face that lost a node, has two nodes fallen together, or repeats an earlier
 /// face is dropped.
-inline void renumber_group(Group& group, const std::vector<NodeId>& map) {
-  std::vector<NodeId> nodes;
-  for (NodeId i : group.nodes)
-    if (const NodeId to = map[static_cast<std::size_t>(i)]; to >= 0) nodes.push_back(to);
-  std::ranges::sort(nodes);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  group.nodes = std::move(nodes);
-  std::set<std::vector<NodeId>> known;
-  std::vector<std::vector<NodeId>> faces;
-  for (std::vector<NodeId>& face : group.faces) {
-    for (NodeId& i : face) i = map[static_cast<std::size_t>(i)];
-    std::vector<NodeId> key = face;
-    std::ranges::sort(key);
-    const bool broken = !key.empty() && (key.front() < 0 || std::ranges::adjacent_find(key) != key.end());
-    if (!broken && known.insert(std::move(key)).second) faces.push_back(std::move(face));
-  }
-  group.faces = std::move(faces);
-}
+void renumber_group(Group& group, const std::vector<NodeId>& map);
 
 }  // namespace detail
 
@@ -108,3 +97,7 @@ void reorient(Mesh<E>& mesh, const std::vector<Index>& elements) {
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/repair.ipp>
+#endif

@@ -1,7 +1,19 @@
 // Rigid motions as displacements of all nodes.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/components.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/rigid_mode_names.hpp>
 #include <palpate/mesh/rigid_modes.hpp>
+
+#include <Eigen/Geometry>
+
+#include <span>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

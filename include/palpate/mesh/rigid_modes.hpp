@@ -1,13 +1,16 @@
 // Which rigid motions the constraints leave free, by component and by name.
 #pragma once
 
-#include <palpate/core/setup_error.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/components.hpp>
+#include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/rigid_mode_names.hpp>
 
-#include <Eigen/Geometry>
-#include <cmath>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -24,14 +27,7 @@ struct FreeRigidModes {
 namespace detail {
 
 /// Nodes of each component, by counting sort. Nodes of component -1 are left out.
-inline std::vector<std::vector<NodeId>> nodes_by_component(std::span<const NodeId> component) {
-  NodeId last = -1;
-  for (NodeId c : component) last = std::max(last, c);
-  std::vector<std::vector<NodeId>> nodes(static_cast<std::size_t>(last + 1));
-  for (std::size_t i = 0; i < component.size(); ++i)
-    if (component[i] >= 0) nodes[static_cast<std::size_t>(component[i])].push_back(static_cast<NodeId>(i));
-  return nodes;
-}
+std::vector<std::vector<NodeId>> nodes_by_component(std::span<const NodeId> component);
 
 /// Centre and size by which positions are scaled before ranks are decided.
 struct RigidFrame {
@@ -40,74 +36,17 @@ struct RigidFrame {
   double resolution = 0.0;           ///< rounding of the coordinates / size
 
   RigidFrame(std::span<const Vector3> positions, std::span<const NodeId> nodes,
-             std::span<const std::uint8_t> constrained) {
-    const auto at = [&](NodeId node) -> const Vector3& { return positions[static_cast<std::size_t>(node)]; };
-    const Vector3 origin = at(nodes.front());  // offsets keep their digits far from zero
-    Vector3 low = Vector3::Zero(), high = Vector3::Zero(), all = Vector3::Zero(), held = Vector3::Zero();
-    Index held_count = 0;
-    double farthest = 0.0;
-    for (NodeId node : nodes) {
-      const Vector3 x = at(node) - origin;
-      low = low.cwiseMin(x);
-      high = high.cwiseMax(x);
-      all += x;
-      farthest = std::max(farthest, at(node).cwiseAbs().maxCoeff());
-      if ((constrained[static_cast<std::size_t>(node)] & 7u) == 0) continue;
-      held += x;
-      ++held_count;
-    }
-    centre = origin + (held_count > 0 ? Vector3(held / static_cast<double>(held_count))
-                                      : Vector3(all / static_cast<double>(nodes.size())));
-    const double diagonal = (high - low).norm();
-    if (diagonal > 0.0) size = diagonal;
-    resolution = 8.0 * std::numeric_limits<double>::epsilon() * farthest / size;
-  }
+             std::span<const std::uint8_t> constrained);
 };
 
-/// Row of the constraint "component `axis` of the displacement at p is given" for the rigid motion u = t + w x p,
-/// unknowns (w, t).
-inline Vector6 constraint_row(const Vector3& p, int axis) {
-  const Vector3 e = Vector3::Unit(axis);
-  Vector6 row;
-  row << p.cross(e), e;
-  return row;
-}
-
 /// What is left of a vector outside the span of orthonormal columns (unused columns are zero).
-inline Vector6 remainder(const Matrix6& basis, Vector6 v) {
-  for (int twice = 0; twice < 2; ++twice) v -= basis * (basis.transpose() * v).eval();
-  return v;
-}
+Vector6 remainder(const Matrix6& basis, Vector6 v);
 
 /// Orthonormal basis (6 x k) of the rigid motions (w, t) that no constraint sees. Gram-Schmidt with pivoting over the
 /// rows: unlike the eigenvalues of the Gram matrix it squares nothing, and a thousand equal constraints weigh no more
 /// than one. O(6 rows).
-inline RigidMotions free_motions(std::span<const Vector3> positions, std::span<const NodeId> nodes,
-                                 std::span<const std::uint8_t> constrained, const RigidFrame& frame) {
-  const double tolerance = std::max(1e-6, frame.resolution);
-  Matrix6 basis = Matrix6::Zero();
-  int seen = 0;
-  while (seen < 6) {
-    Vector6 best = Vector6::Zero();
-    for (NodeId node : nodes) {
-      const Vector3 p = (positions[static_cast<std::size_t>(node)] - frame.centre) / frame.size;
-      for (int axis = 0; axis < 3; ++axis) {
-        if ((constrained[static_cast<std::size_t>(node)] >> axis & 1u) == 0) continue;
-        const Vector6 rest = remainder(basis, constraint_row(p, axis));
-        if (rest.squaredNorm() > best.squaredNorm()) best = rest;
-      }
-    }
-    if (!(best.norm() > tolerance)) break;
-    basis.col(seen++) = best.normalized();
-  }
-  for (int k = seen; k < 6; ++k) {  // complete the basis with what is left of the unit vectors
-    Vector6 best = Vector6::Zero();
-    for (int i = 0; i < 6; ++i)
-      if (const Vector6 rest = remainder(basis, Vector6::Unit(i)); rest.squaredNorm() > best.squaredNorm()) best = rest;
-    basis.col(k) = best.normalized();
-  }
-  return basis.rightCols(6 - seen);
-}
+RigidMotions free_motions(std::span<const Vector3> positions, std::span<const NodeId> nodes,
+                                 std::span<const std::uint8_t> constrained, const RigidFrame& frame);
 
 }  // namespace detail
 
@@ -115,49 +54,15 @@ inline RigidMotions free_motions(std::span<const Vector3> positions, std::span<c
 /// `component[i]` is the component of node i, -1 to leave it out (mesh/components.hpp); bit a of `constrained[i]` says
 /// that displacement component a of node i is prescribed. Positions are scaled by the component's size; a lever arm
 /// below one millionth of it counts as none. Throws bad_argument when the lengths differ. O(20 nodes), allocates.
-inline std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vector3> positions,
+std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vector3> positions,
                                                     std::span<const NodeId> component,
-                                                    std::span<const std::uint8_t> constrained) {
-  if (component.size() != positions.size() || constrained.size() != positions.size())
-    raise(SetupErrorKind::bad_argument, "positions, components and constraints have different lengths",
-          "Give one of each per node");
-  std::vector<FreeRigidModes> result;
-  for (const std::vector<NodeId>& nodes : detail::nodes_by_component(component)) {
-    FreeRigidModes modes{static_cast<Index>(result.size()), static_cast<Index>(nodes.size()), {}, {}};
-    if (!nodes.empty()) {
-      modes.first_nodes.assign(
-          nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(std::min(nodes.size(), SetupProblem::max_ids)));
-      const detail::RigidFrame frame(positions, nodes, constrained);
-      modes.modes = detail::name_rigid_motions(detail::free_motions(positions, nodes, constrained, frame), frame.centre,
-                                               frame.size);
-    }
-    result.push_back(std::move(modes));
-  }
-  return result;
-}
+                                                    std::span<const std::uint8_t> constrained);
 
 /// Refuses as `unconstrained` when a component can still move as a rigid body: statics then has no unique answer, and a
 /// factorisation may report success all the same. ids: first nodes of the first such component, count: its nodes,
 /// value: its free modes.
-inline void require_constrained(std::span<const Vector3> positions, std::span<const NodeId> component,
-                                std::span<const std::uint8_t> constrained) {
-  const std::vector<FreeRigidModes> all = free_rigid_modes(positions, component, constrained);
-  const auto loose = std::ranges::count_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
-  if (loose == 0) return;
-  const FreeRigidModes& first = *std::ranges::find_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
-  SetupProblem p;
-  p.kind = SetupErrorKind::unconstrained;
-  p.what = "component " + std::to_string(first.component) + " of " + std::to_string(all.size()) + " has " +
-           std::to_string(first.count()) + (first.count() == 1 ? " free rigid motion:" : " free rigid motions:");
-  for (std::size_t i = 0; i < first.modes.size(); ++i) p.what += (i == 0 ? " " : ", ") + first.modes[i];
-  if (loose > 1)
-    p.what += "; " + std::to_string(loose - 1) + " more " + (loose == 2 ? "component" : "components") + " can move";
-  p.hint = "Prescribe more components of the displacement; a static body needs six that hold it";
-  p.ids.assign(first.first_nodes.begin(), first.first_nodes.end());
-  p.count = first.node_count;
-  p.value = first.count();
-  raise(std::move(p));
-}
+void require_constrained(std::span<const Vector3> positions, std::span<const NodeId> component,
+                                std::span<const std::uint8_t> constrained);
 
 /// The two above for a mesh.
 template <Element E>
@@ -170,3 +75,7 @@ void require_constrained(const Mesh<E>& mesh, std::span<const std::uint8_t> cons
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/rigid_modes.ipp>
+#endif

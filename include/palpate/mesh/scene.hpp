@@ -1,13 +1,13 @@
 // What holds, loads and touches a body: groups and conditions, no element, no mesh.
 #pragma once
 
-#include <palpate/core/setup_error.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
 #include <array>
-#include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -56,76 +56,30 @@ class Scene {
 
   /// Prescribes the displacement [m] of the given components (essential condition). Two different values for one
   /// component are refused when the model is made.
-  Scene& prescribe(Selection where, Components values) {
-    for (const auto& v : values) require_finite(v.value_or(0.0), "a prescribed displacement");
-    prescribed_.push_back({std::move(where), values});
-    return *this;
-  }
+  Scene& prescribe(Selection where, Components values);
   /// Force per reference area [Pa] on the faces of a group (natural condition, eqs. 3.26, 3.42).
-  Scene& traction(Selection where, const Vector3& value) {
-    require_finite(value.sum(), "a traction");
-    tractions_.push_back({std::move(where), value});
-    return *this;
-  }
+  Scene& traction(Selection where, const Vector3& value);
   /// Pressure [Pa] on boundary faces; positive pushes onto the surface. Dead load: it keeps the reference normal.
-  Scene& pressure(Selection where, double value) {
-    require_finite(value, "a pressure");
-    pressures_.push_back({std::move(where), value});
-    return *this;
-  }
+  Scene& pressure(Selection where, double value);
   /// Total force [N], shared equally by the nodes of the group.
-  Scene& point_load(Selection where, const Vector3& force) {
-    require_finite(force.sum(), "a point load");
-    point_loads_.push_back({std::move(where), force});
-    return *this;
-  }
+  Scene& point_load(Selection where, const Vector3& force);
   /// Acceleration [m/s^2]; the load is density times acceleration (eqs. 3.27, 3.44). Replaces an earlier one.
-  Scene& gravity(const Vector3& acceleration) {
-    require_finite(acceleration.sum(), "gravity");
-    gravity_ = acceleration;
-    return *this;
-  }
+  Scene& gravity(const Vector3& acceleration);
   /// Force per reference volume [N/m^3] on a region, or `everywhere`.
-  Scene& body_load(std::string region, const Vector3& force_per_volume) {
-    require_finite(force_per_volume.sum(), "a body load");
-    body_loads_.push_back({std::move(region), force_per_volume});
-    return *this;
-  }
+  Scene& body_load(std::string region, const Vector3& force_per_volume);
   /// Stress-free strain epsilon_0 (Voigt order of core/voigt.hpp, engineering shear) of a region, or `everywhere`:
   /// swelling, contraction, thermal expansion (eqs. 3.1, 3.28).
-  Scene& initial_strain(std::string region, const Vector6& strain) {
-    require_finite(strain.sum(), "an initial strain");
-    initial_strains_.push_back({std::move(region), strain});
-    return *this;
-  }
+  Scene& initial_strain(std::string region, const Vector6& strain);
   /// Free growth of a region, or `everywhere`: every length wants to become 1 + elongation times what it was, the same
   /// in all directions; negative shrinks. Adds to other initial strains there. Swelling by a volume fraction v is an
   /// elongation of v / 3 (small strain).
-  Scene& expand(std::string region, double elongation) {
-    require_finite(elongation, "an expansion");
-    if (!(elongation > -1.0))
-      raise(SetupErrorKind::bad_argument, "an expansion of " + number(elongation) + " leaves no length",
-            "It is relative: 0.01 for one per cent");
-    Vector6 strain = Vector6::Zero();
-    strain.head<3>().setConstant(elongation);
-    return initial_strain(std::move(region), strain);
-  }
+  Scene& expand(std::string region, double elongation);
   /// Thermal expansion of a region, or `everywhere`: coefficient [1/K] times rise of temperature [K].
-  Scene& heat(std::string region, double coefficient, double rise) {
-    require_finite(coefficient, "a coefficient of expansion");
-    require_finite(rise, "a rise of temperature");
-    return expand(std::move(region), coefficient * rise);
-  }
+  Scene& heat(std::string region, double coefficient, double rise);
   /// Nodes a tool may touch: their dofs are kept, all others are condensed away.
-  Scene& touch(Selection where) {
-    touched_.push_back(std::move(where));
-    return *this;
-  }
+  Scene& touch(Selection where);
   /// Nodes somebody looks at: their displacement is recovered at visual rate.
-  Scene& see(Selection where) {
-    seen_.push_back(std::move(where));
-    return *this;
-  }
+  Scene& see(Selection where);
 
   const std::vector<Prescribed>& prescribed() const noexcept { return prescribed_; }
   const std::vector<Traction>& tractions() const noexcept { return tractions_; }
@@ -139,48 +93,13 @@ class Scene {
 
   /// The same scene for renumbered nodes: listed node ids go through `map`, those mapped to -1 are dropped. Throws
   /// index_out_of_range.
-  Scene mapped(const std::vector<NodeId>& map) const {
-    Scene s = *this;
-    const auto renumber = [&](Selection& where) {
-      auto* nodes = std::get_if<std::vector<NodeId>>(&where);
-      if (nodes == nullptr) return;
-      std::vector<NodeId> mapped_nodes;
-      for (NodeId node : *nodes) {
-        if (node < 0 || static_cast<std::size_t>(node) >= map.size())
-          raise(SetupErrorKind::index_out_of_range,
-                "the scene names node " + std::to_string(node) + ", the mesh has " + std::to_string(map.size()));
-        if (map[static_cast<std::size_t>(node)] >= 0) mapped_nodes.push_back(map[static_cast<std::size_t>(node)]);
-      }
-      *nodes = std::move(mapped_nodes);
-    };
-    for (auto& c : s.prescribed_) renumber(c.where);
-    for (auto& c : s.tractions_) renumber(c.where);
-    for (auto& c : s.pressures_) renumber(c.where);
-    for (auto& c : s.point_loads_) renumber(c.where);
-    for (auto& c : s.touched_) renumber(c);
-    for (auto& c : s.seen_) renumber(c);
-    return s;
-  }
+  Scene mapped(const std::vector<NodeId>& map) const;
 
   /// Names of all groups the scene speaks of.
-  std::vector<std::string> group_names() const {
-    std::vector<std::string> names;
-    const auto add = [&](const Selection& s) {
-      if (const auto* name = std::get_if<std::string>(&s)) names.push_back(*name);
-    };
-    for (const auto& c : prescribed_) add(c.where);
-    for (const auto& c : tractions_) add(c.where);
-    for (const auto& c : pressures_) add(c.where);
-    for (const auto& c : point_loads_) add(c.where);
-    for (const auto& c : touched_) add(c);
-    for (const auto& c : seen_) add(c);
-    return names;
-  }
+  std::vector<std::string> group_names() const;
 
  private:
-  static void require_finite(double value, const char* what) {
-    if (!std::isfinite(value)) raise(SetupErrorKind::non_finite, std::string(what) + " is not finite");
-  }
+  static void require_finite(double value, const char* what);
 
   std::vector<Prescribed> prescribed_;
   std::vector<Traction> tractions_;
@@ -194,3 +113,7 @@ class Scene {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/scene.ipp>
+#endif

@@ -1,16 +1,26 @@
 // From the names of a scene to nodes, faces and elements of a mesh.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/face_ids.hpp>
+#include <palpate/mesh/groups.hpp>
+#include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>
+
+#include <algorithm>
+#include <string>
+#include <variant>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Text for messages.
-inline std::string selection_name(const Selection& s) {
-  if (const auto* name = std::get_if<std::string>(&s)) return "'" + *name + "'";
-  return "a list of " + std::to_string(std::get<std::vector<NodeId>>(s).size()) + " nodes";
-}
+std::string selection_name(const Selection& s);
 
 /// The nodes of a selection, sorted and unique. Throws unknown_group, empty_group or index_out_of_range.
 /// A group called "surface" that the mesh does not define is its whole boundary; a region's name selects the region's
@@ -96,3 +106,7 @@ void require_region(const Mesh<E>& mesh, const std::string& name) {
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/selection.ipp>
+#endif

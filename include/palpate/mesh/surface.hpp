@@ -1,13 +1,19 @@
 // The boundary of a solid mesh.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/face_ids.hpp>
-#include <palpate/mesh/mesh.hpp>
 
 #include <algorithm>
 #include <numeric>
+#include <string>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

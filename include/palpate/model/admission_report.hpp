@@ -1,11 +1,17 @@
 // What admission and materials have to say in a set-up report.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/local/split_elasticity.hpp>
 #include <palpate/mesh/admission.hpp>
+#include <palpate/mesh/diagnosis.hpp>
 #include <palpate/model/setup_report.hpp>
 
-#include <Eigen/Geometry>
+#include <string>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -54,18 +60,10 @@ void report_locking(const std::vector<Matrix6>& elasticity, SetupReport& report)
 
 /// Flags a displacement u, 3 per node [m], that is not small: linear strain takes a turn for a stretch. Judged by how
 /// far single nodes move from the mean, against the diagonal of the box around the body.
-inline void report_displacement(const std::vector<Vector3>& positions, const VectorX& u, SetupReport& report) {
-  constexpr double largest = 0.1;
-  report.clear(SetupFlag::large_displacement);
-  const Eigen::Map<const Eigen::Matrix3Xd> moved(u.data(), 3, u.size() / 3);
-  const double spread = (moved.colwise() - moved.rowwise().mean()).colwise().norm().maxCoeff();
-  Eigen::AlignedBox3d box;
-  for (const Vector3& x : positions) box.extend(x);
-  const double size = box.diagonal().norm();
-  if (spread > largest * size)
-    report.set(SetupFlag::large_displacement, "the loads move a node by " + number(spread) + " m against the mean, " +
-                                                  number(spread / size) +
-                                                  " of the body's diagonal: too far for linear elasticity");
-}
+void report_displacement(const std::vector<Vector3>& positions, const VectorX& u, SetupReport& report);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/admission_report.ipp>
+#endif

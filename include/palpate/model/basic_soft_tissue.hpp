@@ -1,14 +1,39 @@
 // Tissue in motion, felt at the rate of the device.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/assembly/viscous_forces.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/material.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/contact_surface.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/realtime.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
+#include <palpate/linear/tile.hpp>
+#include <palpate/mesh/admission.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/rigid_modes.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/surface.hpp>
+#include <palpate/model/nodal_rotation.hpp>
 #include <palpate/model/tissue_motion.hpp>
 #include <palpate/model/touchable.hpp>
 #include <palpate/model/warped_compliance.hpp>
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

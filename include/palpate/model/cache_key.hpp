@@ -4,8 +4,19 @@
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/content_hash.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/mesh.hpp>
 #include <palpate/model/cache_report.hpp>
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -22,13 +33,8 @@ struct CacheKey {
   std::uint64_t touched = 0;       ///< kept nodes
   std::uint64_t stiffness = 0;     ///< pattern and values
 
-  void set_policy(std::string_view name) noexcept {
-    policy.fill('\0');
-    std::copy_n(name.data(), std::min(name.size(), policy.size() - 1), policy.data());
-  }
-  std::string_view policy_name() const noexcept {
-    return {policy.data(), static_cast<std::size_t>(std::ranges::find(policy, '\0') - policy.begin())};
-  }
+  void set_policy(std::string_view name) noexcept;
+  std::string_view policy_name() const noexcept;
 };
 
 namespace detail {
@@ -70,13 +76,7 @@ std::uint64_t hash_of_mesh(const Mesh<E>& mesh) noexcept {
   return hash.digest();
 }
 
-inline std::uint64_t hash_of_stiffness(const BlockMatrix& k) noexcept {
-  ContentHash hash;
-  hash.add(std::span<const Index>(k.pattern().row_start));
-  hash.add(std::span<const NodeId>(k.pattern().column));
-  hash.add(std::span<const double>(k.block(0).data(), 9 * k.pattern().column.size()));
-  return hash.digest();
-}
+std::uint64_t hash_of_stiffness(const BlockMatrix& k) noexcept;
 
 }  // namespace detail
 
@@ -100,28 +100,10 @@ CacheKey cache_key(const Body<E>& body, const EssentialConditions& conditions, c
 }
 
 /// Compares the key in a file with the one at hand: the first part that differs, and in `why` all of them.
-inline CacheMismatch compare(const CacheKey& file, const CacheKey& here, std::string& why) {
-  CacheMismatch first = CacheMismatch::none;
-  const auto differs = [&](bool difference, CacheMismatch part, const std::string& sentence) {
-    if (!difference) return;
-    if (first == CacheMismatch::none) first = part;
-    why += (why.empty() ? "" : ", ") + sentence;
-  };
-  const auto scalar = [](const CacheKey& k) -> std::string { return k.scalar_bytes == 4 ? "float" : "double"; };
-  differs(file.scalar_bytes != here.scalar_bytes, CacheMismatch::scalar,
-          "the scalar differs (" + scalar(file) + " in the file, " + scalar(here) + " here)");
-  differs(file.policy != here.policy, CacheMismatch::policy,
-          "the policy differs (" + std::string(file.policy_name()) + " in the file, " +
-              std::string(here.policy_name()) + " here)");
-  differs(file.element != here.element, CacheMismatch::element, "the element differs");
-  differs(file.mesh != here.mesh, CacheMismatch::mesh, "the mesh differs");
-  differs(file.material != here.material, CacheMismatch::material, "the material differs");
-  differs(file.conditions != here.conditions, CacheMismatch::conditions, "the conditions differ");
-  differs(file.touched != here.touched, CacheMismatch::touched, "the touched set differs");
-  if (first == CacheMismatch::none)
-    differs(file.stiffness != here.stiffness, CacheMismatch::stiffness,
-            "the stiffness differs, though nothing that makes it does: other code or compiler flags");
-  return first;
-}
+CacheMismatch compare(const CacheKey& file, const CacheKey& here, std::string& why);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/cache_key.ipp>
+#endif

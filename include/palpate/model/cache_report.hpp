@@ -1,9 +1,11 @@
 // What became of a cache file.
 #pragma once
 
-#include <palpate/core/setup_error.hpp>
+#include <palpate/core/config.hpp>
 
+#include <iosfwd>
 #include <ostream>
+#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -42,13 +44,10 @@ struct CacheReport {
 };
 
 /// One line: read / written / rebuilt because ... / could not be written because ...
-inline std::ostream& operator<<(std::ostream& out, const CacheReport& r) {
-  const auto size = [&] { return " (" + number(static_cast<double>(r.bytes) / 1e6) + " MB)"; };
-  if (!r.supported) return out << "this solver has nothing to store in " << r.file;
-  if (r.read) return out << "read " << r.file << size();
-  if (r.mismatch != CacheMismatch::none) out << "rebuilt because " << r.why << "; ";
-  if (r.written) return out << "written " << r.file << size();
-  return out << r.file << " could not be written because " << r.problem;
-}
+std::ostream& operator<<(std::ostream& out, const CacheReport& r);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/cache_report.ipp>
+#endif

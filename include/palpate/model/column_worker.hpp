@@ -1,11 +1,15 @@
 // Computes compliance columns beside the tick.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/spsc_ring.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/model/compliance_columns.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -2,8 +2,13 @@
 #pragma once
 
 #include <palpate/concepts/condensation.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {

@@ -1,11 +1,19 @@
 // The compliance of the touchable surface, as columns: all at set-up, each when first needed, or ahead of need.
 #pragma once
 
-#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/model/column_worker.hpp>
+#include <palpate/model/compliance_columns.hpp>
 
+#include <algorithm>
 #include <array>
 #include <memory>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

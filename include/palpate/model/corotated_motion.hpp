@@ -1,11 +1,36 @@
 // Motion in time of a co-rotated body by implicit steps without a factor: fixed work per step.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
 #include <palpate/assembly/corotated_tetrahedra.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/assembly/load_vector.hpp>
+#include <palpate/assembly/mass_matrix.hpp>
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/realtime.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/tet4.hpp>
 #include <palpate/integrator/implicit_step.hpp>
+#include <palpate/integrator/requirements.hpp>
+#include <palpate/integrator/time_scheme.hpp>
 #include <palpate/linear/bounded_conjugate_gradient.hpp>
+#include <palpate/linear/tile.hpp>
+#include <palpate/material/corotational.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/step_preconditioners.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,8 +1,21 @@
 // A co-rotated tissue that steps at the rate of the device.
 #pragma once
 
-#include <palpate/model/corotated_motion.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/material/corotational.hpp>
+#include <palpate/mesh/scene.hpp>
 #include <palpate/model/basic_soft_tissue.hpp>
+#include <palpate/model/corotated_motion.hpp>
+#include <palpate/model/deformable_body.hpp>
+#include <palpate/model/equilibrium.hpp>
+#include <palpate/model/tissue_motion.hpp>
+
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

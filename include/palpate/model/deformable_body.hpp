@@ -2,16 +2,32 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/elastic_forces.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/assembly/linear_forces.hpp>
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
+#include <palpate/assembly/smoothed_stiffness.hpp>
+#include <palpate/assembly/smoothed_strain.hpp>
 #include <palpate/assembly/viscous_forces.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/local/loads.hpp>
 #include <palpate/mesh/rigid_modes.hpp>
-
-#include <Eigen/Geometry>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/surface.hpp>
 
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -27,19 +43,10 @@ struct DeformableBody {
 };
 
 /// Diagonal of the box round a body [m].
-inline double extent(const std::vector<Vector3>& positions) {
-  Eigen::AlignedBox3d box;
-  for (const Vector3& x : positions) box.extend(x);
-  return box.diagonal().norm();
-}
+double extent(const std::vector<Vector3>& positions);
 
 /// Throws bad_density where a node that may move has no mass.
-inline void require_mass(const DeformableBody& body) {
-  for (Index i = 0; i < body.lumped.size(); ++i)
-    if (!(body.lumped[i] > 0.0) && body.conditions.constrained[static_cast<std::size_t>(i)] != 7)
-      raise(SetupErrorKind::bad_density, "node " + std::to_string(i) + " has no mass",
-            "Give every region a density in kg/m^3");
-}
+void require_mass(const DeformableBody& body);
 
 namespace detail {
 
@@ -76,10 +83,7 @@ DeformableBody held_body_without_forces(const Body<E>& rest, const Scene& scene)
   return body;
 }
 
-inline void refuse_initial_strains(const Scene& scene) {
-  if (!scene.initial_strains().empty())
-    raise(SetupErrorKind::unsupported, "initial strains at large deformation or with memory", "Use a linear material");
-}
+void refuse_initial_strains(const Scene& scene);
 
 }  // namespace detail
 
@@ -145,3 +149,7 @@ DeformableBody make_held_body(ViscousBody<E> body, const Scene& scene, const Set
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/deformable_body.ipp>
+#endif

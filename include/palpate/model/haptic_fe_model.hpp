@@ -1,13 +1,47 @@
 // The composition: element, material and solver make a tissue that can be touched.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/load_vector.hpp>
+#include <palpate/assembly/smoothed_strain.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/linear_solver.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/contact/bvh.hpp>
 #include <palpate/contact/contact_surface.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/admission.hpp>
+#include <palpate/mesh/admission_policy.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/surface.hpp>
 #include <palpate/model/admission_report.hpp>
 #include <palpate/model/contact_compliance.hpp>
+#include <palpate/model/policies.hpp>
+#include <palpate/model/setup_report.hpp>
+#include <palpate/model/stage_timer.hpp>
 #include <palpate/model/statics.hpp>
 #include <palpate/model/touchable.hpp>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
 #include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

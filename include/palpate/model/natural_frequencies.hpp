@@ -2,11 +2,35 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
+#include <palpate/assembly/smoothed_stiffness.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/lanes.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/core/voigt.hpp>
 #include <palpate/linear/block_lanczos.hpp>
+#include <palpate/linear/sparse_cholesky.hpp>
+#include <palpate/local/strain_displacement.hpp>
 #include <palpate/mesh/rigid_displacements.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/surface.hpp>
 
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -29,15 +53,10 @@ struct ModalProblem {
   SparseMatrix stiffness, mass;  // lower halves
   MatrixX rigid;
 
-  static MatrixX times(const SparseMatrix& lower, const MatrixX& x) {
-    return lower.selfadjointView<Eigen::Lower>() * x;
-  }
+  static MatrixX times(const SparseMatrix& lower, const MatrixX& x);
 
   /// x^T K x / x^T M x of every column [1/s^2].
-  VectorX rayleigh(const MatrixX& x) const {
-    const VectorX energy = x.cwiseProduct(times(stiffness, x)).colwise().sum().transpose();
-    return energy.cwiseQuotient(x.cwiseProduct(times(mass, x)).colwise().sum().transpose());
-  }
+  VectorX rayleigh(const MatrixX& x) const;
 };
 
 /// Refuses a region without mass: its inertia would be missing from the matrix.
@@ -56,16 +75,7 @@ void require_density(const Body<E>& body) {
   }
 }
 
-inline void require_count(Index wanted, Index available) {
-  if (wanted >= 1 && wanted <= available) return;
-  SetupProblem p;
-  p.kind = wanted < 1 ? SetupErrorKind::bad_argument : SetupErrorKind::count_too_large;
-  p.what = std::to_string(wanted) + " natural frequencies are asked for, the body has " + std::to_string(available);
-  p.hint = "Ask for one at least, and for no more than free dofs minus rigid motions";
-  p.value = static_cast<double>(wanted);
-  p.threshold = static_cast<double>(available);
-  raise(std::move(p));
-}
+void require_count(Index wanted, Index available);
 
 /// The frequency scale of a body that can move rigidly [1/s^2]: the lowest Rayleigh quotient of the six uniform
 /// strains, with their rigid part taken out.
@@ -89,17 +99,7 @@ double uniform_strain_quotient(const Body<E>& body, const EssentialConditions& c
 }
 
 /// Modes of the free dofs as shapes of all nodes, each with its largest component positive.
-inline MatrixX full_shapes(const MatrixX& free, const EssentialConditions& conditions) {
-  MatrixX shapes(conditions.dof_count(), free.cols());
-  VectorX full(conditions.dof_count());
-  for (Index k = 0; k < free.cols(); ++k) {
-    conditions.scatter(free.col(k), full);
-    Index largest = 0;
-    full.cwiseAbs().maxCoeff(&largest);
-    shapes.col(k) = full[largest] < 0.0 ? VectorX(-full) : full;
-  }
-  return shapes;
-}
+MatrixX full_shapes(const MatrixX& free, const EssentialConditions& conditions);
 
 /// What is returned of modes of the free dofs: sorted, on all nodes, with their residuals. A template only to be
 /// compiled where it is used.
@@ -127,24 +127,7 @@ NaturalFrequencies natural_frequencies_of(const Problem& problem, const MatrixX&
 
 /// Largest relative difference between theta, which knows the factor only, and the quotients of K and M. Refuses pairs
 /// that did not converge or differ by more than 1e-3.
-inline double require_pairs(const LanczosPairs& pairs, const VectorX& lambda, double shift, double tolerance) {
-  SetupProblem p;
-  p.kind = SetupErrorKind::not_converged;
-  p.hint = "Look for parts that are far softer or far lighter than others";
-  p.value = pairs.residual;
-  p.threshold = tolerance;
-  p.what =
-      "the natural frequencies did not converge: residual " + number(pairs.residual) + ", bound " + number(tolerance);
-  if (!pairs.converged || !lambda.allFinite()) raise(std::move(p));
-  const double rounding = ((lambda.array() - shift) * pairs.theta.array() - 1.0).abs().maxCoeff();
-  if (rounding <= 1e-3) return rounding;
-  p.kind = SetupErrorKind::ill_conditioned;
-  p.what = "rounding changes the square of a natural frequency by a factor of 1 +- " + number(rounding);
-  p.hint = "Parts are too different in stiffness, or the body is too slender";
-  p.value = rounding;
-  p.threshold = 1e-3;
-  raise(std::move(p));
-}
+double require_pairs(const LanczosPairs& pairs, const VectorX& lambda, double shift, double tolerance);
 
 }  // namespace detail
 
@@ -192,3 +175,7 @@ NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, 
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/natural_frequencies.ipp>
+#endif

@@ -2,15 +2,30 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/assembly/matrix_free.hpp>
+#include <palpate/concepts/assembler.hpp>
 #include <palpate/condensation/condensed_system.hpp>
+#include <palpate/condensation/schur.hpp>
 #include <palpate/condensation/uncondensed.hpp>
-#include <palpate/linear/dense_conjugate_gradient.hpp>
+#include <palpate/core/binary_io.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/linear/cholesky_analysis.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
+#include <palpate/linear/dense_conjugate_gradient.hpp>
 #include <palpate/linear/dense_inverse.hpp>
+#include <palpate/linear/node_graph.hpp>
+#include <palpate/linear/sparse_cholesky.hpp>
 
+#include <Eigen/SparseCore>
+
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,10 +1,32 @@
 // The prepared solver of a body: made and checked, or read from a cache file and checked.
 #pragma once
 
+#include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/concepts/condensation.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/binary_io.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/linear/condition.hpp>
+#include <palpate/linear/node_graph.hpp>
+#include <palpate/linear/tile.hpp>
+#include <palpate/model/cache_key.hpp>
+#include <palpate/model/cache_report.hpp>
 #include <palpate/model/policies.hpp>
 #include <palpate/model/prepared_cache.hpp>
+#include <palpate/model/setup_report.hpp>
 #include <palpate/model/stage_timer.hpp>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

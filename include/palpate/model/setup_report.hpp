@@ -1,11 +1,15 @@
 // What a set-up did, found and used.
 #pragma once
 
+#include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/model/cache_report.hpp>
 
+#include <iosfwd>
 #include <ostream>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -38,39 +42,17 @@ struct SetupReport {
   std::uint32_t flags = 0;
   std::vector<std::pair<SetupFlag, std::string>> remarks;  ///< a sentence per flag
 
-  void set(SetupFlag flag, std::string remark) {
-    remarks.emplace_back(flag, std::move(remark));
-    flags |= static_cast<std::uint32_t>(flag);
-  }
-  void clear(SetupFlag flag) {
-    flags &= ~static_cast<std::uint32_t>(flag);
-    std::erase_if(remarks, [flag](const auto& remark) { return remark.first == flag; });
-  }
+  void set(SetupFlag flag, std::string remark);
+  void clear(SetupFlag flag);
   bool has(SetupFlag flag) const noexcept { return (flags & static_cast<std::uint32_t>(flag)) != 0; }
-  double total_seconds() const noexcept {
-    double sum = 0.0;
-    for (const auto& stage : seconds) sum += stage.second;
-    return sum;
-  }
+  double total_seconds() const noexcept;
 };
 
 /// A few lines for a log.
-inline std::ostream& operator<<(std::ostream& out, const SetupReport& r) {
-  out << "set-up: " << r.nodes << " nodes, " << r.elements << " elements, " << r.free_dofs
-      << " free dofs: " << r.kept_dofs << " kept, " << r.condensed_dofs << " condensed; " << r.touchable_vertices
-      << " touchable vertices, " << r.seen_nodes << " seen nodes\n"
-      << "  memory: stiffness " << number(static_cast<double>(r.stiffness_bytes) / 1e6) << " MB, solver "
-      << number(static_cast<double>(r.solver_bytes) / 1e6) << " MB, compliance "
-      << number(static_cast<double>(r.compliance_bytes) / 1e6) << " MB\n  time:";
-  for (const auto& [stage, seconds] : r.seconds) out << ' ' << stage << ' ' << number(1e3 * seconds) << " ms";
-  out << "\n  quality: worst " << number(r.worst_quality) << ", mean " << number(r.mean_quality) << "; condition "
-      << (r.condition_estimate > 0.0 ? number(r.condition_estimate) : std::string("not estimated")) << ", probe error "
-      << number(r.probe_error) << '\n';
-  if (r.column_seconds > 0.0)
-    out << "  a vertex pressed for the first time: " << number(1e6 * r.column_seconds) << " us\n";
-  if (!r.cache.file.empty()) out << "  cache: " << r.cache << '\n';
-  for (const auto& [flag, remark] : r.remarks) out << "  note: " << remark << '\n';
-  return out;
-}
+std::ostream& operator<<(std::ostream& out, const SetupReport& r);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/setup_report.ipp>
+#endif

@@ -1,8 +1,19 @@
 // Tissue at any strain in motion by Newton's method, felt at the rate of the device.
 #pragma once
 
-#include <palpate/model/implicit_dynamics.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/scene.hpp>
 #include <palpate/model/basic_soft_tissue.hpp>
+#include <palpate/model/deformable_body.hpp>
+#include <palpate/model/equilibrium.hpp>
+#include <palpate/model/implicit_dynamics.hpp>
+#include <palpate/model/tissue_motion.hpp>
+
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,6 +1,8 @@
 // How long a stage of set-up took.
 #pragma once
 
+#include <palpate/core/config.hpp>
+#include <palpate/model/cache_report.hpp>
 #include <palpate/model/setup_report.hpp>
 
 #include <chrono>
@@ -11,13 +13,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// must not run out of memory.
 class StageTimer {
  public:
-  StageTimer(SetupReport& report, const char* stage)
-      : report_(&report), line_(report.seconds.size()), start_(std::chrono::steady_clock::now()) {
-    report.seconds.emplace_back(stage, 0.0);
-  }
-  ~StageTimer() {
-    report_->seconds[line_].second = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
+  StageTimer(SetupReport& report, const char* stage);
+  ~StageTimer();
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
@@ -28,3 +25,7 @@ class StageTimer {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/stage_timer.ipp>
+#endif

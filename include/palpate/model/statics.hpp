@@ -1,9 +1,31 @@
 // The static problem of one body: prepared once, loads changed at will.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/load_vector.hpp>
+#include <palpate/assembly/smoothed_strain.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/linear_solver.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/linear/node_graph.hpp>
+#include <palpate/linear/tile.hpp>
+#include <palpate/local/loads.hpp>
 #include <palpate/mesh/rigid_modes.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/surface.hpp>
+#include <palpate/model/cache_report.hpp>
+#include <palpate/model/policies.hpp>
 #include <palpate/model/prepared_system.hpp>
+#include <palpate/model/setup_report.hpp>
+#include <palpate/model/stage_timer.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

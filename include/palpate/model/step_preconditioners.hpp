@@ -1,10 +1,21 @@
 // Approximate inverses of what an implicit step of a co-rotated body multiplies its increment by.
 #pragma once
 
+#include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/smoothed_stiffness.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/model/deformable_body.hpp>
+#include <palpate/model/tangent_solver.hpp>
 #include <palpate/model/turned_solve.hpp>
 
 #include <Eigen/LU>
+
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -32,19 +43,10 @@ concept StepPreconditioner =
 /// The inverse 3 x 3 blocks of A on the diagonal, looked at when due. One product of blocks per application.
 class BlockJacobi {
  public:
-  BlockJacobi(const DeformableBody& body, const Body<Tet4>&, const SetupLimits&)
-      : lumped_(body.lumped),
-        constrained_(body.conditions.constrained),
-        straight_(3 * lumped_.size()),
-        mixed_(straight_) {
-    inverse_.resize(constrained_.size(), Matrix3::Zero());
-  }
+  BlockJacobi(const DeformableBody& body, const Body<Tet4>&, const SetupLimits&);
 
   /// Another mass, and other dofs held; the next update must be anew.
-  void change(const DeformableBody& body) {
-    lumped_ = body.lumped;
-    constrained_ = body.conditions.constrained;
-  }
+  void change(const DeformableBody& body);
   template <class Tetrahedra>
   void update(const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX&, bool anew) noexcept {
     if (!anew) return;
@@ -59,26 +61,11 @@ class BlockJacobi {
       hold(constrained_[i], a, inverse_[i]);
     }
   }
-  void apply(const VectorX& r, VectorX& z) const noexcept {
-    for (std::size_t i = 0; i < inverse_.size(); ++i) {
-      const auto at = 3 * static_cast<Index>(i);
-      z.segment<3>(at).noalias() = inverse_[i] * r.segment<3>(at);
-    }
-  }
+  void apply(const VectorX& r, VectorX& z) const noexcept;
 
  private:
   /// Inverse of the free part of a block, zero elsewhere.
-  static void hold(std::uint8_t constrained, Matrix3& a, Matrix3& inverse) noexcept {
-    for (int c = 0; c < 3; ++c)
-      if (((constrained >> c) & 1u) != 0) {
-        a.row(c).setZero();
-        a.col(c).setZero();
-        a(c, c) = 1.0;
-      }
-    inverse = a.inverse();
-    for (int c = 0; c < 3; ++c)
-      if (((constrained >> c) & 1u) != 0) inverse(c, c) = 0.0;
-  }
+  static void hold(std::uint8_t constrained, Matrix3& a, Matrix3& inverse) noexcept;
 
   VectorX lumped_;
   std::vector<std::uint8_t> constrained_;
@@ -122,3 +109,7 @@ class TurnedFactor {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/step_preconditioners.ipp>
+#endif

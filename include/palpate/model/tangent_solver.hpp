@@ -1,8 +1,18 @@
 // Solves with a tangent stiffness that changes, and is not always positive definite.
 #pragma once
 
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/free_values.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/linear/cholesky_analysis.hpp>
+#include <palpate/linear/node_graph.hpp>
 #include <palpate/linear/repeated_cholesky.hpp>
+
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -29,23 +39,7 @@ class TangentSolver {
   /// so (Nocedal and Wright, Numerical Optimization, 3.4): see shift(). Tries none, then from a quarter of the last
   /// shift on four times as much each, then what Gershgorin's circles say is enough: `most_factorisations` in all.
   /// False when the matrix is not finite.
-  bool factorise() noexcept {
-    values_.update(matrix_, conditions_);
-    shift_ = 0.0;
-    if (factor_.factorise(values_.lower())) return true;
-    const double largest = largest_diagonal();
-    const double enough = values_.gershgorin_shift(row_sums_) + 1e-3 * largest;
-    if (!(enough < infinity)) return false;
-    double next = last_shift_ > 0.0 ? std::max(0.25 * last_shift_, 1e-4 * largest) : 1e-3 * largest;
-    for (int k = 2; k <= most_factorisations; ++k, next *= 4.0) {
-      if (k == most_factorisations || next > enough) next = enough;
-      values_.add_to_diagonal(next - shift_);
-      shift_ = last_shift_ = next;
-      if (factor_.factorise(values_.lower())) return true;
-      if (next == enough) return false;
-    }
-    return false;
-  }
+  bool factorise() noexcept;
   static constexpr int most_factorisations = 6;
   /// What was added to the diagonal; 0 for a positive definite matrix.
   double shift() const noexcept { return shift_; }
@@ -54,25 +48,12 @@ class TangentSolver {
   void solve(const VectorX& r, VectorX& d) noexcept { factor_.solve_into(r, d); }
 
   /// What rounding leaves of a sum of forces [N] in a body of this size [m] with the present matrix.
-  double rounding(double size) const noexcept {
-    return std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(factor_.size())) *
-           largest_diagonal() * size;
-  }
+  double rounding(double size) const noexcept;
 
-  double largest_diagonal() const noexcept {
-    double largest = 0.0;
-    const BlockPattern& pattern = matrix_.pattern();
-    for (Index i = 0; i < pattern.rows(); ++i)
-      largest = std::max(largest, matrix_.block(pattern.diagonal(i)).diagonal().cwiseAbs().maxCoeff());
-    return largest;
-  }
+  double largest_diagonal() const noexcept;
 
  private:
-  static DofLayout layout(const EssentialConditions& conditions, const std::vector<Vector3>& positions) {
-    DofLayout layout{{}, positions, {}};
-    for (const Index dof : conditions.free_dofs) layout.node_of_dof.push_back(dof / 3);
-    return layout;
-  }
+  static DofLayout layout(const EssentialConditions& conditions, const std::vector<Vector3>& positions);
 
   const EssentialConditions& conditions_;
   BlockMatrix matrix_;
@@ -83,3 +64,7 @@ class TangentSolver {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/tangent_solver.ipp>
+#endif

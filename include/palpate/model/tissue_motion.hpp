@@ -1,7 +1,10 @@
 // What a moving tissue asks of the motion below it.
 #pragma once
 
-#include <palpate/mesh/admission.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/admission_policy.hpp>
 #include <palpate/model/equilibrium.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -19,12 +22,7 @@ struct TissueMotion;
 namespace detail {
 
 /// Displacement of the equilibrium, or not_converged.
-inline VectorX settled(Equilibrium& statics) {
-  const EquilibriumReport report = statics.solve();
-  if (!report.converged)
-    raise(SetupErrorKind::not_converged, describe(report), "Set settle = false, or hold it better");
-  return statics.displacement();
-}
+VectorX settled(Equilibrium& statics);
 
 }  // namespace detail
 
@@ -38,3 +36,7 @@ struct TissueOptions {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/tissue_motion.ipp>
+#endif

@@ -1,8 +1,17 @@
 // Which part of a body can be touched, and which is looked at.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
 #include <palpate/contact/bvh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/selection.hpp>
+#include <palpate/mesh/surface.hpp>
+
+#include <algorithm>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -22,10 +31,7 @@ struct Touchable {
 };
 
 /// Sorts and drops repetitions.
-inline void sort_unique(std::vector<NodeId>& nodes) {
-  std::ranges::sort(nodes);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-}
+void sort_unique(std::vector<NodeId>& nodes);
 
 /// Resolves what a scene lets tools touch: the boundary faces of every selection and their nodes. Throws as
 /// resolve_faces does.
@@ -70,3 +76,7 @@ std::vector<NodeId> resolve_seen(const Mesh<E>& mesh, const std::vector<Boundary
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/touchable.ipp>
+#endif

@@ -1,8 +1,28 @@
 // A surface to draw: the body's own, or a finer one that moves with it.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/contact/bvh.hpp>
+#include <palpate/contact/triangle.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/element_search.hpp>
-#include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/quality.hpp>
+#include <palpate/mesh/surface.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,8 +1,15 @@
 // Contact compliance of a body that turns.
 #pragma once
 
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/model/nodal_rotation.hpp>
+
+#include <string>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -43,23 +50,13 @@ class WarpedCompliance {
   /// Turned back to the shape at rest [m/N].
   const Matrix3& at_rest(std::size_t i, std::size_t j) const noexcept { return rest_[i + count_ * j]; }
   /// Where vertices have turned by `rotation`.
-  Matrix3 turned(const std::vector<Matrix3>& rotation, int i, int j) const noexcept {
-    const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-    return rotation[a] * at_rest(a, b) * rotation[b].transpose();
-  }
+  Matrix3 turned(const std::vector<Matrix3>& rotation, int i, int j) const noexcept;
   /// As TissueModel has them.
   double bound(int j) const noexcept { return bound_[static_cast<std::size_t>(j)]; }
   double floor() const noexcept { return floor_; }
 
  private:
-  void find_bounds() {
-    bound_.assign(count_, 0.0);
-    for (std::size_t j = 0; j < count_; ++j) {
-      for (std::size_t i = 0; i < count_; ++i) bound_[j] = std::max(bound_[j], at_rest(i, j).norm());
-      floor_ = std::max(floor_, 1e-9 * bound_[j]);
-    }
-    if (floor_ == 0.0) floor_ = 1e-9;
-  }
+  void find_bounds();
 
   std::size_t count_ = 0;
   std::vector<Matrix3> rest_;  // of vertex i per force on j at i + count x j
@@ -68,3 +65,7 @@ class WarpedCompliance {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/warped_compliance.ipp>
+#endif

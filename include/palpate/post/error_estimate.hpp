@@ -1,9 +1,21 @@
 // How wrong the stress is, and where the mesh is too coarse.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/serendipity.hpp>
+#include <palpate/local/geometry.hpp>
 #include <palpate/post/patch_recovery.hpp>
+#include <palpate/post/point_stress.hpp>
 
 #include <Eigen/Cholesky>
+
+#include <cmath>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -16,29 +28,13 @@ struct ErrorEstimate {
   int order = 1;             ///< of the element
 
   /// Error over the norm of the estimated exact solution, 0 ... 1; 0 for an unloaded body.
-  double relative() const noexcept {
-    const double whole = std::hypot(error, energy_norm);
-    return whole > 0.0 ? error / whole : 0.0;
-  }
+  double relative() const noexcept;
 
   /// h_new / h per element for a mesh whose relative error is `target`, spread evenly over the elements (Zienkiewicz
   /// and Zhu 1987): below 1 the mesh is too coarse there, above 1 finer than need be. Cut off at 1 / `most` and `most`.
   /// Next to a singular point the error falls more slowly than the order of the element says: refine in steps, and
   /// estimate again. Throws bad_argument unless 0 < target < 1 and most >= 1.
-  VectorX size_ratio(double target, double most = 8.0) const {
-    if (!(target > 0.0 && target < 1.0) || !(most >= 1.0))
-      raise(SetupErrorKind::bad_argument, "a mesh for a relative error of " + number(target),
-            "Give one between 0 and 1");
-    const double allowed =
-        target * std::hypot(error, energy_norm) / std::sqrt(static_cast<double>(std::max<Index>(elements.size(), 1)));
-    VectorX ratio(elements.size());
-    for (Index e = 0; e < ratio.size(); ++e)
-      if (elements[e] == 0.0)
-        ratio[e] = most;
-      else
-        ratio[e] = std::clamp(std::pow(allowed / elements[e], 1.0 / order), 1.0 / most, most);  // NaN stays NaN
-    return ratio;
-  }
+  VectorX size_ratio(double target, double most = 8.0) const;
 };
 
 /// The estimate of Zienkiewicz and Zhu (1987, 1992): the recovered stress, interpolated with the shape functions,
@@ -82,3 +78,7 @@ ErrorEstimate estimate_error(const Body<E>& body, const VectorX& u) {
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/post/error_estimate.ipp>
+#endif

@@ -1,9 +1,14 @@
 // A polynomial through stresses scattered around a node.
 #pragma once
 
+#include <palpate/core/config.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/post/point_stress.hpp>
 
 #include <Eigen/QR>
+
+#include <cmath>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -13,26 +18,11 @@ struct PatchFrame {
   Vector3 centre = Vector3::Zero();
   Matrix3 map = Matrix3::Identity();  ///< [1/m]
 
-  Vector3 operator()(const Vector3& x) const noexcept { return map * (x - centre); }
+  Vector3 operator()(const Vector3& x) const noexcept;
 };
 
 /// The frame of points: their mean, and the inverse of their Cholesky-factorised covariance.
-inline PatchFrame patch_frame(const std::vector<Vector3>& points) {
-  PatchFrame frame{points.front(), Matrix3::Identity()};
-  Vector3 shift = Vector3::Zero();
-  for (const Vector3& p : points) shift += (p - points.front()) / static_cast<double>(points.size());
-  frame.centre += shift;
-  Matrix3 covariance = Matrix3::Zero();
-  for (const Vector3& p : points)
-    covariance += (p - frame.centre) * (p - frame.centre).transpose() / static_cast<double>(points.size());
-  const Eigen::LLT<Matrix3> factor(covariance);
-  const Matrix3 inverse = Matrix3(factor.matrixL()).inverse();
-  if (factor.info() == Eigen::Success && inverse.allFinite())
-    frame.map = inverse;
-  else if (covariance.trace() > 0.0)
-    frame.map /= std::sqrt(covariance.trace());
-  return frame;
-}
+PatchFrame patch_frame(const std::vector<Vector3>& points);
 
 /// Least-squares fit of a polynomial of degree 1 or 2 to every stress component, points weighted by the inverse
 /// of their distance to the node. A constant is always met; directions in which the points do not differ get no slope.
@@ -100,3 +90,7 @@ requires(Degree == 1 || Degree == 2) class PatchPolynomial {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/post/patch_polynomial.ipp>
+#endif

@@ -1,13 +1,23 @@
 // Stress at the nodes to trust: superconvergent patch recovery.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
 #include <palpate/assembly/node_elements.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/promote.hpp>
 #include <palpate/post/patch_polynomial.hpp>
+#include <palpate/post/point_stress.hpp>
 #include <palpate/quadrature/tensor.hpp>
 #include <palpate/quadrature/tetrahedron.hpp>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -19,17 +29,9 @@ struct NodalStress {
   std::vector<int> region;   ///< of every column, rising within a node
 
   /// The column of a node seen from a region; -1 when no element of it meets there.
-  Index column(Index node, int of_region) const noexcept {
-    for (Index k = first[static_cast<std::size_t>(node)]; k < first[static_cast<std::size_t>(node) + 1]; ++k)
-      if (region[static_cast<std::size_t>(k)] == of_region) return k;
-    return -1;
-  }
+  Index column(Index node, int of_region) const noexcept;
   /// Stress at a node [Pa]; where regions meet, that of the one with the lowest number. Zero at a node of no element.
-  Vector6 at(Index node) const noexcept {
-    const Index k = first[static_cast<std::size_t>(node)];
-    if (k == first[static_cast<std::size_t>(node) + 1]) return Vector6::Zero();
-    return stress.col(k);
-  }
+  Vector6 at(Index node) const noexcept;
 };
 
 /// Where patch recovery looks at an element's stress, and how many such points it wants per unknown: the centre of Hex8
@@ -231,3 +233,7 @@ NodalStress patch_recovery(const Body<E>& body, const VectorX& u) {
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/post/patch_recovery.ipp>
+#endif

@@ -1,8 +1,23 @@
 // Strain and stress in points of one element, and their mean.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
 #include <palpate/assembly/smoothed_strain.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/mean_dilatation.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/local/geometry.hpp>
 #include <palpate/local/integration_points.hpp>
+#include <palpate/local/strain_displacement.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <array>
+#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,10 +1,8 @@
 // Principal stresses and strains.
 #pragma once
 
-#include <palpate/core/voigt.hpp>
-
-#include <Eigen/Eigenvalues>
-#include <limits>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -21,30 +19,16 @@ struct Principal {
 /// rounding also where values repeat, where any basis of their space is right; values are off by a few units in the
 /// last place of the largest. Any finite tensor, without overflow; NaN values for one that is not finite. No
 /// allocation, about 1 us.
-inline Principal principal(const Matrix3& t) noexcept {
-  Principal p;
-  if (!t.allFinite()) {
-    p.values.setConstant(std::numeric_limits<double>::quiet_NaN());
-    return p;
-  }
-  const double scale = t.cwiseAbs().maxCoeff();
-  if (scale == 0.0) return p;
-  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(t / scale);  // values rise
-  p.values = scale * eigen.eigenvalues().reverse();
-  p.directions.leftCols<2>() = eigen.eigenvectors().rightCols<2>().rowwise().reverse();
-  p.directions.col(2) = p.directions.col(0).cross(p.directions.col(1)).normalized();  // right-handed
-  return p;
-}
+Principal principal(const Matrix3& t) noexcept;
 
 /// Of a stress in the order of core/voigt.hpp [Pa].
-inline Principal principal_stress(const Vector6& stress) noexcept {
-  return principal(voigt::stress_tensor(stress));
-}
+Principal principal_stress(const Vector6& stress) noexcept;
 
 /// Of a strain in the order of core/voigt.hpp, with engineering shear.
-inline Principal principal_strain(Vector6 strain) noexcept {
-  strain.tail<3>() *= 0.5;
-  return principal(voigt::stress_tensor(strain));
-}
+Principal principal_strain(Vector6 strain) noexcept;
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/post/principal.ipp>
+#endif

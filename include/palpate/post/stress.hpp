@@ -2,15 +2,18 @@
 // post/patch_recovery.hpp.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/core/voigt.hpp>
+#include <palpate/mesh/mesh.hpp>
 #include <palpate/post/point_stress.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Equivalent (von Mises) stress [Pa] of every column.
-inline void von_mises(const StressColumns& stress, VectorX& equivalent) {
-  equivalent.resize(stress.cols());
-  for (Index i = 0; i < stress.cols(); ++i) equivalent[i] = voigt::von_mises(stress.col(i));
-}
+void von_mises(const StressColumns& stress, VectorX& equivalent);
 
 /// The stress of a body, cheap and for drawing. Nodal values are means over the elements around a node, weighted by
 /// their volumes: of first order whatever the element, too low where stress peaks on a surface, and smeared where two
@@ -58,3 +61,7 @@ StressField stress_field(const Body<E>& body, const VectorX& u) {
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/post/stress.ipp>
+#endif

@@ -1,7 +1,11 @@
 // Gauss-Legendre rules on the square [-1, 1]^2 and the cube [-1, 1]^3.
 #pragma once
 
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/quadrature/gauss_legendre.hpp>
+
+#include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+
+#include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,12 +1,26 @@
 // The laws of concepts/assembler.hpp.
 #pragma once
 
-#include <Eigen/Eigenvalues>
+#include <palpate/assembly/body.hpp>
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/concepts/assembler.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/core/voigt.hpp>
+#include <palpate/local/loads.hpp>
+#include <palpate/local/strain_displacement.hpp>
+#include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/surface.hpp>
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/violation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
@@ -26,11 +40,7 @@ MatrixX dense_matrix(const Op& op) {
 }
 
 /// Entries in [-1, 1].
-inline VectorX random_vector(Random& random, Index n) {
-  VectorX v(n);
-  for (Index i = 0; i < n; ++i) v[i] = random.uniform(-1.0, 1.0);
-  return v;
-}
+VectorX random_vector(Random& random, Index n);
 
 /// A displacement of all nodes: u = shift + gradient (x - x_0), x_0 the first node.
 template <Element E>
@@ -90,17 +100,7 @@ Violations rigid_motion_laws(const Mesh<E>& mesh, const K& k, double scale) {
 }
 
 /// "exact zero modes": as many eigenvalues below rounding as rigid motions, all others positive. O(n^3).
-inline Violations zero_mode_laws(const MatrixX& dense, Index rigid_motions) {
-  Violations v;
-  const VectorX lambda = Eigen::SelfAdjointEigenSolver<MatrixX>(dense, Eigen::EigenvaluesOnly).eigenvalues();
-  const double rounding = 1e-13 * lambda[lambda.size() - 1] * std::sqrt(static_cast<double>(lambda.size()));
-  Index zero = 0;
-  for (Index i = 0; i < lambda.size(); ++i) zero += std::abs(lambda[i]) <= rounding ? 1 : 0;
-  expect_true(v, "exact zero modes", zero == rigid_motions,
-              std::to_string(zero) + " instead of " + std::to_string(rigid_motions));
-  expect_at_least(v, "no negative mode", lambda[0], -rounding);
-  return v;
-}
+Violations zero_mode_laws(const MatrixX& dense, Index rigid_motions);
 
 /// "affine patch": for u = a + A x with a far from zero, the nodal forces of a uniform body are those of the stress on
 /// its boundary, nothing inside; and "affine energy": u K u = sum of V e : D e, for any materials. The forces come from
@@ -183,3 +183,7 @@ Violations same_stiffness_laws(const A& a, const B& b, double tolerance = 1e-13)
 }
 
 }}}  // namespace palpate::testing
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/testing/assembler_laws.ipp>
+#endif

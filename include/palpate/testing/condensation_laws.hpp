@@ -1,10 +1,19 @@
 // The laws of concepts/condensation.hpp.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <palpate/concepts/condensation.hpp>
+#include <palpate/concepts/linear_solver.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/violation.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <span>
+#include <string>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 

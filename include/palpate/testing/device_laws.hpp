@@ -2,10 +2,17 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/testing/violation.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <string>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 

@@ -1,9 +1,15 @@
 // Which reference domain an element lives on, found from its nodes and faces.
 #pragma once
 
-#include <optional>
 #include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/testing/reference_cell.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 

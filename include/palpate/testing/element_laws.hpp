@@ -1,8 +1,25 @@
 // The laws of concepts/element.hpp. Face laws are in face_laws.hpp.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/testing/element_cell.hpp>
 #include <palpate/testing/face_laws.hpp>
 #include <palpate/testing/quadrature_laws.hpp>
+#include <palpate/testing/reference_cell.hpp>
+#include <palpate/testing/shape_laws.hpp>
+#include <palpate/testing/violation.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 

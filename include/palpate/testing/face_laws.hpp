@@ -1,16 +1,25 @@
 // The laws of an element's faces.
 #pragma once
 
-#include <palpate/testing/element_cell.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/testing/quadrature_laws.hpp>
+#include <palpate/testing/reference_cell.hpp>
 #include <palpate/testing/shape_laws.hpp>
+#include <palpate/testing/violation.hpp>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// Cross product of two vectors (Eigen's needs a larger header).
-inline Vector3 cross(const Vector3& a, const Vector3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+Vector3 cross(const Vector3& a, const Vector3& b);
 
 template <class F>
 using FaceNodes = Eigen::Matrix<double, F::nodes, 3>;
@@ -118,3 +127,7 @@ Violations face_laws() {
 }
 
 }}}  // namespace palpate::testing
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/testing/face_laws.ipp>
+#endif

@@ -2,9 +2,19 @@
 #pragma once
 
 #include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/lanes.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/core/voigt.hpp>
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/violation.hpp>
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
@@ -26,19 +36,14 @@ Tensor3<double> random_deformation(const M& material, Random& random, double siz
 
 namespace detail {
 
-inline double norm(const Tensor3<double>& t) {
-  return std::sqrt(contract(t, t));
-}
+double norm(const Tensor3<double>& t);
 /// f'(0) by the rule of fourth order over -2h, -h, h, 2h.
 template <class F>
 auto derivative(F f) {
   constexpr double h = 1e-3;
   return (1.0 / (12.0 * h)) * (8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h)));
 }
-inline Tensor3<double> stepped(Tensor3<double> f, int entry, double by) {
-  f.e[entry] += by;
-  return f;
-}
+Tensor3<double> stepped(Tensor3<double> f, int entry, double by);
 /// A deformation of numbers or lanes as doubles.
 template <class S>
 Tensor3<double> lane(const Tensor3<S>& t, int i) {
@@ -50,9 +55,7 @@ Tensor3<double> lane(const Tensor3<S>& t, int i) {
       d.e[k] = static_cast<double>(t.e[k][i]);
   return d;
 }
-inline std::string name_of(int k) {
-  return "deformation " + std::to_string(k);
-}
+std::string name_of(int k);
 
 }  // namespace detail
 
@@ -230,3 +233,7 @@ Violations hyperelastic_material_laws(const M& material, HyperelasticClaims clai
 }
 
 }}}  // namespace palpate::testing
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/testing/hyperelastic_laws.ipp>
+#endif

@@ -1,17 +1,30 @@
 // The laws of concepts/mesh.hpp.
 #pragma once
 
+#include <palpate/concepts/element.hpp>
 #include <palpate/concepts/mesh.hpp>
+#include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/testing/face_laws.hpp>
+#include <palpate/testing/quadrature_laws.hpp>
+#include <palpate/testing/reference_cell.hpp>
+#include <palpate/testing/violation.hpp>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 // Broken laws are counted and one offender is named, so that a bad mesh of a million elements gives a short list.
 
-inline std::string element_name(Index e) {
-  return "element " + std::to_string(e);
-}
+std::string element_name(Index e);
 
 /// "not empty", "indices in range", "nodes of an element differ", "region in range".
 template <Element E, MeshOf<E> M>
@@ -168,3 +181,7 @@ Violations mesh_laws(const M& mesh) {
 }
 
 }}}  // namespace palpate::testing
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/testing/mesh_laws.ipp>
+#endif

@@ -2,8 +2,16 @@
 #pragma once
 
 #include <palpate/concepts/quadrature.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/testing/reference_cell.hpp>
 #include <palpate/testing/violation.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 

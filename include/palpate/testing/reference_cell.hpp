@@ -1,11 +1,15 @@
 // Reference domains: their volumes, exact integrals of monomials, and an exact integration to compare rules with.
 #pragma once
 
-#include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/quadrature/gauss_legendre.hpp>
-#include <string_view>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {

@@ -1,9 +1,16 @@
 // The laws of shape functions, the same for solid and surface elements.
 #pragma once
 
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/reference_cell.hpp>
 #include <palpate/testing/violation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 

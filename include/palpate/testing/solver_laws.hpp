@@ -2,10 +2,17 @@
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/violation.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
@@ -41,18 +48,8 @@ double residual(const Op& op, const VectorX& b, const VectorX& x) {
 
 /// "report is truthful" about what was returned: a residual that is stated is the one found, convergence is claimed
 /// only with a finite answer that satisfies the equations, and a direct solver makes no iterations.
-inline Violations report_laws(const SolveReport& report, double relative_residual, bool small,
-                              const SolverClaims& claims, const std::string& name) {
-  Violations v;
-  const double rounding = 1e-15;
-  if (!std::isnan(report.relative_residual))
-    expect_at_most(v, "report is truthful", std::abs(report.relative_residual - relative_residual),
-                   0.5 * relative_residual + rounding, name + ": stated residual");
-  expect_true(v, "report is truthful", !report.converged || small, name + ": converged, but the residual is not small");
-  expect_true(v, "converges", report.converged, name);
-  if (claims.direct) expect_true(v, "report is truthful", report.iterations == 0, name + ": iterations");
-  return v;
-}
+Violations report_laws(const SolveReport& report, double relative_residual, bool small,
+                              const SolverClaims& claims, const std::string& name);
 
 /// Laws of a prepared solver of the system `op`: "size"; for several loads "solves" (backward error within the claim),
 /// "finite", "same answer twice" to the last bit whatever x held before, "load is left alone", "report is truthful";
@@ -111,3 +108,7 @@ Violations accuracy_laws(const Op& op, S& solver, double bound) {
 }
 
 }}}  // namespace palpate::testing
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/testing/solver_laws.ipp>
+#endif

@@ -1,12 +1,17 @@
 // Does a device with this servo come to rest?
 #pragma once
 
+#include <palpate/concepts/haptic_device.hpp>
 #include <palpate/concepts/servo.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/device/simulated_device.hpp>
 #include <palpate/haptic/energy_tank.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
@@ -16,11 +21,7 @@ struct VirtualWall {
   bool one_sided = true;     ///< false: pulls as well, so that the loop is linear
   ToolForce force{};
 
-  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
-    const double depth = -tools.front().position[2];
-    force.force = Vector3(0.0, 0.0, one_sided && depth < 0.0 ? 0.0 : stiffness * depth);
-    return {&force, 1};
-  }
+  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept;
 };
 
 /// A wall, or whatever else computes a force, with an energy tank behind it.
@@ -82,8 +83,10 @@ double largest_that(Holds holds, double low, double high, double tolerance = 0.0
 /// Largest stiffness [N/m] at which a linear loop (no friction, no encoder steps) does not grow: (b + B) / (T/2 + d)
 /// for a device damping b, a virtual damping B, a period T and a delay d, when b T / m is small (Hulin et al., IEEE
 /// T-CST 2013; Colgate and Schenkel 1997 for d = 0).
-inline double stiffness_limit(double damping, double period, double delay) {
-  return damping / (0.5 * period + delay);
-}
+double stiffness_limit(double damping, double period, double delay);
 
 }}}  // namespace palpate::testing
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/testing/stability.ipp>
+#endif

@@ -1,12 +1,19 @@
 // The laws of concepts/tissue_model.hpp.
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <palpate/concepts/tissue_model.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/testing/violation.hpp>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
 #include <algorithm>
-#include <vector>
+#include <cmath>
+#include <span>
+#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 

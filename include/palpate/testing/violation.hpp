@@ -1,8 +1,10 @@
 // What a law suite returns: a list of broken laws. No test framework is needed; with one, check that the list is empty.
 #pragma once
 
-#include <cmath>
+#include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
+
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,50 +24,25 @@ struct Violation {
 using Violations = std::vector<Violation>;
 
 /// Reports unless value <= bound. NaN is a violation.
-inline void expect_at_most(Violations& v, std::string_view law, double value, double bound, std::string detail = {}) {
-  if (!(value <= bound)) v.push_back({std::string(law), std::move(detail), value, bound});
-}
+void expect_at_most(Violations& v, std::string_view law, double value, double bound, std::string detail = {});
 
 /// Reports unless value >= bound. NaN is a violation.
-inline void expect_at_least(Violations& v, std::string_view law, double value, double bound, std::string detail = {}) {
-  if (!(value >= bound)) v.push_back({std::string(law), std::move(detail), value, bound});
-}
+void expect_at_least(Violations& v, std::string_view law, double value, double bound, std::string detail = {});
 
 /// Reports unless value > bound. NaN is a violation.
-inline void expect_above(Violations& v, std::string_view law, double value, double bound, std::string detail = {}) {
-  if (!(value > bound)) v.push_back({std::string(law), std::move(detail), value, bound});
-}
+void expect_above(Violations& v, std::string_view law, double value, double bound, std::string detail = {});
 
 /// Reports unless it holds.
-inline void expect_true(Violations& v, std::string_view law, bool holds, std::string detail = {}) {
-  if (!holds) v.push_back({std::string(law), std::move(detail), 0.0, 1.0});
-}
+void expect_true(Violations& v, std::string_view law, bool holds, std::string detail = {});
 
 /// Adds the violations of a part; `part` is put before their details.
-inline void append(Violations& all, Violations more, const std::string& part = {}) {
-  for (Violation& v : more) {
-    if (!part.empty()) v.detail = v.detail.empty() ? part : part + ": " + v.detail;
-    all.push_back(std::move(v));
-  }
-}
+void append(Violations& all, Violations more, const std::string& part = {});
 
 /// True when the law of that name is among the broken ones.
-inline bool violates(const Violations& violations, std::string_view law) {
-  for (const Violation& v : violations)
-    if (v.law == law) return true;
-  return false;
-}
+bool violates(const Violations& violations, std::string_view law);
 
 /// One line per violation; empty when there is none.
-inline std::string describe(const Violations& violations) {
-  std::string text;
-  for (const Violation& v : violations) {
-    text += v.law;
-    if (!v.detail.empty()) text += " (" + v.detail + ")";
-    text += ": " + number(v.value) + ", bound " + number(v.bound) + '\n';
-  }
-  return text;
-}
+std::string describe(const Violations& violations);
 
 /// Looks at many values that must all stay at or below one bound, and reports the worst of them and how many broke it.
 class Worst {
@@ -82,11 +59,7 @@ class Worst {
     value_ = value;
     detail_ = detail();
   }
-  void report(Violations& violations) const {
-    if (count_ == 0) return;
-    const std::string others = count_ == 1 ? std::string() : ", " + std::to_string(count_) + " in all";
-    violations.push_back({law_, detail_ + others, value_, bound_});
-  }
+  void report(Violations& violations) const;
 
  private:
   std::string law_, detail_;
@@ -95,3 +68,7 @@ class Worst {
 };
 
 }}}  // namespace palpate::testing
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/testing/violation.ipp>
+#endif

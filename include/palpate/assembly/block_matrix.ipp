@@ -1,0 +1,64 @@
+// Definitions of block_matrix.hpp.
+#pragma once
+
+#include <palpate/assembly/block_matrix.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE Index BlockPattern::find(NodeId row, NodeId col) const noexcept {
+  const auto begin = column.begin() + row_start[static_cast<std::size_t>(row)];
+  const auto end = column.begin() + row_start[static_cast<std::size_t>(row) + 1];
+  return std::lower_bound(begin, end, col) - column.begin();
+}
+
+PALPATE_INLINE std::size_t BlockMatrix::bytes() const noexcept {
+  return values_.size() * sizeof(double) + pattern_.column.size() * sizeof(NodeId) +
+         pattern_.row_start.size() * sizeof(Index);
+}
+
+PALPATE_INLINE Eigen::Map<Matrix3> BlockMatrix::block(Index position) noexcept {
+  return Eigen::Map<Matrix3>(values_.data() + 9 * position);
+}
+
+PALPATE_INLINE Eigen::Map<const Matrix3> BlockMatrix::block(Index position) const noexcept {
+  return Eigen::Map<const Matrix3>(values_.data() + 9 * position);
+}
+
+PALPATE_INLINE void BlockMatrix::add(double factor, const BlockMatrix& other) noexcept {
+  for (std::size_t i = 0; i < values_.size(); ++i) values_[i] += factor * other.values_[i];
+}
+
+PALPATE_INLINE void BlockMatrix::apply(const VectorX& x, VectorX& y) const noexcept {
+  y.setZero();
+  for (Index i = 0; i < pattern_.rows(); ++i) {
+    const Index last = pattern_.row_start[static_cast<std::size_t>(i) + 1] - 1;
+    const Vector3 xi = x.segment<3>(3 * i);
+    Vector3 yi = block(last) * xi;
+    for (Index p = pattern_.row_start[static_cast<std::size_t>(i)]; p < last; ++p) {
+      const Index j = pattern_.column[static_cast<std::size_t>(p)];
+      const auto k = block(p);
+      yi.noalias() += k * x.segment<3>(3 * j);
+      y.segment<3>(3 * j).noalias() += k.transpose() * xi;
+    }
+    y.segment<3>(3 * i) += yi;
+  }
+}
+
+PALPATE_INLINE void BlockMatrix::add_nodal(double factor, const VectorX& nodal) noexcept {
+  for (Index i = 0; i < nodal.size(); ++i) block(pattern().diagonal(i)).diagonal().array() += factor * nodal[i];
+}
+
+PALPATE_INLINE std::vector<Matrix3> BlockMatrix::diagonal_blocks() const {
+  std::vector<Matrix3> d;
+  d.reserve(static_cast<std::size_t>(pattern_.rows()));
+  for (Index i = 0; i < pattern_.rows(); ++i)
+    d.push_back(block(pattern_.row_start[static_cast<std::size_t>(i) + 1] - 1));
+  return d;
+}
+
+PALPATE_INLINE BlockMatrix make_stiffness(BlockPattern pattern, const SetupLimits& limits) {
+  limits.require_memory(static_cast<double>(pattern.column.size()) * 9 * sizeof(double), "the stiffness");
+  return BlockMatrix(std::move(pattern));
+}
+
+}}  // namespace palpate

@@ -1,0 +1,33 @@
+// Definitions of element_blocks.hpp.
+#pragma once
+
+#include <palpate/assembly/element_blocks.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+PALPATE_INLINE void bisect_elements(std::span<NodeId> elements, const std::vector<Vector3>& centre, Index most,
+                                    Index group, int region, std::vector<ElementBlock>& blocks) {
+  const auto count = static_cast<Index>(elements.size());
+  if (count <= most) {
+    blocks.push_back({region, {elements.begin(), elements.end()}});
+    return;
+  }
+  Vector3 low = Vector3::Constant(infinity), high = -low;
+  for (NodeId e : elements) {
+    low = low.cwiseMin(centre[static_cast<std::size_t>(e)]);
+    high = high.cwiseMax(centre[static_cast<std::size_t>(e)]);
+  }
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  const Index half = std::max(group, (count / 2 + group / 2) / group * group);
+  const auto before = [&](NodeId a, NodeId b) {
+    const double xa = centre[static_cast<std::size_t>(a)][axis], xb = centre[static_cast<std::size_t>(b)][axis];
+    return xa < xb || (xa == xb && a < b);
+  };
+  std::nth_element(elements.begin(), elements.begin() + half, elements.end(), before);
+  const auto middle = static_cast<std::size_t>(half);
+  bisect_elements(elements.subspan(0, middle), centre, most, group, region, blocks);
+  bisect_elements(elements.subspan(middle), centre, most, group, region, blocks);
+}
+
+}}}  // namespace palpate::detail

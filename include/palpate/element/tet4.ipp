@@ -1,0 +1,24 @@
+// Definitions of tet4.hpp.
+#pragma once
+
+#include <palpate/element/tet4.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE Eigen::Vector4d Tet4::shape(const Vector3& xi) noexcept {
+  return {1.0 - xi[0] - xi[1] - xi[2], xi[0], xi[1], xi[2]};
+}
+
+PALPATE_INLINE Eigen::Matrix<double, 4, 3> Tet4::gradient(const Vector3&) noexcept {
+  Eigen::Matrix<double, 4, 3> g;
+  g << -1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+  return g;
+}
+
+PALPATE_INLINE Eigen::Matrix<double, 4, 3> Tet4::reference_nodes() noexcept {
+  Eigen::Matrix<double, 4, 3> x;
+  x << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+  return x;
+}
+
+}}  // namespace palpate

@@ -1,0 +1,41 @@
+// Definitions of linear_elastic.hpp.
+#pragma once
+
+#include <palpate/material/linear_elastic.hpp>
+
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE double LinearElastic::lame_lambda() const noexcept {
+  return youngs_modulus * poisson_ratio / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio));
+}
+
+PALPATE_INLINE Matrix6 LinearElastic::elasticity() const noexcept {
+  const double lambda = lame_lambda(), mu = shear_modulus();
+  Matrix6 d = Matrix6::Zero();
+  d.topLeftCorner<3, 3>().setConstant(lambda);
+  for (int i = 0; i < 3; ++i) d(i, i) += 2.0 * mu;
+  for (int i = 3; i < 6; ++i) d(i, i) = mu;
+  return d;
+}
+
+PALPATE_INLINE std::optional<SetupProblem> LinearElastic::check() const {
+  // Written so that NaN fails every comparison. 1 - 2 nu and 1 + nu are what the law divides by: they must not vanish
+  // either.
+  if (!(std::isfinite(youngs_modulus) && youngs_modulus > 0.0))
+    return parameter_problem(SetupErrorKind::bad_youngs_modulus, "youngs_modulus", youngs_modulus, 0.0,
+                             "It must be finite and positive, in Pa");
+  if (!(poisson_ratio > -1.0 && poisson_ratio < 0.5))
+    return parameter_problem(SetupErrorKind::bad_poisson_ratio, "poisson_ratio", poisson_ratio,
+                             poisson_ratio < 0 ? -1.0 : 0.5, "It must lie strictly between -1 and 0.5");
+  if (!(std::isfinite(density) && density >= 0.0))
+    return parameter_problem(SetupErrorKind::bad_density, "density", density, 0.0,
+                             "It must be finite and not negative, in kg/m^3");
+  if (!elasticity().allFinite() || !std::isnormal(shear_modulus()))
+    return parameter_problem(SetupErrorKind::not_positive_definite, "the largest modulus", lame_lambda(), 0.0,
+                             "youngs_modulus is beyond the range of double precision");
+  return std::nullopt;
+}
+
+}}  // namespace palpate

@@ -1,0 +1,133 @@
+// Definitions of rigid_modes.hpp.
+#pragma once
+
+#include <palpate/mesh/rigid_modes.hpp>
+#include <palpate/core/setup_error.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+PALPATE_INLINE std::vector<std::vector<NodeId>> nodes_by_component(std::span<const NodeId> component) {
+  NodeId last = -1;
+  for (NodeId c : component) last = std::max(last, c);
+  std::vector<std::vector<NodeId>> nodes(static_cast<std::size_t>(last + 1));
+  for (std::size_t i = 0; i < component.size(); ++i)
+    if (component[i] >= 0) nodes[static_cast<std::size_t>(component[i])].push_back(static_cast<NodeId>(i));
+  return nodes;
+}
+
+PALPATE_INLINE RigidFrame::RigidFrame(std::span<const Vector3> positions, std::span<const NodeId> nodes,
+                                      std::span<const std::uint8_t> constrained) {
+  const auto at = [&](NodeId node) -> const Vector3& { return positions[static_cast<std::size_t>(node)]; };
+  const Vector3 origin = at(nodes.front());  // offsets keep their digits far from zero
+  Vector3 low = Vector3::Zero(), high = Vector3::Zero(), all = Vector3::Zero(), held = Vector3::Zero();
+  Index held_count = 0;
+  double farthest = 0.0;
+  for (NodeId node : nodes) {
+    const Vector3 x = at(node) - origin;
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+    all += x;
+    farthest = std::max(farthest, at(node).cwiseAbs().maxCoeff());
+    if ((constrained[static_cast<std::size_t>(node)] & 7u) == 0) continue;
+    held += x;
+    ++held_count;
+  }
+  centre = origin + (held_count > 0 ? Vector3(held / static_cast<double>(held_count))
+                                    : Vector3(all / static_cast<double>(nodes.size())));
+  const double diagonal = (high - low).norm();
+  if (diagonal > 0.0) size = diagonal;
+  resolution = 8.0 * std::numeric_limits<double>::epsilon() * farthest / size;
+}
+
+/// Row of the constraint "component `axis` of the displacement at p is given" for the rigid motion u = t + w x p,
+/// unknowns (w, t).
+inline Vector6 constraint_row(const Vector3& p, int axis) {
+  const Vector3 e = Vector3::Unit(axis);
+  Vector6 row;
+  row << p.cross(e), e;
+  return row;
+}
+
+PALPATE_INLINE Vector6 remainder(const Matrix6& basis, Vector6 v) {
+  for (int twice = 0; twice < 2; ++twice) v -= basis * (basis.transpose() * v).eval();
+  return v;
+}
+
+PALPATE_INLINE RigidMotions free_motions(std::span<const Vector3> positions, std::span<const NodeId> nodes,
+                                         std::span<const std::uint8_t> constrained, const RigidFrame& frame) {
+  const double tolerance = std::max(1e-6, frame.resolution);
+  Matrix6 basis = Matrix6::Zero();
+  int seen = 0;
+  while (seen < 6) {
+    Vector6 best = Vector6::Zero();
+    for (NodeId node : nodes) {
+      const Vector3 p = (positions[static_cast<std::size_t>(node)] - frame.centre) / frame.size;
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((constrained[static_cast<std::size_t>(node)] >> axis & 1u) == 0) continue;
+        const Vector6 rest = remainder(basis, constraint_row(p, axis));
+        if (rest.squaredNorm() > best.squaredNorm()) best = rest;
+      }
+    }
+    if (!(best.norm() > tolerance)) break;
+    basis.col(seen++) = best.normalized();
+  }
+  for (int k = seen; k < 6; ++k) {  // complete the basis with what is left of the unit vectors
+    Vector6 best = Vector6::Zero();
+    for (int i = 0; i < 6; ++i)
+      if (const Vector6 rest = remainder(basis, Vector6::Unit(i)); rest.squaredNorm() > best.squaredNorm()) best = rest;
+    basis.col(k) = best.normalized();
+  }
+  return basis.rightCols(6 - seen);
+}
+
+}}}  // namespace palpate::detail
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vector3> positions,
+                                                            std::span<const NodeId> component,
+                                                            std::span<const std::uint8_t> constrained) {
+  if (component.size() != positions.size() || constrained.size() != positions.size())
+    raise(SetupErrorKind::bad_argument, "positions, components and constraints have different lengths",
+          "Give one of each per node");
+  std::vector<FreeRigidModes> result;
+  for (const std::vector<NodeId>& nodes : detail::nodes_by_component(component)) {
+    FreeRigidModes modes{static_cast<Index>(result.size()), static_cast<Index>(nodes.size()), {}, {}};
+    if (!nodes.empty()) {
+      modes.first_nodes.assign(
+          nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(std::min(nodes.size(), SetupProblem::max_ids)));
+      const detail::RigidFrame frame(positions, nodes, constrained);
+      modes.modes = detail::name_rigid_motions(detail::free_motions(positions, nodes, constrained, frame), frame.centre,
+                                               frame.size);
+    }
+    result.push_back(std::move(modes));
+  }
+  return result;
+}
+
+PALPATE_INLINE void require_constrained(std::span<const Vector3> positions, std::span<const NodeId> component,
+                                        std::span<const std::uint8_t> constrained) {
+  const std::vector<FreeRigidModes> all = free_rigid_modes(positions, component, constrained);
+  const auto loose = std::ranges::count_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
+  if (loose == 0) return;
+  const FreeRigidModes& first = *std::ranges::find_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
+  SetupProblem p;
+  p.kind = SetupErrorKind::unconstrained;
+  p.what = "component " + std::to_string(first.component) + " of " + std::to_string(all.size()) + " has " +
+           std::to_string(first.count()) + (first.count() == 1 ? " free rigid motion:" : " free rigid motions:");
+  for (std::size_t i = 0; i < first.modes.size(); ++i) p.what += (i == 0 ? " " : ", ") + first.modes[i];
+  if (loose > 1)
+    p.what += "; " + std::to_string(loose - 1) + " more " + (loose == 2 ? "component" : "components") + " can move";
+  p.hint = "Prescribe more components of the displacement; a static body needs six that hold it";
+  p.ids.assign(first.first_nodes.begin(), first.first_nodes.end());
+  p.count = first.node_count;
+  p.value = first.count();
+  raise(std::move(p));
+}
+
+}}  // namespace palpate

@@ -1,0 +1,120 @@
+// Definitions of scene.hpp.
+#pragma once
+
+#include <palpate/mesh/scene.hpp>
+#include <palpate/core/setup_error.hpp>
+
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE Scene& Scene::prescribe(Selection where, Components values) {
+  for (const auto& v : values) require_finite(v.value_or(0.0), "a prescribed displacement");
+  prescribed_.push_back({std::move(where), values});
+  return *this;
+}
+
+PALPATE_INLINE Scene& Scene::traction(Selection where, const Vector3& value) {
+  require_finite(value.sum(), "a traction");
+  tractions_.push_back({std::move(where), value});
+  return *this;
+}
+
+PALPATE_INLINE Scene& Scene::pressure(Selection where, double value) {
+  require_finite(value, "a pressure");
+  pressures_.push_back({std::move(where), value});
+  return *this;
+}
+
+PALPATE_INLINE Scene& Scene::point_load(Selection where, const Vector3& force) {
+  require_finite(force.sum(), "a point load");
+  point_loads_.push_back({std::move(where), force});
+  return *this;
+}
+
+PALPATE_INLINE Scene& Scene::gravity(const Vector3& acceleration) {
+  require_finite(acceleration.sum(), "gravity");
+  gravity_ = acceleration;
+  return *this;
+}
+
+PALPATE_INLINE Scene& Scene::body_load(std::string region, const Vector3& force_per_volume) {
+  require_finite(force_per_volume.sum(), "a body load");
+  body_loads_.push_back({std::move(region), force_per_volume});
+  return *this;
+}
+
+PALPATE_INLINE Scene& Scene::initial_strain(std::string region, const Vector6& strain) {
+  require_finite(strain.sum(), "an initial strain");
+  initial_strains_.push_back({std::move(region), strain});
+  return *this;
+}
+
+PALPATE_INLINE Scene& Scene::expand(std::string region, double elongation) {
+  require_finite(elongation, "an expansion");
+  if (!(elongation > -1.0))
+    raise(SetupErrorKind::bad_argument, "an expansion of " + number(elongation) + " leaves no length",
+          "It is relative: 0.01 for one per cent");
+  Vector6 strain = Vector6::Zero();
+  strain.head<3>().setConstant(elongation);
+  return initial_strain(std::move(region), strain);
+}
+
+PALPATE_INLINE Scene& Scene::heat(std::string region, double coefficient, double rise) {
+  require_finite(coefficient, "a coefficient of expansion");
+  require_finite(rise, "a rise of temperature");
+  return expand(std::move(region), coefficient * rise);
+}
+
+PALPATE_INLINE Scene& Scene::touch(Selection where) {
+  touched_.push_back(std::move(where));
+  return *this;
+}
+
+PALPATE_INLINE Scene& Scene::see(Selection where) {
+  seen_.push_back(std::move(where));
+  return *this;
+}
+
+PALPATE_INLINE Scene Scene::mapped(const std::vector<NodeId>& map) const {
+  Scene s = *this;
+  const auto renumber = [&](Selection& where) {
+    auto* nodes = std::get_if<std::vector<NodeId>>(&where);
+    if (nodes == nullptr) return;
+    std::vector<NodeId> mapped_nodes;
+    for (NodeId node : *nodes) {
+      if (node < 0 || static_cast<std::size_t>(node) >= map.size())
+        raise(SetupErrorKind::index_out_of_range,
+              "the scene names node " + std::to_string(node) + ", the mesh has " + std::to_string(map.size()));
+      if (map[static_cast<std::size_t>(node)] >= 0) mapped_nodes.push_back(map[static_cast<std::size_t>(node)]);
+    }
+    *nodes = std::move(mapped_nodes);
+  };
+  for (auto& c : s.prescribed_) renumber(c.where);
+  for (auto& c : s.tractions_) renumber(c.where);
+  for (auto& c : s.pressures_) renumber(c.where);
+  for (auto& c : s.point_loads_) renumber(c.where);
+  for (auto& c : s.touched_) renumber(c);
+  for (auto& c : s.seen_) renumber(c);
+  return s;
+}
+
+PALPATE_INLINE std::vector<std::string> Scene::group_names() const {
+  std::vector<std::string> names;
+  const auto add = [&](const Selection& s) {
+    if (const auto* name = std::get_if<std::string>(&s)) names.push_back(*name);
+  };
+  for (const auto& c : prescribed_) add(c.where);
+  for (const auto& c : tractions_) add(c.where);
+  for (const auto& c : pressures_) add(c.where);
+  for (const auto& c : point_loads_) add(c.where);
+  for (const auto& c : touched_) add(c);
+  for (const auto& c : seen_) add(c);
+  return names;
+}
+
+PALPATE_INLINE void Scene::require_finite(double value, const char* what) {
+  if (!std::isfinite(value)) raise(SetupErrorKind::non_finite, std::string(what) + " is not finite");
+}
+
+}}  // namespace palpate

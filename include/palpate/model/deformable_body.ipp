@@ -1,0 +1,34 @@
+// Definitions of deformable_body.hpp.
+#pragma once
+
+#include <palpate/model/deformable_body.hpp>
+
+#include <Eigen/Geometry>
+
+#include <string>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE double extent(const std::vector<Vector3>& positions) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3& x : positions) box.extend(x);
+  return box.diagonal().norm();
+}
+
+PALPATE_INLINE void require_mass(const DeformableBody& body) {
+  for (Index i = 0; i < body.lumped.size(); ++i)
+    if (!(body.lumped[i] > 0.0) && body.conditions.constrained[static_cast<std::size_t>(i)] != 7)
+      raise(SetupErrorKind::bad_density, "node " + std::to_string(i) + " has no mass",
+            "Give every region a density in kg/m^3");
+}
+
+}}  // namespace palpate
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+PALPATE_INLINE void refuse_initial_strains(const Scene& scene) {
+  if (!scene.initial_strains().empty())
+    raise(SetupErrorKind::unsupported, "initial strains at large deformation or with memory", "Use a linear material");
+}
+
+}}}  // namespace palpate::detail

@@ -1,0 +1,43 @@
+// Definitions of setup_report.hpp.
+#pragma once
+
+#include <palpate/model/setup_report.hpp>
+#include <palpate/core/setup_error.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE void SetupReport::set(SetupFlag flag, std::string remark) {
+  remarks.emplace_back(flag, std::move(remark));
+  flags |= static_cast<std::uint32_t>(flag);
+}
+
+PALPATE_INLINE void SetupReport::clear(SetupFlag flag) {
+  flags &= ~static_cast<std::uint32_t>(flag);
+  std::erase_if(remarks, [flag](const auto& remark) { return remark.first == flag; });
+}
+
+PALPATE_INLINE double SetupReport::total_seconds() const noexcept {
+  double sum = 0.0;
+  for (const auto& stage : seconds) sum += stage.second;
+  return sum;
+}
+
+PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const SetupReport& r) {
+  out << "set-up: " << r.nodes << " nodes, " << r.elements << " elements, " << r.free_dofs
+      << " free dofs: " << r.kept_dofs << " kept, " << r.condensed_dofs << " condensed; " << r.touchable_vertices
+      << " touchable vertices, " << r.seen_nodes << " seen nodes\n"
+      << "  memory: stiffness " << number(static_cast<double>(r.stiffness_bytes) / 1e6) << " MB, solver "
+      << number(static_cast<double>(r.solver_bytes) / 1e6) << " MB, compliance "
+      << number(static_cast<double>(r.compliance_bytes) / 1e6) << " MB\n  time:";
+  for (const auto& [stage, seconds] : r.seconds) out << ' ' << stage << ' ' << number(1e3 * seconds) << " ms";
+  out << "\n  quality: worst " << number(r.worst_quality) << ", mean " << number(r.mean_quality) << "; condition "
+      << (r.condition_estimate > 0.0 ? number(r.condition_estimate) : std::string("not estimated")) << ", probe error "
+      << number(r.probe_error) << '\n';
+  if (r.column_seconds > 0.0)
+    out << "  a vertex pressed for the first time: " << number(1e6 * r.column_seconds) << " us\n";
+  if (!r.cache.file.empty()) out << "  cache: " << r.cache << '\n';
+  for (const auto& [flag, remark] : r.remarks) out << "  note: " << remark << '\n';
+  return out;
+}
+
+}}  // namespace palpate
