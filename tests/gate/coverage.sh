@@ -21,9 +21,11 @@ mkdir -p "$out"
   "$root/tests/gate/main.cpp" -o "$out/test_gate"
 LLVM_PROFILE_FILE="$out/gate.profraw" "$out/test_gate" --long 200000
 "llvm-profdata$suffix" merge "$out/gate.profraw" -o "$out/gate.profdata"
-gate="$root/include/palpate/haptic/force_gate.hpp"
-"llvm-cov$suffix" report "$out/test_gate" "-instr-profile=$out/gate.profdata" --show-branch-summary $show "$gate" \
-  "$root/include/palpate/core/limit_length.hpp"
+set -- "$root/include/palpate/haptic/force_gate.hpp" "$root/include/palpate/core/limit_length.hpp"
+for definitions in "$root/include/palpate/haptic/force_gate.ipp" "$root/include/palpate/core/limit_length.ipp"; do
+  if [ -e "$definitions" ]; then set -- "$@" "$definitions"; fi
+done
+"llvm-cov$suffix" report "$out/test_gate" "-instr-profile=$out/gate.profdata" --show-branch-summary $show "$@"
 [ -z "$mcdc" ] || show="--show-mcdc"
-"llvm-cov$suffix" show "$out/test_gate" "-instr-profile=$out/gate.profdata" --show-branches=count $show "$gate" >"$out/gate.txt"
+"llvm-cov$suffix" show "$out/test_gate" "-instr-profile=$out/gate.profdata" --show-branches=count $show "$@" >"$out/gate.txt"
 echo "line by line: $out/gate.txt"

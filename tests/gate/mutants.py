@@ -2,7 +2,7 @@
 """Mutation test of the force gate: changes one operator, constant or statement at a time, compiles test_gate against the
 changed header and expects it to fail.
 
-  python3 tests/gate/mutants.py [--compiler clang++] [--eigen /usr/include/eigen3] [--header palpate/haptic/force_gate.hpp]
+  python3 tests/gate/mutants.py [--compiler clang++] [--eigen /usr/include/eigen3] [--header palpate/haptic/force_gate.ipp]
 
 A mutant that survives is an error unless EQUIVALENT names it and says why it changes nothing. Needs nothing but Python
 and a compiler; some minutes.
@@ -57,7 +57,8 @@ def main():
     p = argparse.ArgumentParser()
     p.add_argument("--compiler", default="clang++")
     p.add_argument("--eigen", default="/usr/include/eigen3")
-    p.add_argument("--header", default="palpate/haptic/force_gate.hpp")
+    gate = "palpate/haptic/force_gate"  # its definitions, where they are apart from the declarations
+    p.add_argument("--header", default=gate + (".ipp" if (ROOT / f"include/{gate}.ipp").exists() else ".hpp"))
     p.add_argument("--lines", default="1-1000000", help="only these, as 50-60")
     a = p.parse_args()
     original = (ROOT / "include" / a.header).read_text()
