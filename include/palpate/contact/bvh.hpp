@@ -46,7 +46,7 @@ struct Box {
   }
   double off(const Vector3& p, int k) const noexcept {
     const double side = std::max(low[k] - p[k], p[k] - high[k]);
-    return side > 0.0 ? side : 0.0;
+    return side < 0.0 ? 0.0 : side;  // NaN stays NaN: it is near nothing
   }
 };
 

@@ -59,7 +59,10 @@ class ContactRows {
   inline Matrix3 between(const TissueView& tissue, const ContactSamples& samples, int i, int j) noexcept;
   inline static Vector3 sprung(const ContactTool& tool, const Contact& row) noexcept;
   void note_drags(std::span<ContactTool> tools) const noexcept;
-  inline double set_responses(const TissueView& tissue, const ContactSamples& samples, int i, int j) noexcept;
+  inline static double set_responses(const double* c, const double* m, const double* n, double* of_n,
+                                     double* of_m) noexcept;
+  inline void build_row(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool,
+                        int i) noexcept;
   inline Vector3 moved_point(int i) const noexcept;
 
   /// Of a row's point to unit force on another.

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -53,24 +52,41 @@ inline Vector3 ContactRows::sprung(const ContactTool& tool, const Contact& row) 
   return tool.drag_way + tool.drag_turn.cross(row.arm);
 }
 
-/// Displacement of two rows' points per force on the other. Returns the part of it along the own normal. Written out
-/// so that it stays in registers: half of the work of a tick with many contacts is here.
-inline double ContactRows::set_responses(const TissueView& tissue, const ContactSamples& samples, int i,
-                                         int j) noexcept {
-  int p = candidate_[at(i)]->slot, q = candidate_[at(j)]->slot;
-  if (p < q) {
-    std::swap(p, q);
-    std::swap(i, j);
-  }
-  const double* const c = compliance_(tissue, samples, p, q).data();
-  const double *m = rows_[at(i)].normal.data(), *n = rows_[at(j)].normal.data();
+/// Displacement of two points per force on the other along its row's normal, m and n; their compliance is c, 3 x 3.
+/// Returns the part of it along the own normal. Written out so that it stays in registers: half of the work of a tick
+/// with many contacts is here.
+inline double ContactRows::set_responses(const double* c, const double* m, const double* n, double* of_n,
+                                         double* of_m) noexcept {
   const double x = c[0] * n[0] + c[3] * n[1] + c[6] * n[2];
   const double y = c[1] * n[0] + c[4] * n[1] + c[7] * n[2];
   const double z = c[2] * n[0] + c[5] * n[1] + c[8] * n[2];
-  response(i, j) = {x, y, z};
-  response(j, i) = {c[0] * m[0] + c[1] * m[1] + c[2] * m[2], c[3] * m[0] + c[4] * m[1] + c[5] * m[2],
-                    c[6] * m[0] + c[7] * m[1] + c[8] * m[2]};
+  of_n[0] = x, of_n[1] = y, of_n[2] = z;
+  of_m[0] = c[0] * m[0] + c[1] * m[1] + c[2] * m[2];
+  of_m[1] = c[3] * m[0] + c[4] * m[1] + c[5] * m[2];
+  of_m[2] = c[6] * m[0] + c[7] * m[1] + c[8] * m[2];
   return m[0] * x + m[1] * y + m[2] * z;
+}
+
+/// Row i of W and the responses that belong to it.
+inline void ContactRows::build_row(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool,
+                                   int i) noexcept {
+  const Contact& ci = rows_[at(i)];
+  const int p = candidate_[at(i)]->slot;
+  const bool turns = tool.turning_compliance > 0.0;
+  const double* const m = ci.normal.data();
+  double *column = &problem_.w(0, i), *row = &problem_.w(i, 0);
+  Vector3 *on_j = &response(i, 0), *on_i = &response(0, i);
+  for (int j = 0; j <= i; ++j, ++on_j, on_i += capacity_, row += capacity_) {
+    const Contact& cj = rows_[at(j)];
+    const int q = candidate_[at(j)]->slot;
+    const double* const n = cj.normal.data();
+    double w = p >= q ? set_responses(compliance_(tissue, samples, p, q).data(), m, n, on_j->data(), on_i->data())
+                      : set_responses(compliance_(tissue, samples, q, p).data(), n, m, on_i->data(), on_j->data());
+    if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
+    if (turns && ci.tool == cj.tool)
+      w += tool.turning_compliance * ci.arm.cross(ci.normal).dot(cj.arm.cross(cj.normal));
+    column[j] = *row = w;
+  }
 }
 
 PALPATE_INLINE void ContactRows::begin_tick(std::uint64_t compliance_revision) noexcept {
@@ -149,15 +165,7 @@ PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const ContactSa
     problem_.bilateral[at(i)] = ci.grasped;
     reach(tool, *candidate_[at(i)], ci);
     problem_.b[at(i)] = free_gap_[at(i)] = ci.normal.dot(tool.target - ci.rest) + ci.offset;
-    const bool turns = tool.turning_compliance > 0.0;
-    for (int j = 0; j <= i; ++j) {
-      const Contact& cj = rows_[at(j)];
-      double w = set_responses(tissue, samples, i, j);
-      if (ci.tool == cj.tool) w += (tool.compliance + floor) * ci.normal.dot(cj.normal);
-      if (turns && ci.tool == cj.tool)
-        w += tool.turning_compliance * ci.arm.cross(ci.normal).dot(cj.arm.cross(cj.normal));
-      problem_.w(i, j) = problem_.w(j, i) = w;
-    }
+    build_row(tissue, samples, tool, i);
     if (friction_.acts()) build_friction(tissue, samples, tool, i);
   }
   if (!friction_.acts()) return;
@@ -187,17 +195,11 @@ PALPATE_INLINE double ContactRows::deepest_push() const noexcept {
 
 /// A row's point under all normal forces [m].
 inline Vector3 ContactRows::moved_point(int i) const noexcept {
-  const Vector3& rest = rows_[at(i)].rest;
-  double x = rest[0], y = rest[1], z = rest[2];
-  for (int j = 0; j < count_; ++j) {
-    const double force = problem_.lambda[at(j)];
-    if (force == 0.0) continue;
-    const double* const moved = response(i, j).data();
-    x -= force * moved[0];
-    y -= force * moved[1];
-    z -= force * moved[2];
-  }
-  return {x, y, z};
+  Vector3 point = rows_[at(i)].rest;
+  const Vector3* moved = &response(i, 0);
+  for (int j = 0; j < count_; ++j, ++moved)
+    if (const double force = problem_.lambda[at(j)]; force != 0.0) point.noalias() -= force * *moved;
+  return point;
 }
 
 PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisplacement& displacement,
