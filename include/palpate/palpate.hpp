@@ -31,7 +31,6 @@
 #include <palpate/mesh/refine.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
-#include <palpate/model/shipped.hpp>
 #include <palpate/model/trade_off.hpp>
 #include <palpate/model/visual_surface.hpp>
 #include <palpate/version.hpp>

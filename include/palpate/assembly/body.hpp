@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/element.hpp>
+#include <palpate/assembly/region_materials.hpp>
 #include <palpate/concepts/material.hpp>
 #include <palpate/concepts/mesh.hpp>
 #include <palpate/core/config.hpp>
@@ -18,10 +19,6 @@
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-/// One material per region, by name; the name `everywhere` stands for all regions not named.
-template <Material M>
-using RegionMaterials = std::vector<std::pair<std::string, M>>;
 
 /// An admitted mesh and, per region, elasticity matrix [Pa], density [kg/m^3] and initial strain. Where fibres run in
 /// another direction from element to element there are more elasticity matrices than regions, and `laws` says which

@@ -3,6 +3,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_SHIPPED_ELEMENT(, Hex20)
+PALPATE_SHIPPED_HEX20()
 
 }}  // namespace palpate

@@ -3,6 +3,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_SHIPPED_ELEMENT(, Hex8)
+PALPATE_SHIPPED_HEX8()
 
 }}  // namespace palpate

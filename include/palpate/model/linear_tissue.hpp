@@ -1,14 +1,18 @@
 // Linear static tissue without its element, material and solver: what a session and a program see of a HapticFEModel.
 #pragma once
 
+#include <palpate/concepts/linear_solver.hpp>
+#include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact_surface.hpp>
+#include <palpate/core/setup_options.hpp>
 #include <palpate/mesh/admission_policy.hpp>
+#include <palpate/mesh/scene.hpp>
 #include <palpate/model/contact_compliance.hpp>
-#include <palpate/model/statics.hpp>
-#include <palpate/model/touchable.hpp>
+#include <palpate/model/setup_report.hpp>
 
 #include <Eigen/Geometry>
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -16,6 +20,11 @@
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+class AnyStiffness;
+class ElasticBody;
+class Statics;
+struct SolverRecipe;
 
 /// What a caller may decide about a model's set-up.
 struct SetupOptions {
@@ -46,18 +55,16 @@ class LinearTissue {
   const std::vector<NodeId>& seen_nodes() const noexcept { return seen_; }
 
   /// Displacement under the scene's loads, no tool: 3 per admitted node [m].
-  const VectorX& displacement() const noexcept { return statics_->displacement(); }
+  const VectorX& displacement() const noexcept;
   /// K u - f_0: forces with which the body answers, 3 per admitted node [N].
-  VectorX internal_force() const { return statics_->internal_force(); }
+  VectorX internal_force() const;
   /// Forces of the supports, zero on free dofs, 3 per admitted node [N].
-  VectorX reactions() const { return statics_->reactions(); }
+  VectorX reactions() const;
   double strain_energy() const;
 
   /// Displacement with these forces on the contact surface, for drawing: one back-substitution. u has 3 entries per
   /// node. No allocation; may run beside a tick, but not twice at once.
-  SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept {
-    return statics_->displacement_with(forces, touchable_, u);
-  }
+  SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept;
 
   /// Replaces loads and prescribed values; the set of prescribed components and of touched nodes must stay. Strong
   /// guarantee.
@@ -82,6 +89,8 @@ class LinearTissue {
   const Eigen::Isometry3d& pose() const noexcept { return world_; }
 
  protected:
+  using MakeStiffness = AnyStiffness (*)(const ElasticBody&, const SetupLimits&);
+
   explicit LinearTissue(const SetupOptions& options);
   LinearTissue(const LinearTissue&) = delete;
   LinearTissue& operator=(const LinearTissue&) = delete;
@@ -92,14 +101,14 @@ class LinearTissue {
   const SetupLimits& limits() const noexcept { return limits_; }
   SetupReport& setup_report() noexcept { return report_; }
   /// The body given to `prepare`.
-  const ElasticBody& elastic_body() const noexcept { return statics_->body(); }
+  const ElasticBody& elastic_body() const noexcept;
 
   /// The admitted nodes of a scene, before `prepare`: moves `centre` to the origin, and takes over `node_map`.
   void place_nodes(const Scene& scene, std::vector<NodeId> node_map, const Vector3& centre,
                    std::vector<Vector3>& positions);
   /// All of the set-up that comes after the body. Throws what Statics and ContactCompliance throw.
-  void prepare(std::unique_ptr<ElasticBody> body, const Statics::MakeStiffness& make_stiffness,
-               const SolverRecipe& recipe, const SetupOptions& options);
+  void prepare(std::unique_ptr<ElasticBody> body, MakeStiffness make_stiffness, const SolverRecipe& recipe,
+               const SetupOptions& options);
 
  private:
   void prepare_contact(const std::vector<Triangle>& triangles, bool eager, const SetupOptions& options);
@@ -109,7 +118,7 @@ class LinearTissue {
   void sample_columns(ColumnFill fill);
   Vector3 deformed(NodeId node) const noexcept;
   /// For changes of the loads: what is to be said of their displacement is said before they are accepted.
-  Statics::Look reporting_to(SetupReport& report) const;
+  std::function<void(const VectorX&)> reporting_to(SetupReport& report) const;
   void accept_displacement(SetupReport& report) noexcept;
   void place(const Eigen::Isometry3d& pose) noexcept;
   void move_surface() noexcept;

@@ -3,8 +3,10 @@
 
 #include <palpate/model/linear_tissue.hpp>
 
+#include <palpate/model/admission_report.hpp>
 #include <palpate/model/elastic_body.hpp>
 #include <palpate/model/stage_timer.hpp>
+#include <palpate/model/statics.hpp>
 
 #include <Eigen/LU>
 
@@ -31,6 +33,26 @@ Vector3 LinearTissue<Scalar>::rest_position(NodeId node) const noexcept {
   return origin_ + statics_->body().positions()[static_cast<std::size_t>(node)];
 }
 template <std::floating_point Scalar>
+const VectorX& LinearTissue<Scalar>::displacement() const noexcept {
+  return statics_->displacement();
+}
+template <std::floating_point Scalar>
+VectorX LinearTissue<Scalar>::internal_force() const {
+  return statics_->internal_force();
+}
+template <std::floating_point Scalar>
+VectorX LinearTissue<Scalar>::reactions() const {
+  return statics_->reactions();
+}
+template <std::floating_point Scalar>
+SolveReport LinearTissue<Scalar>::displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept {
+  return statics_->displacement_with(forces, touchable_, u);
+}
+template <std::floating_point Scalar>
+const ElasticBody& LinearTissue<Scalar>::elastic_body() const noexcept {
+  return statics_->body();
+}
+template <std::floating_point Scalar>
 double LinearTissue<Scalar>::strain_energy() const {
   return statics_->body().strain_energy(statics_->displacement());
 }
@@ -46,7 +68,7 @@ void LinearTissue<Scalar>::place_nodes(const Scene& scene, std::vector<NodeId> n
 }
 
 template <std::floating_point Scalar>
-void LinearTissue<Scalar>::prepare(std::unique_ptr<ElasticBody> body, const Statics::MakeStiffness& make_stiffness,
+void LinearTissue<Scalar>::prepare(std::unique_ptr<ElasticBody> body, MakeStiffness make_stiffness,
                                    const SolverRecipe& recipe, const SetupOptions& options) {
   body->report_locking(report_);
   const Touchable touchable = body->touchable(scene_);
@@ -160,7 +182,7 @@ Vector3 LinearTissue<Scalar>::deformed(NodeId node) const noexcept {
 }
 
 template <std::floating_point Scalar>
-Statics::Look LinearTissue<Scalar>::reporting_to(SetupReport& report) const {
+std::function<void(const VectorX&)> LinearTissue<Scalar>::reporting_to(SetupReport& report) const {
   return [this, &report](const VectorX& u) { report_displacement(statics_->body().positions(), u, report); };
 }
 

@@ -3,6 +3,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_SHIPPED_ELEMENT(, MeanDilatation<Hex8>)
+PALPATE_SHIPPED_MEAN_DILATATION_HEX8()
 
 }}  // namespace palpate

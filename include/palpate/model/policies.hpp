@@ -1,20 +1,27 @@
 // The solver policies a model is composed with, and what each stands for.
 #pragma once
 
-#include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/essential_conditions.hpp>
-#include <palpate/assembly/matrix_free.hpp>
-#include <palpate/condensation/condensed_system.hpp>
-#include <palpate/condensation/uncondensed.hpp>
-#include <palpate/core/setup_options.hpp>
-#include <palpate/linear/dense_cholesky.hpp>
-#include <palpate/linear/sparse_cholesky.hpp>
+#include <palpate/core/types.hpp>
 
 #include <concepts>
 #include <string_view>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+struct Assembled;
+struct MatrixFree;
+struct DofLayout;
+struct EssentialConditions;
+struct SetupLimits;
+class BinaryReader;
+class BinaryWriter;
+class BlockMatrix;
+class CondensedSystem;
+class DenseCholesky;
+class SparseCholesky;
+class StiffnessView;
+class Uncondensed;
 
 /// Conjugate gradients; matrix-free unless WithAssembly says otherwise.
 struct ConjugateGradient {};
@@ -45,11 +52,12 @@ enum class DenseKind { inverse, inverse_float, cholesky, conjugate_gradient };
 template <std::floating_point S>
 inline constexpr DenseKind inverse_kind = std::same_as<S, float> ? DenseKind::inverse_float : DenseKind::inverse;
 
-Uncondensed make_iterative(StiffnessView k, const EssentialConditions& conditions, DofLayout layout);
-Uncondensed make_inverse(DenseKind kind, const BlockMatrix& k, const EssentialConditions& conditions, DofLayout layout,
-                         const SetupLimits& limits);
-Uncondensed read_inverse(DenseKind kind, BinaryReader& in, const EssentialConditions& conditions, DofLayout layout,
-                         const SetupLimits& limits);
+Uncondensed make_iterative(const StiffnessView& k, const EssentialConditions& conditions, const DofLayout& layout,
+                           const SetupLimits& limits);
+Uncondensed make_inverse(DenseKind kind, const BlockMatrix& k, const EssentialConditions& conditions,
+                         const DofLayout& layout, const SetupLimits& limits);
+Uncondensed read_inverse(DenseKind kind, BinaryReader& in, const EssentialConditions& conditions,
+                         const DofLayout& layout, const SetupLimits& limits);
 CondensedSystem make_condensed(DenseKind kind, const BlockMatrix& k, const EssentialConditions& conditions,
                                const DofLayout& layout, const SetupLimits& limits);
 CondensedSystem read_condensed(DenseKind kind, BinaryReader& in, const BlockMatrix& k,
@@ -71,10 +79,10 @@ struct SolverTraits<SparseCholesky> {
   using Scalar = double;
   static constexpr bool eager = false;
   static constexpr std::string_view cache_name = "SparseCholesky";
-  static Uncondensed make(const BlockMatrix& k, const EssentialConditions& conditions, DofLayout layout,
+  static Uncondensed make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
                           const SetupLimits& limits);
   static Uncondensed read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
-                          DofLayout layout, const SetupLimits& limits);
+                          const DofLayout& layout, const SetupLimits& limits);
 };
 
 template <class AssemblyPolicy>
@@ -82,9 +90,9 @@ struct SolverTraits<WithAssembly<ConjugateGradient, AssemblyPolicy>> {
   using Assembly = AssemblyPolicy;
   using Scalar = double;
   static constexpr bool eager = false;
-  static Uncondensed make(StiffnessView k, const EssentialConditions& conditions, DofLayout layout,
-                          const SetupLimits&) {
-    return detail::make_iterative(k, conditions, std::move(layout));
+  static auto make(const StiffnessView& k, const EssentialConditions& conditions, const DofLayout& layout,
+                   const SetupLimits& limits) {
+    return detail::make_iterative(k, conditions, layout, limits);
   }
 };
 template <>
@@ -97,13 +105,13 @@ struct SolverTraits<BasicSelectiveInverse<S>> {
   static constexpr bool eager = true;
   static constexpr std::string_view cache_name = "SelectiveInverse";
   static constexpr detail::DenseKind kind = detail::inverse_kind<S>;
-  static Uncondensed make(const BlockMatrix& k, const EssentialConditions& conditions, DofLayout layout,
-                          const SetupLimits& limits) {
-    return detail::make_inverse(kind, k, conditions, std::move(layout), limits);
+  static auto make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+                   const SetupLimits& limits) {
+    return detail::make_inverse(kind, k, conditions, layout, limits);
   }
-  static Uncondensed read(BinaryReader& in, const BlockMatrix&, const EssentialConditions& conditions,
-                          DofLayout layout, const SetupLimits& limits) {
-    return detail::read_inverse(kind, in, conditions, std::move(layout), limits);
+  static auto read(BinaryReader& in, const BlockMatrix&, const EssentialConditions& conditions, const DofLayout& layout,
+                   const SetupLimits& limits) {
+    return detail::read_inverse(kind, in, conditions, layout, limits);
   }
 };
 
@@ -139,12 +147,12 @@ struct SolverTraits<Condensed<Inner>> {
   using Scalar = typename CondensedTraits<Inner>::Scalar;
   static constexpr bool eager = CondensedTraits<Inner>::eager;
   static constexpr std::string_view cache_name = CondensedTraits<Inner>::cache_name;
-  static CondensedSystem make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
-                              const SetupLimits& limits) {
+  static auto make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+                   const SetupLimits& limits) {
     return detail::make_condensed(CondensedTraits<Inner>::kind, k, conditions, layout, limits);
   }
-  static CondensedSystem read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
-                              const DofLayout& layout, const SetupLimits& limits) {
+  static auto read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
+                   const DofLayout& layout, const SetupLimits& limits) {
     return detail::read_condensed(CondensedTraits<Inner>::kind, in, k, conditions, layout, limits);
   }
 };
@@ -155,18 +163,6 @@ concept SolverPolicy = requires {
   typename SolverTraits<P>::Assembly;
   typename SolverTraits<P>::Scalar;
   { SolverTraits<P>::eager } -> std::convertible_to<bool>;
-};
-
-/// A policy whose prepared system can be stored: `cache_name` tells it from all others, the system has `write`, and
-/// `read` makes it again from what was written, given the same stiffness, conditions and layout. `read` takes every
-/// size from these and none from the file, and returns whatever it likes when the reader fails.
-template <class P>
-concept CacheablePolicy = SolverPolicy<P> &&
-    requires(BinaryReader& in, BinaryWriter& out, const BlockMatrix& k, const EssentialConditions& conditions,
-             const DofLayout& layout, const SetupLimits& limits) {
-  requires std::same_as<typename SolverTraits<P>::Assembly, Assembled>;
-  { SolverTraits<P>::cache_name } -> std::convertible_to<std::string_view>;
-  SolverTraits<P>::read(in, k, conditions, layout, limits).write(out);
 };
 
 }}  // namespace palpate

@@ -4,25 +4,31 @@
 #include <palpate/model/policies.hpp>
 
 #include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/condensation/condensed_system.hpp>
 #include <palpate/condensation/schur.hpp>
+#include <palpate/condensation/uncondensed.hpp>
 #include <palpate/core/binary_io.hpp>
 #include <palpate/linear/conjugate_gradient.hpp>
+#include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/dense_conjugate_gradient.hpp>
 #include <palpate/linear/dense_inverse.hpp>
+#include <palpate/linear/sparse_cholesky.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::make(const BlockMatrix& k,
-                                                              const EssentialConditions& conditions, DofLayout layout,
+                                                              const EssentialConditions& conditions, const DofLayout& given,
                                                               const SetupLimits& limits) {
+  DofLayout layout = given;
   std::vector<Index> kept = std::exchange(layout.kept, {});  // asked for, but nothing is condensed onto them
   const SparseMatrix lower = free_matrix(k, conditions);
   return {SparseCholesky(CholeskyAnalysis(lower, layout, limits), lower, limits), std::move(kept)};
 }
 
 PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::read(BinaryReader& in, const BlockMatrix& k,
-                                                              const EssentialConditions& conditions, DofLayout layout,
+                                                              const EssentialConditions& conditions, const DofLayout& given,
                                                               const SetupLimits& limits) {
+  DofLayout layout = given;
   std::vector<Index> kept = std::exchange(layout.kept, {});
   const SparseMatrix lower = free_matrix(k, conditions);
   return {SparseCholesky::read(in, CholeskyAnalysis(lower, layout, limits), false, limits), std::move(kept)};
@@ -30,26 +36,27 @@ PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::read(BinaryReader& in, 
 
 namespace detail {
 
-PALPATE_INLINE Uncondensed make_iterative(StiffnessView k, const EssentialConditions& conditions, DofLayout layout) {
-  return {IterativeSolver(FreeStiffness(k, conditions), {}), std::move(layout.kept)};
+PALPATE_INLINE Uncondensed make_iterative(const StiffnessView& k, const EssentialConditions& conditions,
+                                          const DofLayout& layout, const SetupLimits&) {
+  return {IterativeSolver(FreeStiffness(k, conditions), {}), layout.kept};
 }
 
 PALPATE_INLINE Uncondensed make_inverse(DenseKind kind, const BlockMatrix& k, const EssentialConditions& conditions,
-                                        DofLayout layout, const SetupLimits& limits) {
+                                        const DofLayout& layout, const SetupLimits& limits) {
   const Index n = conditions.free_count();
   limits.require_memory(3.0 * static_cast<double>(n) * static_cast<double>(n) * sizeof(double),
                         "the inverse of the whole stiffness");
   MatrixX lower = MatrixX::Zero(n, n);
   for_each_free_entry(k, conditions, [&](Index row, Index column, double value) { lower(row, column) = value; });
-  if (kind == DenseKind::inverse_float) return {DenseInverse<float>(std::move(lower), limits), std::move(layout.kept)};
-  return {DenseInverse<double>(std::move(lower), limits), std::move(layout.kept)};
+  if (kind == DenseKind::inverse_float) return {DenseInverse<float>(std::move(lower), limits), layout.kept};
+  return {DenseInverse<double>(std::move(lower), limits), layout.kept};
 }
 
 PALPATE_INLINE Uncondensed read_inverse(DenseKind kind, BinaryReader& in, const EssentialConditions& conditions,
-                                        DofLayout layout, const SetupLimits& limits) {
+                                        const DofLayout& layout, const SetupLimits& limits) {
   if (kind == DenseKind::inverse_float)
-    return {DenseInverse<float>::read(in, conditions.free_count(), limits), std::move(layout.kept)};
-  return {DenseInverse<double>::read(in, conditions.free_count(), limits), std::move(layout.kept)};
+    return {DenseInverse<float>::read(in, conditions.free_count(), limits), layout.kept};
+  return {DenseInverse<double>::read(in, conditions.free_count(), limits), layout.kept};
 }
 
 PALPATE_INLINE CondensedSystem make_condensed(DenseKind kind, const BlockMatrix& k,

@@ -1,17 +1,34 @@
 // The prepared solver of a body: made and checked, or read from a cache file and checked.
 #pragma once
 
+#include <palpate/assembly/any_stiffness.hpp>
+#include <palpate/linear/node_graph.hpp>
+#include <palpate/model/any_static_system.hpp>
 #include <palpate/model/setup_report.hpp>
-#include <palpate/model/solver_recipe.hpp>
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+class BinaryReader;
 class ElasticBody;
 class PreparedCache;
+struct EssentialConditions;
+
+/// A solver policy without its type: its functions and constants. See solver_recipe.
+struct SolverRecipe {
+  std::string_view cache_name;  ///< empty: its systems cannot be stored
+  std::size_t scalar_bytes = sizeof(double);
+  bool eager = false;                ///< all compliance is computed at set-up
+  bool estimates_condition = false;  ///< a few more solves are cheap
+  AnyStaticSystem (*make)(const AnyStiffness&, const EssentialConditions&, const DofLayout&, const SetupLimits&);
+  /// Null when its systems cannot be stored. Takes the stored matrix.
+  AnyStaticSystem (*read)(BinaryReader&, const BlockMatrix&, const EssentialConditions&, const DofLayout&,
+                          const SetupLimits&);
+};
 
 /// What a system is prepared from. Refers to all of it.
 struct SystemSource {

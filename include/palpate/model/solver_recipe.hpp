@@ -1,24 +1,31 @@
-// A solver policy without its type: what code that is no template needs of it.
+// The recipe of a solver policy.
 #pragma once
 
 #include <palpate/assembly/any_stiffness.hpp>
+#include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
+#include <palpate/condensation/condensed_system.hpp>
+#include <palpate/condensation/uncondensed.hpp>
+#include <palpate/core/binary_io.hpp>
+#include <palpate/core/setup_options.hpp>
 #include <palpate/model/any_static_system.hpp>
 #include <palpate/model/policies.hpp>
+#include <palpate/model/prepared_system.hpp>
 
 #include <string_view>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The functions and constants of a SolverPolicy.
-struct SolverRecipe {
-  std::string_view cache_name;  ///< empty: its systems cannot be stored
-  std::size_t scalar_bytes = sizeof(double);
-  bool eager = false;                ///< all compliance is computed at set-up
-  bool estimates_condition = false;  ///< a few more solves are cheap
-  AnyStaticSystem (*make)(const AnyStiffness&, const EssentialConditions&, const DofLayout&, const SetupLimits&);
-  /// Null when its systems cannot be stored. Takes the stored matrix.
-  AnyStaticSystem (*read)(BinaryReader&, const BlockMatrix&, const EssentialConditions&, const DofLayout&,
-                          const SetupLimits&);
+/// A policy whose prepared system can be stored: `cache_name` tells it from all others, the system has `write`, and
+/// `read` makes it again from what was written, given the same stiffness, conditions and layout. `read` takes every
+/// size from these and none from the file, and returns whatever it likes when the reader fails.
+template <class P>
+concept CacheablePolicy = SolverPolicy<P> &&
+    requires(BinaryReader& in, BinaryWriter& out, const BlockMatrix& k, const EssentialConditions& conditions,
+             const DofLayout& layout, const SetupLimits& limits) {
+  requires std::same_as<typename SolverTraits<P>::Assembly, Assembled>;
+  { SolverTraits<P>::cache_name } -> std::convertible_to<std::string_view>;
+  SolverTraits<P>::read(in, k, conditions, layout, limits).write(out);
 };
 
 /// The recipe of a policy.

@@ -3,6 +3,7 @@
 
 #include <palpate/assembly/any_stiffness.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
+#include <palpate/concepts/linear_solver.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/prepared_system.hpp>

@@ -3,6 +3,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_SHIPPED_ELEMENT(, Tet10)
+PALPATE_SHIPPED_TET10()
 
 }}  // namespace palpate

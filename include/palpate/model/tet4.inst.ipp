@@ -3,6 +3,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_SHIPPED_ELEMENT(, Tet4)
+PALPATE_SHIPPED_TET4()
 
 }}  // namespace palpate
