@@ -8,7 +8,7 @@ if(CMAKE_VERSION VERSION_GREATER_EQUAL 3.23)
   install(TARGETS palpate EXPORT palpateTargets FILE_SET HEADERS)
 else()
   install(TARGETS palpate EXPORT palpateTargets)
-  install(DIRECTORY include/palpate DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.[hi]pp")
+  install(DIRECTORY include/palpate DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.[hit]pp")
 endif()
 install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${package_dir})
 
