@@ -70,16 +70,18 @@ struct FrontBlock {
   static void update_rows(const double* panel, Index stride, Index columns, Index begin, Index end, const double* y,
                           double* x) noexcept {
     for (Index i = begin; i < end; i += tile_columns)
-      subtract_tile<Packets, tile_columns, Into::full>(columns, {y, width}, {panel + i, stride}, 1, x + i * width,
-                                                       width, end - i);
+      subtract_tile_here<Packets, tile_columns, Into::full>(columns, {y, width}, {panel + i, stride}, 1, x + i * width,
+                                                            width, end - i);
   }
   /// Rows of x, one per column, minus the transposed columns times `rows` rows of y.
   static void gather_rows(const double* l, Index stride, Index columns, Index rows, const double* y,
                           double* x) noexcept {
     if (columns == tile_columns)
-      return subtract_tile<Packets, tile_columns, Into::full>(rows, {y, width}, {l, 1}, stride, x, width, tile_columns);
+      return subtract_tile_here<Packets, tile_columns, Into::full>(rows, {y, width}, {l, 1}, stride, x, width,
+                                                                   tile_columns);
     for (Index j = 0; j < columns; ++j)
-      subtract_tile<Packets, 1, Into::full>(rows, {y, width}, {l + j * stride, 1}, stride, x + j * width, width, 1);
+      subtract_tile_here<Packets, 1, Into::full>(rows, {y, width}, {l + j * stride, 1}, stride, x + j * width, width,
+                                                 1);
   }
 };
 

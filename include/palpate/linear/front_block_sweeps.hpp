@@ -19,9 +19,12 @@ class FrontBlockSweeps {
   void backward(const Front& f) noexcept;
 
  private:
+  using Substitution = void (*)(const double* l, const LowerPanels& shape, double* x) noexcept;
+
   const FrontTree& tree_;
   const double* factor_;
   Index width_;
+  Substitution forward_, backward_;  // of this width
   VectorX values_, local_;
 };
 

@@ -27,6 +27,12 @@ PALPATE_INLINE FrontBlockSweeps::FrontBlockSweeps(const FrontTree& tree, const d
     : tree_(tree),
       factor_(factor),
       width_(block_packets(columns) * packet_size),
+      forward_(width_ == packet_size       ? FrontBlock<1>::forward
+               : width_ == 2 * packet_size ? FrontBlock<2>::forward
+                                           : FrontBlock<3>::forward),
+      backward_(width_ == packet_size       ? FrontBlock<1>::backward
+                : width_ == 2 * packet_size ? FrontBlock<2>::backward
+                                            : FrontBlock<3>::backward),
       values_(width_ * tree.place_of_dof.size()),
       local_(width_ * (LowerPanels::padded(tree.largest_front) + LowerPanels::alignment)) {}
 
@@ -38,12 +44,7 @@ PALPATE_INLINE void FrontBlockSweeps::forward(const Front& f) noexcept {
   const LowerPanels shape = f.panels();
   double* const x = local_.data();
   clear_packets(copy_packets(row(f.first), f.pivots * width_, x), (shape.height - f.pivots) * width_);
-  if (width_ == packet_size)
-    FrontBlock<1>::forward(factor_ + f.factor, shape, x);
-  else if (width_ == 2 * packet_size)
-    FrontBlock<2>::forward(factor_ + f.factor, shape, x);
-  else
-    FrontBlock<3>::forward(factor_ + f.factor, shape, x);
+  forward_(factor_ + f.factor, shape, x);
   copy_packets(x, f.pivots * width_, row(f.first));
   const double* from = x + f.pivots * width_;
   for (Index r = f.run_begin; r < f.run_end; ++r) {
@@ -61,12 +62,7 @@ PALPATE_INLINE void FrontBlockSweeps::backward(const Front& f) noexcept {
   for (Index r = f.run_begin; r < f.run_end; ++r)
     to = copy_packets(row(tree_.runs[r].first), tree_.runs[r].count * width_, to);
   clear_packets(to, x + shape.height * width_ - to);
-  if (width_ == packet_size)
-    FrontBlock<1>::backward(factor_ + f.factor, shape, x);
-  else if (width_ == 2 * packet_size)
-    FrontBlock<2>::backward(factor_ + f.factor, shape, x);
-  else
-    FrontBlock<3>::backward(factor_ + f.factor, shape, x);
+  backward_(factor_ + f.factor, shape, x);
   copy_packets(x, f.pivots * width_, row(f.first));
 }
 

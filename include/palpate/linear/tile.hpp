@@ -39,8 +39,8 @@ struct Steps {
 /// c = c - A B (Into::full) or -A B (Into::empty), where step s of A is a column of `V` packets and step s of B a row
 /// of which entry j lies at j * `b_apart`. Only the first `valid` columns of c are written; all of B is read.
 template <int V, int Columns, Into Mode>
-inline void subtract_tile(Index steps, Steps a, Steps b, Index b_apart, double* c, Index c_stride,
-                          Index valid) noexcept {
+PALPATE_ALWAYS_INLINE void subtract_tile_here(Index steps, Steps a, Steps b, Index b_apart, double* c, Index c_stride,
+                                              Index valid) noexcept {
   Packet sum[Columns][V];
   for (auto& column : sum)
     for (Packet& x : column) x = broadcast(0.0);
@@ -64,6 +64,13 @@ inline void subtract_tile(Index steps, Steps a, Steps b, Index b_apart, double* 
         store(to, Eigen::internal::pnegate(sum[j][v]));
     }
   }
+}
+
+/// The same, to be called: fewer copies of the loop, for many steps.
+template <int V, int Columns, Into Mode>
+inline void subtract_tile(Index steps, Steps a, Steps b, Index b_apart, double* c, Index c_stride,
+                          Index valid) noexcept {
+  subtract_tile_here<V, Columns, Mode>(steps, a, b, b_apart, c, c_stride, valid);
 }
 
 /// The same with the number of packets, up to tile_packets, known at run time.
