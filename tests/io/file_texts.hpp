@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cstring>
+#include <map>
 
 namespace test {
 

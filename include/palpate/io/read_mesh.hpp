@@ -1,6 +1,8 @@
 // Reads a mesh from a file of any known format.
 #pragma once
 
+#include <palpate/io/decimal.hpp>
+#include <palpate/io/file.hpp>
 #include <palpate/io/gmsh_file.hpp>
 #include <palpate/io/mesh_builder.hpp>
 #include <palpate/io/tetgen.hpp>

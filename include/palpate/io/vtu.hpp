@@ -2,6 +2,8 @@
 #pragma once
 
 #include <palpate/io/cell_shape.hpp>
+#include <palpate/io/decimal.hpp>
+#include <palpate/io/file.hpp>
 #include <palpate/mesh/mesh_ref.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
