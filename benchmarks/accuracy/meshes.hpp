@@ -4,6 +4,7 @@
 #include <palpate/element/mean_dilatation.hpp>
 #include <palpate/element/smoothed.hpp>
 #include <palpate/mesh/generators_box.hpp>
+#include <palpate/mesh/promote.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <cmath>

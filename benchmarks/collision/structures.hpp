@@ -5,6 +5,7 @@
 #include <palpate/contact/triangle.hpp>
 
 #include <cmath>
+#include <numeric>
 
 namespace collision {
 

@@ -1,4 +1,6 @@
 // The internal force, per element.
+#include <palpate/assembly/large_strain.hpp>
+#include <palpate/core/binary_io.hpp>
 #include "explicit.hpp"
 
 namespace explicit_path {

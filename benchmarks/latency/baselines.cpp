@@ -3,6 +3,7 @@
 #include <cstring>
 #include <memory>
 #include <palpate/concepts/haptic_device.hpp>
+#include <palpate/core/platform.hpp>
 
 #include "sampling.hpp"
 

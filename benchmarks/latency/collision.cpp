@@ -2,9 +2,12 @@
 #include <map>
 #include <memory>
 #include <palpate/contact/contact_surface.hpp>
+#include <palpate/core/platform.hpp>
 #include <random>
 
 #include "sampling.hpp"
+
+#include <cmath>
 
 namespace {
 

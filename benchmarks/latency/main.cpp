@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include <string>
+
 int main(int argc, char** argv) {
 #if defined(__VERSION__)
   benchmark::AddCustomContext("compiler", __VERSION__);

@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <palpate/core/platform.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 #include <vector>
 

@@ -3,9 +3,12 @@
 #include "cholmod.hpp"
 #include "setup.hpp"
 
+#include <palpate/core/binary_io.hpp>
+#include <palpate/core/platform.hpp>
 #include <palpate/io/gmsh.hpp>
 
 #include <Eigen/SparseCholesky>
+#include <Eigen/Cholesky>
 
 #include <optional>
 #include <tuple>

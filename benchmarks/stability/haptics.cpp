@@ -1,5 +1,6 @@
 // Z-width: how stiff a wall may be before a device buzzes, for devices, grips, rates and delays, simulated. Every
 // figure that has a formula is checked against it.
+#include <palpate/core/setup_error.hpp>
 #include "stability.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // The map as a picture: a panel per device and hand, rate over delay, darker is stiffer.
+#include <palpate/core/setup_error.hpp>
 #include "stability.hpp"
 
 #include <cmath>

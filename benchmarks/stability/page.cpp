@@ -2,6 +2,7 @@
 
 #include <ctime>
 #include <fstream>
+#include <ostream>
 
 #include "../common/markup.hpp"
 

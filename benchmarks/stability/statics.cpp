@@ -1,4 +1,5 @@
 // The sweep over statics.
+#include <palpate/core/voigt.hpp>
 #include "statics.hpp"
 
 #include <cstdio>

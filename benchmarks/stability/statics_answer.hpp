@@ -3,6 +3,7 @@
 
 #include "statics.hpp"
 
+#include <palpate/linear/condition.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
 #include <numeric>

@@ -1,8 +1,10 @@
 // What everybody does: assemble, hand to Eigen, ask info(). No other check.
+#include <palpate/core/voigt.hpp>
 #include "closed_form.hpp"
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 
 namespace maps {
 namespace {

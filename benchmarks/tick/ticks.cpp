@@ -2,6 +2,7 @@
 #include "tick.hpp"
 
 #include <palpate/haptic/run_haptic_loop.hpp>
+#include <palpate/model/column_worker.hpp>
 
 #include <chrono>
 #include <thread>

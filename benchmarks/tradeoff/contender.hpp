@@ -1,6 +1,7 @@
 // One way to feel the scene, and what is measured of it.
 #pragma once
 
+#include <palpate/core/voigt.hpp>
 #include <functional>
 #include <memory>
 #include <span>

@@ -14,6 +14,7 @@
 #include "page.hpp"
 
 #include <palpate/core/platform.hpp>
+#include <palpate/core/voigt.hpp>
 #include <palpate/mesh/refine.hpp>
 
 namespace {

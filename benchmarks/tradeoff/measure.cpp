@@ -1,4 +1,5 @@
 // How a contender is driven and judged.
+#include <palpate/core/voigt.hpp>
 #include <algorithm>
 #include <numbers>
 

@@ -1,9 +1,11 @@
 // The table as a file, as a page with pictures, and as advice.
+#include <palpate/core/voigt.hpp>
 #include "page.hpp"
 
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <ostream>
 
 #include "../common/markup.hpp"
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <iosfwd>
+#include <ostream>
 
 #include "contender.hpp"
 

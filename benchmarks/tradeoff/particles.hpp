@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/mass_matrix.hpp>
+#include <palpate/core/voigt.hpp>
 
 #include <algorithm>
 

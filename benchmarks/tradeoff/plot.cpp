@@ -1,4 +1,5 @@
 // The picture of error over latency.
+#include <palpate/core/voigt.hpp>
 #include <cmath>
 #include <ostream>
 

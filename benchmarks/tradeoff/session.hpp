@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/core/platform.hpp>
+#include <palpate/core/voigt.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 
 #include <algorithm>

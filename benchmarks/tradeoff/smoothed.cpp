@@ -1,4 +1,5 @@
 // Tetrahedra without locking.
+#include <palpate/core/platform.hpp>
 #include "linear.hpp"
 
 namespace tradeoff {

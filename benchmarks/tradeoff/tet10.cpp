@@ -1,4 +1,5 @@
 // Quadratic tetrahedra.
+#include <palpate/core/platform.hpp>
 #include "linear.hpp"
 
 namespace tradeoff {

@@ -1,4 +1,5 @@
 // Linear tetrahedra, condensed.
+#include <palpate/core/platform.hpp>
 #include "linear.hpp"
 
 namespace tradeoff {

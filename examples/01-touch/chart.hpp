@@ -1,6 +1,8 @@
 // Charts as SVG that stands in the page itself.
 #pragma once
 
+#include <palpate/core/platform.hpp>
+#include <palpate/linear/separator.hpp>
 #include <palpate/palpate.hpp>
 
 #include <cstdarg>

@@ -1,6 +1,7 @@
 // The four charts of the report.
 #pragma once
 
+#include <palpate/linear/separator.hpp>
 #include "chart.hpp"
 #include "pictures.hpp"
 

@@ -18,6 +18,8 @@
 // arguments were refused.
 #include "scene.hpp"
 
+#include <palpate/core/platform.hpp>
+#include <palpate/io/veg_lines.hpp>
 #include <palpate/io/vtu.hpp>
 #include <palpate/post/stress.hpp>
 

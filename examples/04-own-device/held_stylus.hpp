@@ -4,6 +4,8 @@
 #include <palpate/concepts/haptic_device.hpp>
 #include <palpate/device/render_limits.hpp>
 
+#include <algorithm>
+
 namespace own {
 
 using palpate::DeviceLimits;

@@ -18,6 +18,7 @@
 #include "../common/main_with_out.hpp"
 #include "../common/page.hpp"
 
+#include <palpate/io/numbers.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/soft.hpp>
 

@@ -2,10 +2,13 @@
 // refused rather than skipped.
 #pragma once
 
+#include <palpate/core/platform.hpp>
+#include <palpate/io/veg_lines.hpp>
 #include <palpate/palpate.hpp>
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <initializer_list>
 
 namespace solve_case {

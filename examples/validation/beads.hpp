@@ -7,6 +7,7 @@
 
 #include <Eigen/SVD>
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <vector>

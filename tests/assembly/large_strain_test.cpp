@@ -9,6 +9,8 @@
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/promote.hpp>
 
+#include <Eigen/Geometry>
+
 #include "assembly/bodies.hpp"
 
 using namespace test;

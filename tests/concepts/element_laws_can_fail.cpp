@@ -1,4 +1,5 @@
 // A deliberate break for every element law: a law that cannot fail shows nothing.
+#include <palpate/element/quad4.hpp>
 #include <palpate/element/quad8.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/element/tri6.hpp>

@@ -1,6 +1,7 @@
 // What HapticDevice and Servo accept and what they refuse.
 #include <palpate/concepts/haptic_device.hpp>
 #include <palpate/concepts/servo.hpp>
+#include <palpate/device/mock_device.hpp>
 #include <palpate/device/replay_device.hpp>
 
 #include "catch.hpp"

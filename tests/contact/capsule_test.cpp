@@ -2,9 +2,12 @@
 #include "contact/tool_session.hpp"
 
 #include <palpate/contact/capsule_tool.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"
+
+#include <cmath>
 
 using namespace palpate;
 using Catch::Matchers::WithinAbs;

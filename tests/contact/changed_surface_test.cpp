@@ -1,4 +1,5 @@
 // Contact that goes on when the surface gets other triangles, as by a cut.
+#include <palpate/core/setup_error.hpp>
 #include "contact/tool_session.hpp"
 
 #include "catch.hpp"

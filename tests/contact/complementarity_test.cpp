@@ -6,6 +6,9 @@
 
 #include "catch.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 using namespace palpate;
 
 namespace {

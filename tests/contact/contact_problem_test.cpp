@@ -1,9 +1,12 @@
 // Balls on a tissue whose contact force is known in closed form.
 #include "contact/tool_session.hpp"
 
+#include <palpate/core/setup_error.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"
+
+#include <cmath>
 
 using namespace palpate;
 using Catch::Matchers::WithinAbs;

@@ -3,6 +3,7 @@
 #include <palpate/mesh/generators.hpp>
 #include <palpate/testing/random.hpp>
 
+#include <cmath>
 #include <set>
 #include <tuple>
 

@@ -5,6 +5,8 @@
 
 #include "catch.hpp"
 
+#include <cmath>
+
 using namespace palpate;
 using Catch::Matchers::WithinAbs;
 

@@ -1,9 +1,12 @@
 // Coulomb friction against closed forms.
 #include "contact/tool_session.hpp"
 
+#include <palpate/core/setup_error.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"
+
+#include <cmath>
 
 using namespace palpate;
 using Catch::Matchers::WithinAbs;

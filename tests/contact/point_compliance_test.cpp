@@ -4,6 +4,8 @@
 
 #include "catch.hpp"
 
+#include <cmath>
+
 using namespace palpate;
 
 namespace {

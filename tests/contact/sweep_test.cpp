@@ -2,10 +2,14 @@
 #include "contact/analytic_tissue.hpp"
 
 #include <palpate/contact/sweep.hpp>
+#include <palpate/contact/tool_placement.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"
+
+#include <cmath>
 
 using namespace palpate;
 using Catch::Matchers::WithinAbs;

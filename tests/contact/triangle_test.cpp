@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "catch.hpp"
 

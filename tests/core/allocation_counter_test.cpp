@@ -1,6 +1,7 @@
 // Tests that count allocations must be able to fail.
 #include <palpate/testing/allocation_counter.hpp>
 
+#include <new>
 #include <vector>
 
 #include "catch.hpp"

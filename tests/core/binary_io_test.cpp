@@ -1,7 +1,10 @@
 // Hash, binary files and atomic replacement.
 #include <palpate/core/atomic_file.hpp>
 
+#include <algorithm>
+#include <chrono>
 #include <fstream>
+#include <vector>
 
 #include "catch.hpp"
 

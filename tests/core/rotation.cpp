@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <numbers>
+#include <vector>
 
 #include "catch.hpp"
 

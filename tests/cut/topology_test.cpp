@@ -1,7 +1,10 @@
 #include <palpate/cut/blade_sweep.hpp>
 #include <palpate/mesh/components.hpp>
 #include <palpate/mesh/generators.hpp>
+#include <palpate/mesh/rigid_modes.hpp>
 #include <palpate/testing/random.hpp>
+
+#include <Eigen/Geometry>
 
 #include "catch.hpp"
 #include "refused.hpp"

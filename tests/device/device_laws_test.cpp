@@ -1,5 +1,8 @@
 // The law suite for devices passes good devices and catches each kind of bad one.
+#include <palpate/core/limit_length.hpp>
+#include <palpate/device/mock_device.hpp>
 #include <palpate/device/replay_device.hpp>
+#include <palpate/device/trajectory.hpp>
 #include <palpate/testing/device_laws.hpp>
 
 #include "catch.hpp"

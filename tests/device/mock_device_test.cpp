@@ -3,6 +3,9 @@
 
 #include "catch.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 using namespace palpate;
 using Catch::Matchers::WithinAbs;
 

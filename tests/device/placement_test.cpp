@@ -4,6 +4,8 @@
 #include <palpate/testing/device_laws.hpp>
 #include <palpate/testing/random.hpp>
 
+#include <Eigen/Geometry>
+
 #include "catch.hpp"
 
 using namespace palpate;

@@ -1,10 +1,15 @@
 // Record, write, read, replay: the same bits; and everything that can be wrong with a file.
 #include <cfloat>
+#include <chrono>
 #include <clocale>
 #include <cstring>
 #include <filesystem>
 #include <locale>
+#include <memory>
+#include <palpate/core/platform.hpp>
+#include <palpate/device/mock_device.hpp>
 #include <palpate/device/replay_device.hpp>
+#include <palpate/device/trajectory.hpp>
 #include <palpate/haptic/force_gate.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 #include <palpate/testing/random.hpp>

@@ -1,10 +1,12 @@
 // The force gate against a second telling of its documentation (gate_model.hpp), over random ticks that hit its limits
 // exactly and hold every special value. A small program, so that mutants of the gate compile fast (mutants.py).
 //   test_gate [--long <ticks>]     1e6 unless told; 1e9 takes minutes
+#include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/force_gate.hpp>
 
 #include "gate_model.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

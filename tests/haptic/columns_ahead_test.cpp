@@ -1,7 +1,10 @@
 // Whole surfaces touched without a stored compliance: columns computed in the tick, or by a thread ahead of it.
+#include <palpate/linear/front_factorisation.hpp>
 #include "contact/servo_session.hpp"
 
 #include "catch.hpp"
+
+#include <thread>
 
 using namespace palpate;
 using test::ball_radius;

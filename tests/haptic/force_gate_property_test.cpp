@@ -1,5 +1,7 @@
 // The promises of the force gate over millions of random ticks, special values included.
+#include <algorithm>
 #include <cfloat>
+#include <cmath>
 #include <palpate/core/realtime.hpp>
 #include <palpate/haptic/force_gate.hpp>
 #include <palpate/testing/random.hpp>

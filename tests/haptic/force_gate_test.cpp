@@ -1,7 +1,10 @@
 // One behaviour of the force gate at a time. Random input: force_gate_property_test.cpp.
+#include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/force_gate.hpp>
 
 #include "catch.hpp"
+
+#include <algorithm>
 
 using namespace palpate;
 using Catch::Matchers::WithinAbs;

@@ -1,10 +1,15 @@
 // The haptic loop with a mock device and a servo that is a spring behind a wall.
+#include <palpate/core/platform.hpp>
+#include <palpate/device/mock_device.hpp>
 #include <palpate/device/replay_device.hpp>
+#include <palpate/device/trajectory.hpp>
 #include <palpate/haptic/force_gate.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/random.hpp>
+#include <chrono>
 #include <sstream>
+#include <thread>
 
 #include "catch.hpp"
 

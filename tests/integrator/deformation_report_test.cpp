@@ -1,5 +1,6 @@
 // What explicit motion and its forces say of the state they are in, and what they refuse.
 #include <palpate/assembly/averaged_tetrahedra.hpp>
+#include <palpate/assembly/large_strain.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
 
 #include "integrator/motions.hpp"

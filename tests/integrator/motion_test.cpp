@@ -1,4 +1,5 @@
 // Explicit motion of a neo-Hookean block: what is conserved, what is refused, and what it survives.
+#include <palpate/assembly/large_strain.hpp>
 #include "integrator/motions.hpp"
 
 using namespace test;

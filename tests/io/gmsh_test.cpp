@@ -1,4 +1,5 @@
 // What a good file becomes.
+#include <palpate/io/numbered_rows.hpp>
 #include "samples.hpp"
 
 #include <filesystem>

@@ -4,9 +4,11 @@
 #include "element/user_elements.hpp"
 
 #include <palpate/io/gmsh_types.hpp>
+#include <palpate/io/numbers.hpp>
 #include <palpate/io/vtk_types.hpp>
 #include <palpate/io/write_msh.hpp>
 
+#include <algorithm>
 #include <numeric>
 
 using namespace palpate;

@@ -4,10 +4,13 @@
 
 #include <palpate/io/numbers.hpp>
 #include <palpate/io/surface_files.hpp>
+#include <palpate/io/veg_lines.hpp>
 #include <palpate/io/write_msh.hpp>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+
+#include <cmath>
 
 using namespace palpate;
 using Catch::Matchers::WithinAbs;

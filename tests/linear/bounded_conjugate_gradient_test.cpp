@@ -8,6 +8,8 @@
 
 #include "catch.hpp"
 
+#include <cmath>
+
 using namespace palpate;
 
 namespace {

@@ -1,4 +1,5 @@
 // Orthotropic and transversely isotropic linear elasticity.
+#include <palpate/core/voigt.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/transversely_isotropic.hpp>
 #include <palpate/testing/material_laws.hpp>

@@ -1,4 +1,5 @@
 // Presets of tissues and factors of units.
+#include <palpate/core/voigt.hpp>
 #include <palpate/material/tissue_presets.hpp>
 
 #include <set>

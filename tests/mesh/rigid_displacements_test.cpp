@@ -6,6 +6,8 @@
 
 #include "catch.hpp"
 
+#include <cmath>
+
 using namespace palpate;
 
 namespace {

@@ -2,6 +2,8 @@
 
 #include <palpate/mesh/rigid_modes.hpp>
 
+#include <Eigen/QR>
+
 #include <bit>
 
 using namespace test;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <palpate/core/platform.hpp>
+#include <palpate/linear/condition.hpp>
 #include <palpate/model/prepared_cache.hpp>
 
 #include <fstream>

@@ -1,7 +1,8 @@
 // Implicit steps without a matrix against steps that are solved to the end, conservation laws and equilibrium.
+#include <palpate/core/binary_io.hpp>
+#include <palpate/mesh/generators.hpp>
 #include <palpate/model/corotated_motion.hpp>
 #include <palpate/model/implicit_dynamics.hpp>
-#include <palpate/mesh/generators.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/random.hpp>
 

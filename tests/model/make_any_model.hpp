@@ -1,5 +1,6 @@
 #pragma once
 
+#include <palpate/core/platform.hpp>
 #include "model/any_model.hpp"
 
 namespace test {

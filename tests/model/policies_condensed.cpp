@@ -1,3 +1,4 @@
+#include <palpate/linear/dense_cholesky.hpp>
 #include "model/make_any_model.hpp"
 
 namespace test {

@@ -4,6 +4,8 @@
 #include <palpate/model/touchable.hpp>
 #include <palpate/testing/random.hpp>
 
+#include <Eigen/Geometry>
+
 #include "catch.hpp"
 
 using namespace palpate;

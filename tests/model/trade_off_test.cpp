@@ -5,6 +5,9 @@
 #include "catch.hpp"
 #include "refused.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 using namespace palpate;
 
 namespace {

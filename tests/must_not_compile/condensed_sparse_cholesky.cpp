@@ -1,5 +1,6 @@
 // expect: the condensed stiffness is dense: choose Condensed<SelectiveInverse>
 #include <palpate/element/tet4.hpp>
+#include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 

@@ -1,8 +1,10 @@
 // Colour maps: their ends, their lightness, and values that are out of range.
+#include <palpate/core/setup_error.hpp>
 #include <palpate/post/colour_map.hpp>
 
 #include "catch.hpp"
 
+#include <cmath>
 #include <limits>
 
 using namespace palpate;

@@ -1,10 +1,13 @@
 // Principal values and directions.
+#include <palpate/core/voigt.hpp>
 #include <palpate/post/principal.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <Eigen/LU>
 
 #include "catch.hpp"
+
+#include <cmath>
 
 using namespace palpate;
 using Catch::Matchers::WithinRel;

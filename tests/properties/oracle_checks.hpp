@@ -1,9 +1,14 @@
 #pragma once
 
+#include <palpate/core/platform.hpp>
+#include <palpate/io/numbers.hpp>
+#include <palpate/io/veg_lines.hpp>
+#include <palpate/linear/front_factorisation.hpp>
 #include "../../examples/solve_case/solve.hpp"
 
 #include "catch.hpp"
 
+#include <filesystem>
 #include <map>
 
 /// Comparison of linear static solutions with those of other codes (data/oracle/README.md).

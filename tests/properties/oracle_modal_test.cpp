@@ -1,4 +1,5 @@
 // Natural frequencies against those of another code (GetFEM, exactly integrated consistent mass).
+#include <palpate/io/veg_lines.hpp>
 #include "../../examples/solve_case/modes.hpp"
 #include "properties/oracle_checks.hpp"
 

@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <ostream>
 #include <sstream>
 #include <thread>
 
