@@ -36,7 +36,8 @@ struct VertexForce {
 /// moves the session's contact problem to the new surface, where it goes on. `require_tools(radius, parameters)` may
 /// refuse a session that this cannot be done for.
 /// - `pose()` maps the model's frame to the world's.
-/// All are noexcept, allocate nothing and take bounded time.
+/// All are noexcept, allocate nothing and take bounded time. Between two calls of `begin_tick` the surface stays at the
+/// same place in memory.
 template <class T>
 concept TissueModel = requires(T& tissue, const T& constant, int i, std::span<const int> vertices) {
   { constant.contact_surface().vertex_count() } noexcept -> std::convertible_to<int>;

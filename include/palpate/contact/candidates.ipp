@@ -38,17 +38,15 @@ inline Vector3 Candidates::rest(const ContactSurface& surface, int s) const noex
 }
 
 inline void Candidates::place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept {
+  c.point = point;
   c.along = tool.along(point);
-  Vector3 offset;
-  for (int k = 0; k < 3; ++k) offset[k] = tool.proxy[k] - point[k];
+  Vector3 offset = tool.proxy - point;
   if (c.along != 0.0) offset = tool.proxy + c.along * tool.axis() - point;
   const double distance = offset.norm();
-  for (int k = 0; k < 3; ++k) c.point[k] = point[k];
-  if (distance > 0.0) {
-    for (int k = 0; k < 3; ++k) c.normal[k] = offset[k] / distance;
-  } else {
+  if (distance > 0.0)
+    c.normal = offset / distance;
+  else
     c.normal = Vector3(0.0, 0.0, 1.0);
-  }
   c.gap = distance - tool.radius;
   c.seen = travel(static_cast<std::size_t>(c.tool));
 }

@@ -19,7 +19,7 @@ struct TissueFunctions {
   Status (*require_columns)(void*, std::span<const int>) noexcept;
   void (*compliance)(const void*, int, int, double*) noexcept;
   void (*between)(const void*, const ContactSample&, const ContactSample&, double*) noexcept;
-  void (*displacement)(const void*, int, std::span<const VertexForce>, double*) noexcept;
+  void (*displacement)(const void*, int, std::span<const VertexForce>, Vector3&) noexcept;
   std::uint64_t (*compliance_revision)(const void*) noexcept;
   double (*compliance_bound)(const void*, int) noexcept;
   double (*compliance_floor)(const void*) noexcept;
@@ -65,16 +65,14 @@ struct TissueCalls {
         }
       }
   }
-  static void displacement(const void* t, int vertex, std::span<const VertexForce> forces, double* out) noexcept {
-    double x = 0.0, y = 0.0, z = 0.0;
+  /// By Eigen's own product: it writes in pieces as large as those that the caller reads.
+  static void displacement(const void* t, int vertex, std::span<const VertexForce> forces, Vector3& out) noexcept {
+    Vector3 u(0.0, 0.0, 0.0);
     for (const VertexForce& f : forces) {
       Read c = of(t).compliance(vertex, f.vertex);
-      const double* n = f.force.data();
-      x += c.coeff(0, 0) * n[0] + (c.coeff(0, 1) * n[1] + c.coeff(0, 2) * n[2]);
-      y += c.coeff(1, 0) * n[0] + (c.coeff(1, 1) * n[1] + c.coeff(1, 2) * n[2]);
-      z += c.coeff(2, 0) * n[0] + (c.coeff(2, 1) * n[1] + c.coeff(2, 2) * n[2]);
+      u.noalias() += c * f.force;
     }
-    out[0] = x, out[1] = y, out[2] = z;
+    out = u;
   }
   static std::uint64_t compliance_revision(const void* t) noexcept { return of(t).compliance_revision(); }
   static double compliance_bound(const void* t, int j) noexcept { return of(t).compliance_bound(j); }
@@ -147,7 +145,7 @@ class TissueView {
   }
   /// Displacement of a vertex under forces on vertices [m].
   void displacement(int vertex, std::span<const VertexForce> forces, Vector3& u) const noexcept {
-    functions_->displacement(tissue_, vertex, forces, u.data());
+    functions_->displacement(tissue_, vertex, forces, u);
   }
   std::uint64_t compliance_revision() const noexcept { return functions_->compliance_revision(tissue_); }
   double compliance_bound(int j) const noexcept { return functions_->compliance_bound(tissue_, j); }
