@@ -1,9 +1,4 @@
 // Linear static cases of other codes, read from files: the same mesh, the same element, the same answer.
-#include <palpate/core/platform.hpp>
-#include <palpate/io/numbers.hpp>
-#include <palpate/io/veg_lines.hpp>
-#include <palpate/linear/level_order.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include "elements.hpp"
 #include "parts.hpp"
 

@@ -5,9 +5,6 @@
 #include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/level_order.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>

@@ -2,15 +2,9 @@
 //   bench_cut [--build <name of the flags>] [--csv <file to add rows to>] [--trace <file for forces>] [--organ]
 //   [--long]
 // --organ: only what is cut in real time.
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
 #include <palpate/cut/blade_sweep.hpp>
 #include <palpate/cut/cut_view.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/level_order.hpp>
-#include <palpate/linear/separator.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/touchable.hpp>

@@ -1,16 +1,9 @@
 #include "organ.hpp"
 
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
 #include <palpate/cut/cuttable_tissue.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/io/node_ids.hpp>
 #include <palpate/io/read_mesh.hpp>
-#include <palpate/io/veg_lines.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/level_order.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include <cstdio>

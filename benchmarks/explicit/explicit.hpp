@@ -3,7 +3,6 @@
 
 #include <palpate/assembly/batched_tetrahedra.hpp>
 #include <palpate/assembly/element_frequency.hpp>
-#include <palpate/assembly/large_strain.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
 #include <palpate/integrator/semi_implicit_euler.hpp>

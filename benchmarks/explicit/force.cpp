@@ -1,6 +1,4 @@
 // The internal force, per element.
-#include <palpate/assembly/large_strain.hpp>
-#include <palpate/core/binary_io.hpp>
 #include "explicit.hpp"
 
 namespace explicit_path {

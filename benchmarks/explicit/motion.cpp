@@ -1,7 +1,4 @@
 // Whole motions.
-#include <palpate/assembly/large_strain.hpp>
-#include <palpate/core/binary_io.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include "explicit.hpp"
 
 namespace explicit_path {

@@ -1,6 +1,4 @@
 // Bullet's deformable bodies on the standard block: a baseline, and nothing else.
-#include <palpate/core/binary_io.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include "implicit.hpp"
 
 #ifdef PALPATE_BENCH_BULLET

@@ -1,9 +1,7 @@
 // Long runs of implicit steps.
 #include "drift.hpp"
 
-#include <palpate/core/binary_io.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/model/corotated_motion.hpp>

@@ -1,8 +1,6 @@
 // The parts of the program.
 #pragma once
 
-#include <palpate/core/binary_io.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/model/corotated_motion.hpp>
 
 #include "../common/bodies.hpp"

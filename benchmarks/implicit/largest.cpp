@@ -4,11 +4,9 @@
 #include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/batched_tetrahedra.hpp>
 #include <palpate/assembly/element_frequency.hpp>
-#include <palpate/core/binary_io.hpp>
 #include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
 #include <palpate/integrator/semi_implicit_euler.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>

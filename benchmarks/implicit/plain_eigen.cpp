@@ -1,6 +1,3 @@
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/lower_panels.hpp>
 #include "implicit.hpp"
 
 #include <Eigen/Geometry>

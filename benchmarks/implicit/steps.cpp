@@ -2,8 +2,6 @@
 #include "implicit.hpp"
 
 #include <palpate/assembly/large_strain.hpp>
-#include <palpate/core/binary_io.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/model/implicit_dynamics.hpp>
 #include <palpate/model/renewed_factor.hpp>
 

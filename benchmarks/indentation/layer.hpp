@@ -1,9 +1,6 @@
 // A ball pressed into an elastic layer bonded to a rigid base, without friction, against the exact solution.
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/separator_refinement.hpp>
-#include <palpate/mesh/promote.hpp>
 #include <cmath>
 #include <cstdio>
 

@@ -3,7 +3,6 @@
 #include <cstring>
 #include <memory>
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/core/platform.hpp>
 
 #include "sampling.hpp"
 

@@ -2,7 +2,6 @@
 #include <map>
 #include <memory>
 #include <palpate/contact/contact_surface.hpp>
-#include <palpate/core/platform.hpp>
 #include <random>
 
 #include "sampling.hpp"

@@ -1,7 +1,6 @@
 // A ball that moves over a block with a given number of contacts.
 #pragma once
 
-#include <palpate/core/platform.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 

@@ -1,8 +1,6 @@
 // What a program without this library would do in a tick, on the same block: a solve, or a product with an inverse.
 #include <palpate/assembly/free_stiffness.hpp>
-#include <palpate/core/platform.hpp>
 #include <palpate/linear/dense_inverse.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 #include <Eigen/Cholesky>

@@ -1,6 +1,4 @@
 // The tick as a device meets it: woken from sleep, caches emptied by whatever else runs.
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <chrono>
 #include <thread>
 

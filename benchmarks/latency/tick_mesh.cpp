@@ -1,6 +1,4 @@
 // The tick by size of the body and by number of contacts. Patch, contact points and weights are the same everywhere.
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include "palpation.hpp"
 
 namespace {

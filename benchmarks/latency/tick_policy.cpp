@@ -1,7 +1,5 @@
 // The tick, the set-up and the price of a new contact by solver policy.
-#include <palpate/core/platform.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <memory>
 
 #include "palpation.hpp"

@@ -3,7 +3,6 @@
 //   bench_required [--out FOLDER] [--docs FILE]                  the table, also into a document
 //   bench_required --put FILE --marker WORD --docs FILE          another table into a document
 // Returns 1 when the force depends on what else is kept, which it must not.
-#include <palpate/linear/level_order.hpp>
 #include <palpate/mesh/selection.hpp>
 
 #include <cstdio>

@@ -2,7 +2,6 @@
 // of 1 mm elements. The touchable patch, the ball and its ten contacts stay the same.
 //   bench_scaling [--build <name>] [--csv <file to add rows to>] [--out <folder for scaling.svg and scaling.csv>]
 //                 [--up-to <tetrahedra>]
-#include <palpate/linear/front_factorisation.hpp>
 #include "../common/row.hpp"
 #include "../common/touching.hpp"
 #include "log_plot.hpp"

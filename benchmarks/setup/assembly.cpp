@@ -1,6 +1,4 @@
 // Assembly of the standard block against triplets and setFromTriplets, in nanoseconds per tetrahedron.
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
 #include "../common/bodies.hpp"
 #include "setup.hpp"
 

@@ -3,11 +3,7 @@
 #include "setup.hpp"
 
 #include <palpate/condensation/condensed_system.hpp>
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 
 namespace setup {
 

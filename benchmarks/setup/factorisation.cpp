@@ -3,8 +3,6 @@
 #include "cholmod.hpp"
 #include "setup.hpp"
 
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
 #include <palpate/io/gmsh.hpp>
 
 #include <Eigen/SparseCholesky>

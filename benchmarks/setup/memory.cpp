@@ -1,7 +1,4 @@
 // Memory predicted by the analysis against the growth of the resident memory, and the refusal over a limit.
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include "../common/bodies.hpp"
 #include "setup.hpp"
 

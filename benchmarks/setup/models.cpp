@@ -2,7 +2,6 @@
 #include "../common/bodies.hpp"
 #include "setup.hpp"
 
-#include <palpate/core/platform.hpp>
 #include <palpate/io/gmsh.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 

@@ -1,7 +1,4 @@
 // Solves with a finished factor: one right-hand side against reading the factor twice, blocks of them in GFLOP/s.
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include "../common/bodies.hpp"
 #include "setup.hpp"
 

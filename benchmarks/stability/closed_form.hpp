@@ -1,7 +1,6 @@
 // The linear tetrahedron by cross products in any precision. It shares no formula with the library.
 #pragma once
 
-#include <palpate/core/voigt.hpp>
 #include "statics.hpp"
 
 #include <Eigen/Geometry>

@@ -1,7 +1,6 @@
 // Co-rotated steps of the library: one linearisation per step, no factor.
 #include "dynamics_schemes.hpp"
 
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/model/corotated_motion.hpp>
 
 namespace maps {

@@ -1,7 +1,6 @@
 // Implicit schemes of the library: a minimised potential per step.
 #include "dynamics_schemes.hpp"
 
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/model/implicit_dynamics.hpp>
 
 namespace maps {

@@ -1,5 +1,4 @@
 // The sweep over statics.
-#include <palpate/core/voigt.hpp>
 #include "statics.hpp"
 
 #include <cstdio>

@@ -3,7 +3,6 @@
 
 #include "grid.hpp"
 
-#include <palpate/core/voigt.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>

@@ -3,7 +3,6 @@
 
 #include "statics.hpp"
 
-#include <palpate/linear/condition.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
 #include <numeric>

@@ -1,5 +1,4 @@
 // What everybody does: assemble, hand to Eigen, ask info(). No other check.
-#include <palpate/core/voigt.hpp>
 #include "closed_form.hpp"
 
 #include <Eigen/IterativeLinearSolvers>

@@ -1,5 +1,4 @@
 // Truth: dense Cholesky in long double of a stiffness made in long double.
-#include <palpate/core/voigt.hpp>
 #include "closed_form.hpp"
 
 #include <Eigen/Cholesky>

@@ -2,7 +2,6 @@
 #include "tick.hpp"
 
 #include <palpate/haptic/run_haptic_loop.hpp>
-#include <palpate/model/column_worker.hpp>
 
 #include <chrono>
 #include <thread>

@@ -1,7 +1,6 @@
 // One way to feel the scene, and what is measured of it.
 #pragma once
 
-#include <palpate/core/voigt.hpp>
 #include <functional>
 #include <memory>
 #include <span>

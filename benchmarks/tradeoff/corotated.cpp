@@ -1,5 +1,4 @@
 // Co-rotated tissue that moves without a factor, in fixed work.
-#include <palpate/model/column_worker.hpp>
 #include "soft.hpp"
 
 namespace tradeoff {

@@ -5,7 +5,6 @@
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/material/neo_hookean.hpp>
 
 #include "soft.hpp"

@@ -4,9 +4,7 @@
 #include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/mesh/promote.hpp>
-#include <palpate/model/column_worker.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
 #include "contender.hpp"

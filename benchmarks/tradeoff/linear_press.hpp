@@ -4,16 +4,10 @@
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/condensation/uncondensed.hpp>
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/cholesky_analysis.hpp>
 #include <palpate/linear/dense_inverse.hpp>
-#include <palpate/linear/front_sweeps.hpp>
 #include <palpate/linear/indexed_vector.hpp>
-#include <palpate/linear/leaf_order.hpp>
 #include <palpate/linear/node_graph.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
-#include <palpate/linear/spd_inverse.hpp>
 #include <palpate/mesh/surface.hpp>
 #include <palpate/model/policies.hpp>
 

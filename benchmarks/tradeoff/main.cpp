@@ -14,7 +14,6 @@
 #include "page.hpp"
 
 #include <palpate/core/platform.hpp>
-#include <palpate/core/voigt.hpp>
 #include <palpate/mesh/refine.hpp>
 
 namespace {

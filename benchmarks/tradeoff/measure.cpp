@@ -1,5 +1,4 @@
 // How a contender is driven and judged.
-#include <palpate/core/voigt.hpp>
 #include <algorithm>
 #include <numbers>
 

@@ -1,5 +1,4 @@
 // The table as a file, as a page with pictures, and as advice.
-#include <palpate/core/voigt.hpp>
 #include "page.hpp"
 
 #include <cmath>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <palpate/assembly/mass_matrix.hpp>
-#include <palpate/core/voigt.hpp>
 
 #include <algorithm>
 

@@ -2,8 +2,6 @@
 // its own slow rate, with forces interpolated for the device.
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/free_stiffness.hpp>
-#include <palpate/core/platform.hpp>
-#include <palpate/model/column_worker.hpp>
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>

@@ -1,5 +1,4 @@
 // The picture of error over latency.
-#include <palpate/core/voigt.hpp>
 #include <cmath>
 #include <ostream>
 

@@ -1,8 +1,6 @@
 // Balls pressed into a body, as a stiff potential: for references, which need no tick.
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/model/equilibrium.hpp>
 
 #include <memory>

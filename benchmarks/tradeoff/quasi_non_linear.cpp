@@ -1,5 +1,4 @@
 // Cotin's quasi-non-linear elasticity over a linear composition.
-#include <palpate/core/platform.hpp>
 #include <palpate/model/quasi_non_linear.hpp>
 
 #include "linear.hpp"

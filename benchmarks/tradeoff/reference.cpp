@@ -1,9 +1,6 @@
 #include "direct_reference.hpp"
 
 #include <palpate/element/tet10.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/separator_refinement.hpp>
-#include <palpate/linear/spd_inverse.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/promote.hpp>
 

@@ -1,5 +1,4 @@
 // Shorter edges where balls press.
-#include <palpate/core/voigt.hpp>
 #include <queue>
 #include <set>
 #include <unordered_map>

@@ -1,8 +1,6 @@
 #include "scene.hpp"
 
 #include <palpate/contact/contact_surface.hpp>
-#include <palpate/core/voigt.hpp>
-#include <palpate/io/numbers.hpp>
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/mesh/selection.hpp>
 

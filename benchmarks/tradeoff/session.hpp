@@ -2,7 +2,6 @@
 #pragma once
 
 #include <palpate/core/platform.hpp>
-#include <palpate/core/voigt.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 
 #include <algorithm>

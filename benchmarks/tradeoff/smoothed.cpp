@@ -1,5 +1,4 @@
 // Tetrahedra without locking.
-#include <palpate/core/platform.hpp>
 #include "linear.hpp"
 
 namespace tradeoff {

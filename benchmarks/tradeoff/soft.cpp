@@ -1,6 +1,5 @@
 // Neo-Hookean tissue that moves by implicit steps with a factor.
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/model/column_worker.hpp>
 #include <palpate/model/soft_tissue.hpp>
 
 #include "soft.hpp"

@@ -1,7 +1,6 @@
 // Moving tissue felt through a servo.
 #pragma once
 
-#include <palpate/model/column_worker.hpp>
 #include <palpate/model/corotated_tissue.hpp>
 
 #include "free_motion.hpp"

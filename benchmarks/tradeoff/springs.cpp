@@ -1,6 +1,5 @@
 // What games and many simulators take: a spring along every edge.
 #include <palpate/assembly/constant_geometry.hpp>
-#include <palpate/core/voigt.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include <map>

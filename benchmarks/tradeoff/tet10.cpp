@@ -1,5 +1,4 @@
 // Quadratic tetrahedra.
-#include <palpate/core/platform.hpp>
 #include "linear.hpp"
 
 namespace tradeoff {

@@ -1,5 +1,4 @@
 // Linear tetrahedra, condensed.
-#include <palpate/core/platform.hpp>
 #include "linear.hpp"
 
 namespace tradeoff {

@@ -1,6 +1,5 @@
 // Linear tetrahedra without condensation.
 #include <palpate/core/platform.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 
 #include "linear.hpp"
 

@@ -1,8 +1,6 @@
 // Charts as SVG that stands in the page itself.
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/separator.hpp>
 #include <palpate/palpate.hpp>
 
 #include <cstdarg>

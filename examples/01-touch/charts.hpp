@@ -1,7 +1,6 @@
 // The four charts of the report.
 #pragma once
 
-#include <palpate/linear/separator.hpp>
 #include "chart.hpp"
 #include "pictures.hpp"
 

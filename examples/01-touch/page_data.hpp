@@ -1,8 +1,6 @@
 // The numbers the page's script draws from, packed small: displacement in 16 bits, stress in 8.
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/io/numbers.hpp>
 #include "pictures.hpp"
 
 #include <bit>

@@ -5,7 +5,6 @@
 #include "session.hpp"
 
 #include <palpate/io/pvd.hpp>
-#include <palpate/io/veg_lines.hpp>
 #include <palpate/post/colour_map.hpp>
 #include <palpate/post/stress.hpp>
 

@@ -1,7 +1,6 @@
 // report.html: one page that needs nothing but itself.
 #pragma once
 
-#include <palpate/io/veg_lines.hpp>
 #include "charts.hpp"
 #include "page_data.hpp"
 #include "tables.hpp"

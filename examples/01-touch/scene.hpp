@@ -1,7 +1,6 @@
 // What is touched: the organ, its materials, how it is held, and the way the tool takes over it.
 #pragma once
 
-#include <palpate/io/numbers.hpp>
 #include <palpate/palpate.hpp>
 
 #include <Eigen/QR>

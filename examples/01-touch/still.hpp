@@ -1,8 +1,6 @@
 // One moment of a session as a drawing that needs no program to look at: still.svg.
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/io/numbers.hpp>
 #include "pictures.hpp"
 
 namespace touch {

@@ -1,8 +1,6 @@
 // The tables of the report.
 #pragma once
 
-#include <palpate/linear/condition.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include "pictures.hpp"
 
 #include <utility>

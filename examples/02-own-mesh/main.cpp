@@ -18,8 +18,6 @@
 // arguments were refused.
 #include "scene.hpp"
 
-#include <palpate/core/platform.hpp>
-#include <palpate/io/veg_lines.hpp>
 #include <palpate/io/vtu.hpp>
 #include <palpate/post/stress.hpp>
 

@@ -1,9 +1,6 @@
 // What holds a body, what of it is touched, and where the ball goes, for a mesh nobody has seen before.
 #pragma once
 
-#include <palpate/io/numbers.hpp>
-#include <palpate/io/veg_lines.hpp>
-#include <palpate/mesh/promote.hpp>
 #include <palpate/palpate.hpp>
 
 #include <optional>

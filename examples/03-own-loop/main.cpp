@@ -17,9 +17,6 @@
 //
 // --unpaced calls back as fast as it goes, in simulated time; for tests. The exit code is 0 when every force was finite
 // and within the limit of the device, the tissue was felt, and the drawing thread saw it move.
-#include <palpate/core/platform.hpp>
-#include <palpate/io/numbers.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/palpate.hpp>
 
 #include <chrono>

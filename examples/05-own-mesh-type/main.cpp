@@ -17,7 +17,7 @@
 // from the file: exactly from the arrays, and to rounding through millimetres. The exit code says so.
 #include "simulator.hpp"
 
-#include <palpate/io/veg_lines.hpp>
+#include <palpate/own_types.hpp>
 #include <palpate/palpate.hpp>
 #include <palpate/testing/mesh_laws.hpp>
 

@@ -1,5 +1,5 @@
 // Writes an element, has the law suite prove it, and uses it: a beam that sags under its weight.
-#include <palpate/mesh/promote.hpp>
+#include <palpate/own_types.hpp>
 #include <palpate/palpate.hpp>
 #include <palpate/testing/element_laws.hpp>
 

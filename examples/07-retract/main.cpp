@@ -20,7 +20,6 @@
 
 #include <palpate/io/pvd.hpp>
 #include <palpate/io/read_mesh.hpp>
-#include <palpate/io/veg_lines.hpp>
 #include <palpate/io/vtu.hpp>
 #include <palpate/soft.hpp>
 

@@ -18,7 +18,6 @@
 #include "../common/main_with_out.hpp"
 #include "../common/page.hpp"
 
-#include <palpate/io/numbers.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/soft.hpp>
 

@@ -10,8 +10,6 @@
 // The exit code is 0 when a level probe feels the press along the vertical, the torque turns the tilted probe back,
 // friction drags, and nothing is left once it is lifted. The drag is mu times the press and a little more: a dent has a
 // wall in front of the probe.
-#include <palpate/core/platform.hpp>
-#include <palpate/io/numbers.hpp>
 #include <palpate/palpate.hpp>
 #include <palpate/post/stress.hpp>
 

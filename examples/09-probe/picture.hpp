@@ -1,7 +1,6 @@
 // A drawing of a pressed body: its surface coloured by stress, the probe over it.
 #pragma once
 
-#include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/post/colour_map.hpp>
 

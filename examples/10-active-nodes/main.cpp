@@ -10,8 +10,6 @@
 //   work
 //      of the force on the point is that of the shared forces on the nodes.
 // The exit code is 0 when both agree.
-#include <palpate/io/numbers.hpp>
-#include <palpate/model/column_worker.hpp>
 #include <palpate/palpate.hpp>
 
 #include <cstdio>

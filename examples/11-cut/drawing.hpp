@@ -1,10 +1,8 @@
 // The organ as a drawing: what is left of it, from above and a little from the front; wounds in red.
 #pragma once
 
-#include <palpate/core/binary_io.hpp>
 #include <palpate/cut/cuttable_tissue.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/linear/level_order.hpp>
 
 #include <cstdio>
 #include <set>

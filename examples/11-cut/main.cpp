@@ -18,7 +18,6 @@
 #include "drawing.hpp"
 
 #include <palpate/cut/blade.hpp>
-#include <palpate/io/veg_lines.hpp>
 #include <palpate/palpate.hpp>
 
 #include "../common/main_with_out.hpp"

@@ -3,9 +3,7 @@
 
 #include "../01-touch/chart.hpp"
 
-#include <palpate/core/platform.hpp>
 #include <palpate/io/file.hpp>
-#include <palpate/io/veg_lines.hpp>
 
 #include <filesystem>
 #include <iostream>

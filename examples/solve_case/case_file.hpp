@@ -2,8 +2,6 @@
 // refused rather than skipped.
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/io/veg_lines.hpp>
 #include <palpate/palpate.hpp>
 
 #include <nlohmann/json.hpp>

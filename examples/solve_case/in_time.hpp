@@ -1,10 +1,6 @@
 // Relaxation, creep and motion of one load case with elements E, beside a table of what it should be.
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/io/numbers.hpp>
-#include <palpate/io/veg_lines.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/model/equilibrium.hpp>
 #include <palpate/model/implicit_dynamics.hpp>
 

@@ -1,7 +1,6 @@
 // Static load cases at large deformation with elements E.
 #pragma once
 
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>

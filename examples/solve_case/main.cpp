@@ -23,8 +23,6 @@
 // Whatever palpate does not do (another law, an element it lacks, a group that the mesh does not have) is refused by
 // name in that line, and the next load case is tried: a wrong answer is never printed. The exit code is 0 when every
 // load case was solved or refused, and 2 when the case file or its mesh cannot be read.
-#include <palpate/core/platform.hpp>
-#include <palpate/io/veg_lines.hpp>
 #include "solve_all.hpp"
 
 using namespace solve_case;

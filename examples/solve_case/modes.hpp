@@ -1,7 +1,6 @@
 // Natural frequencies of one load case with elements E.
 #pragma once
 
-#include <palpate/core/platform.hpp>
 #include <palpate/model/natural_frequencies.hpp>
 
 #include "solve.hpp"

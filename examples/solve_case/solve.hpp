@@ -1,10 +1,6 @@
 // Solves one load case with elements E and writes what came out.
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/io/veg_lines.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/level_order.hpp>
 #include "case_file.hpp"
 
 #include <chrono>

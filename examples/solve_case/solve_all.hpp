@@ -1,8 +1,6 @@
 // All load cases of a file, one after the other.
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/io/veg_lines.hpp>
 #include "case_file.hpp"
 
 #include <iostream>

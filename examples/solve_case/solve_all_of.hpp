@@ -1,8 +1,6 @@
 // Defines solve_all for the source files that instantiate it, one per element.
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/io/veg_lines.hpp>
 #include "in_time.hpp"
 #include "large_strain.hpp"
 #include "modes.hpp"

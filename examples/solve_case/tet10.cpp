@@ -1,4 +1,3 @@
-#include <palpate/core/platform.hpp>
 #include "solve_all_of.hpp"
 
 template void solve_case::solve_all<palpate::Tet10>(const CaseFile&, const Arguments&);

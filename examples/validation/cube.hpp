@@ -5,9 +5,6 @@
 #include "../../benchmarks/accuracy/statics.hpp"
 #include "beads.hpp"
 
-#include <palpate/core/binary_io.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/lower_panels.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/model/equilibrium.hpp>
 

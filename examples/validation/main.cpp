@@ -17,11 +17,6 @@
 // Linear elasticity, and beside it neo-Hookean rubber at large strain with the same constants. Prints tables in
 // Markdown and writes truth_cube_shell.svg and truth_cube_platen.svg. Exit code 1: the treated element does no better
 // than an affine guess where strain is large, or a number is not finite.
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include "picture.hpp"
 
 #include "../../benchmarks/accuracy/report.hpp"

@@ -1,9 +1,6 @@
 // A slice through the cube: measured and computed beads, as SVG.
 #pragma once
 
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include "cube.hpp"
 
 #include <fstream>

@@ -1,7 +1,6 @@
 // The force of several tetrahedra at once is that of the plain loop.
 #include <palpate/assembly/batched_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
-#include <palpate/assembly/point_memory.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_isochoric.hpp>

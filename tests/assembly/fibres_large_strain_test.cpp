@@ -2,7 +2,6 @@
 #include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/batched_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
-#include <palpate/assembly/point_memory.hpp>
 #include <palpate/element/hex8.hpp>
 #include <palpate/material/fibre_reinforced.hpp>
 #include <palpate/material/neo_hookean.hpp>

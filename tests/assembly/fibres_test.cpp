@@ -5,7 +5,6 @@
 #include <palpate/mesh/admission.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>
-#include <palpate/mesh/promote.hpp>
 #include <palpate/mesh/refine.hpp>
 #include <palpate/post/stress.hpp>
 #include <palpate/testing/assembler_laws.hpp>

@@ -1,5 +1,4 @@
 // A deliberate break for every material law.
-#include <palpate/core/voigt.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/testing/material_laws.hpp>
 

@@ -1,7 +1,6 @@
 // A deliberate break for every law of condensed systems.
 #include <palpate/condensation/uncondensed.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
-#include <palpate/linear/lower_panels.hpp>
 #include <palpate/testing/condensation_laws.hpp>
 
 #include "linear/systems.hpp"

@@ -2,12 +2,9 @@
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/condensation/condensed_system.hpp>
 #include <palpate/condensation/uncondensed.hpp>
-#include <palpate/core/binary_io.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/dense_conjugate_gradient.hpp>
 #include <palpate/linear/dense_inverse.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/testing/condensation_laws.hpp>
 
 #include "assembly/csv.hpp"

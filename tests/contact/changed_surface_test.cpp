@@ -1,5 +1,4 @@
 // Contact that goes on when the surface gets other triangles, as by a cut.
-#include <palpate/core/setup_error.hpp>
 #include "contact/tool_session.hpp"
 
 #include "catch.hpp"

@@ -1,7 +1,6 @@
 // Balls on a tissue whose contact force is known in closed form.
 #include "contact/tool_session.hpp"
 
-#include <palpate/core/setup_error.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"

@@ -1,5 +1,4 @@
 // More points than rows: what is kept, what friction does, and that nothing is written where no row is.
-#include <palpate/core/setup_error.hpp>
 #include "contact/tool_session.hpp"
 
 #include "catch.hpp"

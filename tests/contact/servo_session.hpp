@@ -5,7 +5,6 @@
 
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

@@ -2,7 +2,6 @@
 #include "contact/analytic_tissue.hpp"
 
 #include <palpate/contact/sweep.hpp>
-#include <palpate/contact/tool_placement.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/testing/random.hpp>

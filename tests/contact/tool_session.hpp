@@ -1,7 +1,6 @@
 // Tools that are moved in steps over a tissue, as a servo moves them.
 #pragma once
 
-#include <palpate/core/setup_error.hpp>
 #include "contact/analytic_tissue.hpp"
 
 namespace test {

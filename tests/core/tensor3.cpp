@@ -1,6 +1,5 @@
 // Lanes and 3 x 3 tensors against one number at a time and Eigen.
 #include <palpate/core/tensor3.hpp>
-#include <palpate/core/voigt.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/testing/random.hpp>

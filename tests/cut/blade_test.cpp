@@ -1,7 +1,6 @@
 #include <palpate/cut/blade.hpp>
 #include <palpate/cut/cuttable_tissue.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/testing/allocation_counter.hpp>

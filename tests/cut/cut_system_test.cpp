@@ -1,10 +1,6 @@
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
 #include <palpate/cut/blade_sweep.hpp>
 #include <palpate/cut/cut_renewal.hpp>
 #include <palpate/element/hex8.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/separator.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/testing/random.hpp>

@@ -1,11 +1,7 @@
-#include <palpate/core/binary_io.hpp>
 #include <palpate/cut/cut_thread.hpp>
 #include <palpate/cut/cuttable_tissue.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/testing/allocation_counter.hpp>

@@ -6,9 +6,6 @@
 #include <palpate/cut/motion_of_part.hpp>
 #include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/separator.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/corotated_motion.hpp>

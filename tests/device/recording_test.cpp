@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <locale>
 #include <memory>
-#include <palpate/core/platform.hpp>
 #include <palpate/device/mock_device.hpp>
 #include <palpate/device/replay_device.hpp>
 #include <palpate/device/trajectory.hpp>

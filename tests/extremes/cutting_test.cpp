@@ -1,14 +1,8 @@
 // Cutting until a body falls apart, along what the mesh is made of, and under a tool.
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
 #include <palpate/cut/cuttable_tissue.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/io/node_ids.hpp>
 #include <palpate/io/read_mesh.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_round.hpp>

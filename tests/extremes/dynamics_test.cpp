@@ -1,9 +1,7 @@
 // E: motion at its ends. What is tested where the part lives has its tag there.
 #include <palpate/assembly/large_strain.hpp>
-#include <palpate/core/binary_io.hpp>
 #include <palpate/core/realtime.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/material/corotational.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>

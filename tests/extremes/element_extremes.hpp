@@ -1,8 +1,5 @@
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/condition.hpp>
-#include <palpate/linear/leaf_order.hpp>
 #include "properties/element_cases.hpp"
 
 /// Extremes of material and mesh for any element, judged against fields whose nodal values are known. Each element is

@@ -1,6 +1,4 @@
 // Extremes of mesh and support: refused, flagged, or right.
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/leaf_order.hpp>
 #include <palpate/model/statics.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 

@@ -2,8 +2,6 @@
 // again.
 #include "extremes/verdict.hpp"
 
-#include <palpate/linear/separator_refinement.hpp>
-#include <palpate/model/column_worker.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
 #include <cstdio>

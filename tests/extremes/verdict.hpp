@@ -1,7 +1,5 @@
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/condition.hpp>
 #include "model/any_model.hpp"
 #include "model/reference.hpp"
 

@@ -1,5 +1,4 @@
 // Whole surfaces touched without a stored compliance: columns computed in the tick, or by a thread ahead of it.
-#include <palpate/linear/front_factorisation.hpp>
 #include "contact/servo_session.hpp"
 
 #include "catch.hpp"

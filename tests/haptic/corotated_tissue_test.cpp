@@ -1,8 +1,6 @@
 // Tissue that steps as often as the device ticks: the same forces as with a factor, and nothing on the heap.
-#include <palpate/core/binary_io.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/haptic/tissue_thread.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/corotated_tissue.hpp>
 #include <palpate/model/soft_tissue.hpp>

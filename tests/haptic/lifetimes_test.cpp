@@ -1,7 +1,6 @@
 // Two models, four threads, and who may end before whom.
 #include "contact/servo_session.hpp"
 
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 
 #include <palpate/device/mock_device.hpp>

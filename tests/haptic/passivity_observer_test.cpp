@@ -1,7 +1,6 @@
 // The passivity observer's books are right, and the energy tank leaves what is passive alone and stops what is not.
 #include "contact/analytic_tissue.hpp"
 
-#include <palpate/core/platform.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/device/simulated_device.hpp>
 #include <palpate/haptic/haptic_servo.hpp>

@@ -1,5 +1,4 @@
 // The haptic loop with a mock device and a servo that is a spring behind a wall.
-#include <palpate/core/platform.hpp>
 #include <palpate/device/mock_device.hpp>
 #include <palpate/device/replay_device.hpp>
 #include <palpate/device/trajectory.hpp>

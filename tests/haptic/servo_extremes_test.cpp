@@ -1,10 +1,6 @@
 // A haptic session under abuse: catalogue D of the extremes.
 #include "contact/servo_session.hpp"
 
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/lower_panels.hpp>
-#include <palpate/linear/separator.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <cfloat>

@@ -1,5 +1,4 @@
 // A session that is reset lets go of a tissue that moves.
-#include <palpate/core/platform.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 
 #include "contact/analytic_tissue.hpp"

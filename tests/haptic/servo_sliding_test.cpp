@@ -1,5 +1,4 @@
 // What the hand feels when a ball slides over a mesh.
-#include <palpate/linear/front_factorisation.hpp>
 #include "contact/servo_session.hpp"
 
 #include "catch.hpp"

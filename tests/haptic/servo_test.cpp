@@ -6,8 +6,6 @@
 #include <palpate/device/replay_device.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
-#include <palpate/linear/lower_panels.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <cstdio>

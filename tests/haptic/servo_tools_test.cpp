@@ -1,5 +1,4 @@
 // Several tools of one servo, points that are held, and what a snapshot tells of both.
-#include <palpate/core/platform.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 
 #include "contact/analytic_tissue.hpp"

@@ -1,11 +1,9 @@
 // Tissue that moves at its own rate under a servo that ticks at another.
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/haptic/tissue_thread.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/column_worker.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/soft_tissue.hpp>
 #include <palpate/testing/allocation_counter.hpp>

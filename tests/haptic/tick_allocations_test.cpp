@@ -1,9 +1,7 @@
 // A tick takes nothing from the heap, whatever happens in it.
 #include "contact/servo_session.hpp"
 
-#include <palpate/core/platform.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/random.hpp>
 

@@ -1,16 +1,9 @@
 // What a renderer reads, and several tissues under one tool.
-#include <palpate/assembly/block_matrix.hpp>
 #include <palpate/contact/tissue_group.hpp>
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/spsc_ring.hpp>
-#include <palpate/core/voigt.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/linear/front_sweeps.hpp>
 #include <palpate/linear/indexed_vector.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/material/linear_elastic.hpp>
-#include <palpate/mesh/diagnosis.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

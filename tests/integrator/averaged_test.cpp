@@ -1,7 +1,6 @@
 // Tetrahedra with averaged volumes: a force that derives from its energy, exact for equal strain, and does not lock.
 #include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
-#include <palpate/assembly/point_memory.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 
 #include "integrator/motions.hpp"

@@ -1,6 +1,4 @@
 // Linear bodies in explicit motion: waves in a bar, and the modes of a cube.
-#include <palpate/assembly/large_strain.hpp>
-#include <palpate/assembly/point_memory.hpp>
 #include <numbers>
 
 #include "integrator/motions.hpp"

@@ -4,11 +4,8 @@
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/batched_tetrahedra.hpp>
 #include <palpate/assembly/element_frequency.hpp>
-#include <palpate/assembly/large_strain.hpp>
-#include <palpate/assembly/linear_forces.hpp>
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
-#include <palpate/assembly/point_memory.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
 #include <palpate/integrator/semi_implicit_euler.hpp>
 #include <palpate/material/neo_hookean.hpp>

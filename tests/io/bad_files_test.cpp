@@ -1,5 +1,4 @@
 // What a bad file gets: every row of the table has its verdict. `test_io "[table]"` prints the table.
-#include <palpate/io/numbers.hpp>
 #include "bad_files.hpp"
 
 #include <cstdio>

@@ -1,7 +1,4 @@
 // What text-level damage does to every format: spellings of numbers, line ends, cut files, random damage, locale.
-#include <palpate/io/gmsh_types.hpp>
-#include <palpate/io/numbered_rows.hpp>
-#include <palpate/io/numbers.hpp>
 #include "samples.hpp"
 
 #include <algorithm>

@@ -1,6 +1,4 @@
 // The same mesh from every format.
-#include <palpate/io/numbered_rows.hpp>
-#include <palpate/io/numbers.hpp>
 #include <palpate/io/veg_lines.hpp>
 #include "samples.hpp"
 

@@ -1,5 +1,4 @@
 // What a good file becomes.
-#include <palpate/io/numbered_rows.hpp>
 #include "samples.hpp"
 
 #include <filesystem>

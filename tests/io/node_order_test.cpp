@@ -3,9 +3,6 @@
 #include "samples.hpp"
 #include "element/user_elements.hpp"
 
-#include <palpate/io/gmsh_types.hpp>
-#include <palpate/io/numbers.hpp>
-#include <palpate/io/vtk_types.hpp>
 #include <palpate/io/write_msh.hpp>
 
 #include <algorithm>

@@ -1,8 +1,6 @@
 // A format is a way to write a body down, not another body: the shipped organ, written in every format that is read,
 // gives the same forces in every tick.
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/io/numbered_rows.hpp>
-#include <palpate/io/veg_lines.hpp>
 #include <palpate/io/write_msh.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

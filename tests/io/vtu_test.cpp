@@ -1,9 +1,7 @@
 // VTU files are read back by a reader that knows the format, not the writer.
 #include "samples.hpp"
 
-#include <palpate/io/numbers.hpp>
 #include <palpate/io/pvd.hpp>
-#include <palpate/io/veg_lines.hpp>
 
 #include <cstring>
 #include <map>

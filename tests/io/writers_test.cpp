@@ -4,7 +4,6 @@
 
 #include <palpate/io/numbers.hpp>
 #include <palpate/io/surface_files.hpp>
-#include <palpate/io/veg_lines.hpp>
 #include <palpate/io/write_msh.hpp>
 
 #include <Eigen/Geometry>

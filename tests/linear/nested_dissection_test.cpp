@@ -1,11 +1,8 @@
 // Elimination orders, separators and trees against their definitions.
-#include <palpate/core/binary_io.hpp>
 #include <palpate/linear/bipartite_cover.hpp>
 #include <palpate/linear/cholesky_analysis.hpp>
 #include <palpate/linear/elimination_tree.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/linear/front_tree.hpp>
-#include <palpate/linear/leaf_order.hpp>
 #include <palpate/linear/level_order.hpp>
 #include <palpate/linear/nested_dissection.hpp>
 #include <palpate/linear/part_lists.hpp>

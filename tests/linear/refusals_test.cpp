@@ -1,11 +1,7 @@
 // Matrices without a trustworthy answer: refused, where the library underneath reports success.
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/dense_inverse.hpp>
-#include <palpate/linear/leaf_order.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
-#include <palpate/linear/spd_inverse.hpp>
 
 #include <Eigen/SparseCholesky>
 #include <cstdio>

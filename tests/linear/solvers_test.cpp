@@ -1,10 +1,8 @@
 // Solvers against a dense reference in long double, on matrices that have an answer.
 #include <palpate/condensation/uncondensed.hpp>
-#include <palpate/core/binary_io.hpp>
 #include <palpate/linear/condition.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/dense_inverse.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 #include <palpate/testing/solver_laws.hpp>
 

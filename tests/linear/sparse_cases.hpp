@@ -2,8 +2,6 @@
 
 #include "linear/systems.hpp"
 
-#include <palpate/core/binary_io.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 
 namespace test {

@@ -1,6 +1,4 @@
 // Matrices the direct solver must refuse, with the dofs to blame.
-#include <palpate/core/binary_io.hpp>
-#include <palpate/linear/lower_panels.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 
 #include "linear/sparse_cases.hpp"

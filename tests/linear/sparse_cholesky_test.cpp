@@ -1,6 +1,4 @@
 // The direct solver against dense references, path by path.
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/solver_laws.hpp>

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <palpate/core/voigt.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/mesh.hpp>

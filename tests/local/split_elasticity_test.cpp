@@ -1,7 +1,5 @@
 // Elasticity as a deviatoric and a volumetric part.
-#include <palpate/core/voigt.hpp>
 #include <palpate/local/split_elasticity.hpp>
-#include <palpate/local/strain_displacement.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include <Eigen/Eigenvalues>

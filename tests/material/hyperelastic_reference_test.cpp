@@ -1,5 +1,4 @@
 // The laws for large strain against tables of closed forms (tests/data/oracle/README.md) and textbook formulas.
-#include <palpate/core/voigt.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_isochoric.hpp>

@@ -1,5 +1,4 @@
 #include <bit>
-#include <palpate/core/voigt.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/testing/material_laws.hpp>
 

@@ -1,5 +1,4 @@
 // Presets of tissues and factors of units.
-#include <palpate/core/voigt.hpp>
 #include <palpate/material/tissue_presets.hpp>
 
 #include <set>

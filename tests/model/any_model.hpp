@@ -1,6 +1,5 @@
 #pragma once
 
-#include <palpate/core/platform.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/condition.hpp>
 #include <palpate/model/prepared_cache.hpp>
 
 #include <fstream>

@@ -1,6 +1,4 @@
 // Loads, gravity, pose and reset: the same as a new model, without a new factorisation, all or nothing.
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include "model/any_model.hpp"
 #include "model/reference.hpp"
 

@@ -1,5 +1,4 @@
 // Implicit steps without a matrix against steps that are solved to the end, conservation laws and equilibrium.
-#include <palpate/core/binary_io.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/corotated_motion.hpp>
 #include <palpate/model/implicit_dynamics.hpp>

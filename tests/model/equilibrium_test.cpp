@@ -1,6 +1,4 @@
 // Static equilibrium at large deformation.
-#include <palpate/core/binary_io.hpp>
-#include <palpate/linear/leaf_order.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/mesh/generators.hpp>

@@ -1,5 +1,4 @@
 // Fibres in a model and in the key of its cache.
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/material/transversely_isotropic.hpp>
 #include <palpate/model/cache_key.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

@@ -1,13 +1,6 @@
 // Motion in time against closed forms, conservation laws and another code.
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
 #include <palpate/element/hex8.hpp>
-#include <palpate/io/node_ids.hpp>
-#include <palpate/io/numbers.hpp>
 #include <palpate/io/read_mesh.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>

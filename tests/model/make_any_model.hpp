@@ -1,6 +1,5 @@
 #pragma once
 
-#include <palpate/core/platform.hpp>
 #include "model/any_model.hpp"
 
 namespace test {

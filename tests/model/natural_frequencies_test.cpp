@@ -1,7 +1,4 @@
 // Natural frequencies against closed forms and, in the next file, other codes.
-#include <palpate/core/binary_io.hpp>
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/model/natural_frequencies.hpp>
 
 #include <palpate/mesh/admission.hpp>

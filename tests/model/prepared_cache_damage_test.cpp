@@ -1,8 +1,4 @@
 // Cache files that are damaged, foreign, forged or cannot be written: never a failure, never a wrong answer.
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/separator_refinement.hpp>
-#include <palpate/model/statics.hpp>
 #include <algorithm>
 #include <sstream>
 

@@ -1,5 +1,4 @@
 // The cache file of a prepared model: same answers, and every difference by its name.
-#include <palpate/linear/leaf_order.hpp>
 #include <sstream>
 #include <thread>
 

@@ -1,8 +1,6 @@
 // Linear tissue that stiffens along curves measured on a non-linear one.
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/core/binary_io.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/equilibrium.hpp>

@@ -1,6 +1,4 @@
 // A factor renewed by a thread changes how fast a step is solved, never what it is.
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/corotated_motion.hpp>
 #include <palpate/model/renewed_factor.hpp>

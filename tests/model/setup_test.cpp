@@ -1,6 +1,5 @@
 // Set-up: what it refuses, reports and lets the caller decide.
 #include <palpate/linear/condition.hpp>
-#include <palpate/linear/leaf_order.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>
 #include <set>
 #include <sstream>

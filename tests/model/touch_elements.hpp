@@ -1,6 +1,5 @@
 #pragma once
 
-#include <palpate/core/platform.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators_box.hpp>

@@ -1,9 +1,4 @@
 // Relaxation, creep and motion of bodies with memory, against closed forms (tests/data/oracle/README.md).
-#include <palpate/core/binary_io.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/lower_panels.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/transversely_isotropic.hpp>

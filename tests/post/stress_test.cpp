@@ -1,8 +1,6 @@
 // Stress against closed forms, and against another code.
 #include <palpate/element/tet4.hpp>
 #include <palpate/io/gmsh.hpp>
-#include <palpate/io/numbers.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <palpate/core/platform.hpp>
 #include <palpate/element/hex20.hpp>
 #include <palpate/element/tet10.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/leaf_order.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/promote.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

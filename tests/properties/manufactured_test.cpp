@@ -1,7 +1,5 @@
 // A manufactured solution on even and distorted meshes: orders of convergence of displacement and energy, every
 // element.
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/leaf_order.hpp>
 #include "../../benchmarks/accuracy/manufactured.hpp"
 #include "../../benchmarks/accuracy/solver.cpp"
 

@@ -1,8 +1,5 @@
 // Relations between the answers of changed problems: nobody needs to know the right one.
 #include <palpate/linear/condition.hpp>
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/separator_refinement.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 
 #include "model/any_model.hpp"

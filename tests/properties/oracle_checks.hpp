@@ -1,9 +1,5 @@
 #pragma once
 
-#include <palpate/core/platform.hpp>
-#include <palpate/io/numbers.hpp>
-#include <palpate/io/veg_lines.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include "../../examples/solve_case/solve.hpp"
 
 #include "catch.hpp"

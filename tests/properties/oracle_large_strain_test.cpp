@@ -1,7 +1,5 @@
 // Static equilibrium at large deformation against CalculiX (fields), GetFEM (scalars) and closed forms
 // (data/oracle/README.md).
-#include <palpate/io/veg_lines.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include "../../examples/solve_case/large_strain.hpp"
 #include "properties/oracle_checks.hpp"
 

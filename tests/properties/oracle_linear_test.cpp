@@ -1,6 +1,5 @@
 // Linear static solutions against those of other codes: CalculiX for the fields, GetFEM for the scalars
 // (data/oracle/README.md).
-#include <palpate/io/veg_lines.hpp>
 #include "properties/oracle_checks.hpp"
 
 using namespace palpate;

@@ -1,5 +1,4 @@
 // Natural frequencies against those of another code (GetFEM, exactly integrated consistent mass).
-#include <palpate/io/veg_lines.hpp>
 #include "../../examples/solve_case/modes.hpp"
 #include "properties/oracle_checks.hpp"
 

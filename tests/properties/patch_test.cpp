@@ -1,7 +1,4 @@
 // Manufactured solutions: affine ones exactly, smooth ones with the order of the element.
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/leaf_order.hpp>
-#include <palpate/linear/spd_inverse.hpp>
 #include "model/any_model.hpp"
 #include "model/reference.hpp"
 

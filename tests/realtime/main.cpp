@@ -2,7 +2,6 @@
 // and run by tests/sanitize.sh; with another compiler it only ticks. Every kind of contact, for a linear model and for
 // two sessions side by side.
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/linear/front_factorisation.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

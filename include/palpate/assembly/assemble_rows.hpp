@@ -6,7 +6,6 @@
 #include <palpate/assembly/node_elements.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/local/geometry.hpp>
 #include <palpate/local/isotropic.hpp>

@@ -7,7 +7,6 @@
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/concepts/material.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/lane_rows.hpp>
 #include <palpate/core/lanes.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/tensor3.hpp>

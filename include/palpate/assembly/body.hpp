@@ -6,7 +6,6 @@
 #include <palpate/concepts/material.hpp>
 #include <palpate/concepts/mesh.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/lanes.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/fibres.hpp>

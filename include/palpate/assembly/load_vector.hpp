@@ -5,11 +5,9 @@
 #include <palpate/assembly/smoothed_strain.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/local/integration_points.hpp>
 #include <palpate/local/loads.hpp>
-#include <palpate/local/strain_displacement.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/selection.hpp>

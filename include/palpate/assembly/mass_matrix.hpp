@@ -8,7 +8,6 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/local/mass.hpp>
 #include <palpate/mesh/mesh.hpp>

@@ -8,7 +8,6 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/smoothed.hpp>
 #include <palpate/local/integration_points.hpp>

@@ -5,10 +5,8 @@
 #include <palpate/assembly/domain_elasticity.hpp>
 #include <palpate/assembly/strain_domains.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/smoothed.hpp>
-#include <palpate/local/strain_displacement.hpp>
 
 #include <vector>
 

@@ -12,11 +12,9 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/material/viscoelastic.hpp>
 #include <palpate/mesh/mesh.hpp>
-#include <palpate/mesh/scene.hpp>
 
 #include <utility>
 #include <vector>

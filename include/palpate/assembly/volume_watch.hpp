@@ -4,7 +4,6 @@
 #include <palpate/assembly/tetrahedron_batches.hpp>
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/lane_rows.hpp>
 #include <palpate/core/lanes.hpp>
 #include <palpate/core/types.hpp>
 

@@ -6,7 +6,6 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/cut_topology.hpp>
-#include <palpate/cut/held_pieces.hpp>
 #include <palpate/cut/topology_change.hpp>
 #include <palpate/mesh/mesh.hpp>
 

@@ -4,13 +4,11 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/lanes.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/cut_base.hpp>
 #include <palpate/cut/cut_physics.hpp>
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/element_changes.hpp>
-#include <palpate/cut/held_pieces.hpp>
 #include <palpate/cut/kept_dofs.hpp>
 #include <palpate/cut/topology_change.hpp>
 #include <palpate/local/stiffness.hpp>

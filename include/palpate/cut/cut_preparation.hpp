@@ -12,7 +12,6 @@
 #include <palpate/cut/cut_surface.hpp>
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/cuttable_options.hpp>
-#include <palpate/cut/held_pieces.hpp>
 #include <palpate/mesh/admission.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>

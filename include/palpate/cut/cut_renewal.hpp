@@ -8,8 +8,6 @@
 #include <palpate/cut/cut_physics.hpp>
 #include <palpate/cut/cut_system.hpp>
 #include <palpate/cut/cut_topology.hpp>
-#include <palpate/cut/held_pieces.hpp>
-#include <palpate/linear/tile.hpp>
 
 #include <atomic>
 #include <memory>

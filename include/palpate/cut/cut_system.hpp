@@ -6,7 +6,6 @@
 #include <palpate/core/lanes.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/bordered_update.hpp>
 #include <palpate/cut/cut_base.hpp>
@@ -15,7 +14,6 @@
 #include <palpate/cut/cut_step.hpp>
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/element_changes.hpp>
-#include <palpate/cut/held_pieces.hpp>
 #include <palpate/cut/kept_dofs.hpp>
 #include <palpate/cut/matrix_pool.hpp>
 #include <palpate/cut/topology_change.hpp>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <palpate/concepts/element.hpp>
-#include <palpate/contact/bvh.hpp>
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/contact/contact_samples.hpp>

@@ -10,7 +10,6 @@
 #include <palpate/contact/contact_samples.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/lanes.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/status.hpp>
@@ -25,10 +24,8 @@
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/cut_view.hpp>
 #include <palpate/cut/cuttable_options.hpp>
-#include <palpate/cut/held_pieces.hpp>
 #include <palpate/cut/topology_change.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
-#include <palpate/linear/tile.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/touchable.hpp>

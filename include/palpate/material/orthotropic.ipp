@@ -2,7 +2,6 @@
 #pragma once
 
 #include <palpate/material/orthotropic.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/voigt.hpp>
 
 #include <Eigen/Eigenvalues>

@@ -14,10 +14,8 @@
 #include <palpate/core/realtime.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/status.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
-#include <palpate/linear/tile.hpp>
 #include <palpate/mesh/admission.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/rigid_modes.hpp>

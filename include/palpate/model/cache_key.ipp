@@ -2,7 +2,6 @@
 #pragma once
 
 #include <palpate/model/cache_key.hpp>
-#include <palpate/core/tensor3.hpp>
 
 #include <algorithm>
 

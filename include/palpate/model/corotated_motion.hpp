@@ -12,14 +12,12 @@
 #include <palpate/core/realtime.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/integrator/implicit_step.hpp>
 #include <palpate/integrator/requirements.hpp>
 #include <palpate/integrator/time_scheme.hpp>
 #include <palpate/linear/bounded_conjugate_gradient.hpp>
-#include <palpate/linear/tile.hpp>
 #include <palpate/material/corotational.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/scene.hpp>

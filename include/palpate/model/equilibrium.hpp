@@ -10,7 +10,6 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/integrator/newton.hpp>
-#include <palpate/linear/tile.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/deformable_body.hpp>
 #include <palpate/model/tangent_solver.hpp>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <palpate/model/equilibrium.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/integrator/requirements.hpp>
 
 #include <algorithm>

@@ -9,7 +9,6 @@
 #include <palpate/integrator/implicit_step.hpp>
 #include <palpate/integrator/newton.hpp>
 #include <palpate/integrator/time_scheme.hpp>
-#include <palpate/linear/tile.hpp>
 #include <palpate/model/deformable_body.hpp>
 #include <palpate/model/tangent_solver.hpp>
 

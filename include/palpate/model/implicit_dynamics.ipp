@@ -4,7 +4,6 @@
 #include <palpate/model/implicit_dynamics.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/integrator/requirements.hpp>
 
 #include <algorithm>

@@ -9,15 +9,12 @@
 #include <palpate/assembly/smoothed_stiffness.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/lanes.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/core/voigt.hpp>
 #include <palpate/linear/block_lanczos.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
-#include <palpate/local/strain_displacement.hpp>
 #include <palpate/mesh/rigid_displacements.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>

@@ -1,7 +1,6 @@
 // The cache file of a prepared model: header, numbers, hash.
 #pragma once
 
-#include <palpate/core/atomic_file.hpp>
 #include <palpate/core/binary_io.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/content_hash.hpp>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/model/prepared_cache.hpp>
+#include <palpate/core/atomic_file.hpp>
 #include <palpate/core/setup_error.hpp>
 
 #include <algorithm>

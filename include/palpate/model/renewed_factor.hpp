@@ -8,7 +8,6 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/linear/tile.hpp>
 #include <palpate/local/isotropic.hpp>
 #include <palpate/model/deformable_body.hpp>
 #include <palpate/model/step_preconditioners.hpp>

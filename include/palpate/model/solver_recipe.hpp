@@ -39,7 +39,7 @@ constexpr SolverRecipe solver_recipe() noexcept {
   recipe.estimates_condition = stored && !std::same_as<Policy, WithAssembly<ConjugateGradient, Assembled>>;
   recipe.make = [](const AnyStiffness& k, const EssentialConditions& conditions, const DofLayout& layout,
                    const SetupLimits& limits) {
-    if constexpr (requires(const BlockMatrix& matrix) { Traits::make(matrix, conditions, layout, limits); } && stored)
+    if constexpr (stored)
       return AnyStaticSystem(Traits::make(*k.matrix(), conditions, layout, limits));
     else
       return AnyStaticSystem(Traits::make(k.view(), conditions, layout, limits));

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <palpate/model/turned_solve.hpp>
-#include <palpate/core/tensor3.hpp>
 
 #include <numeric>
 

@@ -7,7 +7,6 @@
 #include <palpate/contact/triangle.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/element_search.hpp>
 #include <palpate/mesh/mesh.hpp>

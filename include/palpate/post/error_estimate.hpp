@@ -5,7 +5,6 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/serendipity.hpp>
 #include <palpate/local/geometry.hpp>

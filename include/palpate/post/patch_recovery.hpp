@@ -6,7 +6,6 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/promote.hpp>

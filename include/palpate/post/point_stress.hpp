@@ -7,13 +7,11 @@
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/mean_dilatation.hpp>
 #include <palpate/element/smoothed.hpp>
 #include <palpate/local/geometry.hpp>
 #include <palpate/local/integration_points.hpp>
-#include <palpate/local/strain_displacement.hpp>
 #include <palpate/mesh/mesh.hpp>
 
 #include <array>

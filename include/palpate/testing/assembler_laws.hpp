@@ -7,11 +7,9 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/core/voigt.hpp>
 #include <palpate/local/loads.hpp>
-#include <palpate/local/strain_displacement.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/surface.hpp>
 #include <palpate/testing/random.hpp>

@@ -2,8 +2,6 @@
 // which must work; `invalid` makes one with a Poisson ratio of 0.5, `inverted` one with an element inside out, which
 // must end in the handler (exit code 7); `default` the same without a handler of ours, `returns` with one that returns:
 // both print and abort.
-#include <palpate/core/platform.hpp>
-#include <palpate/linear/spd_inverse.hpp>
 #include <palpate/palpate.hpp>
 
 #include <cstdio>

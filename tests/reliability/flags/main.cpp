@@ -2,7 +2,6 @@
 // when one differs by more than rounding, or the gate lets through what it must not.
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/free_stiffness.hpp>
-#include <palpate/core/binary_io.hpp>
 #include <palpate/core/realtime.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/force_gate.hpp>
