@@ -6,6 +6,8 @@
 
 #include "indentation.hpp"
 
+#include <palpate/mesh/promote.hpp>
+
 namespace indentation {
 
 using namespace palpate;

@@ -2,6 +2,7 @@
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/matrix_free.hpp>
 #include <palpate/material/transversely_isotropic.hpp>
+#include <palpate/mesh/promote.hpp>
 #include <palpate/mesh/admission.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>

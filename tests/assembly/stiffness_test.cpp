@@ -129,7 +129,7 @@ TEST_CASE("free_matrix is the lower half of K without the prescribed dofs", "[as
     for (Index j = 0; j <= i; ++j)
       expected(i, j) = all(c.free_dofs[static_cast<std::size_t>(i)], c.free_dofs[static_cast<std::size_t>(j)]);
   CHECK(lower == expected);
-  const FreeStiffness<BlockMatrix> op(k, c);
+  const FreeStiffness op(k, c);
   const MatrixX by_apply = testing::dense_matrix(op);
   CHECK(largest(by_apply - MatrixX(expected.selfadjointView<Eigen::Lower>())) <= 1e-13 * largest(expected));
   VectorX x = VectorX::Ones(op.size()), y(op.size());

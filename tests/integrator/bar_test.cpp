@@ -4,6 +4,8 @@
 #include "integrator/motions.hpp"
 #include "number_rows.hpp"
 
+#include <palpate/assembly/linear_forces.hpp>
+
 using namespace test;
 
 namespace {

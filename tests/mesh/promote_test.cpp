@@ -1,6 +1,7 @@
 // Quadratic meshes from linear ones, and uniform refinement.
 #include "mesh_helpers.hpp"
 
+#include <palpate/mesh/promote.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/generators_round.hpp>
 #include <palpate/mesh/refine.hpp>

@@ -2,6 +2,7 @@
 
 #include <palpate/model/prepared_cache.hpp>
 
+#include <filesystem>
 #include <fstream>
 
 #include "model/any_model.hpp"

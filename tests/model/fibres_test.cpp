@@ -25,7 +25,7 @@ TEST_CASE("a cache is not for a body with other fibres", "[model][cache][fibres]
   Scene scene;
   scene.fix("x0");
   const auto key_of = [&](const Body<Tet4>& body) {
-    return cache_key(body, conditions_of(body.mesh, scene), {}, assemble_stiffness<Tet4>(body, {}), "policy", 8);
+    return cache_key(body_key(body), conditions_of(body.mesh, scene), {}, assemble_stiffness<Tet4>(body, {}), "policy", 8);
   };
   const CacheKey key = key_of(make_body(mesh, muscle));
   std::string why;

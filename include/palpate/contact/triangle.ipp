@@ -58,8 +58,11 @@ PALPATE_INLINE TrianglePoint closest_point(const Vector3& p, const Vector3& a, c
     const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
     return {{0.0, 1.0 - w, w}, TriangleFeature::edge12};
   }
-  if (!(va + vb + vc > 0.0)) return closest_on_edges(p, {a, b, c});
-  const double scale = 1.0 / (va + vb + vc);
+  // Of a triangle without area only rounding is left of these, and with fused multiply-adds not even that cancels.
+  const double area = va + vb + vc;  // |ab x ac|^2
+  if (!(area > 1e-14 * ab.squaredNorm() * ac.squaredNorm() && va >= 0.0 && vb >= 0.0 && vc >= 0.0))
+    return closest_on_edges(p, {a, b, c});
+  const double scale = 1.0 / area;
   const double v = vb * scale, w = vc * scale;
   return {{1.0 - v - w, v, w}, TriangleFeature::face};
 }

@@ -1,6 +1,7 @@
 // Between rows of a table, one per node, and lanes, one per element.
 #pragma once
 
+#include <palpate/core/lanes.hpp>
 #include <palpate/core/tensor3.hpp>
 
 #include <utility>

@@ -2,6 +2,7 @@
 // own, never on hardware: run testing/device_laws.hpp on yours, with nobody at the handle.
 #pragma once
 
+#include <palpate/core/setup_error.hpp>
 #include <palpate/device/render_limits.hpp>
 #include <palpate/device/sdk_state.hpp>
 

@@ -20,6 +20,7 @@
 #endif
 
 #include <palpate/concepts/servo.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/device/render_limits.hpp>
 #include <palpate/device/sdk_state.hpp>
 

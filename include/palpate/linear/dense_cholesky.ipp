@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/core/binary_io.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/linear/big_array.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/front_kernels.hpp>

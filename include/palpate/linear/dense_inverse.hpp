@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
+#include <palpate/core/setup_options.hpp>
 
 #include <memory>
 

@@ -3,6 +3,7 @@
 
 #include <palpate/core/binary_io.hpp>
 #include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 

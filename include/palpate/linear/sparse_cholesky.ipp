@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/core/binary_io.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/linear/front_block_sweeps.hpp>
 #include <palpate/linear/front_factorisation.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
