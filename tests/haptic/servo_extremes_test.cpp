@@ -231,7 +231,7 @@ TEST_CASE("a session that starts in the tissue ramps from zero to an outward for
                                   {"on an edge of a triangle", Vector3(0.0125, 0.015, pad_height), up},
                                   {"on an edge of the body", Vector3(0.0, 0.0137, pad_height), Vector3(-1, 0, 1)},
                                   {"on a corner of the body", Vector3(0.03, 0.03, pad_height), Vector3(1, 1, 1),
-                                   0.05},  // it balances, then slides off
+                                   0.08},  // it balances, then slides off: rounding decides how
                                   {"inside, at the side", Vector3(0.002, 0.0137, 0.011), -Vector3::UnitX()},
                                   {"in the very middle", Vector3(0.015, 0.015, 0.01), Vector3::Zero()},
                                   {"on a fixed face", Vector3(0.0137, 0.0159, 0.0), -up},
