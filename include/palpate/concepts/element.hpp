@@ -58,6 +58,14 @@ concept Element = requires(const Vector3& xi) {
 template <class E>
 concept HasSmallFace = Element<E> && FaceElement<typename E::SmallFace> && (E::SmallFace::nodes < E::Face::nodes);
 
+/// Whether all faces of E can be touched.
+template <Element E>
+constexpr bool has_triangulated_faces() noexcept {
+  if constexpr (HasSmallFace<E>)
+    if (!TriangulatedFace<typename E::SmallFace>) return false;
+  return TriangulatedFace<typename E::Face>;
+}
+
 /// Local nodes of face f.
 template <Element E>
 constexpr std::span<const int> local_face(std::size_t f) noexcept {

@@ -15,9 +15,6 @@ namespace palpate { inline namespace PALPATE_ABI {
 template <Element E>
 class ElementBody final : public ElasticBody {
  public:
-  static_assert(has_triangulated_faces<E>(),
-                "palpate: tools touch triangles; give the element's Face a list `triangles` of its nodes, like Tri6");
-
   explicit ElementBody(Body<E> body);
 
   const Body<E>& body() const noexcept { return body_; }

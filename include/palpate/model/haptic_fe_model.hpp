@@ -32,6 +32,8 @@ class HapticFEModel : public LinearTissue<typename SolverTraits<Solver>::Scalar>
   using Tissue = LinearTissue<typename SolverTraits<Solver>::Scalar>;
 
  public:
+  static_assert(has_triangulated_faces<E>(),
+                "palpate: tools touch triangles; give the element's Face a list `triangles` of its nodes, like Tri6");
   using ElementType = E;
   using Traits = SolverTraits<Solver>;
 

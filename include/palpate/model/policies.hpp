@@ -90,10 +90,8 @@ struct SolverTraits<WithAssembly<ConjugateGradient, AssemblyPolicy>> {
   using Assembly = AssemblyPolicy;
   using Scalar = double;
   static constexpr bool eager = false;
-  static auto make(const StiffnessView& k, const EssentialConditions& conditions, const DofLayout& layout,
-                   const SetupLimits& limits) {
-    return detail::make_iterative(k, conditions, layout, limits);
-  }
+  static Uncondensed make(const StiffnessView& k, const EssentialConditions& conditions, const DofLayout& layout,
+                          const SetupLimits& limits);
 };
 template <>
 struct SolverTraits<ConjugateGradient> : SolverTraits<WithAssembly<ConjugateGradient, MatrixFree>> {};
@@ -105,14 +103,10 @@ struct SolverTraits<BasicSelectiveInverse<S>> {
   static constexpr bool eager = true;
   static constexpr std::string_view cache_name = "SelectiveInverse";
   static constexpr detail::DenseKind kind = detail::inverse_kind<S>;
-  static auto make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
-                   const SetupLimits& limits) {
-    return detail::make_inverse(kind, k, conditions, layout, limits);
-  }
-  static auto read(BinaryReader& in, const BlockMatrix&, const EssentialConditions& conditions, const DofLayout& layout,
-                   const SetupLimits& limits) {
-    return detail::read_inverse(kind, in, conditions, layout, limits);
-  }
+  static Uncondensed make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+                          const SetupLimits& limits);
+  static Uncondensed read(BinaryReader& in, const BlockMatrix&, const EssentialConditions& conditions,
+                          const DofLayout& layout, const SetupLimits& limits);
 };
 
 /// Dense solver, scalar and eagerness of a condensed system.
@@ -147,14 +141,10 @@ struct SolverTraits<Condensed<Inner>> {
   using Scalar = typename CondensedTraits<Inner>::Scalar;
   static constexpr bool eager = CondensedTraits<Inner>::eager;
   static constexpr std::string_view cache_name = CondensedTraits<Inner>::cache_name;
-  static auto make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
-                   const SetupLimits& limits) {
-    return detail::make_condensed(CondensedTraits<Inner>::kind, k, conditions, layout, limits);
-  }
-  static auto read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
-                   const DofLayout& layout, const SetupLimits& limits) {
-    return detail::read_condensed(CondensedTraits<Inner>::kind, in, k, conditions, layout, limits);
-  }
+  static CondensedSystem make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+                              const SetupLimits& limits);
+  static CondensedSystem read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
+                              const DofLayout& layout, const SetupLimits& limits);
 };
 
 /// A policy that HapticFEModel can be composed with.

@@ -16,6 +16,37 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+// Of policies.hpp: here the systems they make are complete.
+template <class AssemblyPolicy>
+Uncondensed SolverTraits<WithAssembly<ConjugateGradient, AssemblyPolicy>>::make(const StiffnessView& k,
+                                                                                const EssentialConditions& conditions,
+                                                                                const DofLayout& layout,
+                                                                                const SetupLimits& limits) {
+  return detail::make_iterative(k, conditions, layout, limits);
+}
+template <std::floating_point S>
+Uncondensed SolverTraits<BasicSelectiveInverse<S>>::make(const BlockMatrix& k, const EssentialConditions& conditions,
+                                                         const DofLayout& layout, const SetupLimits& limits) {
+  return detail::make_inverse(kind, k, conditions, layout, limits);
+}
+template <std::floating_point S>
+Uncondensed SolverTraits<BasicSelectiveInverse<S>>::read(BinaryReader& in, const BlockMatrix&,
+                                                         const EssentialConditions& conditions, const DofLayout& layout,
+                                                         const SetupLimits& limits) {
+  return detail::read_inverse(kind, in, conditions, layout, limits);
+}
+template <class Inner>
+CondensedSystem SolverTraits<Condensed<Inner>>::make(const BlockMatrix& k, const EssentialConditions& conditions,
+                                                     const DofLayout& layout, const SetupLimits& limits) {
+  return detail::make_condensed(CondensedTraits<Inner>::kind, k, conditions, layout, limits);
+}
+template <class Inner>
+CondensedSystem SolverTraits<Condensed<Inner>>::read(BinaryReader& in, const BlockMatrix& k,
+                                                     const EssentialConditions& conditions, const DofLayout& layout,
+                                                     const SetupLimits& limits) {
+  return detail::read_condensed(CondensedTraits<Inner>::kind, in, k, conditions, layout, limits);
+}
+
 /// A policy whose prepared system can be stored: `cache_name` tells it from all others, the system has `write`, and
 /// `read` makes it again from what was written, given the same stiffness, conditions and layout. `read` takes every
 /// size from these and none from the file, and returns whatever it likes when the reader fails.

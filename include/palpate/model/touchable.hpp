@@ -15,14 +15,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Whether all faces of E can be touched.
-template <Element E>
-constexpr bool has_triangulated_faces() noexcept {
-  if constexpr (HasSmallFace<E>)
-    if (!TriangulatedFace<typename E::SmallFace>) return false;
-  return TriangulatedFace<typename E::Face>;
-}
-
 /// The touchable surface: its nodes, sorted, and its outward triangles in numbers of those nodes. Faces with more nodes
 /// than three give the triangles their face element lists.
 struct Touchable {
