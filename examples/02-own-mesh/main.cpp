@@ -19,6 +19,7 @@
 #include "scene.hpp"
 
 #include <palpate/io/vtu.hpp>
+#include <palpate/mesh/diagnose.hpp>
 #include <palpate/post/stress.hpp>
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 // Relaxation, creep and motion of one load case with elements E, beside a table of what it should be.
 #pragma once
 
+#include <palpate/mesh/admission.hpp>
 #include <palpate/model/equilibrium.hpp>
 #include <palpate/model/implicit_dynamics.hpp>
 

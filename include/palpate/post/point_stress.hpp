@@ -12,6 +12,7 @@
 #include <palpate/element/smoothed.hpp>
 #include <palpate/local/geometry.hpp>
 #include <palpate/local/integration_points.hpp>
+#include <palpate/local/loads.hpp>
 #include <palpate/mesh/mesh.hpp>
 
 #include <array>
