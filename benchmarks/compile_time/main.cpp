@@ -15,7 +15,7 @@ namespace {
 struct Options {
   std::string out = ".", flags = "-O2";
   int runs = 3;
-  bool library = true;
+  bool with_library = true;
 };
 
 Options read_options(int argc, char** argv) {
@@ -23,7 +23,7 @@ Options read_options(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
     if (name == "--no-library") {
-      o.library = false;
+      o.with_library = false;
     } else if (i + 1 < argc && name == "--out") {
       o.out = argv[++i];
     } else if (i + 1 < argc && name == "--flags") {
@@ -125,7 +125,7 @@ int main(int argc, char** argv) try {
   std::filesystem::create_directories(o.out);
   std::vector<Row> rows = programs();
   measure(o, rows, "program");
-  if (o.library) {
+  if (o.with_library) {
     std::vector<Row> sources = units();
     measure(o, sources, "unit");
     std::sort(sources.begin(), sources.end(),
