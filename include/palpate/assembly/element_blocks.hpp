@@ -23,7 +23,7 @@ namespace detail {
 /// Halves along the longest side of the box of the centres until a part has at most `most` elements. Cuts are at
 /// multiples of `group`.
 void bisect_elements(std::span<NodeId> elements, const std::vector<Vector3>& centre, Index most, Index group,
-                            int region, std::vector<ElementBlock>& blocks);
+                     int region, std::vector<ElementBlock>& blocks);
 
 }  // namespace detail
 

@@ -75,8 +75,8 @@ struct HyperelasticBody {
 };
 
 /// By region number. Where the mesh has fibres and the law asks for them, every element has its own direction, made a
-/// unit vector to the last bit. Throws as require_material_per_region, bad_argument for fibres that are no unit vectors,
-/// and unsupported for a law with memory of a base that asks for fibres.
+/// unit vector to the last bit. Throws as require_material_per_region, bad_argument for fibres that are no unit
+/// vectors, and unsupported for a law with memory of a base that asks for fibres.
 template <Element E, LargeStrainMaterial M>
 HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, std::vector<M> by_region) {
   require_material_per_region(by_region, mesh);

@@ -14,7 +14,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// The problem with a parameter of a material; `what` names it.
 SetupProblem parameter_problem(SetupErrorKind kind, const std::string& what, double value, double threshold,
-                                      const char* hint);
+                               const char* hint);
 
 /// An aggregate of named parameters that can say whether they are admissible. `density` is in kg/m^3; `check()` returns
 /// the problem or nothing and is called once per region at set-up.

@@ -50,7 +50,7 @@ std::vector<std::vector<Index>> star_parts(const CutTopology<E>& topology, NodeI
 
 /// How many rigid motions the constraints leave to a set of nodes, all in one rigid piece.
 int free_mode_count(std::span<const Vector3> positions, std::span<const NodeId> nodes,
-                           std::span<const std::uint8_t> constrained);
+                    std::span<const std::uint8_t> constrained);
 
 /// The elements for which `belongs(element)` in pieces that hang together by faces, all rigid motions free.
 /// O(elements).

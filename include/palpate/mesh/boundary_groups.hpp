@@ -12,9 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Adds the group of all boundary faces that `choose` accepts, with their nodes. `choose` takes a face, or a node: a
 /// face then needs all its nodes accepted.

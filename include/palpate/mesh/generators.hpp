@@ -67,11 +67,11 @@ std::vector<double> even_coordinates(double origin, double size, int cells);
 /// Elements are positively oriented. Refuses bad coordinates as bad_argument, more than 2^31 nodes or elements as
 /// count_too_large.
 Mesh<Tet4> box_tet4(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z,
-                           BoxSplit split = BoxSplit::five_mirrored);
+                    BoxSplit split = BoxSplit::five_mirrored);
 
 /// Box of `size` [m] from `origin`, in equal cells. Otherwise as above.
 Mesh<Tet4> box_tet4(const Vector3& size, std::array<int, 3> cells, BoxSplit split = BoxSplit::five_mirrored,
-                           const Vector3& origin = Vector3::Zero());
+                    const Vector3& origin = Vector3::Zero());
 
 /// The two unit cubes of the thesis side by side along x: 12 nodes, 10 elements, the second cube mirrored. Groups
 /// "fixed" (x = 0), "end" (x = 2), "side" (the rest of the surface), all with outward faces, and "load_point", the node

@@ -26,7 +26,7 @@ Mesh<Hex20> box_hex20(const Vector3& size, std::array<int, 3> cells, const Vecto
 
 /// The tetrahedra of box_tet4 as Tet10.
 Mesh<Tet10> box_tet10(const Vector3& size, std::array<int, 3> cells, BoxSplit split = BoxSplit::five_mirrored,
-                             const Vector3& origin = Vector3::Zero());
+                      const Vector3& origin = Vector3::Zero());
 
 }}  // namespace palpate
 

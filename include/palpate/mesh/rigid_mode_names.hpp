@@ -7,9 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Up to six rigid motions (w, t), one per column. Bounded at compile time: nothing to allocate, little to compile.
 using RigidMotions = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;

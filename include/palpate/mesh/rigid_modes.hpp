@@ -46,7 +46,7 @@ Vector6 remainder(const Matrix6& basis, Vector6 v);
 /// rows: unlike the eigenvalues of the Gram matrix it squares nothing, and a thousand equal constraints weigh no more
 /// than one. O(6 rows).
 RigidMotions free_motions(std::span<const Vector3> positions, std::span<const NodeId> nodes,
-                                 std::span<const std::uint8_t> constrained, const RigidFrame& frame);
+                          std::span<const std::uint8_t> constrained, const RigidFrame& frame);
 
 }  // namespace detail
 
@@ -54,15 +54,14 @@ RigidMotions free_motions(std::span<const Vector3> positions, std::span<const No
 /// `component[i]` is the component of node i, -1 to leave it out (mesh/components.hpp); bit a of `constrained[i]` says
 /// that displacement component a of node i is prescribed. Positions are scaled by the component's size; a lever arm
 /// below one millionth of it counts as none. Throws bad_argument when the lengths differ. O(20 nodes), allocates.
-std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vector3> positions,
-                                                    std::span<const NodeId> component,
-                                                    std::span<const std::uint8_t> constrained);
+std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vector3> positions, std::span<const NodeId> component,
+                                             std::span<const std::uint8_t> constrained);
 
 /// Refuses as `unconstrained` when a component can still move as a rigid body: statics then has no unique answer, and a
 /// factorisation may report success all the same. ids: first nodes of the first such component, count: its nodes,
 /// value: its free modes.
 void require_constrained(std::span<const Vector3> positions, std::span<const NodeId> component,
-                                std::span<const std::uint8_t> constrained);
+                         std::span<const std::uint8_t> constrained);
 
 /// The two above for a mesh.
 template <Element E>

@@ -7,6 +7,7 @@
 #include <palpate/model/setup_report.hpp>
 #include <palpate/model/touchable.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,13 @@ class ElasticBody {
 
   virtual CacheKey key() const noexcept = 0;
   virtual void report_locking(SetupReport& report) const = 0;
+};
+
+/// A body that passed admission, its nodes moved so that the centre of its box is the origin.
+struct AdmittedBody {
+  std::unique_ptr<ElasticBody> body;
+  std::vector<NodeId> node_map;  ///< new id of every node as given, -1 for those dropped
+  Vector3 origin;                ///< of the body's frame in the mesh as given [m]
 };
 
 }}  // namespace palpate

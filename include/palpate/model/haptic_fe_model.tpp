@@ -27,6 +27,28 @@ AnyStiffness make_stiffness(const ElasticBody& body, const SetupLimits& limits) 
   return AnyStiffness(Assembly::make(element_body<E>(body).body(), limits));
 }
 
+/// Admits a mesh and evaluates its materials. Reports what admission found. Throws what materials_by_region and admit
+/// throw.
+template <Element E, LinearMaterial M, MeshOf<E> Given>
+AdmittedBody admit_body(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                        const AdmissionPolicy& policy, const SetupLimits& limits, SetupReport& report) {
+  const std::vector<M> by_region = materials_by_region(mesh, materials);
+  limits.advance("admission", 0.0);
+  Admitted<E> admitted = [&] {
+    const StageTimer timer(report, "admission");
+    // A mesh that lists its groups keeps all, so that later conditions may name any.
+    if constexpr (ListsGroups<Given>)
+      return admit<E>(mesh, policy);
+    else
+      return admit<E>(mesh, policy, scene.group_names());
+  }();
+  report_admission(admitted, report);
+  const Vector3 origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
+  for (Vector3& x : admitted.mesh.positions) x -= origin;
+  return {std::make_unique<ElementBody<E>>(make_body(std::move(admitted.mesh), by_region)),
+          std::move(admitted.node_map), origin};
+}
+
 }  // namespace detail
 
 template <Element E, LinearMaterial M, SolverPolicy Solver>
@@ -40,21 +62,8 @@ template <MeshOf<E> Mesh>
 HapticFEModel<E, M, Solver>::HapticFEModel(const Mesh& mesh, const Scene& scene, const RegionMaterials<M>& materials,
                                            const SetupOptions& options)
     : Tissue(options) {
-  const std::vector<M> by_region = materials_by_region(mesh, materials);
-  this->limits().advance("admission", 0.0);
-  Admitted<E> admitted = [&] {
-    const StageTimer timer(this->setup_report(), "admission");
-    // A mesh that lists its groups keeps all, so that later conditions may name any.
-    if constexpr (ListsGroups<Mesh>)
-      return admit<E>(mesh, options.admission);
-    else
-      return admit<E>(mesh, options.admission, scene.group_names());
-  }();
-  report_admission(admitted, this->setup_report());
-  this->place_nodes(scene, std::move(admitted.node_map), 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max),
-                    admitted.mesh.positions);
-  this->prepare(std::make_unique<ElementBody<E>>(make_body(std::move(admitted.mesh), by_region)),
-                detail::make_stiffness<E, typename Traits::Assembly>, solver_recipe<Solver>(), options);
+  this->set_up(scene, detail::admit_body<E>(mesh, scene, materials, options.admission, this->limits(), this->setup_report()),
+               detail::make_stiffness<E, typename Traits::Assembly>, solver_recipe<Solver>(), options);
 }
 
 template <Element E, LinearMaterial M, SolverPolicy Solver>

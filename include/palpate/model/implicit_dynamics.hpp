@@ -121,7 +121,7 @@ class ImplicitDynamics {
   BlockMatrix damping_;
   Newton newton_;
   VectorX u_, v_, a_, load_;
-  VectorX held_;  // prescribed components at the end of the last step
+  VectorX held_;                         // prescribed components at the end of the last step
   VectorX from_, unbalanced_, balance_;  // displacement and forces left over at the start of a step, and now
   VectorX trial_, velocity_, acceleration_, force_, full_, other_, drag_, x_, residual_;
   VectorX kept_load_, step_load_, change_, start_;  // of corrections

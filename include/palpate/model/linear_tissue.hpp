@@ -24,6 +24,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 class AnyStiffness;
 class ElasticBody;
 class Statics;
+struct AdmittedBody;
 struct SolverRecipe;
 
 /// What a caller may decide about a model's set-up.
@@ -100,15 +101,12 @@ class LinearTissue {
 
   const SetupLimits& limits() const noexcept { return limits_; }
   SetupReport& setup_report() noexcept { return report_; }
-  /// The body given to `prepare`.
+  /// The body given to `set_up`.
   const ElasticBody& elastic_body() const noexcept;
 
-  /// The admitted nodes of a scene, before `prepare`: moves `centre` to the origin, and takes over `node_map`.
-  void place_nodes(const Scene& scene, std::vector<NodeId> node_map, const Vector3& centre,
-                   std::vector<Vector3>& positions);
-  /// All of the set-up that comes after the body. Throws what Statics and ContactCompliance throw.
-  void prepare(std::unique_ptr<ElasticBody> body, MakeStiffness make_stiffness, const SolverRecipe& recipe,
-               const SetupOptions& options);
+  /// All of the set-up that comes after admission. Throws what Statics and ContactCompliance throw.
+  void set_up(const Scene& scene, AdmittedBody admitted, MakeStiffness make_stiffness, const SolverRecipe& recipe,
+              const SetupOptions& options);
 
  private:
   void prepare_contact(const std::vector<Triangle>& triangles, bool eager, const SetupOptions& options);

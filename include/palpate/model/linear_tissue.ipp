@@ -58,23 +58,18 @@ double LinearTissue<Scalar>::strain_energy() const {
 }
 
 template <std::floating_point Scalar>
-void LinearTissue<Scalar>::place_nodes(const Scene& scene, std::vector<NodeId> node_map, const Vector3& centre,
-                                       std::vector<Vector3>& positions) {
-  node_map_ = std::move(node_map);
+void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, MakeStiffness make_stiffness,
+                                  const SolverRecipe& recipe, const SetupOptions& options) {
+  node_map_ = std::move(admitted.node_map);
   scene_ = scene.mapped(node_map_);
-  origin_ = centre;
-  for (Vector3& x : positions) x -= origin_;
-  world_ = pose_ * Eigen::Translation3d(origin_);
-}
-
-template <std::floating_point Scalar>
-void LinearTissue<Scalar>::prepare(std::unique_ptr<ElasticBody> body, MakeStiffness make_stiffness,
-                                   const SolverRecipe& recipe, const SetupOptions& options) {
-  body->report_locking(report_);
-  const Touchable touchable = body->touchable(scene_);
+  origin_ = admitted.origin;
+  place(Eigen::Isometry3d::Identity());
+  const ElasticBody& body = *admitted.body;
+  body.report_locking(report_);
+  const Touchable touchable = body.touchable(scene_);
   touchable_ = touchable.nodes;
-  seen_ = body->seen(scene_);
-  statics_ = std::make_unique<Statics>(std::move(body), scene_, touchable_, make_stiffness, recipe, limits_,
+  seen_ = body.seen(scene_);
+  statics_ = std::make_unique<Statics>(std::move(admitted.body), scene_, touchable_, make_stiffness, recipe, limits_,
                                        options.cache_file, report_);
   statics_->set_conditions(scene_, scene_.gravity(), reporting_to(report_));
   gravity_ = scene_.gravity();

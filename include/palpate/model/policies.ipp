@@ -17,8 +17,8 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::make(const BlockMatrix& k,
-                                                              const EssentialConditions& conditions, const DofLayout& given,
-                                                              const SetupLimits& limits) {
+                                                              const EssentialConditions& conditions,
+                                                              const DofLayout& given, const SetupLimits& limits) {
   DofLayout layout = given;
   std::vector<Index> kept = std::exchange(layout.kept, {});  // asked for, but nothing is condensed onto them
   const SparseMatrix lower = free_matrix(k, conditions);
@@ -26,8 +26,8 @@ PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::make(const BlockMatrix&
 }
 
 PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::read(BinaryReader& in, const BlockMatrix& k,
-                                                              const EssentialConditions& conditions, const DofLayout& given,
-                                                              const SetupLimits& limits) {
+                                                              const EssentialConditions& conditions,
+                                                              const DofLayout& given, const SetupLimits& limits) {
   DofLayout layout = given;
   std::vector<Index> kept = std::exchange(layout.kept, {});
   const SparseMatrix lower = free_matrix(k, conditions);

@@ -1,6 +1,4 @@
-// What palpate::compiled holds of templates: set-up with the shipped elements and linear materials. Sources that use
-// these do not compile them; for elements and materials of one's own the same templates are compiled where they are
-// used.
+// The template instantiations in palpate::compiled: models of the shipped elements, linear materials and solvers.
 #pragma once
 
 #include <palpate/element/hex20.hpp>
@@ -14,44 +12,55 @@
 #include <palpate/material/transversely_isotropic.hpp>
 #include <palpate/model/haptic_fe_model.tpp>
 
-/// The model of one composition, made from a mesh of type GIVEN; PREFIX is `extern` to declare it, nothing to compile
-/// it.
-#define PALPATE_SHIPPED_MODEL(PREFIX, E, M, GIVEN, ...)                                                            \
+/// A model of element E and material M, made from a Mesh<GIVEN>. The last argument is the solver. PREFIX is `extern` to
+/// declare the instantiation, and empty to compile it.
+#define PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, M, GIVEN, ...)                                                     \
   PREFIX template HapticFEModel<E, M, __VA_ARGS__>::HapticFEModel(const Mesh<GIVEN>&, const Scene&,                \
                                                                   const RegionMaterials<M>&, const SetupOptions&); \
   PREFIX template HapticFEModel<E, M, __VA_ARGS__>::HapticFEModel(const Mesh<GIVEN>&, const Scene&, const M&,      \
                                                                   const SetupOptions&);
 
-/// One element and one material.
-#define PALPATE_SHIPPED_MATERIAL(PREFIX, E, M, GIVEN)                                                                \
-  PREFIX template std::vector<M> materials_by_region<M, Mesh<GIVEN>>(const Mesh<GIVEN>&, const RegionMaterials<M>&); \
-  PALPATE_SHIPPED_MODEL(PREFIX, E, M, GIVEN, Condensed<SelectiveInverse>)
+#define PALPATE_SHIPPED_MATERIAL(PREFIX, E, M)                             \
+  PREFIX template Body<E> make_body<E, M>(Mesh<E>, const std::vector<M>&); \
+  PREFIX template class HapticFEModel<E, M, Condensed<SelectiveInverse>>;
 
-/// One element, made from a mesh of another type with the same nodes.
-#define PALPATE_SHIPPED_MESH(PREFIX, E, GIVEN)                                                  \
-  PREFIX template Admitted<E> admit<E, Mesh<GIVEN>>(const Mesh<GIVEN>&, const AdmissionPolicy&, \
-                                                    const std::vector<std::string>&);           \
-  PALPATE_SHIPPED_MATERIAL(PREFIX, E, LinearElastic, GIVEN)                                     \
-  PALPATE_SHIPPED_MODEL(PREFIX, E, LinearElastic, GIVEN, Condensed<SelectiveInverseFloat>)      \
-  PALPATE_SHIPPED_MODEL(PREFIX, E, LinearElastic, GIVEN, Condensed<DenseCholesky>)              \
-  PALPATE_SHIPPED_MODEL(PREFIX, E, LinearElastic, GIVEN, Condensed<ConjugateGradient>)          \
-  PALPATE_SHIPPED_MODEL(PREFIX, E, LinearElastic, GIVEN, SparseCholesky)                        \
-  PALPATE_SHIPPED_MODEL(PREFIX, E, LinearElastic, GIVEN, ConjugateGradient)                     \
-  PALPATE_SHIPPED_MATERIAL(PREFIX, E, TransverselyIsotropic, GIVEN)                             \
-  PALPATE_SHIPPED_MATERIAL(PREFIX, E, Orthotropic, GIVEN)
+#define PALPATE_SHIPPED_MATERIAL_ON(PREFIX, E, M, GIVEN)                                                       \
+  PREFIX template AdmittedBody detail::admit_body<E, M, Mesh<GIVEN>>(                                          \
+      const Mesh<GIVEN>&, const Scene&, const RegionMaterials<M>&, const AdmissionPolicy&, const SetupLimits&, \
+      SetupReport&);                                                                                           \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, M, GIVEN, Condensed<SelectiveInverse>)
 
-/// One element.
-#define PALPATE_SHIPPED_ELEMENT(PREFIX, E)                                                         \
-  PREFIX template class ElementBody<E>;                                                            \
-  PREFIX template class HapticFEModel<E, LinearElastic, Condensed<SelectiveInverse>>;              \
-  PREFIX template class HapticFEModel<E, TransverselyIsotropic, Condensed<SelectiveInverse>>;      \
-  PREFIX template class HapticFEModel<E, Orthotropic, Condensed<SelectiveInverse>>;                \
-  PREFIX template class MatrixFreeStiffness<E>;                                                    \
-  PREFIX template void report_admission<E>(const Admitted<E>&, SetupReport&);                      \
-  PREFIX template BlockMatrix assemble_stiffness<E>(const Body<E>&, const SetupLimits&);           \
-  PREFIX template Body<E> make_body<E, LinearElastic>(Mesh<E>, const std::vector<LinearElastic>&); \
-  PREFIX template Body<E> make_body<E, Orthotropic>(Mesh<E>, const std::vector<Orthotropic>&);     \
-  PREFIX template Body<E> make_body<E, TransverselyIsotropic>(Mesh<E>, const std::vector<TransverselyIsotropic>&);
+/// All that is shipped for element E.
+#define PALPATE_SHIPPED_ELEMENT(PREFIX, E)                                                           \
+  PREFIX template class ElementBody<E>;                                                              \
+  PREFIX template class MatrixFreeStiffness<E>;                                                      \
+  PREFIX template void report_admission<E>(const Admitted<E>&, SetupReport&);                        \
+  PREFIX template BlockMatrix assemble_stiffness<E>(const Body<E>&, const SetupLimits&);             \
+  PALPATE_SHIPPED_MATERIAL(PREFIX, E, LinearElastic)                                                 \
+  PALPATE_SHIPPED_MATERIAL(PREFIX, E, TransverselyIsotropic)                                         \
+  PALPATE_SHIPPED_MATERIAL(PREFIX, E, Orthotropic)                                                   \
+  PREFIX template class HapticFEModel<E, LinearElastic, Condensed<SelectiveInverseFloat>>;           \
+  PREFIX template class HapticFEModel<E, LinearElastic, Condensed<DenseCholesky>>;                   \
+  PREFIX template class HapticFEModel<E, LinearElastic, Condensed<ConjugateGradient>>;               \
+  PREFIX template class HapticFEModel<E, LinearElastic, SparseCholesky>;                             \
+  PREFIX template class HapticFEModel<E, LinearElastic, ConjugateGradient>;                          \
+  PREFIX template class HapticFEModel<E, LinearElastic, WithAssembly<ConjugateGradient, Assembled>>; \
+  PREFIX template class HapticFEModel<E, LinearElastic, SelectiveInverse>;
+
+/// All that is shipped for element E on a mesh of GIVEN, an element with the same nodes.
+#define PALPATE_SHIPPED_MESH(PREFIX, E, GIVEN)                                                              \
+  PREFIX template Admitted<E> admit<E, Mesh<GIVEN>>(const Mesh<GIVEN>&, const AdmissionPolicy&,             \
+                                                    const std::vector<std::string>&);                       \
+  PALPATE_SHIPPED_MATERIAL_ON(PREFIX, E, LinearElastic, GIVEN)                                              \
+  PALPATE_SHIPPED_MATERIAL_ON(PREFIX, E, TransverselyIsotropic, GIVEN)                                      \
+  PALPATE_SHIPPED_MATERIAL_ON(PREFIX, E, Orthotropic, GIVEN)                                                \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, Condensed<SelectiveInverseFloat>)           \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, Condensed<DenseCholesky>)                   \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, Condensed<ConjugateGradient>)               \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, SparseCholesky)                             \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, ConjugateGradient)                          \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, WithAssembly<ConjugateGradient, Assembled>) \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, SelectiveInverse)
 
 #define PALPATE_SHIPPED_TET4(PREFIX) PALPATE_SHIPPED_ELEMENT(PREFIX, Tet4) PALPATE_SHIPPED_MESH(PREFIX, Tet4, Tet4)
 #define PALPATE_SHIPPED_TET10(PREFIX) PALPATE_SHIPPED_ELEMENT(PREFIX, Tet10) PALPATE_SHIPPED_MESH(PREFIX, Tet10, Tet10)

@@ -48,8 +48,8 @@ double residual(const Op& op, const VectorX& b, const VectorX& x) {
 
 /// "report is truthful" about what was returned: a residual that is stated is the one found, convergence is claimed
 /// only with a finite answer that satisfies the equations, and a direct solver makes no iterations.
-Violations report_laws(const SolveReport& report, double relative_residual, bool small,
-                              const SolverClaims& claims, const std::string& name);
+Violations report_laws(const SolveReport& report, double relative_residual, bool small, const SolverClaims& claims,
+                       const std::string& name);
 
 /// Laws of a prepared solver of the system `op`: "size"; for several loads "solves" (backward error within the claim),
 /// "finite", "same answer twice" to the last bit whatever x held before, "load is left alone", "report is truthful";
