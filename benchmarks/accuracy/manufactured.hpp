@@ -84,7 +84,7 @@ Errors errors_of(const Body<E>& body, const VectorX& u, const Manufactured& fiel
 template <Element E, class Solve>
 Errors manufactured_errors(Mesh<E> mesh, const Manufactured& field, Solve solve) {
   Scene scene;
-  for (const NodeId i : nodes_of<E>(extract_boundary<E>(mesh))) {
+  for (const NodeId i : nodes_of(extract_boundary<E>(mesh))) {
     const Vector3 u = field.displacement(mesh.position(i));
     scene.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
   }

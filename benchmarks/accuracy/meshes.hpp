@@ -54,7 +54,7 @@ template <Element E>
 Mesh<E> jittered(Mesh<E> mesh, double amount, std::uint64_t seed = 1729) {
   testing::Random random(seed);
   std::vector<bool> outside(mesh.positions.size(), false);
-  for (const NodeId i : nodes_of<E>(extract_boundary<E>(mesh))) outside[static_cast<std::size_t>(i)] = true;
+  for (const NodeId i : nodes_of(extract_boundary<E>(mesh))) outside[static_cast<std::size_t>(i)] = true;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const Vector3 step = random.vector<3>(-amount, amount);
     if (!outside[i]) mesh.positions[i] += step;

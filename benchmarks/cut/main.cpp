@@ -25,7 +25,7 @@ using namespace palpate;
 struct Block {
   Mesh<Tet4> mesh;
   Scene scene = Scene().fix("z0").touch("z1").gravity({0.0, 0.0, -9.81});
-  std::vector<BoundaryFace<Tet4>> boundary;
+  std::vector<BoundaryFace> boundary;
   CutPhysics<Tet4> physics;
   CutTopology<Tet4> topology;
   CutSurface<Tet4> surface;

@@ -42,14 +42,14 @@ NodeId nearest(const Mesh<Tet4>& mesh, const std::vector<NodeId>& nodes, const V
   return *std::ranges::min_element(nodes, {}, [&](NodeId i) { return (mesh.position(i) - to).squaredNorm(); });
 }
 
-double mean_edge(const Mesh<Tet4>& mesh, const std::vector<BoundaryFace<Tet4>>& faces) {
+double mean_edge(const Mesh<Tet4>& mesh, const std::vector<BoundaryFace>& faces) {
   double sum = 0.0;
   for (const auto& f : faces)
     for (std::size_t i = 0; i < 3; ++i) sum += (mesh.position(f.nodes[i]) - mesh.position(f.nodes[(i + 1) % 3])).norm();
   return sum / (3.0 * static_cast<double>(faces.size()));
 }
 
-void add_faces(Mesh<Tet4>& mesh, const std::string& name, const std::vector<BoundaryFace<Tet4>>& faces) {
+void add_faces(Mesh<Tet4>& mesh, const std::string& name, const std::vector<BoundaryFace>& faces) {
   Group& group = mesh.groups.get_or_add(name, 2);
   for (const auto& f : faces) {
     group.faces.push_back({f.nodes.begin(), f.nodes.end()});
@@ -82,9 +82,9 @@ std::vector<Ball> make_balls(const PressScene& scene, const std::string& kind, c
 }
 
 /// The faces that a ball may come to, and their groups.
-void add_touchable(PressScene& scene, const std::vector<BoundaryFace<Tet4>>& boundary,
-                   const std::vector<BoundaryFace<Tet4>>& wide) {
-  std::vector<BoundaryFace<Tet4>> near;
+void add_touchable(PressScene& scene, const std::vector<BoundaryFace>& boundary,
+                   const std::vector<BoundaryFace>& wide) {
+  std::vector<BoundaryFace> near;
   for (const auto& f : boundary)
     if (std::ranges::any_of(scene.balls, [&](const Ball& b) {
           return std::ranges::any_of(f.nodes,
@@ -92,7 +92,7 @@ void add_touchable(PressScene& scene, const std::vector<BoundaryFace<Tet4>>& bou
         }))
       near.push_back(f);
   add_faces(scene.mesh, near_group, near);
-  std::vector<BoundaryFace<Tet4>> both = near;
+  std::vector<BoundaryFace> both = near;
   both.insert(both.end(), wide.begin(), wide.end());
   std::ranges::sort(both, {}, [](const auto& f) { return f.key(); });
   both.erase(std::unique(both.begin(), both.end(), [](const auto& a, const auto& b) { return a.key() == b.key(); }),
@@ -139,7 +139,7 @@ PressScene make_scene(const SceneOptions& options) {
       resolve_faces(scene.mesh, boundary, held == touched ? Selection(std::string(surface_group)) : touched);
   const auto touched_nodes = resolve_nodes(scene.mesh, boundary, touched);
   const auto held_nodes = resolve_nodes(scene.mesh, boundary, held);
-  std::vector<BoundaryFace<Tet4>> held_faces;
+  std::vector<BoundaryFace> held_faces;
   for (const auto& f : boundary)
     if (std::ranges::all_of(f.nodes, [&](NodeId i) { return std::ranges::binary_search(held_nodes, i); }))
       held_faces.push_back(f);

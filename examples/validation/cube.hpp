@@ -75,7 +75,7 @@ Motion inside_measured_shell(const std::vector<Bead>& beads, std::size_t state, 
   const std::vector<Vector3> places = mesh.positions;
   for (Vector3& x : mesh.positions) x = between_beads(x, [&](std::size_t b) { return beads[b].rest; });
   Scene scene;
-  for (const NodeId i : nodes_of<E>(extract_boundary<E>(mesh))) {
+  for (const NodeId i : nodes_of(extract_boundary<E>(mesh))) {
     const Vector3 u =
         between_beads(places[static_cast<std::size_t>(i)], [&](std::size_t b) { return beads[b].displacement[state]; });
     scene.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});

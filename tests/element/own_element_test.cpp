@@ -47,7 +47,7 @@ TEST_CASE("the boundary of two such elements", "[element][surface]") {
   const auto boundary = extract_boundary<Hex12>(mesh);
   CHECK(boundary.size() == 10);
   CHECK(std::ranges::count_if(boundary, [](const auto& f) { return f.nodes.size() == 4; }) == 4);
-  CHECK(nodes_of<Hex12>(boundary).size() == 18);
+  CHECK(nodes_of(boundary).size() == 18);
   Vector3 closed = Vector3::Zero();
   double volume = 0.0, by_elements = 0.0;
   for (const auto& face : boundary)
@@ -74,7 +74,7 @@ TEST_CASE("a group of its faces is found whatever their number of nodes", "[elem
   Group& ends = mesh.groups.get_or_add("mixed", 2);
   const auto boundary = extract_boundary<Hex12>(mesh);
   for (std::size_t f : {0U, 1U, 8U, 9U}) ends.faces.emplace_back(boundary[f].nodes.begin(), boundary[f].nodes.end());
-  CHECK(resolve_faces<Hex12>(mesh, boundary, "mixed").size() == 4);
+  CHECK(resolve_faces(mesh_ref(mesh), boundary, "mixed").size() == 4);
   ends.faces.push_back({0, 1, 2, 3, 4});
-  CHECK_REFUSED(SetupErrorKind::unsupported, (resolve_faces<Hex12>(mesh, boundary, "mixed")));
+  CHECK_REFUSED(SetupErrorKind::unsupported, (resolve_faces(mesh_ref(mesh), boundary, "mixed")));
 }

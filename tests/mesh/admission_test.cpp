@@ -310,8 +310,7 @@ TEST_CASE("orphans are dropped by default and groups follow", "[mesh][admission]
 TEST_CASE("welded groups lose faces that fell together", "[mesh][admission][extreme][B6]") {
   Mesh<Tet4> both = side_by_side(box_tet4({1, 1, 1}, {1, 1, 1}, BoxSplit::six),
                                  box_tet4({1, 1, 1}, {1, 1, 1}, BoxSplit::six, Vector3(1, 0, 0)));
-  detail::add_boundary_group(both, extract_boundary<Tet4>(both), "skin",
-                             [](const BoundaryFace<Tet4>&) { return true; });
+  detail::add_boundary_group(both, extract_boundary<Tet4>(both), "skin", [](const BoundaryFace&) { return true; });
   CHECK(both.find_group("skin")->faces.size() == 24);
   AdmissionPolicy policy;
   policy.duplicate_nodes = Admission::repair;

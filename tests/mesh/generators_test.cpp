@@ -54,7 +54,8 @@ void check_partition(const Mesh<Tet4>& mesh, std::initializer_list<const char*> 
     CHECK(group->nodes == std::vector<NodeId>(nodes.begin(), nodes.end()));
   }
   std::multiset<std::array<NodeId, 3>> boundary;
-  for (const auto& face : extract_boundary<Tet4>(mesh)) boundary.insert(from_lowest(face.nodes));
+  for (const BoundaryFace& face : extract_boundary<Tet4>(mesh))
+    boundary.insert(from_lowest({face.nodes[0], face.nodes[1], face.nodes[2]}));
   CHECK(grouped == boundary);
 }
 

@@ -60,7 +60,7 @@ SurfaceMeasures measure_surface(const std::vector<Vector3>& positions, const Fac
 
 inline SurfaceMeasures measure_boundary(const Mesh<Tet4>& mesh) {
   std::vector<std::array<NodeId, 3>> faces;
-  for (const auto& f : extract_boundary<Tet4>(mesh)) faces.push_back(f.nodes);
+  for (const auto& f : extract_boundary<Tet4>(mesh)) faces.push_back({f.nodes[0], f.nodes[1], f.nodes[2]});
   return measure_surface(mesh.positions, faces);
 }
 

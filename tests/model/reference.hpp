@@ -70,7 +70,7 @@ class Reference {
   }
 
   Body<Tet4> body_;
-  std::vector<BoundaryFace<Tet4>> boundary_;
+  std::vector<BoundaryFace> boundary_;
   EssentialConditions conditions_;
   DenseMatrix<Real> k_, inverse_;
 };

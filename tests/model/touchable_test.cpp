@@ -41,7 +41,7 @@ TEMPLATE_TEST_CASE("the touchable triangles are the surface, closed and outward"
                    Hex20) {
   const Mesh<TestType> mesh = block<TestType>();
   const Touchable all = touched(mesh, "surface");
-  CHECK(all.nodes == nodes_of<TestType>(extract_boundary<TestType>(mesh)));
+  CHECK(all.nodes == nodes_of(extract_boundary<TestType>(mesh)));
   const ContactSurface surface = surface_of(all, mesh.positions);
   Vector3 sum = Vector3::Zero();
   double area = 0.0, volume = 0.0;

@@ -33,7 +33,7 @@ Mesh<E> box_of(const Vector3& size, std::array<int, 3> cells) {
 template <Element E, class Field>
 Scene prescribe_boundary(const Mesh<E>& mesh, Field field) {
   Scene scene;
-  for (NodeId i : nodes_of<E>(extract_boundary<E>(mesh))) {
+  for (NodeId i : nodes_of(extract_boundary<E>(mesh))) {
     const Vector3 u = field(mesh.position(i));
     scene.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
   }
@@ -94,7 +94,7 @@ double force_inside(const Mesh<E>& mesh) {
   for (Index i = 0; i < mesh.node_count(); ++i) u.template segment<3>(3 * i) = a * mesh.position(i);
   assemble_stiffness<E>(body_of(mesh, {liver}), {}).apply(u, f);
   const double most = largest(f);
-  for (NodeId i : nodes_of<E>(extract_boundary<E>(mesh))) f.template segment<3>(3 * Index{i}).setZero();
+  for (NodeId i : nodes_of(extract_boundary<E>(mesh))) f.template segment<3>(3 * Index{i}).setZero();
   return largest(f) / most;
 }
 
@@ -104,7 +104,7 @@ void check_traction_patch(bool straight) {
   const Vector3 size(0.1, 0.08, 0.06);
   const Mesh<E> flat = box_of<E>(size, {3, 2, 2});
   Mesh<E> mesh = shaken(flat, 0.0015, straight);
-  for (NodeId i : nodes_of<E>(extract_boundary<E>(flat)))
+  for (NodeId i : nodes_of(extract_boundary<E>(flat)))
     mesh.positions[static_cast<std::size_t>(i)] = flat.position(Index{i});
   mesh = shaken(mesh, 0.0, straight);
   Matrix3 h;  // upper triangular: the six dofs below do not move

@@ -11,7 +11,7 @@ namespace {
 /// Prescribes a displacement field on the whole boundary.
 template <class Field>
 Scene prescribe_boundary(Scene scene, const Mesh<Tet4>& mesh, Field field) {
-  for (NodeId i : nodes_of<Tet4>(extract_boundary<Tet4>(mesh))) {
+  for (NodeId i : nodes_of(extract_boundary<Tet4>(mesh))) {
     const Vector3 u = field(mesh.position(i));
     scene.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
   }

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <palpate/assembly/node_elements.hpp>
-#include <palpate/concepts/mesh.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/mesh/mesh_ref.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -29,32 +29,14 @@ struct BlockPattern {
 };
 
 /// Pattern of a mesh with the elements around its nodes. O(elements x nodes_per_element^2), allocates.
-template <MeshView M>
-BlockPattern block_pattern(const M& mesh, const NodeElements& around) {
-  const Index n = mesh.node_count();
-  BlockPattern pattern;
-  pattern.row_start.reserve(static_cast<std::size_t>(n) + 1);
-  pattern.column.reserve(8 * static_cast<std::size_t>(n));
-  pattern.row_start.push_back(0);
-  std::vector<NodeId> seen_by(static_cast<std::size_t>(n), -1);  // the last row that has the column
-  for (Index i = 0; i < n; ++i) {
-    const auto begin = static_cast<std::ptrdiff_t>(pattern.column.size());
-    for (const NodeId e : around.of(i))
-      for (int a = 0; a < M::nodes_per_element; ++a) {
-        const Index j = mesh.element_node(e, a);
-        if (j >= i || seen_by[static_cast<std::size_t>(j)] == i) continue;
-        seen_by[static_cast<std::size_t>(j)] = static_cast<NodeId>(i);
-        pattern.column.push_back(static_cast<NodeId>(j));
-      }
-    std::sort(pattern.column.begin() + begin, pattern.column.end());
-    pattern.column.push_back(static_cast<NodeId>(i));
-    pattern.row_start.push_back(static_cast<Index>(pattern.column.size()));
-  }
-  return pattern;
+BlockPattern block_pattern(const MeshRef& mesh, const NodeElements& around);
+template <Element E>
+BlockPattern block_pattern(const Mesh<E>& mesh, const NodeElements& around) {
+  return block_pattern(mesh_ref(mesh), around);
 }
-template <MeshView M>
-BlockPattern block_pattern(const M& mesh) {
-  return block_pattern(mesh, NodeElements(mesh));
+template <Element E>
+BlockPattern block_pattern(const Mesh<E>& mesh) {
+  return block_pattern(mesh_ref(mesh), NodeElements(mesh));
 }
 
 /// Values on a BlockPattern. Satisfies StiffnessOperator.

@@ -5,6 +5,31 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+PALPATE_INLINE BlockPattern block_pattern(const MeshRef& mesh, const NodeElements& around) {
+  const Index n = mesh.node_count;
+  BlockPattern pattern;
+  pattern.row_start.reserve(static_cast<std::size_t>(n) + 1);
+  pattern.column.reserve(8 * static_cast<std::size_t>(n));
+  pattern.row_start.push_back(0);
+  std::vector<NodeId> seen_by(static_cast<std::size_t>(n), -1);  // the last row that has the column
+  for (Index i = 0; i < n; ++i) {
+    const auto begin = static_cast<std::ptrdiff_t>(pattern.column.size());
+    for (const NodeId e : around.of(i)) {
+      const NodeId* nodes = mesh.nodes_of(e);
+      for (int a = 0; a < mesh.element.nodes; ++a) {
+        const NodeId j = nodes[a];
+        if (j >= i || seen_by[static_cast<std::size_t>(j)] == i) continue;
+        seen_by[static_cast<std::size_t>(j)] = static_cast<NodeId>(i);
+        pattern.column.push_back(j);
+      }
+    }
+    std::sort(pattern.column.begin() + begin, pattern.column.end());
+    pattern.column.push_back(static_cast<NodeId>(i));
+    pattern.row_start.push_back(static_cast<Index>(pattern.column.size()));
+  }
+  return pattern;
+}
+
 PALPATE_INLINE Index BlockPattern::find(NodeId row, NodeId col) const noexcept {
   const auto begin = column.begin() + row_start[static_cast<std::size_t>(row)];
   const auto end = column.begin() + row_start[static_cast<std::size_t>(row) + 1];

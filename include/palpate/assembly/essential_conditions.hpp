@@ -3,14 +3,11 @@
 
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/mesh_ref.hpp>
 #include <palpate/mesh/scene.hpp>
-#include <palpate/mesh/selection.hpp>
 #include <palpate/mesh/surface.hpp>
 
-#include <string>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -36,34 +33,12 @@ struct EssentialConditions {
 
 /// Resolves the prescribed conditions of a scene. Throws unknown_group, empty_group, or conflicting_conditions when one
 /// dof is given two different values.
+EssentialConditions resolve_essential(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
+                                      const Scene& scene);
 template <Element E>
-EssentialConditions resolve_essential(const Mesh<E>& mesh, const std::vector<BoundaryFace<E>>& boundary,
+EssentialConditions resolve_essential(const Mesh<E>& mesh, const std::vector<BoundaryFace>& boundary,
                                       const Scene& scene) {
-  EssentialConditions c;
-  c.constrained.assign(static_cast<std::size_t>(mesh.node_count()), 0);
-  c.prescribed = VectorX::Zero(3 * mesh.node_count());
-  for (const auto& condition : scene.prescribed())
-    for (NodeId node : resolve_nodes(mesh, boundary, condition.where))
-      for (int i = 0; i < 3; ++i) {
-        const auto& value = condition.values[static_cast<std::size_t>(i)];
-        if (!value) continue;
-        auto& bits = c.constrained[static_cast<std::size_t>(node)];
-        const Index dof = 3 * Index{node} + i;
-        if ((bits & (1u << i)) != 0 && c.prescribed[dof] != *value)
-          raise(SetupErrorKind::conflicting_conditions,
-                "node " + std::to_string(node) + " component " + std::to_string(i) + " is prescribed as " +
-                    number(c.prescribed[dof]) + " and as " + number(*value),
-                "Give each component one value");
-        bits = static_cast<std::uint8_t>(bits | (1u << i));
-        c.prescribed[dof] = *value;
-      }
-  c.free_index.assign(static_cast<std::size_t>(3 * mesh.node_count()), -1);
-  for (Index dof = 0; dof < 3 * mesh.node_count(); ++dof)
-    if ((c.constrained[static_cast<std::size_t>(dof / 3)] & (1u << (dof % 3))) == 0) {
-      c.free_index[static_cast<std::size_t>(dof)] = static_cast<Index>(c.free_dofs.size());
-      c.free_dofs.push_back(dof);
-    }
-  return c;
+  return resolve_essential(mesh_ref(mesh), boundary, scene);
 }
 
 }}  // namespace palpate

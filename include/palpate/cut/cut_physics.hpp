@@ -35,7 +35,7 @@ requires(!HasSmoothedStrain<E>) struct CutPhysics {
 
   /// Loads of a scene: gravity in the frame of the mesh, body loads, tractions, pressures, initial strains. Throws as
   /// the conditions of a scene do. O(elements).
-  CutPhysics(Body<E> given, const std::vector<BoundaryFace<E>>& boundary, const Scene& scene)
+  CutPhysics(Body<E> given, const std::vector<BoundaryFace>& boundary, const Scene& scene)
       : body(std::move(given)), load(body.mesh.elements.size(), ElementNodes<E>::Zero()) {
     body.initial_strain = initial_strains_by_region(body.mesh, scene);
     nodal_load = VectorX::Zero(3 * body.mesh.node_count());
@@ -94,7 +94,7 @@ requires(!HasSmoothedStrain<E>) struct CutPhysics {
         f += initial_strain_load<E>(nodes_of_element(e), body.elasticity_of(e), body.initial_strain[region]);
     }
   }
-  void add_face_loads(const std::vector<BoundaryFace<E>>& boundary, const Scene& scene) {
+  void add_face_loads(const std::vector<BoundaryFace>& boundary, const Scene& scene) {
     const auto add = [&](const Selection& where, const Vector3& traction, double pressure) {
       for (const auto& face : resolve_faces(body.mesh, boundary, where))
         with_face_element<E>(face.nodes.size(), [&]<FaceElement F>() {

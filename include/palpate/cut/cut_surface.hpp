@@ -27,12 +27,12 @@ class CutSurface {
  public:
   CutSurface() = default;
   /// Resolves what a scene lets tools touch. Throws as resolve_faces does.
-  CutSurface(const CutTopology<E>& topology, const std::vector<BoundaryFace<E>>& boundary, const Scene& scene) {
+  CutSurface(const CutTopology<E>& topology, const std::vector<BoundaryFace>& boundary, const Scene& scene) {
     const Mesh<E>& mesh = topology.mesh();
     for (const Selection& selection : scene.touched())
-      for (const BoundaryFace<E>& f : resolve_faces(mesh, boundary, selection))
+      for (const BoundaryFace& f : resolve_faces(mesh, boundary, selection))
         for (std::size_t local = 0; local < E::faces.size(); ++local)
-          if (topology.face_nodes({f.element, static_cast<int>(local)}) == f.nodes)
+          if (std::ranges::equal(topology.face_nodes({f.element, static_cast<int>(local)}), f.nodes))
             faces_.push_back({f.element, static_cast<int>(local)});
     std::ranges::sort(faces_, less);
     faces_.erase(std::unique(faces_.begin(), faces_.end(), same), faces_.end());

@@ -9,18 +9,19 @@
 #include <palpate/local/geometry.hpp>
 #include <palpate/local/integration_points.hpp>
 
-#include <Eigen/Geometry>
-
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Integral of every shape function over the element [m^3]: times a body force it is the load f_l (3.44), times density
 /// the row-sum mass.
 template <Element E>
 Eigen::Matrix<double, E::nodes, 1> shape_volumes(const ElementNodes<E>& x) noexcept {
-  Eigen::Matrix<double, E::nodes, 1> v = Eigen::Matrix<double, E::nodes, 1>::Zero();
+  Eigen::Matrix<double, E::nodes, 1> v;
+  for (int a = 0; a < E::nodes; ++a) v[a] = 0.0;
   for (const auto& point : E::MassQuadrature::points) {
     const Vector3 xi = reference_point(point);
-    v += point_geometry<E>(x, xi, point.weight).volume * E::shape(xi);
+    const double volume = point.weight * jacobian_determinant<E>(x, E::gradient(xi));
+    const Eigen::Matrix<double, E::nodes, 1> shape = E::shape(xi);
+    for (int a = 0; a < E::nodes; ++a) v[a] += volume * shape[a];
   }
   return v;
 }
@@ -29,17 +30,33 @@ Eigen::Matrix<double, E::nodes, 1> shape_volumes(const ElementNodes<E>& x) noexc
 template <FaceElement F>
 using FaceNodes = Eigen::Matrix<double, F::nodes, 3>;
 
+/// Outward area vector per area of the reference face, for the reference gradients of one point. Its norm is the
+/// measure of eq. 3.40.
+template <FaceElement F>
+Vector3 area_vector(const FaceNodes<F>& x, const Eigen::Matrix<double, F::nodes, 2>& reference) noexcept {
+  double s[3] = {}, t[3] = {};
+  for (int a = 1; a < F::nodes; ++a)
+    for (int c = 0; c < 3; ++c) {
+      const double edge = x(a, c) - x(0, c);
+      s[c] += edge * reference(a, 0);
+      t[c] += edge * reference(a, 1);
+    }
+  return {s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]};
+}
+
 /// Integral of shape function times outward area vector over a face [m^2], one row per node: times minus the pressure
-/// it is the load of a pressure; the norm of the area vector is the measure of eq. 3.40.
+/// it is the load of a pressure.
 template <FaceElement F>
 FaceNodes<F> shape_area_vectors(const FaceNodes<F>& x) noexcept {
-  FaceNodes<F> result = FaceNodes<F>::Zero();
+  FaceNodes<F> result;
+  for (int a = 0; a < F::nodes; ++a)
+    for (int c = 0; c < 3; ++c) result(a, c) = 0.0;
   for (const auto& point : F::Quadrature::points) {
     const Eigen::Vector2d xi = reference_point(point);
-    const FaceNodes<F> edges = x.rowwise() - x.row(0);
-    const Eigen::Matrix<double, 3, 2> tangents = edges.transpose() * F::gradient(xi);
-    const Vector3 area = point.weight * tangents.col(0).cross(tangents.col(1));
-    result.noalias() += F::shape(xi) * area.transpose();
+    const Vector3 area = area_vector<F>(x, F::gradient(xi));
+    const Eigen::Matrix<double, F::nodes, 1> shape = F::shape(xi);
+    for (int a = 0; a < F::nodes; ++a)
+      for (int c = 0; c < 3; ++c) result(a, c) += shape[a] * (point.weight * area[c]);
   }
   return result;
 }
@@ -47,12 +64,13 @@ FaceNodes<F> shape_area_vectors(const FaceNodes<F>& x) noexcept {
 /// Integral of every shape function over a face [m^2]: times a traction it is the load f_b (3.42).
 template <FaceElement F>
 Eigen::Matrix<double, F::nodes, 1> shape_areas(const FaceNodes<F>& x) noexcept {
-  Eigen::Matrix<double, F::nodes, 1> result = Eigen::Matrix<double, F::nodes, 1>::Zero();
+  Eigen::Matrix<double, F::nodes, 1> result;
+  for (int a = 0; a < F::nodes; ++a) result[a] = 0.0;
   for (const auto& point : F::Quadrature::points) {
     const Eigen::Vector2d xi = reference_point(point);
-    const FaceNodes<F> edges = x.rowwise() - x.row(0);
-    const Eigen::Matrix<double, 3, 2> tangents = edges.transpose() * F::gradient(xi);
-    result += point.weight * tangents.col(0).cross(tangents.col(1)).norm() * F::shape(xi);
+    const double area = point.weight * area_vector<F>(x, F::gradient(xi)).norm();
+    const Eigen::Matrix<double, F::nodes, 1> shape = F::shape(xi);
+    for (int a = 0; a < F::nodes; ++a) result[a] += area * shape[a];
   }
   return result;
 }

@@ -17,16 +17,16 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 /// Adds the group of all boundary faces that `choose` accepts, with their nodes. `choose` takes a face, or a node: a
 /// face then needs all its nodes accepted.
 template <Element E, class Choose>
-void add_boundary_group(Mesh<E>& mesh, const std::vector<BoundaryFace<E>>& boundary, std::string_view name,
+void add_boundary_group(Mesh<E>& mesh, const std::vector<BoundaryFace>& boundary, std::string_view name,
                         Choose choose) {
-  const auto chosen = [&](const BoundaryFace<E>& face) {
+  const auto chosen = [&](const BoundaryFace& face) {
     if constexpr (std::predicate<Choose&, NodeId>)
       return std::ranges::all_of(face.nodes, choose);
     else
       return choose(face);
   };
   Group& group = mesh.groups.get_or_add(name, 2);
-  for (const BoundaryFace<E>& face : boundary) {
+  for (const BoundaryFace& face : boundary) {
     if (!chosen(face)) continue;
     group.faces.emplace_back(face.nodes.begin(), face.nodes.end());
     group.nodes.insert(group.nodes.end(), face.nodes.begin(), face.nodes.end());

@@ -23,6 +23,15 @@ struct ElementLayout {
   const int* faces = nullptr;                           ///< face.nodes local nodes per face, outward; see Element
   void (*reference_nodes)(double*) noexcept = nullptr;  ///< writes x y z of every node
 
+  /// The kind of a face of that many nodes.
+  constexpr const FaceLayout& face_of(std::size_t count) const noexcept {
+    return static_cast<int>(count) == small_face.nodes ? small_face : face;
+  }
+  /// Whether a face may have that many nodes.
+  constexpr bool is_face_size(std::size_t count) const noexcept {
+    return count > 0 && static_cast<int>(count) == face_of(count).nodes;
+  }
+
   /// Local nodes of face f.
   constexpr std::span<const int> local_face(int f) const noexcept {
     const int* first = faces + f * face.nodes;

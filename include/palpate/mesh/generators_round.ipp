@@ -156,7 +156,7 @@ PALPATE_INLINE Mesh<Tet4> ball_tet4(double radius, int refinement) {
   if (refinement > 400) raise(SetupErrorKind::count_too_large, "a ball of " + std::to_string(refinement) + " layers");
   Mesh<Tet4> mesh = detail::BallBuilder(radius, refinement).build();
   detail::add_boundary_group(mesh, extract_boundary<Tet4>(mesh), surface_group,
-                             [](const BoundaryFace<Tet4>&) { return true; });
+                             [](const BoundaryFace&) { return true; });
   return mesh;
 }
 
@@ -178,15 +178,14 @@ PALPATE_INLINE Mesh<Tet4> cylinder_tet4(double radius, double height, int n) {
   for (int l = 0; l < layers; ++l)
     for (const auto& triangle : triangles) detail::split_prism(mesh, triangle, l * per_layer, (l + 1) * per_layer);
   const auto boundary = extract_boundary<Tet4>(mesh);
-  const auto within = [](const BoundaryFace<Tet4>& f, NodeId first, NodeId last) {
+  const auto within = [](const BoundaryFace& f, NodeId first, NodeId last) {
     return std::ranges::all_of(f.nodes, [=](NodeId i) { return i >= first && i < last; });
   };
-  const auto bottom = [&](const BoundaryFace<Tet4>& f) { return within(f, 0, per_layer); };
-  const auto top = [&](const BoundaryFace<Tet4>& f) { return within(f, layers * per_layer, (layers + 1) * per_layer); };
+  const auto bottom = [&](const BoundaryFace& f) { return within(f, 0, per_layer); };
+  const auto top = [&](const BoundaryFace& f) { return within(f, layers * per_layer, (layers + 1) * per_layer); };
   detail::add_boundary_group(mesh, boundary, "bottom", bottom);
   detail::add_boundary_group(mesh, boundary, "top", top);
-  detail::add_boundary_group(mesh, boundary, "side",
-                             [&](const BoundaryFace<Tet4>& f) { return !bottom(f) && !top(f); });
+  detail::add_boundary_group(mesh, boundary, "side", [&](const BoundaryFace& f) { return !bottom(f) && !top(f); });
   return mesh;
 }
 

@@ -4,6 +4,7 @@
 #include <palpate/concepts/mesh.hpp>
 #include <palpate/core/config.hpp>
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,6 +21,9 @@ class GroupTable {
 
   /// The group of that name, created empty if new.
   Group& get_or_add(std::string_view name, int dimension);
+
+  /// The groups of these names, all groups when there are no names; names it does not have are skipped.
+  GroupTable chosen(const std::vector<std::string>& names) const;
 
   /// Sorts and deduplicates the node lists; call once after filling.
   void tidy();

@@ -4,7 +4,6 @@
 #include <palpate/mesh/groups.hpp>
 
 #include <algorithm>
-#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -21,6 +20,14 @@ PALPATE_INLINE Group& GroupTable::get_or_add(std::string_view name, int dimensio
   }
   groups_.push_back({std::string(name), dimension, {}, {}, {}});
   return groups_.back();
+}
+
+PALPATE_INLINE GroupTable GroupTable::chosen(const std::vector<std::string>& names) const {
+  if (names.empty()) return *this;
+  GroupTable result;
+  for (const std::string& name : names)
+    if (const Group* g = find(name)) result.get_or_add(name, g->dimension) = *g;
+  return result;
 }
 
 PALPATE_INLINE void GroupTable::tidy() {

@@ -42,6 +42,15 @@ struct Mesh {
   const Vector3& fibre(Index e) const noexcept { return fibres[static_cast<std::size_t>(e)]; }
 };
 
+namespace detail {
+
+template <class M>
+inline constexpr bool is_mesh = false;
+template <Element E>
+inline constexpr bool is_mesh<Mesh<E>> = true;
+
+}  // namespace detail
+
 /// Coordinates of element e's nodes, one per row [m].
 template <Element E, MeshOf<E> M>
 ElementNodes<E> element_nodes(const M& mesh, Index e) {
@@ -56,10 +65,10 @@ concept ListsGroups = MeshView<M> && requires(const M& m) {
   { m.groups } -> std::convertible_to<const GroupTable&>;
 };
 
-/// Owning copy of any mesh with as many nodes per element, with the groups named in `group_names`; with all groups when
-/// none is named and the mesh lists them.
+namespace detail {
+
 template <Element E, MeshOf<E> M>
-Mesh<E> copy_mesh(const M& view, const std::vector<std::string>& group_names = {}) {
+Mesh<E> copy_view(const M& view, const std::vector<std::string>& group_names) {
   Mesh<E> mesh;
   const Index n = view.node_count(), m = view.element_count();
   mesh.positions.reserve(static_cast<std::size_t>(n));
@@ -82,6 +91,27 @@ Mesh<E> copy_mesh(const M& view, const std::vector<std::string>& group_names = {
   for (const std::string& name : group_names)
     if (const Group* g = view.find_group(name)) mesh.groups.get_or_add(name, g->dimension) = *g;
   return mesh;
+}
+
+}  // namespace detail
+
+/// Owning copy of any mesh with as many nodes per element, with the groups named in `group_names`; with all groups when
+/// none is named and the mesh lists them.
+template <Element E, MeshOf<E> M>
+Mesh<E> copy_mesh(const M& view, const std::vector<std::string>& group_names = {}) {
+  if constexpr (detail::is_mesh<M>) {
+    Mesh<E> mesh;
+    mesh.positions = view.positions;
+    mesh.elements = view.elements;
+    mesh.regions = view.regions;
+    mesh.regions.resize(view.elements.size());
+    mesh.fibres = view.fibres;
+    mesh.region_names = view.region_names;
+    mesh.groups = view.groups.chosen(group_names);
+    return mesh;
+  } else {
+    return detail::copy_view<E>(view, group_names);
+  }
 }
 
 }}  // namespace palpate

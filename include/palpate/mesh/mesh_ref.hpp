@@ -39,18 +39,29 @@ inline const double* flat(const std::vector<Vector3>& positions) noexcept {
 
 }  // namespace detail
 
-/// A mesh as plain code sees it. Nothing is copied.
-template <Element E>
-MeshRef mesh_ref(const Mesh<E>& mesh) noexcept {
+namespace detail {
+
+/// A mesh of as many nodes per element, seen as one of elements E.
+template <Element E, Element Given>
+MeshRef mesh_ref_as(const Mesh<Given>& mesh) noexcept {
+  static_assert(E::nodes == Given::nodes);
   static_assert(sizeof(typename Mesh<E>::Connectivity) == sizeof(NodeId) * static_cast<std::size_t>(E::nodes));
   return {element_layout<E>,
           mesh.node_count(),
           mesh.element_count(),
-          detail::flat(mesh.positions),
+          flat(mesh.positions),
           mesh.elements.empty() ? nullptr : mesh.elements.front().data(),
           mesh.regions.empty() ? nullptr : mesh.regions.data(),
           mesh.region_names,
           mesh.groups.all()};
+}
+
+}  // namespace detail
+
+/// A mesh as plain code sees it. Nothing is copied.
+template <Element E>
+MeshRef mesh_ref(const Mesh<E>& mesh) noexcept {
+  return detail::mesh_ref_as<E>(mesh);
 }
 
 /// The same for a mesh without a type.
@@ -95,5 +106,27 @@ PlainMesh plain_copy(const M& mesh) {
   }
   return plain;
 }
+
+namespace detail {
+
+/// A mesh of any type as a MeshRef, with the copy that a view of another kind than Mesh needs. Not to be copied.
+struct PlainView {
+  PlainMesh copy;
+  MeshRef mesh;
+};
+
+template <Element E, MeshOf<E> M>
+PlainView plain_view(const M& mesh) {
+  PlainView view;
+  if constexpr (is_mesh<M>) {
+    view.mesh = mesh_ref_as<E>(mesh);
+  } else {
+    view.copy = plain_copy<E>(mesh);
+    view.mesh = mesh_ref<E>(view.copy);
+  }
+  return view;
+}
+
+}  // namespace detail
 
 }}  // namespace palpate::PALPATE_ABI

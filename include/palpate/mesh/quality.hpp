@@ -7,8 +7,6 @@
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
 
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -30,40 +28,28 @@ namespace detail {
 template <Element E>
 inline constexpr bool constant_jacobian = E::order == 1 && E::faces.size() == 4;
 
-/// Inverse Jacobian of the ideal element: the regular tetrahedron for four faces, else the cube.
+/// Takes the Jacobian J of a sample point into the least relative volume and quality; of a mesh scaled to a longest
+/// edge of one. `tetrahedron` says which ideal element J is measured against: the regular tetrahedron, else the cube.
+void sample_shape(const double (&J)[3][3], double reference_volume, bool tetrahedron, ElementShape& shape) noexcept;
+
+double determinant(const double (&J)[3][3]) noexcept;
+
+/// Between nodes a and b.
 template <Element E>
-Matrix3 inverse_ideal_jacobian() noexcept {
-  if constexpr (E::faces.size() != 4) {
-    return Matrix3::Identity();
-  } else {
-    const double a = 1.0 / std::sqrt(3.0), b = 1.0 / std::sqrt(6.0), c = std::sqrt(1.5);
-    Matrix3 w;
-    w << 1, -a, -b, 0, 2 * a, -b, 0, 0, c;
-    return w;
-  }
+double squared_distance(const ElementNodes<E>& nodes, int a, int b) noexcept {
+  const double x = nodes(a, 0) - nodes(b, 0), y = nodes(a, 1) - nodes(b, 1), z = nodes(a, 2) - nodes(b, 2);
+  return x * x + (y * y + z * z);
 }
 
-/// Takes one sample point into the least relative volume and quality. `nodes` is scaled to a longest edge of one.
+/// Jacobian for edges from node 0 and the reference gradients of one point.
 template <Element E>
-void sample_shape(const ElementNodes<E>& nodes, const Vector3& xi, ElementShape& shape) noexcept {
-  const Matrix3 J = nodes.transpose() * E::gradient(xi);
-  const double determinant = J.determinant();
-  shape.relative_volume = std::min(shape.relative_volume, determinant * E::reference_volume);
-  const Matrix3 A = J * inverse_ideal_jacobian<E>();
-  const double stretch = A.squaredNorm();
-  const double ratio = stretch > 0.0 ? 3.0 * std::pow(std::max(A.determinant(), 0.0), 2.0 / 3.0) / stretch : 0.0;
-  shape.quality = std::min(shape.quality, ratio);
-}
-
-/// Volume by the quadrature rule, with `nodes` scaled to a longest edge of one.
-template <Element E>
-double scaled_volume(const ElementNodes<E>& nodes) noexcept {
-  double volume = 0.0;
-  for (const auto& point : E::Quadrature::points) {
-    const Matrix3 J = nodes.transpose() * E::gradient({point.xi[0], point.xi[1], point.xi[2]});
-    volume += point.weight * J.determinant();
-  }
-  return volume;
+void jacobian(const double (&edges)[E::nodes][3], const Eigen::Matrix<double, E::nodes, 3>& gradient,
+              double (&J)[3][3]) noexcept {
+  for (int c = 0; c < 3; ++c)
+    for (int k = 0; k < 3; ++k) {
+      J[c][k] = 0.0;
+      for (int a = 1; a < E::nodes; ++a) J[c][k] += edges[a][c] * gradient(a, k);
+    }
 }
 
 }  // namespace detail
@@ -73,7 +59,7 @@ template <Element E>
 double longest_edge(const ElementNodes<E>& nodes) noexcept {
   double square = 0.0;
   for (int a = 0; a < E::nodes; ++a)
-    for (int b = a + 1; b < E::nodes; ++b) square = std::max(square, (nodes.row(a) - nodes.row(b)).squaredNorm());
+    for (int b = a + 1; b < E::nodes; ++b) square = std::max(square, detail::squared_distance<E>(nodes, a, b));
   return std::sqrt(square);
 }
 
@@ -84,7 +70,7 @@ double shortest_edge(const Mesh<E>& mesh) noexcept {
   for (Index e = 0; e < mesh.element_count(); ++e) {
     const ElementNodes<E> nodes = element_nodes<E>(mesh, e);
     for (int a = 0; a < E::nodes; ++a)
-      for (int b = a + 1; b < E::nodes; ++b) square = std::min(square, (nodes.row(a) - nodes.row(b)).squaredNorm());
+      for (int b = a + 1; b < E::nodes; ++b) square = std::min(square, detail::squared_distance<E>(nodes, a, b));
   }
   return std::sqrt(square);
 }
@@ -100,18 +86,51 @@ ElementShape element_shape(const ElementNodes<E>& nodes) noexcept {
   shape.longest_edge = longest_edge<E>(nodes);
   if (!(shape.longest_edge > 0.0)) return shape;
   const double size = shape.longest_edge;
-  shape.resolution = 4.0 * std::numeric_limits<double>::epsilon() * nodes.cwiseAbs().maxCoeff() / size;
-  const ElementNodes<E> scaled = (nodes.rowwise() - nodes.row(0).eval()) / size;
+  double largest = 0.0, edges[E::nodes][3], J[3][3];
+  for (int a = 0; a < E::nodes; ++a)
+    for (int c = 0; c < 3; ++c) {
+      largest = std::max(largest, std::abs(nodes(a, c)));
+      edges[a][c] = (nodes(a, c) - nodes(0, c)) / size;
+    }
+  shape.resolution = 4.0 * std::numeric_limits<double>::epsilon() * largest / size;
   shape.relative_volume = infinity;
   shape.quality = infinity;
-  for (const auto& point : E::Quadrature::points)
-    detail::sample_shape<E>(scaled, {point.xi[0], point.xi[1], point.xi[2]}, shape);
-  if constexpr (!detail::constant_jacobian<E>) {
-    const auto corners = E::reference_nodes();
-    for (int a = 0; a < E::nodes; ++a) detail::sample_shape<E>(scaled, corners.row(a).transpose(), shape);
+  constexpr bool tetrahedron = E::faces.size() == 4;
+  double volume = 0.0;
+  for (const auto& point : E::Quadrature::points) {
+    detail::jacobian<E>(edges, E::gradient({point.xi[0], point.xi[1], point.xi[2]}), J);
+    detail::sample_shape(J, E::reference_volume, tetrahedron, shape);
+    volume += point.weight * detail::determinant(J);
   }
-  shape.volume = detail::scaled_volume<E>(scaled) * size * size * size;
+  if constexpr (!detail::constant_jacobian<E>) {
+    const ElementNodes<E> corners = E::reference_nodes();
+    for (int a = 0; a < E::nodes; ++a) {
+      detail::jacobian<E>(edges, E::gradient({corners(a, 0), corners(a, 1), corners(a, 2)}), J);
+      detail::sample_shape(J, E::reference_volume, tetrahedron, shape);
+    }
+  }
+  shape.volume = volume * size * size * size;
   return shape;
 }
 
+namespace detail {
+
+/// Shape of an element by its nodes' ids, for code that works on meshes of any element; `positions` holds x y z of
+/// every node of the mesh.
+using ShapeOfElement = ElementShape (*)(const double* positions, const NodeId* nodes) noexcept;
+
+template <Element E>
+ElementShape shape_of_element(const double* positions, const NodeId* nodes) noexcept {
+  ElementNodes<E> x;
+  for (int a = 0; a < E::nodes; ++a)
+    for (int c = 0; c < 3; ++c) x(a, c) = positions[3 * Index{nodes[a]} + c];
+  return element_shape<E>(x);
+}
+
+}  // namespace detail
+
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/quality.ipp>
+#endif

@@ -4,29 +4,27 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/mesh.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/face_ids.hpp>
+#include <palpate/mesh/mesh_ref.hpp>
 
 #include <algorithm>
-#include <numeric>
-#include <string>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+/// Most nodes a face of an element can have: quadrilaterals of degree 3 have 16.
+inline constexpr int max_face_nodes = 16;
+
 /// A face of the boundary: its nodes, outward by the right-hand rule, and the element it belongs to.
-template <Element E>
 struct BoundaryFace {
-  FaceIds<E> nodes;
+  ShortIds<static_cast<std::size_t>(max_face_nodes)> nodes;
   Index element = 0;
 
   /// Sorted node ids: the same for every ordering of the face's nodes.
   auto key() const {
     auto k = nodes;
-    std::ranges::sort(k);
+    std::sort(k.begin(), k.end());
     return k;
   }
 };
@@ -39,75 +37,61 @@ struct KeyedFace {
   Index element = 0;
 };
 
+namespace detail {
+
+/// All faces of all elements, equal keys side by side and ordered by element.
+struct SortedFaces {
+  int width = 0;             ///< numbers per key
+  int per_element = 0;       ///< faces
+  std::vector<NodeId> keys;  ///< sorted nodes of every face, element by element; -1 behind those of a small face
+  std::vector<Index> order;  ///< places in `keys`
+
+  Index count() const noexcept { return static_cast<Index>(order.size()); }
+  const NodeId* key(Index i) const noexcept { return keys.data() + order[static_cast<std::size_t>(i)] * width; }
+  Index element(Index i) const noexcept { return order[static_cast<std::size_t>(i)] / per_element; }
+  int local(Index i) const noexcept { return static_cast<int>(order[static_cast<std::size_t>(i)] % per_element); }
+};
+SortedFaces sorted_faces(const MeshRef& mesh);
+
+/// Keys of faces as in SortedFaces.
+std::vector<NodeId> face_keys(const std::vector<BoundaryFace>& faces, int width);
+
+/// Faces in the order of their keys of at most `width` nodes, each once.
+std::vector<BoundaryFace> sort_unique(const std::vector<BoundaryFace>& faces, int width, Index node_count);
+
+}  // namespace detail
+
 /// All faces of all elements, equal keys side by side and ordered by element. O(faces), allocates.
 template <Element E, MeshOf<E> M>
 std::vector<KeyedFace<E>> sorted_faces(const M& mesh) {
-  // By lowest node first: what is left to sort are the few faces around a node.
-  std::vector<Index> start(static_cast<std::size_t>(mesh.node_count()) + 1, 0);
-  const auto each_face = [&](auto&& visit) {
-    for (Index e = 0; e < mesh.element_count(); ++e)
-      for (std::size_t f = 0; f < E::faces.size(); ++f) {
-        KeyedFace<E> face{face_ids<E>(mesh, e, f), static_cast<int>(f), e};
-        std::ranges::sort(face.key);
-        if (face.key.front() < 0 || face.key.back() >= mesh.node_count())
-          raise(SetupErrorKind::index_out_of_range,
-                "element " + std::to_string(e) + " names a node that does not exist");
-        visit(face);
-      }
-  };
-  each_face([&](const KeyedFace<E>& face) { ++start[static_cast<std::size_t>(face.key[0]) + 1]; });
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<KeyedFace<E>> faces(static_cast<std::size_t>(start.back()));
-  std::vector<Index> next(start.begin(), start.end() - 1);
-  each_face([&](const KeyedFace<E>& face) {
-    faces[static_cast<std::size_t>(next[static_cast<std::size_t>(face.key[0])]++)] = face;
-  });
-  for (std::size_t i = 0; i + 1 < start.size(); ++i)
-    std::sort(faces.begin() + start[i], faces.begin() + start[i + 1], [](const KeyedFace<E>& a, const KeyedFace<E>& b) {
-      return std::tie(a.key, a.element) < std::tie(b.key, b.element);
-    });
+  const detail::SortedFaces sorted = detail::sorted_faces(detail::plain_view<E>(mesh).mesh);
+  std::vector<KeyedFace<E>> faces;
+  faces.reserve(sorted.order.size());
+  for (Index i = 0; i < sorted.count(); ++i) {
+    FaceIds<E> key = make_face_ids<E>(local_face<E>(static_cast<std::size_t>(sorted.local(i))).size());
+    std::copy_n(sorted.key(i), key.size(), key.begin());
+    faces.push_back({key, sorted.local(i), sorted.element(i)});
+  }
   return faces;
 }
 
 /// All faces that belong to exactly one element, ordered by element. Node order is that of the element, hence outward
 /// when the element is positively oriented. A face shared by three or more elements is refused as non_manifold.
 /// O(faces), allocates.
+std::vector<BoundaryFace> extract_boundary(const MeshRef& mesh);
+
+/// The same for any mesh.
 template <Element E, MeshOf<E> M>
-std::vector<BoundaryFace<E>> extract_boundary(const M& mesh) {
-  const std::vector<KeyedFace<E>> faces = sorted_faces<E>(mesh);
-  std::vector<BoundaryFace<E>> boundary;
-  std::vector<Index> bad;
-  for (std::size_t i = 0; i < faces.size();) {
-    std::size_t j = i + 1;
-    while (j < faces.size() && faces[j].key == faces[i].key) ++j;
-    if (j - i == 1) {
-      const Index e = faces[i].element;
-      boundary.push_back({face_ids<E>(mesh, e, static_cast<std::size_t>(faces[i].local)), e});
-    } else if (j - i > 2) {
-      bad.push_back(faces[i].element);
-    }
-    i = j;
-  }
-  if (!bad.empty()) {
-    SetupProblem p;
-    p.kind = SetupErrorKind::non_manifold;
-    p.what = "a face is shared by three or more elements";
-    p.hint = "Remove the overlapping elements";
-    p.set_ids(bad);
-    raise(std::move(p));
-  }
-  std::ranges::stable_sort(boundary, {}, &BoundaryFace<E>::element);
-  return boundary;
+std::vector<BoundaryFace> extract_boundary(const M& mesh) {
+  static_assert(E::Face::nodes <= max_face_nodes, "palpate: a face has at most 16 nodes");
+  return extract_boundary(detail::plain_view<E>(mesh).mesh);
 }
 
 /// The unique nodes of faces, sorted.
-template <Element E>
-std::vector<NodeId> nodes_of(const std::vector<BoundaryFace<E>>& faces) {
-  std::vector<NodeId> nodes;
-  for (const auto& f : faces) nodes.insert(nodes.end(), f.nodes.begin(), f.nodes.end());
-  std::ranges::sort(nodes);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
-}
+std::vector<NodeId> nodes_of(const std::vector<BoundaryFace>& faces);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/surface.ipp>
+#endif

@@ -18,7 +18,7 @@ class ElementBody final : public ElasticBody {
   explicit ElementBody(Body<E> body);
 
   const Body<E>& body() const noexcept { return body_; }
-  const std::vector<BoundaryFace<E>>& boundary() const noexcept { return boundary_; }
+  const std::vector<BoundaryFace>& boundary() const noexcept { return boundary_; }
 
   const std::vector<Vector3>& positions() const noexcept override;
   const std::vector<std::string>& region_names() const noexcept override;
@@ -38,7 +38,7 @@ class ElementBody final : public ElasticBody {
 
  private:
   Body<E> body_;
-  std::vector<BoundaryFace<E>> boundary_;
+  std::vector<BoundaryFace> boundary_;
 };
 
 template <Element E>
@@ -62,15 +62,15 @@ void ElementBody<E>::require_constrained(const EssentialConditions& conditions) 
 }
 template <Element E>
 EssentialConditions ElementBody<E>::conditions(const Scene& scene) const {
-  return resolve_essential(body_.mesh, boundary_, scene);
+  return resolve_essential(mesh_ref(body_.mesh), boundary_, scene);
 }
 template <Element E>
 Touchable ElementBody<E>::touchable(const Scene& scene) const {
-  return resolve_touchable(body_.mesh, boundary_, scene);
+  return resolve_touchable(mesh_ref(body_.mesh), boundary_, scene);
 }
 template <Element E>
 std::vector<NodeId> ElementBody<E>::seen(const Scene& scene) const {
-  return resolve_seen(body_.mesh, boundary_, scene);
+  return resolve_seen(mesh_ref(body_.mesh), boundary_, scene);
 }
 template <Element E>
 VectorX ElementBody<E>::applied_load(const Scene& scene) const {

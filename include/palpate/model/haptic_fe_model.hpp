@@ -16,7 +16,6 @@ template <Element E>
 struct Mesh;
 template <Element E>
 struct Body;
-template <Element E>
 struct BoundaryFace;
 
 /// Linear static tissue. `E` is the element, `M` the material, `Solver` a policy of model/policies.hpp; assembly,
@@ -51,7 +50,7 @@ class HapticFEModel : public LinearTissue<typename SolverTraits<Solver>::Scalar>
   /// The mesh with its materials evaluated.
   const Body<E>& body() const noexcept;
   /// The faces of the mesh that belong to one element only.
-  const std::vector<BoundaryFace<E>>& boundary() const noexcept;
+  const std::vector<BoundaryFace>& boundary() const noexcept;
 };
 
 }}  // namespace palpate

@@ -75,7 +75,7 @@ const Body<E>& HapticFEModel<E, M, Solver>::body() const noexcept {
   return detail::element_body<E>(this->elastic_body()).body();
 }
 template <Element E, LinearMaterial M, SolverPolicy Solver>
-const std::vector<BoundaryFace<E>>& HapticFEModel<E, M, Solver>::boundary() const noexcept {
+const std::vector<BoundaryFace>& HapticFEModel<E, M, Solver>::boundary() const noexcept {
   return detail::element_body<E>(this->elastic_body()).boundary();
 }
 

@@ -125,7 +125,7 @@ Violations affine_patch_laws(const Body<E>& body, const K& k, double scale) {
     for (const Matrix6& d : body.elasticity) uniform = uniform && d == body.elasticity.front();
     if (!uniform) continue;
     const Matrix3 stress = voigt::stress_tensor(body.elasticity.front() * strain);
-    for (const BoundaryFace<E>& face : extract_boundary<E>(body.mesh))
+    for (const BoundaryFace& face : extract_boundary<E>(body.mesh))
       with_face_element<E>(face.nodes.size(), [&]<FaceElement F>() {
         const auto areas = shape_area_vectors<F>(face_nodes<F>(body.mesh, face));
         for (int i = 0; i < F::nodes; ++i)

@@ -1,0 +1,150 @@
+// Definitions of admission.hpp.
+#pragma once
+
+#include <palpate/core/setup_error.hpp>
+#include <palpate/mesh/admission.hpp>
+#include <palpate/mesh/duplicates.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// Ids of the mesh as given for those of the repaired one.
+template <class Id>
+void restore_ids(std::vector<std::int64_t>& ids, const std::vector<Id>& map) {
+  if (map.empty()) return;  // nothing was repaired yet
+  std::vector<std::int64_t> origin;
+  for (std::size_t i = map.size(); i-- > 0;) {  // backwards: the lowest of several welded nodes wins
+    if (map[i] < 0) continue;
+    const auto to = static_cast<std::size_t>(map[i]);
+    if (to >= origin.size()) origin.resize(to + 1, -1);
+    origin[to] = static_cast<std::int64_t>(i);
+  }
+  for (auto& id : ids) id = origin[static_cast<std::size_t>(id)];
+}
+
+PALPATE_INLINE void enforce(const MeshDiagnosis& d, const AdmissionPolicy& policy, const std::vector<NodeId>& node_map,
+                            const std::vector<Index>& element_map) {
+  for (const AdmissionRule& rule : admission_rules) {
+    const Finding& finding = d.*(rule.finding);
+    if (!finding || (rule.decision != nullptr && policy.*(rule.decision) == Admission::accept)) continue;
+    SetupProblem p = make_problem(rule, finding);
+    if (rule.of_nodes)
+      restore_ids(p.ids, node_map);
+    else
+      restore_ids(p.ids, element_map);
+    raise(std::move(p));
+  }
+  if (d.empty())
+    raise(SetupErrorKind::empty_mesh, std::to_string(d.node_count) + " nodes and " + std::to_string(d.element_count) +
+                                          " elements are left to compute with");
+}
+
+/// Ids of the groups that were copied.
+inline void require_valid_groups(const MeshRef& mesh) {
+  const auto outside = [](Index id, Index count) { return id < 0 || id >= count; };
+  for (const Group& g : mesh.groups) {
+    bool fine = std::ranges::none_of(g.nodes, [&](NodeId i) { return outside(i, mesh.node_count); }) &&
+                std::ranges::none_of(g.elements, [&](Index e) { return outside(e, mesh.element_count); });
+    for (const auto& face : g.faces)
+      fine = fine && mesh.element.is_face_size(face.size()) &&
+             std::ranges::none_of(face, [&](NodeId i) { return outside(i, mesh.node_count); });
+    if (!fine)
+      raise(SetupErrorKind::index_out_of_range, "group '" + g.name +
+                                                    "' names a node or element that does not exist, or a face of " +
+                                                    "another kind of element");
+  }
+}
+
+inline void apply_node_map(Candidate& work, const std::vector<NodeId>& map) {
+  renumber_nodes(work.mesh, map);
+  for (NodeId& i : work.node_map)
+    if (i >= 0) i = map[static_cast<std::size_t>(i)];
+}
+
+/// Welds coincident nodes. Returns whether there were any.
+inline bool weld(Candidate& work, const MeshThresholds& thresholds) {
+  const CoincidentNodes coincident = coincident_nodes(work.mesh.ref(), thresholds.coincidence);
+  std::vector<NodeId> map(coincident.representative.size());
+  NodeId next = 0;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const auto representative = static_cast<std::size_t>(coincident.representative[i]);  // never above i
+    map[i] = representative == i ? next++ : map[representative];
+  }
+  if (static_cast<std::size_t>(next) == map.size()) return false;
+  apply_node_map(work, map);
+  return true;
+}
+
+/// -1 inverted, 0 flat, 1 sound.
+inline int orientation_of(const Candidate& work, Index e, const MeshThresholds& thresholds) noexcept {
+  return orientation(work.shape_of(flat(work.mesh.positions), work.mesh.nodes_of(e)), thresholds);
+}
+
+/// Drops flat and repeated elements, as the policy says. Returns whether there were any.
+inline bool drop_elements(Candidate& work, const AdmissionPolicy& policy) {
+  if (policy.duplicate_elements != Admission::repair && policy.degenerate != Admission::repair) return false;
+  const std::vector<Index> first = first_equal_elements(work.mesh.ref());
+  std::vector<Index> map(first.size());
+  Index next = 0;
+  for (Index e = 0; e < work.mesh.element_count; ++e) {
+    const bool repeated = policy.duplicate_elements == Admission::repair && first[static_cast<std::size_t>(e)] != e;
+    const bool flat = policy.degenerate == Admission::repair && orientation_of(work, e, policy.thresholds) == 0;
+    map[static_cast<std::size_t>(e)] = repeated || flat ? -1 : next++;
+  }
+  if (next == work.mesh.element_count) return false;
+  renumber_elements(work.mesh, map);
+  for (Index& e : work.element_map) e = map[static_cast<std::size_t>(e)];
+  return true;
+}
+
+/// Turns inverted elements round. Returns whether there were any.
+inline bool turn_round(Candidate& work, const MeshThresholds& thresholds) {
+  std::vector<Index> inverted;
+  for (Index e = 0; e < work.mesh.element_count; ++e)
+    if (orientation_of(work, e, thresholds) < 0) inverted.push_back(e);
+  if (!inverted.empty()) reorient(work.mesh, inverted);
+  return !inverted.empty();
+}
+
+/// Drops nodes that no element uses (any more). Returns whether there were any.
+inline bool drop_orphans(Candidate& work) {
+  const std::vector<char> used = used_nodes(work.mesh.ref());
+  std::vector<NodeId> map(used.size(), -1);
+  NodeId next = 0;
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i] != 0) map[i] = next++;
+  if (static_cast<std::size_t>(next) == used.size()) return false;
+  apply_node_map(work, map);
+  return true;
+}
+
+/// All repairs the policy allows, in the order in which one may make work for the next. Returns whether anything was
+/// changed.
+inline bool repair(Candidate& work, const AdmissionPolicy& policy) {
+  bool changed = false;
+  if (policy.duplicate_nodes == Admission::repair) changed = weld(work, policy.thresholds) || changed;
+  changed = drop_elements(work, policy) || changed;
+  if (policy.inverted == Admission::repair) changed = turn_round(work, policy.thresholds) || changed;
+  if (policy.orphans == Admission::repair) changed = drop_orphans(work) || changed;
+  return changed;
+}
+
+PALPATE_INLINE void let_in(Candidate& candidate, const AdmissionPolicy& policy) {
+  require_valid_groups(candidate.mesh.ref());
+  candidate.node_map.resize(candidate.mesh.positions.size());
+  candidate.element_map.resize(static_cast<std::size_t>(candidate.mesh.element_count));
+  std::iota(candidate.node_map.begin(), candidate.node_map.end(), NodeId{0});
+  std::iota(candidate.element_map.begin(), candidate.element_map.end(), Index{0});
+  if (repair(candidate, policy)) {
+    const MeshRef mesh = candidate.mesh.ref();
+    candidate.admitted = begin_diagnosis(mesh.node_count, mesh.element_count);
+    check_indices(mesh, candidate.admitted);
+    diagnose_rest(mesh, candidate.shape_of, policy.thresholds, candidate.admitted);
+  }
+  enforce(candidate.admitted, policy, candidate.node_map, candidate.element_map);
+}
+
+}}}  // namespace palpate::detail
