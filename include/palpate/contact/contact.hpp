@@ -19,9 +19,6 @@ struct ContactParameters {
   int capacity = default_contact_capacity;  ///< contacts of all tools; more are left out (degraded_model)
 };
 
-/// The rotation by |v| about v.
-Matrix3 rotation_by(const Vector3& v) noexcept;
-
 /// A ball or capsule as the contact problem knows it, in the model's frame.
 struct ContactTool {
   Vector3 target = Vector3::Zero();  ///< where the device is [m]

@@ -2,17 +2,11 @@
 #pragma once
 
 #include <palpate/contact/contact.hpp>
-
-#include <Eigen/Geometry>
+#include <palpate/core/rigid_motion.hpp>
 
 #include <algorithm>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-PALPATE_INLINE Matrix3 rotation_by(const Vector3& v) noexcept {
-  const double angle = v.norm();
-  return angle > 0.0 ? Eigen::AngleAxisd(angle, v / angle).toRotationMatrix() : Matrix3(Matrix3::Identity());
-}
 
 PALPATE_INLINE void ContactTool::lift() noexcept {
   active = grasping = false;
@@ -23,7 +17,7 @@ PALPATE_INLINE Vector3 ContactTool::goal(double floor) const noexcept {
   return target + (compliance + floor) * force;
 }
 PALPATE_INLINE Matrix3 ContactTool::goal_rotation() const noexcept {
-  return turning_compliance > 0.0 ? Matrix3(rotation_by(turning_compliance * torque) * target_rotation)
+  return turning_compliance > 0.0 ? rotation_by(turning_compliance * torque) * target_rotation
                                   : target_rotation;
 }
 PALPATE_INLINE Vector3 ContactTool::axis() const noexcept {

@@ -2,8 +2,7 @@
 #pragma once
 
 #include <palpate/contact/proxy_motion.hpp>
-
-#include <Eigen/Geometry>
+#include <palpate/core/rigid_motion.hpp>
 
 #include <algorithm>
 
@@ -15,8 +14,7 @@ PALPATE_INLINE void ProxyMotion::turn(ContactTool& tool, double part) noexcept {
     tool.rotation = goal;
     return;
   }
-  const Eigen::AngleAxisd by(Matrix3(goal * tool.rotation.transpose()));
-  tool.rotation = Eigen::AngleAxisd(part * by.angle(), by.axis()) * tool.rotation;
+  tool.rotation = rotation_by(part * rotation_vector(goal * tool.rotation.transpose())) * tool.rotation;
 }
 
 PALPATE_INLINE void ProxyMotion::slide(Tools tools) noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/tissue_group.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 
 #include <algorithm>
@@ -38,7 +39,7 @@ PALPATE_INLINE void TissueGroup::update() noexcept {
 PALPATE_INLINE std::size_t TissueGroup::forces_on(int member, std::span<const VertexForce> forces,
                                                   std::span<VertexForce> own) const noexcept {
   const Member& m = members_[at(member)];
-  const Matrix3 turn = m.tissue.pose().linear();
+  const Matrix3 turn = rotation_of(m.tissue.pose());
   std::size_t count = 0;
   for (const VertexForce& f : forces)
     if (m.has(f.vertex) && count < own.size()) own[count++] = {f.vertex - m.first, turn.transpose() * f.force};
@@ -58,7 +59,7 @@ PALPATE_INLINE void TissueGroup::foresee(std::span<const int> vertices) noexcept
 PALPATE_INLINE Matrix3 TissueGroup::compliance(int i, int j) const noexcept {
   const Member& m = member_of(j);
   if (!m.has(i)) return Matrix3::Zero();
-  const Matrix3 turn = m.tissue.pose().linear();
+  const Matrix3 turn = rotation_of(m.tissue.pose());
   return turn * m.tissue.compliance(i - m.first, j - m.first) * turn.transpose();
 }
 PALPATE_INLINE double TissueGroup::compliance_bound(int j) const noexcept {

@@ -3,8 +3,7 @@
 
 #include <palpate/contact/sweep.hpp>
 #include <palpate/contact/tool_placement.hpp>
-
-#include <Eigen/Geometry>
+#include <palpate/core/rigid_motion.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -56,9 +55,8 @@ PALPATE_INLINE void sweep(ContactTool& tool, const ContactSurface& surface, cons
     part = std::min(part, first_touch(surface, from + s * axis, way + s * turn, (1.0 - 1e-6) * tool.radius));
   });
   tool.proxy = from + part * way;
-  const Eigen::AngleAxisd by(Matrix3(tool.target_rotation * tool.rotation.transpose()));
-  tool.rotation =
-      part < 1.0 ? Matrix3(Eigen::AngleAxisd(part * by.angle(), by.axis()) * tool.rotation) : tool.target_rotation;
+  const Vector3 by = rotation_vector(tool.target_rotation * tool.rotation.transpose());
+  tool.rotation = part < 1.0 ? rotation_by(part * by) * tool.rotation : tool.target_rotation;
   tool.force.setZero();
   tool.torque.setZero();
 }

@@ -54,3 +54,6 @@ template <class V, int N>
 concept FixedVector = FixedMatrix<V, N, 1>;
 
 }}  // namespace palpate
+
+// Their arithmetic, wherever they are used.
+#include <palpate/core/small_matrix.hpp>

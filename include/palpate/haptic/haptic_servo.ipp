@@ -2,10 +2,10 @@
 #pragma once
 
 #include <palpate/core/realtime.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 
-#include <Eigen/Geometry>
 
 #include <algorithm>
 
@@ -83,13 +83,13 @@ PALPATE_INLINE Vector3 HapticServo::proxy(std::size_t tool) const noexcept {
   return tissue_.pose() * contact_tools_[tool].proxy;
 }
 PALPATE_INLINE Vector3 HapticServo::contact_force(std::size_t tool) const noexcept {
-  return tissue_.pose().linear() * contact_tools_[tool].force;
+  return rotation_of(tissue_.pose()) * contact_tools_[tool].force;
 }
 PALPATE_INLINE Vector3 HapticServo::contact_torque(std::size_t tool) const noexcept {
-  return tissue_.pose().linear() * contact_tools_[tool].torque;
+  return rotation_of(tissue_.pose()) * contact_tools_[tool].torque;
 }
 PALPATE_INLINE Vector3 HapticServo::proxy_axis(std::size_t tool) const noexcept {
-  return tissue_.pose().linear() * contact_tools_[tool].axis();
+  return rotation_of(tissue_.pose()) * contact_tools_[tool].axis();
 }
 
 /// Notes when a tissue that moves by itself was last heard of.
@@ -130,8 +130,8 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   EnergyTank* const energy = energies_.empty() ? nullptr : &energies_[i];
   const Eigen::Isometry3d& pose = tissue_.pose();
   Vector3 force(0.0, 0.0, 0.0), torque(0.0, 0.0, 0.0);
-  if (tool.active) force = pose.linear() * tool.force;
-  if (tool.active && input.turns()) torque = pose.linear() * tool.torque;
+  if (tool.active) force = rotation_of(pose) * tool.force;
+  if (tool.active && input.turns()) torque = rotation_of(pose) * tool.torque;
   Status limited;
   if (energy != nullptr) {
     if (!input.readable() || input.restarted()) energy->forget();

@@ -1,9 +1,9 @@
 // Definitions of servo_snapshot.hpp.
 #pragma once
 
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
 
-#include <Eigen/Geometry>
 
 #include <algorithm>
 
@@ -22,12 +22,12 @@ PALPATE_INLINE void ServoSnapshot::note(std::span<const Contact> all, std::span<
   contact_count = 0;
   for (const Contact& c : all)
     if (c.force > 0.0 && !c.grasped)
-      contacts[contact_count++] = {c.tool, pose * c.point, pose.linear() * c.normal, c.force,
-                                   pose.linear() * c.friction};
+      contacts[contact_count++] = {c.tool, pose * c.point, rotation_of(pose) * c.normal, c.force,
+                                   rotation_of(pose) * c.friction};
   for (std::size_t i = 0; i + 2 < all.size(); ++i) {
     if (!all[i].grasped) continue;
     const Vector3 total = all[i].total() + all[i + 1].total() + all[i + 2].total();
-    note_held(all[i].tool, pose * all[i].point, pose.linear() * total);
+    note_held(all[i].tool, pose * all[i].point, rotation_of(pose) * total);
     i += 2;
   }
 }

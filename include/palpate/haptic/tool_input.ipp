@@ -2,9 +2,8 @@
 #pragma once
 
 #include <palpate/contact/tool_placement.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/haptic/tool_input.hpp>
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +24,7 @@ PALPATE_INLINE void ToolInput::take(const ToolState& state, const Eigen::Isometr
     tool.lift();
     return;
   }
-  const Vector3 position = pose.inverse() * state.position;
+  const Vector3 position = inverse(pose) * state.position;
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
   if (turns_) {
     const auto& q = state.orientation;
@@ -58,16 +57,15 @@ PALPATE_INLINE void ToolInput::reset() noexcept {
 
 PALPATE_INLINE bool ToolInput::is_sound(const Vector3& position, const Eigen::Quaterniond& turn, double time) noexcept {
   const double length = turn.norm();
-  return position.allFinite() && position.cwiseAbs().maxCoeff() < 1e6 && std::isfinite(time) && length > 0.5 &&
+  return all_finite(position) && position.cwiseAbs().maxCoeff() < 1e6 && std::isfinite(time) && length > 0.5 &&
          length < 2.0;
 }
 
 PALPATE_INLINE void ToolInput::rotate(const Eigen::Quaterniond& turn, const Eigen::Isometry3d& pose,
                                       ContactTool& tool) noexcept {
-  const Matrix3 rotation = pose.linear().transpose() * turn.toRotationMatrix();
+  const Matrix3 rotation = rotation_of(pose).transpose() * rotation_of(turn);
   if (known_) {
-    const Eigen::AngleAxisd by(Matrix3(rotation * tool.target_rotation.transpose()));
-    rotation_ = by.angle() * (pose.linear() * by.axis());
+    rotation_ = rotation_of(pose) * rotation_vector(rotation * tool.target_rotation.transpose());
     tool.turned = tool.half_length * ((rotation - tool.target_rotation) * tool.own_axis).norm();
   }
   tool.target_rotation = rotation;

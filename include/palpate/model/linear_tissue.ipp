@@ -3,12 +3,11 @@
 
 #include <palpate/model/linear_tissue.hpp>
 
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/model/admission_report.hpp>
 #include <palpate/model/elastic_body.hpp>
 #include <palpate/model/stage_timer.hpp>
 #include <palpate/model/statics.hpp>
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
@@ -80,7 +79,7 @@ template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_conditions(const Scene& scene) {
   const Scene mapped = scene.mapped(node_map_);
   SetupReport report = report_;
-  statics_->set_conditions(mapped, pose_.linear().transpose() * scene.gravity(), reporting_to(report));
+  statics_->set_conditions(mapped, rotation_of(pose_).transpose() * scene.gravity(), reporting_to(report));
   gravity_ = scene.gravity();
   accept_displacement(report);
 }
@@ -89,7 +88,7 @@ template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_gravity(const Vector3& gravity) {
   if (!gravity.allFinite()) raise(SetupErrorKind::non_finite, "gravity is not finite");
   SetupReport report = report_;
-  statics_->set_gravity(pose_.linear().transpose() * gravity, reporting_to(report));
+  statics_->set_gravity(rotation_of(pose_).transpose() * gravity, reporting_to(report));
   gravity_ = gravity;
   accept_displacement(report);
 }
@@ -97,13 +96,13 @@ void LinearTissue<Scalar>::set_gravity(const Vector3& gravity) {
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_pose(const Eigen::Isometry3d& pose) {
   const bool rigid = pose.matrix().allFinite() &&
-                     (pose.linear().transpose() * pose.linear() - Matrix3::Identity()).norm() < 1e-9 &&
-                     pose.linear().determinant() > 0.0;
+                     (rotation_of(pose).transpose() * rotation_of(pose) - Matrix3::Identity()).norm() < 1e-9 &&
+                     determinant(rotation_of(pose)) > 0.0;
   if (!rigid)
     raise(SetupErrorKind::bad_argument, "the pose is not a rigid motion",
           "Give a proper rotation and a finite translation");
   SetupReport report = report_;
-  if (!gravity_.isZero(0.0)) statics_->set_gravity(pose.linear().transpose() * gravity_, reporting_to(report));
+  if (!gravity_.isZero(0.0)) statics_->set_gravity(rotation_of(pose).transpose() * gravity_, reporting_to(report));
   place(pose);
   accept_displacement(report);
 }
