@@ -129,7 +129,7 @@ class PageData {
     std::vector<std::array<NodeId, 3>> all;
     for (const auto& face : organ_.boundary())
       if (std::ranges::all_of(face.nodes, [&](NodeId n) { return vertex_of_[static_cast<std::size_t>(n)] >= 0; }))
-        all.push_back(face.nodes);
+        all.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
     return all;
   }
   std::string faces(const std::vector<std::array<NodeId, 3>>& list) const {

@@ -52,7 +52,8 @@ inline std::vector<std::array<NodeId, 3>> region_surface(const Organ& organ, std
     if (organ.mesh().region_name(organ.mesh().region(e)) == name)
       part.elements.push_back(organ.mesh().elements[static_cast<std::size_t>(e)]);
   std::vector<std::array<NodeId, 3>> faces;
-  for (const auto& face : extract_boundary<Tet4>(part)) faces.push_back(face.nodes);
+  for (const auto& face : extract_boundary<Tet4>(part))
+    faces.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
   return faces;
 }
 

@@ -38,7 +38,10 @@ inline Rest rest_of(CuttableTissue<Tet4>& tissue) {
     }
     for (Vector3& x : rest.mesh.positions) x += tissue.origin();
     std::set<std::array<NodeId, 3>> skin;
-    for (const auto& face : extract_boundary<Tet4>(physics.body.mesh)) skin.insert(face.key());
+    for (const auto& face : extract_boundary<Tet4>(physics.body.mesh)) {
+      const auto key = face.key();
+      skin.insert({key[0], key[1], key[2]});
+    }
     for (const auto& face : extract_boundary<Tet4>(rest.mesh)) {
       std::array<NodeId, 3> key{};
       for (std::size_t a = 0; a < 3; ++a) key[a] = origin[static_cast<std::size_t>(face.nodes[a])];

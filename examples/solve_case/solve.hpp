@@ -3,6 +3,8 @@
 
 #include "case_file.hpp"
 
+#include <palpate/mesh/selection.hpp>
+
 #include <chrono>
 #include <iomanip>
 

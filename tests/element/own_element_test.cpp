@@ -2,6 +2,7 @@
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/matrix_free.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/mesh/selection.hpp>
 #include <palpate/testing/assembler_laws.hpp>
 #include <palpate/testing/element_laws.hpp>
 

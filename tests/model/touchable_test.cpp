@@ -26,7 +26,7 @@ Mesh<E> block() {
 
 template <Element E>
 Touchable touched(const Mesh<E>& mesh, const std::string& group) {
-  return resolve_touchable(mesh, extract_boundary<E>(mesh), Scene().touch(group));
+  return resolve_touchable(mesh_ref(mesh), extract_boundary<E>(mesh), Scene().touch(group));
 }
 
 ContactSurface surface_of(const Touchable& touchable, const std::vector<Vector3>& positions) {

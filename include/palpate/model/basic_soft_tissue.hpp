@@ -180,7 +180,7 @@ class BasicSoftTissue {
     for (Vector3& x : admitted.mesh.positions) x -= prepared.origin;
     auto body = detail::soft_body(std::move(admitted.mesh), materials);
     const Mesh<E>& rest = detail::mesh_of(body);
-    prepared.touchable = resolve_touchable(rest, extract_boundary<E>(rest), mapped);
+    prepared.touchable = resolve_touchable(mesh_ref(rest), extract_boundary<E>(rest), mapped);
     prepared.settled = VectorX::Zero(3 * rest.node_count());
     if (options.settle)
       require_constrained(rest, resolve_essential(rest, extract_boundary<E>(rest), mapped).constrained);

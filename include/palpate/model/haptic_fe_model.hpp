@@ -47,7 +47,7 @@ class HapticFEModel : public LinearTissue<typename SolverTraits<Solver>::Scalar>
 
   /// The admitted mesh, in the frame of `origin()`.
   const Mesh<E>& mesh() const noexcept;
-  /// The mesh with its materials evaluated.
+  /// The mesh with its materials evaluated (assembly/body.hpp).
   const Body<E>& body() const noexcept;
   /// The faces of the mesh that belong to one element only.
   const std::vector<BoundaryFace>& boundary() const noexcept;
