@@ -1,6 +1,7 @@
 // The four charts of the report.
 #pragma once
 
+#include <palpate/device/recorder.hpp>
 #include "chart.hpp"
 #include "pictures.hpp"
 

@@ -22,6 +22,7 @@
 //
 // --unpaced does the same in simulated time, as fast as it goes; for tests. The exit code is 1 when a force was not
 // finite or longer than the device allows, 2 when the arguments or the mesh are refused.
+#include <palpate/device/recorder.hpp>
 #include "report.hpp"
 #include "still.hpp"
 

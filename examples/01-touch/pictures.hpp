@@ -4,6 +4,8 @@
 #include "chart.hpp"
 #include "session.hpp"
 
+#include <palpate/device/recorder.hpp>
+#include <palpate/io/vtu.hpp>
 #include <palpate/io/pvd.hpp>
 #include <palpate/post/colour_map.hpp>
 #include <palpate/post/stress.hpp>

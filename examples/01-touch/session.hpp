@@ -1,6 +1,7 @@
 // The two threads of a haptic program: one that feels, a thousand times a second, and one that looks, thirty times.
 #pragma once
 
+#include <palpate/device/recorder.hpp>
 #include "scene.hpp"
 
 #include <chrono>

@@ -11,6 +11,7 @@
 // friction drags, and nothing is left once it is lifted. The drag is mu times the press and a little more: a dent has a
 // wall in front of the probe.
 #include <palpate/palpate.hpp>
+#include <palpate/io/vtu.hpp>
 #include <palpate/post/stress.hpp>
 
 #include <cstdio>

@@ -19,6 +19,8 @@
 
 #include <palpate/cut/blade.hpp>
 #include <palpate/palpate.hpp>
+#include <palpate/io/pvd.hpp>
+#include <palpate/io/vtu.hpp>
 
 #include "../common/main_with_out.hpp"
 #include "../common/page.hpp"
