@@ -130,7 +130,7 @@ class BasicSoftTissue {
     out.count = 0;
     ticked_ = {};
     for (const VertexForce& f : forces)
-      if (!f.force.allFinite())
+      if (!all_finite(f.force))
         ticked_.set(StatusFlag::non_finite_force);
       else if (out.count < most_forces)
         out.item[out.count++] = f;
@@ -206,7 +206,7 @@ class BasicSoftTissue {
 
   void add(const Forces& forces, double factor, VectorX& load) const noexcept {
     for (std::size_t k = 0; k < forces.count; ++k)
-      load.segment<3>(3 * Index{touchable_[vertex(forces.item[k])]}) += factor * forces.item[k].force;
+      add_node_vector(load, touchable_[vertex(forces.item[k])], factor * forces.item[k].force);
   }
 
   /// Where the surface is without the forces in use, by the compliance that the servo uses: then the same forces bring
@@ -221,10 +221,10 @@ class BasicSoftTissue {
     for (std::size_t i = 0; i < n; ++i) {
       Vector3 moved = Vector3::Zero();
       for (std::size_t k = 0; k < used_.count; ++k)
-        moved.noalias() += compliance_.at_rest(i, vertex(used_.item[k])) * turned_back[k];
+        moved += compliance_.at_rest(i, vertex(used_.item[k])) * turned_back[k];
       const NodeId node = touchable_[i];
-      view.free[i] = motion_.body().positions[static_cast<std::size_t>(node)] + u.segment<3>(3 * Index{node}) -
-                     view.rotation[i] * moved;
+      view.free[i] =
+          motion_.body().positions[static_cast<std::size_t>(node)] + node_vector(u, node) - view.rotation[i] * moved;
     }
   }
   static std::size_t vertex(const VertexForce& f) noexcept { return static_cast<std::size_t>(f.vertex); }

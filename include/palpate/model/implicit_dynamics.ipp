@@ -218,7 +218,7 @@ PALPATE_INLINE bool ImplicitDynamics::energy_is_explained() noexcept {
 
 PALPATE_INLINE void ImplicitDynamics::apply_mass(const VectorX& x, VectorX& y) const noexcept {
   if (parameters_.mass == MassKind::consistent) return body_.mass.apply(x, y);
-  for (Index i = 0; i < body_.lumped.size(); ++i) y.segment<3>(3 * i) = body_.lumped[i] * x.segment<3>(3 * i);
+  for (Index i = 0; i < body_.lumped.size(); ++i) set_node_vector(y, i, body_.lumped[i] * node_vector(x, i));
 }
 
 PALPATE_INLINE void ImplicitDynamics::add_mass(double factor, BlockMatrix& k) const noexcept {
