@@ -12,6 +12,7 @@
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/realtime.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
@@ -25,8 +26,6 @@
 #include <palpate/model/tissue_motion.hpp>
 #include <palpate/model/touchable.hpp>
 #include <palpate/model/warped_compliance.hpp>
-
-#include <Eigen/Geometry>
 
 #include <array>
 #include <span>
@@ -191,7 +190,7 @@ class BasicSoftTissue {
 
   BasicSoftTissue(Prepared prepared, const Options& options)
       : step_(options.step),
-        world_(Eigen::Translation3d(prepared.origin)),
+        world_(make_pose(Matrix3::Identity(), prepared.origin)),
         touchable_(std::move(prepared.touchable.nodes)),
         motion_(std::move(prepared.source), options.motion, options.limits),
         rotations_(motion_.body().pattern, motion_.body().positions, touchable_),
