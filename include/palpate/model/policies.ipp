@@ -50,7 +50,8 @@ PALPATE_INLINE Uncondensed make_inverse(DenseKind kind, const BlockMatrix& k, co
                         "the inverse of the whole stiffness");
   MatrixX lower(n, n);
   std::fill_n(lower.data(), lower.size(), 0.0);
-  for_each_free_entry(k, conditions, [&](Index row, Index column, double value) { lower(row, column) = value; });
+  for_each_free_entry(k, conditions,
+                      [&](Index row, Index column, double value) { lower.coeffRef(row, column) = value; });
   if (kind == DenseKind::inverse_float) return {DenseInverse<float>(std::move(lower), limits), layout.kept};
   return {DenseInverse<double>(std::move(lower), limits), layout.kept};
 }
