@@ -113,14 +113,12 @@ TEST_CASE("free motions are named", "[mesh][rigid_modes][extreme][B8]") {
 
 TEST_CASE("a screw motion is called one", "[mesh][rigid_modes]") {
   // Node 1 at (1, 0, 0) may move along (0, 1, -1) only in a screw about x: built by hand from (w, t).
-  Eigen::Matrix<double, 6, Eigen::Dynamic> motion(6, 1);
-  motion << 1, 0, 0, 0.5, 0, 0;
-  const auto names = detail::name_rigid_motions(motion, Vector3::Zero(), 1.0);
+  const Vector6 motion{{1, 0, 0, 0.5, 0, 0}};
+  const auto names = detail::name_rigid_motions({motion}, Vector3::Zero(), 1.0);
   REQUIRE(names.size() == 1);
   CHECK(names[0] == "screw about the axis (1, 0, 0) through (0, 0, 0)");
-  Eigen::Matrix<double, 6, Eigen::Dynamic> with_slide(6, 2);  // a free slide along the axis makes it a plain rotation
-  with_slide << 1, 0, 0, 0, 0, 0, 0.5, 1, 0, 0, 0, 0;
-  const auto both = detail::name_rigid_motions(with_slide, Vector3::Zero(), 1.0);
+  const Vector6 slide{{0, 0, 0, 1, 0, 0}};  // a free slide along the axis makes it a plain rotation
+  const auto both = detail::name_rigid_motions({motion, slide}, Vector3::Zero(), 1.0);
   REQUIRE(both.size() == 2);
   CHECK(both[0] == "translation x");
   CHECK(both[1] == "rotation about the axis (1, 0, 0) through (0, 0, 0)");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/triangle.hpp>
+#include <palpate/core/box.hpp>
 
 #include <algorithm>
 #include <array>
@@ -9,46 +10,6 @@
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-/// An axis-aligned box.
-struct Box {
-  Vector3 low = Vector3::Constant(infinity);
-  Vector3 high = Vector3::Constant(-infinity);
-
-  void include(const Vector3& p) noexcept { include(p, p); }
-  void include(const Box& b) noexcept { include(b.low, b.high); }
-  /// Squared distance of a point, 0 inside.
-  double squared_distance(const Vector3& p) const noexcept {
-    const double x = off(p, 0), y = off(p, 1), z = off(p, 2);
-    return x * x + (y * y + z * z);
-  }
-  /// Whether the way from a point enters the box, widened by `margin`, before the share `until` of it is gone.
-  bool is_crossed(const Vector3& from, const Vector3& way, double margin, double until) const noexcept {
-    double enter = 0.0, leave = until;
-    for (int k = 0; k < 3; ++k) {
-      const double a = low[k] - margin - from[k], b = high[k] + margin - from[k];
-      if (way[k] == 0.0) {
-        if (a > 0.0 || b < 0.0) return false;
-        continue;
-      }
-      enter = std::max(enter, std::min(a / way[k], b / way[k]));
-      leave = std::min(leave, std::max(a / way[k], b / way[k]));
-    }
-    return enter <= leave;
-  }
-
- private:
-  void include(const Vector3& lowest, const Vector3& highest) noexcept {
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], lowest[k]);
-      high[k] = std::max(high[k], highest[k]);
-    }
-  }
-  double off(const Vector3& p, int k) const noexcept {
-    const double side = std::max(low[k] - p[k], p[k] - high[k]);
-    return side < 0.0 ? 0.0 : side;  // NaN stays NaN: it is near nothing
-  }
-};
 
 /// Boxes over triangles, split at the median of the longest axis; leaves hold up to four triangles. Queries are O(log n
 /// + hits), do not allocate and visit triangles in a fixed order.

@@ -3,8 +3,6 @@
 
 #include <palpate/contact/candidates.hpp>
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -246,7 +244,7 @@ PALPATE_INLINE bool Candidates::faces_ball(const TissueView& tissue, SurfaceDisp
   const Vector3 x0 = displacement.position(tissue, v[0]);
   const Vector3 x1 = displacement.position(tissue, v[1]);
   const Vector3 x2 = displacement.position(tissue, v[2]);
-  return c.normal.dot((x1 - x0).cross(x2 - x0)) > 0.0;
+  return c.normal.dot(cross(x1 - x0, x2 - x0)) > 0.0;
 }
 
 }}  // namespace palpate

@@ -31,7 +31,7 @@ struct ContactTool {
   bool grasping = false;             ///< holds the point it touched when this became true
 
   double half_length = 0.0;                       ///< of a capsule's axis [m]; 0 is a ball
-  Vector3 own_axis = Vector3::UnitZ();            ///< of a capsule, in the tool's own frame, unit
+  Vector3 own_axis{0.0, 0.0, 1.0};                ///< of a capsule, in the tool's own frame, unit
   Matrix3 target_rotation = Matrix3::Identity();  ///< of the device: from the tool's own frame
   Matrix3 rotation = Matrix3::Identity();         ///< of the proxy
   Vector3 torque = Vector3::Zero();               ///< of the tissue on the tool, about the proxy [N m]

@@ -3,8 +3,6 @@
 
 #include <palpate/contact/contact_rows.hpp>
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 
@@ -49,7 +47,7 @@ inline Matrix3 ContactRows::between(const TissueView& tissue, const ContactSampl
 
 /// How far the couplings give way to the drags where a tool touches; the rest of CoulombFriction::moved is tissue.
 inline Vector3 ContactRows::sprung(const ContactTool& tool, const Contact& row) noexcept {
-  return tool.drag_way + tool.drag_turn.cross(row.arm);
+  return tool.drag_way + cross(tool.drag_turn, row.arm);
 }
 
 /// Displacement of two points per force on the other along its row's normal, m and n; their compliance is c, 3 x 3.
@@ -84,7 +82,7 @@ inline void ContactRows::build_row(const TissueView& tissue, const ContactSample
                       : set_responses(compliance_(tissue, samples, q, p).data(), n, m, on_i->data(), on_j->data());
     if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
     if (turns && ci.tool == cj.tool)
-      w += tool.turning_compliance * ci.arm.cross(ci.normal).dot(cj.arm.cross(cj.normal));
+      w += tool.turning_compliance * cross(ci.arm, ci.normal).dot(cross(cj.arm, cj.normal));
     column[j] = *row = w;
   }
 }
@@ -223,7 +221,7 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
     ContactTool& tool = tools[at(row.tool)];
     const Vector3 total = friction_.acts() ? row.total() : Vector3(row.force * row.normal);
     tool.force += total;
-    tool.torque += row.arm.cross(total);
+    tool.torque += cross(row.arm, total);
     for (std::size_t a = 0; a < 3; ++a)
       if (row.weights[a] > 0.0) displacement.add(row.vertices[a], -row.weights[a] * total, slot_[at(row.vertices[a])]);
   }
@@ -285,7 +283,7 @@ PALPATE_INLINE void ContactRows::note_drags(std::span<ContactTool> tools) const 
     const Contact& row = rows_[at(j)];
     ContactTool& tool = tools[at(row.tool)];
     tool.drag_way += (tool.compliance + floor_) * friction_.row(j).drag;
-    tool.drag_turn += tool.turning_compliance * row.arm.cross(friction_.row(j).drag);
+    tool.drag_turn += tool.turning_compliance * cross(row.arm, friction_.row(j).drag);
   }
 }
 

@@ -3,8 +3,6 @@
 
 #include <palpate/contact/contact_surface.hpp>
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -57,7 +55,7 @@ PALPATE_INLINE void ContactSurface::update_normals() noexcept {
   for (Vector3& n : vertex_normals_) n.setZero();
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const Triangle& v = triangles_[t];
-    normals_[t] = (position(v[1]) - position(v[0])).cross(position(v[2]) - position(v[0])).normalized();
+    normals_[t] = cross(position(v[1]) - position(v[0]), position(v[2]) - position(v[0])).normalized();
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector3 a = (position(v[(i + 1) % 3]) - position(v[i])).normalized(),
                     b = (position(v[(i + 2) % 3]) - position(v[i])).normalized();

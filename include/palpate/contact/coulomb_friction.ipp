@@ -3,8 +3,6 @@
 
 #include <palpate/contact/coulomb_friction.hpp>
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 
@@ -79,9 +77,16 @@ PALPATE_INLINE void CoulombFriction::push(double* sum, int count, int j, const V
   for (int i = 0; i < 3 * count; ++i) sum[i] += fx * x[i] + fy * y[i] + fz * z[i];
 }
 
+/// A unit vector at right angles to a unit vector.
+inline Vector3 unit_across(const Vector3& n) noexcept {
+  const double xy = std::sqrt(n[0] * n[0] + n[1] * n[1]);
+  if (xy > 1e-12) return {-n[1] / xy, n[0] / xy, 0.0};
+  return {1.0, 0.0, 0.0};
+}
+
 /// The larger eigenvalue of w across the normal.
 PALPATE_INLINE double CoulombFriction::stiffest(const Matrix3& w, const Vector3& normal) noexcept {
-  const Vector3 a = normal.unitOrthogonal(), b = normal.cross(a), wa = w * a, wb = w * b;
+  const Vector3 a = unit_across(normal), b = cross(normal, a), wa = w * a, wb = w * b;
   const double aa = a.dot(wa), bb = b.dot(wb), ab = 0.5 * (a.dot(wb) + b.dot(wa));
   return 0.5 * (aa + bb) + std::hypot(0.5 * (aa - bb), ab);
 }

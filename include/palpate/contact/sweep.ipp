@@ -3,8 +3,6 @@
 
 #include <palpate/contact/sweep.hpp>
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 
@@ -42,7 +40,7 @@ PALPATE_INLINE double ball_meets_triangle(const Vector3& from, const Vector3& wa
   const Vector3 foot = centre - normal.dot(centre - corner[0]) * normal;
   bool inside = true;
   for (std::size_t i = 0; i < 3; ++i)
-    inside = inside && normal.dot((corner[(i + 1) % 3] - corner[i]).cross(foot - corner[i])) >= 0.0;
+    inside = inside && normal.dot(cross(corner[(i + 1) % 3] - corner[i], foot - corner[i])) >= 0.0;
   if (inside) return t;
   double first = infinity;
   for (std::size_t i = 0; i < 3; ++i) {

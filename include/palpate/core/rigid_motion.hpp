@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
+#include <palpate/core/rotation.hpp>
 #include <palpate/core/small_matrix.hpp>
 #include <palpate/core/types.hpp>
 
@@ -13,8 +14,13 @@ namespace palpate { inline namespace PALPATE_ABI {
 Matrix3 rotation_by(const Vector3& v) noexcept;
 /// The inverse of rotation_by: v with |v| <= pi, for a rotation matrix.
 Vector3 rotation_vector(const Matrix3& rotation) noexcept;
-/// The rotation of a unit quaternion.
-Matrix3 rotation_of(const Eigen::Quaterniond& q) noexcept;
+/// The rotation of a quaternion of any length.
+Matrix3 rotation_matrix(const Quaternion<double>& q) noexcept;
+/// A unit quaternion of a rotation matrix.
+Quaternion<double> quaternion_of(const Matrix3& rotation) noexcept;
+
+/// Orthogonal to 1e-9 and right-handed.
+bool is_rotation(const Matrix3& m) noexcept;
 
 /// The rotation of a pose.
 Matrix3 rotation_of(const Eigen::Isometry3d& pose) noexcept;

@@ -25,7 +25,7 @@ PALPATE_INLINE Matrix3 rotation_by(const Vector3& v) noexcept {
   return r;
 }
 
-PALPATE_INLINE Vector3 rotation_vector(const Matrix3& rotation) noexcept {
+PALPATE_INLINE Quaternion<double> quaternion_of(const Matrix3& rotation) noexcept {
   // The quaternion whose largest component comes from the diagonal (Shepperd 1978): no cancellation at any angle.
   const Matrix3& r = rotation;
   const double trace = r(0, 0) + r(1, 1) + r(2, 2);
@@ -44,30 +44,46 @@ PALPATE_INLINE Vector3 rotation_vector(const Matrix3& rotation) noexcept {
     axis[i] = r(k, i) + r(i, k);
     axis[j] = r(k, j) + r(j, k);
   }
-  const double length = axis.norm();
-  if (!(length > 0.0)) return Vector3::Zero();
-  const double angle = 2.0 * std::atan2(length, std::abs(w));
-  return ((w < 0.0 ? -angle : angle) / length) * axis;
+  return detail::normalized(Quaternion<double>{w, axis[0], axis[1], axis[2]});
 }
 
-PALPATE_INLINE Matrix3 rotation_of(const Eigen::Quaterniond& q) noexcept {
-  return q.toRotationMatrix();
+PALPATE_INLINE Vector3 rotation_vector(const Matrix3& rotation) noexcept {
+  const Quaternion<double> q = quaternion_of(rotation);
+  const Vector3 axis(q.x, q.y, q.z);
+  const double length = axis.norm();
+  if (!(length > 0.0)) return Vector3::Zero();
+  const double angle = 2.0 * std::atan2(length, std::abs(q.w));
+  return ((q.w < 0.0 ? -angle : angle) / length) * axis;
+}
+
+PALPATE_INLINE Matrix3 rotation_matrix(const Quaternion<double>& q) noexcept {
+  return matrix3(detail::rotation_of(detail::normalized(q)));
+}
+
+PALPATE_INLINE bool is_rotation(const Matrix3& m) noexcept {
+  const Matrix3 square = m.transpose() * m;
+  double error = 0.0;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) {
+      const double e = square(i, j) - (i == j ? 1.0 : 0.0);
+      error += e * e;
+    }
+  return std::sqrt(error) < 1e-9 && determinant(m) > 0.0;
 }
 
 PALPATE_INLINE Matrix3 rotation_of(const Eigen::Isometry3d& pose) noexcept {
   Matrix3 r;
   for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i) r(i, j) = pose(i, j);
+    for (int i = 0; i < 3; ++i) r.data()[3 * j + i] = pose.data()[4 * j + i];
   return r;
 }
 
 PALPATE_INLINE Eigen::Isometry3d make_pose(const Matrix3& rotation, const Vector3& translation) noexcept {
-  Eigen::Isometry3d pose;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) pose(i, j) = rotation(i, j);
-    pose(i, 3) = translation[i];
+    for (int j = 0; j < 3; ++j) pose.data()[4 * j + i] = rotation.data()[3 * j + i];
+    pose.data()[12 + i] = translation[i];
   }
-  pose.makeAffine();
   return pose;
 }
 

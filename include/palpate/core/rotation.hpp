@@ -5,9 +5,6 @@
 #include <palpate/core/lanes.hpp>
 #include <palpate/core/tensor3.hpp>
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,6 +16,13 @@ template <class S>
 struct Quaternion {
   S w, x, y, z;
 };
+
+/// The rotation q after p.
+template <class S>
+PALPATE_ALWAYS_INLINE Quaternion<S> operator*(const Quaternion<S>& q, const Quaternion<S>& p) noexcept {
+  return {q.w * p.w - q.x * p.x - q.y * p.y - q.z * p.z, q.w * p.x + q.x * p.w + q.y * p.z - q.z * p.y,
+          q.w * p.y + q.y * p.w + q.z * p.x - q.x * p.z, q.w * p.z + q.z * p.w + q.x * p.y - q.y * p.x};
+}
 
 namespace detail {
 

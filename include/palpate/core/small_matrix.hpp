@@ -1,7 +1,11 @@
-// Arithmetic of 3-vectors and 3 x 3 matrices without Eigen's expressions: the same notation, a tenth of the compile time.
+// Arithmetic of 3-vectors and 3 x 3 matrices without Eigen's expressions: the same notation, a tenth of the compile
+// time.
 #pragma once
 
 #include <palpate/core/types.hpp>
+
+#include <algorithm>
+#include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -43,8 +47,8 @@ M operator-(const M& a) noexcept {
   for (int i = 0; i < M::SizeAtCompileTime; ++i) r.data()[i] = -a.data()[i];
   return r;
 }
-template <detail::Small M>
-M operator*(double s, const M& a) noexcept {
+template <detail::Small M, std::same_as<double> S>
+M operator*(const S& s, const M& a) noexcept {
   M r;
   for (int i = 0; i < M::SizeAtCompileTime; ++i) r.data()[i] = s * a.data()[i];
   return r;
@@ -63,7 +67,8 @@ M operator/(const M& a, const S& s) noexcept {
 template <std::same_as<Matrix3> M, std::same_as<Vector3> V>
 V operator*(const M& m, const V& v) noexcept {
   V r;
-  for (int i = 0; i < 3; ++i) r.data()[i] = m.data()[i] * v.data()[0] + m.data()[3 + i] * v.data()[1] + m.data()[6 + i] * v.data()[2];
+  for (int i = 0; i < 3; ++i)
+    r.data()[i] = m.data()[i] * v.data()[0] + m.data()[3 + i] * v.data()[1] + m.data()[6 + i] * v.data()[2];
   return r;
 }
 template <std::same_as<Matrix3> M>
@@ -71,14 +76,16 @@ M operator*(const M& a, const M& b) noexcept {
   M r;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i)
-      r.data()[3 * j + i] = a.data()[i] * b.data()[3 * j] + a.data()[3 + i] * b.data()[3 * j + 1] + a.data()[6 + i] * b.data()[3 * j + 2];
+      r.data()[3 * j + i] =
+          a.data()[i] * b.data()[3 * j] + a.data()[3 + i] * b.data()[3 * j + 1] + a.data()[6 + i] * b.data()[3 * j + 2];
   return r;
 }
 template <detail::TransposeOf<Matrix3> T, std::same_as<Vector3> V>
 V operator*(const T& t, const V& v) noexcept {
   const double* m = t.nestedExpression().data();
   V r;
-  for (int i = 0; i < 3; ++i) r.data()[i] = m[3 * i] * v.data()[0] + m[3 * i + 1] * v.data()[1] + m[3 * i + 2] * v.data()[2];
+  for (int i = 0; i < 3; ++i)
+    r.data()[i] = m[3 * i] * v.data()[0] + m[3 * i + 1] * v.data()[1] + m[3 * i + 2] * v.data()[2];
   return r;
 }
 template <detail::TransposeOf<Matrix3> T, std::same_as<Matrix3> M>
@@ -87,7 +94,8 @@ M operator*(const T& t, const M& b) noexcept {
   M r;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i)
-      r.data()[3 * j + i] = m[3 * i] * b.data()[3 * j] + m[3 * i + 1] * b.data()[3 * j + 1] + m[3 * i + 2] * b.data()[3 * j + 2];
+      r.data()[3 * j + i] =
+          m[3 * i] * b.data()[3 * j] + m[3 * i + 1] * b.data()[3 * j + 1] + m[3 * i + 2] * b.data()[3 * j + 2];
   return r;
 }
 template <std::same_as<Matrix3> M, detail::TransposeOf<Matrix3> T>
@@ -108,6 +116,14 @@ Matrix3 operator*(const V& a, const T& t) noexcept {
   return r;
 }
 
+inline Vector3 cross(const Vector3& a, const Vector3& b) noexcept {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+/// The largest magnitude of a component, all of them finite.
+inline double max_abs(const Vector3& v) noexcept {
+  return std::max(std::abs(v[0]), std::max(std::abs(v[1]), std::abs(v[2])));
+}
+
 /// Determinant and inverse by cofactors.
 inline double determinant(const Matrix3& m) noexcept {
   return m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1)) - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0)) +
@@ -122,6 +138,17 @@ inline Matrix3 inverse(const Matrix3& m) noexcept {
       r(i, j) = scale * (m(a, c) * m(b, d) - m(a, d) * m(b, c));
     }
   return r;
+}
+
+/// A node's entries in a vector with three per node.
+inline Vector3 node_vector(const VectorX& all, Index node) noexcept {
+  return {all[3 * node], all[3 * node + 1], all[3 * node + 2]};
+}
+inline void set_node_vector(VectorX& all, Index node, const Vector3& v) noexcept {
+  for (int c = 0; c < 3; ++c) all[3 * node + c] = v[c];
+}
+inline void add_node_vector(VectorX& all, Index node, const Vector3& v) noexcept {
+  for (int c = 0; c < 3; ++c) all[3 * node + c] += v[c];
 }
 
 /// No component is NaN or infinite.

@@ -2,8 +2,7 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
-
-#include <Eigen/LU>
+#include <palpate/core/types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -119,14 +118,18 @@ Tensor3<S> tensor3(const Eigen::Matrix<S, 3, 3>& m) noexcept {
 }
 template <class S>
 Eigen::Matrix<S, 3, 3> matrix3(const Tensor3<S>& t) noexcept {
-  return Eigen::Map<const Eigen::Matrix<S, 3, 3>>(t.e);
+  Eigen::Matrix<S, 3, 3> m;
+  for (int k = 0; k < 9; ++k) m.data()[k] = t.e[k];
+  return m;
 }
 /// The nine entries as a column, in the order of Matrix9.
 inline Eigen::Matrix<double, 9, 1> vector9(const Tensor3<double>& t) noexcept {
-  return Eigen::Map<const Eigen::Matrix<double, 9, 1>>(t.e);
+  Eigen::Matrix<double, 9, 1> v;
+  for (int k = 0; k < 9; ++k) v[k] = t.e[k];
+  return v;
 }
 inline bool all_finite(const Tensor3<double>& t) noexcept {
-  return vector9(t).allFinite();
+  return all_finite(t.e, 9);
 }
 
 }}  // namespace palpate

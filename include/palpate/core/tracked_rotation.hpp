@@ -6,9 +6,6 @@
 #include <palpate/core/rotation.hpp>
 #include <palpate/core/tensor3.hpp>
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-
 namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {

@@ -14,30 +14,29 @@ inline constexpr int xx = 0, yy = 1, zz = 2, xy = 3, xz = 4, yz = 5;
 
 /// Symmetric stress tensor [Pa] from its Voigt vector. No allocation.
 inline Matrix3 stress_tensor(const Vector6& s) {
-  Matrix3 t;
-  t << s[xx], s[xy], s[xz], s[xy], s[yy], s[yz], s[xz], s[yz], s[zz];
-  return t;
+  return Matrix3{{s[xx], s[xy], s[xz]}, {s[xy], s[yy], s[yz]}, {s[xz], s[yz], s[zz]}};
 }
 
 /// Voigt vector of a symmetric stress tensor.
 inline Vector6 stress_vector(const Matrix3& t) {
-  Vector6 s;
-  s << t(0, 0), t(1, 1), t(2, 2), t(0, 1), t(0, 2), t(1, 2);
-  return s;
+  return Vector6{{t(0, 0), t(1, 1), t(2, 2), t(0, 1), t(0, 2), t(1, 2)}};
 }
 
 /// Voigt vector of a symmetric small-strain tensor; shear components are doubled.
 inline Vector6 strain_vector(const Matrix3& e) {
-  Vector6 v;
-  v << e(0, 0), e(1, 1), e(2, 2), 2.0 * e(0, 1), 2.0 * e(0, 2), 2.0 * e(1, 2);
-  return v;
+  return Vector6{{e(0, 0), e(1, 1), e(2, 2), 2.0 * e(0, 1), 2.0 * e(0, 2), 2.0 * e(1, 2)}};
 }
 
 /// The 6 x 6 matrix T that turns a stress: stress_vector(R s R^T) = T stress_vector(s). Strains turn by its inverse
 /// transpose, an elasticity matrix by T D T^T. `r` is a rotation.
 inline Matrix6 stress_rotation(const Matrix3& r) {
   Matrix6 t;
-  for (int k = 0; k < 6; ++k) t.col(k) = stress_vector(r * stress_tensor(Vector6::Unit(k)) * r.transpose());
+  for (int k = 0; k < 6; ++k) {
+    Vector6 unit = Vector6::Zero();
+    unit[k] = 1.0;
+    const Vector6 turned = stress_vector(r * stress_tensor(unit) * r.transpose());
+    for (int i = 0; i < 6; ++i) t(i, k) = turned[i];
+  }
   return t;
 }
 

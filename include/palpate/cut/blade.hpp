@@ -4,11 +4,10 @@
 #include <palpate/concepts/haptic_device.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/realtime.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/haptic/force_gate.hpp>
-
-#include <Eigen/LU>
 
 #include <cmath>
 
@@ -64,7 +63,7 @@ class BladeServo {
   ToolForce tick(const ToolState& state) noexcept {
     const FlushDenormals flush;
     Status status = tissue_->begin_tick();
-    const bool good = state.valid && state.position.allFinite() && std::isfinite(state.time);
+    const bool good = state.valid && all_finite(state.position) && std::isfinite(state.time);
     Vector3 force = Vector3::Zero();
     bool restart = false;
     if (good) {
@@ -96,7 +95,7 @@ class BladeServo {
     int inside = 0;
     for (int k = 0; k < samples; ++k) {
       const Vector3 x = blade_.edge() + ((k + 0.5) / samples - 0.5) * edge;
-      if (tissue_->contact_surface().closest(tissue_->pose().inverse() * x).distance < 0.0) ++inside;
+      if (tissue_->contact_surface().closest(inverse(tissue_->pose()) * x).distance < 0.0) ++inside;
     }
     return edge.norm() * inside / samples;
   }

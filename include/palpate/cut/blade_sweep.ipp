@@ -3,12 +3,10 @@
 
 #include <palpate/cut/blade_sweep.hpp>
 
-#include <Eigen/Geometry>
-
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE double BladeSweep::area() const noexcept {
-  return 0.5 * ((b0 - a0).cross(b1 - a0).norm() + (b1 - a0).cross(a1 - a0).norm());
+  return 0.5 * (cross(b0 - a0, b1 - a0).norm() + cross(b1 - a0, a1 - a0).norm());
 }
 
 PALPATE_INLINE Box BladeSweep::box() const noexcept {
@@ -23,7 +21,7 @@ PALPATE_INLINE bool BladeSweep::crosses(const Vector3& p, const Vector3& q) cons
 
 PALPATE_INLINE double BladeSweep::volume(const Vector3& a, const Vector3& b, const Vector3& c,
                                          const Vector3& d) noexcept {
-  return (b - a).cross(c - a).dot(d - a);
+  return cross(b - a, c - a).dot(d - a);
 }
 
 PALPATE_INLINE bool BladeSweep::crosses_triangle(const Vector3& p, const Vector3& q, const Vector3& x, const Vector3& y,

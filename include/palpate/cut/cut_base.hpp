@@ -143,7 +143,7 @@ class CutBase {
       const Index origin = 3 * Index{topology.origin_of(static_cast<NodeId>(i / 3))} + static_cast<Index>(i % 3);
       displacement_[static_cast<Index>(i)] = place_[i] >= 0 ? answer[place_[i]] : physics.prescribed[origin];
     }
-    if (!displacement_.allFinite()) raise(SetupErrorKind::non_finite, "the static displacement is not finite");
+    if (!all_finite(displacement_)) raise(SetupErrorKind::non_finite, "the static displacement is not finite");
   }
 
   Index size_ = 0;

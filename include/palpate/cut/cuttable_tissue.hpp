@@ -10,6 +10,7 @@
 #include <palpate/contact/contact_samples.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/status.hpp>
@@ -29,8 +30,6 @@
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/touchable.hpp>
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -172,7 +171,7 @@ class CuttableTissue {
         limits_(options.limits),
         system_(topology_, physics_, kept_nodes(), limits_),
         origin_(prepared.origin),
-        world_(Eigen::Translation3d(prepared.origin)),
+        world_(make_pose(Matrix3::Identity(), prepared.origin)),
         elements_(topology_.mesh().element_count()),
         smallest_tool_(options.smallest_tool),
         parameters_(options.contact),

@@ -13,7 +13,7 @@ PALPATE_INLINE int free_mode_count(std::span<const Vector3> positions, std::span
     if ((constrained[static_cast<std::size_t>(node)] & 7u) != 0) held.push_back(node);
   if (held.empty()) return 6;
   const detail::RigidFrame frame(positions, nodes, constrained);
-  return static_cast<int>(detail::free_motions(positions, held, constrained, frame).cols());
+  return static_cast<int>(detail::free_motions(positions, held, constrained, frame).size());
 }
 
 }}  // namespace palpate

@@ -46,12 +46,12 @@ class Chai3dDevice {
     state.valid = device_->getPosition(position);
     state.time = clock_.now();
     const Vector3 p(position.x(), position.y(), position.z());
-    if (!p.allFinite()) state.valid = false;
+    if (!all_finite(p)) state.valid = false;
     if (state.valid) {
       state.position = p;
       if (device_->getLinearVelocity(velocity)) {
         const Vector3 v(velocity.x(), velocity.y(), velocity.z());
-        if (v.allFinite()) state.velocity = v;
+        if (all_finite(v)) state.velocity = v;
       }
       if (device_->getRotation(rotation)) orient(state, rotation);
       unsigned int buttons = 0;

@@ -45,12 +45,12 @@ class ForceDimensionDevice {
     state.valid = dhdGetPositionAndOrientationFrame(&x, &y, &z, rotation, id_) >= 0;
     state.time = clock_.now();
     const Vector3 position(x, y, z);
-    if (!position.allFinite()) state.valid = false;
+    if (!all_finite(position)) state.valid = false;
     if (state.valid) {
       state.position = position;
       orient(state, rotation);
       Vector3 v;
-      if (dhdGetLinearVelocity(&v[0], &v[1], &v[2], id_) >= 0 && v.allFinite()) state.velocity = v;
+      if (dhdGetLinearVelocity(&v[0], &v[1], &v[2], id_) >= 0 && all_finite(v)) state.velocity = v;
       state.buttons = dhdGetButtonMask(id_);
     }
     rendered_.read_was(state.valid);

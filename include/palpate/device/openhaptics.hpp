@@ -69,8 +69,8 @@ class OpenHapticsDevice {
     in_frame_ = true;
     ToolState state = state_of_frame();
     const Status errors = take_errors();
-    state.valid = !errors.has(StatusFlag::disconnected) && state.position.allFinite();
-    if (!state.position.allFinite()) state.position.setZero();
+    state.valid = !errors.has(StatusFlag::disconnected) && all_finite(state.position);
+    if (!all_finite(state.position)) state.position.setZero();
     rendered_.read_was(state.valid);
     return state;
   }
@@ -168,7 +168,7 @@ class OpenHapticsDevice {
     state.time = clock_.now();
     state.position = 1e-3 * Vector3(position[0], position[1], position[2]);
     const Vector3 v = 1e-3 * Vector3(velocity[0], velocity[1], velocity[2]);
-    if (v.allFinite()) state.velocity = v;
+    if (all_finite(v)) state.velocity = v;
     Matrix3 rotation;
     rotation << transform[0], transform[4], transform[8], transform[1], transform[5], transform[9], transform[2],
         transform[6], transform[10];

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <palpate/device/placement.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
-
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 
 #include <cmath>
 
@@ -13,13 +11,13 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE void Placement::require_valid() const {
   const auto positive = [](double s) { return std::isfinite(s) && s > 0.0; };
-  if (!device_origin.allFinite() || !scene_origin.allFinite())
+  if (!all_finite(device_origin) || !all_finite(scene_origin))
     raise(SetupErrorKind::bad_argument, "an origin of the placement is not finite");
   if (!positive(scale) || !positive(force_scale))
     raise(SetupErrorKind::bad_argument,
           "the placement scales motion by " + number(scale) + " and force by " + number(force_scale),
           "Both must be finite and positive");
-  if (!((rotation.transpose() * rotation - Matrix3::Identity()).norm() < 1e-9) || !(rotation.determinant() > 0.0))
+  if (!is_rotation(rotation))
     raise(SetupErrorKind::bad_argument, "the rotation of the placement is none",
           "Give three orthogonal unit columns, right-handed");
 }
@@ -36,8 +34,8 @@ PALPATE_INLINE ToolState Placement::to_scene(ToolState state) const noexcept {
   state.position = to_scene(state.position);
   state.velocity = scale * (rotation * state.velocity);
   const auto& q = state.orientation;
-  const Eigen::Quaterniond turned = Eigen::Quaterniond(rotation) * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-  state.orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
+  const Quaternion<double> turned = quaternion_of(rotation) * Quaternion<double>{q[0], q[1], q[2], q[3]};
+  state.orientation = {turned.w, turned.x, turned.y, turned.z};
   return state;
 }
 
@@ -57,7 +55,11 @@ PALPATE_INLINE DeviceLimits Placement::limits_in_scene(const DeviceLimits& devic
   scene.turning_stiffness = device.turning_stiffness * scale / force_scale;
   scene.stiffness = device.stiffness / (scale * force_scale);
   const Vector3 middle = 0.5 * (device.workspace_low + device.workspace_high);
-  const Vector3 half = scale * (rotation.cwiseAbs() * (0.5 * (device.workspace_high - device.workspace_low)));
+  const Vector3 reach = 0.5 * (device.workspace_high - device.workspace_low);
+  Vector3 half;  // of the box around the turned workspace
+  for (int i = 0; i < 3; ++i)
+    half[i] = scale * (std::abs(rotation(i, 0)) * reach[0] + std::abs(rotation(i, 1)) * reach[1] +
+                       std::abs(rotation(i, 2)) * reach[2]);
   scene.workspace_low = to_scene(middle) - half;
   scene.workspace_high = to_scene(middle) + half;
   return scene;

@@ -42,7 +42,7 @@ PALPATE_INLINE Status RenderLimits::render(const Vector3& force, const Vector3& 
   Status status;
   silence();
   if (!readable_) status.set(StatusFlag::disconnected);
-  if (!force.allFinite() || !torque.allFinite()) status.set(StatusFlag::non_finite_force);
+  if (!all_finite(force) || !all_finite(torque)) status.set(StatusFlag::non_finite_force);
   if (!running_ || !status.ok()) return status;
   force_ = within(limits_.peak_force, force, status);
   torque_ = within(limits_.peak_torque, torque, status);

@@ -2,8 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
-
-#include <Eigen/Geometry>
+#include <palpate/core/rigid_motion.hpp>
 
 #include <chrono>
 
@@ -23,8 +22,8 @@ class SteadyStamp {
 /// The orientation of a state from a rotation matrix; a matrix that is none leaves it as it is.
 inline void orient(ToolState& state, const Matrix3& rotation) noexcept {
   if (!((rotation.transpose() * rotation - Matrix3::Identity()).norm() < 1e-3)) return;
-  const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
-  state.orientation = {q.w(), q.x(), q.y(), q.z()};
+  const Quaternion<double> q = quaternion_of(rotation);
+  state.orientation = {q.w, q.x, q.y, q.z};
 }
 
 }}}  // namespace palpate::detail

@@ -5,6 +5,7 @@
 #include <palpate/core/setup_error.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -129,7 +130,8 @@ PALPATE_INLINE void SimulatedDevice::silence() noexcept {
 
 PALPATE_INLINE Vector3 SimulatedDevice::measured(const Vector3& x) const noexcept {
   const double step = options_.encoder_step;
-  return step > 0.0 ? Vector3(step * (x / step).array().round().matrix()) : x;
+  if (!(step > 0.0)) return x;
+  return {step * std::round(x[0] / step), step * std::round(x[1] / step), step * std::round(x[2] / step)};
 }
 
 }}  // namespace palpate

@@ -21,7 +21,7 @@ PALPATE_INLINE SimulatedMechanics::SimulatedMechanics(double mass, double dampin
                                     {hand.damping, "hand's damping"},
                                     {hand.stiffness, "hand's stiffness"}})
     require(value >= 0.0 && value <= 1e6, name, value);
-  require(start.allFinite(), "start", start.norm());
+  require(all_finite(start), "start", start.norm());
   const double m = mass + hand.mass;
   rate_ = std::max((damping + hand.damping) / m, std::sqrt(hand.stiffness / m));
 }

@@ -23,7 +23,7 @@ PALPATE_INLINE PassivityObserver::Step PassivityObserver::moved(const Vector3& p
     if (dt > 0.0 && std::isfinite(dt)) step.time = dt;
     add(work);
   }
-  known_ = position.allFinite();
+  known_ = all_finite(position);
   last_ = position;
   last_time_ = time;
   return step;

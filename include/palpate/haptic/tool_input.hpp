@@ -4,8 +4,7 @@
 #include <palpate/concepts/haptic_device.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/contact/contact.hpp>
-
-#include <Eigen/Geometry>
+#include <palpate/core/rigid_motion.hpp>
 
 #include <span>
 
@@ -44,9 +43,9 @@ class ToolInput {
 
  private:
   /// Beyond 1e6 m no workspace reaches, and squares keep clear of overflow.
-  static bool is_sound(const Vector3& position, const Eigen::Quaterniond& turn, double time) noexcept;
+  static bool is_sound(const Vector3& position, const Quaternion<double>& turn, double time) noexcept;
 
-  void rotate(const Eigen::Quaterniond& turn, const Eigen::Isometry3d& pose, ContactTool& tool) noexcept;
+  void rotate(const Quaternion<double>& turn, const Eigen::Isometry3d& pose, ContactTool& tool) noexcept;
 
   /// A tool that moved farther than its diameter starts anew where its way first met the surface, else where it is:
   /// however fast it is, it gets through nothing.

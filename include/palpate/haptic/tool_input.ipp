@@ -25,10 +25,10 @@ PALPATE_INLINE void ToolInput::take(const ToolState& state, const Eigen::Isometr
     return;
   }
   const Vector3 position = inverse(pose) * state.position;
-  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+  Quaternion<double> turn{1.0, 0.0, 0.0, 0.0};
   if (turns_) {
     const auto& q = state.orientation;
-    turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    turn = {q[0], q[1], q[2], q[3]};
   }
   if (!is_sound(position, turn, state.time)) {
     // The last good pose is held; its old time stamp makes the gate fade the force.
@@ -38,7 +38,7 @@ PALPATE_INLINE void ToolInput::take(const ToolState& state, const Eigen::Isometr
   }
   time_ = state.time;
   tool.grasping = (state.buttons & grasp_buttons_) != 0;
-  if (turns_) rotate(turn.normalized(), pose, tool);
+  if (turns_) rotate(turn, pose, tool);
   follow(position, surface, contacts, tool);
 }
 
@@ -55,15 +55,14 @@ PALPATE_INLINE void ToolInput::reset() noexcept {
   *this = ToolInput(number_, turns_, grasp_buttons_);
 }
 
-PALPATE_INLINE bool ToolInput::is_sound(const Vector3& position, const Eigen::Quaterniond& turn, double time) noexcept {
-  const double length = turn.norm();
-  return all_finite(position) && position.cwiseAbs().maxCoeff() < 1e6 && std::isfinite(time) && length > 0.5 &&
-         length < 2.0;
+PALPATE_INLINE bool ToolInput::is_sound(const Vector3& position, const Quaternion<double>& turn, double time) noexcept {
+  const double length = std::sqrt(turn.w * turn.w + turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
+  return all_finite(position) && max_abs(position) < 1e6 && std::isfinite(time) && length > 0.5 && length < 2.0;
 }
 
-PALPATE_INLINE void ToolInput::rotate(const Eigen::Quaterniond& turn, const Eigen::Isometry3d& pose,
+PALPATE_INLINE void ToolInput::rotate(const Quaternion<double>& turn, const Eigen::Isometry3d& pose,
                                       ContactTool& tool) noexcept {
-  const Matrix3 rotation = rotation_of(pose).transpose() * rotation_of(turn);
+  const Matrix3 rotation = rotation_of(pose).transpose() * rotation_matrix(turn);
   if (known_) {
     rotation_ = rotation_of(pose) * rotation_vector(rotation * tool.target_rotation.transpose());
     tool.turned = tool.half_length * ((rotation - tool.target_rotation) * tool.own_axis).norm();

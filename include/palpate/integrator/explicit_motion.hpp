@@ -57,7 +57,7 @@ class ExplicitMotion {
     const Index dofs = force_.size();
     for (VectorX* v : {&state_.displacement, &state_.velocity, &state_.force, &state_.load, &state_.target})
       *v = VectorX::Zero(dofs);
-    state_.mass = nodal_mass.replicate(1, 3).transpose().reshaped();
+    state_.mass = mass_of_dofs(nodal_mass);
     state_.free = free_dofs;
     std::vector<char> is_free(static_cast<std::size_t>(dofs), 0);
     for (Index dof : free_dofs) is_free[static_cast<std::size_t>(dof)] = 1;
@@ -107,7 +107,7 @@ class ExplicitMotion {
   void remove_elements(Gone&& gone, const VectorX& nodal_mass) {
     require_mass_left(nodal_mass);
     force_.remove_if(gone);
-    state_.mass = nodal_mass.replicate(1, 3).transpose().reshaped();
+    state_.mass = mass_of_dofs(nodal_mass);
     std::erase_if(state_.free, [&](Index dof) { return !(state_.mass[dof] > 0.0); });
     for (Index dof = 0; dof < state_.mass.size(); ++dof)
       if (!(state_.mass[dof] > 0.0)) state_.velocity[dof] = state_.inverse_mass[dof] = 0.0;

@@ -1,4 +1,4 @@
-// What motions require of what they are given.
+// What motions require of what they are given, and make of it.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -11,6 +11,9 @@ void require_damping(double mass_damping, double stiffness_damping);
 
 /// Throws bad_argument for a vector that has not one entry per dof.
 void require_entries(const VectorX& v, Index dofs);
+
+/// Nodal masses as one per dof, three equal ones per node.
+VectorX mass_of_dofs(const VectorX& nodal_mass);
 
 }}  // namespace palpate
 

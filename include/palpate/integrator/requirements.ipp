@@ -20,4 +20,10 @@ PALPATE_INLINE void require_entries(const VectorX& v, Index dofs) {
           "Give three per node");
 }
 
+PALPATE_INLINE VectorX mass_of_dofs(const VectorX& nodal_mass) {
+  VectorX mass(3 * nodal_mass.size());
+  for (Index dof = 0; dof < mass.size(); ++dof) mass[dof] = nodal_mass[dof / 3];
+  return mass;
+}
+
 }}  // namespace palpate

@@ -71,14 +71,15 @@ class FrontFactorisation {
     BigArray columns(shape.size());
     assemble(front, columns.data());
     workspace_ = BigArray();
-    MatrixX s(k, k);
+    MatrixX complement(k, k);
+    double* const s = complement.data();
     for (Index j = 0; j < k; ++j)
       for (Index i = j; i < k; ++i) {
         const Index a = local_[tree_.place_of_dof[kept[static_cast<std::size_t>(i)]]];
         const Index b = local_[tree_.place_of_dof[kept[static_cast<std::size_t>(j)]]];
-        s(i, j) = s(j, i) = columns.data()[shape.at(std::max(a, b), std::min(a, b))];
+        s[i + j * k] = s[j + i * k] = columns.data()[shape.at(std::max(a, b), std::min(a, b))];
       }
-    return s;
+    return complement;
   }
 
  private:

@@ -116,7 +116,7 @@ class FrontTreeBuilder {
   }
 
   void distribute_entries() {
-    tree_.entries.reserve(lower_.nonZeros() / 2);
+    tree_.entries.reserve(lower_.outerIndexPtr()[lower_.cols()] / 2);
     visit_entries([&](NodeId f, EntryRun e) {
       e.next = tree_.fronts[f].first_entry;
       tree_.fronts[f].first_entry = static_cast<NodeId>(tree_.entries.size());

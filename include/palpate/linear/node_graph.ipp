@@ -98,7 +98,7 @@ inline void check_layout(const SparseLower& lower, const DofLayout& layout) {
   std::sort(kept.begin(), kept.end());
   fine = fine && std::adjacent_find(kept.begin(), kept.end()) == kept.end();
   fine = fine && (kept.empty() || (kept.front() >= 0 && kept.back() < lower.rows()));
-  for (const Vector3& x : layout.positions) fine = fine && x.allFinite();
+  for (const Vector3& x : layout.positions) fine = fine && all_finite(x);
   if (!fine)
     raise(SetupErrorKind::bad_argument, "the layout of the dofs does not fit the matrix",
           "Give a square matrix, one node per dof, finite coordinates for every node, and every kept dof once");

@@ -4,6 +4,7 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/mesh/components.hpp>
 #include <palpate/mesh/diagnose.hpp>
+#include <palpate/core/box.hpp>
 #include <palpate/mesh/duplicates.hpp>
 
 #include <algorithm>
@@ -66,24 +67,25 @@ PALPATE_INLINE void check_indices(const MeshRef& mesh, MeshDiagnosis& d) {
 /// Finite positions, bounding box and units.
 inline void check_positions(const MeshRef& mesh, const MeshThresholds& thresholds, MeshDiagnosis& d) {
   constexpr double bound = 1e100;
-  d.box_min.setConstant(infinity);
-  d.box_max.setConstant(-infinity);
+  Box box;
   for (Index i = 0; i < d.node_count; ++i) {
-    const Vector3 x = Vector3::Map(mesh.position(i));
+    const double* const at = mesh.position(i);
+    const Vector3 x(at[0], at[1], at[2]);
     if (!(std::abs(x[0]) < bound && std::abs(x[1]) < bound && std::abs(x[2]) < bound)) {
       d.non_finite.add(i, x.sum(), bound);
       continue;
     }
-    d.box_min = d.box_min.cwiseMin(x);
-    d.box_max = d.box_max.cwiseMax(x);
+    box.include(x);
   }
   if (d.non_finite || d.node_count == 0) {
     d.box_min.setZero();
     d.box_max.setZero();
     return;
   }
-  d.diagonal = (d.box_max - d.box_min).norm();
-  const double farthest = std::max(d.box_min.cwiseAbs().maxCoeff(), d.box_max.cwiseAbs().maxCoeff());
+  d.box_min = box.low;
+  d.box_max = box.high;
+  d.diagonal = box.size().norm();
+  const double farthest = std::max(max_abs(d.box_min), max_abs(d.box_max));
   d.offset_ratio = d.diagonal > 0.0 ? farthest / d.diagonal : 0.0;
   d.looks_like_millimetres = d.diagonal > thresholds.millimetres;
   if (d.looks_like_millimetres) d.units = {1, {}, {}, d.diagonal, thresholds.millimetres};

@@ -70,7 +70,10 @@ class CoincidenceSearch {
   }
 
  private:
-  Vector3 position(Index i) const { return Vector3::Map(mesh_.position(i)); }
+  Vector3 position(Index i) const {
+    const double* x = mesh_.position(i);
+    return {x[0], x[1], x[2]};
+  }
   double height(NodeId i) const { return heights_[static_cast<std::size_t>(i)]; }
   double size(NodeId i) const { return sizes_[static_cast<std::size_t>(i)]; }
 

@@ -2,13 +2,11 @@
 #pragma once
 
 #include <palpate/concepts/element.hpp>
+#include <palpate/core/box.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
-
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
@@ -20,23 +18,46 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+/// The mean of an element's reference nodes.
+template <Element E>
+Vector3 reference_centre() noexcept {
+  const ElementNodes<E> nodes = E::reference_nodes();
+  Vector3 sum = Vector3::Zero();
+  for (int a = 0; a < E::nodes; ++a)
+    for (int c = 0; c < 3; ++c) sum[c] += nodes(a, c);
+  return sum / static_cast<double>(E::nodes);
+}
+
 /// Reference coordinates of the point p [m] in the element with nodes x, or beyond it, by Newton's method. Nothing when
 /// there are none to be found: a point far off a curved element.
 template <Element E>
 std::optional<Vector3> reference_coordinates(const ElementNodes<E>& x, const Vector3& p) noexcept {
-  const ElementNodes<E> edges = x.rowwise() - x.row(0);
-  const Vector3 target = p - x.row(0).transpose();
-  const double size = edges.rowwise().norm().maxCoeff();
-  Vector3 xi = E::reference_nodes().colwise().mean().transpose();
+  const Vector3 origin(x(0, 0), x(0, 1), x(0, 2)), target = p - origin;
+  const auto edge = [&](int a) -> Vector3 { return Vector3(x(a, 0), x(a, 1), x(a, 2)) - origin; };
+  const auto miss_at = [&](const Vector3& xi) {
+    const auto shape = E::shape(xi);
+    Vector3 miss = target;
+    for (int a = 1; a < E::nodes; ++a) miss -= shape[a] * edge(a);
+    return miss;
+  };
+  const auto jacobian_at = [&](const Vector3& xi) {
+    const auto gradient = E::gradient(xi);
+    Matrix3 jacobian = Matrix3::Zero();
+    for (int a = 1; a < E::nodes; ++a)
+      for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < 3; ++i) jacobian(i, c) += edge(a)[i] * gradient(a, c);
+    return jacobian;
+  };
+  double size = 0.0;
+  for (int a = 1; a < E::nodes; ++a) size = std::max(size, edge(a).norm());
+  Vector3 xi = reference_centre<E>();
   for (int iteration = 0; iteration < 25; ++iteration) {
-    const Vector3 miss = target - edges.transpose() * E::shape(xi);
+    const Vector3 miss = miss_at(xi);
     if (miss.norm() <= 1e-12 * size) return xi;
-    const Matrix3 jacobian = edges.transpose() * E::gradient(xi);
-    xi += jacobian.inverse() * miss;
-    if (!(xi.cwiseAbs().maxCoeff() < 1e3)) return std::nullopt;
+    xi += inverse(jacobian_at(xi)) * miss;
+    if (!(std::abs(xi[0]) < 1e3 && std::abs(xi[1]) < 1e3 && std::abs(xi[2]) < 1e3)) return std::nullopt;
   }
-  const Vector3 miss = target - edges.transpose() * E::shape(xi);
-  return miss.norm() <= 1e-9 * size ? std::optional<Vector3>(xi) : std::nullopt;
+  return miss_at(xi).norm() <= 1e-9 * size ? std::optional<Vector3>(xi) : std::nullopt;
 }
 
 /// How far reference coordinates lie beyond the faces of the reference element; negative inside.
@@ -46,8 +67,11 @@ double beyond_faces(const Vector3& xi) noexcept {
     std::array<std::pair<Vector3, double>, E::faces.size()> all;  // outward normal, offset
     const ElementNodes<E> x = E::reference_nodes();
     for (std::size_t f = 0; f < all.size(); ++f) {
-      const auto node = [&](std::size_t a) -> Vector3 { return x.row(E::faces[f][a]).transpose(); };
-      const Vector3 normal = (node(1) - node(0)).cross(node(2) - node(0)).normalized();
+      const auto node = [&](std::size_t a) {
+        const auto n = E::faces[f][a];
+        return Vector3(x(n, 0), x(n, 1), x(n, 2));
+      };
+      const Vector3 normal = cross(node(1) - node(0), node(2) - node(0)).normalized();
       all[f] = {normal, normal.dot(node(0))};
     }
     return all;
@@ -69,14 +93,16 @@ class ElementSearch {
  public:
   /// O(elements), allocates about 8 bytes per element and cell it touches.
   explicit ElementSearch(const Mesh<E>& mesh) : mesh_(&mesh) {
-    Eigen::AlignedBox3d box;
-    for (const Vector3& x : mesh.positions) box.extend(x);
-    low_ = box.min();
-    const double volume = std::max(box.sizes().prod(), 1e-300), count = static_cast<double>(mesh.element_count());
-    const double cell = std::max(std::cbrt(volume / std::max(1.0, count)), 1e-3 * box.sizes().maxCoeff());
+    Box box;
+    for (const Vector3& x : mesh.positions) box.include(x);
+    low_ = box.low;
+    const Vector3 size = box.size();
+    const double volume = std::max(size[0] * size[1] * size[2], 1e-300),
+                 count = static_cast<double>(mesh.element_count());
+    const double cell = std::max(std::cbrt(volume / std::max(1.0, count)), 1e-3 * max_abs(size));
     per_metre_ = 1.0 / cell;
-    for (int i = 0; i < 3; ++i) cells_[i] = 1 + static_cast<Index>(box.sizes()[i] * per_metre_);
-    start_.assign(static_cast<std::size_t>(cells_.prod()) + 1, 0);
+    for (std::size_t i = 0; i < 3; ++i) cells_[i] = 1 + static_cast<Index>(size[static_cast<int>(i)] * per_metre_);
+    start_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]) + 1, 0);
     each_cell([&](std::size_t c, Index) { ++start_[c + 1]; });
     std::partial_sum(start_.begin(), start_.end(), start_.begin());
     element_.resize(static_cast<std::size_t>(start_.back()));
@@ -89,8 +115,9 @@ class ElementSearch {
   /// mean volume of an element, so these are a few tens in an even mesh, and O(elements) at worst, where sizes differ
   /// so much that most elements lie in one cell.
   std::optional<ElementPoint> find(const Vector3& p) const noexcept {
-    const auto at = cell_of(p);
-    if ((at.array() < 0).any() || (at.array() >= cells_.array()).any()) return std::nullopt;
+    const Cell at = cell_of(p);
+    for (std::size_t i = 0; i < 3; ++i)
+      if (at[i] < 0 || at[i] >= cells_[i]) return std::nullopt;
     const std::size_t c = number(at);
     for (Index i = start_[c]; i < start_[c + 1]; ++i) {
       const Index e = element_[static_cast<std::size_t>(i)];
@@ -101,13 +128,12 @@ class ElementSearch {
   }
 
  private:
-  using Cell = Eigen::Matrix<Index, 3, 1>;
+  using Cell = std::array<Index, 3>;
 
   Cell cell_of(const Vector3& p) const noexcept {
-    const Vector3 scaled = (per_metre_ * (p - low_)).cwiseMax(-1.0).cwiseMin(1e15);
-    Cell cell;
-    for (int i = 0; i < 3; ++i) cell[i] = static_cast<Index>(std::floor(scaled[i]));
-    return cell;
+    const Vector3 scaled = per_metre_ * (p - low_);
+    const auto along = [&](int i) { return static_cast<Index>(std::floor(std::min(1e15, std::max(-1.0, scaled[i])))); };
+    return {along(0), along(1), along(2)};
   }
   std::size_t number(const Cell& c) const noexcept {
     return static_cast<std::size_t>(c[0] + cells_[0] * (c[1] + cells_[1] * c[2]));
@@ -117,11 +143,15 @@ class ElementSearch {
   template <class Visit>
   void each_cell(Visit&& visit) const {
     for (Index e = 0; e < mesh_->element_count(); ++e) {
-      const ElementNodes<E> x = element_nodes<E>(*mesh_, e);
-      const Vector3 low = x.colwise().minCoeff().transpose(), high = x.colwise().maxCoeff().transpose();
-      const Vector3 margin = (E::order > 1 ? 0.1 : 1e-6) * Vector3::Constant((high - low).maxCoeff());
-      const Cell first = cell_of(low - margin).cwiseMax(Index{0}),
-                 last = cell_of(high + margin).cwiseMin(Cell(cells_ - Cell::Ones()));
+      Box box;
+      for (int a = 0; a < E::nodes; ++a) box.include(mesh_->position(Index{mesh_->element_node(e, a)}));
+      const double wider = (E::order > 1 ? 0.1 : 1e-6) * max_abs(box.size());
+      const Vector3 margin(wider, wider, wider);
+      Cell first = cell_of(box.low - margin), last = cell_of(box.high + margin);
+      for (std::size_t i = 0; i < 3; ++i) {
+        first[i] = std::max(first[i], Index{0});
+        last[i] = std::min(last[i], cells_[i] - 1);
+      }
       for (Index k = first[2]; k <= last[2]; ++k)
         for (Index j = first[1]; j <= last[1]; ++j)
           for (Index i = first[0]; i <= last[0]; ++i) visit(number({i, j, k}), e);
@@ -131,7 +161,7 @@ class ElementSearch {
   const Mesh<E>* mesh_;
   Vector3 low_ = Vector3::Zero();
   double per_metre_ = 1.0;
-  Cell cells_ = Cell::Ones();
+  Cell cells_{1, 1, 1};
   std::vector<Index> start_, element_;
 };
 

@@ -5,8 +5,6 @@
 #include <palpate/concepts/mesh.hpp>
 #include <palpate/core/setup_error.hpp>
 
-#include <Eigen/Geometry>
-
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -17,7 +15,7 @@ PALPATE_INLINE void add_oriented(Mesh<Tet4>& mesh, NodeId a, NodeId b, NodeId c,
   const auto edge = [&](NodeId to) -> Vector3 {
     return (mesh.positions[static_cast<std::size_t>(to)] - mesh.positions[static_cast<std::size_t>(a)]).normalized();
   };
-  const bool inverted = edge(b).cross(edge(c)).dot(edge(d)) < 0.0;
+  const bool inverted = cross(edge(b), edge(c)).dot(edge(d)) < 0.0;
   mesh.elements.push_back(inverted ? Mesh<Tet4>::Connectivity{a, b, d, c} : Mesh<Tet4>::Connectivity{a, b, c, d});
 }
 

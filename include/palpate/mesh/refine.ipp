@@ -23,9 +23,16 @@ inline std::array<std::array<int, 4>, 8> eight_tetrahedra(const ElementNodes<Tet
   // Round every diagonal, right-handed about its direction: the octahedron's other four corners.
   constexpr std::array<std::array<int, 4>, 3> around{{{6, 7, 8, 5}, {8, 9, 6, 4}, {5, 9, 7, 4}}};
   std::size_t shortest = 0;
-  const auto length = [&](std::size_t i) { return (x.row(diagonals[i][0]) - x.row(diagonals[i][1])).squaredNorm(); };
+  const auto square = [&](std::size_t i) {
+    double sum = 0.0;
+    for (int c = 0; c < 3; ++c) {
+      const double d = x(diagonals[i][0], c) - x(diagonals[i][1], c);
+      sum += d * d;
+    }
+    return sum;
+  };
   for (std::size_t i : {1u, 2u})
-    if (length(i) < length(shortest)) shortest = i;
+    if (square(i) < square(shortest)) shortest = i;
   std::array<std::array<int, 4>, 8> parts{{{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}}};
   const auto [from, to] = diagonals[shortest];
   for (std::size_t i = 0; i < 4; ++i) parts[4 + i] = {from, around[shortest][i], around[shortest][(i + 1) % 4], to};

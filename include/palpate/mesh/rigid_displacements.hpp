@@ -10,8 +10,6 @@
 #include <palpate/mesh/rigid_mode_names.hpp>
 #include <palpate/mesh/rigid_modes.hpp>
 
-#include <Eigen/Geometry>
-
 #include <span>
 #include <vector>
 
@@ -33,13 +31,15 @@ MatrixX rigid_displacements(const Mesh<E>& mesh, std::span<const std::uint8_t> c
     const detail::RigidFrame frame(mesh.positions, nodes, constrained);
     const detail::RigidMotions motions = detail::free_motions(mesh.positions, nodes, constrained, frame);
     const Index first = modes.cols();
-    modes.conservativeResize(Eigen::NoChange, first + motions.cols());
-    modes.rightCols(motions.cols()).setZero();
+    const auto count = static_cast<Index>(motions.size());
+    modes.conservativeResize(Eigen::NoChange, first + count);
+    modes.rightCols(count).setZero();
     for (const NodeId node : nodes)
-      for (Index k = 0; k < motions.cols(); ++k) {
-        const Vector3 p = (mesh.position(Index{node}) - frame.centre) / frame.size,
-                      w = motions.col(k).template head<3>();
-        modes.col(first + k).template segment<3>(3 * Index{node}) = motions.col(k).template tail<3>() + w.cross(p);
+      for (Index k = 0; k < count; ++k) {
+        const Vector6& motion = motions[static_cast<std::size_t>(k)];
+        const Vector3 p = (mesh.position(Index{node}) - frame.centre) / frame.size;
+        const Vector3 u = detail::shift_of(motion) + cross(detail::turn_of(motion), p);
+        for (int c = 0; c < 3; ++c) modes(3 * Index{node} + c, first + k) = u[c];
       }
   }
   return modes;

@@ -9,10 +9,17 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Up to six rigid motions (w, t), one per column. Bounded at compile time: nothing to allocate, little to compile.
-using RigidMotions = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
+/// Up to six rigid motions (w, t).
+using RigidMotions = std::vector<Vector6>;
 
-/// One name per column (w, t) of `motions`: translations first, then rotations, each about its own axis.
+inline Vector3 turn_of(const Vector6& motion) noexcept {
+  return {motion[0], motion[1], motion[2]};
+}
+inline Vector3 shift_of(const Vector6& motion) noexcept {
+  return {motion[3], motion[4], motion[5]};
+}
+
+/// One name per motion: translations first, then rotations, each about its own axis.
 std::vector<std::string> name_rigid_motions(const RigidMotions& motions, const Vector3& centre, double size);
 
 }  // namespace detail

@@ -3,15 +3,12 @@
 
 #include <palpate/mesh/rigid_mode_names.hpp>
 
-#include <Eigen/Geometry>
-
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
-
-using RigidMotionRows = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor, 6, 6>;
 
 /// Three numbers with three digits; what is zero but for rounding prints as 0.
 inline std::string short_triple(const Vector3& v, double scale) {
@@ -26,16 +23,17 @@ inline std::string short_triple(const Vector3& v, double scale) {
 
 /// Reduced row echelon form in place; entries below 1e-7 are zero. Rows that span coordinate axes come out as these
 /// axes.
-inline void reduce_rows(RigidMotionRows& rows) {
-  Eigen::Index top = 0;
-  for (Eigen::Index column = 0; column < 6 && top < rows.rows(); ++column) {
-    Eigen::Index pivot = 0;
-    const double largest = rows.col(column).tail(rows.rows() - top).cwiseAbs().maxCoeff(&pivot);
-    if (largest < 1e-7) continue;
-    rows.row(top).swap(rows.row(top + pivot));
-    rows.row(top) /= rows(top, column);
-    for (Eigen::Index r = 0; r < rows.rows(); ++r)
-      if (r != top) rows.row(r) -= rows(r, column) * rows.row(top).eval();
+inline void reduce_rows(RigidMotions& rows) {
+  std::size_t top = 0;
+  for (int column = 0; column < 6 && top < rows.size(); ++column) {
+    std::size_t pivot = top;
+    for (std::size_t r = top + 1; r < rows.size(); ++r)
+      if (std::abs(rows[r][column]) > std::abs(rows[pivot][column])) pivot = r;
+    if (std::abs(rows[pivot][column]) < 1e-7) continue;
+    std::swap(rows[top], rows[pivot]);
+    const Vector6 unit = rows[top] / rows[top][column];
+    for (Vector6& row : rows) row = row - row[column] * unit;
+    rows[top] = unit;
     ++top;
   }
 }
@@ -50,7 +48,7 @@ inline std::string name_translation(const Vector3& t) {
 /// Name of u = t + w x (x - centre) / size. It is a rotation when w and t are at right angles, else a screw.
 inline std::string name_rotation(const Vector3& w, const Vector3& t, const Vector3& centre, double size) {
   const double square = w.squaredNorm();
-  const Vector3 through = centre + size * w.cross(t) / square;
+  const Vector3 through = centre + size * cross(w, t) / square;
   const bool screw = std::abs(w.dot(t)) > 1e-6 * square;
   return std::string(screw ? "screw" : "rotation") + " about the axis " + short_triple(w / std::sqrt(square), 1.0) +
          " through " + short_triple(through, size);
@@ -58,20 +56,20 @@ inline std::string name_rotation(const Vector3& w, const Vector3& t, const Vecto
 
 PALPATE_INLINE std::vector<std::string> name_rigid_motions(const RigidMotions& motions, const Vector3& centre,
                                                            double size) {
-  RigidMotionRows rows = motions.transpose();
+  RigidMotions rows = motions;
   reduce_rows(rows);
   std::vector<std::string> translations, rotations;
   Matrix3 slide = Matrix3::Zero();  // projector on the free translations, built from an orthonormal basis
-  for (Eigen::Index r = 0; r < rows.rows(); ++r) {
-    const Vector3 w = rows.row(r).head<3>().transpose(), t = rows.row(r).tail<3>().transpose();
+  for (const Vector6& row : rows) {
+    const Vector3 w = turn_of(row), t = shift_of(row);
     if (w.norm() > 1e-7) continue;
     translations.push_back(name_translation(t));
     const Vector3 d = (t - slide * t).normalized();
     slide += d * d.transpose();
   }
-  for (Eigen::Index r = 0; r < rows.rows(); ++r) {
-    const Vector3 w = rows.row(r).head<3>().transpose();
-    Vector3 t = rows.row(r).tail<3>().transpose();
+  for (const Vector6& row : rows) {
+    const Vector3 w = turn_of(row);
+    Vector3 t = shift_of(row);
     if (w.norm() <= 1e-7) continue;
     const Vector3 along = slide * w;  // a free translation along the axis takes the advance out of a screw
     if (along.norm() > 1e-6 * w.norm()) t -= w.dot(t) / w.dot(along) * along;

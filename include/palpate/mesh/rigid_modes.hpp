@@ -39,10 +39,10 @@ struct RigidFrame {
              std::span<const std::uint8_t> constrained);
 };
 
-/// What is left of a vector outside the span of orthonormal columns (unused columns are zero).
-Vector6 remainder(const Matrix6& basis, Vector6 v);
+/// What is left of a vector outside the span of an orthonormal basis.
+Vector6 remainder(const std::vector<Vector6>& basis, Vector6 v);
 
-/// Orthonormal basis (6 x k) of the rigid motions (w, t) that no constraint sees. Gram-Schmidt with pivoting over the
+/// Orthonormal basis of the rigid motions (w, t) that no constraint sees. Gram-Schmidt with pivoting over the
 /// rows: unlike the eigenvalues of the Gram matrix it squares nothing, and a thousand equal constraints weigh no more
 /// than one. O(6 rows).
 RigidMotions free_motions(std::span<const Vector3> positions, std::span<const NodeId> nodes,

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <palpate/mesh/rigid_modes.hpp>
+#include <palpate/core/box.hpp>
 #include <palpate/core/setup_error.hpp>
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
@@ -24,22 +24,22 @@ PALPATE_INLINE RigidFrame::RigidFrame(std::span<const Vector3> positions, std::s
                                       std::span<const std::uint8_t> constrained) {
   const auto at = [&](NodeId node) -> const Vector3& { return positions[static_cast<std::size_t>(node)]; };
   const Vector3 origin = at(nodes.front());  // offsets keep their digits far from zero
-  Vector3 low = Vector3::Zero(), high = Vector3::Zero(), all = Vector3::Zero(), held = Vector3::Zero();
+  Box box;
+  Vector3 all = Vector3::Zero(), held = Vector3::Zero();
   Index held_count = 0;
   double farthest = 0.0;
   for (NodeId node : nodes) {
     const Vector3 x = at(node) - origin;
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
+    box.include(x);
     all += x;
-    farthest = std::max(farthest, at(node).cwiseAbs().maxCoeff());
+    farthest = std::max(farthest, max_abs(at(node)));
     if ((constrained[static_cast<std::size_t>(node)] & 7u) == 0) continue;
     held += x;
     ++held_count;
   }
   centre = origin + (held_count > 0 ? Vector3(held / static_cast<double>(held_count))
                                     : Vector3(all / static_cast<double>(nodes.size())));
-  const double diagonal = (high - low).norm();
+  const double diagonal = box.size().norm();
   if (diagonal > 0.0) size = diagonal;
   resolution = 8.0 * std::numeric_limits<double>::epsilon() * farthest / size;
 }
@@ -47,42 +47,61 @@ PALPATE_INLINE RigidFrame::RigidFrame(std::span<const Vector3> positions, std::s
 /// Row of the constraint "component `axis` of the displacement at p is given" for the rigid motion u = t + w x p,
 /// unknowns (w, t).
 inline Vector6 constraint_row(const Vector3& p, int axis) {
-  const Vector3 e = Vector3::Unit(axis);
-  Vector6 row;
-  row << p.cross(e), e;
+  const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+  Vector6 row = Vector6::Zero();
+  row[next] = p[last];  // p x e
+  row[last] = -p[next];
+  row[3 + axis] = 1.0;
   return row;
 }
 
-PALPATE_INLINE Vector6 remainder(const Matrix6& basis, Vector6 v) {
-  for (int twice = 0; twice < 2; ++twice) v -= basis * (basis.transpose() * v).eval();
+inline double dot(const Vector6& a, const Vector6& b) noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < 6; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+inline Vector6 normalized(const Vector6& v) noexcept {
+  return v / std::sqrt(dot(v, v));
+}
+
+PALPATE_INLINE Vector6 remainder(const std::vector<Vector6>& basis, Vector6 v) {
+  for (int twice = 0; twice < 2; ++twice) {
+    const Vector6 whole = v;
+    for (const Vector6& b : basis) v = v - dot(b, whole) * b;
+  }
   return v;
 }
 
 PALPATE_INLINE RigidMotions free_motions(std::span<const Vector3> positions, std::span<const NodeId> nodes,
                                          std::span<const std::uint8_t> constrained, const RigidFrame& frame) {
   const double tolerance = std::max(1e-6, frame.resolution);
-  Matrix6 basis = Matrix6::Zero();
-  int seen = 0;
-  while (seen < 6) {
+  std::vector<Vector6> basis;
+  while (basis.size() < 6) {
     Vector6 best = Vector6::Zero();
     for (NodeId node : nodes) {
       const Vector3 p = (positions[static_cast<std::size_t>(node)] - frame.centre) / frame.size;
       for (int axis = 0; axis < 3; ++axis) {
         if ((constrained[static_cast<std::size_t>(node)] >> axis & 1u) == 0) continue;
         const Vector6 rest = remainder(basis, constraint_row(p, axis));
-        if (rest.squaredNorm() > best.squaredNorm()) best = rest;
+        if (dot(rest, rest) > dot(best, best)) best = rest;
       }
     }
-    if (!(best.norm() > tolerance)) break;
-    basis.col(seen++) = best.normalized();
+    if (!(std::sqrt(dot(best, best)) > tolerance)) break;
+    basis.push_back(normalized(best));
   }
-  for (int k = seen; k < 6; ++k) {  // complete the basis with what is left of the unit vectors
+  const auto seen = static_cast<std::ptrdiff_t>(basis.size());
+  while (basis.size() < 6) {  // complete the basis with what is left of the unit vectors
     Vector6 best = Vector6::Zero();
-    for (int i = 0; i < 6; ++i)
-      if (const Vector6 rest = remainder(basis, Vector6::Unit(i)); rest.squaredNorm() > best.squaredNorm()) best = rest;
-    basis.col(k) = best.normalized();
+    for (int i = 0; i < 6; ++i) {
+      Vector6 unit = Vector6::Zero();
+      unit[i] = 1.0;
+      const Vector6 rest = remainder(basis, unit);
+      if (dot(rest, rest) > dot(best, best)) best = rest;
+    }
+    basis.push_back(normalized(best));
   }
-  return basis.rightCols(6 - seen);
+  return {basis.begin() + seen, basis.end()};
 }
 
 }}}  // namespace palpate::detail

@@ -56,7 +56,7 @@ PALPATE_INLINE Scene& Scene::expand(std::string region, double elongation) {
     raise(SetupErrorKind::bad_argument, "an expansion of " + number(elongation) + " leaves no length",
           "It is relative: 0.01 for one per cent");
   Vector6 strain = Vector6::Zero();
-  strain.head<3>().setConstant(elongation);
+  strain[0] = strain[1] = strain[2] = elongation;
   return initial_strain(std::move(region), strain);
 }
 

@@ -2,19 +2,24 @@
 #pragma once
 
 #include <palpate/model/admission_report.hpp>
+#include <palpate/core/box.hpp>
 
-#include <Eigen/Geometry>
+#include <algorithm>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE void report_displacement(const std::vector<Vector3>& positions, const VectorX& u, SetupReport& report) {
   constexpr double largest = 0.1;
   report.clear(SetupFlag::large_displacement);
-  const Eigen::Map<const Eigen::Matrix3Xd> moved(u.data(), 3, u.size() / 3);
-  const double spread = (moved.colwise() - moved.rowwise().mean()).colwise().norm().maxCoeff();
-  Eigen::AlignedBox3d box;
-  for (const Vector3& x : positions) box.extend(x);
-  const double size = box.diagonal().norm();
+  const Index nodes = u.size() / 3;
+  Vector3 mean = Vector3::Zero();
+  for (Index i = 0; i < nodes; ++i) mean += node_vector(u, i);
+  mean = mean / static_cast<double>(nodes);
+  double spread = 0.0;
+  for (Index i = 0; i < nodes; ++i) spread = std::max(spread, (node_vector(u, i) - mean).norm());
+  Box box;
+  for (const Vector3& x : positions) box.include(x);
+  const double size = box.size().norm();
   if (spread > largest * size)
     report.set(SetupFlag::large_displacement, "the loads move a node by " + number(spread) + " m against the mean, " +
                                                   number(spread / size) +

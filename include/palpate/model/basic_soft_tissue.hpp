@@ -12,6 +12,7 @@
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/realtime.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
@@ -25,8 +26,6 @@
 #include <palpate/model/tissue_motion.hpp>
 #include <palpate/model/touchable.hpp>
 #include <palpate/model/warped_compliance.hpp>
-
-#include <Eigen/Geometry>
 
 #include <array>
 #include <span>
@@ -130,7 +129,7 @@ class BasicSoftTissue {
     out.count = 0;
     ticked_ = {};
     for (const VertexForce& f : forces)
-      if (!f.force.allFinite())
+      if (!all_finite(f.force))
         ticked_.set(StatusFlag::non_finite_force);
       else if (out.count < most_forces)
         out.item[out.count++] = f;
@@ -191,7 +190,7 @@ class BasicSoftTissue {
 
   BasicSoftTissue(Prepared prepared, const Options& options)
       : step_(options.step),
-        world_(Eigen::Translation3d(prepared.origin)),
+        world_(make_pose(Matrix3::Identity(), prepared.origin)),
         touchable_(std::move(prepared.touchable.nodes)),
         motion_(std::move(prepared.source), options.motion, options.limits),
         rotations_(motion_.body().pattern, motion_.body().positions, touchable_),
@@ -206,7 +205,7 @@ class BasicSoftTissue {
 
   void add(const Forces& forces, double factor, VectorX& load) const noexcept {
     for (std::size_t k = 0; k < forces.count; ++k)
-      load.segment<3>(3 * Index{touchable_[vertex(forces.item[k])]}) += factor * forces.item[k].force;
+      add_node_vector(load, touchable_[vertex(forces.item[k])], factor * forces.item[k].force);
   }
 
   /// Where the surface is without the forces in use, by the compliance that the servo uses: then the same forces bring
@@ -221,10 +220,10 @@ class BasicSoftTissue {
     for (std::size_t i = 0; i < n; ++i) {
       Vector3 moved = Vector3::Zero();
       for (std::size_t k = 0; k < used_.count; ++k)
-        moved.noalias() += compliance_.at_rest(i, vertex(used_.item[k])) * turned_back[k];
+        moved += compliance_.at_rest(i, vertex(used_.item[k])) * turned_back[k];
       const NodeId node = touchable_[i];
-      view.free[i] = motion_.body().positions[static_cast<std::size_t>(node)] + u.segment<3>(3 * Index{node}) -
-                     view.rotation[i] * moved;
+      view.free[i] =
+          motion_.body().positions[static_cast<std::size_t>(node)] + node_vector(u, node) - view.rotation[i] * moved;
     }
   }
   static std::size_t vertex(const VertexForce& f) noexcept { return static_cast<std::size_t>(f.vertex); }

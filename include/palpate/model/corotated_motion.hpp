@@ -74,7 +74,7 @@ class CorotatedMotion {
       : options_(checked(options)),
         tetrahedra_(body, limits),
         body_(checked(body.rest, scene, limits)),
-        mass_(body_.lumped.replicate(1, 3).transpose().reshaped()),
+        mass_(mass_of_dofs(body_.lumped)),
         step_(options.scheme, mass_.size()),
         preconditioner_(body_, body.rest, limits),
         gradients_(mass_.size()),
@@ -113,7 +113,7 @@ class CorotatedMotion {
       ++report.linearisations;
       if (options_.check) report.calm = settle(highest, reached, report);
     } while (!report.calm && report.linearisations < options_.maximum_linearisations);
-    if (!trial_.allFinite() || !velocity_.allFinite()) return report;
+    if (!all_finite(trial_) || !all_finite(velocity_)) return report;
     accept();
     energy_known_ = options_.check;
     time_ += h;
@@ -132,7 +132,7 @@ class CorotatedMotion {
     if (!(report.error <= tolerable_error)) return false;
     trial_ = u_ + increment_;
     find_motion();
-    if (!trial_.allFinite() || !velocity_.allFinite()) return false;
+    if (!all_finite(trial_) || !all_finite(velocity_)) return false;
     accept();
     energy_known_ = false;
     return true;
@@ -183,7 +183,7 @@ class CorotatedMotion {
     tetrahedra_.linearise(u_, force_, energy_);
     damp(v_, drag_);
     for (const Index dof : body_.conditions.free_dofs) a_[dof] = (load_[dof] - force_[dof] - drag_[dof]) / mass_[dof];
-    if (!a_.allFinite()) a_.setZero();  // of loads that are none: steps refuse these
+    if (!all_finite(a_)) a_.setZero();  // of loads that are none: steps refuse these
     energy_known_ = true;
     stepped_ = false;
     age_ = 0;
@@ -198,7 +198,7 @@ class CorotatedMotion {
     tetrahedra_.remove_if(gone);
     hold_bare(nodal_mass);
     body_.lumped = nodal_mass;
-    mass_ = nodal_mass.replicate(1, 3).transpose().reshaped();
+    mass_ = mass_of_dofs(nodal_mass);
     load_ = body_.load = load;
     if constexpr (requires { preconditioner_.change(body_); }) preconditioner_.change(body_);
     set_state(u_, v_);

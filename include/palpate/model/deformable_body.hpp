@@ -59,9 +59,9 @@ DeformableBody body_without_mass(const Body<E>& rest, const Scene& scene) {
   body.load = applied_load(rest, boundary, scene);
   if (!scene.gravity().isZero(0.0)) {
     const VectorX mass = nodal_mass(rest);
-    for (Index i = 0; i < mass.size(); ++i) body.load.template segment<3>(3 * i) += mass[i] * scene.gravity();
+    for (Index i = 0; i < mass.size(); ++i) add_node_vector(body.load, i, mass[i] * scene.gravity());
   }
-  if (!body.load.allFinite()) raise(SetupErrorKind::non_finite, "the loads are not finite");
+  if (!all_finite(body.load)) raise(SetupErrorKind::non_finite, "the loads are not finite");
   body.positions = rest.mesh.positions;
   return body;
 }

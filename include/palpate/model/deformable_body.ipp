@@ -2,17 +2,16 @@
 #pragma once
 
 #include <palpate/model/deformable_body.hpp>
-
-#include <Eigen/Geometry>
+#include <palpate/core/box.hpp>
 
 #include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE double extent(const std::vector<Vector3>& positions) {
-  Eigen::AlignedBox3d box;
-  for (const Vector3& x : positions) box.extend(x);
-  return box.diagonal().norm();
+  Box box;
+  for (const Vector3& x : positions) box.include(x);
+  return box.size().norm();
 }
 
 PALPATE_INLINE void require_mass(const DeformableBody& body) {

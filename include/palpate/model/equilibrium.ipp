@@ -37,9 +37,10 @@ PALPATE_INLINE Equilibrium::Equilibrium(DeformableBody body, const SetupLimits& 
       start_(x_),
       residual_(x_),
       direction_(x_),
-      buckling_(VectorX::NullaryExpr(size(), [](Index i) { return std::sin(1.0 + static_cast<double>(i)); })),
+      buckling_(x_),
       trial_(x_),
       size_(extent(body_.positions)) {
+  for (Index i = 0; i < size(); ++i) buckling_[i] = std::sin(1.0 + static_cast<double>(i));
   body_.elastic->tangent(displacement_, tangent_.matrix());
   if (!body_.elastic->is_linear()) rounding_ = tangent_.rounding(size_);
 }

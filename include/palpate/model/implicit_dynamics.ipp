@@ -55,7 +55,7 @@ PALPATE_INLINE StepReport ImplicitDynamics::step(double h) noexcept {
   if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
   start_from_the_lower();
   report.newton = newton_.solve(*this, x_);
-  if (!std::isfinite(evaluate(x_, residual_)) || !velocity_.allFinite()) return report;
+  if (!std::isfinite(evaluate(x_, residual_)) || !all_finite(velocity_)) return report;
   report.taken = true;
   report.deformation = deformation_;
   accept();
@@ -80,7 +80,7 @@ PALPATE_INLINE bool ImplicitDynamics::correct(const VectorX& more) noexcept {
     for (int halvings = 0; halvings < 5 && !better && before < infinity; ++halvings, change_ *= 0.5) {
       x_ = start_ + change_;
       better = evaluate(x_, residual_) < infinity && residual_.norm() <= std::max(before, rounding()) &&
-               velocity_.allFinite();
+               all_finite(velocity_);
     }
   }
   if (better) {
@@ -218,7 +218,7 @@ PALPATE_INLINE bool ImplicitDynamics::energy_is_explained() noexcept {
 
 PALPATE_INLINE void ImplicitDynamics::apply_mass(const VectorX& x, VectorX& y) const noexcept {
   if (parameters_.mass == MassKind::consistent) return body_.mass.apply(x, y);
-  for (Index i = 0; i < body_.lumped.size(); ++i) y.segment<3>(3 * i) = body_.lumped[i] * x.segment<3>(3 * i);
+  for (Index i = 0; i < body_.lumped.size(); ++i) set_node_vector(y, i, body_.lumped[i] * node_vector(x, i));
 }
 
 PALPATE_INLINE void ImplicitDynamics::add_mass(double factor, BlockMatrix& k) const noexcept {
@@ -261,7 +261,7 @@ PALPATE_INLINE void ImplicitDynamics::find_acceleration() {
     tangent_.solve(residual_, x_);
   }
   body_.conditions.scatter(x_, a_);
-  if (!a_.allFinite()) a_.setZero();   // of loads that are none: steps refuse these
+  if (!all_finite(a_)) a_.setZero();   // of loads that are none: steps refuse these
   balance_ = load_ - force_ - other_;  // on held dofs, which are at rest
   work_ = {};
   start_energy_ = kinetic_energy() + std::abs(elastic_energy());

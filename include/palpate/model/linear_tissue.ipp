@@ -86,7 +86,7 @@ void LinearTissue<Scalar>::set_conditions(const Scene& scene) {
 
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_gravity(const Vector3& gravity) {
-  if (!gravity.allFinite()) raise(SetupErrorKind::non_finite, "gravity is not finite");
+  if (!all_finite(gravity)) raise(SetupErrorKind::non_finite, "gravity is not finite");
   SetupReport report = report_;
   statics_->set_gravity(rotation_of(pose_).transpose() * gravity, reporting_to(report));
   gravity_ = gravity;
@@ -95,10 +95,7 @@ void LinearTissue<Scalar>::set_gravity(const Vector3& gravity) {
 
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_pose(const Eigen::Isometry3d& pose) {
-  const bool rigid = pose.matrix().allFinite() &&
-                     (rotation_of(pose).transpose() * rotation_of(pose) - Matrix3::Identity()).norm() < 1e-9 &&
-                     determinant(rotation_of(pose)) > 0.0;
-  if (!rigid)
+  if (!all_finite(pose.matrix()) || !is_rotation(rotation_of(pose)))
     raise(SetupErrorKind::bad_argument, "the pose is not a rigid motion",
           "Give a proper rotation and a finite translation");
   SetupReport report = report_;
@@ -171,8 +168,7 @@ void LinearTissue<Scalar>::sample_columns(ColumnFill fill) {
 
 template <std::floating_point Scalar>
 Vector3 LinearTissue<Scalar>::deformed(NodeId node) const noexcept {
-  return statics_->body().positions()[static_cast<std::size_t>(node)] +
-         displacement().template segment<3>(3 * Index{node});
+  return statics_->body().positions()[static_cast<std::size_t>(node)] + node_vector(displacement(), node);
 }
 
 template <std::floating_point Scalar>
@@ -189,7 +185,7 @@ void LinearTissue<Scalar>::accept_displacement(SetupReport& report) noexcept {
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::place(const Eigen::Isometry3d& pose) noexcept {
   pose_ = pose;
-  world_ = pose_ * Eigen::Translation3d(origin_);
+  world_ = make_pose(rotation_of(pose), pose * origin_);
 }
 
 template <std::floating_point Scalar>

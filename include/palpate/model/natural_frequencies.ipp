@@ -47,7 +47,7 @@ PALPATE_INLINE double require_pairs(const LanczosPairs& pairs, const VectorX& la
   p.threshold = tolerance;
   p.what =
       "the natural frequencies did not converge: residual " + number(pairs.residual) + ", bound " + number(tolerance);
-  if (!pairs.converged || !lambda.allFinite()) raise(std::move(p));
+  if (!pairs.converged || !all_finite(lambda)) raise(std::move(p));
   const double rounding = ((lambda.array() - shift) * pairs.theta.array() - 1.0).abs().maxCoeff();
   if (rounding <= 1e-3) return rounding;
   p.kind = SetupErrorKind::ill_conditioned;

@@ -5,8 +5,6 @@
 #include <palpate/core/rotation.hpp>
 #include <palpate/core/tensor3.hpp>
 
-#include <Eigen/LU>
-
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE NodalRotations::NodalRotations(const BlockPattern& pattern, const std::vector<Vector3>& positions,
@@ -28,17 +26,17 @@ PALPATE_INLINE NodalRotations::NodalRotations(const BlockPattern& pattern, const
       moment += offset_.back() * offset_.back().transpose();
     }
     first_.push_back(neighbour_.size());
-    inverse_[k] = moment.inverse();
+    inverse_[k] = inverse(moment);
   }
 }
 
 PALPATE_INLINE Matrix3 NodalRotations::operator()(std::size_t k, const VectorX& u) const noexcept {
-  const Vector3 own = u.segment<3>(3 * Index{nodes_[k]});
+  const Vector3 own = node_vector(u, nodes_[k]);
   Matrix3 f = Matrix3::Zero();
   for (std::size_t i = first_[k]; i < first_[k + 1]; ++i)
-    f += (offset_[i] + u.segment<3>(3 * Index{neighbour_[i]}) - own) * offset_[i].transpose();
-  f = (f * inverse_[k]).eval();
-  return f.allFinite() ? matrix3(closest_rotation(tensor3<double>(f))) : Matrix3(Matrix3::Identity());
+    f += (offset_[i] + node_vector(u, neighbour_[i]) - own) * offset_[i].transpose();
+  f = f * inverse_[k];
+  return all_finite(f) ? matrix3(closest_rotation(tensor3<double>(f))) : Matrix3(Matrix3::Identity());
 }
 
 }}  // namespace palpate

@@ -14,6 +14,8 @@
 #include <palpate/linear/dense_inverse.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 
+#include <algorithm>
+
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::make(const BlockMatrix& k,
@@ -46,8 +48,10 @@ PALPATE_INLINE Uncondensed make_inverse(DenseKind kind, const BlockMatrix& k, co
   const Index n = conditions.free_count();
   limits.require_memory(3.0 * static_cast<double>(n) * static_cast<double>(n) * sizeof(double),
                         "the inverse of the whole stiffness");
-  MatrixX lower = MatrixX::Zero(n, n);
-  for_each_free_entry(k, conditions, [&](Index row, Index column, double value) { lower(row, column) = value; });
+  MatrixX lower(n, n);
+  std::fill_n(lower.data(), lower.size(), 0.0);
+  for_each_free_entry(k, conditions,
+                      [&](Index row, Index column, double value) { lower.coeffRef(row, column) = value; });
   if (kind == DenseKind::inverse_float) return {DenseInverse<float>(std::move(lower), limits), layout.kept};
   return {DenseInverse<double>(std::move(lower), limits), layout.kept};
 }

@@ -132,7 +132,7 @@ class QuasiNonLinear {
   void set_scale() noexcept {
     const double b = 1.0 / std::sqrt(across_);
     scale_ = (1.0 / std::sqrt(along_) - b) * axis_ * axis_.transpose();
-    scale_.diagonal().array() += b;
+    for (int c = 0; c < 3; ++c) scale_(c, c) += b;
   }
 
   static constexpr double unfelt = 1e-5;  // relative, and radians of the axis
@@ -140,7 +140,7 @@ class QuasiNonLinear {
   Tissue* tissue_;
   StiffeningCurve axial_, radial_;
   double along_, across_;
-  Vector3 axis_ = Vector3::UnitZ();
+  Vector3 axis_{0.0, 0.0, 1.0};
   Matrix3 scale_;
   std::uint64_t revision_ = 0;
 };

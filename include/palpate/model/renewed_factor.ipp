@@ -71,8 +71,9 @@ PALPATE_INLINE void RenewedFactor::add(const TurningElement& e, double factor, c
                                        BlockMatrix& a) noexcept {
   Matrix3 f = Matrix3::Identity();
   for (int n = 0; n < 4; ++n)
-    f.noalias() += u.segment<3>(3 * Index{e.nodes[static_cast<std::size_t>(n)]}) * e.gradient.row(n);
-  if (!f.allFinite()) f.setIdentity();
+    for (int c = 0; c < 3; ++c)
+      for (int i = 0; i < 3; ++i) f(i, c) += u[3 * Index{e.nodes[static_cast<std::size_t>(n)]} + i] * e.gradient(n, c);
+  if (!all_finite(f)) f.setIdentity();
   const Eigen::Matrix<double, 4, 3> g = e.gradient * matrix3(closest_rotation(tensor3<double>(f))).transpose();
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) {

@@ -63,7 +63,7 @@ PALPATE_INLINE SolveReport Statics::displacement_with(std::span<const VertexForc
                                                       const std::vector<NodeId>& node_of_vertex, VectorX& u) noexcept {
   scratch_.setZero();
   for (const auto& [vertex, force] : forces)
-    scratch_.segment<3>(3 * Index{node_of_vertex[static_cast<std::size_t>(vertex)]}) += force;
+    add_node_vector(scratch_, node_of_vertex[static_cast<std::size_t>(vertex)], force);
   const SolveReport report = solve_free(scratch_, u);
   u += displacement_;
   return report;
@@ -72,11 +72,13 @@ PALPATE_INLINE SolveReport Statics::displacement_with(std::span<const VertexForc
 PALPATE_INLINE VectorX Statics::internal_force() const {
   VectorX f(displacement_.size());
   stiffness_.apply(displacement_, f);
-  return f - strain_load_;
+  f -= strain_load_;
+  return f;
 }
 
 PALPATE_INLINE VectorX Statics::reactions() const {
-  VectorX r = internal_force() - load_;
+  VectorX r = internal_force();
+  r -= load_;
   for (Index dof : conditions_.free_dofs) r[dof] = 0.0;
   return r;
 }
@@ -85,12 +87,14 @@ PALPATE_INLINE Statics::Loaded Statics::solve_loads(const VectorX& applied, cons
                                                     const VectorX& prescribed, const Vector3& gravity) {
   require_density(gravity);
   Loaded loaded{applied, VectorX(applied.size())};
-  for (Index i = 0; i < mass_.size(); ++i) loaded.load.segment<3>(3 * i) += mass_[i] * gravity;
+  for (Index i = 0; i < mass_.size(); ++i) add_node_vector(loaded.load, i, mass_[i] * gravity);
   stiffness_.apply(prescribed, scratch_);
-  full_load_ = loaded.load + strain_load - scratch_;
+  full_load_ = loaded.load;
+  full_load_ += strain_load;
+  full_load_ -= scratch_;
   const SolveReport solved = solve_free(full_load_, loaded.displacement);
   loaded.displacement += prescribed;
-  if (!loaded.displacement.allFinite() || !full_load_.allFinite())
+  if (!all_finite(loaded.displacement) || !all_finite(full_load_))
     raise(SetupErrorKind::non_finite, "the static displacement is not finite",
           "Loads may be too large for the stiffness");
   if (!solved.converged)

@@ -13,8 +13,6 @@
 #include <palpate/model/tangent_solver.hpp>
 #include <palpate/model/turned_solve.hpp>
 
-#include <Eigen/LU>
-
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -52,12 +50,11 @@ class BlockJacobi {
     if (!anew) return;
     tetrahedra.diagonal_blocks(straight_, mixed_);
     for (std::size_t i = 0; i < inverse_.size(); ++i) {
-      const auto at = 3 * static_cast<Index>(i);
-      const Vector3 d = straight_.segment<3>(at), m = mixed_.segment<3>(at);
-      Matrix3 a;
-      a << d.x(), m.x(), m.y(), m.x(), d.y(), m.z(), m.y(), m.z(), d.z();
-      a *= factors.stiffness;
-      a.diagonal().array() += factors.mass * lumped_[static_cast<Index>(i)];
+      const auto node = static_cast<Index>(i);
+      const Vector3 d = node_vector(straight_, node), m = node_vector(mixed_, node);
+      Matrix3 a{{d[0], m[0], m[1]}, {m[0], d[1], m[2]}, {m[1], m[2], d[2]}};
+      a = factors.stiffness * a;
+      for (int c = 0; c < 3; ++c) a(c, c) += factors.mass * lumped_[node];
       hold(constrained_[i], a, inverse_[i]);
     }
   }
@@ -65,7 +62,7 @@ class BlockJacobi {
 
  private:
   /// Inverse of the free part of a block, zero elsewhere.
-  static void hold(std::uint8_t constrained, Matrix3& a, Matrix3& inverse) noexcept;
+  static void hold(std::uint8_t constrained, Matrix3& a, Matrix3& inverted) noexcept;
 
   VectorX lumped_;
   std::vector<std::uint8_t> constrained_;

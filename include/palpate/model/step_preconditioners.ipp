@@ -20,21 +20,19 @@ PALPATE_INLINE void BlockJacobi::change(const DeformableBody& body) {
 
 PALPATE_INLINE void BlockJacobi::apply(const VectorX& r, VectorX& z) const noexcept {
   for (std::size_t i = 0; i < inverse_.size(); ++i) {
-    const auto at = 3 * static_cast<Index>(i);
-    z.segment<3>(at).noalias() = inverse_[i] * r.segment<3>(at);
+    const auto node = static_cast<Index>(i);
+    set_node_vector(z, node, inverse_[i] * node_vector(r, node));
   }
 }
 
-PALPATE_INLINE void BlockJacobi::hold(std::uint8_t constrained, Matrix3& a, Matrix3& inverse) noexcept {
+PALPATE_INLINE void BlockJacobi::hold(std::uint8_t constrained, Matrix3& a, Matrix3& inverted) noexcept {
   for (int c = 0; c < 3; ++c)
     if (((constrained >> c) & 1u) != 0) {
-      a.row(c).setZero();
-      a.col(c).setZero();
-      a(c, c) = 1.0;
+      for (int i = 0; i < 3; ++i) a(c, i) = a(i, c) = i == c ? 1.0 : 0.0;
     }
-  inverse = a.inverse();
+  inverted = inverse(a);
   for (int c = 0; c < 3; ++c)
-    if (((constrained >> c) & 1u) != 0) inverse(c, c) = 0.0;
+    if (((constrained >> c) & 1u) != 0) inverted(c, c) = 0.0;
 }
 
 }}  // namespace palpate

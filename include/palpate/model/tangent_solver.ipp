@@ -35,7 +35,7 @@ PALPATE_INLINE double TangentSolver::largest_diagonal() const noexcept {
   double largest = 0.0;
   const BlockPattern& pattern = matrix_.pattern();
   for (Index i = 0; i < pattern.rows(); ++i)
-    largest = std::max(largest, matrix_.block(pattern.diagonal(i)).diagonal().cwiseAbs().maxCoeff());
+    for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(matrix_.block(pattern.diagonal(i))(c, c)));
   return largest;
 }
 

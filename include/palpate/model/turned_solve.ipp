@@ -25,15 +25,15 @@ PALPATE_INLINE void TurnedSolve::turn(const VectorX& u, const std::vector<Matrix
 
 PALPATE_INLINE void TurnedSolve::solve(TangentSolver& factor, const VectorX& r, VectorX& z) noexcept {
   for (std::size_t i = 0; i < turn_.size(); ++i) {
-    const auto at = 3 * static_cast<Index>(i);
-    full_.segment<3>(at).noalias() = turn_[i].transpose() * r.segment<3>(at);
+    const auto node = static_cast<Index>(i);
+    set_node_vector(full_, node, turn_[i].transpose() * node_vector(r, node));
   }
   conditions_.gather(full_, x_);
   factor.solve(x_, x_);
   conditions_.scatter(x_, full_);
   for (std::size_t i = 0; i < turn_.size(); ++i) {
-    const auto at = 3 * static_cast<Index>(i);
-    z.segment<3>(at).noalias() = turn_[i] * full_.segment<3>(at);
+    const auto node = static_cast<Index>(i);
+    set_node_vector(z, node, turn_[i] * node_vector(full_, node));
   }
   for (Index dof = 0; dof < z.size(); ++dof)
     if (conditions_.is_constrained(dof)) z[dof] = 0.0;

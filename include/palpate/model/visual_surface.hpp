@@ -7,13 +7,12 @@
 #include <palpate/contact/triangle.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/element_search.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/quality.hpp>
 #include <palpate/mesh/surface.hpp>
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -93,7 +92,7 @@ class VisualSurface {
   static VisualMesh checked(VisualMesh surface) {
     if (surface.triangles.empty()) raise(SetupErrorKind::empty_mesh, "the surface to draw has no triangles");
     for (const Vector3& x : surface.positions)
-      if (!x.allFinite()) raise(SetupErrorKind::non_finite, "a point of the surface to draw is not finite");
+      if (!all_finite(x)) raise(SetupErrorKind::non_finite, "a point of the surface to draw is not finite");
     for (const auto& t : surface.triangles)
       for (const int v : t)
         if (v < 0 || static_cast<std::size_t>(v) >= surface.positions.size())
@@ -181,14 +180,14 @@ class VisualSurface {
   /// The point of an element's continuation; its middle where Newton's method finds nothing.
   ElementPoint beyond(Index element, const Vector3& p) const noexcept {
     const auto xi = reference_coordinates<E>(element_nodes<E>(model_->mesh(), element), p);
-    return {element, xi.value_or(Vector3(E::reference_nodes().colwise().mean().transpose()))};
+    return {element, xi.value_or(reference_centre<E>())};
   }
 
   Vector3 displacement_at(std::size_t point) const noexcept {
     const Anchor& anchor = anchors_[point];
     Vector3 u = Vector3::Zero();
     for (int a = 0; a < E::nodes; ++a)
-      u += anchor.weights[a] * displacement_.segment<3>(3 * Index{model_->mesh().element_node(anchor.element, a)});
+      u += anchor.weights[a] * node_vector(displacement_, model_->mesh().element_node(anchor.element, a));
     return u;
   }
 
@@ -197,10 +196,10 @@ class VisualSurface {
     for (Vector3& n : normals_) n.setZero();
     for (const auto& t : surface_.triangles) {
       const auto at = [&](std::size_t k) { return static_cast<std::size_t>(t[k]); };
-      const Vector3 normal = (moved_[at(1)] - moved_[at(0)]).cross(moved_[at(2)] - moved_[at(0)]);
+      const Vector3 normal = cross(moved_[at(1)] - moved_[at(0)], moved_[at(2)] - moved_[at(0)]);
       for (std::size_t k = 0; k < 3; ++k) normals_[at(k)] += normal;
     }
-    for (Vector3& n : normals_) n = n.squaredNorm() > 0.0 ? n.normalized() : Vector3::UnitZ();
+    for (Vector3& n : normals_) n = n.squaredNorm() > 0.0 ? n.normalized() : Vector3(0.0, 0.0, 1.0);
   }
 
   Model* model_;

@@ -38,10 +38,11 @@ class WarpedCompliance {
           raise(SetupErrorKind::not_converged, "the compliance of node " + std::to_string(nodes[j]),
                 "Shorten the step, or choose another preconditioner");
         force[3 * Index{nodes[j]} + c] = 0.0;
-        for (std::size_t i = 0; i < count_; ++i) rest_[i + count_ * j].col(c) = u.segment<3>(3 * Index{nodes[i]});
+        for (std::size_t i = 0; i < count_; ++i)
+          for (int d = 0; d < 3; ++d) rest_[i + count_ * j](d, c) = u[3 * Index{nodes[i]} + d];
       }
       for (std::size_t i = 0; i < count_; ++i)
-        rest_[i + count_ * j] = (turned[i].transpose() * rest_[i + count_ * j] * turned[j]).eval();
+        rest_[i + count_ * j] = turned[i].transpose() * rest_[i + count_ * j] * turned[j];
     }
     find_bounds();
   }
