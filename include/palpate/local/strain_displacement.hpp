@@ -7,10 +7,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+/// Strain, or stress, per displacement of one node: a column for each component.
+using StrainBlock = Eigen::Matrix<double, 6, 3>;
+
 /// The 6 x 3 block B_a of the strain-displacement matrix for a node with spatial gradient g [1/m] (thesis 3.16, 3.20):
 /// strain = sum B_a u_a, Voigt order of core/voigt.hpp.
-inline Eigen::Matrix<double, 6, 3> strain_displacement(const Vector3& g) noexcept {
-  Eigen::Matrix<double, 6, 3> b = Eigen::Matrix<double, 6, 3>::Zero();
+inline StrainBlock strain_displacement(const Vector3& g) noexcept {
+  StrainBlock b = StrainBlock::Zero();
   b(voigt::xx, 0) = g[0];
   b(voigt::yy, 1) = g[1];
   b(voigt::zz, 2) = g[2];
@@ -23,13 +26,42 @@ inline Eigen::Matrix<double, 6, 3> strain_displacement(const Vector3& g) noexcep
   return b;
 }
 
+/// volume * D B: the stress that the displacement of a node makes.
+inline StrainBlock stress_block(double volume, const Matrix6& d, const StrainBlock& b) noexcept {
+  StrainBlock s = StrainBlock::Zero();
+  for (int c = 0; c < 3; ++c)
+    for (int k = 0; k < 6; ++k) {
+      const double strain = volume * b(k, c);
+      for (int i = 0; i < 6; ++i) s(i, c) += d(i, k) * strain;
+    }
+  return s;
+}
+
+/// B^T S: the forces on a node of the stresses S.
+inline Matrix3 force_block(const StrainBlock& b, const StrainBlock& s) noexcept {
+  Matrix3 f = Matrix3::Zero();
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 6; ++k) f(i, j) += b(k, i) * s(k, j);
+  return f;
+}
+
 /// Strain of a displacement field given by nodal values u (nodes x 3 [m]) and spatial gradients (nodes x 3 [1/m]).
 template <class Displacements, class Gradients>
 Vector6 strain(const Eigen::MatrixBase<Displacements>& u, const Eigen::MatrixBase<Gradients>& gradient) noexcept {
-  const Matrix3 h = u.transpose() * gradient;
-  Vector6 e;
-  e << h(0, 0), h(1, 1), h(2, 2), h(0, 1) + h(1, 0), h(0, 2) + h(2, 0), h(1, 2) + h(2, 1);
-  return e;
+  double h[3][3];  // du_i / dx_j
+  for (int i = 0; i < 3; ++i) {
+    double x = 0.0, y = 0.0, z = 0.0;
+    for (Index a = 0; a < u.rows(); ++a) {
+      x += u.coeff(a, i) * gradient.coeff(a, 0);
+      y += u.coeff(a, i) * gradient.coeff(a, 1);
+      z += u.coeff(a, i) * gradient.coeff(a, 2);
+    }
+    h[i][0] = x;
+    h[i][1] = y;
+    h[i][2] = z;
+  }
+  return {h[0][0], h[1][1], h[2][2], h[0][1] + h[1][0], h[0][2] + h[2][0], h[1][2] + h[2][1]};
 }
 
 }}  // namespace palpate
