@@ -39,10 +39,13 @@ inline StrainBlock stress_block(double volume, const Matrix6& d, const StrainBlo
 
 /// B^T S: the forces on a node of the stresses S.
 inline Matrix3 force_block(const StrainBlock& b, const StrainBlock& s) noexcept {
-  Matrix3 f = Matrix3::Zero();
+  Matrix3 f;
   for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i)
-      for (int k = 0; k < 6; ++k) f(i, j) += b(k, i) * s(k, j);
+    for (int i = 0; i < 3; ++i) {
+      double sum = 0.0;
+      for (int k = 0; k < 6; ++k) sum += b(k, i) * s(k, j);
+      f(i, j) = sum;
+    }
   return f;
 }
 
