@@ -66,8 +66,8 @@ SmoothedState smoothed_state(const Body<E>& body, const VectorX& u) {
     const double share = domain.part == StrainPart::deviatoric ? 1.0 / 6.0 : 1.0 / 4.0;
     for (const NodeId e : domain.elements)
       for (int i = 0; i < 6; ++i) {
-        state.strain(i, e) += share * part[i];
-        state.stress(i, e) += share * stress[i];
+        state.strain.coeffRef(i, e) += share * part[i];
+        state.stress.coeffRef(i, e) += share * stress[i];
       }
   };
   for_each_domain_stress(body, body.initial_strain, u, visit);

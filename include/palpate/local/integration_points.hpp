@@ -81,7 +81,7 @@ Vector6 strain_at(const IntegrationPoint<E>& point, const ElementNodes<E>& u) no
 /// Nodal forces [N] of a stress [Pa] in a point, one per row: B^T sigma dV.
 template <Element E>
 ElementNodes<E> force_of_stress(const IntegrationPoint<E>& point, const Vector6& stress) noexcept {
-  Matrix3 tensor = point.volume * voigt::stress_tensor(stress);
+  Matrix3 tensor = voigt::stress_tensor(point.volume * stress);
   [[maybe_unused]] const double mean = (tensor(0, 0) + tensor(1, 1) + tensor(2, 2)) / 3.0;
   if constexpr (HasMeanDilatation<E>)
     for (int i = 0; i < 3; ++i) tensor(i, i) -= mean;
@@ -99,7 +99,7 @@ StrainBlock strain_block(const IntegrationPoint<E>& point, int a) noexcept {
   if constexpr (HasMeanDilatation<E>)
     for (int c = 0; c < 3; ++c) {
       const double change = (point.dilatation.coeff(a, c) - g.coeff(a, c)) / 3.0;
-      for (int i = 0; i < 3; ++i) b(i, c) += change;
+      for (int i = 0; i < 3; ++i) b.coeffRef(i, c) += change;
     }
   return b;
 }

@@ -22,7 +22,7 @@ ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const Matrix6& d
     for (int a = 0; a < E::nodes; ++a) {
       const StrainBlock block = strain_block<E>(point, a);
       for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 6; ++i) b.coeffRef(i, 3 * a + j) = block(i, j);
+        for (int i = 0; i < 6; ++i) b.coeffRef(i, 3 * a + j) = block.coeff(i, j);
     }
     k.noalias() += b.transpose() * (point.volume * d) * b;
   }

@@ -3,7 +3,7 @@
 
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/core/voigt.hpp>
+#include <palpate/element/matrix_of_rows.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -13,27 +13,23 @@ using StrainBlock = Eigen::Matrix<double, 6, 3>;
 /// The 6 x 3 block B_a of the strain-displacement matrix for a node with spatial gradient g [1/m] (thesis 3.16, 3.20):
 /// strain = sum B_a u_a, Voigt order of core/voigt.hpp.
 inline StrainBlock strain_displacement(const Vector3& g) noexcept {
-  StrainBlock b = StrainBlock::Zero();
-  b(voigt::xx, 0) = g[0];
-  b(voigt::yy, 1) = g[1];
-  b(voigt::zz, 2) = g[2];
-  b(voigt::xy, 0) = g[1];
-  b(voigt::xy, 1) = g[0];
-  b(voigt::xz, 0) = g[2];
-  b(voigt::xz, 2) = g[0];
-  b(voigt::yz, 1) = g[2];
-  b(voigt::yz, 2) = g[1];
-  return b;
+  return detail::matrix_of_rows<6, 3>({{g[0], 0, 0},        // xx
+                                       {0, g[1], 0},        // yy
+                                       {0, 0, g[2]},        // zz
+                                       {g[1], g[0], 0},     // xy
+                                       {g[2], 0, g[0]},     // xz
+                                       {0, g[2], g[1]}});   // yz
 }
 
 /// volume * D B: the stress that the displacement of a node makes.
 inline StrainBlock stress_block(double volume, const Matrix6& d, const StrainBlock& b) noexcept {
-  StrainBlock s = StrainBlock::Zero();
-  for (int c = 0; c < 3; ++c)
-    for (int k = 0; k < 6; ++k) {
-      const double strain = volume * b(k, c);
-      for (int i = 0; i < 6; ++i) s(i, c) += d(i, k) * strain;
-    }
+  StrainBlock s;
+  for (int c = 0; c < 3; ++c) {
+    Vector6 strain;
+    for (int i = 0; i < 6; ++i) strain[i] = volume * b.coeff(i, c);
+    const Vector6 stress = d * strain;
+    for (int i = 0; i < 6; ++i) s.coeffRef(i, c) = stress[i];
+  }
   return s;
 }
 
@@ -43,7 +39,7 @@ inline Matrix3 force_block(const StrainBlock& b, const StrainBlock& s) noexcept 
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) {
       double sum = 0.0;
-      for (int k = 0; k < 6; ++k) sum += b(k, i) * s(k, j);
+      for (int k = 0; k < 6; ++k) sum += b.coeff(k, i) * s.coeff(k, j);
       f(i, j) = sum;
     }
   return f;
