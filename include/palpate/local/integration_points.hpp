@@ -81,13 +81,13 @@ Vector6 strain_at(const IntegrationPoint<E>& point, const ElementNodes<E>& u) no
 /// Nodal forces [N] of a stress [Pa] in a point, one per row: B^T sigma dV.
 template <Element E>
 ElementNodes<E> force_of_stress(const IntegrationPoint<E>& point, const Vector6& stress) noexcept {
-  Matrix3 tensor = voigt::stress_tensor(point.volume * stress);
+  Matrix3 tensor = voigt::stress_tensor(stress);
   [[maybe_unused]] const double mean = (tensor(0, 0) + tensor(1, 1) + tensor(2, 2)) / 3.0;
   if constexpr (HasMeanDilatation<E>)
     for (int i = 0; i < 3; ++i) tensor(i, i) -= mean;
-  ElementNodes<E> f = point.gradient * tensor;
+  ElementNodes<E> f = point.volume * point.gradient * tensor;
   if constexpr (HasMeanDilatation<E>)
-    for (Index i = 0; i < f.size(); ++i) f.data()[i] += mean * point.dilatation.data()[i];
+    for (Index i = 0; i < f.size(); ++i) f.data()[i] += point.volume * mean * point.dilatation.data()[i];
   return f;
 }
 

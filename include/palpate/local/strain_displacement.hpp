@@ -24,11 +24,11 @@ inline StrainBlock strain_displacement(const Vector3& g) noexcept {
 /// volume * D B: the stress that the displacement of a node makes.
 inline StrainBlock stress_block(double volume, const Matrix6& d, const StrainBlock& b) noexcept {
   StrainBlock s;
-  for (int c = 0; c < 3; ++c) {
-    Vector6 strain;
-    for (int i = 0; i < 6; ++i) strain[i] = volume * b.coeff(i, c);
-    const Vector6 stress = d * strain;
-    for (int i = 0; i < 6; ++i) s.coeffRef(i, c) = stress[i];
+  for (int j = 0; j < 3; ++j) {
+    const double *e = b.data() + 6 * j, *row = d.data();
+    for (int i = 0; i < 6; ++i, ++row)
+      s.coeffRef(i, j) = volume * (row[0] * e[0] + row[6] * e[1] + row[12] * e[2] + row[18] * e[3] +
+                                   row[24] * e[4] + row[30] * e[5]);
   }
   return s;
 }
@@ -38,9 +38,8 @@ inline Matrix3 force_block(const StrainBlock& b, const StrainBlock& s) noexcept 
   Matrix3 f;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) {
-      double sum = 0.0;
-      for (int k = 0; k < 6; ++k) sum += b.coeff(k, i) * s.coeff(k, j);
-      f(i, j) = sum;
+      const double *x = b.data() + 6 * i, *y = s.data() + 6 * j;
+      f(i, j) = x[0] * y[0] + x[1] * y[1] + x[2] * y[2] + x[3] * y[3] + x[4] * y[4] + x[5] * y[5];
     }
   return f;
 }
@@ -48,19 +47,8 @@ inline Matrix3 force_block(const StrainBlock& b, const StrainBlock& s) noexcept 
 /// Strain of a displacement field given by nodal values u (nodes x 3 [m]) and spatial gradients (nodes x 3 [1/m]).
 template <class Displacements, class Gradients>
 Vector6 strain(const Eigen::MatrixBase<Displacements>& u, const Eigen::MatrixBase<Gradients>& gradient) noexcept {
-  double h[3][3];  // du_i / dx_j
-  for (int i = 0; i < 3; ++i) {
-    double x = 0.0, y = 0.0, z = 0.0;
-    for (Index a = 0; a < u.rows(); ++a) {
-      x += u.coeff(a, i) * gradient.coeff(a, 0);
-      y += u.coeff(a, i) * gradient.coeff(a, 1);
-      z += u.coeff(a, i) * gradient.coeff(a, 2);
-    }
-    h[i][0] = x;
-    h[i][1] = y;
-    h[i][2] = z;
-  }
-  return {h[0][0], h[1][1], h[2][2], h[0][1] + h[1][0], h[0][2] + h[2][0], h[1][2] + h[2][1]};
+  const Matrix3 h = u.transpose() * gradient;
+  return {h(0, 0), h(1, 1), h(2, 2), h(0, 1) + h(1, 0), h(0, 2) + h(2, 0), h(1, 2) + h(2, 1)};
 }
 
 }}  // namespace palpate
