@@ -45,8 +45,8 @@ M operator-(const M& a) noexcept {
   for (int i = 0; i < M::SizeAtCompileTime; ++i) r.data()[i] = -a.data()[i];
   return r;
 }
-template <detail::Small M>
-M operator*(double s, const M& a) noexcept {
+template <detail::Small M, std::same_as<double> S>
+M operator*(const S& s, const M& a) noexcept {
   M r;
   for (int i = 0; i < M::SizeAtCompileTime; ++i) r.data()[i] = s * a.data()[i];
   return r;
