@@ -81,7 +81,8 @@ V operator*(const M& m, const V& v) noexcept {
   const double *a = m.data(), *x = v.data();
   V r;
   for (int i = 0; i < 6; ++i)
-    r.data()[i] = a[i] * x[0] + a[6 + i] * x[1] + a[12 + i] * x[2] + a[18 + i] * x[3] + a[24 + i] * x[4] + a[30 + i] * x[5];
+    r.data()[i] =
+        a[i] * x[0] + a[6 + i] * x[1] + a[12 + i] * x[2] + a[18 + i] * x[3] + a[24 + i] * x[4] + a[30 + i] * x[5];
   return r;
 }
 template <detail::TransposeOf<Matrix3> T, std::same_as<Vector3> V>
