@@ -11,6 +11,7 @@
 #include <palpate/local/isotropic.hpp>
 #include <palpate/mesh/mesh.hpp>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -20,19 +21,22 @@ namespace palpate { inline namespace PALPATE_ABI {
 template <ConstantGradient E>
 class ScaledGradients {
  public:
-  using Gradient = Eigen::Matrix<double, 3, E::nodes>;
+  using Gradients = std::array<Vector3, E::nodes>;
 
   /// Throws inverted_element for a volume that is not positive, non_finite for one that is not finite.
   explicit ScaledGradients(const Mesh<E>& mesh) : values_(static_cast<std::size_t>(mesh.element_count())) {
     for (Index e = 0; e < mesh.element_count(); ++e) {
       const PointGeometry<E> g = constant_geometry(mesh, e);
-      values_[static_cast<std::size_t>(e)].noalias() = std::sqrt(g.volume) * g.gradient.transpose();
+      const double scale = std::sqrt(g.volume);
+      for (int a = 0; a < E::nodes; ++a)
+        for (int i = 0; i < 3; ++i)
+          values_[static_cast<std::size_t>(e)][static_cast<std::size_t>(a)][i] = scale * g.gradient.coeff(a, i);
     }
   }
-  const Gradient& operator[](Index e) const noexcept { return values_[static_cast<std::size_t>(e)]; }
+  const Gradients& operator[](Index e) const noexcept { return values_[static_cast<std::size_t>(e)]; }
 
  private:
-  std::vector<Gradient> values_;
+  std::vector<Gradients> values_;
 };
 
 /// Fills `k` with the stiffness of isotropic elements. Every block is finished while its row is in cache; no element
@@ -40,7 +44,7 @@ class ScaledGradients {
 template <ConstantGradient E>
 void assemble_rows(const Mesh<E>& mesh, const NodeElements& around, const std::vector<LameConstants>& region,
                    BlockMatrix& k, const SetupLimits& limits) {
-  limits.require_memory(static_cast<double>(mesh.element_count()) * sizeof(typename ScaledGradients<E>::Gradient),
+  limits.require_memory(static_cast<double>(mesh.element_count()) * sizeof(typename ScaledGradients<E>::Gradients),
                         "the gradients of all elements");
   const ScaledGradients<E> gradients(mesh);
   const BlockPattern& pattern = k.pattern();
@@ -54,12 +58,12 @@ void assemble_rows(const Mesh<E>& mesh, const NodeElements& around, const std::v
       const auto& nodes = mesh.elements[static_cast<std::size_t>(e)];
       const auto& g = gradients[e];
       const LameConstants& c = region[static_cast<std::size_t>(mesh.region(e))];
-      Vector3 own = g.col(0);
-      for (int a = 1; a < E::nodes; ++a)
-        if (nodes[static_cast<std::size_t>(a)] == i) own = g.col(a);
-      for (int b = 0; b < E::nodes; ++b) {
-        const Index j = nodes[static_cast<std::size_t>(b)];
-        if (j <= i) add_isotropic_block(c, own, g.col(b), k.block(place[static_cast<std::size_t>(j)]).data());
+      Vector3 own = g[0];
+      for (std::size_t a = 1; a < E::nodes; ++a)
+        if (nodes[a] == i) own = g[a];
+      for (std::size_t b = 0; b < E::nodes; ++b) {
+        const Index j = nodes[b];
+        if (j <= i) add_isotropic_block(c, own, g[b], k.block(place[static_cast<std::size_t>(j)]).data());
       }
     }
   }

@@ -33,14 +33,17 @@ void assemble_elements(const Body<E>& body, BlockMatrix& k, const SetupLimits& l
     if (e % 8192 == 0) limits.advance("assembly", static_cast<double>(e) / static_cast<double>(count));
     const ElementNodes<E> x = element_nodes<E>(body.mesh, e);
     const ElementStiffness<E> ke = element_stiffness<E>(x, law(e));
-    if (!ke.allFinite()) raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
+    if (!all_finite(ke)) raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
     if (!is_positively_oriented<E>(x))
       raise_element(SetupErrorKind::inverted_element, e, "has a negative Jacobian at an integration point");
     const auto& nodes = body.mesh.elements[static_cast<std::size_t>(e)];
     for (int a = 0; a < E::nodes; ++a)
       for (int b = 0; b < E::nodes; ++b) {
         const NodeId i = nodes[static_cast<std::size_t>(a)], j = nodes[static_cast<std::size_t>(b)];
-        if (j <= i) k.block(k.pattern().find(i, j)) += ke.template block<3, 3>(3 * a, 3 * b);
+        if (j > i) continue;
+        double* const block = k.block(k.pattern().find(i, j)).data();
+        for (int d = 0; d < 3; ++d)
+          for (int c = 0; c < 3; ++c) block[3 * d + c] += ke.coeff(3 * a + c, 3 * b + d);
       }
   }
 }

@@ -49,20 +49,34 @@ PALPATE_INLINE void BlockMatrix::apply(const VectorX& x, VectorX& y) const noexc
   y.setZero();
   for (Index i = 0; i < pattern_.rows(); ++i) {
     const Index last = pattern_.row_start[static_cast<std::size_t>(i) + 1] - 1;
-    const Vector3 xi = x.segment<3>(3 * i);
-    Vector3 yi = block(last) * xi;
+    const double x0 = x[3 * i], x1 = x[3 * i + 1], x2 = x[3 * i + 2];
+    double y0 = 0.0, y1 = 0.0, y2 = 0.0;
+    const auto add_row = [&](const double* k, const double* xj) {
+      y0 += k[0] * xj[0] + k[3] * xj[1] + k[6] * xj[2];
+      y1 += k[1] * xj[0] + k[4] * xj[1] + k[7] * xj[2];
+      y2 += k[2] * xj[0] + k[5] * xj[1] + k[8] * xj[2];
+    };
     for (Index p = pattern_.row_start[static_cast<std::size_t>(i)]; p < last; ++p) {
       const Index j = pattern_.column[static_cast<std::size_t>(p)];
-      const auto k = block(p);
-      yi.noalias() += k * x.segment<3>(3 * j);
-      y.segment<3>(3 * j).noalias() += k.transpose() * xi;
+      const double* const k = values_.data() + 9 * p;
+      add_row(k, x.data() + 3 * j);
+      double* const yj = y.data() + 3 * j;  // the transposed block
+      yj[0] += k[0] * x0 + k[1] * x1 + k[2] * x2;
+      yj[1] += k[3] * x0 + k[4] * x1 + k[5] * x2;
+      yj[2] += k[6] * x0 + k[7] * x1 + k[8] * x2;
     }
-    y.segment<3>(3 * i) += yi;
+    add_row(values_.data() + 9 * last, x.data() + 3 * i);
+    y[3 * i] += y0;
+    y[3 * i + 1] += y1;
+    y[3 * i + 2] += y2;
   }
 }
 
 PALPATE_INLINE void BlockMatrix::add_nodal(double factor, const VectorX& nodal) noexcept {
-  for (Index i = 0; i < nodal.size(); ++i) block(pattern().diagonal(i)).diagonal().array() += factor * nodal[i];
+  for (Index i = 0; i < nodal.size(); ++i) {
+    double* const k = values_.data() + 9 * pattern_.diagonal(i);
+    for (int c = 0; c < 3; ++c) k[4 * c] += factor * nodal[i];
+  }
 }
 
 PALPATE_INLINE std::vector<Matrix3> BlockMatrix::diagonal_blocks() const {

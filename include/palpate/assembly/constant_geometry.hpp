@@ -23,7 +23,7 @@ PointGeometry<E> constant_geometry(const Mesh<E>& mesh, Index e) {
   constexpr auto point = E::Quadrature::points[0];
   const PointGeometry<E> g = point_geometry<E>(element_nodes<E>(mesh, e), reference_point(point), point.weight);
   if (g.volume < 0.0) raise_element(SetupErrorKind::inverted_element, e, "has a negative volume");
-  if (!(g.volume > 0.0) || !g.gradient.allFinite())
+  if (!(g.volume > 0.0) || !all_finite(g.gradient))
     raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
   return g;
 }

@@ -34,7 +34,11 @@ std::vector<ElementBlock> element_blocks(const Mesh<E>& mesh, Index most, Index 
   std::vector<Vector3> centre;
   std::vector<std::vector<NodeId>> of_region(static_cast<std::size_t>(mesh.region_count()));
   for (Index e = 0; e < mesh.element_count(); ++e) {
-    centre.push_back(element_nodes<E>(mesh, e).colwise().mean().transpose());
+    const ElementNodes<E> x = element_nodes<E>(mesh, e);
+    Vector3 sum = Vector3::Zero();
+    for (int a = 0; a < E::nodes; ++a)
+      for (int c = 0; c < 3; ++c) sum[c] += x.coeff(a, c);
+    centre.push_back(sum / double{E::nodes});
     of_region[static_cast<std::size_t>(mesh.region(e))].push_back(static_cast<NodeId>(e));
   }
   std::vector<ElementBlock> blocks;

@@ -12,13 +12,15 @@ PALPATE_INLINE void bisect_elements(std::span<NodeId> elements, const std::vecto
     blocks.push_back({region, {elements.begin(), elements.end()}});
     return;
   }
-  Vector3 low = Vector3::Constant(infinity), high = -low;
-  for (NodeId e : elements) {
-    low = low.cwiseMin(centre[static_cast<std::size_t>(e)]);
-    high = high.cwiseMax(centre[static_cast<std::size_t>(e)]);
-  }
+  Vector3 low(infinity, infinity, infinity), high = -low;
+  for (NodeId e : elements)
+    for (int c = 0; c < 3; ++c) {
+      low[c] = std::min(low[c], centre[static_cast<std::size_t>(e)][c]);
+      high[c] = std::max(high[c], centre[static_cast<std::size_t>(e)][c]);
+    }
   int axis = 0;
-  (high - low).maxCoeff(&axis);
+  for (int c = 1; c < 3; ++c)
+    if (high[c] - low[c] > high[axis] - low[axis]) axis = c;
   const Index half = std::max(group, (count / 2 + group / 2) / group * group);
   const auto before = [&](NodeId a, NodeId b) {
     const double xa = centre[static_cast<std::size_t>(a)][axis], xb = centre[static_cast<std::size_t>(b)][axis];

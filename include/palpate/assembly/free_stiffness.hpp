@@ -55,7 +55,7 @@ void for_each_free_entry(const BlockMatrix& k, const EssentialConditions& condit
         if (row < 0) continue;
         for (int d = 0; d < 3; ++d) {
           const Index column = free[static_cast<std::size_t>(3 * j + d)];
-          if (column >= 0 && column <= row) visit(row, column, block(c, d));
+          if (column >= 0 && column <= row) visit(row, column, block.coeff(c, d));
         }
       }
     }

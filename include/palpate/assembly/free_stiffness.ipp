@@ -3,8 +3,6 @@
 
 #include <palpate/assembly/free_stiffness.hpp>
 
-#include <Eigen/LU>
-
 #include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -22,7 +20,7 @@ PALPATE_INLINE FreeStiffness::FreeStiffness(StiffnessView stiffness, const Essen
       for (int d = 0; d < 3; ++d) block(c, d) = block(d, c) = 0.0;
       block(c, c) = 1.0;
     }
-    block = Matrix3(block.inverse());
+    block = inverse(block);
   }
 }
 

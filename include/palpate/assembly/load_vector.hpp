@@ -22,8 +22,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 template <FaceElement F, Element E>
 FaceNodes<F> face_nodes(const Mesh<E>& mesh, const BoundaryFace& face) {
   FaceNodes<F> x;
-  for (int a = 0; a < F::nodes; ++a)
-    x.row(a) = mesh.position(Index{face.nodes[static_cast<std::size_t>(a)]}).transpose();
+  for (int a = 0; a < F::nodes; ++a) {
+    const Vector3 p = mesh.position(Index{face.nodes[static_cast<std::size_t>(a)]});
+    for (int c = 0; c < 3; ++c) x.coeffRef(a, c) = p[c];
+  }
   return x;
 }
 

@@ -27,7 +27,7 @@ inline void add_face_loads(const MeshRef& mesh, const ShapeIntegrals& integrals,
     for (const auto& face : resolve_faces(mesh, boundary, load.where)) {
       integrals.area_vectors(mesh.positions, face, parts.data());
       for (std::size_t a = 0; a < face.nodes.size(); ++a)
-        add_force(f, face.nodes[a], -load.pressure * Vector3::Map(&parts[3 * a]));
+        add_force(f, face.nodes[a], -load.pressure * Vector3(parts[3 * a], parts[3 * a + 1], parts[3 * a + 2]));
     }
 }
 

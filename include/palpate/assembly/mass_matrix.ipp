@@ -16,14 +16,23 @@ PALPATE_INLINE void MassMatrix::apply(const VectorX& x, VectorX& y) const noexce
   y.setZero();
   for (Index i = 0; i < pattern_.rows(); ++i) {
     const Index last = pattern_.row_start[static_cast<std::size_t>(i) + 1] - 1;
-    const Vector3 xi = x.segment<3>(3 * i);
-    Vector3 yi = (*this)[last] * xi;
+    const double x0 = x[3 * i], x1 = x[3 * i + 1], x2 = x[3 * i + 2], diagonal = (*this)[last];
+    double y0 = diagonal * x0, y1 = diagonal * x1, y2 = diagonal * x2;
     for (Index p = pattern_.row_start[static_cast<std::size_t>(i)]; p < last; ++p) {
       const Index j = pattern_.column[static_cast<std::size_t>(p)];
-      yi += (*this)[p] * x.segment<3>(3 * j);
-      y.segment<3>(3 * j) += (*this)[p] * xi;
+      const double m = (*this)[p];
+      const double* const xj = x.data() + 3 * j;
+      y0 += m * xj[0];
+      y1 += m * xj[1];
+      y2 += m * xj[2];
+      double* const yj = y.data() + 3 * j;
+      yj[0] += m * x0;
+      yj[1] += m * x1;
+      yj[2] += m * x2;
     }
-    y.segment<3>(3 * i) += yi;
+    y[3 * i] += y0;
+    y[3 * i + 1] += y1;
+    y[3 * i + 2] += y2;
   }
 }
 

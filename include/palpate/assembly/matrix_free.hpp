@@ -37,7 +37,7 @@ class MatrixFreeStiffness {
       laws_.push_back(body.law_of(e));
       for (const IntegrationPoint<E>& point : integration_points<E>(element_nodes<E>(body.mesh, e))) {
         points_.push_back(point);
-        if (!points_.back().gradient.allFinite())
+        if (!all_finite(points_.back().gradient))
           raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
       }
     }
@@ -56,14 +56,16 @@ class MatrixFreeStiffness {
     for (std::size_t e = 0; e < connectivity_.size(); ++e) {
       ElementNodes<E> u;
       for (int a = 0; a < E::nodes; ++a)
-        u.row(a) = x.segment<3>(3 * Index{connectivity_[e][static_cast<std::size_t>(a)]}).transpose();
+        for (int c = 0; c < 3; ++c)
+          u.coeffRef(a, c) = x[3 * Index{connectivity_[e][static_cast<std::size_t>(a)]} + c];
       ElementNodes<E> f = ElementNodes<E>::Zero();
       for (std::size_t q = 0; q < E::Quadrature::points.size(); ++q, ++geometry) {
         const Vector6 stress = elasticity_[laws_[e]] * strain_at<E>(*geometry, u);
         f += force_of_stress<E>(*geometry, stress);
       }
       for (int a = 0; a < E::nodes; ++a)
-        y.segment<3>(3 * Index{connectivity_[e][static_cast<std::size_t>(a)]}) += f.row(a).transpose();
+        for (int c = 0; c < 3; ++c)
+          y[3 * Index{connectivity_[e][static_cast<std::size_t>(a)]} + c] += f.coeff(a, c);
     }
   }
 
@@ -73,9 +75,9 @@ class MatrixFreeStiffness {
     for (std::size_t e = 0; e < connectivity_.size(); ++e)
       for (std::size_t q = 0; q < E::Quadrature::points.size(); ++q, ++geometry)
         for (int a = 0; a < E::nodes; ++a) {
-          const auto b = strain_block<E>(*geometry, a);
+          const StrainBlock b = strain_block<E>(*geometry, a);
           d[static_cast<std::size_t>(connectivity_[e][static_cast<std::size_t>(a)])] +=
-              geometry->volume * b.transpose() * elasticity_[laws_[e]] * b;
+              force_block(b, stress_block(geometry->volume, elasticity_[laws_[e]], b));
         }
     return d;
   }

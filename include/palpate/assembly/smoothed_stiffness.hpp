@@ -57,9 +57,9 @@ void for_each_domain_block(const StrainDomain& domain, const Matrix6& d, Add&& a
     return;
   }
   for (std::size_t b = 0; b < domain.nodes.size(); ++b) {
-    const Eigen::Matrix<double, 6, 3> stress = domain.volume * (d * strain_displacement(domain.gradients[b]));
+    const StrainBlock stress = stress_block(domain.volume, d, strain_displacement(domain.gradients[b]));
     for (std::size_t a = b; a < domain.nodes.size(); ++a)
-      add(a, b, Matrix3(strain_displacement(domain.gradients[a]).transpose() * stress));
+      add(a, b, force_block(strain_displacement(domain.gradients[a]), stress));
   }
 }
 
@@ -107,10 +107,10 @@ class SmoothedStiffness {
     std::vector<Matrix3> diagonal(static_cast<std::size_t>(nodes_), Matrix3::Zero());
     for (Index d = 0; d < domains_.size(); ++d) {
       const StrainDomain domain = domains_[d];
-      const Matrix6 stiffness = domain.volume * elasticity_(d, domain);
       for (std::size_t a = 0; a < domain.nodes.size(); ++a) {
-        const auto b = strain_displacement(domain.gradients[a]);
-        diagonal[static_cast<std::size_t>(domain.nodes[a])] += b.transpose() * stiffness * b;
+        const StrainBlock b = strain_displacement(domain.gradients[a]);
+        diagonal[static_cast<std::size_t>(domain.nodes[a])] +=
+            force_block(b, stress_block(domain.volume, elasticity_(d, domain), b));
       }
     }
     return diagonal;

@@ -21,7 +21,7 @@ void for_each_domain_stress(const Body<E>& body, const std::vector<Vector6>& ini
   for (Index d = 0; d < domains.size(); ++d) {
     const StrainDomain domain = domains[d];
     const Vector6 strain = domain.strain(u) - initial[static_cast<std::size_t>(domain.region)];
-    visit(domain, Vector6(elasticity(d, domain) * strain), strain);
+    visit(domain, elasticity(d, domain) * strain, strain);
   }
 }
 
@@ -61,13 +61,14 @@ SmoothedState smoothed_state(const Body<E>& body, const VectorX& u) {
   const auto visit = [&](const StrainDomain& domain, const Vector6& stress, const Vector6& elastic) {
     const Vector6 strain = elastic + body.initial_strain[static_cast<std::size_t>(domain.region)];
     Vector6 part = Vector6::Zero();
-    part.head<3>().setConstant(strain.head<3>().sum() / 3.0);
+    for (int i = 0; i < 3; ++i) part[i] = (strain[0] + strain[1] + strain[2]) / 3.0;
     if (domain.part == StrainPart::deviatoric) part = strain - part;
     const double share = domain.part == StrainPart::deviatoric ? 1.0 / 6.0 : 1.0 / 4.0;
-    for (const NodeId e : domain.elements) {
-      state.strain.col(e) += share * part;
-      state.stress.col(e) += share * stress;
-    }
+    for (const NodeId e : domain.elements)
+      for (int i = 0; i < 6; ++i) {
+        state.strain.coeffRef(i, e) += share * part[i];
+        state.stress.coeffRef(i, e) += share * stress[i];
+      }
   };
   for_each_domain_stress(body, body.initial_strain, u, visit);
   return state;

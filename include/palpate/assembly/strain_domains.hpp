@@ -117,7 +117,8 @@ class StrainDomains {
       const PointGeometry<E>& g = geometry_[static_cast<std::size_t>(s.element)];
       volume += part * g.volume;
       for (int a = 0; a < E::nodes; ++a)
-        gradient_[place_of(mesh.element_node(s.element, a))] += part * g.volume * g.gradient.row(a).transpose();
+        for (int i = 0; i < 3; ++i)
+          gradient_[place_of(mesh.element_node(s.element, a))][i] += part * g.volume * g.gradient.coeff(a, i);
     }
     for (std::size_t a = node_start_.back(); a < node_.size(); ++a) {
       gradient_[a] /= volume;

@@ -7,15 +7,26 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE Vector6 StrainDomain::strain(const VectorX& u) const noexcept {
-  Matrix3 h = Matrix3::Zero();
-  for (std::size_t a = 0; a < nodes.size(); ++a)
-    h.noalias() += u.segment<3>(3 * Index{nodes[a]}) * gradients[a].transpose();
-  return voigt::strain_vector(Matrix3(0.5 * (h + h.transpose())));
+  Vector6 e = Vector6::Zero();
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    const double* const ua = u.data() + 3 * Index{nodes[a]};
+    const Vector3& g = gradients[a];
+    e[voigt::xx] += ua[0] * g[0];
+    e[voigt::yy] += ua[1] * g[1];
+    e[voigt::zz] += ua[2] * g[2];
+    e[voigt::xy] += ua[0] * g[1] + ua[1] * g[0];
+    e[voigt::xz] += ua[0] * g[2] + ua[2] * g[0];
+    e[voigt::yz] += ua[1] * g[2] + ua[2] * g[1];
+  }
+  return e;
 }
 
 PALPATE_INLINE void StrainDomain::add_force(const Vector6& stress, VectorX& f) const noexcept {
   const Matrix3 tensor = volume * voigt::stress_tensor(stress);
-  for (std::size_t a = 0; a < nodes.size(); ++a) f.segment<3>(3 * Index{nodes[a]}).noalias() += tensor * gradients[a];
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    const Vector3 force = tensor * gradients[a];
+    for (int c = 0; c < 3; ++c) f[3 * Index{nodes[a]} + c] += force[c];
+  }
 }
 
 }}  // namespace palpate

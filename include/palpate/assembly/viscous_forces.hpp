@@ -44,10 +44,14 @@ std::vector<Matrix6> shares_of_elasticity(const ViscousBody<E>& body, double kep
     const Matrix6& d = fast.elasticity[law];
     Matrix6 lasting = Matrix6::Zero();
     if (body.relaxation[region[law]] == Relaxation::shape_only) {
-      const Vector6 pressure = d.topRows<3>().colwise().sum().transpose() / 3.0;
-      const double bulk = pressure.head<3>().mean();
-      lasting.topLeftCorner<3, 3>().setConstant(bulk);
-      if (!((pressure - lasting.col(0)).norm() <= 1e-9 * bulk))
+      Vector6 pressure;  // per strain
+      for (int i = 0; i < 6; ++i) pressure[i] = (d(0, i) + d(1, i) + d(2, i)) / 3.0;
+      const double bulk = (pressure[0] + pressure[1] + pressure[2]) / 3.0;
+      for (int i = 0; i < 3; ++i) {
+        pressure[i] -= bulk;
+        for (int j = 0; j < 3; ++j) lasting(i, j) = bulk;
+      }
+      if (!(pressure.norm() <= 1e-9 * bulk))
         raise(SetupErrorKind::unsupported, "relaxation of the shape alone in an anisotropic material",
               "Let the whole stress relax");
     }

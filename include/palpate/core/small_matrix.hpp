@@ -19,6 +19,8 @@ template <>
 inline constexpr bool is_small<Matrix3> = true;
 template <>
 inline constexpr bool is_small<Vector6> = true;
+template <>
+inline constexpr bool is_small<Matrix6> = true;
 
 template <class T>
 concept Small = is_small<T>;
@@ -78,6 +80,15 @@ M operator*(const M& a, const M& b) noexcept {
     for (int i = 0; i < 3; ++i)
       r.data()[3 * j + i] =
           a.data()[i] * b.data()[3 * j] + a.data()[3 + i] * b.data()[3 * j + 1] + a.data()[6 + i] * b.data()[3 * j + 2];
+  return r;
+}
+template <std::same_as<Matrix6> M, std::same_as<Vector6> V>
+V operator*(const M& m, const V& v) noexcept {
+  const double *a = m.data(), *x = v.data();
+  V r;
+  for (int i = 0; i < 6; ++i)
+    r.data()[i] =
+        a[i] * x[0] + a[6 + i] * x[1] + a[12 + i] * x[2] + a[18 + i] * x[3] + a[24 + i] * x[4] + a[30 + i] * x[5];
   return r;
 }
 template <detail::TransposeOf<Matrix3> T, std::same_as<Vector3> V>

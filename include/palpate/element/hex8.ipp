@@ -2,28 +2,40 @@
 #pragma once
 
 #include <palpate/element/hex8.hpp>
+#include <palpate/element/matrix_of_rows.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE Eigen::Matrix<double, 8, 1> Hex8::shape(const Vector3& xi) noexcept {
-  const Eigen::Vector4d n = Quad4::shape(xi.head<2>());
+  const Eigen::Vector4d n = Quad4::shape({xi[0], xi[1]});
+  const double bottom = 0.5 * (1.0 - xi[2]), top = 0.5 * (1.0 + xi[2]);
   Eigen::Matrix<double, 8, 1> result;
-  result << 0.5 * (1.0 - xi[2]) * n, 0.5 * (1.0 + xi[2]) * n;
+  for (int a = 0; a < 4; ++a) {
+    result[a] = bottom * n[a];
+    result[4 + a] = top * n[a];
+  }
   return result;
 }
 
 PALPATE_INLINE Eigen::Matrix<double, 8, 3> Hex8::gradient(const Vector3& xi) noexcept {
-  const Eigen::Vector4d n = Quad4::shape(xi.head<2>());
-  const Eigen::Matrix<double, 4, 2> d = Quad4::gradient(xi.head<2>());
+  const Eigen::Vector4d n = Quad4::shape({xi[0], xi[1]});
+  const Eigen::Matrix<double, 4, 2> d = Quad4::gradient({xi[0], xi[1]});
+  const double bottom = 0.5 * (1.0 - xi[2]), top = 0.5 * (1.0 + xi[2]);
   Eigen::Matrix<double, 8, 3> g;
-  g << 0.5 * (1.0 - xi[2]) * d, -0.5 * n, 0.5 * (1.0 + xi[2]) * d, 0.5 * n;
+  for (int a = 0; a < 4; ++a) {
+    for (int i = 0; i < 2; ++i) {
+      g.coeffRef(a, i) = bottom * d.coeff(a, i);
+      g.coeffRef(4 + a, i) = top * d.coeff(a, i);
+    }
+    g.coeffRef(a, 2) = -0.5 * n[a];
+    g.coeffRef(4 + a, 2) = 0.5 * n[a];
+  }
   return g;
 }
 
 PALPATE_INLINE Eigen::Matrix<double, 8, 3> Hex8::reference_nodes() noexcept {
-  Eigen::Matrix<double, 8, 3> x;
-  x << Quad4::reference_nodes(), -Eigen::Vector4d::Ones(), Quad4::reference_nodes(), Eigen::Vector4d::Ones();
-  return x;
+  return detail::matrix_of_rows<8, 3>(
+      {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}});
 }
 
 }}  // namespace palpate

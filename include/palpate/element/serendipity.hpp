@@ -14,6 +14,22 @@ using Table = Eigen::Matrix<double, Nodes, Dimension>;
 double factor(double s, double x) noexcept;
 double factor_derivative(double s, double x) noexcept;
 
+/// Whether node a is a corner: no coordinate is 0.
+template <int Nodes, int Dimension>
+bool is_corner(const Table<Nodes, Dimension>& s, int a) noexcept {
+  for (int i = 0; i < Dimension; ++i)
+    if (s.coeff(a, i) == 0.0) return false;
+  return true;
+}
+
+/// The further factor of a corner a: sum s_i x_i - (Dimension - 1).
+template <int Nodes, int Dimension>
+double corner_factor(const Table<Nodes, Dimension>& s, int a, const Table<Dimension, 1>& xi) noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < Dimension; ++i) sum += s.coeff(a, i) * xi[i];
+  return sum - (Dimension - 1);
+}
+
 /// Functions of nodes at `s` (rows of -1, 0, 1; at most one 0): the product of factors, at corners times
 /// (sum s_i x_i - (Dimension - 1)) (Zienkiewicz and Taylor, The Finite Element Method, serendipity family).
 template <int Nodes, int Dimension>
@@ -21,9 +37,8 @@ Table<Nodes, 1> shape(const Table<Nodes, Dimension>& s, const Table<Dimension, 1
   Table<Nodes, 1> n;
   for (int a = 0; a < Nodes; ++a) {
     double product = 1.0;
-    for (int i = 0; i < Dimension; ++i) product *= factor(s(a, i), xi[i]);
-    const bool corner = (s.row(a).array() != 0.0).all();
-    n[a] = corner ? product * (s.row(a).dot(xi) - (Dimension - 1)) : product;
+    for (int i = 0; i < Dimension; ++i) product *= factor(s.coeff(a, i), xi[i]);
+    n[a] = is_corner(s, a) ? product * corner_factor(s, a, xi) : product;
   }
   return n;
 }
@@ -33,14 +48,15 @@ template <int Nodes, int Dimension>
 Table<Nodes, Dimension> gradient(const Table<Nodes, Dimension>& s, const Table<Dimension, 1>& xi) noexcept {
   Table<Nodes, Dimension> g;
   for (int a = 0; a < Nodes; ++a) {
-    const bool corner = (s.row(a).array() != 0.0).all();
-    const double sum = corner ? s.row(a).dot(xi) - (Dimension - 1) : 1.0;
+    const bool corner = is_corner(s, a);
+    const double sum = corner ? corner_factor(s, a, xi) : 1.0;
     for (int j = 0; j < Dimension; ++j) {
       double others = 1.0;
       for (int i = 0; i < Dimension; ++i)
-        if (i != j) others *= factor(s(a, i), xi[i]);
-      g(a, j) = others * factor_derivative(s(a, j), xi[j]) * sum;
-      if (corner) g(a, j) += others * factor(s(a, j), xi[j]) * s(a, j);
+        if (i != j) others *= factor(s.coeff(a, i), xi[i]);
+      const double along = s.coeff(a, j);
+      g.coeffRef(a, j) = others * factor_derivative(along, xi[j]) * sum;
+      if (corner) g.coeffRef(a, j) += others * factor(along, xi[j]) * along;
     }
   }
   return g;
@@ -50,10 +66,15 @@ Table<Nodes, Dimension> gradient(const Table<Nodes, Dimension>& s, const Table<D
 template <int Nodes, int Dimension, std::size_t Edges>
 Table<Nodes, Dimension> with_middles(const Table<Nodes - static_cast<int>(Edges), Dimension>& corners,
                                      const std::array<std::array<int, 2>, Edges>& edges) noexcept {
+  constexpr int corner_count = Nodes - static_cast<int>(Edges);
   Table<Nodes, Dimension> x;
-  x.template topRows<Nodes - static_cast<int>(Edges)>() = corners;
-  for (std::size_t e = 0; e < Edges; ++e)
-    x.row(Nodes - static_cast<int>(Edges - e)) = 0.5 * (corners.row(edges[e][0]) + corners.row(edges[e][1]));
+  for (int i = 0; i < Dimension; ++i) {
+    for (int a = 0; a < corner_count; ++a) x.coeffRef(a, i) = corners.coeff(a, i);
+    for (int e = 0; e < static_cast<int>(Edges); ++e) {
+      const auto [a, b] = edges[static_cast<std::size_t>(e)];
+      x.coeffRef(corner_count + e, i) = 0.5 * (corners.coeff(a, i) + corners.coeff(b, i));
+    }
+  }
   return x;
 }
 

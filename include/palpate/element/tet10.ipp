@@ -2,13 +2,14 @@
 #pragma once
 
 #include <palpate/element/tet10.hpp>
+#include <palpate/element/matrix_of_rows.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE Eigen::Matrix<double, 10, 1> Tet10::shape(const Vector3& xi) noexcept {
   const Eigen::Vector4d l = Tet4::shape(xi);
   Eigen::Matrix<double, 10, 1> n;
-  n.head<4>() = l.cwiseProduct(2.0 * l - Eigen::Vector4d::Ones());
+  for (int a = 0; a < 4; ++a) n[a] = l[a] * (2.0 * l[a] - 1.0);
   for (int a = 0; a < 6; ++a) {
     const auto [i, j] = edges[static_cast<std::size_t>(a)];
     n[4 + a] = 4.0 * l[i] * l[j];
@@ -20,22 +21,26 @@ PALPATE_INLINE Eigen::Matrix<double, 10, 3> Tet10::gradient(const Vector3& xi) n
   const Eigen::Vector4d l = Tet4::shape(xi);
   const Eigen::Matrix<double, 4, 3> d = Tet4::gradient(xi);
   Eigen::Matrix<double, 10, 3> g;
-  for (int a = 0; a < 4; ++a) g.row(a) = (4.0 * l[a] - 1.0) * d.row(a);
+  for (int a = 0; a < 4; ++a)
+    for (int k = 0; k < 3; ++k) g.coeffRef(a, k) = (4.0 * l[a] - 1.0) * d.coeff(a, k);
   for (int a = 0; a < 6; ++a) {
     const auto [i, j] = edges[static_cast<std::size_t>(a)];
-    g.row(4 + a) = 4.0 * (l[i] * d.row(j) + l[j] * d.row(i));
+    for (int k = 0; k < 3; ++k) g.coeffRef(4 + a, k) = 4.0 * (l[i] * d.coeff(j, k) + l[j] * d.coeff(i, k));
   }
   return g;
 }
 
 PALPATE_INLINE Eigen::Matrix<double, 10, 3> Tet10::reference_nodes() noexcept {
-  Eigen::Matrix<double, 10, 3> x;
-  x.topRows<4>() = Tet4::reference_nodes();
-  for (int a = 0; a < 6; ++a) {
-    const auto [i, j] = edges[static_cast<std::size_t>(a)];
-    x.row(4 + a) = 0.5 * (x.row(i) + x.row(j));
-  }
-  return x;
+  return detail::matrix_of_rows<10, 3>({{0, 0, 0},
+                                        {1, 0, 0},
+                                        {0, 1, 0},
+                                        {0, 0, 1},
+                                        {0.5, 0, 0},
+                                        {0.5, 0.5, 0},
+                                        {0, 0.5, 0},
+                                        {0, 0, 0.5},
+                                        {0.5, 0, 0.5},
+                                        {0, 0.5, 0.5}});
 }
 
 }}  // namespace palpate

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/matrix_of_rows.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -10,15 +11,11 @@ PALPATE_INLINE Eigen::Vector4d Tet4::shape(const Vector3& xi) noexcept {
 }
 
 PALPATE_INLINE Eigen::Matrix<double, 4, 3> Tet4::gradient(const Vector3&) noexcept {
-  Eigen::Matrix<double, 4, 3> g;
-  g << -1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1;
-  return g;
+  return detail::matrix_of_rows<4, 3>({{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
 }
 
 PALPATE_INLINE Eigen::Matrix<double, 4, 3> Tet4::reference_nodes() noexcept {
-  Eigen::Matrix<double, 4, 3> x;
-  x << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
-  return x;
+  return detail::matrix_of_rows<4, 3>({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
 }
 
 }}  // namespace palpate

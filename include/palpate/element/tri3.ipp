@@ -2,19 +2,16 @@
 #pragma once
 
 #include <palpate/element/tri3.hpp>
+#include <palpate/element/matrix_of_rows.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE Eigen::Matrix<double, 3, 2> Tri3::gradient(const Eigen::Vector2d&) noexcept {
-  Eigen::Matrix<double, 3, 2> g;
-  g << -1, -1, 1, 0, 0, 1;
-  return g;
+  return detail::matrix_of_rows<3, 2>({{-1, -1}, {1, 0}, {0, 1}});
 }
 
 PALPATE_INLINE Eigen::Matrix<double, 3, 2> Tri3::reference_nodes() noexcept {
-  Eigen::Matrix<double, 3, 2> x;
-  x << 0, 0, 1, 0, 0, 1;
-  return x;
+  return detail::matrix_of_rows<3, 2>({{0, 0}, {1, 0}, {0, 1}});
 }
 
 }}  // namespace palpate

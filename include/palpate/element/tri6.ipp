@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/element/tri6.hpp>
+#include <palpate/element/matrix_of_rows.hpp>
 #include <palpate/element/tri3.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -9,7 +10,11 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE Eigen::Matrix<double, 6, 1> Tri6::shape(const Eigen::Vector2d& xi) noexcept {
   const Eigen::Vector3d l = Tri3::shape(xi);
   Eigen::Matrix<double, 6, 1> n;
-  n << l.cwiseProduct(2.0 * l - Eigen::Vector3d::Ones()), 4.0 * l[0] * l[1], 4.0 * l[1] * l[2], 4.0 * l[2] * l[0];
+  for (int a = 0; a < 3; ++a) {
+    const auto [i, j] = edges[static_cast<std::size_t>(a)];
+    n[a] = l[a] * (2.0 * l[a] - 1.0);
+    n[3 + a] = 4.0 * l[i] * l[j];
+  }
   return n;
 }
 
@@ -19,16 +24,16 @@ PALPATE_INLINE Eigen::Matrix<double, 6, 2> Tri6::gradient(const Eigen::Vector2d&
   Eigen::Matrix<double, 6, 2> g;
   for (int a = 0; a < 3; ++a) {
     const auto [i, j] = edges[static_cast<std::size_t>(a)];
-    g.row(a) = (4.0 * l[a] - 1.0) * d.row(a);
-    g.row(3 + a) = 4.0 * (l[i] * d.row(j) + l[j] * d.row(i));
+    for (int k = 0; k < 2; ++k) {
+      g.coeffRef(a, k) = (4.0 * l[a] - 1.0) * d.coeff(a, k);
+      g.coeffRef(3 + a, k) = 4.0 * (l[i] * d.coeff(j, k) + l[j] * d.coeff(i, k));
+    }
   }
   return g;
 }
 
 PALPATE_INLINE Eigen::Matrix<double, 6, 2> Tri6::reference_nodes() noexcept {
-  Eigen::Matrix<double, 6, 2> x;
-  x << 0, 0, 1, 0, 0, 1, 0.5, 0, 0.5, 0.5, 0, 0.5;
-  return x;
+  return detail::matrix_of_rows<6, 2>({{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}});
 }
 
 }}  // namespace palpate

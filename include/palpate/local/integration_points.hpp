@@ -34,10 +34,11 @@ Eigen::Matrix<double, E::nodes, 3> mean_gradient(const ElementNodes<E>& x) noexc
   double volume = 0.0;
   for (const auto& point : E::Quadrature::points) {
     const PointGeometry<E> g = point_geometry<E>(x, reference_point(point), point.weight);
-    sum += g.volume * g.gradient;
+    for (Index i = 0; i < sum.size(); ++i) sum.data()[i] += g.volume * g.gradient.data()[i];
     volume += g.volume;
   }
-  return sum / volume;
+  for (Index i = 0; i < sum.size(); ++i) sum.data()[i] /= volume;
+  return sum;
 }
 
 /// The point with these reference coordinates and this weight.
@@ -68,8 +69,12 @@ IntegrationPoints<E> integration_points(const ElementNodes<E>& x) noexcept {
 template <Element E>
 Vector6 strain_at(const IntegrationPoint<E>& point, const ElementNodes<E>& u) noexcept {
   Vector6 e = strain(u, point.gradient);
-  if constexpr (HasMeanDilatation<E>)
-    e.template head<3>().array() += (u.cwiseProduct(point.dilatation).sum() - e.template head<3>().sum()) / 3.0;
+  if constexpr (HasMeanDilatation<E>) {
+    double dilatation = 0.0;
+    for (Index i = 0; i < u.size(); ++i) dilatation += u.data()[i] * point.dilatation.data()[i];
+    const double change = (dilatation - (e[0] + e[1] + e[2])) / 3.0;
+    for (int i = 0; i < 3; ++i) e[i] += change;
+  }
   return e;
 }
 
@@ -77,21 +82,25 @@ Vector6 strain_at(const IntegrationPoint<E>& point, const ElementNodes<E>& u) no
 template <Element E>
 ElementNodes<E> force_of_stress(const IntegrationPoint<E>& point, const Vector6& stress) noexcept {
   Matrix3 tensor = voigt::stress_tensor(stress);
-  if constexpr (HasMeanDilatation<E>) {
-    const double mean = tensor.trace() / 3.0;
-    tensor.diagonal().array() -= mean;
-    return point.volume * (point.gradient * tensor + mean * point.dilatation);
-  } else {
-    return point.volume * point.gradient * tensor;
-  }
+  [[maybe_unused]] const double mean = (tensor(0, 0) + tensor(1, 1) + tensor(2, 2)) / 3.0;
+  if constexpr (HasMeanDilatation<E>)
+    for (int i = 0; i < 3; ++i) tensor(i, i) -= mean;
+  ElementNodes<E> f = point.volume * point.gradient * tensor;
+  if constexpr (HasMeanDilatation<E>)
+    for (Index i = 0; i < f.size(); ++i) f.data()[i] += point.volume * mean * point.dilatation.data()[i];
+  return f;
 }
 
 /// Block of the strain-displacement matrix for local node a, 6 x 3 [1/m].
 template <Element E>
-Eigen::Matrix<double, 6, 3> strain_block(const IntegrationPoint<E>& point, int a) noexcept {
-  Eigen::Matrix<double, 6, 3> b = strain_displacement(point.gradient.row(a).transpose());
+StrainBlock strain_block(const IntegrationPoint<E>& point, int a) noexcept {
+  const auto& g = point.gradient;
+  StrainBlock b = strain_displacement({g.coeff(a, 0), g.coeff(a, 1), g.coeff(a, 2)});
   if constexpr (HasMeanDilatation<E>)
-    b.template topRows<3>().rowwise() += (point.dilatation.row(a) - point.gradient.row(a)) / 3.0;
+    for (int c = 0; c < 3; ++c) {
+      const double change = (point.dilatation.coeff(a, c) - g.coeff(a, c)) / 3.0;
+      for (int i = 0; i < 3; ++i) b.coeffRef(i, c) += change;
+    }
   return b;
 }
 

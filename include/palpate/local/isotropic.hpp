@@ -9,6 +9,8 @@
 #include <palpate/local/integration_points.hpp>
 #include <palpate/local/stiffness.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -22,11 +24,15 @@ struct LameConstants {
 /// The constants of an elasticity matrix if it is exactly isotropic.
 inline std::optional<LameConstants> lame_constants(const Matrix6& d) noexcept {
   const LameConstants c{d(0, 1), d(3, 3)};
-  Matrix6 same = Matrix6::Zero();
-  same.topLeftCorner<3, 3>().setConstant(c.lambda);
-  for (int i = 0; i < 3; ++i) same(i, i) += 2.0 * c.mu;
-  for (int i = 3; i < 6; ++i) same(i, i) = c.mu;
-  if ((d - same).cwiseAbs().maxCoeff() <= 1e-14 * d.cwiseAbs().maxCoeff()) return c;
+  double largest = 0.0, difference = 0.0;
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < 6; ++i) {
+      double same = i < 3 && j < 3 ? c.lambda : 0.0;
+      if (i == j) same += i < 3 ? 2.0 * c.mu : c.mu;
+      largest = std::max(largest, std::abs(d(i, j)));
+      difference = std::max(difference, std::abs(d(i, j) - same));
+    }
+  if (difference <= 1e-14 * largest) return c;
   return std::nullopt;
 }
 
@@ -62,8 +68,11 @@ ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const LameConsta
   const IntegrationPoints<E> at = integration_points<E>(x);
   for (int q = 0; q < points; ++q) {
     const IntegrationPoint<E>& point = at[static_cast<std::size_t>(q)];
-    for (int a = 0; a < E::nodes; ++a) gradients.template block<3, 1>(3 * a, q) = point.gradient.row(a).transpose();
-    weighted.col(q) = point.volume * gradients.col(q);
+    for (int a = 0; a < E::nodes; ++a)
+      for (int i = 0; i < 3; ++i) {
+        gradients.coeffRef(3 * a + i, q) = point.gradient.coeff(a, i);
+        weighted.coeffRef(3 * a + i, q) = point.volume * point.gradient.coeff(a, i);
+      }
     total_volume += point.volume;
   }
   ElementStiffness<E> m, k;
@@ -71,15 +80,22 @@ ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const LameConsta
   [[maybe_unused]] const double bulk = (c.lambda + 2.0 / 3.0 * c.mu) * total_volume;
   for (int b = 0; b < E::nodes; ++b)
     for (int a = b; a < E::nodes; ++a) {
-      Matrix3 block = m.template block<3, 3>(3 * a, 3 * b);
-      if (a == b) block = Matrix3(block.selfadjointView<Eigen::Lower>());  // to the last bit
-      Matrix3 result = c.mu * block.transpose() + c.mu * block.trace() * Matrix3::Identity();
-      if constexpr (HasMeanDilatation<E>)  // the volumetric part of B^T D B with the mean instead
-        result += bulk * (at[0].dilatation.row(a).transpose() * at[0].dilatation.row(b)) - 2.0 / 3.0 * c.mu * block;
-      else
-        result += c.lambda * block;
-      k.template block<3, 3>(3 * a, 3 * b) = result;
-      k.template block<3, 3>(3 * b, 3 * a) = result.transpose();
+      double block[3][3];
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)  // to the last bit symmetric where a is b
+          block[i][j] = a == b && i < j ? m.coeff(3 * a + j, 3 * b + i) : m.coeff(3 * a + i, 3 * b + j);
+      const double trace = c.mu * (block[0][0] + block[1][1] + block[2][2]);
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          double value = c.mu * block[j][i];
+          if (i == j) value += trace;
+          if constexpr (HasMeanDilatation<E>)  // the volumetric part of B^T D B with the mean instead
+            value += bulk * (at[0].dilatation.coeff(a, i) * at[0].dilatation.coeff(b, j)) -
+                     2.0 / 3.0 * c.mu * block[i][j];
+          else
+            value += c.lambda * block[i][j];
+          k.coeffRef(3 * a + i, 3 * b + j) = k.coeffRef(3 * b + j, 3 * a + i) = value;
+        }
     }
   return k;
 }

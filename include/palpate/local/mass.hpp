@@ -20,7 +20,9 @@ ElementMass<E> element_mass(const ElementNodes<E>& x) noexcept {
   for (const auto& point : E::MassQuadrature::points) {
     const Vector3 xi = reference_point(point);
     const Eigen::Matrix<double, E::nodes, 1> n = E::shape(xi);
-    m.noalias() += (point_geometry<E>(x, xi, point.weight).volume * n) * n.transpose();
+    const double volume = point.weight * jacobian_determinant<E>(x, E::gradient(xi));
+    for (int b = 0; b < E::nodes; ++b)
+      for (int a = 0; a < E::nodes; ++a) m.coeffRef(a, b) += (volume * n[a]) * n[b];
   }
   return m;
 }
@@ -31,7 +33,14 @@ ElementMass<E> element_mass(const ElementNodes<E>& x) noexcept {
 template <Element E>
 Eigen::Matrix<double, E::nodes, 1> lumped_element_mass(const ElementNodes<E>& x) noexcept {
   const ElementMass<E> m = element_mass<E>(x);  // its sum is the volume: shape functions sum to 1
-  return m.diagonal() * (m.sum() / m.trace());
+  double sum = 0.0, trace = 0.0;
+  for (int b = 0; b < E::nodes; ++b) {
+    trace += m.coeff(b, b);
+    for (int a = 0; a < E::nodes; ++a) sum += m.coeff(a, b);
+  }
+  Eigen::Matrix<double, E::nodes, 1> lumped;
+  for (int a = 0; a < E::nodes; ++a) lumped[a] = m.coeff(a, a) * (sum / trace);
+  return lumped;
 }
 
 }}  // namespace palpate

@@ -14,7 +14,7 @@ PALPATE_INLINE double bulk_modulus(const Matrix6& d) noexcept {
   // program a second and a half of compilation.
   Matrix6 a = d;
   Vector6 y = Vector6::Zero();
-  y.head<3>().setOnes();
+  for (int i = 0; i < 3; ++i) y[i] = 1.0;
   double sum = 0.0;
   for (int j = 0; j < 6; ++j) {
     sum += y[j] * y[j] / a(j, j);
@@ -29,7 +29,9 @@ PALPATE_INLINE double bulk_modulus(const Matrix6& d) noexcept {
 
 PALPATE_INLINE SplitElasticity split_elasticity(const Matrix6& d) noexcept {
   SplitElasticity split;
-  split.volumetric.topLeftCorner<3, 3>().setConstant(bulk_modulus(d));
+  const double bulk = bulk_modulus(d);
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) split.volumetric(i, j) = bulk;
   split.deviatoric = d - split.volumetric;
   return split;
 }

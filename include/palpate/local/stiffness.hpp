@@ -19,7 +19,11 @@ ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const Matrix6& d
   ElementStiffness<E> k = ElementStiffness<E>::Zero();
   for (const IntegrationPoint<E>& point : integration_points<E>(x)) {
     Eigen::Matrix<double, 6, 3 * E::nodes> b;
-    for (int a = 0; a < E::nodes; ++a) b.template middleCols<3>(3 * a) = strain_block<E>(point, a);
+    for (int a = 0; a < E::nodes; ++a) {
+      const StrainBlock block = strain_block<E>(point, a);
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 6; ++i) b.coeffRef(i, 3 * a + j) = block.coeff(i, j);
+    }
     k.noalias() += b.transpose() * (point.volume * d) * b;
   }
   return k;

@@ -3,33 +3,52 @@
 
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/core/voigt.hpp>
+#include <palpate/element/matrix_of_rows.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+/// Strain, or stress, per displacement of one node: a column for each component.
+using StrainBlock = Eigen::Matrix<double, 6, 3>;
+
 /// The 6 x 3 block B_a of the strain-displacement matrix for a node with spatial gradient g [1/m] (thesis 3.16, 3.20):
 /// strain = sum B_a u_a, Voigt order of core/voigt.hpp.
-inline Eigen::Matrix<double, 6, 3> strain_displacement(const Vector3& g) noexcept {
-  Eigen::Matrix<double, 6, 3> b = Eigen::Matrix<double, 6, 3>::Zero();
-  b(voigt::xx, 0) = g[0];
-  b(voigt::yy, 1) = g[1];
-  b(voigt::zz, 2) = g[2];
-  b(voigt::xy, 0) = g[1];
-  b(voigt::xy, 1) = g[0];
-  b(voigt::xz, 0) = g[2];
-  b(voigt::xz, 2) = g[0];
-  b(voigt::yz, 1) = g[2];
-  b(voigt::yz, 2) = g[1];
-  return b;
+inline StrainBlock strain_displacement(const Vector3& g) noexcept {
+  return detail::matrix_of_rows<6, 3>({{g[0], 0, 0},        // xx
+                                       {0, g[1], 0},        // yy
+                                       {0, 0, g[2]},        // zz
+                                       {g[1], g[0], 0},     // xy
+                                       {g[2], 0, g[0]},     // xz
+                                       {0, g[2], g[1]}});   // yz
+}
+
+/// volume * D B: the stress that the displacement of a node makes.
+inline StrainBlock stress_block(double volume, const Matrix6& d, const StrainBlock& b) noexcept {
+  StrainBlock s;
+  for (int j = 0; j < 3; ++j) {
+    const double *e = b.data() + 6 * j, *row = d.data();
+    for (int i = 0; i < 6; ++i, ++row)
+      s.coeffRef(i, j) = volume * (row[0] * e[0] + row[6] * e[1] + row[12] * e[2] + row[18] * e[3] +
+                                   row[24] * e[4] + row[30] * e[5]);
+  }
+  return s;
+}
+
+/// B^T S: the forces on a node of the stresses S.
+inline Matrix3 force_block(const StrainBlock& b, const StrainBlock& s) noexcept {
+  Matrix3 f;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) {
+      const double *x = b.data() + 6 * i, *y = s.data() + 6 * j;
+      f(i, j) = x[0] * y[0] + x[1] * y[1] + x[2] * y[2] + x[3] * y[3] + x[4] * y[4] + x[5] * y[5];
+    }
+  return f;
 }
 
 /// Strain of a displacement field given by nodal values u (nodes x 3 [m]) and spatial gradients (nodes x 3 [1/m]).
 template <class Displacements, class Gradients>
 Vector6 strain(const Eigen::MatrixBase<Displacements>& u, const Eigen::MatrixBase<Gradients>& gradient) noexcept {
   const Matrix3 h = u.transpose() * gradient;
-  Vector6 e;
-  e << h(0, 0), h(1, 1), h(2, 2), h(0, 1) + h(1, 0), h(0, 2) + h(2, 0), h(1, 2) + h(2, 1);
-  return e;
+  return {h(0, 0), h(1, 1), h(2, 2), h(0, 1) + h(1, 0), h(0, 2) + h(2, 0), h(1, 2) + h(2, 1)};
 }
 
 }}  // namespace palpate

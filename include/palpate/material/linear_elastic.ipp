@@ -14,8 +14,8 @@ PALPATE_INLINE double LinearElastic::lame_lambda() const noexcept {
 PALPATE_INLINE Matrix6 LinearElastic::elasticity() const noexcept {
   const double lambda = lame_lambda(), mu = shear_modulus();
   Matrix6 d = Matrix6::Zero();
-  d.topLeftCorner<3, 3>().setConstant(lambda);
-  for (int i = 0; i < 3; ++i) d(i, i) += 2.0 * mu;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) d(i, j) = i == j ? lambda + 2.0 * mu : lambda;
   for (int i = 3; i < 6; ++i) d(i, i) = mu;
   return d;
 }
@@ -32,7 +32,7 @@ PALPATE_INLINE std::optional<SetupProblem> LinearElastic::check() const {
   if (!(std::isfinite(density) && density >= 0.0))
     return parameter_problem(SetupErrorKind::bad_density, "density", density, 0.0,
                              "It must be finite and not negative, in kg/m^3");
-  if (!elasticity().allFinite() || !std::isnormal(shear_modulus()))
+  if (!all_finite(elasticity()) || !std::isnormal(shear_modulus()))
     return parameter_problem(SetupErrorKind::not_positive_definite, "the largest modulus", lame_lambda(), 0.0,
                              "youngs_modulus is beyond the range of double precision");
   return std::nullopt;

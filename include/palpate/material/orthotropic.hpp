@@ -29,7 +29,7 @@ struct Orthotropic {
   std::optional<SetupProblem> check() const;
 
  private:
-  Eigen::Array3d moduli() const noexcept;
+  Vector3 moduli() const noexcept;
 
   /// S_ij sqrt(E_i E_j): one on the diagonal, -nu_ij sqrt(E_j / E_i) beside it.
   Matrix3 scaled_compliance() const noexcept;

@@ -3,27 +3,64 @@
 
 #include <palpate/material/orthotropic.hpp>
 #include <palpate/core/voigt.hpp>
+#include <palpate/linear/symmetric_eigen.hpp>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
+/// t d t^T
+inline Matrix6 turned(const Matrix6& t, const Matrix6& d) noexcept {
+  Matrix6 td = Matrix6::Zero(), result = Matrix6::Zero();
+  for (int j = 0; j < 6; ++j)
+    for (int k = 0; k < 6; ++k)
+      for (int i = 0; i < 6; ++i) td(i, j) += t(i, k) * d(k, j);
+  for (int j = 0; j < 6; ++j)
+    for (int k = 0; k < 6; ++k)
+      for (int i = 0; i < 6; ++i) result(i, j) += td(i, k) * t(j, k);
+  return result;
+}
+
+/// The largest entry of |axes^T axes - I|; NaN if an entry is not finite.
+inline double deviation_from_rotation(const Matrix3& axes) noexcept {
+  if (!all_finite(axes)) return std::numeric_limits<double>::quiet_NaN();
+  const Matrix3 product = axes.transpose() * axes;
+  double largest = 0.0;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) largest = std::max(largest, std::abs(product(i, j) - (i == j ? 1.0 : 0.0)));
+  return largest;
+}
+
+/// The smallest eigenvalue of a symmetric matrix; NaN if an entry is not finite.
+inline double smallest_eigenvalue(const Matrix3& symmetric) {
+  if (!all_finite(symmetric)) return std::numeric_limits<double>::quiet_NaN();
+  MatrixX vectors = symmetric;
+  VectorX values;
+  symmetric_eigen(vectors, values);
+  return values[0];
+}
+
+}  // namespace detail
+
 PALPATE_INLINE Matrix6 Orthotropic::elasticity() const noexcept {
-  const Eigen::Array3d e = moduli();
-  const Eigen::Vector3d scale = e.sqrt();  // inverted with a unit diagonal: no digits lost to units or contrast
+  const Vector3 e = moduli();
+  const Matrix3 inverted = inverse(scaled_compliance());  // of a unit diagonal: no digits lost to units or contrast
   Matrix6 d = Matrix6::Zero();
-  d.topLeftCorner<3, 3>() = scale.asDiagonal() * scaled_compliance().inverse() * scale.asDiagonal();
-  d.diagonal().tail<3>() << shear_modulus_12, shear_modulus_13, shear_modulus_23;
-  if (!axes.isIdentity(0.0)) {
-    const Matrix6 turn = voigt::stress_rotation(axes);
-    d = (turn * d * turn.transpose()).eval();
-  }
-  return 0.5 * (d + d.transpose());
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) d(i, j) = std::sqrt(e[i]) * inverted(i, j) * std::sqrt(e[j]);
+  d(voigt::xy, voigt::xy) = shear_modulus_12;
+  d(voigt::xz, voigt::xz) = shear_modulus_13;
+  d(voigt::yz, voigt::yz) = shear_modulus_23;
+  if (!axes.isIdentity(0.0)) d = detail::turned(voigt::stress_rotation(axes), d);
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < j; ++i) d(i, j) = d(j, i) = 0.5 * (d(i, j) + d(j, i));
+  return d;
 }
 
 PALPATE_INLINE std::optional<SetupProblem> Orthotropic::check() const {
@@ -45,12 +82,12 @@ PALPATE_INLINE std::optional<SetupProblem> Orthotropic::check() const {
   if (!(std::isfinite(density) && density >= 0.0))
     return parameter_problem(SetupErrorKind::bad_density, "density", density, 0.0,
                              "It must be finite and not negative, in kg/m^3");
-  const double skew = (axes.transpose() * axes - Matrix3::Identity()).cwiseAbs().maxCoeff();
-  if (!(axes.allFinite() && skew <= 1e-9 && axes.determinant() > 0.0))
+  const double skew = detail::deviation_from_rotation(axes);
+  if (!(skew <= 1e-9 && determinant(axes) > 0.0))
     return parameter_problem(SetupErrorKind::bad_argument, "the deviation of the axes from a rotation", skew, 1e-9,
                              "Give three perpendicular unit vectors, right-handed, one per column");
-  const double smallest = Eigen::SelfAdjointEigenSolver<Matrix3>(scaled_compliance()).eigenvalues()[0];
-  if (!(smallest >= positive_definite_threshold) || !elasticity().allFinite())
+  const double smallest = detail::smallest_eigenvalue(scaled_compliance());
+  if (!(smallest >= positive_definite_threshold) || !all_finite(elasticity()))
     return parameter_problem(SetupErrorKind::not_positive_definite,
                              "the smallest eigenvalue of the compliance, scaled to a unit diagonal,", smallest,
                              positive_definite_threshold,
@@ -58,12 +95,12 @@ PALPATE_INLINE std::optional<SetupProblem> Orthotropic::check() const {
   return std::nullopt;
 }
 
-PALPATE_INLINE Eigen::Array3d Orthotropic::moduli() const noexcept {
+PALPATE_INLINE Vector3 Orthotropic::moduli() const noexcept {
   return {youngs_modulus_1, youngs_modulus_2, youngs_modulus_3};
 }
 
 PALPATE_INLINE Matrix3 Orthotropic::scaled_compliance() const noexcept {
-  const Eigen::Array3d e = moduli();
+  const Vector3 e = moduli();
   Matrix3 s = Matrix3::Identity();
   s(0, 1) = s(1, 0) = -poisson_ratio_12 * std::sqrt(e[1] / e[0]);
   s(0, 2) = s(2, 0) = -poisson_ratio_13 * std::sqrt(e[2] / e[0]);

@@ -3,11 +3,33 @@
 
 #include <palpate/material/transversely_isotropic.hpp>
 
-#include <Eigen/Geometry>
-
 #include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+namespace detail {
+
+/// A rotation whose first column is the direction of `along`. The second is perpendicular to it and to the coordinate
+/// axis that it is farthest from.
+inline Matrix3 axes_along(const Vector3& along) noexcept {
+  int far = 0;
+  for (int i = 1; i < 3; ++i)
+    if (std::abs(along[i]) < std::abs(along[far])) far = i;
+  const int next = (far + 1) % 3, last = (far + 2) % 3;
+  const double length = along.norm(), across = std::hypot(along[next], along[last]);
+  Matrix3 axes;
+  for (int i = 0; i < 3; ++i) axes(i, 0) = along[i] / length;
+  axes(far, 1) = 0.0;
+  axes(next, 1) = along[last] / across;
+  axes(last, 1) = -along[next] / across;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    axes(i, 2) = axes(j, 0) * axes(k, 1) - axes(k, 0) * axes(j, 1);
+  }
+  return axes;
+}
+
+}  // namespace detail
 
 PALPATE_INLINE std::optional<SetupProblem> TransverselyIsotropic::check() const {
   if (const double length = fibre.norm(); !(std::abs(length - 1.0) <= 1e-5))
@@ -27,11 +49,7 @@ PALPATE_INLINE Orthotropic TransverselyIsotropic::orthotropic(const Vector3& alo
   o.shear_modulus_12 = o.shear_modulus_13 = shear_modulus_along;
   o.shear_modulus_23 = shear_modulus_across();
   o.density = density;
-  Eigen::Index least = 0;
-  along.cwiseAbs().minCoeff(&least);
-  o.axes.col(0) = along.normalized();
-  o.axes.col(1) = along.cross(Vector3::Unit(least)).normalized();
-  o.axes.col(2) = o.axes.col(0).cross(o.axes.col(1));
+  o.axes = detail::axes_along(along);
   return o;
 }
 

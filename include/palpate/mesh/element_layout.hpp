@@ -72,7 +72,7 @@ template <Element E>
 void write_reference_nodes(double* xyz) noexcept {
   const auto x = E::reference_nodes();
   for (int a = 0; a < E::nodes; ++a)
-    for (int c = 0; c < 3; ++c) xyz[3 * a + c] = x(a, c);
+    for (int c = 0; c < 3; ++c) xyz[3 * a + c] = x.coeff(a, c);
 }
 
 }  // namespace detail
