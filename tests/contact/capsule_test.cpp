@@ -2,6 +2,7 @@
 #include "contact/tool_session.hpp"
 
 #include <palpate/contact/capsule_tool.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/testing/random.hpp>
 

@@ -1,6 +1,7 @@
 // Coulomb friction against closed forms.
 #include "contact/tool_session.hpp"
 
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/testing/random.hpp>
 

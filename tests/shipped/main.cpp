@@ -19,7 +19,7 @@ int failures = 0;
 
 Scene scene() {
   Scene held;
-  held.fix("zmin").touch("zmax").see("surface").gravity({1.0, 2.0, -9.81});
+  held.fix("z0").touch("z1").see("surface").gravity({1.0, 2.0, -9.81});
   return held;
 }
 
@@ -52,7 +52,7 @@ template <Element E, class Given>
 void element(const Given& mesh) {
   const LinearElastic liver{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0};
   const VectorX u = displacement<HapticFEModel<E, LinearElastic>>(mesh, liver);
-  compare<HapticFEModel<E, LinearElastic, Condensed<SelectiveInverseFloat>>>(mesh, liver, u, 1e-10);
+  compare<HapticFEModel<E, LinearElastic, Condensed<SelectiveInverseFloat>>>(mesh, liver, u, 1e-6);
   compare<HapticFEModel<E, LinearElastic, Condensed<DenseCholesky>>>(mesh, liver, u, 1e-10);
   compare<HapticFEModel<E, LinearElastic, Condensed<ConjugateGradient>>>(mesh, liver, u, 1e-10);
   compare<HapticFEModel<E, LinearElastic, SparseCholesky>>(mesh, liver, u, 1e-10);
