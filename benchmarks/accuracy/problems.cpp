@@ -6,6 +6,8 @@
 
 #include <palpate/post/error_estimate.hpp>
 
+#include <Eigen/LU>
+
 namespace accuracy {
 
 namespace {

@@ -6,6 +6,8 @@
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
+#include <Eigen/Geometry>
+
 #include <cstdio>
 #include <functional>
 #include <thread>

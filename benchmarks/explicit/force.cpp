@@ -1,4 +1,6 @@
 // The internal force, per element.
+#include <Eigen/Geometry>
+
 #include "explicit.hpp"
 
 namespace explicit_path {

@@ -1,4 +1,6 @@
 // Whole motions.
+#include <Eigen/Geometry>
+
 #include "explicit.hpp"
 
 namespace explicit_path {

@@ -7,6 +7,8 @@
 #include <palpate/model/corotated_motion.hpp>
 #include <palpate/model/soft_tissue.hpp>
 
+#include <Eigen/Geometry>
+
 #include "../common/bodies.hpp"
 
 namespace {

@@ -4,6 +4,7 @@
 #include <palpate/palpate.hpp>
 
 #include <Eigen/QR>
+#include <Eigen/Geometry>
 
 namespace touch {
 

@@ -1,6 +1,8 @@
 // One moment of a session as a drawing that needs no program to look at: still.svg.
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "pictures.hpp"
 
 namespace touch {

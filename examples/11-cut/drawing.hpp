@@ -4,6 +4,8 @@
 #include <palpate/cut/cuttable_tissue.hpp>
 #include <palpate/element/tet4.hpp>
 
+#include <Eigen/Geometry>
+
 #include <cstdio>
 #include <set>
 

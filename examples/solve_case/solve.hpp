@@ -6,6 +6,7 @@
 #include <palpate/mesh/selection.hpp>
 
 #include <chrono>
+#include <fstream>
 #include <iomanip>
 
 namespace solve_case {

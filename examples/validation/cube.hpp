@@ -9,6 +9,7 @@
 #include <palpate/model/equilibrium.hpp>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 namespace truth_cube {
 

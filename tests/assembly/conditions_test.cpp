@@ -1,6 +1,8 @@
 // Essential conditions, loads and masses of whole bodies.
 #include <palpate/assembly/load_vector.hpp>
 
+#include <Eigen/Geometry>
+
 #include "assembly/bodies.hpp"
 #include "assembly/csv.hpp"
 #include "local/closed_form.hpp"

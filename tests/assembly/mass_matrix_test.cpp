@@ -4,6 +4,8 @@
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/repair.hpp>
 
+#include <Eigen/Geometry>
+
 #include "assembly/bodies.hpp"
 #include "assembly/csv.hpp"
 

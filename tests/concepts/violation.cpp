@@ -4,6 +4,8 @@
 #include <palpate/testing/reference_cell.hpp>
 #include <palpate/testing/violation.hpp>
 
+#include <Eigen/LU>
+
 #include "catch.hpp"
 
 using namespace palpate;

@@ -6,6 +6,8 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/testing/random.hpp>
 
+#include <Eigen/Geometry>
+
 #include "catch.hpp"
 
 #include <cmath>

@@ -6,6 +6,8 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/testing/random.hpp>
 
+#include <Eigen/Geometry>
+
 #include "catch.hpp"
 
 #include <cmath>

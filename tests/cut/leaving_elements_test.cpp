@@ -11,6 +11,8 @@
 #include <palpate/model/corotated_motion.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
+#include <Eigen/Geometry>
+
 #include "catch.hpp"
 #include "refused.hpp"
 

@@ -9,6 +9,8 @@
 #include <palpate/model/soft_tissue.hpp>
 #include <palpate/testing/random.hpp>
 
+#include <Eigen/Geometry>
+
 #include "catch.hpp"
 
 using namespace palpate;

@@ -12,6 +12,8 @@
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
+#include <Eigen/Geometry>
+
 #include "assembly/bodies.hpp"
 
 namespace test {

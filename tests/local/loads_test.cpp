@@ -4,6 +4,8 @@
 #include <palpate/local/loads.hpp>
 #include <palpate/local/stiffness.hpp>
 
+#include <Eigen/Geometry>
+
 #include "catch.hpp"
 #include "element/user_elements.hpp"
 #include "local/closed_form.hpp"

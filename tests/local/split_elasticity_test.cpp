@@ -3,6 +3,7 @@
 #include <palpate/material/linear_elastic.hpp>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include "catch.hpp"
 #include "local/closed_form.hpp"

@@ -5,6 +5,7 @@
 #include <palpate/local/isotropic.hpp>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include "catch.hpp"
 #include "element/thesis_tet4.hpp"

@@ -4,6 +4,8 @@
 #include <palpate/material/transversely_isotropic.hpp>
 #include <palpate/testing/material_laws.hpp>
 
+#include <Eigen/LU>
+
 #include "catch.hpp"
 
 using namespace palpate;

@@ -1,3 +1,5 @@
+#include <Eigen/Geometry>
+
 #include "element/user_elements.hpp"
 #include "mesh_helpers.hpp"
 

@@ -3,6 +3,7 @@
 #include <palpate/mesh/rigid_modes.hpp>
 
 #include <Eigen/QR>
+#include <Eigen/Geometry>
 
 #include <bit>
 

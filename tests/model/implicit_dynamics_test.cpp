@@ -11,6 +11,8 @@
 #include <palpate/model/implicit_dynamics.hpp>
 #include <palpate/testing/random.hpp>
 
+#include <Eigen/Geometry>
+
 #include <numbers>
 #include <sstream>
 

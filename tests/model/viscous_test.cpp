@@ -8,6 +8,8 @@
 #include <palpate/model/implicit_dynamics.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
+#include <Eigen/LU>
+
 #include <complex>
 #include <fstream>
 #include <numbers>

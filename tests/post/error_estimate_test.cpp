@@ -1,6 +1,8 @@
 // The error estimate against the error.
 #include <palpate/post/error_estimate.hpp>
 
+#include <Eigen/LU>
+
 #include "../../benchmarks/accuracy/lame_sphere.hpp"
 
 #include "catch.hpp"

@@ -7,6 +7,8 @@
 #include <palpate/post/stress.hpp>
 #include <palpate/testing/random.hpp>
 
+#include <Eigen/Geometry>
+
 #include "catch.hpp"
 
 #include <map>
