@@ -111,7 +111,9 @@ TEST_CASE("a stress of degree order - 1 is exact in all points and at all nodes,
       const auto mesh = jittered(box_of<E>({1, 1, 1}, cells), 0.05);
       for (int degree = 0; degree <= E::order; ++degree) {
         CHECK(points_error<E>(mesh, degree) <= 1e-12);
-        CHECK(polynomial_error<E>(mesh, degree) <= 1e-11);
+        const double error = polynomial_error<E>(mesh, degree);
+        INFO(error);
+        CHECK(error <= 2e-11);
       }
     }
   });

@@ -2,10 +2,11 @@
 // time.
 #pragma once
 
-#include <palpate/core/types.hpp>
+#include <palpate/core/vector_types.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
