@@ -12,7 +12,8 @@ using testing::Random;
 namespace {
 
 /// Angles at which formulas lose digits: none, tiny, small, a half turn and next to it.
-const double angles[] = {0.0, 1e-300, 1e-160, 1e-16, 1e-8, 1e-4, 0.5, 1.5, 3.0, std::numbers::pi - 1e-8, std::numbers::pi};
+const double angles[] = {
+    0.0, 1e-300, 1e-160, 1e-16, 1e-8, 1e-4, 0.5, 1.5, 3.0, std::numbers::pi - 1e-8, std::numbers::pi};
 
 }  // namespace
 
@@ -40,7 +41,8 @@ TEST_CASE("a rotation vector comes back from its rotation, to rounding at every 
       if (angle < 3.1) CHECK((back - v).norm() <= 4e-15 * (1.0 + angle / (std::numbers::pi - angle)));
     }
   // Half turns about the axes and between them, where all of R - R^T vanishes.
-  for (const Vector3& axis : {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1), Vector3(1, 1, 0), Vector3(1, -1, 1)}) {
+  for (const Vector3& axis :
+       {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1), Vector3(1, 1, 0), Vector3(1, -1, 1)}) {
     const Matrix3 r = 2.0 / axis.squaredNorm() * (axis * axis.transpose()) - Matrix3(Matrix3::Identity());
     const Vector3 v = rotation_vector(r);
     CHECK(std::abs(v.norm() - std::numbers::pi) <= 1e-15);

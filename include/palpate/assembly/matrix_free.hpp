@@ -56,16 +56,14 @@ class MatrixFreeStiffness {
     for (std::size_t e = 0; e < connectivity_.size(); ++e) {
       ElementNodes<E> u;
       for (int a = 0; a < E::nodes; ++a)
-        for (int c = 0; c < 3; ++c)
-          u.coeffRef(a, c) = x[3 * Index{connectivity_[e][static_cast<std::size_t>(a)]} + c];
+        for (int c = 0; c < 3; ++c) u.coeffRef(a, c) = x[3 * Index{connectivity_[e][static_cast<std::size_t>(a)]} + c];
       ElementNodes<E> f = ElementNodes<E>::Zero();
       for (std::size_t q = 0; q < E::Quadrature::points.size(); ++q, ++geometry) {
         const Vector6 stress = elasticity_[laws_[e]] * strain_at<E>(*geometry, u);
         f += force_of_stress<E>(*geometry, stress);
       }
       for (int a = 0; a < E::nodes; ++a)
-        for (int c = 0; c < 3; ++c)
-          y[3 * Index{connectivity_[e][static_cast<std::size_t>(a)]} + c] += f.coeff(a, c);
+        for (int c = 0; c < 3; ++c) y[3 * Index{connectivity_[e][static_cast<std::size_t>(a)]} + c] += f.coeff(a, c);
     }
   }
 

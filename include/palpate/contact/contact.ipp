@@ -17,8 +17,7 @@ PALPATE_INLINE Vector3 ContactTool::goal(double floor) const noexcept {
   return target + (compliance + floor) * force;
 }
 PALPATE_INLINE Matrix3 ContactTool::goal_rotation() const noexcept {
-  return turning_compliance > 0.0 ? rotation_by(turning_compliance * torque) * target_rotation
-                                  : target_rotation;
+  return turning_compliance > 0.0 ? rotation_by(turning_compliance * torque) * target_rotation : target_rotation;
 }
 PALPATE_INLINE Vector3 ContactTool::axis() const noexcept {
   return rotation * own_axis;

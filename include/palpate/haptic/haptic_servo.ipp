@@ -6,7 +6,6 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 
-
 #include <algorithm>
 
 namespace palpate { inline namespace PALPATE_ABI {

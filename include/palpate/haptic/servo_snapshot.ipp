@@ -4,7 +4,6 @@
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
 
-
 #include <algorithm>
 
 namespace palpate { inline namespace PALPATE_ABI {

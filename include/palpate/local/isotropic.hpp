@@ -90,8 +90,8 @@ ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const LameConsta
           double value = c.mu * block[j][i];
           if (i == j) value += trace;
           if constexpr (HasMeanDilatation<E>)  // the volumetric part of B^T D B with the mean instead
-            value += bulk * (at[0].dilatation.coeff(a, i) * at[0].dilatation.coeff(b, j)) -
-                     2.0 / 3.0 * c.mu * block[i][j];
+            value +=
+                bulk * (at[0].dilatation.coeff(a, i) * at[0].dilatation.coeff(b, j)) - 2.0 / 3.0 * c.mu * block[i][j];
           else
             value += c.lambda * block[i][j];
           k.coeffRef(3 * a + i, 3 * b + j) = k.coeffRef(3 * b + j, 3 * a + i) = value;

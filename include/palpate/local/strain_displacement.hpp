@@ -13,12 +13,12 @@ using StrainBlock = Eigen::Matrix<double, 6, 3>;
 /// The 6 x 3 block B_a of the strain-displacement matrix for a node with spatial gradient g [1/m] (thesis 3.16, 3.20):
 /// strain = sum B_a u_a, Voigt order of core/voigt.hpp.
 inline StrainBlock strain_displacement(const Vector3& g) noexcept {
-  return detail::matrix_of_rows<6, 3>({{g[0], 0, 0},        // xx
-                                       {0, g[1], 0},        // yy
-                                       {0, 0, g[2]},        // zz
-                                       {g[1], g[0], 0},     // xy
-                                       {g[2], 0, g[0]},     // xz
-                                       {0, g[2], g[1]}});   // yz
+  return detail::matrix_of_rows<6, 3>({{g[0], 0, 0},       // xx
+                                       {0, g[1], 0},       // yy
+                                       {0, 0, g[2]},       // zz
+                                       {g[1], g[0], 0},    // xy
+                                       {g[2], 0, g[0]},    // xz
+                                       {0, g[2], g[1]}});  // yz
 }
 
 /// volume * D B: the stress that the displacement of a node makes.
@@ -27,8 +27,8 @@ inline StrainBlock stress_block(double volume, const Matrix6& d, const StrainBlo
   for (int j = 0; j < 3; ++j) {
     const double *e = b.data() + 6 * j, *row = d.data();
     for (int i = 0; i < 6; ++i, ++row)
-      s.coeffRef(i, j) = volume * (row[0] * e[0] + row[6] * e[1] + row[12] * e[2] + row[18] * e[3] +
-                                   row[24] * e[4] + row[30] * e[5]);
+      s.coeffRef(i, j) =
+          volume * (row[0] * e[0] + row[6] * e[1] + row[12] * e[2] + row[18] * e[3] + row[24] * e[4] + row[30] * e[5]);
   }
   return s;
 }

@@ -62,7 +62,8 @@ template <MeshOf<E> Mesh>
 HapticFEModel<E, M, Solver>::HapticFEModel(const Mesh& mesh, const Scene& scene, const RegionMaterials<M>& materials,
                                            const SetupOptions& options)
     : Tissue(options) {
-  this->set_up(scene, detail::admit_body<E>(mesh, scene, materials, options.admission, this->limits(), this->setup_report()),
+  this->set_up(scene,
+               detail::admit_body<E>(mesh, scene, materials, options.admission, this->limits(), this->setup_report()),
                detail::make_stiffness<E, typename Traits::Assembly>, solver_recipe<Solver>(), options);
 }
 
