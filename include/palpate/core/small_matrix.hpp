@@ -12,25 +12,40 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-template <class T>
-inline constexpr bool is_small = false;
-template <>
-inline constexpr bool is_small<Vector3> = true;
-template <>
-inline constexpr bool is_small<Matrix3> = true;
-template <>
-inline constexpr bool is_small<Vector6> = true;
-template <>
-inline constexpr bool is_small<Matrix6> = true;
-
-template <class T>
-concept Small = is_small<T>;
+template <class M>
+concept Small = std::same_as<M, Matrix3> || std::same_as<M, Vector6> || std::same_as<M, Matrix6>;
 template <class T, class M>
 concept TransposeOf = std::same_as<T, Eigen::Transpose<M>> || std::same_as<T, Eigen::Transpose<const M>>;
 
 }  // namespace detail
 
 // These are chosen over Eigen's operators for exactly those types; every other operand gives an expression as before.
+// Vectors are written out, not looped over: the compiler keeps their components in registers then.
+
+template <std::same_as<Vector3> V>
+PALPATE_ALWAYS_INLINE V operator+(const V& a, const V& b) noexcept {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+template <std::same_as<Vector3> V>
+PALPATE_ALWAYS_INLINE V operator-(const V& a, const V& b) noexcept {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+template <std::same_as<Vector3> V>
+PALPATE_ALWAYS_INLINE V operator-(const V& a) noexcept {
+  return {-a[0], -a[1], -a[2]};
+}
+template <std::same_as<Vector3> V, std::same_as<double> S>
+PALPATE_ALWAYS_INLINE V operator*(const S& s, const V& a) noexcept {
+  return {s * a[0], s * a[1], s * a[2]};
+}
+template <std::same_as<Vector3> V, std::same_as<double> S>
+PALPATE_ALWAYS_INLINE V operator*(const V& a, const S& s) noexcept {
+  return {a[0] * s, a[1] * s, a[2] * s};
+}
+template <std::same_as<Vector3> V, std::same_as<double> S>
+PALPATE_ALWAYS_INLINE V operator/(const V& a, const S& s) noexcept {
+  return {a[0] / s, a[1] / s, a[2] / s};
+}
 
 template <detail::Small M>
 M operator+(const M& a, const M& b) noexcept {
@@ -68,11 +83,9 @@ M operator/(const M& a, const S& s) noexcept {
 }
 
 template <std::same_as<Matrix3> M, std::same_as<Vector3> V>
-V operator*(const M& m, const V& v) noexcept {
-  V r;
-  for (int i = 0; i < 3; ++i)
-    r.data()[i] = m.data()[i] * v.data()[0] + m.data()[3 + i] * v.data()[1] + m.data()[6 + i] * v.data()[2];
-  return r;
+PALPATE_ALWAYS_INLINE V operator*(const M& m, const V& v) noexcept {
+  return {m(0, 0) * v[0] + m(0, 1) * v[1] + m(0, 2) * v[2], m(1, 0) * v[0] + m(1, 1) * v[1] + m(1, 2) * v[2],
+          m(2, 0) * v[0] + m(2, 1) * v[1] + m(2, 2) * v[2]};
 }
 template <std::same_as<Matrix3> M>
 M operator*(const M& a, const M& b) noexcept {
@@ -93,12 +106,10 @@ V operator*(const M& m, const V& v) noexcept {
   return r;
 }
 template <detail::TransposeOf<Matrix3> T, std::same_as<Vector3> V>
-V operator*(const T& t, const V& v) noexcept {
+PALPATE_ALWAYS_INLINE V operator*(const T& t, const V& v) noexcept {
   const double* m = t.nestedExpression().data();
-  V r;
-  for (int i = 0; i < 3; ++i)
-    r.data()[i] = m[3 * i] * v.data()[0] + m[3 * i + 1] * v.data()[1] + m[3 * i + 2] * v.data()[2];
-  return r;
+  return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
+          m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
 }
 template <detail::TransposeOf<Matrix3> T, std::same_as<Matrix3> M>
 M operator*(const T& t, const M& b) noexcept {

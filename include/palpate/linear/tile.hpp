@@ -27,6 +27,15 @@ inline Packet multiply_add(const Packet& a, const Packet& b, const Packet& c) no
   return Eigen::internal::pmadd(a, b, c);
 }
 
+// -O2 leaves short loops as they are, and with them the tile in memory.
+#if defined(__clang__)
+#define PALPATE_UNROLL _Pragma("unroll")
+#elif defined(__GNUC__)
+#define PALPATE_UNROLL _Pragma("GCC unroll 16")
+#else
+#define PALPATE_UNROLL
+#endif
+
 /// How a tile changes its target.
 enum class Into { empty, full };
 
@@ -42,20 +51,28 @@ template <int V, int Columns, Into Mode>
 PALPATE_ALWAYS_INLINE void subtract_tile_here(Index steps, Steps a, Steps b, Index b_apart, double* c, Index c_stride,
                                               Index valid) noexcept {
   Packet sum[Columns][V];
-  for (auto& column : sum)
-    for (Packet& x : column) x = broadcast(0.0);
+  PALPATE_UNROLL
+  for (int j = 0; j < Columns; ++j) {
+    PALPATE_UNROLL
+    for (int v = 0; v < V; ++v) sum[j][v] = broadcast(0.0);
+  }
   for (Index s = 0; s < steps; ++s) {
     Packet x[V];
+    PALPATE_UNROLL
     for (int v = 0; v < V; ++v) x[v] = load(a.data + v * packet_size);
+    PALPATE_UNROLL
     for (int j = 0; j < Columns; ++j) {
       const Packet y = broadcast(b.data[j * b_apart]);
+      PALPATE_UNROLL
       for (int v = 0; v < V; ++v) sum[j][v] = multiply_add(x[v], y, sum[j][v]);
     }
     a.data += a.step;
     b.data += b.step;
   }
+  PALPATE_UNROLL
   for (int j = 0; j < Columns; ++j) {
     if (j == valid) return;
+    PALPATE_UNROLL
     for (int v = 0; v < V; ++v) {
       double* const to = c + j * c_stride + v * packet_size;
       if constexpr (Mode == Into::full)
@@ -86,3 +103,5 @@ inline void subtract_tile(Index packets, Index steps, Steps a, Steps b, double* 
 }
 
 }}}  // namespace palpate::detail
+
+#undef PALPATE_UNROLL
