@@ -4,10 +4,13 @@
 #include <palpate/linear/conjugate_gradient.hpp>
 
 #include <memory>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 class BinaryReader;
+class BinaryWriter;
+struct SetupLimits;
 
 /// A dense SPD matrix with its diagonal as preconditioner. Satisfies SpdOperator. Copies share the matrix.
 class DenseOperator {
