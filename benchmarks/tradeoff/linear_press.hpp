@@ -3,8 +3,7 @@
 
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
-#include <palpate/condensation/uncondensed.hpp>
-#include <palpate/linear/dense_inverse.hpp>
+#include <palpate/condensation/condensed_system.hpp>
 #include <palpate/linear/indexed_vector.hpp>
 #include <palpate/linear/node_graph.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
@@ -153,7 +152,7 @@ class LinearPress {
   const Mesh<E>& mesh_;
   EssentialConditions conditions_;
   BlockMatrix stiffness_;
-  SolverTraits<Condensed<SelectiveInverse>>::System solver_;
+  CondensedSystem solver_;
   VectorX load_, answer_;
   std::vector<NodeId> nodes_;
   std::vector<Eigen::Matrix<double, Eigen::Dynamic, 3>> columns_;
