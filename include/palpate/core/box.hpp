@@ -8,7 +8,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// An axis-aligned box.
+/// An axis-aligned box [m]; empty (low > high) until it includes something.
 struct Box {
   Vector3 low = Vector3::Constant(infinity);
   Vector3 high = Vector3::Constant(-infinity);

@@ -1,4 +1,4 @@
-// Rotations and poses. Plain functions where Eigen would instantiate a chain of expressions.
+// Rotations and poses, without Eigen's expressions. No function allocates.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -10,7 +10,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The rotation by |v| radians about v.
+/// The rotation by |v| radians about v (Rodrigues' formula); the identity for v = 0.
 Matrix3 rotation_by(const Vector3& v) noexcept;
 /// The inverse of rotation_by: v with |v| <= pi, for a rotation matrix.
 Vector3 rotation_vector(const Matrix3& rotation) noexcept;
@@ -26,7 +26,7 @@ bool is_rotation(const Matrix3& m) noexcept;
 Matrix3 rotation_of(const Eigen::Isometry3d& pose) noexcept;
 /// x -> rotation * x + translation
 Eigen::Isometry3d make_pose(const Matrix3& rotation, const Vector3& translation) noexcept;
-/// The pose that undoes this one.
+/// The inverse of a rigid motion.
 Eigen::Isometry3d inverse(const Eigen::Isometry3d& pose) noexcept;
 
 /// A point moved by a pose.

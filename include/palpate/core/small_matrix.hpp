@@ -1,5 +1,5 @@
-// Arithmetic of 3-vectors and 3 x 3 matrices without Eigen's expressions: the same notation, a tenth of the compile
-// time.
+// Arithmetic of small vectors and matrices without Eigen's expressions: same notation, values as results, and fewer
+// types for the compiler to instantiate.
 #pragma once
 
 #include <palpate/core/vector_types.hpp>
@@ -17,10 +17,22 @@ concept Small = std::same_as<M, Matrix3> || std::same_as<M, Vector6> || std::sam
 template <class T, class M>
 concept TransposeOf = std::same_as<T, Eigen::Transpose<M>> || std::same_as<T, Eigen::Transpose<const M>>;
 
+/// Product of 3 x 3 matrices whose entry (i, j) lies at data[i * Row + j * Column]: strides 1, 3 for a Matrix3, 3, 1
+/// for its transpose.
+template <int RowA, int ColumnA, int RowB, int ColumnB>
+Matrix3 product(const double* a, const double* b) noexcept {
+  Matrix3 r;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i)
+      r.data()[3 * j + i] = a[i * RowA] * b[j * ColumnB] + a[i * RowA + ColumnA] * b[RowB + j * ColumnB] +
+                            a[i * RowA + 2 * ColumnA] * b[2 * RowB + j * ColumnB];
+  return r;
+}
+
 }  // namespace detail
 
-// These are chosen over Eigen's operators for exactly those types; every other operand gives an expression as before.
-// Vectors are written out, not looped over: the compiler keeps their components in registers then.
+// Overload resolution prefers these operators for exactly these types. All other operands give Eigen's expressions.
+// Vector3 is written out component by component: g++ then keeps the components in registers.
 
 template <std::same_as<Vector3> V>
 PALPATE_ALWAYS_INLINE V operator+(const V& a, const V& b) noexcept {
@@ -89,12 +101,7 @@ PALPATE_ALWAYS_INLINE V operator*(const M& m, const V& v) noexcept {
 }
 template <std::same_as<Matrix3> M>
 M operator*(const M& a, const M& b) noexcept {
-  M r;
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i)
-      r.data()[3 * j + i] =
-          a.data()[i] * b.data()[3 * j] + a.data()[3 + i] * b.data()[3 * j + 1] + a.data()[6 + i] * b.data()[3 * j + 2];
-  return r;
+  return detail::product<1, 3, 1, 3>(a.data(), b.data());
 }
 template <std::same_as<Matrix6> M, std::same_as<Vector6> V>
 V operator*(const M& m, const V& v) noexcept {
@@ -113,22 +120,11 @@ PALPATE_ALWAYS_INLINE V operator*(const T& t, const V& v) noexcept {
 }
 template <detail::TransposeOf<Matrix3> T, std::same_as<Matrix3> M>
 M operator*(const T& t, const M& b) noexcept {
-  const double* m = t.nestedExpression().data();
-  M r;
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i)
-      r.data()[3 * j + i] =
-          m[3 * i] * b.data()[3 * j] + m[3 * i + 1] * b.data()[3 * j + 1] + m[3 * i + 2] * b.data()[3 * j + 2];
-  return r;
+  return detail::product<3, 1, 1, 3>(t.nestedExpression().data(), b.data());
 }
 template <std::same_as<Matrix3> M, detail::TransposeOf<Matrix3> T>
 M operator*(const M& a, const T& t) noexcept {
-  const double* b = t.nestedExpression().data();
-  M r;
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i)
-      r.data()[3 * j + i] = a.data()[i] * b[j] + a.data()[3 + i] * b[3 + j] + a.data()[6 + i] * b[6 + j];
-  return r;
+  return detail::product<1, 3, 3, 1>(a.data(), t.nestedExpression().data());
 }
 template <std::same_as<Vector3> V, detail::TransposeOf<Vector3> T>
 Matrix3 operator*(const V& a, const T& t) noexcept {
@@ -142,16 +138,17 @@ Matrix3 operator*(const V& a, const T& t) noexcept {
 inline Vector3 cross(const Vector3& a, const Vector3& b) noexcept {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-/// The largest magnitude of a component, all of them finite.
+/// The largest magnitude of a component. All components must be finite.
 inline double max_abs(const Vector3& v) noexcept {
   return std::max(std::abs(v[0]), std::max(std::abs(v[1]), std::abs(v[2])));
 }
 
-/// Determinant and inverse by cofactors.
+/// By cofactors.
 inline double determinant(const Matrix3& m) noexcept {
   return m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1)) - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0)) +
          m(0, 2) * (m(1, 0) * m(2, 1) - m(1, 1) * m(2, 0));
 }
+/// By cofactors; entries are not finite when m is singular.
 inline Matrix3 inverse(const Matrix3& m) noexcept {
   const double scale = 1.0 / determinant(m);
   Matrix3 r;
@@ -163,7 +160,7 @@ inline Matrix3 inverse(const Matrix3& m) noexcept {
   return r;
 }
 
-/// A node's entries in a vector with three per node.
+/// The three entries of a node in a vector with three per node.
 inline Vector3 node_vector(const VectorX& all, Index node) noexcept {
   return {all[3 * node], all[3 * node + 1], all[3 * node + 2]};
 }
@@ -176,7 +173,7 @@ inline void add_node_vector(VectorX& all, Index node, const Vector3& v) noexcept
 
 /// No component is NaN or infinite.
 inline bool all_finite(const double* x, Index n) noexcept {
-  double sum = 0.0;  // NaN as soon as one is
+  double sum = 0.0;  // x - x is NaN for NaN and infinity
   for (Index i = 0; i < n; ++i) sum += x[i] - x[i];
   return sum == 0.0;
 }

@@ -1,4 +1,4 @@
-// Names of fixed-size vectors, matrices and indices.
+// Types of vectors, matrices and indices.
 #pragma once
 
 #include <palpate/core/config.hpp>

@@ -27,7 +27,7 @@ inline Packet multiply_add(const Packet& a, const Packet& b, const Packet& c) no
   return Eigen::internal::pmadd(a, b, c);
 }
 
-// -O2 leaves short loops as they are, and with them the tile in memory.
+// g++ -O2 does not unroll these loops by itself, and would keep the tile in memory instead of registers.
 #if defined(__clang__)
 #define PALPATE_UNROLL _Pragma("unroll")
 #elif defined(__GNUC__)

@@ -30,7 +30,7 @@ struct Admitted {
 
 namespace detail {
 
-/// A mesh on its way in. Maps start where each node and element stands.
+/// A mesh during admission. `repair_and_enforce` fills the maps.
 struct Candidate {
   MeshEdit mesh;
   ShapeOfElement shape_of;
@@ -44,7 +44,7 @@ void enforce(const MeshDiagnosis& d, const AdmissionPolicy& policy, const std::v
              const std::vector<Index>& element_map);
 
 /// Checks the groups, makes all repairs the policy allows and refuses what is left.
-void let_in(Candidate& candidate, const AdmissionPolicy& policy);
+void repair_and_enforce(Candidate& candidate, const AdmissionPolicy& policy);
 
 }  // namespace detail
 
@@ -64,7 +64,7 @@ Admitted<E> admit(const M& view, const AdmissionPolicy& policy = {}, const std::
   result.mesh = copy_mesh<E>(view, group_names);
   detail::Candidate candidate{mesh_edit(result.mesh), detail::shape_of_element<E>, result.node_map, result.element_map,
                               result.admitted};
-  detail::let_in(candidate, policy);
+  detail::repair_and_enforce(candidate, policy);
   result.mesh.elements.resize(static_cast<std::size_t>(candidate.mesh.element_count));
   return result;
 }

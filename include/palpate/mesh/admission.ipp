@@ -132,7 +132,7 @@ inline bool repair(Candidate& work, const AdmissionPolicy& policy) {
   return changed;
 }
 
-PALPATE_INLINE void let_in(Candidate& candidate, const AdmissionPolicy& policy) {
+PALPATE_INLINE void repair_and_enforce(Candidate& candidate, const AdmissionPolicy& policy) {
   require_valid_groups(candidate.mesh.ref());
   candidate.node_map.resize(candidate.mesh.positions.size());
   candidate.element_map.resize(static_cast<std::size_t>(candidate.mesh.element_count));

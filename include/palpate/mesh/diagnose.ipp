@@ -1,10 +1,10 @@
 // Definitions of diagnose.hpp.
 #pragma once
 
+#include <palpate/core/box.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/mesh/components.hpp>
 #include <palpate/mesh/diagnose.hpp>
-#include <palpate/core/box.hpp>
 #include <palpate/mesh/duplicates.hpp>
 
 #include <algorithm>

@@ -37,10 +37,6 @@ inline const double* flat(const std::vector<Vector3>& positions) noexcept {
   return positions.empty() ? nullptr : positions.front().data();
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// A mesh of as many nodes per element, seen as one of elements E.
 template <Element E, Element Given>
 MeshRef mesh_ref_as(const Mesh<Given>& mesh) noexcept {

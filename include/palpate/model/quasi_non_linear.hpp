@@ -64,17 +64,17 @@ class QuasiNonLinear {
   QuasiNonLinear(Tissue&&, StiffeningCurve, StiffeningCurve = {}) = delete;
 
   Status begin_tick() noexcept {
-    if constexpr (requires(Tissue & t) { t.begin_tick(); })
+    if constexpr (requires(Tissue& t) { t.begin_tick(); })
       return tissue_->begin_tick();
     else
       return {};
   }
   void end_tick(std::span<const VertexForce> forces) noexcept {
     follow(forces);
-    if constexpr (requires(Tissue & t) { t.end_tick(forces); }) tissue_->end_tick(forces);
+    if constexpr (requires(Tissue& t) { t.end_tick(forces); }) tissue_->end_tick(forces);
   }
   void foresee(std::span<const int> vertices) noexcept {
-    if constexpr (requires(Tissue & t) { t.foresee(vertices); }) tissue_->foresee(vertices);
+    if constexpr (requires(Tissue& t) { t.foresee(vertices); }) tissue_->foresee(vertices);
   }
   Status require_columns(std::span<const int> vertices) noexcept { return tissue_->require_columns(vertices); }
 
