@@ -2,6 +2,9 @@
 #pragma once
 
 #include <palpate/assembly/element_blocks.hpp>
+#include <palpate/core/box.hpp>
+
+#include <algorithm>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
@@ -12,15 +15,12 @@ PALPATE_INLINE void bisect_elements(std::span<NodeId> elements, const std::vecto
     blocks.push_back({region, {elements.begin(), elements.end()}});
     return;
   }
-  Vector3 low(infinity, infinity, infinity), high = -low;
-  for (NodeId e : elements)
-    for (int c = 0; c < 3; ++c) {
-      low[c] = std::min(low[c], centre[static_cast<std::size_t>(e)][c]);
-      high[c] = std::max(high[c], centre[static_cast<std::size_t>(e)][c]);
-    }
+  Box box;
+  for (NodeId e : elements) box.include(centre[static_cast<std::size_t>(e)]);
+  const Vector3 size = box.size();
   int axis = 0;
   for (int c = 1; c < 3; ++c)
-    if (high[c] - low[c] > high[axis] - low[axis]) axis = c;
+    if (size[c] > size[axis]) axis = c;
   const Index half = std::max(group, (count / 2 + group / 2) / group * group);
   const auto before = [&](NodeId a, NodeId b) {
     const double xa = centre[static_cast<std::size_t>(a)][axis], xb = centre[static_cast<std::size_t>(b)][axis];

@@ -11,23 +11,19 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-inline void add_force(VectorX& f, NodeId node, const Vector3& force) noexcept {
-  for (int c = 0; c < 3; ++c) f[3 * Index{node} + c] += force[c];
-}
-
 inline void add_face_loads(const MeshRef& mesh, const ShapeIntegrals& integrals,
                            const std::vector<BoundaryFace>& boundary, const Scene& scene, VectorX& f) {
   std::array<double, 3 * max_face_nodes> parts;
   for (const auto& load : scene.tractions())
     for (const auto& face : resolve_faces(mesh, boundary, load.where)) {
       integrals.areas(mesh.positions, face, parts.data());
-      for (std::size_t a = 0; a < face.nodes.size(); ++a) add_force(f, face.nodes[a], parts[a] * load.traction);
+      for (std::size_t a = 0; a < face.nodes.size(); ++a) add_node_vector(f, face.nodes[a], parts[a] * load.traction);
     }
   for (const auto& load : scene.pressures())
     for (const auto& face : resolve_faces(mesh, boundary, load.where)) {
       integrals.area_vectors(mesh.positions, face, parts.data());
       for (std::size_t a = 0; a < face.nodes.size(); ++a)
-        add_force(f, face.nodes[a], -load.pressure * Vector3(parts[3 * a], parts[3 * a + 1], parts[3 * a + 2]));
+        add_node_vector(f, face.nodes[a], -load.pressure * Vector3(parts[3 * a], parts[3 * a + 1], parts[3 * a + 2]));
     }
 }
 
@@ -37,7 +33,7 @@ PALPATE_INLINE VectorX applied_load(const MeshRef& mesh, const ShapeIntegrals& i
   add_face_loads(mesh, integrals, boundary, scene, f);
   for (const auto& load : scene.point_loads()) {
     const auto nodes = resolve_nodes(mesh, boundary, load.where);
-    for (NodeId node : nodes) add_force(f, node, load.force / static_cast<double>(nodes.size()));
+    for (NodeId node : nodes) add_node_vector(f, node, load.force / static_cast<double>(nodes.size()));
   }
   std::vector<double> volumes(static_cast<std::size_t>(mesh.element.nodes));
   for (const auto& load : scene.body_loads()) {
@@ -47,7 +43,7 @@ PALPATE_INLINE VectorX applied_load(const MeshRef& mesh, const ShapeIntegrals& i
         continue;
       integrals.volumes(mesh.positions, mesh.nodes_of(e), volumes.data());
       for (std::size_t a = 0; a < volumes.size(); ++a)
-        add_force(f, mesh.nodes_of(e)[a], volumes[a] * load.force_per_volume);
+        add_node_vector(f, mesh.nodes_of(e)[a], volumes[a] * load.force_per_volume);
     }
   }
   return f;

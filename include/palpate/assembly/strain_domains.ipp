@@ -23,10 +23,7 @@ PALPATE_INLINE Vector6 StrainDomain::strain(const VectorX& u) const noexcept {
 
 PALPATE_INLINE void StrainDomain::add_force(const Vector6& stress, VectorX& f) const noexcept {
   const Matrix3 tensor = volume * voigt::stress_tensor(stress);
-  for (std::size_t a = 0; a < nodes.size(); ++a) {
-    const Vector3 force = tensor * gradients[a];
-    for (int c = 0; c < 3; ++c) f[3 * Index{nodes[a]} + c] += force[c];
-  }
+  for (std::size_t a = 0; a < nodes.size(); ++a) add_node_vector(f, nodes[a], tensor * gradients[a]);
 }
 
 }}  // namespace palpate

@@ -16,15 +16,18 @@ inline Matrix3 axes_along(const Vector3& along) noexcept {
   for (int i = 1; i < 3; ++i)
     if (std::abs(along[i]) < std::abs(along[far])) far = i;
   const int next = (far + 1) % 3, last = (far + 2) % 3;
-  const double length = along.norm(), across = std::hypot(along[next], along[last]);
+  const double across = std::hypot(along[next], along[last]);
+  const Vector3 first = along / along.norm();
+  Vector3 second;
+  second[far] = 0.0;
+  second[next] = along[last] / across;
+  second[last] = -along[next] / across;
+  const Vector3 third = cross(first, second);
   Matrix3 axes;
-  for (int i = 0; i < 3; ++i) axes(i, 0) = along[i] / length;
-  axes(far, 1) = 0.0;
-  axes(next, 1) = along[last] / across;
-  axes(last, 1) = -along[next] / across;
   for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    axes(i, 2) = axes(j, 0) * axes(k, 1) - axes(k, 0) * axes(j, 1);
+    axes(i, 0) = first[i];
+    axes(i, 1) = second[i];
+    axes(i, 2) = third[i];
   }
   return axes;
 }

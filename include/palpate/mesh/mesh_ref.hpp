@@ -105,8 +105,11 @@ PlainMesh plain_copy(const M& mesh) {
 
 namespace detail {
 
-/// A mesh of any type as a MeshRef, with the copy that a view of another kind than Mesh needs. Not to be copied.
+/// A mesh of any type as a MeshRef, with the copy that a view of another kind than Mesh needs.
 struct PlainView {
+  PlainView() = default;
+  PlainView(PlainView&&) = default;  // moved arrays stay where `mesh` points
+
   PlainMesh copy;
   MeshRef mesh;
 };

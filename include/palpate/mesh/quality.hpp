@@ -30,9 +30,7 @@ inline constexpr bool constant_jacobian = E::order == 1 && E::faces.size() == 4;
 
 /// Takes the Jacobian J of a sample point into the least relative volume and quality; of a mesh scaled to a longest
 /// edge of one. `tetrahedron` says which ideal element J is measured against: the regular tetrahedron, else the cube.
-void sample_shape(const double (&J)[3][3], double reference_volume, bool tetrahedron, ElementShape& shape) noexcept;
-
-double determinant(const double (&J)[3][3]) noexcept;
+void sample_shape(const Matrix3& J, double reference_volume, bool tetrahedron, ElementShape& shape) noexcept;
 
 /// Between nodes a and b.
 template <Element E>
@@ -43,13 +41,12 @@ double squared_distance(const ElementNodes<E>& nodes, int a, int b) noexcept {
 
 /// Jacobian for edges from node 0 and the reference gradients of one point.
 template <Element E>
-void jacobian(const double (&edges)[E::nodes][3], const Eigen::Matrix<double, E::nodes, 3>& gradient,
-              double (&J)[3][3]) noexcept {
+Matrix3 jacobian(const double (&edges)[E::nodes][3], const Eigen::Matrix<double, E::nodes, 3>& gradient) noexcept {
+  Matrix3 J = Matrix3::Zero();
   for (int c = 0; c < 3; ++c)
-    for (int k = 0; k < 3; ++k) {
-      J[c][k] = 0.0;
-      for (int a = 1; a < E::nodes; ++a) J[c][k] += edges[a][c] * gradient(a, k);
-    }
+    for (int k = 0; k < 3; ++k)
+      for (int a = 1; a < E::nodes; ++a) J(c, k) += edges[a][c] * gradient(a, k);
+  return J;
 }
 
 }  // namespace detail
@@ -86,7 +83,7 @@ ElementShape element_shape(const ElementNodes<E>& nodes) noexcept {
   shape.longest_edge = longest_edge<E>(nodes);
   if (!(shape.longest_edge > 0.0)) return shape;
   const double size = shape.longest_edge;
-  double largest = 0.0, edges[E::nodes][3], J[3][3];
+  double largest = 0.0, edges[E::nodes][3];
   for (int a = 0; a < E::nodes; ++a)
     for (int c = 0; c < 3; ++c) {
       largest = std::max(largest, std::abs(nodes(a, c)));
@@ -98,14 +95,14 @@ ElementShape element_shape(const ElementNodes<E>& nodes) noexcept {
   constexpr bool tetrahedron = E::faces.size() == 4;
   double volume = 0.0;
   for (const auto& point : E::Quadrature::points) {
-    detail::jacobian<E>(edges, E::gradient({point.xi[0], point.xi[1], point.xi[2]}), J);
+    const Matrix3 J = detail::jacobian<E>(edges, E::gradient({point.xi[0], point.xi[1], point.xi[2]}));
     detail::sample_shape(J, E::reference_volume, tetrahedron, shape);
-    volume += point.weight * detail::determinant(J);
+    volume += point.weight * determinant(J);
   }
   if constexpr (!detail::constant_jacobian<E>) {
     const ElementNodes<E> corners = E::reference_nodes();
     for (int a = 0; a < E::nodes; ++a) {
-      detail::jacobian<E>(edges, E::gradient({corners(a, 0), corners(a, 1), corners(a, 2)}), J);
+      const Matrix3 J = detail::jacobian<E>(edges, E::gradient({corners(a, 0), corners(a, 1), corners(a, 2)}));
       detail::sample_shape(J, E::reference_volume, tetrahedron, shape);
     }
   }

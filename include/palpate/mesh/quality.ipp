@@ -5,22 +5,19 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-PALPATE_INLINE double determinant(const double (&J)[3][3]) noexcept {
-  return J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) - J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) +
-         J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
-}
-
-PALPATE_INLINE void sample_shape(const double (&J)[3][3], double reference_volume, bool tetrahedron,
+PALPATE_INLINE void sample_shape(const Matrix3& J, double reference_volume, bool tetrahedron,
                                  ElementShape& shape) noexcept {
   shape.relative_volume = std::min(shape.relative_volume, determinant(J) * reference_volume);
   // A = J times the inverse Jacobian of the ideal element.
   const double a = 1.0 / std::sqrt(3.0), b = 1.0 / std::sqrt(6.0), c = std::sqrt(1.5);
-  double A[3][3], stretch = 0.0;
+  Matrix3 A = J;
+  double stretch = 0.0;
   for (int i = 0; i < 3; ++i) {
-    A[i][0] = J[i][0];
-    A[i][1] = tetrahedron ? 2.0 * a * J[i][1] - a * J[i][0] : J[i][1];
-    A[i][2] = tetrahedron ? c * J[i][2] - b * (J[i][0] + J[i][1]) : J[i][2];
-    stretch += A[i][0] * A[i][0] + A[i][1] * A[i][1] + A[i][2] * A[i][2];
+    if (tetrahedron) {
+      A(i, 1) = 2.0 * a * J(i, 1) - a * J(i, 0);
+      A(i, 2) = c * J(i, 2) - b * (J(i, 0) + J(i, 1));
+    }
+    stretch += A(i, 0) * A(i, 0) + A(i, 1) * A(i, 1) + A(i, 2) * A(i, 2);
   }
   const double ratio = stretch > 0.0 ? 3.0 * std::pow(std::max(determinant(A), 0.0), 2.0 / 3.0) / stretch : 0.0;
   shape.quality = std::min(shape.quality, ratio);

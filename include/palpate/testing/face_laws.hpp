@@ -11,15 +11,10 @@
 #include <palpate/testing/shape_laws.hpp>
 #include <palpate/testing/violation.hpp>
 
-#include <Eigen/Geometry>
-
 #include <cmath>
 #include <string>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
-
-/// Cross product of two vectors (Eigen's needs a larger header).
-Vector3 cross(const Vector3& a, const Vector3& b);
 
 template <class F>
 using FaceNodes = Eigen::Matrix<double, F::nodes, 3>;
@@ -127,7 +122,3 @@ Violations face_laws() {
 }
 
 }}}  // namespace palpate::testing
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/testing/face_laws.ipp>
-#endif
