@@ -36,8 +36,10 @@ std::string line_with(const std::string& text, const std::string& key) {
 /// Any line with `bad` is a failure, and shown instead.
 Figure from_other(const Places& p, const std::string& id, const std::string& what, const std::string& command,
                   const std::string& key, const std::string& bad = {}) {
-  const std::string path = "build/reliability/" + id + ".txt";
-  const std::string text = read_text(p.others / "reliability" / (id + ".txt"));
+  std::string file = id + ".txt";
+  std::replace(file.begin(), file.end(), ' ', '-');
+  const std::string path = "build/reliability/" + file;
+  const std::string text = read_text(p.others / "reliability" / file);
   if (const std::string line = bad.empty() ? bad : line_with(text, bad); !line.empty()) return {id, what, line, true};
   if (const std::string line = line_with(text, key); !line.empty()) return {id, what, line};
   return {id, what, "not run: `" + command + " \\| tee " + path + "`"};
@@ -177,6 +179,8 @@ std::vector<Figure> figures_of(const Places& p, const std::vector<TestResult>& r
                  "made by hand, see [the fuzzers](../tests/fuzz/README.md)"});
   all.push_back(
       from_other(p, "R4", "coverage of the gate: lines, branches, MC/DC", "sh tests/gate/coverage.sh", "TOTAL"));
+  all.push_back(from_other(p, "R4 library", "coverage of the whole library by all tests: lines, branches",
+                           "sh tests/coverage.sh", "the library:", "some tests failed"));
   all.push_back(
       from_other(p, "R5", "mutants of the gate killed", "python3 tests/gate/mutants.py", "mutants killed", "SURVIVED"));
   all.push_back(from_other(p, "R6", "sanitizers: the last check", "sh tests/sanitize.sh", "clean:", "NOT C"));
