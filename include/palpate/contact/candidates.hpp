@@ -58,6 +58,8 @@ class Candidates {
   std::span<Candidate> items() noexcept { return {items_.data(), static_cast<std::size_t>(count_)}; }
   bool has_any(int tool) const noexcept;
   void forget() noexcept { valid_ = false; }
+  /// Back to the state after construction.
+  void reset() noexcept;
   /// Whether the last update made another list: candidates are elsewhere in memory.
   bool is_new() const noexcept { return is_new_; }
   /// Whether the last list has no place for a force of the one before: its tool was lifted. The surface then springs

@@ -19,8 +19,21 @@ PALPATE_INLINE Candidates::Candidates(const ContactSurface& surface, double spac
     : samples_(surface, spacing),
       items_(4 * static_cast<std::size_t>(capacity)),
       loaded_(static_cast<std::size_t>(capacity)) {
+  reset();
+}
+
+PALPATE_INLINE void Candidates::reset() noexcept {
+  count_ = loaded_count_ = 0;
+  valid_ = is_new_ = lost_forces_ = false;
+  revision_ = 0;
   proxy_.fill(Vector3::Zero());
   axis_.fill(Vector3::Zero());
+  was_active_.fill(false);
+  range_.fill(0.0);
+  built_.fill(0.0);
+  travel_.fill(0.0);
+  surface_travel_ = reach_ = far_ = far_last_round_ = 0.0;
+  next_ = 0;
 }
 
 /// Points this near may be reached while the linearisation settles; leaving one out lets the ball fall through it.

@@ -42,6 +42,8 @@ struct ContactTool {
 
   /// Takes part in nothing, and nothing presses it.
   void lift() noexcept;
+  /// The tool as it was before its first tick: geometry and coupling stay.
+  void reset() noexcept;
   /// The proxy that a rigid tissue pushing back with `force` would allow.
   Vector3 goal(double floor) const noexcept;
   /// The same for the rotation.

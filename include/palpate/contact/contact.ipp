@@ -13,6 +13,15 @@ PALPATE_INLINE void ContactTool::lift() noexcept {
   force.setZero();
   torque.setZero();
 }
+PALPATE_INLINE void ContactTool::reset() noexcept {
+  ContactTool fresh;
+  fresh.radius = radius;
+  fresh.compliance = compliance;
+  fresh.half_length = half_length;
+  fresh.own_axis = own_axis;
+  fresh.turning_compliance = turning_compliance;
+  *this = fresh;
+}
 PALPATE_INLINE Vector3 ContactTool::goal(double floor) const noexcept {
   return target + (compliance + floor) * force;
 }

@@ -37,8 +37,8 @@ class ContactProblem {
   /// ones. No allocation.
   void move_to(ContactProblem& fresh, const ContactSurface& surface) noexcept;
 
-  /// Forgets all contact forces, as when every tool was lifted.
-  void clear() noexcept;
+  /// Back to the state after construction: the next ticks give the bits that the first ticks gave.
+  void reset() noexcept;
 
   /// How many contacts there is room for.
   int capacity() const noexcept { return rows_.capacity(); }

@@ -92,12 +92,15 @@ PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const Contact
   feedback_ = 0.0;
 }
 
-PALPATE_INLINE void ContactProblem::clear() noexcept {
+PALPATE_INLINE void ContactProblem::reset() noexcept {
   displacement_.clear();
-  for (Candidate& c : candidates_.items()) c.lift();
-  for (Grasp& g : grasps_) g = Grasp{};
-  candidates_.forget();
-  rows_.clear();
+  candidates_.reset();
+  rows_.reset();
+  proxies_ = {};
+  grasps_.fill({});
+  pressing_count_ = violated_count_ = 0;
+  arrived_ = true;
+  feedback_ = 0.0;
 }
 
 /// Takes hold of the nearest point for every tool that has just begun to grasp, and lets go.

@@ -18,6 +18,8 @@ class ContactRows {
   /// Forgets the compliance between points when the tissue's has changed.
   void begin_tick(std::uint64_t compliance_revision) noexcept;
   void clear() noexcept;
+  /// Back to the state after construction.
+  void reset() noexcept;
   /// Without rows, on a surface with more vertices, that `fresh` was made for.
   void move_to(ContactRows& fresh) noexcept;
 

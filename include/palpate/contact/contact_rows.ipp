@@ -97,6 +97,12 @@ PALPATE_INLINE void ContactRows::clear() noexcept {
   compliance_.begin_rows();
 }
 
+PALPATE_INLINE void ContactRows::reset() noexcept {
+  clear();
+  compliance_.reset();
+  tick_ = 0;
+}
+
 PALPATE_INLINE void ContactRows::move_to(ContactRows& fresh) noexcept {
   clear();
   compliance_.forget();

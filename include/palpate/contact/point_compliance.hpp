@@ -17,6 +17,8 @@ class PointCompliance {
   void begin_tick(std::uint64_t revision) noexcept;
   /// Points have other numbers from here on.
   void forget() noexcept;
+  /// Back to the state after construction. Which of two points has the lower slot decides how sums are rounded.
+  void reset() noexcept;
   /// From here on points asked for are in use and keep their slots; those before need not.
   void begin_rows() noexcept { ++rows_; }
 

@@ -23,6 +23,11 @@ PALPATE_INLINE void PointCompliance::forget() noexcept {
   std::fill(sample_.begin(), sample_.end(), -1);
 }
 
+PALPATE_INLINE void PointCompliance::reset() noexcept {
+  forget();
+  next_ = 0;
+}
+
 PALPATE_INLINE int PointCompliance::slot_of(int sample, int hint) noexcept {
   if (hint < 0 || sample_[at(hint)] != sample) {
     const auto found = std::find(sample_.begin(), sample_.end(), sample);

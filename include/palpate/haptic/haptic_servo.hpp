@@ -49,8 +49,9 @@ class HapticServo {
   /// capacity, iterations and, when a list of points near the tools is made anew, the points in their reach.
   std::span<const ToolForce> tick(std::span<const ToolState> states) noexcept;
 
-  /// Lifts all tools, tells the tissue and the reader of snapshots that nothing presses, and closes the gates; the next
-  /// tick starts anew with the ramp. For the tick's own thread.
+  /// Back to the state after construction, apart from the heat of the motors: the same states give the same bits again,
+  /// on a tissue that is itself as it was. Tells the tissue and the reader of snapshots that nothing presses. For the
+  /// tick's own thread.
   void reset() noexcept;
 
   /// Contacts of all tools, as ServoOptions::contact has it; more are left out (degraded_model).

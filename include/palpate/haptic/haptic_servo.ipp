@@ -68,10 +68,11 @@ PALPATE_INLINE std::span<const ToolForce> HapticServo::tick(std::span<const Tool
 }
 
 PALPATE_INLINE void HapticServo::reset() noexcept {
-  problem_.clear();
+  problem_.reset();
   started_ = false;
+  updates_ = ticks_ = 0;
   for (ToolInput& input : inputs_) input.reset();
-  for (ContactTool& tool : contact_tools_) tool.lift();
+  for (ContactTool& tool : contact_tools_) tool.reset();
   for (ForceGate& gate : gates_) gate.reset();
   tissue_.end_tick({});
   for (EnergyTank& energy : energies_) energy.reset();
