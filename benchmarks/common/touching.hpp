@@ -54,7 +54,7 @@ class Touching {
 
   Vector3 tick() noexcept {
     const ToolState state = read();
-    return servo_.tick({&state, 1}).front().force;
+    return servo_.tick({&state, 1}).front().force();
   }
   int pressing() const noexcept {
     return static_cast<int>(std::ranges::count_if(servo_.contacts(), [](const auto& c) { return c.force > 0.0; }));
@@ -80,7 +80,7 @@ class Touching {
     state.time = 1e-3 * static_cast<double>(++count_);
     return state;
   }
-  Status write(const Vector3&, const Vector3&) noexcept { return {}; }
+  Status write(const GatedForce&) noexcept { return {}; }
   DeviceLimits limits() const noexcept { return {}; }
   void start() {}
   void stop() noexcept {}

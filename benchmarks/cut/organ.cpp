@@ -113,7 +113,7 @@ Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& ord
     state.position[0] += 4e-3 * std::sin(6.0 * now);
     state.time = now;
     const double before = thread_seconds();
-    const ToolForce f = servo.tick({&state, 1})[0];
+    const GatedForce f = servo.tick({&state, 1})[0];
     s.ticks.push_back(thread_seconds() - before);
     if (tissue.compliance_revision() != revision) {
       revision = tissue.compliance_revision();
@@ -121,13 +121,13 @@ Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& ord
       ordered = -1.0;
     }
     if (!f.status.has(StatusFlag::degraded_model)) ordered = -1.0;  // it changed nothing
-    s.fine = s.fine && f.force.allFinite() && !f.status.has(StatusFlag::non_finite_force);
-    s.worst_slew = std::max(s.worst_slew, (f.force - last).norm() / (limits.slew_rate * limits.period));
-    s.largest_step = std::max(s.largest_step, (f.force - last).norm());
-    s.longest = std::max(s.longest, f.force.norm());
-    last = f.force;
+    s.fine = s.fine && f.force().allFinite() && !f.status.has(StatusFlag::non_finite_force);
+    s.worst_slew = std::max(s.worst_slew, (f.force() - last).norm() / (limits.slew_rate * limits.period));
+    s.largest_step = std::max(s.largest_step, (f.force() - last).norm());
+    s.longest = std::max(s.longest, f.force().norm());
+    last = f.force();
     if (trace != nullptr)
-      std::fprintf(trace, "%s,%d,%.6f,%.6f,%.6f,%.6f,%llu,%u\n", name, i, f.force.norm(), servo.contact_force().norm(),
+      std::fprintf(trace, "%s,%d,%.6f,%.6f,%.6f,%.6f,%llu,%u\n", name, i, f.force().norm(), servo.contact_force().norm(),
                    1e6 * s.ticks.back(), 1e3 * s.late.back(), static_cast<unsigned long long>(revision),
                    f.status.bits());
   }

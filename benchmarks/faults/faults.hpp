@@ -102,7 +102,7 @@ inline Outcome run(const Fault& fault, double tissue_step) {
     if (not_a_number) state.position[1] = std::numeric_limits<double>::quiet_NaN();
     if (unreadable) state.valid = false;
 
-    const ToolForce force = servo.tick({&state, 1})[0];
+    const GatedForce force = servo.tick({&state, 1})[0];
     const bool is_good = state.valid && state.position.allFinite();
     if (is_good) {
       const auto step = hand.moved(state.position, t);
@@ -110,16 +110,16 @@ inline Outcome run(const Fault& fault, double tissue_step) {
     } else {
       hand.forget();
     }
-    hand.gave(force.force);
+    hand.gave(force.force());
 
     ++out.ticks;
-    out.not_finite += !force.force.allFinite();
-    out.peak = std::max(out.peak, force.force.norm());
-    if (!unreadable && !was_zeroed) out.step = std::max(out.step, (force.force - before).norm());
+    out.not_finite += !force.force().allFinite();
+    out.peak = std::max(out.peak, force.force().norm());
+    if (!unreadable && !was_zeroed) out.step = std::max(out.step, (force.force() - before).norm());
     if (!unreadable && !was_zeroed && k > 0)
       out.raw_step = std::max(out.raw_step, (servo.contact_force() - raw_before).norm());
     was_zeroed = unreadable;
-    before = force.force;
+    before = force.force();
     raw_before = servo.contact_force();
     out.given = std::max(out.given, hand.given() - damped);
     out.tank = std::min(out.tank, servo.energy()->level());
@@ -134,7 +134,7 @@ inline Outcome run(const Fault& fault, double tissue_step) {
     out.disconnected_due += unreadable;
     out.bad_due += not_a_number;
     if (is_good) last_tick = t;
-    if (std::abs(t - 4.6) < 0.5 * tick) out.last_force = force.force.norm();
+    if (std::abs(t - 4.6) < 0.5 * tick) out.last_force = force.force().norm();
   }
   out.taken = damped - hand.given();
   return out;

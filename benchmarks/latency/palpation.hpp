@@ -50,7 +50,7 @@ class Palpation {
   }
   palpate::Vector3 hold() noexcept {
     state_.time = 1e-3 * static_cast<double>(++count_);
-    return servo_.tick({&state_, 1}).front().force;
+    return servo_.tick({&state_, 1}).front().force();
   }
   palpate::Vector3 contact_force() const noexcept { return servo_.contact_force(); }
   int pressing() const noexcept {

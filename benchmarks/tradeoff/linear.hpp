@@ -26,7 +26,7 @@ class Felt {
       states_[b].time = 1e-3 * static_cast<double>(count_);
     }
     ++count_;
-    for (const ToolForce& f : servo_.tick(states_)) status_ |= f.status;
+    for (const GatedForce& f : servo_.tick(states_)) status_ |= f.status;
     for (std::size_t b = 0; b < forces_.size(); ++b) forces_[b] = servo_.contact_force(b);
     return forces_;
   }

@@ -112,8 +112,8 @@ double touch(Organ& organ, const Press& press, VectorX& u) {
   for (int k = 0; k < 700; ++k) {
     state.time = 1e-3 * k;
     state.position = path(state.time);
-    const ToolForce out = servo.tick({&state, 1})[0];
-    longest = std::max(longest, out.force.norm());
+    const GatedForce out = servo.tick({&state, 1})[0];
+    longest = std::max(longest, out.force().norm());
     if (k > 100) seen |= out.status;  // the ramp at the start is over
   }
   u.resize(3 * organ.mesh().node_count());

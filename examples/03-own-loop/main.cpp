@@ -102,12 +102,12 @@ bool on_servo_tick(void* user) {
   ToolState state;
   state.position = to_world(s.device.position_mm);
   state.time = now;
-  const ToolForce out = s.servo.tick({&state, 1})[0];
-  to_device(out.force, s.device.force_newton);
+  const GatedForce out = s.servo.tick({&state, 1})[0];
+  to_device(out.force(), s.device.force_newton);
 
   s.status.count(out.status);
-  s.peak = std::max(s.peak, out.force.norm());
-  s.sound = s.sound && out.force.allFinite() && out.force.norm() <= 3.3 * (1.0 + 1e-9);
+  s.peak = std::max(s.peak, out.force().norm());
+  s.sound = s.sound && out.force().allFinite() && out.force().norm() <= 3.3 * (1.0 + 1e-9);
   const bool go_on = 1e-3 * static_cast<double>(++s.ticks) < s.seconds;
   if (!go_on) s.running.store(false, std::memory_order_release);
   return go_on;

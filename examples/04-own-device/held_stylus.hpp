@@ -35,9 +35,9 @@ class HeldStylus {
     return state;
   }
 
-  /// The device is the last to touch the force: finite, within the peak, and zero unless running and readable. That the
-  /// servo has a gate of its own is no excuse. RenderLimits sees to it; with real motors you pass on what it leaves of both.
-  Status write(const Vector3& force, const Vector3& torque) noexcept { return motors_.render(force, torque); }
+  /// The force comes from a force gate: it is finite and has no jumps. The device is the last to touch it: within the
+  /// peak, and zero unless running and readable. RenderLimits does that; real motors get motors_.force() and torque().
+  Status write(const GatedForce& force) noexcept { return motors_.render(force); }
 
   /// From the data sheet, or better from the SDK. `stiffness` bounds what is felt: the servo couples tool and tissue
   /// with it. Too high and a real device buzzes.

@@ -43,10 +43,10 @@ class Hand {
  public:
   Hand(HapticServo& servo, const Vector3& from) : servo_(servo) { state_.position = from; }
 
-  ToolForce move(const Vector3& to, double tilt, int ticks) {
+  GatedForce move(const Vector3& to, double tilt, int ticks) {
     const Vector3 from = state_.position;
     const double before = tilt_;
-    ToolForce out;
+    GatedForce out;
     for (int k = 1; k <= ticks; ++k) {
       state_.time += 1e-3;
       state_.position = from + (to - from) * k / ticks;
@@ -64,9 +64,9 @@ class Hand {
   double tilt_ = 0.0;
 };
 
-void say(const char* what, const ToolForce& f) {
-  std::printf("%-26s force (%6.3f %6.3f %6.3f) N   torque (%7.4f %7.4f %7.4f) N m\n", what, f.force[0], f.force[1],
-              f.force[2], f.torque[0], f.torque[1], f.torque[2]);
+void say(const char* what, const GatedForce& f) {
+  std::printf("%-26s force (%6.3f %6.3f %6.3f) N   torque (%7.4f %7.4f %7.4f) N m\n", what, f.force()[0], f.force()[1],
+              f.force()[2], f.torque()[0], f.torque()[1], f.torque()[2]);
 }
 
 void draw(Tissue& tissue, HapticServo& servo, const std::filesystem::path& folder, double force) {
@@ -111,21 +111,21 @@ int run_example(const std::filesystem::path& folder) {
   const Vector3 middle(0.5 * size[0], 0.5 * size[1], size[2] + radius);
   Hand hand(servo, middle + Vector3(0, 0, 2e-3));
   hand.move(middle + Vector3(0, 0, 2e-3), 0.0, 50);
-  const ToolForce pressed = hand.move(middle - Vector3(0, 0, depth), 0.0, 300);
+  const GatedForce pressed = hand.move(middle - Vector3(0, 0, depth), 0.0, 300);
   say("pressed", pressed);
-  draw(tissue, servo, folder, pressed.force.norm());
-  const ToolForce tilted = hand.move(middle - Vector3(0, 0, depth), 0.1, 200);
+  draw(tissue, servo, folder, pressed.force().norm());
+  const GatedForce tilted = hand.move(middle - Vector3(0, 0, depth), 0.1, 200);
   say("one end lower by 1.5 mm", tilted);
   hand.move(middle - Vector3(0, 0, depth), 0.0, 200);
-  const ToolForce drawn = hand.move(middle - Vector3(0, -0.006, depth), 0.0, 600);
+  const GatedForce drawn = hand.move(middle - Vector3(0, -0.006, depth), 0.0, 600);
   say("drawn along y", drawn);
-  const ToolForce free = hand.move(middle + Vector3(0, 0.006, 2e-3), 0.0, 200);
+  const GatedForce free = hand.move(middle + Vector3(0, 0.006, 2e-3), 0.0, 200);
 
-  bool right = check(pressed.force[2] > 0.5 && pressed.force.head<2>().norm() < 0.05 * pressed.force[2],
+  bool right = check(pressed.force()[2] > 0.5 && pressed.force().head<2>().norm() < 0.05 * pressed.force()[2],
                      "a level probe feels the press along the vertical");
-  right = check(tilted.torque[1] < -1e-3, "the torque turns the tilted probe back") && right;
-  right = check(-drawn.force[1] > 0.5 * friction * drawn.force[2], "friction drags") && right;
-  right = check(free.force.norm() == 0.0, "lifted, nothing is left") && right;
+  right = check(tilted.torque()[1] < -1e-3, "the torque turns the tilted probe back") && right;
+  right = check(-drawn.force()[1] > 0.5 * friction * drawn.force()[2], "friction drags") && right;
+  right = check(free.force().norm() == 0.0, "lifted, nothing is left") && right;
   return right ? 0 : 1;
 }
 

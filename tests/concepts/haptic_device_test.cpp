@@ -12,7 +12,7 @@ namespace {
 
 struct Minimal {
   ToolState read() noexcept { return {}; }
-  Status write(const Vector3&, const Vector3&) noexcept { return {}; }
+  Status write(const GatedForce&) noexcept { return {}; }
   DeviceLimits limits() const noexcept { return {}; }
   void start() {}  // may throw
   void stop() noexcept {}
@@ -21,7 +21,7 @@ struct ReadMayThrow : Minimal {
   ToolState read() { return {}; }
 };
 struct WriteMayThrow : Minimal {
-  Status write(const Vector3&, const Vector3&) { return {}; }
+  Status write(const GatedForce&) { return {}; }
 };
 struct StopMayThrow : Minimal {
   void stop() {}
@@ -36,20 +36,20 @@ struct ReadsAPosition : Minimal {
   Vector3 read() noexcept { return Vector3::Zero(); }
 };
 struct WriteSaysNothing : Minimal {
-  void write(const Vector3&, const Vector3&) noexcept {}
+  void write(const GatedForce&) noexcept {}
 };
-struct ForceOnly : Minimal {
-  Status write(const Vector3&) noexcept { return {}; }
+struct WritesAnyForce : Minimal {
+  Status write(const Vector3&, const Vector3&) noexcept { return {}; }
 };
 struct NoStop {
   ToolState read() noexcept { return {}; }
-  Status write(const Vector3&, const Vector3&) noexcept { return {}; }
+  Status write(const GatedForce&) noexcept { return {}; }
   DeviceLimits limits() const noexcept { return {}; }
   void start() {}
 };
 struct NoStart {
   ToolState read() noexcept { return {}; }
-  Status write(const Vector3&, const Vector3&) noexcept { return {}; }
+  Status write(const GatedForce&) noexcept { return {}; }
   DeviceLimits limits() const noexcept { return {}; }
   void stop() noexcept {}
 };
@@ -67,26 +67,35 @@ static_assert(!HapticDevice<LimitsMayThrow>);
 static_assert(!HapticDevice<LimitsNotConst>);
 static_assert(!HapticDevice<ReadsAPosition>);
 static_assert(!HapticDevice<WriteSaysNothing>);
-static_assert(!HapticDevice<ForceOnly>);
+static_assert(!HapticDevice<WritesAnyForce>);
+// Only a gate makes a force that is not zero.
+static_assert(std::is_default_constructible_v<GatedForce> && !std::is_aggregate_v<GatedForce>);
+static_assert(!std::is_constructible_v<GatedForce, Vector3> && !std::is_constructible_v<GatedForce, Vector3, Vector3>);
+static_assert(!std::is_constructible_v<GatedForce, Vector3, Vector3, Status>);
+template <class D>
+concept TakesAnyForce = requires(D& device, const Vector3& v) {
+  device.write(v, v);
+};
+static_assert(TakesAnyForce<WritesAnyForce> && !TakesAnyForce<MockDevice<>>);
 static_assert(!HapticDevice<NoStop>);
 static_assert(!HapticDevice<NoStart>);
 static_assert(!HapticDevice<int>);
 
 struct MinimalServo {
-  ToolForce force;
-  std::span<const ToolForce> tick(std::span<const ToolState>) noexcept { return {&force, 1}; }
+  GatedForce force;
+  std::span<const GatedForce> tick(std::span<const ToolState>) noexcept { return {&force, 1}; }
 };
 struct ThrowingServo : MinimalServo {
-  std::span<const ToolForce> tick(std::span<const ToolState>) { return {&force, 1}; }
+  std::span<const GatedForce> tick(std::span<const ToolState>) { return {&force, 1}; }
 };
 struct OneForceServo {
-  ToolForce tick(std::span<const ToolState>) noexcept { return {}; }
+  GatedForce tick(std::span<const ToolState>) noexcept { return {}; }
 };
 struct OneStateServo : MinimalServo {
-  std::span<const ToolForce> tick(const ToolState&) noexcept { return {&force, 1}; }
+  std::span<const GatedForce> tick(const ToolState&) noexcept { return {&force, 1}; }
 };
 struct MutableStatesServo : MinimalServo {
-  std::span<const ToolForce> tick(std::span<ToolState>) noexcept { return {&force, 1}; }
+  std::span<const GatedForce> tick(std::span<ToolState>) noexcept { return {&force, 1}; }
 };
 
 static_assert(Servo<MinimalServo>);

@@ -13,7 +13,7 @@ int main() {
     palpate::ToolState tool;
     tool.time = 1e-3 * i;
     tool.position = {0.02, 0.02, 0.026 - 3e-6 * i};  // from 1 mm above to 2 mm into the surface
-    force = servo.tick({&tool, 1})[0].force;
+    force = servo.tick({&tool, 1})[0].force();
     if (i == 0 && force.norm() != 0.0) return 2;  // touches nothing yet
   }
   std::printf("%.6f %.6f %.6f N, touchable vertices: %lld\n", force[0], force[1], force[2],

@@ -46,35 +46,35 @@ template <class Model>
 struct ServoSession {
   HapticServo servo;
   std::vector<ToolState> states;
-  std::vector<ToolForce> forces;
+  std::vector<GatedForce> forces;
   double period = 1e-3;
 
   explicit ServoSession(Model& model, const ServoOptions& options = {}, std::size_t tools = 1)
       : servo(model, std::vector<SphereTool>(tools, SphereTool{.radius = ball_radius}), options), states(tools) {}
 
   /// One tick with the states as they are, a period later.
-  const ToolForce& tick() {
+  const GatedForce& tick() {
     for (ToolState& s : states) s.time += period;
-    const std::span<const ToolForce> got = servo.tick(states);
+    const std::span<const GatedForce> got = servo.tick(states);
     forces.assign(got.begin(), got.end());
     return forces.front();
   }
-  const ToolForce& tick(const Vector3& position) {
+  const GatedForce& tick(const Vector3& position) {
     states.front().position = position;
     return tick();
   }
   /// In `ticks` equal steps.
-  const ToolForce& move(const Vector3& to, int ticks) {
+  const GatedForce& move(const Vector3& to, int ticks) {
     const Vector3 from = states.front().position;
     for (int i = 1; i <= ticks; ++i) tick(from + (to - from) * i / ticks);
     return forces.front();
   }
-  const ToolForce& hold(int ticks) {
+  const GatedForce& hold(int ticks) {
     for (int i = 0; i < ticks; ++i) tick();
     return forces.front();
   }
   /// From the air straight down until the ball would be `depth` in the undeformed tissue.
-  const ToolForce& press(double depth, double x = 0.0137, double y = 0.0159) {
+  const GatedForce& press(double depth, double x = 0.0137, double y = 0.0159) {
     tick(Vector3(x, y, pad_height + ball_radius + 1e-3));
     return move(Vector3(x, y, pad_height + ball_radius - depth), 100);
   }

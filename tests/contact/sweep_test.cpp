@@ -139,8 +139,8 @@ TEST_CASE("a tool that teleports never gets through a plate of 0.2 mm", "[contac
             Vector3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3));
       if (half > 0.0)
         state.orientation = turned_to(Vector3(std::cos(0.01 * k), std::sin(0.01 * k), 0.3 * std::sin(0.02 * k)));
-      const ToolForce out = servo.tick({&state, 1})[0];
-      if (!out.force.allFinite() || out.force.norm() > 3.3 * (1.0 + 1e-12)) ++wild;
+      const GatedForce out = servo.tick({&state, 1})[0];
+      if (!out.force().allFinite() || out.force().norm() > 3.3 * (1.0 + 1e-12)) ++wild;
       jumps += out.status.has(StatusFlag::reacquired);
       pressed += servo.contact_force().norm() > 0.0;
       lowest = std::min(lowest, servo.proxy()[2]);
@@ -171,7 +171,7 @@ TEST_CASE("a jump through free space arrives, one at a wall stops at it", "[cont
   CHECK(servo.proxy()[2] > 0.0);
   CHECK(servo.contact_force()[2] > 0.0);  // it pulls back to the side it came from
   for (int k = 0; k < 60; ++k) go({0.01, 0, -0.03});
-  CHECK_THAT(go({0.01, 0, -0.03}).force.norm(), WithinRel(3.3, 1e-6));
+  CHECK_THAT(go({0.01, 0, -0.03}).force().norm(), WithinRel(3.3, 1e-6));
   go({0.01, 0, 0.03});  // back: the wall lets go at once
   CHECK(servo.contact_force() == Vector3::Zero());
   CHECK((servo.proxy() - Vector3(0.01, 0, 0.03)).norm() <= 1e-12);
@@ -199,10 +199,10 @@ TEST_CASE("torque goes through the gate, to a device that renders it", "[contact
     state.position = {0, 0, 4e-3 - 1e-5 * std::min(k, 200)};
     const Eigen::Quaterniond q(Eigen::AngleAxisd(1e-3 * std::max(0, k - 200), Vector3::UnitY()));
     state.orientation = {q.w(), q.x(), q.y(), q.z()};
-    const ToolForce out = six.tick({&state, 1})[0], plain = three.tick({&state, 1})[0];
-    most = std::max(most, out.torque.norm());
-    limited += out.torque.norm() > 0.02 * (1.0 + 1e-12);
-    zero += plain.torque == Vector3::Zero();
+    const GatedForce out = six.tick({&state, 1})[0], plain = three.tick({&state, 1})[0];
+    most = std::max(most, out.torque().norm());
+    limited += out.torque().norm() > 0.02 * (1.0 + 1e-12);
+    zero += plain.torque() == Vector3::Zero();
   }
   CHECK(limited == 0);
   CHECK(zero == 400);
@@ -220,7 +220,7 @@ TEST_CASE("buttons grasp", "[contact][grasp][haptic]") {
   HapticServo servo(tissue, SphereTool{.radius = 4e-3}, options);
   ToolState state;
   const auto hold = [&](double z, std::uint32_t buttons, int ticks) {
-    ToolForce out;
+    GatedForce out;
     for (int k = 0; k < ticks; ++k) {
       state.time += 1e-3;
       state.position += Vector3(0, 0, (z - state.position[2]) / (ticks - k));
@@ -234,7 +234,7 @@ TEST_CASE("buttons grasp", "[contact][grasp][haptic]") {
   CHECK_FALSE(servo.is_holding());
   hold(4e-3, 3, 1);
   CHECK(servo.is_holding());
-  CHECK_THAT(hold(7e-3, 2, 100).force[2], WithinRel(-3e-3 / (1e-3 + 1.0 / 500.0), 1e-3));
-  CHECK(hold(7e-3, 0, 5).force == Vector3::Zero());
+  CHECK_THAT(hold(7e-3, 2, 100).force()[2], WithinRel(-3e-3 / (1e-3 + 1.0 / 500.0), 1e-3));
+  CHECK(hold(7e-3, 0, 5).force() == Vector3::Zero());
   CHECK_FALSE(servo.is_holding());
 }

@@ -66,12 +66,12 @@ TEST_CASE("a blade opens the tissue it is pushed into, and is felt", "[cut][blad
     s.position = {0.0301, 0.02, 0.035 - 1e-4 * i * 0.5};
     s.time = 1e-3 * i;
     const testing::AllocationScope scope;
-    const ToolForce f = servo.tick(s);
+    const GatedForce f = servo.tick(s);
     const auto calls = scope.allocations() + scope.frees();
     REQUIRE(calls == 0);
-    REQUIRE(f.force.allFinite());
-    REQUIRE((f.force - last).norm() <= limits.slew_rate * limits.period * (1.0 + 1e-9));
-    last = f.force;
+    REQUIRE(f.force().allFinite());
+    REQUIRE((f.force() - last).norm() <= limits.slew_rate * limits.period * (1.0 + 1e-9));
+    last = f.force();
     most = std::max(most, last.norm());
     if (i % 16 == 0) tissue.work();
   }

@@ -116,13 +116,13 @@ TEST_CASE("a cut under the tool: the force goes on, and changes no faster than t
   const auto tick = [&](double depth) {
     const ToolState s = at({0.052, 0.05, 0.05 + 4e-3 - depth}, time += 1e-3);
     const testing::AllocationScope scope;
-    const ToolForce f = servo.tick({&s, 1})[0];
+    const GatedForce f = servo.tick({&s, 1})[0];
     const auto calls = scope.allocations() + scope.frees();
     CHECK(calls == 0);
-    REQUIRE(f.force.allFinite());
-    REQUIRE(f.force.norm() <= limits.peak_force * (1.0 + 1e-12));
-    longest_step = std::max(longest_step, (f.force - last).norm());
-    last = f.force;
+    REQUIRE(f.force().allFinite());
+    REQUIRE(f.force().norm() <= limits.peak_force * (1.0 + 1e-12));
+    longest_step = std::max(longest_step, (f.force() - last).norm());
+    last = f.force();
     return f;
   };
   for (int i = 0; i < 300; ++i) tick(std::min(6e-3, 1e-3 + i * 4e-5));
@@ -133,7 +133,7 @@ TEST_CASE("a cut under the tool: the force goes on, and changes no faster than t
   CHECK(tick(6e-3).status.has(StatusFlag::degraded_model));  // behind, and says so
   CHECK(std::abs(servo.contact_force().norm() - contact_before.norm()) < 0.02 * contact_before.norm());
   tissue.work();
-  const ToolForce after = tick(6e-3);
+  const GatedForce after = tick(6e-3);
   CHECK(!after.status.has(StatusFlag::degraded_model));
   CHECK(servo.contact_force().norm() > 0.2 * contact_before.norm());  // it has not lost the surface
   CHECK(servo.contact_force().norm() < contact_before.norm());        // a slit body is softer
@@ -149,7 +149,7 @@ TEST_CASE("a cut under the tool: the force goes on, and changes no faster than t
   Vector3 settled = Vector3::Zero();
   for (int i = 0; i < 400; ++i) {
     const ToolState s = at({0.052, 0.05, 0.05 + 4e-3 - std::min(6e-3, 1e-3 + i * 4e-5)}, 1e-3 * i);
-    settled = other.tick({&s, 1})[0].force;
+    settled = other.tick({&s, 1})[0].force();
   }
   CHECK((settled - last).norm() < 0.1 * last.norm());
 }
@@ -183,13 +183,13 @@ TEST_CASE("cut while touched until nothing is left: every force finite and limit
     for (int i = 0; i < 4; ++i) {
       if (i == 2) tissue.work();
       const ToolState s = at({random.uniform(0.0, 0.05), random.uniform(0.0, 0.05), 0.05}, time += 1e-3);
-      const ToolForce f = servo.tick({&s, 1})[0];
-      REQUIRE(f.force.allFinite());
-      REQUIRE(f.force.norm() <= limits.peak_force * (1.0 + 1e-12));
-      REQUIRE((f.force - last).norm() <= limits.slew_rate * 1e-3 * (1.0 + 1e-9));
+      const GatedForce f = servo.tick({&s, 1})[0];
+      REQUIRE(f.force().allFinite());
+      REQUIRE(f.force().norm() <= limits.peak_force * (1.0 + 1e-12));
+      REQUIRE((f.force() - last).norm() <= limits.slew_rate * 1e-3 * (1.0 + 1e-9));
       REQUIRE(f.status.bits() < (1u << status_flag_count));
       REQUIRE(!f.status.has(StatusFlag::non_finite_force));
-      last = f.force;
+      last = f.force();
     }
     double held = 0.0, loose = 0.0, removed = 0.0;
     tissue.read([&](const auto& t, const auto& p) {
@@ -203,7 +203,7 @@ TEST_CASE("cut while touched until nothing is left: every force finite and limit
   CHECK(tissue.contact_surface().triangles().empty());
   for (int i = 0; i < 200; ++i) {
     const ToolState s = at({0.02, 0.02, 0.03}, time += 1e-3);
-    last = servo.tick({&s, 1})[0].force;
+    last = servo.tick({&s, 1})[0].force();
   }
   CHECK(last.norm() == 0.0);  // nothing is there to touch
 }
@@ -223,10 +223,10 @@ TEST_CASE("a thread cuts while another ticks", "[cut][extreme][F3]") {
                        {0.02 + i * 2e-5, -1, 1},
                        {0.02 + i * 2e-5, 2, 1}});
       const ToolState s = at({0.03 + 1e-5 * i, 0.05, 0.05 + 4e-3 - 3e-3}, 1e-3 * i);
-      const ToolForce f = servo.tick({&s, 1})[0];
-      REQUIRE(f.force.allFinite());
-      REQUIRE((f.force - last).norm() <= limits.slew_rate * 1e-3 * (1.0 + 1e-9));
-      last = f.force;
+      const GatedForce f = servo.tick({&s, 1})[0];
+      REQUIRE(f.force().allFinite());
+      REQUIRE((f.force() - last).norm() <= limits.slew_rate * 1e-3 * (1.0 + 1e-9));
+      last = f.force();
       std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
   }

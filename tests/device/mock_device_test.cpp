@@ -1,5 +1,6 @@
 // Trajectories, faults and clocks of the mock device.
 #include <palpate/device/mock_device.hpp>
+#include <palpate/testing/open_gate.hpp>
 
 #include "catch.hpp"
 
@@ -7,6 +8,7 @@
 #include <cmath>
 
 using namespace palpate;
+using palpate::testing::gated;
 using Catch::Matchers::WithinAbs;
 
 namespace {
@@ -148,19 +150,19 @@ TEST_CASE("motors render nothing before start, after stop and while unplugged", 
   MockDevice device(trajectory::poke());
   const Vector3 f(0, 0, 1), none = Vector3::Zero();
   device.read();
-  CHECK(device.write(f, none).ok());
+  CHECK(device.write(gated(f)).ok());
   CHECK(device.last_force() == none);
   device.start();
-  device.write(f, none);
+  device.write(gated(f));
   CHECK(device.last_force() == f);
   device.unplug();
   CHECK_FALSE(device.read().valid);
   CHECK(device.last_force() == none);
-  CHECK(device.write(f, none) == Status(StatusFlag::disconnected));
+  CHECK(device.write(gated(f)) == Status(StatusFlag::disconnected));
   CHECK(device.last_force() == none);
   device.unplug(false);
   CHECK(device.read().valid);
-  device.write(10.0 * f, none);
+  device.write(gated(10.0 * f));
   CHECK(device.last_force() == 3.3 * f);
   device.stop();
   CHECK(device.last_force() == none);

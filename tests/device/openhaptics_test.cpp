@@ -10,6 +10,7 @@
 #include "catch.hpp"
 
 using namespace palpate;
+using palpate::testing::gated;
 using Catch::Matchers::WithinAbs;
 using test::contains;
 
@@ -28,8 +29,8 @@ OpenHapticsOptions hd_with_torque() {
 /// A wall at y = 0 with a gate.
 struct GatedWall {
   ForceGate gate{};
-  ToolForce force{};
-  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
+  GatedForce force{};
+  std::span<const GatedForce> tick(std::span<const ToolState> tools) noexcept {
     const ToolState& t = tools.front();
     force = gate.apply(Vector3(0.0, std::max(0.0, -500.0 * t.position[1]), 0.0), t.time, t.time, t.valid, false);
     return {&force, 1};
@@ -62,7 +63,7 @@ TEST_CASE("openhaptics: millimetres, degrees of freedom and buttons at the borde
   s.buttons = 0b101;
   device.start();
   const ToolState state = device.read();
-  device.write(Vector3(1.0, 2.0, -0.5), Vector3(1.0, 1.0, 1.0));
+  device.write(gated(Vector3(1.0, 2.0, -0.5), Vector3(1.0, 1.0, 1.0)));
   CHECK(state.valid);
   CHECK((state.position - Vector3(0.01, -0.02, 0.03)).norm() < 1e-15);
   CHECK((state.velocity - Vector3(0.1, 0.0, -0.05)).norm() < 1e-15);
@@ -78,13 +79,12 @@ TEST_CASE("openhaptics: torque in newton millimetres where there are motors", "[
   OpenHapticsDevice device(hd_with_torque());
   device.start();
   device.read();
-  device.write(Vector3(0.0, 0.0, 1.0), Vector3(0.01, 0.0, -0.02));
+  device.write(gated(Vector3(0.0, 0.0, 1.0), Vector3(0.01, 0.0, -0.02)));
   CHECK((Vector3(sdk.sdk.torque.data()) - Vector3(10.0, 0.0, -20.0)).norm() < 1e-12);
   device.read();
-  CHECK(device.write(Vector3(0.0, 0.0, 1.0), Vector3(0.0, -7.0, 0.0)) == Status(StatusFlag::saturated));
+  CHECK(device.write(gated(Vector3(0.0, 0.0, 1.0), Vector3(0.0, -7.0, 0.0))) == Status(StatusFlag::saturated));
   CHECK((Vector3(sdk.sdk.torque.data()) - Vector3(0.0, -100.0, 0.0)).norm() < 1e-12);
   device.read();
-  CHECK(device.write(Vector3(0.0, 0.0, 1.0), Vector3(0.01, infinity, 0.0)) == Status(StatusFlag::non_finite_force));
   CHECK(sdk.sdk.torque == std::array<double, 3>{});
   CHECK(hd_force() == Vector3::Zero());
 }
@@ -132,12 +132,12 @@ TEST_CASE("openhaptics: keeps the laws of devices", "[device][openhaptics][laws]
     OpenHapticsDevice& inner;
     ToolState read() noexcept {
       const ToolState s = inner.read();
-      inner.write(Vector3::Zero(), Vector3::Zero());
+      inner.write(GatedForce{});
       return s;
     }
-    Status write(const Vector3& f, const Vector3& t) noexcept {
+    Status write(const GatedForce& force) noexcept {
       inner.read();
-      return inner.write(f, t);
+      return inner.write(force);
     }
     DeviceLimits limits() const noexcept { return inner.limits(); }
     void start() { inner.start(); }
@@ -160,7 +160,7 @@ TEST_CASE("openhaptics: errors about force go on, others take the force off", "[
     fake_hd::fail(code);
     CHECK(device.read().valid);
     fake_hd::fail(code);
-    CHECK(device.write(Vector3(0.0, 1.0, 0.0), Vector3::Zero()) == Status(StatusFlag::saturated));
+    CHECK(device.write(gated(Vector3(0.0, 1.0, 0.0))) == Status(StatusFlag::saturated));
     CHECK(hd_force() == Vector3(0.0, 1.0, 0.0));
   }
   CHECK(device.last_error() == HD_SUCCESS);
@@ -168,12 +168,12 @@ TEST_CASE("openhaptics: errors about force go on, others take the force off", "[
   fake_hd::sdk().errors[3] = HD_COMM_ERROR;  // below others on the stack
   CHECK(!device.read().valid);
   CHECK(fake_hd::sdk().errors.empty());
-  CHECK(device.write(Vector3(0.0, 1.0, 0.0), Vector3::Zero()).has(StatusFlag::disconnected));
+  CHECK(device.write(gated(Vector3(0.0, 1.0, 0.0))).has(StatusFlag::disconnected));
   CHECK(hd_force() == Vector3::Zero());
   CHECK(device.last_error() == HD_COMM_ERROR);
   device.read();
   fake_hd::fail(HD_DEVICE_FAULT);
-  CHECK(device.write(Vector3(0.0, 1.0, 0.0), Vector3::Zero()).has(StatusFlag::disconnected));
+  CHECK(device.write(gated(Vector3(0.0, 1.0, 0.0))).has(StatusFlag::disconnected));
 }
 
 TEST_CASE("openhaptics: numbers that are none make the state invalid", "[device][openhaptics][extreme][D1]") {
@@ -183,18 +183,18 @@ TEST_CASE("openhaptics: numbers that are none make the state invalid", "[device]
     device.start();
     fake_hd::sdk().velocity[1] = bad;
     ToolState state = device.read();
-    device.write(Vector3(0.0, 1.0, 0.0), Vector3::Zero());
+    device.write(gated(Vector3(0.0, 1.0, 0.0)));
     CHECK(state.valid);
     CHECK((std::isnan(state.velocity[0]) && std::isnan(state.velocity[1])));
     CHECK(hd_force()[1] == 1.0);
     fake_hd::sdk().transform[5] = bad;
     CHECK(device.read().orientation == std::array{1.0, 0.0, 0.0, 0.0});
-    device.write(Vector3(0.0, 1.0, 0.0), Vector3::Zero());
+    device.write(gated(Vector3(0.0, 1.0, 0.0)));
     fake_hd::sdk().position[2] = bad;
     state = device.read();
     CHECK(!state.valid);
     CHECK(state.position.allFinite());
-    device.write(Vector3(0.0, 1.0, 0.0), Vector3::Zero());
+    device.write(gated(Vector3(0.0, 1.0, 0.0)));
     CHECK(hd_force() == Vector3::Zero());
   }
 }
@@ -204,7 +204,7 @@ TEST_CASE("openhaptics: a write without a frame sends nothing, a read without a 
   fake_hd::Scope sdk;
   OpenHapticsDevice device;
   device.start();
-  CHECK(device.write(Vector3(0.0, 1.0, 0.0), Vector3::Zero()).has(StatusFlag::disconnected));
+  CHECK(device.write(gated(Vector3(0.0, 1.0, 0.0))).has(StatusFlag::disconnected));
   device.read();
   device.read();
   device.stop();
@@ -238,9 +238,9 @@ TEST_CASE("openhaptics: the loop begins, reads, sets and ends, in this order, an
 TEST_CASE("openhaptics: a lost device ends the loop without force", "[device][openhaptics][extreme][D6]") {
   fake_hd::Scope sdk;
   struct Pushes {
-    ToolForce force{.force = Vector3(0.0, 2.0, 0.0), .status = {}};
+    GatedForce force = gated(Vector3(0.0, 2.0, 0.0));
     std::atomic<int> ticks{0};
-    std::span<const ToolForce> tick(std::span<const ToolState>) noexcept {
+    std::span<const GatedForce> tick(std::span<const ToolState>) noexcept {
       if (++ticks == 50) fake_hd::sdk().broken = true;
       return {&force, 1};
     }
@@ -261,9 +261,9 @@ TEST_CASE("openhaptics: a frame that fails while it sends ends the loop without 
           "[device][openhaptics][extreme][D6]") {
   fake_hd::Scope sdk;
   struct FailsBehind {
-    ToolForce force{.force = Vector3(0.0, 2.0, 0.0), .status = {}};
+    GatedForce force = gated(Vector3(0.0, 2.0, 0.0));
     std::atomic<int> ticks{0};
-    std::span<const ToolForce> tick(std::span<const ToolState>) noexcept {
+    std::span<const GatedForce> tick(std::span<const ToolState>) noexcept {
       if (++ticks == 50) fake_hd::fail(HD_COMM_ERROR);  // the read is over: the write finds it
       return {&force, 1};
     }

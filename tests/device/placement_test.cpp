@@ -1,5 +1,6 @@
 // A device placed in a scene.
 #include <palpate/device/mock_device.hpp>
+#include <palpate/testing/open_gate.hpp>
 #include <palpate/device/placement.hpp>
 #include <palpate/testing/device_laws.hpp>
 #include <palpate/testing/random.hpp>
@@ -28,9 +29,9 @@ struct StillDevice {
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
   DeviceLimits given;
   ToolState read() noexcept { return state; }
-  Status write(const Vector3& f, const Vector3& t) noexcept {
-    force = f;
-    torque = t;
+  Status write(const GatedForce& f) noexcept {
+    force = f.force();
+    torque = f.torque();
     return {};
   }
   DeviceLimits limits() const noexcept { return given; }
@@ -80,7 +81,7 @@ TEST_CASE("velocity, orientation and torque follow", "[device][placement]") {
   CHECK((turned - p.rotation * Eigen::AngleAxisd(0.4, Vector3::UnitX()).toRotationMatrix()).norm() <= 1e-12);
   CHECK(state.time == 7.0);
   CHECK(state.buttons == 5);
-  placed.write({1, 2, 3}, {4, 5, 6});
+  placed.write(testing::gated(Vector3(1, 2, 3), Vector3(4, 5, 6)));
   CHECK((device.force - 3.0 * (p.rotation.transpose() * Vector3(1, 2, 3))).norm() <= 1e-14);
   CHECK((device.torque - 12.0 * (p.rotation.transpose() * Vector3(4, 5, 6))).norm() <= 1e-14);
 }

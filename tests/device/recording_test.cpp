@@ -7,6 +7,7 @@
 #include <locale>
 #include <memory>
 #include <palpate/device/mock_device.hpp>
+#include <palpate/testing/open_gate.hpp>
 #include <palpate/device/replay_device.hpp>
 #include <palpate/device/trajectory.hpp>
 #include <palpate/haptic/force_gate.hpp>
@@ -16,6 +17,7 @@
 #include "catch.hpp"
 
 using namespace palpate;
+using palpate::testing::gated;
 
 namespace {
 
@@ -42,8 +44,8 @@ struct TemporaryFile {
 
 struct SpringServo {
   ForceGate gate;
-  ToolForce force;
-  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
+  GatedForce force;
+  std::span<const GatedForce> tick(std::span<const ToolState> tools) noexcept {
     const ToolState& s = tools.front();
     const Vector3 wanted = -700.0 * s.position - 2.0 * (s.velocity.allFinite() ? s.velocity : Vector3(Vector3::Zero()));
     force = gate.apply(wanted, s.time, s.time, s.valid && s.position.allFinite(), false);
@@ -174,13 +176,13 @@ TEST_CASE("after its end a replay is invalid and renders nothing", "[device][rec
   replay.start();
   for (int i = 0; i < 3; ++i) CHECK(replay.read().valid);
   CHECK(replay.finished());
-  replay.write(Vector3(1, 0, 0), Vector3::Zero());
+  replay.write(gated(Vector3(1, 0, 0)));
   CHECK(replay.last_force() == Vector3(1, 0, 0));
   for (int i = 0; i < 3; ++i) {
     const ToolState s = replay.read();
     CHECK_FALSE(s.valid);
     CHECK(s.position == Vector3(1, 2, 3));
-    CHECK(replay.write(Vector3(1, 0, 0), Vector3::Zero()).has(StatusFlag::disconnected));
+    CHECK(replay.write(gated(Vector3(1, 0, 0))).has(StatusFlag::disconnected));
     CHECK(replay.last_force() == Vector3::Zero());
   }
   CHECK(replay.recorded().size() == 3);
@@ -190,14 +192,14 @@ TEST_CASE("after its end a replay is invalid and renders nothing", "[device][rec
 TEST_CASE("a recorder keeps the newest ticks and says how many it dropped", "[device][recording]") {
   MockDevice stylus(trajectory::poke());
   Recorder recorder(stylus, 10);
-  recorder.write(Vector3(1, 0, 0), Vector3::Zero());  // before any read: passed on, not recorded
+  recorder.write(gated(Vector3(1, 0, 0)));  // before any read: passed on, not recorded
   recorder.note(StatusFlag::inverted);
   CHECK(recorder.ticks().empty());
   recorder.start();
   for (int i = 0; i < 25; ++i) {
     recorder.read();
     recorder.note(StatusFlag::degraded_model);
-    recorder.write(Vector3(0.1 * i, 0, 0), Vector3::Zero());
+    recorder.write(gated(Vector3(0.1 * i, 0, 0)));
     if (i == 6) CHECK(recorder.ticks().size() == 7);
     if (i == 6) CHECK(recorder.dropped() == 0);
   }

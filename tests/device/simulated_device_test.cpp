@@ -6,6 +6,7 @@
 #include "catch.hpp"
 
 using namespace palpate;
+using palpate::testing::gated;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 using palpate::testing::VirtualWall;
@@ -84,7 +85,7 @@ TEST_CASE("energy is conserved through motors, hand, friction and dampers", "[de
     for (int i = 0; i < 2000; ++i) {
       device.read();
       if (i % 50 == 0) device.push(random.vector<3>(-5.0, 5.0));
-      device.write(random.vector<3>(-2.0, 2.0), Vector3::Zero());
+      device.write(gated(random.vector<3>(-2.0, 2.0)));
     }
     const SimulatedEnergy& e = device.energy();
     const double kinetic = 0.5 * 0.1 * device.velocity().squaredNorm();
@@ -114,7 +115,7 @@ TEST_CASE("a force acts after the delay, to the instant", "[device][simulated]")
     SimulatedDevice device = started(o);
     run(device, 5);
     for (int i = 0; i < 60; ++i) {
-      device.write(Vector3(0.0, 0.0, 0.5), Vector3::Zero());  // from t = 5 ms + delay on
+      device.write(gated(Vector3(0.0, 0.0, 0.5)));  // from t = 5 ms + delay on
       device.read();
       const double t = std::max(0.0, device.time() - 5e-3 - delay);
       CHECK_THAT(device.position()[2], WithinAbs(2.5 * t * t, 1e-15));
@@ -197,7 +198,7 @@ TEST_CASE("stop and a lost device take the force off, delayed or not", "[device]
   SimulatedDevice device = started(o);
   for (int i = 0; i < 10; ++i) {
     device.read();
-    device.write(Vector3(0.0, 0.0, 1.0), Vector3::Zero());
+    device.write(gated(Vector3(0.0, 0.0, 1.0)));
   }
   CHECK(device.motor_force() == Vector3(0.0, 0.0, 1.0));
   SECTION("stop") {
@@ -290,7 +291,7 @@ TEST_CASE("with friction and encoder steps energy comes out beyond 2 f / step, a
       for (int i = 0; i < 80; ++i) {
         if (i == 40) before = device.energy().hand;
         const bool in = i % 2 == 0;
-        device.move_hand(Vector3(0.0, 0.0, -(10.5 + (in ? 0.3 : -0.3)) * step - wall.force.force[2] / 4e5));
+        device.move_hand(Vector3(0.0, 0.0, -(10.5 + (in ? 0.3 : -0.3)) * step - wall.force.force()[2] / 4e5));
         testing::tick(device, wall);
       }
       return device.energy().hand - before >= 0.0;

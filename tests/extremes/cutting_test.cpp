@@ -93,14 +93,14 @@ void cut_apart(int kind, std::uint64_t seed, int most, ManyCuts& all) {
       s.position = x += random.vector<3>(-2e-3, 2e-3);
       if (x.norm() > 0.1) x = mesh.position(0);
       s.time = time += 1e-3;
-      const ToolForce f = servo.tick({&s, 1})[0];
-      REQUIRE(f.force.allFinite());
-      REQUIRE(f.force.norm() <= limits.peak_force * (1.0 + 1e-12));
+      const GatedForce f = servo.tick({&s, 1})[0];
+      REQUIRE(f.force().allFinite());
+      REQUIRE(f.force().norm() <= limits.peak_force * (1.0 + 1e-12));
       REQUIRE(f.status.bits() < (1u << status_flag_count));
       REQUIRE(!f.status.has(StatusFlag::non_finite_force));
-      all.worst_slew = std::max(all.worst_slew, (f.force - last).norm() / (limits.slew_rate * limits.period));
+      all.worst_slew = std::max(all.worst_slew, (f.force() - last).norm() / (limits.slew_rate * limits.period));
       all.seen |= f.status;
-      last = f.force;
+      last = f.force();
     }
     masses(tissue, whole, left, all);
     const CutReport report = tissue.report();
@@ -223,17 +223,17 @@ TEST_CASE("the shipped organ, cut sixty times a second beside a finger: slew and
     ToolState s;
     s.time = 1e-3 * i;
     s.position = middle + (SphereTool{}.radius - std::min(4e-3, 2e-5 * i) + 1e-3 * std::sin(0.05 * i)) * outward;
-    const ToolForce f = servo.tick({&s, 1})[0];
-    REQUIRE(f.force.allFinite());
-    REQUIRE(f.force.norm() <= limits.peak_force * (1.0 + 1e-12));
+    const GatedForce f = servo.tick({&s, 1})[0];
+    REQUIRE(f.force().allFinite());
+    REQUIRE(f.force().norm() <= limits.peak_force * (1.0 + 1e-12));
     const Vector3 way = i > 0 ? Vector3(s.position - was) : Vector3::Zero();
     given += last.dot(way);
     worst_work = std::max(worst_work, last.dot(way));
     dissipated += energy.damping * way.squaredNorm() / 1e-3;
-    worst_slew = std::max(worst_slew, (f.force - last).norm() / (limits.slew_rate * limits.period));
-    if (cut) across_cut = std::max(across_cut, (f.force - last).norm());
-    longest = std::max(longest, f.force.norm());
-    last = f.force;
+    worst_slew = std::max(worst_slew, (f.force() - last).norm() / (limits.slew_rate * limits.period));
+    if (cut) across_cut = std::max(across_cut, (f.force() - last).norm());
+    longest = std::max(longest, f.force().norm());
+    last = f.force();
     was = s.position;
     REQUIRE(given <= energy.allowance + energy.refill * s.time + dissipated + worst_work);
   }

@@ -183,7 +183,7 @@ void check_heat() {
   ForceGate gate(limits);
   const auto push = [&](double newtons, double from, double to) {
     double force = 0.0;
-    for (double t = from; t < to; t += 1e-3) force = gate.apply({0.0, 0.0, newtons}, t, t, true, false).force[2];
+    for (double t = from; t < to; t += 1e-3) force = gate.apply({0.0, 0.0, newtons}, t, t, true, false).force()[2];
     return force;
   };
   expect(std::abs(push(2.0, 0.0, 5.0) - 2.0) < 1e-12, "twice the continuous force is given for seconds");
@@ -202,8 +202,8 @@ void check_held_input() {
   for (const bool valid : {false, true}) {
     ForceGate held(limits), seen(limits);
     const auto both = [&](double newtons, double t) {
-      const double a = held.apply({0.0, 0.0, newtons}, t, t, true, false).force[2];
-      const double b = seen.apply({0.0, 0.0, newtons}, t, t, true, false).force[2];
+      const double a = held.apply({0.0, 0.0, newtons}, t, t, true, false).force()[2];
+      const double b = seen.apply({0.0, 0.0, newtons}, t, t, true, false).force()[2];
       return std::abs(a - b);
     };
     double t = 0.0;
@@ -247,31 +247,31 @@ void compare(const gate::Limits& chosen, std::uint64_t ticks) {
     turning = 0.125 * force(r, 8.0 * turning);
     if (!turning.allFinite() && r.below(4) != 0) turning = Vector3(0.0, 0.25, 0.0);
     const bool valid = r.below(lossy ? 8 : 400) != 0, restart = r.below(300) == 0;
-    const ToolForce out = turning.isZero(0.0) ? real.apply(wanted, now, stamp, valid, restart)
+    const GatedForce out = turning.isZero(0.0) ? real.apply(wanted, now, stamp, valid, restart)
                                               : real.apply(wanted, turning, now, stamp, valid, restart);
     const gate::Answer want = model.apply({wanted[0], wanted[1], wanted[2]}, {turning[0], turning[1], turning[2]}, now,
                                           stamp, valid, restart);
 
     double difference = 0.0;
     for (int k = 0; k < 3; ++k) {
-      difference = std::max(difference, std::abs(out.force[k] - want.force[static_cast<std::size_t>(k)]));
-      difference = std::max(difference, std::abs(out.torque[k] - want.torque[static_cast<std::size_t>(k)]));
+      difference = std::max(difference, std::abs(out.force()[k] - want.force[static_cast<std::size_t>(k)]));
+      difference = std::max(difference, std::abs(out.torque()[k] - want.torque[static_cast<std::size_t>(k)]));
     }
-    if (!(difference <= 1e-9) || real.last_force() != out.force || real.last_torque() != out.torque) ++wrong_force;
+    if (!(difference <= 1e-9) || real.last_force() != out.force() || real.last_torque() != out.torque()) ++wrong_force;
     if (((out.status.bits() ^ want.status) & ~want.unsure) != 0) ++wrong_status;
-    model.compare({out.force[0], out.force[1], out.force[2]}, {out.torque[0], out.torque[1], out.torque[2]});
-    if (!out.force.allFinite() || !out.torque.allFinite()) ++not_finite;
-    if (!(out.force.norm() <= chosen.peak * (1.0 + 1e-12))) ++too_long;
-    if (!(out.torque.norm() <= chosen.torque * (1.0 + 1e-12))) ++too_long;
+    model.compare({out.force()[0], out.force()[1], out.force()[2]}, {out.torque()[0], out.torque()[1], out.torque()[2]});
+    if (!out.force().allFinite() || !out.torque().allFinite()) ++not_finite;
+    if (!(out.force().norm() <= chosen.peak * (1.0 + 1e-12))) ++too_long;
+    if (!(out.torque().norm() <= chosen.torque * (1.0 + 1e-12))) ++too_long;
     const bool zeroed = (out.status.bits() & (gate::disconnected | gate::non_finite_force)) != 0;
-    if (!zeroed && !((out.force - before).norm() <= chosen.slew * tick * (1.0 + 1e-12))) ++too_fast;
+    if (!zeroed && !((out.force() - before).norm() <= chosen.slew * tick * (1.0 + 1e-12))) ++too_fast;
     if (!zeroed &&
-        !((out.torque - turned).norm() <= chosen.slew * tick * (chosen.torque / chosen.peak) * (1.0 + 1e-12) + 1e-15))
+        !((out.torque() - turned).norm() <= chosen.slew * tick * (chosen.torque / chosen.peak) * (1.0 + 1e-12) + 1e-15))
       ++too_fast;
-    if (!out.force.isZero(0.0)) ++rendered;
-    if (is_warm(out.force, chosen)) ++warm;
-    before = out.force;
-    turned = out.torque;
+    if (!out.force().isZero(0.0)) ++rendered;
+    if (is_warm(out.force(), chosen)) ++warm;
+    before = out.force();
+    turned = out.torque();
   }
   std::printf(
       "%llu ticks, %.0f %% with a force: %llu forces and %llu statuses differ from the model; %llu not finite, "

@@ -87,8 +87,8 @@ TEST_CASE("with less room than vertices near the ball the tick says so and goes 
   ServoSession session(ahead);
   session.press(2e-3);
   for (int i = 0; i < 300; ++i) {
-    const ToolForce& f = session.tick(session.states[0].position + Vector3(2e-5, 1e-5, 0.0));
-    CHECK(f.force.allFinite());
+    const GatedForce& f = session.tick(session.states[0].position + Vector3(2e-5, 1e-5, 0.0));
+    CHECK(f.force().allFinite());
     std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
 }

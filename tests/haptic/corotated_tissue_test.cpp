@@ -44,7 +44,7 @@ std::pair<Vector3, Status> held_force(Tissue& tissue, int ticks = 1500) {
     ToolState s;
     s.time = 1e-3 * k;
     s.position = {0.5 * slab_size[0], 0.5 * slab_size[1], slab_size[2] + tip - std::min(0.004, 0.02 * s.time)};
-    const ToolForce out = servo.tick({std::array{s}})[0];
+    const GatedForce out = servo.tick({std::array{s}})[0];
     REQUIRE(servo.contact_force().allFinite());
     if (k >= ticks - 100) status |= out.status;
   }
@@ -106,7 +106,7 @@ TEST_CASE("a co-rotated tissue moves in a thread of its own", "[haptic][corotate
     s.position = {0.03, 0.03, 0.03 + tip - 0.002};
     for (int k = 0; k < 200; ++k) {
       s.time = 1e-3 * k;
-      CHECK(servo.tick({std::array{s}})[0].force.allFinite());
+      CHECK(servo.tick({std::array{s}})[0].force().allFinite());
       std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
     moving.stop();

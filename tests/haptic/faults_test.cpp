@@ -77,16 +77,16 @@ TEST_CASE("a tissue's thread that hangs, a device's that is late, and load besid
     ToolState state;
     state.time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     state.position = {0.03, 0.03, faults::pad_size[2] + faults::ball - std::min(0.006, 0.02 * state.time)};
-    const ToolForce out = servo.tick({&state, 1})[0];
+    const GatedForce out = servo.tick({&state, 1})[0];
     counters.count(out.status);
     if (k > 0) late += state.time - before_time > 1.5 * limits.period;
     const double allowed = limits.slew_rate * std::min(k > 0 ? state.time - before_time : limits.period, limits.period);
-    wild += !(out.force.norm() <= limits.peak_force);
-    kicks += !((out.force - before).norm() <= allowed * (1.0 + 1e-9) + 1e-12);
-    most = std::max(most, out.force.norm());
+    wild += !(out.force().norm() <= limits.peak_force);
+    kicks += !((out.force() - before).norm() <= allowed * (1.0 + 1e-9) + 1e-12);
+    most = std::max(most, out.force().norm());
     backwards += tissue.updates() < seen;
     seen = tissue.updates();
-    before = out.force;
+    before = out.force();
     before_time = state.time;
     ++ticks;
   }

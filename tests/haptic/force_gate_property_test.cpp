@@ -93,23 +93,23 @@ struct Count {
   std::int64_t not_finite = 0, above_peak = 0, slew_broken = 0, not_zero = 0, flags_wrong = 0, turned = 0, at_work = 0;
 };
 
-void check_tick(const ForceLimits& limits, const Input& in, const Vector3& before, const ToolForce& out, Count& bad) {
+void check_tick(const ForceLimits& limits, const Input& in, const Vector3& before, const GatedForce& out, Count& bad) {
   const bool finite = in.wanted.allFinite();
   const bool emergency = !finite || !in.valid;
-  if (!out.force.allFinite() || out.torque != Vector3::Zero()) ++bad.not_finite;
-  if (!(out.force.norm() <= limits.peak_force * (1.0 + 1e-12))) ++bad.above_peak;
+  if (!out.force().allFinite() || out.torque() != Vector3::Zero()) ++bad.not_finite;
+  if (!(out.force().norm() <= limits.peak_force * (1.0 + 1e-12))) ++bad.above_peak;
   if (out.status.has(StatusFlag::non_finite_force) == finite) ++bad.flags_wrong;
   if (out.status.has(StatusFlag::disconnected) == in.valid) ++bad.flags_wrong;
-  if (emergency && out.force != Vector3::Zero()) ++bad.not_zero;
+  if (emergency && out.force() != Vector3::Zero()) ++bad.not_zero;
   if (emergency) return;
   const double most = limits.slew_rate * limits.period;
-  if (!((out.force - before).norm() <= most + 1e-12 * limits.peak_force)) ++bad.slew_broken;
+  if (!((out.force() - before).norm() <= most + 1e-12 * limits.peak_force)) ++bad.slew_broken;
   const double wanted = length(in.wanted);
   if (out.status.has(StatusFlag::saturated) && wanted < limits.peak_force * (1.0 - 1e-12)) ++bad.flags_wrong;
   if (!out.status.has(StatusFlag::saturated) && wanted > limits.peak_force * (1.0 + 1e-12)) ++bad.flags_wrong;
-  if (out.force.norm() > 1e-3 * limits.peak_force) ++bad.at_work;
-  if (out.status.has(StatusFlag::saturated) && !out.status.has(StatusFlag::slew_limited) && out.force.norm() > 0.0 &&
-      !(cosine(out.force, in.wanted) >= 1.0 - 1e-12))
+  if (out.force().norm() > 1e-3 * limits.peak_force) ++bad.at_work;
+  if (out.status.has(StatusFlag::saturated) && !out.status.has(StatusFlag::slew_limited) && out.force().norm() > 0.0 &&
+      !(cosine(out.force(), in.wanted) >= 1.0 - 1e-12))
     ++bad.turned;
 }
 
@@ -120,9 +120,9 @@ Count run(const ForceLimits& limits, std::uint64_t seed, int ticks) {
   Count bad;
   for (int i = 0; i < ticks; ++i) {
     const Input in = source.next();
-    const ToolForce out = gate.apply(in.wanted, in.now, in.stamp, in.valid, in.restart);
+    const GatedForce out = gate.apply(in.wanted, in.now, in.stamp, in.valid, in.restart);
     check_tick(limits, in, before, out, bad);
-    before = out.force;
+    before = out.force();
   }
   return bad;
 }
@@ -180,14 +180,14 @@ TEST_CASE("clamping keeps the direction of 1e6 vectors of every size", "[haptic]
     const double size = std::pow(10.0, i % 2 == 0 ? random.uniform(-1.0, 2.0) : random.uniform(-320.0, 308.0));
     const Vector3 wanted = random.vector<3>(-1.0, 1.0) * size;
     now += 1e-3;
-    const ToolForce out = gate.apply(wanted, now, now, true, false);
+    const GatedForce out = gate.apply(wanted, now, now, true, false);
     const double wanted_length = length(wanted);
     if (out.status.has(StatusFlag::saturated)) {
       ++saturated;
-      worst_cosine = std::min(worst_cosine, cosine(out.force, wanted));
-      longest = std::max(longest, out.force.norm());
-      shortest = std::min(shortest, out.force.norm());
-    } else if (out.force != wanted || wanted_length > 3.3 * (1.0 + 1e-12)) {
+      worst_cosine = std::min(worst_cosine, cosine(out.force(), wanted));
+      longest = std::max(longest, out.force().norm());
+      shortest = std::min(shortest, out.force().norm());
+    } else if (out.force() != wanted || wanted_length > 3.3 * (1.0 + 1e-12)) {
       ++changed;
     }
   }
@@ -206,12 +206,12 @@ TEST_CASE("ramp and fade are monotone for 1000 constant forces", "[haptic][gate]
     double before = 0.0;
     int broken = 0;
     for (int k = 0; k < 50; ++k) {
-      const double size = gate.apply(wanted, 1e-3 * k, 1e-3 * k, true, false).force.norm();
+      const double size = gate.apply(wanted, 1e-3 * k, 1e-3 * k, true, false).force().norm();
       if (k == 0 ? size != 0.0 : size < before * (1.0 - 1e-15)) ++broken;
       before = size;
     }
     for (int k = 50; k < 80; ++k) {
-      const double size = gate.apply(wanted, 1e-3 * k, 1e-3 * 49, true, false).force.norm();
+      const double size = gate.apply(wanted, 1e-3 * k, 1e-3 * 49, true, false).force().norm();
       if (size > before * (1.0 + 1e-15)) ++broken;
       before = size;
     }

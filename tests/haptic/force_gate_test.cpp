@@ -21,7 +21,7 @@ struct Session {
   double now = 10.0;
 
   explicit Session(const ForceLimits& limits = {}) : gate(limits) {}
-  ToolForce tick(const Vector3& wanted, bool valid = true, bool restart = false) {
+  GatedForce tick(const Vector3& wanted, bool valid = true, bool restart = false) {
     now += period;
     return gate.apply(wanted, now, now, valid, restart);
   }
@@ -50,24 +50,24 @@ TEST_CASE("the ramp starts at zero and rises monotonically to the wanted force",
   Session s;
   double before = 0.0;
   for (int i = 0; i < 60; ++i) {
-    const ToolForce f = s.tick(two_newtons);
+    const GatedForce f = s.tick(two_newtons);
     INFO("tick " << i);
-    if (i == 0) CHECK(f.force == Vector3::Zero());
-    CHECK(f.force[2] >= before);
-    CHECK(f.force[2] - before <= 2.0 / 33.0 + 1e-12);
-    CHECK(f.status.has(StatusFlag::ramping) == (f.force[2] < 2.0));
-    before = f.force[2];
-    if (i >= 34) CHECK(f.force == two_newtons);
-    CHECK(f.torque == Vector3::Zero());
+    if (i == 0) CHECK(f.force() == Vector3::Zero());
+    CHECK(f.force()[2] >= before);
+    CHECK(f.force()[2] - before <= 2.0 / 33.0 + 1e-12);
+    CHECK(f.status.has(StatusFlag::ramping) == (f.force()[2] < 2.0));
+    before = f.force()[2];
+    if (i >= 34) CHECK(f.force() == two_newtons);
+    CHECK(f.torque() == Vector3::Zero());
   }
 }
 
 TEST_CASE("a huge force ramps as slowly as the peak force", "[haptic][gate][extreme][D3][D7]") {
   Session s;
   for (int i = 0; i < 34; ++i) {
-    const ToolForce f = s.tick(Vector3(1e308, 1e308, -1e308));
+    const GatedForce f = s.tick(Vector3(1e308, 1e308, -1e308));
     CHECK(f.status.has(StatusFlag::saturated));
-    CHECK_THAT(f.force.norm(), WithinAbs(3.3 * std::min(1.0, i / 33.0), 1e-9));
+    CHECK_THAT(f.force().norm(), WithinAbs(3.3 * std::min(1.0, i / 33.0), 1e-9));
   }
 }
 
@@ -76,8 +76,8 @@ TEST_CASE("forces within the limits pass unchanged and unflagged", "[haptic][gat
   s.warm();
   for (const Vector3& f : {Vector3(0, 0, 2), Vector3(0.1, -0.2, 1.5), Vector3(-0.0, 5e-324, 1.2), Vector3(3.2, 0, 0)}) {
     for (int i = 0; i < 5; ++i) s.tick(f);
-    const ToolForce out = s.tick(f);
-    CHECK(out.force == f);
+    const GatedForce out = s.tick(f);
+    CHECK(out.force() == f);
     CHECK(out.status.ok());
   }
 }
@@ -87,10 +87,10 @@ TEST_CASE("too long a force is shortened, direction kept", "[haptic][gate][extre
   for (double size : {3.300001, 10.0, 1e10, 1e300}) {
     const Vector3 direction = Vector3(1, -2, 3).normalized();
     s.warm(size * direction);
-    const ToolForce f = s.tick(size * direction);
+    const GatedForce f = s.tick(size * direction);
     CHECK(f.status == Status(StatusFlag::saturated));
-    CHECK_THAT(f.force.norm(), WithinAbs(3.3, 3.3e-12));
-    CHECK(f.force.normalized().dot(direction) >= 1.0 - 1e-12);
+    CHECK_THAT(f.force().norm(), WithinAbs(3.3, 3.3e-12));
+    CHECK(f.force().normalized().dot(direction) >= 1.0 - 1e-12);
   }
 }
 
@@ -101,13 +101,13 @@ TEST_CASE("a force that is not finite gives zero at once and a new ramp", "[hapt
       s.warm();
       Vector3 wanted = two_newtons;
       wanted[axis] = bad;
-      ToolForce f = s.tick(wanted);
-      CHECK(f.force == Vector3::Zero());
+      GatedForce f = s.tick(wanted);
+      CHECK(f.force() == Vector3::Zero());
       CHECK(f.status == Status(StatusFlag::non_finite_force));
       f = s.tick(two_newtons);
-      CHECK(f.force == Vector3::Zero());
+      CHECK(f.force() == Vector3::Zero());
       CHECK(f.status == Status(StatusFlag::ramping));
-      CHECK(s.tick(two_newtons).force[2] <= 2.0 / 33.0 + 1e-12);
+      CHECK(s.tick(two_newtons).force()[2] <= 2.0 / 33.0 + 1e-12);
     }
 }
 
@@ -115,14 +115,14 @@ TEST_CASE("invalid input gives zero in the same tick and a ramp on reconnect", "
   Session s;
   s.warm();
   for (int i = 0; i < 3; ++i) {
-    const ToolForce f = s.tick(two_newtons, false);
-    CHECK(f.force == Vector3::Zero());
+    const GatedForce f = s.tick(two_newtons, false);
+    CHECK(f.force() == Vector3::Zero());
     CHECK(f.status == Status(StatusFlag::disconnected));
   }
-  CHECK(s.tick(two_newtons).force == Vector3::Zero());
+  CHECK(s.tick(two_newtons).force() == Vector3::Zero());
   double before = 0.0;
   for (int i = 0; i < 40; ++i) {
-    const double size = s.tick(two_newtons).force[2];
+    const double size = s.tick(two_newtons).force()[2];
     CHECK(size >= before);
     CHECK(size - before <= 2.0 / 33.0 + 1e-12);
     before = size;
@@ -133,16 +133,16 @@ TEST_CASE("invalid input gives zero in the same tick and a ramp on reconnect", "
 TEST_CASE("input that comes and goes every tick renders nothing", "[haptic][gate][extreme][D6]") {
   Session s;
   s.warm();
-  for (int i = 0; i < 100; ++i) CHECK(s.tick(two_newtons, i % 2 == 1).force == Vector3::Zero());
+  for (int i = 0; i < 100; ++i) CHECK(s.tick(two_newtons, i % 2 == 1).force() == Vector3::Zero());
 }
 
 TEST_CASE("restart ramps from zero, within the slew limit", "[haptic][gate][extreme][D2]") {
   Session s;
   s.warm(Vector3(0, 0, 3.3));
-  const ToolForce f = s.tick(Vector3(0, 0, 3.3), true, true);
-  CHECK_THAT(f.force[2], WithinAbs(3.3 - 1.65, 1e-12));
+  const GatedForce f = s.tick(Vector3(0, 0, 3.3), true, true);
+  CHECK_THAT(f.force()[2], WithinAbs(3.3 - 1.65, 1e-12));
   CHECK(f.status == (Status(StatusFlag::ramping) | StatusFlag::slew_limited));
-  CHECK(s.tick(Vector3(0, 0, 3.3)).force[2] <= 0.1 + 1e-12);
+  CHECK(s.tick(Vector3(0, 0, 3.3)).force()[2] <= 0.1 + 1e-12);
 }
 
 TEST_CASE("stale input fades to exactly zero and recovers by the ramp", "[haptic][gate][extreme][D5][D6]") {
@@ -156,21 +156,21 @@ TEST_CASE("stale input fades to exactly zero and recovers by the ramp", "[haptic
   for (int i = 1; i <= 30; ++i) {
     const double later = s.now + i * period;
     const double now = kind == Clock::runs ? later : kind == Clock::stands ? s.now : nan_value;
-    const ToolForce f = s.gate.apply(two_newtons, now, stamp, true, false);
+    const GatedForce f = s.gate.apply(two_newtons, now, stamp, true, false);
     INFO("tick " << i);
-    CHECK(f.force[2] <= before);
-    CHECK(before - f.force[2] <= 2.0 / 20.0 + 1e-9);
-    before = f.force[2];
-    if (i <= 2) CHECK(f.force[2] == 2.0);
+    CHECK(f.force()[2] <= before);
+    CHECK(before - f.force()[2] <= 2.0 / 20.0 + 1e-9);
+    before = f.force()[2];
+    if (i <= 2) CHECK(f.force()[2] == 2.0);
     if (i >= 4) CHECK(f.status.has(StatusFlag::stale));
-    if (i >= 4 && i < 23) CHECK(f.force[2] < 2.0);
-    if (i >= 24) CHECK(f.force == Vector3::Zero());
+    if (i >= 4 && i < 23) CHECK(f.force()[2] < 2.0);
+    if (i >= 24) CHECK(f.force() == Vector3::Zero());
   }
   s.now += 0.030;
-  const Vector3 first = s.tick(two_newtons).force;  // the stall of a stopped clock ends here
+  const Vector3 first = s.tick(two_newtons).force();  // the stall of a stopped clock ends here
   CHECK(first == Vector3::Zero());
   s.warm();
-  CHECK(s.tick(two_newtons).force == two_newtons);
+  CHECK(s.tick(two_newtons).force() == two_newtons);
 }
 
 TEST_CASE("a huge force fades as well", "[haptic][gate][extreme][D5][D7]") {
@@ -178,7 +178,7 @@ TEST_CASE("a huge force fades as well", "[haptic][gate][extreme][D5][D7]") {
   s.warm(Vector3(1e300, 0, 0));
   const double stamp = s.now;
   for (int i = 1; i <= 24; ++i) {
-    const Vector3 f = s.gate.apply(Vector3(1e300, 0, 0), stamp + i * period, stamp, true, false).force;
+    const Vector3 f = s.gate.apply(Vector3(1e300, 0, 0), stamp + i * period, stamp, true, false).force();
     CHECK(f[0] <= 3.3 * std::max(0.0, 1.0 - (i - 3) / 20.0) + 1e-9);
   }
   CHECK(s.gate.last_force() == Vector3::Zero());
@@ -188,7 +188,7 @@ TEST_CASE("input with a constant delay: fresh below stale_after, faded above", "
   for (const auto& [delay, renders] : {std::pair(0.0, true), std::pair(0.002, true), std::pair(0.010, false)}) {
     ForceGate gate;
     Vector3 f = Vector3::Zero();
-    for (int i = 0; i < 200; ++i) f = gate.apply(two_newtons, i * period, i * period - delay, true, false).force;
+    for (int i = 0; i < 200; ++i) f = gate.apply(two_newtons, i * period, i * period - delay, true, false).force();
     CHECK(f == (renders ? two_newtons : Vector3(Vector3::Zero())));
   }
 }
@@ -200,7 +200,7 @@ TEST_CASE("stamps from the future or of another clock render nothing", "[haptic]
     double most = 0.0;
     for (int i = 1; i < 200; ++i) {
       const double now = i * period;
-      const Vector3 f = gate.apply(two_newtons, now, now + offset, true, false).force;
+      const Vector3 f = gate.apply(two_newtons, now, now + offset, true, false).force();
       if (i > 30) most = std::max(most, f.norm());
     }
     INFO(offset);
@@ -222,13 +222,13 @@ TEST_CASE("a stall costs gain for what exceeds stale_after, counts once, and buy
     Vector3 before = s.gate.last_force();
     s.now += c.stall - period;
     for (int i = 0; i < 60; ++i) {
-      const ToolForce f = s.tick(Vector3(0, 0, 3.0));
+      const GatedForce f = s.tick(Vector3(0, 0, 3.0));
       missed += f.status.has(StatusFlag::deadline_missed) ? 1 : 0;
-      CHECK((f.force - before).norm() <= 1.65 + 1e-12);
+      CHECK((f.force() - before).norm() <= 1.65 + 1e-12);
       if (i == 0) CHECK(f.status.has(StatusFlag::stale) == c.stale);
-      if (i == 0) CHECK_THAT(f.force[2], WithinAbs(std::max(3.0 * c.gain, 3.0 - 1.65), 1e-9));
-      if (i == 1) CHECK(f.force[2] <= 3.0 * c.gain + 1e-9);
-      before = f.force;
+      if (i == 0) CHECK_THAT(f.force()[2], WithinAbs(std::max(3.0 * c.gain, 3.0 - 1.65), 1e-9));
+      if (i == 1) CHECK(f.force()[2] <= 3.0 * c.gain + 1e-9);
+      before = f.force();
     }
     INFO("stall " << c.stall);
     CHECK(missed == 1);
@@ -241,23 +241,23 @@ TEST_CASE("the change per tick is limited, also when clocks misbehave", "[haptic
   s.warm(Vector3(3.3, 0, 0));
   SECTION("the whole way round takes four ticks") {
     for (int i = 1; i <= 4; ++i) {
-      const ToolForce f = s.tick(Vector3(-3.3, 0, 0));
-      CHECK_THAT(f.force[0], WithinAbs(3.3 - 1.65 * i, 1e-9));  // the clock itself rounds to 2e-12
+      const GatedForce f = s.tick(Vector3(-3.3, 0, 0));
+      CHECK_THAT(f.force()[0], WithinAbs(3.3 - 1.65 * i, 1e-9));  // the clock itself rounds to 2e-12
       if (i < 4) CHECK(f.status == Status(StatusFlag::slew_limited));
     }
-    const ToolForce f = s.tick(Vector3(-3.3, 0, 0));
-    CHECK(f.force[0] == -3.3);
+    const GatedForce f = s.tick(Vector3(-3.3, 0, 0));
+    CHECK(f.force()[0] == -3.3);
     CHECK(f.status.ok());
   }
   SECTION("half a period allows half the change") {
     s.now += 0.5 * period;
-    const ToolForce f = s.gate.apply(Vector3(-3.3, 0, 0), s.now, s.now, true, false);
-    CHECK_THAT(f.force[0], WithinAbs(3.3 - 0.825, 1e-9));
+    const GatedForce f = s.gate.apply(Vector3(-3.3, 0, 0), s.now, s.now, true, false);
+    CHECK_THAT(f.force()[0], WithinAbs(3.3 - 0.825, 1e-9));
   }
   SECTION("a clock that stands still, runs backwards or is no number counts as one period") {
     for (double now : {s.now, s.now - 5.0, nan_value, infinity, -infinity, -1e308}) {
       ForceGate gate = s.gate;
-      const Vector3 f = gate.apply(Vector3(-3.3, 0, 0), now, s.now + period, true, false).force;
+      const Vector3 f = gate.apply(Vector3(-3.3, 0, 0), now, s.now + period, true, false).force();
       INFO(now);
       CHECK((f - s.gate.last_force()).norm() <= 1.65 + 1e-12);
     }
@@ -269,7 +269,7 @@ TEST_CASE("a clock set back goes on after at most a ramp", "[haptic][gate][extre
   s.warm();
   s.now = -1000.0;
   s.warm();
-  CHECK(s.tick(two_newtons).force == two_newtons);
+  CHECK(s.tick(two_newtons).force() == two_newtons);
 }
 
 TEST_CASE("limits hold exactly: at a limit nothing happens, just beyond it does", "[haptic][gate]") {
@@ -298,9 +298,9 @@ TEST_CASE("limits hold exactly: at a limit nothing happens, just beyond it does"
 
   const auto future = [&](double ahead) {  // all stamps are ahead of the clock by the same time
     ForceGate gate(limits);
-    ToolForce f;
+    GatedForce f;
     for (int i = 0; i < 80; ++i) f = gate.apply(one, i * tick, i * tick + ahead, true, false);
-    return f.force;
+    return f.force();
   };
   CHECK(future(limits.stale_after) == one);
   CHECK(future(limits.stale_after + bit) == Vector3::Zero());
@@ -309,7 +309,7 @@ TEST_CASE("limits hold exactly: at a limit nothing happens, just beyond it does"
 TEST_CASE("nothing is stale before the first stale_after is over", "[haptic][gate]") {
   ForceGate gate;
   for (int i = 0; i < 3; ++i) {
-    const ToolForce f = gate.apply(two_newtons, i * period, nan_value, true, false);
+    const GatedForce f = gate.apply(two_newtons, i * period, nan_value, true, false);
     CHECK(f.status == Status(StatusFlag::ramping));
   }
   gate.apply(two_newtons, 3 * period, nan_value, true, false);
@@ -332,7 +332,7 @@ TEST_CASE("a stall does not hide behind a clock that is no number", "[haptic][ga
     s.warm();
     s.gate.apply(two_newtons, other, s.now + period, true, false);
     s.now += 0.1;
-    const ToolForce f = s.tick(two_newtons);
+    const GatedForce f = s.tick(two_newtons);
     INFO(other);
     CHECK(f.status.has(StatusFlag::deadline_missed));
     CHECK(f.status.has(StatusFlag::stale));
@@ -344,7 +344,7 @@ TEST_CASE("reset goes back to the start", "[haptic][gate]") {
   s.warm();
   s.gate.reset();
   CHECK(s.gate.last_force() == Vector3::Zero());
-  CHECK(s.tick(two_newtons).force == Vector3::Zero());
+  CHECK(s.tick(two_newtons).force() == Vector3::Zero());
   CHECK(s.gate.limits().peak_force == 3.3);
 }
 

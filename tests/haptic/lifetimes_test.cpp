@@ -35,7 +35,7 @@ Vector3 ticked(PadServo& servo, double phase) {
   Vector3 sum = Vector3::Zero();
   for (int k = 0; k < session_ticks; ++k) {
     const ToolState state = circling(k, phase);
-    sum += servo.tick({&state, 1})[0].force;
+    sum += servo.tick({&state, 1})[0].force();
   }
   return sum;
 }

@@ -28,12 +28,16 @@ struct Tanked : testing::Tanked<Source> {
 /// Pushes out, and not in: each time round it gives a newton times the way.
 struct Pump {
   double before = 0.0;
-  ToolForce force{};
-  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
-    const double z = tools.front().position[2];
-    if (z > before) force.force = Vector3(0.0, 0.0, 1.0);
-    if (z < before) force.force = Vector3::Zero();
+  ForceGate gate = testing::open_gate();
+  GatedForce force{};
+  Vector3 wanted = Vector3::Zero();
+  std::span<const GatedForce> tick(std::span<const ToolState> tools) noexcept {
+    const ToolState& tool = tools.front();
+    const double z = tool.position[2];
+    if (z > before) wanted = Vector3(0.0, 0.0, 1.0);
+    if (z < before) wanted = Vector3::Zero();
     before = z;
+    force = gate.apply(wanted, tool.time, tool.time, true, false);
     return {&force, 1};
   }
 };
@@ -43,7 +47,7 @@ Vector3 at(S& servo, double z, double time) {
   ToolState state;
   state.position[2] = z;
   state.time = time;
-  return servo.tick({&state, 1}).front().force;
+  return servo.tick({&state, 1}).front().force();
 }
 
 }  // namespace
@@ -262,10 +266,10 @@ double press(Engine& tissue, const Energy& energy, double soft, std::vector<Vect
     tissue.become(std::sin(phase) > 0.0 ? soft : 1.0);  // soft on the way in
     state.position = Vector3(0.0, 0.0, 5e-3 - 1.5e-3 + 2e-3 * std::cos(phase));
     state.time = 1e-3 * i;
-    const ToolForce& f = servo.tick({&state, 1}).front();
+    const GatedForce& f = servo.tick({&state, 1}).front();
     observer.moved(state.position, state.time);
-    observer.gave(f.force);
-    if (forces) forces->push_back(f.force);
+    observer.gave(f.force());
+    if (forces) forces->push_back(f.force());
     if (limited && f.status.has(StatusFlag::energy_injected)) ++*limited;
   }
   return observer.given();

@@ -1,5 +1,6 @@
 // The haptic loop with a mock device and a servo that is a spring behind a wall.
 #include <palpate/device/mock_device.hpp>
+#include <palpate/testing/open_gate.hpp>
 #include <palpate/device/replay_device.hpp>
 #include <palpate/device/trajectory.hpp>
 #include <palpate/haptic/force_gate.hpp>
@@ -13,6 +14,7 @@
 #include "catch.hpp"
 
 using namespace palpate;
+using palpate::testing::gated;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
@@ -23,7 +25,7 @@ class SpringServo {
  public:
   explicit SpringServo(const ForceLimits& limits = {}) : gate_(limits) {}
 
-  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
+  std::span<const GatedForce> tick(std::span<const ToolState> tools) noexcept {
     const ToolState& s = tools.front();
     const bool finite = s.position.allFinite();
     const bool jumped = !((s.position - position_).norm() < 0.01);
@@ -33,8 +35,8 @@ class SpringServo {
     force_ = gate_.apply(wanted, s.time, s.time, s.valid && finite, jumped);
     if (!finite) force_.status.set(StatusFlag::non_finite_input);
     if (jumped) force_.status.set(StatusFlag::reacquired);
-    if (s.valid && finite) largest_change_ = std::max(largest_change_, (force_.force - before).norm());
-    sound_ &= force_.force.allFinite();
+    if (s.valid && finite) largest_change_ = std::max(largest_change_, (force_.force() - before).norm());
+    sound_ &= force_.force().allFinite();
     ++ticks;
     return {&force_, 1};
   }
@@ -45,7 +47,7 @@ class SpringServo {
 
  private:
   ForceGate gate_;
-  ToolForce force_;
+  GatedForce force_;
   Vector3 position_ = Vector3::Zero();
   double largest_change_ = 0.0;
   bool sound_ = true;
@@ -143,7 +145,7 @@ TEST_CASE("a paced loop keeps its rate", "[haptic][loop][timing]") {
 TEST_CASE("a slow servo misses deadlines and the loop says so", "[haptic][loop][timing][extreme][D5]") {
   struct Slow {
     SpringServo spring;
-    std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
+    std::span<const GatedForce> tick(std::span<const ToolState> tools) noexcept {
       if (++ticks % 10 == 0) std::this_thread::sleep_for(std::chrono::microseconds(5500));
       return spring.tick(tools);
     }
@@ -159,9 +161,9 @@ TEST_CASE("a slow servo misses deadlines and the loop says so", "[haptic][loop][
 
 TEST_CASE("the thread flushes denormals and the calling thread does not", "[haptic][loop]") {
   struct Denormal {
-    ToolForce force;
+    GatedForce force;
     volatile double product = -1.0;
-    std::span<const ToolForce> tick(std::span<const ToolState>) noexcept {
+    std::span<const GatedForce> tick(std::span<const ToolState>) noexcept {
       const volatile double small = 1e-300, smaller = 1e-15;
       product = small * smaller;
       return {&force, 1};
@@ -214,7 +216,7 @@ TEST_CASE("progress may end the loop, by its answer or by throwing; the device i
     CHECK_THROWS_AS(run_haptic_loop(stylus, servo, options), std::runtime_error);
   }
   CHECK(stylus.last_force() == Vector3::Zero());
-  stylus.write(Vector3(1, 0, 0), Vector3::Zero());
+  stylus.write(gated(Vector3(1, 0, 0)));
   CHECK(stylus.last_force() == Vector3::Zero());  // stopped
 }
 
@@ -233,7 +235,7 @@ TEST_CASE("a device that does not start is stopped and its error passed on", "[h
 
 TEST_CASE("a servo without a force renders zero", "[haptic][loop]") {
   struct Empty {
-    std::span<const ToolForce> tick(std::span<const ToolState>) noexcept { return {}; }
+    std::span<const GatedForce> tick(std::span<const ToolState>) noexcept { return {}; }
   } servo;
   MockDevice stylus(trajectory::poke());
   const LoopReport report = run_haptic_loop(stylus, servo, unpaced(0.1));
@@ -361,8 +363,8 @@ TEST_CASE("read, tick, gate, write allocate nothing", "[haptic][allocation]") {
   const testing::AllocationScope scope;
   for (int i = 0; i < 5000; ++i) {
     const ToolState state = recorder.read();
-    const ToolForce force = servo.tick(std::span<const ToolState>(&state, 1)).front();
-    recorder.write(force.force, force.torque);
+    const GatedForce force = servo.tick(std::span<const ToolState>(&state, 1)).front();
+    recorder.write(force);
   }
   const std::uint64_t allocations = scope.allocations(), frees = scope.frees();
   CHECK(allocations == 0);
@@ -379,7 +381,7 @@ TEST_CASE("the loop allocates nothing between its first and its last tick", "[ha
     SpringServo spring;
     testing::AllocationScope scope;
     std::uint64_t calls = 1;
-    std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
+    std::span<const GatedForce> tick(std::span<const ToolState> tools) noexcept {
       if (spring.ticks == 0) scope = testing::AllocationScope();
       const auto forces = spring.tick(tools);
       calls = scope.allocations() + scope.frees();

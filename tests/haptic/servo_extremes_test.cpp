@@ -41,13 +41,13 @@ struct Watch {
   Vector3 before = Vector3::Zero();
 
   /// `cut`: the tick was allowed to drop to zero.
-  void look(const ToolForce& f) {
-    if (!f.force.allFinite() || !f.torque.isZero(0.0)) ++not_finite;
-    if (!(f.force.norm() <= peak * (1.0 + 1e-12))) ++above_peak;
+  void look(const GatedForce& f) {
+    if (!f.force().allFinite() || !f.torque().isZero(0.0)) ++not_finite;
+    if (!(f.force().norm() <= peak * (1.0 + 1e-12))) ++above_peak;
     const bool cut = f.status.has(StatusFlag::disconnected) || f.status.has(StatusFlag::non_finite_force);
-    if (!cut && !((f.force - before).norm() <= slew * (1.0 + 1e-12))) ++slewed;
-    if (f.force.norm() > 1e-3) ++at_work;
-    before = f.force;
+    if (!cut && !((f.force() - before).norm() <= slew * (1.0 + 1e-12))) ++slewed;
+    if (f.force().norm() > 1e-3) ++at_work;
+    before = f.force();
   }
   void check() const {
     CHECK(not_finite == 0);
@@ -60,7 +60,7 @@ struct Watch {
 Vector3 static_force(Pad& pad, double depth) {
   ServoSession session(pad);
   session.press(depth);
-  return session.hold(200).force;
+  return session.hold(200).force();
 }
 
 }  // namespace
@@ -98,10 +98,10 @@ TEST_CASE("1e6 ticks of special and random values give finite forces within the 
       s.time = special(random);
     s.valid = calm || random.uniform() < 0.98;
     const bool finite = s.position.allFinite() && std::isfinite(s.time);
-    const ToolForce f = session.servo.tick(session.states).front();
+    const GatedForce f = session.servo.tick(session.states).front();
     watch.look(f);
     if (s.valid && !finite && !f.status.has(StatusFlag::non_finite_input)) ++unflagged;
-    if (!s.valid && !(f.force.isZero(0.0) && f.status.has(StatusFlag::disconnected))) ++forced_when_unreadable;
+    if (!s.valid && !(f.force().isZero(0.0) && f.status.has(StatusFlag::disconnected))) ++forced_when_unreadable;
   }
   watch.check();
   CHECK(unflagged == 0);
@@ -111,10 +111,10 @@ TEST_CASE("1e6 ticks of special and random values give finite forces within the 
   session.states[0].time = 1e4;
   session.tick(Vector3(0, 0, 0.5));
   session.press(1e-3);
-  const Vector3 after = session.hold(200).force;
+  const Vector3 after = session.hold(200).force();
   ServoSession fresh(pad, options);
   fresh.press(1e-3);
-  CHECK((fresh.hold(200).force - after).norm() <= 1e-6 * after.norm());  // no trace of it all
+  CHECK((fresh.hold(200).force() - after).norm() <= 1e-6 * after.norm());  // no trace of it all
 }
 
 TEST_CASE("a pose that is not finite: held, then faded to zero, then ramped", "[haptic][servo][extreme][D1]") {
@@ -123,25 +123,25 @@ TEST_CASE("a pose that is not finite: held, then faded to zero, then ramped", "[
     for (int axis = 0; axis < 3; ++axis) {
       ServoSession session(pad);
       session.press(1.5e-3);
-      const Vector3 held = session.hold(100).force, place = session.states[0].position;
+      const Vector3 held = session.hold(100).force(), place = session.states[0].position;
       Vector3 wrong = place;
       wrong[axis] = bad;
       double before = held.norm();
       for (int i = 1; i <= 40; ++i) {
-        const ToolForce& f = session.tick(wrong);
+        const GatedForce& f = session.tick(wrong);
         CHECK(f.status.has(StatusFlag::non_finite_input));
-        if (i <= 2) CHECK((f.force - held).norm() <= 1e-6 * held.norm());
-        CHECK(f.force.norm() <= before * (1.0 + 1e-6));
-        before = f.force.norm();
+        if (i <= 2) CHECK((f.force() - held).norm() <= 1e-6 * held.norm());
+        CHECK(f.force().norm() <= before * (1.0 + 1e-6));
+        before = f.force().norm();
       }
       CHECK(before == 0.0);
       for (int i = 0; i < 60; ++i) {
-        const ToolForce& f = session.tick(place);
-        if (i == 0) CHECK(f.force.norm() <= 0.05 * held.norm());
-        CHECK(f.force.norm() >= before - 1e-9);
-        before = f.force.norm();
+        const GatedForce& f = session.tick(place);
+        if (i == 0) CHECK(f.force().norm() <= 0.05 * held.norm());
+        CHECK(f.force().norm() >= before - 1e-9);
+        before = f.force().norm();
       }
-      CHECK((session.forces[0].force - held).norm() <= 1e-6 * held.norm());
+      CHECK((session.forces[0].force() - held).norm() <= 1e-6 * held.norm());
     }
 }
 
@@ -156,10 +156,10 @@ TEST_CASE("a time stamp that is not finite is no fresh input", "[haptic][servo][
     session.tick();
     CHECK(session.forces[0].status.has(StatusFlag::non_finite_input));
   }
-  CHECK(session.forces[0].force.isZero(0.0));
+  CHECK(session.forces[0].force().isZero(0.0));
   session.states[0].time = good + 0.04;
   session.hold(60);
-  CHECK(session.forces[0].force.norm() > 0.05);
+  CHECK(session.forces[0].force().norm() > 0.05);
 }
 
 TEST_CASE("a teleport of 1 m: slew kept, flagged, recovered within 50 ms", "[haptic][servo][extreme][D2]") {
@@ -168,7 +168,7 @@ TEST_CASE("a teleport of 1 m: slew kept, flagged, recovered within 50 ms", "[hap
     for (int away : {1, 5, 100}) {
       ServoSession session(pad, slow_gate());
       session.press(1.5e-3);
-      const Vector3 settled = session.hold(200).force, place = session.states[0].position;
+      const Vector3 settled = session.hold(200).force(), place = session.states[0].position;
       REQUIRE(settled.norm() > 3.0 * slow_slew);
       Watch watch;
       watch.before = settled;
@@ -176,13 +176,13 @@ TEST_CASE("a teleport of 1 m: slew kept, flagged, recovered within 50 ms", "[hap
       CHECK(session.forces[0].status.has(StatusFlag::reacquired));
       watch.look(session.forces[0]);
       for (int i = 1; i < away; ++i) watch.look(session.tick());
-      if (away == 100) CHECK(session.forces[0].force.isZero(0.0));
+      if (away == 100) CHECK(session.forces[0].force().isZero(0.0));
       watch.look(session.tick(place));
       CHECK(session.forces[0].status.has(StatusFlag::reacquired));
       for (int i = 0; i < 49; ++i) watch.look(session.tick());
       INFO("away for " << away << " ticks, by " << offset.transpose());
       watch.check();
-      CHECK((session.forces[0].force - settled).norm() <= 1e-2 * settled.norm());
+      CHECK((session.forces[0].force() - settled).norm() <= 1e-2 * settled.norm());
     }
 }
 
@@ -199,10 +199,10 @@ TEST_CASE("a jump into the tissue within two radii ends at the static force", "[
     jumped.tick(start);
     jumped.hold(5);
     jumped.tick(end);
-    const Vector3 f = jumped.hold(100).force;
+    const Vector3 f = jumped.hold(100).force();
     walked.tick(start);
     walked.move(end, 200);
-    const Vector3 g = walked.hold(100).force;
+    const Vector3 g = walked.hold(100).force();
     ++jumps;
     if (f.norm() < 0.1 * g.norm())
       ++lost;
@@ -242,7 +242,7 @@ TEST_CASE("a session that starts in the tissue ramps from zero to an outward for
     std::array<std::vector<Vector3>, 2> runs;
     for (auto& forces : runs) {
       ServoSession session(test::whole_pad());
-      for (int i = 0; i < 120; ++i) forces.push_back(session.tick(start.position).force);
+      for (int i = 0; i < 120; ++i) forces.push_back(session.tick(start.position).force());
     }
     double before = 0.0, worst_fall = 0.0;
     int falls = 0, different = 0, not_finite = 0;
@@ -273,7 +273,7 @@ TEST_CASE("a session that starts beside or below a body whose top can be touched
         ServoSession session(pad);
         const Vector3 p(x, y, z);
         for (int i = 0; i < 60; ++i) {
-          const double f = session.tick(p).force.norm();
+          const double f = session.tick(p).force().norm();
           if (f > worst) WARN("a force of " << f << " N at " << p.transpose());
           worst = std::max(worst, f);
         }
@@ -291,12 +291,12 @@ TEST_CASE("on fixed nodes the force is the coupling's, saturated if that is rigi
     session.tick(start);
     session.hold(50);
     session.move(start + Vector3(0, 0, 1.1e-3), 100);
-    const ToolForce& f = session.hold(50);
-    CHECK(f.force[2] < 0.0);
-    CHECK(f.force.head<2>().norm() <= 0.3 * f.force.norm());  // the ball lies between the points
-    if (k == 500.0) CHECK(f.force.norm() <= 0.5 * (1.0 + 1e-6));
-    if (k == 500.0) CHECK(-f.force[2] >= 0.3);
-    if (k == infinity) CHECK_THAT(f.force.norm(), WithinAbs(3.3, 1e-9));
+    const GatedForce& f = session.hold(50);
+    CHECK(f.force()[2] < 0.0);
+    CHECK(f.force().head<2>().norm() <= 0.3 * f.force().norm());  // the ball lies between the points
+    if (k == 500.0) CHECK(f.force().norm() <= 0.5 * (1.0 + 1e-6));
+    if (k == 500.0) CHECK(-f.force()[2] >= 0.3);
+    if (k == infinity) CHECK_THAT(f.force().norm(), WithinAbs(3.3, 1e-9));
     CHECK(f.status.has(StatusFlag::saturated) == (k == infinity));
   }
 }
@@ -308,7 +308,7 @@ TEST_CASE("a model whose touchable nodes are all fixed is a rigid wall", "[hapti
            LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.3});
   ServoSession session(wall);
   session.press(1e-3);
-  const Vector3 f = session.hold(100).force;
+  const Vector3 f = session.hold(100).force();
   CHECK(f[2] > 0.3);
   CHECK(f[2] <= 0.5 * (1.0 + 1e-6));
 }
@@ -365,7 +365,7 @@ TEST_CASE("a stall is flagged, loses force if it is long, and comes back by the 
     INFO("stall of " << stall << " s");
     ServoSession session(pad, slow_gate());
     session.press(1.5e-3);
-    const Vector3 settled = session.hold(200).force;
+    const Vector3 settled = session.hold(200).force();
     Watch watch;
     watch.before = settled;
     const Vector3 deeper = session.states[0].position - Vector3(0, 0, 2e-3);
@@ -380,13 +380,13 @@ TEST_CASE("a stall is flagged, loses force if it is long, and comes back by the 
     }
     watch.check();
     CHECK(missed == 1);
-    CHECK(session.forces[0].force.norm() > settled.norm());
+    CHECK(session.forces[0].force().norm() > settled.norm());
     if (stall == 0.2) {
       session.states[0].time += 0.2;
       session.tick();
-      double before = session.forces[0].force.norm();
+      double before = session.forces[0].force().norm();
       for (int i = 0; i < 5; ++i) {  // 0.165 N per tick down, whatever the stall was
-        const double now = session.tick().force.norm();
+        const double now = session.tick().force().norm();
         if (now > before && before > 4.0 * slow_slew) FAIL("the force grows after a stall of 0.2 s");
         before = now;
       }
@@ -400,10 +400,10 @@ TEST_CASE("frozen input fades to zero", "[haptic][servo][extreme][D5][D6]") {
   session.press(1.5e-3);
   session.hold(100);
   session.period = 0.0;
-  CHECK(session.hold(30).force.isZero(0.0));
+  CHECK(session.hold(30).force().isZero(0.0));
   CHECK(session.forces[0].status.has(StatusFlag::stale));
   session.period = 1e-3;
-  CHECK(session.hold(60).force.norm() > 0.05);
+  CHECK(session.hold(60).force().norm() > 0.05);
 }
 
 TEST_CASE("reads that fail at random: zero at once, ramp afterwards", "[haptic][servo][extreme][D6]") {
@@ -420,15 +420,15 @@ TEST_CASE("reads that fail at random: zero at once, ramp afterwards", "[haptic][
     if (!s.valid && random.uniform() < 0.5) s.position = Vector3(nan_value, infinity, 1e308);
     if (s.valid) s.position = Vector3(0.0137, 0.0159, pad_height + ball_radius - 1.5e-3);
     session.tick();
-    const ToolForce& f = session.forces[0];
+    const GatedForce& f = session.forces[0];
     since_failure = s.valid ? since_failure + 1 : 0;
     if (f.status.has(StatusFlag::disconnected) == s.valid) ++wrong;
-    if (since_failure <= 1 && !f.force.isZero(0.0)) ++wrong;
-    if (since_failure > 0 && f.force.norm() > settled.norm() * std::min(1.0, (since_failure - 1) / 33.0) * 1.01)
+    if (since_failure <= 1 && !f.force().isZero(0.0)) ++wrong;
+    if (since_failure > 0 && f.force().norm() > settled.norm() * std::min(1.0, (since_failure - 1) / 33.0) * 1.01)
       ++wrong;
-    if (since_failure > 60 && (f.force - settled).norm() > 1e-2 * settled.norm()) ++wrong;
-    if (f.force.norm() > 0.9 * settled.norm()) ++at_work;
-    if (session.forces[1].status.has(StatusFlag::disconnected) || !session.forces[1].force.isZero(0.0)) ++wrong;
+    if (since_failure > 60 && (f.force() - settled).norm() > 1e-2 * settled.norm()) ++wrong;
+    if (f.force().norm() > 0.9 * settled.norm()) ++at_work;
+    if (session.forces[1].status.has(StatusFlag::disconnected) || !session.forces[1].force().isZero(0.0)) ++wrong;
   }
   CHECK(wrong == 0);
   CHECK(at_work > 4000);
@@ -447,11 +447,11 @@ TEST_CASE("a saturated force keeps its direction", "[haptic][servo][extreme][D7]
   double worst = 1.0;
   int saturated = 0;
   for (int i = 0; i < 1000; ++i) {
-    const ToolForce& f = session.tick(session.states[0].position + Vector3(1e-5, 2e-6, 0));
+    const GatedForce& f = session.tick(session.states[0].position + Vector3(1e-5, 2e-6, 0));
     if (!f.status.has(StatusFlag::saturated)) continue;
     ++saturated;
-    worst = std::min(worst, f.force.normalized().dot(session.servo.contact_force().normalized()));
-    if (std::abs(f.force.norm() - 0.5) > 1e-9) FAIL("saturated at " << f.force.norm());
+    worst = std::min(worst, f.force().normalized().dot(session.servo.contact_force().normalized()));
+    if (std::abs(f.force().norm() - 0.5) > 1e-9) FAIL("saturated at " << f.force().norm());
   }
   CHECK(saturated > 900);
   CHECK(worst >= 1.0 - 1e-12);
@@ -468,6 +468,6 @@ TEST_CASE("a missing compliance column softens nothing into stone", "[haptic][se
   session.hold(50);
   reference.hold(50);
   CHECK(session.forces[0].status.has(StatusFlag::degraded_model));
-  CHECK(session.forces[0].force.allFinite());
-  CHECK(session.forces[0].force.norm() <= 1.5 * reference.forces[0].force.norm());
+  CHECK(session.forces[0].force().allFinite());
+  CHECK(session.forces[0].force().norm() <= 1.5 * reference.forces[0].force().norm());
 }

@@ -48,10 +48,10 @@ std::vector<std::uint64_t> play(HapticServo& servo, int tools) {
   std::vector<ToolState> states(static_cast<std::size_t>(tools));
   for (int tick = 0; tick < 2500; ++tick) {
     for (int i = 0; i < tools; ++i) states[static_cast<std::size_t>(i)] = wild_state(tick, i);
-    for (const ToolForce& f : servo.tick(states))
+    for (const GatedForce& f : servo.tick(states))
       for (int c = 0; c < 3; ++c) {
-        bits.push_back(std::bit_cast<std::uint64_t>(f.force[c]));
-        bits.push_back(std::bit_cast<std::uint64_t>(f.torque[c]));
+        bits.push_back(std::bit_cast<std::uint64_t>(f.force()[c]));
+        bits.push_back(std::bit_cast<std::uint64_t>(f.torque()[c]));
       }
   }
   return bits;

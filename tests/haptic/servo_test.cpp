@@ -34,24 +34,24 @@ TEST_CASE("press, hold, release: the force rises, stays, and is gone", "[haptic]
   double before = 0.0;
   for (int i = 0; i <= 100; ++i) {
     const double z = pad_height + ball_radius + 2e-4 - 2e-5 * i;
-    const ToolForce& f = session.tick(Vector3(0.0137, 0.0159, z));
+    const GatedForce& f = session.tick(Vector3(0.0137, 0.0159, z));
     CHECK(f.status.ok());
     if (z >= pad_height + ball_radius)
-      CHECK(test::same(f.force, Vector3::Zero()));
+      CHECK(test::same(f.force(), Vector3::Zero()));
     else
-      CHECK(f.force[2] > before);
-    before = f.force[2];
+      CHECK(f.force()[2] > before);
+    before = f.force()[2];
   }
   CHECK(before > 0.05);
-  CHECK(session.forces[0].force.head<2>().norm() < 0.5 * before);
-  const Vector3 at_once = session.forces[0].force, held = session.hold(200).force;
+  CHECK(session.forces[0].force().head<2>().norm() < 0.5 * before);
+  const Vector3 at_once = session.forces[0].force(), held = session.hold(200).force();
   CHECK((held - at_once).norm() <= 2e-3 * held.norm());
-  CHECK((session.hold(500).force - held).norm() <= 1e-9 * held.norm());
+  CHECK((session.hold(500).force() - held).norm() <= 1e-9 * held.norm());
   session.move(Vector3(0.0137, 0.0159, pad_height + ball_radius + 1e-4), 100);
-  CHECK(test::same(session.hold(3).force, Vector3::Zero()));
+  CHECK(test::same(session.hold(3).force(), Vector3::Zero()));
   CHECK(session.servo.read_snapshot().vertex_forces().empty());
   session.press(1.8e-3);
-  CHECK((session.hold(200).force - held).norm() <= 1e-6 * held.norm());
+  CHECK((session.hold(200).force() - held).norm() <= 1e-6 * held.norm());
 }
 
 TEST_CASE("away from the tissue the force is exactly zero", "[haptic][servo]") {
@@ -65,10 +65,10 @@ TEST_CASE("away from the tissue the force is exactly zero", "[haptic][servo]") {
     const double distance = ((next - half).cwiseAbs() - half).cwiseMax(Vector3::Zero()).norm();
     if (distance < ball_radius + 1e-6 || next.norm() > 0.1) next = p;
     p = next;
-    const ToolForce& f = session.tick(p);
-    if (!test::same(f.force, Vector3::Zero()) || !test::same(session.servo.contact_force(), Vector3::Zero()))
+    const GatedForce& f = session.tick(p);
+    if (!test::same(f.force(), Vector3::Zero()) || !test::same(session.servo.contact_force(), Vector3::Zero()))
       ++not_zero;
-    if (!test::same(f.torque, Vector3::Zero())) ++not_zero;
+    if (!test::same(f.torque(), Vector3::Zero())) ++not_zero;
   }
   CHECK(not_zero == 0);
 }
@@ -78,13 +78,13 @@ TEST_CASE("a tick renders the force of the pose it was given", "[haptic][servo]"
   ServoSession session(pad);
   session.press(5e-4);
   session.hold(50);
-  const Vector3 before = session.forces[0].force;
+  const Vector3 before = session.forces[0].force();
   const Vector3 deeper = session.states[0].position - Vector3(0, 0, 3e-4);
-  const Vector3 at_once = session.tick(deeper).force;
-  const Vector3 later = session.hold(50).force;
+  const Vector3 at_once = session.tick(deeper).force();
+  const Vector3 later = session.hold(50).force();
   CHECK(later[2] > 1.3 * before[2]);
   CHECK((at_once - later).norm() <= 1e-2 * later.norm());
-  CHECK(test::same(session.tick(deeper + Vector3(0, 0, 5e-3)).force, Vector3::Zero()));
+  CHECK(test::same(session.tick(deeper + Vector3(0, 0, 5e-3)).force(), Vector3::Zero()));
 }
 
 TEST_CASE("the force is the coupling spring between device and proxy, and the proxy is outside", "[haptic][servo]") {
@@ -181,8 +181,8 @@ TEST_CASE("turning model and tools together turns the forces", "[haptic][servo][
     double worst = 0.0, largest = 0.0, worst_proxy = 0.0;
     for (int i = 0; i < 600; ++i) {
       const Vector3 p = start + Vector3(1e-5 * std::max(0, i - 200), 0, -1e-5 * std::min(i, 200));
-      const Vector3 f = plain.tick(p).force;
-      worst = std::max(worst, (pose.linear() * f - other.tick(pose * p).force).norm());
+      const Vector3 f = plain.tick(p).force();
+      worst = std::max(worst, (pose.linear() * f - other.tick(pose * p).force()).norm());
       worst_proxy = std::max(worst_proxy, (pose * plain.servo.proxy() - other.servo.proxy()).norm());
       largest = std::max(largest, f.norm());
     }
@@ -200,8 +200,8 @@ TEST_CASE("compliance in float gives the forces of double to 1e-4", "[haptic][se
   double worst = 0.0, largest = 0.0;
   for (int i = 0; i < 600; ++i) {
     const Vector3 p(0.0137 + 1e-5 * std::max(0, i - 200), 0.0159, pad_height + ball_radius + 5e-4 - 1e-5 * std::min(i, 200));
-    const Vector3 f = in_double.tick(p).force;
-    worst = std::max(worst, (f - in_float.tick(p).force).norm());
+    const Vector3 f = in_double.tick(p).force();
+    worst = std::max(worst, (f - in_float.tick(p).force()).norm());
     largest = std::max(largest, f.norm());
   }
   CHECK(largest > 0.05);
@@ -218,8 +218,8 @@ TEST_CASE("solvers that make compliance when needed give the same forces", "[hap
   double worst = 0.0, largest = 0.0;
   for (int i = 0; i < 600; ++i) {
     const Vector3 p(0.0137 + 1e-5 * std::max(0, i - 200), 0.0159, pad_height + ball_radius + 5e-4 - 1e-5 * std::min(i, 200));
-    const Vector3 f = reference.tick(p).force;
-    worst = std::max({worst, (f - lazy.tick(p).force).norm(), (f - lazy_dense.tick(p).force).norm()});
+    const Vector3 f = reference.tick(p).force();
+    worst = std::max({worst, (f - lazy.tick(p).force()).norm(), (f - lazy_dense.tick(p).force()).norm()});
     largest = std::max(largest, f.norm());
   }
   CHECK(largest > 0.05);
@@ -237,7 +237,7 @@ TEST_CASE("static ticks of any length give the same static force", "[haptic][ser
     settled.push_back(session.servo.contact_force());
     session.hold(1000);
     CHECK((session.servo.contact_force() - settled.back()).norm() <= 1e-9 * settled.back().norm());
-    if (period == 1e-3) CHECK(test::same(session.forces[0].force, session.servo.contact_force()));
+    if (period == 1e-3) CHECK(test::same(session.forces[0].force(), session.servo.contact_force()));
   }
   for (const Vector3& f : settled) CHECK(test::same(f, settled[0]));
 }
@@ -270,7 +270,7 @@ TEST_CASE("two runs are the same bit by bit", "[haptic][servo]") {
       session.states[0].position = p;
       session.states[1].position = q;
       session.tick();
-      for (const ToolForce& f : session.forces) forces.push_back(f.force);
+      for (const GatedForce& f : session.forces) forces.push_back(f.force());
     }
     return forces;
   };
@@ -314,10 +314,10 @@ TEST_CASE("a replayed recording gives the recorded forces bit by bit", "[haptic]
   int different = 0, at_work = 0;
   for (const RecordedTick& tick : replay.recorded()) {
     const ToolState state = replay.read();
-    const ToolForce f = servo.tick(std::span<const ToolState>(&state, 1)).front();
-    if (&tick != &replay.recorded().back() && !test::same(f.force, tick.force))
+    const GatedForce f = servo.tick(std::span<const ToolState>(&state, 1)).front();
+    if (&tick != &replay.recorded().back() && !test::same(f.force(), tick.force))
       ++different;  // the loop ends with a zero
-    if (f.force.norm() > 1e-3) ++at_work;
+    if (f.force().norm() > 1e-3) ++at_work;
   }
   CHECK(different == 0);
   CHECK(at_work > 1500);
@@ -350,14 +350,14 @@ TEST_CASE("reset lifts the tools and starts anew", "[haptic][servo]") {
   ServoSession session(pad);
   session.press(1e-3);
   session.hold(40);
-  const Vector3 pressed = session.forces[0].force;
+  const Vector3 pressed = session.forces[0].force();
   session.servo.reset();
   CHECK(session.servo.contacts().empty());
   CHECK(test::same(session.servo.contact_force(), Vector3::Zero()));
-  CHECK(test::same(session.tick().force, Vector3::Zero()));
+  CHECK(test::same(session.tick().force(), Vector3::Zero()));
   CHECK(session.forces[0].status.has(StatusFlag::ramping));
   session.hold(50);
-  CHECK((session.forces[0].force - pressed).norm() <= 1e-2 * pressed.norm());
+  CHECK((session.forces[0].force() - pressed).norm() <= 1e-2 * pressed.norm());
 }
 
 TEST_CASE("missing states count as unreadable, surplus ones are ignored", "[haptic][servo]") {

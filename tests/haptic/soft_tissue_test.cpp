@@ -64,7 +64,7 @@ Session press(SoftTissue& tissue, int ticks, Depth depth, double from = 0.0) {
       tissue.advance();
       next += tissue.step();
     }
-    const ToolForce out = servo.tick({std::array{above(k, depth(1e-3 * k), from)}})[0];
+    const GatedForce out = servo.tick({std::array{above(k, depth(1e-3 * k), from)}})[0];
     s.force = servo.contact_force();
     REQUIRE(s.force.allFinite());
     if (k > 50) s.largest_change = std::max(s.largest_change, (s.force - last).norm());
@@ -173,9 +173,9 @@ TEST_CASE("thread and ticks exchange without waiting", "[haptic][soft]") {
   double most = 0.0;
   for (int k = 0; k < 600; ++k) {
     const ToolState state = above(k, ramp(1e-3 * k));
-    const ToolForce out = servo.tick({&state, 1})[0];
-    REQUIRE(out.force.allFinite());
-    most = std::max(most, out.force.norm());
+    const GatedForce out = servo.tick({&state, 1})[0];
+    REQUIRE(out.force().allFinite());
+    most = std::max(most, out.force().norm());
     std::this_thread::sleep_for(std::chrono::microseconds(500));
   }
   thread.stop();

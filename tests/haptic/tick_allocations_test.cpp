@@ -48,7 +48,7 @@ Seen abuse(Model& model, int ticks, const ServoOptions& options) {
     if (phase == 950) states[0].time += 0.05;
     const auto forces = servo.tick(states);
     seen.flags.count(forces[0].status);
-    if (forces[0].force.norm() > 1e-3) ++seen.pressed;
+    if (forces[0].force().norm() > 1e-3) ++seen.pressed;
     if (phase == 500) servo.read_snapshot();
     if (phase == 999) servo.reset();
   }

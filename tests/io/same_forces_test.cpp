@@ -88,7 +88,7 @@ std::vector<Vector3> press(const std::string& path, const Conditions& conditions
     ToolState state;
     state.time = t;
     state.position = Vector3(-0.031 + 0.01 * along, -0.036 + 0.004 * down, 0.060 - 0.022 * down);
-    forces.push_back(servo.tick({&state, 1})[0].force);
+    forces.push_back(servo.tick({&state, 1})[0].force());
   }
   return forces;
 }

@@ -78,13 +78,13 @@ void check_press(Model& model) {
     ToolState state;
     state.position = Vector3(0.015, 0.015, 0.02 + radius - 1.5e-5 * step);
     state.time = time += 1e-3;
-    const ToolForce got = servo.tick({&state, 1})[0];
-    REQUIRE(got.force.allFinite());
-    if (step < 0) CHECK(got.force.norm() == 0.0);
+    const GatedForce got = servo.tick({&state, 1})[0];
+    REQUIRE(got.force().allFinite());
+    if (step < 0) CHECK(got.force().norm() == 0.0);
     if (step % 25 == 0 && step > 0) {
-      CHECK(got.force[2] > 1.3 * last);  // Hertz: the power 3/2 of the depth
-      CHECK(got.force.head<2>().norm() <= 0.05 * got.force[2]);
-      last = got.force[2];
+      CHECK(got.force()[2] > 1.3 * last);  // Hertz: the power 3/2 of the depth
+      CHECK(got.force().head<2>().norm() <= 0.05 * got.force()[2]);
+      last = got.force()[2];
     }
   }
   // Hertz on a half space at the last depth; a bonded layer of 20 mm is stiffer, a coarse one much so.

@@ -26,13 +26,13 @@ using Session = HapticServo;
 
 double tick(Session& servo, const std::array<ToolState, 2>& tools) noexcept NONBLOCKING {
   double sum = 0.0;
-  for (const ToolForce& f : servo.tick(tools)) sum += f.force.norm() + f.torque.norm();
+  for (const GatedForce& f : servo.tick(tools)) sum += f.force().norm() + f.torque().norm();
   return sum + static_cast<double>(servo.read_snapshot().contact_count);
 }
 
 /// Must be caught: proves that the sanitizer looks.
 double tick_that_allocates(Session& servo, const std::array<ToolState, 2>& tools) noexcept NONBLOCKING {
-  const std::vector<ToolForce> kept(servo.tick(tools).begin(), servo.tick(tools).end());
+  const std::vector<GatedForce> kept(servo.tick(tools).begin(), servo.tick(tools).end());
   return kept.front().force.norm();
 }
 

@@ -20,11 +20,26 @@ struct ToolState {
   bool valid = true;  ///< false: the device could not be read
 };
 
-/// What a device is told to render.
-struct ToolForce {
-  Vector3 force = Vector3::Zero();   ///< [N]
-  Vector3 torque = Vector3::Zero();  ///< [N m]
+class ForceGate;
+struct Placement;
+
+/// What a device is told to render: a force that has passed a force gate. Finite, within the gate's limits and without
+/// jumps, because only ForceGate makes one that is not zero. Anyone may read it and hand it on; nobody can change it.
+class GatedForce {
+ public:
+  /// Zero.
+  GatedForce() = default;
+
+  const Vector3& force() const noexcept { return force_; }    ///< [N]
+  const Vector3& torque() const noexcept { return torque_; }  ///< [N m]
   Status status;
+
+ private:
+  friend class ForceGate;
+  friend struct Placement;  // the same force in the device's axes and scale
+  GatedForce(const Vector3& force, const Vector3& torque, Status s) : status(s), force_(force), torque_(torque) {}
+
+  Vector3 force_ = Vector3::Zero(), torque_ = Vector3::Zero();
 };
 
 /// What a device can take.
@@ -39,12 +54,12 @@ struct DeviceLimits {
 };
 
 /// A device that can be read and written from the haptic thread. `read` and `write` never throw, block, allocate or
-/// lock; `write` limits what it is given to `limits()` and renders zero after `stop()` or an invalid read. Laws:
-/// testing/device_laws.hpp.
+/// lock; `write` takes nothing but a GatedForce, limits it to `limits()` and renders zero after `stop()` or an invalid
+/// read. Laws: testing/device_laws.hpp.
 template <class D>
-concept HapticDevice = requires(D& device, const D& constant, const Vector3& v) {
+concept HapticDevice = requires(D& device, const D& constant, const GatedForce& force) {
   { device.read() } noexcept -> std::same_as<ToolState>;
-  { device.write(v, v) } noexcept -> std::same_as<Status>;
+  { device.write(force) } noexcept -> std::same_as<Status>;
   { constant.limits() } noexcept -> std::same_as<DeviceLimits>;
   {device.start()};
   { device.stop() } noexcept;

@@ -14,7 +14,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// blocks, allocates or locks. What it returns goes to the device: its last step is a force gate.
 template <class S>
 concept Servo = requires(S& servo, std::span<const ToolState> tools) {
-  { servo.tick(tools) } noexcept -> std::same_as<std::span<const ToolForce>>;
+  { servo.tick(tools) } noexcept -> std::same_as<std::span<const GatedForce>>;
 };
 
 }}  // namespace palpate

@@ -60,7 +60,7 @@ class BladeServo {
   BladeServo& operator=(const BladeServo&) = delete;
 
   /// One tick; no allocation, no lock, bounded.
-  ToolForce tick(const ToolState& state) noexcept {
+  GatedForce tick(const ToolState& state) noexcept {
     const FlushDenormals flush;
     Status status = tissue_->begin_tick();
     const bool good = state.valid && all_finite(state.position) && std::isfinite(state.time);
@@ -81,7 +81,7 @@ class BladeServo {
       if (state.valid) status.set(StatusFlag::non_finite_input);
       told_known_ = false;
     }
-    ToolForce out = gate_.apply(force, state.time, state.time, good, restart);
+    GatedForce out = gate_.apply(force, state.time, state.time, good, restart);
     out.status |= status;
     return out;
   }

@@ -61,8 +61,8 @@ class Chai3dDevice {
     return state;
   }
 
-  Status write(const Vector3& force, const Vector3& torque) noexcept {
-    Status status = rendered_.render(force, torque);
+  Status write(const GatedForce& force) noexcept {
+    Status status = rendered_.render(force);
     if (!send(rendered_.force(), rendered_.torque())) {
       status.set(StatusFlag::disconnected);
       rendered_.read_was(false);

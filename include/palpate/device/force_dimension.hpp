@@ -57,8 +57,8 @@ class ForceDimensionDevice {
     return state;
   }
 
-  Status write(const Vector3& force, const Vector3& torque) noexcept {
-    Status status = rendered_.render(force, torque);
+  Status write(const GatedForce& force) noexcept {
+    Status status = rendered_.render(force);
     const int answer = send(rendered_.force(), rendered_.torque());
     if (answer < 0) {
       status.set(StatusFlag::disconnected);

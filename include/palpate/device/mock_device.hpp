@@ -67,7 +67,7 @@ class MockDevice {
     rendered_.read_was(state.valid);
     return state;
   }
-  Status write(const Vector3& force, const Vector3& torque) noexcept { return rendered_.render(force, torque); }
+  Status write(const GatedForce& force) noexcept { return rendered_.render(force); }
   DeviceLimits limits() const noexcept { return rendered_.limits(); }
   void start() noexcept { rendered_.start(); }
   void stop() noexcept { rendered_.stop(); }

@@ -64,7 +64,7 @@ class OpenHapticsDevice {
   OpenHapticsDevice& operator=(const OpenHapticsDevice&) = delete;
 
   ToolState read() noexcept {
-    if (in_frame_) write(Vector3::Zero(), Vector3::Zero());  // the last one was never written
+    if (in_frame_) write(GatedForce{});  // the last one was never written
     hdBeginFrame(handle_);
     in_frame_ = true;
     ToolState state = state_of_frame();
@@ -75,8 +75,8 @@ class OpenHapticsDevice {
     return state;
   }
 
-  Status write(const Vector3& force, const Vector3& torque) noexcept {
-    const Status status = rendered_.render(force, torque);
+  Status write(const GatedForce& force) noexcept {
+    const Status status = rendered_.render(force);
     if (!in_frame_) return status | StatusFlag::disconnected;
     hdSetDoublev(HD_CURRENT_FORCE, rendered_.force().data());
     if (options_.torque) send_torque(rendered_.torque());
@@ -97,7 +97,7 @@ class OpenHapticsDevice {
   }
   /// Takes forces off. For the thread of the callback, or when that has ended.
   void stop() noexcept {
-    if (in_frame_) write(Vector3::Zero(), Vector3::Zero());
+    if (in_frame_) write(GatedForce{});
     if (running_) {
       hdMakeCurrentDevice(handle_);
       hdDisable(HD_FORCE_OUTPUT);
@@ -268,15 +268,15 @@ class OpenHapticsLoop {
   static HDCallbackCode HDCALLBACK tick(void* self) { return static_cast<OpenHapticsLoop*>(self)->tick(); }
   HDCallbackCode tick() noexcept {
     const ToolState state = device_.read();
-    const std::span<const ToolForce> forces = servo_.tick(std::span<const ToolState>(&state, 1));
-    const ToolForce force = forces.empty() ? ToolForce{} : forces.front();
-    const Status status = force.status | device_.write(force.force, force.torque);
+    const std::span<const GatedForce> forces = servo_.tick(std::span<const ToolState>(&state, 1));
+    const GatedForce force = forces.empty() ? GatedForce{} : forces.front();
+    const Status status = force.status | device_.write(force);
     last_status_.store(status, std::memory_order_relaxed);
     ticks_.fetch_add(1, std::memory_order_relaxed);
     if (state.valid && !status.has(StatusFlag::disconnected)) return HD_CALLBACK_CONTINUE;
     if (state.valid) {  // this frame has sent its force although it failed: one more takes that off
       device_.read();
-      device_.write(Vector3::Zero(), Vector3::Zero());
+      device_.write(GatedForce{});
     }
     alive_.store(false);
     return HD_CALLBACK_DONE;

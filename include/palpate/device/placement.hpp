@@ -35,6 +35,7 @@ struct Placement {
   Vector3 force_to_device(const Vector3& force) const noexcept;
   /// The work of a torque is scaled as that of a force; angles are not scaled.
   Vector3 torque_to_device(const Vector3& torque) const noexcept;
+  GatedForce to_device(const GatedForce& scene) const noexcept;
 
   /// A device's limits as the scene sees them: a servo that keeps within these keeps within the device's.
   DeviceLimits limits_in_scene(const DeviceLimits& device) const noexcept;
@@ -55,9 +56,7 @@ class PlacedDevice {
   }
 
   ToolState read() noexcept { return placement_.to_scene(device_->read()); }
-  Status write(const Vector3& force, const Vector3& torque) noexcept {
-    return device_->write(placement_.force_to_device(force), placement_.torque_to_device(torque));
-  }
+  Status write(const GatedForce& force) noexcept { return device_->write(placement_.to_device(force)); }
   DeviceLimits limits() const noexcept { return placement_.limits_in_scene(std::as_const(*device_).limits()); }
   void start() { device_->start(); }
   void stop() noexcept { device_->stop(); }

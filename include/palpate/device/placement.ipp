@@ -47,6 +47,10 @@ PALPATE_INLINE Vector3 Placement::torque_to_device(const Vector3& torque) const 
   return (force_scale / scale) * (rotation.transpose() * torque);
 }
 
+PALPATE_INLINE GatedForce Placement::to_device(const GatedForce& scene) const noexcept {
+  return {force_to_device(scene.force()), torque_to_device(scene.torque()), scene.status};
+}
+
 PALPATE_INLINE DeviceLimits Placement::limits_in_scene(const DeviceLimits& device) const noexcept {
   DeviceLimits scene = device;
   scene.peak_force = device.peak_force / force_scale;

@@ -54,11 +54,11 @@ class Recorder {
     tick.state = device_.read();
     return tick.state;
   }
-  Status write(const Vector3& force, const Vector3& torque) noexcept {
-    const Status status = device_.write(force, torque);
+  Status write(const GatedForce& force) noexcept {
+    const Status status = device_.write(force);
     if (count_ == 0) return status;
     RecordedTick& tick = newest();
-    tick.force = force;
+    tick.force = force.force();
     tick.status |= status;
     return status;
   }

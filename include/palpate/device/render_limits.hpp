@@ -25,7 +25,7 @@ class RenderLimits {
   void read_was(bool valid) noexcept;
   /// Longer than its peak: shortened, `saturated`; a peak torque of zero leaves none. Where a component of one of the
   /// two is not finite, both are zero, `non_finite_force`.
-  Status render(const Vector3& force, const Vector3& torque) noexcept;
+  Status render(const GatedForce& wanted) noexcept;
   const DeviceLimits& limits() const noexcept { return limits_; }
   const Vector3& force() const noexcept { return force_; }    ///< [N] what is rendered now
   const Vector3& torque() const noexcept { return torque_; }  ///< [N m] the same

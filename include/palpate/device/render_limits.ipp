@@ -38,14 +38,14 @@ PALPATE_INLINE void RenderLimits::read_was(bool valid) noexcept {
   if (!valid) silence();
 }
 
-PALPATE_INLINE Status RenderLimits::render(const Vector3& force, const Vector3& torque) noexcept {
+PALPATE_INLINE Status RenderLimits::render(const GatedForce& wanted) noexcept {
   Status status;
   silence();
   if (!readable_) status.set(StatusFlag::disconnected);
-  if (!all_finite(force) || !all_finite(torque)) status.set(StatusFlag::non_finite_force);
+  if (!all_finite(wanted.force()) || !all_finite(wanted.torque())) status.set(StatusFlag::non_finite_force);
   if (!running_ || !status.ok()) return status;
-  force_ = within(limits_.peak_force, force, status);
-  torque_ = within(limits_.peak_torque, torque, status);
+  force_ = within(limits_.peak_force, wanted.force(), status);
+  torque_ = within(limits_.peak_torque, wanted.torque(), status);
   peak_ = std::max(peak_, force_.norm());
   return status;
 }

@@ -29,7 +29,7 @@ class ReplayDevice {
       : ReplayDevice(read_recording(path), limits) {}
 
   ToolState read() noexcept;
-  Status write(const Vector3& force, const Vector3& torque) noexcept { return rendered_.render(force, torque); }
+  Status write(const GatedForce& force) noexcept { return rendered_.render(force); }
   DeviceLimits limits() const noexcept { return rendered_.limits(); }
   void start() noexcept { rendered_.start(); }
   void stop() noexcept { rendered_.stop(); }

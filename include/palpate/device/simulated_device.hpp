@@ -52,7 +52,7 @@ class SimulatedDevice {
 
   ToolState read() noexcept;
   /// Torque has no motors.
-  Status write(const Vector3& force, const Vector3& torque) noexcept;
+  Status write(const GatedForce& force) noexcept;
   DeviceLimits limits() const noexcept { return rendered_.limits(); }
   void start() noexcept { rendered_.start(); }
   void stop() noexcept;

@@ -62,8 +62,8 @@ PALPATE_INLINE ToolState SimulatedDevice::read() noexcept {
   return state;
 }
 
-PALPATE_INLINE Status SimulatedDevice::write(const Vector3& force, const Vector3& torque) noexcept {
-  const Status status = rendered_.render(force, torque);
+PALPATE_INLINE Status SimulatedDevice::write(const GatedForce& force) noexcept {
+  const Status status = rendered_.render(force);
   schedule({now_ + options_.delay, rendered_.force()});
   return status;
 }

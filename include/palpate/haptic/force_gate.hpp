@@ -45,9 +45,9 @@ class ForceGate {
   /// The force to render instead of `wanted` [N]. `now` and `input_time` [s] are of one clock; a caller without a clock
   /// of its own passes input_time twice: input that repeats its stamp still goes stale. `input_valid` is false when the
   /// device could not be read or its pose is not finite; `restart` is true when contact starts anew (tool jumped).
-  ToolForce apply(const Vector3& wanted, double now, double input_time, bool input_valid, bool restart) noexcept;
+  GatedForce apply(const Vector3& wanted, double now, double input_time, bool input_valid, bool restart) noexcept;
   /// The same with a torque [N m] about the tool's position.
-  ToolForce apply(const Vector3& wanted, const Vector3& torque, double now, double input_time, bool input_valid,
+  GatedForce apply(const Vector3& wanted, const Vector3& torque, double now, double input_time, bool input_valid,
                   bool restart) noexcept;
 
   /// Back to the state after construction, but for the heat of the motors: the next force is zero, at once.

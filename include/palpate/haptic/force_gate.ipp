@@ -32,38 +32,38 @@ PALPATE_INLINE ForceGate::ForceGate(const ForceLimits& limits) : limits_(limits)
           "Use ForceLimits::from(device, rate)");
 }
 
-PALPATE_INLINE ToolForce ForceGate::apply(const Vector3& wanted, double now, double input_time, bool input_valid,
+PALPATE_INLINE GatedForce ForceGate::apply(const Vector3& wanted, double now, double input_time, bool input_valid,
                                           bool restart) noexcept {
   return apply(wanted, Vector3::Zero(), now, input_time, input_valid, restart);
 }
 
-PALPATE_INLINE ToolForce ForceGate::apply(const Vector3& wanted, const Vector3& torque, double now, double input_time,
+PALPATE_INLINE GatedForce ForceGate::apply(const Vector3& wanted, const Vector3& torque, double now, double input_time,
                                           bool input_valid, bool restart) noexcept {
-  ToolForce out;
+  Status status;
   const double told = time_since_last_tick(now);
   const double dt = told > 0.0 ? told : limits_.period;
   const double warming = (last_.squaredNorm() - heat_) * std::min(1.0, dt / limits_.heating_time);
   heat_ += told > 0.0 ? warming : std::max(0.0, warming);
   const double overdue = time_overdue(dt, now, input_time);
-  if (dt > late_factor * limits_.period) out.status.set(StatusFlag::deadline_missed);
+  if (dt > late_factor * limits_.period) status.set(StatusFlag::deadline_missed);
 
   const bool finite = is_finite(wanted) && is_finite(torque);
-  if (!finite) out.status.set(StatusFlag::non_finite_force);
-  if (!input_valid) out.status.set(StatusFlag::disconnected);
+  if (!finite) status.set(StatusFlag::non_finite_force);
+  if (!input_valid) status.set(StatusFlag::disconnected);
   if (!finite || !input_valid) {
     gain_ = 0.0;
     last_.setZero();
     last_torque_.setZero();
-    return out;
+    return {Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0), status};
   }
   if (restart) gain_ = 0.0;
   const double step = std::min(dt, limits_.period), most = limits_.slew_rate * step;
-  const double gain = update_gain(overdue, step, out.status);
-  last_ = out.force = limit_slew(last_, clamp(wanted, allowed_force(), out.status) * gain, most, out.status);
+  const double gain = update_gain(overdue, step, status);
+  last_ = limit_slew(last_, clamp(wanted, allowed_force(), status) * gain, most, status);
   if (limits_.peak_torque > 0.0)
-    last_torque_ = out.torque = limit_slew(last_torque_, clamp(torque, limits_.peak_torque, out.status) * gain,
-                                           most * (limits_.peak_torque / limits_.peak_force), out.status);
-  return out;
+    last_torque_ = limit_slew(last_torque_, clamp(torque, limits_.peak_torque, status) * gain,
+                                           most * (limits_.peak_torque / limits_.peak_force), status);
+  return {last_, last_torque_, status};
 }
 
 PALPATE_INLINE void ForceGate::reset() noexcept {

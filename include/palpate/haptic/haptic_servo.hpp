@@ -47,7 +47,7 @@ class HapticServo {
   /// One tick: a force for every tool, in order; the span is valid until the next tick. States beyond the number of
   /// tools are ignored, missing ones count as unreadable. Never throws, allocates, locks or waits; bounded by contact
   /// capacity, iterations and, when a list of points near the tools is made anew, the points in their reach.
-  std::span<const ToolForce> tick(std::span<const ToolState> states) noexcept;
+  std::span<const GatedForce> tick(std::span<const ToolState> states) noexcept;
 
   /// Back to the state after construction, apart from the heat of the motors: the same states give the same bits again,
   /// on a tissue that is itself as it was. Tells the tissue and the reader of snapshots that nothing presses. For the
@@ -95,7 +95,7 @@ class HapticServo {
   std::vector<ToolInput> inputs_;
   std::vector<ForceGate> gates_;
   std::vector<EnergyTank> energies_;  // one per tool, or none
-  std::vector<ToolForce> forces_;
+  std::vector<GatedForce> forces_;
   double stale_tissue_after_;
   std::uint64_t updates_ = 0;
   bool started_ = false;

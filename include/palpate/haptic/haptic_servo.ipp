@@ -53,7 +53,7 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const std::vec
   snapshots_.fill(Snapshot(options.contact.capacity));
 }
 
-PALPATE_INLINE std::span<const ToolForce> HapticServo::tick(std::span<const ToolState> states) noexcept {
+PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const ToolState> states) noexcept {
   const FlushDenormals flush;
   ++ticks_;
   Status shared = tissue_.begin_tick(problem_);
@@ -140,7 +140,7 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   }
   const double time = tissue_.has_updates() ? input.stamp(stale_tissue_after_) : input.time();
   forces_[i] = gates_[i].apply(force, torque, input.time(), time, input.readable(), input.restarted());
-  if (energy != nullptr) energy->gave(forces_[i].force);
+  if (energy != nullptr) energy->gave(forces_[i].force());
   forces_[i].status |= input.status() | shared | limited;
 }
 

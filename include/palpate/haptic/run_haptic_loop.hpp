@@ -15,7 +15,7 @@ double measured_clock_cost() noexcept;
 struct LoopDevice {
   void* device;
   ToolState (*read)(void*) noexcept;
-  Status (*write)(void*, const Vector3&, const Vector3&) noexcept;
+  Status (*write)(void*, const GatedForce&) noexcept;
   void (*note)(void*, Status) noexcept;  // null: it takes no notes
   void (*start)(void*);
   void (*stop)(void*) noexcept;
@@ -24,7 +24,7 @@ struct LoopDevice {
 /// A servo of any type.
 struct LoopServo {
   void* servo;
-  std::span<const ToolForce> (*tick)(void*, std::span<const ToolState>) noexcept;
+  std::span<const GatedForce> (*tick)(void*, std::span<const ToolState>) noexcept;
 };
 
 LoopReport run_loop(const LoopDevice& device, const LoopServo& servo, const LoopOptions& options);
@@ -33,7 +33,7 @@ template <HapticDevice D>
 LoopDevice loop_device(D& device) noexcept {
   LoopDevice view{&device,
                   [](void* d) noexcept { return static_cast<D*>(d)->read(); },
-                  [](void* d, const Vector3& f, const Vector3& t) noexcept { return static_cast<D*>(d)->write(f, t); },
+                  [](void* d, const GatedForce& force) noexcept { return static_cast<D*>(d)->write(force); },
                   nullptr,
                   [](void* d) { static_cast<D*>(d)->start(); },
                   [](void* d) noexcept { static_cast<D*>(d)->stop(); }};

@@ -53,8 +53,7 @@ class LoopBody {
         run_paced(start);
       else
         run_unpaced();
-      device_.write(device_.device, Vector3(0.0, 0.0, 0.0),
-                    Vector3(0.0, 0.0, 0.0));  // stop() comes when the other thread gets to it
+      device_.write(device_.device, GatedForce{});  // stop() comes when the other thread gets to it
       report_.elapsed = 1e-9 * static_cast<double>(platform::wall_ns() - start);
     }
     const std::lock_guard lock(shared_.mutex);
@@ -93,14 +92,14 @@ class LoopBody {
   void tick(double elapsed) noexcept {
     const ToolState state = device_.read(device_.device);
     const std::int64_t before = platform::compute_ns();
-    const std::span<const ToolForce> forces = servo_.tick(servo_.servo, std::span<const ToolState>(&state, 1));
+    const std::span<const GatedForce> forces = servo_.tick(servo_.servo, std::span<const ToolState>(&state, 1));
     report_.compute.record(1e-9 * static_cast<double>(platform::compute_ns() - before));
-    const ToolForce force = forces.empty() ? ToolForce{} : forces.front();
+    const GatedForce force = forces.empty() ? GatedForce{} : forces.front();
     if (device_.note != nullptr) device_.note(device_.device, force.status);
-    const Status rendered = device_.write(device_.device, force.force, force.torque);
+    const Status rendered = device_.write(device_.device, force);
 
     report_.status.count(force.status | rendered);
-    const double length = force.force.norm();
+    const double length = force.force().norm();
     if (length > report_.peak_force) report_.peak_force = length;
     shared_.ticks.store(++report_.ticks, std::memory_order_relaxed);
     shared_.force.store(length, std::memory_order_relaxed);

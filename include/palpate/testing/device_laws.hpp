@@ -6,6 +6,7 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/testing/open_gate.hpp>
 #include <palpate/testing/violation.hpp>
 
 #include <algorithm>
@@ -52,11 +53,7 @@ class DeviceLaws {
     device_.start();
     static_cast<void>(device_.read());
     saturates();
-    rejects_what_is_not_finite();
-    if (probe_.rendered_torque) {
-      limits_torque();
-      rejects_torque_that_is_not_finite();
-    }
+    if (probe_.rendered_torque) limits_torque();
     if (probe_.break_reads) zero_after_invalid_read();
     survives(reads);
     zero_after_stop();
@@ -64,9 +61,9 @@ class DeviceLaws {
   }
 
  private:
-  Status write(const Vector3& force) { return device_.write(force, Vector3::Zero()); }
+  Status write(const Vector3& force) { return device_.write(gated(force)); }
   /// With half of the peak torque.
-  Status turn(const Vector3& force) { return device_.write(force, Vector3(0.0, 0.0, 0.5 * limits_.peak_torque)); }
+  Status turn(const Vector3& force) { return device_.write(gated(force, Vector3(0.0, 0.0, 0.5 * limits_.peak_torque))); }
   Vector3 rendered() const { return probe_.rendered(device_); }
   Vector3 torque() const { return probe_.rendered_torque ? probe_.rendered_torque(device_) : Vector3::Zero(); }
   /// Zero when neither force nor torque is rendered.
@@ -88,10 +85,10 @@ class DeviceLaws {
   void limits_torque() {
     const double peak = limits_.peak_torque;
     for (const Vector3& direction : {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(1, 2, -3)})
-      for (double size : {0.0, 0.5, 0.999, 1.001, 2.0, 1e6, 1e300}) {
+      for (double size : {0.0, 0.5, 0.999, 1.001, 2.0, 1e6}) {
         const Vector3 unit = direction.normalized();
         const Vector3 wanted = unit * (size * (peak > 0.0 ? peak : 1.0));
-        const Status status = device_.write(Vector3::Zero(), wanted);
+        const Status status = device_.write(gated(Vector3(0.0, 0.0, 0.0), wanted));
         const Vector3 given = torque();
         const std::string detail = "torque, " + number(size) + " times the peak";
         expect_at_most(violations_, "torque within its peak", given.norm(), peak * (1.0 + probe_.tolerance), detail);
@@ -105,23 +102,10 @@ class DeviceLaws {
       }
   }
 
-  void rejects_torque_that_is_not_finite() {
-    for (double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})
-      for (int axis = 0; axis < 3; ++axis) {
-        turn(Vector3::Zero());
-        Vector3 wanted = Vector3::Constant(0.2 * limits_.peak_torque);
-        wanted[axis] = bad;
-        const Status status = device_.write(Vector3::Zero(), wanted);
-        expect_at_most(violations_, "torque not finite renders zero", torque().norm(), 0.0, number(bad));
-        const bool said = status.has(StatusFlag::non_finite_force);
-        expect_true(violations_, "says that the torque is not finite", said, number(bad));
-      }
-  }
-
   void saturates() {
     const double peak = limits_.peak_force;
     for (const Vector3& direction : {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(1, 2, -3), Vector3(1, 1e-3, 0)})
-      for (double size : {0.0, 1e-3, 0.5, 0.999, 1.001, 2.0, 1e6, 1e300}) {
+      for (double size : {0.0, 1e-3, 0.5, 0.999, 1.001, 2.0, 1e6}) {
         const Vector3 unit = direction.normalized();
         const Vector3 wanted = unit * (size * peak);
         const Status status = write(wanted);
@@ -134,19 +118,6 @@ class DeviceLaws {
         expect_at_least(violations_, "saturates at the peak", given.norm(), peak * (1.0 - probe_.tolerance), detail);
         expect_at_least(violations_, "keeps the direction", unit.dot(given.normalized()), 1.0 - 1e-12, detail);
         expect_true(violations_, "says that it saturates", status.has(StatusFlag::saturated), detail);
-      }
-  }
-
-  void rejects_what_is_not_finite() {
-    for (double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})
-      for (int axis = 0; axis < 3; ++axis) {
-        write(Vector3::Constant(0.1 * limits_.peak_force));
-        Vector3 force = Vector3::Constant(0.2 * limits_.peak_force);
-        force[axis] = bad;
-        const Status status = write(force);
-        expect_at_most(violations_, "not finite renders zero", rendered().norm(), 0.0, number(bad));
-        const bool said = status.has(StatusFlag::non_finite_force);
-        expect_true(violations_, "says that the force is not finite", said, number(bad));
       }
   }
 
@@ -210,11 +181,10 @@ class DeviceLaws {
 
 /// Starts the device, tries the laws, stops it. It must not be connected to anybody's hand: forces up to the peak are
 /// written. Laws: "limits are sane", "never above the peak", "renders what it can", "saturates at the peak", "keeps the
-/// direction", "says that it saturates", "not finite renders zero", "says that the force is not finite", "says that a
-/// read failed", "zero after an invalid read", "says that it is disconnected", "renders again when reads are valid",
-/// "valid states are finite", "time does not run backwards", "zero after stop"; where the probe tells the torque,
-/// "torque within its peak", "torque not finite renders zero", "says that the torque is not finite", and those of force
-/// for torque. The concept checks that nothing throws.
+/// direction", "says that it saturates", "says that a read failed", "zero after an invalid read", "says that it is
+/// disconnected", "renders again when reads are valid", "valid states are finite", "time does not run backwards", "zero
+/// after stop"; where the probe tells the torque, "torque within its peak", and those of force for torque. The concept
+/// checks that nothing throws, and that a device takes forces of a gate only, which are finite.
 template <HapticDevice Device>
 Violations device_laws(Device& device, const DeviceProbe<Device>& probe = default_probe<Device>(), int reads = 10'000) {
   return detail::DeviceLaws<Device>(device, probe).run(reads);

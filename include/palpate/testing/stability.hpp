@@ -8,6 +8,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/device/simulated_device.hpp>
 #include <palpate/haptic/energy_tank.hpp>
+#include <palpate/testing/open_gate.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,13 +16,15 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// A wall at z = 0 without gate and history: force stiffness * depth, per axis z. What a servo is compared with.
+/// A wall at z = 0 without history, behind an open gate: force stiffness * depth, per axis z. What a servo is compared
+/// with.
 struct VirtualWall {
   double stiffness = 500.0;  ///< [N/m]
   bool one_sided = true;     ///< false: pulls as well, so that the loop is linear
-  ToolForce force{};
+  ForceGate gate = open_gate();
+  GatedForce force{};
 
-  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept;
+  std::span<const GatedForce> tick(std::span<const ToolState> tools) noexcept;
 };
 
 /// A wall, or whatever else computes a force, with an energy tank behind it.
@@ -29,15 +32,19 @@ template <class Source>
 struct Tanked {
   Source source;
   EnergyTank tank{};
-  ToolForce force{};
+  ForceGate gate = open_gate();
+  GatedForce force{};
   std::uint64_t limited = 0;  ///< ticks
   double lowest = infinity;   ///< level of the tank [J]
 
-  std::span<const ToolForce> tick(std::span<const ToolState> tools) noexcept {
+  std::span<const GatedForce> tick(std::span<const ToolState> tools) noexcept {
     const ToolState& tool = tools.front();
-    force = source.tick(tools).front();
-    force.force = tank.limit(force.force, tool.position, tool.time, force.status);
-    tank.gave(force.force);
+    const GatedForce wanted = source.tick(tools).front();
+    Status status = wanted.status;
+    const Vector3 allowed = tank.limit(wanted.force(), tool.position, tool.time, status);
+    force = gate.apply(allowed, tool.time, tool.time, tool.valid, false);
+    force.status |= status;
+    tank.gave(force.force());
     lowest = std::min(lowest, tank.level());
     if (force.status.has(StatusFlag::energy_injected)) ++limited;
     return {&force, 1};
@@ -46,10 +53,10 @@ struct Tanked {
 
 /// One tick: read, compute, write.
 template <Servo S>
-const ToolForce& tick(SimulatedDevice& device, S& servo) noexcept {
+const GatedForce& tick(SimulatedDevice& device, S& servo) noexcept {
   const ToolState state = device.read();
-  const ToolForce& force = servo.tick({&state, 1}).front();
-  device.write(force.force, force.torque);
+  const GatedForce& force = servo.tick({&state, 1}).front();
+  device.write(force);
   return force;
 }
 

@@ -5,9 +5,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-PALPATE_INLINE std::span<const ToolForce> VirtualWall::tick(std::span<const ToolState> tools) noexcept {
-  const double depth = -tools.front().position[2];
-  force.force = Vector3(0.0, 0.0, one_sided && depth < 0.0 ? 0.0 : stiffness * depth);
+PALPATE_INLINE std::span<const GatedForce> VirtualWall::tick(std::span<const ToolState> tools) noexcept {
+  const ToolState& tool = tools.front();
+  const double depth = -tool.position[2];
+  const Vector3 wanted(0.0, 0.0, one_sided && depth < 0.0 ? 0.0 : stiffness * depth);
+  force = gate.apply(wanted, tool.time, tool.time, tool.valid, false);
   return {&force, 1};
 }
 

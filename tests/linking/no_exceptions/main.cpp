@@ -42,7 +42,7 @@ double press(double poisson_ratio, bool invert) {
     palpate::ToolState tool;
     tool.time = 1e-3 * i;
     tool.position = {0.02, 0.02, 0.026 - 3e-6 * i};
-    force = servo.tick({&tool, 1})[0].force[2];
+    force = servo.tick({&tool, 1})[0].force()[2];
   }
   return force;
 }

@@ -1,0 +1,13 @@
+// A force that has passed the gate stays as it is.
+// expect: operator*=
+#include <palpate/haptic/force_gate.hpp>
+
+using namespace palpate;
+
+void strengthen(GatedForce& force) {
+#ifdef PALPATE_GOOD_TWIN
+  force.status.set(StatusFlag::saturated);
+#else
+  force.force() *= 2.0;
+#endif
+}
