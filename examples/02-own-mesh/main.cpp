@@ -112,7 +112,7 @@ double touch(Organ& organ, const Press& press, VectorX& u) {
   for (int k = 0; k < 700; ++k) {
     state.time = 1e-3 * k;
     state.position = path(state.time);
-    const GatedForce out = servo.tick({&state, 1})[0];
+    const GatedForce out = servo.tick(state);
     longest = std::max(longest, out.force().norm());
     if (k > 100) seen |= out.status;  // the ramp at the start is over
   }

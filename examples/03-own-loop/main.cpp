@@ -102,7 +102,7 @@ bool on_servo_tick(void* user) {
   ToolState state;
   state.position = to_world(s.device.position_mm);
   state.time = now;
-  const GatedForce out = s.servo.tick({&state, 1})[0];
+  const GatedForce out = s.servo.tick(state);
   to_device(out.force(), s.device.force_newton);
 
   s.status.count(out.status);

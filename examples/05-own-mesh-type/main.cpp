@@ -59,7 +59,7 @@ std::vector<Vector3> poke(const char* name, const M& mesh) {
     ToolState state;
     state.time = 1e-3 * k;
     state.position = path(state.time);
-    forces.push_back(servo.tick({&state, 1})[0].force());
+    forces.push_back(servo.tick(state).force());
     peak = std::max(peak, forces.back().norm());
   }
   std::cout << name << ": peak force " << peak << " N\n";

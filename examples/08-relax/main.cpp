@@ -52,7 +52,7 @@ std::vector<double> hold(SoftTissue& pad) {
     ToolState state;
     state.time = time;
     state.position = {0.5 * size[0], 0.5 * size[1], size[2] + finger.radius - in};
-    servo.tick({&state, 1});
+    servo.tick(state);
     force.push_back(servo.contact_force().norm());
   }
   return force;

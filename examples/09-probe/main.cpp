@@ -53,7 +53,7 @@ class Hand {
       tilt_ = before + (tilt - before) * k / ticks;
       const Eigen::Quaterniond q(Eigen::AngleAxisd(tilt_, Vector3::UnitY()));
       state_.orientation = {q.w(), q.x(), q.y(), q.z()};
-      out = servo_.tick({&state_, 1})[0];
+      out = servo_.tick(state_);
     }
     return out;
   }

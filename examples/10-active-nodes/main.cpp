@@ -49,7 +49,7 @@ Held hold_and_move(Tissue& tissue, const Vector3& point, const Vector3& by) {
     state.time = 1e-3 * k;
     state.position = above + by * std::max(0, k - 20) / 80.0;
     state.buttons = k >= 10 ? 1u : 0u;
-    servo.tick({&state, 1});
+    servo.tick(state);
   }
   const auto forces = servo.read_snapshot().vertex_forces();
   return {-servo.contact_force(), {forces.begin(), forces.end()}};

@@ -1,5 +1,6 @@
 #include <palpate/core/status.hpp>
 #include <set>
+#include <sstream>
 #include <type_traits>
 
 #include "catch.hpp"
@@ -25,6 +26,17 @@ TEST_CASE("a status is a set of flags", "[core][status]") {
   const Status both = Status(StatusFlag::stale) | StatusFlag::saturated;
   CHECK(s == both);
   CHECK((s | Status{}) == s);
+}
+
+TEST_CASE("a status prints the names of its flags", "[core][status]") {
+  const auto printed = [](Status status) {
+    std::ostringstream out;
+    out << status;
+    return out.str();
+  };
+  CHECK(printed({}) == "ok");
+  CHECK(printed(StatusFlag::stale) == "Stale");
+  CHECK(printed(Status(StatusFlag::ramping) | StatusFlag::saturated) == "Saturated Ramping");
 }
 
 TEST_CASE("every flag has one bit and one name", "[core][status]") {

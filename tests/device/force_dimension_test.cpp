@@ -7,8 +7,8 @@
 #include "catch.hpp"
 
 using namespace palpate;
-using palpate::testing::gated;
 using Catch::Matchers::WithinAbs;
+using palpate::testing::gated;
 
 namespace {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 
 using namespace palpate;
-using palpate::testing::gated;
 using Catch::Matchers::WithinAbs;
+using palpate::testing::gated;
 
 namespace {
 

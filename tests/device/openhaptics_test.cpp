@@ -10,8 +10,8 @@
 #include "catch.hpp"
 
 using namespace palpate;
-using palpate::testing::gated;
 using Catch::Matchers::WithinAbs;
+using palpate::testing::gated;
 using test::contains;
 
 namespace {

@@ -137,3 +137,16 @@ TEST_CASE("a placed device is a device", "[device][placement]") {
   MockDevice stylus(trajectory::poke({.from = {0, 0, 0.1}, .to = {0, 0, 0}}));
   STATIC_REQUIRE(HapticDevice<PlacedDevice<decltype(stylus)>>);
 }
+
+TEST_CASE("a force too large for a double in the device's scale is not rendered", "[device][placement][extreme][D7]") {
+  MockDevice stylus(trajectory::poke());
+  stylus.start();
+  static_cast<void>(stylus.read());
+  Placement p;
+  p.force_scale = 1e308;
+  PlacedDevice placed(stylus, p);
+  const Vector3 hundred(100.0, 0.0, 0.0);
+  CHECK(placed.write(testing::gated(hundred)) == Status(StatusFlag::non_finite_force));
+  CHECK(stylus.last_force() == Vector3::Zero());
+  CHECK(placed.write(testing::gated(Vector3(0.0, 0.0, 0.0), hundred)) == Status(StatusFlag::non_finite_force));
+}

@@ -248,7 +248,7 @@ void compare(const gate::Limits& chosen, std::uint64_t ticks) {
     if (!turning.allFinite() && r.below(4) != 0) turning = Vector3(0.0, 0.25, 0.0);
     const bool valid = r.below(lossy ? 8 : 400) != 0, restart = r.below(300) == 0;
     const GatedForce out = turning.isZero(0.0) ? real.apply(wanted, now, stamp, valid, restart)
-                                              : real.apply(wanted, turning, now, stamp, valid, restart);
+                                               : real.apply(wanted, turning, now, stamp, valid, restart);
     const gate::Answer want = model.apply({wanted[0], wanted[1], wanted[2]}, {turning[0], turning[1], turning[2]}, now,
                                           stamp, valid, restart);
 
@@ -259,7 +259,8 @@ void compare(const gate::Limits& chosen, std::uint64_t ticks) {
     }
     if (!(difference <= 1e-9) || real.last_force() != out.force() || real.last_torque() != out.torque()) ++wrong_force;
     if (((out.status.bits() ^ want.status) & ~want.unsure) != 0) ++wrong_status;
-    model.compare({out.force()[0], out.force()[1], out.force()[2]}, {out.torque()[0], out.torque()[1], out.torque()[2]});
+    model.compare({out.force()[0], out.force()[1], out.force()[2]},
+                  {out.torque()[0], out.torque()[1], out.torque()[2]});
     if (!out.force().allFinite() || !out.torque().allFinite()) ++not_finite;
     if (!(out.force().norm() <= chosen.peak * (1.0 + 1e-12))) ++too_long;
     if (!(out.torque().norm() <= chosen.torque * (1.0 + 1e-12))) ++too_long;

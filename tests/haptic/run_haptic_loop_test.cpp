@@ -14,9 +14,9 @@
 #include "catch.hpp"
 
 using namespace palpate;
-using palpate::testing::gated;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
+using palpate::testing::gated;
 
 namespace {
 

@@ -1,4 +1,4 @@
-// What the caller may decide about set-up: progress, cancelling, memory, threads.
+// What the caller may decide about set-up: progress, cancelling, memory.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -22,7 +22,6 @@ using ProgressCallback = std::function<bool(const Progress&)>;
 struct SetupLimits {
   ProgressCallback progress;                                     ///< empty: silent
   std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< [bytes] a set-up may allocate at once for matrices
-  int threads = 1;  ///< upper bound; one thread is used where more do not pay
 
   /// Reports progress; throws SetupError(cancelled) when the callback says stop.
   void advance(std::string_view stage, double fraction) const;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <iosfwd>
 #include <string_view>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -59,6 +60,9 @@ constexpr std::string_view status_flag_name(int bit) {
       "NonFiniteForce", "StepRefused",    "EnergyGrew"};
   return names[static_cast<std::size_t>(bit)];
 }
+
+/// Names of all flags that are set, as "Saturated Ramping"; "ok" without any. Not for the tick.
+std::ostream& operator<<(std::ostream& out, Status status);
 
 /// How often each flag was raised; one add per set flag and tick.
 class StatusCounters {

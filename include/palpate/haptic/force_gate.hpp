@@ -48,7 +48,7 @@ class ForceGate {
   GatedForce apply(const Vector3& wanted, double now, double input_time, bool input_valid, bool restart) noexcept;
   /// The same with a torque [N m] about the tool's position.
   GatedForce apply(const Vector3& wanted, const Vector3& torque, double now, double input_time, bool input_valid,
-                  bool restart) noexcept;
+                   bool restart) noexcept;
 
   /// Back to the state after construction, but for the heat of the motors: the next force is zero, at once.
   void reset() noexcept;

@@ -33,12 +33,12 @@ PALPATE_INLINE ForceGate::ForceGate(const ForceLimits& limits) : limits_(limits)
 }
 
 PALPATE_INLINE GatedForce ForceGate::apply(const Vector3& wanted, double now, double input_time, bool input_valid,
-                                          bool restart) noexcept {
+                                           bool restart) noexcept {
   return apply(wanted, Vector3::Zero(), now, input_time, input_valid, restart);
 }
 
 PALPATE_INLINE GatedForce ForceGate::apply(const Vector3& wanted, const Vector3& torque, double now, double input_time,
-                                          bool input_valid, bool restart) noexcept {
+                                           bool input_valid, bool restart) noexcept {
   Status status;
   const double told = time_since_last_tick(now);
   const double dt = told > 0.0 ? told : limits_.period;
@@ -62,7 +62,7 @@ PALPATE_INLINE GatedForce ForceGate::apply(const Vector3& wanted, const Vector3&
   last_ = limit_slew(last_, clamp(wanted, allowed_force(), status) * gain, most, status);
   if (limits_.peak_torque > 0.0)
     last_torque_ = limit_slew(last_torque_, clamp(torque, limits_.peak_torque, status) * gain,
-                                           most * (limits_.peak_torque / limits_.peak_force), status);
+                              most * (limits_.peak_torque / limits_.peak_force), status);
   return {last_, last_torque_, status};
 }
 

@@ -48,6 +48,8 @@ class HapticServo {
   /// tools are ignored, missing ones count as unreadable. Never throws, allocates, locks or waits; bounded by contact
   /// capacity, iterations and, when a list of points near the tools is made anew, the points in their reach.
   std::span<const GatedForce> tick(std::span<const ToolState> states) noexcept;
+  /// The same for a session with one tool: its force, valid until the next tick.
+  const GatedForce& tick(const ToolState& state) noexcept { return tick({&state, 1}).front(); }
 
   /// Back to the state after construction, apart from the heat of the motors: the same states give the same bits again,
   /// on a tissue that is itself as it was. Tells the tissue and the reader of snapshots that nothing presses. For the

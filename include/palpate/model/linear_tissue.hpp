@@ -32,7 +32,6 @@ struct SetupOptions {
   ProgressCallback progress{};  ///< may cancel
   std::size_t memory_limit =
       std::numeric_limits<std::size_t>::max();  ///< [bytes]; more is refused as too_large before it is allocated
-  int threads = 1;
   AdmissionPolicy admission{};
   int compliance_slots = 256;  ///< vertices whose compliance is remembered by a solver that does not store all
   ColumnFill columns = ColumnFill::in_tick;  ///< when such a solver computes it

@@ -18,8 +18,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 template <std::floating_point Scalar>
-LinearTissue<Scalar>::LinearTissue(const SetupOptions& options)
-    : limits_{options.progress, options.memory_limit, options.threads} {}
+LinearTissue<Scalar>::LinearTissue(const SetupOptions& options) : limits_{options.progress, options.memory_limit} {}
 template <std::floating_point Scalar>
 LinearTissue<Scalar>::LinearTissue(LinearTissue&&) noexcept = default;
 template <std::floating_point Scalar>

@@ -63,7 +63,9 @@ class DeviceLaws {
  private:
   Status write(const Vector3& force) { return device_.write(gated(force)); }
   /// With half of the peak torque.
-  Status turn(const Vector3& force) { return device_.write(gated(force, Vector3(0.0, 0.0, 0.5 * limits_.peak_torque))); }
+  Status turn(const Vector3& force) {
+    return device_.write(gated(force, Vector3(0.0, 0.0, 0.5 * limits_.peak_torque)));
+  }
   Vector3 rendered() const { return probe_.rendered(device_); }
   Vector3 torque() const { return probe_.rendered_torque ? probe_.rendered_torque(device_) : Vector3::Zero(); }
   /// Zero when neither force nor torque is rendered.
