@@ -198,7 +198,7 @@ TEST_CASE("forces on the tissue are the forces on the balls, and balance them", 
   const Vector3 on_tools = s.force(0) + s.force(1);
   CHECK((on_tissue + on_tools).norm() <= 1e-12);
   CHECK((on_contacts - on_tools).norm() <= 1e-12);
-  s.problem.clear();
+  s.problem.reset();
   CHECK(s.problem.contacts().empty());
   CHECK(s.problem.vertex_forces().empty());
 }

@@ -369,7 +369,7 @@ TEST_CASE("missing states count as unreadable, surplus ones are ignored", "[hapt
   REQUIRE(forces.size() == 2);
   CHECK(forces[1].status.has(StatusFlag::disconnected));
   CHECK_FALSE(forces[0].status.has(StatusFlag::disconnected));
-  CHECK(session.servo.tick({}).size() == 2);
+  CHECK(session.servo.tick(std::span<const ToolState>{}).size() == 2);
   const std::vector<ToolState> many(5, session.states[0]);
   CHECK(session.servo.tick(many).size() == 2);
 }

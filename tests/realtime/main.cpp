@@ -33,7 +33,7 @@ double tick(Session& servo, const std::array<ToolState, 2>& tools) noexcept NONB
 /// Must be caught: proves that the sanitizer looks.
 double tick_that_allocates(Session& servo, const std::array<ToolState, 2>& tools) noexcept NONBLOCKING {
   const std::vector<GatedForce> kept(servo.tick(tools).begin(), servo.tick(tools).end());
-  return kept.front().force.norm();
+  return kept.front().force().norm();
 }
 
 ToolState state(int k, double side) {
