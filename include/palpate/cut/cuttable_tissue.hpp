@@ -164,6 +164,8 @@ class CuttableTissue {
 
  private:
   CuttableTissue(CutPreparation<E> prepared, const CuttableOptions& options)
+      : CuttableTissue(prepared, options, NamesGivenIds(prepared.given)) {}
+  CuttableTissue(CutPreparation<E>& prepared, const CuttableOptions& options, const NamesGivenIds&)
       : physics_(std::move(prepared.physics)),
         topology_(std::move(prepared.topology)),
         touchable_(std::move(prepared.touchable)),

@@ -4,6 +4,7 @@
 #include <palpate/concepts/linear_solver.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact_surface.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/mesh/admission_policy.hpp>
 #include <palpate/mesh/scene.hpp>
@@ -125,6 +126,7 @@ class LinearTissue {
   SetupReport report_;
   Scene scene_;
   std::vector<NodeId> node_map_, touchable_, seen_;
+  GivenIds given_;
   Vector3 origin_ = Vector3::Zero(), gravity_ = Vector3::Zero();
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity(), world_ = Eigen::Isometry3d::Identity();
   std::unique_ptr<Statics> statics_;

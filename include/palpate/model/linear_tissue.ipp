@@ -60,6 +60,8 @@ template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, MakeStiffness make_stiffness,
                                   const SolverRecipe& recipe, const SetupOptions& options) {
   node_map_ = std::move(admitted.node_map);
+  given_ = std::move(admitted.given);
+  const NamesGivenIds naming(given_);
   scene_ = scene.mapped(node_map_);
   origin_ = admitted.origin;
   place(Eigen::Isometry3d::Identity());
@@ -77,6 +79,7 @@ void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, Mak
 
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_conditions(const Scene& scene) {
+  const NamesGivenIds naming(given_);
   const Scene mapped = scene.mapped(node_map_);
   SetupReport report = report_;
   statics_->set_conditions(mapped, rotation_of(pose_).transpose() * scene.gravity(), reporting_to(report));
