@@ -103,6 +103,16 @@ TEST_CASE("what is refused when a tissue is made is named as in the mesh as give
   CHECK(loose.count == 40);
 }
 
+TEST_CASE("forces on vertices that do not exist are refused", "[cut]") {
+  Tissue tissue(box_tet4({0.04, 0.04, 0.04}, {2, 2, 2}), Scene().fix("z0").touch("surface"), soft);
+  const VectorX rest = tissue.displacement_with({});
+  for (const int vertex : {-1, tissue.contact_surface().vertex_count(), 1000000})
+    CHECK_REFUSED(SetupErrorKind::index_out_of_range,
+                  tissue.displacement_with(std::array{VertexForce{vertex, {1.0, 0.0, 0.0}}}));
+  CHECK_REFUSED(SetupErrorKind::non_finite, tissue.displacement_with(std::array{VertexForce{0, {infinity, 0.0, 0.0}}}));
+  CHECK(tissue.displacement_with({}) == rest);
+}
+
 TEST_CASE("what hangs by a thread is stretched beyond what can be touched: left out and said, not failed", "[cut]") {
   // A column hangs; its middle is cut down to a few elements, far too soft for what they carry.
   const auto mesh = box_tet4({0.02, 0.02, 0.3}, {2, 2, 30}, BoxSplit::six);

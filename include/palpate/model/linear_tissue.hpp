@@ -65,8 +65,13 @@ class LinearTissue {
   double strain_energy() const;
 
   /// Displacement with these forces on the contact surface, for drawing: one back-substitution. u has 3 entries per
-  /// node. No allocation; may run beside a tick, but not twice at once.
+  /// admitted node [m]. A u of another size gets this one, which allocates; with its size nothing does. A force on a
+  /// vertex that does not exist is left out, and the report says not converged. May run beside a tick, but not twice at
+  /// once.
   SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept;
+  /// The same as a new vector. Throws index_out_of_range for a vertex that does not exist, non_finite for a force that
+  /// is no number, not_converged for a solve that stopped early.
+  VectorX displacement(std::span<const VertexForce> forces);
 
   /// Replaces loads and prescribed values; the set of prescribed components and of touched nodes must stay. Strong
   /// guarantee.

@@ -8,6 +8,7 @@
 #include <palpate/model/elastic_body.hpp>
 #include <palpate/model/stage_timer.hpp>
 #include <palpate/model/statics.hpp>
+#include <palpate/model/touchable.hpp>
 
 #include <algorithm>
 #include <array>
@@ -46,6 +47,17 @@ VectorX LinearTissue<Scalar>::reactions() const {
 template <std::floating_point Scalar>
 SolveReport LinearTissue<Scalar>::displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept {
   return statics_->displacement_with(forces, touchable_, u);
+}
+template <std::floating_point Scalar>
+VectorX LinearTissue<Scalar>::displacement(std::span<const VertexForce> forces) {
+  require_vertex_forces(forces, static_cast<int>(touchable_.size()));
+  VectorX u(displacement().size());
+  const SolveReport solved = displacement_with(forces, u);
+  if (!solved.converged)
+    raise(SetupErrorKind::not_converged,
+          "the static solve stopped at a relative residual of " + number(solved.relative_residual),
+          "Use a direct solver");
+  return u;
 }
 template <std::floating_point Scalar>
 const ElasticBody& LinearTissue<Scalar>::elastic_body() const noexcept {
