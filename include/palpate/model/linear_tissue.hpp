@@ -73,8 +73,9 @@ class LinearTissue {
   /// is no number, not_converged for a solve that stopped early.
   VectorX displacement(std::span<const VertexForce> forces);
 
-  /// Replaces loads and prescribed values; the set of prescribed components and of touched nodes must stay. Strong
-  /// guarantee.
+  /// Replaces loads and prescribed values. Throws unsupported for another set of prescribed components, and when the
+  /// scene lets tools touch other nodes or faces than the model was made for. A scene that speaks of no touch leaves it
+  /// as it is; what is seen stays in any case. Strong guarantee.
   void set_conditions(const Scene& scene);
   /// Gravity [m/s^2] in the world's frame. Strong guarantee.
   void set_gravity(const Vector3& gravity);
@@ -115,6 +116,8 @@ class LinearTissue {
               const SetupOptions& options);
 
  private:
+  /// Refuses a scene that lets tools touch something else.
+  void require_same_touch(const Scene& mapped) const;
   void prepare_contact(const std::vector<Triangle>& triangles, bool eager, const SetupOptions& options);
   /// Kept dof of every touchable dof, -1 when it is prescribed.
   std::vector<Index> kept_index() const;

@@ -14,6 +14,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -93,10 +94,23 @@ template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_conditions(const Scene& scene) {
   const NamesGivenIds naming(given_);
   const Scene mapped = scene.mapped(node_map_);
+  require_same_touch(mapped);
   SetupReport report = report_;
   statics_->set_conditions(mapped, rotation_of(pose_).transpose() * scene.gravity(), reporting_to(report));
   gravity_ = scene.gravity();
   accept_displacement(report);
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::require_same_touch(const Scene& mapped) const {
+  if (mapped.touched().empty()) return;
+  const Touchable touchable = statics_->body().touchable(mapped);
+  if (touchable.nodes == touchable_ && touchable.triangles == surface_.triangles()) return;
+  raise(SetupErrorKind::unsupported,
+        "the new scene lets tools touch " + std::to_string(touchable.nodes.size()) + " nodes and " +
+            std::to_string(touchable.triangles.size()) + " triangles, the model was made for another set of " +
+            std::to_string(touchable_.size()) + " and " + std::to_string(surface_.triangles().size()),
+        "Loads may change, what tools touch may not: make a new model, or leave touch out of the scene");
 }
 
 template <std::floating_point Scalar>
