@@ -56,7 +56,9 @@ TEST_CASE("two values for one component are refused, one value twice is not", "[
   scene.prescribe(std::vector<NodeId>{3}, {std::nullopt, 1e-300, std::nullopt});
   const SetupProblem p = refusal([&] { conditions_of(cubes.mesh, scene); });
   CHECK(to_string(p.kind) == "conflicting_conditions");
-  CHECK_THAT(p.what, contains("node 3 component 1"));
+  CHECK_THAT(p.what, contains("component y"));
+  CHECK(p.ids == std::vector<std::int64_t>{3});
+  CHECK(p.ids_of == SetupIds::nodes);
 }
 
 TEST_CASE("what the mesh does not have is refused", "[assembly][conditions]") {

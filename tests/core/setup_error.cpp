@@ -2,6 +2,7 @@
 #include <limits>
 #include <numeric>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
 #include <set>
 
 #include "catch.hpp"
@@ -90,4 +91,61 @@ TEST_CASE("raise throws the problem it was given", "[core][setup_error]") {
   CHECK_THROWS_AS(raise(SetupErrorKind::bad_file, "line 3", "Mend it"), SetupError);
   CHECK_THROWS_WITH(raise(SetupErrorKind::bad_file, "line 3", "Mend it"), "bad_file: line 3. Mend it");
   CHECK_THROWS_AS(raise(SetupErrorKind::bad_file, ""), std::runtime_error);
+}
+
+TEST_CASE("a problem says what its ids number", "[core][setup_error]") {
+  const auto text = [](SetupIds of, std::vector<std::int64_t> ids) {
+    SetupProblem p;
+    p.what = "so";
+    p.set_ids(ids, of);
+    return describe(p);
+  };
+  CHECK(text(SetupIds::others, {3}) == "bad_argument: so [ids 3]");
+  CHECK(text(SetupIds::nodes, {3}) == "bad_argument: so [node 3]");
+  CHECK(text(SetupIds::nodes, {3, 4}) == "bad_argument: so [nodes 3 4]");
+  CHECK(text(SetupIds::elements, {3}) == "bad_argument: so [element 3]");
+  CHECK(text(SetupIds::elements, {3, 4}) == "bad_argument: so [elements 3 4]");
+}
+
+namespace {
+
+std::vector<std::int64_t> refused_ids(SetupIds of, std::vector<std::int64_t> ids) {
+  try {
+    SetupProblem p;
+    p.set_ids(ids, of);
+    raise(std::move(p));
+  } catch (const SetupError& error) {
+    return error.problem().ids;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("ids are put into the numbers of the mesh as given", "[core][setup_error]") {
+  using Ids = std::vector<std::int64_t>;
+  const GivenIds given{{10, 11, 13}, {20, 22}}, plain;
+  CHECK(refused_ids(SetupIds::nodes, {0, 2}) == Ids{0, 2});
+  {
+    const NamesGivenIds naming(given);
+    CHECK(refused_ids(SetupIds::nodes, {0, 2}) == Ids{10, 13});
+    CHECK(refused_ids(SetupIds::elements, {0, 1}) == Ids{20, 22});
+    CHECK(refused_ids(SetupIds::others, {0, 2}) == Ids{0, 2});
+    CHECK(refused_ids(SetupIds::elements, {-1, 2}) == Ids{-1, 2});  // of no element: unchanged
+    CHECK_THROWS_WITH(raise_at(SetupIds::nodes, 2, SetupErrorKind::bad_density, "a node has no mass", "Give one"),
+                      "bad_density: a node has no mass [node 13]. Give one");
+    {
+      const NamesGivenIds inner(plain);
+      CHECK(refused_ids(SetupIds::nodes, {0, 2}) == Ids{0, 2});
+    }
+    CHECK(refused_ids(SetupIds::nodes, {0, 2}) == Ids{10, 13});
+    Ids inside;
+    SetupLimits limits;
+    limits.progress = [&](const Progress&) {
+      inside = refused_ids(SetupIds::nodes, {0, 2});
+      return true;
+    };
+    limits.advance("checks", 0.0);
+    CHECK(inside == Ids{0, 2});  // what a callback refuses is not of this mesh
+  }
+  CHECK(refused_ids(SetupIds::nodes, {0, 2}) == Ids{0, 2});
 }

@@ -74,6 +74,45 @@ TEST_CASE("a tissue keeps the laws of tissues while it is cut", "[cut]") {
   CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(tissue, SphereTool{.radius = 1e-3}));
 }
 
+TEST_CASE("what is refused when a tissue is made is named as in the mesh as given", "[cut]") {
+  using Ids = std::vector<std::int64_t>;
+  Mesh<Tet4> mesh = box_tet4({0.04, 0.04, 0.04}, {2, 2, 2});
+  mesh.positions.insert(mesh.positions.begin(), Vector3(0.0, 0.0, 1.0));  // no element uses it: it is dropped
+  for (auto& e : mesh.elements)
+    for (NodeId& i : e) ++i;
+  mesh.groups = {};
+  const std::vector<NodeId> bottom{1, 2, 3, 4, 5, 6, 7, 8, 9}, one{5};
+  const Scene held = Scene().fix(bottom).touch("surface");
+  const SetupProblem twice = test::refusal([&] {
+    Tissue(mesh, Scene(held).prescribe(one, {1e-3, 0.0, 0.0}), soft, CuttableOptions{});
+  });
+  CHECK(to_string(twice.kind) == "conflicting_conditions");
+  CHECK(twice.ids == Ids{5});
+
+  auto flat = mesh.elements.front();  // dropped, too
+  flat[3] = static_cast<NodeId>(mesh.positions.size());
+  const auto at = [&](NodeId node) { return mesh.positions[static_cast<std::size_t>(node)]; };
+  mesh.positions.push_back(Vector3(0.5 * (at(flat[0]) + at(flat[1]))));
+  mesh.elements.insert(mesh.elements.begin(), flat);
+  CuttableOptions mending;
+  mending.admission.degenerate = Admission::repair;
+  const SetupProblem loose = test::refusal([&] { Tissue(mesh, Scene().touch("surface"), soft, mending); });
+  CHECK(to_string(loose.kind) == "unconstrained");
+  REQUIRE(!loose.ids.empty());
+  CHECK(loose.ids.front() == 1);
+  CHECK(loose.count == 40);
+}
+
+TEST_CASE("forces on vertices that do not exist are refused", "[cut]") {
+  Tissue tissue(box_tet4({0.04, 0.04, 0.04}, {2, 2, 2}), Scene().fix("z0").touch("surface"), soft);
+  const VectorX rest = tissue.displacement_with({});
+  for (const int vertex : {-1, tissue.contact_surface().vertex_count(), 1000000})
+    CHECK_REFUSED(SetupErrorKind::index_out_of_range,
+                  tissue.displacement_with(std::array{VertexForce{vertex, {1.0, 0.0, 0.0}}}));
+  CHECK_REFUSED(SetupErrorKind::non_finite, tissue.displacement_with(std::array{VertexForce{0, {infinity, 0.0, 0.0}}}));
+  CHECK(tissue.displacement_with({}) == rest);
+}
+
 TEST_CASE("what hangs by a thread is stretched beyond what can be touched: left out and said, not failed", "[cut]") {
   // A column hangs; its middle is cut down to a few elements, far too soft for what they carry.
   const auto mesh = box_tet4({0.02, 0.02, 0.3}, {2, 2, 30}, BoxSplit::six);

@@ -10,6 +10,7 @@
 #include <palpate/testing/tissue_laws.hpp>
 
 #include "catch.hpp"
+#include "refused.hpp"
 
 using namespace palpate;
 using Catch::Matchers::WithinRel;
@@ -200,6 +201,31 @@ TEST_CASE("steps and bodies that cannot be are refused", "[haptic][soft]") {
   CHECK(kind(Scene().fix("nowhere").touch("z1"), 0.0) == SetupErrorKind::bad_argument);  // before any work
   CHECK(kind(Scene().touch("z1"), 0.01) == SetupErrorKind::unconstrained);
   CHECK(kind(Scene().fix("nowhere").touch("z1"), 0.01) == SetupErrorKind::unknown_group);
+}
+
+TEST_CASE("what a tissue refuses is named as in the mesh as given", "[haptic][soft]") {
+  Mesh<Tet4> mesh = box_tet4({0.02, 0.02, 0.02}, {2, 2, 2});
+  for (Vector3& x : mesh.positions) x += Vector3(3.0, -2.0, 0.0);
+  mesh.positions.insert(mesh.positions.begin(), Vector3(3.0, -2.0, 1.0));  // no element uses it: it is dropped
+  for (auto& e : mesh.elements)
+    for (NodeId& i : e) ++i;
+  mesh.groups = {};
+  const auto refused = [&](const Scene& scene, const NeoHookean& law, double step = 0.01) {
+    return test::refusal([&] { SoftTissue(mesh, scene, law, options(step)); });
+  };
+  const NeoHookean law{5e3, 0.45, 1000.0};
+  const std::vector<NodeId> edge{1, 10, 19}, bottom{1, 2, 3, 4, 5, 6, 7, 8, 9};
+  const SetupProblem loose = refused(Scene().fix(edge).touch("surface"), law);
+  CHECK_THAT(loose.what, test::contains("through (3, -2, 0.01)"));
+  CHECK(loose.ids.front() == 1);
+  const std::vector<NodeId> one{5};
+  const SetupProblem twice = refused(Scene().fix(bottom).prescribe(one, {1e-3, 0.0, 0.0}).touch("surface"), law);
+  CHECK(to_string(twice.kind) == "conflicting_conditions");
+  CHECK(twice.ids == std::vector<std::int64_t>{5});
+  const SetupProblem light = refused(Scene().fix(bottom).touch("surface"), {5e3, 0.45, 0.0});
+  CHECK(to_string(light.kind) == "bad_density");
+  REQUIRE(!light.ids.empty());
+  CHECK(light.ids_of != SetupIds::others);
 }
 
 TEST_CASE("a tissue that nothing touches says that all is well", "[haptic][soft]") {

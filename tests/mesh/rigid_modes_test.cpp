@@ -167,6 +167,25 @@ TEST_CASE("every component is judged on its own", "[mesh][rigid_modes][extreme][
              contains("1 more component"));
 }
 
+TEST_CASE("axes are named in a frame elsewhere", "[mesh][rigid_modes]") {
+  const Mesh<Tet4> mesh = corner_tetrahedron();
+  const auto axis = [&](const Mask& mask, const Vector3& origin) {
+    const auto all = free_rigid_modes(mesh, mask, origin);
+    REQUIRE(all.size() == 1);
+    REQUIRE(all[0].count() == 1);
+    return all[0].modes[0];
+  };
+  CHECK(axis({7, 7, 0, 0}, {3, -2, 0}) == "rotation about the axis (1, 0, 0) through (3.5, -2, 0)");
+  CHECK(axis({7, 7, 0, 0}, {-0.5, 0, 0}) == "rotation about the axis (1, 0, 0) through (0, 0, 0)");
+  // Far from zero there are enough digits to find the axis in the body.
+  CHECK(axis({7, 7, 0, 0}, {1234.25, 0, -1e6}) == "rotation about the axis (1, 0, 0) through (1234.75, 0, -1000000)");
+  const auto p = refused(SetupErrorKind::unconstrained, [&] {
+    require_constrained(mesh, Mask{7, 7, 0, 0}, Vector3(3, -2, 0));
+  });
+  CHECK_THAT(p.what, contains("through (3.5, -2, 0)"));
+  CHECK(p.ids_of == SetupIds::nodes);
+}
+
 TEST_CASE("lengths that differ are refused", "[mesh][rigid_modes]") {
   refused(SetupErrorKind::bad_argument, [] { free_rigid_modes(corner_tetrahedron(), Mask(3)); });
 }

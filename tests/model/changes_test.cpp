@@ -239,3 +239,49 @@ TEST_CASE("new loads may name any group of the mesh", "[model][changes]") {
   REQUIRE_NOTHROW(model->set_conditions(pressed));
   CHECK(relative(model->displacement(), Reference(brick(), {liver}, pressed).displacement) <= 1e-11);
 }
+
+TEST_CASE("a scene that touches something else is refused", "[model][changes][strong]") {
+  const Scene scene = loaded(brick_scene());
+  for (PolicyName policy : {PolicyName::sparse_cholesky, PolicyName::condensed_inverse}) {
+    INFO(name(policy));
+    const auto model = make_model(policy, brick(), scene, liver);
+    const State before(*model);
+    const auto refused = [&](const Scene& other) {
+      const SetupProblem p = refusal([&] { model->set_conditions(other); });
+      CHECK(to_string(p.kind) == "unsupported");
+      CHECK_THAT(p.hint, contains("make a new model"));
+      CHECK(State(*model) == before);
+    };
+    refused(Scene(scene).traction("x1", {1, 0, 0}).touch("y1"));  // more
+    refused(loaded(Scene().fix("x0").touch("y1")));               // others
+    refused(loaded(Scene().fix("x0").touch("surface")));
+    CHECK_REFUSED(SetupErrorKind::unknown_group, model->set_conditions(Scene(scene).touch("liver")));
+    CHECK(State(*model) == before);
+  }
+}
+
+TEST_CASE("a model without touch refuses a scene with one", "[model][changes][strong]") {
+  const Scene scene = Scene().fix("x0").traction("x1", {5, 0, 0});
+  const auto model = make_model(PolicyName::sparse_cholesky, brick(), scene, liver);
+  CHECK_REFUSED(SetupErrorKind::unsupported, model->set_conditions(Scene(scene).touch("z1")));
+  CHECK_NOTHROW(model->set_conditions(scene));
+}
+
+TEST_CASE("the same touched set may be told in another way, or not at all", "[model][changes]") {
+  const Mesh<Tet4> mesh = brick();
+  const Scene untouched = loaded(Scene().fix("x0"));
+  const auto model = make_model(PolicyName::sparse_cholesky, mesh, loaded(brick_scene().touch("x1")), liver);
+  const VectorX u = model->displacement();
+  const auto same = [&](const Scene& scene) {
+    model->set_conditions(
+        brick_scene().touch("x1").prescribe(std::vector<NodeId>{3}, {0.0, std::nullopt, std::nullopt}));
+    CHECK_FALSE(model->displacement() == u);
+    REQUIRE_NOTHROW(model->set_conditions(scene));
+    CHECK(model->displacement() == u);
+  };
+  same(untouched);
+  same(Scene(untouched).touch("x1").touch("z1"));
+  same(Scene(untouched).touch("z1").touch("x1").touch("z1"));
+  const Group& top = *mesh.groups.find("z1");
+  same(Scene(untouched).touch("x1").touch(std::vector<NodeId>(top.nodes.rbegin(), top.nodes.rend())));
+}

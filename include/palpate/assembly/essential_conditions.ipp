@@ -37,10 +37,10 @@ PALPATE_INLINE EssentialConditions resolve_essential(const MeshRef& mesh, const 
         auto& bits = c.constrained[static_cast<std::size_t>(node)];
         const Index dof = 3 * Index{node} + i;
         if ((bits & (1u << i)) != 0 && c.prescribed[dof] != *value)
-          raise(SetupErrorKind::conflicting_conditions,
-                "node " + std::to_string(node) + " component " + std::to_string(i) + " is prescribed as " +
-                    number(c.prescribed[dof]) + " and as " + number(*value),
-                "Give each component one value");
+          raise_at(SetupIds::nodes, node, SetupErrorKind::conflicting_conditions,
+                   std::string("component ") + "xyz"[i] + " of a node is prescribed as " + number(c.prescribed[dof]) +
+                       " and as " + number(*value),
+                   "Give each component one value");
         bits = static_cast<std::uint8_t>(bits | (1u << i));
         c.prescribed[dof] = *value;
       }

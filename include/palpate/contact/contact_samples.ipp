@@ -99,7 +99,7 @@ PALPATE_INLINE void require_dense_points(const ContactSurface& surface, double r
   problem.count = 2;
   problem.what = "an edge of the touchable surface is " + number(problem.value) + " m long, more than " +
                  std::to_string(ContactSamples::maximum_subdivision) + " radii of the smallest tool (" +
-                 number(radius) + " m): it would fall through";
+                 number(radius) + " m): it would fall through; the ids are vertices of the surface";
   problem.hint = "Refine the mesh where tools touch, or take a larger tool";
   raise(std::move(problem));
 }

@@ -80,8 +80,12 @@ constexpr std::string_view to_string(SetupErrorKind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
-/// What went wrong at set-up. `ids` holds the first few element, node or region ids (zero based); `count` how many
-/// there are in all.
+/// What the ids of a problem number. Nodes and elements are those of the mesh as given; the sentence says what others
+/// are (regions, dofs, vertices ...).
+enum class SetupIds { others, nodes, elements };
+
+/// What went wrong at set-up. `ids` holds the first few ids (zero based); `count` how many there are in all. Ids of
+/// nodes and elements belong there and not in the sentence: `raise` puts them into the numbers of the mesh as given.
 struct SetupProblem {
   SetupErrorKind kind = SetupErrorKind::bad_argument;
   std::string what;               ///< one sentence with the measured value
@@ -90,11 +94,12 @@ struct SetupProblem {
   std::int64_t count = 0;         ///< all offenders, listed or not
   double value = 0.0;             ///< the measured value
   double threshold = 0.0;         ///< the bound it broke
+  SetupIds ids_of = SetupIds::others;
 
   static constexpr std::size_t max_ids = 16;
 
   /// Keeps the first `max_ids` of `all` and their number.
-  void set_ids(std::span<const std::int64_t> all);
+  void set_ids(std::span<const std::int64_t> all, SetupIds of = SetupIds::others);
 };
 
 /// A number for a message: nine significant digits, enough to tell 0.4999999 from 0.5.
@@ -123,10 +128,34 @@ using SetupFailureHandler = void (*)(const SetupProblem&);
 /// Assign to replace it, before the first set-up and not while another thread is in one.
 SetupFailureHandler& setup_failure_handler();
 
-/// Refuses: throws SetupError, or without exceptions calls the failure handler.
+/// Ids in the mesh as given of the nodes and elements of the mesh that admission made of it. An empty list: the same.
+struct GivenIds {
+  std::vector<std::int64_t> nodes, elements;
+};
+
+/// While it lives, what this thread refuses names nodes and elements in these numbers: for set-up after admission. Of
+/// several the last one made counts. Refers to `ids`.
+class NamesGivenIds {
+ public:
+  explicit NamesGivenIds(const GivenIds& ids) noexcept;
+  explicit NamesGivenIds(GivenIds&&) = delete;
+  NamesGivenIds(const NamesGivenIds&) = delete;
+  NamesGivenIds& operator=(const NamesGivenIds&) = delete;
+  ~NamesGivenIds();
+
+ private:
+  const GivenIds* outer_;
+};
+
+/// Refuses: throws SetupError, or without exceptions calls the failure handler. Translates ids where a NamesGivenIds
+/// lives.
 [[noreturn]] PALPATE_COLD void raise(SetupProblem problem);
 
 [[noreturn]] PALPATE_COLD void raise(SetupErrorKind kind, std::string what, std::string hint = {});
+
+/// Refuses with the id of one node or element, which the sentence does not name.
+[[noreturn]] PALPATE_COLD void raise_at(SetupIds of, std::int64_t id, SetupErrorKind kind, std::string what,
+                                        std::string hint = {});
 
 }}  // namespace palpate
 

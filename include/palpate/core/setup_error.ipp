@@ -10,7 +10,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE void SetupProblem::set_ids(std::span<const std::int64_t> all) {
+PALPATE_INLINE void SetupProblem::set_ids(std::span<const std::int64_t> all, SetupIds of) {
+  ids_of = of;
   count = static_cast<std::int64_t>(all.size());
   ids.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), max_ids)));
 }
@@ -26,11 +27,44 @@ PALPATE_INLINE std::string number(double value) {
 #endif
 }
 
+namespace detail {
+
+inline const char* label_of_ids(const SetupProblem& p) noexcept {
+  const bool one = p.ids.size() == 1 && p.count <= 1;
+  if (p.ids_of == SetupIds::nodes) return one ? "node" : "nodes";
+  if (p.ids_of == SetupIds::elements) return one ? "element" : "elements";
+  return "ids";
+}
+
+/// The numbers that refusals of this thread use; null: those they have.
+inline const GivenIds*& given_ids_in_use() noexcept {
+  static thread_local const GivenIds* ids = nullptr;
+  return ids;
+}
+
+/// Puts the ids of a problem into the numbers in use.
+inline void name_as_given(SetupProblem& p) noexcept {
+  const GivenIds* given = given_ids_in_use();
+  if (given == nullptr || p.ids_of == SetupIds::others) return;
+  const std::vector<std::int64_t>& origin = p.ids_of == SetupIds::nodes ? given->nodes : given->elements;
+  const auto size = static_cast<std::int64_t>(origin.size());
+  for (std::int64_t& id : p.ids)
+    if (id >= 0 && id < size) id = origin[static_cast<std::size_t>(id)];
+}
+
+}  // namespace detail
+
+PALPATE_INLINE NamesGivenIds::NamesGivenIds(const GivenIds& ids) noexcept
+    : outer_(std::exchange(detail::given_ids_in_use(), &ids)) {}
+PALPATE_INLINE NamesGivenIds::~NamesGivenIds() {
+  detail::given_ids_in_use() = outer_;
+}
+
 PALPATE_INLINE std::string describe(const SetupProblem& p) {
   std::string text(to_string(p.kind));
   text += ": " + p.what;
   if (!p.ids.empty()) {
-    text += " [ids";
+    text += std::string(" [") + detail::label_of_ids(p);
     for (auto id : p.ids) text += ' ' + std::to_string(id);
     if (p.count > static_cast<std::int64_t>(p.ids.size())) text += " ... " + std::to_string(p.count) + " in all";
     text += ']';
@@ -45,6 +79,7 @@ PALPATE_INLINE SetupFailureHandler& setup_failure_handler() {
 }
 
 PALPATE_INLINE void raise(SetupProblem problem) {
+  detail::name_as_given(problem);
 #if defined(PALPATE_HAS_EXCEPTIONS)
   throw SetupError(std::move(problem));
 #else
@@ -59,6 +94,15 @@ PALPATE_INLINE void raise(SetupErrorKind kind, std::string what, std::string hin
   p.kind = kind;
   p.what = std::move(what);
   p.hint = std::move(hint);
+  raise(std::move(p));
+}
+
+PALPATE_INLINE void raise_at(SetupIds of, std::int64_t id, SetupErrorKind kind, std::string what, std::string hint) {
+  SetupProblem p;
+  p.kind = kind;
+  p.what = std::move(what);
+  p.hint = std::move(hint);
+  p.set_ids({&id, 1}, of);
   raise(std::move(p));
 }
 

@@ -10,8 +10,13 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE void SetupLimits::advance(std::string_view stage, double fraction) const {
-  if (progress && !progress({stage, fraction}))
-    raise(SetupErrorKind::cancelled, "set-up was cancelled during " + std::string(stage));
+  if (!progress) return;
+  const bool goes_on = [&] {
+    const GivenIds own;  // what the callback has refused, another set-up perhaps, is not of this mesh
+    const NamesGivenIds naming(own);
+    return progress({stage, fraction});
+  }();
+  if (!goes_on) raise(SetupErrorKind::cancelled, "set-up was cancelled during " + std::string(stage));
 }
 
 PALPATE_INLINE void SetupLimits::require_memory(double bytes, const char* what) const {

@@ -12,6 +12,7 @@
 #include <palpate/cut/cut_surface.hpp>
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/cuttable_options.hpp>
+#include <palpate/cut/topology_change.hpp>
 #include <palpate/mesh/admission.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
@@ -32,23 +33,48 @@ struct CutPreparation {
   CutTopology<E> topology;
   CutSurface<E> touchable;
   std::vector<NodeId> cuttable;  ///< sorted
+  GivenIds given;                ///< what refusals call its nodes and elements
   Vector3 origin;                ///< of the frame, in that of the mesh as given [m]
 };
+
+namespace detail {
+
+/// The copies of nodes that a topology has made are called as what they are copies of.
+template <Element E>
+void name_copies(const CutTopology<E>& topology, Index admitted_nodes, GivenIds& given) {
+  const auto count = static_cast<NodeId>(topology.mesh().node_count());
+  if (count == admitted_nodes) return;
+  if (given.nodes.empty())
+    for (Index node = 0; node < admitted_nodes; ++node) given.nodes.push_back(node);
+  for (auto node = static_cast<NodeId>(admitted_nodes); node < count; ++node)
+    given.nodes.push_back(given.nodes[static_cast<std::size_t>(topology.origin_of(node))]);
+}
+
+[[noreturn]] inline void refuse_loose(const LoosePiece& piece) {
+  SetupProblem p;
+  p.kind = SetupErrorKind::unconstrained;
+  p.what = "a part of " + std::to_string(piece.elements.size()) + " elements is not held";
+  p.hint = "Parts that hang together by nodes or edges only are separate here; hold each";
+  p.set_ids(piece.elements, SetupIds::elements);
+  raise(std::move(p));
+}
+
+}  // namespace detail
 
 /// Throws what admission and the scene's selections throw; unconstrained when a part is not held.
 template <Element E, LinearMaterial M>
 CutPreparation<E> prepare_cut(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
                               const CuttableOptions& options) {
   Admitted<E> admitted = admit<E>(mesh, options.admission);
+  GivenIds given = given_ids(admitted);
+  const NamesGivenIds naming(given);
   const Scene mapped = scene.mapped(admitted.node_map);
   const Vector3 origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
   for (Vector3& x : admitted.mesh.positions) x -= origin;
   const auto boundary = extract_boundary<E>(admitted.mesh);
   CutTopology<E> topology(admitted.mesh, resolve_essential(admitted.mesh, boundary, mapped).constrained);
-  if (!topology.loose_pieces().empty())
-    raise(SetupErrorKind::unconstrained,
-          "a part of " + std::to_string(topology.loose_pieces()[0].elements.size()) + " elements is not held",
-          "Parts that hang together by nodes or edges only are separate here; hold each");
+  detail::name_copies(topology, admitted.mesh.node_count(), given);
+  if (!topology.loose_pieces().empty()) detail::refuse_loose(topology.loose_pieces()[0]);
   CutSurface<E> touchable(topology, boundary, mapped);
   std::vector<NodeId> cuttable;
   if (options.cuttable) {
@@ -58,7 +84,7 @@ CutPreparation<E> prepare_cut(const Mesh<E>& mesh, const Scene& scene, const Reg
     cuttable = resolve_nodes(admitted.mesh, boundary, wanted);
   }
   CutPhysics<E> physics(make_body(std::move(admitted.mesh), materials), boundary, mapped);
-  return {std::move(physics), std::move(topology), std::move(touchable), std::move(cuttable), origin};
+  return {std::move(physics), std::move(topology), std::move(touchable), std::move(cuttable), std::move(given), origin};
 }
 
 }}  // namespace palpate

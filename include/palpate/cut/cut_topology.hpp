@@ -141,7 +141,7 @@ class CutTopology {
     p.kind = SetupErrorKind::index_out_of_range;
     p.what = "a cut names elements or faces that do not exist";
     p.hint = "Elements are 0 ... " + std::to_string(mesh_.element_count() - 1);
-    p.set_ids(bad);
+    p.set_ids(bad, SetupIds::elements);
     raise(std::move(p));
   }
 

@@ -114,9 +114,11 @@ class CuttableTissue {
     visit(topology_, physics_);
   }
   /// Displacement of all nodes with forces on vertices (those of the present surface or an earlier one), 3 per node
-  /// [m]. Nodes of loose pieces rest where they were when they came off. O(kept x forces) and two substitutions.
+  /// [m]. Nodes of loose pieces rest where they were when they came off. Throws index_out_of_range for a vertex that
+  /// does not exist, non_finite for a force that is no number. O(kept x forces) and two substitutions.
   VectorX displacement_with(std::span<const VertexForce> forces) {
     const std::scoped_lock lock(system_mutex_);
+    require_vertex_forces(forces, static_cast<int>(touchable_.nodes().size()));
     std::vector<std::pair<NodeId, Vector3>> list;
     for (const VertexForce& f : forces)
       list.push_back({touchable_.nodes()[static_cast<std::size_t>(f.vertex)], f.force});
@@ -164,6 +166,8 @@ class CuttableTissue {
 
  private:
   CuttableTissue(CutPreparation<E> prepared, const CuttableOptions& options)
+      : CuttableTissue(prepared, options, NamesGivenIds(prepared.given)) {}
+  CuttableTissue(CutPreparation<E>& prepared, const CuttableOptions& options, const NamesGivenIds&)
       : physics_(std::move(prepared.physics)),
         topology_(std::move(prepared.topology)),
         touchable_(std::move(prepared.touchable)),

@@ -32,7 +32,7 @@ PALPATE_INLINE void check_pivots(const VectorX& pivots, const VectorX& diagonal,
   p.hint = "Look there for a body that is not held, an inverted element or a Poisson ratio at its limit";
   p.value = worst;
   p.threshold = threshold;
-  p.set_ids(bad);
+  p.set_ids(bad, node_of_dof.empty() ? SetupIds::others : SetupIds::nodes);
   raise(std::move(p));
 }
 

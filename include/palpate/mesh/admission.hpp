@@ -4,6 +4,7 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/mesh.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/admission_policy.hpp>
 #include <palpate/mesh/diagnose.hpp>
@@ -28,6 +29,14 @@ struct Admitted {
   MeshDiagnosis admitted;   ///< of `mesh`; the same when nothing was repaired
 };
 
+/// The maps of an admission the other way round: where admitted nodes and elements come from. Of welded nodes the
+/// lowest. O(n), allocates.
+GivenIds given_ids(const std::vector<NodeId>& node_map, const std::vector<Index>& element_map);
+template <Element E>
+GivenIds given_ids(const Admitted<E>& admitted) {
+  return given_ids(admitted.node_map, admitted.element_map);
+}
+
 namespace detail {
 
 /// A mesh during admission. `repair_and_enforce` fills the maps.
@@ -39,9 +48,8 @@ struct Candidate {
   MeshDiagnosis& admitted;  ///< of the mesh as given; then of what was made of it
 };
 
-/// Refuses what the policy does not accept of `d`, with ids of the mesh as given; empty maps change none.
-void enforce(const MeshDiagnosis& d, const AdmissionPolicy& policy, const std::vector<NodeId>& node_map,
-             const std::vector<Index>& element_map);
+/// Refuses what the policy does not accept of `d`.
+void enforce(const MeshDiagnosis& d, const AdmissionPolicy& policy);
 
 /// Checks the groups, makes all repairs the policy allows and refuses what is left.
 void repair_and_enforce(Candidate& candidate, const AdmissionPolicy& policy);
@@ -59,7 +67,7 @@ Admitted<E> admit(const M& view, const AdmissionPolicy& policy = {}, const std::
   Admitted<E> result;
   result.diagnosis = diagnose<E>(view, policy.thresholds);
   result.admitted = result.diagnosis;
-  if (!result.diagnosis.complete) detail::enforce(result.admitted, policy, {}, {});  // refuses
+  if (!result.diagnosis.complete) detail::enforce(result.admitted, policy);  // refuses
   require_unit_fibres(view);
   result.mesh = copy_mesh<E>(view, group_names);
   detail::Candidate candidate{mesh_edit(result.mesh), detail::shape_of_element<E>, result.node_map, result.element_map,

@@ -11,31 +11,27 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Ids of the mesh as given for those of the repaired one.
+/// The other way round; empty when nothing was renumbered.
 template <class Id>
-void restore_ids(std::vector<std::int64_t>& ids, const std::vector<Id>& map) {
-  if (map.empty()) return;  // nothing was repaired yet
+std::vector<std::int64_t> inverse_of(const std::vector<Id>& map) {
   std::vector<std::int64_t> origin;
+  bool renumbered = false;
   for (std::size_t i = map.size(); i-- > 0;) {  // backwards: the lowest of several welded nodes wins
+    renumbered = renumbered || static_cast<std::int64_t>(map[i]) != static_cast<std::int64_t>(i);
     if (map[i] < 0) continue;
     const auto to = static_cast<std::size_t>(map[i]);
     if (to >= origin.size()) origin.resize(to + 1, -1);
     origin[to] = static_cast<std::int64_t>(i);
   }
-  for (auto& id : ids) id = origin[static_cast<std::size_t>(id)];
+  if (!renumbered) origin.clear();
+  return origin;
 }
 
-PALPATE_INLINE void enforce(const MeshDiagnosis& d, const AdmissionPolicy& policy, const std::vector<NodeId>& node_map,
-                            const std::vector<Index>& element_map) {
+PALPATE_INLINE void enforce(const MeshDiagnosis& d, const AdmissionPolicy& policy) {
   for (const AdmissionRule& rule : admission_rules) {
     const Finding& finding = d.*(rule.finding);
     if (!finding || (rule.decision != nullptr && policy.*(rule.decision) == Admission::accept)) continue;
-    SetupProblem p = make_problem(rule, finding);
-    if (rule.of_nodes)
-      restore_ids(p.ids, node_map);
-    else
-      restore_ids(p.ids, element_map);
-    raise(std::move(p));
+    raise(make_problem(rule, finding));
   }
   if (d.empty())
     raise(SetupErrorKind::empty_mesh, std::to_string(d.node_count) + " nodes and " + std::to_string(d.element_count) +
@@ -144,7 +140,17 @@ PALPATE_INLINE void repair_and_enforce(Candidate& candidate, const AdmissionPoli
     check_indices(mesh, candidate.admitted);
     diagnose_rest(mesh, candidate.shape_of, policy.thresholds, candidate.admitted);
   }
-  enforce(candidate.admitted, policy, candidate.node_map, candidate.element_map);
+  const GivenIds given = given_ids(candidate.node_map, candidate.element_map);
+  const NamesGivenIds naming(given);
+  enforce(candidate.admitted, policy);
 }
 
 }}}  // namespace palpate::detail
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE GivenIds given_ids(const std::vector<NodeId>& node_map, const std::vector<Index>& element_map) {
+  return {detail::inverse_of(node_map), detail::inverse_of(element_map)};
+}
+
+}}  // namespace palpate

@@ -14,6 +14,7 @@ PALPATE_INLINE SetupProblem make_problem(const AdmissionRule& rule, const Findin
            number(finding.threshold);
   p.hint = rule.hint;
   p.ids = finding.ids;
+  p.ids_of = rule.of_nodes ? SetupIds::nodes : SetupIds::elements;
   p.count = finding.count;
   p.value = finding.worst;
   p.threshold = finding.threshold;

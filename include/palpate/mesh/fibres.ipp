@@ -31,7 +31,7 @@ PALPATE_INLINE void require_unit_vectors(std::span<const Vector3> fibres) {
   p.what = std::to_string(bad.size()) + " elements have a fibre direction that is no unit vector, worst length " +
            number(worst);
   p.hint = "Give every element a unit vector, or no element any";
-  p.set_ids(bad);
+  p.set_ids(bad, SetupIds::elements);
   p.value = worst;
   p.threshold = fibre_length_tolerance;
   raise(std::move(p));

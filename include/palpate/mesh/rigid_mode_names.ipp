@@ -3,6 +3,7 @@
 
 #include <palpate/mesh/rigid_mode_names.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -10,12 +11,15 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Three numbers with three digits; what is zero but for rounding prints as 0.
+/// Three numbers with three digits, more where they are large against `scale`, so that a point far from zero is told to
+/// a hundredth of it; what is zero but for rounding prints as 0.
 inline std::string short_triple(const Vector3& v, double scale) {
   std::string text = "(";
   for (int i = 0; i < 3; ++i) {
     std::array<char, 32> one{};
-    std::snprintf(one.data(), one.size(), "%.3g", std::abs(v[i]) < 1e-6 * scale ? 0.0 : v[i]);
+    const double ratio = std::abs(v[i]) / scale;
+    const int digits = ratio > 1.0 ? 4 + static_cast<int>(std::min(std::log10(ratio), 12.0)) : 3;
+    std::snprintf(one.data(), one.size(), "%.*g", digits, ratio < 1e-6 ? 0.0 : v[i]);
     text += (i > 0 ? ", " : "") + std::string(one.data());
   }
   return text + ')';

@@ -53,24 +53,28 @@ RigidMotions free_motions(std::span<const Vector3> positions, std::span<const No
 /// What each component can still do, in the order of the components: none of six (held) to six of six (free body).
 /// `component[i]` is the component of node i, -1 to leave it out (mesh/components.hpp); bit a of `constrained[i]` says
 /// that displacement component a of node i is prescribed. Positions are scaled by the component's size; a lever arm
-/// below one millionth of it counts as none. Throws bad_argument when the lengths differ. O(20 nodes), allocates.
+/// below one millionth of it counts as none. `origin` is where the frame of the positions lies in the one in which axes
+/// are named [m]. Throws bad_argument when the lengths differ. O(20 nodes), allocates.
 std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vector3> positions, std::span<const NodeId> component,
-                                             std::span<const std::uint8_t> constrained);
+                                             std::span<const std::uint8_t> constrained,
+                                             const Vector3& origin = Vector3::Zero());
 
 /// Refuses as `unconstrained` when a component can still move as a rigid body: statics then has no unique answer, and a
 /// factorisation may report success all the same. ids: first nodes of the first such component, count: its nodes,
 /// value: its free modes.
 void require_constrained(std::span<const Vector3> positions, std::span<const NodeId> component,
-                         std::span<const std::uint8_t> constrained);
+                         std::span<const std::uint8_t> constrained, const Vector3& origin = Vector3::Zero());
 
 /// The two above for a mesh.
 template <Element E>
-std::vector<FreeRigidModes> free_rigid_modes(const Mesh<E>& mesh, std::span<const std::uint8_t> constrained) {
-  return free_rigid_modes(mesh.positions, connected_components<E>(mesh).of_node, constrained);
+std::vector<FreeRigidModes> free_rigid_modes(const Mesh<E>& mesh, std::span<const std::uint8_t> constrained,
+                                             const Vector3& origin = Vector3::Zero()) {
+  return free_rigid_modes(mesh.positions, connected_components<E>(mesh).of_node, constrained, origin);
 }
 template <Element E>
-void require_constrained(const Mesh<E>& mesh, std::span<const std::uint8_t> constrained) {
-  require_constrained(mesh.positions, connected_components<E>(mesh).of_node, constrained);
+void require_constrained(const Mesh<E>& mesh, std::span<const std::uint8_t> constrained,
+                         const Vector3& origin = Vector3::Zero()) {
+  require_constrained(mesh.positions, connected_components<E>(mesh).of_node, constrained, origin);
 }
 
 }}  // namespace palpate

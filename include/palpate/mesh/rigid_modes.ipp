@@ -110,7 +110,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vector3> positions,
                                                             std::span<const NodeId> component,
-                                                            std::span<const std::uint8_t> constrained) {
+                                                            std::span<const std::uint8_t> constrained,
+                                                            const Vector3& origin) {
   if (component.size() != positions.size() || constrained.size() != positions.size())
     raise(SetupErrorKind::bad_argument, "positions, components and constraints have different lengths",
           "Give one of each per node");
@@ -121,8 +122,8 @@ PALPATE_INLINE std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vect
       modes.first_nodes.assign(
           nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(std::min(nodes.size(), SetupProblem::max_ids)));
       const detail::RigidFrame frame(positions, nodes, constrained);
-      modes.modes = detail::name_rigid_motions(detail::free_motions(positions, nodes, constrained, frame), frame.centre,
-                                               frame.size);
+      modes.modes = detail::name_rigid_motions(detail::free_motions(positions, nodes, constrained, frame),
+                                               origin + frame.centre, frame.size);
     }
     result.push_back(std::move(modes));
   }
@@ -130,8 +131,8 @@ PALPATE_INLINE std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vect
 }
 
 PALPATE_INLINE void require_constrained(std::span<const Vector3> positions, std::span<const NodeId> component,
-                                        std::span<const std::uint8_t> constrained) {
-  const std::vector<FreeRigidModes> all = free_rigid_modes(positions, component, constrained);
+                                        std::span<const std::uint8_t> constrained, const Vector3& origin) {
+  const std::vector<FreeRigidModes> all = free_rigid_modes(positions, component, constrained, origin);
   const auto loose = std::ranges::count_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
   if (loose == 0) return;
   const FreeRigidModes& first = *std::ranges::find_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
@@ -144,6 +145,7 @@ PALPATE_INLINE void require_constrained(std::span<const Vector3> positions, std:
     p.what += "; " + std::to_string(loose - 1) + " more " + (loose == 2 ? "component" : "components") + " can move";
   p.hint = "Prescribe more components of the displacement; a static body needs six that hold it";
   p.ids.assign(first.first_nodes.begin(), first.first_nodes.end());
+  p.ids_of = SetupIds::nodes;
   p.count = first.node_count;
   p.value = first.count();
   raise(std::move(p));

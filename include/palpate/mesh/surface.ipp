@@ -24,7 +24,8 @@ PALPATE_INLINE SortedFaces sorted_faces(const MeshRef& mesh) {
       for (const int local : element.local_face(f)) *end++ = mesh.nodes_of(e)[local];
       std::sort(key, end);
       if (key[0] < 0 || end[-1] >= mesh.node_count)
-        raise(SetupErrorKind::index_out_of_range, "element " + std::to_string(e) + " names a node that does not exist");
+        raise_at(SetupIds::elements, e, SetupErrorKind::index_out_of_range,
+                 "an element names a node that does not exist");
     }
   faces.order = key_order(faces.keys, faces.width, mesh.node_count);
   return faces;
@@ -73,7 +74,7 @@ PALPATE_INLINE std::vector<BoundaryFace> extract_boundary(const MeshRef& mesh) {
     p.kind = SetupErrorKind::non_manifold;
     p.what = "a face is shared by three or more elements";
     p.hint = "Remove the overlapping elements";
-    p.set_ids(bad);
+    p.set_ids(bad, SetupIds::elements);
     raise(std::move(p));
   }
   std::ranges::stable_sort(single, {}, [&](Index i) { return faces.element(i); });

@@ -163,6 +163,7 @@ class BasicSoftTissue {
   struct Prepared {
     typename TissueMotion<Motion>::Source source;
     Touchable touchable;
+    GivenIds given;
     Vector3 origin;
     VectorX settled;
   };
@@ -175,6 +176,8 @@ class BasicSoftTissue {
     Admitted<E> admitted = admit<E>(mesh, options.admission);
     const Scene mapped = scene.mapped(admitted.node_map);
     Prepared prepared;
+    prepared.given = given_ids(admitted);
+    const NamesGivenIds naming(prepared.given);
     prepared.origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
     for (Vector3& x : admitted.mesh.positions) x -= prepared.origin;
     auto body = detail::soft_body(std::move(admitted.mesh), materials);
@@ -182,13 +185,16 @@ class BasicSoftTissue {
     prepared.touchable = resolve_touchable(mesh_ref(rest), extract_boundary<E>(rest), mapped);
     prepared.settled = VectorX::Zero(3 * rest.node_count());
     if (options.settle)
-      require_constrained(rest, resolve_essential(rest, extract_boundary<E>(rest), mapped).constrained);
+      require_constrained(rest, resolve_essential(rest, extract_boundary<E>(rest), mapped).constrained,
+                          prepared.origin);
     prepared.source = TissueMotion<Motion>::source(std::move(body), mapped, options.limits);
     if (options.settle) prepared.settled = TissueMotion<Motion>::settle(prepared.source, options.limits);
     return prepared;
   }
 
   BasicSoftTissue(Prepared prepared, const Options& options)
+      : BasicSoftTissue(prepared, options, NamesGivenIds(prepared.given)) {}
+  BasicSoftTissue(Prepared& prepared, const Options& options, const NamesGivenIds&)
       : step_(options.step),
         world_(make_pose(Matrix3::Identity(), prepared.origin)),
         touchable_(std::move(prepared.touchable.nodes)),

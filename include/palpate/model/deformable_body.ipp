@@ -17,8 +17,8 @@ PALPATE_INLINE double extent(const std::vector<Vector3>& positions) {
 PALPATE_INLINE void require_mass(const DeformableBody& body) {
   for (Index i = 0; i < body.lumped.size(); ++i)
     if (!(body.lumped[i] > 0.0) && body.conditions.constrained[static_cast<std::size_t>(i)] != 7)
-      raise(SetupErrorKind::bad_density, "node " + std::to_string(i) + " has no mass",
-            "Give every region a density in kg/m^3");
+      raise_at(SetupIds::nodes, i, SetupErrorKind::bad_density, "a node has no mass",
+               "Give every region a density in kg/m^3");
 }
 
 }}  // namespace palpate

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/essential_conditions.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/cache_key.hpp>
 #include <palpate/model/setup_report.hpp>
@@ -27,7 +28,7 @@ class ElasticBody {
   virtual const std::vector<std::string>& region_names() const noexcept = 0;
   virtual const std::vector<double>& densities() const noexcept = 0;
 
-  /// Refuses a body that can still move: unconstrained.
+  /// Refuses a body that can still move: unconstrained. Names axes in the frame of the mesh as given.
   virtual void require_constrained(const EssentialConditions& conditions) const = 0;
   virtual EssentialConditions conditions(const Scene& scene) const = 0;
   virtual Touchable touchable(const Scene& scene) const = 0;
@@ -52,6 +53,7 @@ class ElasticBody {
 struct AdmittedBody {
   std::unique_ptr<ElasticBody> body;
   std::vector<NodeId> node_map;  ///< new id of every node as given, -1 for those dropped
+  GivenIds given;                ///< what refusals call its nodes and elements
   Vector3 origin;                ///< of the body's frame in the mesh as given [m]
 };
 

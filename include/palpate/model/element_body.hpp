@@ -15,7 +15,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 template <Element E>
 class ElementBody final : public ElasticBody {
  public:
-  explicit ElementBody(Body<E> body);
+  /// `origin` is where the body's frame lies in the mesh as given [m].
+  explicit ElementBody(Body<E> body, const Vector3& origin = Vector3::Zero());
 
   const Body<E>& body() const noexcept { return body_; }
   const std::vector<BoundaryFace>& boundary() const noexcept { return boundary_; }
@@ -39,10 +40,12 @@ class ElementBody final : public ElasticBody {
  private:
   Body<E> body_;
   std::vector<BoundaryFace> boundary_;
+  Vector3 origin_;
 };
 
 template <Element E>
-ElementBody<E>::ElementBody(Body<E> body) : body_(std::move(body)), boundary_(extract_boundary<E>(body_.mesh)) {}
+ElementBody<E>::ElementBody(Body<E> body, const Vector3& origin)
+    : body_(std::move(body)), boundary_(extract_boundary<E>(body_.mesh)), origin_(origin) {}
 
 template <Element E>
 const std::vector<Vector3>& ElementBody<E>::positions() const noexcept {
@@ -58,7 +61,7 @@ const std::vector<double>& ElementBody<E>::densities() const noexcept {
 }
 template <Element E>
 void ElementBody<E>::require_constrained(const EssentialConditions& conditions) const {
-  palpate::require_constrained(body_.mesh, conditions.constrained);
+  palpate::require_constrained(body_.mesh, conditions.constrained, origin_);
 }
 template <Element E>
 EssentialConditions ElementBody<E>::conditions(const Scene& scene) const {

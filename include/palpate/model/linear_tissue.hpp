@@ -4,6 +4,7 @@
 #include <palpate/concepts/linear_solver.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact_surface.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/mesh/admission_policy.hpp>
 #include <palpate/mesh/scene.hpp>
@@ -63,11 +64,17 @@ class LinearTissue {
   double strain_energy() const;
 
   /// Displacement with these forces on the contact surface, for drawing: one back-substitution. u has 3 entries per
-  /// node. No allocation; may run beside a tick, but not twice at once.
+  /// admitted node [m]. A u of another size gets this one, which allocates; with its size nothing does. A force on a
+  /// vertex that does not exist is left out, and the report says not converged. May run beside a tick, but not twice at
+  /// once.
   SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept;
+  /// The same as a new vector. Throws index_out_of_range for a vertex that does not exist, non_finite for a force that
+  /// is no number, not_converged for a solve that stopped early.
+  VectorX displacement(std::span<const VertexForce> forces);
 
-  /// Replaces loads and prescribed values; the set of prescribed components and of touched nodes must stay. Strong
-  /// guarantee.
+  /// Replaces loads and prescribed values. Throws unsupported for another set of prescribed components, and when the
+  /// scene lets tools touch other nodes or faces than the model was made for. A scene that speaks of no touch leaves it
+  /// as it is; what is seen stays in any case. Strong guarantee.
   void set_conditions(const Scene& scene);
   /// Gravity [m/s^2] in the world's frame. Strong guarantee.
   void set_gravity(const Vector3& gravity);
@@ -108,6 +115,8 @@ class LinearTissue {
               const SetupOptions& options);
 
  private:
+  /// Refuses a scene that lets tools touch something else.
+  void require_same_touch(const Scene& mapped) const;
   void prepare_contact(const std::vector<Triangle>& triangles, bool eager, const SetupOptions& options);
   /// Kept dof of every touchable dof, -1 when it is prescribed.
   std::vector<Index> kept_index() const;
@@ -124,6 +133,7 @@ class LinearTissue {
   SetupReport report_;
   Scene scene_;
   std::vector<NodeId> node_map_, touchable_, seen_;
+  GivenIds given_;
   Vector3 origin_ = Vector3::Zero(), gravity_ = Vector3::Zero();
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity(), world_ = Eigen::Isometry3d::Identity();
   std::unique_ptr<Statics> statics_;

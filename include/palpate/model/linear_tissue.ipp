@@ -8,11 +8,13 @@
 #include <palpate/model/elastic_body.hpp>
 #include <palpate/model/stage_timer.hpp>
 #include <palpate/model/statics.hpp>
+#include <palpate/model/touchable.hpp>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -47,6 +49,17 @@ SolveReport LinearTissue<Scalar>::displacement_with(std::span<const VertexForce>
   return statics_->displacement_with(forces, touchable_, u);
 }
 template <std::floating_point Scalar>
+VectorX LinearTissue<Scalar>::displacement(std::span<const VertexForce> forces) {
+  require_vertex_forces(forces, static_cast<int>(touchable_.size()));
+  VectorX u(displacement().size());
+  const SolveReport solved = displacement_with(forces, u);
+  if (!solved.converged)
+    raise(SetupErrorKind::not_converged,
+          "the static solve stopped at a relative residual of " + number(solved.relative_residual),
+          "Use a direct solver");
+  return u;
+}
+template <std::floating_point Scalar>
 const ElasticBody& LinearTissue<Scalar>::elastic_body() const noexcept {
   return statics_->body();
 }
@@ -59,6 +72,8 @@ template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, MakeStiffness make_stiffness,
                                   const SolverRecipe& recipe, const SetupOptions& options) {
   node_map_ = std::move(admitted.node_map);
+  given_ = std::move(admitted.given);
+  const NamesGivenIds naming(given_);
   scene_ = scene.mapped(node_map_);
   origin_ = admitted.origin;
   place(Eigen::Isometry3d::Identity());
@@ -76,11 +91,25 @@ void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, Mak
 
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_conditions(const Scene& scene) {
+  const NamesGivenIds naming(given_);
   const Scene mapped = scene.mapped(node_map_);
+  require_same_touch(mapped);
   SetupReport report = report_;
   statics_->set_conditions(mapped, rotation_of(pose_).transpose() * scene.gravity(), reporting_to(report));
   gravity_ = scene.gravity();
   accept_displacement(report);
+}
+
+template <std::floating_point Scalar>
+void LinearTissue<Scalar>::require_same_touch(const Scene& mapped) const {
+  if (mapped.touched().empty()) return;
+  const Touchable touchable = statics_->body().touchable(mapped);
+  if (touchable.nodes == touchable_ && touchable.triangles == surface_.triangles()) return;
+  raise(SetupErrorKind::unsupported,
+        "the new scene lets tools touch " + std::to_string(touchable.nodes.size()) + " nodes and " +
+            std::to_string(touchable.triangles.size()) + " triangles, the model was made for another set of " +
+            std::to_string(touchable_.size()) + " and " + std::to_string(surface_.triangles().size()),
+        "Loads may change, what tools touch may not: make a new model, or leave touch out of the scene");
 }
 
 template <std::floating_point Scalar>

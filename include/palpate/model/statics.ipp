@@ -61,11 +61,20 @@ PALPATE_INLINE void Statics::set_gravity(const Vector3& gravity, const Look& loo
 
 PALPATE_INLINE SolveReport Statics::displacement_with(std::span<const VertexForce> forces,
                                                       const std::vector<NodeId>& node_of_vertex, VectorX& u) noexcept {
+  if (u.size() != displacement_.size()) u.resize(displacement_.size());
+  bool all_exist = true;
   scratch_.setZero();
   for (const auto& [vertex, force] : forces)
-    add_node_vector(scratch_, node_of_vertex[static_cast<std::size_t>(vertex)], force);
-  const SolveReport report = solve_free(scratch_, u);
+    if (vertex >= 0 && static_cast<std::size_t>(vertex) < node_of_vertex.size())
+      add_node_vector(scratch_, node_of_vertex[static_cast<std::size_t>(vertex)], force);
+    else
+      all_exist = false;
+  SolveReport report = solve_free(scratch_, u);
   u += displacement_;
+  if (!all_exist) {
+    report.converged = false;
+    report.relative_residual = infinity;
+  }
   return report;
 }
 

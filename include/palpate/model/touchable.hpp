@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/element.hpp>
+#include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/bvh.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
@@ -9,6 +10,7 @@
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>
 
+#include <span>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -26,6 +28,10 @@ void sort_unique(std::vector<NodeId>& nodes);
 /// Resolves what a scene lets tools touch: the boundary faces of every selection and their nodes. Throws as
 /// resolve_faces does.
 Touchable resolve_touchable(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary, const Scene& scene);
+
+/// Refuses forces on vertices outside 0 ... vertices - 1 (index_out_of_range; the ids are vertices), and forces that
+/// are no numbers (non_finite).
+void require_vertex_forces(std::span<const VertexForce> forces, int vertices);
 
 /// The nodes somebody looks at, sorted.
 std::vector<NodeId> resolve_seen(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary, const Scene& scene);

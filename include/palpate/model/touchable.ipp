@@ -1,10 +1,12 @@
 // Definitions of touchable.hpp.
 #pragma once
 
+#include <palpate/core/setup_error.hpp>
 #include <palpate/mesh/selection.hpp>
 #include <palpate/model/touchable.hpp>
 
 #include <algorithm>
+#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -37,6 +39,18 @@ PALPATE_INLINE Touchable resolve_touchable(const MeshRef& mesh, const std::vecto
     }
   }
   return touchable;
+}
+
+PALPATE_INLINE void require_vertex_forces(std::span<const VertexForce> forces, int vertices) {
+  for (const VertexForce& f : forces) {
+    if (f.vertex < 0 || f.vertex >= vertices)
+      raise_at(SetupIds::others, f.vertex, SetupErrorKind::index_out_of_range,
+               "a force acts on a vertex that does not exist; the id is its number",
+               "The contact surface has " + std::to_string(vertices) + " vertices, counted from zero");
+    if (!all_finite(f.force))
+      raise_at(SetupIds::others, f.vertex, SetupErrorKind::non_finite,
+               "a force on a vertex is not finite; the id is the vertex");
+  }
 }
 
 PALPATE_INLINE std::vector<NodeId> resolve_seen(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,

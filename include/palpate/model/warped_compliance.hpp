@@ -35,8 +35,8 @@ class WarpedCompliance {
       for (int c = 0; c < 3; ++c) {
         force[3 * Index{nodes[j]} + c] = 1.0;
         if (!motion.respond(force, u))
-          raise(SetupErrorKind::not_converged, "the compliance of node " + std::to_string(nodes[j]),
-                "Shorten the step, or choose another preconditioner");
+          raise_at(SetupIds::nodes, nodes[j], SetupErrorKind::not_converged, "the compliance of a node was not found",
+                   "Shorten the step, or choose another preconditioner");
         force[3 * Index{nodes[j]} + c] = 0.0;
         for (std::size_t i = 0; i < count_; ++i)
           for (int d = 0; d < 3; ++d) rest_[i + count_ * j](d, c) = u[3 * Index{nodes[i]} + d];
