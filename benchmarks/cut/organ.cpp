@@ -43,7 +43,7 @@ Scene lying(const Mesh<Tet4>& mesh) {
 Vector3 on_surface(const Tissue& tissue) {
   Vector3 best = Vector3::Constant(infinity);
   for (const Vector3& x : tissue.contact_surface().positions()) {
-    const Vector3 p = tissue.pose() * x;
+    const Vector3 p = tissue.to_world() * x;
     if ((p - middle).head<2>().norm() < (best - middle).head<2>().norm()) best = p;
   }
   return best;

@@ -26,7 +26,7 @@ struct Picture {
 
 /// How deep a ball at `position` is in the surface at rest [m].
 inline double penetration(const Organ& organ, const Vector3& position) {
-  return tool.radius - organ.contact_surface().closest(organ.pose().inverse() * position).distance;
+  return tool.radius - organ.contact_surface().closest(organ.to_world().inverse() * position).distance;
 }
 
 inline std::vector<Picture> develop(const Organ& organ, const Session& session) {

@@ -86,7 +86,7 @@ inline PatchFrame frame_above(const Organ& organ, std::string_view name) {
 class TouchPath {
  public:
   TouchPath(const Organ& organ, const Plan& plan)
-      : frame_(frame_above(organ, "lesion")), to_world_(organ.pose()), over_patch_(moves(plan)) {
+      : frame_(frame_above(organ, "lesion")), to_world_(organ.to_world()), over_patch_(moves(plan)) {
     const auto& vertices = organ.contact_surface().positions();
     MatrixX monomials(static_cast<Index>(vertices.size()), 6);
     VectorX heights(monomials.rows());

@@ -38,7 +38,7 @@ inline bool look(Organ& organ, HapticServo& servo, double not_before, Frame& fra
   if (snapshot.time < not_before) return false;
   frame.time = snapshot.time;
   frame.force.setZero();
-  for (const VertexForce& f : snapshot.vertex_forces()) frame.force -= organ.pose().linear() * f.force;
+  for (const VertexForce& f : snapshot.vertex_forces()) frame.force -= organ.to_world().linear() * f.force;
   organ.displacement_with(snapshot.vertex_forces(), frame.displacement);
   return true;
 }

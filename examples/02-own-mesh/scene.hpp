@@ -78,7 +78,7 @@ Press plan_press(const Organ& organ, double radius) {
   const auto at = surface.closest(middle / count);
   const Vector3 outward = surface.normal(at.triangle);
   const double depth = 0.25 * radius;
-  const auto world = [&](double height) { return Vector3(organ.pose() * Vector3(at.point + height * outward)); };
+  const auto world = [&](double height) { return Vector3(organ.to_world() * Vector3(at.point + height * outward)); };
   return {SphereTool{.radius = radius}, world(2.0 * radius), world(radius - depth), depth};
 }
 

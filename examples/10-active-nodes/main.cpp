@@ -71,11 +71,11 @@ int main() {
   // 1. The node in the middle of the top, pulled up and aside.
   int vertex = 0;
   const ContactSurface& top = tissue.contact_surface();
-  const Vector3 middle = tissue.pose().inverse() * Vector3(0.5 * size[0], 0.5 * size[1], size[2]);
+  const Vector3 middle = tissue.to_world().inverse() * Vector3(0.5 * size[0], 0.5 * size[1], size[2]);
   for (int v = 0; v < top.vertex_count(); ++v)
     if ((top.position(v) - middle).norm() < (top.position(vertex) - middle).norm()) vertex = v;
   const NodeId node = tissue.touchable_nodes()[static_cast<std::size_t>(vertex)];
-  const Held held = hold_and_move(tissue, tissue.pose() * top.position(vertex), by);
+  const Held held = hold_and_move(tissue, tissue.to_world() * top.position(vertex), by);
   const Tissue prescribed(mesh(), scene().prescribe(std::vector<NodeId>{node}, {by[0], by[1], by[2]}), material);
   const Vector3 reaction = prescribed.reactions().segment<3>(3 * Index{node});
   bool right = agree("force at an active node, reaction", held.force, reaction);
@@ -83,7 +83,7 @@ int main() {
   // 2. A point inside a face: its contact point nearest to a third of each corner.
   const Triangle& face = top.triangle(top.triangles_at(vertex)[0]);
   const Vector3 third = (top.position(face[0]) + top.position(face[1]) + top.position(face[2])) / 3.0;
-  const Held inside = hold_and_move(tissue, tissue.pose() * third, by);
+  const Held inside = hold_and_move(tissue, tissue.to_world() * third, by);
   VectorX u(3 * tissue.mesh().node_count());
   tissue.displacement_with(inside.shared, u);
   Vector3 sum = Vector3::Zero(), moved = Vector3::Zero();

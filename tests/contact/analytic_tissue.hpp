@@ -37,7 +37,7 @@ class AnalyticTissue {
   double compliance_bound(int) const noexcept { return own_ + common_; }
   std::uint64_t compliance_revision() const noexcept { return 0; }
   double compliance_floor() const noexcept { return 1e-12; }
-  const Eigen::Isometry3d& pose() const noexcept { return pose_; }
+  const Eigen::Isometry3d& to_world() const noexcept { return pose_; }
 
   double own() const noexcept { return own_; }
   double common() const noexcept { return common_; }

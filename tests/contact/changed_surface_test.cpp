@@ -18,7 +18,7 @@ class ChangingTissue {
   double compliance_bound(int j) const noexcept { return springs_.compliance_bound(j); }
   std::uint64_t compliance_revision() const noexcept { return revision_; }
   double compliance_floor() const noexcept { return 1e-12; }
-  const Eigen::Isometry3d& pose() const noexcept { return springs_.pose(); }
+  const Eigen::Isometry3d& to_world() const noexcept { return springs_.to_world(); }
 
   /// In another order, other vertices first, a vertex more; without the triangles that `leaves` names by their middle.
   template <class Leaves>

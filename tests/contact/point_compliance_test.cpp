@@ -40,7 +40,7 @@ struct CountingTissue {
   std::uint64_t compliance_revision() const noexcept { return revision; }
   double compliance_bound(int) const noexcept { return 3.0 * scale; }
   double compliance_floor() const noexcept { return 1e-12; }
-  const Eigen::Isometry3d& pose() const noexcept {
+  const Eigen::Isometry3d& to_world() const noexcept {
     static const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
     return identity;
   }

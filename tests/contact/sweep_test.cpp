@@ -64,7 +64,7 @@ class ThinPlate {
   double compliance_bound(int) const noexcept { return own_compliance; }
   std::uint64_t compliance_revision() const noexcept { return 0; }
   double compliance_floor() const noexcept { return 1e-12; }
-  const Eigen::Isometry3d& pose() const noexcept { return pose_; }
+  const Eigen::Isometry3d& to_world() const noexcept { return pose_; }
 
  private:
   ContactSurface surface_;

@@ -208,7 +208,7 @@ TEST_CASE("the shipped organ, cut sixty times a second beside a finger: slew and
   const Vector3 outward = Vector3(0.076, -0.408, 0.910).normalized();
   Vector3 middle = Vector3::Constant(infinity);  // of the patch, as it has sagged
   for (const Vector3& x : tissue.contact_surface().positions())
-    if (const Vector3 p = tissue.pose() * x - Vector3(-0.0285, -0.0298, 0.04); p.norm() < middle.norm()) middle = p;
+    if (const Vector3 p = tissue.to_world() * x - Vector3(-0.0285, -0.0298, 0.04); p.norm() < middle.norm()) middle = p;
   middle += Vector3(-0.0285, -0.0298, 0.04);
   Vector3 last = Vector3::Zero(), was = Vector3::Zero();
   double given = 0.0, dissipated = 0.0, worst_work = 0.0, worst_slew = 0.0, longest = 0.0, across_cut = 0.0;

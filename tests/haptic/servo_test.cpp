@@ -100,7 +100,7 @@ TEST_CASE("the force is the coupling spring between device and proxy, and the pr
       const Vector3 f = session.servo.contact_force(), stretch = session.servo.proxy() - session.states[0].position;
       CHECK((f - k * stretch).norm() <= 1e-5 * f.norm());
       CHECK(f[2] <= k * 1.5e-3);
-      CHECK(test::smallest_gap(pad, samples, session.servo.contacts(), pad.pose().inverse() * session.servo.proxy(),
+      CHECK(test::smallest_gap(pad, samples, session.servo.contacts(), pad.to_world().inverse() * session.servo.proxy(),
                                ball_radius) >= -1e-5 * ball_radius);
     }
   }
@@ -116,7 +116,7 @@ TEST_CASE("near an edge of a body that can be touched all over no contact point 
     session.hold(30);
     INFO("x " << x);
     CHECK(session.servo.contact_force()[2] > 0.01);
-    CHECK(test::smallest_gap(pad, samples, session.servo.contacts(), pad.pose().inverse() * session.servo.proxy(),
+    CHECK(test::smallest_gap(pad, samples, session.servo.contacts(), pad.to_world().inverse() * session.servo.proxy(),
                              ball_radius) >= -1e-5 * ball_radius);
   }
 }

@@ -62,6 +62,7 @@ class AnyModel {
   virtual void set_conditions(const Scene&) = 0;
   virtual void set_gravity(const Vector3&) = 0;
   virtual void set_pose(const Eigen::Isometry3d&) = 0;
+  virtual const Eigen::Isometry3d& pose() const noexcept = 0;
   virtual void reset() = 0;
   virtual const ContactSurface& contact_surface() const noexcept = 0;
   virtual Status require_columns(std::span<const int>) noexcept = 0;
@@ -69,7 +70,7 @@ class AnyModel {
   virtual double compliance_bound(int) const noexcept = 0;
   virtual std::uint64_t compliance_revision() const noexcept = 0;
   virtual double compliance_floor() const noexcept = 0;
-  virtual const Eigen::Isometry3d& pose() const noexcept = 0;
+  virtual const Eigen::Isometry3d& to_world() const noexcept = 0;
 };
 
 using Materials = RegionMaterials<LinearElastic>;

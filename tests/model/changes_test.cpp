@@ -30,7 +30,7 @@ Eigen::Isometry3d some_pose() {
 /// The surface as seen in the world.
 std::vector<Vector3> world_surface(const AnyModel& model) {
   std::vector<Vector3> x;
-  for (const Vector3& p : model.contact_surface().positions()) x.push_back(model.pose() * p);
+  for (const Vector3& p : model.contact_surface().positions()) x.push_back(model.to_world() * p);
   return x;
 }
 
@@ -142,6 +142,18 @@ TEST_CASE("a moved organ without gravity does not deform", "[model][changes]") {
   model->set_pose(some_pose());
   CHECK(model->displacement() == before);
   check_surface(*model, some_pose());
+}
+
+TEST_CASE("an organ that is put where it is stays there", "[model][changes]") {
+  const auto model = make_model(PolicyName::condensed_inverse, brick(), brick_scene(), liver);
+  CHECK(model->pose().isApprox(Eigen::Isometry3d::Identity(), 0.0));
+  const auto before = world_surface(*model);
+  model->set_pose(model->pose());
+  CHECK(world_surface(*model) == before);
+  model->set_pose(some_pose());
+  const auto moved = world_surface(*model);
+  model->set_pose(model->pose());
+  CHECK(world_surface(*model) == moved);
 }
 
 TEST_CASE("reset goes back to the beginning", "[model][changes]") {

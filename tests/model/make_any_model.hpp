@@ -27,6 +27,7 @@ class ModelOf final : public AnyModel {
   void set_conditions(const Scene& scene) override { model_.set_conditions(scene); }
   void set_gravity(const Vector3& gravity) override { model_.set_gravity(gravity); }
   void set_pose(const Eigen::Isometry3d& pose) override { model_.set_pose(pose); }
+  const Eigen::Isometry3d& pose() const noexcept override { return model_.pose(); }
   void reset() override { model_.reset(); }
   const ContactSurface& contact_surface() const noexcept override { return model_.contact_surface(); }
   Status require_columns(std::span<const int> vertices) noexcept override { return model_.require_columns(vertices); }
@@ -34,7 +35,7 @@ class ModelOf final : public AnyModel {
   double compliance_bound(int j) const noexcept override { return model_.compliance_bound(j); }
   std::uint64_t compliance_revision() const noexcept override { return model_.compliance_revision(); }
   double compliance_floor() const noexcept override { return model_.compliance_floor(); }
-  const Eigen::Isometry3d& pose() const noexcept override { return model_.pose(); }
+  const Eigen::Isometry3d& to_world() const noexcept override { return model_.to_world(); }
 
  private:
   HapticFEModel<Tet4, LinearElastic, Policy> model_;

@@ -274,6 +274,6 @@ TEST_CASE("the frame of the model is the middle of the body", "[model][frame]") 
     CHECK(model->mesh().position(i).norm() <= 0.1);
   }
   const NodeId node = model->touchable_nodes().back();
-  const Vector3 world = model->pose() * model->contact_surface().positions().back();
+  const Vector3 world = model->to_world() * model->contact_surface().positions().back();
   CHECK(largest(world - mesh.position(node) - model->displacement().segment<3>(3 * Index{node})) <= 1e-13);
 }

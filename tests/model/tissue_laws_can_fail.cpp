@@ -36,7 +36,7 @@ struct Springs {
   double compliance_bound(int j) const noexcept { return bound[static_cast<std::size_t>(j)]; }
   std::uint64_t compliance_revision() const noexcept { return 0; }
   double compliance_floor() const noexcept { return floor; }
-  const Eigen::Isometry3d& pose() const noexcept { return frame; }
+  const Eigen::Isometry3d& to_world() const noexcept { return frame; }
 };
 static_assert(TissueModel<Springs>);
 

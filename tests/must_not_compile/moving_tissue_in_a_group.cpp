@@ -11,7 +11,7 @@ struct Pad {
   std::uint64_t compliance_revision() const noexcept { return 0; }
   double compliance_bound(int) const noexcept { return 1.0; }
   double compliance_floor() const noexcept { return 1e-12; }
-  const Eigen::Isometry3d& pose() const noexcept { return place; }
+  const Eigen::Isometry3d& to_world() const noexcept { return place; }
 #ifndef PALPATE_GOOD_TWIN
   Status begin_tick() noexcept { return {}; }
 #endif

@@ -35,7 +35,7 @@ struct VertexForce {
 /// - `exchange_contacts(problem)`, if there is one, is called after `begin_tick`, for a tissue whose triangles change: it
 /// moves the session's contact problem to the new surface, where it goes on. `require_tools(radius, parameters)` may
 /// refuse a session that this cannot be done for.
-/// - `pose()` maps the model's frame to the world's.
+/// - `to_world()` maps the frame of the surface to the world's.
 /// All are noexcept, allocate nothing and take bounded time. Between two calls of `begin_tick` the surface stays at the
 /// same place in memory.
 template <class T>
@@ -46,7 +46,7 @@ concept TissueModel = requires(T& tissue, const T& constant, int i, std::span<co
   { constant.compliance_revision() } noexcept -> std::convertible_to<std::uint64_t>;
   { constant.compliance_bound(i) } noexcept -> std::convertible_to<double>;
   { constant.compliance_floor() } noexcept -> std::convertible_to<double>;
-  { constant.pose() } noexcept -> std::same_as<const Eigen::Isometry3d&>;
+  { constant.to_world() } noexcept -> std::same_as<const Eigen::Isometry3d&>;
 };
 
 /// A tissue whose surface or compliance changes between ticks, and which says so before each (SoftTissue).

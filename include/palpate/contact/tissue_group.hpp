@@ -38,7 +38,7 @@ class TissueGroup {
   double compliance_bound(int j) const noexcept;
   std::uint64_t compliance_revision() const noexcept;
   double compliance_floor() const noexcept { return floor_; }
-  const Eigen::Isometry3d& pose() const noexcept { return world_; }
+  const Eigen::Isometry3d& to_world() const noexcept { return world_; }
 
  private:
   struct Member {

@@ -16,7 +16,7 @@ PALPATE_INLINE void TissueGroup::add(const TissueView& tissue) {
   const ContactSurface& surface = tissue.contact_surface();
   const int first = members_.empty() ? 0 : members_.back().first + members_.back().count;
   members_.push_back({tissue, first, surface.vertex_count()});
-  for (const Vector3& x : surface.positions()) moved_.push_back(tissue.pose() * x);
+  for (const Vector3& x : surface.positions()) moved_.push_back(tissue.to_world() * x);
   for (const Triangle& t : surface.triangles()) triangles_.push_back({t[0] + first, t[1] + first, t[2] + first});
   floor_ = std::min(floor_, tissue.compliance_floor());  // tiny beside the hardest of them, too
 }
@@ -29,7 +29,7 @@ PALPATE_INLINE void TissueGroup::build() {
 PALPATE_INLINE void TissueGroup::update() noexcept {
   for (Member& m : members_) {
     m.tissue.look();
-    const Eigen::Isometry3d& pose = m.tissue.pose();
+    const Eigen::Isometry3d& pose = m.tissue.to_world();
     for (int v = 0; v < m.count; ++v) moved_[at(m.first + v)] = pose * m.tissue.contact_surface().position(v);
   }
   surface_.move_to(moved_);
@@ -39,7 +39,7 @@ PALPATE_INLINE void TissueGroup::update() noexcept {
 PALPATE_INLINE std::size_t TissueGroup::forces_on(int member, std::span<const VertexForce> forces,
                                                   std::span<VertexForce> own) const noexcept {
   const Member& m = members_[at(member)];
-  const Matrix3 turn = rotation_of(m.tissue.pose());
+  const Matrix3 turn = rotation_of(m.tissue.to_world());
   std::size_t count = 0;
   for (const VertexForce& f : forces)
     if (m.has(f.vertex) && count < own.size()) own[count++] = {f.vertex - m.first, turn.transpose() * f.force};
@@ -59,7 +59,7 @@ PALPATE_INLINE void TissueGroup::foresee(std::span<const int> vertices) noexcept
 PALPATE_INLINE Matrix3 TissueGroup::compliance(int i, int j) const noexcept {
   const Member& m = member_of(j);
   if (!m.has(i)) return Matrix3::Zero();
-  const Matrix3 turn = rotation_of(m.tissue.pose());
+  const Matrix3 turn = rotation_of(m.tissue.to_world());
   return turn * m.tissue.compliance(i - m.first, j - m.first) * turn.transpose();
 }
 PALPATE_INLINE double TissueGroup::compliance_bound(int j) const noexcept {

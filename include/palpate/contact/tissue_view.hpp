@@ -15,7 +15,7 @@ namespace detail {
 /// compiled with the tissue; null: the tissue has no such function.
 struct TissueFunctions {
   const ContactSurface& (*contact_surface)(const void*) noexcept;
-  const Eigen::Isometry3d& (*pose)(const void*) noexcept;
+  const Eigen::Isometry3d& (*to_world)(const void*) noexcept;
   Status (*require_columns)(void*, std::span<const int>) noexcept;
   void (*compliance)(const void*, int, int, double*) noexcept;
   void (*between)(const void*, const ContactSample&, const ContactSample&, double*) noexcept;
@@ -41,7 +41,7 @@ struct TissueCalls {
   static T& of(void* tissue) noexcept { return *static_cast<T*>(tissue); }
 
   static const ContactSurface& contact_surface(const void* t) noexcept { return of(t).contact_surface(); }
-  static const Eigen::Isometry3d& pose(const void* t) noexcept { return of(t).pose(); }
+  static const Eigen::Isometry3d& to_world(const void* t) noexcept { return of(t).to_world(); }
   static Status require_columns(void* t, std::span<const int> v) noexcept { return of(t).require_columns(v); }
   static void compliance(const void* t, int i, int j, double* out) noexcept {
     Read c = of(t).compliance(i, j);
@@ -80,7 +80,7 @@ struct TissueCalls {
 
   static constexpr TissueFunctions table() noexcept {
     TissueFunctions f{contact_surface,
-                      pose,
+                      to_world,
                       require_columns,
                       compliance,
                       between,
@@ -129,7 +129,7 @@ class TissueView {
   /// Takes in where the surface is now.
   void look() noexcept { surface_ = &functions_->contact_surface(tissue_); }
   const ContactSurface& contact_surface() const noexcept { return *surface_; }
-  const Eigen::Isometry3d& pose() const noexcept { return functions_->pose(tissue_); }
+  const Eigen::Isometry3d& to_world() const noexcept { return functions_->to_world(tissue_); }
 
   Status require_columns(std::span<const int> vertices) const noexcept {
     return functions_->require_columns(tissue_, vertices);

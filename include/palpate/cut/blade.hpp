@@ -95,7 +95,7 @@ class BladeServo {
     int inside = 0;
     for (int k = 0; k < samples; ++k) {
       const Vector3 x = blade_.edge() + ((k + 0.5) / samples - 0.5) * edge;
-      if (tissue_->contact_surface().closest(inverse(tissue_->pose()) * x).distance < 0.0) ++inside;
+      if (tissue_->contact_surface().closest(inverse(tissue_->to_world()) * x).distance < 0.0) ++inside;
     }
     return edge.norm() * inside / samples;
   }

@@ -160,7 +160,7 @@ class CuttableTissue {
   std::uint64_t compliance_revision() const noexcept { return revision_; }
   double compliance_bound(int j) const noexcept { return view().bound[static_cast<std::size_t>(j)]; }
   double compliance_floor() const noexcept { return view().floor; }
-  const Eigen::Isometry3d& pose() const noexcept { return world_; }
+  const Eigen::Isometry3d& to_world() const noexcept { return world_; }
   /// Dofs whose correction a tick adds up at present.
   Index open_rank() const noexcept { return view().step->rank(); }
 

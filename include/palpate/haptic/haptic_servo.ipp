@@ -80,16 +80,16 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
 }
 
 PALPATE_INLINE Vector3 HapticServo::proxy(std::size_t tool) const noexcept {
-  return tissue_.pose() * contact_tools_[tool].proxy;
+  return tissue_.to_world() * contact_tools_[tool].proxy;
 }
 PALPATE_INLINE Vector3 HapticServo::contact_force(std::size_t tool) const noexcept {
-  return rotation_of(tissue_.pose()) * contact_tools_[tool].force;
+  return rotation_of(tissue_.to_world()) * contact_tools_[tool].force;
 }
 PALPATE_INLINE Vector3 HapticServo::contact_torque(std::size_t tool) const noexcept {
-  return rotation_of(tissue_.pose()) * contact_tools_[tool].torque;
+  return rotation_of(tissue_.to_world()) * contact_tools_[tool].torque;
 }
 PALPATE_INLINE Vector3 HapticServo::proxy_axis(std::size_t tool) const noexcept {
-  return rotation_of(tissue_.pose()) * contact_tools_[tool].axis();
+  return rotation_of(tissue_.to_world()) * contact_tools_[tool].axis();
 }
 
 /// Notes when a tissue that moves by itself was last heard of.
@@ -103,7 +103,7 @@ PALPATE_INLINE void HapticServo::note_updates() noexcept {
 }
 
 PALPATE_INLINE void HapticServo::take(std::size_t i, const ToolState& state) noexcept {
-  inputs_[i].take(state, tissue_.pose(), tissue_.contact_surface(), problem_.contacts(), contact_tools_[i]);
+  inputs_[i].take(state, tissue_.to_world(), tissue_.contact_surface(), problem_.contacts(), contact_tools_[i]);
   if (!energies_.empty()) energies_[i].turned(gates_[i].last_torque().dot(inputs_[i].rotation()));
 }
 
@@ -128,7 +128,7 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   const ContactTool& tool = contact_tools_[i];
   const ToolInput& input = inputs_[i];
   EnergyTank* const energy = energies_.empty() ? nullptr : &energies_[i];
-  const Eigen::Isometry3d& pose = tissue_.pose();
+  const Eigen::Isometry3d& pose = tissue_.to_world();
   Vector3 force(0.0, 0.0, 0.0), torque(0.0, 0.0, 0.0);
   if (tool.active) force = rotation_of(pose) * tool.force;
   if (tool.active && input.turns()) torque = rotation_of(pose) * tool.torque;
@@ -146,7 +146,7 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
 
 PALPATE_INLINE void HapticServo::publish() noexcept {
   Snapshot& s = snapshots_.back();
-  s.note(problem_.contacts(), problem_.vertex_forces(), tissue_.pose());
+  s.note(problem_.contacts(), problem_.vertex_forces(), tissue_.to_world());
   for (std::size_t i = 0; i < contact_tools_.size(); ++i) {
     s.proxies[i] = proxy(i);
     s.axes[i] = proxy_axis(i);

@@ -145,7 +145,7 @@ class BasicSoftTissue {
   std::uint64_t updates() const noexcept { return revision_; }
   double compliance_bound(int j) const noexcept { return compliance_.bound(j); }
   double compliance_floor() const noexcept { return compliance_.floor(); }
-  const Eigen::Isometry3d& pose() const noexcept { return world_; }
+  const Eigen::Isometry3d& to_world() const noexcept { return world_; }
 
   /// Node of the admitted mesh of every vertex.
   const std::vector<NodeId>& touchable_nodes() const noexcept { return touchable_; }

@@ -24,8 +24,9 @@ struct BoundaryFace;
 /// refactorises; none may run while a tick does. Satisfies TissueModel. What does not depend on the types is in its
 /// base, LinearTissue.
 ///
-/// Frames: nodes, forces and displacements are in the model's frame, which is the mesh's; `set_pose` places it in the
-/// world of the tools.
+/// Frames: `set_pose` places the frame of the mesh as given in the world of the tools. Forces and displacements have the
+/// axes of that mesh. Positions of `mesh()` and of the contact surface have these axes, too, and are relative to
+/// `origin()`; `to_world()` maps them to the world.
 template <Element E, LinearMaterial M, SolverPolicy Solver = Condensed<SelectiveInverse>>
 class HapticFEModel : public LinearTissue<typename SolverTraits<Solver>::Scalar> {
   using Tissue = LinearTissue<typename SolverTraits<Solver>::Scalar>;

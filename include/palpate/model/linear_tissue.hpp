@@ -81,6 +81,8 @@ class LinearTissue {
   /// Where the organ lies in the world; turns gravity with it. Throws bad_argument unless it is a rigid motion. Strong
   /// guarantee.
   void set_pose(const Eigen::Isometry3d& pose);
+  /// What was set: from the frame of the mesh as given to the world's.
+  const Eigen::Isometry3d& pose() const noexcept { return pose_; }
   /// Back to the scene and pose of construction. Strong guarantee.
   void reset();
 
@@ -92,8 +94,8 @@ class LinearTissue {
   double compliance_bound(int j) const noexcept { return compliance_.bound(j); }
   std::uint64_t compliance_revision() const noexcept { return compliance_.revision(); }
   double compliance_floor() const noexcept { return compliance_floor_; }
-  /// Frame of the contact surface in the world.
-  const Eigen::Isometry3d& pose() const noexcept { return world_; }
+  /// From the frame of the contact surface, whose origin is `origin()`, to the world's.
+  const Eigen::Isometry3d& to_world() const noexcept { return world_; }
 
  protected:
   using MakeStiffness = AnyStiffness (*)(const ElasticBody&, const SetupLimits&);

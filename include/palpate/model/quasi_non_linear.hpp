@@ -86,7 +86,7 @@ class QuasiNonLinear {
   std::uint64_t compliance_revision() const noexcept { return revision_ + tissue_->compliance_revision(); }
   double compliance_bound(int j) const noexcept { return tissue_->compliance_bound(j) / std::min(along_, across_); }
   double compliance_floor() const noexcept { return tissue_->compliance_floor() / std::max(along_, across_); }
-  const Eigen::Isometry3d& pose() const noexcept { return tissue_->pose(); }
+  const Eigen::Isometry3d& to_world() const noexcept { return tissue_->to_world(); }
 
   /// How many times stiffer than linear it is now, along the force and across.
   double axial_ratio() const noexcept { return along_; }

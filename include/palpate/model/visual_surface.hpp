@@ -72,7 +72,7 @@ class VisualSurface {
     const std::size_t size = 3 * surface_.positions.size();
     if (positions.size() != size || normals.size() != size) return false;
     model_->displacement_with(forces, displacement_);
-    const Eigen::Isometry3d pose = model_->pose();
+    const Eigen::Isometry3d pose = model_->to_world();
     for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = pose * (surface_.positions[i] + displacement_at(i));
     update_normals();
     for (std::size_t i = 0; i < moved_.size(); ++i)
