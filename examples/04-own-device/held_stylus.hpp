@@ -9,6 +9,7 @@
 namespace own {
 
 using palpate::DeviceLimits;
+using palpate::GatedForce;
 using palpate::Status;
 using palpate::ToolState;
 using palpate::Vector3;

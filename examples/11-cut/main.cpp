@@ -72,7 +72,7 @@ std::vector<Vector2> push_blade(CuttableTissue<Tet4>& tissue, BladeServo<Cuttabl
     ToolState state;
     state.position = start - Vector3(0.0, 0.0, way * i / ticks);
     state.time = 1e-3 * i;
-    force.emplace_back(1e3 * way * i / ticks, servo.tick(state).force.norm());
+    force.emplace_back(1e3 * way * i / ticks, servo.tick(state).force().norm());
     if (!(force.back()[1] <= ForceLimits{}.peak_force * (1.0 + 1e-9))) return {};
     if (i % 16 == 15) tissue.work();
   }

@@ -123,6 +123,7 @@ TEST_CASE("force dimension: torque where there are motors, and only finite", "[d
   CHECK(sdk.sdk.torque == std::array{0.0, 0.02, 0.0});
   CHECK(device.write(gated(Vector3(1.0, 0.0, 0.0), Vector3(0.0, 5.0, 0.0))) == Status(StatusFlag::saturated));
   CHECK_THAT(sdk.sdk.torque[1], WithinAbs(0.1, 1e-15));
+  device.write(gated(Vector3(1.0, 0.0, 0.0), Vector3(0.0, infinity, 0.0)));
   CHECK(sdk.sdk.torque == std::array{0.0, 0.0, 0.0});
   CHECK(dhd_force() == Vector3::Zero());
   ForceDimensionOptions unlimited;

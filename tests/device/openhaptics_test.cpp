@@ -85,6 +85,7 @@ TEST_CASE("openhaptics: torque in newton millimetres where there are motors", "[
   CHECK(device.write(gated(Vector3(0.0, 0.0, 1.0), Vector3(0.0, -7.0, 0.0))) == Status(StatusFlag::saturated));
   CHECK((Vector3(sdk.sdk.torque.data()) - Vector3(0.0, -100.0, 0.0)).norm() < 1e-12);
   device.read();
+  device.write(gated(Vector3(0.0, 0.0, 1.0), Vector3(0.01, infinity, 0.0)));
   CHECK(sdk.sdk.torque == std::array<double, 3>{});
   CHECK(hd_force() == Vector3::Zero());
 }

@@ -42,7 +42,7 @@ double rendered() {
     const bool bad = k % 100 == 50;
     const Vector3 wanted =
         bad ? Vector3(std::numeric_limits<double>::quiet_NaN(), 0.0, 1.0) : Vector3(0.3, 0.1, 0.02 * k);
-    last = gate.apply(wanted, now, now, true, false).force;
+    last = gate.apply(wanted, now, now, true, false).force();
     if (!last.allFinite() || last.norm() > limits.peak_force * (1.0 + 1e-12) || (bad && !last.isZero(0.0))) return -1.0;
   }
   return last.norm();
