@@ -121,12 +121,12 @@ std::vector<std::int64_t> refused_ids(SetupIds of, std::vector<std::int64_t> ids
 
 }  // namespace
 
-TEST_CASE("ids are put into the numbers of the mesh as given", "[core][setup_error]") {
+TEST_CASE("ids of refusals are translated to the mesh as given", "[core][setup_error]") {
   using Ids = std::vector<std::int64_t>;
-  const GivenIds given{{10, 11, 13}, {20, 22}}, plain;
+  const OriginalIds ids{{10, 11, 13}, {20, 22}}, plain;
   CHECK(refused_ids(SetupIds::nodes, {0, 2}) == Ids{0, 2});
   {
-    const NamesGivenIds naming(given);
+    const ScopedIdTranslation translation(ids);
     CHECK(refused_ids(SetupIds::nodes, {0, 2}) == Ids{10, 13});
     CHECK(refused_ids(SetupIds::elements, {0, 1}) == Ids{20, 22});
     CHECK(refused_ids(SetupIds::others, {0, 2}) == Ids{0, 2});
@@ -134,7 +134,7 @@ TEST_CASE("ids are put into the numbers of the mesh as given", "[core][setup_err
     CHECK_THROWS_WITH(raise_at(SetupIds::nodes, 2, SetupErrorKind::bad_density, "a node has no mass", "Give one"),
                       "bad_density: a node has no mass [node 13]. Give one");
     {
-      const NamesGivenIds inner(plain);
+      const ScopedIdTranslation inner(plain);
       CHECK(refused_ids(SetupIds::nodes, {0, 2}) == Ids{0, 2});
     }
     CHECK(refused_ids(SetupIds::nodes, {0, 2}) == Ids{10, 13});

@@ -24,7 +24,8 @@ class ForceGate;
 struct Placement;
 
 /// What a device is told to render: a force that has passed a force gate. Finite, within the gate's limits and without
-/// jumps, because only ForceGate makes one that is not zero. Anyone may read it and hand it on; nobody can change it.
+/// jumps, because only ForceGate makes one that is not zero. Others can read and pass it on, but not change force or
+/// torque.
 class GatedForce {
  public:
   /// Zero.
@@ -36,8 +37,9 @@ class GatedForce {
 
  private:
   friend class ForceGate;
-  friend struct Placement;  // the same force in the device's axes and scale
-  GatedForce(const Vector3& force, const Vector3& torque, Status s) : status(s), force_(force), torque_(torque) {}
+  friend struct Placement;  // expresses the force in the device's axes and scale
+  GatedForce(const Vector3& force, const Vector3& torque, Status s) noexcept
+      : status(s), force_(force), torque_(torque) {}
 
   Vector3 force_ = Vector3::Zero(), torque_ = Vector3::Zero();
 };

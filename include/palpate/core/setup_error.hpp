@@ -80,12 +80,12 @@ constexpr std::string_view to_string(SetupErrorKind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
-/// What the ids of a problem number. Nodes and elements are those of the mesh as given; the sentence says what others
-/// are (regions, dofs, vertices ...).
+/// What the ids of a problem refer to: nodes or elements of the mesh as given, or something that the sentence names
+/// (regions, dofs, vertices).
 enum class SetupIds { others, nodes, elements };
 
 /// What went wrong at set-up. `ids` holds the first few ids (zero based); `count` how many there are in all. Ids of
-/// nodes and elements belong there and not in the sentence: `raise` puts them into the numbers of the mesh as given.
+/// nodes and elements belong there and not in the sentence, because `raise` translates them to the mesh as given.
 struct SetupProblem {
   SetupErrorKind kind = SetupErrorKind::bad_argument;
   std::string what;               ///< one sentence with the measured value
@@ -128,32 +128,32 @@ using SetupFailureHandler = void (*)(const SetupProblem&);
 /// Assign to replace it, before the first set-up and not while another thread is in one.
 SetupFailureHandler& setup_failure_handler();
 
-/// Ids in the mesh as given of the nodes and elements of the mesh that admission made of it. An empty list: the same.
-struct GivenIds {
+/// Maps nodes and elements of an admitted mesh to their ids in the mesh as given. An empty list is the identity.
+struct OriginalIds {
   std::vector<std::int64_t> nodes, elements;
 };
 
-/// While it lives, what this thread refuses names nodes and elements in these numbers: for set-up after admission. Of
-/// several the last one made counts. Refers to `ids`.
-class NamesGivenIds {
+/// During its lifetime `raise` translates ids of nodes and elements in this thread: for set-up after admission. The
+/// innermost scope applies. Refers to `ids`.
+class ScopedIdTranslation {
  public:
-  explicit NamesGivenIds(const GivenIds& ids) noexcept;
-  explicit NamesGivenIds(GivenIds&&) = delete;
-  NamesGivenIds(const NamesGivenIds&) = delete;
-  NamesGivenIds& operator=(const NamesGivenIds&) = delete;
-  ~NamesGivenIds();
+  explicit ScopedIdTranslation(const OriginalIds& ids) noexcept;
+  explicit ScopedIdTranslation(OriginalIds&&) = delete;
+  ScopedIdTranslation(const ScopedIdTranslation&) = delete;
+  ScopedIdTranslation& operator=(const ScopedIdTranslation&) = delete;
+  ~ScopedIdTranslation();
 
  private:
-  const GivenIds* outer_;
+  const OriginalIds* outer_;
 };
 
-/// Refuses: throws SetupError, or without exceptions calls the failure handler. Translates ids where a NamesGivenIds
-/// lives.
+/// Refuses: throws SetupError, or without exceptions calls the failure handler. Translates ids first, see
+/// ScopedIdTranslation.
 [[noreturn]] PALPATE_COLD void raise(SetupProblem problem);
 
 [[noreturn]] PALPATE_COLD void raise(SetupErrorKind kind, std::string what, std::string hint = {});
 
-/// Refuses with the id of one node or element, which the sentence does not name.
+/// Refuses because of one node or element; the sentence does not contain its id.
 [[noreturn]] PALPATE_COLD void raise_at(SetupIds of, std::int64_t id, SetupErrorKind kind, std::string what,
                                         std::string hint = {});
 

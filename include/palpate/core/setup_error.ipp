@@ -29,24 +29,23 @@ PALPATE_INLINE std::string number(double value) {
 
 namespace detail {
 
-inline const char* label_of_ids(const SetupProblem& p) noexcept {
+inline const char* id_label(const SetupProblem& p) noexcept {
   const bool one = p.ids.size() == 1 && p.count <= 1;
   if (p.ids_of == SetupIds::nodes) return one ? "node" : "nodes";
   if (p.ids_of == SetupIds::elements) return one ? "element" : "elements";
   return "ids";
 }
 
-/// The numbers that refusals of this thread use; null: those they have.
-inline const GivenIds*& given_ids_in_use() noexcept {
-  static thread_local const GivenIds* ids = nullptr;
+/// The innermost translation of this thread; null when there is none.
+inline const OriginalIds*& active_ids() noexcept {
+  static thread_local const OriginalIds* ids = nullptr;
   return ids;
 }
 
-/// Puts the ids of a problem into the numbers in use.
-inline void name_as_given(SetupProblem& p) noexcept {
-  const GivenIds* given = given_ids_in_use();
-  if (given == nullptr || p.ids_of == SetupIds::others) return;
-  const std::vector<std::int64_t>& origin = p.ids_of == SetupIds::nodes ? given->nodes : given->elements;
+inline void translate_ids(SetupProblem& p) noexcept {
+  const OriginalIds* original = active_ids();
+  if (original == nullptr || p.ids_of == SetupIds::others) return;
+  const std::vector<std::int64_t>& origin = p.ids_of == SetupIds::nodes ? original->nodes : original->elements;
   const auto size = static_cast<std::int64_t>(origin.size());
   for (std::int64_t& id : p.ids)
     if (id >= 0 && id < size) id = origin[static_cast<std::size_t>(id)];
@@ -54,17 +53,17 @@ inline void name_as_given(SetupProblem& p) noexcept {
 
 }  // namespace detail
 
-PALPATE_INLINE NamesGivenIds::NamesGivenIds(const GivenIds& ids) noexcept
-    : outer_(std::exchange(detail::given_ids_in_use(), &ids)) {}
-PALPATE_INLINE NamesGivenIds::~NamesGivenIds() {
-  detail::given_ids_in_use() = outer_;
+PALPATE_INLINE ScopedIdTranslation::ScopedIdTranslation(const OriginalIds& ids) noexcept
+    : outer_(std::exchange(detail::active_ids(), &ids)) {}
+PALPATE_INLINE ScopedIdTranslation::~ScopedIdTranslation() {
+  detail::active_ids() = outer_;
 }
 
 PALPATE_INLINE std::string describe(const SetupProblem& p) {
   std::string text(to_string(p.kind));
   text += ": " + p.what;
   if (!p.ids.empty()) {
-    text += std::string(" [") + detail::label_of_ids(p);
+    text += std::string(" [") + detail::id_label(p);
     for (auto id : p.ids) text += ' ' + std::to_string(id);
     if (p.count > static_cast<std::int64_t>(p.ids.size())) text += " ... " + std::to_string(p.count) + " in all";
     text += ']';
@@ -79,7 +78,7 @@ PALPATE_INLINE SetupFailureHandler& setup_failure_handler() {
 }
 
 PALPATE_INLINE void raise(SetupProblem problem) {
-  detail::name_as_given(problem);
+  detail::translate_ids(problem);
 #if defined(PALPATE_HAS_EXCEPTIONS)
   throw SetupError(std::move(problem));
 #else

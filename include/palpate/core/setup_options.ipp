@@ -12,8 +12,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE void SetupLimits::advance(std::string_view stage, double fraction) const {
   if (!progress) return;
   const bool goes_on = [&] {
-    const GivenIds own;  // what the callback has refused, another set-up perhaps, is not of this mesh
-    const NamesGivenIds naming(own);
+    const OriginalIds identity;  // the callback may set up another mesh, with other ids
+    const ScopedIdTranslation translation(identity);
     return progress({stage, fraction});
   }();
   if (!goes_on) raise(SetupErrorKind::cancelled, "set-up was cancelled during " + std::string(stage));

@@ -61,7 +61,7 @@ constexpr std::string_view status_flag_name(int bit) {
   return names[static_cast<std::size_t>(bit)];
 }
 
-/// Names of all flags that are set, as "Saturated Ramping"; "ok" without any. Not for the tick.
+/// Prints the names of all flags that are set, for example "Saturated Ramping", or "ok". Not for the tick.
 std::ostream& operator<<(std::ostream& out, Status status);
 
 /// How often each flag was raised; one add per set flag and tick.

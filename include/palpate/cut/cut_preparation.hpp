@@ -33,21 +33,21 @@ struct CutPreparation {
   CutTopology<E> topology;
   CutSurface<E> touchable;
   std::vector<NodeId> cuttable;  ///< sorted
-  GivenIds given;                ///< what refusals call its nodes and elements
+  OriginalIds ids;                ///< of its nodes and elements in the mesh as given
   Vector3 origin;                ///< of the frame, in that of the mesh as given [m]
 };
 
 namespace detail {
 
-/// The copies of nodes that a topology has made are called as what they are copies of.
+/// A node that the topology has copied has the original id of its source.
 template <Element E>
-void name_copies(const CutTopology<E>& topology, Index admitted_nodes, GivenIds& given) {
+void add_copied_nodes(const CutTopology<E>& topology, Index admitted_nodes, OriginalIds& ids) {
   const auto count = static_cast<NodeId>(topology.mesh().node_count());
   if (count == admitted_nodes) return;
-  if (given.nodes.empty())
-    for (Index node = 0; node < admitted_nodes; ++node) given.nodes.push_back(node);
+  if (ids.nodes.empty())
+    for (Index node = 0; node < admitted_nodes; ++node) ids.nodes.push_back(node);
   for (auto node = static_cast<NodeId>(admitted_nodes); node < count; ++node)
-    given.nodes.push_back(given.nodes[static_cast<std::size_t>(topology.origin_of(node))]);
+    ids.nodes.push_back(ids.nodes[static_cast<std::size_t>(topology.origin_of(node))]);
 }
 
 [[noreturn]] inline void refuse_loose(const LoosePiece& piece) {
@@ -66,14 +66,14 @@ template <Element E, LinearMaterial M>
 CutPreparation<E> prepare_cut(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
                               const CuttableOptions& options) {
   Admitted<E> admitted = admit<E>(mesh, options.admission);
-  GivenIds given = given_ids(admitted);
-  const NamesGivenIds naming(given);
+  OriginalIds ids = original_ids(admitted);
+  const ScopedIdTranslation translation(ids);
   const Scene mapped = scene.mapped(admitted.node_map);
   const Vector3 origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
   for (Vector3& x : admitted.mesh.positions) x -= origin;
   const auto boundary = extract_boundary<E>(admitted.mesh);
   CutTopology<E> topology(admitted.mesh, resolve_essential(admitted.mesh, boundary, mapped).constrained);
-  detail::name_copies(topology, admitted.mesh.node_count(), given);
+  detail::add_copied_nodes(topology, admitted.mesh.node_count(), ids);
   if (!topology.loose_pieces().empty()) detail::refuse_loose(topology.loose_pieces()[0]);
   CutSurface<E> touchable(topology, boundary, mapped);
   std::vector<NodeId> cuttable;
@@ -84,7 +84,7 @@ CutPreparation<E> prepare_cut(const Mesh<E>& mesh, const Scene& scene, const Reg
     cuttable = resolve_nodes(admitted.mesh, boundary, wanted);
   }
   CutPhysics<E> physics(make_body(std::move(admitted.mesh), materials), boundary, mapped);
-  return {std::move(physics), std::move(topology), std::move(touchable), std::move(cuttable), std::move(given), origin};
+  return {std::move(physics), std::move(topology), std::move(touchable), std::move(cuttable), std::move(ids), origin};
 }
 
 }}  // namespace palpate

@@ -115,7 +115,7 @@ class CuttableTissue {
   }
   /// Displacement of all nodes with forces on vertices (those of the present surface or an earlier one), 3 per node
   /// [m]. Nodes of loose pieces rest where they were when they came off. Throws index_out_of_range for a vertex that
-  /// does not exist, non_finite for a force that is no number. O(kept x forces) and two substitutions.
+  /// does not exist, non_finite for a force that is not finite. O(kept x forces) and two substitutions.
   VectorX displacement_with(std::span<const VertexForce> forces) {
     const std::scoped_lock lock(system_mutex_);
     require_vertex_forces(forces, static_cast<int>(touchable_.nodes().size()));
@@ -166,8 +166,8 @@ class CuttableTissue {
 
  private:
   CuttableTissue(CutPreparation<E> prepared, const CuttableOptions& options)
-      : CuttableTissue(prepared, options, NamesGivenIds(prepared.given)) {}
-  CuttableTissue(CutPreparation<E>& prepared, const CuttableOptions& options, const NamesGivenIds&)
+      : CuttableTissue(prepared, options, ScopedIdTranslation(prepared.ids)) {}
+  CuttableTissue(CutPreparation<E>& prepared, const CuttableOptions& options, const ScopedIdTranslation&)
       : physics_(std::move(prepared.physics)),
         topology_(std::move(prepared.topology)),
         touchable_(std::move(prepared.touchable)),

@@ -35,6 +35,7 @@ struct Placement {
   Vector3 force_to_device(const Vector3& force) const noexcept;
   /// The work of a torque is scaled as that of a force; angles are not scaled.
   Vector3 torque_to_device(const Vector3& torque) const noexcept;
+  /// Force and torque of the scene in the device's axes and scale.
   GatedForce to_device(const GatedForce& scene) const noexcept;
 
   /// A device's limits as the scene sees them: a servo that keeps within these keeps within the device's.

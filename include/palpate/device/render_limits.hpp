@@ -23,8 +23,8 @@ class RenderLimits {
   void start() noexcept { running_ = true; }
   void stop() noexcept;
   void read_was(bool valid) noexcept;
-  /// Longer than its peak: shortened, `saturated`; a peak torque of zero leaves none. Where a component of one of the
-  /// two is not finite, both are zero, `non_finite_force`.
+  /// Longer than its peak: shortened, `saturated`; a peak torque of zero leaves none. Where one of the two is not finite
+  /// (a placement may scale it beyond the range of a double), both are zero, `non_finite_force`.
   Status render(const GatedForce& wanted) noexcept;
   const DeviceLimits& limits() const noexcept { return limits_; }
   const Vector3& force() const noexcept { return force_; }    ///< [N] what is rendered now

@@ -54,7 +54,7 @@ PALPATE_INLINE GatedForce ForceGate::apply(const Vector3& wanted, const Vector3&
     gain_ = 0.0;
     last_.setZero();
     last_torque_.setZero();
-    return {Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0), status};
+    return {last_, last_torque_, status};
   }
   if (restart) gain_ = 0.0;
   const double step = std::min(dt, limits_.period), most = limits_.slew_rate * step;

@@ -29,12 +29,11 @@ struct Admitted {
   MeshDiagnosis admitted;   ///< of `mesh`; the same when nothing was repaired
 };
 
-/// The maps of an admission the other way round: where admitted nodes and elements come from. Of welded nodes the
-/// lowest. O(n), allocates.
-GivenIds given_ids(const std::vector<NodeId>& node_map, const std::vector<Index>& element_map);
+/// The inverse of the maps of an admission. Welded nodes get the lowest of their original ids. O(n), allocates.
+OriginalIds original_ids(const std::vector<NodeId>& node_map, const std::vector<Index>& element_map);
 template <Element E>
-GivenIds given_ids(const Admitted<E>& admitted) {
-  return given_ids(admitted.node_map, admitted.element_map);
+OriginalIds original_ids(const Admitted<E>& admitted) {
+  return original_ids(admitted.node_map, admitted.element_map);
 }
 
 namespace detail {

@@ -11,7 +11,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// The other way round; empty when nothing was renumbered.
+/// The inverse map; empty when nothing was renumbered.
 template <class Id>
 std::vector<std::int64_t> inverse_of(const std::vector<Id>& map) {
   std::vector<std::int64_t> origin;
@@ -140,8 +140,8 @@ PALPATE_INLINE void repair_and_enforce(Candidate& candidate, const AdmissionPoli
     check_indices(mesh, candidate.admitted);
     diagnose_rest(mesh, candidate.shape_of, policy.thresholds, candidate.admitted);
   }
-  const GivenIds given = given_ids(candidate.node_map, candidate.element_map);
-  const NamesGivenIds naming(given);
+  const OriginalIds ids = original_ids(candidate.node_map, candidate.element_map);
+  const ScopedIdTranslation translation(ids);
   enforce(candidate.admitted, policy);
 }
 
@@ -149,7 +149,7 @@ PALPATE_INLINE void repair_and_enforce(Candidate& candidate, const AdmissionPoli
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE GivenIds given_ids(const std::vector<NodeId>& node_map, const std::vector<Index>& element_map) {
+PALPATE_INLINE OriginalIds original_ids(const std::vector<NodeId>& node_map, const std::vector<Index>& element_map) {
   return {detail::inverse_of(node_map), detail::inverse_of(element_map)};
 }
 

@@ -11,8 +11,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Three numbers with three digits, more where they are large against `scale`, so that a point far from zero is told to
-/// a hundredth of it; what is zero but for rounding prints as 0.
+/// Three numbers with three digits, and more where they are large against `scale`: a point far from zero is accurate to
+/// a hundredth of `scale`. Rounding errors print as 0.
 inline std::string short_triple(const Vector3& v, double scale) {
   std::string text = "(";
   for (int i = 0; i < 3; ++i) {

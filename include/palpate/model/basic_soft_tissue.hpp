@@ -163,7 +163,7 @@ class BasicSoftTissue {
   struct Prepared {
     typename TissueMotion<Motion>::Source source;
     Touchable touchable;
-    GivenIds given;
+    OriginalIds ids;
     Vector3 origin;
     VectorX settled;
   };
@@ -176,8 +176,8 @@ class BasicSoftTissue {
     Admitted<E> admitted = admit<E>(mesh, options.admission);
     const Scene mapped = scene.mapped(admitted.node_map);
     Prepared prepared;
-    prepared.given = given_ids(admitted);
-    const NamesGivenIds naming(prepared.given);
+    prepared.ids = original_ids(admitted);
+    const ScopedIdTranslation translation(prepared.ids);
     prepared.origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
     for (Vector3& x : admitted.mesh.positions) x -= prepared.origin;
     auto body = detail::soft_body(std::move(admitted.mesh), materials);
@@ -193,8 +193,8 @@ class BasicSoftTissue {
   }
 
   BasicSoftTissue(Prepared prepared, const Options& options)
-      : BasicSoftTissue(prepared, options, NamesGivenIds(prepared.given)) {}
-  BasicSoftTissue(Prepared& prepared, const Options& options, const NamesGivenIds&)
+      : BasicSoftTissue(prepared, options, ScopedIdTranslation(prepared.ids)) {}
+  BasicSoftTissue(Prepared& prepared, const Options& options, const ScopedIdTranslation&)
       : step_(options.step),
         world_(make_pose(Matrix3::Identity(), prepared.origin)),
         touchable_(std::move(prepared.touchable.nodes)),

@@ -53,7 +53,7 @@ class ElasticBody {
 struct AdmittedBody {
   std::unique_ptr<ElasticBody> body;
   std::vector<NodeId> node_map;  ///< new id of every node as given, -1 for those dropped
-  GivenIds given;                ///< what refusals call its nodes and elements
+  OriginalIds ids;                ///< of its nodes and elements in the mesh as given
   Vector3 origin;                ///< of the body's frame in the mesh as given [m]
 };
 

@@ -43,12 +43,12 @@ AdmittedBody admit_body(const Given& mesh, const Scene& scene, const RegionMater
       return admit<E>(mesh, policy, scene.group_names());
   }();
   report_admission(admitted, report);
-  GivenIds given = given_ids(admitted);
-  const NamesGivenIds naming(given);
+  OriginalIds ids = original_ids(admitted);
+  const ScopedIdTranslation translation(ids);
   const Vector3 origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
   for (Vector3& x : admitted.mesh.positions) x -= origin;
   auto body = std::make_unique<ElementBody<E>>(make_body(std::move(admitted.mesh), by_region), origin);
-  return {std::move(body), std::move(admitted.node_map), std::move(given), origin};
+  return {std::move(body), std::move(admitted.node_map), std::move(ids), origin};
 }
 
 }  // namespace detail

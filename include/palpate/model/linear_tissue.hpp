@@ -64,17 +64,17 @@ class LinearTissue {
   double strain_energy() const;
 
   /// Displacement with these forces on the contact surface, for drawing: one back-substitution. u has 3 entries per
-  /// admitted node [m]. A u of another size gets this one, which allocates; with its size nothing does. A force on a
+  /// admitted node [m]. Resizes u when it has another size, which allocates; otherwise it does not. A force on a
   /// vertex that does not exist is left out, and the report says not converged. May run beside a tick, but not twice at
   /// once.
   SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept;
-  /// The same as a new vector. Throws index_out_of_range for a vertex that does not exist, non_finite for a force that
-  /// is no number, not_converged for a solve that stopped early.
+  /// The same as a new vector; allocates. Throws index_out_of_range for a vertex that does not exist, non_finite for a
+  /// force that is not finite, not_converged for a solve that stopped early.
   VectorX displacement(std::span<const VertexForce> forces);
 
   /// Replaces loads and prescribed values. Throws unsupported for another set of prescribed components, and when the
-  /// scene lets tools touch other nodes or faces than the model was made for. A scene that speaks of no touch leaves it
-  /// as it is; what is seen stays in any case. Strong guarantee.
+  /// scene lets tools touch other nodes or faces than the model was made for. A scene without touch() keeps
+  /// the touched set; see() is ignored. Strong guarantee.
   void set_conditions(const Scene& scene);
   /// Gravity [m/s^2] in the world's frame. Strong guarantee.
   void set_gravity(const Vector3& gravity);
@@ -135,7 +135,7 @@ class LinearTissue {
   SetupReport report_;
   Scene scene_;
   std::vector<NodeId> node_map_, touchable_, seen_;
-  GivenIds given_;
+  OriginalIds original_ids_;
   Vector3 origin_ = Vector3::Zero(), gravity_ = Vector3::Zero();
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity(), world_ = Eigen::Isometry3d::Identity();
   std::unique_ptr<Statics> statics_;

@@ -72,8 +72,8 @@ template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, MakeStiffness make_stiffness,
                                   const SolverRecipe& recipe, const SetupOptions& options) {
   node_map_ = std::move(admitted.node_map);
-  given_ = std::move(admitted.given);
-  const NamesGivenIds naming(given_);
+  original_ids_ = std::move(admitted.ids);
+  const ScopedIdTranslation translation(original_ids_);
   scene_ = scene.mapped(node_map_);
   origin_ = admitted.origin;
   place(Eigen::Isometry3d::Identity());
@@ -91,7 +91,7 @@ void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, Mak
 
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_conditions(const Scene& scene) {
-  const NamesGivenIds naming(given_);
+  const ScopedIdTranslation translation(original_ids_);
   const Scene mapped = scene.mapped(node_map_);
   require_same_touch(mapped);
   SetupReport report = report_;

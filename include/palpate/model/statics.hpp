@@ -42,8 +42,8 @@ class Statics {
   /// none. Strong guarantee.
   void set_gravity(const Vector3& gravity, const Look& look);
 
-  /// Displacement under the scene's loads and `forces` [N] on vertices, 3 per node [m]. u gets its size when it has
-  /// another, which allocates; nothing else does. A force on a vertex that does not exist is left out, and the report
+  /// Displacement under the scene's loads and `forces` [N] on vertices, 3 per node [m]. Resizes u when it has another
+  /// size, which allocates; otherwise it does not. A force on a vertex that does not exist is left out, and the report
   /// says not converged, with a residual of infinity. Not to be called by two threads at once.
   SolveReport displacement_with(std::span<const VertexForce> forces, const std::vector<NodeId>& node_of_vertex,
                                 VectorX& u) noexcept;

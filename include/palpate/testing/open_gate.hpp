@@ -5,8 +5,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// A gate that hands every finite force of up to 1e9 N and every torque of up to 1e9 N m on as they are, after a first
-/// tick of zero. Never for a device in a hand.
+/// A gate that passes every finite force up to 1e9 N and torque up to 1e9 N m unchanged, after a first tick of zero.
+/// Never for a device in a hand.
 inline ForceGate open_gate() {
   ForceLimits limits;
   limits.peak_force = limits.peak_torque = limits.slew_rate = limits.stale_after = 1e9;
@@ -15,7 +15,7 @@ inline ForceGate open_gate() {
   return ForceGate(limits);
 }
 
-/// What an open gate makes of a force [N] and a torque [N m].
+/// A force [N] and a torque [N m] that have passed an open gate.
 inline GatedForce gated(const Vector3& force, const Vector3& torque = Vector3(0.0, 0.0, 0.0)) {
   ForceGate gate = open_gate();
   gate.apply(force, torque, 0.0, 0.0, true, false);
