@@ -33,7 +33,7 @@ struct CutPreparation {
   CutTopology<E> topology;
   CutSurface<E> touchable;
   std::vector<NodeId> cuttable;  ///< sorted
-  OriginalIds ids;                ///< of its nodes and elements in the mesh as given
+  OriginalIds ids;               ///< of its nodes and elements in the mesh as given
   Vector3 origin;                ///< of the frame, in that of the mesh as given [m]
 };
 
