@@ -4,7 +4,7 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators_box.hpp>
-#include <palpate/model/soft_tissue.hpp>
+#include <palpate/model/implicit.hpp>
 
 #include <cmath>
 
@@ -16,11 +16,11 @@ inline constexpr double ball = 0.012, tick = 1e-3, duration = 6.0;
 inline constexpr double stale_after = 0.5005;  // off the grid of ticks, so that rounding decides nothing
 inline const Vector3 pad_size(0.06, 0.06, 0.03);
 
-inline SoftTissue make_pad(double step) {
-  SoftTissueOptions options;
-  options.step = step;
-  return SoftTissue(box_tet4(pad_size, {5, 5, 3}), Scene().fix("z0").touch("z1"), NeoHookean{5e3, 0.45, 1000.0},
-                    options);
+using Pad = HapticFEModel<Tet4, NeoHookean, Implicit<Newton<SparseCholesky>>>;
+
+inline Pad make_pad(double step) {
+  return Pad(box_tet4(pad_size, {5, 5, 3}), Scene().fix("z0").touch("z1"), NeoHookean{5e3, 0.45, 1000.0}, {},
+             {.step = step});
 }
 
 /// Once every second, half a second after its beginning.
@@ -64,7 +64,7 @@ inline ServoOptions session_options() {
 
 /// Time is simulated, so that the outcome is the same on every machine; threads are tested beside it.
 inline Outcome run(const Fault& fault, double tissue_step) {
-  SoftTissue tissue = make_pad(tissue_step);
+  Pad tissue = make_pad(tissue_step);
   const ServoOptions options = session_options();
   HapticServo servo(tissue, SphereTool{.radius = ball}, options, EnergyTank(EnergyLimits::from(options.device)));
   const ForceLimits limits = ForceLimits::from(options.device);

@@ -5,7 +5,7 @@
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/model/corotated_motion.hpp>
-#include <palpate/model/soft_tissue.hpp>
+#include <palpate/model/implicit.hpp>
 
 #include <Eigen/Geometry>
 
@@ -159,7 +159,8 @@ void measure_implicit_scrambles(bench::RowFile& rows, int runs) {
 }
 
 void measure_static_hold(bench::RowFile& rows, int ticks) {
-  SoftTissue tissue(box_tet4({0.06, 0.06, 0.03}, {4, 4, 2}), Scene().fix("z0").touch("z1"), soft, {.step = 0.01});
+  HapticFEModel<Tet4, NeoHookean, Implicit<Newton<SparseCholesky>>> tissue(
+      box_tet4({0.06, 0.06, 0.03}, {4, 4, 2}), Scene().fix("z0").touch("z1"), soft, {}, {.step = 0.01});
   HapticServo servo(tissue, SphereTool{.radius = 0.012});
   const auto tick = [&](int k) {
     if (k % 10 == 0) tissue.advance();

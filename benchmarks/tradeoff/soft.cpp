@@ -1,6 +1,5 @@
 // Neo-Hookean tissue that moves by implicit steps with a factor.
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/model/soft_tissue.hpp>
 
 #include "soft.hpp"
 
@@ -9,17 +8,15 @@ namespace tradeoff {
 void add_soft(const Bench& bench, std::vector<Entry>& entries) {
   const auto add = [&]<class E>(const char* element, const char* mesh, double step, int iterations, TimeScheme scheme,
                                 const char* scheme_name) {
-    SoftTissueOptions options;
-    options.step = step;
-    options.motion.newton.maximum_iterations = iterations;
-    options.motion.scheme = scheme;
-    options.motion.mass_damping = drag;
+    ImplicitParameters parameters{.step = step, .scheme = scheme, .mass_damping = drag};
+    parameters.newton.maximum_iterations = iterations;
     const std::string work = number(1e3 * step) + " ms, " + std::to_string(iterations) + " iterations" + scheme_name;
-    entries.push_back(soft_entry<SoftTissue, E, NeoHookean>(
-        bench, element, "neo-Hookean", "SoftTissue", mesh, "double", work, options,
-        "using Tissue = SoftTissue;   // of Mesh<" + std::string(element) + ">, NeoHookean, {.step = " + number(step) +
-            ", .motion = {.mass_damping = " + number(drag) +
-            ", .newton = {.maximum_iterations = " + std::to_string(iterations) + "}}}"));
+    entries.push_back(soft_entry<E, NeoHookean, Implicit<Newton<SparseCholesky>>>(
+        bench, element, "neo-Hookean", "Implicit<Newton>", mesh, "double", work, parameters,
+        "using Model = HapticFEModel<" + std::string(element) +
+            ", NeoHookean, Implicit<Newton<SparseCholesky>>>;   // with {.step = " + number(step) +
+            ", .mass_damping = " + number(drag) + ", .newton = {.maximum_iterations = " + std::to_string(iterations) +
+            "}}"));
   };
   const TimeScheme euler = TimeScheme::implicit_euler();
   // A step of what an update takes here keeps real time; shorter ones are slow motion.

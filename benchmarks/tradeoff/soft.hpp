@@ -1,7 +1,7 @@
 // Moving tissue felt through a servo.
 #pragma once
 
-#include <palpate/model/corotated_tissue.hpp>
+#include <palpate/model/implicit.hpp>
 
 #include "free_motion.hpp"
 #include "linear.hpp"
@@ -19,22 +19,23 @@ RegionMaterials<Law> large_strain_laws(const RegionMaterials<LinearElastic>& mat
   return laws;
 }
 
-/// SoftTissue or CorotatedTissue. `Law` is the material, `E` the element.
-template <class Tissue, class E, class Law>
+/// A model that moves. `Law` is the material, `E` the element.
+template <class E, class Law, class Solver>
 class SoftContender : public Contender {
  public:
-  using Options = typename Tissue::Options;
+  using Tissue = HapticFEModel<E, Law, Solver>;
+  using Parameters = typename Tissue::Parameters;
 
-  SoftContender(const Bench& bench, const std::string& mesh, const Options& options)
+  SoftContender(const Bench& bench, const std::string& mesh, const Parameters& parameters)
       : bench_(bench),
-        options_(options),
+        parameters_(parameters),
         mesh_(mesh_for<E>(bench.mesh(mesh))),
         laws_(large_strain_laws<Law>(bench.scene.materials)),
-        tissue_(mesh_, bench.scene.scene(near_group), laws_, options),
+        tissue_(mesh_, bench.scene.scene(near_group), laws_, {}, parameters),
         felt_(tissue_, bench.scene) {}
 
   std::span<const Vector3> tick(std::span<const Vector3> centres) override { return felt_.tick(centres); }
-  double update_period() const override { return options_.step; }
+  double update_period() const override { return parameters_.step; }
   void update() override { tissue_.advance(); }
   bool has_inertia() const override { return true; }
   VectorX displacement() override { return tissue_.motion().displacement().head(3 * bench_.scene.mesh.node_count()); }
@@ -52,41 +53,33 @@ class SoftContender : public Contender {
     return sum.norm() / contact.norm();
   }
   double energy_drift() override {
-    auto source = tissue_source();
-    Options free = options_;
-    free.motion.mass_damping = 0.0;
-    return swing(source, free.motion);
+    Parameters free = parameters_;
+    free.mass_damping = 0.0;
+    free.settle = false;
+    const auto motion = SolverTraits<Solver>::make_motion(make_hyperelastic_body(mesh_, laws_),
+                                                          bench_.scene.scene(near_group), free, SetupLimits{})
+                            .motion;
+    const VectorX start = tissue_.motion().displacement();
+    motion->rest_at(start);
+    const double before = exact().elastic->energy(start);
+    for (double t = 0.0; t < free_swing - 1e-9; t += free.step) motion->step(free.step);
+    const VectorX mass = lumped_mass(tissue_.body());
+    double kinetic = 0.0;
+    for (Index i = 0; i < mass.size(); ++i)
+      kinetic += 0.5 * mass[i] * motion->velocity().template segment<3>(3 * i).squaredNorm();
+    return (kinetic + exact().elastic->energy(motion->displacement())) / before - 1.0;
   }
   Index nodes() const override { return mesh_.node_count(); }
   Index kept_dofs() const override { return 3 * static_cast<Index>(tissue_.touchable_nodes().size()); }
   std::string remark() override { return felt_.remark(); }
 
  private:
-  using Motion = std::remove_cvref_t<decltype(std::declval<Tissue>().motion())>;
-
   const DeformableBody& exact() {
     if (!exact_.elastic) exact_ = make_held_body(make_hyperelastic_body(mesh_, laws_), bench_.scene.scene(near_group));
     return exact_;
   }
-  auto tissue_source() {
-    return TissueMotion<Motion>::source(make_hyperelastic_body(mesh_, laws_), bench_.scene.scene(near_group),
-                                        SetupLimits{});
-  }
-  template <class Source, class Parameters>
-  double swing(Source& source, const Parameters& parameters) {
-    Motion motion(std::move(source), parameters, SetupLimits{});
-    const VectorX start = tissue_.motion().displacement();
-    motion.set_state(start, VectorX::Zero(start.size()));
-    const double before = exact().elastic->energy(start);
-    for (double t = 0.0; t < free_swing - 1e-9; t += options_.step) motion.step(options_.step);
-    double kinetic = 0.0;
-    for (Index i = 0; i < motion.body().lumped.size(); ++i)
-      kinetic += 0.5 * motion.body().lumped[i] * motion.velocity().template segment<3>(3 * i).squaredNorm();
-    return (kinetic + exact().elastic->energy(motion.displacement())) / before - 1.0;
-  }
-
   const Bench& bench_;
-  Options options_;
+  Parameters parameters_;
   Mesh<E> mesh_;
   RegionMaterials<Law> laws_;
   Tissue tissue_;
@@ -94,11 +87,11 @@ class SoftContender : public Contender {
   DeformableBody exact_;
 };
 
-/// An entry of a moving tissue; `text` is C++ for its options.
-template <class Tissue, class E, class Law>
+/// An entry of a moving model; `paste` is C++ for it.
+template <class E, class Law, class Solver>
 Entry soft_entry(const Bench& bench, const std::string& element, const std::string& law, const std::string& solver,
                  const std::string& mesh, const std::string& scalar, const std::string& work,
-                 const typename Tissue::Options& options, const std::string& paste) {
+                 const typename HapticFEModel<E, Law, Solver>::Parameters& parameters, const std::string& paste) {
   Entry entry{{.family = "moving",
                .element = element,
                .mesh = mesh_name(mesh),
@@ -110,8 +103,8 @@ Entry soft_entry(const Bench& bench, const std::string& element, const std::stri
                .paste = paste,
                .allowed = 0.05,
                .own_core = true}};
-  entry.make = [&bench, mesh, options] {
-    return std::make_unique<SoftContender<Tissue, E, Law>>(bench, mesh, options);
+  entry.make = [&bench, mesh, parameters] {
+    return std::make_unique<SoftContender<E, Law, Solver>>(bench, mesh, parameters);
   };
   return entry;
 }

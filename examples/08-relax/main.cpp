@@ -6,8 +6,8 @@
 // moves, to 40 % of what it was, with a relaxation time of 0.4 s.
 //
 //   1. `Viscoelastic<NeoHookean, 1>` is NeoHookean of which shares fade. E is the fast modulus.
-//   2. `SoftTissue` moves by implicit steps of 10 ms, in a thread of its own when a `TissueThread` runs it; here both
-//      rates are simulated, so that every run gives the same figures. What a point remembers moves on once per step.
+//   2. With `Implicit<...>` as solver the model moves, here by steps of 10 ms. A `BackgroundWorker` would take them in a
+//      thread; here both rates are simulated, so that every run gives the same figures.
 //   3. `HapticServo` ticks a thousand times a second and solves the contact anew on the newest surface.
 //   4. DIR/report.html has the force over time.
 //
@@ -29,6 +29,7 @@ using touch::text;
 namespace {
 
 using Law = Viscoelastic<NeoHookean, 1>;
+using Pad = HapticFEModel<Tet4, Law, Implicit<Newton<SparseCholesky>>>;
 constexpr PronyTerm term{.share = 0.6, .relaxation_time = 0.4};
 constexpr double depth = 4e-3, fast = 0.05, seconds = 2.5;  // [m], [s] to press, [s] in all
 constexpr SphereTool finger{.radius = 8e-3};
@@ -37,7 +38,7 @@ const Law liver{{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0
 const Vector3 size(0.06, 0.06, 0.03);  // [m]
 
 /// The force of every millisecond [N], before the gate.
-std::vector<double> hold(SoftTissue& pad) {
+std::vector<double> hold(Pad& pad) {
   ServoOptions options;
   options.device = {.peak_force = 20.0, .stiffness = 5e4};  // a finger that does not give way
   HapticServo servo(pad, finger, options);
@@ -59,7 +60,7 @@ std::vector<double> hold(SoftTissue& pad) {
 }
 
 int run_example(const std::filesystem::path& out) {
-  SoftTissue pad(box_tet4(size, {8, 8, 4}), Scene().fix("z0").touch("z1"), liver, {.step = 0.01});
+  Pad pad(box_tet4(size, {8, 8, 4}), Scene().fix("z0").touch("z1"), liver, {}, {.step = 0.01});
   const std::vector<double> force = hold(pad);
 
   const auto at = [&](double t) { return force[static_cast<std::size_t>(1e3 * t)]; };

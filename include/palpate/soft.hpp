@@ -3,12 +3,7 @@
 #pragma once
 
 #include <palpate/assembly/averaged_tetrahedra.hpp>
-#include <palpate/assembly/batched_tetrahedra.hpp>
-#include <palpate/assembly/element_frequency.hpp>
-#include <palpate/haptic/tissue_thread.hpp>
-#include <palpate/integrator/central_difference.hpp>
-#include <palpate/integrator/explicit_motion.hpp>
-#include <palpate/integrator/semi_implicit_euler.hpp>
+#include <palpate/haptic/background_worker.hpp>
 #include <palpate/material/corotational.hpp>
 #include <palpate/material/fibre_reinforced.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
@@ -18,6 +13,6 @@
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/material/viscoelastic.hpp>
 #include <palpate/model/quasi_non_linear.hpp>
-#include <palpate/model/corotated_tissue.hpp>
+#include <palpate/model/explicit.hpp>
+#include <palpate/model/implicit.hpp>
 #include <palpate/model/renewed_factor.hpp>
-#include <palpate/model/soft_tissue.hpp>

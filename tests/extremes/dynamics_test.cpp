@@ -6,7 +6,7 @@
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/soft_tissue.hpp>
+#include <palpate/model/implicit.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <Eigen/Geometry>
@@ -20,6 +20,7 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 const NeoHookean jelly{3e3, 0.45, 1000.0};
+using Jelly = HapticFEModel<Tet4, NeoHookean, Implicit<Newton<SparseCholesky>>>;
 constexpr double jelly_side = 0.1;
 
 Mesh<Tet4> jelly_mesh(int cells = 2) {
@@ -111,7 +112,7 @@ TEST_CASE("a free jelly keeps its momentum, and never gains spin by implicit Eul
 }
 
 TEST_CASE("a ball that is held leaves a moving tissue alone", "[extreme][E3]") {
-  SoftTissue tissue(box_tet4({0.06, 0.06, 0.03}, {4, 4, 2}), Scene().fix("z0").touch("z1"), jelly, {.step = 0.01});
+  Jelly tissue(box_tet4({0.06, 0.06, 0.03}, {4, 4, 2}), Scene().fix("z0").touch("z1"), jelly, {}, {.step = 0.01});
   HapticServo servo(tissue, SphereTool{.radius = 0.012});
   const auto tick = [&](int k) {
     if (k % 10 == 0) tissue.advance();
@@ -220,8 +221,8 @@ TEST_CASE("energy from nowhere is said, and nothing else is", "[extreme][E6]") {
 }
 
 TEST_CASE("a motion that dies away leaves no denormal numbers", "[extreme][E8]") {
-  SoftTissue tissue(box_tet4({0.02, 0.02, 0.02}, {1, 1, 1}), Scene().fix("z0").touch("z1"), jelly,
-                    {.step = 0.05, .motion = {.mass_damping = 50.0}});
+  Jelly tissue(box_tet4({0.02, 0.02, 0.02}, {1, 1, 1}), Scene().fix("z0").touch("z1"), jelly, {},
+               {.step = 0.05, .mass_damping = 50.0});
   const VertexForce push{0, {0.0, 0.0, -1e-3}};
   tissue.end_tick({&push, 1});
   tissue.advance();

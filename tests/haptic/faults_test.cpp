@@ -1,7 +1,7 @@
 // Stalls, late ticks and bad input with a tissue that moves by itself: simulated, and in threads.
 #include "../../benchmarks/faults/faults.hpp"
 
-#include <palpate/haptic/tissue_thread.hpp>
+#include <palpate/haptic/background_worker.hpp>
 
 #include <chrono>
 
@@ -38,24 +38,23 @@ namespace {
 
 /// Steps of a tissue, some of which hang.
 struct HangingTissue {
-  SoftTissue& tissue;
+  MovingTissue& tissue;
   int every, milliseconds;
   std::uint64_t steps = 0, hung = 0;
 
-  double step() const noexcept { return tissue.step(); }
-  void advance() noexcept {
+  BackgroundStep background_work() noexcept {
     if (++steps % static_cast<unsigned>(every) == 0) {
       std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
       ++hung;
     }
-    tissue.advance();
+    return tissue.background_work();
   }
 };
 
 }  // namespace
 
 TEST_CASE("a tissue's thread that hangs, a device's that is late, and load beside them", "[haptic][soft][faults]") {
-  SoftTissue tissue = faults::make_pad(0.01);
+  faults::Pad tissue = faults::make_pad(0.01);
   const ServoOptions options = faults::session_options();
   HapticServo servo(tissue, SphereTool{.radius = faults::ball}, options);
   HangingTissue hanging{tissue, 5, 60};
@@ -64,7 +63,7 @@ TEST_CASE("a tissue's thread that hangs, a device's that is late, and load besid
     volatile double x = 0.0;
     while (!done.load(std::memory_order_relaxed)) x = x + 1.0;
   });
-  TissueThread thread(hanging);
+  BackgroundWorker worker(hanging);
   const ForceLimits limits = ForceLimits::from(options.device);
   StatusCounters counters;
   int ticks = 0, wild = 0, kicks = 0, late = 0;
@@ -90,7 +89,7 @@ TEST_CASE("a tissue's thread that hangs, a device's that is late, and load besid
     before_time = state.time;
     ++ticks;
   }
-  thread.stop();
+  worker.stop();
   done = true;
   load.join();
   CHECK(wild == 0);
@@ -98,11 +97,11 @@ TEST_CASE("a tissue's thread that hangs, a device's that is late, and load besid
   CHECK(backwards == 0);
   CHECK(counters[StatusFlag::deadline_missed] == static_cast<std::uint64_t>(late));
   CHECK(late >= 7);
-  CHECK(thread.report().steps == hanging.steps);
-  CHECK(thread.report().steps == tissue.steps());
+  CHECK(worker.report().pieces == hanging.steps);
+  CHECK(worker.report().pieces == tissue.steps());
   CHECK(seen <= tissue.steps());
   CHECK(seen > 0);
-  CHECK(thread.report().late >= hanging.hung);
+  CHECK(worker.report().late >= hanging.hung);
   CHECK(hanging.hung > 0);
   CHECK(most > 0.3);
   CHECK(ticks == 1500);

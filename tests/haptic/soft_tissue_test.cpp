@@ -1,11 +1,11 @@
 // Tissue that moves at its own rate under a servo that ticks at another.
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/haptic/tissue_thread.hpp>
+#include <palpate/haptic/background_worker.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
-#include <palpate/model/soft_tissue.hpp>
+#include <palpate/model/implicit.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 
@@ -26,10 +26,11 @@ Mesh<Tet4> pad() {
 Scene pad_scene() {
   return Scene().fix("z0").touch("z1");
 }
-SoftTissueOptions options(double step) {
-  SoftTissueOptions o;
-  o.step = step;
-  return o;
+template <class Material>
+using Soft = HapticFEModel<Tet4, Material, Implicit<Newton<SparseCholesky>>>;
+
+ImplicitParameters with_step(double step) {
+  return {.step = step};
 }
 ServoOptions device() {
   ServoOptions o;
@@ -55,7 +56,7 @@ struct Session {
 };
 
 template <class Depth>
-Session press(SoftTissue& tissue, int ticks, Depth depth, double from = 0.0) {
+Session press(MovingTissue& tissue, int ticks, Depth depth, double from = 0.0) {
   HapticServo servo(tissue, SphereTool{.radius = ball}, device());
   Session s;
   double next = 0.0;
@@ -85,7 +86,7 @@ double ramp(double t) {
 TEST_CASE("the steady force does not depend on the step, and is that of the equilibrium", "[haptic][soft]") {
   std::vector<double> steady;
   for (const double h : {0.02, 0.01, 0.005, 0.001}) {
-    SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(h));
+    Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(h));
     const Session s = press(tissue, 2000, ramp);
     steady.push_back(s.force[2]);
     CHECK(s.status.ok());
@@ -104,7 +105,7 @@ TEST_CASE("the steady force does not depend on the step, and is that of the equi
 
 TEST_CASE("a slight touch feels as linear elasticity does", "[haptic][soft]") {
   const auto slight = [](double t) { return std::min(0.0005, 0.01 * t); };
-  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
   const double soft = press(tissue, 600, slight).force[2];
   HapticFEModel<Tet4, LinearElastic> linear(pad(), pad_scene(), LinearElastic{5e3, 0.45, 1000.0});
   HapticServo servo(linear, SphereTool{.radius = ball}, device());
@@ -113,7 +114,7 @@ TEST_CASE("a slight touch feels as linear elasticity does", "[haptic][soft]") {
 }
 
 TEST_CASE("a tissue that is let go comes back, and a stalled one stays elastic", "[haptic][soft]") {
-  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
   press(tissue, 500, ramp);
   const double pressed = tissue.motion().displacement().norm();
   press(tissue, 1500, [](double) { return -0.01; });
@@ -135,7 +136,7 @@ TEST_CASE("a tissue that is let go comes back, and a stalled one stays elastic",
 }
 
 TEST_CASE("gravity is settled before the first touch", "[haptic][soft]") {
-  SoftTissue tissue(pad(), pad_scene().gravity({0.0, 0.0, -9.81}), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  Soft<NeoHookean> tissue(pad(), pad_scene().gravity({0.0, 0.0, -9.81}), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
   const VectorX u = tissue.motion().displacement();
   CHECK(u.norm() > 0.0);
   for (int k = 0; k < 20; ++k) tissue.advance();
@@ -143,7 +144,7 @@ TEST_CASE("gravity is settled before the first touch", "[haptic][soft]") {
 }
 
 TEST_CASE("moving tissue keeps the laws of tissues, at rest and turned", "[haptic][soft][laws]") {
-  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
   CHECK(testing::describe(testing::tissue_laws(tissue, std::array{0, 24, 30, 48}, {1e-9})) == "");
   press(tissue, 500, ramp, 0.01);
   tissue.begin_tick();
@@ -155,7 +156,7 @@ TEST_CASE("neither a tick nor a step of the tissue allocates", "[haptic][soft][a
     WARN("allocations are not counted in this build");
     return;
   }
-  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
   HapticServo servo(tissue, SphereTool{.radius = ball}, device());
   const testing::AllocationScope scope;
   for (int k = 0; k < 300; ++k) {
@@ -168,9 +169,9 @@ TEST_CASE("neither a tick nor a step of the tissue allocates", "[haptic][soft][a
 }
 
 TEST_CASE("thread and ticks exchange without waiting", "[haptic][soft]") {
-  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.005));
+  Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.005));
   HapticServo servo(tissue, SphereTool{.radius = ball}, device());
-  TissueThread thread(tissue);
+  BackgroundWorker worker(tissue);
   double most = 0.0;
   for (int k = 0; k < 600; ++k) {
     const ToolState state = above(k, ramp(1e-3 * k));
@@ -179,18 +180,18 @@ TEST_CASE("thread and ticks exchange without waiting", "[haptic][soft]") {
     most = std::max(most, out.force().norm());
     std::this_thread::sleep_for(std::chrono::microseconds(500));
   }
-  thread.stop();
-  CHECK(thread.report().steps > 10);
-  CHECK(thread.report().steps == tissue.steps());
+  worker.stop();
+  CHECK(worker.report().pieces > 10);
+  CHECK(worker.report().pieces == tissue.steps());
   CHECK(most > 0.05);
-  CHECK(thread.report().rate > 0.0);
-  CHECK(thread.report().rate <= 1.1);
+  CHECK(worker.report().rate > 0.0);
+  CHECK(worker.report().rate <= 1.1);
 }
 
 TEST_CASE("steps and bodies that cannot be are refused", "[haptic][soft]") {
   const auto kind = [](const Scene& s, double step) {
     try {
-      SoftTissue tissue(pad(), s, NeoHookean{5e3, 0.45, 1000.0}, options(step));
+      Soft<NeoHookean> tissue(pad(), s, NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(step));
     } catch (const SetupError& error) {
       return error.kind();
     }
@@ -211,7 +212,7 @@ TEST_CASE("what a tissue refuses is named as in the mesh as given", "[haptic][so
     for (NodeId& i : e) ++i;
   mesh.groups = {};
   const auto refused = [&](const Scene& scene, const NeoHookean& law, double step = 0.01) {
-    return test::refusal([&] { SoftTissue(mesh, scene, law, options(step)); });
+    return test::refusal([&] { Soft<NeoHookean>(mesh, scene, law, {}, with_step(step)); });
   };
   const NeoHookean law{5e3, 0.45, 1000.0};
   const std::vector<NodeId> edge{1, 10, 19}, bottom{1, 2, 3, 4, 5, 6, 7, 8, 9};
@@ -230,7 +231,7 @@ TEST_CASE("what a tissue refuses is named as in the mesh as given", "[haptic][so
 
 TEST_CASE("a tissue that nothing touches says that all is well", "[haptic][soft]") {
   for (const double g : {0.0, 9.81}) {
-    SoftTissue tissue(pad(), pad_scene().gravity({0.0, 0.0, -g}), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+    Soft<NeoHookean> tissue(pad(), pad_scene().gravity({0.0, 0.0, -g}), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
     for (int k = 0; k < 10; ++k) {
       tissue.advance();
       CHECK(tissue.begin_tick().ok());
@@ -240,7 +241,7 @@ TEST_CASE("a tissue that nothing touches says that all is well", "[haptic][soft]
 }
 
 TEST_CASE("forces that are none are dropped, and said", "[haptic][soft][extreme]") {
-  SoftTissue tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
   tissue.advance();
   const double none = std::numeric_limits<double>::quiet_NaN();
   const std::array forces{VertexForce{24, {0.0, 0.0, -0.01}}, VertexForce{25, {none, 0.0, 0.0}},
@@ -256,7 +257,7 @@ TEST_CASE("forces that are none are dropped, and said", "[haptic][soft][extreme]
 
 TEST_CASE("the compliance is that of the settled body", "[haptic][soft]") {
   const Scene squeezed = Scene().prescribe("x0", {0.006, 0.0, 0.0}).prescribe("x1", {-0.006, 0.0, 0.0}).touch("z1");
-  SoftTissue tissue(pad(), squeezed, NeoHookean{5e3, 0.45, 1000.0}, options(0.01));
+  Soft<NeoHookean> tissue(pad(), squeezed, NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
   ImplicitDynamics same(
       make_deformable_body(make_hyperelastic_body(pad(), std::vector<NeoHookean>{{5e3, 0.45, 1000.0}}), squeezed), {});
   same.set_state(tissue.motion().displacement(), VectorX::Zero(tissue.motion().displacement().size()));
@@ -279,13 +280,13 @@ TEST_CASE("a tissue with memory that is held relaxes to the slow equilibrium, wh
   const Viscoelastic<NeoHookean, 1> law{fast, {{{0.6, 0.3}}}};
   std::vector<double> early, late;
   for (const double h : {0.02, 0.01, 0.005}) {
-    SoftTissue tissue(pad(), pad_scene(), law, options(h));
+    Soft<Viscoelastic<NeoHookean, 1>> tissue(pad(), pad_scene(), law, {}, with_step(h));
     early.push_back(press(tissue, 500, ramp).force[2]);
     const Session s = press(tissue, 4000, [](double) { return ramp(1.0); });
     late.push_back(s.force[2]);
     CHECK(s.status.ok());
   }
-  SoftTissue slow(pad(), pad_scene(), NeoHookean{0.4 * 5e3, 0.45, 1000.0}, options(0.01));
+  Soft<NeoHookean> slow(pad(), pad_scene(), NeoHookean{0.4 * 5e3, 0.45, 1000.0}, {}, with_step(0.01));
   const double relaxed = press(slow, 3000, ramp).force[2];
   for (const double f : late) CHECK_THAT(f, WithinRel(relaxed, 2e-3));
   for (const double f : early) {
@@ -297,11 +298,12 @@ TEST_CASE("a tissue with memory that is held relaxes to the slow equilibrium, wh
 TEST_CASE("small strain with memory is felt as well", "[haptic][soft][viscous]") {
   const LinearElastic fast{5e3, 0.45, 1000.0};
   const Viscoelastic<LinearElastic, 1> law{fast, {{{0.6, 0.3}}}};
-  SoftTissue tissue(pad(), pad_scene(), law, options(0.01)), elastic(pad(), pad_scene(), fast, options(0.01));
+  Soft<Viscoelastic<LinearElastic, 1>> tissue(pad(), pad_scene(), law, {}, with_step(0.01));
+  Soft<LinearElastic> elastic(pad(), pad_scene(), fast, {}, with_step(0.01));
   const auto slight = [](double t) { return std::min(0.001, 0.05 * t); };
   const double at_first = press(tissue, 60, slight).force[2], unrelaxed = press(elastic, 2000, slight).force[2];
   const double at_last = press(tissue, 4000, [](double) { return 0.001; }).force[2];
   CHECK(at_first > 0.8 * unrelaxed);
-  SoftTissue slow(pad(), pad_scene(), LinearElastic{0.4 * 5e3, 0.45, 1000.0}, options(0.01));
+  Soft<LinearElastic> slow(pad(), pad_scene(), LinearElastic{0.4 * 5e3, 0.45, 1000.0}, {}, with_step(0.01));
   CHECK_THAT(at_last, WithinRel(press(slow, 2000, slight).force[2], 5e-3));
 }

@@ -73,7 +73,7 @@ static_assert(!NewtonProblem<int>);
 
 TEST_CASE("Newton's method finds a minimum at the end of a valley", "[integrator][newton]") {
   Rosenbrock problem;
-  Newton newton(2);
+  NewtonMethod newton(2);
   VectorX x = Eigen::Vector2d(-1.2, 1.0);
   const NewtonReport report = newton.solve(problem, x);
   CHECK(report.converged);
@@ -84,7 +84,7 @@ TEST_CASE("Newton's method finds a minimum at the end of a valley", "[integrator
 
 TEST_CASE("Newton's method stays inside the domain", "[integrator][newton]") {
   Barrier problem;
-  Newton newton(1);
+  NewtonMethod newton(1);
   VectorX x = VectorX::Constant(1, 10.0);
   const NewtonReport report = newton.solve(problem, x);
   CHECK(problem.left);  // it was tried, and not taken
@@ -100,7 +100,7 @@ TEST_CASE("Newton's method converges with the square of the error", "[integrator
   double error = 0.1;
   for (int k = 1; k <= 3; ++k) {
     VectorX x = VectorX::Constant(1, 0.9);
-    const NewtonReport report = Newton(1, {.maximum_iterations = k}).solve(problem, x);
+    const NewtonReport report = NewtonMethod(1, {.maximum_iterations = k}).solve(problem, x);
     CHECK(report.iterations == k);
     error *= error;  // of x - log x exactly
     CHECK(std::abs(1.0 - x[0] - error) <= 1e-15);
@@ -111,18 +111,18 @@ TEST_CASE("Newton's method gives up where there is no minimum, and starts over w
           "[integrator][newton]") {
   Slope slope;
   VectorX x = VectorX::Zero(1);
-  const NewtonReport report = Newton(1, {.maximum_iterations = 7}).solve(slope, x);
+  const NewtonReport report = NewtonMethod(1, {.maximum_iterations = 7}).solve(slope, x);
   CHECK_FALSE(report.converged);
   CHECK(report.iterations == 7);
   Barrier barrier;
   x[0] = 1.0;
-  const NewtonReport at_once = Newton(1).solve(barrier, x);
+  const NewtonReport at_once = NewtonMethod(1).solve(barrier, x);
   CHECK(at_once.converged);
   CHECK(at_once.iterations == 0);
 }
 
 TEST_CASE("parameters that mean nothing are refused", "[integrator][newton][extreme]") {
-  const auto make = [](const NewtonParameters& p) { Newton newton(2, p); };
+  const auto make = [](const NewtonParameters& p) { NewtonMethod newton(2, p); };
   make({.maximum_iterations = 1, .tolerance = 0.0, .maximum_halvings = 0});
   CHECK_REFUSED(SetupErrorKind::bad_argument, make({.maximum_iterations = 0}));
   CHECK_REFUSED(SetupErrorKind::bad_argument, make({.maximum_iterations = -1}));

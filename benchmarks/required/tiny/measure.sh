@@ -73,7 +73,7 @@ row "Tet10, Condensed<SelectiveInverse>" '-DTINY_ELEMENT_HEADER=<palpate/element
   -DTINY_PROMOTE "-DTINY_SOLVER=Condensed<SelectiveInverse>"
 row "Tet4, SparseCholesky" -DTINY_ELEMENT=Tet4 -DTINY_SOLVER=SparseCholesky
 row "Tet4, ConjugateGradient" -DTINY_ELEMENT=Tet4 -DTINY_SOLVER=ConjugateGradient
-row "Tet4, neo-Hookean SoftTissue" -DTINY_SOFT
+row "Tet4, neo-Hookean, Implicit<Newton>" -DTINY_SOFT
 wait
 
 echo "program,compile_s,bytes,instructions_per_tick,counter,answer" > "$out/tiny.csv"

@@ -14,7 +14,7 @@
 #ifdef TINY_SOFT
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/model/soft_tissue.hpp>
+#include <palpate/model/implicit.hpp>
 #elif defined(TINY_SOLVER)
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
   Scene scene;
   scene.fix("z0").touch("z1");
 #ifdef TINY_SOFT
-  SoftTissue tissue(mesh, scene, NeoHookean{10e3, 0.45, 1000.0});
+  HapticFEModel<Tet4, NeoHookean, Implicit<Newton<SparseCholesky>>> tissue(mesh, scene, {10e3, 0.45, 1000.0});
   HapticServo servo(tissue, SphereTool{.radius = 4e-3});
   return press(servo, ticks);
 #elif defined(TINY_SOLVER)

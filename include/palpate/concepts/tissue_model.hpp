@@ -49,17 +49,22 @@ concept TissueModel = requires(T& tissue, const T& constant, int i, std::span<co
   { constant.to_world() } noexcept -> std::same_as<const Eigen::Isometry3d&>;
 };
 
-/// A tissue whose surface or compliance changes between ticks, and which says so before each (SoftTissue).
+/// A tissue whose surface or compliance changes between ticks, and which says so before each.
 template <class T>
 concept AnnouncesChanges = requires(T& tissue) {
   tissue.begin_tick();
 };
 
-/// A tissue with a motion of its own: `advance()` makes one step of `step()` seconds.
+/// What a piece of background work was.
+struct BackgroundStep {
+  bool worked = false;  ///< false: there was nothing to do
+  double next = 0.0;    ///< [s] from when this piece was due to when the next is; 0: at once
+};
+
+/// A tissue with work to do beside the ticks, which a BackgroundWorker does: steps of a motion, cuts.
 template <class T>
-concept MovingTissue = requires(T& tissue, const T& constant) {
-  { tissue.advance() } noexcept;
-  { constant.step() } -> std::convertible_to<double>;
+concept HasBackgroundWork = requires(T& tissue) {
+  { tissue.background_work() } -> std::same_as<BackgroundStep>;
 };
 
 }}  // namespace palpate

@@ -26,10 +26,11 @@ enum class StatusFlag : std::uint32_t {
   non_finite_force = 1u << 12,     ///< a computed force was not finite and was replaced by zero
   step_refused = 1u << 13,         ///< a time step that is not positive, or above the stable limit: nothing was done
   energy_grew = 1u << 14,          ///< a motion has energy that nothing put in: it is held at its last good state
+  slow_tissue = 1u << 15,          ///< steps of a moving tissue take longer than they last: it moves in slow motion
 };
 
 /// Number of flags that exist.
-inline constexpr int status_flag_count = 15;
+inline constexpr int status_flag_count = 16;
 
 /// A set of StatusFlag. Trivially copyable; no operation allocates.
 class Status {
@@ -57,7 +58,7 @@ constexpr std::string_view status_flag_name(int bit) {
   constexpr std::array<std::string_view, status_flag_count> names{
       "NonFiniteInput",     "Saturated",      "SlewLimited",   "Stale",        "DeadlineMissed", "Inverted",
       "SolverNotConverged", "EnergyInjected", "DegradedModel", "Disconnected", "Reacquired",     "Ramping",
-      "NonFiniteForce", "StepRefused",    "EnergyGrew"};
+      "NonFiniteForce",     "StepRefused",    "EnergyGrew",    "SlowTissue"};
   return names[static_cast<std::size_t>(bit)];
 }
 

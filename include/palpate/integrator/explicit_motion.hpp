@@ -81,6 +81,36 @@ class ExplicitMotion {
   /// Where held dofs are at the end of the next step [m]; they go there at constant speed. Keep the size.
   VectorX& target() noexcept { return state_.target; }
 
+  /// A state to return to.
+  struct Checkpoint {
+    VectorX displacement, velocity, force;
+    DeformationReport deformation;
+    double time = 0.0, work = 0.0, gross = 0.0;
+    std::int64_t steps = 0;
+  };
+  /// Notes the present state. Allocates when `at` has another size.
+  void save(Checkpoint& at) const noexcept {
+    at.displacement = state_.displacement;
+    at.velocity = state_.velocity;
+    at.force = state_.force;
+    at.deformation = state_.deformation;
+    at.time = state_.time;
+    at.work = work_;
+    at.gross = gross_;
+    at.steps = steps_;
+  }
+  /// Returns to a state of this motion, to take other steps from there. A stopped motion stays stopped.
+  void return_to(const Checkpoint& at) noexcept {
+    state_.displacement = at.displacement;
+    state_.velocity = at.velocity;
+    state_.force = at.force;
+    state_.deformation = at.deformation;
+    state_.time = at.time;
+    work_ = at.work;
+    gross_ = at.gross;
+    steps_ = at.steps;
+  }
+
   /// Sets displacement and velocity (of the same time), and restarts. Throws bad_argument, without a change, for
   /// vectors that have not one entry per dof.
   void set(const VectorX& displacement, const VectorX& velocity) {

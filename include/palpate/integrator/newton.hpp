@@ -28,11 +28,11 @@ struct NewtonReport {
 /// Newton's method with Armijo's rule on the potential (Nocedal and Wright, Numerical Optimization, 3.1); near the
 /// minimum, where the potential has no digits left to compare, on the residual. Owns its workspaces: solving does not
 /// allocate.
-class Newton {
+class NewtonMethod {
  public:
-  Newton() = default;
+  NewtonMethod() = default;
   /// Throws as NewtonParameters::require_usable. Allocates four vectors.
-  explicit Newton(Index size, const NewtonParameters& parameters = {});
+  explicit NewtonMethod(Index size, const NewtonParameters& parameters = {});
 
   /// Improves x until the residual is small. x is always inside the domain if it was at the start.
   template <NewtonProblem P>

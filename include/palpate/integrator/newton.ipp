@@ -17,7 +17,7 @@ PALPATE_INLINE void NewtonParameters::require_usable() const {
   if (maximum_halvings < 0) refuse("maximum_halvings", std::to_string(maximum_halvings), "Give 0 or more");
 }
 
-PALPATE_INLINE Newton::Newton(Index size, const NewtonParameters& parameters)
+PALPATE_INLINE NewtonMethod::NewtonMethod(Index size, const NewtonParameters& parameters)
     : parameters_(parameters), residual_(size), step_(size), trial_(size), trial_residual_(size) {
   parameters_.require_usable();
 }

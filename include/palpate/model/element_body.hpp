@@ -43,6 +43,15 @@ class ElementBody final : public ElasticBody {
   Vector3 origin_;
 };
 
+namespace detail {
+
+template <Element E>
+const ElementBody<E>& element_body(const ElasticBody& body) noexcept {
+  return static_cast<const ElementBody<E>&>(body);
+}
+
+}  // namespace detail
+
 template <Element E>
 ElementBody<E>::ElementBody(Body<E> body, const Vector3& origin)
     : body_(std::move(body)), boundary_(extract_boundary<E>(body_.mesh)), origin_(origin) {}

@@ -96,7 +96,7 @@ class Equilibrium {
 
   /// From equilibrium at the present loads to equilibrium at another fraction: a step along the tangent, then Newton's
   /// method.
-  NewtonReport advance(Newton& newton, double to) noexcept;
+  NewtonReport advance(NewtonMethod& newton, double to) noexcept;
 
   /// Where the tangent is not positive definite the state may be an unstable equilibrium, which the residual alone does
   /// not leave (a column pressed straight): adds the direction of most negative curvature, by inverse iteration.

@@ -137,7 +137,7 @@ PALPATE_INLINE void Equilibrium::end() noexcept {
 
 PALPATE_INLINE EquilibriumReport Equilibrium::follow_loads(const EquilibriumParameters& parameters) {
   EquilibriumReport report;
-  Newton newton(size(), parameters.newton);
+  NewtonMethod newton(size(), parameters.newton);
   go(0.0);
   double step = 1.0 / parameters.load_steps;
   while (report.fraction < 1.0) {
@@ -170,7 +170,7 @@ PALPATE_INLINE void Equilibrium::go(double fraction) noexcept {
   load_ = from_load_ + fraction * (body_.load - from_load_);
 }
 
-PALPATE_INLINE NewtonReport Equilibrium::advance(Newton& newton, double to) noexcept {
+PALPATE_INLINE NewtonReport Equilibrium::advance(NewtonMethod& newton, double to) noexcept {
   if (!prepare(x_)) return {};
   body_.elastic->force(displacement_, force_);
   displacement_ = held_;

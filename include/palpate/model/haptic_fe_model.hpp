@@ -18,18 +18,36 @@ template <Element E>
 struct Body;
 struct BoundaryFace;
 
-/// Linear static tissue. `E` is the element, `M` the material, `Solver` a policy of model/policies.hpp; assembly,
-/// quadrature and condensation come with them. The model is prepared once and copies what it needs from mesh and scene.
+namespace detail {
+
+/// What the primary template asks of its arguments, in sentences, and the base it has.
+template <class E, class M, class Solver>
+struct StaticModel {
+  static_assert(Element<E>, "palpate: the first argument of HapticFEModel is an element, for example Smoothed<Tet4>; "
+                            "for one of your own see the concept Element");
+  static_assert(Material<M>, "palpate: the second argument of HapticFEModel is a material, for example LinearElastic");
+  static_assert(SolverPolicy<Solver>,
+                "palpate: the third argument of HapticFEModel is a solver: Condensed<SelectiveInverse>, SparseCholesky "
+                "...; Implicit and Explicit come with palpate/soft.hpp, Cuttable with palpate/cut.hpp; for one of your "
+                "own specialise SolverTraits");
+  static_assert(!Material<M> || !SolverPolicy<Solver> || LinearMaterial<M>,
+                "palpate: this solver is for statics at small strain, which takes a LinearMaterial; for large strain "
+                "or viscoelasticity choose Implicit<Newton<SparseCholesky>>");
+  using Base = LinearTissue<typename SolverTraits<Solver>::Scalar>;
+};
+
+}  // namespace detail
+
+/// Tissue of element `E`, material `M` and solver `Solver`. This one is linear and static; moving, cut and stiffening
+/// tissue are specialisations on their solvers, with the same constructor and functions. Assembly, quadrature and
+/// condensation come with the arguments. The model is prepared once and copies what it needs from mesh and scene.
 /// Afterwards it changes through named calls only (loads, prescribed values, gravity, pose, reset), none of which
 /// refactorises; none may run while a tick does. Satisfies TissueModel. What does not depend on the types is in its
 /// base, LinearTissue.
-///
-/// Frames: `set_pose` places the frame of the mesh as given in the world of the tools. Forces and displacements have the
-/// axes of that mesh. Positions of `mesh()` and of the contact surface have these axes, too, and are relative to
-/// `origin()`; `to_world()` maps them to the world.
-template <Element E, LinearMaterial M, SolverPolicy Solver = Condensed<SelectiveInverse>>
-class HapticFEModel : public LinearTissue<typename SolverTraits<Solver>::Scalar> {
-  using Tissue = LinearTissue<typename SolverTraits<Solver>::Scalar>;
+/// Frames: see ModelBase.
+template <class E, class M, class Solver = Condensed<SelectiveInverse>>
+class HapticFEModel : public detail::StaticModel<E, M, Solver>::Base {
+  using Tissue = typename detail::StaticModel<E, M, Solver>::Base;
 
  public:
   static_assert(has_triangulated_faces<E>(),

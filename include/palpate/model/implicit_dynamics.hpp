@@ -69,6 +69,8 @@ class ImplicitDynamics {
   /// Changes the state; prescribed components rest where they are prescribed. The acceleration follows. For a body with
   /// memory the change is sudden. Throws bad_argument, without a change, for vectors of another size.
   void set_state(const VectorX& u, const VectorX& v);
+  /// At rest in u, where it has been until nothing fades any more. Throws as set_state.
+  void rest_at(const VectorX& u);
   /// Forces from now on instead of the scene's loads [N]. Throws bad_argument for another size; does not allocate.
   void set_load(const VectorX& load);
   /// Values of the prescribed components at the end of the next step [m]. Throws as set_load.
@@ -101,6 +103,9 @@ class ImplicitDynamics {
 
   /// x_ is where the body coasts to, or where it is: wherever the potential of the step is lower.
   void start_from_the_lower() noexcept;
+  /// Changes the state after `seconds` in it; infinite: until nothing fades any more.
+  void set_state(const VectorX& u, const VectorX& v, double seconds);
+
   /// The state is what was evaluated last.
   void accept() noexcept;
 
@@ -119,7 +124,7 @@ class ImplicitDynamics {
   TangentSolver tangent_;
   ImplicitStep step_;
   BlockMatrix damping_;
-  Newton newton_;
+  NewtonMethod newton_;
   VectorX u_, v_, a_, load_;
   VectorX held_;                         // prescribed components at the end of the last step
   VectorX from_, unbalanced_, balance_;  // displacement and forces left over at the start of a step, and now

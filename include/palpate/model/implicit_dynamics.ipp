@@ -106,9 +106,17 @@ PALPATE_INLINE bool ImplicitDynamics::prepare_response(double h) noexcept {
 }
 
 PALPATE_INLINE void ImplicitDynamics::set_state(const VectorX& u, const VectorX& v) {
+  set_state(u, v, 0.0);
+}
+
+PALPATE_INLINE void ImplicitDynamics::rest_at(const VectorX& u) {
+  set_state(u, VectorX::Zero(u_.size()), infinity);
+}
+
+PALPATE_INLINE void ImplicitDynamics::set_state(const VectorX& u, const VectorX& v, double seconds) {
   for (const VectorX* given : {&u, &v}) require_entries(*given, u_.size());
   end();
-  body_.elastic->begin_step(0.0);
+  body_.elastic->begin_step(seconds);
   for (Index dof = 0; dof < u_.size(); ++dof) {  // u and v may be those of this motion
     const bool held = body_.conditions.is_constrained(dof);
     u_[dof] = held ? body_.conditions.prescribed[dof] : u[dof];

@@ -13,6 +13,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// Mueller et al. 2005, over one ring). O(neighbours), no allocation after set-up.
 class NodalRotations {
  public:
+  NodalRotations() = default;
   /// `positions` at rest [m].
   NodalRotations(const BlockPattern& pattern, const std::vector<Vector3>& positions, const std::vector<NodeId>& nodes);
 

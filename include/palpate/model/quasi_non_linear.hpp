@@ -88,6 +88,15 @@ class QuasiNonLinear {
   double compliance_floor() const noexcept { return tissue_->compliance_floor() / std::max(along_, across_); }
   const Eigen::Isometry3d& to_world() const noexcept { return tissue_->to_world(); }
 
+  /// Back to the state after construction.
+  void reset() noexcept {
+    along_ = axial_.ratio(0.0);
+    across_ = radial_.ratio(0.0);
+    axis_ = Vector3(0.0, 0.0, 1.0);
+    set_scale();
+    ++revision_;
+  }
+
   /// How many times stiffer than linear it is now, along the force and across.
   double axial_ratio() const noexcept { return along_; }
   double radial_ratio() const noexcept { return across_; }

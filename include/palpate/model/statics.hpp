@@ -9,15 +9,14 @@
 #include <palpate/model/prepared_system.hpp>
 
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Stiffness, essential conditions, loads and prepared solver of a body. Neither copied nor moved: the solver refers to
-/// its members.
+/// Stiffness, essential conditions, loads and prepared solver of a body, which it refers to. Neither copied nor moved:
+/// the solver refers to its members.
 class Statics {
  public:
   using MakeStiffness = std::function<AnyStiffness(const ElasticBody&, const SetupLimits&)>;
@@ -27,7 +26,7 @@ class Statics {
   /// Prepares everything but the contact. `kept_nodes` are the touchable ones; `cache_file` may hold the prepared
   /// system, or will. Throws what assembly, factorisation and checks throw: unconstrained, not_positive_definite,
   /// ill_conditioned ... but nothing because of the cache.
-  Statics(std::unique_ptr<ElasticBody> body, const Scene& scene, const std::vector<NodeId>& kept_nodes,
+  Statics(ElasticBody& body, const Scene& scene, const std::vector<NodeId>& kept_nodes,
           const MakeStiffness& make_stiffness, const SolverRecipe& recipe, const SetupLimits& limits,
           const std::string& cache_file, SetupReport& report);
   Statics(const Statics&) = delete;
@@ -72,7 +71,7 @@ class Statics {
   void require_density(const Vector3& gravity) const;
   DofLayout layout(const std::vector<NodeId>& kept_nodes) const;
 
-  std::unique_ptr<ElasticBody> body_;
+  ElasticBody* body_;
   EssentialConditions conditions_;
   AnyStiffness stiffness_;
   AnyStaticSystem system_;

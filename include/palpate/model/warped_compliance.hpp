@@ -54,6 +54,7 @@ class WarpedCompliance {
   /// As TissueModel has them.
   double bound(int j) const noexcept { return bound_[static_cast<std::size_t>(j)]; }
   double floor() const noexcept { return floor_; }
+  std::size_t bytes() const noexcept { return rest_.size() * sizeof(Matrix3); }
 
  private:
   void find_bounds();

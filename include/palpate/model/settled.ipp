@@ -1,7 +1,7 @@
-// Definitions of tissue_motion.hpp.
+// Definitions of settled.hpp.
 #pragma once
 
-#include <palpate/model/tissue_motion.hpp>
+#include <palpate/model/settled.hpp>
 #include <palpate/core/setup_error.hpp>
 
 #include <utility>

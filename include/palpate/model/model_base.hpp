@@ -1,0 +1,109 @@
+// What every model has, whatever its solver is: the admitted body, the report, and where it lies in the world.
+#pragma once
+
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/admission_policy.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/model/contact_compliance.hpp>
+#include <palpate/model/setup_report.hpp>
+
+#include <Eigen/Geometry>
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+class ElasticBody;
+struct AdmittedBody;
+struct Touchable;
+
+/// What a caller may decide about the set-up of any model.
+struct SetupOptions {
+  ProgressCallback progress{};  ///< may cancel
+  std::size_t memory_limit =
+      std::numeric_limits<std::size_t>::max();  ///< [bytes]; more is refused as too_large before it is allocated
+  AdmissionPolicy admission{};
+
+  // Statics; other solvers have no use for the first two and refuse the last.
+  int compliance_slots = 256;  ///< vertices whose compliance is remembered by a solver that does not store all
+  ColumnFill columns = ColumnFill::in_tick;  ///< when such a solver computes it
+  std::string cache_file{};  ///< where the prepared system is kept for the next time; empty: nowhere. See docs/cache.md
+};
+
+/// The part of HapticFEModel that depends on neither element, material nor solver. Not made by itself.
+///
+/// Frames: `set_pose` of a model places the frame of the mesh as given in the world of the tools. Forces and
+/// displacements have the axes of that mesh. Positions of `mesh()` and of the contact surface have these axes, too, and
+/// are relative to `origin()`; `to_world()` maps them to the world.
+class ModelBase {
+ public:
+  const SetupReport& report() const noexcept { return report_; }
+  /// Where the admitted mesh's frame lies in the mesh as given [m].
+  const Vector3& origin() const noexcept { return origin_; }
+  /// New id of every node as given, -1 for those dropped at admission.
+  const std::vector<NodeId>& node_map() const noexcept { return node_map_; }
+  /// Resting position of an admitted node, in the frame of the mesh as given [m].
+  Vector3 rest_position(NodeId node) const noexcept;
+  /// Node of every vertex of the contact surface.
+  const std::vector<NodeId>& touchable_nodes() const noexcept { return touchable_; }
+  const std::vector<NodeId>& seen_nodes() const noexcept { return seen_; }
+  /// Where the organ lies in the world, as set last: from the frame of the mesh as given to the world's.
+  const Eigen::Isometry3d& pose() const noexcept { return pose_; }
+  /// From the frame of the contact surface, whose origin is `origin()`, to the world's.
+  const Eigen::Isometry3d& to_world() const noexcept { return world_; }
+
+ protected:
+  explicit ModelBase(const SetupOptions& options);
+  ModelBase(const ModelBase&) = delete;
+  ModelBase& operator=(const ModelBase&) = delete;
+  ModelBase(ModelBase&&) noexcept;
+  ModelBase& operator=(ModelBase&&) noexcept;
+  ~ModelBase();
+
+  const SetupLimits& limits() const noexcept { return limits_; }
+  SetupReport& setup_report() noexcept { return report_; }
+  /// The body given to `admit`.
+  const ElasticBody& elastic_body() const noexcept { return *body_; }
+  ElasticBody& elastic_body() noexcept { return *body_; }
+  const OriginalIds& original_ids() const noexcept { return original_ids_; }
+
+  /// Takes over an admitted body and resolves what of it is touched and seen. Throws what resolving throws.
+  Touchable admit(const Scene& scene, AdmittedBody admitted);
+  /// The scene of the set-up, with the ids of the admitted mesh.
+  const Scene& scene() const noexcept { return scene_; }
+  /// A scene with the ids of the admitted mesh. Throws unsupported when it lets tools touch other nodes or faces than
+  /// `triangles` on the touchable nodes.
+  Scene mapped(const Scene& scene, const std::vector<Triangle>& triangles) const;
+
+  /// Gravity [m/s^2], world frame.
+  const Vector3& gravity() const noexcept { return gravity_; }
+  void keep_gravity(const Vector3& gravity) noexcept { gravity_ = gravity; }
+  /// A gravity of the world in the frame of a body at `pose`.
+  static Vector3 local(const Vector3& gravity, const Eigen::Isometry3d& pose) noexcept;
+  /// Throws non_finite.
+  static void require_finite_gravity(const Vector3& gravity);
+  /// Throws bad_argument unless it is a rigid motion.
+  static void require_rigid(const Eigen::Isometry3d& pose);
+  void place(const Eigen::Isometry3d& pose) noexcept;
+
+ private:
+  SetupLimits limits_;
+  SetupReport report_;
+  Scene scene_;
+  std::vector<NodeId> node_map_, touchable_, seen_;
+  OriginalIds original_ids_;
+  std::unique_ptr<ElasticBody> body_;
+  Vector3 origin_ = Vector3::Zero(), gravity_ = Vector3::Zero();
+  Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity(), world_ = Eigen::Isometry3d::Identity();
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/model_base.ipp>
+#endif

@@ -1,0 +1,72 @@
+// Definitions of model_base.hpp.
+#pragma once
+
+#include <palpate/model/model_base.hpp>
+
+#include <palpate/core/rigid_motion.hpp>
+#include <palpate/model/elastic_body.hpp>
+#include <palpate/model/touchable.hpp>
+
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE ModelBase::ModelBase(const SetupOptions& options) : limits_{options.progress, options.memory_limit} {}
+PALPATE_INLINE ModelBase::ModelBase(ModelBase&&) noexcept = default;
+PALPATE_INLINE ModelBase& ModelBase::operator=(ModelBase&&) noexcept = default;
+PALPATE_INLINE ModelBase::~ModelBase() = default;
+
+PALPATE_INLINE Vector3 ModelBase::rest_position(NodeId node) const noexcept {
+  return origin_ + body_->positions()[static_cast<std::size_t>(node)];
+}
+
+PALPATE_INLINE Touchable ModelBase::admit(const Scene& scene, AdmittedBody admitted) {
+  node_map_ = std::move(admitted.node_map);
+  original_ids_ = std::move(admitted.ids);
+  body_ = std::move(admitted.body);
+  origin_ = admitted.origin;
+  const ScopedIdTranslation translation(original_ids_);
+  scene_ = scene.mapped(node_map_);
+  gravity_ = scene_.gravity();
+  place(Eigen::Isometry3d::Identity());
+  Touchable touchable = body_->touchable(scene_);
+  touchable_ = touchable.nodes;
+  seen_ = body_->seen(scene_);
+  report_.touchable_vertices = static_cast<Index>(touchable_.size());
+  report_.seen_nodes = static_cast<Index>(seen_.size());
+  return touchable;
+}
+
+PALPATE_INLINE Scene ModelBase::mapped(const Scene& scene, const std::vector<Triangle>& triangles) const {
+  Scene mapped = scene.mapped(node_map_);
+  if (mapped.touched().empty()) return mapped;
+  const Touchable touchable = body_->touchable(mapped);
+  if (touchable.nodes != touchable_ || touchable.triangles != triangles)
+    raise(SetupErrorKind::unsupported,
+          "the new scene lets tools touch " + std::to_string(touchable.nodes.size()) + " nodes and " +
+              std::to_string(touchable.triangles.size()) + " triangles, the model was made for another set of " +
+              std::to_string(touchable_.size()) + " and " + std::to_string(triangles.size()),
+          "Loads may change, what tools touch may not: make a new model, or leave touch out of the scene");
+  return mapped;
+}
+
+PALPATE_INLINE Vector3 ModelBase::local(const Vector3& gravity, const Eigen::Isometry3d& pose) noexcept {
+  return rotation_of(pose).transpose() * gravity;
+}
+
+PALPATE_INLINE void ModelBase::require_finite_gravity(const Vector3& gravity) {
+  if (!all_finite(gravity)) raise(SetupErrorKind::non_finite, "gravity is not finite");
+}
+
+PALPATE_INLINE void ModelBase::require_rigid(const Eigen::Isometry3d& pose) {
+  if (!all_finite(pose.matrix()) || !is_rotation(rotation_of(pose)))
+    raise(SetupErrorKind::bad_argument, "the pose is not a rigid motion",
+          "Give a proper rotation and a finite translation");
+}
+
+PALPATE_INLINE void ModelBase::place(const Eigen::Isometry3d& pose) noexcept {
+  pose_ = pose;
+  world_ = make_pose(rotation_of(pose), pose * origin_);
+}
+
+}}  // namespace palpate
