@@ -57,7 +57,7 @@ constexpr std::string_view status_flag_name(int bit) {
   constexpr std::array<std::string_view, status_flag_count> names{
       "NonFiniteInput",     "Saturated",      "SlewLimited",   "Stale",        "DeadlineMissed", "Inverted",
       "SolverNotConverged", "EnergyInjected", "DegradedModel", "Disconnected", "Reacquired",     "Ramping",
-      "NonFiniteForce", "StepRefused",    "EnergyGrew"};
+      "NonFiniteForce",     "StepRefused",    "EnergyGrew"};
   return names[static_cast<std::size_t>(bit)];
 }
 
@@ -74,6 +74,9 @@ class StatusCounters {
  private:
   std::array<std::uint64_t, status_flag_count> counts_{};
 };
+
+/// Prints every flag that was raised and how often, for example "Saturated 12 Ramping 33", or "ok". Not for the tick.
+std::ostream& operator<<(std::ostream& out, const StatusCounters& counters);
 
 }}  // namespace palpate
 
