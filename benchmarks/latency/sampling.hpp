@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <palpate/core/platform.hpp>
-#include <palpate/haptic/run_haptic_loop.hpp>
+#include <palpate/haptic/haptic_loop.hpp>
 #include <vector>
 
 namespace latency {

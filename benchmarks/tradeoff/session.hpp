@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/core/platform.hpp>
-#include <palpate/haptic/run_haptic_loop.hpp>
+#include <palpate/haptic/haptic_loop.hpp>
 
 #include <algorithm>
 

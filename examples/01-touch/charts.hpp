@@ -43,7 +43,7 @@ inline std::string latency_chart(const LoopReport& loop) {
   return chart.svg();
 }
 
-inline Charts make_charts(const Organ& organ, const Session& session, const Plan& plan) {
+inline Charts make_charts(const Organ& organ, const Recording& session, const Plan& plan) {
   std::vector<Vector2> force, depth, curve;
   double peak = 0.0, deepest = 0.0;
   for (const RecordedTick& tick : session.ticks) {

@@ -12,11 +12,12 @@
 //      (scene.hpp).
 //   2. HapticFEModel<Element, Material, Solver> prepares everything that can be known before the first touch: it
 //      assembles the stiffness, condenses it to the touchable nodes and inverts what is left. A second or two, once.
-//   3. run_haptic_loop runs the servo in a thread of its own, one tick per millisecond. A tick takes some
+//   3. HapticSession ticks in a thread of its own, once per millisecond, within the device's limits. A tick takes some
 //      microseconds. It finds where the ball meets the surface, solves for the contact forces, and passes their sum
 //      through a gate that no force gets round: never NaN, never longer than the device allows, never a jump.
 //   4. Meanwhile this thread does what a renderer does, thirty times a second: it takes the newest contact forces from
-//      the servo, without either waiting for the other, and computes from them how all nodes have moved (session.hpp).
+//      the session, without either waiting for the other, and computes from them how all nodes have moved
+//      (session.hpp).
 //   5. Stresses follow from displacements (pictures.hpp), and all of it becomes a page to look at, DIR/report.html, and
 //      a drawing of the moment of the longest force, DIR/still.svg, and a series for ParaView, DIR/touch.pvd.
 //
@@ -76,7 +77,7 @@ int run_example(const Arguments& arguments) {
   std::cout << organ.report();
 
   const TouchPath path(organ, plan);
-  const Session session = run(organ, path, plan, arguments.paced);
+  const Recording session = run(organ, path, plan, arguments.paced);
   std::cout << session.loop;
 
   const std::vector<Picture> pictures = develop(organ, session);

@@ -29,7 +29,7 @@ inline double penetration(const Organ& organ, const Vector3& position) {
   return tool.radius - organ.contact_surface().closest(organ.to_world().inverse() * position).distance;
 }
 
-inline std::vector<Picture> develop(const Organ& organ, const Session& session) {
+inline std::vector<Picture> develop(const Organ& organ, const Recording& session) {
   std::vector<Picture> pictures;
   StressField stress;
   for (const Frame& frame : session.frames) {
@@ -54,8 +54,7 @@ inline std::vector<std::array<NodeId, 3>> region_surface(const Organ& organ, std
     if (organ.mesh().region_name(organ.mesh().region(e)) == name)
       part.elements.push_back(organ.mesh().elements[static_cast<std::size_t>(e)]);
   std::vector<std::array<NodeId, 3>> faces;
-  for (const auto& face : extract_boundary<Tet4>(part))
-    faces.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
+  for (const auto& face : extract_boundary<Tet4>(part)) faces.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
   return faces;
 }
 

@@ -55,7 +55,7 @@ inline std::string figures(const Organ& organ, const LoopReport& loop) {
   return out;
 }
 
-inline std::string make_page(const Organ& organ, const TouchPath& path, const Session& session, const Plan& plan,
+inline std::string make_page(const Organ& organ, const TouchPath& path, const Recording& session, const Plan& plan,
                              const std::vector<Picture>& pictures) {
   Vector3 low = organ.mesh().position(0), high = low;
   for (const Vector3& x : organ.mesh().positions) {

@@ -104,26 +104,14 @@ void print_quality(const MeshDiagnosis& d) {
 /// Presses the ball in, as fast as the machine goes. Returns the longest force [N] and leaves the displacement of the
 /// deepest moment in `u`.
 double touch(Organ& organ, const Press& press, VectorX& u) {
-  HapticServo servo(organ, press.ball);
-  const Trajectory path = trajectory::poke({.from = press.above, .to = press.deepest, .approach = 0.5, .hold = 0.2});
-  ToolState state;
-  double longest = 0.0;
-  Status seen;
-  for (int k = 0; k < 700; ++k) {
-    state.time = 1e-3 * k;
-    state.position = path(state.time);
-    const GatedForce out = servo.tick(state);
-    longest = std::max(longest, out.force().norm());
-    if (k > 100) seen |= out.status;  // the ramp at the start is over
-  }
+  MockDevice stylus(trajectory::poke({.from = press.above, .to = press.deepest, .approach = 0.5, .hold = 0.2}));
+  HapticSession session(stylus, organ, press.ball);
+  const LoopReport report = session.run({.duration = 0.7, .paced = false});
   u.resize(3 * organ.mesh().node_count());
-  organ.displacement_with(servo.read_snapshot().vertex_forces(), u);
+  organ.displacement_with(session.snapshot(), u);
   std::cout << "touched with a ball of " << 1e3 * press.ball.radius << " mm, " << 1e3 * press.depth
-            << " mm deep: " << longest << " N, status";
-  for (int bit = 0; bit < status_flag_count; ++bit)
-    if (((seen.bits() >> bit) & 1u) != 0u) std::cout << ' ' << status_flag_name(bit);
-  std::cout << (seen.ok() ? " clean\n" : "\n");
-  return longest;
+            << " mm deep: " << report.peak_force << " N, status " << report.status << '\n';
+  return report.peak_force;
 }
 
 int run(const Arguments& arguments) {

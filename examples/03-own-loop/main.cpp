@@ -12,7 +12,8 @@
 //   1. All that is expensive happens before the scheduler starts: reading, set-up, the servo's constructor.
 //   2. The callback converts units at the border (this SDK speaks millimetres and newtons, and its z points at the
 //      user), ticks, and hands the force over. It counts status flags in memory of its own; it prints nothing.
-//   3. Another thread draws. It takes `servo.read_snapshot()`, which neither waits nor makes the tick wait, and turns the
+//   3. Another thread draws. It takes `servo.read_snapshot()`, which neither waits nor makes the tick wait, and turns
+//   the
 //      contact forces in it into the displacement of every node: one back-substitution, thirty times a second.
 //
 // --unpaced calls back as fast as it goes, in simulated time; for tests. The exit code is 0 when every force was finite
@@ -56,13 +57,9 @@ class Scheduler {
 
 /// Everything the callback touches: made before the scheduler starts, read by others after it has stopped.
 struct Session {
-  Session(Organ& organ, double duration) : servo(organ, SphereTool{.radius = 4e-3}, options()), seconds(duration) {}
-
-  static ServoOptions options() {
-    ServoOptions o;
-    o.device = DeviceLimits{.peak_force = 3.3, .stiffness = 500.0};  // ask your SDK for these
-    return o;
-  }
+  Session(Organ& organ, double duration)
+      : servo(organ, SphereTool{.radius = 4e-3}, {.device = {.peak_force = 3.3, .stiffness = 500.0}}),  // ask your SDK
+        seconds(duration) {}
 
   HapticServo servo;
   SdkDevice device;
@@ -115,7 +112,7 @@ bool on_servo_tick(void* user) {
 
 /// What a renderer does between two pictures. Returns how far the organ has moved at most [m].
 double look(Organ& organ, HapticServo& servo, VectorX& u) {
-  organ.displacement_with(servo.read_snapshot().vertex_forces(), u);
+  organ.displacement_with(servo.read_snapshot(), u);
   return u.cwiseAbs().maxCoeff();
 }
 
@@ -140,10 +137,7 @@ int run(double seconds, bool paced) {
   moved = std::max(moved, look(organ, session.servo, u));
 
   std::cout << session.ticks << " ticks, " << pictures << " pictures, peak force " << session.peak
-            << " N, surface moved " << 1e3 * moved << " mm\nstatus:";
-  for (int bit = 0; bit < status_flag_count; ++bit)
-    if (session.status.at(bit) > 0) std::cout << ' ' << status_flag_name(bit) << ' ' << session.status.at(bit);
-  std::cout << '\n';
+            << " N, surface moved " << 1e3 * moved << " mm\nstatus: " << session.status << '\n';
   return session.sound && session.peak > 0.05 && moved > 1e-4 ? 0 : 1;
 }
 

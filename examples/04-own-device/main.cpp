@@ -7,7 +7,7 @@
 //   1. The concept is checked when it compiles: a missing `noexcept` is an error with the name of the function.
 //   2. What a compiler cannot see, the law suite tries: forces beyond the peak, NaN, reads that fail, time that runs
 //      back, forces after stop. Do that with a device that nobody holds.
-//   3. run_haptic_loop does the rest.
+//   3. HapticSession does the rest: peak force, stiffness and rate come from the device.
 //
 // The stylus is pushed at a point 8 mm inside the organ by a soft hand. It must come to rest earlier, where the pull of
 // the hand and the push of the tissue are the same: if units, signs or the order of read and write were wrong, it
@@ -40,18 +40,15 @@ int run() {
               {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
   std::cout << organ.report();
 
-  const SphereTool ball{.radius = 4e-3};
   own::HeldStylus stylus(Vector3(-0.031, -0.036, 0.060), Vector3(-0.031, -0.033, 0.036));
-  ServoOptions options;
-  options.device = stylus.limits();  // peak force and stiffness come from the device that renders
-  HapticServo servo(organ, ball, options);
+  HapticSession session(stylus, organ, SphereTool{.radius = 4e-3});
 
   // Its time is simulated: no need to wait for it. With motors: paced, and real_time = true.
-  const LoopReport report = run_haptic_loop(stylus, servo, {.rate = 1000.0, .duration = 3.0, .paced = false});
-  std::cout << report;
+  const LoopReport report = session.run({.duration = 3.0, .paced = false});
+  std::cout << report << session.snapshot() << '\n';
 
   const Vector3 pull = 150.0 * (stylus.goal() - stylus.position());  // of the hand, at rest
-  const Vector3 push = servo.contact_force();
+  const Vector3 push = session.snapshot().contact_force();
   std::cout << "the hand pulls with " << pull.norm() << " N, the tissue pushes with " << push.norm() << " N, together "
             << (pull + push).norm() << " N\n";
   const bool balanced = push.norm() > 0.05 && (pull + push).norm() < 0.05 * push.norm();

@@ -1,5 +1,5 @@
-// What a haptic session needs: meshes, scenes, materials, models, contact, the servo and the loop. Everything else has
-// headers of its own: recording and simulated devices (device/), drawn surfaces (model/visual_surface.hpp), writers
+// What a haptic session needs: meshes, scenes, materials, models, contact, the session, servo and loop. Everything else
+// has headers of its own: recording and simulated devices (device/), drawn surfaces (model/visual_surface.hpp), writers
 // (io/vtu.hpp, io/pvd.hpp, io/surface_files.hpp, io/write_msh.hpp), refinement (mesh/refine.hpp), the energy tank
 // (haptic/energy_tank.hpp), compositions compared (model/trade_off.hpp), results (post/), cutting (cut/).
 #pragma once
@@ -13,7 +13,7 @@
 #include <palpate/element/tet10.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/element/with_quadrature.hpp>
-#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/haptic/haptic_session.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 #include <palpate/io/gmsh.hpp>
 #include <palpate/material/linear_elastic.hpp>

@@ -77,4 +77,7 @@ TEST_CASE("counters add one per flag and tick", "[core][status]") {
   CHECK(counters.at(1) == 500);
   CHECK(counters.at(status_flag_count - 1) == 100);
   STATIC_REQUIRE(noexcept(counters.count(Status{})));
+  std::ostringstream out;
+  out << counters << "; " << StatusCounters{};
+  CHECK(out.str() == "Saturated 500 EnergyGrew 100; ok");
 }

@@ -85,10 +85,10 @@ TEST_CASE("sessions end before their tissue, and begin anew", "[haptic][threads]
       MockDevice device(trajectory::poke(
           {.from = {0.015, 0.015, 0.026}, .to = {0.015, 0.015, 0.023}, .approach = 0.05, .hold = 0.02}));
       int calls = 0;
-      const LoopReport report = run_haptic_loop(
-          device, servo, {.rate = 1000.0, .duration = 5.0, .paced = true, .progress = [&](const LoopProgress&) {
-                            return ++calls < 2;  // ended from outside while it ticks
-                          }});
+      const LoopReport report =
+          run_haptic_loop(device, servo, {.duration = 5.0, .paced = true, .progress = [&](const LoopProgress&) {
+                                            return ++calls < 2;  // ended from outside while it ticks
+                                          }});
       CHECK(report.cancelled);
       CHECK(report.ticks > 0);
       CHECK(device.last_force() == Vector3::Zero());

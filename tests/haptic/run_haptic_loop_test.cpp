@@ -11,6 +11,8 @@
 #include <sstream>
 #include <thread>
 
+#include "refused.hpp"
+
 #include "catch.hpp"
 
 using namespace palpate;
@@ -228,7 +230,7 @@ TEST_CASE("a device that does not start is stopped and its error passed on", "[h
     int stops = 0;
   } device;
   SpringServo servo;
-  CHECK_THROWS_AS(run_haptic_loop(device, servo), SetupError);
+  CHECK_THROWS_AS(run_haptic_loop(device, servo, unpaced(1.0)), SetupError);
   CHECK(device.stops == 1);
   CHECK(servo.ticks == 0);
 }
@@ -244,18 +246,58 @@ TEST_CASE("a servo without a force renders zero", "[haptic][loop]") {
 }
 
 TEST_CASE("senseless options are refused before the device starts", "[haptic][loop]") {
-  MockDevice stylus(trajectory::poke());
+  struct Rated : MockDevice<> {
+    Rated() : MockDevice<>(trajectory::poke()) {}
+    DeviceLimits limits() const noexcept { return {.rate = rate}; }
+    double rate = 1000.0;
+  } stylus;
   SpringServo servo;
   const double nan_value = std::numeric_limits<double>::quiet_NaN();
   for (double bad : {0.0, -1.0, nan_value, infinity, 1e9}) {
-    LoopOptions options;
-    options.rate = bad;
-    CHECK_THROWS_AS(run_haptic_loop(stylus, servo, options), SetupError);
-    options.rate = 1000.0;
-    options.duration = bad;
-    CHECK_THROWS_AS(run_haptic_loop(stylus, servo, options), SetupError);
+    stylus.rate = bad;
+    CHECK_REFUSED(SetupErrorKind::bad_argument, run_haptic_loop(stylus, servo, unpaced(1.0)));
+    stylus.rate = 1000.0;
+    CHECK_REFUSED(SetupErrorKind::bad_argument, run_haptic_loop(stylus, servo, unpaced(bad)));
   }
   CHECK(stylus.reads() == 0);
+}
+
+TEST_CASE("a loop that nothing would end is refused, and one without a duration runs until it is told",
+          "[haptic][loop]") {
+  MockDevice stylus(trajectory::poke());
+  SpringServo servo;
+  CHECK_REFUSED(SetupErrorKind::bad_argument, run_haptic_loop(stylus, servo, {}));
+  CHECK(stylus.reads() == 0);
+  LoopOptions options;
+  options.paced = GENERATE(true, false);
+  double fraction = 1.0;
+  options.progress = [&](const LoopProgress& p) {
+    fraction = p.fraction;
+    return false;
+  };
+  const LoopReport report = run_haptic_loop(stylus, servo, options);
+  CHECK(report.cancelled);
+  CHECK(report.ticks > 0);
+  CHECK(fraction == 0.0);
+}
+
+TEST_CASE("a loop runs at the rate of its slowest device", "[haptic][loop]") {
+  MockDevice fast(trajectory::poke()), slow(trajectory::poke(), {.rate = 250.0});
+  struct Two {
+    std::array<GatedForce, 2> forces;
+    std::span<const GatedForce> tick(std::span<const ToolState> tools) noexcept {
+      wrong += tools.size() != 2;
+      return forces;
+    }
+    int wrong = 0;
+  } servo;
+  const LoopReport report = run_haptic_loop(std::tie(fast, slow), servo, unpaced(2.0));
+  CHECK(report.rate == 250.0);
+  CHECK(report.ticks == 500);
+  CHECK(fast.reads() == 500);
+  CHECK(slow.reads() == 500);
+  CHECK(servo.wrong == 0);
+  CHECK(report.devices.size() == 2);
 }
 
 TEST_CASE("real-time privileges are reported as granted or refused with a reason", "[haptic][loop][timing]") {

@@ -48,11 +48,12 @@ class GatedForce {
 struct DeviceLimits {
   double peak_force = 3.3;                          ///< [N]
   double continuous_force = 0.88;                   ///< [N]
-  double stiffness = 500.0;                         ///< [N/m] the most it renders stably at 1 kHz
+  double stiffness = 500.0;                         ///< [N/m] the most it renders stably at `rate`
   Vector3 workspace_low = Vector3::Constant(-0.1);  ///< [m]
   Vector3 workspace_high = Vector3::Constant(0.1);  ///< [m]
   double peak_torque = 0.0;                         ///< [N m]; 0: three actuated degrees of freedom, no torque
   double turning_stiffness = 0.0;                   ///< [N m/rad] the most it renders stably; 0 without torque
+  double rate = 1000.0;                             ///< [1/s] what it is meant to be served at, at most
 };
 
 /// A device that can be read and written from the haptic thread. `read` and `write` never throw, block, allocate or

@@ -76,6 +76,9 @@ class StatusCounters {
   std::array<std::uint64_t, status_flag_count> counts_{};
 };
 
+/// Prints every flag that was raised and how often, for example "Saturated 12 Ramping 33", or "ok". Not for the tick.
+std::ostream& operator<<(std::ostream& out, const StatusCounters& counters);
+
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -15,7 +15,7 @@ struct Chai3dOptions {
   bool torque = false;                 ///< the device has motors for torque, and limits say what they can take
 };
 
-/// A cGenericHapticDevice as a HapticDevice, for loops of your own (run_haptic_loop), in CHAI3D's frame: x to the user,
+/// A cGenericHapticDevice as a HapticDevice, for loops of your own (HapticSession), in CHAI3D's frame: x to the user,
 /// y to the right, z up. SI units. Refers to the device:
 ///   Chai3dDevice<chai3d::cGenericHapticDevice, chai3d::cVector3d, chai3d::cMatrix3d> stylus(*device_pointer);
 /// The limits are those of CHAI3D's specification of the device, which CHAI3D itself does not enforce. Its header calls

@@ -19,7 +19,7 @@ struct ForceDimensionOptions {
   bool torque = false;  ///< the device has motors for torque, and `limits` say what they can take
 };
 
-/// A device of DHD as a HapticDevice, for loops of your own (run_haptic_loop), in the device's frame. DHD speaks SI. A
+/// A device of DHD as a HapticDevice, for loops of your own (HapticSession), in the device's frame. DHD speaks SI. A
 /// force goes out with every write, a zero too: the SDK computes gravity compensation when it is told a force. The
 /// SDK's own limit is set to the peak force as a second guard; its brakes and its time guard stay as they are.
 class ForceDimensionDevice {

@@ -34,7 +34,7 @@ enum class DeviceClock {
 };
 
 struct MockOptions {
-  double rate = 1000.0;  ///< [1/s] reads per simulated second
+  double rate = 1000.0;  ///< [1/s] reads per simulated second; that of the limits too
   DeviceClock clock = DeviceClock::simulated;
   DeviceLimits limits{};
   std::vector<DeviceFault> faults{};
@@ -49,6 +49,7 @@ class MockDevice {
       : path_(std::move(path)), options_(std::move(options)), rendered_(options_.limits) {
     if (!(options_.rate > 0.0 && std::isfinite(options_.rate)))
       raise(SetupErrorKind::bad_argument, "a mock device's rate of " + number(options_.rate) + " Hz", "Give 1000");
+    options_.limits.rate = options_.rate;
   }
 
   ToolState read() noexcept {
@@ -68,7 +69,7 @@ class MockDevice {
     return state;
   }
   Status write(const GatedForce& force) noexcept { return rendered_.render(force); }
-  DeviceLimits limits() const noexcept { return rendered_.limits(); }
+  DeviceLimits limits() const noexcept { return options_.limits; }
   void start() noexcept { rendered_.start(); }
   void stop() noexcept { rendered_.stop(); }
 

@@ -47,7 +47,7 @@ struct Placement {
 };
 
 /// A device placed in a scene; a HapticDevice that speaks the scene's coordinates. Its limits are those of the scene
-/// side, so that `ServoOptions{.device = placed.limits()}` bounds what the hand feels. Refers to the device.
+/// side, so that a HapticSession with it bounds what the hand feels. Refers to the device.
 template <HapticDevice Device>
 class PlacedDevice {
  public:

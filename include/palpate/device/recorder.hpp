@@ -62,7 +62,7 @@ class Recorder {
     tick.status |= status;
     return status;
   }
-  /// Adds the status of the tick to its record; run_haptic_loop does it where a device has this function.
+  /// Adds the status of the tick to its record; HapticSession does it where a device has this function.
   void note(Status status) noexcept {
     if (count_ > 0) newest().status |= status;
   }

@@ -16,7 +16,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// so that of the presets is a guess, and what follows from it (the largest stable stiffness) is a comparison, not a
 /// promise. Where friction or mass are not published either, the preset says so.
 struct SimulatedOptions {
-  double rate = 1000.0;         ///< [1/s] nominal rate of reads
+  double rate = 1000.0;         ///< [1/s] nominal rate of reads; that of the limits too
   double mass = 0.045;          ///< [kg] felt at the handle
   double damping = 0.1;         ///< [N s/m] viscous
   double friction = 0.26;       ///< [N] Coulomb, of the whole device; 0 makes the mechanics exact
@@ -53,7 +53,7 @@ class SimulatedDevice {
   ToolState read() noexcept;
   /// Torque has no motors.
   Status write(const GatedForce& force) noexcept;
-  DeviceLimits limits() const noexcept { return rendered_.limits(); }
+  DeviceLimits limits() const noexcept;
   void start() noexcept { rendered_.start(); }
   void stop() noexcept;
 

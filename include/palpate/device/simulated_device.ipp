@@ -68,6 +68,12 @@ PALPATE_INLINE Status SimulatedDevice::write(const GatedForce& force) noexcept {
   return status;
 }
 
+PALPATE_INLINE DeviceLimits SimulatedDevice::limits() const noexcept {
+  DeviceLimits limits = rendered_.limits();
+  limits.rate = options_.rate;
+  return limits;
+}
+
 PALPATE_INLINE void SimulatedDevice::stop() noexcept {
   rendered_.stop();
   silence();

@@ -17,8 +17,8 @@ struct EnergyLimits {
   double damping = 0.25;      ///< [N s/m] what the device itself dissipates: gives the tank b v^2
   int delay = 0;              ///< whole ticks after which a written force acts, up to 32
 
-  /// For a device. Its own damping is taken from the stiffness it renders stably at 1 kHz: a held wall of stiffness K
-  /// gives K T/2 v^2 (Colgate and Schenkel 1997), so a device on which it is stable takes at least about that. The
+  /// For a device. Its own damping is taken from the stiffness it renders stably at its rate: a held wall of stiffness
+  /// K gives K T/2 v^2 (Colgate and Schenkel 1997), so a device on which it is stable takes at least about that. The
   /// allowance is a tenth of what a spring of that stiffness stores at the peak force; no linear tissue that the peak
   /// force dents by less than 60 mm stores more than the capacity.
   static EnergyLimits from(const DeviceLimits& device);

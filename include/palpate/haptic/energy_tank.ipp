@@ -11,7 +11,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE EnergyLimits EnergyLimits::from(const DeviceLimits& device) {
   EnergyLimits limits;
-  limits.damping = device.stiffness * 0.5e-3;
+  limits.damping = 0.5 * device.stiffness / device.rate;
   limits.allowance = limits.refill = 0.05 * device.peak_force * device.peak_force / device.stiffness;
   limits.capacity = std::max(0.03 * device.peak_force, limits.allowance);
   return limits;

@@ -19,8 +19,10 @@ struct ForceLimits {
   double continuous_force = 1e9;  ///< [N] what motors stand for ever, as root mean square over heating_time
   double heating_time = 60.0;     ///< [s] time constant of that
 
-  /// The defaults scaled to a device's limits and the rate of its loop [1/s].
-  static ForceLimits from(const DeviceLimits& device, double rate = 1000.0);
+  /// The defaults scaled to a device's limits and the rate it is meant to be served at.
+  static ForceLimits from(const DeviceLimits& device) { return from(device, device.rate); }
+  /// The same for a loop of another rate [1/s].
+  static ForceLimits from(const DeviceLimits& device, double rate);
 };
 
 /// Makes any computed force safe to render: whatever comes in (NaN, infinity, 1e308, clocks that stop or run back),

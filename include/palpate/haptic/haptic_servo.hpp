@@ -6,15 +6,16 @@
 #include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
+#include <palpate/haptic/tool_list.hpp>
 #include <palpate/haptic/tool_input.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Contact state and force gate of one session. `tick` computes the force in the tick that brought the pose and passes
-/// it through the gate: no way to the device goes round it. Refers to the tissue, which must outlive it; neither copied
-/// nor moved. An EnergyTank given as last argument limits what each tool may be given. One class for tissues of all
-/// types: it knows its own by reference (TissueView).
+/// Contact state of one session, and a force gate per tool. `tick` computes the force in the tick that brought the pose
+/// and passes it through the gate: no way to the device goes round it. Refers to the tissue, which must outlive it;
+/// neither copied nor moved. An EnergyTank given as last argument limits what each tool may be given. One class for
+/// tissues of all types: it knows its own by reference (TissueView). With a HapticDevice, HapticSession is simpler.
 class HapticServo {
  public:
   static constexpr std::size_t max_tools = maximum_tools;
@@ -24,22 +25,12 @@ class HapticServo {
   /// Throws bad_argument for an invalid tool, coupling or limits, or when nothing of the tissue can be touched.
   /// Allocates all a tick needs.
   template <TissueModel T>
-  HapticServo(T& tissue, const SphereTool& tool, const ServoOptions& options = {}, const Energy& energy = {})
-      : HapticServo(TissueView(tissue), std::vector<CapsuleTool>{tool}, options, energy) {}
-  template <TissueModel T>
-  HapticServo(T& tissue, const CapsuleTool& tool, const ServoOptions& options = {}, const Energy& energy = {})
-      : HapticServo(TissueView(tissue), std::vector<CapsuleTool>{tool}, options, energy) {}
-  template <TissueModel T>
-  HapticServo(T& tissue, const std::vector<SphereTool>& tools, const ServoOptions& options = {},
-              const Energy& energy = {})
-      : HapticServo(TissueView(tissue), std::vector<CapsuleTool>(tools.begin(), tools.end()), options, energy) {}
-  template <TissueModel T>
-  HapticServo(T& tissue, const std::vector<CapsuleTool>& tools, const ServoOptions& options = {},
-              const Energy& energy = {})
-      : HapticServo(TissueView(tissue), tools, options, energy) {}
+  HapticServo(T& tissue, const ToolList& tools, const ServoOptions& options = {}, const Energy& energy = {})
+      : HapticServo(TissueView(tissue), tools, options,
+                    energy ? std::vector<EnergyTank>(tools.size(), *energy) : std::vector<EnergyTank>{}) {}
   template <class T>
-  requires(!std::is_lvalue_reference_v<T> && TissueModel<T>)
-      HapticServo(T&&, const SphereTool&, const ServoOptions& = {})
+  requires(!std::is_lvalue_reference_v<T> && !std::same_as<T, TissueView> && TissueModel<T>)
+      HapticServo(T&&, const ToolList&, const ServoOptions& = {}, const Energy& = {})
   = delete;
   HapticServo(const HapticServo&) = delete;
   HapticServo& operator=(const HapticServo&) = delete;
@@ -55,6 +46,9 @@ class HapticServo {
   /// on a tissue that is itself as it was. Tells the tissue and the reader of snapshots that nothing presses. For the
   /// tick's own thread.
   void reset() noexcept;
+  /// Tells the tissue that nothing presses any more, after the last tick; contacts and snapshot stay. For the tick's
+  /// own thread.
+  void release() noexcept { tissue_.end_tick({}); }
 
   /// Contacts of all tools, as ServoOptions::contact has it; more are left out (degraded_model).
   int contact_capacity() const noexcept { return problem_.capacity(); }
@@ -70,6 +64,8 @@ class HapticServo {
   Vector3 proxy_axis(std::size_t tool = 0) const noexcept;
   /// Whether a tool holds a point of the surface. For the tick's own thread.
   bool is_holding(std::size_t tool = 0) const noexcept { return problem_.is_holding(tool); }
+  /// What a tool's gate lets through.
+  const ForceLimits& limits(std::size_t tool = 0) const noexcept { return gates_[tool].limits(); }
   /// What limits a tool's energy; null when nothing does. For the tick's own thread.
   const EnergyTank* energy(std::size_t tool = 0) const noexcept {
     return energies_.empty() ? nullptr : &energies_[tool];
@@ -82,8 +78,9 @@ class HapticServo {
   }
 
  private:
-  HapticServo(const TissueView& tissue, const std::vector<CapsuleTool>& tools, const ServoOptions& options,
-              const Energy& energy);
+  friend class HapticSession;
+  HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options,
+              std::vector<EnergyTank> energies);
 
   void note_updates() noexcept;
   void take(std::size_t i, const ToolState& state) noexcept;
@@ -96,7 +93,7 @@ class HapticServo {
   ContactProblem problem_;
   std::vector<ToolInput> inputs_;
   std::vector<ForceGate> gates_;
-  std::vector<EnergyTank> energies_;  // one per tool, or none
+  std::vector<EnergyTank> energies_;  // one per tool, or none at all
   std::vector<GatedForce> forces_;
   double stale_tissue_after_;
   std::uint64_t updates_ = 0;

@@ -30,11 +30,12 @@ inline bool is_zero(const Vector3& v) noexcept {
 
 }  // namespace detail
 
-PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const std::vector<CapsuleTool>& tools,
-                                        const ServoOptions& options, const Energy& energy)
+PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options,
+                                        std::vector<EnergyTank> energies)
     : tissue_(tissue),
       contact_tools_(make_contact_tools(tools, options)),
       problem_(tissue.contact_surface(), detail::smallest_radius(contact_tools_), options.contact),
+      energies_(std::move(energies)),
       forces_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after) {
   if (tissue.contact_surface().triangles().empty())
@@ -44,13 +45,14 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const std::vec
   if (!(options.stale_tissue_after > 0.0))
     raise(SetupErrorKind::bad_argument, "stale_tissue_after is " + number(options.stale_tissue_after),
           "It must be positive, in seconds; infinity is allowed");
-  if (energy) energies_.assign(tools.size(), *energy);
-  const ForceLimits limits = options.limits();
-  gates_.assign(tools.size(), ForceGate(limits));
-  for (const CapsuleTool& tool : tools)
-    inputs_.emplace_back(static_cast<int>(inputs_.size()), tool.half_length > 0.0 || limits.peak_torque > 0.0,
-                         options.grasp_buttons);
-  snapshots_.fill(Snapshot(options.contact.capacity));
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    gates_.emplace_back(options.limits(i));
+    const bool turns = contact_tools_[i].half_length > 0.0 || gates_[i].limits().peak_torque > 0.0;
+    inputs_.emplace_back(static_cast<int>(i), turns, options.grasp_buttons);
+  }
+  Snapshot empty(options.contact.capacity);
+  empty.tool_count = tools.size();
+  snapshots_.fill(empty);
 }
 
 PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const ToolState> states) noexcept {

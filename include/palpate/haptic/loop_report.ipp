@@ -29,12 +29,13 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const LoopReport& r) 
   if (r.paced) row("wake-up lateness", r.lateness);
   print("  missed deadlines %llu, peak force %.3f N, clock reading %.2f us\n",
         static_cast<unsigned long long>(r.missed_deadlines), r.peak_force, 1e6 * r.clock_cost);
-  text += "  status:";
-  const std::size_t before = text.size();
-  for (int bit = 0; bit < status_flag_count; ++bit)
-    if (r.status.at(bit) > 0) text += ' ' + std::string(status_flag_name(bit)) + ' ' + std::to_string(r.status.at(bit));
-  if (text.size() == before) text += " clean";
-  text += "\n  real time: ";
+  out << text << "  status: " << r.status;
+  for (std::size_t i = 0; r.devices.size() > 1 && i < r.devices.size(); ++i) {
+    text.clear();
+    print("\n  device %d: peak force %.3f N, status: ", static_cast<int>(i), r.devices[i].peak_force);
+    out << text << r.devices[i].status;
+  }
+  text = "\n  real time: ";
   const RealtimeGrant& g = r.real_time;
   text += !g.requested ? "not requested" : g.fifo ? platform::realtime_scheduling : "normal scheduling";
   if (g.memory_locked) text += ", memory locked";

@@ -1,59 +1,36 @@
-// Runs a device and a servo at a steady rate in a thread of their own and reports honestly how it went.
+// Runs devices and a servo of one's own at a steady rate and reports honestly how it went.
 #pragma once
 
 #include <palpate/concepts/servo.hpp>
+#include <palpate/haptic/loop_device.hpp>
+#include <palpate/haptic/loop_options.hpp>
 #include <palpate/haptic/loop_report.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// [s] median of two clock readings in a row.
-double measured_clock_cost() noexcept;
-
-/// A device of any type, as the loop uses it.
-struct LoopDevice {
-  void* device;
-  ToolState (*read)(void*) noexcept;
-  Status (*write)(void*, const GatedForce&) noexcept;
-  void (*note)(void*, Status) noexcept;  // null: it takes no notes
-  void (*start)(void*);
-  void (*stop)(void*) noexcept;
-};
-
-/// A servo of any type.
-struct LoopServo {
-  void* servo;
-  std::span<const GatedForce> (*tick)(void*, std::span<const ToolState>) noexcept;
-};
-
-LoopReport run_loop(const LoopDevice& device, const LoopServo& servo, const LoopOptions& options);
-
-template <HapticDevice D>
-LoopDevice loop_device(D& device) noexcept {
-  LoopDevice view{&device,
-                  [](void* d) noexcept { return static_cast<D*>(d)->read(); },
-                  [](void* d, const GatedForce& force) noexcept { return static_cast<D*>(d)->write(force); },
-                  nullptr,
-                  [](void* d) { static_cast<D*>(d)->start(); },
-                  [](void* d) noexcept { static_cast<D*>(d)->stop(); }};
-  if constexpr (requires(Status status) { device.note(status); })
-    view.note = [](void* d, Status status) noexcept { static_cast<D*>(d)->note(status); };
-  return view;
-}
+LoopReport run_loop(std::vector<LoopDevice> devices, const LoopServo& servo, const LoopOptions& options);
 
 }  // namespace detail
 
-/// Starts the device and, in a thread of its own with denormals flushed, each period reads it, ticks the servo with
-/// that one state and writes the force; then stops the device, whatever happens. Returns when `duration` is over or the
-/// progress callback said so. A tick takes no lock and allocates nothing of its own. Forces are written as the servo
-/// gives them: the force gate is the servo's last step. If the device has note(Status) (a Recorder), it is given each
-/// tick's status. Throws SetupError(bad_argument) on senseless options, and what device.start() and the callback throw.
+/// For a servo of one's own; HapticSession makes one that fits the device. Starts the device and, in a thread of its
+/// own with denormals flushed, each period of the device's rate reads it, ticks the servo with that one state and
+/// writes the force; then stops the device, whatever happens. Returns when `duration` is over or the progress callback
+/// said so; one of the two must be given. A tick takes no lock and allocates nothing of its own. Forces are written as
+/// the servo gives them: the force gate is the servo's last step. If the device has note(Status) (a Recorder), it is
+/// given each tick's status. Throws SetupError(bad_argument) on senseless options, and what device.start() and the
+/// callback throw.
 template <HapticDevice Device, Servo S>
-LoopReport run_haptic_loop(Device& device, S& servo, const LoopOptions& options = {}) {
-  const detail::LoopServo view{
-      &servo, [](void* s, std::span<const ToolState> states) noexcept { return static_cast<S*>(s)->tick(states); }};
-  return detail::run_loop(detail::loop_device(device), view, options);
+LoopReport run_haptic_loop(Device& device, S& servo, const LoopOptions& options) {
+  return detail::run_loop({detail::loop_device(device)}, detail::loop_servo(servo), options);
+}
+/// The same for several devices, std::tie(left, right), at the rate of the slowest: all are read, one tick, all are
+/// written. State and force number i are those of device i. They start in order; when one throws, it and those before
+/// it are stopped.
+template <HapticDevice... Device, Servo S>
+LoopReport run_haptic_loop(const std::tuple<Device&...>& devices, S& servo, const LoopOptions& options) {
+  return detail::run_loop(detail::loop_devices(devices), detail::loop_servo(servo), options);
 }
 
 }}  // namespace palpate

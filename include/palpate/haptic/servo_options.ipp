@@ -4,36 +4,73 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/servo_options.hpp>
 
+#include <algorithm>
+
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE ForceLimits ServoOptions::limits() const {
-  return force_limits.value_or(ForceLimits::from(device, rate));
+PALPATE_INLINE double ServoOptions::tick_rate() const noexcept {
+  double slowest = devices.empty() ? device.rate : infinity;
+  for (const DeviceLimits& d : devices) slowest = std::min(slowest, d.rate);
+  return rate.value_or(slowest);
 }
 
-PALPATE_INLINE std::vector<ContactTool> make_contact_tools(const std::vector<CapsuleTool>& tools,
-                                                           const ServoOptions& options) {
-  if (tools.empty() || tools.size() > maximum_tools)
+PALPATE_INLINE ForceLimits ServoOptions::limits(std::size_t tool) const {
+  return force_limits.value_or(ForceLimits::from(device_of(tool), tick_rate()));
+}
+
+PALPATE_INLINE double detail::stable_at(double rate, const DeviceLimits& device, double stiffness) noexcept {
+  return rate < device.rate ? stiffness * (rate / device.rate) : stiffness;
+}
+
+namespace detail {
+
+[[noreturn]] inline void refuse_stiffness(std::size_t tool, const char* which, double value, const char* hint) {
+  SetupProblem problem;
+  problem.what = std::string("the ") + which + " stiffness is " + number(value);
+  problem.hint = hint;
+  problem.value = value;
+  const std::int64_t id = static_cast<std::int64_t>(tool);
+  problem.set_ids({&id, 1});
+  raise(std::move(problem));
+}
+
+inline ContactTool make_contact_tool(const CapsuleTool& tool, std::size_t i, const ServoOptions& options) {
+  const DeviceLimits& device = options.device_of(i);
+  const double rate = options.tick_rate();
+  const double stiffness = options.coupling_stiffness.value_or(stable_at(rate, device, device.stiffness));
+  if (!(stiffness > 0.0))
+    refuse_stiffness(i, "coupling", stiffness, "It must be positive, in N/m; infinity is allowed");
+  const bool renders_torque = device.turning_stiffness > 0.0 || options.limits(i).peak_torque > 0.0;
+  const double turning =
+      options.turning_stiffness.value_or(renders_torque ? stable_at(rate, device, device.turning_stiffness) : infinity);
+  if (!(turning > 0.0))
+    refuse_stiffness(i, "turning", turning, "A device that renders torque needs one, in N m/rad; infinity is allowed");
+  tool.require_valid();
+  ContactTool made;
+  made.radius = tool.radius;
+  made.half_length = tool.half_length;
+  if (tool.half_length > 0.0) made.own_axis = tool.axis.normalized();
+  made.compliance = 1.0 / stiffness;
+  made.turning_compliance = 1.0 / turning;
+  return made;
+}
+
+}  // namespace detail
+
+PALPATE_INLINE std::vector<ContactTool> make_contact_tools(const ToolList& tools, const ServoOptions& options) {
+  if (tools.size() == 0 || tools.size() > maximum_tools)
     raise(SetupErrorKind::bad_argument,
           "a servo has one to " + std::to_string(maximum_tools) + " tools, not " + std::to_string(tools.size()));
-  const double stiffness = options.coupling_stiffness.value_or(options.device.stiffness);
-  if (!(stiffness > 0.0))
-    raise(SetupErrorKind::bad_argument, "the coupling stiffness is " + number(stiffness),
-          "It must be positive, in N/m; infinity is allowed");
-  const bool renders_torque = options.device.turning_stiffness > 0.0 || options.limits().peak_torque > 0.0;
-  const double turning =
-      options.turning_stiffness.value_or(renders_torque ? options.device.turning_stiffness : infinity);
-  if (!(turning > 0.0))
-    raise(SetupErrorKind::bad_argument, "the turning stiffness is " + number(turning),
-          "A device that renders torque needs one, in N m/rad; infinity is allowed");
+  if (!options.devices.empty() && options.devices.size() != tools.size())
+    raise(SetupErrorKind::bad_argument,
+          "limits of " + std::to_string(options.devices.size()) + " devices for " + std::to_string(tools.size()) +
+              " tools",
+          "Give ServoOptions::devices one per tool, or none and `device` for all");
   std::vector<ContactTool> made;
-  for (const CapsuleTool& tool : tools) {
-    tool.require_valid();
-    ContactTool& made_tool = made.emplace_back();
-    made_tool.radius = tool.radius;
-    made_tool.half_length = tool.half_length;
-    if (tool.half_length > 0.0) made_tool.own_axis = tool.axis.normalized();
-    made_tool.compliance = 1.0 / stiffness;
-    made_tool.turning_compliance = 1.0 / turning;
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    const auto* ball = std::get_if<SphereTool>(&tools[i]);
+    made.push_back(
+        detail::make_contact_tool(ball ? CapsuleTool(*ball) : *std::get_if<CapsuleTool>(&tools[i]), i, options));
   }
   return made;
 }

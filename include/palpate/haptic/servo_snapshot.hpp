@@ -5,6 +5,7 @@
 #include <palpate/contact/contact.hpp>
 
 #include <array>
+#include <iosfwd>
 #include <span>
 #include <vector>
 
@@ -27,9 +28,10 @@ struct ServoSnapshot {
   std::size_t force_count = 0;
   std::vector<ToolContact> contacts;  ///< the first `contact_count`
   std::size_t contact_count = 0;
+  std::size_t tool_count = 1;
   std::array<Vector3, maximum_tools> proxies;  ///< middle of every tool, world frame [m]
   std::array<Vector3, maximum_tools> axes;     ///< of capsules, unit, world frame
-  double time = 0.0;                           ///< [s] of the state that the tick took
+  double time = 0.0;                           ///< [s] of the first tool's state that the tick took
 
   /// Room for that many contacts. Allocates; `note` does not.
   explicit ServoSnapshot(int capacity);
@@ -40,10 +42,19 @@ struct ServoSnapshot {
             const Eigen::Isometry3d& pose) noexcept;
   std::span<const VertexForce> vertex_forces() const noexcept { return {forces.data(), force_count}; }
   std::span<const ToolContact> tool_contacts() const noexcept { return {contacts.data(), contact_count}; }
+  /// The forces on the vertices: what a model's displacement takes, so that it takes a snapshot.
+  operator std::span<const VertexForce>() const noexcept {  // NOLINT(google-explicit-constructor)
+    return vertex_forces();
+  }
+  /// Of the tissue on a tool, before the gate, world frame [N].
+  Vector3 contact_force(std::size_t tool = 0) const noexcept;
 
  private:
   void note_held(int tool, const Vector3& point, const Vector3& total) noexcept;
 };
+
+/// One line: time, number of contacts, and for every tool its force and proxy. Not for the tick.
+std::ostream& operator<<(std::ostream& out, const ServoSnapshot& snapshot);
 
 }}  // namespace palpate
 

@@ -5,6 +5,7 @@
 #include <palpate/haptic/servo_snapshot.hpp>
 
 #include <algorithm>
+#include <ostream>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -29,6 +30,26 @@ PALPATE_INLINE void ServoSnapshot::note(std::span<const Contact> all, std::span<
     note_held(all[i].tool, pose * all[i].point, rotation_of(pose) * total);
     i += 2;
   }
+}
+
+PALPATE_INLINE Vector3 ServoSnapshot::contact_force(std::size_t tool) const noexcept {
+  Vector3 sum = Vector3::Zero();
+  for (const ToolContact& c : tool_contacts())
+    if (static_cast<std::size_t>(c.tool) == tool) sum += c.force * c.normal + c.friction;
+  return sum;
+}
+
+PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const ServoSnapshot& snapshot) {
+  const auto print = [&](const Vector3& v) { out << '(' << v[0] << ' ' << v[1] << ' ' << v[2] << ')'; };
+  out << "t = " << snapshot.time << " s, " << snapshot.contact_count << " contacts";
+  for (std::size_t i = 0; i < snapshot.tool_count; ++i) {
+    out << "; tool " << i << ": force ";
+    print(snapshot.contact_force(i));
+    out << " N, proxy ";
+    print(snapshot.proxies[i]);
+    out << " m";
+  }
+  return out;
 }
 
 /// The three rows of a held point as the one force that they are.

@@ -1,0 +1,55 @@
+// The thread that serves devices at a steady rate.
+#pragma once
+
+#include <palpate/haptic/loop_device.hpp>
+#include <palpate/haptic/loop_options.hpp>
+#include <palpate/haptic/loop_report.hpp>
+
+#include <memory>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// [s] median of two clock readings in a row.
+double measured_clock_cost() noexcept;
+
+/// The rate of a loop over devices [1/s]: the slowest one's.
+double rate_of(const std::vector<LoopDevice>& devices) noexcept;
+
+/// Starts devices and, in a thread of its own, each period reads all, ticks the servo once and writes all. State and
+/// force number i are those of device i. Refers to devices and servo.
+class HapticLoop {
+ public:
+  /// Throws bad_argument without a device, for one given twice (ids: its numbers), and for a rate outside 0.1 to 1e5.
+  HapticLoop(std::vector<LoopDevice> devices, const LoopServo& servo, double rate);
+  /// Ends it as `stop` does.
+  ~HapticLoop();
+
+  /// Throws bad_argument for a senseless duration or when it was started and not stopped.
+  void require_startable(const LoopOptions& options) const;
+  /// Throws that, and what a device throws that cannot start; then that device and all before it are stopped, and
+  /// nothing runs.
+  void start(const LoopOptions& options);
+  /// Ends and joins the thread, stops all devices, last one first. An empty report when nothing was started.
+  LoopReport stop();
+  /// Starts, calls the progress callback until it is over, stops; stops too when the callback throws. Throws as start,
+  /// and bad_argument for a loop that nothing would end: neither a duration nor a progress callback.
+  LoopReport run(const LoopOptions& options);
+
+  // Any thread
+  bool is_running() const noexcept;
+  LoopProgress progress() const noexcept;
+
+  // The thread that starts and stops
+  bool is_started() const noexcept;
+  double rate() const noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}}}  // namespace palpate::detail
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/haptic/haptic_loop.ipp>
+#endif

@@ -1,0 +1,51 @@
+// Devices and servos of any type, as code that is no template sees them.
+#pragma once
+
+#include <palpate/concepts/servo.hpp>
+
+#include <tuple>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// A device by reference, with its functions.
+struct LoopDevice {
+  void* device;
+  ToolState (*read)(void*) noexcept;
+  Status (*write)(void*, const GatedForce&) noexcept;
+  void (*note)(void*, Status) noexcept;  // null: it takes no notes
+  void (*start)(void*);
+  void (*stop)(void*) noexcept;
+  DeviceLimits (*limits)(const void*) noexcept;
+};
+
+/// A servo by reference.
+struct LoopServo {
+  void* servo;
+  std::span<const GatedForce> (*tick)(void*, std::span<const ToolState>) noexcept;
+};
+
+template <HapticDevice D>
+LoopDevice loop_device(D& device) noexcept {
+  LoopDevice view{&device,
+                  [](void* d) noexcept { return static_cast<D*>(d)->read(); },
+                  [](void* d, const GatedForce& force) noexcept { return static_cast<D*>(d)->write(force); },
+                  nullptr,
+                  [](void* d) { static_cast<D*>(d)->start(); },
+                  [](void* d) noexcept { static_cast<D*>(d)->stop(); },
+                  [](const void* d) noexcept { return static_cast<const D*>(d)->limits(); }};
+  if constexpr (requires(Status status) { device.note(status); })
+    view.note = [](void* d, Status status) noexcept { static_cast<D*>(d)->note(status); };
+  return view;
+}
+template <HapticDevice... D>
+std::vector<LoopDevice> loop_devices(const std::tuple<D&...>& devices) {
+  return std::apply([](D&... d) { return std::vector<LoopDevice>{loop_device(d)...}; }, devices);
+}
+
+template <Servo S>
+LoopServo loop_servo(S& servo) noexcept {
+  return {&servo, [](void* s, std::span<const ToolState> states) noexcept { return static_cast<S*>(s)->tick(states); }};
+}
+
+}}}  // namespace palpate::detail

@@ -1,0 +1,86 @@
+// Definitions of session_options.hpp.
+#pragma once
+
+#include <palpate/core/setup_error.hpp>
+#include <palpate/haptic/session_options.hpp>
+
+#include <cmath>
+#include <string>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+namespace detail {
+
+/// Refuses what is more than a device allows. NaN is.
+class WithinDevice {
+ public:
+  explicit WithinDevice(std::size_t number) noexcept : number_(static_cast<std::int64_t>(number)) {}
+
+  void require(double value, double most, const char* what, const char* unit, const char* hint) const {
+    if (value <= most * (1.0 + 1e-9)) return;
+    SetupProblem problem;
+    problem.what = std::string("a ") + what + " of " + number(value) + ' ' + unit + " is beyond what device " +
+                   std::to_string(number_) + " says in its limits(), " + number(most) + ' ' + unit;
+    problem.hint = hint;
+    problem.value = value;
+    problem.threshold = most;
+    problem.set_ids({&number_, 1});
+    raise(std::move(problem));
+  }
+  void require(const ForceLimits& forces, const DeviceLimits& device) const {
+    const char* const hint = "Start from ForceLimits::from(device.limits()), and lower what you need lower";
+    require(forces.peak_force, device.peak_force, "peak force", "N", hint);
+    require(forces.continuous_force, device.continuous_force, "continuous force", "N", hint);
+    require(forces.peak_torque, device.peak_torque, "peak torque", "N m", hint);
+  }
+
+ private:
+  std::int64_t number_;
+};
+
+inline void require_period(const ForceLimits& forces, double rate) {
+  if (std::abs(forces.period * rate - 1.0) <= 1e-6) return;
+  SetupProblem problem;
+  problem.what = "force limits for a period of " + number(forces.period) + " s in a session of " + number(rate) + " Hz";
+  problem.hint = "Start from ForceLimits::from(device.limits(), rate)";
+  problem.value = forces.period;
+  problem.threshold = 1.0 / rate;
+  raise(std::move(problem));
+}
+
+}  // namespace detail
+
+PALPATE_INLINE ServoOptions servo_options(const std::vector<DeviceLimits>& devices, std::size_t tools,
+                                          const SessionOptions& options) {
+  if (devices.size() != tools)
+    raise(SetupErrorKind::bad_argument,
+          std::to_string(tools) + " tools for " + std::to_string(devices.size()) + " devices",
+          "Give one tool per device, in the same order");
+  ServoOptions o;
+  o.devices = devices;
+  o.rate = options.rate;
+  o.rate = o.tick_rate();
+  const double rate = *o.rate;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    const detail::WithinDevice within(i);
+    const DeviceLimits& device = devices[i];
+    within.require(rate, device.rate, "rate", "Hz", "Leave it out, or serve the device more slowly");
+    if (options.coupling_stiffness)
+      within.require(*options.coupling_stiffness, detail::stable_at(rate, device, device.stiffness),
+                     "coupling stiffness", "N/m", "Leave it out; a stiffer one is a HapticServo's, for verification");
+    if (options.turning_stiffness && device.peak_torque > 0.0)
+      within.require(*options.turning_stiffness, detail::stable_at(rate, device, device.turning_stiffness),
+                     "turning stiffness", "N m/rad", "Leave it out");
+    if (options.force_limits) within.require(*options.force_limits, device);
+  }
+  if (options.force_limits) detail::require_period(*options.force_limits, rate);
+  o.coupling_stiffness = options.coupling_stiffness;
+  o.turning_stiffness = options.turning_stiffness;
+  o.force_limits = options.force_limits;
+  o.contact = options.contact;
+  o.stale_tissue_after = options.stale_tissue_after;
+  o.grasp_buttons = options.grasp_buttons;
+  return o;
+}
+
+}}  // namespace palpate
