@@ -21,7 +21,6 @@
 
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -68,22 +67,18 @@ CutPreparation<E> prepare_cut(const Mesh<E>& mesh, const Scene& scene, const Reg
   Admitted<E> admitted = admit<E>(mesh, options.admission);
   OriginalIds ids = original_ids(admitted);
   const ScopedIdTranslation translation(ids);
-  const Scene mapped = scene.mapped(admitted.node_map);
   const Vector3 origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
+  const Scene scene_here = scene.mapped(admitted.node_map, origin);
   for (Vector3& x : admitted.mesh.positions) x -= origin;
   const auto boundary = extract_boundary<E>(admitted.mesh);
-  CutTopology<E> topology(admitted.mesh, resolve_essential(admitted.mesh, boundary, mapped).constrained);
+  CutTopology<E> topology(admitted.mesh, resolve_essential(admitted.mesh, boundary, scene_here).constrained);
   detail::add_copied_nodes(topology, admitted.mesh.node_count(), ids);
   if (!topology.loose_pieces().empty()) detail::refuse_loose(topology.loose_pieces()[0]);
-  CutSurface<E> touchable(topology, boundary, mapped);
+  CutSurface<E> touchable(topology, boundary, scene_here);
   std::vector<NodeId> cuttable;
-  if (options.cuttable) {
-    Selection wanted = *options.cuttable;
-    if (auto* list = std::get_if<std::vector<NodeId>>(&wanted))
-      wanted = std::get<std::vector<NodeId>>(Scene().touch(*list).mapped(admitted.node_map).touched()[0]);
-    cuttable = resolve_nodes(admitted.mesh, boundary, wanted);
-  }
-  CutPhysics<E> physics(make_body(std::move(admitted.mesh), materials), boundary, mapped);
+  if (options.cuttable)
+    cuttable = resolve_nodes(admitted.mesh, boundary, mapped(*options.cuttable, admitted.node_map, origin));
+  CutPhysics<E> physics(make_body(std::move(admitted.mesh), materials), boundary, scene_here);
   return {std::move(physics), std::move(topology), std::move(touchable), std::move(cuttable), std::move(ids), origin};
 }
 

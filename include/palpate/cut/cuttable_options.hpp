@@ -14,7 +14,8 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 struct CuttableOptions {
-  /// Group, region or nodes whose compliance is kept ready beside that of the touchable ones: cuts there need no solve.
+  /// Group, region, nodes or set of points whose compliance is kept ready beside that of the touchable ones: cuts there
+  /// need no solve.
   std::optional<Selection> cuttable{};
   double smallest_tool = SphereTool{}.radius;  ///< [m] of the session's tools
   ContactParameters contact{};                 ///< of the session

@@ -174,11 +174,11 @@ class BasicSoftTissue {
     if (!(options.step > 0.0 && options.step < infinity))
       raise(SetupErrorKind::bad_argument, "a step of " + number(options.step), "Give a positive time in seconds");
     Admitted<E> admitted = admit<E>(mesh, options.admission);
-    const Scene mapped = scene.mapped(admitted.node_map);
     Prepared prepared;
     prepared.ids = original_ids(admitted);
     const ScopedIdTranslation translation(prepared.ids);
     prepared.origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
+    const Scene mapped = scene.mapped(admitted.node_map, prepared.origin);
     for (Vector3& x : admitted.mesh.positions) x -= prepared.origin;
     auto body = detail::soft_body(std::move(admitted.mesh), materials);
     const Mesh<E>& rest = detail::mesh_of(body);

@@ -74,8 +74,8 @@ void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, Mak
   node_map_ = std::move(admitted.node_map);
   original_ids_ = std::move(admitted.ids);
   const ScopedIdTranslation translation(original_ids_);
-  scene_ = scene.mapped(node_map_);
   origin_ = admitted.origin;
+  scene_ = scene.mapped(node_map_, origin_);
   place(Eigen::Isometry3d::Identity());
   const ElasticBody& body = *admitted.body;
   body.report_locking(report_);
@@ -92,7 +92,7 @@ void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, Mak
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_conditions(const Scene& scene) {
   const ScopedIdTranslation translation(original_ids_);
-  const Scene mapped = scene.mapped(node_map_);
+  const Scene mapped = scene.mapped(node_map_, origin_);
   require_same_touch(mapped);
   SetupReport report = report_;
   statics_->set_conditions(mapped, rotation_of(pose_).transpose() * scene.gravity(), reporting_to(report));
