@@ -18,8 +18,8 @@
 #include <palpate/core/types.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
 #include <palpate/mesh/admission.hpp>
+#include <palpate/mesh/mechanisms.hpp>
 #include <palpate/mesh/mesh.hpp>
-#include <palpate/mesh/rigid_modes.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>
 #include <palpate/model/nodal_rotation.hpp>

@@ -21,7 +21,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/element/smoothed.hpp>
 #include <palpate/local/loads.hpp>
-#include <palpate/mesh/rigid_modes.hpp>
+#include <palpate/mesh/mechanisms.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>
 
