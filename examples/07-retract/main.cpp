@@ -5,8 +5,8 @@
 // A surgeon's hook takes the thin lobe of the organ that comes with palpate and pulls it up and to the middle by 50 mm,
 // a quarter of the organ's length. Linear elasticity would let the lobe grow as it turns; this needs large strain.
 //
-//   1. `make_hyperelastic_body` puts a law on every region, here NeoHookean, and `Equilibrium` finds where the body
-//      rests under what holds and pulls it: Newton's method on the energy.
+//   1. `Equilibrium` takes mesh, scene and a law per region, here NeoHookean, and finds where the body rests under what
+//      holds and pulls it: Newton's method on the energy.
 //   2. `set_prescribed` moves the nodes in the hook, `step(0.0)` finds the next equilibrium from the last. The body has
 //      no memory here, so no time needs to pass; 08-relax has one.
 //   3. `reactions` are the forces in the supports, so also of the hook. The report of every step says whether it
@@ -54,8 +54,7 @@ struct Pull {
 /// Pulls in equal steps, and writes a file for each.
 Pull retract(const Mesh<Tet4>& mesh, const std::filesystem::path& out) {
   const where::PointSet hook = hook_at_tip(mesh);
-  Equilibrium organ(make_hyperelastic_body(mesh, laws),
-                    Scene().fix("ligament").prescribe(hook, {pull[0], pull[1], pull[2]}));
+  Equilibrium organ(mesh, Scene().fix("ligament").prescribe(hook, {pull[0], pull[1], pull[2]}), laws);
   const std::vector<NodeId> hooked = nodes_within(mesh, hook);
   const VectorX whole = organ.conditions().prescribed;
   std::filesystem::create_directories(out / "vtu");
@@ -87,7 +86,7 @@ Pull retract(const Mesh<Tet4>& mesh, const std::filesystem::path& out) {
 }
 
 int run_example(const std::filesystem::path& out) {
-  const Mesh<Tet4> mesh = admit<Tet4>(io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh")).mesh;
+  const auto mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   const Pull p = retract(mesh, out);
 
   const double end = p.force.back()[0], first = p.force[1][1] / p.force[1][0];  // per mm, of the first step

@@ -22,6 +22,7 @@
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/nodal_rotation.hpp>
 #include <palpate/model/tissue_motion.hpp>
 #include <palpate/model/touchable.hpp>
@@ -36,14 +37,6 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-template <Element E, LargeStrainMaterial M>
-auto soft_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
-  return make_hyperelastic_body(std::move(mesh), materials);
-}
-template <Element E, class M>
-auto soft_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
-  return make_body(std::move(mesh), materials);
-}
 template <class Body>
 const auto& mesh_of(const Body& body) noexcept {
   if constexpr (requires { body.rest.mesh; })
@@ -180,7 +173,7 @@ class BasicSoftTissue {
     prepared.origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
     const Scene mapped = scene.mapped(admitted.node_map, prepared.origin);
     for (Vector3& x : admitted.mesh.positions) x -= prepared.origin;
-    auto body = detail::soft_body(std::move(admitted.mesh), materials);
+    auto body = detail::make_any_body(std::move(admitted.mesh), materials);
     const Mesh<E>& rest = detail::mesh_of(body);
     prepared.touchable = resolve_touchable(mesh_ref(rest), extract_boundary<E>(rest), mapped);
     prepared.settled = VectorX::Zero(3 * rest.node_count());
