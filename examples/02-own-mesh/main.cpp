@@ -9,7 +9,8 @@
 //      millimetres, which most scans are. A file without solids is refused with the command that fills it.
 //   2. Diagnose. `diagnose` measures without judging: sizes, quality, inverted and flat elements, duplicates, orphans,
 //      loose pieces. Read it before you look for an error anywhere else.
-//   3. Say what holds the body and what may be touched, by the names of groups or by lists of nodes (scene.hpp here).
+//   3. Say what holds the body and what may be touched, by the names of groups, by position or by lists
+//      of nodes (scene.hpp here).
 //   4. Set up. HapticFEModel refuses what cannot be right. Every refusal has a kind; `advice` says what to do about the
 //      commonest. Mending is never done in silence: ask for it with AdmissionPolicy.
 //   5. Touch, and write what happened for ParaView: DIR/touched.vtu, with displacement and stress.
@@ -122,7 +123,7 @@ int run(const Arguments& arguments) {
   std::cout << describe(diagnosis) << '\n';
   print_quality(diagnosis);
 
-  const Chosen chosen = choose(mesh, arguments);
+  const Chosen chosen = choose(mesh, diagnosis, arguments);
   std::cout << "held: " << chosen.held << "; touched: " << chosen.touched << '\n';
   Organ organ(mesh, chosen.scene, {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
   std::cout << organ.report();

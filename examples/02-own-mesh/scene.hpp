@@ -1,6 +1,7 @@
 // What holds a body, what of it is touched, and where the ball goes, for a mesh nobody has seen before.
 #pragma once
 
+#include <palpate/mesh/diagnosis.hpp>
 #include <palpate/palpate.hpp>
 
 #include <optional>
@@ -23,34 +24,23 @@ struct Chosen {
   std::string held, touched;
 };
 
-/// Boundary nodes between two shares of the body's height (0 the lowest, 1 the highest point), z up.
-inline std::vector<NodeId> between(const Mesh<Tet4>& mesh, double low_share, double high_share) {
-  const auto nodes = nodes_of(extract_boundary<Tet4>(mesh));
-  double low = infinity, high = -infinity;
-  for (const NodeId i : nodes) {
-    low = std::min(low, mesh.position(i).z());
-    high = std::max(high, mesh.position(i).z());
-  }
-  std::vector<NodeId> chosen;
-  for (const NodeId i : nodes) {
-    const double share = (mesh.position(i).z() - low) / (high - low);
-    if (share >= low_share && share <= high_share) chosen.push_back(i);
-  }
-  return chosen;
+/// A height as a share of the body's (0 the lowest, 1 the highest point), z up.
+inline Vector3 at_height(const MeshDiagnosis& diagnosis, double share) {
+  return diagnosis.box_min + share * (diagnosis.box_max - diagnosis.box_min);
 }
 
 /// The named groups; where none is named, "ligament" and "front" if the mesh has them, else the lowest tenth of the
-/// surface is held and the upper half may be touched.
-inline Chosen choose(const Mesh<Tet4>& mesh, const Arguments& arguments) {
+/// body is held and the surface of the upper half may be touched.
+inline Chosen choose(const Mesh<Tet4>& mesh, const MeshDiagnosis& diagnosis, const Arguments& arguments) {
   Chosen c;
   const auto name_of = [&](const std::string& named, const char* usual) {
     return !named.empty() ? named : mesh.find_group(usual) != nullptr ? std::string(usual) : std::string();
   };
   const std::string fix = name_of(arguments.fix, "ligament"), touch = name_of(arguments.touch, "front");
-  c.held = fix.empty() ? "the lowest tenth of the surface" : "group '" + fix + "'";
+  c.held = fix.empty() ? "the lowest tenth" : "group '" + fix + "'";
   c.touched = touch.empty() ? "the upper half of the surface" : "group '" + touch + "'";
-  c.scene.fix(fix.empty() ? Selection(between(mesh, 0.0, 0.1)) : Selection(fix));
-  c.scene.touch(touch.empty() ? Selection(between(mesh, 0.5, 1.0)) : Selection(touch)).see("surface");
+  c.scene.fix(fix.empty() ? Selection(where::below(at_height(diagnosis, 0.1))) : Selection(fix));
+  c.scene.touch(touch.empty() ? Selection(where::above(at_height(diagnosis, 0.5))) : Selection(touch)).see("surface");
   return c;
 }
 

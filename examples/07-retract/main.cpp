@@ -5,8 +5,8 @@
 // A surgeon's hook takes the thin lobe of the organ that comes with palpate and pulls it up and to the middle by 50 mm,
 // a quarter of the organ's length. Linear elasticity would let the lobe grow as it turns; this needs large strain.
 //
-//   1. `make_hyperelastic_body` puts a law on every region, here NeoHookean, and `Equilibrium` finds where the body
-//      rests under what holds and pulls it: Newton's method on the energy.
+//   1. `Equilibrium` takes mesh, scene and a law per region, here NeoHookean, and finds where the body rests under what
+//      holds and pulls it: Newton's method on the energy.
 //   2. `set_prescribed` moves the nodes in the hook, `step(0.0)` finds the next equilibrium from the last. The body has
 //      no memory here, so no time needs to pass; 08-relax has one.
 //   3. `reactions` are the forces in the supports, so also of the hook. The report of every step says whether it
@@ -21,6 +21,7 @@
 #include <palpate/io/pvd.hpp>
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/io/vtu.hpp>
+#include <palpate/mesh/selection.hpp>
 #include <palpate/soft.hpp>
 
 #include <iostream>
@@ -37,14 +38,9 @@ const RegionMaterials<NeoHookean> laws{
     {"lesion", {.youngs_modulus = 50e3, .poisson_ratio = 0.45, .density = 1060.0}},
 };
 
-/// The nodes of the surface in the hook: within 15 mm of the tip of the thin lobe.
-std::vector<NodeId> hooked_nodes(const Mesh<Tet4>& mesh) {
-  const std::vector<NodeId> surface = nodes_of(extract_boundary<Tet4>(mesh));
-  const NodeId tip = *std::ranges::max_element(surface, {}, [&](NodeId i) { return mesh.position(i).x(); });
-  std::vector<NodeId> nodes;
-  for (const NodeId i : surface)
-    if ((mesh.position(i) - mesh.position(tip)).norm() < 0.015) nodes.push_back(i);
-  return nodes;
+/// What the hook holds: all within 15 mm of the tip of the thin lobe.
+where::PointSet hook_at_tip(const Mesh<Tet4>& mesh) {
+  return where::sphere(*std::ranges::max_element(mesh.positions, {}, [](const Vector3& x) { return x.x(); }), 0.015);
 }
 
 struct Pull {
@@ -57,9 +53,9 @@ struct Pull {
 
 /// Pulls in equal steps, and writes a file for each.
 Pull retract(const Mesh<Tet4>& mesh, const std::filesystem::path& out) {
-  const std::vector<NodeId> hook = hooked_nodes(mesh);
-  Equilibrium organ(make_hyperelastic_body(mesh, laws),
-                    Scene().fix("ligament").prescribe(hook, {pull[0], pull[1], pull[2]}));
+  const where::PointSet hook = hook_at_tip(mesh);
+  Equilibrium organ(mesh, Scene().fix("ligament").prescribe(hook, {pull[0], pull[1], pull[2]}), laws);
+  const std::vector<NodeId> hooked = nodes_within(mesh, hook);
   const VectorX whole = organ.conditions().prescribed;
   std::filesystem::create_directories(out / "vtu");
   io::PvdSeries series((out / "retract.pvd").string());
@@ -75,7 +71,7 @@ Pull retract(const Mesh<Tet4>& mesh, const std::filesystem::path& out) {
     result.fine = result.fine && report.converged && report.stable && report.deformation.inverted == 0;
     const VectorX reactions = organ.reactions();
     Vector3 force = Vector3::Zero();
-    for (const NodeId i : hook) force += reactions.segment<3>(3 * Index{i});
+    for (const NodeId i : hooked) force += reactions.segment<3>(3 * Index{i});
     result.work += 0.5 * (force + before).dot(pull) / steps;
     before = force;
     result.force.emplace_back(1e3 * share * pull.norm(), force.dot(pull.normalized()));
@@ -90,7 +86,7 @@ Pull retract(const Mesh<Tet4>& mesh, const std::filesystem::path& out) {
 }
 
 int run_example(const std::filesystem::path& out) {
-  const Mesh<Tet4> mesh = admit<Tet4>(io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh")).mesh;
+  const auto mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   const Pull p = retract(mesh, out);
 
   const double end = p.force.back()[0], first = p.force[1][1] / p.force[1][0];  // per mm, of the first step
@@ -118,4 +114,6 @@ int run_example(const std::filesystem::path& out) {
 
 }  // namespace
 
-int main(int count, char** values) { return example::main_with_out(count, values, "build/retract", run_example); }
+int main(int count, char** values) {
+  return example::main_with_out(count, values, "build/retract", run_example);
+}

@@ -18,6 +18,7 @@
 #include "drawing.hpp"
 
 #include <palpate/cut/blade.hpp>
+#include <palpate/mesh/diagnose.hpp>
 #include <palpate/palpate.hpp>
 #include <palpate/io/pvd.hpp>
 #include <palpate/io/vtu.hpp>
@@ -32,14 +33,12 @@ namespace {
 
 /// Held at the right end, pulled 8 mm at the left one, touchable everywhere.
 Scene make_scene(const Mesh<Tet4>& mesh) {
-  double low = infinity, high = -infinity;
-  for (const Vector3& x : mesh.positions) low = std::min(low, x[0]), high = std::max(high, x[0]);
-  std::vector<NodeId> right, left;
-  for (NodeId node = 0; node < mesh.node_count(); ++node) {
-    if (mesh.position(node)[0] < low + 0.02) right.push_back(node);
-    if (mesh.position(node)[0] > high - 0.02) left.push_back(node);
-  }
-  return Scene().fix(right).prescribe(left, {8e-3, 0.0, 0.0}).touch("surface");
+  const MeshDiagnosis d = diagnose<Tet4>(mesh);
+  const Vector3 right = d.box_min + Vector3(0.02, 0.0, 0.0), left = d.box_max - Vector3(0.02, 0.0, 0.0);
+  return Scene()
+      .fix(where::below(right, Vector3::UnitX()))
+      .prescribe(where::above(left, Vector3::UnitX()), {8e-3, 0.0, 0.0})
+      .touch("surface");
 }
 
 /// Pictures of the organ, one after the other.

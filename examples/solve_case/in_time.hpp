@@ -232,7 +232,7 @@ Course solve_bar_in_time(const palpate::Mesh<E>& mesh, const json& load_case) {
 
   const auto start = std::chrono::steady_clock::now();
   palpate::Admitted<E> admitted = palpate::admit<E>(mesh);
-  const palpate::Scene mapped = scene.mapped(admitted.node_map);
+  const palpate::Scene mapped = scene.mapped(admitted.node_map, palpate::Vector3::Zero());
   palpate::Index tip = 0;
   for (palpate::Index i = 0; i < admitted.mesh.node_count(); ++i)
     if (admitted.mesh.position(i).x() > admitted.mesh.position(tip).x()) tip = i;

@@ -70,7 +70,7 @@ Solution solve_with_law(const palpate::Mesh<E>& mesh, const json& load_case) {
   const auto start = std::chrono::steady_clock::now();
   palpate::Admitted<E> admitted = palpate::admit<E>(mesh);
   palpate::Equilibrium body(palpate::make_hyperelastic_body(std::move(admitted.mesh), laws),
-                            scene.mapped(admitted.node_map));
+                            scene.mapped(admitted.node_map, palpate::Vector3::Zero()));
   const palpate::EquilibriumReport report = body.solve();
   if (!report.converged || !report.stable || report.deformation.inverted > 0)
     palpate::raise(SetupErrorKind::not_converged, palpate::describe(report), "Try smaller loads");

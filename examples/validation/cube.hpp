@@ -35,7 +35,7 @@ struct Linear {
 struct LargeStrainLaw {
   template <Element E>
   VectorX operator()(const Mesh<E>& mesh, const Scene& scene) const {
-    Equilibrium body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{large_strain_rubber}), scene);
+    Equilibrium body(mesh, scene, large_strain_rubber);
     const EquilibriumReport report = body.solve();
     if (!report.converged || !report.stable || report.deformation.inverted > 0)
       raise(SetupErrorKind::not_converged, describe(report));

@@ -1,6 +1,6 @@
-#include <palpate/cut/cut_thread.hpp>
-#include <palpate/cut/cuttable_tissue.hpp>
+#include <palpate/cut/cuttable.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/haptic/background_worker.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
@@ -15,7 +15,7 @@ using namespace palpate;
 
 namespace {
 
-using Tissue = CuttableTissue<Tet4>;
+using Tissue = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
 static_assert(TissueModel<Tissue> && AnnouncesChanges<Tissue>);
 
 const LinearElastic soft{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0};
@@ -46,7 +46,7 @@ ToolState at(const Vector3& x, double time) {
 }  // namespace
 
 TEST_CASE("a tissue keeps the laws of tissues while it is cut", "[cut]") {
-  Tissue tissue(slab(), held_below(), soft, {.cuttable = Selection("surface")});
+  Tissue tissue(slab(), held_below(), soft, {}, {.cuttable = Selection("surface")});
   const auto check = [&] {
     tissue.begin_tick();
     for (const auto& broken : testing::tissue_laws(tissue, used_vertices(tissue, 20)))
@@ -58,20 +58,19 @@ TEST_CASE("a tissue keeps the laws of tissues while it is cut", "[cut]") {
   CHECK(tissue.begin_tick().has(StatusFlag::degraded_model));
   CHECK(tissue.work());
   CHECK(tissue.begin_tick().ok());  // felt and folded in; what nobody waits for comes after
-  CHECK(tissue.report().unchecked == 1);
+  CHECK(tissue.cut_report().unchecked == 1);
   int checks = 0;
   while (tissue.work()) ++checks;
   CHECK(checks == 3);
-  CHECK(tissue.report().unchecked == 0);
+  CHECK(tissue.cut_report().unchecked == 0);
   CHECK(tissue.begin_tick().ok());
   CHECK(tissue.contact_surface().vertex_count() > vertices);  // the wound's walls can be touched
-  CHECK(tissue.report().error < 1e-10);
+  CHECK(tissue.cut_report().error < 1e-10);
   check();
   tissue.cut(CutOrder{{0, 1, 2, 3, 4, 5}, {}});
   tissue.work();
   check();
   CHECK_REFUSED(SetupErrorKind::index_out_of_range, tissue.cut(CutOrder{{1000000}, {}}));
-  CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(tissue, SphereTool{.radius = 1e-3}));
 }
 
 TEST_CASE("what is refused when a tissue is made is named as in the mesh as given", "[cut]") {
@@ -84,7 +83,7 @@ TEST_CASE("what is refused when a tissue is made is named as in the mesh as give
   const std::vector<NodeId> bottom{1, 2, 3, 4, 5, 6, 7, 8, 9}, one{5};
   const Scene held = Scene().fix(bottom).touch("surface");
   const SetupProblem twice = test::refusal([&] {
-    Tissue(mesh, Scene(held).prescribe(one, {1e-3, 0.0, 0.0}), soft, CuttableOptions{});
+    Tissue(mesh, Scene(held).prescribe(one, {1e-3, 0.0, 0.0}), soft);
   });
   CHECK(to_string(twice.kind) == "conflicting_conditions");
   CHECK(twice.ids == Ids{5});
@@ -94,7 +93,7 @@ TEST_CASE("what is refused when a tissue is made is named as in the mesh as give
   const auto at = [&](NodeId node) { return mesh.positions[static_cast<std::size_t>(node)]; };
   mesh.positions.push_back(Vector3(0.5 * (at(flat[0]) + at(flat[1]))));
   mesh.elements.insert(mesh.elements.begin(), flat);
-  CuttableOptions mending;
+  SetupOptions mending;
   mending.admission.degenerate = Admission::repair;
   const SetupProblem loose = test::refusal([&] { Tissue(mesh, Scene().touch("surface"), soft, mending); });
   CHECK(to_string(loose.kind) == "unconstrained");
@@ -105,12 +104,12 @@ TEST_CASE("what is refused when a tissue is made is named as in the mesh as give
 
 TEST_CASE("forces on vertices that do not exist are refused", "[cut]") {
   Tissue tissue(box_tet4({0.04, 0.04, 0.04}, {2, 2, 2}), Scene().fix("z0").touch("surface"), soft);
-  const VectorX rest = tissue.displacement_with({});
+  const VectorX rest = tissue.displacement({});
   for (const int vertex : {-1, tissue.contact_surface().vertex_count(), 1000000})
     CHECK_REFUSED(SetupErrorKind::index_out_of_range,
-                  tissue.displacement_with(std::array{VertexForce{vertex, {1.0, 0.0, 0.0}}}));
-  CHECK_REFUSED(SetupErrorKind::non_finite, tissue.displacement_with(std::array{VertexForce{0, {infinity, 0.0, 0.0}}}));
-  CHECK(tissue.displacement_with({}) == rest);
+                  tissue.displacement(std::array{VertexForce{vertex, {1.0, 0.0, 0.0}}}));
+  CHECK_REFUSED(SetupErrorKind::non_finite, tissue.displacement(std::array{VertexForce{0, {infinity, 0.0, 0.0}}}));
+  CHECK(tissue.displacement({}) == rest);
 }
 
 TEST_CASE("what hangs by a thread is stretched beyond what can be touched: left out and said, not failed", "[cut]") {
@@ -118,6 +117,7 @@ TEST_CASE("what hangs by a thread is stretched beyond what can be touched: left 
   const auto mesh = box_tet4({0.02, 0.02, 0.3}, {2, 2, 30}, BoxSplit::six);
   Tissue tissue(mesh, Scene().fix("z1").touch("surface").gravity({0.0, 0.0, -9.81}),
                 LinearElastic{.youngs_modulus = 1e3, .poisson_ratio = 0.3, .density = 1000.0});
+  tissue.prepare_tools(SphereTool{}.radius, {});
   CHECK(tissue.begin_tick().ok());
   CutOrder order;
   for (Index e = 0; e < mesh.element_count(); ++e) {
@@ -129,7 +129,7 @@ TEST_CASE("what hangs by a thread is stretched beyond what can be touched: left 
   const std::size_t triangles = tissue.contact_surface().triangles().size();
   while (tissue.work()) {}
   CHECK(tissue.begin_tick().has(StatusFlag::degraded_model));
-  CHECK(!tissue.report().failed);
+  CHECK(!tissue.cut_report().failed);
   CHECK(tissue.contact_surface().vertex_count() >= vertices);
   CHECK(tissue.contact_surface().triangles().size() < triangles + 100);
   CHECK(tissue.contact_surface().triangles().size() > triangles / 2);
@@ -237,7 +237,7 @@ TEST_CASE("cut while touched until nothing is left: every force finite and limit
     });
     REQUIRE(std::abs(held + loose + removed - whole) < 1e-12 * whole);
     left = held + loose;
-    if (held > 0.0) REQUIRE(!tissue.report().failed);
+    if (held > 0.0) REQUIRE(!tissue.cut_report().failed);
   }
   CHECK(tissue.contact_surface().triangles().empty());
   for (int i = 0; i < 200; ++i) {
@@ -253,11 +253,11 @@ TEST_CASE("a thread cuts while another ticks", "[cut][extreme][F3]") {
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
   testing::Random random(8);
   {
-    const CutThread<Tissue> thread(tissue);
+    const BackgroundWorker worker(tissue);
     Vector3 last = Vector3::Zero();
     for (int i = 0; i < 3000; ++i) {
       if (i % 300 == 100)
-        tissue.stroke({{0.02 + i * 2e-5, -1, 0.03},
+        tissue.try_cut({{0.02 + i * 2e-5, -1, 0.03},
                        {0.02 + i * 2e-5, 2, 0.03},
                        {0.02 + i * 2e-5, -1, 1},
                        {0.02 + i * 2e-5, 2, 1}});
@@ -270,6 +270,6 @@ TEST_CASE("a thread cuts while another ticks", "[cut][extreme][F3]") {
     }
   }
   while (tissue.work()) {}
-  CHECK(tissue.report().cuts > 2);
-  CHECK(tissue.report().error < 1e-10);
+  CHECK(tissue.cut_report().cuts > 2);
+  CHECK(tissue.cut_report().error < 1e-10);
 }

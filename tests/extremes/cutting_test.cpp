@@ -1,5 +1,5 @@
 // Cutting until a body falls apart, along what the mesh is made of, and under a tool.
-#include <palpate/cut/cuttable_tissue.hpp>
+#include <palpate/cut/cuttable.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/io/read_mesh.hpp>
@@ -13,6 +13,8 @@
 using namespace palpate;
 
 namespace {
+
+using Cut = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
 
 using CutSession = HapticServo;
 
@@ -53,7 +55,7 @@ CutOrder random_order(const Mesh<Tet4>& mesh, testing::Random& random) {
   return order;
 }
 
-void masses(CuttableTissue<Tet4>& tissue, double whole, double& left, ManyCuts& all) {
+void masses(Cut& tissue, double whole, double& left, ManyCuts& all) {
   double held = 0.0, loose = 0.0, removed = 0.0, pieces = 0.0;
   tissue.read([&](const auto& t, const auto& p) {
     for (Index e = 0; e < t.mesh().element_count(); ++e)
@@ -72,7 +74,7 @@ void masses(CuttableTissue<Tet4>& tissue, double whole, double& left, ManyCuts& 
 /// Cuts one body at random under a ball that wanders over it, until nothing is held or `most` cuts are made.
 void cut_apart(int kind, std::uint64_t seed, int most, ManyCuts& all) {
   const auto mesh = body_to_cut(kind);
-  CuttableTissue<Tet4> tissue(mesh, scene_of(mesh),
+  Cut tissue(mesh, scene_of(mesh),
                               LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1e3});
   CutSession servo(tissue, SphereTool{});
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
@@ -103,12 +105,12 @@ void cut_apart(int kind, std::uint64_t seed, int most, ManyCuts& all) {
       last = f.force();
     }
     masses(tissue, whole, left, all);
-    const CutReport report = tissue.report();
+    const CutReport report = tissue.cut_report();
     REQUIRE(!report.failed);
     all.worst_error = std::max(all.worst_error, report.error);
     all.weakest = std::min(all.weakest, report.smallest);
   }
-  all.renewals += tissue.report().renewals;
+  all.renewals += tissue.cut_report().renewals;
 }
 
 void cut_many(int cuts, std::uint64_t seed, ManyCuts& all) {
@@ -123,7 +125,7 @@ void cut_many(int cuts, std::uint64_t seed, ManyCuts& all) {
 }
 
 /// Least quality of an element that is left.
-double least_quality(const CuttableTissue<Tet4>& tissue) {
+double least_quality(const Cut& tissue) {
   double least = 1.0;
   tissue.read([&](const auto& t, const auto&) {
     for (Index e = 0; e < t.mesh().element_count(); ++e)
@@ -167,26 +169,26 @@ TEST_CASE("cuts through nodes, edges and faces exactly, along nothing, and outsi
   const auto mesh = body_to_cut(1);
   const LinearElastic soft{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1e3};
   const Scene still = scene_of(mesh).gravity(Vector3::Zero());  // so that sheets lie where they are said to
-  CuttableTissue<Tet4> one(mesh, still, soft), other(mesh, still, soft);
+  Cut one(mesh, still, soft), other(mesh, still, soft);
   const double floor = least_quality(one);
   for (const BladeSweep& s : nothing) {
     one.cut(s);
     CHECK(one.work());
     CHECK(!one.work());
-    CHECK(one.report().cuts == 0);
+    CHECK(one.cut_report().cuts == 0);
     CHECK(one.begin_tick().ok());
   }
   std::uint64_t cuts = 0;
   for (const BladeSweep& s : something)
     for (int again = 0; again < 2; ++again) {  // the second time there is nothing left to open
-      for (CuttableTissue<Tet4>* t : {&one, &other}) {
+      for (Cut* t : {&one, &other}) {
         t->cut(s);
         while (t->work()) {}
         CHECK(t->begin_tick().ok());
       }
       if (again == 0) ++cuts;
-      CHECK(one.report().cuts == cuts);
-      CHECK(one.report().error <= 1e-10);
+      CHECK(one.cut_report().cuts == cuts);
+      CHECK(one.cut_report().error <= 1e-10);
       CHECK(least_quality(one) == floor);  // no sliver: elements keep their shape
       REQUIRE(one.contact_surface().vertex_count() == other.contact_surface().vertex_count());
       CHECK((one.contact_surface().triangles() == other.contact_surface().triangles()));  // ties go one way
@@ -200,7 +202,7 @@ TEST_CASE("the shipped organ, cut sixty times a second beside a finger: slew and
   std::vector<NodeId> below;
   for (NodeId node = 0; node < mesh.node_count(); ++node)
     if (mesh.position(node)[2] < 0.0) below.push_back(node);
-  CuttableTissue<Tet4> tissue(mesh, Scene().fix("ligament").fix(below).touch("front").gravity({0.0, 0.0, -9.81}),
+  Cut tissue(mesh, Scene().fix("ligament").fix(below).touch("front").gravity({0.0, 0.0, -9.81}),
                               LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
   const EnergyLimits energy = EnergyLimits::from(DeviceLimits{});
   CutSession servo(tissue, SphereTool{}, {}, EnergyTank(energy));
@@ -238,7 +240,7 @@ TEST_CASE("the shipped organ, cut sixty times a second beside a finger: slew and
     REQUIRE(given <= energy.allowance + energy.refill * s.time + dissipated + worst_work);
   }
   while (tissue.work()) {}
-  const CutReport report = tissue.report();
+  const CutReport report = tissue.cut_report();
   INFO(report.cuts << " cuts, error " << report.error << ", " << longest << " N at most, " << across_cut
                    << " N across a cut, " << worst_slew << " of the slew limit");
   CHECK(report.cuts >= 5);

@@ -1,10 +1,13 @@
 // Static equilibrium at large deformation.
+#include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/equilibrium.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
 
 #include "catch.hpp"
+#include "refused.hpp"
 
 using namespace palpate;
 using Catch::Matchers::WithinRel;
@@ -119,6 +122,88 @@ TEST_CASE("equilibrium refuses bodies that can move, and initial strains", "[mod
   };
   CHECK(kind(Scene().prescribe("z0", Components{std::nullopt, std::nullopt, 0.0})) == SetupErrorKind::unconstrained);
   CHECK(kind(Scene().fix("z0").expand(std::string(everywhere), 0.01)) == SetupErrorKind::unsupported);
+}
+
+TEST_CASE("equilibrium refuses the meshes that a linear model refuses, with the same ids", "[model][equilibrium]") {
+  const Scene scene = Scene().fix("z0").touch("z1");
+  const auto good = [] {  // an orphan in front, which admission drops: ids change
+    Mesh<Tet4> mesh = box_tet4(size, {2, 2, 3});
+    mesh.positions.insert(mesh.positions.begin(), Vector3(1, 1, 1));
+    for (auto& element : mesh.elements)
+      for (NodeId& i : element) ++i;
+    for (Group& g : mesh.groups.all()) {
+      for (NodeId& i : g.nodes) ++i;
+      for (auto& face : g.faces)
+        for (NodeId& i : face) ++i;
+    }
+    return mesh;
+  };
+  const NeoHookean rubber{5e3, 0.4, 1000.0};
+  const LinearElastic linear{5e3, 0.4, 1000.0};
+  const auto check = [&](const char* what, const Mesh<Tet4>& mesh, const Scene& held) {
+    INFO(what);
+    const SetupProblem expected =
+        test::refusal([&] { HapticFEModel<Tet4, LinearElastic, SparseCholesky>(mesh, held, linear); });
+    for (const SetupProblem& p : {test::refusal([&] { Equilibrium(mesh, held, rubber); }),
+                                  test::refusal([&] { Equilibrium(mesh, held, linear); })}) {
+      CHECK(to_string(p.kind) == to_string(expected.kind));
+      CHECK(p.what == expected.what);
+      CHECK(p.ids == expected.ids);
+      CHECK(p.ids_of == expected.ids_of);
+    }
+  };
+  const auto edited = [&](auto edit) {
+    Mesh<Tet4> mesh = good();
+    edit(mesh);
+    return mesh;
+  };
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  check("flat", edited([](auto& m) {
+          auto& x = m.positions;
+          const auto at = [&](int a) -> Vector3& { return x[static_cast<std::size_t>(m.elements[7][a])]; };
+          at(0) = (at(1) + at(2) + at(3)) / 3.0;
+        }),
+        scene);
+  check("twin", edited([](auto& m) { m.positions[9] = m.positions[10]; }), scene);
+  check("repeated node", edited([](auto& m) { m.elements[9][1] = m.elements[9][0]; }), scene);
+  check("repeated element", edited([](auto& m) { m.elements.push_back(m.elements[5]); }), scene);
+  check("not finite", edited([&](auto& m) { m.positions[5][1] = none; }), scene);
+  check("outside", edited([](auto& m) { m.elements[3][2] = 4711; }), scene);
+  check("inverted", edited([](auto& m) { std::swap(m.elements[2][0], m.elements[2][1]); }), scene);
+  check("empty", edited([](auto& m) { m.elements.clear(); }), scene);
+  check("loose", good(), Scene().fix(std::vector<NodeId>{1, 2}).touch("z1"));
+  check("two values", good(), Scene().fix("z0").prescribe(std::vector<NodeId>{1}, {1.0, 0.0, 0.0}));
+  check("unknown group", good(), Scene().fix("nowhere"));
+}
+
+TEST_CASE("a mesh as given and a body of the admitted mesh have the same equilibrium", "[model][equilibrium]") {
+  Mesh<Tet4> mesh = box_tet4(size, {2, 2, 3});
+  for (Vector3& x : mesh.positions) x += Vector3(7, -3, 1);
+  mesh.positions.emplace_back(0, 0, 0);  // dropped
+  const Scene scene = Scene().fix("z0").gravity({2.0, 0.0, -9.81}).point_load("z1", {0.01, 0.02, -0.03});
+  const NeoHookean rubber{5e3, 0.4, 1000.0};
+  Equilibrium given(mesh, scene, rubber);
+  Equilibrium made(make_hyperelastic_body(admit<Tet4>(mesh).mesh, std::vector<NeoHookean>{rubber}), scene);
+  REQUIRE((given.solve().converged && made.solve().converged));
+  CHECK((given.displacement() - made.displacement()).norm() <= 1e-9 * made.displacement().norm());
+  CHECK(given.node_map().size() == mesh.positions.size());
+  CHECK(given.node_map().back() == -1);
+  CHECK(made.node_map().empty());
+  EquilibriumOptions refuse;
+  refuse.admission.orphans = Admission::refuse;
+  CHECK_REFUSED(SetupErrorKind::orphan_node, Equilibrium(mesh, scene, rubber, refuse));
+}
+
+TEST_CASE("the most deformed element is named in the mesh as given", "[model][equilibrium]") {
+  Mesh<Tet4> mesh = box_tet4(size, {2, 2, 3});
+  const Scene scene = Scene().fix("z0").point_load("z1", {0.0, 0.05, -0.05});
+  const NeoHookean rubber{5e3, 0.4, 1000.0};
+  EquilibriumOptions drop;
+  drop.admission.duplicate_elements = Admission::repair;
+  const Index worst = Equilibrium(mesh, scene, rubber).solve().deformation.worst_element;
+  REQUIRE(worst > 0);
+  mesh.elements.insert(mesh.elements.begin() + 1, mesh.elements[0]);  // dropped: all later ids move
+  CHECK(Equilibrium(mesh, scene, rubber, drop).solve().deformation.worst_element == worst + 1);
 }
 
 TEST_CASE("parameters with which nothing could be solved are refused", "[model][equilibrium]") {

@@ -33,8 +33,8 @@ struct VertexForce {
 /// - `updates()`, if there is one, counts what `begin_tick` has brought in: a servo fades its force when that stands
 /// still for too long.
 /// - `exchange_contacts(problem)`, if there is one, is called after `begin_tick`, for a tissue whose triangles change: it
-/// moves the session's contact problem to the new surface, where it goes on. `require_tools(radius, parameters)` may
-/// refuse a session that this cannot be done for.
+/// moves the session's contact problem to the new surface, where it goes on. `prepare_tools(smallest_radius, parameters)`
+/// is called once by a session that begins, and may refuse it.
 /// - `to_world()` maps the frame of the surface to the world's.
 /// All are noexcept, allocate nothing and take bounded time. Between two calls of `begin_tick` the surface stays at the
 /// same place in memory.

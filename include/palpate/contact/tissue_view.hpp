@@ -28,7 +28,7 @@ struct TissueFunctions {
   void (*end_tick)(void*, std::span<const VertexForce>) noexcept;
   std::uint64_t (*updates)(const void*) noexcept;
   void (*exchange_contacts)(void*, ContactProblem&) noexcept;
-  void (*require_tools)(const void*, double, const ContactParameters&);
+  void (*prepare_tools)(void*, double, const ContactParameters&);
 };
 
 template <class T>
@@ -103,10 +103,8 @@ struct TissueCalls {
       f.updates = [](const void* t) noexcept -> std::uint64_t { return of(t).updates(); };
     if constexpr (requires(T & t, ContactProblem & p) { t.exchange_contacts(p); })
       f.exchange_contacts = [](void* t, ContactProblem& p) noexcept { of(t).exchange_contacts(p); };
-    if constexpr (requires(const T& t, const ContactParameters& p) { t.require_tools(0.0, p); })
-      f.require_tools = [](const void* t, double radius, const ContactParameters& p) {
-        of(t).require_tools(radius, p);
-      };
+    if constexpr (requires(T & t, const ContactParameters& p) { t.prepare_tools(0.0, p); })
+      f.prepare_tools = [](void* t, double radius, const ContactParameters& p) { of(t).prepare_tools(radius, p); };
     return f;
   }
   static constexpr TissueFunctions functions = table();
@@ -169,9 +167,11 @@ class TissueView {
   }
   bool has_updates() const noexcept { return functions_->updates != nullptr; }
   std::uint64_t updates() const noexcept { return has_updates() ? functions_->updates(tissue_) : 0; }
-  /// Throws what the tissue throws.
-  void require_tools(double smallest_radius, const ContactParameters& parameters) const {
-    if (functions_->require_tools != nullptr) functions_->require_tools(tissue_, smallest_radius, parameters);
+  /// For the tools of a session that begins. Throws what the tissue throws.
+  void prepare_tools(double smallest_radius, const ContactParameters& parameters) {
+    if (functions_->prepare_tools == nullptr) return;
+    functions_->prepare_tools(tissue_, smallest_radius, parameters);
+    look();
   }
 
  private:

@@ -4,24 +4,21 @@
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/concepts/element.hpp>
-#include <palpate/concepts/material.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/cut_physics.hpp>
 #include <palpate/cut/cut_surface.hpp>
 #include <palpate/cut/cut_topology.hpp>
-#include <palpate/cut/cuttable_options.hpp>
 #include <palpate/cut/topology_change.hpp>
-#include <palpate/mesh/admission.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/selection.hpp>
 #include <palpate/mesh/surface.hpp>
 
+#include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -33,8 +30,6 @@ struct CutPreparation {
   CutTopology<E> topology;
   CutSurface<E> touchable;
   std::vector<NodeId> cuttable;  ///< sorted
-  OriginalIds ids;               ///< of its nodes and elements in the mesh as given
-  Vector3 origin;                ///< of the frame, in that of the mesh as given [m]
 };
 
 namespace detail {
@@ -61,30 +56,18 @@ void add_copied_nodes(const CutTopology<E>& topology, Index admitted_nodes, Orig
 
 }  // namespace detail
 
-/// Throws what admission and the scene's selections throw; unconstrained when a part is not held.
-template <Element E, LinearMaterial M>
-CutPreparation<E> prepare_cut(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-                              const CuttableOptions& options) {
-  Admitted<E> admitted = admit<E>(mesh, options.admission);
-  OriginalIds ids = original_ids(admitted);
-  const ScopedIdTranslation translation(ids);
-  const Scene mapped = scene.mapped(admitted.node_map);
-  const Vector3 origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
-  for (Vector3& x : admitted.mesh.positions) x -= origin;
-  const auto boundary = extract_boundary<E>(admitted.mesh);
-  CutTopology<E> topology(admitted.mesh, resolve_essential(admitted.mesh, boundary, mapped).constrained);
-  detail::add_copied_nodes(topology, admitted.mesh.node_count(), ids);
+/// Of an admitted body with its boundary and a scene in its frame; `cuttable` likewise. Adds copied nodes to `ids`.
+/// Throws what the scene's selections throw; unconstrained when a part is not held.
+template <Element E>
+CutPreparation<E> prepare_cut(const Body<E>& body, const std::vector<BoundaryFace>& boundary, const Scene& scene,
+                              const std::optional<Selection>& cuttable, OriginalIds& ids) {
+  CutTopology<E> topology(body.mesh, resolve_essential(body.mesh, boundary, scene).constrained);
+  detail::add_copied_nodes(topology, body.mesh.node_count(), ids);
   if (!topology.loose_pieces().empty()) detail::refuse_loose(topology.loose_pieces()[0]);
-  CutSurface<E> touchable(topology, boundary, mapped);
-  std::vector<NodeId> cuttable;
-  if (options.cuttable) {
-    Selection wanted = *options.cuttable;
-    if (auto* list = std::get_if<std::vector<NodeId>>(&wanted))
-      wanted = std::get<std::vector<NodeId>>(Scene().touch(*list).mapped(admitted.node_map).touched()[0]);
-    cuttable = resolve_nodes(admitted.mesh, boundary, wanted);
-  }
-  CutPhysics<E> physics(make_body(std::move(admitted.mesh), materials), boundary, mapped);
-  return {std::move(physics), std::move(topology), std::move(touchable), std::move(cuttable), std::move(ids), origin};
+  CutSurface<E> touchable(topology, boundary, scene);
+  std::vector<NodeId> kept;
+  if (cuttable) kept = resolve_nodes(body.mesh, boundary, *cuttable);
+  return {CutPhysics<E>(body, boundary, scene), std::move(topology), std::move(touchable), std::move(kept)};
 }
 
 }}  // namespace palpate

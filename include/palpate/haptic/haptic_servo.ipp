@@ -19,6 +19,12 @@ inline double smallest_radius(const std::vector<ContactTool>& tools) noexcept {
   for (const ContactTool& tool : tools) radius = std::min(radius, tool.radius);
   return radius;
 }
+/// The surface of a tissue that is ready for these tools.
+inline const ContactSurface& surface_for(TissueView& tissue, const std::vector<ContactTool>& tools,
+                                         const ContactParameters& contact) {
+  tissue.prepare_tools(smallest_radius(tools), contact);
+  return tissue.contact_surface();
+}
 inline ToolState unreadable() noexcept {
   ToolState s;
   s.valid = false;
@@ -34,14 +40,14 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
                                         std::vector<EnergyTank> energies)
     : tissue_(tissue),
       contact_tools_(make_contact_tools(tools, options)),
-      problem_(tissue.contact_surface(), detail::smallest_radius(contact_tools_), options.contact),
+      problem_(detail::surface_for(tissue_, contact_tools_, options.contact), detail::smallest_radius(contact_tools_),
+               options.contact),
       energies_(std::move(energies)),
       forces_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after) {
-  if (tissue.contact_surface().triangles().empty())
+  if (tissue_.contact_surface().triangles().empty())
     raise(SetupErrorKind::bad_argument, "nothing of this tissue can be touched",
           "Name a surface group with Scene::touch");
-  tissue.require_tools(detail::smallest_radius(contact_tools_), options.contact);
   if (!(options.stale_tissue_after > 0.0))
     raise(SetupErrorKind::bad_argument, "stale_tissue_after is " + number(options.stale_tissue_after),
           "It must be positive, in seconds; infinity is allowed");

@@ -35,9 +35,14 @@ struct RigidFrame {
   double size = 1.0;                 ///< diagonal of the component's bounding box
   double resolution = 0.0;           ///< rounding of the coordinates / size
 
+  RigidFrame() = default;
   RigidFrame(std::span<const Vector3> positions, std::span<const NodeId> nodes,
              std::span<const std::uint8_t> constrained);
 };
+
+/// Row of the constraint "component `axis` of the displacement at p is given" for the rigid motion u = t + w x p,
+/// unknowns (w, t).
+Vector6 constraint_row(const Vector3& p, int axis);
 
 /// What is left of a vector outside the span of an orthonormal basis.
 Vector6 remainder(const std::vector<Vector6>& basis, Vector6 v);
@@ -65,18 +70,12 @@ std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vector3> positions,
 void require_constrained(std::span<const Vector3> positions, std::span<const NodeId> component,
                          std::span<const std::uint8_t> constrained, const Vector3& origin = Vector3::Zero());
 
-/// The two above for a mesh.
+/// The first of these for a mesh; the second, which needs more of it, is in mesh/mechanisms.hpp.
 template <Element E>
 std::vector<FreeRigidModes> free_rigid_modes(const Mesh<E>& mesh, std::span<const std::uint8_t> constrained,
                                              const Vector3& origin = Vector3::Zero()) {
   return free_rigid_modes(mesh.positions, connected_components<E>(mesh).of_node, constrained, origin);
 }
-template <Element E>
-void require_constrained(const Mesh<E>& mesh, std::span<const std::uint8_t> constrained,
-                         const Vector3& origin = Vector3::Zero()) {
-  require_constrained(mesh.positions, connected_components<E>(mesh).of_node, constrained, origin);
-}
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

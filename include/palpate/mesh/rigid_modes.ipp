@@ -44,9 +44,7 @@ PALPATE_INLINE RigidFrame::RigidFrame(std::span<const Vector3> positions, std::s
   resolution = 8.0 * std::numeric_limits<double>::epsilon() * farthest / size;
 }
 
-/// Row of the constraint "component `axis` of the displacement at p is given" for the rigid motion u = t + w x p,
-/// unknowns (w, t).
-inline Vector6 constraint_row(const Vector3& p, int axis) {
+PALPATE_INLINE Vector6 constraint_row(const Vector3& p, int axis) {
   const int next = (axis + 1) % 3, last = (axis + 2) % 3;
   Vector6 row = Vector6::Zero();
   row[next] = p[last];  // p x e

@@ -1,8 +1,9 @@
-// What holds, loads and touches a body: groups and conditions, no element, no mesh.
+// What holds, loads and touches a body: selections and conditions, no element, no mesh.
 #pragma once
 
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/mesh/where.hpp>
 
 #include <array>
 #include <optional>
@@ -13,8 +14,14 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Part of a mesh: the name of a group (or of a region, or "surface"), or a list of nodes.
-using Selection = std::variant<std::string, std::vector<NodeId>>;
+/// Part of a mesh: the name of a group (or of a region, or "surface"), a list of nodes, or a set of points such as
+/// `where::box(low, high)`, which selects by position in the mesh as given.
+using Selection = std::variant<std::string, std::vector<NodeId>, where::PointSet>;
+
+/// The same selection in an admitted mesh: listed node ids go through `map`, those mapped to -1 are dropped; a set of
+/// points is seen from `origin`, where the frame of the admitted mesh lies in that of the mesh as given [m]. Throws
+/// index_out_of_range.
+Selection mapped(const Selection& selection, const std::vector<NodeId>& map, const Vector3& origin);
 
 /// Selects all elements where a region is asked for.
 inline const std::string everywhere{};
@@ -22,8 +29,8 @@ inline const std::string everywhere{};
 /// Displacement per component [m]; an empty component stays free.
 using Components = std::array<std::optional<double>, 3>;
 
-/// The conditions of a scene. Knows groups by name only; names are resolved, and unknown ones refused, when a model is
-/// made. Every call throws SetupError(non_finite) on NaN or infinity.
+/// The conditions of a scene. Knows groups by name only; selections are resolved, and unknown or empty ones refused,
+/// when a model is made. Every call throws SetupError(non_finite) on NaN or infinity.
 class Scene {
  public:
   struct Prescribed {
@@ -76,7 +83,8 @@ class Scene {
   Scene& expand(std::string region, double elongation);
   /// Thermal expansion of a region, or `everywhere`: coefficient [1/K] times rise of temperature [K].
   Scene& heat(std::string region, double coefficient, double rise);
-  /// Nodes a tool may touch: their dofs are kept, all others are condensed away.
+  /// What a tool may touch: the dofs of these nodes are kept, all others are condensed away. Of a set of points only
+  /// boundary faces all of whose nodes it contains.
   Scene& touch(Selection where);
   /// Nodes somebody looks at: their displacement is recovered at visual rate.
   Scene& see(Selection where);
@@ -91,9 +99,8 @@ class Scene {
   const std::vector<Selection>& seen() const noexcept { return seen_; }
   const Vector3& gravity() const noexcept { return gravity_; }
 
-  /// The same scene for renumbered nodes: listed node ids go through `map`, those mapped to -1 are dropped. Throws
-  /// index_out_of_range.
-  Scene mapped(const std::vector<NodeId>& map) const;
+  /// The same scene for an admitted mesh, see `mapped` of a Selection.
+  Scene mapped(const std::vector<NodeId>& map, const Vector3& origin) const;
 
   /// Names of all groups the scene speaks of.
   std::vector<std::string> group_names() const;

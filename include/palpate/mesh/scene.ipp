@@ -76,26 +76,29 @@ PALPATE_INLINE Scene& Scene::see(Selection where) {
   return *this;
 }
 
-PALPATE_INLINE Scene Scene::mapped(const std::vector<NodeId>& map) const {
+PALPATE_INLINE Selection mapped(const Selection& selection, const std::vector<NodeId>& map, const Vector3& origin) {
+  if (const auto* points = std::get_if<where::PointSet>(&selection)) return points->seen_from(origin);
+  const auto* nodes = std::get_if<std::vector<NodeId>>(&selection);
+  if (nodes == nullptr) return selection;
+  std::vector<NodeId> mapped_nodes;
+  for (NodeId node : *nodes) {
+    if (node < 0 || static_cast<std::size_t>(node) >= map.size())
+      raise(SetupErrorKind::index_out_of_range,
+            "the scene names node " + std::to_string(node) + ", the mesh has " + std::to_string(map.size()));
+    if (map[static_cast<std::size_t>(node)] >= 0) mapped_nodes.push_back(map[static_cast<std::size_t>(node)]);
+  }
+  return mapped_nodes;
+}
+
+PALPATE_INLINE Scene Scene::mapped(const std::vector<NodeId>& map, const Vector3& origin) const {
   Scene s = *this;
-  const auto renumber = [&](Selection& where) {
-    auto* nodes = std::get_if<std::vector<NodeId>>(&where);
-    if (nodes == nullptr) return;
-    std::vector<NodeId> mapped_nodes;
-    for (NodeId node : *nodes) {
-      if (node < 0 || static_cast<std::size_t>(node) >= map.size())
-        raise(SetupErrorKind::index_out_of_range,
-              "the scene names node " + std::to_string(node) + ", the mesh has " + std::to_string(map.size()));
-      if (map[static_cast<std::size_t>(node)] >= 0) mapped_nodes.push_back(map[static_cast<std::size_t>(node)]);
-    }
-    *nodes = std::move(mapped_nodes);
-  };
-  for (auto& c : s.prescribed_) renumber(c.where);
-  for (auto& c : s.tractions_) renumber(c.where);
-  for (auto& c : s.pressures_) renumber(c.where);
-  for (auto& c : s.point_loads_) renumber(c.where);
-  for (auto& c : s.touched_) renumber(c);
-  for (auto& c : s.seen_) renumber(c);
+  const auto renew = [&](Selection& selection) { selection = palpate::mapped(selection, map, origin); };
+  for (auto& c : s.prescribed_) renew(c.where);
+  for (auto& c : s.tractions_) renew(c.where);
+  for (auto& c : s.pressures_) renew(c.where);
+  for (auto& c : s.point_loads_) renew(c.where);
+  for (auto& c : s.touched_) renew(c);
+  for (auto& c : s.seen_) renew(c);
   return s;
 }
 

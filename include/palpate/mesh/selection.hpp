@@ -17,15 +17,26 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// Text for messages.
 std::string selection_name(const Selection& s);
 
+/// How far outside of a set of points nodes of a mesh still belong to it [m]: a millionth of the diagonal of the mesh's
+/// box, so that a node on the boundary does not depend on rounding or on the digits of a file.
+double point_margin(const MeshRef& mesh);
+
+/// The nodes in a set of points, inside the body and on its surface, ascending; none is no error. O(nodes).
+std::vector<NodeId> nodes_within(const MeshRef& mesh, const where::PointSet& points);
+
+/// The elements whose centre, the mean of their nodes, is in a set of points, ascending; none is no error. Any set and
+/// its complement share out all elements. O(elements).
+std::vector<Index> elements_within(const MeshRef& mesh, const where::PointSet& points);
+
 /// The nodes of a selection, sorted and unique. Throws unknown_group, empty_group or index_out_of_range.
 /// A group called "surface" that the mesh does not define is its whole boundary; a region's name selects the region's
-/// nodes.
+/// nodes. Of a set of points the nodes within `point_margin` of it.
 std::vector<NodeId> resolve_nodes(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
                                   const Selection& selection);
 
 /// The boundary faces of a selection, outward whatever the order in the mesh file. A group that lists faces means
-/// exactly those; a group or list of nodes means every boundary face all of whose nodes it holds. Throws empty_group,
-/// or unsupported for a face inside the body.
+/// exactly those; any other selection means every boundary face all of whose nodes it holds. Throws empty_group, or
+/// unsupported for a face inside the body.
 std::vector<BoundaryFace> resolve_faces(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
                                         const Selection& selection);
 
@@ -46,6 +57,24 @@ std::vector<BoundaryFace> resolve_faces(const Mesh<E>& mesh, const std::vector<B
 template <Element E>
 void require_region(const Mesh<E>& mesh, const std::string& name) {
   require_region(mesh_ref(mesh), name);
+}
+template <Element E>
+std::vector<NodeId> nodes_within(const Mesh<E>& mesh, const where::PointSet& points) {
+  return nodes_within(mesh_ref(mesh), points);
+}
+template <Element E>
+std::vector<Index> elements_within(const Mesh<E>& mesh, const where::PointSet& points) {
+  return elements_within(mesh_ref(mesh), points);
+}
+
+/// The same for a view; copies its nodes and elements.
+template <Element E, MeshOf<E> M>
+std::vector<NodeId> nodes_within(const M& mesh, const where::PointSet& points) {
+  return nodes_within(detail::plain_view<E>(mesh).mesh, points);
+}
+template <Element E, MeshOf<E> M>
+std::vector<Index> elements_within(const M& mesh, const where::PointSet& points) {
+  return elements_within(detail::plain_view<E>(mesh).mesh, points);
 }
 
 }}  // namespace palpate

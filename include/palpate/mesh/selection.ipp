@@ -1,6 +1,7 @@
 // Definitions of selection.hpp.
 #pragma once
 
+#include <palpate/core/box.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/mesh/key_order.hpp>
 #include <palpate/mesh/selection.hpp>
@@ -13,6 +14,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE std::string selection_name(const Selection& s) {
   if (const auto* name = std::get_if<std::string>(&s)) return "'" + *name + "'";
+  if (const auto* points = std::get_if<where::PointSet>(&s)) return points->name();
   return "a list of " + std::to_string(std::get<std::vector<NodeId>>(s).size()) + " nodes";
 }
 
@@ -69,16 +71,65 @@ inline std::vector<BoundaryFace> listed_faces(const MeshRef& mesh, const std::ve
   return faces;
 }
 
+inline Vector3 position_of(const MeshRef& mesh, Index node) noexcept {
+  return {mesh.position(node)[0], mesh.position(node)[1], mesh.position(node)[2]};
+}
+
+inline Box box_of(const MeshRef& mesh) noexcept {
+  Box box;
+  for (Index i = 0; i < mesh.node_count; ++i) box.include(position_of(mesh, i));
+  return box;
+}
+
+/// For the refusal of a set of points that selects nothing: where the mesh is, in the frame of the set.
+inline std::string extent_hint(const MeshRef& mesh, const Selection& selection) {
+  const auto* points = std::get_if<where::PointSet>(&selection);
+  if (points == nullptr) return {};
+  const Box box = box_of(mesh);
+  return "The mesh extends from " + point_text(box.low + points->origin()) + " to " +
+         point_text(box.high + points->origin()) + " [m]";
+}
+
+inline std::vector<NodeId> listed_nodes(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
+                                        const Selection& selection) {
+  if (const auto* list = std::get_if<std::vector<NodeId>>(&selection)) return *list;
+  if (const auto* points = std::get_if<where::PointSet>(&selection)) return nodes_within(mesh, *points);
+  return named_nodes(mesh, boundary, std::get<std::string>(selection));
+}
+
 }  // namespace detail
+
+PALPATE_INLINE double point_margin(const MeshRef& mesh) {
+  return mesh.node_count == 0 ? 0.0 : 1e-6 * detail::box_of(mesh).size().norm();
+}
+
+PALPATE_INLINE std::vector<NodeId> nodes_within(const MeshRef& mesh, const where::PointSet& points) {
+  const double margin = point_margin(mesh);
+  std::vector<NodeId> nodes;
+  for (Index i = 0; i < mesh.node_count; ++i)
+    if (points.contains(detail::position_of(mesh, i), margin)) nodes.push_back(static_cast<NodeId>(i));
+  return nodes;
+}
+
+PALPATE_INLINE std::vector<Index> elements_within(const MeshRef& mesh, const where::PointSet& points) {
+  const double margin = point_margin(mesh);
+  std::vector<Index> elements;
+  for (Index e = 0; e < mesh.element_count; ++e) {
+    Vector3 centre = Vector3::Zero();
+    for (int a = 0; a < mesh.element.nodes; ++a) centre += detail::position_of(mesh, mesh.nodes_of(e)[a]);
+    if (points.contains(centre / static_cast<double>(mesh.element.nodes), margin)) elements.push_back(e);
+  }
+  return elements;
+}
 
 PALPATE_INLINE std::vector<NodeId> resolve_nodes(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
                                                  const Selection& selection) {
-  const auto* list = std::get_if<std::vector<NodeId>>(&selection);
-  std::vector<NodeId> nodes =
-      list != nullptr ? *list : detail::named_nodes(mesh, boundary, std::get<std::string>(selection));
+  std::vector<NodeId> nodes = detail::listed_nodes(mesh, boundary, selection);
   std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  if (nodes.empty()) raise(SetupErrorKind::empty_group, selection_name(selection) + " holds no node");
+  if (nodes.empty())
+    raise(SetupErrorKind::empty_group, selection_name(selection) + " holds no node",
+          detail::extent_hint(mesh, selection));
   if (nodes.front() < 0 || nodes.back() >= mesh.node_count)
     raise(SetupErrorKind::index_out_of_range,
           selection_name(selection) + " names a node outside 0 ... " + std::to_string(mesh.node_count - 1));
@@ -100,7 +151,9 @@ PALPATE_INLINE std::vector<BoundaryFace> resolve_faces(const MeshRef& mesh, cons
         faces.push_back(f);
   }
   faces = detail::sort_unique(faces, mesh.element.face.nodes, mesh.node_count);
-  if (faces.empty()) raise(SetupErrorKind::empty_group, selection_name(selection) + " holds no boundary face");
+  if (faces.empty())
+    raise(SetupErrorKind::empty_group, selection_name(selection) + " holds no boundary face",
+          detail::extent_hint(mesh, selection));
   return faces;
 }
 

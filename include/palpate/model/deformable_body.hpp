@@ -21,7 +21,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/element/smoothed.hpp>
 #include <palpate/local/loads.hpp>
-#include <palpate/mesh/rigid_modes.hpp>
+#include <palpate/mesh/mechanisms.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>
 
@@ -85,7 +85,20 @@ DeformableBody held_body_without_forces(const Body<E>& rest, const Scene& scene)
 
 void refuse_initial_strains(const Scene& scene);
 
+/// A mesh with materials of any kind, at large strain or small.
+template <Element E, LargeStrainMaterial M>
+auto make_any_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
+  return make_hyperelastic_body(std::move(mesh), materials);
+}
+template <Element E, class M>
+auto make_any_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
+  return make_body(std::move(mesh), materials);
+}
+
 }  // namespace detail
+
+// The functions below take the geometry of a body as it is: make bodies of admitted meshes (mesh/admission.hpp). Flat and
+// inverted elements are not looked for here. Equilibrium and HapticFEModel admit the meshes they are given.
 
 /// A hyperelastic body in a scene. Throws what assembly and conditions throw, and unsupported for initial strains.
 template <Element E, LargeStrainMaterial M>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/load_vector.hpp>
-#include <palpate/mesh/rigid_modes.hpp>
+#include <palpate/mesh/mechanisms.hpp>
 #include <palpate/mesh/surface.hpp>
 #include <palpate/model/admission_report.hpp>
 #include <palpate/model/elastic_body.hpp>

@@ -23,6 +23,14 @@ PALPATE_INLINE std::string describe(const EquilibriumReport& r) {
   return text;
 }
 
+PALPATE_INLINE Equilibrium::Equilibrium(Prepared prepared, const SetupLimits& limits)
+    : Equilibrium(prepared, limits, ScopedIdTranslation(prepared.ids)) {}
+PALPATE_INLINE Equilibrium::Equilibrium(Prepared& prepared, const SetupLimits& limits, const ScopedIdTranslation&)
+    : Equilibrium(std::move(prepared.body), limits) {
+  ids_ = std::move(prepared.ids);
+  node_map_ = std::move(prepared.node_map);
+}
+
 PALPATE_INLINE Equilibrium::Equilibrium(DeformableBody body, const SetupLimits& limits)
     : body_(std::move(body)),
       tangent_(body_.pattern, body_.conditions, body_.positions, limits),
@@ -161,6 +169,8 @@ PALPATE_INLINE EquilibriumReport Equilibrium::follow_loads(const EquilibriumPara
   report.converged = report.fraction == 1.0;
   report.stable = prepare(x_) && tangent_.shift() == 0.0;
   report.deformation = body_.elastic->force(displacement_, force_);
+  Index& worst = report.deformation.worst_element;
+  if (worst >= 0 && !ids_.elements.empty()) worst = ids_.elements[static_cast<std::size_t>(worst)];
   stepped_ = report.converged;
   return report;
 }

@@ -53,6 +53,7 @@ class HapticFEModel : public detail::StaticModel<E, M, Solver>::Base {
   static_assert(has_triangulated_faces<E>(),
                 "palpate: tools touch triangles; give the element's Face a list `triangles` of its nodes, like Tri6");
   using ElementType = E;
+  using MaterialType = M;
   using Traits = SolverTraits<Solver>;
 
   /// One material everywhere. Throws SetupError; see docs/errors.md for the kinds.

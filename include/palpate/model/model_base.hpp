@@ -71,6 +71,7 @@ class ModelBase {
   const ElasticBody& elastic_body() const noexcept { return *body_; }
   ElasticBody& elastic_body() noexcept { return *body_; }
   const OriginalIds& original_ids() const noexcept { return original_ids_; }
+  OriginalIds& original_ids() noexcept { return original_ids_; }
 
   /// Takes over an admitted body and resolves what of it is touched and seen. Throws what resolving throws.
   Touchable admit(const Scene& scene, AdmittedBody admitted);

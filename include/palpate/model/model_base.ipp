@@ -26,7 +26,7 @@ PALPATE_INLINE Touchable ModelBase::admit(const Scene& scene, AdmittedBody admit
   body_ = std::move(admitted.body);
   origin_ = admitted.origin;
   const ScopedIdTranslation translation(original_ids_);
-  scene_ = scene.mapped(node_map_);
+  scene_ = scene.mapped(node_map_, origin_);
   gravity_ = scene_.gravity();
   place(Eigen::Isometry3d::Identity());
   Touchable touchable = body_->touchable(scene_);
@@ -38,7 +38,7 @@ PALPATE_INLINE Touchable ModelBase::admit(const Scene& scene, AdmittedBody admit
 }
 
 PALPATE_INLINE Scene ModelBase::mapped(const Scene& scene, const std::vector<Triangle>& triangles) const {
-  Scene mapped = scene.mapped(node_map_);
+  Scene mapped = scene.mapped(node_map_, origin_);
   if (mapped.touched().empty()) return mapped;
   const Touchable touchable = body_->touchable(mapped);
   if (touchable.nodes != touchable_ || touchable.triangles != triangles)

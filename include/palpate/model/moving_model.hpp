@@ -2,10 +2,9 @@
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
-#include <palpate/assembly/hyperelastic_body.hpp>
-#include <palpate/assembly/viscous_forces.hpp>
 #include <palpate/concepts/mesh.hpp>
 #include <palpate/model/admitted_mesh.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/element_body.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/moving_tissue.hpp>
@@ -20,21 +19,13 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// A solver that moves a body: SolverTraits<P> has
 ///   Parameters                                    an aggregate with `step` [s]; with `settle`, a body that can still
 ///                                                 move as a whole is refused when that is true
-///   make_motion(body, scene, parameters, limits)  a PreparedMotion; `body` is what make_material_body returns
+///   make_motion(body, scene, parameters, limits)  a PreparedMotion; `body` is a HyperelasticBody at large strain, at small
+///                                                 strain a Body or ViscousBody
 /// Shipped: Implicit<...> (model/implicit.hpp), Explicit<...> (model/explicit.hpp).
 template <class P>
 concept MotionPolicy = requires(const typename SolverTraits<P>::Parameters& parameters) {
   { parameters.step } -> std::convertible_to<double>;
 };
-
-/// The body of a material: a HyperelasticBody at large strain, a ViscousBody or Body at small strain.
-template <Element E, Material M>
-auto make_material_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
-  if constexpr (LargeStrainMaterial<M>)
-    return make_hyperelastic_body(std::move(mesh), materials);
-  else
-    return make_body(std::move(mesh), materials);
-}
 
 namespace detail {
 
@@ -65,6 +56,7 @@ class HapticFEModel<E, M, Solver> : public MovingTissue {
   static_assert(Material<M>, "palpate: the second argument of HapticFEModel is a material, for example NeoHookean");
   using ElementType = E;
   using Traits = SolverTraits<Solver>;
+  using MaterialType = M;
   using Parameters = typename Traits::Parameters;
 
   /// One material everywhere. Throws what admission, assembly and the motion throw, bad_argument for a step that is not
@@ -82,7 +74,7 @@ class HapticFEModel<E, M, Solver> : public MovingTissue {
     detail::require_step(parameters.step);
     AdmittedMesh<E> admitted = admit_mesh<E>(mesh, scene, options.admission, limits(), setup_report());
     const ScopedIdTranslation translation(admitted.ids);
-    auto body = make_material_body(std::move(admitted.mesh), materials);
+    auto body = detail::make_any_body(std::move(admitted.mesh), materials);
     auto rest = std::make_unique<ElementBody<E>>(detail::rest_body(body), admitted.origin);
     rest->report_locking(setup_report());
     const Touchable touchable =

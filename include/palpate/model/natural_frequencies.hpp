@@ -136,6 +136,9 @@ double require_pairs(const LanczosPairs& pairs, const VectorX& lambda, double sh
 ///   auto modes = natural_frequencies(model.body(), scene, 6);                                // of a model
 ///   auto modes = natural_frequencies(make_body(admit<Tet10>(mesh).mesh, material), {}, 6);   // of a free body
 ///
+/// Node ids and positions in `scene` are those of the body's mesh; for a model's body take
+/// `scene.mapped(model.node_map(), model.origin())`, unless the scene has names only.
+///
 /// Throws bad_density for a region without mass, bad_argument or count_too_large for the count, not_positive_definite
 /// for a held body that is a mechanism, not_converged, ill_conditioned, too_large, cancelled, and what assembly and
 /// conditions throw. Cost: a sparse factorisation of K - sigma M (sigma = 0 when held) and some 10 solves with count +

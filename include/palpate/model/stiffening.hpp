@@ -29,6 +29,7 @@ class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner>
   using Linear = HapticFEModel<E, M, Inner>;
 
  public:
+  using MaterialType = M;
   using Parameters = StiffeningParameters;
 
   /// One material everywhere. Throws as the model on Inner.

@@ -25,8 +25,8 @@ struct Touchable {
 /// Sorts and drops repetitions.
 void sort_unique(std::vector<NodeId>& nodes);
 
-/// Resolves what a scene lets tools touch: the boundary faces of every selection and their nodes. Throws as
-/// resolve_faces does.
+/// Resolves what a scene lets tools touch: the boundary faces of every selection and their nodes; of groups and lists
+/// also the nodes on no such face. Throws as resolve_faces does.
 Touchable resolve_touchable(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary, const Scene& scene);
 
 /// Refuses forces on vertices outside 0 ... vertices - 1 (index_out_of_range; the ids are vertices), and forces that

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <string>
+#include <variant>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -20,8 +21,10 @@ PALPATE_INLINE Touchable resolve_touchable(const MeshRef& mesh, const std::vecto
   Touchable touchable;
   std::vector<BoundaryFace> faces;
   for (const Selection& selection : scene.touched()) {
-    const std::vector<NodeId> nodes = resolve_nodes(mesh, boundary, selection);
-    touchable.nodes.insert(touchable.nodes.end(), nodes.begin(), nodes.end());
+    if (!std::holds_alternative<where::PointSet>(selection)) {
+      const std::vector<NodeId> nodes = resolve_nodes(mesh, boundary, selection);
+      touchable.nodes.insert(touchable.nodes.end(), nodes.begin(), nodes.end());
+    }
     const auto selected = resolve_faces(mesh, boundary, selection);
     faces.insert(faces.end(), selected.begin(), selected.end());
   }

@@ -37,6 +37,29 @@ struct EmbeddingReport {
   double element_size = 0;    ///< mean longest edge on the boundary, to compare with [m]
 };
 
+namespace detail {
+
+/// Unit normals of points, means of those of their triangles weighted by area, and both written as x y z of every
+/// point. `normal` has a place per point. No allocation.
+inline void write_surface(const std::vector<Vector3>& points, const std::vector<std::array<int, 3>>& triangles,
+                          std::vector<Vector3>& normal, std::span<float> positions, std::span<float> normals) noexcept {
+  for (Vector3& n : normal) n.setZero();
+  for (const auto& t : triangles) {
+    const auto at = [&](std::size_t k) { return static_cast<std::size_t>(t[k]); };
+    const Vector3 n = cross(points[at(1)] - points[at(0)], points[at(2)] - points[at(0)]);
+    for (std::size_t k = 0; k < 3; ++k) normal[at(k)] += n;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vector3 unit = normal[i].squaredNorm() > 0.0 ? normal[i].normalized() : Vector3(0.0, 0.0, 1.0);
+    for (int c = 0; c < 3; ++c) {
+      positions[3 * i + static_cast<std::size_t>(c)] = static_cast<float>(points[i][c]);
+      normals[3 * i + static_cast<std::size_t>(c)] = static_cast<float>(unit[c]);
+    }
+  }
+}
+
+}  // namespace detail
+
 /// Positions and normals for a renderer's own thread. Every point of the drawn surface is a fixed combination of the
 /// nodes of one element (its shape functions there), so a fine surface follows a coarse mesh smoothly. Reading recovers
 /// the displacement of the whole body from the contact forces of a tick (one back-substitution, exact); with
@@ -60,6 +83,9 @@ class VisualSurface {
     moved_.resize(surface_.positions.size());
   }
 
+  /// For models that are cut: whether points and triangles are others now. Those of this model never change.
+  bool update() noexcept { return false; }
+
   Index point_count() const noexcept { return static_cast<Index>(surface_.positions.size()); }
   const std::vector<std::array<int, 3>>& triangles() const noexcept { return surface_.triangles; }
   const EmbeddingReport& report() const noexcept { return report_; }
@@ -74,12 +100,7 @@ class VisualSurface {
     model_->displacement_with(forces, displacement_);
     const Eigen::Isometry3d pose = model_->to_world();
     for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = pose * (surface_.positions[i] + displacement_at(i));
-    update_normals();
-    for (std::size_t i = 0; i < moved_.size(); ++i)
-      for (int c = 0; c < 3; ++c) {
-        positions[3 * i + static_cast<std::size_t>(c)] = static_cast<float>(moved_[i][c]);
-        normals[3 * i + static_cast<std::size_t>(c)] = static_cast<float>(normals_[i][c]);
-      }
+    detail::write_surface(moved_, surface_.triangles, normals_, positions, normals);
     return true;
   }
 
@@ -189,17 +210,6 @@ class VisualSurface {
     for (int a = 0; a < E::nodes; ++a)
       u += anchor.weights[a] * node_vector(displacement_, model_->mesh().element_node(anchor.element, a));
     return u;
-  }
-
-  /// Means of the triangles' normals, weighted by area.
-  void update_normals() noexcept {
-    for (Vector3& n : normals_) n.setZero();
-    for (const auto& t : surface_.triangles) {
-      const auto at = [&](std::size_t k) { return static_cast<std::size_t>(t[k]); };
-      const Vector3 normal = cross(moved_[at(1)] - moved_[at(0)], moved_[at(2)] - moved_[at(0)]);
-      for (std::size_t k = 0; k < 3; ++k) normals_[at(k)] += normal;
-    }
-    for (Vector3& n : normals_) n = n.squaredNorm() > 0.0 ? n.normalized() : Vector3(0.0, 0.0, 1.0);
   }
 
   Model* model_;

@@ -1,32 +1,27 @@
-// What a tissue that is cut may be told, and what it says of its cuts.
+// What a model that is cut may choose, and what it reports of its cuts.
 #pragma once
 
-#include <palpate/contact/contact.hpp>
-#include <palpate/contact/sphere_tool.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/mesh/admission_policy.hpp>
 #include <palpate/mesh/scene.hpp>
 
 #include <optional>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-struct CuttableOptions {
-  /// Group, region or nodes whose compliance is kept ready beside that of the touchable ones: cuts there need no solve.
+/// What a model on Cuttable<...> may choose.
+struct CutParameters {
+  /// Group, region, nodes or set of points whose compliance is kept ready beside that of the touchable ones: cuts there
+  /// need no solve.
   std::optional<Selection> cuttable{};
-  double smallest_tool = SphereTool{}.radius;  ///< [m] of the session's tools
-  ContactParameters contact{};                 ///< of the session
   Index most_added = 900;          ///< dofs that cuts may add before a new factor is made, in a thread of its own
   double tolerated_error = 1e-10;  ///< measured, relative; beyond it a new factor is made at once
-  AdmissionPolicy admission{};
-  SetupLimits limits{};
 };
 
 /// What cutting has cost.
 struct CutReport {
   std::uint64_t cuts = 0;      ///< that changed something
+  std::uint64_t changes = 0;   ///< of the body's topology: cuts, and being made whole again
   std::uint64_t renewals = 0;  ///< new factors
   Index rank = 0;              ///< rows that the last cut changed
   Index kept = 0;              ///< dofs with a compliance

@@ -1,0 +1,53 @@
+// A solver policy for linear tissue that is cut while it is touched: Cuttable<Condensed<SelectiveInverse>>.
+#pragma once
+
+#include <palpate/cut/cut_visual_surface.hpp>
+#include <palpate/cut/cuttable_tissue.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/model/policies.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// The static solver `Inner`, whose compliance follows cuts exactly.
+template <class Inner>
+struct Cuttable {
+  static_assert(std::same_as<Inner, Condensed<SelectiveInverse>>,
+                "palpate: cuts update a stored compliance in double: choose Cuttable<Condensed<SelectiveInverse>>");
+};
+
+/// Linear static tissue that can be cut; see CuttableTissue.
+template <class E, class M, class Inner>
+class HapticFEModel<E, M, Cuttable<Inner>> : public CuttableTissue<E> {
+  static_assert(sizeof(Cuttable<Inner>) > 0);  // what Cuttable has to say of Inner is said first
+  static_assert(!HasSmoothedStrain<E>,
+                "palpate: a cut changes the averages of a smoothed element far around it: choose Tet4 or Tet10");
+  static_assert(LinearMaterial<M>, "palpate: tissue that is cut is of a LinearMaterial, for example LinearElastic");
+
+ public:
+  using ElementType = E;
+  using MaterialType = M;
+  using Parameters = CutParameters;
+
+  /// One material everywhere. Throws what admission, assembly and factorisation throw; unconstrained when a part is not
+  /// held, unsupported for a cache file.
+  template <MeshOf<E> Given>
+  HapticFEModel(const Given& mesh, const Scene& scene, const M& material, const SetupOptions& options = {},
+                const Parameters& parameters = {})
+      : HapticFEModel(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options, parameters) {}
+  /// One material per region.
+  template <MeshOf<E> Given>
+  HapticFEModel(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                const SetupOptions& options = {}, const Parameters& parameters = {})
+      : CuttableTissue<E>(options) {
+    AdmittedMesh<E> admitted =
+        admit_mesh<E>(mesh, scene, options.admission, this->limits(), this->setup_report());
+    const ScopedIdTranslation translation(admitted.ids);
+    auto body = std::make_unique<ElementBody<E>>(make_body(std::move(admitted.mesh), materials), admitted.origin);
+    this->set_up(scene, {std::move(body), std::move(admitted.node_map), admitted.ids, admitted.origin}, parameters);
+  }
+};
+
+}}  // namespace palpate

@@ -1,0 +1,70 @@
+// Sets of points in space: they select nodes, faces and elements by position, in meshes without groups.
+#pragma once
+
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+
+#include <functional>
+#include <string>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+namespace detail {
+
+/// "(x, y, z)" for messages.
+std::string point_text(const Vector3& p);
+
+}  // namespace detail
+
+namespace where {
+
+/// A set of points, with the text that messages call it by. Combine sets by `&&`, `||` and `!`. Positions are those of
+/// the mesh as given [m].
+class PointSet {
+ public:
+  /// Whether a point is in the set; points within `margin` [m] outside of its boundary are, too.
+  using Contains = std::function<bool(const Vector3& point, double margin)>;
+
+  PointSet(Contains contains, std::string name);
+
+  bool contains(const Vector3& point, double margin = 0.0) const { return contains_(point + origin_, margin); }
+  const std::string& name() const noexcept { return name_; }
+  /// Where the frame of the points that `contains` is asked for lies in the frame in which the set was made [m].
+  const Vector3& origin() const noexcept { return origin_; }
+  /// The same set for points in a frame whose origin lies at `origin` in the present one [m].
+  PointSet seen_from(const Vector3& origin) const;
+
+ private:
+  Contains contains_;
+  std::string name_;
+  Vector3 origin_ = Vector3::Zero();
+};
+
+/// The points in both sets, in either, and in no part of the set. Sets made in different frames are combined in that of
+/// the result's user: each keeps its own origin.
+PointSet operator&&(PointSet a, PointSet b);
+PointSet operator||(PointSet a, PointSet b);
+PointSet operator!(PointSet a);
+
+/// An axis-aligned box. A bound may be infinite. Throws bad_argument when low > high somewhere or a bound is NaN.
+PointSet box(const Vector3& low, const Vector3& high);
+/// The half-space on the side of a plane that its normal points away from. The normal need not have unit length.
+/// Throws bad_argument for a normal of zero length, non_finite.
+PointSet below(const Vector3& point, const Vector3& normal = Vector3::UnitZ());
+/// The half-space on the side that the normal points to. Throws as `below`.
+PointSet above(const Vector3& point, const Vector3& normal = Vector3::UnitZ());
+/// A ball. Throws bad_argument unless the radius is positive, non_finite.
+PointSet sphere(const Vector3& centre, double radius);
+/// The points within `radius` of a segment. Throws as `sphere`.
+PointSet capsule(const Vector3& from, const Vector3& to, double radius);
+/// The points for which `predicate` holds; it decides alone, without a margin. A model asks in its own frame, so that
+/// positions reach the predicate with a rounding error. Throws bad_argument for an empty function.
+PointSet inside(std::function<bool(const Vector3&)> predicate);
+
+}  // namespace where
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/where.ipp>
+#endif

@@ -1,0 +1,12 @@
+// The session text on explicit motion.
+#include <palpate/material/neo_hookean.hpp>
+#include <palpate/model/explicit.hpp>
+
+#include "one_session.hpp"
+
+using namespace palpate;
+
+TEST_CASE("one session text: explicit motion", "[model][door]") {
+  using Model = HapticFEModel<Tet4, NeoHookean, Explicit<CentralDifference>>;
+  one_session::run<Model>();
+}

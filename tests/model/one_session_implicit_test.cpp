@@ -1,0 +1,14 @@
+// The session text on implicit motion by Newton's method.
+#include <palpate/element/tet10.hpp>
+#include <palpate/material/neo_hookean.hpp>
+#include <palpate/mesh/promote.hpp>
+#include <palpate/model/implicit.hpp>
+
+#include "one_session.hpp"
+
+using namespace palpate;
+
+TEST_CASE("one session text: implicit motion by Newton's method", "[model][door]") {
+  using Model = HapticFEModel<Tet10, NeoHookean, Implicit<Newton<SparseCholesky>>>;
+  one_session::run<Model>();
+}

@@ -1,0 +1,12 @@
+// The session text on linear statics.
+#include <palpate/element/smoothed.hpp>
+#include <palpate/material/linear_elastic.hpp>
+
+#include "one_session.hpp"
+
+using namespace palpate;
+
+TEST_CASE("one session text: linear statics", "[model][door]") {
+  using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic>;
+  one_session::run<Model>();
+}

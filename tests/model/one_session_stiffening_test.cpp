@@ -1,0 +1,13 @@
+// The session text on tissue that stiffens.
+#include <palpate/element/smoothed.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/model/stiffening.hpp>
+
+#include "one_session.hpp"
+
+using namespace palpate;
+
+TEST_CASE("one session text: tissue that stiffens", "[model][door]") {
+  using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic, Stiffening<Condensed<SelectiveInverse>>>;
+  one_session::run<Model>();
+}
