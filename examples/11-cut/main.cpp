@@ -6,8 +6,8 @@
 // above: a slit opens, and the wound gapes. Then it is sliced until nothing is held any more.
 //
 //   1. CuttableTissue takes mesh, scene and material like HapticFEModel. A session can touch it as any other tissue.
-//   2. BladeServo gives the hand the force of cutting: toughness times the length of edge that is in the tissue. What
-//      the edge sweeps goes to the tissue as a stroke.
+//   2. A BladeTool gives the hand the force of cutting: toughness times the length of edge that is in the tissue. What
+//      the edge sweeps is ordered from the tissue, a stroke at a time.
 //   3. `tissue.work()` cuts: here every sixteenth tick in this thread, so that the run is the same every time; in a
 //      program of yours CutThread does it beside the ticks. A cut is a change of a few rows, not a new inverse: the
 //      report says how long it took until it could be felt.
@@ -17,7 +17,6 @@
 // force was not finite or beyond the device's limit, or mass was lost.
 #include "drawing.hpp"
 
-#include <palpate/cut/blade.hpp>
 #include <palpate/palpate.hpp>
 #include <palpate/io/pvd.hpp>
 #include <palpate/io/vtu.hpp>
@@ -64,8 +63,7 @@ class Record {
 };
 
 /// Pushes the blade in. The force of every tick [mm, N]; empty when one was not fine.
-std::vector<Vector2> push_blade(CuttableTissue<Tet4>& tissue, BladeServo<CuttableTissue<Tet4>>& servo,
-                                const Vector3& start, double way) {
+std::vector<Vector2> push_blade(CuttableTissue<Tet4>& tissue, HapticServo& servo, const Vector3& start, double way) {
   std::vector<Vector2> force;
   const int ticks = 1000;
   for (int i = 0; i < ticks; ++i) {
@@ -126,7 +124,7 @@ int run_example(const std::filesystem::path& out) {
   Vector3 top = mesh.position(0);  // of the middle
   for (const Vector3& x : mesh.positions)
     if (std::abs(x[0]) < 0.02 && x[2] > top[2]) top = x;
-  BladeServo servo(tissue, {.edge = {0.0, 0.05, 0.0}, .toughness = 50.0});
+  HapticServo servo(tissue, BladeTool{.edge = {0.0, 0.05, 0.0}, .toughness = 50.0});
   const std::vector<Vector2> force = push_blade(tissue, servo, top + Vector3(0, 0, 5e-3), 30e-3);
   const CutReport slit = tissue.report();
   const double gape = rest_of(tissue).gape;
@@ -144,7 +142,7 @@ int run_example(const std::filesystem::path& out) {
   const example::Figures figures{
       {"largest force of the blade", text("%.2f N", longest)},
       {"cut against resistance",
-       text("%.1f cm^2 with %.1f mJ", 1e4 * servo.blade().area(), 1e3 * servo.blade().work())},
+       text("%.1f cm^2 with %.1f mJ", 1e4 * servo.blade()->area(), 1e3 * servo.blade()->work())},
       {"how far the wound gapes", text("%.2f mm", 1e3 * gape)},
       {"the last cut of the slit was felt after", text("%.1f ms", 1e3 * slit.felt_seconds)},
       {"cuts, new factors", text("%d, %d", static_cast<int>(end.cuts), static_cast<int>(end.renewals))},

@@ -257,7 +257,7 @@ TEST_CASE("a thread cuts while another ticks", "[cut][extreme][F3]") {
     Vector3 last = Vector3::Zero();
     for (int i = 0; i < 3000; ++i) {
       if (i % 300 == 100)
-        tissue.stroke({{0.02 + i * 2e-5, -1, 0.03},
+        tissue.try_cut({{0.02 + i * 2e-5, -1, 0.03},
                        {0.02 + i * 2e-5, 2, 0.03},
                        {0.02 + i * 2e-5, -1, 1},
                        {0.02 + i * 2e-5, 2, 1}});

@@ -5,6 +5,7 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/material.hpp>
 #include <palpate/concepts/tissue_model.hpp>
+#include <palpate/contact/blade_sweep.hpp>
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/contact/contact_samples.hpp>
@@ -15,7 +16,6 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/cut/blade_sweep.hpp>
 #include <palpate/cut/cut_orders.hpp>
 #include <palpate/cut/cut_physics.hpp>
 #include <palpate/cut/cut_preparation.hpp>
@@ -25,6 +25,7 @@
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/cut_view.hpp>
 #include <palpate/cut/cuttable_options.hpp>
+#include <palpate/cut/swept_faces.hpp>
 #include <palpate/cut/topology_change.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
 #include <palpate/mesh/mesh.hpp>
@@ -50,8 +51,9 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// While an order is open ticks say degraded_model. Numbers of vertices never change, so contact forces go on across a
 /// cut; the force gate limits how fast they may change.
 ///
-/// Threads: `begin_tick` and the functions of TissueModel belong to the thread that ticks, `stroke` too; all others may
-/// be called from any thread and wait for each other, not for the tick. Satisfies TissueModel; one session at a time.
+/// Threads: `begin_tick` and the functions of TissueModel belong to the thread that ticks, `try_cut` too; all others
+/// may be called from any thread and wait for each other, not for the tick. Satisfies TissueModel; one session at a
+/// time.
 template <Element E>
 class CuttableTissue {
  public:
@@ -129,8 +131,8 @@ class CuttableTissue {
 
   // The thread that ticks
 
-  /// Orders a cut from a tick; false when too many are waiting. Never waits.
-  bool stroke(const BladeSweep& sweep) noexcept { return orders_.stroke(sweep); }
+  /// Orders a cut from a tick, in the world's frame; false when too many are waiting. Never waits.
+  bool try_cut(const BladeSweep& sweep) noexcept { return orders_.stroke(sweep); }
   Status begin_tick() noexcept {
     const bool behind = orders_.are_open() || failed_.load(std::memory_order_acquire);
     if (views_.update() && contact().cut != revision_) {  // folding changes nothing that a session remembers
