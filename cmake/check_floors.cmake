@@ -27,6 +27,7 @@ set(room_version.hpp   0     common)
 set(room_palpate.hpp   9     roof)
 set(room_own_types.hpp 9     roof)
 set(room_soft.hpp      10    roof)
+set(room_cut.hpp       10    roof)
 
 if(NOT HEADERS)
   set(HEADERS ${CMAKE_CURRENT_LIST_DIR}/../include)

@@ -2,7 +2,7 @@
 //   bench_cut [--build <name of the flags>] [--csv <file to add rows to>] [--trace <file for forces>] [--organ]
 //   [--long]
 // --organ: only what is cut in real time.
-#include <palpate/cut/blade_sweep.hpp>
+#include <palpate/cut/swept_faces.hpp>
 #include <palpate/cut/cut_view.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>

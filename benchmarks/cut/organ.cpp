@@ -1,6 +1,6 @@
 #include "organ.hpp"
 
-#include <palpate/cut/cuttable_tissue.hpp>
+#include <palpate/cut/cuttable.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/io/read_mesh.hpp>
@@ -17,7 +17,7 @@
 namespace {
 
 using namespace palpate;
-using Tissue = CuttableTissue<Tet4>;
+using Tissue = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
 using Clock = std::chrono::steady_clock;
 
 const Vector3 middle(-0.0285, -0.0298, 0.0405), outward(0.076, -0.408, 0.910);  // of the touchable patch
@@ -73,8 +73,8 @@ struct Session {
 /// One session; `order(tissue, k)` gives the k-th cut.
 Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& order, std::FILE* trace,
             const char* name) {
-  Tissue tissue(mesh, lying(mesh), LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0},
-                {.cuttable = Selection(along_the_cut(mesh)), .smallest_tool = smallest_tool});
+  Tissue tissue(mesh, lying(mesh), {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}, {},
+                {.cuttable = Selection(along_the_cut(mesh))});
   HapticServo servo(tissue, SphereTool{.radius = smallest_tool});
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
   Session s;
@@ -85,7 +85,7 @@ Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& ord
       const double start = thread_seconds();
       const bool worked = tissue.work();
       const double seconds = thread_seconds() - start;
-      if (const std::uint64_t cuts = tissue.report().cuts; cuts != done) {
+      if (const std::uint64_t cuts = tissue.cut_report().cuts; cuts != done) {
         done = cuts;
         s.cuts.push_back(seconds);
       } else if (worked) {
@@ -133,7 +133,7 @@ Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& ord
   }
   stop = true;
   cutter.join();
-  s.report = tissue.report();
+  s.report = tissue.cut_report();
   s.fine = s.fine && s.longest <= limits.peak_force * (1.0 + 1e-12) && s.worst_slew <= 1.0 + 1e-9 &&
            s.report.error <= 1e-10 && !s.report.failed && s.report.cuts > 0 && s.longest > 0.05;
   return s;

@@ -1,8 +1,9 @@
 // The organ as a drawing: what is left of it, from above and a little from the front; wounds in red.
 #pragma once
 
-#include <palpate/cut/cuttable_tissue.hpp>
+#include <palpate/cut.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/material/linear_elastic.hpp>
 
 #include <Eigen/Geometry>
 
@@ -12,6 +13,7 @@
 namespace cut_example {
 
 using namespace palpate;
+using Organ = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
 
 /// What is held, with the displacement of its nodes [m].
 struct Rest {
@@ -21,8 +23,8 @@ struct Rest {
   double gape = 0.0;        ///< largest distance between two nodes that were one [m]
 };
 
-inline Rest rest_of(CuttableTissue<Tet4>& tissue) {
-  const VectorX u = tissue.displacement_with({});
+inline Rest rest_of(Organ& tissue) {
+  const VectorX u = tissue.displacement();
   Rest rest;
   tissue.read([&](const CutTopology<Tet4>& topology, const CutPhysics<Tet4>& physics) {
     std::vector<NodeId> node_map, origin;

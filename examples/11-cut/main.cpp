@@ -5,11 +5,11 @@
 // The organ is held at one end and pulled at the other, so it is under tension. A scripted blade is pushed into it from
 // above: a slit opens, and the wound gapes. Then it is sliced until nothing is held any more.
 //
-//   1. CuttableTissue takes mesh, scene and material like HapticFEModel. A session can touch it as any other tissue.
-//   2. BladeServo gives the hand the force of cutting: toughness times the length of edge that is in the tissue. What
-//      the edge sweeps goes to the tissue as a stroke.
+//   1. With Cuttable<...> as solver the model can be cut. A session can touch it as any other model.
+//   2. A BladeTool gives the hand the force of cutting: toughness times the length of edge that is in the tissue. What
+//      the edge sweeps is ordered from the tissue, a stroke at a time.
 //   3. `tissue.work()` cuts: here every sixteenth tick in this thread, so that the run is the same every time; in a
-//      program of yours CutThread does it beside the ticks. A cut is a change of a few rows, not a new inverse: the
+//      program of yours a BackgroundWorker does it beside the ticks. A cut is a change of a few rows, not a new inverse: the
 //      report says how long it took until it could be felt.
 //   4. Parts that nothing holds come off as pieces; the rest goes on. No solve is ever singular.
 //
@@ -17,7 +17,6 @@
 // force was not finite or beyond the device's limit, or mass was lost.
 #include "drawing.hpp"
 
-#include <palpate/cut/blade.hpp>
 #include <palpate/mesh/diagnose.hpp>
 #include <palpate/palpate.hpp>
 #include <palpate/io/pvd.hpp>
@@ -47,7 +46,7 @@ class Record {
   explicit Record(const std::filesystem::path& folder)
       : folder_(folder), series_((std::filesystem::create_directories(folder / "vtu"), folder / "cut.pvd").string()) {}
 
-  Rest add(CuttableTissue<Tet4>& tissue, double time, const std::string& what) {
+  Rest add(Organ& tissue, double time, const std::string& what) {
     Rest rest = rest_of(tissue);
     const std::string file = (folder_ / "vtu" / text("cut_%02d.vtu", static_cast<int>(series_.size()))).string();
     io::write_vtu(file, rest.mesh, {{{"displacement [m]", rest.displacement}}, {}});
@@ -63,8 +62,7 @@ class Record {
 };
 
 /// Pushes the blade in. The force of every tick [mm, N]; empty when one was not fine.
-std::vector<Vector2> push_blade(CuttableTissue<Tet4>& tissue, BladeServo<CuttableTissue<Tet4>>& servo,
-                                const Vector3& start, double way) {
+std::vector<Vector2> push_blade(Organ& tissue, HapticServo& servo, const Vector3& start, double way) {
   std::vector<Vector2> force;
   const int ticks = 1000;
   for (int i = 0; i < ticks; ++i) {
@@ -81,7 +79,7 @@ std::vector<Vector2> push_blade(CuttableTissue<Tet4>& tissue, BladeServo<Cuttabl
 }
 
 /// Mass of what is held, loose and removed [kg].
-std::array<double, 3> masses(const CuttableTissue<Tet4>& tissue) {
+std::array<double, 3> masses(const Organ& tissue) {
   std::array<double, 3> mass{};
   tissue.read([&](const auto& topology, const auto& physics) {
     for (Index e = 0; e < topology.mesh().element_count(); ++e)
@@ -91,7 +89,7 @@ std::array<double, 3> masses(const CuttableTissue<Tet4>& tissue) {
 }
 
 /// Slices lengthwise and across until nothing is held, and burns the rest. The largest share of mass that was lost.
-double cut_apart(CuttableTissue<Tet4>& tissue, Index elements, Record& record) {
+double cut_apart(Organ& tissue, Index elements, Record& record) {
   const double whole = masses(tissue)[0];
   double lost = 0.0, held = whole;
   for (int k = 0; k < 20 && held > 0.0; ++k) {
@@ -117,21 +115,20 @@ double cut_apart(CuttableTissue<Tet4>& tissue, Index elements, Record& record) {
 
 int run_example(const std::filesystem::path& out) {
   const auto mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
-  CuttableTissue<Tet4> tissue(mesh, make_scene(mesh),
-                              LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
+  Organ tissue(mesh, make_scene(mesh), {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
   Record record(out);
   record.add(tissue, 0.0, "under tension");
 
   Vector3 top = mesh.position(0);  // of the middle
   for (const Vector3& x : mesh.positions)
     if (std::abs(x[0]) < 0.02 && x[2] > top[2]) top = x;
-  BladeServo servo(tissue, {.edge = {0.0, 0.05, 0.0}, .toughness = 50.0});
+  HapticServo servo(tissue, BladeTool{.edge = {0.0, 0.05, 0.0}, .toughness = 50.0});
   const std::vector<Vector2> force = push_blade(tissue, servo, top + Vector3(0, 0, 5e-3), 30e-3);
-  const CutReport slit = tissue.report();
+  const CutReport slit = tissue.cut_report();
   const double gape = rest_of(tissue).gape;
   record.add(tissue, 1.0, text("slit by %d cuts; the wound gapes by %.1f mm", static_cast<int>(slit.cuts), 1e3 * gape));
   const double lost = cut_apart(tissue, mesh.element_count(), record);
-  const CutReport end = tissue.report();
+  const CutReport end = tissue.cut_report();
 
   double longest = 0.0;
   for (const Vector2& f : force) longest = std::max(longest, f[1]);
@@ -143,7 +140,7 @@ int run_example(const std::filesystem::path& out) {
   const example::Figures figures{
       {"largest force of the blade", text("%.2f N", longest)},
       {"cut against resistance",
-       text("%.1f cm^2 with %.1f mJ", 1e4 * servo.blade().area(), 1e3 * servo.blade().work())},
+       text("%.1f cm^2 with %.1f mJ", 1e4 * servo.blade()->area(), 1e3 * servo.blade()->work())},
       {"how far the wound gapes", text("%.2f mm", 1e3 * gape)},
       {"the last cut of the slit was felt after", text("%.1f ms", 1e3 * slit.felt_seconds)},
       {"cuts, new factors", text("%d, %d", static_cast<int>(end.cuts), static_cast<int>(end.renewals))},

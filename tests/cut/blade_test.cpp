@@ -1,63 +1,34 @@
-#include <palpate/cut/blade.hpp>
-#include <palpate/cut/cuttable_tissue.hpp>
+// A blade of a servo, on a tissue that is cut.
+#include <palpate/cut/cuttable.hpp>
+#include <palpate/device/mock_device.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/haptic/haptic_session.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/testing/allocation_counter.hpp>
-#include <palpate/testing/random.hpp>
 
 #include "catch.hpp"
-#include "refused.hpp"
 
 using namespace palpate;
 
-TEST_CASE("cutting takes toughness times area", "[cut][blade]") {
-  const BladeParameters p{.toughness = 200.0};
-  BladeCut blade(p);
-  double work = 0.0;
-  Vector3 hand(0, 0, 0), last = hand;
-  blade.advance(hand, 0.0);
-  Vector3 force = Vector3::Zero();
-  for (int i = 0; i < 20000; ++i) {
-    hand[2] -= 1e-6;
-    const Vector3 now = blade.advance(hand, 0.01);
-    work -= 0.5 * (force + now).dot(hand - last);  // by the hand; the force is linear in between or constant
-    force = now;
-    last = hand;
-  }
-  const double hold = 200.0 * 0.01 / p.stiffness;
-  CHECK(std::abs(force.norm() - 2.0) < 1e-12);  // 200 J/m^2 x 10 mm
-  CHECK(std::abs(blade.area() - 0.01 * (0.02 - hold)) < 1e-12);
-  CHECK(std::abs(blade.work() - 200.0 * blade.area()) < 1e-12);    // of 0.04 J
-  CHECK(std::abs(work - blade.work() - 0.5 * 2.0 * hold) < 1e-6);  // the rest is in the coupling
-  // Back is free, and so is what was cut before.
-  for (int i = 0; i < 2000; ++i) CHECK(std::abs(blade.advance(hand += Vector3(0, 0, 1e-5), 0.01)[2]) < 2.0 + 1e-12);
-  CHECK(blade.advance(hand, 0.01).norm() < 1e-9);
-  const double area = blade.area();
-  for (int i = 0; i < 400; ++i) blade.advance(hand -= Vector3(0, 0, 1e-5), 0.01);
-  CHECK(blade.area() == area);
-}
+namespace {
 
-TEST_CASE("no motion of the hand gains energy of a blade", "[cut][blade]") {
-  BladeCut blade({.toughness = 150.0});
-  testing::Random random(4);
-  Vector3 hand = Vector3::Zero();
-  blade.advance(hand, 0.01);
-  double in = 0.0;
-  for (int i = 0; i < 5000; ++i) {
-    const Vector3 step = 2e-4 * random.vector<3>(-1, 1);
-    hand += step;
-    in -= blade.advance(hand, i % 50 < 40 ? 0.01 : 0.0).dot(step);  // of the force at the end of the step
-    REQUIRE(in > -1e-12);
-  }
-}
+using Cut = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
+
+/// A block of 60 x 40 x 30 mm, fixed below, its top touchable.
+struct SlicedBlock : Cut {
+  SlicedBlock()
+      : Cut(box_tet4({0.06, 0.04, 0.03}, {9, 6, 5}, BoxSplit::six), Scene().fix("z0").touch("z1"),
+            {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1000.0}) {}
+};
+const BladeTool long_blade{.edge = {0.0, 0.05, 0.0}, .toughness = 40.0};
+
+}  // namespace
 
 TEST_CASE("a blade opens the tissue it is pushed into, and is felt", "[cut][blade][extreme][F3]") {
-  const auto mesh = box_tet4({0.06, 0.04, 0.03}, {9, 6, 5}, BoxSplit::six);
-  CuttableTissue<Tet4> tissue(mesh, Scene().fix("z0").touch("z1"),
-                              LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1000.0});
-  const ForceLimits limits;
-  BladeServo servo(tissue, {.edge = {0.0, 0.05, 0.0}, .toughness = 40.0}, limits);
+  SlicedBlock tissue;
+  HapticServo servo(tissue, long_blade);
+  const ForceLimits& limits = servo.limits();
   Vector3 last = Vector3::Zero();
   double most = 0.0;
   const int vertices = tissue.contact_surface().vertex_count();
@@ -79,9 +50,44 @@ TEST_CASE("a blade opens the tissue it is pushed into, and is felt", "[cut][blad
   tissue.begin_tick();
   CHECK(most > 0.5);
   CHECK(most <= 40.0 * 0.05 + 1e-9);
-  CHECK(servo.blade().area() > 0.0);
-  CHECK(tissue.report().cuts > 1);
+  CHECK(servo.blade()->area() > 0.0);
+  CHECK(tissue.cut_report().cuts > 1);
   CHECK(tissue.contact_surface().vertex_count() > vertices);
-  CHECK_REFUSED(SetupErrorKind::bad_argument, BladeCut({.stiffness = 0.0}));
-  CHECK_REFUSED(SetupErrorKind::bad_argument, BladeCut({.edge = Vector3::Zero()}));
+}
+
+TEST_CASE("a blade alone follows a session with another tool", "[cut][blade]") {
+  SlicedBlock tissue;
+  {
+    ServoOptions options;
+    options.contact.capacity = 16;
+    const HapticServo finger(tissue, SphereTool{.radius = 2e-3}, options);
+  }
+  HapticServo servo(tissue, long_blade);
+  ToolState s;
+  int cutting = 0;
+  for (int i = 0; i < 200; ++i) {
+    s.position = {0.0301, 0.02, 0.035 - 1e-4 * i};
+    s.time = 1e-3 * i;
+    servo.tick(s);
+    cutting += servo.read_snapshot().contact_count == 1;
+    if (i % 16 == 0) tissue.work();
+  }
+  CHECK(tissue.cut_report().cuts > 1);
+  CHECK(cutting > 10);
+}
+
+TEST_CASE("one hand touches what the other cuts", "[cut][blade]") {
+  SlicedBlock tissue;
+  const auto down = [](double x, double z, double seconds) {
+    return trajectory::poke({.from = {x, 0.02, 0.036}, .to = {x, 0.02, z}, .approach = seconds, .hold = 9.0});
+  };
+  MockDevice finger(down(0.012, 0.032, 0.1)), scalpel(down(0.0451, 0.018, 0.4));
+  HapticSession session(std::tie(finger, scalpel), tissue, {SphereTool{}, long_blade});
+  const LoopReport report = session.run({.duration = 0.4, .paced = false});
+  while (tissue.work()) {}
+  CHECK(report.devices[0].peak_force > 0.05);
+  CHECK(report.devices[1].peak_force > 0.5);
+  CHECK(session.servo().blade(0) == nullptr);
+  CHECK(session.servo().blade(1)->area() > 0.0);
+  CHECK(tissue.cut_report().cuts > 0);
 }

@@ -1,4 +1,4 @@
-#include <palpate/cut/blade_sweep.hpp>
+#include <palpate/cut/swept_faces.hpp>
 #include <palpate/mesh/components.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/rigid_modes.hpp>

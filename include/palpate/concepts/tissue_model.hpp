@@ -35,6 +35,8 @@ struct VertexForce {
 /// - `exchange_contacts(problem)`, if there is one, is called after `begin_tick`, for a tissue whose triangles change: it
 /// moves the session's contact problem to the new surface, where it goes on. `prepare_tools(smallest_radius, parameters)`
 /// is called once by a session that begins, and may refuse it.
+/// - `try_cut(sweep)`, if there is one, orders a cut along a BladeSweep in the world's frame; false when too many wait.
+/// Only such a tissue takes a BladeTool.
 /// - `to_world()` maps the frame of the surface to the world's.
 /// All are noexcept, allocate nothing and take bounded time. Between two calls of `begin_tick` the surface stays at the
 /// same place in memory.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/tissue_model.hpp>
+#include <palpate/contact/blade_sweep.hpp>
 #include <palpate/contact/contact_samples.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -29,6 +30,7 @@ struct TissueFunctions {
   std::uint64_t (*updates)(const void*) noexcept;
   void (*exchange_contacts)(void*, ContactProblem&) noexcept;
   void (*prepare_tools)(void*, double, const ContactParameters&);
+  bool (*try_cut)(void*, const BladeSweep&) noexcept;
 };
 
 template <class T>
@@ -79,21 +81,10 @@ struct TissueCalls {
   static double compliance_floor(const void* t) noexcept { return of(t).compliance_floor(); }
 
   static constexpr TissueFunctions table() noexcept {
-    TissueFunctions f{contact_surface,
-                      to_world,
-                      require_columns,
-                      compliance,
-                      between,
-                      displacement,
-                      compliance_revision,
-                      compliance_bound,
-                      compliance_floor,
-                      nullptr,
-                      nullptr,
-                      nullptr,
-                      nullptr,
-                      nullptr,
-                      nullptr};
+    TissueFunctions f{
+        contact_surface,  to_world,         require_columns, compliance, between, displacement, compliance_revision,
+        compliance_bound, compliance_floor, nullptr,         nullptr,    nullptr, nullptr,      nullptr,
+        nullptr,          nullptr};
     if constexpr (requires(T & t, std::span<const int> v) { t.foresee(v); })
       f.foresee = [](void* t, std::span<const int> v) noexcept { of(t).foresee(v); };
     if constexpr (AnnouncesChanges<T>) f.begin_tick = [](void* t) noexcept -> Status { return of(t).begin_tick(); };
@@ -105,6 +96,8 @@ struct TissueCalls {
       f.exchange_contacts = [](void* t, ContactProblem& p) noexcept { of(t).exchange_contacts(p); };
     if constexpr (requires(T & t, const ContactParameters& p) { t.prepare_tools(0.0, p); })
       f.prepare_tools = [](void* t, double radius, const ContactParameters& p) { of(t).prepare_tools(radius, p); };
+    if constexpr (requires(T & t, const BladeSweep& s) { t.try_cut(s); })
+      f.try_cut = [](void* t, const BladeSweep& s) noexcept -> bool { return of(t).try_cut(s); };
     return f;
   }
   static constexpr TissueFunctions functions = table();
@@ -173,6 +166,10 @@ class TissueView {
     functions_->prepare_tools(tissue_, smallest_radius, parameters);
     look();
   }
+
+  bool can_be_cut() const noexcept { return functions_->try_cut != nullptr; }
+  /// Orders a cut along what a blade swept, world frame; false when the tissue takes none, or none now.
+  bool try_cut(const BladeSweep& sweep) const noexcept { return can_be_cut() && functions_->try_cut(tissue_, sweep); }
 
  private:
   void* tissue_;

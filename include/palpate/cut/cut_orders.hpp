@@ -1,9 +1,9 @@
 // Cuts that wait to be done.
 #pragma once
 
+#include <palpate/contact/blade_sweep.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/spsc_ring.hpp>
-#include <palpate/cut/blade_sweep.hpp>
 #include <palpate/cut/topology_change.hpp>
 
 #include <atomic>

@@ -11,6 +11,7 @@
 #include <palpate/cut/cut_system.hpp>
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/cut_view.hpp>
+#include <palpate/cut/swept_faces.hpp>
 
 #include <algorithm>
 #include <array>

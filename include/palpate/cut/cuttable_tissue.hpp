@@ -3,7 +3,7 @@
 
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact_problem.hpp>
-#include <palpate/cut/blade_sweep.hpp>
+#include <palpate/contact/blade_sweep.hpp>
 #include <palpate/cut/cut_orders.hpp>
 #include <palpate/cut/cut_process.hpp>
 #include <palpate/haptic/triple_buffer.hpp>

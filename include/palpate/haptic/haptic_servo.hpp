@@ -4,6 +4,7 @@
 #include <palpate/concepts/servo.hpp>
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/haptic/energy_tank.hpp>
+#include <palpate/haptic/servo_blade.hpp>
 #include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
 #include <palpate/haptic/tool_list.hpp>
@@ -22,7 +23,8 @@ class HapticServo {
   using Snapshot = ServoSnapshot;
   using Energy = std::optional<EnergyTank>;
 
-  /// Throws bad_argument for an invalid tool, coupling or limits, or when nothing of the tissue can be touched.
+  /// Throws bad_argument for an invalid tool, coupling or limits, or when nothing of the tissue can be touched;
+  /// unsupported (ids: the tool) for a BladeTool and a tissue that cannot be cut.
   /// Allocates all a tick needs.
   template <TissueModel T>
   HapticServo(T& tissue, const ToolList& tools, const ServoOptions& options = {}, const Energy& energy = {})
@@ -54,16 +56,19 @@ class HapticServo {
   int contact_capacity() const noexcept { return problem_.capacity(); }
   /// Contacts of the last tick, model frame. For the tick's own thread.
   std::span<const Contact> contacts() const noexcept { return problem_.contacts(); }
-  /// Where the ball rests on the surface, world frame [m]. For the tick's own thread.
+  /// Where the ball rests on the surface, or the middle of a blade's edge, world frame [m]. For the tick's own thread.
   Vector3 proxy(std::size_t tool = 0) const noexcept;
-  /// Contact force before the gate, world frame [N]. For the tick's own thread.
+  /// Contact force, or that of a blade, before the gate, world frame [N]. For the tick's own thread.
   Vector3 contact_force(std::size_t tool = 0) const noexcept;
   /// Contact torque about the proxy before the gate, world frame [N m]. For the tick's own thread.
   Vector3 contact_torque(std::size_t tool = 0) const noexcept;
-  /// Axis of a capsule where it rests on the surface, world frame. For the tick's own thread.
+  /// Axis of a capsule where it rests on the surface, or that of a blade's edge, world frame. For the tick's own
+  /// thread.
   Vector3 proxy_axis(std::size_t tool = 0) const noexcept;
   /// Whether a tool holds a point of the surface. For the tick's own thread.
   bool is_holding(std::size_t tool = 0) const noexcept { return problem_.is_holding(tool); }
+  /// What a blade has cut; null for another tool. For the tick's own thread.
+  const BladeCut* blade(std::size_t tool = 0) const noexcept { return blades_[tool] ? &blades_[tool]->cut() : nullptr; }
   /// What a tool's gate lets through.
   const ForceLimits& limits(std::size_t tool = 0) const noexcept { return gates_[tool].limits(); }
   /// What limits a tool's energy; null when nothing does. For the tick's own thread.
@@ -82,8 +87,10 @@ class HapticServo {
   HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options,
               std::vector<EnergyTank> energies);
 
+  void add_blade(const BladeTool& blade, std::size_t tool, const ServoOptions& options);
   void note_updates() noexcept;
   void take(std::size_t i, const ToolState& state) noexcept;
+  void take_blade(ServoBlade& blade, std::size_t i, const ToolState& state) noexcept;
   void recover(std::size_t i) noexcept;
   void pass(std::size_t i, Status shared) noexcept;
   void publish() noexcept;
@@ -92,6 +99,7 @@ class HapticServo {
   std::vector<ContactTool> contact_tools_;
   ContactProblem problem_;
   std::vector<ToolInput> inputs_;
+  std::vector<std::optional<ServoBlade>> blades_;  // of the tools that are one
   std::vector<ForceGate> gates_;
   std::vector<EnergyTank> energies_;  // one per tool, or none at all
   std::vector<GatedForce> forces_;

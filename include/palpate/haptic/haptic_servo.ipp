@@ -19,10 +19,13 @@ inline double smallest_radius(const std::vector<ContactTool>& tools) noexcept {
   for (const ContactTool& tool : tools) radius = std::min(radius, tool.radius);
   return radius;
 }
+inline bool has_ball(const std::vector<ContactTool>& tools) noexcept {
+  return smallest_radius(tools) < no_ball;
+}
 /// The surface of a tissue that is ready for these tools.
 inline const ContactSurface& surface_for(TissueView& tissue, const std::vector<ContactTool>& tools,
                                          const ContactParameters& contact) {
-  tissue.prepare_tools(smallest_radius(tools), contact);
+  if (has_ball(tools)) tissue.prepare_tools(smallest_radius(tools), contact);
   return tissue.contact_surface();
 }
 inline ToolState unreadable() noexcept {
@@ -51,14 +54,29 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
   if (!(options.stale_tissue_after > 0.0))
     raise(SetupErrorKind::bad_argument, "stale_tissue_after is " + number(options.stale_tissue_after),
           "It must be positive, in seconds; infinity is allowed");
+  blades_.resize(tools.size());
   for (std::size_t i = 0; i < tools.size(); ++i) {
+    if (const auto* blade = std::get_if<BladeTool>(&tools[i])) add_blade(*blade, i, options);
     gates_.emplace_back(options.limits(i));
-    const bool turns = contact_tools_[i].half_length > 0.0 || gates_[i].limits().peak_torque > 0.0;
+    const bool turns = !blades_[i] && (contact_tools_[i].half_length > 0.0 || gates_[i].limits().peak_torque > 0.0);
     inputs_.emplace_back(static_cast<int>(i), turns, options.grasp_buttons);
   }
   Snapshot empty(options.contact.capacity);
   empty.tool_count = tools.size();
   snapshots_.fill(empty);
+}
+
+PALPATE_INLINE void HapticServo::add_blade(const BladeTool& blade, std::size_t tool, const ServoOptions& options) {
+  if (!tissue_.can_be_cut()) {
+    SetupProblem problem;
+    problem.kind = SetupErrorKind::unsupported;
+    problem.what = "this tissue cannot be cut: it has no try_cut(BladeSweep)";
+    problem.hint = "Make it a CuttableTissue, or touch it with a SphereTool or CapsuleTool";
+    const auto id = static_cast<std::int64_t>(tool);
+    problem.set_ids({&id, 1});
+    raise(std::move(problem));
+  }
+  blades_[tool].emplace(blade, detail::coupling_stiffness_of(tool, options));
 }
 
 PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const ToolState> states) noexcept {
@@ -81,6 +99,8 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
   updates_ = ticks_ = 0;
   for (ToolInput& input : inputs_) input.reset();
   for (ContactTool& tool : contact_tools_) tool.reset();
+  for (auto& blade : blades_)
+    if (blade) blade->reset();
   for (ForceGate& gate : gates_) gate.reset();
   tissue_.end_tick({});
   for (EnergyTank& energy : energies_) energy.reset();
@@ -88,15 +108,16 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
 }
 
 PALPATE_INLINE Vector3 HapticServo::proxy(std::size_t tool) const noexcept {
-  return tissue_.to_world() * contact_tools_[tool].proxy;
+  return blades_[tool] ? blades_[tool]->cut().edge() : Vector3(tissue_.to_world() * contact_tools_[tool].proxy);
 }
 PALPATE_INLINE Vector3 HapticServo::contact_force(std::size_t tool) const noexcept {
-  return rotation_of(tissue_.to_world()) * contact_tools_[tool].force;
+  return blades_[tool] ? blades_[tool]->force() : Vector3(rotation_of(tissue_.to_world()) * contact_tools_[tool].force);
 }
 PALPATE_INLINE Vector3 HapticServo::contact_torque(std::size_t tool) const noexcept {
   return rotation_of(tissue_.to_world()) * contact_tools_[tool].torque;
 }
 PALPATE_INLINE Vector3 HapticServo::proxy_axis(std::size_t tool) const noexcept {
+  if (blades_[tool]) return blades_[tool]->cut().tool().edge.normalized();
   return rotation_of(tissue_.to_world()) * contact_tools_[tool].axis();
 }
 
@@ -111,8 +132,19 @@ PALPATE_INLINE void HapticServo::note_updates() noexcept {
 }
 
 PALPATE_INLINE void HapticServo::take(std::size_t i, const ToolState& state) noexcept {
+  if (blades_[i]) return take_blade(*blades_[i], i, state);
   inputs_[i].take(state, tissue_.to_world(), tissue_.contact_surface(), problem_.contacts(), contact_tools_[i]);
   if (!energies_.empty()) energies_[i].turned(gates_[i].last_torque().dot(inputs_[i].rotation()));
+}
+
+/// A blade starts anew where it moved farther in a tick than its edge is long.
+PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, const ToolState& state) noexcept {
+  ToolInput& input = inputs_[i];
+  input.take_freely(state, tissue_.to_world(), blade.cut().tool().edge.norm());
+  if (input.readable())
+    blade.follow(tissue_.to_world() * input.position(), input.restarted(), tissue_);
+  else
+    blade.lift();
 }
 
 /// A ball whose centre is in the body without any contact has lost the surface: it is put back in the next tick, with
@@ -138,9 +170,10 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   EnergyTank* const energy = energies_.empty() ? nullptr : &energies_[i];
   const Eigen::Isometry3d& pose = tissue_.to_world();
   Vector3 force(0.0, 0.0, 0.0), torque(0.0, 0.0, 0.0);
+  if (blades_[i]) force = blades_[i]->force();
   if (tool.active) force = rotation_of(pose) * tool.force;
   if (tool.active && input.turns()) torque = rotation_of(pose) * tool.torque;
-  Status limited;
+  Status limited = blades_[i] ? blades_[i]->status() : Status{};
   if (energy != nullptr) {
     if (!input.readable() || input.restarted()) energy->forget();
     force = energy->limit(force, pose * input.position(), input.time(), limited);
@@ -158,6 +191,7 @@ PALPATE_INLINE void HapticServo::publish() noexcept {
   for (std::size_t i = 0; i < contact_tools_.size(); ++i) {
     s.proxies[i] = proxy(i);
     s.axes[i] = proxy_axis(i);
+    if (blades_[i]) s.note_blade(static_cast<int>(i), s.proxies[i], blades_[i]->force());
   }
   s.time = inputs_.front().time();
   snapshots_.publish();

@@ -38,10 +38,16 @@ namespace detail {
 /// slower, since a held wall of stiffness K needs a damping of K T/2 (Colgate and Schenkel 1997).
 double stable_at(double rate, const DeviceLimits& device, double stiffness) noexcept;
 
+/// Of the coupling between a tool's proxy and its device [N/m]. Throws bad_argument (ids: the tool) unless positive.
+double coupling_stiffness_of(std::size_t tool, const ServoOptions& options);
+
+/// The radius of a tool without a ball [m]: it is never the smallest, and never touches.
+inline constexpr double no_ball = 1e6;
+
 }  // namespace detail
 
-/// The tools of a servo as contact knows them. Throws bad_argument for an invalid tool, coupling or number of tools, or
-/// when there are `devices`, but not one per tool (ids: the tool).
+/// The tools of a servo as contact knows them; blades as tools that are never active. Throws bad_argument for an
+/// invalid tool, coupling or number of tools, or when there are `devices`, but not one per tool (ids: the tool).
 std::vector<ContactTool> make_contact_tools(const ToolList& tools, const ServoOptions& options);
 
 }}  // namespace palpate

@@ -34,12 +34,18 @@ namespace detail {
   raise(std::move(problem));
 }
 
+PALPATE_INLINE double coupling_stiffness_of(std::size_t tool, const ServoOptions& options) {
+  const DeviceLimits& device = options.device_of(tool);
+  const double stiffness =
+      options.coupling_stiffness.value_or(stable_at(options.tick_rate(), device, device.stiffness));
+  if (!(stiffness > 0.0))
+    refuse_stiffness(tool, "coupling", stiffness, "It must be positive, in N/m; infinity is allowed");
+  return stiffness;
+}
+
 inline ContactTool make_contact_tool(const CapsuleTool& tool, std::size_t i, const ServoOptions& options) {
   const DeviceLimits& device = options.device_of(i);
-  const double rate = options.tick_rate();
-  const double stiffness = options.coupling_stiffness.value_or(stable_at(rate, device, device.stiffness));
-  if (!(stiffness > 0.0))
-    refuse_stiffness(i, "coupling", stiffness, "It must be positive, in N/m; infinity is allowed");
+  const double rate = options.tick_rate(), stiffness = coupling_stiffness_of(i, options);
   const bool renders_torque = device.turning_stiffness > 0.0 || options.limits(i).peak_torque > 0.0;
   const double turning =
       options.turning_stiffness.value_or(renders_torque ? stable_at(rate, device, device.turning_stiffness) : infinity);
@@ -68,9 +74,12 @@ PALPATE_INLINE std::vector<ContactTool> make_contact_tools(const ToolList& tools
           "Give ServoOptions::devices one per tool, or none and `device` for all");
   std::vector<ContactTool> made;
   for (std::size_t i = 0; i < tools.size(); ++i) {
-    const auto* ball = std::get_if<SphereTool>(&tools[i]);
-    made.push_back(
-        detail::make_contact_tool(ball ? CapsuleTool(*ball) : *std::get_if<CapsuleTool>(&tools[i]), i, options));
+    if (const auto* ball = std::get_if<SphereTool>(&tools[i]))
+      made.push_back(detail::make_contact_tool(*ball, i, options));
+    else if (const auto* capsule = std::get_if<CapsuleTool>(&tools[i]))
+      made.push_back(detail::make_contact_tool(*capsule, i, options));
+    else
+      made.emplace_back().radius = detail::no_ball;
   }
   return made;
 }

@@ -10,7 +10,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE ServoSnapshot::ServoSnapshot(int capacity)
-    : forces(3 * static_cast<std::size_t>(capacity)), contacts(static_cast<std::size_t>(capacity)) {
+    : forces(3 * static_cast<std::size_t>(capacity)), contacts(static_cast<std::size_t>(capacity) + maximum_tools) {
   proxies.fill(Vector3::Zero());
   axes.fill(Vector3::Zero());
 }
@@ -30,6 +30,13 @@ PALPATE_INLINE void ServoSnapshot::note(std::span<const Contact> all, std::span<
     note_held(all[i].tool, pose * all[i].point, rotation_of(pose) * total);
     i += 2;
   }
+}
+
+PALPATE_INLINE void ServoSnapshot::note_blade(int tool, const Vector3& edge, const Vector3& force) noexcept {
+  const double length = force.norm();
+  if (!(length > 0.0)) return;
+  ToolContact& blade = contacts[contact_count++];
+  blade = {tool, edge, force / length, length, Vector3::Zero(), false, true};
 }
 
 PALPATE_INLINE Vector3 ServoSnapshot::contact_force(std::size_t tool) const noexcept {

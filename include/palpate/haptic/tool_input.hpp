@@ -24,6 +24,9 @@ class ToolInput {
   void take(const ToolState& state, const Eigen::Isometry3d& pose, const ContactSurface& surface,
             std::span<const Contact> contacts, ContactTool& tool) noexcept;
 
+  /// The same for a tool that no surface stops: farther than `longest` [m] in a tick, it starts anew where it is.
+  void take_freely(const ToolState& state, const Eigen::Isometry3d& pose, double longest) noexcept;
+
   /// Notes whether the tissue was heard of in the tick of this state.
   void note_tissue(bool has_news) noexcept;
   /// What the gate takes for the time of the state: it stands still once the tissue was silent for `patience` [s].
@@ -44,6 +47,13 @@ class ToolInput {
  private:
   /// Beyond 1e6 m no workspace reaches, and squares keep clear of overflow.
   static bool is_sound(const Vector3& position, const Quaternion<double>& turn, double time) noexcept;
+
+  struct Pose {
+    Vector3 position;  // model frame
+    Quaternion<double> turn;
+  };
+  /// Sets status, readability and time. False when the last good pose is held, or none is known.
+  bool accept(const ToolState& state, const Eigen::Isometry3d& pose, Pose& taken) noexcept;
 
   void rotate(const Quaternion<double>& turn, const Eigen::Isometry3d& pose, ContactTool& tool) noexcept;
 

@@ -13,33 +13,49 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE void ToolInput::take(const ToolState& state, const Eigen::Isometry3d& pose,
                                     const ContactSurface& surface, std::span<const Contact> contacts,
                                     ContactTool& tool) noexcept {
+  tool.motion.setZero();
+  tool.turned = 0.0;
+  if (!state.valid) tool.lift();
+  Pose taken{position_, {1.0, 0.0, 0.0, 0.0}};
+  if (!accept(state, pose, taken)) return;
+  tool.grasping = (state.buttons & grasp_buttons_) != 0;
+  if (turns_) rotate(taken.turn, pose, tool);
+  follow(taken.position, surface, contacts, tool);
+}
+
+PALPATE_INLINE void ToolInput::take_freely(const ToolState& state, const Eigen::Isometry3d& pose,
+                                           double longest) noexcept {
+  Pose taken{position_, {1.0, 0.0, 0.0, 0.0}};
+  if (!accept(state, pose, taken)) return;
+  const bool jumped = known_ && (taken.position - position_).norm() > longest;
+  if (jumped) status_.set(StatusFlag::reacquired);
+  restarted_ = jumped || !known_;
+  position_ = taken.position;
+  known_ = true;
+}
+
+PALPATE_INLINE bool ToolInput::accept(const ToolState& state, const Eigen::Isometry3d& pose, Pose& taken) noexcept {
   status_ = {};
   readable_ = state.valid;
   restarted_ = false;
   rotation_.setZero();
-  tool.motion.setZero();
-  tool.turned = 0.0;
   if (!state.valid) {
     known_ = false;
-    tool.lift();
-    return;
+    return false;
   }
-  const Vector3 position = inverse(pose) * state.position;
-  Quaternion<double> turn{1.0, 0.0, 0.0, 0.0};
+  taken.position = inverse(pose) * state.position;
   if (turns_) {
     const auto& q = state.orientation;
-    turn = {q[0], q[1], q[2], q[3]};
+    taken.turn = {q[0], q[1], q[2], q[3]};
   }
-  if (!is_sound(position, turn, state.time)) {
+  if (!is_sound(taken.position, taken.turn, state.time)) {
     // The last good pose is held; its old time stamp makes the gate fade the force.
     status_.set(StatusFlag::non_finite_input);
     readable_ = known_;
-    return;
+    return false;
   }
   time_ = state.time;
-  tool.grasping = (state.buttons & grasp_buttons_) != 0;
-  if (turns_) rotate(turn, pose, tool);
-  follow(position, surface, contacts, tool);
+  return true;
 }
 
 PALPATE_INLINE void ToolInput::note_tissue(bool has_news) noexcept {

@@ -1,6 +1,7 @@
 // The tools of a session.
 #pragma once
 
+#include <palpate/contact/blade_tool.hpp>
 #include <palpate/contact/capsule_tool.hpp>
 
 #include <concepts>
@@ -10,19 +11,20 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A tool of any kind.
-using Tool = std::variant<SphereTool, CapsuleTool>;
+/// A tool of any kind. A blade is for a tissue that can be cut.
+using Tool = std::variant<SphereTool, CapsuleTool, BladeTool>;
+
+template <class T>
+concept AnyTool =
+    std::same_as<T, SphereTool> || std::same_as<T, CapsuleTool> || std::same_as<T, BladeTool> || std::same_as<T, Tool>;
 
 /// Tools in the order of their states and forces: one tool, a list in braces of tools of any kinds, or a vector.
 class ToolList {
  public:
-  template <class T>
-  requires std::convertible_to<const T&, Tool> ToolList(const T& tool)  // NOLINT(google-explicit-constructor)
-      : tools_{Tool(tool)} {}
+  ToolList(const AnyTool auto& tool) : tools_{Tool(tool)} {}  // NOLINT(google-explicit-constructor)
   ToolList(std::initializer_list<Tool> tools) : tools_(tools) {}
-  template <class T>
-  requires std::convertible_to<const T&, Tool> ToolList(
-      const std::vector<T>& tools)  // NOLINT(google-explicit-constructor)
+  template <AnyTool T>
+  ToolList(const std::vector<T>& tools)  // NOLINT(google-explicit-constructor)
       : tools_(tools.begin(), tools.end()) {}
 
   std::size_t size() const noexcept { return tools_.size(); }

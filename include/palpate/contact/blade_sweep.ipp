@@ -1,7 +1,7 @@
 // Definitions of blade_sweep.hpp.
 #pragma once
 
-#include <palpate/cut/blade_sweep.hpp>
+#include <palpate/contact/blade_sweep.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,0 +1,23 @@
+// Definitions of blade_tool.hpp.
+#pragma once
+
+#include <palpate/contact/blade_tool.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/small_matrix.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE void BladeTool::require_valid() const {
+  const double length = edge.norm(), sharp = forward.norm();
+  for (const double value : {length, sharp, stroke})
+    if (!(value > 0.0 && value < infinity))
+      raise(SetupErrorKind::bad_argument, "the edge, forward direction or stroke of a blade is " + number(value),
+            "Give positive SI values");
+  if (!(cross(edge, forward).norm() > 1e-3 * length * sharp))
+    raise(SetupErrorKind::bad_argument, "the edge of a blade lies along its forward direction",
+          "Give an edge across it: what it sweeps is the cut");
+  if (!(toughness >= 0.0 && toughness < infinity))
+    raise(SetupErrorKind::bad_argument, "the toughness is " + number(toughness), "Give zero or more, in J/m^2");
+}
+
+}}  // namespace palpate
