@@ -12,6 +12,7 @@
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/cut_view.hpp>
 #include <palpate/cut/swept_faces.hpp>
+#include <palpate/model/touchable.hpp>
 
 #include <algorithm>
 #include <array>

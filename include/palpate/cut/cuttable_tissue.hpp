@@ -3,8 +3,11 @@
 
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact_problem.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/contact/blade_sweep.hpp>
 #include <palpate/cut/cut_orders.hpp>
+#include <palpate/cut/cut_parameters.hpp>
+#include <palpate/cut/cut_preparation.hpp>
 #include <palpate/cut/cut_process.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
 #include <palpate/model/element_body.hpp>

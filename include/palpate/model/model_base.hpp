@@ -1,6 +1,7 @@
 // What every model has, whatever its solver is: the admitted body, the report, and where it lies in the world.
 #pragma once
 
+#include <palpate/contact/triangle.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
