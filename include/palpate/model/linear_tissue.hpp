@@ -35,7 +35,9 @@ struct SetupOptions {
       std::numeric_limits<std::size_t>::max();  ///< [bytes]; more is refused as too_large before it is allocated
   AdmissionPolicy admission{};
   int compliance_slots = 256;  ///< vertices whose compliance is remembered by a solver that does not store all
-  ColumnFill columns = ColumnFill::in_tick;  ///< when such a solver computes it
+  /// When such a solver computes it. `automatic` decides by the numbers that a column reads, the same way on every
+  /// machine: beyond 100 000, some 50 us, a thread computes it; the report says which.
+  ColumnFill columns = ColumnFill::automatic;
   std::string cache_file{};  ///< where the prepared system is kept for the next time; empty: nowhere. See docs/cache.md
 };
 
@@ -122,8 +124,11 @@ class LinearTissue {
   void prepare_contact(const std::vector<Triangle>& triangles, bool eager, const SetupOptions& options);
   /// Kept dof of every touchable dof, -1 when it is prescribed.
   std::vector<Index> kept_index() const;
-  /// Computes a few columns: how soft the surface is, and how long a column takes.
+  /// Computes a few columns: how soft the surface is, and how long a column takes; starts a thread where one is to
+  /// compute the others.
   void sample_columns(ColumnFill fill);
+  /// Whether the three solves for a vertex would make a tick late.
+  bool is_column_late() const;
   Vector3 deformed(NodeId node) const noexcept;
   /// For changes of the loads: what is to be said of their displacement is said before they are accepted.
   std::function<void(const VectorX&)> reporting_to(SetupReport& report) const;

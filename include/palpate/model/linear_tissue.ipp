@@ -191,7 +191,21 @@ void LinearTissue<Scalar>::sample_columns(ColumnFill fill) {
   double softest = 0.0;
   for (int v : sampled) softest = std::max(softest, compliance_.bound(v));
   compliance_.assume(softest / std::sqrt(3.0));
-  if (fill == ColumnFill::ahead) compliance_.fill_ahead();
+  report_.asynchronous_columns =
+      fill == ColumnFill::asynchronous || (fill == ColumnFill::automatic && is_column_late());
+  if (report_.asynchronous_columns) compliance_.fill_asynchronously();
+}
+
+template <std::floating_point Scalar>
+bool LinearTissue<Scalar>::is_column_late() const {
+  constexpr double most_numbers = 1e5;  // a core reads about two of a factor per nanosecond
+  AnyStaticSystem system = statics_->system();
+  if (system.kept() == 0) return false;
+  VectorX column(system.kept());
+  const int iterations = system.compliance_column(0, column).iterations;
+  const double sweeps = iterations == 0 ? 2.0 : 1.0 + iterations;
+  const std::size_t bytes = system.column_bytes() + (iterations == 0 ? 0 : report_.stiffness_bytes);
+  return 3.0 * sweeps * static_cast<double>(bytes / sizeof(double)) > most_numbers;
 }
 
 template <std::floating_point Scalar>
