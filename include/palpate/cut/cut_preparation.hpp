@@ -34,6 +34,7 @@ struct CutPreparation {
   std::vector<NodeId> cuttable;  ///< sorted
   OriginalIds ids;               ///< of its nodes and elements in the mesh as given
   Vector3 origin;                ///< of the frame, in that of the mesh as given [m]
+  std::string loads;             ///< of the scene, in words
 };
 
 namespace detail {
@@ -79,7 +80,13 @@ CutPreparation<E> prepare_cut(const Mesh<E>& mesh, const Scene& scene, const Reg
   if (options.cuttable)
     cuttable = resolve_nodes(admitted.mesh, boundary, mapped(*options.cuttable, admitted.node_map, origin));
   CutPhysics<E> physics(make_body(std::move(admitted.mesh), materials), boundary, scene_here);
-  return {std::move(physics), std::move(topology), std::move(touchable), std::move(cuttable), std::move(ids), origin};
+  return {std::move(physics),
+          std::move(topology),
+          std::move(touchable),
+          std::move(cuttable),
+          std::move(ids),
+          origin,
+          loads_in_words(scene.gravity(), scene.loads_in_words())};
 }
 
 }}  // namespace palpate

@@ -183,10 +183,18 @@ class CuttableTissue {
         tolerated_error_(options.tolerated_error) {
     report_.kept = system_.kept();
     make_contact();
-    if (contact_->left_out)
-      require_dense_points({contact_->surface.positions(), touchable_.triangles()}, smallest_tool_);
+    if (contact_->left_out) require_dense_surface(prepared.loads);
     publish_exactly();
     views_.update();
+  }
+
+  /// Refuses what the smallest tool would fall through before anything is cut.
+  void require_dense_surface(const std::string& loads) const {
+    ContactSurface whole(contact_->surface.positions(), touchable_.triangles());
+    std::vector<Vector3> unloaded;
+    for (const NodeId node : touchable_.nodes()) unloaded.push_back(topology_.mesh().position(node));
+    whole.set_unloaded({std::move(unloaded), loads});
+    require_dense_points(whole, smallest_tool_);
   }
 
   static void require_element(bool holds, Index e) {

@@ -30,6 +30,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -159,6 +160,7 @@ class BasicSoftTissue {
     OriginalIds ids;
     Vector3 origin;
     VectorX settled;
+    std::string loads;
   };
 
   template <Element E, Material M>
@@ -176,6 +178,7 @@ class BasicSoftTissue {
     auto body = detail::make_any_body(std::move(admitted.mesh), materials);
     const Mesh<E>& rest = detail::mesh_of(body);
     prepared.touchable = resolve_touchable(mesh_ref(rest), extract_boundary<E>(rest), mapped);
+    prepared.loads = loads_in_words(scene.gravity(), scene.loads_in_words());
     prepared.settled = VectorX::Zero(3 * rest.node_count());
     if (options.settle)
       require_constrained(rest, resolve_essential(rest, extract_boundary<E>(rest), mapped).constrained,
@@ -199,6 +202,9 @@ class BasicSoftTissue {
     View view{std::vector<Vector3>(touchable_.size()), std::vector<Matrix3>(touchable_.size()), {}};
     look(view);
     surface_ = ContactSurface(view.free, std::move(prepared.touchable.triangles));
+    std::vector<Vector3> unloaded;
+    for (const NodeId node : touchable_) unloaded.push_back(motion_.body().positions[static_cast<std::size_t>(node)]);
+    surface_.set_unloaded({std::move(unloaded), std::move(prepared.loads)});
     views_.fill(view);
   }
 

@@ -148,6 +148,7 @@ class LinearTissue {
   double compliance_floor_ = 0.0;
   ContactSurface surface_;
   std::vector<Vector3> moved_;
+  std::string loads_;  // without gravity
 };
 
 }}  // namespace palpate

@@ -86,6 +86,7 @@ void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, Mak
                                        options.cache_file, report_);
   statics_->set_conditions(scene_, scene_.gravity(), reporting_to(report_));
   gravity_ = scene_.gravity();
+  loads_ = scene_.loads_in_words();
   prepare_contact(touchable.triangles, recipe.eager, options);
 }
 
@@ -95,9 +96,12 @@ void LinearTissue<Scalar>::set_conditions(const Scene& scene) {
   const Scene mapped = scene.mapped(node_map_, origin_);
   require_same_touch(mapped);
   SetupReport report = report_;
+  std::string loads = mapped.loads_in_words(), in_all = loads_in_words(scene.gravity(), loads);
   statics_->set_conditions(mapped, rotation_of(pose_).transpose() * scene.gravity(), reporting_to(report));
   gravity_ = scene.gravity();
   accept_displacement(report);
+  loads_.swap(loads);
+  surface_.set_loads(std::move(in_all));
 }
 
 template <std::floating_point Scalar>
@@ -116,9 +120,11 @@ template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_gravity(const Vector3& gravity) {
   if (!all_finite(gravity)) raise(SetupErrorKind::non_finite, "gravity is not finite");
   SetupReport report = report_;
+  std::string loads = loads_in_words(gravity, loads_);
   statics_->set_gravity(rotation_of(pose_).transpose() * gravity, reporting_to(report));
   gravity_ = gravity;
   accept_displacement(report);
+  surface_.set_loads(std::move(loads));
 }
 
 template <std::floating_point Scalar>
@@ -135,10 +141,13 @@ void LinearTissue<Scalar>::set_pose(const Eigen::Isometry3d& pose) {
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::reset() {
   SetupReport report = report_;
+  std::string loads = scene_.loads_in_words(), in_all = loads_in_words(scene_.gravity(), loads);
   statics_->set_conditions(scene_, scene_.gravity(), reporting_to(report));
   place(Eigen::Isometry3d::Identity());
   gravity_ = scene_.gravity();
   accept_displacement(report);
+  loads_.swap(loads);
+  surface_.set_loads(std::move(in_all));
 }
 
 template <std::floating_point Scalar>
@@ -158,9 +167,13 @@ void LinearTissue<Scalar>::prepare_contact(const std::vector<Triangle>& triangle
   // A thousandth of a millionth of the tissue's own compliance, or a nanometre per newton where nothing moves.
   for (int v = 0; v < vertices; ++v) compliance_floor_ = std::max(compliance_floor_, 1e-9 * compliance_.bound(v));
   if (compliance_floor_ == 0.0) compliance_floor_ = 1e-9;
-  std::vector<Vector3> positions;
-  for (NodeId node : touchable_) positions.push_back(deformed(node));
+  std::vector<Vector3> positions, unloaded;
+  for (NodeId node : touchable_) {
+    positions.push_back(deformed(node));
+    unloaded.push_back(statics_->body().positions()[static_cast<std::size_t>(node)]);
+  }
   surface_ = ContactSurface(positions, triangles);
+  surface_.set_unloaded({std::move(unloaded), loads_in_words(gravity_, loads_)});
   moved_ = std::move(positions);
   if (const int edges = surface_.crowded_edges())
     report_.set(SetupFlag::non_manifold, "more than two touchable triangles meet at " + std::to_string(edges) +
