@@ -41,6 +41,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   View view{std::vector<Vector3>(touchable.nodes.size()), std::vector<Matrix3>(touchable.nodes.size()), {}};
   look(view);
   surface_ = ContactSurface(view.free, touchable.triangles);
+  surface_.set_unloaded(unloaded());
   views_.fill(view);
   drawn_.fill(start_);
   setup_report().compliance_bytes = compliance_.bytes();
