@@ -1,5 +1,5 @@
 # Checks the house rules of include/palpate: an include goes to a lower floor, or stays on its floor in its own wing;
-# the physics wing and the contact wing never include each other; no include cycles.
+# the physics wing and the contact wing never include each other; no include cycles. docs/architecture.md has the table.
 #   cmake [-DHEADERS=<folder that holds palpate/>] -P cmake/check_floors.cmake
 cmake_minimum_required(VERSION 3.21)
 
@@ -116,6 +116,24 @@ endwhile()
 if(left)
   string(REPLACE ";" ", " left "${left}")
   complain("include cycle among: ${left}")
+endif()
+
+# docs/architecture.md says the same.
+set(page ${CMAKE_CURRENT_LIST_DIR}/../docs/architecture.md)
+if(EXISTS ${page})
+  file(READ ${page} page)
+  get_cmake_property(variables VARIABLES)
+  foreach(variable IN LISTS variables)
+    if(variable MATCHES "^room_([a-z]+)$")
+      set(room ${CMAKE_MATCH_1})
+      list(GET ${variable} 0 floor)
+      list(GET ${variable} 1 wing)
+      string(FIND "${page}" "| ${floor} | `${room}` | ${wing} |" found)
+      if(found EQUAL -1)
+        complain("docs/architecture.md has no row `| ${floor} | `${room}` | ${wing} | ...`")
+      endif()
+    endif()
+  endforeach()
 endif()
 
 list(LENGTH headers count)
