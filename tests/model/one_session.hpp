@@ -82,6 +82,12 @@ double lowest_point(VisualSurface<Model>& surface, std::span<const VertexForce> 
   return lowest;
 }
 
+template <class Mesh>
+Index nodes_below(const Mesh& mesh) {
+  return static_cast<Index>(
+      std::ranges::count_if(mesh.positions, [](const Vector3& x) { return std::abs(x[2]) < 1e-9; }));
+}
+
 /// Set-up, report, touch, render, pose, loads, reset and refusals.
 template <class Model>
 void run() {
@@ -94,6 +100,8 @@ void run() {
   CHECK(stages > 0);
   CHECK(model.report().nodes == mesh.node_count());
   CHECK(model.report().touchable_vertices == static_cast<Index>(model.touchable_nodes().size()));
+  CHECK(model.report().free_dofs == 3 * (model.report().nodes - nodes_below(mesh)));
+  CHECK(model.report().kept_dofs == 3 * model.report().touchable_vertices);
   CHECK(!model.report().has(SetupFlag::locking));
   std::ostringstream text;
   text << model.report();

@@ -202,6 +202,8 @@ class CuttableTissue : public ModelBase {
         });
     views_.update();
     setup_report().kept_dofs = process_->report().kept;
+    setup_report().free_dofs = elastic_body().conditions(this->scene()).free_count();
+    setup_report().condensed_dofs = setup_report().free_dofs - setup_report().kept_dofs;
     report_displacement(elastic_body().positions(), process_->displacement_with({}).head(3 * mesh().node_count()),
                         setup_report());
   }

@@ -76,7 +76,7 @@ class MovingTissue : public ModelBase {
   /// has another size. A copy, no solve. Never waits.
   SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept;
   /// The same as a new vector.
-  VectorX displacement(std::span<const VertexForce> forces);
+  VectorX displacement(std::span<const VertexForce> forces = {});
 
   // TissueModel: the thread that ticks
 

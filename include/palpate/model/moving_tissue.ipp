@@ -5,6 +5,7 @@
 
 #include <palpate/core/realtime.hpp>
 #include <palpate/core/rigid_motion.hpp>
+#include <palpate/model/admission_report.hpp>
 #include <palpate/model/elastic_body.hpp>
 #include <palpate/model/stage_timer.hpp>
 #include <palpate/model/touchable.hpp>
@@ -28,7 +29,8 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   motion_ = std::move(prepared.motion);
   accepts_initial_strains_ = prepared.accepts_initial_strains;
   start_ = std::move(prepared.start);
-  start_prescribed_ = elastic_body().conditions(scene()).prescribed;
+  const EssentialConditions conditions = elastic_body().conditions(scene());
+  start_prescribed_ = conditions.prescribed;
   mass_ = elastic_body().nodal_mass();
   applied_ = load_of(scene(), Vector3::Zero());
   load_ = start_load_ = load_of(scene(), gravity());
@@ -45,6 +47,9 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   views_.fill(view);
   drawn_.fill(start_);
   setup_report().compliance_bytes = compliance_.bytes();
+  setup_report().free_dofs = conditions.free_count();
+  setup_report().kept_dofs = 3 * setup_report().touchable_vertices;
+  if (accepts_initial_strains_) report_displacement(elastic_body().positions(), start_, setup_report());
 }
 
 PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
