@@ -58,6 +58,13 @@ class Scene {
     Vector6 strain;
   };
 
+  Scene();
+  Scene(const Scene&);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(const Scene&);
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
   /// Holds all three components of every node at zero (essential condition).
   Scene& fix(Selection where) { return prescribe(std::move(where), {0.0, 0.0, 0.0}); }
 

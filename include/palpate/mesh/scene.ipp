@@ -9,6 +9,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+PALPATE_INLINE Scene::Scene() = default;
+PALPATE_INLINE Scene::Scene(const Scene&) = default;
+PALPATE_INLINE Scene::Scene(Scene&&) noexcept = default;
+PALPATE_INLINE Scene& Scene::operator=(const Scene&) = default;
+PALPATE_INLINE Scene& Scene::operator=(Scene&&) noexcept = default;
+PALPATE_INLINE Scene::~Scene() = default;
+
 PALPATE_INLINE Scene& Scene::prescribe(Selection where, Components values) {
   for (const auto& v : values) require_finite(v.value_or(0.0), "a prescribed displacement");
   prescribed_.push_back({std::move(where), values});

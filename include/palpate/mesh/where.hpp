@@ -5,6 +5,7 @@
 #include <palpate/core/types.hpp>
 
 #include <functional>
+#include <memory>
 #include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -27,16 +28,17 @@ class PointSet {
 
   PointSet(Contains contains, std::string name);
 
-  bool contains(const Vector3& point, double margin = 0.0) const { return contains_(point + origin_, margin); }
-  const std::string& name() const noexcept { return name_; }
+  bool contains(const Vector3& point, double margin = 0.0) const;
+  const std::string& name() const noexcept;
   /// Where the frame of the points that `contains` is asked for lies in the frame in which the set was made [m].
   const Vector3& origin() const noexcept { return origin_; }
   /// The same set for points in a frame whose origin lies at `origin` in the present one [m].
   PointSet seen_from(const Vector3& origin) const;
 
  private:
-  Contains contains_;
-  std::string name_;
+  struct Definition;
+
+  std::shared_ptr<const Definition> definition_;
   Vector3 origin_ = Vector3::Zero();
 };
 

@@ -30,9 +30,22 @@ inline void require_radius(double radius) {
 
 namespace where {
 
+struct PointSet::Definition {
+  Contains contains;
+  std::string name;
+};
+
 PALPATE_INLINE PointSet::PointSet(Contains contains, std::string name)
-    : contains_(std::move(contains)), name_(std::move(name)) {
-  if (!contains_) raise(SetupErrorKind::bad_argument, "a set of points without a function that decides");
+    : definition_(std::make_shared<const Definition>(Definition{std::move(contains), std::move(name)})) {
+  if (!definition_->contains) raise(SetupErrorKind::bad_argument, "a set of points without a function that decides");
+}
+
+PALPATE_INLINE bool PointSet::contains(const Vector3& point, double margin) const {
+  return definition_->contains(point + origin_, margin);
+}
+
+PALPATE_INLINE const std::string& PointSet::name() const noexcept {
+  return definition_->name;
 }
 
 PALPATE_INLINE PointSet PointSet::seen_from(const Vector3& origin) const {
