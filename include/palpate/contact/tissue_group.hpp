@@ -1,22 +1,39 @@
 // Several tissues in one scene, touched by the same tools.
 #pragma once
 
+#include <palpate/concepts/still_tissue.hpp>
 #include <palpate/contact/tissue_view.hpp>
 
 #include <Eigen/Geometry>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Tissues of any types that do not move by themselves as one TissueModel in the world's frame: a ball that touches two
+namespace detail {
+
+/// Whether no hook but foresee does anything.
+template <class T>
+concept HooksOnlyForesee = requires(T& tissue, std::span<const VertexForce> forces, ContactProblem& problem,
+                                    const ContactParameters& parameters, const BladeSweep& sweep) {
+  { tissue.begin_tick() } -> std::same_as<NoHook>;
+  { tissue.end_tick(forces) } -> std::same_as<NoHook>;
+  { tissue.updates() } -> std::same_as<NoHook>;
+  { tissue.exchange_contacts(problem) } -> std::same_as<NoHook>;
+  { tissue.prepare_tools(0.0, parameters) } -> std::same_as<NoHook>;
+  { tissue.try_cut(sweep) } -> std::same_as<NoHook>;
+};
+
+}  // namespace detail
+
+/// Tissues of any types that do not move by themselves, and have no hooks but foresee, as one TissueModel in the world's frame: a ball that touches two
 /// organs is one contact problem, with one force and one gate. Vertices are those of the members one after the other.
 /// Refers to the members, which must outlive it; the organs do not touch each other.
-class TissueGroup {
+class TissueGroup : public StillTissue {
  public:
   /// Throws bad_argument when there is none. Allocates.
-  template <TissueModel... T>
+  template <class... T>
   requires(sizeof...(T) > 0) explicit TissueGroup(T&... members) { (add(checked(members)), ...), build(); }
   /// The same for a number of members known at run time.
-  template <TissueModel T>
+  template <class T>
   explicit TissueGroup(std::span<T* const> members) {
     for (T* member : members) add(checked(*member));
     build();
@@ -53,7 +70,12 @@ class TissueGroup {
     static_assert(
         !AnnouncesChanges<T>,
         "palpate: a tissue that moves by itself cannot be in a TissueGroup; give it a HapticServo of its own");
-    return TissueView(tissue);
+    const TissueView view(tissue);
+    if constexpr (TissueModel<T> && !AnnouncesChanges<T>)
+      static_assert(
+          detail::HooksOnlyForesee<T>,
+          "palpate: a TissueGroup hands on no hook but foresee; give a tissue that has others a HapticServo of its own");
+    return view;
   }
   void add(const TissueView& tissue);
   void build();

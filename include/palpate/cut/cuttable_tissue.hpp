@@ -171,6 +171,10 @@ class CuttableTissue : public ModelBase {
   std::uint64_t compliance_revision() const noexcept { return revision_; }
   double compliance_bound(int j) const noexcept { return view().bound[static_cast<std::size_t>(j)]; }
   double compliance_floor() const noexcept { return view().floor; }
+  NoHook foresee(std::span<const int>) noexcept { return {}; }
+  NoHook end_tick(std::span<const VertexForce>) noexcept { return {}; }
+  NoHook updates() const noexcept { return {}; }
+  NoHook report_slow(bool) noexcept { return {}; }
   /// Dofs whose correction a tick adds up at present.
   Index open_rank() const noexcept { return view().step->rank(); }
 
