@@ -47,6 +47,7 @@ template <class Policy>
 void new_column(benchmark::State& state) {
   palpate::SetupOptions few_slots;
   few_slots.compliance_slots = 8;
+  few_slots.columns = palpate::ColumnFill::synchronous;
   Palpation<Policy> s(block, few_slots);
   const int vertices = s.model().contact_surface().vertex_count();
   int v = 0;

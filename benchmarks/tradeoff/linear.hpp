@@ -141,7 +141,8 @@ inline const char* kept_name(const std::string& group) {
 /// An entry for one composition; `element` and `policy` are how C++ has them.
 template <class E, class Policy>
 Entry linear_entry(const Bench& bench, const std::string& element, const std::string& policy, const std::string& mesh,
-                   const std::string& kept, const SetupOptions& options = {}) {
+                   const std::string& kept,
+                   const SetupOptions& options = {.columns = ColumnFill::synchronous}) {
   Entry entry;
   Description& d = entry.description;
   const bool condensed = policy.starts_with("Condensed");
@@ -152,8 +153,8 @@ Entry linear_entry(const Bench& bench, const std::string& element, const std::st
   d.solver = policy;
   d.kept = condensed ? kept_name(kept) : "";
   d.scalar = policy.find("Float") != policy.npos ? "float" : "double";
-  if (options.columns == ColumnFill::ahead) d.work = "columns ahead";
-  d.own_core = options.columns == ColumnFill::ahead;
+  if (options.columns == ColumnFill::asynchronous) d.work = "columns ahead";
+  d.own_core = options.columns == ColumnFill::asynchronous;
   d.allowed = policy.find("Gradient") != policy.npos ? 2e-2 : 1e-2;
   d.paste = "using Model = HapticFEModel<" + element + ", LinearElastic, " + policy + ">;";
   entry.make = [&bench, mesh, kept, options] {

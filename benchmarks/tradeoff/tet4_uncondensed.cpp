@@ -27,7 +27,7 @@ void add_tet4_uncondensed(const Bench& bench, std::vector<Entry>& entries) {
   const std::string surface(surface_group);
   for (const char* mesh : {"given", "near", "all"})
     entries.push_back(linear_entry<Tet4, SparseCholesky>(bench, "Tet4", "SparseCholesky", mesh, surface));
-  const SetupOptions ahead{.columns = ColumnFill::ahead};
+  const SetupOptions ahead{.columns = ColumnFill::asynchronous};
   Entry entry = linear_entry<Tet4, SparseCholesky>(bench, "Tet4", "SparseCholesky", "given", surface, ahead);
   entry.make = [&bench, surface, ahead] { return std::make_unique<Paced>(bench, "given", surface, ahead); };
   entries.push_back(entry);

@@ -16,10 +16,11 @@ using Pad = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
 inline constexpr double pad_height = 0.02;
 inline constexpr double ball_radius = 4e-3;
 
-/// A block of 30 x 30 x 20 mm, fixed below; its top, or all of its surface, can be touched.
+/// A block of 30 x 30 x 20 mm, fixed below; its top, or all of its surface, can be touched. Columns are computed in the
+/// tick unless asked otherwise.
 template <class Model = Pad>
 Model make_pad(const char* touched = "z1", double youngs_modulus = 1e4, std::array<int, 3> cells = {6, 6, 4},
-               const SetupOptions& options = {}) {
+               const SetupOptions& options = {.columns = ColumnFill::synchronous}) {
   Scene scene;
   scene.fix("z0").touch(touched);
   return Model(box_tet4(Vector3(0.03, 0.03, pad_height), cells, BoxSplit::six), scene,

@@ -180,6 +180,16 @@ TEST_CASE("a chain of many links that hang on each other", "[extreme][B7]") {
   CHECK_FALSE(found());
 }
 
+TEST_CASE("a chain too long for geometry is refused by the factorisation", "[extreme][B7]") {
+  std::vector<Vector3> corners;
+  for (int k = 0; k < 170; ++k) corners.emplace_back(k, 0, k % 2);
+  const Blocks chain(corners, 1);
+  const Mesh<Tet4> mesh = placed(chain.mesh, 1, 0.01);
+  for (const Scene& scene : touched_scenes(chain, {"a long chain", corners, {0}, 0}))
+    for (const PolicyName policy : {PolicyName::sparse_cholesky, PolicyName::condensed_inverse})
+      CHECK_REFUSED(SetupErrorKind::not_positive_definite, make_model(policy, mesh, scene, law));
+}
+
 TEST_CASE("supports on a line or in a point leave motions of the whole body", "[extreme][B8]") {
   for (const auto& [seed, scale] : {std::pair{0, 1.0}, {1, 1e-3}, {2, 1e3}})
     for (const int n : {1, 3}) {

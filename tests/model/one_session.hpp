@@ -121,7 +121,7 @@ void run() {
   // Start means start.
   servo.reset();
   model.reset();
-  CHECK(press(model, servo, 0.004) == first);
+  CHECK((press(model, servo, 0.004) == first));
 
   // The organ upside down and elsewhere feels the same, rotated with it.
   servo.reset();
@@ -177,10 +177,11 @@ void run() {
   auto bad = mesh;
   std::swap(bad.elements[7][0], bad.elements[7][1]);
   CHECK_REFUSED(SetupErrorKind::inverted_element, Model(bad, held_block(), material<M>()));
-  if constexpr (requires { E::locking_poisson_ratio; }) {
-    const Model locks(mesh, held_block(), material<M>(0.49));
-    CHECK(locks.report().has(SetupFlag::locking));
-  }
+  if constexpr (requires { E::locking_poisson_ratio; })
+    if (E::locking_poisson_ratio < 0.48) {
+      const Model locks(mesh, held_block(), material<M>(0.49));
+      CHECK(locks.report().has(SetupFlag::locking));
+    }
 }
 
 }  // namespace one_session

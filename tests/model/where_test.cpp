@@ -14,12 +14,12 @@ using namespace palpate;
 
 namespace {
 
-const Vector3 size(0.06, 0.06, 0.03), place(3.0, -7.0, 0.2);
+const Vector3 slab_size(0.06, 0.06, 0.03), slab_place(3.0, -7.0, 0.2);
 const LinearElastic tissue_law{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0};
 
 /// A slab away from zero, with an orphan in front of all, so that ids change and positions move at admission.
-Mesh<Tet4> slab() {
-  Mesh<Tet4> mesh = box_tet4(size, {4, 4, 3});
+Mesh<Tet4> distant_slab() {
+  Mesh<Tet4> mesh = box_tet4(slab_size, {4, 4, 3});
   mesh.positions.insert(mesh.positions.begin(), Vector3(0.5, 0.5, 0.5));
   for (auto& element : mesh.elements)
     for (NodeId& i : element) ++i;
@@ -28,7 +28,7 @@ Mesh<Tet4> slab() {
     for (auto& face : g.faces)
       for (NodeId& i : face) ++i;
   }
-  for (Vector3& x : mesh.positions) x += place;
+  for (Vector3& x : mesh.positions) x += slab_place;
   return mesh;
 }
 AdmissionPolicy drop_orphans() {
@@ -37,8 +37,8 @@ AdmissionPolicy drop_orphans() {
   return policy;
 }
 
-const auto bottom = where::below(place);
-const auto top = where::above(Vector3(place + Vector3(0, 0, size[2])));
+const auto bottom = where::below(slab_place);
+const auto top = where::above(Vector3(slab_place + Vector3(0, 0, slab_size[2])));
 
 Scene by_name() {
   return Scene().fix("z0").touch("z1").see("surface").pressure("z1", 5.0).point_load("z1", {0.0, 0.01, 0.0});
@@ -64,7 +64,7 @@ TEST_CASE("a linear model takes positions for names", "[model][where]") {
   using Model = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
   SetupOptions options;
   options.admission = drop_orphans();
-  Model named(slab(), by_name(), tissue_law, options), placed(slab(), by_place(), tissue_law, options);
+  Model named(distant_slab(), by_name(), tissue_law, options), placed(distant_slab(), by_place(), tissue_law, options);
   CHECK(named.displacement() == placed.displacement());
   CHECK(named.touchable_nodes() == placed.touchable_nodes());
   check_same_surface(named, placed);
@@ -72,7 +72,7 @@ TEST_CASE("a linear model takes positions for names", "[model][where]") {
 
   // Changes of the loads afterwards, too.
   const Scene other = Scene().fix("z0").traction("x1", {2.0, 0.0, 0.0});
-  const auto side = where::above(Vector3(place + Vector3(size[0], 0, 0)), Vector3::UnitX());
+  const auto side = where::above(Vector3(slab_place + Vector3(slab_size[0], 0, 0)), Vector3::UnitX());
   named.set_conditions(other);
   placed.set_conditions(Scene().fix(bottom).traction(side, {2.0, 0.0, 0.0}).touch(top));
   CHECK(named.displacement() == placed.displacement());
@@ -80,9 +80,9 @@ TEST_CASE("a linear model takes positions for names", "[model][where]") {
 }
 
 TEST_CASE("only the surface of a set of points is touched", "[model][where]") {
-  const auto upper = where::above(Vector3(place + Vector3(0, 0, 0.5 * size[2])));
-  const HapticFEModel<Tet4, LinearElastic, SparseCholesky> model(slab(), Scene().fix(bottom).touch(upper), tissue_law,
-                                                                 {.admission = drop_orphans()});
+  const auto upper = where::above(Vector3(slab_place + Vector3(0, 0, 0.5 * slab_size[2])));
+  const HapticFEModel<Tet4, LinearElastic, SparseCholesky> model(distant_slab(), Scene().fix(bottom).touch(upper),
+                                                                 tissue_law, {.admission = drop_orphans()});
   const std::vector<NodeId> surface = nodes_of(extract_boundary<Tet4>(model.mesh()));
   CHECK(nodes_within(model.mesh(), upper.seen_from(model.origin())).size() > model.touchable_nodes().size());
   for (const NodeId i : model.touchable_nodes()) CHECK(std::ranges::binary_search(surface, i));
@@ -93,7 +93,8 @@ TEST_CASE("only the surface of a set of points is touched", "[model][where]") {
 TEST_CASE("a set that selects nothing is refused where the mesh was given", "[model][where]") {
   const auto refused = [](const Scene& scene) {
     return test::refusal([&] {
-      HapticFEModel<Tet4, LinearElastic, SparseCholesky>(slab(), scene, tissue_law, {.admission = drop_orphans()});
+      HapticFEModel<Tet4, LinearElastic, SparseCholesky>(distant_slab(), scene, tissue_law,
+                                                         {.admission = drop_orphans()});
     });
   };
   const auto far = where::sphere({0, 0, 0}, 0.01);
@@ -107,13 +108,13 @@ TEST_CASE("a set that selects nothing is refused where the mesh was given", "[mo
 }
 
 TEST_CASE("a view of somebody's arrays needs no group", "[model][where]") {
-  const Mesh<Tet4> mesh = box_tet4(size, {4, 4, 3});
+  const Mesh<Tet4> mesh = box_tet4(slab_size, {4, 4, 3});
   const auto count = [](Index n) { return static_cast<std::size_t>(n); };
   const MeshArrays<Tet4, double, NodeId> view(
       std::span<const double>(mesh.positions[0].data(), 3 * count(mesh.node_count())),
       std::span<const NodeId>(mesh.elements[0].data(), 4 * count(mesh.element_count())));
   using Model = HapticFEModel<Tet4, LinearElastic, SparseCholesky>;
-  const Scene scene = Scene().fix(where::below(Vector3::Zero())).touch(where::above(size)).gravity({0, 0, -9.81});
+  const Scene scene = Scene().fix(where::below(Vector3::Zero())).touch(where::above(slab_size)).gravity({0, 0, -9.81});
   const Model model(view, scene, tissue_law), same(mesh, scene, tissue_law);
   CHECK(model.displacement() == same.displacement());
   check_same_surface(model, same);
@@ -128,29 +129,30 @@ TEST_CASE("tissue that moves takes positions for names", "[model][where]") {
   const SetupOptions mending{.admission = drop_orphans()};
   using Rubber = HapticFEModel<Tet4, NeoHookean, Implicit<Newton<SparseCholesky>>>;
   const NeoHookean rubber{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0};
-  check(Rubber(slab(), by_name(), rubber, mending), Rubber(slab(), by_place(), rubber, mending));
+  check(Rubber(distant_slab(), by_name(), rubber, mending), Rubber(distant_slab(), by_place(), rubber, mending));
   using Corotated = HapticFEModel<Tet4, Corotational<LinearElastic>, Implicit<MatrixFreeCG<BlockJacobi>>>;
   const Corotational<LinearElastic> law{tissue_law};
-  check(Corotated(slab(), by_name(), law, mending), Corotated(slab(), by_place(), law, mending));
+  check(Corotated(distant_slab(), by_name(), law, mending), Corotated(distant_slab(), by_place(), law, mending));
 }
 
 TEST_CASE("tissue that is cut takes positions for names", "[model][cut][where]") {
   using Cut = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
   const CutParameters by_group{.cuttable = Selection("x1")},
-      by_point{.cuttable = where::above(Vector3(place + Vector3(size[0], 0, 0)), Vector3::UnitX())};
+      by_point{.cuttable = where::above(Vector3(slab_place + Vector3(slab_size[0], 0, 0)), Vector3::UnitX())};
   const SetupOptions mending{.admission = drop_orphans()};
-  Cut named(slab(), by_name(), tissue_law, mending, by_group), placed(slab(), by_place(), tissue_law, mending, by_point);
+  Cut named(distant_slab(), by_name(), tissue_law, mending, by_group), placed(distant_slab(), by_place(), tissue_law, mending, by_point);
   check_same_surface(named, placed);
   CHECK(named.cut_report().kept == placed.cut_report().kept);
   CHECK(named.displacement() == placed.displacement());
 
   // The elements in a tool leave, wherever the tissue keeps its mesh.
-  const auto tool = where::capsule(place + Vector3(0.03, 0.03, 0.03), place + Vector3(0.03, 0.03, 0.02), 0.015);
+  const auto tool =
+      where::capsule(slab_place + Vector3(0.03, 0.03, 0.03), slab_place + Vector3(0.03, 0.03, 0.02), 0.015);
   CutOrder order;
   placed.read([&](const auto& topology, const auto&) {
     order.remove = elements_within(topology.mesh(), tool.seen_from(placed.origin()));
   });
-  CHECK(order.remove == elements_within(slab(), tool));
+  CHECK(order.remove == elements_within(distant_slab(), tool));
   CHECK(order.remove.size() > 4);
   placed.cut(order);
   placed.work();
@@ -160,7 +162,7 @@ TEST_CASE("tissue that is cut takes positions for names", "[model][cut][where]")
 }
 
 TEST_CASE("equilibrium takes positions for names", "[model][equilibrium][where]") {
-  const Mesh<Tet4> mesh = admit<Tet4>(slab(), drop_orphans()).mesh;
+  const Mesh<Tet4> mesh = admit<Tet4>(distant_slab(), drop_orphans()).mesh;
   const std::vector<NeoHookean> laws{{5e3, 0.4, 1000.0}};
   Equilibrium named(make_hyperelastic_body(mesh, laws), by_name()),
       placed(make_hyperelastic_body(mesh, laws), by_place());

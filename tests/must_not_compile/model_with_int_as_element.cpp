@@ -1,4 +1,4 @@
-// expect: 'Element
+// expect: palpate: the first argument of HapticFEModel is an element
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

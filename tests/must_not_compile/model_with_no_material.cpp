@@ -1,4 +1,4 @@
-// expect: LinearMaterial
+// expect: palpate: the second argument of HapticFEModel is a material
 // A stiffness, but neither a density nor a check.
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>

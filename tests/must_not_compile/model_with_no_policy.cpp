@@ -1,4 +1,4 @@
-// expect: SolverPolicy
+// expect: palpate: the third argument of HapticFEModel is a solver
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

@@ -57,6 +57,10 @@ class CorotatedTetrahedra {
     });
   }
 
+  /// Rotations are found from those at rest next time, not from the last ones.
+  void forget_rotations() noexcept {
+    for (TurnedBatch& turned : turned_) turned.turn = {Lane(S(1)), Lane(S(0)), Lane(S(0)), Lane(S(0))};
+  }
   /// Takes the rotations at u; f = internal force there [N], energy [J]. Finite where the square of F is, in S.
   DeformationReport linearise(const VectorX& u, VectorX& f, double& energy) noexcept {
     energy = 0.0;

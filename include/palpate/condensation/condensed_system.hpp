@@ -45,6 +45,8 @@ class CondensedSystem {
   Index kept() const noexcept { return kept_load_.size(); }
   Index size() const noexcept { return interior_.size(); }
   std::size_t bytes() const noexcept { return interior_.bytes() + dense_.bytes(); }
+  /// What `compliance_column` reads.
+  std::size_t column_bytes() const noexcept { return dense_.bytes(); }
 
   /// x = K^-1 b for a load on any dof, condensed ones included: u_k from f_k + P_f f_c, then u_c = K_cc^-1 (f_c - K_ck
   /// u_k). No allocation.

@@ -47,7 +47,7 @@ class ContactSamples {
 };
 
 /// Throws SetupError(bad_argument) when the longest edge is longer than the lattice covers at one radius between points
-/// (ids: its vertices).
+/// (ids: its vertices). Says so when the edge is that long only because the scene's loads have stretched it.
 void require_dense_points(const ContactSurface& surface, double radius);
 
 }}  // namespace palpate

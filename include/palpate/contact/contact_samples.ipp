@@ -41,6 +41,13 @@ inline bool is_new_edge(const ContactSurface& surface, int t, std::size_t i) noe
   return true;
 }
 
+/// Length of an edge without loads; infinity when that is not known.
+inline double unloaded_length(const ContactSurface& surface, std::int64_t a, std::int64_t b) {
+  const std::vector<Vector3>& x = surface.unloaded().positions;
+  if (x.size() != surface.positions().size()) return infinity;
+  return (x[static_cast<std::size_t>(a)] - x[static_cast<std::size_t>(b)]).norm();
+}
+
 }  // namespace detail
 
 PALPATE_INLINE ContactSamples::ContactSamples(const ContactSurface& surface, double spacing) {
@@ -97,10 +104,22 @@ PALPATE_INLINE void require_dense_points(const ContactSurface& surface, double r
     }
   if (problem.ids.empty()) return;
   problem.count = 2;
-  problem.what = "an edge of the touchable surface is " + number(problem.value) + " m long, more than " +
-                 std::to_string(ContactSamples::maximum_subdivision) + " radii of the smallest tool (" +
-                 number(radius) + " m): it would fall through; the ids are vertices of the surface";
-  problem.hint = "Refine the mesh where tools touch, or take a larger tool";
+  const std::string bound = ", more than " + std::to_string(ContactSamples::maximum_subdivision) +
+                            " radii of the smallest tool (" + number(radius) +
+                            " m): it would fall through; the ids are vertices of the surface";
+  const double unloaded = detail::unloaded_length(surface, problem.ids[0], problem.ids[1]);
+  if (unloaded <= most) {
+    problem.what = "the scene's loads (" + surface.unloaded().loads +
+                   ") stretch an edge of the touchable surface from " + number(unloaded) + " m to " +
+                   number(problem.value) + " m" + bound;
+    problem.hint =
+        "Loads should not deform the body that much: look at stiffness (Pa), density (kg/m^3), the unit of length of "
+        "the "
+        "mesh (m) and what holds the body";
+  } else {
+    problem.what = "an edge of the touchable surface is " + number(problem.value) + " m long" + bound;
+    problem.hint = "Refine the mesh where tools touch, or take a larger tool";
+  }
   raise(std::move(problem));
 }
 

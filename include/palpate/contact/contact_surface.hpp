@@ -3,6 +3,9 @@
 
 #include <palpate/contact/bvh.hpp>
 
+#include <string>
+#include <utility>
+
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Vertices and outward triangles of the touchable surface where it rests under its loads, no tool touching.
@@ -30,6 +33,15 @@ class ContactSurface {
   /// Edges where more than two triangles meet: there a tool finds no neighbour across, and none is guessed.
   int crowded_edges() const noexcept { return crowded_edges_; }
   int vertex_count() const noexcept { return static_cast<int>(positions_.size()); }
+
+  /// The surface without loads, so that a refusal can tell what loads have done to it.
+  struct Unloaded {
+    std::vector<Vector3> positions;  ///< of the vertices; empty when nobody told
+    std::string loads;               ///< in words: "gravity of 9.81 m/s^2"
+  };
+  void set_unloaded(Unloaded unloaded) { unloaded_ = std::move(unloaded); }
+  void set_loads(std::string loads) noexcept { unloaded_.loads = std::move(loads); }
+  const Unloaded& unloaded() const noexcept { return unloaded_; }
 
   /// Moves the resting surface (new loads, new pose of the loads). No allocation; not while a tick runs.
   void move_to(std::span<const Vector3> positions) noexcept;
@@ -62,6 +74,7 @@ class ContactSurface {
   std::vector<int> first_at_, triangles_at_;  // triangles of every vertex
   int crowded_edges_ = 0;
   std::uint64_t revision_ = 0;
+  Unloaded unloaded_;
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20; -1 at the rim
 };
 

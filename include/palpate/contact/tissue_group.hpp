@@ -79,6 +79,8 @@ class TissueGroup : public StillTissue {
   }
   void add(const TissueView& tissue);
   void build();
+  /// Of all members, in the world's frame; empty when one of them does not tell.
+  ContactSurface::Unloaded unloaded() const;
   const Member& member_of(int vertex) const noexcept;
   std::span<const int> part_of(const Member& m, std::span<const int> vertices) noexcept;
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }

@@ -23,7 +23,19 @@ PALPATE_INLINE void TissueGroup::add(const TissueView& tissue) {
 PALPATE_INLINE void TissueGroup::build() {
   if (members_.empty()) raise(SetupErrorKind::bad_argument, "a group of no tissues");
   surface_ = ContactSurface(moved_, std::move(triangles_));
+  surface_.set_unloaded(unloaded());
   own_.resize(moved_.size());
+}
+
+PALPATE_INLINE ContactSurface::Unloaded TissueGroup::unloaded() const {
+  ContactSurface::Unloaded all;
+  for (const Member& m : members_) {
+    const ContactSurface::Unloaded& own = m.tissue.contact_surface().unloaded();
+    if (static_cast<int>(own.positions.size()) != m.count) return {};
+    for (const Vector3& x : own.positions) all.positions.push_back(m.tissue.to_world() * x);
+    all.loads += (all.loads.empty() ? "" : "; ") + own.loads;
+  }
+  return all;
 }
 
 PALPATE_INLINE void TissueGroup::update() noexcept {

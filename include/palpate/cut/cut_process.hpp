@@ -12,6 +12,7 @@
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/cut_view.hpp>
 #include <palpate/cut/swept_faces.hpp>
+#include <palpate/model/touchable.hpp>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +20,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -97,16 +99,16 @@ class CutProcess {
     report_.error = before.error;
     report_.changes = before.changes + 1;
   }
-  /// Makes the contact anew for these tools. Throws what require_dense_points throws. Strong guarantee.
-  void set_tools(double smallest_radius, const ContactParameters& parameters) {
+  /// Makes the contact anew for these tools. Throws what require_dense_points throws, before anything is cut; `loads`
+  /// is what it says of the scene's. Strong guarantee.
+  void set_tools(double smallest_radius, const ContactParameters& parameters, const std::string& loads) {
     if (smallest_radius == tools_.radius && parameters.sample_spacing == tools_.contact.sample_spacing) return;
     const Tools before = std::exchange(tools_, {smallest_radius, parameters});
     const auto surface = contact_;
     ++cut_;
     try {
       make_contact();
-      if (contact_->left_out)
-        require_dense_points({contact_->surface.positions(), touchable_.triangles()}, smallest_radius);
+      if (contact_->left_out && report_.cuts == 0) require_dense_surface(smallest_radius, loads);
     } catch (...) {
       tools_ = before;
       contact_ = surface;
@@ -257,6 +259,14 @@ class CutProcess {
     Vector3 x = topology_.mesh().position(node);
     if (dof < system_.displacement().size()) x += system_.displacement().template segment<3>(dof);
     return x;
+  }
+  /// Refuses what the smallest tool would fall through.
+  void require_dense_surface(double radius, const std::string& loads) const {
+    ContactSurface whole(contact_->surface.positions(), touchable_.triangles());
+    std::vector<Vector3> unloaded;
+    for (const NodeId node : touchable_.nodes()) unloaded.push_back(topology_.mesh().position(node));
+    whole.set_unloaded({std::move(unloaded), loads});
+    require_dense_points(whole, radius);
   }
   double longest_edge(const std::vector<Vector3>& positions) const {
     double longest = 0.0;

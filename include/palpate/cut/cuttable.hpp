@@ -3,6 +3,7 @@
 
 #include <palpate/cut/cut_visual_surface.hpp>
 #include <palpate/cut/cuttable_tissue.hpp>
+#include <palpate/model/admitted_mesh.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/policies.hpp>
 

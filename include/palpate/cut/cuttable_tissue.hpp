@@ -3,8 +3,11 @@
 
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact_problem.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/contact/blade_sweep.hpp>
 #include <palpate/cut/cut_orders.hpp>
+#include <palpate/cut/cut_parameters.hpp>
+#include <palpate/cut/cut_preparation.hpp>
 #include <palpate/cut/cut_process.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
 #include <palpate/model/element_body.hpp>
@@ -99,9 +102,10 @@ class CuttableTissue : public ModelBase {
       raise(SetupErrorKind::unsupported,
             "the new scene prescribes other components than the one the model was made for",
             "Values may change, the set of prescribed components may not: make a new model");
+    std::string others = changed.loads_in_words();
     process_->set_loads(boundary(), changed.gravity(local(scene.gravity(), pose())));
     loaded_ = std::move(changed);
-    keep_gravity(scene.gravity());
+    keep_loads(scene.gravity(), others);
   }
   /// Gravity [m/s^2] in the world's frame. Makes a new factor. Strong guarantee.
   void set_gravity(const Vector3& gravity) {
@@ -160,7 +164,7 @@ class CuttableTissue : public ModelBase {
   /// when a tool is too small for the mesh. Strong guarantee.
   void prepare_tools(double smallest_radius, const ContactParameters& contact) {
     const std::scoped_lock lock(changes_);
-    process_->set_tools(smallest_radius, contact);
+    process_->set_tools(smallest_radius, contact, loads_in_words(gravity(), other_loads()));
     views_.update();
     revision_ = view().contact->cut;
     renewed_ = false;

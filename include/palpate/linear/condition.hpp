@@ -13,6 +13,17 @@ double inverse_norm_estimate(SolverView solver);
 /// say. Infinity when the answer is not finite. Allocates.
 double probe_error(const OperatorView& op, SolverView solver);
 
+/// What a solver makes of the softest motion of an operator.
+struct SoftestMotion {
+  double error = 0.0;  ///< relative, of a solve with this motion as its answer; 1 when nothing of it is left
+  Index largest = -1;  ///< its largest entry
+};
+
+/// Finds the softest motion by inverse iteration from a fixed random start, and solves for it as `probe_error` does. A
+/// random answer has only a share of 1 / sqrt(n) of one motion; where a single one is lost to rounding, this shows all
+/// of the loss. Infinity when an answer is not finite. Three solves; allocates.
+SoftestMotion probe_softest_motion(const OperatorView& op, SolverView solver);
+
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

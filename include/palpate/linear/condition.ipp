@@ -34,18 +34,47 @@ PALPATE_INLINE double inverse_norm_estimate(SolverView solver) {
   return estimate;
 }
 
-PALPATE_INLINE double probe_error(const OperatorView& op, SolverView solver) {
-  const Index n = solver.size();
-  if (n == 0) return 0.0;
+namespace detail {
+
+inline VectorX random_answer(Index n) {
   std::mt19937_64 generator(20250101);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  VectorX truth(n), b(n), x(n);
-  for (Index i = 0; i < n; ++i) truth.data()[i] = uniform(generator);
+  VectorX answer(n);
+  for (Index i = 0; i < n; ++i) answer.data()[i] = uniform(generator);
+  return answer;
+}
+
+/// |x - truth| / |truth| of a solve whose answer is known; infinity when it is not finite.
+inline double error_of_solve(const OperatorView& op, SolverView solver, const VectorX& truth) {
+  VectorX b(truth.size()), x(truth.size());
   op.apply(truth, b);
   solver.solve_into(b, x);
-  detail::add_scaled(x, -1.0, truth);
-  const double error = detail::norm(x) / detail::norm(truth);
+  add_scaled(x, -1.0, truth);
+  const double error = norm(x) / norm(truth);
   return std::isfinite(error) ? error : infinity;
+}
+
+}  // namespace detail
+
+PALPATE_INLINE double probe_error(const OperatorView& op, SolverView solver) {
+  if (solver.size() == 0) return 0.0;
+  return detail::error_of_solve(op, solver, detail::random_answer(solver.size()));
+}
+
+PALPATE_INLINE SoftestMotion probe_softest_motion(const OperatorView& op, SolverView solver) {
+  const Index n = solver.size();
+  if (n == 0) return {};
+  VectorX motion = detail::random_answer(n), x(n);
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    solver.solve_into(motion, x);
+    const double length = detail::norm(x);
+    if (!(length > 0.0 && std::isfinite(length))) return {infinity, 0};
+    for (Index i = 0; i < n; ++i) motion.data()[i] = x.data()[i] / length;
+  }
+  SoftestMotion softest{detail::error_of_solve(op, solver, motion), 0};
+  for (Index i = 1; i < n; ++i)
+    if (std::abs(motion.data()[i]) > std::abs(motion.data()[softest.largest])) softest.largest = i;
+  return softest;
 }
 
 }}  // namespace palpate

@@ -102,6 +102,9 @@ class Scene {
   /// The same scene for an admitted mesh, see `mapped` of a Selection.
   Scene mapped(const std::vector<NodeId>& map, const Vector3& origin) const;
 
+  /// What acts on a body but gravity, in words: "2 pressures, prescribed displacements"; empty when nothing does.
+  std::string loads_in_words() const;
+
   /// Names of all groups the scene speaks of.
   std::vector<std::string> group_names() const;
 
@@ -118,6 +121,9 @@ class Scene {
   std::vector<Selection> seen_;
   Vector3 gravity_ = Vector3::Zero();
 };
+
+/// All that acts on a body, in words, with gravity [m/s^2]: "gravity of 9.81 m/s^2, 2 pressures".
+std::string loads_in_words(const Vector3& gravity, const std::string& others);
 
 }}  // namespace palpate
 

@@ -4,6 +4,7 @@
 #include <palpate/mesh/scene.hpp>
 #include <palpate/core/setup_error.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -100,6 +101,29 @@ PALPATE_INLINE Scene Scene::mapped(const std::vector<NodeId>& map, const Vector3
   for (auto& c : s.touched_) renew(c);
   for (auto& c : s.seen_) renew(c);
   return s;
+}
+
+PALPATE_INLINE std::string Scene::loads_in_words() const {
+  std::string words;
+  const auto add = [&](const std::string& what) { words += (words.empty() ? "" : ", ") + what; };
+  const auto count = [&](std::size_t n, const char* one, const char* more) {
+    if (n > 0) add(std::to_string(n) + ' ' + (n == 1 ? one : more));
+  };
+  count(tractions_.size(), "traction", "tractions");
+  count(pressures_.size(), "pressure", "pressures");
+  count(point_loads_.size(), "point load", "point loads");
+  count(body_loads_.size(), "body load", "body loads");
+  count(initial_strains_.size(), "initial strain", "initial strains");
+  const auto moves = [](const Prescribed& p) {
+    return std::ranges::any_of(p.values, [](const auto& v) { return v.value_or(0.0) != 0.0; });
+  };
+  if (std::ranges::any_of(prescribed_, moves)) add("prescribed displacements");
+  return words;
+}
+
+PALPATE_INLINE std::string loads_in_words(const Vector3& gravity, const std::string& others) {
+  if (gravity.isZero(0.0)) return others.empty() ? "none" : others;
+  return "gravity of " + number(gravity.norm()) + " m/s^2" + (others.empty() ? "" : ", " + others);
 }
 
 PALPATE_INLINE std::vector<std::string> Scene::group_names() const {

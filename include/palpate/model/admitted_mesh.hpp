@@ -3,6 +3,7 @@
 
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/mesh.hpp>
+#include <palpate/core/setup_options.hpp>
 #include <palpate/mesh/admission.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/admission_report.hpp>

@@ -29,6 +29,9 @@ class AnyStaticSystem {
   Index size() const noexcept { return system_ ? system_->size() : 0; }
   Index kept() const noexcept { return system_ ? system_->kept() : 0; }
   std::size_t bytes() const noexcept { return system_ ? system_->bytes() : 0; }
+  /// What `compliance_column` reads of the system at most, once per sweep or iteration; all of it unless the system has
+  /// a function `column_bytes()`.
+  std::size_t column_bytes() const noexcept { return system_ ? system_->column_bytes() : 0; }
   SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return system_->solve_into(b, x); }
   SolveReport compliance_column(Index j, VectorX& column) noexcept { return system_->compliance_column(j, column); }
   /// For systems that can be stored; nothing is written of others.
@@ -41,6 +44,7 @@ class AnyStaticSystem {
     virtual Index size() const noexcept = 0;
     virtual Index kept() const noexcept = 0;
     virtual std::size_t bytes() const noexcept = 0;
+    virtual std::size_t column_bytes() const noexcept = 0;
     virtual SolveReport solve_into(const VectorX& b, VectorX& x) noexcept = 0;
     virtual SolveReport compliance_column(Index j, VectorX& column) noexcept = 0;
     virtual void write(BinaryWriter& out) const = 0;
@@ -52,6 +56,12 @@ class AnyStaticSystem {
     Index size() const noexcept override { return static_cast<Index>(system.size()); }
     Index kept() const noexcept override { return static_cast<Index>(system.kept()); }
     std::size_t bytes() const noexcept override { return static_cast<std::size_t>(system.bytes()); }
+    std::size_t column_bytes() const noexcept override {
+      if constexpr (requires { system.column_bytes(); })
+        return static_cast<std::size_t>(system.column_bytes());
+      else
+        return bytes();
+    }
     SolveReport solve_into(const VectorX& b, VectorX& x) noexcept override { return system.solve_into(b, x); }
     SolveReport compliance_column(Index j, VectorX& column) noexcept override {
       return system.compliance_column(j, column);

@@ -1,4 +1,4 @@
-// The compliance of the touchable surface, as columns: all at set-up, each when first needed, or ahead of need.
+// The compliance of the touchable surface, as columns: all at set-up, each when first needed, or by a thread.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -19,8 +19,9 @@ class ColumnWorker;
 
 /// When a solver that does not store the whole compliance computes a column.
 enum class ColumnFill : std::uint8_t {
-  in_tick,  ///< in the tick that first needs it: exact in every tick, which takes as long as it takes
-  ahead     ///< by a thread, for all vertices near a tool; a tick that has to do without says degraded_model
+  automatic,    ///< synchronous where a column is cheap, asynchronous where it would make a tick late
+  synchronous,  ///< in the tick that first needs it: exact in every tick, which takes as long as it takes
+  asynchronous  ///< by a thread, for all vertices near a tool; a tick that has to do without says degraded_model
 };
 
 /// Response of all touchable vertices to forces on some: three columns (x, y, z) per stored vertex, read as double.
@@ -37,7 +38,7 @@ class ContactCompliance {
   ~ContactCompliance();
 
   /// From now on a thread computes the columns.
-  void fill_ahead();
+  void fill_asynchronously();
 
   std::size_t bytes() const noexcept { return columns_ ? columns_->bytes() : 0; }
   bool has(int vertex) const noexcept { return slot_of_[static_cast<std::size_t>(vertex)] >= 0; }

@@ -33,7 +33,7 @@ ContactCompliance<Scalar>::ContactCompliance(AnyStaticSystem system, std::vector
 }
 
 template <std::floating_point Scalar>
-void ContactCompliance<Scalar>::fill_ahead() {
+void ContactCompliance<Scalar>::fill_asynchronously() {
   worker_ = std::make_unique<ColumnWorker<Scalar>>(system_, *columns_);
 }
 

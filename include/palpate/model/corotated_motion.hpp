@@ -188,6 +188,11 @@ class CorotatedMotion {
     stepped_ = false;
     age_ = 0;
   }
+  /// At rest in u, as if nothing had been before: the same steps follow to the last bit. Throws as set_state.
+  void rest_at(const VectorX& u) {
+    tetrahedra_.forget_rotations();
+    set_state(u, VectorX::Zero(u.size()));
+  }
   /// Elements for which gone(element) leave where they are, for good, with their mass; `nodal_mass` is what is left
   /// (lumped_mass(body, gone)), `load` the loads on it [N] (CutPhysics::load_left). Velocities of what is left stay,
   /// and nodes without mass are held where they are. A preconditioner that can takes it in (BlockJacobi); another goes

@@ -5,6 +5,7 @@
 #include <palpate/assembly/element_frequency.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/assembly/linear_forces.hpp>
+#include <palpate/assembly/viscous_forces.hpp>
 #include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
 #include <palpate/integrator/semi_implicit_euler.hpp>
@@ -144,6 +145,18 @@ class ExplicitTissueMotion final : public TissueMotion {
   typename ExplicitMotion<Force, Scheme>::Checkpoint start_, end_;
 };
 
+namespace detail {
+
+/// Whether the materials of a body are viscoelastic.
+template <class MaterialBody>
+inline constexpr bool remembers = false;
+template <Element E>
+inline constexpr bool remembers<ViscousBody<E>> = true;
+template <Element E, ViscousMaterial M>
+inline constexpr bool remembers<HyperelasticBody<E, M>> = true;
+
+}  // namespace detail
+
 template <class Scheme>
 struct SolverTraits<Explicit<Scheme>> {
   using Parameters = ExplicitParameters;
@@ -151,6 +164,8 @@ struct SolverTraits<Explicit<Scheme>> {
   template <class MaterialBody>
   static PreparedMotion make_motion(MaterialBody body, const Scene& scene, const Parameters& p,
                                     const SetupLimits& limits) {
+    static_assert(!detail::remembers<MaterialBody>,
+                  "palpate: explicit steps do not move what a material remembers; use Implicit<Newton<SparseCholesky>>");
     const Body rest = detail::rest_body(body);
     return make_motion(rest, std::move(body), scene, p, limits);
   }
@@ -189,10 +204,6 @@ struct SolverTraits<Explicit<Scheme>> {
   template <Element E>
   static auto make_force(Body<E> body, const SetupLimits& limits) {
     return LinearForces(assemble_stiffness<E>(body, limits));
-  }
-  template <Element E>
-  static auto make_force(ViscousBody<E> body, const SetupLimits& limits) {
-    return ViscousForces(std::move(body), limits);
   }
 };
 

@@ -89,7 +89,7 @@ class CorotatedTissueMotion final : public TissueMotion {
   bool respond(const VectorX& forces, VectorX& u) noexcept override { return motion_.respond(forces, u); }
   const VectorX& displacement() const noexcept override { return motion_.displacement(); }
   const VectorX& velocity() const noexcept override { return motion_.velocity(); }
-  void rest_at(const VectorX& u) override { motion_.set_state(u, VectorX::Zero(u.size())); }
+  void rest_at(const VectorX& u) override { motion_.rest_at(u); }
   void set_load(const VectorX& load) override { motion_.set_load(load); }
   void set_prescribed(const VectorX& values) override { motion_.set_prescribed(values); }
 

@@ -80,8 +80,11 @@ class LinearTissue : public ModelBase, public StillTissue {
   void prepare_contact(const std::vector<Triangle>& triangles, bool eager, const SetupOptions& options);
   /// Kept dof of every touchable dof, -1 when it is prescribed.
   std::vector<Index> kept_index() const;
-  /// Computes a few columns: how soft the surface is, and how long a column takes.
+  /// Computes a few columns: how soft the surface is, and how long a column takes; starts a thread where one is to
+  /// compute the others.
   void sample_columns(ColumnFill fill);
+  /// Whether the three solves for a vertex would make a tick late.
+  bool is_column_late() const;
   Vector3 deformed(NodeId node) const noexcept;
   /// For changes of the loads: what is to be said of their displacement is said before they are accepted.
   std::function<void(const VectorX&)> reporting_to(SetupReport& report) const;

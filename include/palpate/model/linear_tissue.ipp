@@ -77,19 +77,23 @@ template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_conditions(const Scene& scene) {
   const ScopedIdTranslation translation(original_ids());
   const Scene mapped = this->mapped(scene, surface_.triangles());
+  std::string others = mapped.loads_in_words(), loads = loads_in_words(scene.gravity(), others);
   SetupReport changed = report();
   statics_->set_conditions(mapped, local(scene.gravity(), pose()), reporting_to(changed));
-  keep_gravity(scene.gravity());
+  keep_loads(scene.gravity(), others);
   accept_displacement(changed);
+  surface_.set_loads(std::move(loads));
 }
 
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_gravity(const Vector3& gravity) {
   require_finite_gravity(gravity);
+  std::string loads = loads_in_words(gravity, other_loads());
   SetupReport changed = report();
   statics_->set_gravity(local(gravity, pose()), reporting_to(changed));
   keep_gravity(gravity);
   accept_displacement(changed);
+  surface_.set_loads(std::move(loads));
 }
 
 template <std::floating_point Scalar>
@@ -103,11 +107,13 @@ void LinearTissue<Scalar>::set_pose(const Eigen::Isometry3d& pose) {
 
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::reset() {
+  std::string others = scene().loads_in_words(), loads = loads_in_words(scene().gravity(), others);
   SetupReport changed = report();
   statics_->set_conditions(scene(), scene().gravity(), reporting_to(changed));
   place(Eigen::Isometry3d::Identity());
-  keep_gravity(scene().gravity());
+  keep_loads(scene().gravity(), others);
   accept_displacement(changed);
+  surface_.set_loads(std::move(loads));
 }
 
 template <std::floating_point Scalar>
@@ -130,6 +136,7 @@ void LinearTissue<Scalar>::prepare_contact(const std::vector<Triangle>& triangle
   std::vector<Vector3> positions;
   for (NodeId node : touchable_nodes()) positions.push_back(deformed(node));
   surface_ = ContactSurface(positions, triangles);
+  surface_.set_unloaded(unloaded());
   moved_ = std::move(positions);
   if (const int edges = surface_.crowded_edges())
     setup_report().set(SetupFlag::non_manifold, "more than two touchable triangles meet at " + std::to_string(edges) +
@@ -158,7 +165,21 @@ void LinearTissue<Scalar>::sample_columns(ColumnFill fill) {
   double softest = 0.0;
   for (int v : sampled) softest = std::max(softest, compliance_.bound(v));
   compliance_.assume(softest / std::sqrt(3.0));
-  if (fill == ColumnFill::ahead) compliance_.fill_ahead();
+  setup_report().asynchronous_columns =
+      fill == ColumnFill::asynchronous || (fill == ColumnFill::automatic && is_column_late());
+  if (setup_report().asynchronous_columns) compliance_.fill_asynchronously();
+}
+
+template <std::floating_point Scalar>
+bool LinearTissue<Scalar>::is_column_late() const {
+  constexpr double most_numbers = 1e5;  // a core reads about two of a factor per nanosecond
+  AnyStaticSystem system = statics_->system();
+  if (system.kept() == 0) return false;
+  VectorX column(system.kept());
+  const int iterations = system.compliance_column(0, column).iterations;
+  const double sweeps = iterations == 0 ? 2.0 : 1.0 + iterations;
+  const std::size_t bytes = system.column_bytes() + (iterations == 0 ? 0 : report().stiffness_bytes);
+  return 3.0 * sweeps * static_cast<double>(bytes / sizeof(double)) > most_numbers;
 }
 
 template <std::floating_point Scalar>

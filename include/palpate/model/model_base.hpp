@@ -1,6 +1,7 @@
 // What every model has, whatever its solver is: the admitted body, the report, and where it lies in the world.
 #pragma once
 
+#include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
@@ -31,7 +32,9 @@ struct SetupOptions {
 
   // Statics; other solvers have no use for the first two and refuse the last.
   int compliance_slots = 256;  ///< vertices whose compliance is remembered by a solver that does not store all
-  ColumnFill columns = ColumnFill::in_tick;  ///< when such a solver computes it
+  /// When such a solver computes it. `automatic` decides by the numbers that a column reads, the same way on every
+  /// machine: beyond 100 000, some 50 us, a thread computes it; the report says which.
+  ColumnFill columns = ColumnFill::automatic;
   std::string cache_file{};  ///< where the prepared system is kept for the next time; empty: nowhere. See docs/cache.md
 };
 
@@ -83,7 +86,15 @@ class ModelBase {
 
   /// Gravity [m/s^2], world frame.
   const Vector3& gravity() const noexcept { return gravity_; }
+  /// What acts on the body but gravity, in words.
+  const std::string& other_loads() const noexcept { return other_loads_; }
   void keep_gravity(const Vector3& gravity) noexcept { gravity_ = gravity; }
+  void keep_loads(const Vector3& gravity, std::string& others) noexcept {
+    gravity_ = gravity;
+    other_loads_.swap(others);
+  }
+  /// Touchable nodes where they rest, and what acts on the body.
+  ContactSurface::Unloaded unloaded() const;
   /// A gravity of the world in the frame of a body at `pose`.
   static Vector3 local(const Vector3& gravity, const Eigen::Isometry3d& pose) noexcept;
   /// Throws non_finite.
@@ -99,6 +110,7 @@ class ModelBase {
   std::vector<NodeId> node_map_, touchable_, seen_;
   OriginalIds original_ids_;
   std::unique_ptr<ElasticBody> body_;
+  std::string other_loads_;
   Vector3 origin_ = Vector3::Zero(), gravity_ = Vector3::Zero();
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity(), world_ = Eigen::Isometry3d::Identity();
 };

@@ -28,6 +28,7 @@ PALPATE_INLINE Touchable ModelBase::admit(const Scene& scene, AdmittedBody admit
   const ScopedIdTranslation translation(original_ids_);
   scene_ = scene.mapped(node_map_, origin_);
   gravity_ = scene_.gravity();
+  other_loads_ = scene_.loads_in_words();
   place(Eigen::Isometry3d::Identity());
   Touchable touchable = body_->touchable(scene_);
   touchable_ = touchable.nodes;
@@ -35,6 +36,12 @@ PALPATE_INLINE Touchable ModelBase::admit(const Scene& scene, AdmittedBody admit
   report_.touchable_vertices = static_cast<Index>(touchable_.size());
   report_.seen_nodes = static_cast<Index>(seen_.size());
   return touchable;
+}
+
+PALPATE_INLINE ContactSurface::Unloaded ModelBase::unloaded() const {
+  ContactSurface::Unloaded unloaded{{}, loads_in_words(gravity_, other_loads_)};
+  for (const NodeId node : touchable_) unloaded.positions.push_back(body_->positions()[static_cast<std::size_t>(node)]);
+  return unloaded;
 }
 
 PALPATE_INLINE Scene ModelBase::mapped(const Scene& scene, const std::vector<Triangle>& triangles) const {

@@ -37,9 +37,11 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   motion_->set_load(load_);
   motion_->rest_at(start_);
   compliance_ = WarpedCompliance(*motion_, step_, touchable.nodes, rotations_, limits());
+  motion_->rest_at(start_);  // what reset() returns to
   View view{std::vector<Vector3>(touchable.nodes.size()), std::vector<Matrix3>(touchable.nodes.size()), {}};
   look(view);
   surface_ = ContactSurface(view.free, touchable.triangles);
+  surface_.set_unloaded(unloaded());
   views_.fill(view);
   drawn_.fill(start_);
   setup_report().compliance_bytes = compliance_.bytes();

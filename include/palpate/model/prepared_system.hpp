@@ -16,6 +16,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 class BinaryReader;
 class ElasticBody;
 class PreparedCache;
+class FreeStiffness;
 struct EssentialConditions;
 
 /// A solver policy without its type: its functions and constants. See solver_recipe.
@@ -52,10 +53,14 @@ struct SystemSource {
   AnyStaticSystem make(SetupReport& report) const;
   /// Flags or refuses what was measured.
   static void judge(SetupReport& report);
+  /// Refuses a system whose softest motion is lost in rounding: a mechanism that geometry does not show, or as good as
+  /// one. Asked only where digits are missing.
+  void require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system, const SetupReport& report) const;
 
   static constexpr double flagged_probe_error = 1e-6;
   static constexpr double flagged_condition = 1e12;
   static constexpr double refused_probe_error = 1e-3;
+  static constexpr double refused_softest_error = 0.1;
 };
 
 }}  // namespace palpate

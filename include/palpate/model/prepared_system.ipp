@@ -67,11 +67,34 @@ PALPATE_INLINE AnyStaticSystem SystemSource::make(SetupReport& report) const {
   }();
   const StageTimer timer(report, "checks");
   limits.advance("checks", 0.0);
-  report.probe_error = probe_error(FreeStiffness(stiffness.view(), conditions), system);
+  const FreeStiffness free(stiffness.view(), conditions);
+  report.probe_error = probe_error(free, system);
   if (recipe.estimates_condition)
     report.condition_estimate = free_norm(*stiffness.matrix(), conditions) * inverse_norm_estimate(system);
+  require_softest_motion(free, system, report);
   judge(report);
   return system;
+}
+
+PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system,
+                                                         const SetupReport& report) const {
+  const bool doubtful = report.probe_error > flagged_probe_error || report.condition_estimate > flagged_condition;
+  if (!recipe.estimates_condition || !doubtful) return;
+  const SoftestMotion softest = probe_softest_motion(free, system);
+  if (!(softest.error > refused_softest_error)) return;
+  SetupProblem p;
+  p.kind = SetupErrorKind::ill_conditioned;
+  p.what = "a solve for the softest motion of the body is wrong by " + number(softest.error) +
+           " (relative); the node moves most in it";
+  p.hint = "Look there for a part that is hardly held: a mechanism, slivers, or extreme stiffness contrast";
+  if (const auto& nodes = dofs.node_of_dof; softest.largest >= 0 && !nodes.empty()) {
+    p.ids = {nodes[static_cast<std::size_t>(softest.largest)]};
+    p.ids_of = SetupIds::nodes;
+    p.count = 1;
+  }
+  p.value = softest.error;
+  p.threshold = refused_softest_error;
+  raise(std::move(p));
 }
 
 PALPATE_INLINE void SystemSource::judge(SetupReport& report) {

@@ -38,6 +38,7 @@ struct SetupReport {
   double probe_error = 0.0;                             ///< relative error of a solve with known answer
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage
   double column_seconds = 0.0;  ///< for the compliance of a vertex pressed for the first time; 0 when all is stored
+  bool asynchronous_columns = false;  ///< a thread computes it, and ticks do not wait
   CacheReport cache;
   std::uint32_t flags = 0;
   std::vector<std::pair<SetupFlag, std::string>> remarks;  ///< a sentence per flag

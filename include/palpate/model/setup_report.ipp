@@ -34,7 +34,8 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const SetupReport& r)
       << (r.condition_estimate > 0.0 ? number(r.condition_estimate) : std::string("not estimated")) << ", probe error "
       << number(r.probe_error) << '\n';
   if (r.column_seconds > 0.0)
-    out << "  a vertex pressed for the first time: " << number(1e6 * r.column_seconds) << " us\n";
+    out << "  a vertex pressed for the first time: " << number(1e6 * r.column_seconds)
+        << (r.asynchronous_columns ? " us, by a thread of its own\n" : " us, in the tick\n");
   if (!r.cache.file.empty()) out << "  cache: " << r.cache << '\n';
   for (const auto& [flag, remark] : r.remarks) out << "  note: " << remark << '\n';
   return out;

@@ -1,6 +1,7 @@
 // A solver policy for linear tissue that stiffens along measured curves: Stiffening<Condensed<SelectiveInverse>>.
 #pragma once
 
+#include <palpate/contact/contact.hpp>
 #include <palpate/haptic/triple_buffer.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/quasi_non_linear.hpp>

@@ -1,4 +1,4 @@
-// Whole surfaces touched without a stored compliance: columns computed in the tick, or by a thread ahead of it.
+// Whole surfaces touched without a stored compliance: columns computed in the tick, or by a thread beside it.
 #include "contact/servo_session.hpp"
 
 #include "catch.hpp"
@@ -33,9 +33,9 @@ bool settle(ServoSession<Sparse>& session) {
 
 }  // namespace
 
-TEST_CASE("columns computed ahead end at the force of columns computed in the tick", "[haptic][columns]") {
-  Sparse ahead = make_model(ColumnFill::ahead), in_tick = make_model(ColumnFill::in_tick);
-  ServoSession session(ahead), reference(in_tick);
+TEST_CASE("columns computed by a thread end at the force of columns computed in the tick", "[haptic][columns]") {
+  Sparse asynchronous = make_model(ColumnFill::asynchronous), synchronous = make_model(ColumnFill::synchronous);
+  ServoSession session(asynchronous), reference(synchronous);
   for (double x : {0.009, 0.0137, 0.021}) {
     session.press(2e-3, x);
     reference.press(2e-3, x);
@@ -47,29 +47,62 @@ TEST_CASE("columns computed ahead end at the force of columns computed in the ti
 }
 
 TEST_CASE("columns computed by a thread are those computed in the tick, bit for bit", "[haptic][columns][M13]") {
-  Sparse ahead = make_model(ColumnFill::ahead), in_tick = make_model(ColumnFill::in_tick);
-  const int count = static_cast<int>(in_tick.contact_surface().vertex_count());
+  Sparse asynchronous = make_model(ColumnFill::asynchronous), synchronous = make_model(ColumnFill::synchronous);
+  const int count = static_cast<int>(synchronous.contact_surface().vertex_count());
   REQUIRE(count > 100);
   REQUIRE(count <= 256);
   for (int first = 0; first < count; first += 8) {
     std::vector<int> some(static_cast<std::size_t>(std::min(8, count - first)));
     std::iota(some.begin(), some.end(), first);
-    REQUIRE(!in_tick.require_columns(some).has(StatusFlag::degraded_model));
+    REQUIRE(!synchronous.require_columns(some).has(StatusFlag::degraded_model));
     bool complete = false;
     for (int i = 0; i < 20'000 && !complete; ++i) {
-      complete = !ahead.require_columns(some).has(StatusFlag::degraded_model);
+      complete = !asynchronous.require_columns(some).has(StatusFlag::degraded_model);
       if (!complete) std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
     REQUIRE(complete);
     for (const int i : some)
-      for (const int j : some) REQUIRE(Matrix3(ahead.compliance(i, j)) == Matrix3(in_tick.compliance(i, j)));
+      for (const int j : some) REQUIRE(Matrix3(asynchronous.compliance(i, j)) == Matrix3(synchronous.compliance(i, j)));
   }
+}
+
+TEST_CASE("by default a thread computes the columns that would make a tick late", "[haptic][columns]") {
+  const auto asynchronous = []<class Policy>(Policy, std::array<int, 3> cells,
+                                             ColumnFill fill = SetupOptions{}.columns) {
+    SetupOptions options;
+    options.columns = fill;
+    const auto model = test::make_pad<HapticFEModel<Tet4, LinearElastic, Policy>>("surface", 1e4, cells, options);
+    return model.report().asynchronous_columns;
+  };
+  using Stored = Condensed<SelectiveInverse>;
+  const std::array small{2, 2, 2}, large{10, 10, 6};
+  CHECK_FALSE(asynchronous(SparseCholesky(), small));
+  CHECK(asynchronous(SparseCholesky(), large));
+  CHECK(asynchronous(ConjugateGradient(), large));
+  CHECK_FALSE(asynchronous(Condensed<DenseCholesky>(), small));
+  CHECK(asynchronous(Condensed<DenseCholesky>(), large));
+  CHECK_FALSE(asynchronous(Stored(), large));  // nothing is missing
+  CHECK_FALSE(asynchronous(SparseCholesky(), large, ColumnFill::synchronous));
+  CHECK(asynchronous(SparseCholesky(), small, ColumnFill::asynchronous));
+}
+
+TEST_CASE("by default a tick of a whole surface does not wait for its columns", "[haptic][columns]") {
+  auto pad = test::make_pad<Sparse>("surface", 1e4, {10, 10, 6}, {});
+  ServoSession session(pad);
+  session.press(2e-3);
+  REQUIRE(settle(session));
+  auto reference_pad = test::make_pad<Sparse>("surface", 1e4, {10, 10, 6});
+  ServoSession reference(reference_pad);
+  reference.press(2e-3);
+  reference.hold(50);
+  const Vector3 f = session.servo.contact_force(), g = reference.servo.contact_force();
+  CHECK((f - g).norm() <= 1e-3 * g.norm());
 }
 
 TEST_CASE("a column that is not there yet is flagged, and the force stays finite and soft",
           "[haptic][columns][extreme]") {
-  Sparse ahead = make_model(ColumnFill::ahead), in_tick = make_model(ColumnFill::in_tick);
-  ServoSession session(ahead), reference(in_tick);
+  Sparse asynchronous = make_model(ColumnFill::asynchronous), synchronous = make_model(ColumnFill::synchronous);
+  ServoSession session(asynchronous), reference(synchronous);
   const Vector3 above(0.0137, 0.0159, pad_height + ball_radius + 5e-3),
       pressed(0.0137, 0.0159, pad_height + ball_radius - 1.5e-3);
   session.tick(above);
@@ -83,8 +116,8 @@ TEST_CASE("a column that is not there yet is flagged, and the force stays finite
 }
 
 TEST_CASE("with less room than vertices near the ball the tick says so and goes on", "[haptic][columns][extreme]") {
-  Sparse ahead = make_model(ColumnFill::ahead, 4);
-  ServoSession session(ahead);
+  Sparse asynchronous = make_model(ColumnFill::asynchronous, 4);
+  ServoSession session(asynchronous);
   session.press(2e-3);
   for (int i = 0; i < 300; ++i) {
     const GatedForce& f = session.tick(session.states[0].position + Vector3(2e-5, 1e-5, 0.0));
@@ -95,7 +128,7 @@ TEST_CASE("with less room than vertices near the ball the tick says so and goes 
 
 TEST_CASE("a model may end while columns are in work, and may be moved", "[haptic][columns]") {
   for (int round = 0; round < 10; ++round) {
-    Sparse first = make_model(ColumnFill::ahead);
+    Sparse first = make_model(ColumnFill::asynchronous);
     std::vector<int> all(static_cast<std::size_t>(first.contact_surface().vertex_count()));
     std::iota(all.begin(), all.end(), 0);
     first.foresee(all);

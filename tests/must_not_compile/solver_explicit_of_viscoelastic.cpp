@@ -1,0 +1,17 @@
+// expect: palpate: explicit steps do not move what a material remembers
+#include <palpate/element/tet4.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/material/viscoelastic.hpp>
+#include <palpate/model/explicit.hpp>
+
+using namespace palpate;
+
+#ifdef PALPATE_GOOD_TWIN
+using Model = HapticFEModel<Tet4, LinearElastic, Explicit<CentralDifference>>;
+#else
+using Model = HapticFEModel<Tet4, Viscoelastic<LinearElastic, 1>, Explicit<CentralDifference>>;
+#endif
+
+void make(const Mesh<Tet4>& mesh, const Scene& scene) {
+  const Model model(mesh, scene, Model::MaterialType{});
+}
