@@ -12,7 +12,7 @@ namespace {
 /// Springs that count the calls of every hook.
 struct Counting : test::AnalyticTissue {
   Counting() : AnalyticTissue(4, 0.04, 1e-3) {}
-  void foresee(std::span<const int> vertices) noexcept { foreseen += vertices.size(); }
+  void prefetch(std::span<const int> vertices) noexcept { prefetched += vertices.size(); }
   Status begin_tick() noexcept {
     ++begun;
     return StatusFlag::slow_tissue;
@@ -25,7 +25,7 @@ struct Counting : test::AnalyticTissue {
   BackgroundStep background_work() noexcept { return {true, 0.5}; }
   void report_slow(bool is) noexcept { slow = is; }
 
-  std::size_t foreseen = 0, pressing = 0;
+  std::size_t prefetched = 0, pressing = 0;
   int begun = 0, exchanged = 0, cuts = 0;
   double smallest = 0.0;
   bool slow = false;
@@ -91,9 +91,9 @@ TEST_CASE("an adaptor hands on every hook, and an adaptor around it, too", "[con
   CHECK(&view.contact_surface() == &springs.contact_surface());
   CHECK(view.compliance(3, 3) == springs.compliance(3, 3));
 
-  CHECK(view.foresees());
-  view.foresee(std::array{1, 2, 3});
-  CHECK(springs.foreseen == 3);
+  CHECK(view.prefetches());
+  view.prefetch(std::array{1, 2, 3});
+  CHECK(springs.prefetched == 3);
   ContactProblem problem(springs.contact_surface(), 5e-3);
   CHECK(view.announces_changes());
   CHECK(view.begin_tick(problem).has(StatusFlag::slow_tissue));
@@ -117,7 +117,7 @@ TEST_CASE("a tissue that does not move has hooks that nobody calls", "[contact][
   test::AnalyticTissue springs(4, 0.04, 1e-3);
   Same<test::AnalyticTissue> same(springs);
   TissueView view(same);
-  CHECK_FALSE(view.foresees());
+  CHECK_FALSE(view.prefetches());
   CHECK_FALSE(view.announces_changes());
   CHECK_FALSE(view.has_updates());
   CHECK_FALSE(view.can_be_cut());

@@ -67,7 +67,7 @@ class AnyModel : public StillTissue {
   virtual void reset() = 0;
   virtual const ContactSurface& contact_surface() const noexcept = 0;
   virtual Status require_columns(std::span<const int>) noexcept = 0;
-  virtual void foresee(std::span<const int>) noexcept = 0;
+  virtual void prefetch(std::span<const int>) noexcept = 0;
   virtual Matrix3 compliance(int, int) const noexcept = 0;
   virtual double compliance_bound(int) const noexcept = 0;
   virtual std::uint64_t compliance_revision() const noexcept = 0;

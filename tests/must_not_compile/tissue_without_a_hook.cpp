@@ -19,7 +19,7 @@ struct Watched {
   double compliance_bound(int j) const noexcept { return inner.compliance_bound(j); }
   double compliance_floor() const noexcept { return inner.compliance_floor(); }
   const Eigen::Isometry3d& to_world() const noexcept { return inner.to_world(); }
-  void foresee(std::span<const int> vertices) noexcept { inner.foresee(vertices); }
+  void prefetch(std::span<const int> vertices) noexcept { inner.prefetch(vertices); }
   TissueGroup& inner;
 #endif
   Status require_columns(std::span<const int> vertices) noexcept {

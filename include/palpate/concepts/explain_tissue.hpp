@@ -25,7 +25,7 @@ constexpr void explain_tissue() noexcept {
   static_assert(hook<T>, "palpate: this tissue has no hook " call                                                   \
                          ": derive it from TissueAdaptor, which hands on the hooks of another tissue, or, when it " \
                          "does not move, from StillTissue")
-    PALPATE_HOOK(HasForesee, "foresee(span<const int>) noexcept -> void or NoHook");
+    PALPATE_HOOK(HasPrefetch, "prefetch(span<const int>) noexcept -> void or NoHook");
     PALPATE_HOOK(HasBeginTick, "begin_tick() noexcept -> Status or NoHook");
     PALPATE_HOOK(HasEndTick, "end_tick(span<const VertexForce>) noexcept -> void or NoHook");
     PALPATE_HOOK(HasUpdates, "updates() const noexcept -> uint64_t or NoHook");

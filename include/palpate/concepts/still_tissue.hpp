@@ -9,7 +9,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// class that derives from it hides those it has. Not for a class around another tissue, whose hooks would be lost: that
 /// is a TissueAdaptor.
 struct StillTissue {
-  NoHook foresee(std::span<const int>) noexcept { return {}; }
+  NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook begin_tick() noexcept { return {}; }
   NoHook end_tick(std::span<const VertexForce>) noexcept { return {}; }
   NoHook updates() const noexcept { return {}; }

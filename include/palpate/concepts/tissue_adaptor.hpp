@@ -25,7 +25,7 @@ class TissueAdaptor {
   double compliance_bound(int j) const noexcept { return tissue().compliance_bound(j); }
   double compliance_floor() const noexcept { return tissue().compliance_floor(); }
 
-  auto foresee(std::span<const int> vertices) noexcept { return tissue_->foresee(vertices); }
+  auto prefetch(std::span<const int> vertices) noexcept { return tissue_->prefetch(vertices); }
   auto begin_tick() noexcept { return tissue_->begin_tick(); }
   auto end_tick(std::span<const VertexForce> forces) noexcept { return tissue_->end_tick(forces); }
   auto updates() const noexcept { return tissue().updates(); }

@@ -56,8 +56,8 @@ concept HasComplianceScales = requires(const T& constant, int i) {
 };
 
 template <class T>
-concept HasForesee = requires(T& tissue, std::span<const int> vertices) {
-  { tissue.foresee(vertices) } noexcept -> HookResult<void>;
+concept HasPrefetch = requires(T& tissue, std::span<const int> vertices) {
+  { tissue.prefetch(vertices) } noexcept -> HookResult<void>;
 };
 template <class T>
 concept HasBeginTick = requires(T& tissue) {
@@ -89,7 +89,7 @@ concept HasWorkHooks = requires(T& tissue, bool slow) {
   { tissue.report_slow(slow) } noexcept -> HookResult<void>;
 };
 template <class T>
-concept HasHooks = HasForesee<T> && HasBeginTick<T> && HasEndTick<T> && HasUpdates<T> && HasExchangeContacts<T> &&
+concept HasHooks = HasPrefetch<T> && HasBeginTick<T> && HasEndTick<T> && HasUpdates<T> && HasExchangeContacts<T> &&
                    HasPrepareTools<T> && HasTryCut<T> && HasWorkHooks<T>;
 
 template <class Member>
@@ -132,7 +132,7 @@ concept HasOutOfDateScale = requires { &T::compliance; } &&
 ///
 /// Hooks. All must be there, so that none is forgotten; one that returns NoHook is never called. StillTissue has them
 /// all, for a tissue that does not move; TissueAdaptor hands on all those of another tissue.
-/// - `foresee(vertices)` -> void: which vertices a tool may press soon.
+/// - `prefetch(vertices)` -> void: which vertices a tool may press soon.
 /// - `begin_tick()` -> Status: before each tick; may bring in what moved since. The status is part of the tick's.
 /// - `end_tick(forces)` -> void: the forces on the vertices after a tick; none when a session is reset.
 /// - `updates()` const -> std::uint64_t: counts what `begin_tick` has brought in. A servo fades its force when that

@@ -10,9 +10,9 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Whether no hook but foresee does anything.
+/// Whether no hook but prefetch does anything.
 template <class T>
-concept HooksOnlyForesee = requires(T& tissue, std::span<const VertexForce> forces, ContactProblem& problem,
+concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> forces, ContactProblem& problem,
                                     const ContactParameters& parameters, const BladeSweep& sweep) {
   { tissue.begin_tick() } -> std::same_as<NoHook>;
   { tissue.end_tick(forces) } -> std::same_as<NoHook>;
@@ -24,9 +24,10 @@ concept HooksOnlyForesee = requires(T& tissue, std::span<const VertexForce> forc
 
 }  // namespace detail
 
-/// Tissues of any types that do not move by themselves, and have no hooks but foresee, as one TissueModel in the world's frame: a ball that touches two
-/// organs is one contact problem, with one force and one gate. Vertices are those of the members one after the other.
-/// Refers to the members, which must outlive it; the organs do not touch each other.
+/// Tissues of any types that do not move by themselves, and have no hook but prefetch, as one TissueModel in the
+/// world's frame: a ball that touches two organs is one contact problem, with one force and one gate. Vertices are
+/// those of the members one after the other. Refers to the members, which must outlive it; the organs do not touch each
+/// other.
 class TissueGroup : public StillTissue {
  public:
   /// Throws bad_argument when there is none. Allocates.
@@ -50,7 +51,7 @@ class TissueGroup : public StillTissue {
   // TissueModel
   const ContactSurface& contact_surface() const noexcept { return surface_; }
   Status require_columns(std::span<const int> vertices) noexcept;
-  void foresee(std::span<const int> vertices) noexcept;
+  void prefetch(std::span<const int> vertices) noexcept;
   Matrix3 compliance(int i, int j) const noexcept;
   double compliance_bound(int j) const noexcept;
   std::uint64_t compliance_revision() const noexcept;
@@ -73,8 +74,8 @@ class TissueGroup : public StillTissue {
     const TissueView view(tissue);
     if constexpr (TissueModel<T> && !AnnouncesChanges<T>)
       static_assert(
-          detail::HooksOnlyForesee<T>,
-          "palpate: a TissueGroup hands on no hook but foresee; give a tissue that has others a HapticServo of its own");
+          detail::HooksOnlyPrefetch<T>,
+          "palpate: a TissueGroup hands on no hook but prefetch; give a tissue with others a HapticServo of its own");
     return view;
   }
   void add(const TissueView& tissue);

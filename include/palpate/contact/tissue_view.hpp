@@ -22,7 +22,7 @@ struct TissueFunctions {
   std::uint64_t (*compliance_revision)(const void*) noexcept;
   double (*compliance_bound)(const void*, int) noexcept;
   double (*compliance_floor)(const void*) noexcept;
-  void (*foresee)(void*, std::span<const int>) noexcept;
+  void (*prefetch)(void*, std::span<const int>) noexcept;
   Status (*begin_tick)(void*) noexcept;
   void (*end_tick)(void*, std::span<const VertexForce>) noexcept;
   std::uint64_t (*updates)(const void*) noexcept;
@@ -87,8 +87,8 @@ struct TissueCalls {
         contact_surface,  to_world,         require_columns, compliance, between, displacement, compliance_revision,
         compliance_bound, compliance_floor, nullptr,         nullptr,    nullptr, nullptr,      nullptr,
         nullptr,          nullptr};
-    if constexpr (calls<decltype(hooked().foresee(std::span<const int>{}))>)
-      f.foresee = [](void* t, std::span<const int> v) noexcept { of(t).foresee(v); };
+    if constexpr (calls<decltype(hooked().prefetch(std::span<const int>{}))>)
+      f.prefetch = [](void* t, std::span<const int> v) noexcept { of(t).prefetch(v); };
     if constexpr (AnnouncesChanges<T>) f.begin_tick = [](void* t) noexcept -> Status { return of(t).begin_tick(); };
     if constexpr (calls<decltype(hooked().end_tick(std::span<const VertexForce>{}))>)
       f.end_tick = [](void* t, std::span<const VertexForce> v) noexcept { of(t).end_tick(v); };
@@ -145,9 +145,9 @@ class TissueView {
   double compliance_bound(int j) const noexcept { return functions_->compliance_bound(tissue_, j); }
   double compliance_floor() const noexcept { return functions_->compliance_floor(tissue_); }
 
-  bool foresees() const noexcept { return functions_->foresee != nullptr; }
-  void foresee(std::span<const int> vertices) const noexcept {
-    if (foresees()) functions_->foresee(tissue_, vertices);
+  bool prefetches() const noexcept { return functions_->prefetch != nullptr; }
+  void prefetch(std::span<const int> vertices) const noexcept {
+    if (prefetches()) functions_->prefetch(tissue_, vertices);
   }
   /// Whether the tissue moves by itself.
   bool announces_changes() const noexcept { return functions_->begin_tick != nullptr; }

@@ -58,7 +58,7 @@ class LinearTissue : public ModelBase, public StillTissue {
   // TissueModel
   const ContactSurface& contact_surface() const noexcept { return surface_; }
   Status require_columns(std::span<const int> vertices) noexcept { return compliance_.require(vertices); }
-  void foresee(std::span<const int> vertices) noexcept { compliance_.foresee(vertices); }
+  void prefetch(std::span<const int> vertices) noexcept { compliance_.prefetch(vertices); }
   auto compliance(int i, int j) const noexcept { return compliance_(i, j); }
   double compliance_bound(int j) const noexcept { return compliance_.bound(j); }
   std::uint64_t compliance_revision() const noexcept { return compliance_.revision(); }
