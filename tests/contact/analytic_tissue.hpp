@@ -1,7 +1,7 @@
 // A tissue with a known answer: independent springs, all of them on one common spring.
 #pragma once
 
-#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/concepts/still_tissue.hpp>
 #include <palpate/contact/contact_problem.hpp>
 
 #include <vector>
@@ -13,7 +13,7 @@ using namespace palpate;
 /// Vertices of a plane grid at z = 0, normal +z. Each moves with `own` [m/N] under its own force and all move with
 /// `common` [m/N] under the sum of all forces, alike in all directions. A ball of radius R at p then feels from vertex
 /// x the force max(0, R - |p - x|) / own along p - x, if the common displacement is taken off p first.
-class AnalyticTissue {
+class AnalyticTissue : public StillTissue {
  public:
   AnalyticTissue(int cells, double size, double own, double common = 0.0) : own_(own), common_(common) {
     std::vector<Vector3> positions;

@@ -1,4 +1,6 @@
 // Contact that goes on when the surface gets other triangles, as by a cut.
+#include <palpate/concepts/tissue_adaptor.hpp>
+
 #include "contact/tool_session.hpp"
 
 #include "catch.hpp"
@@ -8,17 +10,12 @@ using namespace palpate;
 namespace {
 
 /// Springs under a surface whose triangles change: vertices keep their numbers.
-class ChangingTissue {
+class ChangingTissue : public TissueAdaptor<test::AnalyticTissue> {
  public:
-  ChangingTissue() : springs_(16, 0.04, 5e-3, 1e-3), surface_(springs_.contact_surface()) {}
+  ChangingTissue() : TissueAdaptor(springs_), surface_(springs_.contact_surface()) {}
 
   const ContactSurface& contact_surface() const noexcept { return surface_; }
-  Status require_columns(std::span<const int>) noexcept { return {}; }
-  Matrix3 compliance(int i, int j) const noexcept { return springs_.compliance(i, j); }
-  double compliance_bound(int j) const noexcept { return springs_.compliance_bound(j); }
   std::uint64_t compliance_revision() const noexcept { return revision_; }
-  double compliance_floor() const noexcept { return 1e-12; }
-  const Eigen::Isometry3d& to_world() const noexcept { return springs_.to_world(); }
 
   /// In another order, other vertices first, a vertex more; without the triangles that `leaves` names by their middle.
   template <class Leaves>
@@ -37,7 +34,7 @@ class ChangingTissue {
   }
 
  private:
-  test::AnalyticTissue springs_;
+  test::AnalyticTissue springs_{16, 0.04, 5e-3, 1e-3};
   ContactSurface surface_;
   std::uint64_t revision_ = 0;
 };

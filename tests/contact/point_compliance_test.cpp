@@ -1,4 +1,5 @@
 // The compliance between contact points and when it is read anew.
+#include <palpate/concepts/still_tissue.hpp>
 #include <palpate/contact/point_compliance.hpp>
 #include <palpate/testing/random.hpp>
 
@@ -11,7 +12,7 @@ using namespace palpate;
 namespace {
 
 /// A strip of triangles between vertices whose compliance is any function of the pair, and counts how often it is read.
-struct CountingTissue {
+struct CountingTissue : StillTissue {
   ContactSurface surface;
   std::uint64_t revision = 0;
   double scale = 1.0;

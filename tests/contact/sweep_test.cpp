@@ -24,7 +24,7 @@ double distance_to(const std::array<Vector3, 3>& corner, const Vector3& p) {
 }
 
 /// A closed plate of springs, 0.2 mm thin, its middle plane at z = 0.
-class ThinPlate {
+class ThinPlate : public StillTissue {
  public:
   static constexpr double thickness = 2e-4, side = 0.1, own_compliance = 1e-4;
 

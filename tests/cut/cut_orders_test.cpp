@@ -26,7 +26,7 @@ TEST_CASE("all orders are taken as one, once, and are open until they are done",
   faces.open.push_back({7, 2});
   orders.add(faces);
   orders.add(BladeSweep{});
-  CHECK(orders.stroke(BladeSweep{}));
+  CHECK(orders.try_add(BladeSweep{}));
   CHECK(orders.are_open());
   const CutOrders::Taken taken = orders.take();
   CHECK(taken.count == 4);
@@ -47,7 +47,7 @@ TEST_CASE("all orders are taken as one, once, and are open until they are done",
 TEST_CASE("a tick is told when too many strokes wait, and none is lost", "[cut][orders][extreme]") {
   CutOrders orders;
   unsigned accepted = 0;
-  while (accepted < 1000 && orders.stroke(BladeSweep{})) ++accepted;
+  while (accepted < 1000 && orders.try_add(BladeSweep{})) ++accepted;
   CHECK(accepted >= 255);
   CHECK(accepted <= 256);
   const CutOrders::Taken taken = orders.take();
@@ -55,7 +55,7 @@ TEST_CASE("a tick is told when too many strokes wait, and none is lost", "[cut][
   CHECK(taken.sweeps.size() == accepted);
   orders.done(taken);
   CHECK_FALSE(orders.are_open());
-  CHECK(orders.stroke(BladeSweep{}));
+  CHECK(orders.try_add(BladeSweep{}));
 }
 
 TEST_CASE("orders from two threads while a third takes: each arrives once", "[cut][orders]") {

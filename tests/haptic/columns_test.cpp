@@ -131,7 +131,7 @@ TEST_CASE("a model may end while columns are in work, and may be moved", "[hapti
     Sparse first = make_model(ColumnFill::asynchronous);
     std::vector<int> all(static_cast<std::size_t>(first.contact_surface().vertex_count()));
     std::iota(all.begin(), all.end(), 0);
-    first.foresee(all);
+    first.prefetch(all);
     Sparse moved = std::move(first);
     for (int i = 0; i < 3 * round; ++i) {
       moved.require_columns(all);

@@ -1,6 +1,7 @@
 // Stalls, late ticks and bad input with a tissue that moves by itself: simulated, and in threads.
 #include "../../benchmarks/faults/faults.hpp"
 
+#include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/haptic/background_worker.hpp>
 
 #include <chrono>
@@ -37,8 +38,9 @@ TEST_CASE("stalls and bad input: force continuous, energy bounded, counters exac
 namespace {
 
 /// Steps of a tissue, some of which hang.
-struct HangingTissue {
-  MovingTissue& tissue;
+struct HangingTissue : TissueAdaptor<MovingTissue> {
+  HangingTissue(MovingTissue& hanging, int each, int ms) : TissueAdaptor(hanging), every(each), milliseconds(ms) {}
+
   int every, milliseconds;
   std::uint64_t steps = 0, hung = 0;
 
@@ -47,7 +49,7 @@ struct HangingTissue {
       std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
       ++hung;
     }
-    return tissue.background_work();
+    return tissue().background_work();
   }
 };
 
@@ -57,7 +59,7 @@ TEST_CASE("a tissue's thread that hangs, a device's that is late, and load besid
   faults::Pad tissue = faults::make_pad(0.01);
   const ServoOptions options = faults::session_options();
   HapticServo servo(tissue, SphereTool{.radius = faults::ball}, options);
-  HangingTissue hanging{tissue, 5, 60};
+  HangingTissue hanging(tissue, 5, 60);
   std::atomic<bool> done{false};
   std::thread load([&] {
     volatile double x = 0.0;

@@ -253,6 +253,7 @@ struct Engine : test::AnalyticTissue {
   Matrix3 compliance(int i, int j) const noexcept { return softer * AnalyticTissue::compliance(i, j); }
   double compliance_bound(int i) const noexcept { return 40.0 * AnalyticTissue::compliance_bound(i); }
   std::uint64_t compliance_revision() const noexcept { return revision; }
+  double compliance_floor() const noexcept { return AnalyticTissue::compliance_floor(); }
 };
 
 /// Presses `cycles` times 3 mm deep and up again, and returns the energy given.

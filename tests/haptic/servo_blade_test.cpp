@@ -15,7 +15,7 @@ using namespace palpate;
 namespace {
 
 /// The corners of a box on springs, 60 x 60 x 40 mm, its top at z = 0; takes so many orders.
-struct SweptTissue {
+struct SweptTissue : StillTissue {
   explicit SweptTissue(std::size_t most = 1000) : room(most) {
     std::vector<Vector3> x;
     for (int i = 0; i < 8; ++i)

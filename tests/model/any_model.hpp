@@ -1,5 +1,6 @@
 #pragma once
 
+#include <palpate/concepts/still_tissue.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
@@ -42,7 +43,7 @@ inline double accuracy(PolicyName p) {
 }
 
 /// See HapticFEModel. Satisfies TissueModel.
-class AnyModel {
+class AnyModel : public StillTissue {
  public:
   AnyModel() = default;
   AnyModel(const AnyModel&) = delete;
@@ -66,6 +67,7 @@ class AnyModel {
   virtual void reset() = 0;
   virtual const ContactSurface& contact_surface() const noexcept = 0;
   virtual Status require_columns(std::span<const int>) noexcept = 0;
+  virtual void prefetch(std::span<const int>) noexcept = 0;
   virtual Matrix3 compliance(int, int) const noexcept = 0;
   virtual double compliance_bound(int) const noexcept = 0;
   virtual std::uint64_t compliance_revision() const noexcept = 0;

@@ -37,6 +37,7 @@ class ModelOf final : public AnyModel {
   void reset() override { model_.reset(); }
   const ContactSurface& contact_surface() const noexcept override { return model_.contact_surface(); }
   Status require_columns(std::span<const int> vertices) noexcept override { return model_.require_columns(vertices); }
+  void prefetch(std::span<const int> vertices) noexcept override { model_.prefetch(vertices); }
   Matrix3 compliance(int i, int j) const noexcept override { return model_.compliance(i, j); }
   double compliance_bound(int j) const noexcept override { return model_.compliance_bound(j); }
   std::uint64_t compliance_revision() const noexcept override { return model_.compliance_revision(); }

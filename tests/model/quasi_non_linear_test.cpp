@@ -1,5 +1,6 @@
 // Linear tissue that stiffens along curves measured on a non-linear one.
 #include <palpate/assembly/assembled.hpp>
+#include <palpate/concepts/still_tissue.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
@@ -30,7 +31,7 @@ NodeId top_middle(const Mesh<Tet4>& mesh) {
 }
 
 /// The same block at small strain, with all nodes for vertices.
-struct LinearBlock {
+struct LinearBlock : StillTissue {
   struct Surface {
     int count;
     int vertex_count() const noexcept { return count; }

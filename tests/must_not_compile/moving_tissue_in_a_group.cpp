@@ -4,7 +4,7 @@
 using namespace palpate;
 
 /// A tissue that does not move, or, with begin_tick, one that does.
-struct Pad {
+struct Pad : StillTissue {
   const ContactSurface& contact_surface() const noexcept { return surface; }
   Status require_columns(std::span<const int>) noexcept { return {}; }
   Matrix3 compliance(int, int) const noexcept { return Matrix3::Identity(); }

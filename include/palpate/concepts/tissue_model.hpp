@@ -7,7 +7,10 @@
 
 #include <Eigen/Geometry>
 
+#include <concepts>
+#include <cstdint>
 #include <span>
+#include <type_traits>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -17,45 +20,12 @@ struct VertexForce {
   Vector3 force = Vector3::Zero();  ///< on the tissue [N]
 };
 
-/// A tissue that can be touched. Vertices are those of `contact_surface()`, the surface as it rests without tools.
-/// - `require_columns(vertices)` makes the compliance columns of these vertices available; what it could not do is in
-/// the status.
-/// - `compliance(i, j)` is the 3 x 3 displacement [m/N] of vertex i per force on vertex j, whose column was required: a
-/// matrix, or an Eigen expression that stays valid until the next `require_columns`.
-/// - `compliance_revision()` is another number when a value that `compliance` has given is no longer right; constant for
-/// a tissue whose compliance never changes.
-/// - `compliance_bound(j)` is at least the largest displacement [m/N] of any vertex per unit force on j.
-/// - `compliance_floor()` is a tiny compliance that keeps a fixed vertex from dividing by zero.
-/// - `foresee(vertices)`, if there is one, is told which vertices a tool may press soon.
-/// - `begin_tick()`, if there is one, is called before each tick and may bring in what moved since; its Status is part of
-/// the tick's. `end_tick(forces)`, if there is one, is told the forces on the vertices after it, and that there are none
-/// when a session is reset.
-/// - `updates()`, if there is one, counts what `begin_tick` has brought in: a servo fades its force when that stands
-/// still for too long.
-/// - `exchange_contacts(problem)`, if there is one, is called after `begin_tick`, for a tissue whose triangles change: it
-/// moves the session's contact problem to the new surface, where it goes on. `prepare_tools(smallest_radius, parameters)`
-/// is called once by a session that begins, and may refuse it.
-/// - `try_cut(sweep)`, if there is one, orders a cut along a BladeSweep in the world's frame; false when too many wait.
-/// Only such a tissue takes a BladeTool.
-/// - `to_world()` maps the frame of the surface to the world's.
-/// All are noexcept, allocate nothing and take bounded time. Between two calls of `begin_tick` the surface stays at the
-/// same place in memory.
-template <class T>
-concept TissueModel = requires(T& tissue, const T& constant, int i, std::span<const int> vertices) {
-  { constant.contact_surface().vertex_count() } noexcept -> std::convertible_to<int>;
-  { tissue.require_columns(vertices) } noexcept -> std::same_as<Status>;
-  { constant.compliance(i, i) } noexcept -> FixedExpression<3, 3>;
-  { constant.compliance_revision() } noexcept -> std::convertible_to<std::uint64_t>;
-  { constant.compliance_bound(i) } noexcept -> std::convertible_to<double>;
-  { constant.compliance_floor() } noexcept -> std::convertible_to<double>;
-  { constant.to_world() } noexcept -> std::same_as<const Eigen::Isometry3d&>;
-};
+class ContactProblem;
+struct ContactParameters;
+struct BladeSweep;
 
-/// A tissue whose surface or compliance changes between ticks, and which says so before each.
-template <class T>
-concept AnnouncesChanges = requires(T& tissue) {
-  tissue.begin_tick();
-};
+/// What a hook returns that does nothing: it is never called.
+struct NoHook {};
 
 /// What a piece of background work was.
 struct BackgroundStep {
@@ -63,7 +33,131 @@ struct BackgroundStep {
   double next = 0.0;    ///< [s] from when this piece was due to when the next is; 0: at once
 };
 
-/// A tissue with work to do beside the ticks, which a BackgroundWorker does: steps of a motion, cuts.
+namespace detail {
+
+template <class R, class Expected>
+concept HookResult = std::same_as<R, NoHook> || std::same_as<R, Expected>;
+
+template <class T>
+concept HasSurface = requires(T& tissue, const T& constant, std::span<const int> vertices) {
+  { constant.contact_surface().vertex_count() } noexcept -> std::convertible_to<int>;
+  { tissue.require_columns(vertices) } noexcept -> std::same_as<Status>;
+  { constant.to_world() } noexcept -> std::same_as<const Eigen::Isometry3d&>;
+};
+template <class T>
+concept HasCompliance = requires(const T& constant, int i) {
+  { constant.compliance(i, i) } noexcept -> FixedExpression<3, 3>;
+};
+template <class T>
+concept HasComplianceScales = requires(const T& constant, int i) {
+  { constant.compliance_revision() } noexcept -> std::convertible_to<std::uint64_t>;
+  { constant.compliance_bound(i) } noexcept -> std::convertible_to<double>;
+  { constant.compliance_floor() } noexcept -> std::convertible_to<double>;
+};
+
+template <class T>
+concept HasPrefetch = requires(T& tissue, std::span<const int> vertices) {
+  { tissue.prefetch(vertices) } noexcept -> HookResult<void>;
+};
+template <class T>
+concept HasBeginTick = requires(T& tissue) {
+  { tissue.begin_tick() } noexcept -> HookResult<Status>;
+};
+template <class T>
+concept HasEndTick = requires(T& tissue, std::span<const VertexForce> forces) {
+  { tissue.end_tick(forces) } noexcept -> HookResult<void>;
+};
+template <class T>
+concept HasUpdates = requires(const T& constant) {
+  { constant.updates() } noexcept -> HookResult<std::uint64_t>;
+};
+template <class T>
+concept HasExchangeContacts = requires(T& tissue, ContactProblem& problem) {
+  { tissue.exchange_contacts(problem) } noexcept -> HookResult<void>;
+};
+template <class T>
+concept HasPrepareTools = requires(T& tissue, double radius, const ContactParameters& parameters) {
+  { tissue.prepare_tools(radius, parameters) } -> HookResult<void>;
+};
+template <class T>
+concept HasTryCut = requires(T& tissue, const BladeSweep& sweep) {
+  { tissue.try_cut(sweep) } noexcept -> HookResult<bool>;
+};
+template <class T>
+concept HasWorkHooks = requires(T& tissue, bool slow) {
+  { tissue.background_work() } -> HookResult<BackgroundStep>;
+  { tissue.report_slow(slow) } noexcept -> HookResult<void>;
+};
+template <class T>
+concept HasHooks = HasPrefetch<T> && HasBeginTick<T> && HasEndTick<T> && HasUpdates<T> && HasExchangeContacts<T> &&
+                   HasPrepareTools<T> && HasTryCut<T> && HasWorkHooks<T>;
+
+template <class Member>
+struct ClassOf;
+template <class R, class C, class... A>
+struct ClassOf<R (C::*)(A...) const> : std::type_identity<C> {};
+template <class R, class C, class... A>
+struct ClassOf<R (C::*)(A...) const noexcept> : std::type_identity<C> {};
+
+/// Whether `Scale`, of a class with a compliance of its own, was inherited by one that changes the compliance.
+template <class Compliance, class Scale>
+concept OutOfDate = requires {
+  typename ClassOf<Compliance>::type;
+  typename ClassOf<Scale>::type;
+  &ClassOf<Scale>::type::compliance;
+} && !std::derived_from<typename ClassOf<Scale>::type, typename ClassOf<Compliance>::type>;
+
+template <class T>
+concept HasOutOfDateScale = requires { &T::compliance; } &&
+                            ((requires { &T::compliance_revision; } &&
+                              OutOfDate<decltype(&T::compliance), decltype(&T::compliance_revision)>) ||
+                             (requires { &T::compliance_bound; } &&
+                              OutOfDate<decltype(&T::compliance), decltype(&T::compliance_bound)>) ||
+                             (requires { &T::compliance_floor; } &&
+                              OutOfDate<decltype(&T::compliance), decltype(&T::compliance_floor)>));
+
+}  // namespace detail
+
+/// A tissue that can be touched. Vertices are those of `contact_surface()`, the surface as it rests without tools.
+/// - `require_columns(vertices)` makes the compliance columns of these vertices available; what it could not do is in
+/// the status.
+/// - `to_world()` maps the frame of the surface to the world's.
+/// - `compliance(i, j)` is the 3 x 3 displacement [m/N] of vertex i per force on vertex j, whose column was required: a
+/// matrix, or an Eigen expression that stays valid until the next `require_columns`.
+/// - `compliance_revision()` is another number when a value that `compliance` has given is no longer right; constant for
+/// a tissue whose compliance never changes.
+/// - `compliance_bound(j)` is at least the largest displacement [m/N] of any vertex per unit force on j.
+/// - `compliance_floor()` is a tiny compliance that keeps a fixed vertex from dividing by zero.
+/// A class that inherits these four and changes `compliance` must define the other three, too.
+///
+/// Hooks. All must be there, so that none is forgotten; one that returns NoHook is never called. StillTissue has them
+/// all, for a tissue that does not move; TissueAdaptor hands on all those of another tissue.
+/// - `prefetch(vertices)` -> void: which vertices a tool may press soon.
+/// - `begin_tick()` -> Status: before each tick; may bring in what moved since. The status is part of the tick's.
+/// - `end_tick(forces)` -> void: the forces on the vertices after a tick; none when a session is reset.
+/// - `updates()` const -> std::uint64_t: counts what `begin_tick` has brought in. A servo fades its force when that
+/// stands still for too long.
+/// - `exchange_contacts(problem)` -> void: after `begin_tick`, for a tissue whose triangles change: moves the session's
+/// contact problem to the new surface, where it goes on.
+/// - `prepare_tools(smallest_radius, parameters)` -> void: once by a session that begins; may throw to refuse it.
+/// - `try_cut(sweep)` -> bool: orders a cut along a BladeSweep in the world's frame; false when too many wait. Only such
+/// a tissue takes a BladeTool.
+/// - `background_work()` -> BackgroundStep: work beside the ticks, done by a BackgroundWorker: steps of a motion, cuts.
+/// May throw.
+/// - `report_slow(slow)` -> void: whether a BackgroundWorker cannot keep up.
+/// All but prepare_tools and background_work are noexcept, allocate nothing and take bounded time. Between two calls of
+/// `begin_tick` the surface stays at the same place in memory.
+template <class T>
+concept TissueModel = detail::HasSurface<T> && detail::HasCompliance<T> && detail::HasComplianceScales<T> &&
+                      !detail::HasOutOfDateScale<T> && detail::HasHooks<T>;
+
+/// A tissue whose surface or compliance changes between ticks, and which says so before each.
+template <class T>
+concept AnnouncesChanges = requires(T& tissue) {
+  { tissue.begin_tick() } -> std::same_as<Status>;
+};
+
+/// A tissue with work to do beside the ticks.
 template <class T>
 concept HasBackgroundWork = requires(T& tissue) {
   { tissue.background_work() } -> std::same_as<BackgroundStep>;

@@ -66,7 +66,7 @@ class ContactProblem {
   static ContactParameters checked(const ContactParameters& p);
   void grasp(const TissueView& tissue, Tools tools) noexcept;
   inline bool is_held(const Candidate& c) const noexcept;
-  void foresee(const TissueView& tissue) noexcept;
+  void prefetch(const TissueView& tissue) noexcept;
   Status solve_linearised(const TissueView& tissue, Tools tools, int iteration) noexcept;
   void gather_pressing(Tools tools) noexcept;
   inline void note_pressing(Candidate& c) noexcept;

@@ -60,7 +60,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     proxies_.begin(tools);
     status |= candidates_.update(tissue, tools, displacement_);
     if (iteration == 0) grasp(tissue, tools);
-    if (candidates_.is_new()) foresee(tissue);
+    if (candidates_.is_new()) prefetch(tissue);
     status |= solve_linearised(tissue, tools, iteration);
     follow(tools);
     change = proxies_.relative_change(tools);
@@ -122,12 +122,12 @@ PALPATE_INLINE void ContactProblem::grasp(const TissueView& tissue, Tools tools)
 }
 
 /// Tells a tissue that wants to know which vertices lie near the balls.
-PALPATE_INLINE void ContactProblem::foresee(const TissueView& tissue) noexcept {
-  if (!tissue.foresees()) return;
+PALPATE_INLINE void ContactProblem::prefetch(const TissueView& tissue) noexcept {
+  if (!tissue.prefetches()) return;
   for (const Candidate& c : candidates_.items()) {
     const ContactSample& sample = candidates_.samples()[c.sample];
     for (std::size_t a = 0; a < 3; ++a)
-      if (sample.weights[a] > 0.0) tissue.foresee({&sample.vertices[a], 1});
+      if (sample.weights[a] > 0.0) tissue.prefetch({&sample.vertices[a], 1});
   }
 }
 

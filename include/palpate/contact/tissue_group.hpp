@@ -1,22 +1,40 @@
 // Several tissues in one scene, touched by the same tools.
 #pragma once
 
+#include <palpate/concepts/still_tissue.hpp>
 #include <palpate/contact/tissue_view.hpp>
 
 #include <Eigen/Geometry>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Tissues of any types that do not move by themselves as one TissueModel in the world's frame: a ball that touches two
-/// organs is one contact problem, with one force and one gate. Vertices are those of the members one after the other.
-/// Refers to the members, which must outlive it; the organs do not touch each other.
-class TissueGroup {
+namespace detail {
+
+/// Whether no hook but prefetch does anything.
+template <class T>
+concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> forces, ContactProblem& problem,
+                                    const ContactParameters& parameters, const BladeSweep& sweep) {
+  { tissue.begin_tick() } -> std::same_as<NoHook>;
+  { tissue.end_tick(forces) } -> std::same_as<NoHook>;
+  { tissue.updates() } -> std::same_as<NoHook>;
+  { tissue.exchange_contacts(problem) } -> std::same_as<NoHook>;
+  { tissue.prepare_tools(0.0, parameters) } -> std::same_as<NoHook>;
+  { tissue.try_cut(sweep) } -> std::same_as<NoHook>;
+};
+
+}  // namespace detail
+
+/// Tissues of any types that do not move by themselves, and have no hook but prefetch, as one TissueModel in the
+/// world's frame: a ball that touches two organs is one contact problem, with one force and one gate. Vertices are
+/// those of the members one after the other. Refers to the members, which must outlive it; the organs do not touch each
+/// other.
+class TissueGroup : public StillTissue {
  public:
   /// Throws bad_argument when there is none. Allocates.
-  template <TissueModel... T>
+  template <class... T>
   requires(sizeof...(T) > 0) explicit TissueGroup(T&... members) { (add(checked(members)), ...), build(); }
   /// The same for a number of members known at run time.
-  template <TissueModel T>
+  template <class T>
   explicit TissueGroup(std::span<T* const> members) {
     for (T* member : members) add(checked(*member));
     build();
@@ -33,7 +51,7 @@ class TissueGroup {
   // TissueModel
   const ContactSurface& contact_surface() const noexcept { return surface_; }
   Status require_columns(std::span<const int> vertices) noexcept;
-  void foresee(std::span<const int> vertices) noexcept;
+  void prefetch(std::span<const int> vertices) noexcept;
   Matrix3 compliance(int i, int j) const noexcept;
   double compliance_bound(int j) const noexcept;
   std::uint64_t compliance_revision() const noexcept;
@@ -53,7 +71,12 @@ class TissueGroup {
     static_assert(
         !AnnouncesChanges<T>,
         "palpate: a tissue that moves by itself cannot be in a TissueGroup; give it a HapticServo of its own");
-    return TissueView(tissue);
+    const TissueView view(tissue);
+    if constexpr (TissueModel<T> && !AnnouncesChanges<T>)
+      static_assert(
+          detail::HooksOnlyPrefetch<T>,
+          "palpate: a TissueGroup hands on no hook but prefetch; give a tissue with others a HapticServo of its own");
+    return view;
   }
   void add(const TissueView& tissue);
   void build();

@@ -64,9 +64,9 @@ PALPATE_INLINE Status TissueGroup::require_columns(std::span<const int> vertices
     if (const std::span<const int> own = part_of(m, vertices); !own.empty()) status |= m.tissue.require_columns(own);
   return status;
 }
-PALPATE_INLINE void TissueGroup::foresee(std::span<const int> vertices) noexcept {
+PALPATE_INLINE void TissueGroup::prefetch(std::span<const int> vertices) noexcept {
   for (const Member& m : members_)
-    if (const std::span<const int> own = part_of(m, vertices); !own.empty()) m.tissue.foresee(own);
+    if (const std::span<const int> own = part_of(m, vertices); !own.empty()) m.tissue.prefetch(own);
 }
 PALPATE_INLINE Matrix3 TissueGroup::compliance(int i, int j) const noexcept {
   const Member& m = member_of(j);

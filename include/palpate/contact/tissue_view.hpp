@@ -1,19 +1,17 @@
 // A tissue of any type, as code that is no template sees it.
 #pragma once
 
+#include <palpate/concepts/explain_tissue.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/blade_sweep.hpp>
 #include <palpate/contact/contact_samples.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-class ContactProblem;
-struct ContactParameters;
-
 namespace detail {
 
 /// The functions of a tissue. What a tick asks for in a loop, a function gives in one call, so that the loop is
-/// compiled with the tissue; null: the tissue has no such function.
+/// compiled with the tissue; null: a hook that does nothing.
 struct TissueFunctions {
   const ContactSurface& (*contact_surface)(const void*) noexcept;
   const Eigen::Isometry3d& (*to_world)(const void*) noexcept;
@@ -24,7 +22,7 @@ struct TissueFunctions {
   std::uint64_t (*compliance_revision)(const void*) noexcept;
   double (*compliance_bound)(const void*, int) noexcept;
   double (*compliance_floor)(const void*) noexcept;
-  void (*foresee)(void*, std::span<const int>) noexcept;
+  void (*prefetch)(void*, std::span<const int>) noexcept;
   Status (*begin_tick)(void*) noexcept;
   void (*end_tick)(void*, std::span<const VertexForce>) noexcept;
   std::uint64_t (*updates)(const void*) noexcept;
@@ -80,23 +78,27 @@ struct TissueCalls {
   static double compliance_bound(const void* t, int j) noexcept { return of(t).compliance_bound(j); }
   static double compliance_floor(const void* t) noexcept { return of(t).compliance_floor(); }
 
+  static T& hooked() noexcept;  // in decltype only
+  template <class Result>
+  static constexpr bool calls = !std::same_as<Result, NoHook>;
+
   static constexpr TissueFunctions table() noexcept {
     TissueFunctions f{
         contact_surface,  to_world,         require_columns, compliance, between, displacement, compliance_revision,
         compliance_bound, compliance_floor, nullptr,         nullptr,    nullptr, nullptr,      nullptr,
         nullptr,          nullptr};
-    if constexpr (requires(T & t, std::span<const int> v) { t.foresee(v); })
-      f.foresee = [](void* t, std::span<const int> v) noexcept { of(t).foresee(v); };
+    if constexpr (calls<decltype(hooked().prefetch(std::span<const int>{}))>)
+      f.prefetch = [](void* t, std::span<const int> v) noexcept { of(t).prefetch(v); };
     if constexpr (AnnouncesChanges<T>) f.begin_tick = [](void* t) noexcept -> Status { return of(t).begin_tick(); };
-    if constexpr (requires(T & t, std::span<const VertexForce> v) { t.end_tick(v); })
+    if constexpr (calls<decltype(hooked().end_tick(std::span<const VertexForce>{}))>)
       f.end_tick = [](void* t, std::span<const VertexForce> v) noexcept { of(t).end_tick(v); };
-    if constexpr (requires(const T& t) { t.updates(); })
+    if constexpr (calls<decltype(hooked().updates())>)
       f.updates = [](const void* t) noexcept -> std::uint64_t { return of(t).updates(); };
-    if constexpr (requires(T & t, ContactProblem & p) { t.exchange_contacts(p); })
+    if constexpr (calls<decltype(hooked().exchange_contacts(std::declval<ContactProblem&>()))>)
       f.exchange_contacts = [](void* t, ContactProblem& p) noexcept { of(t).exchange_contacts(p); };
-    if constexpr (requires(T & t, const ContactParameters& p) { t.prepare_tools(0.0, p); })
+    if constexpr (calls<decltype(hooked().prepare_tools(0.0, std::declval<const ContactParameters&>()))>)
       f.prepare_tools = [](void* t, double radius, const ContactParameters& p) { of(t).prepare_tools(radius, p); };
-    if constexpr (requires(T & t, const BladeSweep& s) { t.try_cut(s); })
+    if constexpr (calls<decltype(hooked().try_cut(std::declval<const BladeSweep&>()))>)
       f.try_cut = [](void* t, const BladeSweep& s) noexcept -> bool { return of(t).try_cut(s); };
     return f;
   }
@@ -107,13 +109,14 @@ struct TissueCalls {
 
 /// Any TissueModel by reference: where it is, and a table of its functions. Two pointers wide and a third for the
 /// surface, which is asked for once: `look` again when the tissue may have another one. The tissue must outlive it.
-/// Functions are those of TissueModel, and cost a call through a pointer; what the tissue lacks does nothing.
+/// Functions are those of TissueModel, and cost a call through a pointer; hooks that do nothing cost no call. Does not
+/// compile for another type: the message says what it lacks.
 class TissueView {
  public:
   template <class T>
-  requires(!std::same_as<std::remove_cv_t<T>, TissueView> && TissueModel<T>) TissueView(T& tissue)
+  requires(!std::same_as<std::remove_cv_t<T>, TissueView>) TissueView(T& tissue)
   noexcept  // NOLINT(google-explicit-constructor)
-      : tissue_(const_cast<std::remove_const_t<T>*>(&tissue)), functions_(&detail::TissueCalls<T>::functions) {
+      : tissue_(&tissue), functions_(functions_of<T>()) {
     look();
   }
 
@@ -142,9 +145,9 @@ class TissueView {
   double compliance_bound(int j) const noexcept { return functions_->compliance_bound(tissue_, j); }
   double compliance_floor() const noexcept { return functions_->compliance_floor(tissue_); }
 
-  bool foresees() const noexcept { return functions_->foresee != nullptr; }
-  void foresee(std::span<const int> vertices) const noexcept {
-    if (foresees()) functions_->foresee(tissue_, vertices);
+  bool prefetches() const noexcept { return functions_->prefetch != nullptr; }
+  void prefetch(std::span<const int> vertices) const noexcept {
+    if (prefetches()) functions_->prefetch(tissue_, vertices);
   }
   /// Whether the tissue moves by itself.
   bool announces_changes() const noexcept { return functions_->begin_tick != nullptr; }
@@ -172,6 +175,15 @@ class TissueView {
   bool try_cut(const BladeSweep& sweep) const noexcept { return can_be_cut() && functions_->try_cut(tissue_, sweep); }
 
  private:
+  template <class T>
+  static const detail::TissueFunctions* functions_of() noexcept {
+    detail::explain_tissue<T>();
+    if constexpr (TissueModel<T>)
+      return &detail::TissueCalls<T>::functions;
+    else
+      return nullptr;
+  }
+
   void* tissue_;
   const detail::TissueFunctions* functions_;
   const ContactSurface* surface_;

@@ -12,8 +12,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Orders from any thread, and strokes from the one that ticks, which never waits. `take` hands out all there are; they
-/// count as open until they are done.
+/// Orders from any thread, and sweeps of a blade from the one that ticks, which never waits. `take` hands out all there
+/// are; they count as open until they are done.
 class CutOrders {
  public:
   struct Taken {
@@ -25,7 +25,7 @@ class CutOrders {
   void add(CutOrder order);
   void add(const BladeSweep& sweep);
   /// From the thread that ticks; false when 256 are waiting. Neither waits nor allocates.
-  bool stroke(const BladeSweep& sweep) noexcept;
+  bool try_add(const BladeSweep& sweep) noexcept;
 
   /// One thread at a time.
   Taken take();
@@ -36,7 +36,7 @@ class CutOrders {
   std::mutex mutex_;
   std::vector<CutOrder> orders_;
   std::vector<BladeSweep> sweeps_;
-  SpscRing<BladeSweep, 256> strokes_;
+  SpscRing<BladeSweep, 256> from_ticks_;
   std::atomic<unsigned> open_{0};
 };
 

@@ -19,8 +19,8 @@ PALPATE_INLINE void CutOrders::add(const BladeSweep& sweep) {
   open_.fetch_add(1, std::memory_order_release);
 }
 
-PALPATE_INLINE bool CutOrders::stroke(const BladeSweep& sweep) noexcept {
-  if (!strokes_.push(sweep)) return false;
+PALPATE_INLINE bool CutOrders::try_add(const BladeSweep& sweep) noexcept {
+  if (!from_ticks_.push(sweep)) return false;
   open_.fetch_add(1, std::memory_order_release);
   return true;
 }
@@ -37,7 +37,7 @@ PALPATE_INLINE CutOrders::Taken CutOrders::take() {
     orders_.clear();
     taken.sweeps.swap(sweeps_);
   }
-  for (BladeSweep stroke; strokes_.pop(stroke); ++taken.count) taken.sweeps.push_back(stroke);
+  for (BladeSweep sweep; from_ticks_.pop(sweep); ++taken.count) taken.sweeps.push_back(sweep);
   return taken;
 }
 

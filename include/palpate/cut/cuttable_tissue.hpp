@@ -145,7 +145,7 @@ class CuttableTissue : public ModelBase {
   // The thread that ticks
 
   /// Orders a cut from a tick; false when too many are waiting. Never waits.
-  bool try_cut(const BladeSweep& sweep) noexcept { return orders_.stroke(sweep); }
+  bool try_cut(const BladeSweep& sweep) noexcept { return orders_.try_add(sweep); }
   Status begin_tick() noexcept {
     const bool behind = orders_.are_open() || failed_.load(std::memory_order_acquire);
     if (views_.update() && contact().cut != revision_) {  // folding changes nothing that a session remembers
@@ -175,6 +175,10 @@ class CuttableTissue : public ModelBase {
   std::uint64_t compliance_revision() const noexcept { return revision_; }
   double compliance_bound(int j) const noexcept { return view().bound[static_cast<std::size_t>(j)]; }
   double compliance_floor() const noexcept { return view().floor; }
+  NoHook prefetch(std::span<const int>) noexcept { return {}; }
+  NoHook end_tick(std::span<const VertexForce>) noexcept { return {}; }
+  NoHook updates() const noexcept { return {}; }
+  NoHook report_slow(bool) noexcept { return {}; }
   /// Dofs whose correction a tick adds up at present.
   Index open_rank() const noexcept { return view().step->rank(); }
 

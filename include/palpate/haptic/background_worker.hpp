@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -21,7 +22,7 @@ struct WorkerReport {
 
 /// Does the background work of a tissue (HasBackgroundWork) in a thread of its own, from construction to `stop` or
 /// destruction. Where a piece takes longer than the time to the next, the next follows at once, and lost time is not
-/// made up for; a tissue with `report_slow` is then told so, and ticks say slow_tissue. For a tissue without background
+/// made up for; the tissue's `report_slow` is then told so, and ticks say slow_tissue. For a tissue without background
 /// work there is no thread. Refers to the tissue, which must outlive it.
 class BackgroundWorker {
  public:
@@ -45,10 +46,13 @@ class BackgroundWorker {
 
   template <class Tissue>
   static Functions functions_of() noexcept {
+    static_assert(detail::HasWorkHooks<Tissue>,
+                  "palpate: this tissue needs background_work() and report_slow(bool) noexcept; derive it from "
+                  "TissueAdaptor, which hands on those of another tissue, or from StillTissue");
     Functions f;
     if constexpr (HasBackgroundWork<Tissue>)
       f.work = [](void* t) { return static_cast<Tissue*>(t)->background_work(); };
-    if constexpr (requires(Tissue & t) { t.report_slow(true); })
+    if constexpr (!std::same_as<decltype(std::declval<Tissue&>().report_slow(true)), NoHook>)
       f.report_slow = [](void* t, bool slow) noexcept { static_cast<Tissue*>(t)->report_slow(slow); };
     return f;
   }

@@ -26,12 +26,13 @@ class HapticServo {
   /// Throws bad_argument for an invalid tool, coupling or limits, or when nothing of the tissue can be touched;
   /// unsupported (ids: the tool) for a BladeTool and a tissue that cannot be cut.
   /// Allocates all a tick needs.
-  template <TissueModel T>
-  HapticServo(T& tissue, const ToolList& tools, const ServoOptions& options = {}, const Energy& energy = {})
+  template <class T>
+  requires(!std::same_as<std::remove_cv_t<T>, TissueView>)
+      HapticServo(T& tissue, const ToolList& tools, const ServoOptions& options = {}, const Energy& energy = {})
       : HapticServo(TissueView(tissue), tools, options,
                     energy ? std::vector<EnergyTank>(tools.size(), *energy) : std::vector<EnergyTank>{}) {}
   template <class T>
-  requires(!std::is_lvalue_reference_v<T> && !std::same_as<T, TissueView> && TissueModel<T>)
+  requires(!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueView>)
       HapticServo(T&&, const ToolList&, const ServoOptions& = {}, const Energy& = {})
   = delete;
   HapticServo(const HapticServo&) = delete;

@@ -28,18 +28,18 @@ class HapticSession {
  public:
   /// Throws bad_argument for what HapticServo refuses, for options beyond what a device says (SessionOptions), when
   /// there is not one tool per device, and for a device given twice. Allocates all a tick needs.
-  template <HapticDevice D, TissueModel T>
+  template <HapticDevice D, class T>
   HapticSession(D& device, T& tissue, const ToolList& tool, const SessionOptions& options = {})
       : HapticSession(std::vector<detail::LoopDevice>{detail::loop_device(device)}, TissueView(tissue), tool, options) {
   }
   /// Several devices of any types: std::tie(left, right).
-  template <HapticDevice... D, TissueModel T>
+  template <HapticDevice... D, class T>
   HapticSession(const std::tuple<D&...>& devices, T& tissue, const ToolList& tools, const SessionOptions& options = {})
       : HapticSession(detail::loop_devices(devices), TissueView(tissue), tools, options) {}
   /// A temporary device or tissue.
   template <class D, class T>
   requires((!std::is_lvalue_reference_v<D> && HapticDevice<D>) ||
-           (!std::is_lvalue_reference_v<T> && !std::same_as<T, TissueView> && TissueModel<T>))
+           (!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueView>))
       HapticSession(D&&, T&&, const ToolList&, const SessionOptions& = {})
   = delete;
   HapticSession(const HapticSession&) = delete;

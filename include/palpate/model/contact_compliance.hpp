@@ -48,7 +48,7 @@ class ContactCompliance {
   Status require(std::span<const int> vertices) noexcept;
 
   /// Tells which vertices may be required soon.
-  void foresee(std::span<const int> vertices) noexcept;
+  void prefetch(std::span<const int> vertices) noexcept;
 
   /// What a column that is not there reads as: the vertex itself this soft, all others still. Keeps a missing column
   /// from feeling like stone.

@@ -49,7 +49,7 @@ Status ContactCompliance<Scalar>::require(std::span<const int> vertices) noexcep
 }
 
 template <std::floating_point Scalar>
-void ContactCompliance<Scalar>::foresee(std::span<const int> vertices) noexcept {
+void ContactCompliance<Scalar>::prefetch(std::span<const int> vertices) noexcept {
   if (!worker_) return;
   for (int v : vertices)
     if (has(v)) last_used_[slot(v)] = clock_;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
-#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/concepts/still_tissue.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/contact_compliance.hpp>
@@ -24,7 +24,7 @@ struct SolverRecipe;
 /// The part of HapticFEModel that is no template of element, material or solver. Scalar, float or double, is what the
 /// stored compliance is. Not made by itself: HapticFEModel derives from it. Satisfies TissueModel.
 template <std::floating_point Scalar>
-class LinearTissue : public ModelBase {
+class LinearTissue : public ModelBase, public StillTissue {
  public:
   /// Displacement under the scene's loads, no tool: 3 per admitted node [m].
   const VectorX& displacement() const noexcept;
@@ -58,7 +58,7 @@ class LinearTissue : public ModelBase {
   // TissueModel
   const ContactSurface& contact_surface() const noexcept { return surface_; }
   Status require_columns(std::span<const int> vertices) noexcept { return compliance_.require(vertices); }
-  void foresee(std::span<const int> vertices) noexcept { compliance_.foresee(vertices); }
+  void prefetch(std::span<const int> vertices) noexcept { compliance_.prefetch(vertices); }
   auto compliance(int i, int j) const noexcept { return compliance_(i, j); }
   double compliance_bound(int j) const noexcept { return compliance_.bound(j); }
   std::uint64_t compliance_revision() const noexcept { return compliance_.revision(); }

@@ -95,6 +95,10 @@ class MovingTissue : public ModelBase {
   std::uint64_t updates() const noexcept { return revision_; }
   double compliance_bound(int j) const noexcept { return compliance_.bound(j); }
   double compliance_floor() const noexcept { return compliance_.floor(); }
+  NoHook prefetch(std::span<const int>) noexcept { return {}; }
+  NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
+  NoHook prepare_tools(double, const ContactParameters&) noexcept { return {}; }
+  NoHook try_cut(const BladeSweep&) noexcept { return {}; }
 
  protected:
   explicit MovingTissue(const SetupOptions& options);

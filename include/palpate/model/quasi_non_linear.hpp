@@ -1,7 +1,7 @@
 // Linear tissue that stiffens along measured curves.
 #pragma once
 
-#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
@@ -51,10 +51,10 @@ class StiffeningCurve {
 /// Cost: a tick pays the loaded vertices squared, and remembers no compliances from one tick to the next while it
 /// moves.
 template <TissueModel Tissue>
-class QuasiNonLinear {
+class QuasiNonLinear : public TissueAdaptor<Tissue> {
  public:
   QuasiNonLinear(Tissue& tissue, StiffeningCurve axial, StiffeningCurve radial = {})
-      : tissue_(&tissue),
+      : TissueAdaptor<Tissue>(tissue),
         axial_(std::move(axial)),
         radial_(std::move(radial)),
         along_(axial_.ratio(0.0)),
@@ -63,30 +63,17 @@ class QuasiNonLinear {
   }
   QuasiNonLinear(Tissue&&, StiffeningCurve, StiffeningCurve = {}) = delete;
 
-  Status begin_tick() noexcept {
-    if constexpr (requires(Tissue& t) { t.begin_tick(); })
-      return tissue_->begin_tick();
-    else
-      return {};
-  }
   void end_tick(std::span<const VertexForce> forces) noexcept {
     follow(forces);
-    if constexpr (requires(Tissue& t) { t.end_tick(forces); }) tissue_->end_tick(forces);
+    this->tissue().end_tick(forces);
   }
-  void foresee(std::span<const int> vertices) noexcept {
-    if constexpr (requires(Tissue& t) { t.foresee(vertices); }) tissue_->foresee(vertices);
-  }
-  Status require_columns(std::span<const int> vertices) noexcept { return tissue_->require_columns(vertices); }
-
-  decltype(auto) contact_surface() const noexcept { return std::as_const(*tissue_).contact_surface(); }
   Matrix3 compliance(int i, int j) const noexcept {
-    const Matrix3 c = std::as_const(*tissue_).compliance(i, j);
+    const Matrix3 c = this->tissue().compliance(i, j);
     return scale_ * c * scale_;
   }
-  std::uint64_t compliance_revision() const noexcept { return revision_ + tissue_->compliance_revision(); }
-  double compliance_bound(int j) const noexcept { return tissue_->compliance_bound(j) / std::min(along_, across_); }
-  double compliance_floor() const noexcept { return tissue_->compliance_floor() / std::max(along_, across_); }
-  const Eigen::Isometry3d& to_world() const noexcept { return tissue_->to_world(); }
+  std::uint64_t compliance_revision() const noexcept { return revision_ + this->tissue().compliance_revision(); }
+  double compliance_bound(int j) const noexcept { return this->tissue().compliance_bound(j) / std::min(along_, across_); }
+  double compliance_floor() const noexcept { return this->tissue().compliance_floor() / std::max(along_, across_); }
 
   /// Back to the state after construction.
   void reset() noexcept {
@@ -146,7 +133,6 @@ class QuasiNonLinear {
 
   static constexpr double unfelt = 1e-5;  // relative, and radians of the axis
 
-  Tissue* tissue_;
   StiffeningCurve axial_, radial_;
   double along_, across_;
   Vector3 axis_{0.0, 0.0, 1.0};

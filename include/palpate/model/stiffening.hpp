@@ -81,7 +81,6 @@ class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner>
   }
 
   // TissueModel
-  Status begin_tick() noexcept { return stiffened_.begin_tick(); }
   void end_tick(std::span<const VertexForce> forces) noexcept {
     stiffened_.end_tick(forces);
     note_scale();

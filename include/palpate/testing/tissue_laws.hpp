@@ -1,4 +1,4 @@
-// The laws of concepts/tissue_model.hpp.
+// The laws of concepts/tissue_model.hpp. Its hooks are the compiler's to check.
 #pragma once
 
 #include <palpate/concepts/tissue_model.hpp>

@@ -1,0 +1,48 @@
+// A tissue around another one.
+#pragma once
+
+#include <palpate/concepts/tissue_model.hpp>
+
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Base of a tissue that changes something of another one. It is that tissue in every function and hook of TissueModel;
+/// a class that derives from it hides what it changes, and calls `tissue()` for the rest. One that hides `compliance`
+/// must define compliance_revision, compliance_bound and compliance_floor, too: without, it is no TissueModel. Refers to
+/// the tissue, which must outlive it.
+template <TissueModel Tissue>
+class TissueAdaptor {
+ public:
+  explicit TissueAdaptor(Tissue& tissue) noexcept : tissue_(&tissue) {}
+  explicit TissueAdaptor(Tissue&&) = delete;
+
+  decltype(auto) contact_surface() const noexcept { return tissue().contact_surface(); }
+  Status require_columns(std::span<const int> vertices) noexcept { return tissue_->require_columns(vertices); }
+  const Eigen::Isometry3d& to_world() const noexcept { return tissue().to_world(); }
+  decltype(auto) compliance(int i, int j) const noexcept { return tissue().compliance(i, j); }
+  std::uint64_t compliance_revision() const noexcept { return tissue().compliance_revision(); }
+  double compliance_bound(int j) const noexcept { return tissue().compliance_bound(j); }
+  double compliance_floor() const noexcept { return tissue().compliance_floor(); }
+
+  auto prefetch(std::span<const int> vertices) noexcept { return tissue_->prefetch(vertices); }
+  auto begin_tick() noexcept { return tissue_->begin_tick(); }
+  auto end_tick(std::span<const VertexForce> forces) noexcept { return tissue_->end_tick(forces); }
+  auto updates() const noexcept { return tissue().updates(); }
+  auto exchange_contacts(ContactProblem& problem) noexcept { return tissue_->exchange_contacts(problem); }
+  auto prepare_tools(double smallest_radius, const ContactParameters& parameters) {
+    return tissue_->prepare_tools(smallest_radius, parameters);
+  }
+  auto try_cut(const BladeSweep& sweep) noexcept { return tissue_->try_cut(sweep); }
+  auto background_work() { return tissue_->background_work(); }
+  auto report_slow(bool slow) noexcept { return tissue_->report_slow(slow); }
+
+ protected:
+  Tissue& tissue() noexcept { return *tissue_; }
+  const Tissue& tissue() const noexcept { return *tissue_; }
+
+ private:
+  Tissue* tissue_;
+};
+
+}}  // namespace palpate

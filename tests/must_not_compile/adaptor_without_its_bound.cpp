@@ -1,0 +1,22 @@
+// expect: this tissue changes the compliance that it inherits
+#include <palpate/concepts/tissue_adaptor.hpp>
+#include <palpate/contact/tissue_group.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
+
+using namespace palpate;
+
+/// Twice as soft as the tissue, with the revision and floor that this needs, and its bound or the tissue's.
+struct Softer : TissueAdaptor<TissueGroup> {
+  using TissueAdaptor::TissueAdaptor;
+  Matrix3 compliance(int i, int j) const noexcept { return 2.0 * tissue().compliance(i, j); }
+  std::uint64_t compliance_revision() const noexcept { return tissue().compliance_revision(); }
+  double compliance_floor() const noexcept { return 2.0 * tissue().compliance_floor(); }
+#ifdef PALPATE_GOOD_TWIN
+  double compliance_bound(int j) const noexcept { return 2.0 * tissue().compliance_bound(j); }
+#endif
+};
+
+void touch(TissueGroup& group) {
+  Softer softer(group);
+  HapticServo servo(softer, SphereTool{4e-3});
+}
