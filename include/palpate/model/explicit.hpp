@@ -46,6 +46,7 @@ class ExplicitTissueMotion final : public TissueMotion {
         prescribed_(conditions.prescribed),
         maximum_substeps_(parameters.maximum_substeps),
         probe_force_(probe_force(lumped, parameters.step)) {
+    for (auto* checkpoint : {&start_, &end_}) motion_.save(*checkpoint);  // allocates, so that steps need not
     if (substeps(parameters.step) <= maximum_substeps_) return;
     SetupProblem p;
     p.what = "a step of " + number(parameters.step) + " s takes " + number(parameters.step / motion_.limit()) +

@@ -1,0 +1,114 @@
+// Tissue that moves by explicit steps under a servo: the same steady forces as by implicit ones, and nothing on the heap.
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/material/neo_hookean.hpp>
+#include <palpate/mesh/generators.hpp>
+#include <palpate/model/explicit.hpp>
+#include <palpate/model/implicit.hpp>
+#include <palpate/testing/allocation_counter.hpp>
+#include <palpate/testing/tissue_laws.hpp>
+
+#include "catch.hpp"
+#include "refused.hpp"
+
+using namespace palpate;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+template <class Material>
+using ExplicitTissue = HapticFEModel<Tet4, Material, Explicit<CentralDifference>>;
+using NewtonTissue = HapticFEModel<Tet4, NeoHookean, Implicit<Newton<SparseCholesky>>>;
+
+const NeoHookean gel{5e3, 0.4, 1000.0};
+constexpr double tip_radius = 0.012;
+
+Mesh<Tet4> cushion() {
+  return box_tet4({0.06, 0.06, 0.03}, {5, 5, 3});
+}
+Scene held_cushion() {
+  return Scene().fix("z0").touch("z1").gravity({0.0, 0.0, -9.81});
+}
+
+/// Force on a sphere pressed 4 mm in and held [N], and what the last ticks said.
+std::pair<double, Status> held_force(MovingTissue& tissue, int ticks = 2000) {
+  ServoOptions options;
+  options.device.peak_force = 20.0;
+  options.device.stiffness = 2000.0;
+  HapticServo servo(tissue, SphereTool{.radius = tip_radius}, options);
+  Status status;
+  double next = 0.0;
+  for (int k = 0; k < ticks; ++k) {
+    if (1e-3 * k >= next - 1e-9) {
+      tissue.advance();
+      next += tissue.step();
+    }
+    ToolState s;
+    s.time = 1e-3 * k;
+    s.position = {0.03, 0.03, 0.03 + tip_radius - std::min(0.004, 0.02 * s.time)};
+    const GatedForce force = servo.tick(s);
+    REQUIRE(force.force().allFinite());
+    if (k >= ticks - 100) status |= force.status;
+  }
+  return {servo.contact_force()[2], status};
+}
+
+}  // namespace
+
+TEST_CASE("explicit steps come to the steady force of implicit ones, whatever the step", "[haptic][explicit]") {
+  NewtonTissue solved(cushion(), held_cushion(), gel);
+  const double wanted = held_force(solved).first;
+  CHECK(wanted > 0.3);
+  for (const double step : {1e-3, 3e-3}) {
+    ExplicitTissue<NeoHookean> tissue(cushion(), held_cushion(), gel, {}, {.step = step, .mass_damping = 40.0});
+    const auto [force, status] = held_force(tissue);
+    INFO("step " << step << ", status " << status);
+    CHECK_THAT(force, WithinRel(wanted, 5e-3));
+    CHECK(status.ok());
+  }
+}
+
+TEST_CASE("explicit tissue keeps the laws of tissues, settles under its weight and does not allocate",
+          "[haptic][explicit]") {
+  ExplicitTissue<NeoHookean> tissue(cushion(), held_cushion(), gel);
+  CHECK(testing::describe(testing::tissue_laws(tissue, std::array{0, 14, 21, 35}, {1e-3})) == "");
+  const VectorX start = tissue.displacement();
+  CHECK(start.minCoeff() < -1e-4);
+  HapticServo servo(tissue, SphereTool{.radius = tip_radius});
+  ToolState s;
+  s.position = {0.03, 0.03, 0.03 + tip_radius + 0.01};
+  servo.tick(s);
+  tissue.advance();
+  {
+    const testing::AllocationScope scope;
+    for (int k = 1; k < 50; ++k) {
+      s.time = 1e-3 * k;
+      s.position[2] = 0.03 + tip_radius - 1e-4 * k;
+      servo.tick(s);
+      tissue.advance();
+    }
+    CHECK(scope.allocations() == 0);
+  }
+  tissue.reset();
+  servo.reset();
+  for (int k = 0; k < 300; ++k) CHECK(tissue.advance().status.ok());
+  CHECK((tissue.displacement() - start).norm() <= 1e-3 * start.norm());
+}
+
+TEST_CASE("explicit steps at small strain feel as Newton's method does", "[haptic][explicit]") {
+  const LinearElastic linear{5e3, 0.4, 1000.0};
+  HapticFEModel<Tet4, LinearElastic, Implicit<Newton<SparseCholesky>>> solved(cushion(), held_cushion(), linear);
+  ExplicitTissue<LinearElastic> tissue(cushion(), held_cushion(), linear, {}, {.mass_damping = 40.0});
+  CHECK_THAT(held_force(tissue).first, WithinRel(held_force(solved).first, 5e-3));
+}
+
+TEST_CASE("explicit steps that would take too many stable ones are refused", "[haptic][explicit]") {
+  const SetupProblem p = test::refusal([] {
+    ExplicitTissue<NeoHookean>(cushion(), held_cushion(), gel, {}, {.step = 1e-2, .maximum_substeps = 3});
+  });
+  CHECK(p.kind == SetupErrorKind::bad_argument);
+  CHECK(p.value > 3.0);
+  CHECK(p.threshold == 3.0);
+  CHECK_REFUSED(SetupErrorKind::bad_argument,
+                ExplicitTissue<NeoHookean>(cushion(), held_cushion(), gel, {}, {.step = 0.0}));
+}
