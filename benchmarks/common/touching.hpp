@@ -56,9 +56,7 @@ class Touching {
     const ToolState state = read();
     return servo_.tick({&state, 1}).front().force();
   }
-  int pressing() const noexcept {
-    return static_cast<int>(std::ranges::count_if(servo_.contacts(), [](const auto& c) { return c.force > 0.0; }));
-  }
+  int pressing() const noexcept { return static_cast<int>(servo_.contacts().size()); }
 
   /// Holds still, applies the forces to the whole body and measures how far the pressed points then are from the ball,
   /// per depth. This goes through none of the stored compliance. Median of five places: now and then one contact of a
@@ -92,8 +90,7 @@ class Touching {
     VectorX u(3 * model_.mesh().node_count());
     model_.displacement_with(servo_.read_snapshot().vertex_forces(), u);
     double worst = pressing() > 0 ? 0.0 : infinity;
-    for (const Contact& c : servo_.contacts()) {
-      if (!(c.force > 0.0)) continue;
+    for (const ToolContact& c : servo_.contacts()) {
       Vector3 point = Vector3::Zero();
       for (std::size_t a = 0; a < 3; ++a) {
         const NodeId node = model_.touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];

@@ -77,9 +77,7 @@ struct Session {
     status = servo.tick({&state, 1}).front().status;
     return servo.contact_force();
   }
-  int pressing() const {
-    return static_cast<int>(std::ranges::count_if(servo.contacts(), [](const auto& c) { return c.force > 0.0; }));
-  }
+  int pressing() const { return static_cast<int>(servo.contacts().size()); }
   bool has(palpate::StatusFlag flag) const { return status.has(flag); }
 
  private:

@@ -53,9 +53,7 @@ class Palpation {
     return servo_.tick({&state_, 1}).front().force();
   }
   palpate::Vector3 contact_force() const noexcept { return servo_.contact_force(); }
-  int pressing() const noexcept {
-    return static_cast<int>(std::ranges::count_if(servo_.contacts(), [](const auto& c) { return c.force > 0.0; }));
-  }
+  int pressing() const noexcept { return static_cast<int>(servo_.contacts().size()); }
 
   /// Holds still, applies the forces to the whole body and measures how far the pressed points then are from the ball,
   /// per depth. This goes through none of the stored compliance.
@@ -64,8 +62,7 @@ class Palpation {
     palpate::VectorX u(3 * model_.mesh().node_count());
     model_.displacement_with(servo_.read_snapshot().vertex_forces(), u);
     double worst = pressing() > 0 ? 0.0 : palpate::infinity;
-    for (const palpate::Contact& c : servo_.contacts()) {
-      if (!(c.force > 0.0)) continue;
+    for (const palpate::ToolContact& c : servo_.contacts()) {
       palpate::Vector3 point = palpate::Vector3::Zero();
       for (std::size_t a = 0; a < 3; ++a) {
         const palpate::NodeId node = model_.touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];
@@ -82,7 +79,7 @@ class Palpation {
     state.counters["tets"] = static_cast<double>(r.elements);
     state.counters["kept"] = static_cast<double>(r.touchable_vertices);
     state.counters["contacts"] = pressing();
-    state.counters["points"] = static_cast<double>(servo_.contacts().size());
+    state.counters["points"] = servo_.contact_rows();
     state.counters["setup_ms"] = 1e3 * r.total_seconds();
   }
 

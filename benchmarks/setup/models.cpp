@@ -28,10 +28,10 @@ Measured set_up(const Mesh<Tet4>& mesh, const Scene& scene) {
 std::string compliance_error(Model& model) {
   const int v = static_cast<int>(model.touchable_nodes().size() / 2);
   VectorX u(3 * model.mesh().node_count());
-  const VertexForce force{v, Vector3(1e-3, -2e-3, 3e-3)};
+  const VertexForce force{v, {1e-3, -2e-3, 3e-3}};
   model.displacement_with({&force, 1}, u);
   const Vector3 solved = u.segment<3>(3 * Index{model.touchable_nodes()[static_cast<std::size_t>(v)]});
-  const Vector3 stored = model.compliance(v, v) * force.force;
+  const Vector3 stored = model.compliance(v, v) * force.force.in_model_axes();
   return error_over((solved - stored).norm() / solved.norm(), 1e-10, "stored compliance is not a solve:");
 }
 

@@ -82,8 +82,8 @@ inline VectorX of_given_nodes(const VectorX& u, const std::vector<NodeId>& map, 
 template <class Model, class Servo>
 double distance_from_balls(const Model& model, const Servo& servo, const VectorX& u, const PressScene& scene) {
   double worst = 0.0, largest = 0.0;
-  for (const Contact& c : servo.contacts()) largest = std::max(largest, c.force);
-  for (const Contact& c : servo.contacts()) {
+  for (const ToolContact& c : servo.contacts()) largest = std::max(largest, c.force);
+  for (const ToolContact& c : servo.contacts()) {
     if (!(c.force > 0.01 * largest)) continue;
     Vector3 point = Vector3::Zero();
     for (std::size_t a = 0; a < 3; ++a) {

@@ -25,7 +25,7 @@ class CotinContender : public LinearContender<Smoothed<Tet4>, Condensed<Selectiv
   VectorX displacement() override {
     // T u(T f), as scale() says
     std::vector<VertexForce> forces(felt_.vertex_forces().begin(), felt_.vertex_forces().end());
-    for (VertexForce& f : forces) f.force = tissue_.scale() * f.force;
+    for (VertexForce& f : forces) f.force = ModelVector(tissue_.scale() * f.force.in_model_axes());
     model_.displacement_with(forces, u_);
     for (Index i = 0; i < u_.size() / 3; ++i) u_.segment<3>(3 * i) = (tissue_.scale() * u_.segment<3>(3 * i)).eval();
     return of_given_nodes(u_, model_.node_map(), bench_.scene.mesh.node_count());

@@ -45,7 +45,8 @@ class SoftContender : public Contender {
     VectorX left(body.elastic->size()), contact = VectorX::Zero(left.size());
     body.elastic->force(tissue_.motion().displacement(), left);
     for (const VertexForce& f : felt_.vertex_forces())
-      contact.segment<3>(3 * Index{tissue_.touchable_nodes()[static_cast<std::size_t>(f.vertex)]}) += f.force;
+      contact.segment<3>(3 * Index{tissue_.touchable_nodes()[static_cast<std::size_t>(f.vertex)]}) +=
+          f.force.in_model_axes();
     Vector3 sum = Vector3::Zero();  // the supports against the balls
     for (Index dof = 0; dof < left.size(); ++dof)
       if (body.conditions.is_constrained(dof)) sum[dof % 3] += left[dof];

@@ -90,9 +90,10 @@ int main() {
   double work = 0.0;
   for (const VertexForce& f : inside.shared) {
     const Vector3 displacement = u.segment<3>(3 * Index{tissue.touchable_nodes()[static_cast<std::size_t>(f.vertex)]});
-    sum += f.force;
-    moved += displacement * f.force.dot(inside.force) / inside.force.squaredNorm();  // weight = share of the force
-    work += displacement.dot(f.force);
+    const Vector3 force = f.force.in_world(tissue.to_world());
+    sum += force;
+    moved += displacement * force.dot(inside.force) / inside.force.squaredNorm();  // weight = share of the force
+    work += displacement.dot(force);
   }
   std::printf("a point inside a face is carried by %zu nodes\n", inside.shared.size());
   right = inside.shared.size() == 3 && right;

@@ -82,24 +82,22 @@ class AnalyticTissue : public StillTissue {
 };
 static_assert(TissueModel<AnalyticTissue>);
 
-/// Displacement of every vertex under the forces of `contacts`.
+/// Where every vertex is under forces.
 template <TissueModel Tissue>
-std::vector<Vector3> deformed_surface(const Tissue& tissue, std::span<const Contact> contacts) {
+std::vector<Vector3> deformed_surface(const Tissue& tissue, std::span<const VertexForce> forces) {
   std::vector<Vector3> x = tissue.contact_surface().positions();
   for (std::size_t i = 0; i < x.size(); ++i)
-    for (const Contact& c : contacts)
-      for (std::size_t a = 0; a < 3; ++a)
-        if (c.weights[a] > 0.0)
-          x[i] -= tissue.compliance(static_cast<int>(i), c.vertices[a]) * (c.weights[a] * c.force * c.normal);
+    for (const VertexForce& f : forces)
+      x[i] += tissue.compliance(static_cast<int>(i), f.vertex) * f.force.in_model_axes();
   return x;
 }
 
 /// Smallest gap between a ball at `proxy` (model frame) and any contact point of the deformed surface; those the ball
 /// is behind count too.
 template <TissueModel Tissue>
-double smallest_gap(const Tissue& tissue, const ContactSamples& samples, std::span<const Contact> contacts,
+double smallest_gap(const Tissue& tissue, const ContactSamples& samples, std::span<const VertexForce> forces,
                     const Vector3& proxy, double radius) {
-  const std::vector<Vector3> x = deformed_surface(tissue, contacts);
+  const std::vector<Vector3> x = deformed_surface(tissue, forces);
   double smallest = infinity;
   for (int t = 0; t < static_cast<int>(tissue.contact_surface().triangles().size()); ++t)
     for (const ContactSample& s : samples.of_triangle(t)) {

@@ -174,7 +174,7 @@ TEST_CASE("the ball sinks into no contact point and is pushed out, not in", "[co
              start + Vector3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), -random.uniform(2e-4, 1.2e-3)));
       s.settle();
       if (s.force().norm() > 0.0) ++touching;
-      deepest = std::min(deepest, smallest_gap(tissue, samples, s.problem.contacts(), s.tools[0].proxy, radius));
+      deepest = std::min(deepest, smallest_gap(tissue, samples, s.problem.vertex_forces(), s.tools[0].proxy, radius));
       if (!(s.force()[2] >= 0.0)) ++inward;
       for (const Contact& c : s.problem.contacts())
         if (!(c.force >= 0.0) || !(c.force * c.normal[2] >= 0.0)) ++pulling;
@@ -193,7 +193,7 @@ TEST_CASE("forces on the tissue are the forces on the balls, and balance them", 
   s.move(0, Vector3(-2.9e-3, 1e-4, radius - 8e-4));
   s.move(1, Vector3(4.1e-3, 1e-3, radius - 4e-4));
   Vector3 on_tissue = Vector3::Zero(), on_contacts = Vector3::Zero();
-  for (const VertexForce& f : s.problem.vertex_forces()) on_tissue += f.force;
+  for (const VertexForce& f : s.problem.vertex_forces()) on_tissue += f.force.in_model_axes();
   for (const Contact& c : s.problem.contacts()) on_contacts += c.force * c.normal;
   const Vector3 on_tools = s.force(0) + s.force(1);
   CHECK((on_tissue + on_tools).norm() <= 1e-12);

@@ -384,7 +384,7 @@ TEST_CASE("snapshots, statuses and reports print; a snapshot is what a displacem
   for (std::size_t i : {0u, 1u}) CHECK((snapshot.contact_force(i) - session.servo().contact_force(i)).norm() < 1e-9);
   const auto sum = [](std::span<const VertexForce> forces) {
     Vector3 all = Vector3::Zero();
-    for (const VertexForce& f : forces) all += f.force;
+    for (const VertexForce& f : forces) all += f.force.in_model_axes();
     return all;
   };
   CHECK((sum(snapshot) + snapshot.contact_force(0) + snapshot.contact_force(1)).norm() < 1e-9);

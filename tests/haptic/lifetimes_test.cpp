@@ -56,7 +56,7 @@ TEST_CASE("two models in two threads, each with a reader, are two models", "[hap
     while (!done.load()) {
       const auto& snapshot = servo.read_snapshot();
       Vector3 on_vertices = Vector3::Zero(), on_tools = Vector3::Zero();
-      for (const VertexForce& f : snapshot.vertex_forces()) on_vertices += f.force;
+      for (const VertexForce& f : snapshot.vertex_forces()) on_vertices += f.force.in_model_axes();
       for (const ToolContact& c : snapshot.tool_contacts()) on_tools += c.force * c.normal;
       if (snapshot.time < last || (on_vertices + on_tools).norm() > 1e-9 * (1.0 + on_tools.norm())) ++torn;
       last = snapshot.time;

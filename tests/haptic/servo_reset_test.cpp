@@ -18,7 +18,7 @@ struct ListeningTissue : test::AnalyticTissue {
   Status begin_tick() noexcept { return {}; }
   void end_tick(std::span<const VertexForce> forces) noexcept {
     pressing = Vector3::Zero();
-    for (const VertexForce& f : forces) pressing += f.force;
+    for (const VertexForce& f : forces) pressing += f.force.in_model_axes();
     ++told;
   }
 

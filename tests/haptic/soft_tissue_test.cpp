@@ -94,7 +94,8 @@ TEST_CASE("the steady force does not depend on the step, and is that of the equi
     if (h != 0.01) continue;
     Scene loaded = pad_scene();
     for (const VertexForce& f : s.on_vertices)
-      loaded.point_load(std::vector<NodeId>{tissue.touchable_nodes()[static_cast<std::size_t>(f.vertex)]}, f.force);
+      loaded.point_load(std::vector<NodeId>{tissue.touchable_nodes()[static_cast<std::size_t>(f.vertex)]},
+                        f.force.in_model_axes());
     Equilibrium statics(make_hyperelastic_body(pad(), std::vector<NeoHookean>{{5e3, 0.45, 1000.0}}), loaded);
     REQUIRE(statics.solve().converged);
     CHECK((statics.displacement() - tissue.motion().displacement()).norm() <= 1e-4 * statics.displacement().norm());

@@ -231,7 +231,7 @@ TEST_CASE("two halves of a scene are felt at once, each in its pose", "[contact]
   std::array<Vector3, 2> sum{Vector3::Zero(), Vector3::Zero()};
   for (int member : {0, 1})
     for (std::size_t i = 0; i < group.forces_on(member, forces, own); ++i)
-      sum[static_cast<std::size_t>(member)] += own[i].force;
+      sum[static_cast<std::size_t>(member)] += own[i].force.in_model_axes();
   CHECK(sum[0].z() < 0.0);               // both are pressed,
   CHECK(sum[1].z() < 2.0 * sum[0].z());  // the harder one more
   CHECK((pose.linear() * sum[1] + sum[0] + both).norm() <= 1e-10 * both.norm());

@@ -60,7 +60,7 @@ TEST_CASE("forces of tools on top of the loads", "[model][policies]") {
     for (const VertexForce& f : forces)
       for (NodeId i = 0; i < static_cast<NodeId>(mesh.node_count()); ++i)
         expected.segment<3>(3 * i) +=
-            rest.compliance(i, model->touchable_nodes()[static_cast<std::size_t>(f.vertex)]) * f.force;
+            rest.compliance(i, model->touchable_nodes()[static_cast<std::size_t>(f.vertex)]) * f.force.in_model_axes();
     CHECK(relative(u, expected) <= accuracy(policy));
     CHECK(relative(model->displacement(), rest.displacement) <= accuracy(policy));  // unchanged
     model->displacement_with({}, u);

@@ -77,7 +77,7 @@ inline std::vector<double> answers(AnyModel& model) {
     all.push_back(model.compliance_bound(j));
   }
   all.push_back(model.compliance_floor());
-  const std::array forces{VertexForce{0, Vector3(0.1, -0.2, 0.3)}};
+  const std::array forces{VertexForce{0, {0.1, -0.2, 0.3}}};
   VectorX u = VectorX::Zero(model.displacement().size());
   if (!vertices.empty()) model.displacement_with(forces, u);
   add(u);

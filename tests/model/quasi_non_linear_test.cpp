@@ -101,7 +101,7 @@ Vector3 settled_force(Tissue& tissue, int node, const std::vector<int>& held, co
     const VectorX f = MatrixX(c(held, held)).llt().solve(VectorX(u(held)));
     force.setZero();
     for (std::size_t k = 0; k < held.size(); ++k) force[held[k]] = f[static_cast<Index>(k)];
-    const VertexForce on{node, force};
+    const VertexForce on{node, ModelVector(force)};
     tissue.end_tick({&on, 1});
   }
   return force;
@@ -172,11 +172,11 @@ TEST_CASE("a tissue that has stiffened keeps the laws of tissues", "[model][quas
   CHECK(tissue.compliance_revision() == still);  // a hold keeps its compliances
   const Vector3 force = settled_force(tissue, node, {0, 1, 2}, {2e-3, 1e-3, -4e-3});
   for (const double turn : {1e-9, -1e-9, 0.0}) {  // as rounding does, and a shaking sensor
-    const VertexForce turned{node, force + turn * force.unitOrthogonal() * force.norm()};
+    const VertexForce turned{node, ModelVector(force + turn * force.unitOrthogonal() * force.norm())};
     tissue.end_tick({&turned, 1});
   }
   CHECK(tissue.compliance_revision() == still);
-  const VertexForce elsewhere{node, force + 0.1 * force.norm() * force.unitOrthogonal()};
+  const VertexForce elsewhere{node, ModelVector(force + 0.1 * force.norm() * force.unitOrthogonal())};
   tissue.end_tick({&elsewhere, 1});
   CHECK(tissue.compliance_revision() != still);
   const double none = std::numeric_limits<double>::quiet_NaN();

@@ -46,7 +46,8 @@ void check_weights_both_ways(Model& model) {
   VectorX u(3 * model.mesh().node_count());
   for (int j = 0; j < samples.count(); j += 97) {
     std::array<VertexForce, 3> spread;
-    for (std::size_t b = 0; b < 3; ++b) spread[b] = {samples[j].vertices[b], samples[j].weights[b] * force};
+    for (std::size_t b = 0; b < 3; ++b)
+      spread[b] = {samples[j].vertices[b], ModelVector(samples[j].weights[b] * force)};
     model.displacement_with(spread, u);
     for (int i = 0; i < samples.count(); i += 61) {
       Vector3 read = Vector3::Zero();

@@ -1,6 +1,7 @@
 // What a haptic session needs of a tissue.
 #pragma once
 
+#include <palpate/concepts/vertex_force.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
@@ -13,12 +14,6 @@
 #include <type_traits>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-/// A force on one vertex of the touchable surface, model frame.
-struct VertexForce {
-  int vertex = -1;
-  Vector3 force = Vector3::Zero();  ///< on the tissue [N]
-};
 
 class ContactProblem;
 struct ContactParameters;

@@ -25,13 +25,13 @@ PALPATE_INLINE void SurfaceDisplacement::move_to(SurfaceDisplacement& fresh) noe
 
 PALPATE_INLINE void SurfaceDisplacement::add(int vertex, const Vector3& force, int& slot) noexcept {
   if (slot >= 0) {
-    forces_[static_cast<std::size_t>(slot)].force += force;
+    forces_[static_cast<std::size_t>(slot)].force += ModelVector(force);
     return;
   }
   slot = count_;
   VertexForce& f = forces_[static_cast<std::size_t>(count_++)];
   f.vertex = vertex;
-  f.force = force;
+  f.force = ModelVector(force);
 }
 
 PALPATE_INLINE Vector3 SurfaceDisplacement::position(const TissueView& tissue, int vertex) noexcept {
@@ -41,7 +41,7 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::position(const TissueView& tissue, i
 PALPATE_INLINE double SurfaceDisplacement::reach(const TissueView& tissue) noexcept {
   double bounded = 0.0, loaded = 0.0;
   for (const VertexForce& f : forces()) {
-    bounded += tissue.compliance_bound(f.vertex) * f.force.norm();
+    bounded += tissue.compliance_bound(f.vertex) * f.force.in_model_axes().norm();
     loaded = std::max(loaded, at(tissue, f.vertex).norm());
   }
   return std::min(bounded, 2.0 * loaded);

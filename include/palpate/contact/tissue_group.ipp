@@ -51,10 +51,10 @@ PALPATE_INLINE void TissueGroup::update() noexcept {
 PALPATE_INLINE std::size_t TissueGroup::forces_on(int member, std::span<const VertexForce> forces,
                                                   std::span<VertexForce> own) const noexcept {
   const Member& m = members_[at(member)];
-  const Matrix3 turn = rotation_of(m.tissue.to_world());
   std::size_t count = 0;
   for (const VertexForce& f : forces)
-    if (m.has(f.vertex) && count < own.size()) own[count++] = {f.vertex - m.first, turn.transpose() * f.force};
+    if (m.has(f.vertex) && count < own.size())  // the group's axes are the world's
+      own[count++] = {f.vertex - m.first, ModelVector::from_world(f.force.in_model_axes(), m.tissue.to_world())};
   return count;
 }
 

@@ -70,7 +70,7 @@ struct TissueCalls {
     Vector3 u(0.0, 0.0, 0.0);
     for (const VertexForce& f : forces) {
       Read c = of(t).compliance(vertex, f.vertex);
-      u.noalias() += c * f.force;
+      u.noalias() += c * f.force.in_model_axes();
     }
     out = u;
   }

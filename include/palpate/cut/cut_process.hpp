@@ -122,7 +122,7 @@ class CutProcess {
     require_vertex_forces(forces, static_cast<int>(touchable_.nodes().size()));
     std::vector<std::pair<NodeId, Vector3>> list;
     for (const VertexForce& f : forces)
-      list.push_back({touchable_.nodes()[static_cast<std::size_t>(f.vertex)], f.force});
+      list.push_back({touchable_.nodes()[static_cast<std::size_t>(f.vertex)], f.force.in_model_axes()});
     return system_.displacement_with(list);
   }
 

@@ -55,8 +55,10 @@ class HapticServo {
 
   /// Contacts of all tools, as ServoOptions::contact has it; more are left out (degraded_model).
   int contact_capacity() const noexcept { return problem_.capacity(); }
-  /// Contacts of the last tick, model frame. For the tick's own thread.
-  std::span<const Contact> contacts() const noexcept { return problem_.contacts(); }
+  /// How many of those the last tick needed: what presses, and what would have sunk in without.
+  int contact_rows() const noexcept { return static_cast<int>(problem_.contacts().size()); }
+  /// What pressed, was held or cut in the last tick, world frame; valid until the next. For the tick's own thread.
+  std::span<const ToolContact> contacts() const noexcept { return newest_->tool_contacts(); }
   /// Where the ball rests on the surface, or the middle of a blade's edge, world frame [m]. For the tick's own thread.
   Vector3 proxy(std::size_t tool = 0) const noexcept;
   /// Contact force, or that of a blade, before the gate, world frame [N]. For the tick's own thread.
@@ -108,6 +110,7 @@ class HapticServo {
   std::uint64_t updates_ = 0;
   bool started_ = false;
   TripleBuffer<Snapshot> snapshots_;
+  const Snapshot* newest_ = &snapshots_.back();  // published last; nobody writes it before the next is
   std::size_t ticks_ = 0;
 };
 

@@ -194,6 +194,7 @@ PALPATE_INLINE void HapticServo::publish() noexcept {
     if (blades_[i]) s.note_blade(static_cast<int>(i), s.proxies[i], blades_[i]->force());
   }
   s.time = inputs_.front().time();
+  newest_ = &s;
   snapshots_.publish();
 }
 

@@ -22,10 +22,13 @@ struct ToolContact {
   Vector3 friction = Vector3::Zero();  ///< across it [N]
   bool grasped = false;                ///< a point that is held
   bool cutting = false;                ///< a blade
+  Triangle vertices{};                 ///< of the contact surface, which carry the point
+  std::array<double, 3> weights{};     ///< of the vertices in the point; zero for a blade
 };
 
 /// What a renderer needs of a tick, or of a reset, which leaves nothing pressing: forces on the contact surface,
-/// contacts and proxies of the tools in the world. Blades press on no vertex.
+/// contacts and proxies of the tools. All is in the world's frame but the forces on vertices (ModelVector). Blades
+/// press on no vertex.
 struct ServoSnapshot {
   std::vector<VertexForce> forces;  ///< the first `force_count`
   std::size_t force_count = 0;
@@ -36,15 +39,10 @@ struct ServoSnapshot {
   std::array<Vector3, maximum_tools> axes;     ///< of capsules and edges, unit, world frame
   double time = 0.0;                           ///< [s] of the first tool's state that the tick took
 
-  /// Room for that many contacts, and blades. Allocates; `note` does not.
+  /// Room for that many contacts, and blades. Allocates; a tick does not.
   explicit ServoSnapshot(int capacity);
   ServoSnapshot() : ServoSnapshot(default_contact_capacity) {}
 
-  /// Takes over what presses, of contacts in the frame of a model at `pose`.
-  void note(std::span<const Contact> all, std::span<const VertexForce> on_vertices,
-            const Eigen::Isometry3d& pose) noexcept;
-  /// Adds a blade, after that.
-  void note_blade(int tool, const Vector3& edge, const Vector3& force) noexcept;
   std::span<const VertexForce> vertex_forces() const noexcept { return {forces.data(), force_count}; }
   std::span<const ToolContact> tool_contacts() const noexcept { return {contacts.data(), contact_count}; }
   /// The forces on the vertices: what a model's displacement takes, so that it takes a snapshot.
@@ -55,7 +53,14 @@ struct ServoSnapshot {
   Vector3 contact_force(std::size_t tool = 0) const noexcept;
 
  private:
-  void note_held(int tool, const Vector3& point, const Vector3& total) noexcept;
+  friend class HapticServo;
+
+  /// Takes over what presses, of contacts in the frame of a model at `pose`.
+  void note(std::span<const Contact> all, std::span<const VertexForce> on_vertices,
+            const Eigen::Isometry3d& pose) noexcept;
+  /// Adds a blade, after that.
+  void note_blade(int tool, const Vector3& edge, const Vector3& force) noexcept;
+  void note_held(const Contact& row, const Vector3& point, const Vector3& total) noexcept;
 };
 
 /// One line: time, number of contacts, and for every tool its force and proxy. Not for the tick.

@@ -23,11 +23,11 @@ PALPATE_INLINE void ServoSnapshot::note(std::span<const Contact> all, std::span<
   for (const Contact& c : all)
     if (c.force > 0.0 && !c.grasped)
       contacts[contact_count++] = {c.tool, pose * c.point, rotation_of(pose) * c.normal, c.force,
-                                   rotation_of(pose) * c.friction};
+                                   rotation_of(pose) * c.friction, false, false, c.vertices, c.weights};
   for (std::size_t i = 0; i + 2 < all.size(); ++i) {
     if (!all[i].grasped) continue;
     const Vector3 total = all[i].total() + all[i + 1].total() + all[i + 2].total();
-    note_held(all[i].tool, pose * all[i].point, rotation_of(pose) * total);
+    note_held(all[i], pose * all[i].point, rotation_of(pose) * total);
     i += 2;
   }
 }
@@ -36,7 +36,7 @@ PALPATE_INLINE void ServoSnapshot::note_blade(int tool, const Vector3& edge, con
   const double length = force.norm();
   if (!(length > 0.0)) return;
   ToolContact& blade = contacts[contact_count++];
-  blade = {tool, edge, force / length, length, Vector3::Zero(), false, true};
+  blade = {tool, edge, force / length, length, Vector3::Zero(), false, true, {}, {}};
 }
 
 PALPATE_INLINE Vector3 ServoSnapshot::contact_force(std::size_t tool) const noexcept {
@@ -60,11 +60,11 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const ServoSnapshot& 
 }
 
 /// The three rows of a held point as the one force that they are.
-PALPATE_INLINE void ServoSnapshot::note_held(int tool, const Vector3& point, const Vector3& total) noexcept {
+PALPATE_INLINE void ServoSnapshot::note_held(const Contact& row, const Vector3& point, const Vector3& total) noexcept {
   const double force = total.norm();
   if (!(force > 0.0)) return;
   ToolContact& held = contacts[contact_count++];
-  held = {tool, point, total / force, force, Vector3::Zero(), true};
+  held = {row.tool, point, total / force, force, Vector3::Zero(), true, false, row.vertices, row.weights};
 }
 
 }}  // namespace palpate

@@ -148,7 +148,7 @@ PALPATE_INLINE void MovingTissue::end_tick(std::span<const VertexForce> forces) 
   out.count = 0;
   ticked_ = {};
   for (const VertexForce& f : forces)
-    if (!all_finite(f.force))
+    if (!all_finite(f.force.in_model_axes()))
       ticked_.set(StatusFlag::non_finite_force);
     else if (out.count < most_forces)
       out.item[out.count++] = f;
@@ -173,7 +173,7 @@ PALPATE_INLINE VectorX MovingTissue::load_of(const Scene& scene, const Vector3& 
 
 PALPATE_INLINE void MovingTissue::add(const Forces& forces, double factor, VectorX& load) const noexcept {
   for (std::size_t k = 0; k < forces.count; ++k)
-    add_node_vector(load, touchable_nodes()[vertex(forces.item[k])], factor * forces.item[k].force);
+    add_node_vector(load, touchable_nodes()[vertex(forces.item[k])], factor * forces.item[k].force.in_model_axes());
 }
 
 PALPATE_INLINE void MovingTissue::look(View& view) const noexcept {
@@ -183,7 +183,7 @@ PALPATE_INLINE void MovingTissue::look(View& view) const noexcept {
   for (std::size_t i = 0; i < n; ++i) view.rotation[i] = rotations_(i, u);
   std::array<Vector3, most_forces> unrotated;
   for (std::size_t k = 0; k < used_.count; ++k)
-    unrotated[k] = view.rotation[vertex(used_.item[k])].transpose() * used_.item[k].force;
+    unrotated[k] = view.rotation[vertex(used_.item[k])].transpose() * used_.item[k].force.in_model_axes();
   for (std::size_t i = 0; i < n; ++i) {
     Vector3 moved = Vector3::Zero();
     for (std::size_t k = 0; k < used_.count; ++k)

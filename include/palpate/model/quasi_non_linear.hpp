@@ -95,14 +95,14 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
   void follow(std::span<const VertexForce> forces) noexcept {
     Vector3 sum = Vector3::Zero(), moved = Vector3::Zero();
     double weight = 0.0;
-    for (const VertexForce& f : forces) sum += f.force;
+    for (const VertexForce& f : forces) sum += f.force.in_model_axes();
     const double total = sum.norm();
     if (!(total > 0.0 && total < infinity)) return settle(axis_, 0.0, 0.0);
     const Vector3 axis = sum / total;
     for (const VertexForce& f : forces) {
       Vector3 u = Vector3::Zero();
-      for (const VertexForce& g : forces) u += compliance(f.vertex, g.vertex) * g.force;
-      const double share = std::max(0.0, f.force.dot(axis));
+      for (const VertexForce& g : forces) u += compliance(f.vertex, g.vertex) * g.force.in_model_axes();
+      const double share = std::max(0.0, f.force.in_model_axes().dot(axis));
       moved += share * u;
       weight += share;
     }

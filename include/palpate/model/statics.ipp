@@ -66,7 +66,7 @@ PALPATE_INLINE SolveReport Statics::displacement_with(std::span<const VertexForc
   scratch_.setZero();
   for (const auto& [vertex, force] : forces)
     if (vertex >= 0 && static_cast<std::size_t>(vertex) < node_of_vertex.size())
-      add_node_vector(scratch_, node_of_vertex[static_cast<std::size_t>(vertex)], force);
+      add_node_vector(scratch_, node_of_vertex[static_cast<std::size_t>(vertex)], force.in_model_axes());
     else
       all_exist = false;
   SolveReport report = solve_free(scratch_, u);

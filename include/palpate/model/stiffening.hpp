@@ -59,7 +59,7 @@ class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner>
     scales_.update();
     const Matrix3& scale = scales_.front();
     scaled_.assign(forces.begin(), forces.end());
-    for (VertexForce& f : scaled_) f.force = scale * f.force;
+    for (VertexForce& f : scaled_) f.force = ModelVector(scale * f.force.in_model_axes());
     const SolveReport report = Linear::displacement_with(scaled_, u);
     const VectorX& rest = Linear::displacement();
     for (Index i = 0; i < u.size(); i += 3) {

@@ -50,7 +50,7 @@ PALPATE_INLINE void require_vertex_forces(std::span<const VertexForce> forces, i
       raise_at(SetupIds::others, f.vertex, SetupErrorKind::index_out_of_range,
                "a force acts on a vertex that does not exist; the id is its number",
                "The contact surface has " + std::to_string(vertices) + " vertices, counted from zero");
-    if (!all_finite(f.force))
+    if (!all_finite(f.force.in_model_axes()))
       raise_at(SetupIds::others, f.vertex, SetupErrorKind::non_finite,
                "a force on a vertex is not finite; the id is the vertex");
   }

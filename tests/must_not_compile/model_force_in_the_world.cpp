@@ -1,0 +1,16 @@
+// expect: ModelVector
+#include <palpate/haptic/servo_snapshot.hpp>
+
+using namespace palpate;
+
+/// What the hand feels and the tissue, added up.
+Vector3 balance(const ServoSnapshot& snapshot, const Eigen::Isometry3d& to_world) {
+  Vector3 sum = snapshot.contact_force(0);
+  for (const VertexForce& f : snapshot.vertex_forces())
+#ifdef PALPATE_GOOD_TWIN
+    sum += f.force.in_world(to_world);
+#else
+    sum += f.force;
+#endif
+  return to_world * sum;
+}
