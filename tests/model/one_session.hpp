@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <sstream>
+#include <thread>
 #include <vector>
 
 #include "catch.hpp"
