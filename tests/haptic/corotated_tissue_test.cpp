@@ -6,6 +6,9 @@
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 
+#include <chrono>
+#include <thread>
+
 #include "catch.hpp"
 #include "refused.hpp"
 

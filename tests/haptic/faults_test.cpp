@@ -6,6 +6,8 @@
 
 #include <chrono>
 
+#include <thread>
+
 #include "catch.hpp"
 
 using namespace palpate;
