@@ -1,0 +1,23 @@
+// expect: this tissue needs background_work() and report_slow(bool) noexcept
+// A class around a tissue that forgets its work: the worker would start no thread, and the tissue never move.
+#include <palpate/concepts/tissue_adaptor.hpp>
+#include <palpate/contact/tissue_group.hpp>
+#include <palpate/haptic/background_worker.hpp>
+
+using namespace palpate;
+
+#ifdef PALPATE_GOOD_TWIN
+struct Watched : TissueAdaptor<TissueGroup> {
+  using TissueAdaptor::TissueAdaptor;
+};
+#else
+struct Watched {
+  explicit Watched(TissueGroup& tissue) : inner(tissue) {}
+  TissueGroup& inner;
+};
+#endif
+
+void work(TissueGroup& group) {
+  Watched watched(group);
+  BackgroundWorker worker(watched);
+}
