@@ -6,10 +6,9 @@
 // moves, to 40 % of what it was, with a relaxation time of 0.4 s.
 //
 //   1. `Viscoelastic<NeoHookean, 1>` is NeoHookean of which shares fade. E is the fast modulus.
-//   2. With `Implicit<...>` as solver the model moves, here by steps of 10 ms. A `BackgroundWorker` would take them in a
-//      thread; here both rates are simulated, so that every run gives the same figures.
-//   3. `HapticServo` ticks a thousand times a second and solves the contact anew on the newest surface.
-//   4. DIR/report.html has the force over time.
+//   2. On `Implicit<...>` the model moves by steps of 10 ms, which a `BackgroundWorker` takes in a thread. Here both
+//      rates are simulated, so that every run is the same. `HapticServo` ticks a thousand times a second.
+//   3. DIR/report.html has the force over time.
 //
 // The example judges itself. All of the stress relaxes alike and the finger does not move, so the shape of the pad
 // stays and all forces fall alike: the relaxation time of the force must be that of the law. It is measured from three

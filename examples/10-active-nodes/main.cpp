@@ -84,13 +84,12 @@ int main() {
   const Triangle& face = top.triangle(top.triangles_at(vertex)[0]);
   const Vector3 third = (top.position(face[0]) + top.position(face[1]) + top.position(face[2])) / 3.0;
   const Held inside = hold_and_move(tissue, tissue.to_world() * third, by);
-  VectorX u(3 * tissue.mesh().node_count());
-  tissue.displacement_with(inside.shared, u);
+  const VectorX u = tissue.displacement(inside.shared);
   Vector3 sum = Vector3::Zero(), moved = Vector3::Zero();
   double work = 0.0;
   for (const VertexForce& f : inside.shared) {
     const Vector3 displacement = u.segment<3>(3 * Index{tissue.touchable_nodes()[static_cast<std::size_t>(f.vertex)]});
-    const Vector3 force = f.force.in_world(tissue.to_world());
+    const Vector3& force = f.force.in_model_axes();  // those of the world: the model has no pose
     sum += force;
     moved += displacement * force.dot(inside.force) / inside.force.squaredNorm();  // weight = share of the force
     work += displacement.dot(force);
