@@ -1,15 +1,15 @@
 // expect: palpate: Smoothed and MeanDilatation average strains of small deformations
 #include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/material/neo_hookean.hpp>
+#include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/model/implicit.hpp>
 
 using namespace palpate;
 
 #ifdef PALPATE_GOOD_TWIN
-using Model = HapticFEModel<Tet4, NeoHookean, Implicit<Newton<SparseCholesky>>>;
+using Model = HapticFEModel<Tet4, StVenantKirchhoff, Implicit<Newton<SparseCholesky>>>;
 #else
-using Model = HapticFEModel<Smoothed<Tet4>, NeoHookean, Implicit<Newton<SparseCholesky>>>;
+using Model = HapticFEModel<Smoothed<Tet4>, StVenantKirchhoff, Implicit<Newton<SparseCholesky>>>;
 #endif
 
 void make(const Mesh<Tet4>& mesh, const Scene& scene) {
