@@ -31,7 +31,7 @@ Scene held_cushion() {
 }
 
 /// Force on a sphere pressed 4 mm in and held [N], and what the last ticks said.
-std::pair<double, Status> held_force(MovingTissue& tissue, int ticks = 2000) {
+std::pair<double, Status> force_of_hold(MovingTissue& tissue, int ticks = 2000) {
   ServoOptions options;
   options.device.peak_force = 20.0;
   options.device.stiffness = 2000.0;
@@ -57,11 +57,11 @@ std::pair<double, Status> held_force(MovingTissue& tissue, int ticks = 2000) {
 
 TEST_CASE("explicit steps come to the steady force of implicit ones, whatever the step", "[haptic][explicit]") {
   NewtonTissue solved(cushion(), held_cushion(), gel);
-  const double wanted = held_force(solved).first;
+  const double wanted = force_of_hold(solved).first;
   CHECK(wanted > 0.3);
   for (const double step : {1e-3, 3e-3}) {
     ExplicitTissue<NeoHookean> tissue(cushion(), held_cushion(), gel, {}, {.step = step, .mass_damping = 40.0});
-    const auto [force, status] = held_force(tissue);
+    const auto [force, status] = force_of_hold(tissue);
     INFO("step " << step << ", status " << status);
     CHECK_THAT(force, WithinRel(wanted, 5e-3));
     CHECK(status.ok());
@@ -99,7 +99,7 @@ TEST_CASE("explicit steps at small strain feel as Newton's method does", "[hapti
   const LinearElastic linear{5e3, 0.4, 1000.0};
   HapticFEModel<Tet4, LinearElastic, Implicit<Newton<SparseCholesky>>> solved(cushion(), held_cushion(), linear);
   ExplicitTissue<LinearElastic> tissue(cushion(), held_cushion(), linear, {}, {.mass_damping = 40.0});
-  CHECK_THAT(held_force(tissue).first, WithinRel(held_force(solved).first, 5e-3));
+  CHECK_THAT(force_of_hold(tissue).first, WithinRel(force_of_hold(solved).first, 5e-3));
 }
 
 TEST_CASE("explicit steps that would take too many stable ones are refused", "[haptic][explicit]") {
