@@ -60,6 +60,7 @@ TEST_CASE("every flag has one bit and one name", "[core][status]") {
   CHECK(name(StatusFlag::non_finite_force) == "NonFiniteForce");
   CHECK(name(StatusFlag::step_refused) == "StepRefused");
   CHECK(name(StatusFlag::energy_grew) == "EnergyGrew");
+  CHECK(name(StatusFlag::slow_tissue) == "SlowTissue");
 }
 
 TEST_CASE("counters add one per flag and tick", "[core][status]") {
@@ -68,16 +69,16 @@ TEST_CASE("counters add one per flag and tick", "[core][status]") {
   for (int tick = 0; tick < 1000; ++tick) {
     Status s;
     if (tick % 2 == 0) s |= StatusFlag::saturated;
-    if (tick % 10 == 0) s |= StatusFlag::energy_grew;
+    if (tick % 10 == 0) s |= StatusFlag::slow_tissue;
     counters.count(s);
   }
   CHECK(counters[StatusFlag::saturated] == 500);
-  CHECK(counters[StatusFlag::energy_grew] == 100);
+  CHECK(counters[StatusFlag::slow_tissue] == 100);
   CHECK(counters[StatusFlag::stale] == 0);
   CHECK(counters.at(1) == 500);
   CHECK(counters.at(status_flag_count - 1) == 100);
   STATIC_REQUIRE(noexcept(counters.count(Status{})));
   std::ostringstream out;
   out << counters << "; " << StatusCounters{};
-  CHECK(out.str() == "Saturated 500 EnergyGrew 100; ok");
+  CHECK(out.str() == "Saturated 500 SlowTissue 100; ok");
 }
