@@ -6,7 +6,7 @@
 set(readme_compiled_percent 115)
 set(readme_header_only_percent 180)
 set(readme_compiled_functions 1550)
-set(readme_header_only_functions 13000)
+set(readme_header_only_functions 14000)
 set(mesh_only_compiled_percent 115)
 set(mesh_only_header_only_percent 180)
 set(mesh_only_compiled_functions 140)
