@@ -196,6 +196,41 @@ TEST_CASE("a cut under the tool: the force goes on, and changes no faster than t
   CHECK((settled - last).norm() < 0.1 * last.norm());
 }
 
+TEST_CASE("made whole again under a tool and under a renderer: nothing refers to what is gone", "[cut][extreme][F3]") {
+  Tissue tissue(slab(), held_below(), soft);
+  HapticServo servo(tissue, SphereTool{});
+  VisualSurface surface(tissue);
+  const Index points = surface.point_count();
+  const int vertices = tissue.contact_surface().vertex_count();
+  double time = 0.0;
+  const auto press = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      const GatedForce f = servo.tick(at({0.052, 0.05, 0.05 + 4e-3 - 6e-3}, time += 1e-3));
+      REQUIRE(f.force().allFinite());
+    }
+  };
+  tissue.cut(slit_at(0.052, 0.012));
+  while (tissue.work()) {}
+  press(200);
+  CHECK(surface.update());
+  CHECK(surface.point_count() > points);
+  const auto touches_copies = [&] {
+    return std::ranges::any_of(servo.contacts(), [&](const ToolContact& c) { return c.vertices[0] >= vertices; });
+  };
+  REQUIRE(touches_copies());  // vertices that the cut has made
+
+  tissue.reset();
+  std::vector<float> positions(3 * static_cast<std::size_t>(surface.point_count())), normals(positions.size());
+  CHECK_FALSE(surface.read_surface({}, positions, normals));  // its points are gone
+  press(200);
+  CHECK(tissue.contact_surface().vertex_count() == vertices);
+  CHECK_FALSE(touches_copies());
+  CHECK(servo.contact_force().norm() > 0.05);
+  CHECK(surface.update());
+  CHECK(surface.point_count() == points);
+  CHECK(tissue.cut_report().cuts == 0);
+}
+
 TEST_CASE("cut while touched until nothing is left: every force finite and limited, no mass lost",
           "[cut][extreme][F1][F3][M15]") {
   const auto mesh = box_tet4({0.05, 0.05, 0.05}, {4, 4, 4});

@@ -83,6 +83,8 @@ PALPATE_INLINE void ContactSamples::add_edge(const ContactSurface& surface, int 
 
 PALPATE_INLINE int ContactSamples::nearest(const ContactSurface& surface, const ContactSample& wanted) const noexcept {
   int best = -1;
+  // A body that was cut and is whole again has fewer vertices.
+  if (wanted.vertices[0] >= surface.vertex_count()) return best;
   double least = 1.0;  // half of the weight on other vertices is another place
   for (const int t : surface.triangles_at(wanted.vertices[0]))
     for (int s = first_of(t); s < first_of(t + 1); ++s)

@@ -16,9 +16,9 @@ class HapticFEModel;
 template <class Inner>
 struct Cuttable;
 
-/// Positions, normals and triangles of what is left of a body, walls of the wound and loose pieces included: of the
-/// faces that the scene lets be seen, or all, and all that cuts expose. Call `update` before reading: cuts change the
-/// points and triangles, which are this object's own, so nothing changes under the renderer. Refers to the model; one
+/// Positions, normals and triangles of a body that is cut, detached pieces included: the faces that the scene lets be
+/// seen, or all, and all that cuts expose. Cuts change points and triangles; `update` brings the changes in. Between two
+/// calls of it points and triangles stay. Refers to the model; one
 /// reader at a time.
 template <class E, class M, class Inner>
 class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
@@ -48,14 +48,17 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
   Index point_count() const noexcept { return static_cast<Index>(nodes_.size()); }
   const std::vector<std::array<int, 3>>& triangles() const noexcept { return triangles_; }
 
-  /// As VisualSurface of other models has it; allocates.
+  /// As VisualSurface of other models; allocates. Also false when the model was reset since the last `update`, and for
+  /// forces on vertices that do not exist any more.
   bool read_surface(std::span<const VertexForce> forces, std::span<float> positions,
                     std::span<float> normals) noexcept {
     const std::size_t size = 3 * nodes_.size();
     if (positions.size() != size || normals.size() != size) return false;
     if (!model_->displacement_with(forces, displacement_).converged) return false;
+    if (displacement_.size() < 3 * node_count_) return false;  // reset since `update`
     const Eigen::Isometry3d pose = model_->to_world();
-    for (std::size_t i = 0; i < nodes_.size(); ++i) moved_[i] = pose * (rest_[i] + node_vector(displacement_, nodes_[i]));
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      moved_[i] = pose * (rest_[i] + node_vector(displacement_, nodes_[i]));
     detail::write_surface(moved_, triangles_, normals_, positions, normals);
     return true;
   }
@@ -99,6 +102,7 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
         });
       }
     }
+    node_count_ = topology.mesh().node_count();
     rest_.clear();
     for (const NodeId i : nodes_) rest_.push_back(topology.mesh().position(i));
     moved_.resize(nodes_.size());
@@ -112,6 +116,7 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
   std::vector<std::array<int, 3>> triangles_;
   std::vector<Vector3> rest_, moved_, normals_;
   VectorX displacement_;
+  Index node_count_ = 0;  // of the topology that the points are from
   std::uint64_t cuts_ = 0;
   bool known_ = false;
 };
