@@ -3,12 +3,9 @@
 
 #include <palpate/cut/cut_visual_surface.hpp>
 #include <palpate/cut/cuttable_tissue.hpp>
-#include <palpate/model/admitted_mesh.hpp>
+#include <palpate/model/admit_body.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/policies.hpp>
-
-#include <memory>
-#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -43,11 +40,9 @@ class HapticFEModel<E, M, Cuttable<Inner>> : public CuttableTissue<E> {
   HapticFEModel(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
                 const SetupOptions& options = {}, const Parameters& parameters = {})
       : CuttableTissue<E>(options) {
-    AdmittedMesh<E> admitted =
-        admit_mesh<E>(mesh, scene, options.admission, this->limits(), this->setup_report());
-    const ScopedIdTranslation translation(admitted.ids);
-    auto body = std::make_unique<ElementBody<E>>(make_body(std::move(admitted.mesh), materials), admitted.origin);
-    this->set_up(scene, {std::move(body), std::move(admitted.node_map), admitted.ids, admitted.origin}, parameters);
+    this->set_up(scene,
+                 detail::admit_body<E>(mesh, scene, materials, options.admission, this->limits(), this->setup_report()),
+                 parameters);
   }
 };
 

@@ -21,6 +21,7 @@
 #include <palpate/material/corotational.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/scene.hpp>
+#include <palpate/model/corotated_step.hpp>
 #include <palpate/model/deformable_body.hpp>
 #include <palpate/model/step_preconditioners.hpp>
 
@@ -31,26 +32,6 @@
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-struct CorotatedMotionOptions {
-  TimeScheme scheme = TimeScheme::implicit_euler();
-  double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]
-  double stiffness_damping = 0.0;  ///< Rayleigh's beta [s]
-  BoundedSolveParameters solve{};
-  int precondition_every = 16;     ///< steps between two looks at the diagonal of the stiffness
-  bool check = true;               ///< hold the energy after a step against that before it: one more sweep of forces
-  int maximum_linearisations = 8;  ///< of a step whose check fails; one is enough for all but wild ones
-};
-
-/// What a step did.
-struct CorotatedStep {
-  bool taken = false;  ///< false: the step was not a positive number, or nothing finite came of it; nothing has changed
-  BoundedSolveReport solve{};  ///< the last one
-  int linearisations = 0;
-  bool calm = true;                 ///< false: checked, and the energy is still above that at the start of the step
-  double residual = infinity;       ///< force left over, of the largest force of the step; infinite without the check
-  DeformationReport deformation{};  ///< at the end; without the check where it coasts to
-};
 
 /// M a + D v + f(u) = load for linear tetrahedra that turn (CorotatedTetrahedra), linearised at the state the motion
 /// coasts to (Baraff and Witkin 1998) and solved by conjugate gradients on products without a matrix. A step takes up
@@ -86,10 +67,6 @@ class CorotatedMotion {
       if (body_.conditions.is_constrained(dof)) held_.push_back(dof);
     set_state(trial_, velocity_);
   }
-  /// With both in one.
-  explicit CorotatedMotion(const std::pair<HyperelasticBody<Tet4, Corotational<Base>>, Scene>& in,
-                           const CorotatedMotionOptions& options = {}, const SetupLimits& limits = {})
-      : CorotatedMotion(in.first, in.second, options, limits) {}
   CorotatedMotion(const CorotatedMotion&) = delete;
   CorotatedMotion& operator=(const CorotatedMotion&) = delete;
 

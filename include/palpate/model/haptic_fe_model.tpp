@@ -4,7 +4,7 @@
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/matrix_free.hpp>
-#include <palpate/model/admitted_mesh.hpp>
+#include <palpate/model/admit_body.hpp>
 #include <palpate/model/element_body.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/solver_recipe.hpp>
@@ -19,18 +19,6 @@ namespace detail {
 template <Element E, class Assembly>
 AnyStiffness make_stiffness(const ElasticBody& body, const SetupLimits& limits) {
   return AnyStiffness(Assembly::make(element_body<E>(body).body(), limits));
-}
-
-/// Admits a mesh and evaluates its materials. Reports what admission found. Throws what materials_by_region and admit
-/// throw.
-template <Element E, LinearMaterial M, MeshOf<E> Given>
-AdmittedBody admit_body(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-                        const AdmissionPolicy& policy, const SetupLimits& limits, SetupReport& report) {
-  const std::vector<M> by_region = materials_by_region(mesh, materials);
-  AdmittedMesh<E> admitted = admit_mesh<E>(mesh, scene, policy, limits, report);
-  const ScopedIdTranslation translation(admitted.ids);
-  auto body = std::make_unique<ElementBody<E>>(make_body(std::move(admitted.mesh), by_region), admitted.origin);
-  return {std::move(body), std::move(admitted.node_map), std::move(admitted.ids), admitted.origin};
 }
 
 }  // namespace detail
