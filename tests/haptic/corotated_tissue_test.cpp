@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "catch.hpp"
+#include "press_and_hold.hpp"
 #include "refused.hpp"
 
 using namespace palpate;
@@ -31,27 +32,8 @@ Scene slab_scene() {
   return Scene().fix("z0").touch("z1").gravity({0.0, 0.0, -9.81});
 }
 
-/// Force on a ball that was pressed 4 mm in and held, and what the ticks said in the end.
-std::pair<Vector3, Status> held_force(MovingTissue& tissue, int ticks = 1500) {
-  ServoOptions options;
-  options.device.peak_force = 20.0;
-  options.device.stiffness = 2000.0;
-  HapticServo servo(tissue, SphereTool{.radius = tip}, options);
-  Status status;
-  double next = 0.0;
-  for (int k = 0; k < ticks; ++k) {
-    if (1e-3 * k >= next - 1e-9) {
-      tissue.advance();
-      next += tissue.step();
-    }
-    ToolState s;
-    s.time = 1e-3 * k;
-    s.position = {0.5 * slab_size[0], 0.5 * slab_size[1], slab_size[2] + tip - std::min(0.004, 0.02 * s.time)};
-    const GatedForce out = servo.tick({std::array{s}})[0];
-    REQUIRE(servo.contact_force().allFinite());
-    if (k >= ticks - 100) status |= out.status;
-  }
-  return {servo.contact_force(), status};
+std::pair<Vector3, Status> held_force(MovingTissue& tissue) {
+  return test::press_and_hold(tissue, {0.5 * slab_size[0], 0.5 * slab_size[1], slab_size[2]}, tip, 1500);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Tissue that moves by explicit steps under a servo: the same steady forces as by implicit ones, and nothing on the heap.
+// Tissue that moves by explicit steps under a servo: the steady forces of implicit steps, and no allocation.
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
@@ -9,6 +9,7 @@
 #include <palpate/testing/tissue_laws.hpp>
 
 #include "catch.hpp"
+#include "press_and_hold.hpp"
 #include "refused.hpp"
 
 using namespace palpate;
@@ -30,27 +31,10 @@ Scene held_cushion() {
   return Scene().fix("z0").touch("z1").gravity({0.0, 0.0, -9.81});
 }
 
-/// Force on a sphere pressed 4 mm in and held [N], and what the last ticks said.
-std::pair<double, Status> force_of_hold(MovingTissue& tissue, int ticks = 2000) {
-  ServoOptions options;
-  options.device.peak_force = 20.0;
-  options.device.stiffness = 2000.0;
-  HapticServo servo(tissue, SphereTool{.radius = tip_radius}, options);
-  Status status;
-  double next = 0.0;
-  for (int k = 0; k < ticks; ++k) {
-    if (1e-3 * k >= next - 1e-9) {
-      tissue.advance();
-      next += tissue.step();
-    }
-    ToolState s;
-    s.time = 1e-3 * k;
-    s.position = {0.03, 0.03, 0.03 + tip_radius - std::min(0.004, 0.02 * s.time)};
-    const GatedForce force = servo.tick(s);
-    REQUIRE(force.force().allFinite());
-    if (k >= ticks - 100) status |= force.status;
-  }
-  return {servo.contact_force()[2], status};
+/// Normal force [N], and what the last ticks said.
+std::pair<double, Status> force_of_hold(MovingTissue& tissue) {
+  const auto [force, status] = test::press_and_hold(tissue, {0.03, 0.03, 0.03}, tip_radius, 2000);
+  return {force[2], status};
 }
 
 }  // namespace

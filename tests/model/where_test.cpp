@@ -8,6 +8,7 @@
 #include <palpate/model/implicit.hpp>
 
 #include "catch.hpp"
+#include "orphan_in_front.hpp"
 #include "refused.hpp"
 
 using namespace palpate;
@@ -19,15 +20,7 @@ const LinearElastic tissue_law{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .den
 
 /// A slab away from zero, with an orphan in front of all, so that ids change and positions move at admission.
 Mesh<Tet4> distant_slab() {
-  Mesh<Tet4> mesh = box_tet4(slab_size, {4, 4, 3});
-  mesh.positions.insert(mesh.positions.begin(), Vector3(0.5, 0.5, 0.5));
-  for (auto& element : mesh.elements)
-    for (NodeId& i : element) ++i;
-  for (Group& g : mesh.groups.all()) {
-    for (NodeId& i : g.nodes) ++i;
-    for (auto& face : g.faces)
-      for (NodeId& i : face) ++i;
-  }
+  Mesh<Tet4> mesh = test::with_orphan_in_front(box_tet4(slab_size, {4, 4, 3}), Vector3(0.5, 0.5, 0.5));
   for (Vector3& x : mesh.positions) x += slab_place;
   return mesh;
 }
@@ -140,7 +133,8 @@ TEST_CASE("tissue that is cut takes positions for names", "[model][cut][where]")
   const CutParameters by_group{.cuttable = Selection("x1")},
       by_point{.cuttable = where::above(Vector3(slab_place + Vector3(slab_size[0], 0, 0)), Vector3::UnitX())};
   const SetupOptions mending{.admission = drop_orphans()};
-  Cut named(distant_slab(), by_name(), tissue_law, mending, by_group), placed(distant_slab(), by_place(), tissue_law, mending, by_point);
+  Cut named(distant_slab(), by_name(), tissue_law, mending, by_group),
+      placed(distant_slab(), by_place(), tissue_law, mending, by_point);
   check_same_surface(named, placed);
   CHECK(named.cut_report().kept == placed.cut_report().kept);
   CHECK(named.displacement() == placed.displacement());

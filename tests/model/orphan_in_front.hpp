@@ -1,0 +1,24 @@
+// A mesh whose ids change at admission.
+#pragma once
+
+#include <palpate/mesh/mesh.hpp>
+
+namespace test {
+
+using namespace palpate;
+
+/// The mesh with a node in front of all others that no element uses.
+template <class E>
+Mesh<E> with_orphan_in_front(Mesh<E> mesh, const Vector3& orphan) {
+  mesh.positions.insert(mesh.positions.begin(), orphan);
+  for (auto& element : mesh.elements)
+    for (NodeId& i : element) ++i;
+  for (Group& g : mesh.groups.all()) {
+    for (NodeId& i : g.nodes) ++i;
+    for (auto& face : g.faces)
+      for (NodeId& i : face) ++i;
+  }
+  return mesh;
+}
+
+}  // namespace test
