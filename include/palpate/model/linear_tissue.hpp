@@ -22,7 +22,7 @@ class Statics;
 struct SolverRecipe;
 
 /// The part of HapticFEModel that is no template of element, material or solver. Scalar, float or double, is what the
-/// stored compliance is. Not made by itself: HapticFEModel derives from it. Satisfies TissueModel.
+/// stored compliance is. Base of the static HapticFEModel. Satisfies TissueModel.
 template <std::floating_point Scalar>
 class LinearTissue : public ModelBase, public StillTissue {
  public:

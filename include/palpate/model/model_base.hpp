@@ -38,7 +38,7 @@ struct SetupOptions {
   std::string cache_file{};  ///< where the prepared system is kept for the next time; empty: nowhere. See docs/cache.md
 };
 
-/// The part of HapticFEModel that depends on neither element, material nor solver. Not made by itself.
+/// The part of HapticFEModel that depends on neither element, material nor solver. Base of all models.
 ///
 /// Frames: `set_pose` of a model places the frame of the mesh as given in the world of the tools. Forces and
 /// displacements have the axes of that mesh. Positions of `mesh()` and of the contact surface have these axes, too, and

@@ -23,7 +23,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 struct BlockPattern;
 
 /// A body that moves at its own rate, beside a servo that solves the contact in every tick (the architecture of Duriez
-/// et al. 2006 and Courtecuisse et al. 2015). Not made by itself: HapticFEModel derives from it.
+/// et al. 2006 and Courtecuisse et al. 2015). Base of HapticFEModel on Implicit<...> and Explicit<...>.
 ///
 /// After every step the tissue publishes where its surface would be without the tools, and how much each vertex has
 /// rotated. Between two steps the servo solves the contact on that surface with the compliance of a step as the body
@@ -33,7 +33,7 @@ struct BlockPattern;
 ///
 /// Threads: `advance` and what changes the model are for any thread but the one that ticks, and wait for each other.
 /// The functions of TissueModel are for the thread that ticks, `displacement_with` for one thread that draws; neither
-/// ever waits. set_pose is not to run beside a tick. Neither copied nor moved. Satisfies TissueModel.
+/// ever waits. set_pose and reset must not run beside a tick. Neither copied nor moved. Satisfies TissueModel.
 class MovingTissue : public ModelBase {
  public:
   /// On vertices, three to a contact; of more the tissue feels the first.
@@ -67,7 +67,7 @@ class MovingTissue : public ModelBase {
   /// Where the organ lies in the world; rotates gravity with it. The tissue feels no acceleration of its frame. Not
   /// beside a tick. Throws bad_argument unless it is a rigid motion. Strong guarantee.
   void set_pose(const Eigen::Isometry3d& pose);
-  /// Back to scene, pose and state of construction. Strong guarantee.
+  /// Back to scene, pose and state of construction. Not beside a tick. Strong guarantee.
   void reset();
 
   // One thread that draws
@@ -97,7 +97,8 @@ class MovingTissue : public ModelBase {
   double compliance_floor() const noexcept { return compliance_.floor(); }
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
-  NoHook prepare_tools(double, const ContactParameters&) noexcept { return {}; }
+  /// Brings the loads that refusals name up to date; not while a session ticks.
+  void prepare_tools(double, const ContactParameters&);
   NoHook try_cut(const BladeSweep&) noexcept { return {}; }
 
  protected:
@@ -125,7 +126,7 @@ class MovingTissue : public ModelBase {
   void add(const Forces& forces, double factor, VectorX& load) const noexcept;
   /// Where the surface is without the forces in use, by the compliance that the servo uses: then the same forces bring
   /// it back to where it is.
-  void look(View& view) const noexcept;
+  void update_view(View& view) const noexcept;
   void publish(Status status) noexcept;
 
   double step_ = 0.0;

@@ -4,7 +4,6 @@
 #include <palpate/model/moving_tissue.hpp>
 
 #include <palpate/core/realtime.hpp>
-#include <palpate/core/rigid_motion.hpp>
 #include <palpate/model/admission_report.hpp>
 #include <palpate/model/elastic_body.hpp>
 #include <palpate/model/stage_timer.hpp>
@@ -41,7 +40,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   compliance_ = WarpedCompliance(*motion_, step_, touchable.nodes, rotations_, limits());
   motion_->rest_at(start_);  // what reset() returns to
   View view{std::vector<Vector3>(touchable.nodes.size()), std::vector<Matrix3>(touchable.nodes.size()), {}};
-  look(view);
+  update_view(view);
   surface_ = ContactSurface(view.free, touchable.triangles);
   surface_.set_unloaded(unloaded());
   views_.fill(view);
@@ -82,10 +81,11 @@ PALPATE_INLINE void MovingTissue::set_conditions(const Scene& scene) {
           "Values may change, the set of prescribed components may not: make a new model");
   VectorX applied = load_of(mapped, Vector3::Zero());
   VectorX load = load_of(mapped, local(scene.gravity(), pose()));
+  std::string others = mapped.loads_in_words();
   motion_->set_prescribed(changed.prescribed);
   applied_.swap(applied);
   load_.swap(load);
-  keep_gravity(scene.gravity());
+  keep_loads(scene.gravity(), others);
 }
 
 PALPATE_INLINE void MovingTissue::set_gravity(const Vector3& gravity) {
@@ -108,13 +108,15 @@ PALPATE_INLINE void MovingTissue::set_pose(const Eigen::Isometry3d& pose) {
 
 PALPATE_INLINE void MovingTissue::reset() {
   const std::scoped_lock lock(changes_);
+  VectorX applied = load_of(scene(), Vector3::Zero());
+  std::string others = scene().loads_in_words();
+  applied_.swap(applied);
   load_ = start_load_;
-  applied_ = load_of(scene(), Vector3::Zero());
   motion_->set_load(load_);
   motion_->set_prescribed(start_prescribed_);
   motion_->rest_at(start_);
   place(Eigen::Isometry3d::Identity());
-  keep_gravity(scene().gravity());
+  keep_loads(scene().gravity(), others);
   pressing_.update();
   used_.count = 0;
   steps_ = 0;
@@ -131,6 +133,11 @@ PALPATE_INLINE VectorX MovingTissue::displacement(std::span<const VertexForce> f
   require_vertex_forces(forces, static_cast<int>(touchable_nodes().size()));
   drawn_.update();
   return drawn_.front();
+}
+
+PALPATE_INLINE void MovingTissue::prepare_tools(double, const ContactParameters&) {
+  const std::scoped_lock lock(changes_);
+  surface_.set_loads(loads_in_words(gravity(), other_loads()));
 }
 
 PALPATE_INLINE Status MovingTissue::begin_tick() noexcept {
@@ -176,7 +183,7 @@ PALPATE_INLINE void MovingTissue::add(const Forces& forces, double factor, Vecto
     add_node_vector(load, touchable_nodes()[vertex(forces.item[k])], factor * forces.item[k].force.in_model_axes());
 }
 
-PALPATE_INLINE void MovingTissue::look(View& view) const noexcept {
+PALPATE_INLINE void MovingTissue::update_view(View& view) const noexcept {
   const VectorX& u = motion_->displacement();
   const std::vector<Vector3>& rest = elastic_body().positions();
   const std::size_t n = touchable_nodes().size();
@@ -195,7 +202,7 @@ PALPATE_INLINE void MovingTissue::look(View& view) const noexcept {
 
 PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {
   View& view = views_.back();
-  look(view);
+  update_view(view);
   view.status = status;
   views_.publish();
   drawn_.back() = motion_->displacement();
