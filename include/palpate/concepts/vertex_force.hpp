@@ -8,8 +8,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A vector in the axes of a model, which are those of its mesh before any pose. Sessions and snapshots speak the
-/// world's frame: a Vector3 of theirs does not become one of these unless a program says how.
+/// A vector in the axes of a model, which are those of its mesh before any pose. Sessions and snapshots use the
+/// world's frame, so the conversion from a Vector3 is explicit.
 class ModelVector {
  public:
   ModelVector() noexcept : v_(Vector3::Zero()) {}

@@ -18,7 +18,7 @@ class BladeCut {
   /// Moves the edge with the hand at `hand` [m]; `width` of the edge is in tissue [m]. Returns the force on the hand
   /// [N]. Where this blade has been before, it goes free.
   Vector3 advance(const Vector3& hand, double width) noexcept;
-  /// The next advance begins anew where the hand is.
+  /// The next advance starts again where the hand is.
   void lift() noexcept { known_ = false; }
   /// As constructed.
   void reset() noexcept;

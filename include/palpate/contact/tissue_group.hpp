@@ -25,7 +25,7 @@ concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> for
 }  // namespace detail
 
 /// Tissues of any types that do not move by themselves, and have no hook but prefetch, as one TissueModel in the
-/// world's frame: a ball that touches two organs is one contact problem, with one force and one gate. Vertices are
+/// world's frame: a sphere that touches two organs is one contact problem, with one force and one gate. Vertices are
 /// those of the members one after the other. Refers to the members, which must outlive it; the organs do not touch each
 /// other.
 class TissueGroup : public StillTissue {

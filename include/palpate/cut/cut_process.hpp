@@ -1,4 +1,4 @@
-// What cutting does to a body: topology, compliance, contact surface, and what follows a cut.
+// A body under cuts: its topology, compliance and contact surface, and the checks after a cut.
 #pragma once
 
 #include <palpate/contact/contact.hpp>
@@ -52,8 +52,8 @@ class CutProcess {
   CutProcess(const CutProcess&) = delete;
   CutProcess& operator=(const CutProcess&) = delete;
 
-  /// Executes what was ordered as one cut, makes it felt, then folds it in. When nothing was ordered, one of the checks
-  /// that nobody waits for. True when there was something to do. `local` maps the world to the frame of the mesh.
+  /// Applies all orders as one cut: publishes the updated compliance, then folds the update in. Without orders, runs
+  /// one of the deferred checks. True when there was something to do. `local` maps the world to the frame of the mesh.
   bool process(const CutOrders::Taken& taken, const Eigen::Isometry3d& local) {
     const auto start = std::chrono::steady_clock::now();
     const auto seconds = [&] {
@@ -81,7 +81,7 @@ class CutProcess {
     physics_.swap(physics);
     take_over(std::move(fresh));
   }
-  /// Whole again, under these loads; a new factor. Strong guarantee.
+  /// Restores the uncut body under these loads; a new factor. Strong guarantee.
   void reset(const std::vector<BoundaryFace>& boundary, const Scene& scene) {
     CutTopology<E> topology = whole_topology_;
     CutSurface<E> touchable = whole_surface_;
@@ -99,8 +99,8 @@ class CutProcess {
     report_.error = before.error;
     report_.changes = before.changes + 1;
   }
-  /// Makes the contact anew for these tools. Throws what require_dense_points throws, before anything is cut; `loads`
-  /// is what it says of the scene's. Strong guarantee.
+  /// Rebuilds the contact surface for these tools. Before the first cut, throws what require_dense_points throws;
+  /// `loads` describes the scene's loads in its message. Strong guarantee.
   void set_tools(double smallest_radius, const ContactParameters& parameters, const std::string& loads) {
     if (smallest_radius == tools_.radius && parameters.sample_spacing == tools_.contact.sample_spacing) return;
     const Tools before = std::exchange(tools_, {smallest_radius, parameters});
@@ -131,12 +131,13 @@ class CutProcess {
   const CutPhysics<E>& physics() const noexcept { return *physics_; }
 
  private:
-  /// What is put off while cuts wait.
+  /// Checks deferred while orders wait.
   enum class Check { error, inside, bounds };
   static constexpr std::size_t checks = 3;
   static constexpr int most_unchecked = 8;
 
-  /// What the contact surface is made for. Before a session begins: for a tool so large that no triangle is left out.
+  /// The tools that the contact surface is made for. Radius 0, before the first session: a tool large enough that no
+  /// triangle is left out.
   struct Tools {
     double radius = 0.0;
     ContactParameters contact{};
@@ -157,7 +158,7 @@ class CutProcess {
     return nodes;
   }
 
-  /// As faces and elements: blades cut the body as it lies now.
+  /// All orders as faces and elements. Blades cut the deformed body.
   CutOrder order_of(const CutOrders::Taken& taken, const Eigen::Isometry3d& local) {
     CutOrder all = taken.order;
     if (!taken.sweeps.empty() && std::exchange(is_due(Check::inside), false)) system_.recover();
@@ -169,7 +170,8 @@ class CutProcess {
     return all;
   }
 
-  /// Updates the system and makes it felt; where rounding leaves nothing to stand on, from a new factor.
+  /// Updates the compliance and publishes it. Makes a new factor where the update is not positive definite to working
+  /// precision.
   void take_in(const TopologyChange<E>& change) {
     try {
       ++cut_;
@@ -184,7 +186,7 @@ class CutProcess {
       renew();
     }
   }
-  /// Folds. What is put off comes in turn from the eighth cut on, however many wait.
+  /// Folds the update in. From the eighth unchecked cut on, runs one deferred check even if orders wait.
   void settle() {
     if (report_.failed) return;
     system_.fold();
@@ -195,7 +197,7 @@ class CutProcess {
     due_.fill(true);
     if (++report_.unchecked >= most_unchecked) check_next();
   }
-  /// Does the next of what is due; false when nothing is.
+  /// Runs the next check that is due; false when none is.
   bool check_next() {
     for (std::size_t k = 0; k < checks; ++k) {
       last_check_ = (last_check_ + 1) % checks;
@@ -222,7 +224,7 @@ class CutProcess {
     else if (system_.added() > parameters_.most_added && !renewal_)
       renewal_ = std::make_unique<CutRenewal<E>>(topology_, *physics_, kept_nodes(), limits_);
   }
-  /// Takes over a new factor when one is ready, with what was cut since it was begun.
+  /// Switches to a new factor when one is ready, with the cuts made since it was started.
   bool take_renewal() {
     if (!renewal_ || !renewal_->is_done()) return false;
     try {
@@ -260,7 +262,7 @@ class CutProcess {
     if (dof < system_.displacement().size()) x += system_.displacement().template segment<3>(dof);
     return x;
   }
-  /// Refuses what the smallest tool would fall through.
+  /// Refuses a surface that a tool of this radius would fall through.
   void require_dense_surface(double radius, const std::string& loads) const {
     ContactSurface whole(contact_->surface.positions(), touchable_.triangles());
     std::vector<Vector3> unloaded;

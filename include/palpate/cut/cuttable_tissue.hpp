@@ -23,15 +23,15 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A linear body of elements E under cuts. Not made by itself: HapticFEModel derives from it. `cut` orders; `work` does
-/// what is ordered, in a thread of the caller's choice (BackgroundWorker); the tick brings the newest state in at its
-/// beginning and never waits. Right after a cut the compliance is the old one with a correction of low rank, added up in
+/// A linear body of elements E under cuts. Base of HapticFEModel on Cuttable<...>. `cut` orders a cut; `work` applies
+/// the orders, in a thread of the caller's choice (BackgroundWorker); a tick begins with the newest state and never
+/// waits. Right after a cut the compliance is the old one with a correction of low rank, added up in
 /// the tick; then the correction is folded in. While an order is open ticks say degraded_model. Numbers of vertices
 /// never change, so contact forces go on across a cut; the force gate limits how fast they may change.
 ///
 /// Threads: `begin_tick` and the functions of TissueModel belong to the thread that ticks, `try_cut` too; all others may
-/// be called from any thread and wait for each other, not for the tick. set_pose is not to run beside a tick. Neither
-/// copied nor moved. Satisfies TissueModel; one session at a time.
+/// be called from any thread and wait for each other, not for the tick. set_pose and reset must not
+/// run beside a tick. Neither copied nor moved. Satisfies TissueModel; one session at a time.
 template <Element E>
 class CuttableTissue : public ModelBase {
  public:
@@ -48,8 +48,8 @@ class CuttableTissue : public ModelBase {
   /// Orders a cut along what a blade sweeps, in the world's frame, through the body as it is deformed by its loads.
   void cut(const BladeSweep& sweep) { orders_.add(sweep); }
 
-  /// Does all that is ordered as one cut and makes it felt, then folds it in. When nothing is ordered, one of the
-  /// things that nobody waits for: measuring the error, bounds, nodes inside. True when there was something to do.
+  /// Applies all orders as one cut, publishes the new compliance, then folds the update in. Without orders, runs one of
+  /// the deferred checks: error, bounds, nodes inside. True when there was something to do.
   bool work() {
     const std::scoped_lock lock(changes_);
     const ScopedIdTranslation translation(original_ids());
@@ -122,16 +122,17 @@ class CuttableTissue : public ModelBase {
     if (!gravity().isZero(0.0)) load_by(gravity(), pose);
     place(pose);
   }
-  /// Whole again, with scene and pose of construction; orders that wait are dropped. Makes a new factor. Strong
-  /// guarantee.
+  /// Whole again, with scene and pose of construction; orders that wait are dropped, and vertices that cuts have made
+  /// are gone. Makes a new factor. Not beside a tick. Strong guarantee.
   void reset() {
     const std::scoped_lock lock(changes_);
+    std::string others = scene().loads_in_words();
     process_->reset(boundary(), scene());
     if (const CutOrders::Taken taken = orders_.take(); taken.count > 0) orders_.done(taken);
     failed_.store(false, std::memory_order_release);
     loaded_ = scene();
     place(Eigen::Isometry3d::Identity());
-    keep_gravity(scene().gravity());
+    keep_loads(scene().gravity(), others);
   }
 
   /// The admitted mesh before any cut, in the frame of `origin()`.

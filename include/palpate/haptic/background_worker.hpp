@@ -22,8 +22,8 @@ struct WorkerReport {
 
 /// Does the background work of a tissue (HasBackgroundWork) in a thread of its own, from construction to `stop` or
 /// destruction. Where a piece takes longer than the time to the next, the next follows at once, and lost time is not
-/// made up for; the tissue's `report_slow` is then told so, and ticks say slow_tissue. For a tissue without background
-/// work there is no thread. Refers to the tissue, which must outlive it.
+/// made up for; `report_slow` of the tissue is then called, and ticks report slow_tissue. There is no thread for a tissue
+/// without background work. Refers to the tissue, which must outlive it.
 class BackgroundWorker {
  public:
   template <class Tissue>

@@ -22,7 +22,7 @@ struct BackgroundWorker::Thread {
 
 namespace detail {
 
-/// Whether a pace is kept, looked at over windows of time.
+/// Checks over windows of time whether steps keep up with the clock.
 class PaceWatch {
  public:
   static constexpr double window = 0.25;  ///< [s]
@@ -34,7 +34,7 @@ class PaceWatch {
     passed_ += tissue_seconds;
     const double wall = 1e-9 * static_cast<double>(now - since_);
     if (wall < window) return false;
-    // The piece that is waited for at the end of the window is not missing yet.
+    // The step in progress at the end of a window is not late yet.
     slow_ = passed_ + tissue_seconds < kept * wall;
     passed_ = 0.0;
     since_ = now;

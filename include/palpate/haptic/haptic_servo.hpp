@@ -59,7 +59,7 @@ class HapticServo {
   int contact_rows() const noexcept { return static_cast<int>(problem_.contacts().size()); }
   /// What pressed, was held or cut in the last tick, world frame; valid until the next. For the tick's own thread.
   std::span<const ToolContact> contacts() const noexcept { return newest_->tool_contacts(); }
-  /// Where the ball rests on the surface, or the middle of a blade's edge, world frame [m]. For the tick's own thread.
+  /// Where the sphere rests on the surface, or the middle of a blade's edge, world frame [m]. For the tick's own thread.
   Vector3 proxy(std::size_t tool = 0) const noexcept;
   /// Contact force, or that of a blade, before the gate, world frame [N]. For the tick's own thread.
   Vector3 contact_force(std::size_t tool = 0) const noexcept;

@@ -19,13 +19,13 @@ inline double smallest_radius(const std::vector<ContactTool>& tools) noexcept {
   for (const ContactTool& tool : tools) radius = std::min(radius, tool.radius);
   return radius;
 }
-inline bool has_ball(const std::vector<ContactTool>& tools) noexcept {
-  return smallest_radius(tools) < no_ball;
+inline bool has_sphere(const std::vector<ContactTool>& tools) noexcept {
+  return smallest_radius(tools) < no_sphere;
 }
 /// The surface of a tissue that is ready for these tools.
 inline const ContactSurface& surface_for(TissueView& tissue, const std::vector<ContactTool>& tools,
                                          const ContactParameters& contact) {
-  if (has_ball(tools)) tissue.prepare_tools(smallest_radius(tools), contact);
+  if (has_sphere(tools)) tissue.prepare_tools(smallest_radius(tools), contact);
   return tissue.contact_surface();
 }
 inline ToolState unreadable() noexcept {
@@ -137,7 +137,7 @@ PALPATE_INLINE void HapticServo::take(std::size_t i, const ToolState& state) noe
   if (!energies_.empty()) energies_[i].turned(gates_[i].last_torque().dot(inputs_[i].rotation()));
 }
 
-/// A blade starts anew where it moved farther in a tick than its edge is long.
+/// A blade starts again where it moved farther in a tick than its edge is long.
 PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, const ToolState& state) noexcept {
   ToolInput& input = inputs_[i];
   input.take_freely(state, tissue_.to_world(), blade.cut().tool().edge.norm());

@@ -7,14 +7,14 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Follows a hand with a blade and tells the tissue what the edge sweeps. All on the tick: no throw, no allocation,
+/// Follows a hand with a blade and orders cuts along what the edge sweeps. All on the tick: no throw, no allocation,
 /// bounded.
 class ServoBlade {
  public:
   /// Throws bad_argument as BladeCut does.
   ServoBlade(const BladeTool& tool, double stiffness) : cut_(tool, stiffness) {}
 
-  /// Moves with the hand, world frame [m]; `restart`: it begins anew there, as if in the air. Orders a cut along what
+  /// Moves with the hand, world frame [m]; `restart`: it starts again there, as if in the air. Orders a cut along what
   /// was swept once that is a stroke.
   void follow(const Vector3& hand, bool restart, const TissueView& tissue) noexcept;
   /// The hand is lost: no force.
@@ -29,10 +29,10 @@ class ServoBlade {
   static constexpr int samples = 8;  // along the edge
 
   double width_inside(const TissueView& tissue) const noexcept;
-  bool tell(const TissueView& tissue) noexcept;
+  bool order_cut(const TissueView& tissue) noexcept;
 
   BladeCut cut_;
-  Vector3 force_ = Vector3::Zero(), told_ = Vector3::Zero();
+  Vector3 force_ = Vector3::Zero(), ordered_ = Vector3::Zero();
   Status status_;
 };
 

@@ -10,8 +10,8 @@ PALPATE_INLINE void ServoBlade::follow(const Vector3& hand, bool restart, const 
   status_ = {};
   if (restart) cut_.lift();
   force_ = cut_.advance(hand, restart ? 0.0 : width_inside(tissue));
-  if (restart) told_ = cut_.edge();
-  if (!tell(tissue)) status_.set(StatusFlag::degraded_model);
+  if (restart) ordered_ = cut_.edge();
+  if (!order_cut(tissue)) status_.set(StatusFlag::degraded_model);
 }
 
 PALPATE_INLINE void ServoBlade::lift() noexcept {
@@ -23,7 +23,7 @@ PALPATE_INLINE void ServoBlade::lift() noexcept {
 PALPATE_INLINE void ServoBlade::reset() noexcept {
   cut_.reset();
   force_.setZero();
-  told_.setZero();
+  ordered_.setZero();
   status_ = {};
 }
 
@@ -38,15 +38,15 @@ PALPATE_INLINE double ServoBlade::width_inside(const TissueView& tissue) const n
   return edge.norm() * inside / samples;
 }
 
-/// Tells the tissue what was swept since it was told last; false when it cannot take it yet.
-PALPATE_INLINE bool ServoBlade::tell(const TissueView& tissue) noexcept {
+/// Orders the cut along what was swept since the last order; false when the tissue cannot take it yet.
+PALPATE_INLINE bool ServoBlade::order_cut(const TissueView& tissue) noexcept {
   const BladeTool& tool = cut_.tool();
-  const Vector3 way = cut_.edge() - told_;
-  if (way.dot(tool.forward) < 0.0) told_ = cut_.edge();  // back through the slit
-  if (way.norm() < tool.stroke) return true;
+  const Vector3 path = cut_.edge() - ordered_;
+  if (path.dot(tool.forward) < 0.0) ordered_ = cut_.edge();  // back through the slit
+  if (path.norm() < tool.stroke) return true;
   const Vector3 half = 0.5 * tool.edge;
-  if (!tissue.try_cut({told_ - half, told_ + half, cut_.edge() - half, cut_.edge() + half})) return false;
-  told_ = cut_.edge();
+  if (!tissue.try_cut({ordered_ - half, ordered_ + half, cut_.edge() - half, cut_.edge() + half})) return false;
+  ordered_ = cut_.edge();
   return true;
 }
 

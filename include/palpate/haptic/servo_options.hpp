@@ -41,8 +41,8 @@ double stable_at(double rate, const DeviceLimits& device, double stiffness) noex
 /// Of the coupling between a tool's proxy and its device [N/m]. Throws bad_argument (ids: the tool) unless positive.
 double coupling_stiffness_of(std::size_t tool, const ServoOptions& options);
 
-/// The radius of a tool without a ball [m]: it is never the smallest, and never touches.
-inline constexpr double no_ball = 1e6;
+/// Radius of a tool without a sphere [m]: never the smallest, and never in contact.
+inline constexpr double no_sphere = 1e6;
 
 }  // namespace detail
 

@@ -79,7 +79,7 @@ PALPATE_INLINE std::vector<ContactTool> make_contact_tools(const ToolList& tools
     else if (const auto* capsule = std::get_if<CapsuleTool>(&tools[i]))
       made.push_back(detail::make_contact_tool(*capsule, i, options));
     else
-      made.emplace_back().radius = detail::no_ball;
+      made.emplace_back().radius = detail::no_sphere;
   }
   return made;
 }

@@ -16,9 +16,9 @@ namespace palpate { inline namespace PALPATE_ABI {
 struct ToolContact {
   int tool = 0;
   Vector3 point = Vector3::Zero();     ///< on the deformed surface; of a blade the middle of its edge [m]
-  Vector3 normal = Vector3::Zero();    ///< unit, from the surface to the ball's centre; of a held point or blade along
+  Vector3 normal = Vector3::Zero();    ///< unit, from the surface to the sphere's centre; of a held point or blade along
                                        ///< its force
-  double force = 0.0;                  ///< of the tissue on the ball along the normal, before the gate [N]
+  double force = 0.0;                  ///< of the tissue on the sphere along the normal, before the gate [N]
   Vector3 friction = Vector3::Zero();  ///< across it [N]
   bool grasped = false;                ///< a point that is held
   bool cutting = false;                ///< a blade

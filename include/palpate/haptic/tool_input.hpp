@@ -24,7 +24,7 @@ class ToolInput {
   void take(const ToolState& state, const Eigen::Isometry3d& pose, const ContactSurface& surface,
             std::span<const Contact> contacts, ContactTool& tool) noexcept;
 
-  /// The same for a tool that no surface stops: farther than `longest` [m] in a tick, it starts anew where it is.
+  /// The same for a tool that no surface stops: farther than `longest` [m] in a tick, it starts again where it is.
   void take_freely(const ToolState& state, const Eigen::Isometry3d& pose, double longest) noexcept;
 
   /// Notes whether the tissue was heard of in the tick of this state.
