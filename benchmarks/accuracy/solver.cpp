@@ -1,7 +1,7 @@
 // The direct solver, compiled once for all elements.
 #include "statics.hpp"
 
-#include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 
 namespace accuracy {

@@ -1,8 +1,8 @@
 // The three structures the thesis names for finding what a tool may touch (6.2), behind one interface.
 #pragma once
 
-#include <palpate/contact/bvh.hpp>
-#include <palpate/contact/triangle.hpp>
+#include <palpate/contact/detail/bvh.hpp>
+#include <palpate/contact/detail/triangle.hpp>
 
 #include <cmath>
 #include <numeric>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>

@@ -2,12 +2,12 @@
 //   bench_cut [--build <name of the flags>] [--csv <file to add rows to>] [--trace <file for forces>] [--organ]
 //   [--long]
 // --organ: only what is cut in real time.
-#include <palpate/cut/swept_faces.hpp>
-#include <palpate/cut/cut_view.hpp>
+#include <palpate/cut/detail/swept_faces.hpp>
+#include <palpate/cut/detail/cut_view.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/touchable.hpp>
+#include <palpate/model/detail/touchable.hpp>
 
 #include <Eigen/SparseCholesky>
 

@@ -1,8 +1,8 @@
 // The parts of the program.
 #pragma once
 
-#include <palpate/assembly/batched_tetrahedra.hpp>
-#include <palpate/assembly/element_frequency.hpp>
+#include <palpate/assembly/detail/batched_tetrahedra.hpp>
+#include <palpate/assembly/detail/element_frequency.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
 #include <palpate/integrator/semi_implicit_euler.hpp>

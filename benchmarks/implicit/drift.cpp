@@ -4,8 +4,8 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/model/corotated_motion.hpp>
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/detail/corotated_motion.hpp>
+#include <palpate/model/moving/implicit.hpp>
 
 #include <Eigen/Geometry>
 

@@ -1,7 +1,7 @@
 // The parts of the program.
 #pragma once
 
-#include <palpate/model/corotated_motion.hpp>
+#include <palpate/model/moving/detail/corotated_motion.hpp>
 
 #include "../common/bodies.hpp"
 #include "../common/row.hpp"

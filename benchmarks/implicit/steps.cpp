@@ -2,8 +2,8 @@
 #include "implicit.hpp"
 
 #include <palpate/assembly/large_strain.hpp>
-#include <palpate/model/implicit_dynamics.hpp>
-#include <palpate/model/renewed_factor.hpp>
+#include <palpate/model/moving/implicit_dynamics.hpp>
+#include <palpate/model/moving/renewed_factor.hpp>
 
 namespace implicit_path {
 namespace {

@@ -1,5 +1,5 @@
 // What a program without this library would do in a tick, on the same block: a solve, or a product with an inverse.
-#include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/linear/dense_inverse.hpp>
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>

@@ -1,7 +1,7 @@
 // CHOLMOD's supernodal factorisation as a baseline, where it is installed. The library itself never uses it.
 #pragma once
 
-#include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/assembly/detail/free_stiffness.hpp>
 
 #include <memory>
 

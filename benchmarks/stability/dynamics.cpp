@@ -1,7 +1,7 @@
 // The sweep over dynamics.
 #include "dynamics_schemes.hpp"
 
-#include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/assembly/detail/free_stiffness.hpp>
 
 #include <Eigen/Eigenvalues>
 

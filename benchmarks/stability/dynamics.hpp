@@ -5,7 +5,7 @@
 
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/deformable_body.hpp>
+#include <palpate/model/detail/deformable_body.hpp>
 
 namespace maps {
 

@@ -1,7 +1,7 @@
 // Co-rotated steps of the library: one linearisation per step, no factor.
 #include "dynamics_schemes.hpp"
 
-#include <palpate/model/corotated_motion.hpp>
+#include <palpate/model/moving/detail/corotated_motion.hpp>
 
 namespace maps {
 namespace {

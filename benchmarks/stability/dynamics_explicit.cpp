@@ -1,8 +1,8 @@
 // Explicit schemes of the library.
 #include "dynamics_schemes.hpp"
 
-#include <palpate/assembly/batched_tetrahedra.hpp>
-#include <palpate/assembly/element_frequency.hpp>
+#include <palpate/assembly/detail/batched_tetrahedra.hpp>
+#include <palpate/assembly/detail/element_frequency.hpp>
 #include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
 #include <palpate/integrator/semi_implicit_euler.hpp>

@@ -1,7 +1,7 @@
 // Implicit schemes of the library: a minimised potential per step.
 #include "dynamics_schemes.hpp"
 
-#include <palpate/model/implicit_dynamics.hpp>
+#include <palpate/model/moving/implicit_dynamics.hpp>
 
 namespace maps {
 namespace {

@@ -1,8 +1,8 @@
 // The same schemes as written down in a textbook: no limit, no line search, no watch, Eigen's info() asked.
 #include "dynamics_schemes.hpp"
 
-#include <palpate/assembly/free_stiffness.hpp>
-#include <palpate/integrator/implicit_step.hpp>
+#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/integrator/detail/implicit_step.hpp>
 
 #include <Eigen/SparseCholesky>
 

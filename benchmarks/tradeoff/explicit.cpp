@@ -1,7 +1,7 @@
 // Neo-Hookean tissue in explicit steps; the balls push by a penalty, as there is no servo for it.
 #include <palpate/assembly/averaged_tetrahedra.hpp>
-#include <palpate/assembly/batched_tetrahedra.hpp>
-#include <palpate/assembly/element_frequency.hpp>
+#include <palpate/assembly/detail/batched_tetrahedra.hpp>
+#include <palpate/assembly/detail/element_frequency.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/essential_conditions.hpp>
+#include <palpate/assembly/detail/essential_conditions.hpp>
 #include <palpate/condensation/condensed_system.hpp>
-#include <palpate/linear/indexed_vector.hpp>
-#include <palpate/linear/node_graph.hpp>
+#include <palpate/linear/detail/indexed_vector.hpp>
+#include <palpate/linear/detail/node_graph.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 #include <palpate/mesh/surface.hpp>
 #include <palpate/model/policies.hpp>

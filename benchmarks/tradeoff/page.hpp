@@ -1,7 +1,7 @@
 // What page and documents share.
 #pragma once
 
-#include <palpate/model/trade_off.hpp>
+#include <palpate/model/static/trade_off.hpp>
 
 #include <array>
 #include <iosfwd>

@@ -1,7 +1,7 @@
 // What one writes with Eigen alone: linear tetrahedra on the mesh as given, solved anew in every tick; and the same at
 // its own slow rate, with forces interpolated for the device.
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/assembly/detail/free_stiffness.hpp>
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>

@@ -1,5 +1,5 @@
 // What games take where springs are too soft in volume: constraints on positions.
-#include <palpate/assembly/constant_geometry.hpp>
+#include <palpate/assembly/detail/constant_geometry.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include <Eigen/Geometry>

@@ -1,7 +1,7 @@
 // Balls pressed into a body, as a stiff potential: for references, which need no tick.
 #pragma once
 
-#include <palpate/model/equilibrium.hpp>
+#include <palpate/model/moving/equilibrium.hpp>
 
 #include <memory>
 

@@ -1,7 +1,7 @@
 // Moving tissue felt through a servo.
 #pragma once
 
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
 
 #include "free_motion.hpp"
 #include "linear.hpp"

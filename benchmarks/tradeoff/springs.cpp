@@ -1,5 +1,5 @@
 // What games and many simulators take: a spring along every edge.
-#include <palpate/assembly/constant_geometry.hpp>
+#include <palpate/assembly/detail/constant_geometry.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include <map>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/mesh/admission.hpp>
-#include <palpate/model/equilibrium.hpp>
-#include <palpate/model/implicit_dynamics.hpp>
+#include <palpate/model/moving/equilibrium.hpp>
+#include <palpate/model/moving/implicit_dynamics.hpp>
 
 #include "solve.hpp"
 

@@ -5,7 +5,7 @@
 #include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
-#include <palpate/model/equilibrium.hpp>
+#include <palpate/model/moving/equilibrium.hpp>
 
 #include "solve.hpp"
 

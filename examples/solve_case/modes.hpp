@@ -1,7 +1,7 @@
 // Natural frequencies of one load case with elements E.
 #pragma once
 
-#include <palpate/model/natural_frequencies.hpp>
+#include <palpate/model/static/natural_frequencies.hpp>
 
 #include "solve.hpp"
 

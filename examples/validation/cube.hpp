@@ -6,7 +6,7 @@
 #include "beads.hpp"
 
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/model/equilibrium.hpp>
+#include <palpate/model/moving/equilibrium.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -12,7 +12,7 @@
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/material/viscoelastic.hpp>
-#include <palpate/model/explicit.hpp>
-#include <palpate/model/implicit.hpp>
-#include <palpate/model/renewed_factor.hpp>
-#include <palpate/model/stiffening.hpp>
+#include <palpate/model/moving/explicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
+#include <palpate/model/moving/renewed_factor.hpp>
+#include <palpate/model/static/stiffening.hpp>

@@ -1,5 +1,5 @@
 // The force of several tetrahedra at once is that of the plain loop.
-#include <palpate/assembly/batched_tetrahedra.hpp>
+#include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/essential_conditions.hpp>
-#include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_round.hpp>

@@ -1,5 +1,5 @@
 // Turning tetrahedra without a matrix: the force, energy and stiffness of the law, element by element.
-#include <palpate/assembly/corotated_tetrahedra.hpp>
+#include <palpate/assembly/detail/corotated_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
 
 #include <Eigen/Geometry>

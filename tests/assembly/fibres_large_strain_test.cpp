@@ -1,6 +1,6 @@
 // Fibres of the mesh at large strain: every element pulls along its own.
 #include <palpate/assembly/averaged_tetrahedra.hpp>
-#include <palpate/assembly/batched_tetrahedra.hpp>
+#include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/element/hex8.hpp>
 #include <palpate/material/fibre_reinforced.hpp>

@@ -1,8 +1,8 @@
 // The mass of whole bodies.
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
+#include <palpate/mesh/detail/repair.hpp>
 #include <palpate/mesh/generators_box.hpp>
-#include <palpate/mesh/repair.hpp>
 
 #include <Eigen/Geometry>
 

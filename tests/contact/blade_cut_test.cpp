@@ -1,5 +1,5 @@
 // What a sharp cut costs the hand.
-#include <palpate/contact/blade_cut.hpp>
+#include <palpate/contact/detail/blade_cut.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "refused.hpp"

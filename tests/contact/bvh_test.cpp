@@ -1,6 +1,6 @@
 // The box hierarchy against brute force on random triangle soups.
-#include <palpate/contact/bvh.hpp>
-#include <palpate/contact/triangle.hpp>
+#include <palpate/contact/detail/bvh.hpp>
+#include <palpate/contact/detail/triangle.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // The exact contact solver against enumeration of all active sets, and by its own optimality conditions.
-#include <palpate/contact/complementarity.hpp>
+#include <palpate/contact/detail/complementarity.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <Eigen/Dense>

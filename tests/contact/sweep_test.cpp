@@ -1,7 +1,7 @@
 // Nothing is too thin and no tool too fast: swept detection.
 #include "contact/analytic_tissue.hpp"
 
-#include <palpate/contact/sweep.hpp>
+#include <palpate/contact/detail/sweep.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/testing/random.hpp>

@@ -1,5 +1,5 @@
 // Closest point on a triangle against brute force, feature by feature.
-#include <palpate/contact/triangle.hpp>
+#include <palpate/contact/detail/triangle.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
 // Hash, binary files and atomic replacement.
-#include <palpate/core/atomic_file.hpp>
+#include <palpate/core/detail/atomic_file.hpp>
 
 #include <algorithm>
 #include <chrono>

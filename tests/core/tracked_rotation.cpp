@@ -1,5 +1,5 @@
 // A rotation followed from one state to the next is the closest one.
-#include <palpate/core/tracked_rotation.hpp>
+#include <palpate/core/detail/tracked_rotation.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <Eigen/Geometry>

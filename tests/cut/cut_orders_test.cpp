@@ -1,5 +1,5 @@
 // Orders of cuts between threads.
-#include <palpate/cut/cut_orders.hpp>
+#include <palpate/cut/detail/cut_orders.hpp>
 
 #include "catch.hpp"
 

@@ -1,5 +1,5 @@
-#include <palpate/cut/cut_renewal.hpp>
-#include <palpate/cut/swept_faces.hpp>
+#include <palpate/cut/detail/cut_renewal.hpp>
+#include <palpate/cut/detail/swept_faces.hpp>
 #include <palpate/element/hex8.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators_box.hpp>

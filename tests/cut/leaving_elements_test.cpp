@@ -1,14 +1,14 @@
 // Elements that leave a moving body, against a body that never had them, and conservation laws.
-#include <palpate/assembly/batched_tetrahedra.hpp>
-#include <palpate/assembly/element_frequency.hpp>
-#include <palpate/cut/cut_physics.hpp>
-#include <palpate/cut/cut_topology.hpp>
-#include <palpate/cut/motion_of_part.hpp>
+#include <palpate/assembly/detail/batched_tetrahedra.hpp>
+#include <palpate/assembly/detail/element_frequency.hpp>
+#include <palpate/cut/detail/cut_physics.hpp>
+#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/detail/motion_of_part.hpp>
 #include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/corotated_motion.hpp>
+#include <palpate/model/moving/detail/corotated_motion.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-#include <palpate/cut/matrix_pool.hpp>
+#include <palpate/cut/detail/matrix_pool.hpp>
 
 #include "catch.hpp"
 

@@ -1,7 +1,7 @@
-#include <palpate/cut/swept_faces.hpp>
-#include <palpate/mesh/components.hpp>
+#include <palpate/cut/detail/swept_faces.hpp>
+#include <palpate/mesh/detail/components.hpp>
+#include <palpate/mesh/detail/rigid_modes.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/mesh/rigid_modes.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <Eigen/Geometry>

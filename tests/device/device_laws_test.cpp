@@ -1,5 +1,5 @@
 // The law suite for devices passes good devices and catches each kind of bad one.
-#include <palpate/core/limit_length.hpp>
+#include <palpate/core/detail/limit_length.hpp>
 #include <palpate/device/mock_device.hpp>
 #include <palpate/device/replay_device.hpp>
 #include <palpate/device/trajectory.hpp>

@@ -6,7 +6,7 @@
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <Eigen/Geometry>

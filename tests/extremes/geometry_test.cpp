@@ -1,5 +1,5 @@
 // Extremes of mesh and support: refused, flagged, or right.
-#include <palpate/model/statics.hpp>
+#include <palpate/model/static/detail/statics.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 
 #include "extremes/verdict.hpp"

@@ -1,5 +1,5 @@
 // Bodies that hang together and can still move: hinges, ball joints, chains and linkages of blocks.
-#include <palpate/mesh/mechanisms.hpp>
+#include <palpate/mesh/detail/mechanisms.hpp>
 
 #include "extremes/verdict.hpp"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <palpate/element/tet4.hpp>
-#include <palpate/io/mesh_builder.hpp>
+#include <palpate/io/detail/mesh_builder.hpp>
 
 #include <cstdlib>
 #include <span>

@@ -2,7 +2,7 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/haptic/background_worker.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 

@@ -3,8 +3,8 @@
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/explicit.hpp>
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/explicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/model/moving_tissue.hpp>
+#include <palpate/model/moving/moving_tissue.hpp>
 
 #include "catch.hpp"
 

@@ -5,7 +5,7 @@
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 

@@ -6,7 +6,7 @@
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
 
 #include "catch.hpp"
 #include "refused.hpp"

@@ -1,5 +1,5 @@
 // One writer, one reader: the newest whole value, in order.
-#include <palpate/haptic/triple_buffer.hpp>
+#include <palpate/haptic/detail/triple_buffer.hpp>
 
 #include <cstdint>
 #include <thread>

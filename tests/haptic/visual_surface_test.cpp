@@ -2,13 +2,13 @@
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/linear/indexed_vector.hpp>
+#include <palpate/linear/detail/indexed_vector.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
-#include <palpate/model/statics.hpp>
-#include <palpate/model/visual_surface.hpp>
+#include <palpate/model/rendering/visual_surface.hpp>
+#include <palpate/model/static/detail/statics.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 
 #include <atomic>

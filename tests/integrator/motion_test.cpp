@@ -1,6 +1,6 @@
 // Explicit motion of a neo-Hookean block: what is conserved, what is refused, and what it survives.
+#include <palpate/assembly/detail/linear_forces.hpp>
 #include <palpate/assembly/large_strain.hpp>
-#include <palpate/assembly/linear_forces.hpp>
 
 #include <Eigen/Geometry>
 #include "integrator/motions.hpp"

@@ -1,5 +1,5 @@
 // The same mesh from every format.
-#include <palpate/io/veg_lines.hpp>
+#include <palpate/io/detail/veg_lines.hpp>
 #include "samples.hpp"
 
 #include <filesystem>

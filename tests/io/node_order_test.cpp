@@ -3,9 +3,9 @@
 #include "samples.hpp"
 #include "element/user_elements.hpp"
 
-#include <palpate/io/gmsh_types.hpp>
-#include <palpate/io/node_order.hpp>
-#include <palpate/io/vtk_types.hpp>
+#include <palpate/io/detail/gmsh_types.hpp>
+#include <palpate/io/detail/node_order.hpp>
+#include <palpate/io/detail/vtk_types.hpp>
 #include <palpate/io/write_msh.hpp>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "samples.hpp"
 #include "element/user_elements.hpp"
 
-#include <palpate/io/numbers.hpp>
+#include <palpate/io/detail/numbers.hpp>
 #include <palpate/io/surface_files.hpp>
 #include <palpate/io/write_msh.hpp>
 

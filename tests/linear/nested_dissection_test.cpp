@@ -1,13 +1,13 @@
 // Elimination orders, separators and trees against their definitions.
-#include <palpate/linear/bipartite_cover.hpp>
-#include <palpate/linear/cholesky_analysis.hpp>
-#include <palpate/linear/elimination_tree.hpp>
-#include <palpate/linear/front_tree.hpp>
-#include <palpate/linear/level_order.hpp>
-#include <palpate/linear/nested_dissection.hpp>
-#include <palpate/linear/part_lists.hpp>
-#include <palpate/linear/separator.hpp>
-#include <palpate/linear/separator_refinement.hpp>
+#include <palpate/linear/detail/bipartite_cover.hpp>
+#include <palpate/linear/detail/cholesky_analysis.hpp>
+#include <palpate/linear/detail/elimination_tree.hpp>
+#include <palpate/linear/detail/front_tree.hpp>
+#include <palpate/linear/detail/level_order.hpp>
+#include <palpate/linear/detail/nested_dissection.hpp>
+#include <palpate/linear/detail/part_lists.hpp>
+#include <palpate/linear/detail/separator.hpp>
+#include <palpate/linear/detail/separator_refinement.hpp>
 
 #include <Eigen/SparseCholesky>
 

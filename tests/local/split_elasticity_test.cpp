@@ -1,5 +1,5 @@
 // Elasticity as a deviatoric and a volumetric part.
-#include <palpate/local/split_elasticity.hpp>
+#include <palpate/local/detail/split_elasticity.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include <Eigen/Eigenvalues>

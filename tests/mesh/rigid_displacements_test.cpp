@@ -1,6 +1,6 @@
 // Rigid motions as displacements.
+#include <palpate/mesh/detail/rigid_displacements.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/mesh/rigid_displacements.hpp>
 
 #include <Eigen/LU>
 

@@ -1,6 +1,6 @@
 #include "mesh_helpers.hpp"
 
-#include <palpate/mesh/mechanisms.hpp>
+#include <palpate/mesh/detail/mechanisms.hpp>
 
 #include <Eigen/QR>
 #include <Eigen/Geometry>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <palpate/model/prepared_cache.hpp>
+#include <palpate/model/cache/detail/prepared_cache.hpp>
 
 #include <filesystem>
 #include <fstream>

@@ -1,7 +1,7 @@
 // Implicit steps without a matrix against steps that are solved to the end, conservation laws and equilibrium.
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/corotated_motion.hpp>
-#include <palpate/model/implicit_dynamics.hpp>
+#include <palpate/model/moving/detail/corotated_motion.hpp>
+#include <palpate/model/moving/implicit_dynamics.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/random.hpp>
 

@@ -3,8 +3,8 @@
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/equilibrium.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/model/moving/equilibrium.hpp>
 
 #include "catch.hpp"
 #include "orphan_in_front.hpp"

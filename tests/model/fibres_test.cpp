@@ -1,6 +1,6 @@
 // Fibres in a model and in the key of its cache.
 #include <palpate/material/transversely_isotropic.hpp>
-#include <palpate/model/cache_key.hpp>
+#include <palpate/model/cache/detail/cache_key.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
 #include "assembly/bodies.hpp"

@@ -7,8 +7,8 @@
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_box.hpp>
-#include <palpate/model/equilibrium.hpp>
-#include <palpate/model/implicit_dynamics.hpp>
+#include <palpate/model/moving/equilibrium.hpp>
+#include <palpate/model/moving/implicit_dynamics.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <Eigen/Geometry>

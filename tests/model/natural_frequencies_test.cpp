@@ -1,5 +1,5 @@
 // Natural frequencies against closed forms and, in the next file, other codes.
-#include <palpate/model/natural_frequencies.hpp>
+#include <palpate/model/static/natural_frequencies.hpp>
 
 #include <palpate/mesh/admission.hpp>
 #include <palpate/mesh/generators_box.hpp>

@@ -5,7 +5,7 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
-#include <palpate/model/visual_surface.hpp>
+#include <palpate/model/rendering/visual_surface.hpp>
 
 #include <algorithm>
 #include <array>

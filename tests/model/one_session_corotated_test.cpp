@@ -1,6 +1,6 @@
 // The session text on co-rotated motion without a factor.
 #include <palpate/material/corotational.hpp>
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
 
 #include "one_session.hpp"
 

@@ -1,6 +1,6 @@
 // The session text on explicit motion.
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/model/explicit.hpp>
+#include <palpate/model/moving/explicit.hpp>
 
 #include "one_session.hpp"
 

@@ -2,7 +2,7 @@
 #include <palpate/element/tet10.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/promote.hpp>
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
 
 #include "one_session.hpp"
 

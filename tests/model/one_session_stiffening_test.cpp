@@ -1,7 +1,7 @@
 // The session text on tissue that stiffens.
 #include <palpate/element/smoothed.hpp>
 #include <palpate/material/linear_elastic.hpp>
-#include <palpate/model/stiffening.hpp>
+#include <palpate/model/static/stiffening.hpp>
 
 #include "one_session.hpp"
 

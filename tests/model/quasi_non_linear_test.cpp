@@ -4,8 +4,8 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/equilibrium.hpp>
-#include <palpate/model/quasi_non_linear.hpp>
+#include <palpate/model/moving/equilibrium.hpp>
+#include <palpate/model/static/detail/quasi_non_linear.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 
 #include <Eigen/Cholesky>

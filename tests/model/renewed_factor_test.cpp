@@ -1,7 +1,7 @@
 // A factor renewed by a thread changes how fast a step is solved, never what it is.
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/corotated_motion.hpp>
-#include <palpate/model/renewed_factor.hpp>
+#include <palpate/model/moving/detail/corotated_motion.hpp>
+#include <palpate/model/moving/renewed_factor.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
 #include <chrono>

@@ -1,7 +1,7 @@
 // Faces of every kind as triangles that tools touch.
-#include <palpate/contact/contact_samples.hpp>
+#include <palpate/contact/detail/contact_samples.hpp>
 #include <palpate/mesh/generators_box.hpp>
-#include <palpate/model/touchable.hpp>
+#include <palpate/model/detail/touchable.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
 // The choice among measured compositions.
-#include <palpate/model/trade_off.hpp>
+#include <palpate/model/static/trade_off.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"

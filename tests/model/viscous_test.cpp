@@ -4,8 +4,8 @@
 #include <palpate/material/transversely_isotropic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_box.hpp>
-#include <palpate/model/equilibrium.hpp>
-#include <palpate/model/implicit_dynamics.hpp>
+#include <palpate/model/moving/equilibrium.hpp>
+#include <palpate/model/moving/implicit_dynamics.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
 #include <Eigen/LU>

@@ -5,7 +5,7 @@
 #include <palpate/mesh/mesh_arrays.hpp>
 #include <palpate/mesh/selection.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
 
 #include "catch.hpp"
 #include "orphan_in_front.hpp"

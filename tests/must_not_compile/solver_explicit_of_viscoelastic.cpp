@@ -2,7 +2,7 @@
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/viscoelastic.hpp>
-#include <palpate/model/explicit.hpp>
+#include <palpate/model/moving/explicit.hpp>
 
 using namespace palpate;
 

@@ -2,7 +2,7 @@
 #include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
 
 using namespace palpate;
 

@@ -1,7 +1,7 @@
 // expect: palpate: MatrixFreeCG moves Tet4 with Corotational
 #include <palpate/element/tet10.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
 
 using namespace palpate;
 

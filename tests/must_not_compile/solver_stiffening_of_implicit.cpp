@@ -1,8 +1,8 @@
 // expect: palpate: Stiffening scales a static solver
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
-#include <palpate/model/implicit.hpp>
-#include <palpate/model/stiffening.hpp>
+#include <palpate/model/moving/implicit.hpp>
+#include <palpate/model/static/stiffening.hpp>
 
 using namespace palpate;
 

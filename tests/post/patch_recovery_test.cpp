@@ -1,5 +1,5 @@
 // Stress in points and recovered at nodes, against fields whose stress is known.
-#include <palpate/post/patch_recovery.hpp>
+#include <palpate/post/detail/patch_recovery.hpp>
 #include <palpate/post/stress.hpp>
 
 #include "../../benchmarks/accuracy/lame_sphere.hpp"

@@ -14,7 +14,7 @@
 #ifdef TINY_SOFT
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/model/implicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
 #elif defined(TINY_SOLVER)
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

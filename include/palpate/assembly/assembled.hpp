@@ -1,12 +1,12 @@
 // Assembly policy: the stiffness is stored.
 #pragma once
 
-#include <palpate/assembly/assemble_rows.hpp>
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/constant_geometry.hpp>
-#include <palpate/assembly/node_elements.hpp>
-#include <palpate/assembly/smoothed_stiffness.hpp>
+#include <palpate/assembly/detail/assemble_rows.hpp>
+#include <palpate/assembly/detail/constant_geometry.hpp>
+#include <palpate/assembly/detail/node_elements.hpp>
+#include <palpate/assembly/detail/smoothed_stiffness.hpp>
 #include <palpate/concepts/assembler.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>

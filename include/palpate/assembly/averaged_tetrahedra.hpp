@@ -1,13 +1,13 @@
 // Tetrahedra that do not lock: the change of volume is averaged over neighbours.
 #pragma once
 
+#include <palpate/assembly/detail/tetrahedron_batches.hpp>
+#include <palpate/assembly/detail/volume_watch.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
-#include <palpate/assembly/tetrahedron_batches.hpp>
-#include <palpate/assembly/volume_watch.hpp>
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/concepts/material.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/lanes.hpp>
+#include <palpate/core/detail/lanes.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>

@@ -1,7 +1,7 @@
 // A symmetric matrix of 3 x 3 blocks, one block per pair of neighbouring nodes, lower half stored.
 #pragma once
 
-#include <palpate/assembly/node_elements.hpp>
+#include <palpate/assembly/detail/node_elements.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>

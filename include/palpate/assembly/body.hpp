@@ -2,13 +2,13 @@
 #pragma once
 
 #include <palpate/concepts/element.hpp>
-#include <palpate/assembly/region_materials.hpp>
+#include <palpate/assembly/detail/region_materials.hpp>
 #include <palpate/concepts/material.hpp>
 #include <palpate/concepts/mesh.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/mesh/fibres.hpp>
+#include <palpate/mesh/detail/fibres.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
 

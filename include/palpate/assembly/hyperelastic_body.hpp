@@ -9,7 +9,7 @@
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/material/viscoelastic.hpp>
-#include <palpate/mesh/fibres.hpp>
+#include <palpate/mesh/detail/fibres.hpp>
 #include <palpate/mesh/mesh.hpp>
 
 #include <utility>

@@ -3,14 +3,14 @@
 
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/elastic_forces.hpp>
+#include <palpate/assembly/detail/elastic_forces.hpp>
+#include <palpate/assembly/detail/point_memory.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
-#include <palpate/assembly/point_memory.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/lanes.hpp>
+#include <palpate/core/detail/lanes.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/tensor3.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/smoothed_stiffness.hpp>
+#include <palpate/assembly/detail/smoothed_stiffness.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>

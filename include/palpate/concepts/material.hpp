@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
-#include <palpate/core/lanes.hpp>
+#include <palpate/core/detail/lanes.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>

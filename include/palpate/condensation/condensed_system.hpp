@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/concepts/condensation.hpp>
-#include <palpate/condensation/schur.hpp>
-#include <palpate/linear/any_solver.hpp>
+#include <palpate/condensation/detail/schur.hpp>
+#include <palpate/linear/detail/any_solver.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

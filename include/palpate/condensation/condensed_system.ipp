@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/condensation/condensed_system.hpp>
-#include <palpate/core/binary_io.hpp>
-#include <palpate/linear/vector_kernels.hpp>
+#include <palpate/core/detail/binary_io.hpp>
+#include <palpate/linear/detail/vector_kernels.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

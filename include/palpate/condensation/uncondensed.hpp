@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/condensation.hpp>
-#include <palpate/linear/any_solver.hpp>
+#include <palpate/linear/detail/any_solver.hpp>
 
 #include <vector>
 

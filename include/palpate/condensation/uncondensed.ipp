@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/condensation/uncondensed.hpp>
-#include <palpate/linear/vector_kernels.hpp>
+#include <palpate/linear/detail/vector_kernels.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

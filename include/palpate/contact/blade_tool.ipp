@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/contact/blade_tool.hpp>
+#include <palpate/core/detail/small_matrix.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/core/small_matrix.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

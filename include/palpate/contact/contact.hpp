@@ -1,7 +1,7 @@
 // Tools and contacts as the contact problem knows them.
 #pragma once
 
-#include <palpate/contact/triangle.hpp>
+#include <palpate/contact/detail/triangle.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

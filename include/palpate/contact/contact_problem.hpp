@@ -1,9 +1,9 @@
 // Rigid balls and capsules against a deformable surface, solved exactly in every tick.
 #pragma once
 
-#include <palpate/contact/contact_rows.hpp>
+#include <palpate/contact/detail/contact_rows.hpp>
+#include <palpate/contact/detail/proxy_motion.hpp>
 #include <palpate/contact/grasp.hpp>
-#include <palpate/contact/proxy_motion.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,7 +1,7 @@
 // The touchable surface as the contact wing sees it.
 #pragma once
 
-#include <palpate/contact/bvh.hpp>
+#include <palpate/contact/detail/bvh.hpp>
 
 #include <string>
 #include <utility>

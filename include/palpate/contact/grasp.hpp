@@ -1,7 +1,7 @@
 // A point of the surface that a tool holds.
 #pragma once
 
-#include <palpate/contact/candidates.hpp>
+#include <palpate/contact/detail/candidates.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

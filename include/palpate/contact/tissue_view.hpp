@@ -1,10 +1,10 @@
 // A tissue of any type, as code that is no template sees it.
 #pragma once
 
-#include <palpate/concepts/explain_tissue.hpp>
+#include <palpate/concepts/detail/explain_tissue.hpp>
 #include <palpate/concepts/tissue_model.hpp>
-#include <palpate/contact/blade_sweep.hpp>
-#include <palpate/contact/contact_samples.hpp>
+#include <palpate/contact/detail/blade_sweep.hpp>
+#include <palpate/contact/detail/contact_samples.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

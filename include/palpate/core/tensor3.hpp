@@ -1,4 +1,4 @@
-// Vectors and 3 x 3 tensors of one number type or of lanes (core/lanes.hpp), for the kernels of material laws.
+// Vectors and 3 x 3 tensors of one number type or of lanes (core/detail/lanes.hpp), for the kernels of material laws.
 #pragma once
 
 #include <palpate/core/config.hpp>

@@ -1,9 +1,9 @@
 // A solver policy for linear tissue that is cut while it is touched: Cuttable<Condensed<SelectiveInverse>>.
 #pragma once
 
-#include <palpate/cut/cut_visual_surface.hpp>
 #include <palpate/cut/cuttable_tissue.hpp>
-#include <palpate/model/admit_body.hpp>
+#include <palpate/cut/detail/cut_visual_surface.hpp>
+#include <palpate/model/detail/admit_body.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/policies.hpp>
 

@@ -4,13 +4,13 @@
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/core/rigid_motion.hpp>
-#include <palpate/contact/blade_sweep.hpp>
-#include <palpate/cut/cut_orders.hpp>
+#include <palpate/contact/detail/blade_sweep.hpp>
+#include <palpate/cut/detail/cut_orders.hpp>
 #include <palpate/cut/cut_parameters.hpp>
-#include <palpate/cut/cut_preparation.hpp>
-#include <palpate/cut/cut_process.hpp>
-#include <palpate/haptic/triple_buffer.hpp>
-#include <palpate/model/element_body.hpp>
+#include <palpate/cut/detail/cut_preparation.hpp>
+#include <palpate/cut/detail/cut_process.hpp>
+#include <palpate/haptic/detail/triple_buffer.hpp>
+#include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/model_base.hpp>
 
 #include <atomic>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
+#include <palpate/device/detail/sdk_state.hpp>
 #include <palpate/device/render_limits.hpp>
-#include <palpate/device/sdk_state.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

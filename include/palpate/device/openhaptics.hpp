@@ -21,8 +21,8 @@
 
 #include <palpate/concepts/servo.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/device/detail/sdk_state.hpp>
 #include <palpate/device/render_limits.hpp>
-#include <palpate/device/sdk_state.hpp>
 
 #include <array>
 #include <atomic>

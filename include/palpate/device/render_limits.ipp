@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/device/render_limits.hpp>
-#include <palpate/core/limit_length.hpp>
+#include <palpate/core/detail/limit_length.hpp>
 #include <palpate/core/setup_error.hpp>
 
 #include <algorithm>

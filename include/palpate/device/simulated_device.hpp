@@ -5,8 +5,8 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/device/detail/simulated_mechanics.hpp>
 #include <palpate/device/render_limits.hpp>
-#include <palpate/device/simulated_mechanics.hpp>
 
 #include <array>
 

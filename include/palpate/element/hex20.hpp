@@ -5,9 +5,9 @@
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/element/detail/serendipity.hpp>
 #include <palpate/element/hex8.hpp>
 #include <palpate/element/quad8.hpp>
-#include <palpate/element/serendipity.hpp>
 #include <palpate/quadrature/tensor.hpp>
 
 #include <array>

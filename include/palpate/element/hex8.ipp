@@ -1,8 +1,8 @@
 // Definitions of hex8.hpp.
 #pragma once
 
+#include <palpate/element/detail/matrix_of_rows.hpp>
 #include <palpate/element/hex8.hpp>
-#include <palpate/element/matrix_of_rows.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/element/quad4.hpp>
-#include <palpate/element/matrix_of_rows.hpp>
+#include <palpate/element/detail/matrix_of_rows.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

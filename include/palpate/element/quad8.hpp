@@ -4,7 +4,7 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/element/serendipity.hpp>
+#include <palpate/element/detail/serendipity.hpp>
 #include <palpate/quadrature/tensor.hpp>
 
 #include <array>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/element/tri6.hpp>
-#include <palpate/element/matrix_of_rows.hpp>
+#include <palpate/element/detail/matrix_of_rows.hpp>
 #include <palpate/element/tri3.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {

@@ -1,7 +1,7 @@
 // Definitions of force_gate.hpp.
 #pragma once
 
-#include <palpate/core/limit_length.hpp>
+#include <palpate/core/detail/limit_length.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/force_gate.hpp>
 

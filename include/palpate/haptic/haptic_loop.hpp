@@ -1,7 +1,7 @@
 // The thread that serves devices at a steady rate.
 #pragma once
 
-#include <palpate/haptic/loop_device.hpp>
+#include <palpate/haptic/detail/loop_device.hpp>
 #include <palpate/haptic/loop_options.hpp>
 #include <palpate/haptic/loop_report.hpp>
 

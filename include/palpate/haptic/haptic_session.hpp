@@ -1,8 +1,8 @@
 // Devices, tools and a tissue: everything between a hand and a model in one object.
 #pragma once
 
+#include <palpate/haptic/detail/loop_device.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/haptic/loop_device.hpp>
 #include <palpate/haptic/loop_options.hpp>
 #include <palpate/haptic/loop_report.hpp>
 #include <palpate/haptic/session_options.hpp>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/core/status.hpp>
+#include <palpate/haptic/detail/realtime_thread.hpp>
 #include <palpate/haptic/duration_histogram.hpp>
-#include <palpate/haptic/realtime_thread.hpp>
 
 #include <iosfwd>
 #include <vector>

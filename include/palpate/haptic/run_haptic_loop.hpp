@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/servo.hpp>
-#include <palpate/haptic/loop_device.hpp>
+#include <palpate/haptic/detail/loop_device.hpp>
 #include <palpate/haptic/loop_options.hpp>
 #include <palpate/haptic/loop_report.hpp>
 

@@ -7,8 +7,8 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/integrator/requirements.hpp>
-#include <palpate/integrator/step_limit.hpp>
+#include <palpate/integrator/detail/requirements.hpp>
+#include <palpate/integrator/detail/step_limit.hpp>
 
 #include <algorithm>
 #include <cmath>

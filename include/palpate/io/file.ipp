@@ -1,8 +1,8 @@
 // Definitions of file.hpp. <filesystem> and <fstream> would double what a reader costs the compiler.
 #pragma once
 
+#include <palpate/io/detail/message.hpp>
 #include <palpate/io/file.hpp>
-#include <palpate/io/message.hpp>
 
 #include <cstdio>
 

@@ -1,8 +1,8 @@
 // What a mesh file says, before anybody asks which element type is wanted.
 #pragma once
 
-#include <palpate/io/cell_shape.hpp>
-#include <palpate/io/text_reader.hpp>
+#include <palpate/io/detail/cell_shape.hpp>
+#include <palpate/io/detail/text_reader.hpp>
 
 #include <limits>
 #include <vector>

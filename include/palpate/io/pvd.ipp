@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/io/decimal.hpp>
-#include <palpate/io/message.hpp>
+#include <palpate/io/detail/message.hpp>
 #include <palpate/io/pvd.hpp>
 
 #include <bit>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <palpate/io/decimal.hpp>
+#include <palpate/io/detail/gmsh_file.hpp>
+#include <palpate/io/detail/mesh_builder.hpp>
 #include <palpate/io/file.hpp>
-#include <palpate/io/gmsh_file.hpp>
-#include <palpate/io/mesh_builder.hpp>
 #include <palpate/io/tetgen.hpp>
 #include <palpate/io/veg.hpp>
 #include <palpate/io/vtk_legacy.hpp>

@@ -1,9 +1,9 @@
 // Definitions of read_mesh.hpp.
 #pragma once
 
+#include <palpate/io/detail/vtk_numbers.hpp>
 #include <palpate/io/file.hpp>
 #include <palpate/io/read_mesh.hpp>
-#include <palpate/io/vtk_numbers.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 

@@ -1,7 +1,7 @@
 // Writes the surface of a mesh as OBJ or STL.
 #pragma once
 
-#include <palpate/mesh/element_layout.hpp>
+#include <palpate/mesh/detail/element_layout.hpp>
 #include <palpate/mesh/surface.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/io/decimal.hpp>
+#include <palpate/io/detail/message.hpp>
 #include <palpate/io/file.hpp>
-#include <palpate/io/message.hpp>
 #include <palpate/io/surface_files.hpp>
 
 #include <algorithm>

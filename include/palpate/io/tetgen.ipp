@@ -1,9 +1,9 @@
 // Definitions of tetgen.hpp.
 #pragma once
 
+#include <palpate/io/detail/numbered_rows.hpp>
+#include <palpate/io/detail/tag_sets.hpp>
 #include <palpate/io/file.hpp>
-#include <palpate/io/numbered_rows.hpp>
-#include <palpate/io/tag_sets.hpp>
 #include <palpate/io/tetgen.hpp>
 
 #include <cmath>

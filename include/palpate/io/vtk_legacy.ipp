@@ -1,10 +1,10 @@
 // Definitions of vtk_legacy.hpp.
 #pragma once
 
-#include <palpate/io/tag_sets.hpp>
-#include <palpate/io/vtk_attributes.hpp>
+#include <palpate/io/detail/tag_sets.hpp>
+#include <palpate/io/detail/vtk_attributes.hpp>
+#include <palpate/io/detail/vtk_types.hpp>
 #include <palpate/io/vtk_legacy.hpp>
-#include <palpate/io/vtk_types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
 

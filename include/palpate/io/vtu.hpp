@@ -1,8 +1,8 @@
 // Writes meshes with fields for ParaView and other readers of VTK files.
 #pragma once
 
-#include <palpate/io/cell_shape.hpp>
 #include <palpate/io/decimal.hpp>
+#include <palpate/io/detail/cell_shape.hpp>
 #include <palpate/io/file.hpp>
 #include <palpate/mesh/mesh_ref.hpp>
 

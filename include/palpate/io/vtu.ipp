@@ -1,9 +1,9 @@
 // Definitions of vtu.hpp.
 #pragma once
 
+#include <palpate/io/detail/message.hpp>
+#include <palpate/io/detail/vtk_types.hpp>
 #include <palpate/io/file.hpp>
-#include <palpate/io/message.hpp>
-#include <palpate/io/vtk_types.hpp>
 #include <palpate/io/vtu.hpp>
 
 #include <bit>

@@ -1,7 +1,7 @@
 // Writes a mesh with its groups as a Gmsh file (MSH 2.2, ASCII).
 #pragma once
 
-#include <palpate/io/cell_shape.hpp>
+#include <palpate/io/detail/cell_shape.hpp>
 #include <palpate/mesh/mesh_ref.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <palpate/io/decimal.hpp>
+#include <palpate/io/detail/gmsh_types.hpp>
+#include <palpate/io/detail/message.hpp>
 #include <palpate/io/file.hpp>
-#include <palpate/io/gmsh_types.hpp>
-#include <palpate/io/message.hpp>
 #include <palpate/io/write_msh.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {

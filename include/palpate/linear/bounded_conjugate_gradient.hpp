@@ -1,7 +1,7 @@
 // Conjugate gradients for a step of time: a bounded number of iterations, and what they leave.
 #pragma once
 
-#include <palpate/linear/operator_view.hpp>
+#include <palpate/linear/detail/operator_view.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -1,7 +1,7 @@
 // How much a solver can be trusted: condition estimate and probe solve.
 #pragma once
 
-#include <palpate/linear/operator_view.hpp>
+#include <palpate/linear/detail/operator_view.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/linear/condition.hpp>
-#include <palpate/linear/vector_kernels.hpp>
+#include <palpate/linear/detail/vector_kernels.hpp>
 
 #include <cmath>
 #include <random>

@@ -1,8 +1,8 @@
 // Iterative solver for symmetric positive definite operators.
 #pragma once
 
-#include <palpate/linear/any_solver.hpp>
-#include <palpate/linear/operator_view.hpp>
+#include <palpate/linear/detail/any_solver.hpp>
+#include <palpate/linear/detail/operator_view.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

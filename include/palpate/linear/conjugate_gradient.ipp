@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/linear/conjugate_gradient.hpp>
-#include <palpate/linear/vector_kernels.hpp>
+#include <palpate/linear/detail/vector_kernels.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,13 @@
 // Definitions of dense_cholesky.hpp.
 #pragma once
 
-#include <palpate/core/binary_io.hpp>
+#include <palpate/core/detail/binary_io.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/linear/big_array.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
-#include <palpate/linear/front_kernels.hpp>
-#include <palpate/linear/front_substitution.hpp>
-#include <palpate/linear/vector_kernels.hpp>
+#include <palpate/linear/detail/big_array.hpp>
+#include <palpate/linear/detail/front_kernels.hpp>
+#include <palpate/linear/detail/front_substitution.hpp>
+#include <palpate/linear/detail/vector_kernels.hpp>
 
 #include <algorithm>
 #include <cmath>

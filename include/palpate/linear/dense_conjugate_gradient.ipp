@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/linear/dense_conjugate_gradient.hpp>
-#include <palpate/linear/dense_io.hpp>
-#include <palpate/linear/dense_kernels.hpp>
+#include <palpate/linear/detail/dense_io.hpp>
+#include <palpate/linear/detail/dense_kernels.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

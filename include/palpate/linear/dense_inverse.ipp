@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/linear/dense_inverse.hpp>
-#include <palpate/linear/dense_io.hpp>
-#include <palpate/linear/spd_inverse.hpp>
+#include <palpate/linear/detail/dense_io.hpp>
+#include <palpate/linear/detail/spd_inverse.hpp>
 
 #include <algorithm>
 

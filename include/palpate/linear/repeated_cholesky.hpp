@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
-#include <palpate/linear/cholesky_analysis.hpp>
+#include <palpate/linear/detail/cholesky_analysis.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

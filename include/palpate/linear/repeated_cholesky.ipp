@@ -1,8 +1,8 @@
 // Definitions of repeated_cholesky.hpp.
 #pragma once
 
-#include <palpate/linear/front_factorisation.hpp>
-#include <palpate/linear/front_sweeps.hpp>
+#include <palpate/linear/detail/front_factorisation.hpp>
+#include <palpate/linear/detail/front_sweeps.hpp>
 #include <palpate/linear/repeated_cholesky.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 

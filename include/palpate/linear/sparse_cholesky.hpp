@@ -2,9 +2,9 @@
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
-#include <palpate/linear/cholesky_analysis.hpp>
-#include <palpate/linear/front_reduction.hpp>
-#include <palpate/linear/front_sweeps.hpp>
+#include <palpate/linear/detail/cholesky_analysis.hpp>
+#include <palpate/linear/detail/front_reduction.hpp>
+#include <palpate/linear/detail/front_sweeps.hpp>
 
 #include <span>
 

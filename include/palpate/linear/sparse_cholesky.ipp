@@ -1,10 +1,10 @@
 // Definitions of sparse_cholesky.hpp.
 #pragma once
 
-#include <palpate/core/binary_io.hpp>
+#include <palpate/core/detail/binary_io.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/linear/front_block_sweeps.hpp>
-#include <palpate/linear/front_factorisation.hpp>
+#include <palpate/linear/detail/front_block_sweeps.hpp>
+#include <palpate/linear/detail/front_factorisation.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/element/matrix_of_rows.hpp>
+#include <palpate/element/detail/matrix_of_rows.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

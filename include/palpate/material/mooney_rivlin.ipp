@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/material/mooney_rivlin.hpp>
-#include <palpate/material/invariants.hpp>
+#include <palpate/material/detail/invariants.hpp>
 
 #include <utility>
 

@@ -3,13 +3,13 @@
 
 #include <palpate/concepts/material.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/lanes.hpp>
+#include <palpate/core/detail/lanes.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/material/deformation.hpp>
+#include <palpate/material/detail/deformation.hpp>
+#include <palpate/material/detail/small_strain.hpp>
 #include <palpate/material/linear_elastic.hpp>
-#include <palpate/material/small_strain.hpp>
 
 #include <Eigen/LU>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/material/neo_hookean_isochoric.hpp>
-#include <palpate/material/invariants.hpp>
+#include <palpate/material/detail/invariants.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

@@ -3,7 +3,7 @@
 
 #include <palpate/material/orthotropic.hpp>
 #include <palpate/core/voigt.hpp>
-#include <palpate/linear/symmetric_eigen.hpp>
+#include <palpate/linear/detail/symmetric_eigen.hpp>
 
 #include <algorithm>
 #include <array>

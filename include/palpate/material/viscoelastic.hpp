@@ -6,7 +6,7 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/material/viscous_step.hpp>
+#include <palpate/material/detail/viscous_step.hpp>
 
 #include <Eigen/LU>
 

@@ -7,12 +7,12 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/admission_policy.hpp>
+#include <palpate/mesh/detail/fibres.hpp>
+#include <palpate/mesh/detail/repair.hpp>
 #include <palpate/mesh/diagnose.hpp>
 #include <palpate/mesh/diagnosis.hpp>
-#include <palpate/mesh/fibres.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/quality.hpp>
-#include <palpate/mesh/repair.hpp>
 
 #include <string>
 #include <vector>

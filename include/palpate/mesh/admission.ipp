@@ -3,7 +3,7 @@
 
 #include <palpate/core/setup_error.hpp>
 #include <palpate/mesh/admission.hpp>
-#include <palpate/mesh/duplicates.hpp>
+#include <palpate/mesh/detail/duplicates.hpp>
 
 #include <algorithm>
 #include <numeric>

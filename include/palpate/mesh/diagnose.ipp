@@ -1,11 +1,11 @@
 // Definitions of diagnose.hpp.
 #pragma once
 
-#include <palpate/core/box.hpp>
+#include <palpate/core/detail/box.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/mesh/components.hpp>
+#include <palpate/mesh/detail/components.hpp>
+#include <palpate/mesh/detail/duplicates.hpp>
 #include <palpate/mesh/diagnose.hpp>
-#include <palpate/mesh/duplicates.hpp>
 
 #include <algorithm>
 #include <cmath>

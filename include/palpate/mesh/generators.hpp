@@ -5,7 +5,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/mesh/boundary_groups.hpp>
+#include <palpate/mesh/detail/boundary_groups.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/surface.hpp>
 

@@ -4,7 +4,7 @@
 #include <palpate/mesh/generators_round.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/mesh/boundary_groups.hpp>
+#include <palpate/mesh/detail/boundary_groups.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/groups.hpp>
 #include <palpate/mesh/surface.hpp>

@@ -1,7 +1,7 @@
 // Meshes without the type of their element: what plain code reads and makes.
 #pragma once
 
-#include <palpate/mesh/element_layout.hpp>
+#include <palpate/mesh/detail/element_layout.hpp>
 #include <palpate/mesh/mesh.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {

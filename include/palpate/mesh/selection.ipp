@@ -1,9 +1,9 @@
 // Definitions of selection.hpp.
 #pragma once
 
-#include <palpate/core/box.hpp>
+#include <palpate/core/detail/box.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/mesh/key_order.hpp>
+#include <palpate/mesh/detail/key_order.hpp>
 #include <palpate/mesh/selection.hpp>
 
 #include <algorithm>

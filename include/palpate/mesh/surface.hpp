@@ -5,7 +5,7 @@
 #include <palpate/concepts/mesh.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/mesh/face_ids.hpp>
+#include <palpate/mesh/detail/face_ids.hpp>
 #include <palpate/mesh/mesh_ref.hpp>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
-#include <palpate/mesh/key_order.hpp>
+#include <palpate/mesh/detail/key_order.hpp>
 #include <palpate/mesh/surface.hpp>
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/local/split_elasticity.hpp>
+#include <palpate/local/detail/split_elasticity.hpp>
 #include <palpate/mesh/admission.hpp>
 #include <palpate/mesh/diagnosis.hpp>
 #include <palpate/model/setup_report.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/model/admission_report.hpp>
-#include <palpate/core/box.hpp>
+#include <palpate/core/detail/box.hpp>
 
 #include <algorithm>
 

@@ -1,12 +1,12 @@
 // The composition: element, material and solver make a tissue that can be touched.
 #pragma once
 
-#include <palpate/assembly/region_materials.hpp>
+#include <palpate/assembly/detail/region_materials.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/material.hpp>
 #include <palpate/concepts/mesh.hpp>
-#include <palpate/model/linear_tissue.hpp>
 #include <palpate/model/policies.hpp>
+#include <palpate/model/static/linear_tissue.hpp>
 
 #include <vector>
 

@@ -4,10 +4,10 @@
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/matrix_free.hpp>
-#include <palpate/model/admit_body.hpp>
-#include <palpate/model/element_body.hpp>
+#include <palpate/model/detail/admit_body.hpp>
+#include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
-#include <palpate/model/solver_recipe.hpp>
+#include <palpate/model/static/detail/solver_recipe.hpp>
 
 #include <memory>
 #include <utility>
@@ -55,5 +55,5 @@ const std::vector<BoundaryFace>& HapticFEModel<E, M, Solver>::boundary() const n
 }}  // namespace palpate
 
 #if !PALPATE_HEADER_ONLY
-#include <palpate/model/shipped.hpp>
+#include <palpate/model/shipped/shipped.hpp>
 #endif

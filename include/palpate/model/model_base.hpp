@@ -7,8 +7,8 @@
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/admission_policy.hpp>
 #include <palpate/mesh/scene.hpp>
-#include <palpate/model/contact_compliance.hpp>
 #include <palpate/model/setup_report.hpp>
+#include <palpate/model/static/detail/contact_compliance.hpp>
 
 #include <Eigen/Geometry>
 

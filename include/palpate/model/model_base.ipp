@@ -4,8 +4,8 @@
 #include <palpate/model/model_base.hpp>
 
 #include <palpate/core/rigid_motion.hpp>
-#include <palpate/model/elastic_body.hpp>
-#include <palpate/model/touchable.hpp>
+#include <palpate/model/detail/elastic_body.hpp>
+#include <palpate/model/detail/touchable.hpp>
 
 #include <utility>
 

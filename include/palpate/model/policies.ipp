@@ -3,11 +3,11 @@
 
 #include <palpate/model/policies.hpp>
 
-#include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/condensation/condensed_system.hpp>
-#include <palpate/condensation/schur.hpp>
+#include <palpate/condensation/detail/schur.hpp>
 #include <palpate/condensation/uncondensed.hpp>
-#include <palpate/core/binary_io.hpp>
+#include <palpate/core/detail/binary_io.hpp>
 #include <palpate/linear/conjugate_gradient.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/dense_conjugate_gradient.hpp>

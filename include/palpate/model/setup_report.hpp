@@ -3,7 +3,7 @@
 
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/model/cache_report.hpp>
+#include <palpate/model/cache/cache_report.hpp>
 
 #include <iosfwd>
 #include <ostream>

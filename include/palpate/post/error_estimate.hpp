@@ -6,10 +6,10 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/element/serendipity.hpp>
+#include <palpate/element/detail/serendipity.hpp>
 #include <palpate/local/geometry.hpp>
-#include <palpate/post/patch_recovery.hpp>
-#include <palpate/post/point_stress.hpp>
+#include <palpate/post/detail/patch_recovery.hpp>
+#include <palpate/post/detail/point_stress.hpp>
 
 #include <Eigen/Cholesky>
 

@@ -1,5 +1,5 @@
 // Stress to draw: the volume mean of every element, smeared over the nodes. For values to trust at a node see
-// post/patch_recovery.hpp.
+// post/detail/patch_recovery.hpp.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -8,7 +8,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/core/voigt.hpp>
 #include <palpate/mesh/mesh.hpp>
-#include <palpate/post/point_stress.hpp>
+#include <palpate/post/detail/point_stress.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

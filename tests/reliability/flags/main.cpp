@@ -1,7 +1,7 @@
 // Statics, a factor, a contact force through the gate: a few numbers, printed or compared with those given. Returns 1
 // when one differs by more than rounding, or the gate lets through what it must not.
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/free_stiffness.hpp>
+#include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/core/realtime.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/force_gate.hpp>

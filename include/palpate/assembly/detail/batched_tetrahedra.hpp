@@ -1,0 +1,106 @@
+// Internal force of tetrahedra at any strain, several elements at once: the force of explicit integration.
+#pragma once
+
+#include <palpate/assembly/detail/tetrahedron_batches.hpp>
+#include <palpate/assembly/detail/volume_watch.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/detail/lane_rows.hpp>
+#include <palpate/core/detail/lanes.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/mesh/quality.hpp>
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Total Lagrangian force of linear tetrahedra (Miller, Joldes, Lance, Wittek 2007): F from gradients at rest, f_a = V
+/// P grad N_a, Lanes<S, N> of elements at once. Elements lie in blocks of 512 that are added up in the cache first,
+/// then by node: the sum has one order, whatever the number of threads and whoever computes which block. Vectors are
+/// double, all dofs, in the order of the mesh; S = float computes in single precision from differences of displacement
+/// within a block. No allocation after construction.
+template <HyperelasticMaterial M, class S = double, int N = 64 / sizeof(S)>
+class BatchedTetrahedra {
+ public:
+  using Material = M;
+
+  BatchedTetrahedra() = default;
+  /// Throws as make_batches.
+  explicit BatchedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {})
+      : layout_(make_batches<S, N>(body, 160.0, limits)), laws_(body.laws) {
+    rows_.assign(4 * layout_.nodes.size(), S(0));
+    seen_.resize(layout_.blocks.size());
+    probe_length_ = std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * shortest_edge(body.rest.mesh);
+  }
+
+  Index size() const noexcept { return 3 * layout_.node_count(); }
+  Index block_count() const noexcept { return static_cast<Index>(layout_.blocks.size()); }
+
+  /// force = internal force at displacement u [N]. A law that does not hold adds whatever it gives; the report says so:
+  /// det F <= 0 where the law needs more, or not finite. (Narrower bounds of a law are seen by LargeStrain only.)
+  DeformationReport force(const VectorX& u, VectorX& f) noexcept {
+    for (Index b = 0; b < block_count(); ++b) compute_block(b, u);
+    add_up(0, layout_.node_count(), f);
+    return report();
+  }
+
+  /// Elements for which gone(element) leave, for good: no force, no energy, not in the report. O(elements), no
+  /// allocation. Pieces that come apart share blocks: S = float then loses digits as they fly off.
+  template <class Gone>
+  void remove_if(Gone&& gone) {
+    layout_.remove_if(gone, [](std::size_t, int) {});
+  }
+
+  /// Stored energy [J].
+  double energy(const VectorX& u) noexcept {
+    double sum = 0.0;
+    for (const TetrahedronBlock& block : layout_.blocks) {
+      const M law = laws_[static_cast<std::size_t>(block.region)];
+      Lanes<S, N> part(S(0));
+      layout_.for_each_gradient(block, u,
+                                [&](const Batch& batch, const Gradient& f) { part += batch.volume * law.energy(f); });
+      for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(part[lane]);
+    }
+    return sum;
+  }
+
+  /// A small part of the shortest edge [m]: differences of forces then keep half their digits.
+  double probe_length() const noexcept { return probe_length_; }
+
+  /// The three parts of force(), for several threads: every block once, in any order; then every node; then the report.
+  void compute_block(Index index, const VectorX& u) noexcept {
+    const TetrahedronBlock block = layout_.blocks[static_cast<std::size_t>(index)];
+    S* const rows = layout_.cleared(block, rows_);
+    const M law = laws_[static_cast<std::size_t>(block.region)];
+    detail::VolumeWatch<S, N> watch;
+    layout_.for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
+      watch.see(determinant(f, cofactor(f)), batch.volume);
+      batch.add_force(law.stress(f), rows);
+    });
+    seen_[static_cast<std::size_t>(index)] = watch.summary(layout_, block, M::survives_inversion);
+  }
+  void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
+    layout_.add_up(rows_.data(), first_node, last_node, f);
+  }
+  DeformationReport report() const noexcept { return detail::report_of(seen_); }
+
+ private:
+  using Batch = TetrahedronBatch<S, N>;
+  using Gradient = Tensor3<Lanes<S, N>>;
+
+  TetrahedronBatches<S, N> layout_;
+  std::vector<M> laws_;                  // by region
+  std::vector<S> rows_;                  // force on every row, four numbers
+  std::vector<DeformationReport> seen_;  // by block
+  double probe_length_ = 0.0;
+};
+
+}}  // namespace palpate

@@ -1,0 +1,179 @@
+// Force and stiffness of linear tetrahedra in frames that turn with the elements, without a matrix.
+#pragma once
+
+#include <palpate/assembly/detail/tetrahedron_batches.hpp>
+#include <palpate/assembly/detail/volume_watch.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/detail/lane_rows.hpp>
+#include <palpate/core/detail/lanes.hpp>
+#include <palpate/core/detail/tracked_rotation.hpp>
+#include <palpate/core/rotation.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/material/corotational.hpp>
+#include <palpate/material/detail/small_strain.hpp>
+#include <palpate/material/linear_elastic.hpp>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <cmath>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// The body of `Corotational` at a displacement, several elements at once: energy, force, and products with its
+/// stiffness at held rotations, R K R^T of Mueller and Gross (2004), which is positive semidefinite whatever the state.
+/// An element is the linear one with turned gradients, so a product costs what it costs at small strain. Rotations are
+/// followed from state to state. Blocks, sums and vectors as in BatchedTetrahedra; S = float computes products and
+/// forces in single precision. No allocation after construction.
+template <class Base = LinearElastic, class S = double, int N = 64 / sizeof(S)>
+class CorotatedTetrahedra {
+ public:
+  using Material = Corotational<Base>;
+
+  CorotatedTetrahedra() = default;
+  /// Throws as make_batches.
+  explicit CorotatedTetrahedra(const HyperelasticBody<Tet4, Material>& body, const SetupLimits& limits = {})
+      : layout_(make_batches<S, N>(body, 280.0, limits)) {
+    for (const Material& law : body.laws) laws_.push_back(detail::lame<Lane>(law.base));
+    rows_.assign(4 * layout_.nodes.size(), S(0));
+    seen_.resize(layout_.blocks.size());
+    for (const Batch& batch : layout_.batches) turned_.push_back(at_rest(batch));
+  }
+
+  Index size() const noexcept { return 3 * layout_.node_count(); }
+  /// Elements for which gone(element) leave, for good, as in BatchedTetrahedra. O(elements), no allocation.
+  template <class Gone>
+  void remove_if(Gone&& gone) {
+    layout_.remove_if(gone, [this](std::size_t batch, int lane) {
+      for (Vector& g : turned_[batch].gradient) TetrahedronBatches<S, N>::clear_lane(g, lane);
+      turned_[batch].root_volume.set(lane, S(0));
+    });
+  }
+
+  /// Rotations are found from those at rest next time, not from the last ones.
+  void forget_rotations() noexcept {
+    for (TurnedBatch& turned : turned_) turned.turn = {Lane(S(1)), Lane(S(0)), Lane(S(0)), Lane(S(0))};
+  }
+  /// Takes the rotations at u; f = internal force there [N], energy [J]. Finite where the square of F is, in S.
+  DeformationReport linearise(const VectorX& u, VectorX& f, double& energy) noexcept {
+    energy = 0.0;
+    for (std::size_t b = 0; b < layout_.blocks.size(); ++b) energy += linearise_block(b, u);
+    layout_.add_up(rows_.data(), 0, layout_.node_count(), f);
+    return detail::report_of(seen_);
+  }
+
+  /// y = R K R^T x with the rotations taken last.
+  void apply(const VectorX& x, VectorX& y) const noexcept {
+    for (const TetrahedronBlock& block : layout_.blocks) apply_block(block, x);
+    layout_.add_up(rows_.data(), 0, layout_.node_count(), y);
+  }
+
+  /// Blocks of R K R^T on the diagonal [N/m], symmetric: xx, yy, zz of every node, and xy, xz, yz.
+  void diagonal_blocks(VectorX& straight, VectorX& mixed) const noexcept {
+    add_diagonals(
+        [](const Vector& g, const Lane& isotropic, const Lane& more) {
+          return Vector{isotropic + more * g.x * g.x, isotropic + more * g.y * g.y, isotropic + more * g.z * g.z};
+        },
+        straight);
+    add_diagonals(
+        [](const Vector& g, const Lane&, const Lane& more) {
+          return Vector{more * g.x * g.y, more * g.x * g.z, more * g.y * g.z};
+        },
+        mixed);
+  }
+
+ private:
+  using Batch = TetrahedronBatch<S, N>;
+  using Lane = Lanes<S, N>;
+  using Vector = Triple<Lane>;
+  struct TurnedBatch {
+    Vector gradient[3];  // R grad N_a sqrt(V)
+    Lane root_volume;    // sqrt(V)
+    Quaternion<Lane> turn;
+  };
+
+  static TurnedBatch at_rest(const Batch& batch) {
+    TurnedBatch turned;
+    for (int lane = 0; lane < N; ++lane) turned.root_volume.set(lane, std::sqrt(batch.volume[lane]));
+    turned.turn = {Lane(S(1)), Lane(S(0)), Lane(S(0)), Lane(S(0))};
+    turn_gradients(Tensor3<Lane>::identity(), batch, turned);
+    return turned;
+  }
+  PALPATE_ALWAYS_INLINE static void turn_gradients(const Tensor3<Lane>& r, const Batch& batch,
+                                                   TurnedBatch& to) noexcept {
+    const Tensor3<Lane> scaled = to.root_volume * r;
+    for (int a = 0; a < 3; ++a) to.gradient[a] = scaled * batch.gradient[a];
+  }
+
+  double linearise_block(std::size_t index, const VectorX& u) noexcept {
+    const TetrahedronBlock block = layout_.blocks[index];
+    alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
+    layout_.load_displacements(block, u, local);
+    S* const rows = layout_.cleared(block, rows_);
+    const detail::Lame<Lane> law = laws_[static_cast<std::size_t>(block.region)];
+    detail::VolumeWatch<S, N> watch;
+    Lane stored(S(0));
+    for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
+      const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
+      TurnedBatch& turned = turned_[static_cast<std::size_t>(b)];
+      const Tensor3<Lane> f = batch.deformation_gradient(local), r = tracked_rotation(f, turned.turn), d = f - r;
+      watch.see(determinant(f, cofactor(f)), batch.volume);
+      stored += batch.volume * detail::corotated_energy(law, r, d);
+      batch.add_force(detail::corotated_stress(law, r, d), rows);
+      turn_gradients(r, batch, turned);
+    }
+    seen_[index] = watch.summary(layout_, block, true);
+    double sum = 0.0;
+    for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(stored[lane]);
+    return sum;
+  }
+
+  void apply_block(const TetrahedronBlock& block, const VectorX& x) const noexcept {
+    alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
+    layout_.load_displacements(block, x, local);
+    S* const rows = layout_.cleared(block, rows_);
+    const auto [lambda, mu] = laws_[static_cast<std::size_t>(block.region)];
+    for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
+      const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
+      const Vector(&g)[3] = turned_[static_cast<std::size_t>(b)].gradient;
+      Vector d[3];
+      batch.differences(local, d);
+      const Tensor3<Lane> h = outer(d[0], g[0]) + outer(d[1], g[1]) + outer(d[2], g[2]);
+      const Tensor3<Lane> stress = plus_identity(Lane(mu) * (h + transpose(h)), Lane(lambda) * trace(h));
+      batch.add_balanced(stress * g[0], stress * g[1], stress * g[2], rows);
+    }
+  }
+
+  /// Sums part(g, mu V |grad|^2, (lambda + mu)) of every element and node, g its turned gradient times sqrt(V).
+  template <class Part>
+  void add_diagonals(Part part, VectorX& to) const noexcept {
+    for (const TetrahedronBlock& block : layout_.blocks) {
+      S* const rows = layout_.cleared(block, rows_);
+      const auto [lambda, mu] = laws_[static_cast<std::size_t>(block.region)];
+      for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
+        const Vector(&g)[3] = turned_[static_cast<std::size_t>(b)].gradient;
+        const Vector first{-(g[0].x + g[1].x + g[2].x), -(g[0].y + g[1].y + g[2].y), -(g[0].z + g[1].z + g[2].z)};
+        const Vector* const all[4] = {&first, &g[0], &g[1], &g[2]};
+        for (int a = 0; a < 4; ++a)
+          add_rows(rows, layout_.batches[static_cast<std::size_t>(b)].row[a],
+                   part(*all[a], Lane(mu) * dot(*all[a], *all[a]), Lane(lambda + mu)));
+      }
+    }
+    layout_.add_up(rows_.data(), 0, layout_.node_count(), to);
+  }
+
+  TetrahedronBatches<S, N> layout_;
+  std::vector<detail::Lame<Lane>> laws_;  // by region
+  std::vector<TurnedBatch> turned_;
+  mutable std::vector<S> rows_;          // force on every row, four numbers: a workspace
+  std::vector<DeformationReport> seen_;  // by block
+};
+
+}}  // namespace palpate

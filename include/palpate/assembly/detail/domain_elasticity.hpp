@@ -1,0 +1,63 @@
+// The elasticity of the domains over which a strain is averaged.
+#pragma once
+
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/detail/constant_geometry.hpp>
+#include <palpate/assembly/detail/strain_domains.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/local/detail/split_elasticity.hpp>
+
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// The part of the elasticity [Pa] that acts in each domain of a body. Where the law changes from element to element
+/// (along fibres), the mean over the domain by volume: 288 bytes per domain.
+class DomainElasticity {
+ public:
+  DomainElasticity() = default;
+
+  template <HasSmoothedStrain E>
+  DomainElasticity(const Body<E>& body, const StrainDomains<E>& domains) : by_domain_(!body.laws.empty()) {
+    std::vector<Matrix6> laws;  // both parts of each
+    for (const Matrix6& d : body.elasticity) {
+      const SplitElasticity split = split_elasticity(d);
+      laws.push_back(split.deviatoric);
+      laws.push_back(split.volumetric);
+    }
+    if (!by_domain_) {
+      elasticity_ = std::move(laws);
+      return;
+    }
+    for (Index d = 0; d < domains.size(); ++d) {
+      const StrainDomain domain = domains[d];
+      Matrix6 sum = Matrix6::Zero();
+      double volume = 0.0;
+      for (const NodeId e : domain.elements) {
+        const double v = constant_geometry(body.mesh, Index{e}).volume;
+        sum += v * laws[place(body.law_of(e), domain.part)];
+        volume += v;
+      }
+      elasticity_.push_back(sum / volume);
+    }
+  }
+
+  std::size_t bytes() const noexcept { return elasticity_.size() * sizeof(Matrix6); }
+  /// Of domain number d.
+  const Matrix6& operator()(Index d, const StrainDomain& domain) const noexcept;
+
+ private:
+  static std::size_t place(std::size_t law, StrainPart part) noexcept;
+
+  bool by_domain_ = false;
+  std::vector<Matrix6> elasticity_;  // of every domain, or both parts of every region
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/detail/domain_elasticity.ipp>
+#endif

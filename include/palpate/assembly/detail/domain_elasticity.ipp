@@ -1,0 +1,17 @@
+// Definitions of domain_elasticity.hpp.
+#pragma once
+
+#include <palpate/assembly/detail/domain_elasticity.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE const Matrix6& DomainElasticity::operator()(Index d, const StrainDomain& domain) const noexcept {
+  return elasticity_[by_domain_ ? static_cast<std::size_t>(d)
+                                : place(static_cast<std::size_t>(domain.region), domain.part)];
+}
+
+PALPATE_INLINE std::size_t DomainElasticity::place(std::size_t law, StrainPart part) noexcept {
+  return 2 * law + (part == StrainPart::volumetric ? 1 : 0);
+}
+
+}}  // namespace palpate

@@ -1,0 +1,32 @@
+// Which elements meet in a node.
+#pragma once
+
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/mesh_ref.hpp>
+
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Elements around every node, ascending. O(elements), allocates 4 bytes per element and node of it.
+class NodeElements {
+ public:
+  /// Throws count_too_large beyond 2^31 elements.
+  explicit NodeElements(const MeshRef& mesh);
+  template <Element E>
+  explicit NodeElements(const Mesh<E>& mesh) : NodeElements(mesh_ref(mesh)) {}
+
+  std::span<const NodeId> of(Index node) const noexcept;
+
+ private:
+  std::vector<Index> first_;
+  std::vector<NodeId> element_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/detail/node_elements.ipp>
+#endif

@@ -1,0 +1,165 @@
+// What a smoothed strain is averaged over.
+#pragma once
+
+#include <palpate/assembly/detail/constant_geometry.hpp>
+#include <palpate/assembly/detail/node_elements.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/local/geometry.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Which part of the elasticity acts on the strain of a domain.
+enum class StrainPart : std::uint8_t { deviatoric, volumetric };
+
+/// The elements of one region around an edge, a sixth of each, or around a node, a quarter of each. The mean of their
+/// strains is sum B_a u_a with the mean gradients.
+struct StrainDomain {
+  std::span<const NodeId> nodes;       ///< ascending
+  std::span<const Vector3> gradients;  ///< per node, mean over the domain [1/m]
+  std::span<const NodeId> elements;
+  double volume = 0.0;  ///< [m^3]
+  int region = 0;
+  StrainPart part = StrainPart::deviatoric;
+
+  /// Mean strain under nodal displacements u, 3 per node of the mesh [m].
+  Vector6 strain(const VectorX& u) const noexcept;
+  /// Adds the nodal forces of a stress [Pa] to f, 3 per node of the mesh [N].
+  void add_force(const Vector6& stress, VectorX& f) const noexcept;
+};
+
+/// All domains of a mesh: for every edge a deviatoric one, for every node a volumetric one, per region. About 2 kB per
+/// node.
+template <HasSmoothedStrain E>
+class StrainDomains {
+ public:
+  StrainDomains() = default;
+
+  /// O(elements). Throws inverted_element, non_finite, too_large or cancelled.
+  StrainDomains(const Mesh<E>& mesh, const NodeElements& around, const SetupLimits& limits = {})
+      : geometry_(element_geometry(mesh, limits)), place_(static_cast<std::size_t>(mesh.node_count()), unused) {
+    for (Index i = 0; i < mesh.node_count(); ++i) {
+      if (i % 8192 == 0) limits.advance("assembly", static_cast<double>(i) / static_cast<double>(mesh.node_count()));
+      collect_shares(mesh, around, i);
+      for (auto first = shares_.begin(); first != shares_.end();) {
+        const auto last = std::find_if(first, shares_.end(), [&](const Share& s) { return !s.same_domain(*first); });
+        add_domain(mesh, {first, last});
+        first = last;
+      }
+    }
+    geometry_ = {};
+    place_ = {};
+  }
+  explicit StrainDomains(const Mesh<E>& mesh) : StrainDomains(mesh, NodeElements(mesh)) {}
+
+  Index size() const noexcept { return static_cast<Index>(volume_.size()); }
+  StrainDomain operator[](Index d) const noexcept {
+    const auto i = static_cast<std::size_t>(d);
+    const std::size_t n = node_start_[i], e = element_start_[i];
+    return {{node_.data() + n, node_start_[i + 1] - n},
+            {gradient_.data() + n, node_start_[i + 1] - n},
+            {element_.data() + e, element_start_[i + 1] - e},
+            volume_[i],
+            region_[i],
+            part_[i]};
+  }
+  std::size_t bytes() const noexcept {
+    return node_.size() * (sizeof(NodeId) + sizeof(Vector3)) + element_.size() * sizeof(NodeId) +
+           volume_.size() * (sizeof(double) + sizeof(int) + sizeof(StrainPart) + 2 * sizeof(std::size_t));
+  }
+
+ private:
+  /// An element as a part of the domain of an edge from the present node to `other`, or of the node itself (-1).
+  struct Share {
+    NodeId other;
+    int region;
+    NodeId element;
+    bool same_domain(const Share& s) const noexcept { return other == s.other && region == s.region; }
+    friend auto operator<=>(const Share&, const Share&) = default;
+  };
+
+  static std::vector<PointGeometry<E>> element_geometry(const Mesh<E>& mesh, const SetupLimits& limits) {
+    limits.require_memory(static_cast<double>(mesh.element_count()) * sizeof(PointGeometry<E>) +
+                              2000.0 * static_cast<double>(mesh.node_count()),
+                          "the averages of the strain");
+    std::vector<PointGeometry<E>> geometry;
+    geometry.reserve(static_cast<std::size_t>(mesh.element_count()));
+    for (Index e = 0; e < mesh.element_count(); ++e) geometry.push_back(constant_geometry(mesh, e));
+    return geometry;
+  }
+
+  /// The shares of all domains that belong to a node: its own, and those of its edges to nodes of higher id.
+  void collect_shares(const Mesh<E>& mesh, const NodeElements& around, Index i) {
+    shares_.clear();
+    for (const NodeId e : around.of(i)) {
+      shares_.push_back({-1, mesh.region(e), e});
+      for (const NodeId j : mesh.elements[static_cast<std::size_t>(e)])
+        if (j > i) shares_.push_back({j, mesh.region(e), e});
+    }
+    std::ranges::sort(shares_);
+  }
+
+  void add_domain(const Mesh<E>& mesh, std::span<const Share> shares) {
+    const bool of_node = shares.front().other < 0;
+    const double part = of_node ? 1.0 / 4.0 : 1.0 / 6.0;
+    number_nodes(mesh, shares);
+    gradient_.resize(node_.size(), Vector3::Zero());
+    double volume = 0.0;
+    for (const Share& s : shares) {
+      const PointGeometry<E>& g = geometry_[static_cast<std::size_t>(s.element)];
+      volume += part * g.volume;
+      for (int a = 0; a < E::nodes; ++a)
+        for (int i = 0; i < 3; ++i)
+          gradient_[place_of(mesh.element_node(s.element, a))][i] += part * g.volume * g.gradient.coeff(a, i);
+    }
+    for (std::size_t a = node_start_.back(); a < node_.size(); ++a) {
+      gradient_[a] /= volume;
+      place_of(node_[a]) = unused;
+    }
+    volume_.push_back(volume);
+    region_.push_back(shares.front().region);
+    part_.push_back(of_node ? StrainPart::volumetric : StrainPart::deviatoric);
+    node_start_.push_back(node_.size());
+    element_start_.push_back(element_.size());
+  }
+
+  /// Appends elements and nodes of a domain, and notes where every node is.
+  void number_nodes(const Mesh<E>& mesh, std::span<const Share> shares) {
+    for (const Share& s : shares) {
+      element_.push_back(s.element);
+      for (const NodeId j : mesh.elements[static_cast<std::size_t>(s.element)]) {
+        if (place_of(j) != unused) continue;
+        place_of(j) = 0;
+        node_.push_back(j);
+      }
+    }
+    std::sort(node_.begin() + static_cast<std::ptrdiff_t>(node_start_.back()), node_.end());
+    for (std::size_t a = node_start_.back(); a < node_.size(); ++a) place_of(node_[a]) = a;
+  }
+  std::size_t& place_of(NodeId node) noexcept { return place_[static_cast<std::size_t>(node)]; }
+
+  static constexpr auto unused = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> node_start_{0}, element_start_{0};
+  std::vector<NodeId> node_, element_;
+  std::vector<Vector3> gradient_;
+  std::vector<double> volume_;
+  std::vector<int> region_;
+  std::vector<StrainPart> part_;
+  std::vector<PointGeometry<E>> geometry_;  // while they are made
+  std::vector<std::size_t> place_;          // of a node in node_
+  std::vector<Share> shares_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/detail/strain_domains.ipp>
+#endif

@@ -1,0 +1,216 @@
+// Tetrahedra in groups of lanes, laid out for a force that is computed every tick.
+#pragma once
+
+#include <palpate/assembly/detail/constant_geometry.hpp>
+#include <palpate/assembly/detail/element_blocks.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/detail/lane_rows.hpp>
+#include <palpate/core/detail/lanes.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/local/geometry.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// N tetrahedra of one region. Lanes without an element have zero gradients and volume, so F = I there.
+template <class S, int N>
+struct TetrahedronBatch {
+  Triple<Lanes<S, N>> gradient[3];  ///< of nodes 1, 2, 3 [1/m]; that of node 0 is minus their sum
+  Lanes<S, N> volume;               ///< at rest [m^3]
+  std::uint16_t row[4][N];          ///< 4 times the place of every node among those of the block
+
+  /// u_a - u_0 for a = 1, 2, 3, from rows of four numbers.
+  PALPATE_ALWAYS_INLINE void differences(const S* u, Triple<Lanes<S, N>> (&d)[3]) const noexcept {
+    const Triple<Lanes<S, N>> u0 = load_rows<S, N>(u, row[0]);
+    for (int a = 0; a < 3; ++a) {
+      const Triple<Lanes<S, N>> ua = load_rows<S, N>(u, row[a + 1]);
+      d[a] = {ua.x - u0.x, ua.y - u0.y, ua.z - u0.z};
+    }
+  }
+  /// Adds forces on nodes 1, 2, 3, and minus their sum on node 0, to rows of four numbers.
+  PALPATE_ALWAYS_INLINE void add_balanced(const Triple<Lanes<S, N>>& f1, const Triple<Lanes<S, N>>& f2,
+                                          const Triple<Lanes<S, N>>& f3, S* force) const noexcept {
+    add_rows(force, row[1], f1);
+    add_rows(force, row[2], f2);
+    add_rows(force, row[3], f3);
+    add_rows(force, row[0], Triple<Lanes<S, N>>{-(f1.x + f2.x + f3.x), -(f1.y + f2.y + f3.y), -(f1.z + f2.z + f3.z)});
+  }
+
+  /// F = I + sum over a = 1, 2, 3 of (u_a - u_0) grad N_a.
+  PALPATE_ALWAYS_INLINE Tensor3<Lanes<S, N>> deformation_gradient(const S* u) const noexcept {
+    Triple<Lanes<S, N>> d[3];
+    differences(u, d);
+    return plus_identity(outer(d[0], gradient[0]) + outer(d[1], gradient[1]) + outer(d[2], gradient[2]),
+                         Lanes<S, N>(S(1)));
+  }
+  /// f_a += V P grad N_a.
+  PALPATE_ALWAYS_INLINE void add_force(const Tensor3<Lanes<S, N>>& stress, S* force) const noexcept {
+    const Tensor3<Lanes<S, N>> p = volume * stress;
+    add_balanced(p * gradient[0], p * gradient[1], p * gradient[2], force);
+  }
+};
+
+/// A part of the mesh whose nodal values fit the first level of the cache.
+struct TetrahedronBlock {
+  Index first_batch = 0, batch_count = 0;
+  Index first_row = 0, row_count = 0;  ///< its nodes, in TetrahedronBatches::nodes
+  int region = 0;
+};
+
+/// All batches of a mesh, and where its nodes are in the blocks. 88 bytes per element in double, 48 in float; about two
+/// rows per node.
+template <class S, int N>
+struct TetrahedronBatches {
+  static constexpr Index elements_per_block = 512;
+  static constexpr Index most_rows = 4 * elements_per_block;
+
+  std::vector<TetrahedronBatch<S, N>> batches;
+  std::vector<std::array<NodeId, static_cast<std::size_t>(N)>> elements;  ///< of every batch; -1 in an empty lane
+  std::vector<TetrahedronBlock> blocks;
+  std::vector<NodeId> nodes;         ///< of every row
+  std::vector<Index> first_copy;     ///< rows of node i: copies first_copy[i] to first_copy[i + 1]
+  std::vector<std::int32_t> copies;  ///< rows by node, ascending
+
+  TetrahedronBatches() = default;
+  /// Throws inverted_element or non_finite, with the element.
+  explicit TetrahedronBatches(const Mesh<Tet4>& mesh) {
+    for (const ElementBlock& block : element_blocks(mesh, elements_per_block, N)) add_block(mesh, block);
+    first_copy.assign(static_cast<std::size_t>(mesh.node_count()) + 1, 0);
+    for (NodeId node : nodes) ++first_copy[static_cast<std::size_t>(node) + 1];
+    std::partial_sum(first_copy.begin(), first_copy.end(), first_copy.begin());
+    std::vector<Index> next(first_copy.begin(), first_copy.end() - 1);
+    copies.resize(nodes.size());
+    for (std::size_t r = 0; r < nodes.size(); ++r)
+      copies[static_cast<std::size_t>(next[static_cast<std::size_t>(nodes[r])]++)] = static_cast<std::int32_t>(r);
+  }
+
+  Index node_count() const noexcept { return static_cast<Index>(first_copy.size()) - 1; }
+
+  /// Elements for which gone(element) leave: their lanes become lanes without an element. visit(batch, lane) for every
+  /// one that was there. O(elements), no allocation.
+  template <class Gone, class Visit>
+  void remove_if(Gone&& gone, Visit&& visit) {
+    for (std::size_t b = 0; b < batches.size(); ++b)
+      for (std::size_t lane = 0; lane < static_cast<std::size_t>(N); ++lane) {
+        NodeId& e = elements[b][lane];
+        if (e < 0 || !gone(Index{e})) continue;
+        e = -1;
+        for (Triple<Lanes<S, N>>& g : batches[b].gradient) clear_lane(g, static_cast<int>(lane));
+        batches[b].volume.set(static_cast<int>(lane), S(0));
+        visit(b, static_cast<int>(lane));
+      }
+  }
+  static void clear_lane(Triple<Lanes<S, N>>& v, int lane) noexcept {
+    for (Lanes<S, N>* x : {&v.x, &v.y, &v.z}) x->set(lane, S(0));
+  }
+
+  /// Displacements of a block's nodes less that of the first: single precision then keeps digits of strain, not of
+  /// place.
+  void load_displacements(const TetrahedronBlock& block, const VectorX& u, S* local) const noexcept {
+    const NodeId* const of_row = nodes.data() + block.first_row;
+    const double* const from = u.data();
+    const double* const u0 = from + 3 * Index{of_row[0]};
+    const double origin[3] = {u0[0], u0[1], u0[2]};
+    for (Index r = 0; r < block.row_count; ++r) {
+      const double* const ur = from + 3 * Index{of_row[r]};
+      for (int c = 0; c < 3; ++c) local[4 * r + c] = static_cast<S>(ur[c] - origin[c]);
+      local[4 * r + 3] = S(0);
+    }
+  }
+  /// Calls visit(batch, F) for every batch of a block at a displacement.
+  template <class Visit>
+  PALPATE_ALWAYS_INLINE void for_each_gradient(const TetrahedronBlock& block, const VectorX& u,
+                                               Visit&& visit) const noexcept {
+    alignas(64) S local[4 * most_rows];
+    load_displacements(block, u, local);
+    for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
+      const TetrahedronBatch<S, N>& batch = batches[static_cast<std::size_t>(b)];
+      visit(batch, batch.deformation_gradient(local));
+    }
+  }
+  /// The rows of a block, set to zero.
+  static S* cleared(const TetrahedronBlock& block, std::vector<S>& rows) noexcept {
+    S* const first = rows.data() + 4 * block.first_row;
+    std::fill(first, first + 4 * block.row_count, S(0));
+    return first;
+  }
+  /// f = for every node of a range, the sum of its rows of four numbers.
+  void add_up(const S* rows, Index first_node, Index last_node, VectorX& f) const noexcept {
+    for (Index i = first_node; i < last_node; ++i) {
+      double sum[3] = {0.0, 0.0, 0.0};
+      for (Index k = first_copy[static_cast<std::size_t>(i)]; k < first_copy[static_cast<std::size_t>(i) + 1]; ++k) {
+        const S* row = rows + 4 * Index{copies[static_cast<std::size_t>(k)]};
+        for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(row[c]);
+      }
+      for (int c = 0; c < 3; ++c) f[3 * i + c] = sum[c];
+    }
+  }
+
+ private:
+  void add_block(const Mesh<Tet4>& mesh, const ElementBlock& block) {
+    const auto count = static_cast<Index>(block.elements.size()), groups = (count + N - 1) / N;
+    const std::vector<NodeId> local = nodes_of(mesh, block);
+    blocks.push_back({static_cast<Index>(batches.size()), groups, static_cast<Index>(nodes.size()),
+                      static_cast<Index>(local.size()), block.region});
+    nodes.insert(nodes.end(), local.begin(), local.end());
+    for (Index b = 0; b < groups; ++b) {
+      TetrahedronBatch<S, N>& batch = batches.emplace_back(TetrahedronBatch<S, N>{});
+      elements.emplace_back().fill(-1);
+      // lanes far from each other in the block: few add to the same node one after the other
+      for (Index lane = 0; lane < N; ++lane)
+        if (const Index at = lane * groups + b; at < count) {
+          const NodeId e = block.elements[static_cast<std::size_t>(at)];
+          elements.back()[static_cast<std::size_t>(lane)] = e;
+          set_lane(batch, static_cast<int>(lane), mesh, e, local);
+        }
+    }
+  }
+  static std::vector<NodeId> nodes_of(const Mesh<Tet4>& mesh, const ElementBlock& block) {
+    std::vector<NodeId> local;
+    for (NodeId e : block.elements)
+      for (int a = 0; a < 4; ++a) local.push_back(mesh.element_node(e, a));
+    std::ranges::sort(local);
+    local.erase(std::unique(local.begin(), local.end()), local.end());
+    return local;
+  }
+  static void set_lane(TetrahedronBatch<S, N>& batch, int lane, const Mesh<Tet4>& mesh, Index e,
+                       const std::vector<NodeId>& local) {
+    const PointGeometry<Tet4> g = constant_geometry<Tet4>(mesh, e);
+    for (int a = 0; a < 3; ++a) {
+      batch.gradient[a].x.set(lane, static_cast<S>(g.gradient(a + 1, 0)));
+      batch.gradient[a].y.set(lane, static_cast<S>(g.gradient(a + 1, 1)));
+      batch.gradient[a].z.set(lane, static_cast<S>(g.gradient(a + 1, 2)));
+    }
+    batch.volume.set(lane, static_cast<S>(g.volume));
+    for (int a = 0; a < 4; ++a)
+      batch.row[a][lane] =
+          static_cast<std::uint16_t>(4 * (std::ranges::lower_bound(local, mesh.element_node(e, a)) - local.begin()));
+  }
+};
+
+/// The batches of a body, after its laws were asked whether they hold. Throws inverted_element, non_finite, unsupported
+/// for a law with fibres on a mesh that has some, too_large, or what the law of a region says in its check().
+template <class S, int N, HyperelasticMaterial M>
+TetrahedronBatches<S, N> make_batches(const HyperelasticBody<Tet4, M>& body, double bytes_per_element,
+                                      const SetupLimits& limits) {
+  for (const M& law : body.laws)
+    if (auto problem = law.check()) raise(std::move(*problem));
+  require_no_fibres(body);
+  limits.require_memory(static_cast<double>(body.rest.mesh.element_count()) * bytes_per_element,
+                        "the batches of elements");
+  return TetrahedronBatches<S, N>(body.rest.mesh);
+}
+
+}}  // namespace palpate

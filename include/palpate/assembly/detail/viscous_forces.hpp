@@ -1,0 +1,150 @@
+// Small strain with memory.
+#pragma once
+
+#include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/detail/elastic_forces.hpp>
+#include <palpate/assembly/detail/smoothed_stiffness.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/concepts/material.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/material/viscoelastic.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// A body at small strain with the Prony series of its regions.
+template <Element E>
+struct ViscousBody {
+  Body<E> fast;                               ///< as it answers right after a sudden strain
+  std::vector<std::vector<PronyTerm>> terms;  ///< by region
+  std::vector<Relaxation> relaxation;         ///< by region
+};
+
+namespace detail {
+
+/// Elasticity of every law of a body [Pa] where region r counts `share(r)` of what fades and `kept` of what does not.
+/// Throws unsupported where only the shape relaxes and the pressure depends on the shape (an anisotropic law): what is
+/// left then is no elasticity.
+template <Element E, class Share>
+std::vector<Matrix6> shares_of_elasticity(const ViscousBody<E>& body, double kept, Share share) {
+  const Body<E>& fast = body.fast;
+  std::vector<std::size_t> region(fast.elasticity.size());
+  for (Index e = 0; e < fast.mesh.element_count(); ++e) region[fast.law_of(e)] = fast.region_of(e);
+  std::vector<Matrix6> shares;
+  for (std::size_t law = 0; law < region.size(); ++law) {
+    const Matrix6& d = fast.elasticity[law];
+    Matrix6 lasting = Matrix6::Zero();
+    if (body.relaxation[region[law]] == Relaxation::shape_only) {
+      Vector6 pressure;  // per strain
+      for (int i = 0; i < 6; ++i) pressure[i] = (d(0, i) + d(1, i) + d(2, i)) / 3.0;
+      const double bulk = (pressure[0] + pressure[1] + pressure[2]) / 3.0;
+      for (int i = 0; i < 3; ++i) {
+        pressure[i] -= bulk;
+        for (int j = 0; j < 3; ++j) lasting(i, j) = bulk;
+      }
+      if (!(pressure.norm() <= 1e-9 * bulk))
+        raise(SetupErrorKind::unsupported, "relaxation of the shape alone in an anisotropic material",
+              "Let the whole stress relax");
+    }
+    shares.push_back(share(region[law]) * (d - lasting) + kept * lasting);
+  }
+  return shares;
+}
+
+/// Every relaxation time once.
+std::vector<double> distinct_times(const std::vector<std::vector<PronyTerm>>& by_region);
+
+}  // namespace detail
+
+/// An admitted mesh with viscoelastic materials by name; throws as materials_by_region.
+template <Element E, LinearMaterial Base, int Terms>
+ViscousBody<E> make_body(Mesh<E> mesh, const RegionMaterials<Viscoelastic<Base, Terms>>& materials) {
+  ViscousBody<E> body;
+  std::vector<Base> bases;
+  for (const auto& law : materials_by_region(mesh, materials)) {
+    bases.push_back(law.base);
+    bases.back().density = law.density;
+    body.terms.emplace_back(law.terms.begin(), law.terms.end());
+    body.relaxation.push_back(law.relaxation);
+  }
+  body.fast = make_body(std::move(mesh), bases);
+  return body;
+}
+/// The same with one material everywhere.
+template <Element E, LinearMaterial Base, int Terms>
+ViscousBody<E> make_body(Mesh<E> mesh, const Viscoelastic<Base, Terms>& material) {
+  return make_body(std::move(mesh), RegionMaterials<Viscoelastic<Base, Terms>>{{everywhere, material}});
+}
+
+/// f = K_0 u + sum_i K_i w_i, where K_i is the stiffness of what fades with tau_i and w_i' + w_i / tau_i = u': stress
+/// is linear in strain and strain in u, so that a displacement per relaxation time remembers all that the points of all
+/// elements would. Over a step f = K u + past, with K constant while dt is: a step costs what one without memory does
+/// and a product per relaxation time. One BlockMatrix each.
+class ViscousForces final : public ElasticForces {
+ public:
+  static constexpr bool remembers = true;
+
+  /// Throws as assemble_stiffness, and unsupported for relaxation of the shape alone in an anisotropic material.
+  template <Element E>
+  explicit ViscousForces(ViscousBody<E> body, const SetupLimits& limits = {})
+      : times_(detail::distinct_times(body.terms)) {
+    const auto assemble = [&](const ViscousBody<E>& of, double kept, auto share) {
+      Body<E> part = of.fast;
+      part.elasticity = detail::shares_of_elasticity(of, kept, share);
+      return assemble_stiffness<E>(part, limits);
+    };
+    const auto share_of = [&](std::size_t region, double time) {
+      double share = 0.0;
+      for (const PronyTerm& t : body.terms[region]) share += t.relaxation_time == time ? t.share : 0.0;
+      return share;
+    };
+    slow_ = assemble(body, 1.0, [&](std::size_t r) {
+      double left = 1.0;
+      for (const PronyTerm& t : body.terms[r]) left -= t.share;
+      return left;
+    });
+    for (const double time : times_)
+      fading_.push_back(assemble(body, 0.0, [&](std::size_t r) { return share_of(r, time); }));
+    step_ = slow_;
+    last_ = past_ = trial_ = product_ = VectorX::Zero(slow_.size());
+    memory_.assign(times_.size(), last_);
+    decay_.resize(times_.size());
+    gain_.resize(times_.size());
+    ViscousForces::begin_step(0.0);
+  }
+
+  Index size() const noexcept override { return step_.size(); }
+  double energy(const VectorX& u) const noexcept override;
+  DeformationReport force(const VectorX& u, VectorX& f) const noexcept override;
+  void tangent(const VectorX&, BlockMatrix& k) const noexcept override { k.copy_values(step_); }
+  bool is_linear() const noexcept override { return true; }
+
+  void begin_step(double dt) noexcept override;
+  void end_step(const VectorX& u) noexcept override;
+
+ private:
+  void set_length(double dt) noexcept;
+
+  std::vector<double> times_, decay_, gain_;
+  BlockMatrix slow_, step_;
+  std::vector<BlockMatrix> fading_;
+  std::vector<VectorX> memory_;
+  VectorX last_, past_, trial_;
+  mutable VectorX product_;
+  double dt_ = -1.0;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/detail/viscous_forces.ipp>
+#endif

@@ -1,0 +1,34 @@
+// Definitions of blade_sweep.hpp.
+#pragma once
+
+#include <palpate/contact/detail/blade_sweep.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE double BladeSweep::area() const noexcept {
+  return 0.5 * (cross(b0 - a0, b1 - a0).norm() + cross(b1 - a0, a1 - a0).norm());
+}
+
+PALPATE_INLINE Box BladeSweep::box() const noexcept {
+  Box box;
+  for (const Vector3& x : {a0, b0, a1, b1}) box.include(x);
+  return box;
+}
+
+PALPATE_INLINE bool BladeSweep::crosses(const Vector3& p, const Vector3& q) const noexcept {
+  return crosses_triangle(p, q, a0, b0, b1) || crosses_triangle(p, q, a0, b1, a1);
+}
+
+PALPATE_INLINE double BladeSweep::volume(const Vector3& a, const Vector3& b, const Vector3& c,
+                                         const Vector3& d) noexcept {
+  return cross(b - a, c - a).dot(d - a);
+}
+
+PALPATE_INLINE bool BladeSweep::crosses_triangle(const Vector3& p, const Vector3& q, const Vector3& x, const Vector3& y,
+                                                 const Vector3& z) noexcept {
+  if ((volume(x, y, z, p) >= 0.0) == (volume(x, y, z, q) >= 0.0)) return false;
+  const double u = volume(p, q, x, y), v = volume(p, q, y, z), w = volume(p, q, z, x);
+  return (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
+}
+
+}}  // namespace palpate

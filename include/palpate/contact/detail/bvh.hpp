@@ -1,0 +1,117 @@
+// A bounding volume hierarchy of axis-aligned boxes over triangles.
+#pragma once
+
+#include <palpate/contact/detail/triangle.hpp>
+#include <palpate/core/detail/box.hpp>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Boxes over triangles, split at the median of the longest axis; leaves hold up to four triangles. Queries are O(log n
+/// + hits), do not allocate and visit triangles in a fixed order.
+class Bvh {
+ public:
+  Bvh() = default;
+
+  /// Builds over triangles of `positions`. O(n log n), allocates.
+  Bvh(std::span<const Triangle> triangles, std::span<const Vector3> positions);
+
+  /// Recomputes all boxes for moved positions. O(n), no allocation.
+  void refit(std::span<const Triangle> triangles, std::span<const Vector3> positions) noexcept;
+
+  /// Calls visit(triangle) for every triangle of a leaf whose box comes within `radius` of `centre`.
+  template <class Visit>
+  void visit_near(const Vector3& centre, double radius, Visit&& visit) const noexcept {
+    const double limit = radius * radius;
+    descend([&](const Box& box) { return box.squared_distance(centre) <= limit; }, visit);
+  }
+
+  /// Calls visit(triangle) for the triangles of leaves that the way from a point crosses within `margin`. It returns
+  /// the share of the way beyond which nothing matters any more.
+  template <class Visit>
+  void visit_along(const Vector3& from, const Vector3& way, double margin, Visit&& visit) const noexcept {
+    double until = 1.0;
+    descend([&](const Box& box) { return box.is_crossed(from, way, margin, until); },
+            [&](int triangle) { until = visit(triangle); });
+  }
+
+  /// Finds the triangle for which squared_distance(triangle) is smallest; ties go to the lowest number. -1 when empty.
+  template <class SquaredDistance>
+  int nearest(const Vector3& point, SquaredDistance&& squared_distance) const noexcept {
+    double best = infinity;
+    int winner = -1;
+    std::array<int, max_depth> stack;
+    int top = 0;
+    if (!nodes_.empty()) stack[static_cast<std::size_t>(top++)] = 0;
+    while (top > 0) {
+      const int i = stack[static_cast<std::size_t>(--top)];
+      const Node& node = nodes_[static_cast<std::size_t>(i)];
+      if (!(node.box.squared_distance(point) <= best)) continue;
+      if (node.count > 0) {
+        for (int k = node.first; k < node.first + node.count; ++k) {
+          const int t = order_[static_cast<std::size_t>(k)];
+          const double d = squared_distance(t);
+          if (d < best || (d == best && t < winner)) {
+            best = d;
+            winner = t;
+          }
+        }
+      } else {
+        const bool left_first = nodes_[static_cast<std::size_t>(i) + 1].box.squared_distance(point) <=
+                                nodes_[static_cast<std::size_t>(node.first)].box.squared_distance(point);
+        stack[static_cast<std::size_t>(top++)] = left_first ? node.first : i + 1;
+        stack[static_cast<std::size_t>(top++)] = left_first ? i + 1 : node.first;
+      }
+    }
+    return winner;
+  }
+
+  const Box& bounds() const noexcept { return nodes_.front().box; }
+
+ private:
+  // Median splits halve the count, so depth is at most log2(2^31); two entries per level may wait on the stack.
+  static constexpr int max_depth = 64;
+  struct Node {
+    Box box;
+    int first = 0;  // leaf: first of order_; inner: right child (the left one follows directly)
+    int count = 0;  // 0 for inner nodes
+  };
+
+  /// Calls visit(triangle) for those of leaves under boxes with reaches(box), left before right.
+  template <class Reaches, class Visit>
+  void descend(Reaches&& reaches, Visit&& visit) const noexcept {
+    std::array<int, max_depth> stack;
+    int top = 0;
+    if (!nodes_.empty()) stack[static_cast<std::size_t>(top++)] = 0;
+    while (top > 0) {
+      const int i = stack[static_cast<std::size_t>(--top)];
+      const Node& node = nodes_[static_cast<std::size_t>(i)];
+      if (!reaches(node.box)) continue;
+      if (node.count > 0) {
+        for (int k = node.first; k < node.first + node.count; ++k) visit(order_[static_cast<std::size_t>(k)]);
+      } else {
+        stack[static_cast<std::size_t>(top++)] = node.first;
+        stack[static_cast<std::size_t>(top++)] = i + 1;
+      }
+    }
+  }
+
+  static const Vector3& at(std::span<const Vector3> positions, int i) noexcept {
+    return positions[static_cast<std::size_t>(i)];
+  }
+
+  void build(int begin, int end, const std::vector<Vector3>& centre);
+
+  std::vector<int> order_;
+  std::vector<Node> nodes_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/detail/bvh.ipp>
+#endif

@@ -1,0 +1,75 @@
+// Unilateral contact as a linear complementarity problem.
+#pragma once
+
+#include <palpate/core/config.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Solves lambda >= 0, g = b + W lambda >= 0, lambda . g = 0 for a symmetric positive (semi)definite W of at most
+/// `capacity` rows, exactly. First by block principal pivoting (Kostreva 1978; Judice and Pires 1994): whole sets of
+/// rows change side while that helps, which from a good start is one or two solves. Where it does not, by a primal
+/// active set (Lawson and Hanson 1974, ch. 23), one row at a time: lambda stays >= 0 and the energy falls in every
+/// step, so that it ends, and wherever it is cut off the forces are ones that a smaller push would have made. The
+/// factor is updated when a row joins (O(m^2)) and recomputed from the row that leaves. No allocation after
+/// construction; work bounded by `maximum_pivots`.
+class ComplementarityProblem {
+ public:
+  /// More points than dofs make W singular. With this much more on the diagonal (relative) the problem is strictly
+  /// convex: its answer is unique and gaps are off by a millionth of the indentation.
+  static constexpr double relaxation = 1e-6;
+
+  std::vector<double> b;       ///< gap without contact force [m], of the first `rows()`
+  std::vector<double> lambda;  ///< contact force [N], the answer; start: any sign pattern, positive rows start active
+  int pivots = 0;              ///< how many sets were tried
+  std::vector<int> bilateral;  ///< rows that hold both ways: g = 0, and lambda has any sign
+
+  /// Allocates for that many rows, at least one; for set-up.
+  explicit ComplementarityProblem(int capacity);
+
+  int maximum_pivots() const noexcept { return 4 * capacity_; }
+  int rows() const noexcept { return rows_; }
+  /// Keeps the values of rows that stay.
+  void resize(int rows) noexcept { rows_ = rows; }
+  /// Compliance [m/N].
+  double& w(int i, int j) noexcept { return w_[place(i, j)]; }
+  double w(int i, int j) const noexcept { return w_[place(i, j)]; }
+
+  /// False when the pivot limit was reached; lambda is then >= 0 and of less energy than no force, but some gaps are
+  /// still negative. False with no force when W or b is not finite.
+  bool solve() noexcept;
+
+ private:
+  std::size_t place(int i, int j) const noexcept {
+    return static_cast<std::size_t>(i) + static_cast<std::size_t>(capacity_) * static_cast<std::size_t>(j);
+  }
+  static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+
+  bool is_finite() const noexcept;
+  bool pivot_blocks() noexcept;
+  bool descend() noexcept;
+  bool step() noexcept;
+  inline void add(int row) noexcept;
+  inline void remove(int p) noexcept;
+  void update_gaps() noexcept;
+  void solve_active() noexcept;
+  void factor_all() noexcept;
+  void factor_row(int p) noexcept;
+  inline double inverse_root(double pivot, int i) const noexcept;
+
+  int capacity_, rows_ = 0;
+  std::vector<double> w_, factor_;  // by columns, `capacity_` apart
+  std::vector<double> answer_, gap_, row_;
+  std::vector<int> active_, flip_;
+  std::vector<int> order_;  // active rows in the order they joined
+  int order_count_ = 0, factored_ = 0;
+  double tolerance_ = 0.0;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/detail/complementarity.ipp>
+#endif

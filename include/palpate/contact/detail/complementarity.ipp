@@ -1,0 +1,209 @@
+// Definitions of complementarity.hpp.
+#pragma once
+
+#include <palpate/contact/detail/complementarity.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE ComplementarityProblem::ComplementarityProblem(int capacity)
+    : b(at(capacity)),
+      lambda(at(capacity)),
+      bilateral(at(capacity)),
+      capacity_(capacity),
+      w_(at(capacity) * at(capacity)),
+      factor_(w_.size()),
+      answer_(at(capacity)),
+      gap_(at(capacity)),
+      row_(at(capacity)),
+      active_(at(capacity)),
+      flip_(at(capacity)),
+      order_(at(capacity)) {}
+
+PALPATE_INLINE bool ComplementarityProblem::solve() noexcept {
+  bool sound = true;
+  double largest = 0.0;
+  for (int i = 0; i < rows_; ++i) {
+    sound = sound && std::isfinite(b[at(i)]);
+    largest = std::max(largest, std::abs(b[at(i)]));
+  }
+  tolerance_ = 1e-12 * largest;
+  pivots = 0;
+  const bool solved = sound && (pivot_blocks() || descend());
+  const bool finite = is_finite();
+  if (solved && finite) return true;
+  if (!sound || !finite) std::fill_n(lambda.begin(), rows_, 0.0);
+  return false;
+}
+
+PALPATE_INLINE bool ComplementarityProblem::is_finite() const noexcept {
+  return std::all_of(lambda.begin(), lambda.begin() + rows_, [](double x) { return std::isfinite(x); });
+}
+
+inline void ComplementarityProblem::add(int row) noexcept {
+  active_[at(row)] = 1;
+  order_[at(order_count_++)] = row;
+}
+inline void ComplementarityProblem::remove(int p) noexcept {
+  std::copy(order_.begin() + p + 1, order_.begin() + order_count_, order_.begin() + p);
+  --order_count_;
+  factored_ = std::min(factored_, p);
+}
+/// 0 for a pivot of row i that is lost to rounding.
+inline double ComplementarityProblem::inverse_root(double pivot, int i) const noexcept {
+  return pivot > 1e-13 * w(i, i) ? 1.0 / std::sqrt(pivot) : 0.0;
+}
+
+/// Block principal pivoting while the number of wrong rows falls.
+PALPATE_INLINE bool ComplementarityProblem::pivot_blocks() noexcept {
+  order_count_ = factored_ = 0;
+  for (int i = 0; i < rows_; ++i) {
+    active_[at(i)] = bilateral[at(i)] || lambda[at(i)] > 0.0;
+    if (active_[at(i)]) order_[at(order_count_++)] = i;
+  }
+  int best = rows_ + 1, patience = 3;
+  while (patience > 0) {
+    ++pivots;
+    solve_active();
+    for (int i = 0; i < rows_; ++i) lambda[at(i)] = 0.0;
+    for (int p = 0; p < order_count_; ++p) lambda[at(order_[at(p)])] = answer_[at(p)];
+    update_gaps();
+    int wrong = 0;
+    for (int i = 0; i < rows_; ++i) {
+      const bool is_wrong = active_[at(i)] ? lambda[at(i)] < 0.0 : gap_[at(i)] < -tolerance_;
+      wrong += flip_[at(i)] = !bilateral[at(i)] && is_wrong;
+    }
+    if (wrong == 0) return true;
+    patience = wrong < best ? 3 : patience - 1;
+    best = std::min(best, wrong);
+    for (int p = order_count_ - 1; p >= 0; --p)
+      if (flip_[at(order_[at(p)])]) remove(p);
+    for (int i = 0; i < rows_; ++i)
+      if (flip_[at(i)] && !active_[at(i)])
+        add(i);
+      else if (flip_[at(i)])
+        active_[at(i)] = 0;
+  }
+  return false;
+}
+
+/// Minimises 1/2 lambda . W lambda + b . lambda over lambda >= 0 from lambda = 0.
+PALPATE_INLINE bool ComplementarityProblem::descend() noexcept {
+  order_count_ = factored_ = 0;
+  std::fill_n(active_.begin(), rows_, 0);
+  std::fill_n(lambda.begin(), rows_, 0.0);
+  for (int i = 0; i < rows_; ++i)
+    if (bilateral[at(i)]) add(i);
+  step();
+  update_gaps();
+  while (true) {
+    int deepest = -1;
+    for (int i = 0; i < rows_; ++i)
+      if (!active_[at(i)] && gap_[at(i)] < -tolerance_ && (deepest < 0 || gap_[at(i)] < gap_[at(deepest)])) deepest = i;
+    if (deepest < 0) return true;
+    add(deepest);
+    for (bool whole = false; !whole; ++pivots) {
+      if (pivots >= maximum_pivots()) return false;
+      whole = step();
+    }
+    update_gaps();
+  }
+}
+
+/// Goes from lambda towards the answer of the active rows; true if all of the way, else to where the first forces
+/// vanish, and those rows leave.
+PALPATE_INLINE bool ComplementarityProblem::step() noexcept {
+  solve_active();
+  double length = 1.0;
+  for (int p = 0; p < order_count_; ++p) {
+    const double from = lambda[at(order_[at(p)])];
+    if (answer_[at(p)] < 0.0 && !bilateral[at(order_[at(p)])])
+      length = std::min(length, from / (from - answer_[at(p)]));
+  }
+  bool whole = true;
+  for (int p = order_count_ - 1; p >= 0; --p) {
+    const int i = order_[at(p)];
+    const double from = lambda[at(i)];
+    const bool leaves = !bilateral[at(i)] && answer_[at(p)] < 0.0 && from <= length * (from - answer_[at(p)]);
+    lambda[at(i)] = leaves ? 0.0 : from + length * (answer_[at(p)] - from);
+    if (!leaves) continue;
+    active_[at(i)] = 0;
+    whole = false;
+    remove(p);
+  }
+  return whole;
+}
+
+PALPATE_INLINE void ComplementarityProblem::update_gaps() noexcept {
+  double* const gap = gap_.data();
+  std::copy_n(b.begin(), rows_, gap);
+  for (int p = 0; p < order_count_; ++p) {
+    const int j = order_[at(p)];
+    const double force = lambda[at(j)];
+    const double* const column = &w_[place(0, j)];
+    for (int i = 0; i < rows_; ++i) gap[i] += force * column[i];
+    gap[j] += relaxation * column[j] * force;
+  }
+}
+
+/// answer_ from W_aa answer = -b_a, in the order of order_. A pivot lost to rounding drops its row (the point is a
+/// copy of another).
+PALPATE_INLINE void ComplementarityProblem::solve_active() noexcept {
+  const int m = order_count_;
+  if (factored_ == 0) factor_all();
+  for (; factored_ < m; ++factored_) factor_row(factored_);
+  double* const x = answer_.data();
+  for (int p = 0; p < m; ++p) x[p] = -b[at(order_[at(p)])];
+  for (int q = 0; q < m; ++q) {
+    const double* const column = &factor_[place(0, q)];
+    const double value = x[q] *= column[q];
+    for (int p = q + 1; p < m; ++p) x[p] -= value * column[p];
+  }
+  for (int p = m - 1; p >= 0; --p) {
+    const double* const column = &factor_[place(0, p)];
+    double sum = x[p];
+    for (int k = p + 1; k < m; ++k) sum -= column[k] * x[k];
+    x[p] = sum * column[p];
+  }
+}
+
+/// The whole Cholesky factor, column by column; the diagonal holds its inverse.
+PALPATE_INLINE void ComplementarityProblem::factor_all() noexcept {
+  const int m = factored_ = order_count_;
+  for (int q = 0; q < m; ++q) {
+    const double* const from = &w_[place(0, order_[at(q)])];
+    double* const column = &factor_[place(0, q)];
+    for (int p = q; p < m; ++p) column[p] = from[order_[at(p)]];
+    column[q] *= 1.0 + relaxation;
+  }
+  for (int q = 0; q < m; ++q) {
+    double* const column = &factor_[place(0, q)];
+    const double scale = column[q] = inverse_root(column[q], order_[at(q)]);
+    for (int p = q + 1; p < m; ++p) column[p] *= scale;
+    for (int k = q + 1; k < m; ++k) {
+      double* const other = &factor_[place(0, k)];
+      const double value = column[k];
+      for (int p = k; p < m; ++p) other[p] -= value * column[p];
+    }
+  }
+}
+
+/// Row p of it from the rows before.
+PALPATE_INLINE void ComplementarityProblem::factor_row(int p) noexcept {
+  const int i = order_[at(p)];
+  double* const row = row_.data();
+  for (int q = 0; q < p; ++q) row[q] = w(order_[at(q)], i);
+  double pivot = (1.0 + relaxation) * w(i, i);
+  for (int q = 0; q < p; ++q) {
+    const double* const column = &factor_[place(0, q)];
+    const double value = row[q] *= column[q];
+    pivot -= value * value;
+    for (int k = q + 1; k < p; ++k) row[k] -= value * column[k];
+  }
+  for (int q = 0; q < p; ++q) factor_[place(p, q)] = row[q];
+  factor_[place(p, p)] = inverse_root(pivot, i);
+}
+
+}}  // namespace palpate

@@ -1,0 +1,296 @@
+// Definitions of contact_rows.hpp.
+#pragma once
+
+#include <palpate/contact/detail/contact_rows.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE ContactRows::ContactRows(int vertices, double friction, int capacity)
+    : capacity_(capacity),
+      problem_(capacity),
+      friction_(friction, capacity),
+      free_gap_(at(capacity)),
+      pressing_before_(at(capacity)),
+      compliance_(capacity),
+      rows_(at(capacity)),
+      candidate_(at(capacity)),
+      response_(at(capacity) * at(capacity)),
+      vertices_(3 * at(capacity)),
+      slot_(at(vertices), -1) {}
+
+inline bool ContactRows::clings(const Candidate& c) const noexcept {
+  return c.clung != 0 && c.clung + 1 == tick_;
+}
+
+/// Where the tool touches a row's point.
+inline void ContactRows::reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept {
+  if (c.grasped) {
+    row.arm = tool.rotation * c.anchor;
+    row.offset = row.normal.dot(tool.target_rotation * c.anchor);
+    return;
+  }
+  row.arm = -tool.radius * row.normal;
+  row.offset = -tool.radius;
+  if (c.along == 0.0) return;
+  row.arm += c.along * tool.axis();
+  row.offset += c.along * row.normal.dot(tool.target_rotation * tool.own_axis);
+}
+
+/// The compliance between two rows' points.
+inline Matrix3 ContactRows::between(const TissueView& tissue, const ContactSamples& samples, int i, int j) noexcept {
+  const int p = candidate_[at(i)]->slot, q = candidate_[at(j)]->slot;
+  return p >= q ? compliance_(tissue, samples, p, q) : Matrix3(compliance_(tissue, samples, q, p).transpose());
+}
+
+/// How far the couplings give way to the drags where a tool touches; the rest of CoulombFriction::moved is tissue.
+inline Vector3 ContactRows::sprung(const ContactTool& tool, const Contact& row) noexcept {
+  return tool.drag_way + cross(tool.drag_turn, row.arm);
+}
+
+/// Displacement of two points per force on the other along its row's normal, m and n; their compliance is c, 3 x 3.
+/// Returns the part of it along the own normal. Written out so that it stays in registers: half of the work of a tick
+/// with many contacts is here.
+inline double ContactRows::set_responses(const double* c, const double* m, const double* n, double* of_n,
+                                         double* of_m) noexcept {
+  const double x = c[0] * n[0] + c[3] * n[1] + c[6] * n[2];
+  const double y = c[1] * n[0] + c[4] * n[1] + c[7] * n[2];
+  const double z = c[2] * n[0] + c[5] * n[1] + c[8] * n[2];
+  of_n[0] = x, of_n[1] = y, of_n[2] = z;
+  of_m[0] = c[0] * m[0] + c[1] * m[1] + c[2] * m[2];
+  of_m[1] = c[3] * m[0] + c[4] * m[1] + c[5] * m[2];
+  of_m[2] = c[6] * m[0] + c[7] * m[1] + c[8] * m[2];
+  return m[0] * x + m[1] * y + m[2] * z;
+}
+
+/// Row i of W and the responses that belong to it.
+inline void ContactRows::build_row(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool,
+                                   int i) noexcept {
+  const Contact& ci = rows_[at(i)];
+  const int p = candidate_[at(i)]->slot;
+  const bool turns = tool.turning_compliance > 0.0;
+  const double* const m = ci.normal.data();
+  double *column = &problem_.w(0, i), *row = &problem_.w(i, 0);
+  Vector3 *on_j = &response(i, 0), *on_i = &response(0, i);
+  for (int j = 0; j <= i; ++j, ++on_j, on_i += capacity_, row += capacity_) {
+    const Contact& cj = rows_[at(j)];
+    const int q = candidate_[at(j)]->slot;
+    const double* const n = cj.normal.data();
+    double w = p >= q ? set_responses(compliance_(tissue, samples, p, q).data(), m, n, on_j->data(), on_i->data())
+                      : set_responses(compliance_(tissue, samples, q, p).data(), n, m, on_i->data(), on_j->data());
+    if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
+    if (turns && ci.tool == cj.tool)
+      w += tool.turning_compliance * cross(ci.arm, ci.normal).dot(cross(cj.arm, cj.normal));
+    column[j] = *row = w;
+  }
+}
+
+PALPATE_INLINE void ContactRows::begin_tick(std::uint64_t compliance_revision) noexcept {
+  compliance_.begin_tick(compliance_revision);
+  ++tick_;
+}
+
+PALPATE_INLINE void ContactRows::clear() noexcept {
+  count_ = 0;
+  compliance_.begin_rows();
+}
+
+PALPATE_INLINE void ContactRows::reset() noexcept {
+  clear();
+  compliance_.reset();
+  tick_ = 0;
+}
+
+PALPATE_INLINE void ContactRows::move_to(ContactRows& fresh) noexcept {
+  clear();
+  compliance_.forget();
+  slot_.swap(fresh.slot_);
+}
+
+PALPATE_INLINE void ContactRows::add(const ContactSurface& surface, const Candidates& candidates,
+                                     Candidate& c) noexcept {
+  c.row = count_;
+  c.slot = compliance_.slot_of(c.sample, c.slot);
+  const ContactSample& sample = candidates.samples()[c.sample];
+  candidate_[at(count_)] = &c;
+  Contact& row = rows_[at(count_++)];
+  row.tool = c.tool;
+  row.vertices = sample.vertices;
+  row.weights = sample.weights;
+  row.normal = c.normal;
+  row.rest = candidates.rest(surface, c.sample);
+  row.point = c.point;
+  row.force = c.force;
+  row.grasped = c.grasped;
+}
+
+PALPATE_INLINE bool ContactRows::drop_idle() noexcept {
+  const auto works = [this](int i) { return rows_[at(i)].force > 0.0 || candidate_[at(i)]->grasped; };
+  int kept = 0;
+  while (kept < count_ && works(kept)) ++kept;
+  if (kept == count_) return false;
+  kept = 0;
+  compliance_.begin_rows();
+  for (int i = 0; i < count_; ++i) {
+    Candidate& c = *candidate_[at(i)];
+    c.row = works(i) ? kept : -1;
+    if (c.row < 0) continue;
+    c.slot = compliance_.slot_of(c.sample, c.slot);
+    candidate_[at(kept)] = &c;
+    rows_[at(kept++)] = rows_[at(i)];
+  }
+  count_ = kept;
+  return true;
+}
+
+PALPATE_INLINE Status ContactRows::require_columns(const TissueView& tissue) noexcept {
+  int count = 0;
+  for (const Contact& row : contacts())
+    for (std::size_t a = 0; a < 3; ++a) {
+      int& slot = slot_[at(row.vertices[a])];
+      if (row.weights[a] == 0.0 || slot >= 0) continue;
+      slot = count;
+      vertices_[at(count++)] = row.vertices[a];
+    }
+  for (int i = 0; i < count; ++i) slot_[at(vertices_[at(i)])] = -1;
+  return tissue.require_columns({vertices_.data(), at(count)});
+}
+
+PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const ContactSamples& samples,
+                                       std::span<const ContactTool> tools, double floor, int first) noexcept {
+  floor_ = floor;
+  problem_.resize(count_);
+  for (int i = first; i < count_; ++i) {
+    problem_.lambda[at(i)] = 1.0;  // it presses, or would sink in
+    Contact& ci = rows_[at(i)];
+    const ContactTool& tool = tools[at(ci.tool)];
+    problem_.bilateral[at(i)] = ci.grasped;
+    reach(tool, *candidate_[at(i)], ci);
+    problem_.b[at(i)] = free_gap_[at(i)] = ci.normal.dot(tool.target - ci.rest) + ci.offset;
+    build_row(tissue, samples, tool, i);
+    if (friction_.acts()) build_friction(tissue, samples, tool, i);
+  }
+  if (!friction_.acts()) return;
+  for (int i = 0; i < count_; ++i) pressing_before_[at(i)] = candidate_[at(i)]->force;
+  friction_.press(count_, pressing_before_.data());
+}
+
+PALPATE_INLINE bool ContactRows::solve() noexcept {
+  if (!friction_.acts()) return problem_.solve();
+  for (int i = 0; i < count_; ++i) problem_.b[at(i)] = free_gap_[at(i)] + rows_[at(i)].normal.dot(friction_.moved(i));
+  const bool solved = problem_.solve();
+  friction_.press(count_, problem_.lambda.data());
+  return solved;
+}
+
+PALPATE_INLINE bool ContactRows::rub() noexcept {
+  friction_.solve(count_);
+  friction_.press(count_, problem_.lambda.data());
+  return solve();
+}
+
+PALPATE_INLINE double ContactRows::deepest_push() const noexcept {
+  double deepest = 0.0;
+  for (int i = 0; i < count_; ++i) deepest = std::max(deepest, -problem_.b[at(i)]);
+  return deepest;
+}
+
+/// A row's point under all normal forces [m].
+inline Vector3 ContactRows::moved_point(int i) const noexcept {
+  Vector3 point = rows_[at(i)].rest;
+  const Vector3* moved = &response(i, 0);
+  for (int j = 0; j < count_; ++j, ++moved)
+    if (const double force = problem_.lambda[at(j)]; force != 0.0) point.noalias() -= force * *moved;
+  return point;
+}
+
+PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisplacement& displacement,
+                                       Candidates& candidates) noexcept {
+  displacement.clear();
+  for (ContactTool& tool : tools) {
+    tool.force.setZero();
+    tool.torque.setZero();
+  }
+  if (friction_.acts()) note_drags(tools);
+  double largest = 0.0;
+  for (int i = 0; i < count_; ++i) {
+    Contact& row = rows_[at(i)];
+    row.force = problem_.lambda[at(i)];
+    if (friction_.acts()) row.friction = friction_.row(i).drag;
+    Vector3 point = moved_point(i);
+    if (friction_.acts()) point -= friction_.moved(i) - sprung(tools[at(row.tool)], row);
+    largest = std::max(largest, (point - row.point).squaredNorm());
+    row.point = point;
+    if (row.force == 0.0) continue;
+    ContactTool& tool = tools[at(row.tool)];
+    const Vector3 total = friction_.acts() ? row.total() : Vector3(row.force * row.normal);
+    tool.force += total;
+    tool.torque += cross(row.arm, total);
+    for (std::size_t a = 0; a < 3; ++a)
+      if (row.weights[a] > 0.0) displacement.add(row.vertices[a], -row.weights[a] * total, slot_[at(row.vertices[a])]);
+  }
+  for (const VertexForce& f : displacement.forces()) slot_[at(f.vertex)] = -1;
+  candidates.move_surface(2.0 * std::sqrt(largest));
+  for (int i = 0; i < count_; ++i) {
+    Candidate& c = *candidate_[at(i)];
+    c.force = rows_[at(i)].force;
+    c.friction = rows_[at(i)].friction;
+    if (c.grasped) {
+      c.point = rows_[at(i)].point;
+      continue;
+    }
+    candidates.place(c, rows_[at(i)].point, tools[at(c.tool)]);
+    if (c.force == 0.0) c.history.known = 0;
+  }
+}
+
+PALPATE_INLINE void ContactRows::cling(std::span<const ContactTool> tools) noexcept {
+  if (!friction_.acts()) return;
+  for (int i = 0; i < count_; ++i) {
+    Candidate& c = *candidate_[at(i)];
+    if (c.grasped || !(c.force > 0.0)) continue;
+    const bool sticks = clings(c) && c.friction.norm() < (1.0 - 1e-6) * friction_.coefficient() * c.force;
+    const ContactTool& tool = tools[at(c.tool)];
+    if (!sticks) c.anchor = tool.rotation.transpose() * (c.point - tool.proxy);
+    c.clung = tick_;
+  }
+}
+
+/// Row i of what friction needs to know.
+PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const ContactSamples& samples,
+                                                const ContactTool& tool, int i) noexcept {
+  const Candidate& c = *candidate_[at(i)];
+  const Contact& ci = rows_[at(i)];
+  const Vector3 drift = tool.target + tool.target_rotation * c.anchor - ci.rest;
+  const bool holds = !c.grasped && clings(c);
+  friction_.row(i) = {ci.normal, 0.0, drift, holds ? c.friction : Vector3(0.0, 0.0, 0.0), holds};
+  for (int j = 0; j <= i; ++j) {
+    const Contact& cj = rows_[at(j)];
+    Matrix3 w = between(tissue, samples, i, j);
+    if (ci.tool == cj.tool) {
+      const double own = tool.compliance + floor_ + tool.turning_compliance * ci.arm.dot(cj.arm);
+      for (int r = 0; r < 3; ++r) w(r, r) += own;
+    }
+    if (ci.tool == cj.tool && tool.turning_compliance > 0.0)
+      for (int col = 0; col < 3; ++col)
+        for (int r = 0; r < 3; ++r) w(r, col) -= tool.turning_compliance * cj.arm[r] * ci.arm[col];
+    friction_.set(i, j, w);
+  }
+}
+
+PALPATE_INLINE void ContactRows::note_drags(std::span<ContactTool> tools) const noexcept {
+  for (ContactTool& tool : tools) {
+    tool.drag_way.setZero();
+    tool.drag_turn.setZero();
+  }
+  for (int j = 0; j < count_; ++j) {
+    const Contact& row = rows_[at(j)];
+    ContactTool& tool = tools[at(row.tool)];
+    tool.drag_way += (tool.compliance + floor_) * friction_.row(j).drag;
+    tool.drag_turn += tool.turning_compliance * cross(row.arm, friction_.row(j).drag);
+  }
+}
+
+}}  // namespace palpate

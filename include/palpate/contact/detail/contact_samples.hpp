@@ -1,0 +1,57 @@
+// The material points of a surface at which contact is enforced.
+#pragma once
+
+#include <palpate/contact/contact_surface.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// A material point of the contact surface: three vertices and the weights by which it reads their displacement and
+/// spreads its force.
+struct ContactSample {
+  Triangle vertices{};
+  std::array<double, 3> weights{};
+};
+
+/// Points spread over all triangles so that no two neighbours are further apart than `spacing`, as far as
+/// `maximum_subdivision` allows: all vertices, and a barycentric lattice on edges and faces that are longer. Fixed in
+/// the material, so that a ball sliding over them meets a smooth sequence of constraints. Every sample belongs to one
+/// triangle.
+class ContactSamples {
+ public:
+  ContactSamples() = default;
+
+  /// Parts of an edge: they bound the lattice on very coarse triangles, and with it what a tick may have to look at.
+  static constexpr int maximum_subdivision = 32;
+
+  /// Allocates; for set-up.
+  ContactSamples(const ContactSurface& surface, double spacing);
+
+  /// The samples that belong to a triangle.
+  std::span<const ContactSample> of_triangle(int t) const noexcept {
+    const auto i = static_cast<std::size_t>(t);
+    return {samples_.data() + first_[i], static_cast<std::size_t>(first_[i + 1] - first_[i])};
+  }
+  int count() const noexcept { return static_cast<int>(samples_.size()); }
+  const ContactSample& operator[](int sample) const noexcept { return samples_[static_cast<std::size_t>(sample)]; }
+  /// The sample nearest to one of another surface whose vertices have the same numbers here, -1 when its triangles are
+  /// gone. Looks at the triangles around a vertex; no allocation.
+  int nearest(const ContactSurface& surface, const ContactSample& wanted) const noexcept;
+  /// Number of the first sample of a triangle; those of triangle t end where those of t + 1 begin.
+  int first_of(int t) const noexcept { return first_[static_cast<std::size_t>(t)]; }
+
+ private:
+  void add_edge(const ContactSurface& surface, int number, std::size_t i, double spacing);
+
+  std::vector<ContactSample> samples_;
+  std::vector<int> first_;  // per triangle, one past the end last
+};
+
+/// Throws SetupError(bad_argument) when the longest edge is longer than the lattice covers at one radius between points
+/// (ids: its vertices). Says so when the edge is that long only because the scene's loads have stretched it.
+void require_dense_points(const ContactSurface& surface, double radius);
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/detail/contact_samples.ipp>
+#endif

@@ -1,0 +1,128 @@
+// Definitions of contact_samples.hpp.
+#pragma once
+
+#include <palpate/contact/detail/contact_samples.hpp>
+#include <palpate/core/setup_error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+namespace detail {
+
+/// Sum of the differences of weights.
+inline double difference(const ContactSample& a, const ContactSample& b) noexcept {
+  double sum = 2.0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      if (a.vertices[i] == b.vertices[j]) sum -= 2.0 * std::min(a.weights[i], b.weights[j]);
+  return sum;
+}
+
+inline int subdivision(double length, double spacing) {
+  return static_cast<int>(
+      std::clamp(std::ceil(length / spacing), 1.0, static_cast<double>(ContactSamples::maximum_subdivision)));
+}
+
+/// Whether no triangle before t, and no edge of it before the i-th, is this edge.
+inline bool is_new_edge(const ContactSurface& surface, int t, std::size_t i) noexcept {
+  const Triangle& own = surface.triangle(t);
+  const int a = own[i], b = own[(i + 1) % 3];
+  for (const int other : surface.triangles_at(a)) {
+    const Triangle& v = surface.triangle(other);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool is_before = other < t || (other == t && k < i);
+      const int c = v[k], d = v[(k + 1) % 3];
+      if (is_before && ((c == a && d == b) || (c == b && d == a))) return false;
+    }
+  }
+  return true;
+}
+
+/// Length of an edge without loads; infinity when that is not known.
+inline double unloaded_length(const ContactSurface& surface, std::int64_t a, std::int64_t b) {
+  const std::vector<Vector3>& x = surface.unloaded().positions;
+  if (x.size() != surface.positions().size()) return infinity;
+  return (x[static_cast<std::size_t>(a)] - x[static_cast<std::size_t>(b)]).norm();
+}
+
+}  // namespace detail
+
+PALPATE_INLINE ContactSamples::ContactSamples(const ContactSurface& surface, double spacing) {
+  std::vector<bool> vertex_taken(static_cast<std::size_t>(surface.vertex_count()), false);
+  first_.push_back(0);
+  for (int number = 0; number < static_cast<int>(surface.triangles().size()); ++number) {
+    const Triangle& t = surface.triangle(number);
+    double longest = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      longest = std::max(longest, (surface.position(t[i]) - surface.position(t[(i + 1) % 3])).norm());
+      if (!vertex_taken[static_cast<std::size_t>(t[i])])
+        samples_.push_back({{t[i], t[(i + 1) % 3], t[(i + 2) % 3]}, {1.0, 0.0, 0.0}});
+      vertex_taken[static_cast<std::size_t>(t[i])] = true;
+    }
+    for (std::size_t i = 0; i < 3; ++i) add_edge(surface, number, i, spacing);
+    const int n = detail::subdivision(longest, spacing);
+    for (int a = 1; a < n - 1; ++a)
+      for (int b = 1; b < n - a; ++b)
+        samples_.push_back(
+            {t, {static_cast<double>(a) / n, static_cast<double>(b) / n, static_cast<double>(n - a - b) / n}});
+    first_.push_back(static_cast<int>(samples_.size()));
+  }
+}
+
+PALPATE_INLINE void ContactSamples::add_edge(const ContactSurface& surface, int number, std::size_t i, double spacing) {
+  if (!detail::is_new_edge(surface, number, i)) return;
+  const Triangle& t = surface.triangle(number);
+  const int a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3];
+  const int n = detail::subdivision((surface.position(a) - surface.position(b)).norm(), spacing);
+  for (int k = 1; k < n; ++k)
+    samples_.push_back({{a, b, c}, {1.0 - static_cast<double>(k) / n, static_cast<double>(k) / n, 0.0}});
+}
+
+PALPATE_INLINE int ContactSamples::nearest(const ContactSurface& surface, const ContactSample& wanted) const noexcept {
+  int best = -1;
+  // A body that was cut and is whole again has fewer vertices.
+  if (wanted.vertices[0] >= surface.vertex_count()) return best;
+  double least = 1.0;  // half of the weight on other vertices is another place
+  for (const int t : surface.triangles_at(wanted.vertices[0]))
+    for (int s = first_of(t); s < first_of(t + 1); ++s)
+      if (const double off = detail::difference((*this)[s], wanted); off < least) least = off, best = s;
+  return best;
+}
+
+PALPATE_INLINE void require_dense_points(const ContactSurface& surface, double radius) {
+  const double most = ContactSamples::maximum_subdivision * radius;
+  SetupProblem problem;
+  problem.value = problem.threshold = most;
+  for (const Triangle& t : surface.triangles())
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int a = t[i], b = t[(i + 1) % 3];
+      const double length = (surface.position(a) - surface.position(b)).norm();
+      if (!(length > problem.value)) continue;
+      problem.value = length;
+      problem.ids = {a, b};
+    }
+  if (problem.ids.empty()) return;
+  problem.count = 2;
+  const std::string bound = ", more than " + std::to_string(ContactSamples::maximum_subdivision) +
+                            " radii of the smallest tool (" + number(radius) +
+                            " m): it would fall through; the ids are vertices of the surface";
+  const double unloaded = detail::unloaded_length(surface, problem.ids[0], problem.ids[1]);
+  if (unloaded <= most) {
+    problem.what = "the scene's loads (" + surface.unloaded().loads +
+                   ") stretch an edge of the touchable surface from " + number(unloaded) + " m to " +
+                   number(problem.value) + " m" + bound;
+    problem.hint =
+        "Loads should not deform the body that much: look at stiffness (Pa), density (kg/m^3), the unit of length of "
+        "the "
+        "mesh (m) and what holds the body";
+  } else {
+    problem.what = "an edge of the touchable surface is " + number(problem.value) + " m long" + bound;
+    problem.hint = "Refine the mesh where tools touch, or take a larger tool";
+  }
+  raise(std::move(problem));
+}
+
+}}  // namespace palpate

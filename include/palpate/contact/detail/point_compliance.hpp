@@ -1,0 +1,55 @@
+// The compliance between contact points, remembered from linearisation to linearisation and from tick to tick.
+#pragma once
+
+#include <palpate/contact/tissue_view.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// J_p C J_q^T [m/N], the displacement of point p per force on point q, 3 x 3, for up to `capacity` points at a time.
+/// Contact points are fixed in the material: as long as they press, only directions change, and this does not. A point
+/// keeps its slot until another needs it.
+class PointCompliance {
+ public:
+  /// Allocates; for set-up.
+  explicit PointCompliance(int capacity);
+
+  /// Forgets everything when the tissue's compliance is another than in the last tick.
+  void begin_tick(std::uint64_t revision) noexcept;
+  /// Points have other numbers from here on.
+  void forget() noexcept;
+  /// Back to the state after construction. Which of two points has the lower slot decides how sums are rounded.
+  void reset() noexcept;
+  /// From here on points asked for are in use and keep their slots; those before need not.
+  void begin_rows() noexcept { ++rows_; }
+
+  /// The slot of a point; `hint` is where it was. At most `capacity` different points between two `begin_rows`.
+  int slot_of(int sample, int hint) noexcept;
+
+  /// The compliance between the points in two slots, p >= q.
+  const Matrix3& operator()(const TissueView& tissue, const ContactSamples& samples, int p, int q) noexcept {
+    const std::size_t i = at(p) * (at(p) + 1) / 2 + at(q);
+    const std::uint64_t version = version_[at(p)] << 32 | version_[at(q)];
+    if (known_[i] != version) {
+      known_[i] = version;
+      tissue.between(samples[sample_[at(p)]], samples[sample_[at(q)]], block_[i]);
+    }
+    return block_[i];
+  }
+
+ private:
+  static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+  int take(int sample) noexcept;
+
+  std::vector<Matrix3> block_;        // of pairs of slots, lower triangle by rows
+  std::vector<std::uint64_t> known_;  // versions of the two points whose block it is
+  std::vector<int> sample_;
+  std::vector<std::uint64_t> version_, used_;
+  std::uint64_t versions_ = 0, rows_ = 0, revision_ = 0;
+  int next_ = 0;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/detail/point_compliance.ipp>
+#endif

@@ -1,0 +1,50 @@
+// Definitions of surface_displacement.hpp.
+#pragma once
+
+#include <palpate/contact/detail/surface_displacement.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capacity)
+    : forces_(static_cast<std::size_t>(capacity)),
+      displacement_(static_cast<std::size_t>(vertices)),
+      stamp_(static_cast<std::size_t>(vertices), 0) {}
+
+PALPATE_INLINE void SurfaceDisplacement::begin_tick(std::uint64_t revision) noexcept {
+  if (revision != std::exchange(revision_, revision)) ++generation_;
+}
+
+PALPATE_INLINE void SurfaceDisplacement::move_to(SurfaceDisplacement& fresh) noexcept {
+  displacement_.swap(fresh.displacement_);
+  stamp_.swap(fresh.stamp_);
+  ++generation_;
+}
+
+PALPATE_INLINE void SurfaceDisplacement::add(int vertex, const Vector3& force, int& slot) noexcept {
+  if (slot >= 0) {
+    forces_[static_cast<std::size_t>(slot)].force += ModelVector(force);
+    return;
+  }
+  slot = count_;
+  VertexForce& f = forces_[static_cast<std::size_t>(count_++)];
+  f.vertex = vertex;
+  f.force = ModelVector(force);
+}
+
+PALPATE_INLINE Vector3 SurfaceDisplacement::position(const TissueView& tissue, int vertex) noexcept {
+  return tissue.contact_surface().position(vertex) + at(tissue, vertex);
+}
+
+PALPATE_INLINE double SurfaceDisplacement::reach(const TissueView& tissue) noexcept {
+  double bounded = 0.0, loaded = 0.0;
+  for (const VertexForce& f : forces()) {
+    bounded += tissue.compliance_bound(f.vertex) * f.force.in_model_axes().norm();
+    loaded = std::max(loaded, at(tissue, f.vertex).norm());
+  }
+  return std::min(bounded, 2.0 * loaded);
+}
+
+}}  // namespace palpate

@@ -1,0 +1,61 @@
+// A new factor of a body that goes on being cut.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/cut/detail/cut_physics.hpp>
+#include <palpate/cut/detail/cut_system.hpp>
+#include <palpate/cut/detail/cut_topology.hpp>
+
+#include <atomic>
+#include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Makes a system of a topology as it is now, in a thread of its own. Cuts may go on meanwhile: `take` adds all that
+/// came since as one. The destructor waits for what is in work. `physics` must outlive it.
+template <Element E>
+class CutRenewal {
+ public:
+  CutRenewal(const CutTopology<E>& topology, const CutPhysics<E>& physics, std::vector<NodeId> kept_nodes,
+             const SetupLimits& limits)
+      : then_(topology),
+        thread_([this, &physics, kept = std::move(kept_nodes), limits] { make(physics, kept, limits); }) {}
+  ~CutRenewal() {
+    if (thread_.joinable()) thread_.join();
+  }
+  CutRenewal(const CutRenewal&) = delete;
+  CutRenewal& operator=(const CutRenewal&) = delete;
+
+  bool is_done() const noexcept { return done_.load(std::memory_order_acquire); }
+  /// When it is done: the system with the cuts since, folded; nothing when it could not be made. Throws as
+  /// CutSystem::update.
+  std::unique_ptr<CutSystem<E>> take(const CutTopology<E>& now) {
+    if (!made_) return nullptr;
+    made_->update(now, difference(then_, now));
+    made_->fold();
+    return std::move(made_);
+  }
+
+ private:
+  void make(const CutPhysics<E>& physics, const std::vector<NodeId>& kept, const SetupLimits& limits) noexcept {
+    try {
+      made_ = std::make_unique<CutSystem<E>>(then_, physics, kept, limits);
+    } catch (...) {  // out of memory, cancelled: the old system goes on
+      made_.reset();
+    }
+    done_.store(true, std::memory_order_release);
+  }
+
+  CutTopology<E> then_;
+  std::unique_ptr<CutSystem<E>> made_;
+  std::atomic<bool> done_{false};
+  std::thread thread_;  // last: it uses all the others
+};
+
+}}  // namespace palpate

@@ -1,0 +1,92 @@
+// The touchable surface of a body that is cut.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/contact/detail/bvh.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/detail/held_pieces.hpp>
+#include <palpate/cut/detail/topology_change.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/selection.hpp>
+#include <palpate/mesh/surface.hpp>
+
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Faces a tool may touch, by the elements they belong to, and the vertices of their nodes. Vertices keep their
+/// numbers: new ones are appended, and those of what is gone stay where they were, on no triangle. What a cut exposes
+/// can be touched from then on.
+template <Element E>
+class CutSurface {
+ public:
+  CutSurface() = default;
+  /// Resolves what a scene lets tools touch. Throws as resolve_faces does.
+  CutSurface(const CutTopology<E>& topology, const std::vector<BoundaryFace>& boundary, const Scene& scene) {
+    const Mesh<E>& mesh = topology.mesh();
+    for (const Selection& selection : scene.touched())
+      for (const BoundaryFace& f : resolve_faces(mesh, boundary, selection))
+        for (std::size_t local = 0; local < E::faces.size(); ++local)
+          if (std::ranges::equal(topology.face_nodes({f.element, static_cast<int>(local)}), f.nodes))
+            faces_.push_back({f.element, static_cast<int>(local)});
+    std::ranges::sort(faces_, less);
+    faces_.erase(std::unique(faces_.begin(), faces_.end(), same), faces_.end());
+    update(topology, {});
+  }
+
+  /// Takes in a cut: faces that came to light, nodes that were split, and what is gone. O(touchable faces).
+  void update(const CutTopology<E>& topology, const TopologyChange<E>& change) {
+    faces_.insert(faces_.end(), change.exposed.begin(), change.exposed.end());
+    std::erase_if(faces_, [&](const ElementFace& f) { return topology.state(f.element) != ElementState::held; });
+    triangles_.clear();
+    used_.assign(nodes_.size(), 0);
+    for (const ElementFace& f : faces_) {
+      const auto face = topology.face_nodes(f);
+      for (const NodeId node : face) used_[static_cast<std::size_t>(add(topology, node))] = 1;
+      const auto at = [&](int local) {
+        return vertex_of_[static_cast<std::size_t>(face[static_cast<std::size_t>(local)])];
+      };
+      with_face_element<E>(face.size(), [&]<TriangulatedFace F>() {
+        for (const auto& [a, b, c] : F::triangles) triangles_.push_back({at(a), at(b), at(c)});
+      });
+    }
+  }
+
+  const std::vector<Triangle>& triangles() const noexcept { return triangles_; }
+  /// Node of every vertex.
+  const std::vector<NodeId>& nodes() const noexcept { return nodes_; }
+  /// Whether a vertex is still on a triangle.
+  bool is_used(std::size_t vertex) const noexcept { return used_[vertex] != 0; }
+  const std::vector<ElementFace>& faces() const noexcept { return faces_; }
+
+ private:
+  static bool less(const ElementFace& a, const ElementFace& b) noexcept {
+    return std::tie(a.element, a.face) < std::tie(b.element, b.face);
+  }
+  static bool same(const ElementFace& a, const ElementFace& b) noexcept {
+    return a.element == b.element && a.face == b.face;
+  }
+  int add(const CutTopology<E>& topology, NodeId node) {
+    vertex_of_.resize(topology.mesh().positions.size(), -1);
+    int& vertex = vertex_of_[static_cast<std::size_t>(node)];
+    if (vertex < 0) {
+      vertex = static_cast<int>(nodes_.size());
+      nodes_.push_back(node);
+      used_.push_back(0);
+    }
+    return vertex;
+  }
+
+  std::vector<ElementFace> faces_;
+  std::vector<NodeId> nodes_;
+  std::vector<int> vertex_of_;
+  std::vector<char> used_;
+  std::vector<Triangle> triangles_;
+};
+
+}}  // namespace palpate

@@ -1,0 +1,316 @@
+// The compliance and the rest shape of a body while it is cut.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/detail/lanes.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/cut/detail/bordered_update.hpp>
+#include <palpate/cut/detail/cut_base.hpp>
+#include <palpate/cut/detail/cut_physics.hpp>
+#include <palpate/cut/detail/cut_plan.hpp>
+#include <palpate/cut/detail/cut_step.hpp>
+#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/detail/element_changes.hpp>
+#include <palpate/cut/detail/kept_dofs.hpp>
+#include <palpate/cut/detail/matrix_pool.hpp>
+#include <palpate/cut/detail/topology_change.hpp>
+#include <palpate/linear/detail/front_reduction.hpp>
+#include <palpate/linear/detail/tile.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// A linear body under cuts. The compliance among kept dofs is updated exactly (bordered_update.hpp), by the rows that
+/// a cut changes; the factor stays. Nodes that a cut touches become kept: their columns come from the factor, the same
+/// cuts taken off. A cut among kept nodes needs no solve at all.
+///
+/// What a cut leaves unheld keeps its place in the matrices and hangs on springs, which the rest does not feel, so
+/// there is no singular system: dofs of loose pieces have answers, but these mean nothing.
+template <Element E>
+class CutSystem {
+ public:
+  /// `physics` must outlive it. Throws as CutBase.
+  CutSystem(const CutTopology<E>& topology, const CutPhysics<E>& physics, const std::vector<NodeId>& kept_nodes,
+            const SetupLimits& limits = {})
+      : physics_(&physics), base_(topology, physics, kept_nodes, limits) {
+    compliance_ = base_.compliance();
+    for (const NodeDof& dof : base_.kept()) dofs_.add(dof);
+    source_.resize(topology.mesh().positions.size());
+    std::iota(source_.begin(), source_.end(), NodeId{0});
+    displacement_ = base_.displacement();
+    none_ = static_cast<Index>(base_.kept().size());
+    constexpr int spare = 3;  // one to write, and what a tick and the buffer between may hold
+    limits.require_memory(MatrixPool::bytes(none_, spare), "storage for the compliances of cuts");
+    pool_.prepare(none_, spare);
+  }
+
+  /// Takes in a cut: the step to be read from now on, until `fold`. Strong guarantee. Throws not_positive_definite when
+  /// rounding has eaten what is left (make a new system of the topology), bad_argument when the last step was not
+  /// folded. Cost: solves for changed nodes that were not kept, and O(kept x changed).
+  std::shared_ptr<const CutStep> update(const CutTopology<E>& topology, const TopologyChange<E>& change) {
+    if (step_) raise(SetupErrorKind::bad_argument, "the last cut is not folded in");
+    const CutPlan<E> plan(topology, change, *physics_, base_, dofs_, displacement_);
+    ReducedUnits units;
+    const MatrixX columns = columns_of(plan, units);
+    auto step = std::make_shared<CutStep>();
+    solve_small(plan, columns, *step);
+    if (units.size() > 0) promoted_.push_back({kept(), std::move(units)});
+    accept(topology, plan, *step);
+    step_ = step;
+    return step;
+  }
+
+  /// Makes the last step part of the compliance. O(kept^2 x changed).
+  void fold() {
+    if (!step_) return;
+    const auto folded = pool_.take(step_->all);
+    const Index old = step_->old, rest = step_->all - old, panel = 64;
+    // A panel of the lower half, and its mirror image while it is in the cache.
+    for (Index j = 0; j < old; j += panel) {
+      const Index width = std::min(panel, old - j), height = old - j;
+      auto below = folded->block(j, j, height, width);
+      below = step_->compliance->block(j, j, height, width);
+      if (step_->rank() > 0)
+        below.noalias() -= step_->z.middleCols(j, height).transpose() * step_->y.middleCols(j, width);
+      below.topRows(width).template triangularView<Eigen::StrictlyUpper>() = below.topRows(width).transpose();
+      for (Index i = width; i < height; i += panel) {
+        const Index rows = std::min(panel, height - i);
+        folded->block(j, j + i, width, rows) = below.middleRows(i, rows).transpose();
+      }
+    }
+    folded->block(0, old, step_->all, rest) = step_->extra;
+    folded->block(old, 0, rest, old) = step_->extra.topRows(old).transpose();
+    compliance_ = folded;
+    step_.reset();
+  }
+  bool is_folded() const noexcept { return step_ == nullptr; }
+  /// Without any step; what a tick reads after `fold`. Folded systems only.
+  std::shared_ptr<const CutStep> folded_step() const {
+    auto step = std::make_shared<CutStep>();
+    step->compliance = compliance_;
+    step->old = step->all = kept();
+    return step;
+  }
+
+  /// Number of a dof in the compliance, -1 when it is prescribed or not kept.
+  Index place(NodeId node, int component) const noexcept { return dofs_.place(node, component); }
+  Index kept() const noexcept { return dofs_.size(); }
+  /// Dofs that became kept since the factorisation.
+  Index added() const noexcept { return kept() - none_; }
+  /// Under the scene's loads, 3 per node [m]: exact at kept nodes of the held part, elsewhere after `recover`.
+  const VectorX& displacement() const noexcept { return displacement_; }
+  const CutBase<E>& base() const noexcept { return base_; }
+
+  /// Brings all nodes to where they are under the scene's loads. Two substitutions.
+  void recover() { recover_into({}, displacement_, displacement_); }
+
+  /// Displacement with forces on kept nodes, 3 per node [m]. Folds first. O(kept x forces) and two substitutions.
+  template <class Forces>
+  VectorX displacement_with(const Forces& forces) {
+    fold();
+    VectorX u = displacement_;
+    for (const auto& [node, force] : forces)
+      for (int c = 0; c < 3; ++c)
+        if (const Index j = place(node, c); j >= 0)
+          for (Index i = 0; i < kept(); ++i) dofs_.at(u, i) += (*compliance_)(i, j) * force[c];
+    std::vector<std::pair<NodeId, Vector3>> list;
+    for (const auto& [node, force] : forces) list.push_back({node, force});
+    recover_into(list, u, u);
+    return u;
+  }
+
+  /// How wrong the folded compliance is, measured: a load on all kept dofs, and how far the displacement that follows
+  /// is from what the factor makes of it and of the forces of the cuts, relative. One solve.
+  double measured_error() {
+    fold();
+    const Index n = kept();
+    if (n == 0) return 0.0;
+    MatrixX load(n, 1);
+    for (Index i = 0; i < n; ++i) load(i, 0) = std::sin(1.0 + 3.7 * static_cast<double>(i));
+    const MatrixX x = compliance_->topLeftCorner(n, n) * load;
+    MatrixX rest = load;
+    changes_.subtract_product(x, rest, places());
+    VectorX b = VectorX::Zero(base_.size()), answer;
+    double wrong = 0.0, border = 0.0;
+    for (Index i = 0; i < n; ++i)
+      if (const Index p = base_place(i); p >= 0)
+        b[p] = rest(i, 0);
+      else
+        border = std::max(border, std::abs(rest(i, 0)));
+    base_.solve(b, answer);
+    for (Index i = 0; i < n; ++i)
+      if (const Index p = base_place(i); p >= 0) wrong = std::max(wrong, std::abs(answer[p] - x(i, 0)));
+    return std::max(wrong / x.cwiseAbs().maxCoeff(), border);
+  }
+
+ private:
+  auto places() const {
+    return [this](NodeId node, int c) { return place(node, c); };
+  }
+  Index base_place(Index i) const noexcept { return base_.place_of(dofs_[i].node, dofs_[i].component); }
+
+  /// Columns of the present inverse for the promoted dofs, over kept and promoted rows. `units` keeps what later ones
+  /// need of these.
+  MatrixX columns_of(const CutPlan<E>& plan, ReducedUnits& units) const {
+    const Index n = kept(), m = static_cast<Index>(plan.promoted.size());
+    MatrixX x = MatrixX::Zero(n + m, m);
+    if (m == 0) return x;
+    std::vector<Index> dofs;
+    for (const NodeDof& d : plan.promoted) dofs.push_back(base_.place_of(d.node, d.component));
+    units = base_.interior().reduce_units(dofs);
+    const Index core = none_;
+    if (m > 16)
+      x.topRows(core).noalias() = *base_.compliance() * units.kept_load;
+    else  // one pass over a symmetric matrix; a general product would first copy all of it
+      for (Index j = 0; j < core; ++j) x.row(j).noalias() = base_.compliance()->col(j).transpose() * units.kept_load;
+    const MatrixX onto = x.topRows(core);
+    for (const auto& [first, before] : promoted_)
+      x.middleRows(first, before.size()) = before.products(units) + before.kept_load.transpose() * onto;
+    x.bottomRows(m) = units.products(units) + units.kept_load.transpose() * onto;
+    take_off_cuts(x);
+    return x;
+  }
+  /// From columns of the factor's inverse to columns of the present one: x + C r, r = - (what changed) x.
+  void take_off_cuts(MatrixX& x) const {
+    if (changes_.empty()) return;
+    const Index n = kept(), m = x.cols();
+    MatrixX r = MatrixX::Zero(n, m);
+    const MatrixX old = x.topRows(n);
+    changes_.subtract_product(old, r, places());
+    const std::vector<Index> rows = changes_.places(places());
+    MatrixX part(n, static_cast<Index>(rows.size())), force(static_cast<Index>(rows.size()), m);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      part.col(static_cast<Index>(k)) = compliance_->col(rows[k]).head(n);
+      force.row(static_cast<Index>(k)) = r.row(rows[k]);
+    }
+    x.topRows(n).noalias() += part * force;
+    x.bottomRows(m).noalias() += x.topRows(n).transpose() * r;
+    x.bottomRows(m) = (0.5 * (x.bottomRows(m) + x.bottomRows(m).transpose())).eval();
+  }
+
+  /// Assembles what changed over changed and fresh dofs, solves, and writes the step.
+  void solve_small(const CutPlan<E>& plan, const MatrixX& columns, CutStep& step) const {
+    const Index n = kept(), m = columns.cols(), old = n + m, fresh = static_cast<Index>(plan.fresh.size());
+    const Index s = static_cast<Index>(plan.changed.size());
+    const MatrixX all = plan.assemble();
+    MatrixX z(s, old);
+    for (Index k = 0; k < s; ++k) {
+      const Index p = plan.changed[static_cast<std::size_t>(k)];
+      if (p >= n)
+        z.row(k) = columns.col(p - n).transpose();
+      else
+        z.row(k) << compliance_->col(p).head(n).transpose(), columns.row(p);
+    }
+    MatrixX h(s, s);
+    for (Index k = 0; k < s; ++k) h.col(k) = z.col(plan.changed[static_cast<std::size_t>(k)]);
+    const BorderedUpdate u(h, all.topLeftCorner(s, s), all.topRightCorner(s, fresh),
+                           all.bottomRightCorner(fresh, fresh));
+    const MatrixX y = u.q * z;
+    step.compliance = compliance_;
+    step.old = n;
+    step.all = old + fresh;
+    step.smallest = u.smallest;
+    step.extra.resize(step.all, m + fresh);
+    step.extra.topLeftCorner(old, m) = columns - z.transpose() * y.rightCols(m);
+    const MatrixX onto = z - h * y;  // rows of the new inverse at changed dofs
+    step.extra.topRightCorner(old, fresh) = onto.transpose() * u.r.transpose();
+    step.extra.bottomLeftCorner(fresh, m) = u.r * onto.rightCols(m);
+    MatrixX at_changed(s, s);
+    for (Index k = 0; k < s; ++k) at_changed.col(k) = onto.col(plan.changed[static_cast<std::size_t>(k)]);
+    step.extra.bottomRightCorner(fresh, fresh) = u.border_inverse + u.r * at_changed * u.r.transpose();
+    step.z = z.leftCols(n);
+    step.y = y.leftCols(n);
+  }
+
+  /// Nothing throws from here on but a lack of memory.
+  void accept(const CutTopology<E>& topology, const CutPlan<E>& plan, const CutStep& step) {
+    const Index nodes = topology.mesh().node_count(), before = displacement_.size() / 3;
+    displacement_.conservativeResize(3 * nodes);
+    for (Index node = before; node < nodes; ++node) displacement_.template segment<3>(3 * node).setZero();
+    for (const NodeCopy& copy : plan.change->copies) source_.push_back(source_[static_cast<std::size_t>(copy.parent)]);
+    for (const NodeCopy& copy : plan.change->copies)
+      displacement_.template segment<3>(3 * Index{copy.node}) =
+          displacement_.template segment<3>(3 * Index{copy.parent});
+    for (const auto* list : {&plan.promoted, &plan.fresh})
+      for (const NodeDof& d : *list) dofs_.add(d);
+    for (const ChangedElement<E>& x : plan.change->elements)
+      changes_.add(x, physics_->stiffness(x.element), physics_->load_of(x.element));
+    for (const auto& pin : plan.pins) changes_.add(pin);
+    move(step);
+  }
+  /// Where kept nodes are now: from the rest of the factor, by the forces that all cuts since let loose. Not from where
+  /// they were before this cut, so that nothing piles up.
+  void move(const CutStep& step) {
+    VectorX force = VectorX::Zero(kept());
+    changes_.add_forces([&](NodeId node) { return rest_of(node); },
+                        [&](NodeId node, const Vector3& f) {
+                          for (int c = 0; c < 3; ++c)
+                            if (const Index p = place(node, c); p >= 0) force[p] += f[c];
+                        });
+    const Index old = step.old, rest = step.all - old;
+    VectorX u(step.all);
+    const VectorX head = force.head(old);
+    u.head(old).setZero();
+    for (Index j = 0; j < old; ++j)
+      if (head[j] != 0.0) u.head(old) += head[j] * step.compliance->col(j).head(old);
+    u.head(old).noalias() -= step.z.transpose() * VectorX(step.y * head);
+    u.head(old).noalias() += step.extra.topRows(old) * force.tail(rest);
+    u.tail(rest).noalias() =
+        step.extra.topRows(old).transpose() * head + step.extra.bottomRows(rest) * force.tail(rest);
+    for (Index i = 0; i < step.all; ++i) {
+      const NodeDof& d = dofs_[i];
+      dofs_.at(displacement_, i) = rest_of(d.node)[d.component] + u[i];
+    }
+  }
+  /// Displacement of the node that a node is a copy of, as the factor knows it.
+  Vector3 rest_of(NodeId node) const noexcept {
+    return base_.displacement().template segment<3>(3 * Index{source_[static_cast<std::size_t>(node)]});
+  }
+
+  /// All nodes of the factor from what kept nodes do; `forces` that are not in the factor's rest, on nodes.
+  void recover_into(const std::vector<std::pair<NodeId, Vector3>>& forces, const VectorX& known, VectorX& u) {
+    if (base_.size() == 0) return;
+    VectorX load = VectorX::Zero(base_.size()), answer(base_.size());
+    const auto add = [&](NodeId node, const Vector3& f) {
+      for (int c = 0; c < 3; ++c)
+        if (const Index p = base_.place_of(node, c); p >= 0) load[p] += f[c];
+    };
+    changes_.add_forces([&](NodeId node) { return Vector3(known.template segment<3>(3 * Index{node})); }, add);
+    for (const auto& [node, f] : forces) add(node, f);
+    const Index core = static_cast<Index>(base_.kept().size());
+    VectorX scratch(core), moved(core);
+    for (Index i = 0; i < core; ++i) moved[i] = dofs_.at(known, i) - dofs_.at(base_.displacement(), i);
+    base_.interior().eliminate_into(load, scratch);
+    base_.interior().recover_into(moved, answer);
+    const VectorX& rest = base_.displacement();
+    for (Index dof = 0; dof < rest.size(); ++dof) {
+      const auto node = static_cast<NodeId>(dof / 3);
+      const int c = static_cast<int>(dof % 3);
+      if (place(node, c) < 0)
+        if (const Index p = base_.place_of(node, c); p >= 0) u[dof] = rest[dof] + answer[p];
+    }
+  }
+
+  const CutPhysics<E>* physics_;
+  CutBase<E> base_;
+  std::shared_ptr<const MatrixX> compliance_;  // among the first kept() dofs when there is no step
+  std::shared_ptr<const CutStep> step_;
+  MatrixPool pool_;
+  KeptDofs dofs_;
+  std::vector<NodeId> source_;                            // per node the one of the factor that it is a copy of
+  Index none_ = 0;                                        // kept by the factor
+  std::vector<std::pair<Index, ReducedUnits>> promoted_;  // by the place of the first
+  VectorX displacement_;
+  ElementChanges<E> changes_;
+};
+
+}}  // namespace palpate

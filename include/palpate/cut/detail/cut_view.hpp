@@ -1,0 +1,80 @@
+// What a tick needs of a body that is cut, in one piece.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/contact/contact.hpp>
+#include <palpate/contact/contact_problem.hpp>
+#include <palpate/contact/contact_surface.hpp>
+#include <palpate/contact/detail/contact_samples.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/cut/detail/cut_step.hpp>
+#include <palpate/cut/detail/cut_surface.hpp>
+#include <palpate/cut/detail/cut_system.hpp>
+
+#include <array>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Surface and contact problem after a cut, and where its vertices are in the compliance: the same while the cut is
+/// folded in. Made by the thread that cuts, driven by the one that ticks. Triangles that hang from so little that they
+/// are stretched beyond what contact points can cover are left out; ticks then say degraded_model.
+struct CutContact {
+  bool left_out = false;  ///< whether a triangle is
+  ContactSurface surface;
+  std::vector<std::array<Index, 3>> place;  ///< per vertex its dofs in the compliance, -1: held, or gone
+  ContactProblem problem;
+  std::uint64_t cut = 0;  ///< number of the cut
+
+  template <Element E>
+  CutContact(const CutSystem<E>& system, const CutSurface<E>& touchable, std::vector<Vector3> positions, double radius,
+             const ContactParameters& contact, std::uint64_t number)
+      : surface(covered(std::move(positions), touchable.triangles(), ContactSamples::maximum_subdivision * radius)),
+        place(touchable.nodes().size(), {-1, -1, -1}),
+        problem(surface, radius, contact),
+        cut(number) {
+    for (std::size_t v = 0; v < place.size(); ++v)
+      for (int c = 0; c < 3; ++c)
+        if (touchable.is_used(v)) place[v][static_cast<std::size_t>(c)] = system.place(touchable.nodes()[v], c);
+  }
+
+ private:
+  ContactSurface covered(std::vector<Vector3> positions, std::vector<Triangle> triangles, double longest);
+};
+
+/// What a tick reads between two changes. Views of one cut have the same contact and, up to rounding, the same
+/// compliance.
+struct CutView {
+  std::shared_ptr<CutContact> contact;
+  std::shared_ptr<const CutStep> step;
+  std::vector<double> bound{};  ///< per vertex [m/N]
+  double floor = 1e-9;          ///< [m/N]
+
+  /// Displacement of vertex i per force on j [m/N].
+  Matrix3 compliance(int i, int j) const noexcept;
+
+  /// Bounds from those before the step: what it adds is at most the longest z times y of the vertex. Vertices with
+  /// columns of their own are summed up.
+  void bound_by(const std::vector<double>& before);
+  /// The bounds of the step that was folded in since.
+  void bound_as(const std::vector<double>& before);
+  /// Bounds from the compliance itself. O(vertices^2).
+  void bound_exactly();
+
+ private:
+  const std::array<Index, 3>& place(int vertex) const noexcept;
+  double squares(const MatrixX& columns, const std::array<Index, 3>& at) const noexcept;
+  /// Largest Frobenius norm of the blocks that vertex j has with others; `row`: scratch, one entry per dof.
+  double exact_bound(std::size_t j, VectorX& row) const noexcept;
+  void set_floor() noexcept;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/cut/detail/cut_view.ipp>
+#endif

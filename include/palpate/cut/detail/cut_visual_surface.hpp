@@ -1,0 +1,124 @@
+// The drawn surface of a model that is cut.
+#pragma once
+
+#include <palpate/cut/cuttable_tissue.hpp>
+#include <palpate/model/rendering/visual_surface.hpp>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+template <class E, class M, class Solver>
+class HapticFEModel;
+template <class Inner>
+struct Cuttable;
+
+/// Positions, normals and triangles of a body that is cut, detached pieces included: the faces that the scene lets be
+/// seen, or all, and all that cuts expose. Cuts change points and triangles; `update` brings the changes in. Between two
+/// calls of it points and triangles stay. Refers to the model; one
+/// reader at a time.
+template <class E, class M, class Inner>
+class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
+ public:
+  using Model = HapticFEModel<E, M, Cuttable<Inner>>;
+
+  explicit VisualSurface(Model& model) : model_(&model) {
+    const auto& boundary = model.boundary();
+    seen_ = model.seen_nodes();
+    model.read([&](const CutTopology<E>& topology, const auto&) {
+      hidden_.assign(static_cast<std::size_t>(topology.mesh().element_count()), {});
+      for (const BoundaryFace& face : boundary) hide_unseen(topology, face);
+    });
+    update();
+  }
+
+  /// Brings in the cuts since the last call: true when points and triangles are others now. O(elements) then.
+  bool update() {
+    const std::uint64_t cuts = model_->cut_report().changes;
+    if (known_ && cuts == cuts_) return false;
+    model_->read([&](const CutTopology<E>& topology, const auto&) { collect(topology); });
+    cuts_ = cuts;
+    known_ = true;
+    return true;
+  }
+
+  Index point_count() const noexcept { return static_cast<Index>(nodes_.size()); }
+  const std::vector<std::array<int, 3>>& triangles() const noexcept { return triangles_; }
+
+  /// As VisualSurface of other models; allocates. Also false when the model was reset since the last `update`, and for
+  /// forces on vertices that do not exist any more.
+  bool read_surface(std::span<const VertexForce> forces, std::span<float> positions,
+                    std::span<float> normals) noexcept {
+    const std::size_t size = 3 * nodes_.size();
+    if (positions.size() != size || normals.size() != size) return false;
+    if (!model_->displacement_with(forces, displacement_).converged) return false;
+    if (displacement_.size() < 3 * node_count_) return false;  // reset since `update`
+    const Eigen::Isometry3d pose = model_->to_world();
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      moved_[i] = pose * (rest_[i] + node_vector(displacement_, nodes_[i]));
+    detail::write_surface(moved_, triangles_, normals_, positions, normals);
+    return true;
+  }
+
+ private:
+  using Flags = std::array<bool, E::faces.size()>;
+
+  /// Notes a face of the body as given that the scene does not let be seen.
+  void hide_unseen(const CutTopology<E>& topology, const BoundaryFace& face) {
+    if (seen_.empty()) return;
+    if (std::ranges::all_of(face.nodes, [&](NodeId i) { return std::ranges::binary_search(seen_, i); })) return;
+    for (std::size_t local = 0; local < E::faces.size(); ++local) {
+      const auto nodes = topology.face_nodes({face.element, static_cast<int>(local)});
+      if (std::ranges::equal(nodes, face.nodes, {}, [&](NodeId i) { return topology.origin_of(i); }))
+        hidden_[static_cast<std::size_t>(face.element)][local] = true;
+    }
+  }
+
+  void collect(const CutTopology<E>& topology) {
+    nodes_.clear();
+    triangles_.clear();
+    std::vector<int> point(topology.mesh().positions.size(), -1);
+    const auto point_of = [&](NodeId i) {
+      int& p = point[static_cast<std::size_t>(i)];
+      if (p < 0) {
+        p = static_cast<int>(nodes_.size());
+        nodes_.push_back(i);
+      }
+      return p;
+    };
+    for (Index e = 0; e < topology.mesh().element_count(); ++e) {
+      if (topology.is_removed(e)) continue;
+      for (std::size_t local = 0; local < E::faces.size(); ++local) {
+        if (topology.neighbour(e, local) >= 0 || hidden_[static_cast<std::size_t>(e)][local]) continue;
+        const auto face = topology.face_nodes({e, static_cast<int>(local)});
+        with_face_element<E>(face.size(), [&]<TriangulatedFace F>() {
+          for (const auto& t : F::triangles) {
+            const auto at = [&](std::size_t k) { return point_of(face[static_cast<std::size_t>(t[k])]); };
+            triangles_.push_back({at(0), at(1), at(2)});
+          }
+        });
+      }
+    }
+    node_count_ = topology.mesh().node_count();
+    rest_.clear();
+    for (const NodeId i : nodes_) rest_.push_back(topology.mesh().position(i));
+    moved_.resize(nodes_.size());
+    normals_.resize(nodes_.size());
+  }
+
+  Model* model_;
+  std::vector<NodeId> seen_;   // sorted
+  std::vector<Flags> hidden_;  // per element and face
+  std::vector<NodeId> nodes_;  // of the points
+  std::vector<std::array<int, 3>> triangles_;
+  std::vector<Vector3> rest_, moved_, normals_;
+  VectorX displacement_;
+  Index node_count_ = 0;  // of the topology that the points are from
+  std::uint64_t cuts_ = 0;
+  bool known_ = false;
+};
+
+}}  // namespace palpate

@@ -1,0 +1,126 @@
+// What cuts have changed of a stiffness since it was factorised, element by element.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/cut/detail/topology_change.hpp>
+#include <palpate/local/stiffness.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Difference between a stiffness now and when it was factorised: minus the elements that changed, plus those of them
+/// that are still there on the nodes they have now, plus springs on what nothing holds. Dofs are looked up by
+/// `place(node, component)`, -1 for those that are prescribed.
+template <Element E>
+class ElementChanges {
+ public:
+  using Values = Eigen::Matrix<double, 3 * E::nodes, 1>;
+  using Places = std::array<Index, static_cast<std::size_t>(3 * E::nodes)>;
+  using Connectivity = typename Mesh<E>::Connectivity;
+
+  struct Changed {
+    Connectivity before{}, now{};
+    bool removed = false;
+    ElementStiffness<E> stiffness;
+    Values load;
+  };
+  /// A spring to where the node was when it was no longer held: the piece stays in the system and hangs on these, and
+  /// nothing else feels them.
+  struct Pin {
+    NodeId node = 0;
+    double stiffness = 0.0;          ///< [N/m]
+    Vector3 rest = Vector3::Zero();  ///< displacement without force [m]
+  };
+
+  bool empty() const noexcept { return changed_.empty() && pins_.empty(); }
+  const std::vector<Pin>& pins() const noexcept { return pins_; }
+
+  void add(const ChangedElement<E>& change, const ElementStiffness<E>& stiffness, const Values& load) {
+    auto [at, is_new] = changed_.try_emplace(change.element);
+    if (is_new) at->second = {change.before, change.after, change.removed, stiffness, load};
+    at->second.now = change.after;
+    at->second.removed = change.removed;
+  }
+  void add(const Pin& pin) { pins_.push_back(pin); }
+
+  /// Places of all dofs that changed, sorted.
+  template <class Place>
+  std::vector<Index> places(Place&& place) const {
+    std::vector<Index> all;
+    const auto put = [&](Index p) {
+      if (p >= 0) all.push_back(p);
+    };
+    for (const auto& [e, c] : changed_)
+      for (const Connectivity* nodes : {&c.before, &c.now})
+        for (const Index p : places_of(*nodes, place)) put(p);
+    for (const Pin& pin : pins_)
+      for (int c = 0; c < 3; ++c) put(place(pin.node, c));
+    std::ranges::sort(all);
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+  }
+
+  /// y -= difference times x, for the columns of x; rows are places.
+  template <class Place>
+  void subtract_product(const MatrixX& x, MatrixX& y, Place&& place) const {
+    for (const auto& [e, c] : changed_) {
+      add_product(c, c.before, 1.0, x, y, place);
+      if (!c.removed) add_product(c, c.now, -1.0, x, y, place);
+    }
+    for (const Pin& pin : pins_)
+      for (int k = 0; k < 3; ++k)
+        if (const Index p = place(pin.node, k); p >= 0) y.row(p) -= pin.stiffness * x.row(p);
+  }
+
+  /// The load that makes the body as it was factorised move like the one that is left: adds the forces of what changed
+  /// under `u(node)` to `load(node, force)`.
+  template <class Displacement, class Load>
+  void add_forces(Displacement&& u, Load&& load) const {
+    for (const auto& entry : changed_) {
+      const Changed& c = entry.second;
+      const auto scatter = [&](const Connectivity& nodes, double sign) {
+        Values ue;
+        for (int a = 0; a < E::nodes; ++a) ue.template segment<3>(3 * a) = u(nodes[static_cast<std::size_t>(a)]);
+        const Values f = sign * (c.stiffness * ue - c.load);
+        for (int a = 0; a < E::nodes; ++a)
+          load(nodes[static_cast<std::size_t>(a)], Vector3(f.template segment<3>(3 * a)));
+      };
+      scatter(c.before, 1.0);
+      if (!c.removed) scatter(c.now, -1.0);
+    }
+    for (const Pin& pin : pins_) load(pin.node, Vector3(-pin.stiffness * (u(pin.node) - pin.rest)));
+  }
+
+  template <class Place>
+  static Places places_of(const Connectivity& nodes, Place&& place) {
+    Places places;
+    for (std::size_t i = 0; i < places.size(); ++i) places[i] = place(nodes[i / 3], static_cast<int>(i % 3));
+    return places;
+  }
+
+ private:
+  template <class Place>
+  static void add_product(const Changed& c, const Connectivity& nodes, double sign, const MatrixX& x, MatrixX& y,
+                          Place&& place) {
+    const Places at = places_of(nodes, place);
+    for (Index k = 0; k < x.cols(); ++k) {
+      Values v;
+      for (std::size_t i = 0; i < at.size(); ++i) v[static_cast<Index>(i)] = at[i] < 0 ? 0.0 : x(at[i], k);
+      const Values f = sign * (c.stiffness * v);
+      for (std::size_t i = 0; i < at.size(); ++i)
+        if (at[i] >= 0) y(at[i], k) += f[static_cast<Index>(i)];
+    }
+  }
+
+  std::map<Index, Changed> changed_;
+  std::vector<Pin> pins_;
+};
+
+}}  // namespace palpate

@@ -1,0 +1,99 @@
+// Which elements hang together, and which of the pieces are held.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/cut/detail/topology_change.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+template <Element E>
+class CutTopology;
+enum class ElementState : std::uint8_t;
+
+/// The elements around a node in parts that hang together by faces containing it, the largest first, of equal ones that
+/// with the lowest element. O(k^2) for k elements.
+template <Element E>
+std::vector<std::vector<Index>> star_parts(const CutTopology<E>& topology, NodeId node) {
+  const std::vector<Index>& star = topology.elements_at(node);
+  std::vector<std::vector<Index>> parts;
+  std::vector<char> seen(star.size(), 0);
+  for (std::size_t first = 0; first < star.size(); ++first) {
+    if (std::exchange(seen[first], 1) != 0) continue;
+    std::vector<Index> part{star[first]};
+    for (std::size_t k = 0; k < part.size(); ++k)
+      for (std::size_t f = 0; f < CutTopology<E>::faces; ++f) {
+        const Index other = topology.neighbour(part[k], f);
+        if (other < 0) continue;
+        const auto found = std::ranges::find(star, other);
+        if (found == star.end() || seen[static_cast<std::size_t>(found - star.begin())] != 0) continue;
+        const auto nodes = topology.face_nodes({part[k], static_cast<int>(f)});
+        if (std::ranges::find(nodes, node) == nodes.end()) continue;
+        seen[static_cast<std::size_t>(found - star.begin())] = 1;
+        part.push_back(other);
+      }
+    std::ranges::sort(part);
+    parts.push_back(std::move(part));
+  }
+  std::ranges::stable_sort(parts, [](const auto& a, const auto& b) {
+    return a.size() > b.size() || (a.size() == b.size() && a.front() < b.front());
+  });
+  return parts;
+}
+
+/// How many rigid motions the constraints leave to a set of nodes, all in one rigid piece.
+int free_mode_count(std::span<const Vector3> positions, std::span<const NodeId> nodes,
+                    std::span<const std::uint8_t> constrained);
+
+/// The elements for which `belongs(element)` in pieces that hang together by faces, all rigid motions free.
+/// O(elements).
+template <Element E, class Belongs>
+std::vector<LoosePiece> connected_pieces(const CutTopology<E>& topology, Belongs&& belongs) {
+  const Mesh<E>& mesh = topology.mesh();
+  std::vector<char> seen(static_cast<std::size_t>(mesh.element_count()), 0), listed(mesh.positions.size(), 0);
+  std::vector<LoosePiece> pieces;
+  for (Index first = 0; first < mesh.element_count(); ++first) {
+    if (seen[static_cast<std::size_t>(first)] != 0 || !belongs(first)) continue;
+    LoosePiece& piece = pieces.emplace_back();
+    seen[static_cast<std::size_t>(first)] = 1;
+    piece.elements.push_back(first);
+    for (std::size_t k = 0; k < piece.elements.size(); ++k) {
+      const Index e = piece.elements[k];
+      for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)])
+        if (std::exchange(listed[static_cast<std::size_t>(node)], 1) == 0) piece.nodes.push_back(node);
+      for (std::size_t f = 0; f < CutTopology<E>::faces; ++f)
+        if (const Index other = topology.neighbour(e, f);
+            other >= 0 && belongs(other) && std::exchange(seen[static_cast<std::size_t>(other)], 1) == 0)
+          piece.elements.push_back(other);
+    }
+  }
+  return pieces;
+}
+
+/// The pieces of held elements that can move as a whole. O(elements).
+template <Element E>
+std::vector<LoosePiece> unheld_pieces(const CutTopology<E>& topology) {
+  std::vector<LoosePiece> unheld;
+  for (LoosePiece& piece : connected_pieces(topology, [&](Index e) { return topology.state(e) == ElementState{}; })) {
+    piece.free_modes = free_mode_count(topology.mesh().positions, piece.nodes, topology.constrained());
+    if (piece.free_modes == 0) continue;
+    std::ranges::sort(piece.elements);
+    std::ranges::sort(piece.nodes);
+    for (const Index e : piece.elements) piece.volume += topology.volume(e);
+    unheld.push_back(std::move(piece));
+  }
+  return unheld;
+}
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/cut/detail/held_pieces.ipp>
+#endif

@@ -1,0 +1,46 @@
+// Which faces a blade opens.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/contact/detail/blade_sweep.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/detail/topology_change.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// The faces between elements whose centres lie on two sides of the sheet, joined by a way through it: the elements'
+/// own faces nearest to the cut. The mesh keeps its elements and their quality, and the slit follows the sheet within
+/// half an element. `position(node)` is where a node is now. The same sweep gives the same faces; one of no area, or
+/// one beside the body, none. O(elements).
+template <Element E, class Position>
+std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const BladeSweep& sweep, Position&& position) {
+  std::vector<ElementFace> open;
+  if (!(sweep.area() > 0.0)) return open;
+  const Mesh<E>& mesh = topology.mesh();
+  const auto centre = [&](Index e) {
+    Vector3 sum = Vector3::Zero();
+    for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)]) sum += position(node);
+    return Vector3(sum / E::nodes);
+  };
+  const Box near = sweep.box();
+  for (Index e = 0; e < mesh.element_count(); ++e) {
+    if (topology.is_removed(e)) continue;
+    Box own;
+    for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)]) own.include(position(node));
+    const double reach = (own.high - own.low).norm();
+    const Vector3 x = centre(e);
+    if (!(near.squared_distance(x) <= 4.0 * reach * reach)) continue;
+    for (std::size_t f = 0; f < E::faces.size(); ++f) {
+      const Index other = topology.neighbour(e, f);
+      if (other > e && sweep.crosses(x, centre(other))) open.push_back({e, static_cast<int>(f)});
+    }
+  }
+  return open;
+}
+
+}}  // namespace palpate

@@ -1,0 +1,43 @@
+// A blade of a servo.
+#pragma once
+
+#include <palpate/contact/detail/blade_cut.hpp>
+#include <palpate/contact/tissue_view.hpp>
+#include <palpate/core/status.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Follows a hand with a blade and orders cuts along what the edge sweeps. All on the tick: no throw, no allocation,
+/// bounded.
+class ServoBlade {
+ public:
+  /// Throws bad_argument as BladeCut does.
+  ServoBlade(const BladeTool& tool, double stiffness) : cut_(tool, stiffness) {}
+
+  /// Moves with the hand, world frame [m]; `restart`: it starts again there, as if in the air. Orders a cut along what
+  /// was swept once that is a stroke.
+  void follow(const Vector3& hand, bool restart, const TissueView& tissue) noexcept;
+  /// The hand is lost: no force.
+  void lift() noexcept;
+  void reset() noexcept;
+
+  const Vector3& force() const noexcept { return force_; }  ///< on the hand, world frame [N]
+  Status status() const noexcept { return status_; }        ///< degraded_model: the tissue took no more orders
+  const BladeCut& cut() const noexcept { return cut_; }
+
+ private:
+  static constexpr int samples = 8;  // along the edge
+
+  double width_inside(const TissueView& tissue) const noexcept;
+  bool order_cut(const TissueView& tissue) noexcept;
+
+  BladeCut cut_;
+  Vector3 force_ = Vector3::Zero(), ordered_ = Vector3::Zero();
+  Status status_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/haptic/detail/servo_blade.ipp>
+#endif

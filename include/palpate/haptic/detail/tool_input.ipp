@@ -1,0 +1,118 @@
+// Definitions of tool_input.hpp.
+#pragma once
+
+#include <palpate/contact/detail/tool_placement.hpp>
+#include <palpate/core/rigid_motion.hpp>
+#include <palpate/haptic/detail/tool_input.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE void ToolInput::take(const ToolState& state, const Eigen::Isometry3d& pose,
+                                    const ContactSurface& surface, std::span<const Contact> contacts,
+                                    ContactTool& tool) noexcept {
+  tool.motion.setZero();
+  tool.turned = 0.0;
+  if (!state.valid) tool.lift();
+  Pose taken{position_, {1.0, 0.0, 0.0, 0.0}};
+  if (!accept(state, pose, taken)) return;
+  tool.grasping = (state.buttons & grasp_buttons_) != 0;
+  if (turns_) rotate(taken.turn, pose, tool);
+  follow(taken.position, surface, contacts, tool);
+}
+
+PALPATE_INLINE void ToolInput::take_freely(const ToolState& state, const Eigen::Isometry3d& pose,
+                                           double longest) noexcept {
+  Pose taken{position_, {1.0, 0.0, 0.0, 0.0}};
+  if (!accept(state, pose, taken)) return;
+  const bool jumped = known_ && (taken.position - position_).norm() > longest;
+  if (jumped) status_.set(StatusFlag::reacquired);
+  restarted_ = jumped || !known_;
+  position_ = taken.position;
+  known_ = true;
+}
+
+PALPATE_INLINE bool ToolInput::accept(const ToolState& state, const Eigen::Isometry3d& pose, Pose& taken) noexcept {
+  status_ = {};
+  readable_ = state.valid;
+  restarted_ = false;
+  rotation_.setZero();
+  if (!state.valid) {
+    known_ = false;
+    return false;
+  }
+  taken.position = inverse(pose) * state.position;
+  if (turns_) {
+    const auto& q = state.orientation;
+    taken.turn = {q[0], q[1], q[2], q[3]};
+  }
+  if (!is_sound(taken.position, taken.turn, state.time)) {
+    // The last good pose is held; its old time stamp makes the gate fade the force.
+    status_.set(StatusFlag::non_finite_input);
+    readable_ = known_;
+    return false;
+  }
+  time_ = state.time;
+  return true;
+}
+
+PALPATE_INLINE void ToolInput::note_tissue(bool has_news) noexcept {
+  if (has_news || !(news_ <= time_)) news_ = time_;
+}
+
+PALPATE_INLINE void ToolInput::lose() noexcept {
+  known_ = false;
+  status_.set(StatusFlag::reacquired);
+}
+
+PALPATE_INLINE void ToolInput::reset() noexcept {
+  *this = ToolInput(number_, turns_, grasp_buttons_);
+}
+
+PALPATE_INLINE bool ToolInput::is_sound(const Vector3& position, const Quaternion<double>& turn, double time) noexcept {
+  const double length = std::sqrt(turn.w * turn.w + turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
+  return all_finite(position) && max_abs(position) < 1e6 && std::isfinite(time) && length > 0.5 && length < 2.0;
+}
+
+PALPATE_INLINE void ToolInput::rotate(const Quaternion<double>& turn, const Eigen::Isometry3d& pose,
+                                      ContactTool& tool) noexcept {
+  const Matrix3 rotation = rotation_of(pose).transpose() * rotation_matrix(turn);
+  if (known_) {
+    rotation_ = rotation_of(pose) * rotation_vector(rotation * tool.target_rotation.transpose());
+    tool.turned = tool.half_length * ((rotation - tool.target_rotation) * tool.own_axis).norm();
+  }
+  tool.target_rotation = rotation;
+}
+
+PALPATE_INLINE void ToolInput::follow(const Vector3& position, const ContactSurface& surface,
+                                      std::span<const Contact> contacts, ContactTool& tool) noexcept {
+  const Vector3 motion = position - position_;
+  restarted_ = !known_;
+  if (!known_) {
+    place_beside(tool, surface, position);
+  } else if (motion.norm() + tool.turned > 2.0 * tool.radius) {
+    sweep(tool, surface, off_surface(contacts, tool), position);
+    tool.turned = 0.0;
+    tool.grasping = false;
+    restarted_ = true;
+    status_.set(StatusFlag::reacquired);
+  } else {
+    tool.motion = motion;
+  }
+  position_ = tool.target = position;
+  known_ = tool.active = true;
+}
+
+PALPATE_INLINE Vector3 ToolInput::off_surface(std::span<const Contact> contacts,
+                                              const ContactTool& tool) const noexcept {
+  const double force = tool.force.norm();
+  if (!(force > 0.0)) return tool.proxy;
+  double dent = 0.0;
+  for (const Contact& c : contacts)
+    if (c.tool == number_ && c.force > 0.0) dent = std::max(dent, (c.rest - c.point).dot(tool.force) / force);
+  return tool.proxy + (dent / force) * tool.force;
+}
+
+}}  // namespace palpate

@@ -1,0 +1,79 @@
+// The largest stable step of explicit integration, in the state the body is in.
+#pragma once
+
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Power iteration on M^-1 K, K times a vector being a difference of two forces. Held dofs do not move. The vector is
+/// kept, so that a few iterations per call follow a body that stiffens as it is pressed. The estimate comes from below:
+/// after 20 iterations from a random start it is up to 5 % short, after 40 up to 3 %; the margin covers that.
+class StepLimit {
+ public:
+  /// Iterations from a random start after which the estimate is trusted.
+  static constexpr int settled = 20;
+
+  /// `bound` is an upper bound of omega^2 [1/s^2] at rest, such as that of the worst element, or infinite. Until the
+  /// estimate has settled the larger of the two counts; from then on the estimate alone, because a deformed body may be
+  /// stiffer than the bound says.
+  StepLimit(Index dofs, double bound, double margin = 0.07);
+  /// From a random start, for a body that has become another. A bound from the elements holds for any part of them.
+  void restart() noexcept;
+
+  /// Iterates; `state.force` must belong to `state.displacement`. One force per iteration; no allocation. A force that
+  /// is not finite makes the limit zero.
+  template <ForceOperator F>
+  void iterate(F& force, const MotionState& state, int iterations) noexcept {
+    for (int i = 0; i < iterations; ++i) once(force, state);
+  }
+
+  /// Estimate of omega_max^2 [1/s^2].
+  double largest_square() const noexcept;
+  /// Largest step [s]: (1 - margin) 2 / omega_max.
+  double step() const noexcept;
+
+ private:
+  /// Between -1 and 1, without pattern (the finaliser of SplitMix64).
+  static double start_value(std::uint64_t i) noexcept;
+
+  template <ForceOperator F>
+  void once(F& force, const MotionState& s) noexcept {
+    double largest = 0.0, norm = 0.0;  // in the norm of the mass, in which M^-1 K is symmetric
+    for (Index dof : s.free) largest = std::max(largest, std::abs(vector_[dof]));
+    if (!(largest > 0.0)) return;  // nothing is free, or nothing is stiff
+    const double scale = force.probe_length() / largest;
+    moved_ = s.displacement;
+    for (Index dof : s.free) {
+      vector_[dof] *= scale;
+      moved_[dof] += vector_[dof];
+      norm += s.mass[dof] * vector_[dof] * vector_[dof];
+    }
+    force.force(moved_, force_);
+    double next = 0.0;
+    for (Index dof : s.free) {
+      vector_[dof] = (force_[dof] - s.force[dof]) / s.mass[dof];
+      next += s.mass[dof] * vector_[dof] * vector_[dof];
+    }
+    square_ = std::sqrt(next / norm);
+    ++iterations_;
+    if (std::isfinite(square_)) return;
+    iterations_ = 0;
+    for (Index dof : s.free) vector_[dof] = start_value(static_cast<std::uint64_t>(dof));
+    square_ = std::numeric_limits<double>::quiet_NaN();
+  }
+
+  VectorX vector_, moved_, force_;
+  double bound_, margin_, square_ = 0.0;
+  std::int64_t iterations_ = 0;  // since the last start
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/integrator/detail/step_limit.ipp>
+#endif

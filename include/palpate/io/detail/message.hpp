@@ -1,0 +1,77 @@
+// Texts put together from pieces: a refusal is one call that makes no string where it stands, so that it costs the
+// compiler and the caller little.
+#pragma once
+
+#include <palpate/core/setup_error.hpp>
+
+#include <bit>
+#include <concepts>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
+
+/// A piece of a text: a text, a whole number or a real one. It refers to the text.
+class Piece {
+ public:
+  enum class Kind { text, quoted, integer, real };
+
+  constexpr Piece(std::string_view text, Kind kind = Kind::text) noexcept
+      : text_(text.data()), value_(static_cast<std::int64_t>(text.size())), kind_(kind) {}
+  constexpr Piece(const char* text) noexcept : Piece(std::string_view(text)) {}
+  Piece(const std::string& text) noexcept : Piece(std::string_view(text)) {}
+  constexpr Piece(std::integral auto number) noexcept
+      : value_(static_cast<std::int64_t>(number)), kind_(Kind::integer) {}
+  constexpr Piece(double number) noexcept : value_(std::bit_cast<std::int64_t>(number)), kind_(Kind::real) {}
+  Piece(char) = delete;
+  Piece(bool) = delete;
+
+  /// Adds it to the end of `text`.
+  void add_to(std::string& text) const;
+
+ private:
+  const char* text_ = nullptr;
+  std::int64_t value_;  ///< the number, or the length of the text
+  Kind kind_;
+};
+
+/// Pieces one behind the other; to be passed on, not kept.
+class Pieces {
+ public:
+  constexpr Pieces() noexcept : single_(0) {}
+  constexpr Pieces(std::initializer_list<Piece> list) noexcept
+      : single_(0), list_(first_of(list)), count_(list.size()) {}
+  template <std::convertible_to<Piece> T>
+  constexpr Pieces(const T& single) noexcept : single_(single), count_(1) {}
+
+  constexpr const Piece* begin() const noexcept { return list_ == nullptr ? &single_ : list_; }
+  constexpr const Piece* end() const noexcept { return begin() + count_; }
+
+ private:
+  static constexpr const Piece* first_of(std::initializer_list<Piece> list) noexcept { return list.begin(); }
+
+  Piece single_;
+  const Piece* list_ = nullptr;
+  std::size_t count_ = 0;
+};
+
+/// The pieces as a text.
+std::string joined(const Pieces& pieces);
+
+/// Adds the pieces to the end of `text`.
+void append(std::string& text, std::initializer_list<Piece> pieces);
+
+/// A word for a message: in quotes, shortened, printable.
+constexpr Piece in_quotes(std::string_view word) noexcept {
+  return {word, Piece::Kind::quoted};
+}
+
+/// Throws SetupError.
+[[noreturn]] void refuse(SetupErrorKind kind, const Pieces& what, const Pieces& hint = {});
+
+}}}  // namespace palpate::PALPATE_ABI::io
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/io/detail/message.ipp>
+#endif

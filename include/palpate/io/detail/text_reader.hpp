@@ -1,0 +1,110 @@
+// Reads numbers and words from a text line by line, and raw bytes between lines, and says exactly where something is
+// wrong.
+#pragma once
+
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/io/detail/message.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace io {
+
+/// `file:12` for place 12, `file:byte 345` for place -345: lines mean nothing once binary data has begun.
+std::string place_text(const std::string& file, Index place);
+
+/// What else separates words, and what ends a line early.
+struct TextSyntax {
+  char comment = '\0';  ///< the rest of a line from here on is ignored
+  bool commas = false;  ///< a comma is a blank
+};
+
+/// Walks over a text that must outlive it. Blank lines, tabs, CRLF, a UTF-8 byte order mark and a missing last newline
+/// are accepted. Every refusal is a SetupError that reads `name:line: expected ..., found ...`. Nothing is allocated
+/// unless something is wrong.
+class TextReader {
+ public:
+  TextReader(std::string_view text, std::string name, TextSyntax syntax = {});
+
+  /// Moves to the next line, blank or not; false at the end of the text.
+  bool next_raw_line();
+
+  /// Moves to the next line that is not blank; false at the end of the text.
+  bool next_line();
+
+  /// Moves to the next line that is not blank and refuses when there is none.
+  void need_line(std::string_view expected);
+
+  /// Moves on to the next line that is not blank when nothing is left of this one.
+  void need_more(std::string_view expected);
+
+  /// The `bytes` bytes behind the current line as they are. From here on messages count bytes, not lines.
+  std::string_view take(std::size_t bytes, std::string_view what);
+
+  /// Moves behind the next line that begins with `mark`, whatever comes before it. Refuses when there is none.
+  void skip_to(const std::string& mark);
+
+  /// Refuses a text whose last line does not end: where a format has no mark for its end, the last number may be cut.
+  void need_last_line_end() const;
+
+  std::size_t size() const noexcept { return text_.size(); }  ///< bytes in all
+  std::size_t bytes_left() const noexcept { return next_ < text_.size() ? text_.size() - next_ : 0; }
+
+  /// The current line, or minus the current byte when binary data has begun; see place_text.
+  Index place() const noexcept {
+    if (is_binary_) return next_ == 0 ? -1 : -static_cast<Index>(next_);
+    return line_number_ < 1 ? 1 : line_number_;
+  }
+
+  std::string_view line() const noexcept { return line_; }        ///< the current line, trimmed
+  std::string_view rest() const noexcept { return trim(rest_); }  ///< what is left of it
+  Index line_number() const noexcept { return line_number_; }     ///< counted from 1
+  const std::string& name() const noexcept { return name_; }
+
+  /// The next word of the current line, empty at its end.
+  std::string_view token();
+
+  /// The next word as an integer between `low` and `high`; anything beyond them is refused as `kind`.
+  Index integer(std::string_view what, Index low, Index high, SetupErrorKind kind = SetupErrorKind::index_out_of_range);
+
+  /// A count of things that take at least `bytes_each` bytes of the lines below: no larger than the rest of the text
+  /// can hold.
+  Index count(std::string_view what, Index bytes_each);
+
+  /// The next word as a finite decimal number. Refuses NaN, infinity and overflow as non_finite, hexadecimal and
+  /// decimal commas as bad_file.
+  double real(std::string_view what);
+
+  /// Refuses when the current line holds another word.
+  void end_line(std::string_view what);
+
+  /// Throws `name:line: expected ..., found ...`.
+  [[noreturn]] void refuse(SetupErrorKind kind, const Pieces& expected, const Pieces& found,
+                           const Pieces& hint = {}) const;
+
+  /// Refuses a number that is not between `low` and `high`; `found` as it stands in the file.
+  [[noreturn]] void refuse_range(SetupErrorKind kind, std::string_view what, Index low, Index high,
+                                 const Pieces& found) const;
+
+ private:
+  bool is_blank(char c) const noexcept {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f' || (c == ',' && syntax_.commas);
+  }
+  std::string_view trim(std::string_view s) const noexcept {
+    while (!s.empty() && is_blank(s.front())) s.remove_prefix(1);
+    while (!s.empty() && is_blank(s.back())) s.remove_suffix(1);
+    return s;
+  }
+
+  std::string_view text_;
+  std::string name_;
+  TextSyntax syntax_;
+  std::string_view line_, rest_;
+  std::size_t next_ = 0;
+  Index line_number_ = 0;
+  bool is_binary_ = false;
+};
+
+}}}  // namespace palpate::PALPATE_ABI::io
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/io/detail/text_reader.ipp>
+#endif

@@ -1,0 +1,103 @@
+// Definitions of vtk_attributes.hpp.
+#pragma once
+
+#include <palpate/io/detail/vtk_attributes.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
+
+PALPATE_COLD PALPATE_INLINE void AttributeReader::begin(bool of_cells, Index expected) {
+  count_ = in_.integer("the number of cells or points", expected, expected, SetupErrorKind::bad_file);
+  in_.end_line("the number of data");
+  of_cells_ = of_cells;
+  has_begun_ = true;
+}
+
+PALPATE_COLD PALPATE_INLINE void AttributeReader::read(std::string_view keyword) {
+  if (same_word(keyword, "field"))
+    read_field();
+  else if (same_word(keyword, "metadata"))
+    skip_metadata();
+  else
+    read_attribute(keyword);
+}
+
+PALPATE_COLD PALPATE_INLINE void AttributeReader::skip_metadata() {
+  while (in_.next_raw_line() && !in_.line().empty()) {}
+}
+
+PALPATE_INLINE void AttributeReader::read_array(std::string_view name, const NumberType& type, Index components,
+                                                Index tuples) {
+  std::size_t rank = 0;
+  while (rank < region_arrays.size() && region_arrays[rank] != name) ++rank;
+  const bool is_region = of_cells_ && components == 1 && tuples == count_ && type.kind != NumberType::real &&
+                         type.bits > 1 && rank < region_rank_;
+  if (tuples > 0 && components > static_cast<Index>(in_.bytes_left()) * 8 / tuples)
+    in_.refuse(SetupErrorKind::count_too_large, "an array that fits into the file", {components, " x ", tuples});
+  if (!is_region) return numbers_.skip(type, components * tuples);
+  region_rank_ = rank;
+  regions.clear();
+  for (Index i = 0; i < tuples; ++i)
+    regions.push_back(static_cast<int>(numbers_.integer(type, "a region number", -max_int, max_int)));
+  numbers_.end("the region numbers");
+}
+
+PALPATE_COLD PALPATE_INLINE void AttributeReader::read_field() {
+  in_.token();
+  const Index arrays = in_.count("a number of arrays", 1);
+  in_.end_line("the number of arrays");
+  for (Index i = 0; i < arrays; ++i) {
+    in_.need_line("an array");
+    if (same_word(in_.line(), "metadata")) {
+      skip_metadata();
+      in_.need_line("an array");
+    }
+    const std::string_view name = in_.token();
+    const Index components = in_.integer("a number of components", 0, max_int);
+    const Index tuples = in_.integer("a number of tuples", 0, max_int);
+    const NumberType& type = numbers_.read_type();
+    in_.end_line("the type of an array");
+    read_array(name, type, components, tuples);
+  }
+}
+
+PALPATE_COLD PALPATE_INLINE void AttributeReader::read_attribute(std::string_view keyword) {
+  if (!has_begun_) in_.refuse(SetupErrorKind::bad_file, "a section such as POINTS or CELLS", in_quotes(in_.line()));
+  const std::string_view name = in_.token();
+  if (same_word(keyword, "lookup_table") || same_word(keyword, "color_scalars")) {
+    const Index size = in_.integer("a size", 0, max_int);
+    in_.end_line("a size");
+    const Index values = same_word(keyword, "lookup_table") ? 4 * size : size * count_;
+    return numbers_.skip(number_types[1], values);  // real numbers in ASCII, bytes in binary files
+  }
+  struct Kind {
+    std::string_view name;
+    Index components;
+  };
+  constexpr std::array<Kind, 9> kinds{{{"vectors", 3},
+                                       {"normals", 3},
+                                       {"tensors", 9},
+                                       {"tensors6", 6},
+                                       {"global_ids", 1},
+                                       {"pedigree_ids", 1},
+                                       {"edge_flags", 1},
+                                       {"texture_coordinates", 0},
+                                       {"scalars", 0}}};
+  std::size_t kind = 0;
+  while (kind < kinds.size() && !same_word(kinds[kind].name, keyword)) ++kind;
+  if (kind == kinds.size()) in_.refuse(SetupErrorKind::bad_file, "data such as SCALARS", in_quotes(in_.line()));
+  Index components = kinds[kind].components;
+  if (same_word(keyword, "texture_coordinates")) components = in_.integer("a number of components", 1, 3);
+  const NumberType& type = numbers_.read_type();
+  if (same_word(keyword, "scalars")) components = in_.rest().empty() ? 1 : in_.integer("a number of components", 1, 4);
+  in_.end_line("the type of the data");
+  if (same_word(keyword, "scalars")) {
+    in_.need_line("LOOKUP_TABLE");
+    if (!same_word(in_.token(), "lookup_table"))
+      in_.refuse(SetupErrorKind::bad_file, "LOOKUP_TABLE", in_quotes(in_.line()));
+    in_.token();
+    in_.end_line("the name of a table");
+  }
+  read_array(name, type, components, count_);
+}
+
+}}}  // namespace palpate::PALPATE_ABI::io::vtk

@@ -1,0 +1,78 @@
+// The numbers of legacy VTK files.
+#pragma once
+
+#include <palpate/io/detail/numbers.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
+
+/// A type of numbers in a file. Binary ones are big-endian; `bits` of them take whole bytes together.
+struct NumberType {
+  enum Kind { integer, unsigned_integer, real };
+  std::string_view name;
+  Kind kind;
+  int bits;
+};
+
+/// vtkIdType stands for 4 bytes in files.
+inline constexpr std::array number_types{
+    NumberType{"bit", NumberType::unsigned_integer, 1},
+    NumberType{"unsigned_char", NumberType::unsigned_integer, 8},
+    NumberType{"char", NumberType::integer, 8},
+    NumberType{"signed_char", NumberType::integer, 8},
+    NumberType{"unsigned_short", NumberType::unsigned_integer, 16},
+    NumberType{"short", NumberType::integer, 16},
+    NumberType{"unsigned_int", NumberType::unsigned_integer, 32},
+    NumberType{"int", NumberType::integer, 32},
+    NumberType{"vtkIdType", NumberType::integer, 32},
+    NumberType{"unsigned_long", NumberType::unsigned_integer, 64},
+    NumberType{"long", NumberType::integer, 64},
+    NumberType{"vtktypeint64", NumberType::integer, 64},
+    NumberType{"vtktypeuint64", NumberType::unsigned_integer, 64},
+    NumberType{"float", NumberType::real, 32},
+    NumberType{"double", NumberType::real, 64},
+};
+
+/// ASCII letters in small, whatever the locale.
+std::string lower(std::string_view text);
+
+/// Whether two words are the same but for small and capital letters.
+bool same_word(std::string_view a, std::string_view b) noexcept;
+
+/// Reads numbers that follow each other on any number of lines, or as big-endian binary data.
+class NumberStream {
+ public:
+  explicit NumberStream(TextReader& in) : in_(in) {}
+
+  bool is_binary = false;
+
+  /// The next word as a number type.
+  const NumberType& read_type();
+
+  /// The next number of an integer type, between `low` and `high`.
+  Index integer(const NumberType& type, std::string_view what, Index low, Index high);
+
+  /// The next number of a real type, finite.
+  double real(const NumberType& type, std::string_view what);
+
+  /// A count of things of `numbers` numbers each, no more than the rest of the file can hold.
+  Index count(std::string_view what, Index numbers);
+
+  /// Passes over `count` numbers nobody needs.
+  void skip(const NumberType& type, Index count);
+
+  /// Refuses more words on the line where the numbers ended.
+  void end(std::string_view what) {
+    if (!is_binary) in_.end_line(what);
+  }
+
+ private:
+  static BinaryLayout layout_of(const NumberType& type);
+
+  TextReader& in_;
+};
+
+}}}  // namespace palpate::PALPATE_ABI::io::vtk
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/io/detail/vtk_numbers.ipp>
+#endif

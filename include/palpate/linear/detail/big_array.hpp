@@ -1,0 +1,37 @@
+// Large blocks of doubles that are not filled before they are used.
+#pragma once
+
+#include <palpate/core/types.hpp>
+
+#include <memory>
+#include <new>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+struct AlignedDelete {
+  std::size_t alignment = 64;
+  void operator()(double* p) const noexcept { ::operator delete (p, std::align_val_t{alignment}); }
+};
+
+/// Uninitialised doubles, aligned for any packet. On Linux large ones ask for huge pages, for fewer page faults while a
+/// factorisation fills them.
+class BigArray {
+ public:
+  BigArray() = default;
+  explicit BigArray(Index size);
+
+  double* data() noexcept { return data_.get(); }
+  const double* data() const noexcept { return data_.get(); }
+  Index size() const noexcept { return size_; }
+  std::size_t bytes() const noexcept { return static_cast<std::size_t>(size_) * sizeof(double); }
+
+ private:
+  std::unique_ptr<double, AlignedDelete> data_;
+  Index size_ = 0;
+};
+
+}}}  // namespace palpate::detail
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/detail/big_array.ipp>
+#endif

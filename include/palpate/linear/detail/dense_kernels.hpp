@@ -1,0 +1,41 @@
+// Products of dense matrices, compiled once for all shapes of operands.
+#pragma once
+
+#include <palpate/core/types.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// How a column-major array is read as an operand; of a symmetric one the lower half.
+enum class Read : unsigned char { plain, transposed, symmetric };
+
+struct Operand {
+  const double* data;
+  Index stride;  ///< distance of columns in memory
+  Read read = Read::plain;
+};
+
+/// A block of a column-major matrix; with `lower` only its lower half is written.
+struct Target {
+  double* data;
+  Index rows, columns, stride;
+  bool lower = false;
+};
+
+/// c = c + factor a b, with `depth` the columns of a. The operands must not overlap c. Allocates its packed copies.
+void add_product(const Target& c, double factor, const Operand& a, const Operand& b, Index depth);
+
+/// a b and a^T b.
+MatrixX product(const MatrixX& a, const MatrixX& b);
+MatrixX transposed_product(const MatrixX& a, const MatrixX& b);
+
+/// y = y - a x and y = a^T x of a stored column by column. No allocation.
+void subtract_product(const double* a, Index rows, Index columns, const double* x, double* y) noexcept;
+void transposed_product(const double* a, Index rows, Index columns, const double* x, double* y) noexcept;
+/// y = a x of a symmetric matrix, lower half read once. No allocation.
+void symmetric_product(const MatrixX& a, const double* x, double* y) noexcept;
+
+}}}  // namespace palpate::detail
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/detail/dense_kernels.ipp>
+#endif

@@ -1,0 +1,186 @@
+// Definitions of dense_kernels.hpp.
+#pragma once
+
+#include <palpate/linear/detail/big_array.hpp>
+#include <palpate/linear/detail/dense_kernels.hpp>
+#include <palpate/linear/detail/lower_panels.hpp>
+#include <palpate/linear/detail/tile.hpp>
+
+#include <algorithm>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// Entry (i, s), or of the transposed operand entry (s, i).
+inline double entry(const Operand& m, Index i, Index s) noexcept {
+  const bool swap = m.read == Read::transposed || (m.read == Read::symmetric && i < s);
+  return swap ? m.data[s + i * m.stride] : m.data[i + s * m.stride];
+}
+
+inline Operand transposed(const Operand& m) noexcept {
+  if (m.read == Read::symmetric) return m;
+  return {m.data, m.stride, m.read == Read::plain ? Read::transposed : Read::plain};
+}
+
+/// Rows `first` ... of `steps` columns from `step` on, times a factor, in strips of `Height` rows, zeros behind the
+/// last row.
+template <int Height>
+inline void pack_operand(const Operand& m, double factor, Index first, Index count, Index step, Index steps,
+                         double* to) noexcept {
+  for (Index i = 0; i < count; i += Height, to += Height * steps) {
+    const Index valid = std::min<Index>(Height, count - i), row = first + i;
+    if (m.read == Read::plain && valid == Height) {
+      for (Index s = 0; s < steps; ++s) {
+        const double* const column = m.data + row + (step + s) * m.stride;
+        for (Index v = 0; v < Height; ++v) to[s * Height + v] = factor * column[v];
+      }
+      continue;
+    }
+    for (Index v = 0; v < Height; ++v)
+      for (Index s = 0; s < steps; ++s) to[s * Height + v] = v < valid ? factor * entry(m, row + v, step + s) : 0.0;
+  }
+}
+
+/// One tile at (i, j) of c minus left times right; at an edge of c by way of a copy.
+inline void subtract_tile_within(const Target& c, Index i, Index j, Index steps, const double* left,
+                                 const double* right) noexcept {
+  const Steps a{left, tile_rows}, b{right, tile_columns};
+  const bool whole = i + tile_rows <= c.rows && j + tile_columns <= c.columns;
+  if (whole && (!c.lower || i >= j + tile_columns - 1))
+    return subtract_tile<tile_packets, tile_columns, Into::full>(steps, a, b, 1, c.data + i + j * c.stride, c.stride,
+                                                                 tile_columns);
+  double tile[tile_rows * tile_columns];
+  subtract_tile<tile_packets, tile_columns, Into::empty>(steps, a, b, 1, tile, tile_rows, tile_columns);
+  for (Index q = j; q < std::min(j + tile_columns, c.columns); ++q)
+    for (Index p = c.lower ? std::max(i, q) : i; p < std::min(i + tile_rows, c.rows); ++p)
+      c.data[p + q * c.stride] += tile[(p - i) + (q - j) * tile_rows];
+}
+
+PALPATE_INLINE void add_product(const Target& c, double factor, const Operand& a, const Operand& b, Index depth) {
+  constexpr Index deep = LowerPanels::width;                       // steps at a time
+  constexpr Index block = (deep * 5 / 3) / tile_rows * tile_rows;  // rows that stay in the cache
+  const Index most = std::min(deep, depth);
+  const Operand b_transposed = transposed(b);
+  BigArray left((std::min(block, c.rows) + tile_rows) * most), right((c.columns + tile_columns) * most);
+  for (Index step = 0; step < depth; step += deep) {
+    const Index steps = std::min(deep, depth - step);
+    pack_operand<tile_columns>(b_transposed, 1.0, 0, c.columns, step, steps, right.data());
+    for (Index top = 0; top < c.rows; top += block) {
+      const Index bottom = std::min(top + block, c.rows);
+      pack_operand<tile_rows>(a, -factor, top, bottom - top, step, steps, left.data());
+      for (Index j = 0; j < c.columns && !(c.lower && j >= bottom); j += tile_columns)
+        for (Index i = top; i < bottom; i += tile_rows)
+          if (!c.lower || i + tile_rows > j)
+            subtract_tile_within(c, i, j, steps, left.data() + (i - top) * steps, right.data() + j * steps);
+    }
+  }
+}
+
+PALPATE_INLINE MatrixX product(const MatrixX& a, const MatrixX& b) {
+  MatrixX c(a.rows(), b.cols());
+  std::fill_n(c.data(), c.size(), 0.0);
+  add_product({c.data(), c.rows(), c.cols(), c.rows()}, 1.0, {a.data(), a.rows()}, {b.data(), b.rows()}, a.cols());
+  return c;
+}
+
+PALPATE_INLINE MatrixX transposed_product(const MatrixX& a, const MatrixX& b) {
+  MatrixX c(a.cols(), b.cols());
+  std::fill_n(c.data(), c.size(), 0.0);
+  add_product({c.data(), c.rows(), c.cols(), c.rows()}, 1.0, {a.data(), a.rows(), Read::transposed},
+              {b.data(), b.rows()}, a.rows());
+  return c;
+}
+
+template <int Columns>
+inline void subtract_few(const double* a, Index rows, const double* x, double* y) noexcept {
+  Packet minus_x[Columns];
+  for (int c = 0; c < Columns; ++c) minus_x[c] = broadcast(-x[c]);
+  Index i = 0;
+  for (; i + packet_size <= rows; i += packet_size) {
+    Packet out = load(y + i);
+    for (int c = 0; c < Columns; ++c) out = multiply_add(load(a + i + c * rows), minus_x[c], out);
+    store(y + i, out);
+  }
+  for (; i < rows; ++i)
+    for (int c = 0; c < Columns; ++c) y[i] -= a[i + c * rows] * x[c];
+}
+
+template <int Columns>
+inline void multiply_few(const double* a, Index rows, const double* x, double* y) noexcept {
+  Packet sum[Columns];
+  for (Packet& s : sum) s = broadcast(0.0);
+  Index i = 0;
+  for (; i + packet_size <= rows; i += packet_size) {
+    const Packet here = load(x + i);
+    for (int c = 0; c < Columns; ++c) sum[c] = multiply_add(load(a + i + c * rows), here, sum[c]);
+  }
+  for (int c = 0; c < Columns; ++c) {
+    y[c] = Eigen::internal::predux(sum[c]);
+    for (Index r = i; r < rows; ++r) y[c] += a[r + c * rows] * x[r];
+  }
+}
+
+PALPATE_INLINE void subtract_product(const double* a, Index rows, Index columns, const double* x, double* y) noexcept {
+  Index j = 0;
+  for (; j + 4 <= columns; j += 4) subtract_few<4>(a + j * rows, rows, x + j, y);
+  for (; j < columns; ++j) subtract_few<1>(a + j * rows, rows, x + j, y);
+}
+
+PALPATE_INLINE void transposed_product(const double* a, Index rows, Index columns, const double* x,
+                                       double* y) noexcept {
+  Index j = 0;
+  for (; j + 4 <= columns; j += 4) multiply_few<4>(a + j * rows, rows, x, y + j);
+  for (; j < columns; ++j) multiply_few<1>(a + j * rows, rows, x, y + j);
+}
+
+/// The part of `Columns` columns from j on, and of the same rows.
+template <int Columns>
+inline void add_symmetric_columns(const double* a, Index n, Index j, const double* x, double* y) noexcept {
+  const double* const from = a + j * n;
+  double in[Columns], out[Columns], tail[Columns];
+  for (int c = 0; c < Columns; ++c) {
+    in[c] = x[j + c];
+    out[c] = y[j + c];
+    tail[c] = 0.0;
+  }
+  for (int c = 0; c < Columns; ++c) {
+    out[c] += from[j + c + c * n] * in[c];
+    for (int r = c + 1; r < Columns; ++r) {
+      const double entry = from[j + r + c * n];
+      out[r] += entry * in[c];
+      tail[c] += entry * in[r];
+    }
+  }
+  Packet load_of[Columns], sum[Columns];
+  for (int c = 0; c < Columns; ++c) {
+    load_of[c] = broadcast(in[c]);
+    sum[c] = broadcast(0.0);
+  }
+  Index i = j + Columns;
+  for (; i + packet_size <= n; i += packet_size) {
+    const Packet here = load(x + i);
+    Packet there = load(y + i);
+    for (int c = 0; c < Columns; ++c) {
+      const Packet entries = load(from + i + c * n);
+      there = multiply_add(entries, load_of[c], there);
+      sum[c] = multiply_add(entries, here, sum[c]);
+    }
+    store(y + i, there);
+  }
+  for (; i < n; ++i)
+    for (int c = 0; c < Columns; ++c) {
+      y[i] += from[i + c * n] * in[c];
+      tail[c] += from[i + c * n] * x[i];
+    }
+  for (int c = 0; c < Columns; ++c) y[j + c] = out[c] + tail[c] + Eigen::internal::predux(sum[c]);
+}
+
+PALPATE_INLINE void symmetric_product(const MatrixX& a, const double* x, double* y) noexcept {
+  constexpr int few = tile_columns;  // a multiple of a packet, so that packets of y stay aligned
+  const Index n = a.rows();
+  std::fill_n(y, n, 0.0);
+  Index j = 0;
+  for (; j + few <= n; j += few) add_symmetric_columns<few>(a.data(), n, j, x, y);
+  for (; j < n; ++j) add_symmetric_columns<1>(a.data(), n, j, x, y);
+}
+
+}}}  // namespace palpate::detail

@@ -1,0 +1,38 @@
+// Blocks of right-hand sides through the fronts of a multifrontal factor.
+#pragma once
+
+#include <palpate/linear/detail/front_tree.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// Workspace of a block of right-hand sides, interleaved: `width()` values per row, a few packets of them.
+class FrontBlockSweeps {
+ public:
+  /// For up to `columns` right-hand sides at once, three packets at most.
+  FrontBlockSweeps(const FrontTree& tree, const double* factor, Index columns);
+
+  Index width() const noexcept { return width_; }
+  /// Values of one place in the elimination order.
+  double* row(Index place) noexcept { return values_.data() + place * width_; }
+  void clear(Index first, Index count) noexcept;
+  void forward(const Front& f) noexcept;
+  void backward(const Front& f) noexcept;
+
+ private:
+  using Substitution = void (*)(const double* l, const LowerPanels& shape, double* x) noexcept;
+
+  const FrontTree& tree_;
+  const double* factor_;
+  Index width_;
+  Substitution forward_, backward_;  // of this width
+  VectorX values_, local_;
+};
+
+/// x = K^-1 b for all columns. The front after the first `fronts` ones is held at zero.
+void solve_block(const FrontTree& tree, const double* factor, Index fronts, const MatrixX& b, MatrixX& x);
+
+}}}  // namespace palpate::detail
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/detail/front_block_sweeps.ipp>
+#endif

@@ -1,0 +1,166 @@
+// Dense Cholesky of the pivot columns of a front, and the symmetric update of the rest.
+#pragma once
+
+#include <palpate/linear/detail/lower_panels.hpp>
+#include <palpate/linear/detail/tile.hpp>
+
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// Receives every pivot before its root is taken; returns what to scale its column with.
+struct PivotSink {
+  double* pivots;          ///< per place in the elimination order
+  const double* diagonal;  ///< of the matrix, per place
+  double threshold;
+
+  /// A pivot that fails leaves its dof out: the column becomes zero, and the rest can still be looked at.
+  double accept(Index place, double pivot) const noexcept {
+    pivots[place] = pivot;
+    const bool good = std::isfinite(pivot) && pivot > 0.0 && pivot > threshold * diagonal[place];
+    return good ? 1.0 / std::sqrt(pivot) : 0.0;
+  }
+};
+
+/// Lower part of c (rows x columns, column major) minus or set to minus A A^T, A given by columns. Rows are a multiple
+/// of LowerPanels::alignment; entries above the diagonal are overwritten with anything.
+template <Into Mode>
+inline void subtract_square(double* c, Index stride, Index rows, Index columns, Steps a, Index steps) noexcept {
+  for (Index j = 0; j < columns; j += tile_columns) {
+    const Index valid = std::min<Index>(tile_columns, columns - j);
+    for (Index i = j / packet_size * packet_size; i < rows; i += tile_rows)
+      subtract_tile<Mode>((rows - i) / packet_size, steps, {a.data + i, a.step}, {a.data + j, a.step},
+                          c + i + j * stride, stride, valid);
+  }
+}
+
+/// Copies rows of a column-major matrix into strips of `Height` rows, one step of a strip after the other.
+template <int Height>
+inline void pack(const double* from, Index stride, Index rows, Index steps, double* to) noexcept {
+  for (Index i = 0; i < rows; i += Height)
+    for (Index s = 0; s < steps; ++s, to += Height) {
+      const double* column = from + i + s * stride;
+      for (Index v = 0; v < Height; ++v) to[v] = column[v];
+    }
+}
+
+/// subtract_square for a whole lower triangle, one panel after the other.
+template <Into Mode>
+inline void subtract_small(double* c, const LowerPanels& shape, Steps a, Index steps) noexcept {
+  for (Index p = 0; p < shape.panels(); ++p)
+    subtract_square<Mode>(c + shape.offset(p), shape.stride(p), shape.stride(p), shape.panel_width(p),
+                          {a.data + shape.panel_begin(p), a.step}, steps);
+}
+
+/// The same through packed copies, for operands that do not fit into the cache or straddle too many pages. `packed`
+/// holds 2 * (height + tile_rows) * steps doubles.
+template <Into Mode>
+inline void subtract_packed(double* c, const LowerPanels& shape, Steps a, Index steps, double* packed) noexcept {
+  constexpr Index block = (LowerPanels::width * 5 / 3) / tile_rows * tile_rows;  // rows that stay in the cache
+  double* const rows = packed;
+  double* const columns = packed + (shape.height + tile_rows) * steps;
+  pack<tile_rows>(a.data, a.step, shape.height, steps, rows);
+  pack<tile_columns>(a.data, a.step, shape.columns, steps, columns);
+  for (Index top = 0; top < shape.height; top += block) {
+    const Index bottom = std::min(top + block, shape.height);
+    for (Index p = 0; p < shape.panels() && shape.panel_begin(p) < bottom; ++p) {
+      const Index begin = shape.panel_begin(p), end = begin + shape.panel_width(p), stride = shape.stride(p);
+      double* const panel = c + shape.offset(p) - begin;
+      for (Index j = begin; j < end && j < bottom; j += tile_columns)
+        for (Index i = std::max(top, j / tile_rows * tile_rows); i < bottom; i += tile_rows)
+          subtract_tile<Mode>((shape.height - i) / packet_size, steps, {rows + i * steps, tile_rows},
+                              {columns + j * steps, tile_columns}, panel + i + (j - begin) * stride, stride, end - j);
+    }
+  }
+}
+
+/// Lower triangle minus A A^T, A of `steps` columns.
+template <Into Mode>
+inline void subtract_lower(double* c, const LowerPanels& shape, Steps a, Index steps, double* packed) noexcept {
+  constexpr Index few_rows = 320, few_steps = 24;
+  if (shape.height <= few_rows || steps <= few_steps)
+    subtract_small<Mode>(c, shape, a, steps);
+  else
+    subtract_packed<Mode>(c, shape, a, steps, packed);
+}
+
+inline constexpr Index column_block = 8;
+
+/// Cholesky of the top of `Width` columns in place, in a copy.
+template <int Width>
+inline void factor_corner(const double* a, Index stride, Index place, const PivotSink& sink, double (&l)[Width][Width],
+                          double (&scale)[Width]) noexcept {
+  for (int j = 0; j < Width; ++j)
+    for (int i = j; i < Width; ++i) l[j][i] = a[i + j * stride];
+  for (int j = 0; j < Width; ++j) {
+    const double pivot = l[j][j];
+    scale[j] = sink.accept(place + j, pivot);
+    l[j][j] = scale[j] != 0.0 ? pivot * scale[j] : 1.0;
+    for (int i = j + 1; i < Width; ++i) l[j][i] *= scale[j];
+    for (int q = j + 1; q < Width; ++q)
+      for (int i = q; i < Width; ++i) l[q][i] -= l[j][q] * l[j][i];
+  }
+}
+
+/// Factorises `Width` columns, at most column_block: the corner, then all rows below it.
+template <int Width>
+inline void factor_columns(double* a, Index stride, Index rows, Index place, const PivotSink& sink) noexcept {
+  double l[Width][Width], scale[Width];
+  factor_corner<Width>(a, stride, place, sink, l, scale);
+  for (Index i = Width == column_block ? column_block : 0; i < rows; i += packet_size) {
+    Packet x[Width];
+    for (int j = 0; j < Width; ++j) x[j] = load(a + i + j * stride);
+    for (int j = 0; j < Width; ++j) {
+      x[j] = Eigen::internal::pmul(x[j], broadcast(scale[j]));
+      for (int q = j + 1; q < Width; ++q) x[q] = multiply_add(x[j], broadcast(-l[j][q]), x[q]);
+    }
+    for (int j = 0; j < Width; ++j) store(a + i + j * stride, x[j]);
+  }
+  for (int j = 0; j < Width; ++j)
+    for (int i = j; i < Width; ++i) a[i + j * stride] = l[j][i];
+}
+
+/// factor_columns for a number of columns known at run time.
+template <int Width>
+inline void factor_few(double* a, Index stride, Index rows, Index columns, Index place,
+                       const PivotSink& sink) noexcept {
+  if (columns == Width) return factor_columns<Width>(a, stride, rows, place, sink);
+  if constexpr (Width > 1) factor_few<Width - 1>(a, stride, rows, columns, place, sink);
+}
+
+/// Factorises a trapezoid (rows x columns, column major) by halves, so that nearly all work is in subtract_square.
+inline void factor_trapezoid(double* a, Index stride, Index rows, Index columns, Index place,
+                             const PivotSink& sink) noexcept {
+  if (columns > column_block) {
+    const Index half = (columns / 2 + column_block - 1) / column_block * column_block;
+    double* const rest = a + half * (stride + 1);
+    factor_trapezoid(a, stride, rows, half, place, sink);
+    subtract_square<Into::full>(rest, stride, rows - half, columns - half, {a + half, stride}, half);
+    factor_trapezoid(rest, stride, rows - half, columns - half, place + half, sink);
+    return;
+  }
+  factor_few<column_block>(a, stride, rows, columns, place, sink);
+}
+
+/// Factorises the pivot columns of a front and writes minus L21 L21^T to the lower triangle `update` of its `rows`
+/// others. `packed` is workspace.
+inline void factor_front(double* front, Index pivots, Index rows, double* update, Index place, const PivotSink& sink,
+                         double* packed) noexcept {
+  const LowerPanels shape = LowerPanels::of(pivots + rows, pivots), rest = LowerPanels::of(rows, rows);
+  for (Index p = 0; p < shape.panels(); ++p) {
+    const Index begin = shape.panel_begin(p), steps = shape.panel_width(p), stride = shape.stride(p);
+    double* const panel = front + shape.offset(p);
+    factor_trapezoid(panel, stride, stride, steps, place + begin, sink);
+    if (begin + steps < pivots)
+      subtract_lower<Into::full>(front + shape.offset(p + 1), {stride - steps, pivots - begin - steps},
+                                 {panel + steps, stride}, steps, packed);
+    if (rows == 0) continue;
+    const Steps below{panel + (pivots - begin), stride};
+    if (p == 0)
+      subtract_lower<Into::empty>(update, rest, below, steps, packed);
+    else
+      subtract_lower<Into::full>(update, rest, below, steps, packed);
+  }
+}
+
+}}}  // namespace palpate::detail

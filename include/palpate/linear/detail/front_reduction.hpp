@@ -1,0 +1,39 @@
+// Unit loads on a few dofs, taken half the way through a multifrontal factor.
+#pragma once
+
+#include <palpate/core/types.hpp>
+
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// L^-1 e of unit loads e on some dofs of an interior factor, where it is not zero, and what they condense to on the
+/// kept dofs. Entries of the inverse follow without going back: with F the condensed loads and C the compliance of the
+/// kept dofs, G_ij = y_i . y_j + f_i . C f_j, and C f_j on the kept dofs.
+struct ReducedUnits {
+  std::vector<Index> places;  ///< of the rows, in the elimination order, ascending
+  MatrixX values;             ///< places x loads
+  MatrixX kept_load;          ///< kept x loads
+
+  Index size() const noexcept { return values.cols(); }
+  /// y_i . y_j for all pairs.
+  MatrixX products(const ReducedUnits& other) const;
+};
+
+namespace detail {
+
+struct FrontTree;
+
+/// Unit loads on `dofs`, none of them kept, through the first `fronts` fronts; `kept` are the dofs of the front after
+/// them. Only fronts above the dofs are walked. Allocates.
+ReducedUnits reduce_units(const FrontTree& tree, const double* factor, Index fronts, std::span<const Index> dofs,
+                          std::span<const Index> kept);
+
+}  // namespace detail
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/detail/front_reduction.ipp>
+#endif

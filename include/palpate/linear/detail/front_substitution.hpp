@@ -1,0 +1,117 @@
+// Forward and backward substitution with the columns of one front.
+#pragma once
+
+#include <palpate/linear/detail/lower_panels.hpp>
+#include <palpate/linear/detail/tile.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// v -= A y for `Width` columns of A; rows from `first`, the rest of an aligned block one by one.
+template <int Width>
+inline void subtract_columns(const double* a, Index stride, Index first, Index rows, const double (&y)[Width],
+                             double* v) noexcept {
+  Index i = first;
+  for (const Index aligned = LowerPanels::padded(first); i < aligned; ++i)
+    for (int j = 0; j < Width; ++j) v[i] -= a[i + j * stride] * y[j];
+  Packet minus_y[Width];
+  for (int j = 0; j < Width; ++j) minus_y[j] = broadcast(-y[j]);
+  for (; i < rows; i += packet_size) {
+    Packet even = load(v + i), odd = broadcast(0.0);
+    for (int j = 0; j < Width; j += 2) {
+      even = multiply_add(load(a + i + j * stride), minus_y[j], even);
+      if (j + 1 < Width) odd = multiply_add(load(a + i + (j + 1) * stride), minus_y[j + 1], odd);
+    }
+    store(v + i, Eigen::internal::padd(even, odd));
+  }
+}
+
+/// y -= A^T v, as above.
+template <int Width>
+inline void subtract_dots(const double* a, Index stride, Index first, Index rows, const double* v,
+                          double (&y)[Width]) noexcept {
+  Index i = first;
+  for (const Index aligned = LowerPanels::padded(first); i < aligned; ++i)
+    for (int j = 0; j < Width; ++j) y[j] -= a[i + j * stride] * v[i];
+  Packet sum[Width];
+  for (Packet& s : sum) s = broadcast(0.0);
+  for (; i < rows; i += packet_size) {
+    const Packet x = load(v + i);
+    for (int j = 0; j < Width; ++j) sum[j] = multiply_add(load(a + i + j * stride), x, sum[j]);
+  }
+  for (int j = 0; j < Width; ++j) y[j] -= Eigen::internal::predux(sum[j]);
+}
+
+/// Solves with `Width` columns whose corner is at row `top`, and takes their part from all rows below.
+template <int Width>
+inline void forward_columns(const double* a, Index stride, Index top, double* v) noexcept {
+  const double* const corner = a + top;
+  double y[Width];
+  for (int j = 0; j < Width; ++j) {
+    double sum = v[top + j];
+    for (int q = 0; q < j; ++q) sum -= corner[j + q * stride] * y[q];
+    v[top + j] = y[j] = sum / corner[j + j * stride];
+  }
+  subtract_columns<Width>(a, stride, top + Width, stride, y, v);
+}
+
+template <int Width>
+inline void backward_columns(const double* a, Index stride, Index top, double* v) noexcept {
+  const double* const corner = a + top;
+  double y[Width];
+  for (int j = 0; j < Width; ++j) y[j] = v[top + j];
+  subtract_dots<Width>(a, stride, top + Width, stride, v, y);
+  for (int j = Width - 1; j >= 0; --j) {
+    for (int q = j + 1; q < Width; ++q) y[j] -= corner[q + j * stride] * y[q];
+    v[top + j] = y[j] = y[j] / corner[j + j * stride];
+  }
+}
+
+/// Calls `visit(width)` with the number of columns, 1 to 7, as a constant.
+template <class Visit>
+inline void with_width(Index width, Visit&& visit) noexcept {
+  switch (width) {
+    case 1:
+      return visit(std::integral_constant<int, 1>());
+    case 2:
+      return visit(std::integral_constant<int, 2>());
+    case 3:
+      return visit(std::integral_constant<int, 3>());
+    case 4:
+      return visit(std::integral_constant<int, 4>());
+    case 5:
+      return visit(std::integral_constant<int, 5>());
+    case 6:
+      return visit(std::integral_constant<int, 6>());
+    case 7:
+      return visit(std::integral_constant<int, 7>());
+    default:
+      return;
+  }
+}
+
+/// One right-hand side: v holds the pivots' loads and zeros for the rows below, padded to the height; out come L11^-1
+/// of the former and minus L21 times that. Reads L once.
+inline void forward_front(const double* l, const LowerPanels& shape, double* v) noexcept {
+  for (Index p = 0; p < shape.panels(); ++p) {
+    const double* const panel = l + shape.offset(p);
+    const Index stride = shape.stride(p), columns = shape.panel_width(p), whole = columns / 8 * 8;
+    double* const at = v + shape.panel_begin(p);
+    for (Index j = 0; j < whole; j += 8) forward_columns<8>(panel + j * stride, stride, j, at);
+    with_width(columns - whole,
+               [&](auto width) { forward_columns<decltype(width)::value>(panel + whole * stride, stride, whole, at); });
+  }
+}
+/// The reverse: v holds the pivots' values and the answers in the rows below; out comes L11^-T (v - L21^T v below).
+inline void backward_front(const double* l, const LowerPanels& shape, double* v) noexcept {
+  for (Index p = shape.panels() - 1; p >= 0; --p) {
+    const double* const panel = l + shape.offset(p);
+    const Index stride = shape.stride(p), columns = shape.panel_width(p), whole = columns / 8 * 8;
+    double* const at = v + shape.panel_begin(p);
+    with_width(columns - whole, [&](auto width) {
+      backward_columns<decltype(width)::value>(panel + whole * stride, stride, whole, at);
+    });
+    for (Index j = whole - 8; j >= 0; j -= 8) backward_columns<8>(panel + j * stride, stride, j, at);
+  }
+}
+
+}}}  // namespace palpate::detail

@@ -1,0 +1,16 @@
+// From supernodes to fronts.
+#pragma once
+
+#include <palpate/linear/detail/front_tree.hpp>
+#include <palpate/linear/detail/supernodes.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// The fronts of some supernodes, and where the entries of a matrix go in them.
+FrontTree build_front_tree(const NodeGraph& g, const Supernodes& s, const SparseLower& lower);
+
+}}}  // namespace palpate::detail
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/detail/front_tree_builder.ipp>
+#endif

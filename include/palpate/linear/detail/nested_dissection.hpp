@@ -1,0 +1,16 @@
+// Elimination order by nested dissection (George 1973; Lipton, Rose and Tarjan 1979).
+#pragma once
+
+#include <palpate/linear/detail/node_graph.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// The nodes of a graph in the order of their elimination, kept ones last. Uses the coordinates where there are any.
+/// O(edges log nodes).
+detail::NodeVector nested_dissection(const NodeGraph& graph);
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/detail/nested_dissection.ipp>
+#endif

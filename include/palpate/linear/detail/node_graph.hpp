@@ -1,0 +1,41 @@
+// Which nodes of a sparse symmetric matrix are coupled; a node is a group of dofs that are eliminated together.
+#pragma once
+
+#include <palpate/linear/detail/indexed_vector.hpp>
+
+#include <Eigen/SparseCore>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Lower half of a symmetric matrix, compressed. Entries above the diagonal are ignored.
+using SparseLower = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
+
+/// What is known about a matrix besides its entries; all of it may be left empty.
+struct DofLayout {
+  std::vector<Index> node_of_dof;  ///< per dof the node it belongs to; empty: found from equal rows
+  std::vector<Vector3> positions;  ///< per node id its coordinates [m]; empty: ordered by the graph alone
+  std::vector<Index> kept;         ///< dofs to eliminate last; their Schur complement comes out in this order
+};
+
+/// Undirected graph of nodes without loops. Nodes hold one dof or more, all kept or none.
+struct NodeGraph {
+  detail::OffsetVector start;        ///< nodes + 1 offsets into neighbour
+  detail::NodeVector neighbour;      ///< both directions of every edge
+  detail::OffsetVector dof_start;    ///< nodes + 1 offsets into dof
+  detail::IndexedVector<Index> dof;  ///< dofs of every node, ascending
+  detail::NodeVector node_of_dof;    ///< inverse of the former
+  detail::IndexedVector<char> kept;  ///< per node
+  std::vector<Vector3> positions;    ///< per node, or empty
+
+  Index nodes() const noexcept { return start.size() - 1; }
+  Index weight(Index node) const noexcept { return dof_start[node + 1] - dof_start[node]; }
+};
+
+/// The graph of a matrix. O(nonzeros), allocates. Throws bad_argument when the layout does not fit the matrix.
+NodeGraph node_graph(const SparseLower& lower, const DofLayout& layout);
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/detail/node_graph.ipp>
+#endif

@@ -1,0 +1,36 @@
+// The inverse of a dense symmetric positive definite matrix.
+#pragma once
+
+#include <palpate/core/types.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Replaces the lower half of an SPD matrix by that of its inverse, in halves: with S the Schur complement of A_11,
+/// B_22 = S^-1, B_21 = -B_22 T, B_11 = A_11^-1 + T^T B_22 T, T = A_21 A_11^-1. About n^3 multiplications and additions
+/// in all, almost all of them in matrix products, and a quarter of the matrix as workspace.
+class SpdInverse {
+ public:
+  /// Refuses a pivot that is not finite, not positive or below `threshold` of its own diagonal entry, as
+  /// not_positive_definite with `what`. The upper half is not read; afterwards the matrix is symmetric to the last bit.
+  static void invert(MatrixX& matrix, double threshold, const char* what);
+
+ private:
+  static constexpr Index leaf = 64;
+
+  SpdInverse(MatrixX& matrix, double threshold);
+  void split(Index begin, Index size);
+  void invert_leaf(Index begin, Index size);
+  double* at(Index i, Index j) noexcept { return a_ + i + j * n_; }
+
+  double* a_;
+  Index n_;
+  VectorX diagonal_;
+  double threshold_;
+  double worst_ = 1.0;  // smallest pivot so far, of its diagonal entry; NaN ends it
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/linear/detail/spd_inverse.ipp>
+#endif

@@ -1,0 +1,44 @@
+// Definitions of split_elasticity.hpp.
+#pragma once
+
+#include <palpate/local/detail/split_elasticity.hpp>
+#include <palpate/local/isotropic.hpp>
+
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE double bulk_modulus(const Matrix6& d) noexcept {
+  if (const auto c = lame_constants(d)) return c->lambda + 2.0 / 3.0 * c->mu;
+  // D = L diag(p) L^T and L y = m: m . D^-1 m is the sum of y_i^2 / p_i. By hand: Eigen's LDLT of six rows costs every
+  // program a second and a half of compilation.
+  Matrix6 a = d;
+  Vector6 y = Vector6::Zero();
+  for (int i = 0; i < 3; ++i) y[i] = 1.0;
+  double sum = 0.0;
+  for (int j = 0; j < 6; ++j) {
+    sum += y[j] * y[j] / a(j, j);
+    for (int i = j + 1; i < 6; ++i) {
+      const double l = a(i, j) / a(j, j);
+      y[i] -= l * y[j];
+      for (int k = j + 1; k <= i; ++k) a(i, k) -= l * a(k, j);
+    }
+  }
+  return 1.0 / sum;
+}
+
+PALPATE_INLINE SplitElasticity split_elasticity(const Matrix6& d) noexcept {
+  SplitElasticity split;
+  const double bulk = bulk_modulus(d);
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) split.volumetric(i, j) = bulk;
+  split.deviatoric = d - split.volumetric;
+  return split;
+}
+
+PALPATE_INLINE double equivalent_poisson_ratio(const Matrix6& d) noexcept {
+  const double bulk = bulk_modulus(d), shear = (d.trace() - 3.0 * bulk) / 7.0;
+  return bulk > 0.0 && std::isfinite(bulk) ? (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear)) : 0.5;
+}
+
+}}  // namespace palpate

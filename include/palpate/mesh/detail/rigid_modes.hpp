@@ -1,0 +1,83 @@
+// Which rigid motions the constraints leave free, by component and by name.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/detail/components.hpp>
+#include <palpate/mesh/detail/rigid_mode_names.hpp>
+#include <palpate/mesh/mesh.hpp>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// The rigid motions that a component can still make.
+struct FreeRigidModes {
+  Index component = 0;
+  Index node_count = 0;
+  std::vector<NodeId> first_nodes;  ///< at most SetupProblem::max_ids
+  std::vector<std::string> modes;   ///< 0 to 6, "translation x", "rotation about the axis (0, 0, 1) through (0, 0, 0)"
+
+  int count() const noexcept { return static_cast<int>(modes.size()); }
+};
+
+namespace detail {
+
+/// Nodes of each component, by counting sort. Nodes of component -1 are left out.
+std::vector<std::vector<NodeId>> nodes_by_component(std::span<const NodeId> component);
+
+/// Centre and size by which positions are scaled before ranks are decided.
+struct RigidFrame {
+  Vector3 centre = Vector3::Zero();  ///< mean of the constrained nodes, or of all nodes when none is
+  double size = 1.0;                 ///< diagonal of the component's bounding box
+  double resolution = 0.0;           ///< rounding of the coordinates / size
+
+  RigidFrame() = default;
+  RigidFrame(std::span<const Vector3> positions, std::span<const NodeId> nodes,
+             std::span<const std::uint8_t> constrained);
+};
+
+/// Row of the constraint "component `axis` of the displacement at p is given" for the rigid motion u = t + w x p,
+/// unknowns (w, t).
+Vector6 constraint_row(const Vector3& p, int axis);
+
+/// What is left of a vector outside the span of an orthonormal basis.
+Vector6 remainder(const std::vector<Vector6>& basis, Vector6 v);
+
+/// Orthonormal basis of the rigid motions (w, t) that no constraint sees. Gram-Schmidt with pivoting over the
+/// rows: unlike the eigenvalues of the Gram matrix it squares nothing, and a thousand equal constraints weigh no more
+/// than one. O(6 rows).
+RigidMotions free_motions(std::span<const Vector3> positions, std::span<const NodeId> nodes,
+                          std::span<const std::uint8_t> constrained, const RigidFrame& frame);
+
+}  // namespace detail
+
+/// What each component can still do, in the order of the components: none of six (held) to six of six (free body).
+/// `component[i]` is the component of node i, -1 to leave it out (mesh/detail/components.hpp); bit a of `constrained[i]` says
+/// that displacement component a of node i is prescribed. Positions are scaled by the component's size; a lever arm
+/// below one millionth of it counts as none. `origin` is where the frame of the positions lies in the one in which axes
+/// are named [m]. Throws bad_argument when the lengths differ. O(20 nodes), allocates.
+std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vector3> positions, std::span<const NodeId> component,
+                                             std::span<const std::uint8_t> constrained,
+                                             const Vector3& origin = Vector3::Zero());
+
+/// Refuses as `unconstrained` when a component can still move as a rigid body: statics then has no unique answer, and a
+/// factorisation may report success all the same. ids: first nodes of the first such component, count: its nodes,
+/// value: its free modes.
+void require_constrained(std::span<const Vector3> positions, std::span<const NodeId> component,
+                         std::span<const std::uint8_t> constrained, const Vector3& origin = Vector3::Zero());
+
+/// The first of these for a mesh; the second, which needs more of it, is in mesh/detail/mechanisms.hpp.
+template <Element E>
+std::vector<FreeRigidModes> free_rigid_modes(const Mesh<E>& mesh, std::span<const std::uint8_t> constrained,
+                                             const Vector3& origin = Vector3::Zero()) {
+  return free_rigid_modes(mesh.positions, connected_components<E>(mesh).of_node, constrained, origin);
+}
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/detail/rigid_modes.ipp>
+#endif

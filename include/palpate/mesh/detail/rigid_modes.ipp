@@ -1,0 +1,152 @@
+// Definitions of rigid_modes.hpp.
+#pragma once
+
+#include <palpate/mesh/detail/rigid_modes.hpp>
+#include <palpate/core/detail/box.hpp>
+#include <palpate/core/setup_error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+PALPATE_INLINE std::vector<std::vector<NodeId>> nodes_by_component(std::span<const NodeId> component) {
+  NodeId last = -1;
+  for (NodeId c : component) last = std::max(last, c);
+  std::vector<std::vector<NodeId>> nodes(static_cast<std::size_t>(last + 1));
+  for (std::size_t i = 0; i < component.size(); ++i)
+    if (component[i] >= 0) nodes[static_cast<std::size_t>(component[i])].push_back(static_cast<NodeId>(i));
+  return nodes;
+}
+
+PALPATE_INLINE RigidFrame::RigidFrame(std::span<const Vector3> positions, std::span<const NodeId> nodes,
+                                      std::span<const std::uint8_t> constrained) {
+  const auto at = [&](NodeId node) -> const Vector3& { return positions[static_cast<std::size_t>(node)]; };
+  const Vector3 origin = at(nodes.front());  // offsets keep their digits far from zero
+  Box box;
+  Vector3 all = Vector3::Zero(), held = Vector3::Zero();
+  Index held_count = 0;
+  double farthest = 0.0;
+  for (NodeId node : nodes) {
+    const Vector3 x = at(node) - origin;
+    box.include(x);
+    all += x;
+    farthest = std::max(farthest, max_abs(at(node)));
+    if ((constrained[static_cast<std::size_t>(node)] & 7u) == 0) continue;
+    held += x;
+    ++held_count;
+  }
+  centre = origin + (held_count > 0 ? Vector3(held / static_cast<double>(held_count))
+                                    : Vector3(all / static_cast<double>(nodes.size())));
+  const double diagonal = box.size().norm();
+  if (diagonal > 0.0) size = diagonal;
+  resolution = 8.0 * std::numeric_limits<double>::epsilon() * farthest / size;
+}
+
+PALPATE_INLINE Vector6 constraint_row(const Vector3& p, int axis) {
+  const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+  Vector6 row = Vector6::Zero();
+  row[next] = p[last];  // p x e
+  row[last] = -p[next];
+  row[3 + axis] = 1.0;
+  return row;
+}
+
+inline double dot(const Vector6& a, const Vector6& b) noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < 6; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+inline Vector6 normalized(const Vector6& v) noexcept {
+  return v / std::sqrt(dot(v, v));
+}
+
+PALPATE_INLINE Vector6 remainder(const std::vector<Vector6>& basis, Vector6 v) {
+  for (int twice = 0; twice < 2; ++twice) {
+    const Vector6 whole = v;
+    for (const Vector6& b : basis) v = v - dot(b, whole) * b;
+  }
+  return v;
+}
+
+PALPATE_INLINE RigidMotions free_motions(std::span<const Vector3> positions, std::span<const NodeId> nodes,
+                                         std::span<const std::uint8_t> constrained, const RigidFrame& frame) {
+  const double tolerance = std::max(1e-6, frame.resolution);
+  std::vector<Vector6> basis;
+  while (basis.size() < 6) {
+    Vector6 best = Vector6::Zero();
+    for (NodeId node : nodes) {
+      const Vector3 p = (positions[static_cast<std::size_t>(node)] - frame.centre) / frame.size;
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((constrained[static_cast<std::size_t>(node)] >> axis & 1u) == 0) continue;
+        const Vector6 rest = remainder(basis, constraint_row(p, axis));
+        if (dot(rest, rest) > dot(best, best)) best = rest;
+      }
+    }
+    if (!(std::sqrt(dot(best, best)) > tolerance)) break;
+    basis.push_back(normalized(best));
+  }
+  const auto seen = static_cast<std::ptrdiff_t>(basis.size());
+  while (basis.size() < 6) {  // complete the basis with what is left of the unit vectors
+    Vector6 best = Vector6::Zero();
+    for (int i = 0; i < 6; ++i) {
+      Vector6 unit = Vector6::Zero();
+      unit[i] = 1.0;
+      const Vector6 rest = remainder(basis, unit);
+      if (dot(rest, rest) > dot(best, best)) best = rest;
+    }
+    basis.push_back(normalized(best));
+  }
+  return {basis.begin() + seen, basis.end()};
+}
+
+}}}  // namespace palpate::detail
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vector3> positions,
+                                                            std::span<const NodeId> component,
+                                                            std::span<const std::uint8_t> constrained,
+                                                            const Vector3& origin) {
+  if (component.size() != positions.size() || constrained.size() != positions.size())
+    raise(SetupErrorKind::bad_argument, "positions, components and constraints have different lengths",
+          "Give one of each per node");
+  std::vector<FreeRigidModes> result;
+  for (const std::vector<NodeId>& nodes : detail::nodes_by_component(component)) {
+    FreeRigidModes modes{static_cast<Index>(result.size()), static_cast<Index>(nodes.size()), {}, {}};
+    if (!nodes.empty()) {
+      modes.first_nodes.assign(
+          nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(std::min(nodes.size(), SetupProblem::max_ids)));
+      const detail::RigidFrame frame(positions, nodes, constrained);
+      modes.modes = detail::name_rigid_motions(detail::free_motions(positions, nodes, constrained, frame),
+                                               origin + frame.centre, frame.size);
+    }
+    result.push_back(std::move(modes));
+  }
+  return result;
+}
+
+PALPATE_INLINE void require_constrained(std::span<const Vector3> positions, std::span<const NodeId> component,
+                                        std::span<const std::uint8_t> constrained, const Vector3& origin) {
+  const std::vector<FreeRigidModes> all = free_rigid_modes(positions, component, constrained, origin);
+  const auto loose = std::ranges::count_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
+  if (loose == 0) return;
+  const FreeRigidModes& first = *std::ranges::find_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
+  SetupProblem p;
+  p.kind = SetupErrorKind::unconstrained;
+  p.what = "component " + std::to_string(first.component) + " of " + std::to_string(all.size()) + " has " +
+           std::to_string(first.count()) + (first.count() == 1 ? " free rigid motion:" : " free rigid motions:");
+  for (std::size_t i = 0; i < first.modes.size(); ++i) p.what += (i == 0 ? " " : ", ") + first.modes[i];
+  if (loose > 1)
+    p.what += "; " + std::to_string(loose - 1) + " more " + (loose == 2 ? "component" : "components") + " can move";
+  p.hint = "Prescribe more components of the displacement; a static body needs six that hold it";
+  p.ids.assign(first.first_nodes.begin(), first.first_nodes.end());
+  p.ids_of = SetupIds::nodes;
+  p.count = first.node_count;
+  p.value = first.count();
+  raise(std::move(p));
+}
+
+}}  // namespace palpate

@@ -1,0 +1,53 @@
+// What became of a cache file.
+#pragma once
+
+#include <palpate/core/config.hpp>
+
+#include <iosfwd>
+#include <ostream>
+#include <string>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Why a cache file was not used, the first reason found.
+enum class CacheMismatch : std::uint8_t {
+  none,
+  unreadable,   ///< it is there but does not open
+  foreign,      ///< not a cache file of palpate; never overwritten
+  truncated,    ///< shorter than it must be
+  byte_order,   ///< written on a machine of other endianness
+  version,      ///< of the library or of the file's layout
+  header,       ///< damaged: its own hash is wrong
+  scalar,       ///< float, double
+  policy,       ///< another solver
+  element,      ///< other shape functions or quadrature
+  mesh,         ///< positions, connectivity or regions
+  material,     ///< elasticity; densities and loads do not matter
+  conditions,   ///< which components are prescribed; their values do not matter
+  touched,      ///< the touched nodes
+  stiffness,    ///< none of these, and still another matrix: code or compiler changed
+  elimination,  ///< another order of elimination: code or compiler changed
+  payload,      ///< damaged: the hash of the stored numbers is wrong
+  answers,      ///< everything fits, but a solve with a known answer is wrong
+};
+
+/// What a set-up with `cache_file` did; `file` is empty when none was asked for.
+struct CacheReport {
+  std::string file;
+  bool supported = true;  ///< the solver has something to store
+  bool read = false;      ///< the system comes from the file
+  bool written = false;   ///< the file was (re)written
+  CacheMismatch mismatch = CacheMismatch::none;
+  std::string why;        ///< what differs, for `mismatch`
+  std::string problem;    ///< why the file could not be written
+  std::size_t bytes = 0;  ///< of the file, read or written
+};
+
+/// One line: read / written / rebuilt because ... / could not be written because ...
+std::ostream& operator<<(std::ostream& out, const CacheReport& r);
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/cache/cache_report.ipp>
+#endif

@@ -1,0 +1,46 @@
+// From a mesh as given to the admitted mesh of a model, in the frame of the middle of its box.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/mesh/admission.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/model/admission_report.hpp>
+#include <palpate/model/detail/stage_timer.hpp>
+
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// An admitted mesh, its nodes moved so that the centre of its box is the origin.
+template <Element E>
+struct AdmittedMesh {
+  Mesh<E> mesh;
+  std::vector<NodeId> node_map;  ///< new id of every node as given, -1 for those dropped
+  OriginalIds ids;               ///< of its nodes and elements in the mesh as given
+  Vector3 origin;                ///< of the mesh's frame in the mesh as given [m]
+};
+
+/// Admits a mesh and reports what admission found. Throws what admit throws.
+template <Element E, MeshOf<E> Given>
+AdmittedMesh<E> admit_mesh(const Given& mesh, const Scene& scene, const AdmissionPolicy& policy,
+                           const SetupLimits& limits, SetupReport& report) {
+  limits.advance("admission", 0.0);
+  Admitted<E> admitted = [&] {
+    const StageTimer timer(report, "admission");
+    // A mesh that lists its groups keeps all, so that later conditions may name any.
+    if constexpr (ListsGroups<Given>)
+      return admit<E>(mesh, policy);
+    else
+      return admit<E>(mesh, policy, scene.group_names());
+  }();
+  report_admission(admitted, report);
+  OriginalIds ids = original_ids(admitted);
+  const Vector3 origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
+  for (Vector3& x : admitted.mesh.positions) x -= origin;
+  return {std::move(admitted.mesh), std::move(admitted.node_map), std::move(ids), origin};
+}
+
+}}  // namespace palpate

@@ -1,0 +1,168 @@
+// A body with its conditions, ready for statics or dynamics.
+#pragma once
+
+#include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/detail/elastic_forces.hpp>
+#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/detail/linear_forces.hpp>
+#include <palpate/assembly/detail/smoothed_stiffness.hpp>
+#include <palpate/assembly/detail/smoothed_strain.hpp>
+#include <palpate/assembly/detail/viscous_forces.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/assembly/large_strain.hpp>
+#include <palpate/assembly/load_vector.hpp>
+#include <palpate/assembly/mass_matrix.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/local/loads.hpp>
+#include <palpate/mesh/detail/mechanisms.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/surface.hpp>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// What holds and moves a body, without its elements and laws. Vectors have 3 entries per node.
+struct DeformableBody {
+  std::unique_ptr<ElasticForces> elastic;
+  EssentialConditions conditions;
+  VectorX load;     ///< dead loads, gravity included [N]
+  MassMatrix mass;  ///< consistent; empty in a body for statics
+  VectorX lumped;   ///< mass per node [kg]; empty in a body for statics
+  BlockPattern pattern;
+  std::vector<Vector3> positions;  ///< at rest [m]
+};
+
+/// Diagonal of the box round a body [m].
+double extent(const std::vector<Vector3>& positions);
+
+/// Throws bad_density where a node that may move has no mass.
+void require_mass(const DeformableBody& body);
+
+namespace detail {
+
+/// All but the forces and the mass.
+template <Element E>
+DeformableBody body_without_mass(const Body<E>& rest, const Scene& scene) {
+  DeformableBody body;
+  const auto boundary = extract_boundary<E>(rest.mesh);
+  body.conditions = resolve_essential(rest.mesh, boundary, scene);
+  body.load = applied_load(rest, boundary, scene);
+  if (!scene.gravity().isZero(0.0)) {
+    const VectorX mass = nodal_mass(rest);
+    for (Index i = 0; i < mass.size(); ++i) add_node_vector(body.load, i, mass[i] * scene.gravity());
+  }
+  if (!all_finite(body.load)) raise(SetupErrorKind::non_finite, "the loads are not finite");
+  body.positions = rest.mesh.positions;
+  return body;
+}
+
+template <Element E>
+DeformableBody body_with_mass(const Body<E>& rest, const Scene& scene, const SetupLimits& limits) {
+  DeformableBody body = body_without_mass(rest, scene);
+  body.mass = assemble_mass(rest, limits);
+  body.lumped = lumped_mass(rest);
+  body.pattern = body.mass.pattern();
+  return body;
+}
+
+template <Element E>
+DeformableBody held_body_without_forces(const Body<E>& rest, const Scene& scene) {
+  DeformableBody body = body_without_mass(rest, scene);
+  require_constrained(rest.mesh, body.conditions.constrained);
+  body.pattern = block_pattern(rest.mesh);
+  return body;
+}
+
+void refuse_initial_strains(const Scene& scene);
+
+/// A mesh with materials of any kind, at large strain or small.
+template <Element E, LargeStrainMaterial M>
+auto make_any_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
+  return make_hyperelastic_body(std::move(mesh), materials);
+}
+template <Element E, class M>
+auto make_any_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
+  return make_body(std::move(mesh), materials);
+}
+
+}  // namespace detail
+
+// The functions below take the geometry of a body as it is: make bodies of admitted meshes (mesh/admission.hpp). Flat and
+// inverted elements are not looked for here. Equilibrium and HapticFEModel admit the meshes they are given.
+
+/// A hyperelastic body in a scene. Throws what assembly and conditions throw, and unsupported for initial strains.
+template <Element E, LargeStrainMaterial M>
+DeformableBody make_deformable_body(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
+  detail::refuse_initial_strains(scene);
+  DeformableBody made = detail::body_with_mass(body.rest, scene, limits);
+  made.elastic = std::make_unique<LargeStrain<E, M>>(std::move(body), limits);
+  return made;
+}
+
+/// The same for statics: without mass, and unconstrained is thrown where the scene lets it move as a whole.
+template <Element E, LargeStrainMaterial M>
+DeformableBody make_held_body(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
+  detail::refuse_initial_strains(scene);
+  DeformableBody made = detail::held_body_without_forces(body.rest, scene);
+  made.elastic = std::make_unique<LargeStrain<E, M>>(std::move(body), limits);
+  return made;
+}
+
+/// A body at small strain in a scene; initial strains become loads.
+template <Element E>
+DeformableBody make_deformable_body(Body<E> body, const Scene& scene, const SetupLimits& limits = {}) {
+  static_assert(!HasSmoothedStrain<E>,
+                "palpate: the stiffness of a smoothed element has another pattern than its mass");
+  DeformableBody made = detail::body_with_mass(body, scene, limits);
+  made.load += initial_strain_load(body, initial_strains_by_region(body.mesh, scene));
+  made.elastic = std::make_unique<LinearForces>(assemble_stiffness<E>(body, limits));
+  return made;
+}
+
+/// The same for statics, as above.
+template <Element E>
+DeformableBody make_held_body(Body<E> body, const Scene& scene, const SetupLimits& limits = {}) {
+  static_assert(!HasSmoothedStrain<E>, "palpate: statics at small strain with smoothed elements is HapticFEModel's");
+  DeformableBody made = detail::held_body_without_forces(body, scene);
+  made.load += initial_strain_load(body, initial_strains_by_region(body.mesh, scene));
+  made.elastic = std::make_unique<LinearForces>(assemble_stiffness<E>(body, limits));
+  return made;
+}
+
+/// A body at small strain with memory. Throws also unsupported for initial strains, and what ViscousForces throws.
+template <Element E>
+DeformableBody make_deformable_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {
+  static_assert(!HasSmoothedStrain<E>,
+                "palpate: the stiffness of a smoothed element has another pattern than its mass");
+  detail::refuse_initial_strains(scene);
+  DeformableBody made = detail::body_with_mass(body.fast, scene, limits);
+  made.elastic = std::make_unique<ViscousForces>(std::move(body), limits);
+  return made;
+}
+
+/// The same for statics, as above.
+template <Element E>
+DeformableBody make_held_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {
+  static_assert(!HasSmoothedStrain<E>,
+                "palpate: the stiffness of a smoothed element has another pattern than its mesh");
+  detail::refuse_initial_strains(scene);
+  DeformableBody made = detail::held_body_without_forces(body.fast, scene);
+  made.elastic = std::make_unique<ViscousForces>(std::move(body), limits);
+  return made;
+}
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/detail/deformable_body.ipp>
+#endif

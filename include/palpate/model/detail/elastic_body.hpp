@@ -1,0 +1,60 @@
+// A linear elastic body without its element type: what statics asks of it.
+#pragma once
+
+#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/model/cache/detail/cache_key.hpp>
+#include <palpate/model/detail/touchable.hpp>
+#include <palpate/model/setup_report.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// An admitted body with its boundary. Everything here is for set-up and for changes of loads, none for a tick. Vectors
+/// have 3 entries per node. Functions that take a scene throw what resolving it throws (unknown_group, empty_group,
+/// unsupported ...).
+class ElasticBody {
+ public:
+  ElasticBody() = default;
+  ElasticBody(const ElasticBody&) = delete;
+  ElasticBody& operator=(const ElasticBody&) = delete;
+  virtual ~ElasticBody() = default;
+
+  virtual const std::vector<Vector3>& positions() const noexcept = 0;
+  virtual const std::vector<std::string>& region_names() const noexcept = 0;
+  virtual const std::vector<double>& densities() const noexcept = 0;
+
+  /// Refuses a body that can still move: unconstrained. Names axes in the frame of the mesh as given.
+  virtual void require_constrained(const EssentialConditions& conditions) const = 0;
+  virtual EssentialConditions conditions(const Scene& scene) const = 0;
+  virtual Touchable touchable(const Scene& scene) const = 0;
+  virtual std::vector<NodeId> seen(const Scene& scene) const = 0;
+
+  /// All loads of a scene but gravity [N].
+  virtual VectorX applied_load(const Scene& scene) const = 0;
+  /// Initial strain per region.
+  virtual std::vector<Vector6> initial_strains(const Scene& scene) const = 0;
+  virtual VectorX initial_strain_load(const std::vector<Vector6>& strains) const = 0;
+  /// What `strain_energy` leaves out.
+  virtual void swap_initial_strains(std::vector<Vector6>& strains) noexcept = 0;
+  /// Mass per node [kg].
+  virtual VectorX nodal_mass() const = 0;
+  virtual double strain_energy(const VectorX& u) const = 0;
+
+  virtual CacheKey key() const noexcept = 0;
+  virtual void report_locking(SetupReport& report) const = 0;
+};
+
+/// A body that passed admission, its nodes moved so that the centre of its box is the origin.
+struct AdmittedBody {
+  std::unique_ptr<ElasticBody> body;
+  std::vector<NodeId> node_map;  ///< new id of every node as given, -1 for those dropped
+  OriginalIds ids;                ///< of its nodes and elements in the mesh as given
+  Vector3 origin;                ///< of the body's frame in the mesh as given [m]
+};
+
+}}  // namespace palpate

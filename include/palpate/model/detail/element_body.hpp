@@ -1,0 +1,120 @@
+// A linear elastic body of one element type.
+#pragma once
+
+#include <palpate/assembly/load_vector.hpp>
+#include <palpate/mesh/detail/mechanisms.hpp>
+#include <palpate/mesh/surface.hpp>
+#include <palpate/model/admission_report.hpp>
+#include <palpate/model/detail/elastic_body.hpp>
+
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// The body of elements E.
+template <Element E>
+class ElementBody final : public ElasticBody {
+ public:
+  /// `origin` is where the body's frame lies in the mesh as given [m].
+  explicit ElementBody(Body<E> body, const Vector3& origin = Vector3::Zero());
+
+  const Body<E>& body() const noexcept { return body_; }
+  const std::vector<BoundaryFace>& boundary() const noexcept { return boundary_; }
+
+  const std::vector<Vector3>& positions() const noexcept override;
+  const std::vector<std::string>& region_names() const noexcept override;
+  const std::vector<double>& densities() const noexcept override;
+  void require_constrained(const EssentialConditions& conditions) const override;
+  EssentialConditions conditions(const Scene& scene) const override;
+  Touchable touchable(const Scene& scene) const override;
+  std::vector<NodeId> seen(const Scene& scene) const override;
+  VectorX applied_load(const Scene& scene) const override;
+  std::vector<Vector6> initial_strains(const Scene& scene) const override;
+  VectorX initial_strain_load(const std::vector<Vector6>& strains) const override;
+  void swap_initial_strains(std::vector<Vector6>& strains) noexcept override;
+  VectorX nodal_mass() const override;
+  double strain_energy(const VectorX& u) const override;
+  CacheKey key() const noexcept override;
+  void report_locking(SetupReport& report) const override;
+
+ private:
+  Body<E> body_;
+  std::vector<BoundaryFace> boundary_;
+  Vector3 origin_;
+};
+
+namespace detail {
+
+template <Element E>
+const ElementBody<E>& element_body(const ElasticBody& body) noexcept {
+  return static_cast<const ElementBody<E>&>(body);
+}
+
+}  // namespace detail
+
+template <Element E>
+ElementBody<E>::ElementBody(Body<E> body, const Vector3& origin)
+    : body_(std::move(body)), boundary_(extract_boundary<E>(body_.mesh)), origin_(origin) {}
+
+template <Element E>
+const std::vector<Vector3>& ElementBody<E>::positions() const noexcept {
+  return body_.mesh.positions;
+}
+template <Element E>
+const std::vector<std::string>& ElementBody<E>::region_names() const noexcept {
+  return body_.mesh.region_names;
+}
+template <Element E>
+const std::vector<double>& ElementBody<E>::densities() const noexcept {
+  return body_.density;
+}
+template <Element E>
+void ElementBody<E>::require_constrained(const EssentialConditions& conditions) const {
+  palpate::require_constrained(body_.mesh, conditions.constrained, origin_);
+}
+template <Element E>
+EssentialConditions ElementBody<E>::conditions(const Scene& scene) const {
+  return resolve_essential(mesh_ref(body_.mesh), boundary_, scene);
+}
+template <Element E>
+Touchable ElementBody<E>::touchable(const Scene& scene) const {
+  return resolve_touchable(mesh_ref(body_.mesh), boundary_, scene);
+}
+template <Element E>
+std::vector<NodeId> ElementBody<E>::seen(const Scene& scene) const {
+  return resolve_seen(mesh_ref(body_.mesh), boundary_, scene);
+}
+template <Element E>
+VectorX ElementBody<E>::applied_load(const Scene& scene) const {
+  return palpate::applied_load(body_, boundary_, scene);
+}
+template <Element E>
+std::vector<Vector6> ElementBody<E>::initial_strains(const Scene& scene) const {
+  return initial_strains_by_region(body_.mesh, scene);
+}
+template <Element E>
+VectorX ElementBody<E>::initial_strain_load(const std::vector<Vector6>& strains) const {
+  return palpate::initial_strain_load(body_, strains);
+}
+template <Element E>
+void ElementBody<E>::swap_initial_strains(std::vector<Vector6>& strains) noexcept {
+  body_.initial_strain.swap(strains);
+}
+template <Element E>
+VectorX ElementBody<E>::nodal_mass() const {
+  return palpate::nodal_mass(body_);
+}
+template <Element E>
+double ElementBody<E>::strain_energy(const VectorX& u) const {
+  return palpate::strain_energy(body_, u);
+}
+template <Element E>
+CacheKey ElementBody<E>::key() const noexcept {
+  return body_key(body_);
+}
+template <Element E>
+void ElementBody<E>::report_locking(SetupReport& report) const {
+  palpate::report_locking<E>(body_.elasticity, report);
+}
+
+}}  // namespace palpate

@@ -1,0 +1,349 @@
+// Motion in time of a co-rotated body by implicit steps without a factor: fixed work per step.
+#pragma once
+
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/detail/corotated_tetrahedra.hpp>
+#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/assembly/load_vector.hpp>
+#include <palpate/assembly/mass_matrix.hpp>
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/realtime.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/integrator/detail/implicit_step.hpp>
+#include <palpate/integrator/detail/requirements.hpp>
+#include <palpate/integrator/time_scheme.hpp>
+#include <palpate/linear/bounded_conjugate_gradient.hpp>
+#include <palpate/material/corotational.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/moving/detail/corotated_step.hpp>
+#include <palpate/model/moving/detail/step_preconditioners.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// M a + D v + f(u) = load for linear tetrahedra that turn (CorotatedTetrahedra), linearised at the state the motion
+/// coasts to (Baraff and Witkin 1998) and solved by conjugate gradients on products without a matrix. A step takes up
+/// to two sweeps of forces and `solve.maximum_iterations` products; it neither allocates nor throws. What it leaves:
+/// `solve.error` of the increment, and what the rotations change within the step, which `residual` shows and the next
+/// step takes up. The check keeps implicit Euler from adding energy: the potential of the step must end no higher than
+/// at the state it starts from, else it is linearised again. Vectors have 3 entries per node; mass is lumped. Neither
+/// copied nor moved.
+template <class Base = LinearElastic, class S = float, class Preconditioner = BlockJacobi>
+class CorotatedMotion {
+ public:
+  using Tetrahedra = CorotatedTetrahedra<Base, S>;
+  /// Of an increment, in the energy norm: with more a step is not close to its answer, and a correction not made.
+  static constexpr double tolerable_error = 0.05;
+  static_assert(StepPreconditioner<Preconditioner, Tetrahedra>);
+
+  /// Starts at rest without displacement. Throws what Tetrahedra and conditions throw, unsupported for initial strains,
+  /// bad_density where a free node has no mass, bad_argument for options out of range.
+  CorotatedMotion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene,
+                  const CorotatedMotionOptions& options = {}, const SetupLimits& limits = {})
+      : options_(checked(options)),
+        tetrahedra_(body, limits),
+        body_(checked(body.rest, scene, limits)),
+        mass_(mass_of_dofs(body_.lumped)),
+        step_(options.scheme, mass_.size()),
+        preconditioner_(body_, body.rest, limits),
+        gradients_(mass_.size()),
+        load_(body_.load) {
+    for (VectorX* v :
+         {&u_, &v_, &a_, &trial_, &velocity_, &acceleration_, &increment_, &force_, &residual_, &drag_, &inertia_})
+      *v = VectorX::Zero(mass_.size());
+    for (Index dof = 0; dof < mass_.size(); ++dof)
+      if (body_.conditions.is_constrained(dof)) held_.push_back(dof);
+    set_state(trial_, velocity_);
+  }
+  CorotatedMotion(const CorotatedMotion&) = delete;
+  CorotatedMotion& operator=(const CorotatedMotion&) = delete;
+
+  /// Moves on by h [s].
+  CorotatedStep step(double h) noexcept {
+    CorotatedStep report;
+    if (!ImplicitStep::is_length(h)) return report;
+    const FlushDenormals flush;
+    set_length(h);
+    step_.coast(u_, v_, a_);
+    const double highest = options_.check ? limit() : infinity;
+    coast();
+    double reached = evaluate(report.deformation);
+    energy_known_ = false;  // rotations are no longer those of the present state
+    if (!std::isfinite(reached)) return report;
+    do {
+      prepare();
+      report.solve = gradients_.solve_into(*this, residual_, increment_, options_.solve);
+      trial_ += increment_;
+      find_motion();
+      ++report.linearisations;
+      if (options_.check) report.calm = settle(highest, reached, report);
+    } while (!report.calm && report.linearisations < options_.maximum_linearisations);
+    if (!all_finite(trial_) || !all_finite(velocity_)) return report;
+    accept();
+    energy_known_ = options_.check;
+    time_ += h;
+    report.taken = true;
+    return report;
+  }
+
+  /// Adds what `more` forces [N] change in the step just taken, to first order. One solve. False, and nothing changes,
+  /// where no step was taken since the state or the length of steps was changed, and where the solve does not end
+  /// within tolerable_error.
+  bool correct(const VectorX& more) noexcept {
+    const FlushDenormals flush;
+    if (!stepped_) return false;
+    const BoundedSolveReport report = gradients_.solve_into(*this, more, increment_, options_.solve);
+    if (report.iterations == 0) return report.converged;
+    if (!(report.error <= tolerable_error)) return false;
+    trial_ = u_ + increment_;
+    find_motion();
+    if (!all_finite(trial_) || !all_finite(velocity_)) return false;
+    accept();
+    energy_known_ = false;
+    return true;
+  }
+  /// Displacement [m] that forces [N] add at the end of a step, to first order, with the rotations looked at last.
+  /// Solved to the end, whatever the options say: for set-up. False where it does not get there.
+  bool respond(const VectorX& forces, VectorX& u) noexcept {
+    return gradients_.solve_into(*this, forces, u, {1000, sizeof(S) == 8 ? 1e-10 : 1e-6}).converged;
+  }
+  /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
+  bool prepare_response(double h) noexcept {
+    if (!ImplicitStep::is_length(h)) return false;
+    set_length(h);
+    tetrahedra_.linearise(u_, force_, energy_);
+    energy_known_ = true;
+    trial_ = u_;
+    prepare();
+    return std::isfinite(energy_);
+  }
+
+  double time() const noexcept { return time_; }
+  const VectorX& displacement() const noexcept { return u_; }
+  const VectorX& velocity() const noexcept { return v_; }
+  const VectorX& acceleration() const noexcept { return a_; }
+  const DeformableBody& body() const noexcept { return body_; }
+  const Preconditioner& preconditioner() const noexcept { return preconditioner_; }
+  /// With what force the body answers its state [N], inertia and damping included, as the last step left it: on held
+  /// dofs the reaction and the load there.
+  const VectorX& resistance() noexcept {
+    tetrahedra_.linearise(u_, force_, energy_);
+    energy_known_ = true;
+    damp(v_, drag_);
+    return drag_ += force_ + mass_.cwiseProduct(a_);
+  }
+
+  /// Changes the state; prescribed components rest where they are prescribed. The acceleration follows from the forces.
+  /// Throws bad_argument, without a change, for vectors of another size.
+  void set_state(const VectorX& u, const VectorX& v) {
+    for (const VectorX* given : {&u, &v}) require_entries(*given, u_.size());
+    for (const Index dof : held_) {
+      u_[dof] = body_.conditions.prescribed[dof];
+      v_[dof] = a_[dof] = 0.0;
+    }
+    for (const Index dof : body_.conditions.free_dofs) {
+      u_[dof] = u[dof];
+      v_[dof] = v[dof];
+    }
+    tetrahedra_.linearise(u_, force_, energy_);
+    damp(v_, drag_);
+    for (const Index dof : body_.conditions.free_dofs) a_[dof] = (load_[dof] - force_[dof] - drag_[dof]) / mass_[dof];
+    if (!all_finite(a_)) a_.setZero();  // of loads that are none: steps refuse these
+    energy_known_ = true;
+    stepped_ = false;
+    age_ = 0;
+  }
+  /// At rest in u, as if nothing had been before: the same steps follow to the last bit. Throws as set_state.
+  void rest_at(const VectorX& u) {
+    tetrahedra_.forget_rotations();
+    set_state(u, VectorX::Zero(u.size()));
+  }
+  /// Elements for which gone(element) leave where they are, for good, with their mass; `nodal_mass` is what is left
+  /// (lumped_mass(body, gone)), `load` the loads on it [N] (CutPhysics::load_left). Velocities of what is left stay,
+  /// and nodes without mass are held where they are. A preconditioner that can takes it in (BlockJacobi); another goes
+  /// on with what it knows, which is right but slower. Throws bad_argument or bad_density, without a change.
+  template <class Gone>
+  void remove_elements(Gone&& gone, const VectorX& nodal_mass, const VectorX& load) {
+    require_mass_left(nodal_mass, load);
+    tetrahedra_.remove_if(gone);
+    hold_bare(nodal_mass);
+    body_.lumped = nodal_mass;
+    mass_ = mass_of_dofs(nodal_mass);
+    load_ = body_.load = load;
+    if constexpr (requires { preconditioner_.change(body_); }) preconditioner_.change(body_);
+    set_state(u_, v_);
+  }
+  /// Forces from now on instead of the scene's loads [N]. Throws bad_argument for another size; does not allocate.
+  void set_load(const VectorX& load) {
+    require_entries(load, u_.size());
+    load_ = load;
+  }
+  /// Values of the prescribed components at the end of the next step [m]. Throws as set_load.
+  void set_prescribed(const VectorX& values) {
+    require_entries(values, u_.size());
+    body_.conditions.prescribed = values;
+  }
+
+  double kinetic_energy() const noexcept { return 0.5 * v_.dot(mass_.cwiseProduct(v_)); }
+
+  // SpdOperator: what multiplies the increment
+  Index size() const noexcept { return mass_.size(); }
+  void apply(const VectorX& x, VectorX& y) const noexcept {
+    tetrahedra_.apply(x, y);
+    y = factors_.stiffness * y + factors_.mass * mass_.cwiseProduct(x);
+  }
+  void precondition(const VectorX& r, VectorX& z) const noexcept {
+    preconditioner_.apply(r, z);
+    for (const Index dof : bare_) z[dof] = 0.0;
+  }
+
+ private:
+  static CorotatedMotionOptions checked(const CorotatedMotionOptions& o) {
+    require_damping(o.mass_damping, o.stiffness_damping);
+    if (o.solve.maximum_iterations < 1 || !(o.solve.tolerance >= 0.0 && o.solve.tolerance < 1.0) ||
+        o.precondition_every < 1 || o.maximum_linearisations < 1)
+      raise(SetupErrorKind::bad_argument, "a step without work",
+            "Give at least one of each, and a tolerance from 0 to less than 1");
+    return o;
+  }
+  static DeformableBody checked(const Body<Tet4>& rest, const Scene& scene, const SetupLimits& limits) {
+    detail::refuse_initial_strains(scene);
+    DeformableBody body = detail::body_with_mass(rest, scene, limits);
+    require_mass(body);
+    return body;
+  }
+
+  void require_mass_left(const VectorX& mass, const VectorX& load) const {
+    if (3 * mass.size() != size() || load.size() != size())
+      raise(SetupErrorKind::bad_argument, std::to_string(mass.size()) + " masses and " + std::to_string(load.size()) +
+                                              " loads for " + std::to_string(size() / 3) + " nodes");
+    for (Index i = 0; i < mass.size(); ++i)
+      if (!(mass[i] >= 0.0) || !(mass[i] <= body_.lumped[i] * (1.0 + 1e-9)))
+        raise(SetupErrorKind::bad_density,
+              "node " + std::to_string(i) + " has the mass " + number(mass[i]) + " after elements have left",
+              "Give lumped_mass(body, gone)");
+  }
+  /// Holds the nodes that no element is left at.
+  void hold_bare(const VectorX& mass) {
+    EssentialConditions& c = body_.conditions;
+    for (Index dof = 0; dof < size(); ++dof) {
+      if (mass[dof / 3] > 0.0 || !(body_.lumped[dof / 3] > 0.0)) continue;
+      bare_.push_back(dof);
+      c.prescribed[dof] = u_[dof];
+      c.constrained[static_cast<std::size_t>(dof / 3)] = 7;
+      if (!c.is_constrained(dof)) held_.push_back(dof);
+      c.free_index[static_cast<std::size_t>(dof)] = -1;
+    }
+    std::erase_if(c.free_dofs, [&c](Index dof) { return c.is_constrained(dof); });
+    for (std::size_t i = 0; i < c.free_dofs.size(); ++i)
+      c.free_index[static_cast<std::size_t>(c.free_dofs[i])] = static_cast<Index>(i);
+  }
+
+  /// The last step, if there was one, can not be corrected any more.
+  void set_length(double h) noexcept {
+    if (h != step_.length()) age_ = 0;
+    step_.set_length(h);
+    stepped_ = false;
+    const double per_v = step_.velocity_per_displacement();
+    factors_ = {step_.acceleration_per_displacement() + options_.mass_damping * per_v,
+                1.0 + options_.stiffness_damping * per_v};
+  }
+  void prepare() noexcept {
+    preconditioner_.update(tetrahedra_, factors_, trial_, age_ % options_.precondition_every == 0);
+    ++age_;
+  }
+
+  /// Where the step would end without new acceleration, held dofs where they are told to be.
+  void coast() noexcept {
+    trial_ = step_.predicted();
+    for (const Index dof : held_) trial_[dof] = body_.conditions.prescribed[dof];
+    find_motion();
+  }
+  void find_motion() noexcept { step_.find_motion(trial_, velocity_, acceleration_); }
+  void accept() noexcept {
+    u_ = trial_;
+    v_ = velocity_;
+    a_ = acceleration_;
+    energy_ = trial_energy_;
+    stepped_ = true;
+  }
+  void damp(const VectorX& v, VectorX& f) noexcept {
+    if (options_.stiffness_damping > 0.0) {
+      tetrahedra_.apply(v, f);
+      f *= options_.stiffness_damping;
+    } else {
+      f.setZero();
+    }
+    if (options_.mass_damping > 0.0) f += options_.mass_damping * mass_.cwiseProduct(v);
+  }
+
+  /// Potential of the step at trial_, given the energy stored there; leaves drag and inertia.
+  double potential(double stored) noexcept {
+    damp(velocity_, drag_);
+    inertia_ = mass_.cwiseProduct(acceleration_);
+    return stored - load_.dot(trial_) + step_.potential(velocity_, drag_, acceleration_, inertia_);
+  }
+  /// The same with the force that is left there on free dofs.
+  double evaluate(DeformationReport& deformation) noexcept {
+    deformation = tetrahedra_.linearise(trial_, force_, trial_energy_);
+    const double at_trial = potential(trial_energy_);
+    residual_ = load_ - force_ - drag_ - inertia_;
+    for (const Index dof : held_) residual_[dof] = 0.0;
+    return at_trial;
+  }
+  /// Potential of the step at the state it starts from; no limit where held dofs move, which does work.
+  double limit() noexcept {
+    for (const Index dof : held_)
+      if (u_[dof] != body_.conditions.prescribed[dof]) return infinity;
+    if (!energy_known_) tetrahedra_.linearise(u_, force_, energy_);
+    trial_ = u_;
+    find_motion();
+    return potential(energy_);
+  }
+  /// Halves the increment until the potential is no higher than before it; true when it is within the limit as well.
+  bool settle(double highest, double& reached, CorotatedStep& report) noexcept {
+    const double before = reached,
+                 noise = std::numeric_limits<S>::epsilon() * (std::abs(before) + force_.norm() * trial_.norm());
+    for (int halvings = 0;; ++halvings) {
+      reached = evaluate(report.deformation);
+      if (reached <= before + noise || halvings == 6) break;
+      increment_ *= 0.5;
+      trial_ -= increment_;
+      find_motion();
+    }
+    const double left = residual_.norm();
+    report.residual = left > 0.0 ? left / std::max({force_.norm(), inertia_.norm(), drag_.norm(), load_.norm()}) : 0.0;
+    return reached <= highest + noise;
+  }
+
+  CorotatedMotionOptions options_;
+  Tetrahedra tetrahedra_;
+  DeformableBody body_;
+  VectorX mass_;  // of every dof
+  ImplicitStep step_;
+  Preconditioner preconditioner_;
+  BoundedConjugateGradient gradients_;
+  std::vector<Index> held_, bare_;  // dofs; bare ones belong to nodes without an element
+  VectorX u_, v_, a_, load_;
+  VectorX trial_, velocity_, acceleration_, increment_, force_, residual_, drag_, inertia_;
+  StepFactors factors_;
+  double energy_ = 0.0, trial_energy_ = 0.0;  // stored
+  bool energy_known_ = false;                 // at the present state
+  bool stepped_ = false;                      // the state is the end of step_
+  int age_ = 0;                               // of the preconditioner, in steps
+  double time_ = 0.0;
+};
+
+}}  // namespace palpate

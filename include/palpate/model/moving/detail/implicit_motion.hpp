@@ -1,0 +1,34 @@
+// Implicit steps by Newton's method, as a moving model drives them.
+#pragma once
+
+#include <palpate/model/moving/implicit_dynamics.hpp>
+#include <palpate/model/moving/tissue_motion.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// An ImplicitDynamics. A step that is cut off may leave a twentieth of the force.
+class ImplicitMotion final : public TissueMotion {
+ public:
+  static constexpr double tolerable_residual = 0.05;
+
+  ImplicitMotion(DeformableBody body, const DynamicsParameters& parameters, const SetupLimits& limits);
+
+  MotionStep step(double h) noexcept override;
+  bool correct(const VectorX& more) noexcept override;
+  bool prepare_response(double h) noexcept override;
+  bool respond(const VectorX& forces, VectorX& u) noexcept override;
+  const VectorX& displacement() const noexcept override;
+  const VectorX& velocity() const noexcept override;
+  void rest_at(const VectorX& u) override;
+  void set_load(const VectorX& load) override;
+  void set_prescribed(const VectorX& values) override;
+
+ private:
+  ImplicitDynamics motion_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/detail/implicit_motion.ipp>
+#endif

@@ -1,0 +1,112 @@
+// Approximate inverses of what an implicit step of a co-rotated body multiplies its increment by.
+#pragma once
+
+#include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/detail/smoothed_stiffness.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/moving/detail/tangent_solver.hpp>
+#include <palpate/model/static/detail/turned_solve.hpp>
+
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// A = mass M + stiffness K.
+struct StepFactors {
+  double mass = 0.0, stiffness = 0.0;
+  friend bool operator==(const StepFactors&, const StepFactors&) = default;
+};
+
+/// What CorotatedMotion wants of a preconditioner P for A:
+/// - `P(body, rest, limits)` is its set-up.
+/// - `update(tetrahedra, factors, u, anew)`, before the solves of a step; `anew` when it is due.
+/// - `apply(r, z)`: z = P^-1 r, zero on held dofs.
+/// - `change(body)`, if there is one, is told when elements have left: lumped mass and conditions are others then.
+// clang-format off
+template <class P, class Tetrahedra>
+concept StepPreconditioner =
+    std::constructible_from<P, const DeformableBody&, const Body<Tet4>&, const SetupLimits&> &&
+    requires(P& p, const P& fixed, const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX& u, VectorX& z) {
+      { p.update(tetrahedra, factors, u, true) } noexcept;
+      { fixed.apply(u, z) } noexcept;
+    };
+// clang-format on
+
+/// The inverse 3 x 3 blocks of A on the diagonal, looked at when due. One product of blocks per application.
+class BlockJacobi {
+ public:
+  BlockJacobi(const DeformableBody& body, const Body<Tet4>&, const SetupLimits&);
+
+  /// Another mass, and other dofs held; the next update must be anew.
+  void change(const DeformableBody& body);
+  template <class Tetrahedra>
+  void update(const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX&, bool anew) noexcept {
+    if (!anew) return;
+    tetrahedra.diagonal_blocks(straight_, mixed_);
+    for (std::size_t i = 0; i < inverse_.size(); ++i) {
+      const auto node = static_cast<Index>(i);
+      const Vector3 d = node_vector(straight_, node), m = node_vector(mixed_, node);
+      Matrix3 a{{d[0], m[0], m[1]}, {m[0], d[1], m[2]}, {m[1], m[2], d[2]}};
+      a = factors.stiffness * a;
+      for (int c = 0; c < 3; ++c) a(c, c) += factors.mass * lumped_[node];
+      hold(constrained_[i], a, inverse_[i]);
+    }
+  }
+  void apply(const VectorX& r, VectorX& z) const noexcept;
+
+ private:
+  /// Inverse of the free part of a block, zero elsewhere.
+  static void hold(std::uint8_t constrained, Matrix3& a, Matrix3& inverted) noexcept;
+
+  VectorX lumped_;
+  std::vector<std::uint8_t> constrained_;
+  std::vector<Matrix3> inverse_;
+  VectorX straight_, mixed_;
+};
+
+/// The factor of A at rest, between the rotations of the nodes: R (M + K0)^-1 R^T. Wins where steps are long.
+/// Factorised again when the factors of M and K change, which takes as long as it takes; rotations are fitted in every
+/// step.
+class TurnedFactor {
+ public:
+  TurnedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
+      : turned_(body),
+        lumped_(body.lumped),
+        stiffness_(assemble_stiffness<Tet4>(rest, limits)),
+        factor_(body.pattern, turned_.conditions(), body.positions, limits) {}
+  TurnedFactor(const TurnedFactor&) = delete;
+  TurnedFactor& operator=(const TurnedFactor&) = delete;
+
+  template <class Tetrahedra>
+  void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool) noexcept {
+    if (factors != factors_) {
+      BlockMatrix& a = factor_.matrix();
+      a.set_zero();
+      a.add(factors.stiffness, stiffness_);
+      a.add_nodal(factors.mass, lumped_);
+      factor_.factorise();
+      factors_ = factors;
+    }
+    turned_.turn(u);
+  }
+  void apply(const VectorX& r, VectorX& z) const noexcept { turned_.solve(factor_, r, z); }
+
+ private:
+  mutable TurnedSolve turned_;
+  VectorX lumped_;
+  BlockMatrix stiffness_;
+  mutable TangentSolver factor_;
+  StepFactors factors_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/detail/step_preconditioners.ipp>
+#endif

@@ -1,0 +1,70 @@
+// Solves with a tangent stiffness that changes, and is not always positive definite.
+#pragma once
+
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/detail/free_values.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/linear/detail/cholesky_analysis.hpp>
+#include <palpate/linear/detail/node_graph.hpp>
+#include <palpate/linear/repeated_cholesky.hpp>
+
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// A matrix on the pattern of a mesh, its free part and its factor. After the constructor nothing allocates or throws.
+/// Refers to `conditions`; neither copied nor moved.
+class TangentSolver {
+ public:
+  /// Analyses the pattern and allocates the factor. Throws too_large.
+  TangentSolver(BlockPattern pattern, const EssentialConditions& conditions, const std::vector<Vector3>& positions,
+                const SetupLimits& limits)
+      : conditions_(conditions),
+        matrix_(make_stiffness(std::move(pattern), limits)),
+        values_(matrix_, conditions),
+        factor_(CholeskyAnalysis(values_.lower(), layout(conditions, positions), limits), limits),
+        row_sums_(factor_.size()) {}
+  TangentSolver(const TangentSolver&) = delete;
+  TangentSolver& operator=(const TangentSolver&) = delete;
+
+  Index size() const noexcept { return factor_.size(); }
+  /// To be filled before `factorise`.
+  BlockMatrix& matrix() noexcept { return matrix_; }
+
+  /// Factorises the free part. One that is not positive definite gets a multiple of the unit matrix added that makes it
+  /// so (Nocedal and Wright, Numerical Optimization, 3.4): see shift(). Tries none, then from a quarter of the last
+  /// shift on four times as much each, then what Gershgorin's circles say is enough: `most_factorisations` in all.
+  /// False when the matrix is not finite.
+  bool factorise() noexcept;
+  static constexpr int most_factorisations = 6;
+  /// What was added to the diagonal; 0 for a positive definite matrix.
+  double shift() const noexcept { return shift_; }
+
+  /// d = K^-1 r on the free dofs.
+  void solve(const VectorX& r, VectorX& d) noexcept { factor_.solve_into(r, d); }
+
+  /// What rounding leaves of a sum of forces [N] in a body of this size [m] with the present matrix.
+  double rounding(double size) const noexcept;
+
+  double largest_diagonal() const noexcept;
+
+ private:
+  static DofLayout layout(const EssentialConditions& conditions, const std::vector<Vector3>& positions);
+
+  const EssentialConditions& conditions_;
+  BlockMatrix matrix_;
+  FreeValues values_;
+  RepeatedCholesky factor_;
+  VectorX row_sums_;
+  double shift_ = 0.0, last_shift_ = 0.0;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/detail/tangent_solver.ipp>
+#endif

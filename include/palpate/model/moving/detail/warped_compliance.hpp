@@ -1,0 +1,72 @@
+// Contact compliance of a body that turns.
+#pragma once
+
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/model/static/detail/nodal_rotation.hpp>
+
+#include <string>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// What a force on a touchable vertex moves the others within a step, as the body settled, turned on with the vertices:
+/// C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). Holds 72 bytes per pair of vertices.
+class WarpedCompliance {
+ public:
+  WarpedCompliance() = default;
+  /// Of a motion in its present state for steps of h [s]: one `respond` per dof of `nodes`. Throws too_large,
+  /// not_positive_definite for a body without stiffness, not_converged where a response was not found.
+  template <class Motion>
+  WarpedCompliance(Motion& motion, double h, const std::vector<NodeId>& nodes, const NodalRotations& rotations,
+                   const SetupLimits& limits)
+      : count_(nodes.size()) {
+    limits.require_memory(static_cast<double>(count_) * static_cast<double>(count_) * sizeof(Matrix3),
+                          "the contact compliance");
+    rest_.resize(count_ * count_);
+    if (!motion.prepare_response(h)) raise(SetupErrorKind::not_positive_definite, "the body at rest has no stiffness");
+    std::vector<Matrix3> turned(count_);
+    for (std::size_t i = 0; i < count_; ++i) turned[i] = rotations(i, motion.displacement());
+    VectorX force = VectorX::Zero(motion.displacement().size()), u(force.size());
+    for (std::size_t j = 0; j < count_; ++j) {
+      if (j % 64 == 0) limits.advance("compliance", static_cast<double>(j) / static_cast<double>(count_));
+      for (int c = 0; c < 3; ++c) {
+        force[3 * Index{nodes[j]} + c] = 1.0;
+        if (!motion.respond(force, u))
+          raise_at(SetupIds::nodes, nodes[j], SetupErrorKind::not_converged, "the compliance of a node was not found",
+                   "Shorten the step, or choose another preconditioner");
+        force[3 * Index{nodes[j]} + c] = 0.0;
+        for (std::size_t i = 0; i < count_; ++i)
+          for (int d = 0; d < 3; ++d) rest_[i + count_ * j](d, c) = u[3 * Index{nodes[i]} + d];
+      }
+      for (std::size_t i = 0; i < count_; ++i)
+        rest_[i + count_ * j] = turned[i].transpose() * rest_[i + count_ * j] * turned[j];
+    }
+    find_bounds();
+  }
+
+  /// Turned back to the shape at rest [m/N].
+  const Matrix3& at_rest(std::size_t i, std::size_t j) const noexcept { return rest_[i + count_ * j]; }
+  /// Where vertices have turned by `rotation`.
+  Matrix3 turned(const std::vector<Matrix3>& rotation, int i, int j) const noexcept;
+  /// As TissueModel has them.
+  double bound(int j) const noexcept { return bound_[static_cast<std::size_t>(j)]; }
+  double floor() const noexcept { return floor_; }
+  std::size_t bytes() const noexcept { return rest_.size() * sizeof(Matrix3); }
+
+ private:
+  void find_bounds();
+
+  std::size_t count_ = 0;
+  std::vector<Matrix3> rest_;  // of vertex i per force on j at i + count x j
+  std::vector<double> bound_;
+  double floor_ = 0.0;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/detail/warped_compliance.ipp>
+#endif

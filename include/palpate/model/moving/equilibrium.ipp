@@ -1,0 +1,210 @@
+// Definitions of equilibrium.hpp.
+#pragma once
+
+#include <palpate/model/moving/equilibrium.hpp>
+#include <palpate/integrator/detail/requirements.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE std::string describe(const EquilibriumReport& r) {
+  if (!r.converged)
+    return "no equilibrium was found beyond " + number(100.0 * r.fraction) +
+           " % of the loads; the most deformed element is " + std::to_string(r.deformation.worst_element) +
+           " with a volume ratio of " + number(r.deformation.smallest_volume_ratio);
+  std::string text = "equilibrium after " + std::to_string(r.load_steps) + " load steps and " +
+                     std::to_string(r.iterations) + " iterations, residual " + number(r.relative_residual);
+  if (!r.stable) text += ", not stable";
+  if (r.deformation.inverted > 0)
+    text += ", " + std::to_string(r.deformation.inverted) + " elements inside out, first of all " +
+            std::to_string(r.deformation.worst_element);
+  return text;
+}
+
+PALPATE_INLINE Equilibrium::Equilibrium(Prepared prepared, const SetupLimits& limits)
+    : Equilibrium(prepared, limits, ScopedIdTranslation(prepared.ids)) {}
+PALPATE_INLINE Equilibrium::Equilibrium(Prepared& prepared, const SetupLimits& limits, const ScopedIdTranslation&)
+    : Equilibrium(std::move(prepared.body), limits) {
+  ids_ = std::move(prepared.ids);
+  node_map_ = std::move(prepared.node_map);
+}
+
+PALPATE_INLINE Equilibrium::Equilibrium(DeformableBody body, const SetupLimits& limits)
+    : body_(std::move(body)),
+      tangent_(body_.pattern, body_.conditions, body_.positions, limits),
+      displacement_(VectorX::Zero(body_.elastic->size())),
+      force_(displacement_),
+      full_(displacement_),
+      held_(displacement_),
+      load_(displacement_),
+      from_held_(displacement_),
+      from_load_(displacement_),
+      x_(VectorX::Zero(size())),
+      start_(x_),
+      residual_(x_),
+      direction_(x_),
+      buckling_(x_),
+      trial_(x_),
+      size_(extent(body_.positions)) {
+  for (Index i = 0; i < size(); ++i) buckling_[i] = std::sin(1.0 + static_cast<double>(i));
+  body_.elastic->tangent(displacement_, tangent_.matrix());
+  if (!body_.elastic->is_linear()) rounding_ = tangent_.rounding(size_);
+}
+
+PALPATE_INLINE EquilibriumReport Equilibrium::solve(const EquilibriumParameters& parameters) {
+  require_usable(parameters);
+  stepped_ = false;
+  body_.elastic->begin_step(infinity);
+  from_held_.setZero();
+  from_load_.setZero();
+  x_.setZero();
+  return follow_loads(parameters);
+}
+
+PALPATE_INLINE EquilibriumReport Equilibrium::step(double dt, const EquilibriumParameters& parameters) {
+  require_usable(parameters);
+  if (!(dt >= 0.0)) raise(SetupErrorKind::bad_argument, "a step of " + number(dt), "Give a time in seconds");
+  end();
+  body_.elastic->begin_step(dt);
+  from_held_ = held_;
+  from_load_ = load_;
+  const VectorX before = x_;
+  const EquilibriumReport report = follow_loads(parameters);
+  if (!report.converged) {
+    x_ = before;
+    go(0.0);
+    place(x_);
+    body_.elastic->begin_step(0.0);
+  }
+  return report;
+}
+
+PALPATE_INLINE void Equilibrium::set_load(const VectorX& load) {
+  require_entries(load, displacement_.size());
+  body_.load = load;
+}
+
+PALPATE_INLINE void Equilibrium::set_prescribed(const VectorX& values) {
+  require_entries(values, displacement_.size());
+  body_.conditions.prescribed = values;
+}
+
+PALPATE_INLINE VectorX Equilibrium::internal_force() const {
+  VectorX f(displacement_.size());
+  body_.elastic->force(displacement_, f);
+  return f;
+}
+
+PALPATE_INLINE VectorX Equilibrium::reactions() const {
+  VectorX r = internal_force() - load_;
+  for (const Index dof : body_.conditions.free_dofs) r[dof] = 0.0;
+  return r;
+}
+
+PALPATE_INLINE DeformableBody Equilibrium::release() && {
+  end();
+  return std::move(body_);
+}
+
+PALPATE_INLINE double Equilibrium::evaluate(const VectorX& x, VectorX& residual) noexcept {
+  place(x);
+  const DeformationReport deformation = body_.elastic->force(displacement_, force_);
+  if (!deformation.admissible) return infinity;
+  scale_ = std::max(force_.norm(), load_.norm());
+  full_ = load_ - force_;
+  body_.conditions.gather(full_, residual);
+  return body_.elastic->energy(displacement_) - load_.dot(displacement_);
+}
+
+PALPATE_INLINE bool Equilibrium::prepare(const VectorX& x) noexcept {
+  place(x);
+  body_.elastic->tangent(displacement_, tangent_.matrix());
+  return tangent_.factorise();
+}
+
+PALPATE_INLINE void Equilibrium::direction(const VectorX& residual, VectorX& d) noexcept {
+  tangent_.solve(residual, d);
+  if (tangent_.shift() > 0.0 && residual.norm() <= 1e-3 * scale_) add_way_down(residual, d);
+}
+
+PALPATE_INLINE void Equilibrium::require_usable(const EquilibriumParameters& p) {
+  p.newton.require_usable();
+  if (p.load_steps < 1)
+    raise(SetupErrorKind::bad_argument, std::to_string(p.load_steps) + " load steps", "Give at least one");
+  if (!(p.smallest_step > 0.0 && p.smallest_step <= 1.0))
+    raise(SetupErrorKind::bad_argument, "a smallest load step of " + number(p.smallest_step),
+          "Give a part of the loads above 0 and at most 1");
+}
+
+PALPATE_INLINE void Equilibrium::end() noexcept {
+  if (stepped_) body_.elastic->end_step(displacement_);
+  stepped_ = false;
+}
+
+PALPATE_INLINE EquilibriumReport Equilibrium::follow_loads(const EquilibriumParameters& parameters) {
+  EquilibriumReport report;
+  NewtonMethod newton(size(), parameters.newton);
+  go(0.0);
+  double step = 1.0 / parameters.load_steps;
+  while (report.fraction < 1.0) {
+    const double to = std::min(1.0, report.fraction + step);
+    start_ = x_;
+    const NewtonReport found = advance(newton, to);
+    report.iterations += found.iterations;
+    report.relative_residual = found.relative_residual;
+    if (found.converged) {
+      ++report.load_steps;
+      report.fraction = to;
+      if (found.iterations <= 6) step *= 2.0;
+      continue;
+    }
+    ++report.refused_steps;
+    x_ = start_;
+    go(report.fraction);
+    step *= 0.5;
+    if (step < parameters.smallest_step) break;
+  }
+  report.converged = report.fraction == 1.0;
+  report.stable = prepare(x_) && tangent_.shift() == 0.0;
+  report.deformation = body_.elastic->force(displacement_, force_);
+  Index& worst = report.deformation.worst_element;
+  if (worst >= 0 && !ids_.elements.empty()) worst = ids_.elements[static_cast<std::size_t>(worst)];
+  stepped_ = report.converged;
+  return report;
+}
+
+PALPATE_INLINE void Equilibrium::go(double fraction) noexcept {
+  held_ = from_held_ + fraction * (body_.conditions.prescribed - from_held_);
+  load_ = from_load_ + fraction * (body_.load - from_load_);
+}
+
+PALPATE_INLINE NewtonReport Equilibrium::advance(NewtonMethod& newton, double to) noexcept {
+  if (!prepare(x_)) return {};
+  body_.elastic->force(displacement_, force_);
+  displacement_ = held_;
+  go(to);
+  displacement_ = held_ - displacement_;
+  tangent_.matrix().apply(displacement_, full_);
+  full_ = load_ - force_ - full_;
+  body_.conditions.gather(full_, residual_);
+  direction(residual_, direction_);
+  x_ += direction_;
+  return newton.solve(*this, x_);
+}
+
+PALPATE_INLINE void Equilibrium::add_way_down(const VectorX& residual, VectorX& d) noexcept {
+  double softest = infinity;
+  for (int k = 0; k < 6; ++k) {
+    buckling_.normalize();
+    tangent_.solve(buckling_, trial_);
+    softest = 1.0 / buckling_.dot(trial_) - tangent_.shift();
+    buckling_.swap(trial_);
+  }
+  if (!(softest < 0.0)) return;
+  const double length = 0.02 * size_ / buckling_.cwiseAbs().maxCoeff();
+  d += std::copysign(length, residual.dot(buckling_)) * buckling_;
+}
+
+}}  // namespace palpate

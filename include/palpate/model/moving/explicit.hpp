@@ -1,0 +1,211 @@
+// A solver policy that moves a body by explicit steps: Explicit<CentralDifference>.
+#pragma once
+
+#include <palpate/assembly/detail/batched_tetrahedra.hpp>
+#include <palpate/assembly/detail/element_frequency.hpp>
+#include <palpate/assembly/detail/linear_forces.hpp>
+#include <palpate/assembly/detail/viscous_forces.hpp>
+#include <palpate/assembly/large_strain.hpp>
+#include <palpate/integrator/central_difference.hpp>
+#include <palpate/integrator/explicit_motion.hpp>
+#include <palpate/integrator/semi_implicit_euler.hpp>
+#include <palpate/model/moving/detail/settled.hpp>
+#include <palpate/model/moving/moving_model.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// A body that moves by explicit steps with a lumped mass, without a factor or a matrix. `Scheme` is CentralDifference
+/// or SemiImplicitEuler.
+template <ExplicitScheme Scheme>
+struct Explicit {};
+
+/// What a model on Explicit<...> may choose.
+struct ExplicitParameters {
+  double step = 1e-3;          ///< [s] between two surfaces; taken in as many equal stable steps as it needs
+  bool settle = true;          ///< start in equilibrium under the scene's loads
+  double mass_damping = 0.0;   ///< alpha of the mass-proportional damping [1/s]
+  double margin = 0.07;        ///< the stable limit is taken this much smaller than estimated
+  int maximum_substeps = 200;  ///< of a step; more are refused, at set-up as bad_argument, later as step_refused
+};
+
+/// An ExplicitMotion as a moving model drives it: a step is a number of equal stable ones, a correction takes them
+/// again with the other forces. What a force adds to a step (`respond`) is found by taking the step with it.
+template <ForceOperator Force, ExplicitScheme Scheme>
+class ExplicitTissueMotion final : public TissueMotion {
+ public:
+  /// Throws what ExplicitMotion throws.
+  ExplicitTissueMotion(Force force, const VectorX& lumped, const EssentialConditions& conditions,
+                       double frequency_bound, const ExplicitParameters& parameters)
+      : motion_(std::move(force), lumped, conditions.free_dofs, frequency_bound,
+                {.damping = parameters.mass_damping, .margin = parameters.margin}),
+        prescribed_(conditions.prescribed),
+        maximum_substeps_(parameters.maximum_substeps),
+        probe_force_(probe_force(lumped, parameters.step)) {
+    for (auto* checkpoint : {&start_, &end_}) motion_.save(*checkpoint);  // allocates, so that steps need not
+    if (substeps(parameters.step) <= maximum_substeps_) return;
+    SetupProblem p;
+    p.what = "a step of " + number(parameters.step) + " s takes " + number(parameters.step / motion_.limit()) +
+             " stable steps of " + number(motion_.limit()) + " s";
+    p.hint = "Shorten the step, make the smallest and stiffest elements larger, or choose Implicit";
+    p.value = parameters.step / motion_.limit();
+    p.threshold = maximum_substeps_;
+    raise(std::move(p));
+  }
+
+  MotionStep step(double h) noexcept override {
+    motion_.save(start_);
+    length_ = h;
+    return take();
+  }
+  bool correct(const VectorX& more) noexcept override {
+    if (!(length_ > 0.0)) return false;
+    motion_.save(end_);
+    motion_.return_to(start_);
+    motion_.load() += more;
+    if (take().status.ok()) return true;
+    motion_.return_to(end_);
+    motion_.load() -= more;
+    return false;
+  }
+  bool prepare_response(double h) noexcept override {
+    motion_.save(start_);
+    length_ = h;
+    if (!take().taken) return false;
+    unloaded_ = motion_.state().displacement;
+    motion_.return_to(start_);
+    return true;
+  }
+  bool respond(const VectorX& forces, VectorX& u) noexcept override {
+    const double largest = forces.template lpNorm<Eigen::Infinity>();
+    if (!(largest > 0.0)) return false;
+    const double scale = probe_force_ / largest;
+    motion_.load() += scale * forces;
+    const bool taken = take().taken;
+    u = (motion_.state().displacement - unloaded_) / scale;
+    motion_.return_to(start_);
+    motion_.load() -= scale * forces;
+    length_ = taken ? length_ : 0.0;
+    return taken;
+  }
+  const VectorX& displacement() const noexcept override { return motion_.state().displacement; }
+  const VectorX& velocity() const noexcept override { return motion_.state().velocity; }
+
+  void rest_at(const VectorX& u) override {
+    VectorX placed = u;
+    for (const Index dof : motion_.state().held) placed[dof] = prescribed_[dof];
+    motion_.set(placed, VectorX::Zero(u.size()));
+    length_ = 0.0;
+  }
+  void set_load(const VectorX& load) override {
+    require_entries(load, motion_.load().size());
+    motion_.load() = load;
+  }
+  void set_prescribed(const VectorX& values) override {
+    require_entries(values, prescribed_.size());
+    prescribed_ = values;
+  }
+
+ private:
+  /// [N], which moves the lightest node within a step by about the length that differences of forces can see.
+  double probe_force(const VectorX& lumped, double step) {
+    return motion_.force().probe_length() * lumped.minCoeff() / (step * step);
+  }
+  double substeps(double h) const noexcept { return std::max(1.0, std::ceil(h / motion_.limit())); }
+
+  /// From the present state over `length_`; held dofs go to where they are prescribed at constant speed.
+  MotionStep take() noexcept {
+    MotionStep done;
+    const double count = substeps(length_);
+    if (!(count <= maximum_substeps_)) {
+      done.status.set(StatusFlag::step_refused);
+      return done;
+    }
+    const auto steps = static_cast<int>(count);
+    for (int k = 0; k < steps; ++k) {
+      for (const Index dof : motion_.state().held) {
+        const double from = motion_.state().displacement[dof];
+        motion_.target()[dof] = from + (prescribed_[dof] - from) / (steps - k);
+      }
+      done.status |= motion_.step(length_ / count);
+    }
+    done.deformation = motion_.deformation();
+    done.taken = !done.status.has(StatusFlag::energy_grew) && !done.status.has(StatusFlag::step_refused);
+    return done;
+  }
+
+  ExplicitMotion<Force, Scheme> motion_;
+  VectorX prescribed_, unloaded_;
+  int maximum_substeps_;
+  double probe_force_;
+  double length_ = 0.0;  // of the last step; 0: there is none to correct
+  typename ExplicitMotion<Force, Scheme>::Checkpoint start_, end_;
+};
+
+namespace detail {
+
+/// Whether the materials of a body are viscoelastic.
+template <class MaterialBody>
+inline constexpr bool remembers = false;
+template <Element E>
+inline constexpr bool remembers<ViscousBody<E>> = true;
+template <Element E, ViscousMaterial M>
+inline constexpr bool remembers<HyperelasticBody<E, M>> = true;
+
+}  // namespace detail
+
+template <class Scheme>
+struct SolverTraits<Explicit<Scheme>> {
+  using Parameters = ExplicitParameters;
+
+  template <class MaterialBody>
+  static PreparedMotion make_motion(MaterialBody body, const Scene& scene, const Parameters& p,
+                                    const SetupLimits& limits) {
+    static_assert(!detail::remembers<MaterialBody>,
+                  "palpate: explicit steps do not move what a material remembers; use Implicit<Newton<SparseCholesky>>");
+    const Body rest = detail::rest_body(body);
+    return make_motion(rest, std::move(body), scene, p, limits);
+  }
+
+ private:
+  template <Element E, class MaterialBody>
+  static PreparedMotion make_motion(const Body<E>& rest, MaterialBody body, const Scene& scene, const Parameters& p,
+                                    const SetupLimits& limits) {
+    PreparedMotion made;
+    made.accepts_initial_strains = requires { body.mesh; };
+    made.start = VectorX::Zero(3 * rest.mesh.node_count());
+    if (p.settle) {
+      Equilibrium statics(make_held_body(body, scene, limits), limits);
+      made.start = detail::settled(statics);
+    }
+    const auto conditions = resolve_essential(rest.mesh, extract_boundary<E>(rest.mesh), scene);
+    const VectorX lumped = lumped_mass(rest);
+    const double bound = element_frequency_bound(rest);
+    made.motion = make(make_force(std::move(body), limits), lumped, conditions, bound, p);
+    return made;
+  }
+  template <class Force>
+  static std::unique_ptr<TissueMotion> make(Force force, const VectorX& lumped, const EssentialConditions& conditions,
+                                            double bound, const Parameters& p) {
+    return std::make_unique<ExplicitTissueMotion<Force, Scheme>>(std::move(force), lumped, conditions, bound, p);
+  }
+  template <HyperelasticMaterial M>
+  static auto make_force(HyperelasticBody<Tet4, M> body, const SetupLimits& limits) {
+    require_no_fibres(body);
+    return BatchedTetrahedra<M>(body, limits);
+  }
+  template <Element E, LargeStrainMaterial M>
+  static auto make_force(HyperelasticBody<E, M> body, const SetupLimits& limits) {
+    return LargeStrain<E, M>(std::move(body), limits);
+  }
+  template <Element E>
+  static auto make_force(Body<E> body, const SetupLimits& limits) {
+    return LinearForces(assemble_stiffness<E>(body, limits));
+  }
+};
+
+}}  // namespace palpate

@@ -1,0 +1,131 @@
+// Solver policies that move a body by implicit steps: Implicit<Newton<SparseCholesky>>, Implicit<MatrixFreeCG<...>>.
+#pragma once
+
+#include <palpate/model/moving/detail/corotated_motion.hpp>
+#include <palpate/model/moving/detail/implicit_motion.hpp>
+#include <palpate/model/moving/detail/settled.hpp>
+#include <palpate/model/moving/moving_model.hpp>
+#include <palpate/model/policies.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Newton's method on the incremental potential of a step, with a factor in every iteration. Any element but smoothed
+/// ones, any material, any step. See ImplicitDynamics.
+template <class Factor>
+struct Newton {
+  static_assert(std::same_as<Factor, SparseCholesky>, "palpate: Newton's method takes a factor: Newton<SparseCholesky>");
+};
+
+/// Conjugate gradients on products without a matrix, in numbers of type S: fixed work per step. For Tet4 and
+/// Corotational<...>. See CorotatedMotion. `Preconditioner` is BlockJacobi or another StepPreconditioner.
+template <class Preconditioner, class S = float>
+struct MatrixFreeCG {};
+
+/// A body that moves by implicit steps.
+template <class StepSolver>
+struct Implicit {};
+
+/// What a model on Implicit<Newton<...>> may choose.
+struct ImplicitParameters {
+  double step = 0.01;  ///< [s]
+  bool settle = true;  ///< start in equilibrium under the scene's loads
+  TimeScheme scheme = TimeScheme::implicit_euler();
+  double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]
+  double stiffness_damping = 0.0;  ///< Rayleigh's beta [s]
+  MassKind mass = MassKind::lumped;
+  NewtonParameters newton{.maximum_iterations = 2, .tolerance = 1e-9};
+};
+
+template <>
+struct SolverTraits<Implicit<Newton<SparseCholesky>>> {
+  using Parameters = ImplicitParameters;
+
+  template <class Body>
+  static PreparedMotion make_motion(Body body, const Scene& scene, const Parameters& p, const SetupLimits& limits) {
+    constexpr bool is_linear = requires { body.mesh; };
+    return prepare(make_deformable_body(std::move(body), scene, limits), is_linear, p, limits);
+  }
+
+ private:
+  static PreparedMotion prepare(DeformableBody body, bool is_linear, const Parameters& parameters,
+                                const SetupLimits& limits);
+};
+
+/// What a model on Implicit<MatrixFreeCG<...>> may choose.
+struct CorotatedParameters {
+  double step = 1e-3;  ///< [s]
+  bool settle = true;  ///< start in equilibrium under the scene's loads
+  TimeScheme scheme = TimeScheme::implicit_euler();
+  double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]
+  double stiffness_damping = 0.0;  ///< Rayleigh's beta [s]
+  BoundedSolveParameters solve{.maximum_iterations = 40, .tolerance = 3e-3};
+  int precondition_every = 16;     ///< steps between two updates of the preconditioner
+  bool check = true;               ///< compare the energy after a step with that before it: one more sweep of forces
+  int maximum_linearisations = 8;  ///< of a step whose check fails
+};
+
+/// A CorotatedMotion as a moving model drives it.
+template <class Base, class S, class Preconditioner>
+class CorotatedTissueMotion final : public TissueMotion {
+ public:
+  using Motion = CorotatedMotion<Base, S, Preconditioner>;
+  CorotatedTissueMotion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene, const CorotatedMotionOptions& options,
+                        const SetupLimits& limits)
+      : motion_(body, scene, options, limits) {}
+
+  MotionStep step(double h) noexcept override {
+    const CorotatedStep done = motion_.step(h);
+    MotionStep step{done.taken, {}, done.deformation};
+    if (done.deformation.inverted > 0) step.status.set(StatusFlag::inverted);
+    if (!done.taken || !done.calm || !(done.solve.error <= Motion::tolerable_error))
+      step.status.set(StatusFlag::solver_not_converged);
+    return step;
+  }
+  bool correct(const VectorX& more) noexcept override { return motion_.correct(more); }
+  bool prepare_response(double h) noexcept override { return motion_.prepare_response(h); }
+  bool respond(const VectorX& forces, VectorX& u) noexcept override { return motion_.respond(forces, u); }
+  const VectorX& displacement() const noexcept override { return motion_.displacement(); }
+  const VectorX& velocity() const noexcept override { return motion_.velocity(); }
+  void rest_at(const VectorX& u) override { motion_.rest_at(u); }
+  void set_load(const VectorX& load) override { motion_.set_load(load); }
+  void set_prescribed(const VectorX& values) override { motion_.set_prescribed(values); }
+
+ private:
+  Motion motion_;
+};
+
+template <class Preconditioner, class S>
+struct SolverTraits<Implicit<MatrixFreeCG<Preconditioner, S>>> {
+  using Parameters = CorotatedParameters;
+
+  template <class Body>
+  static PreparedMotion make_motion(const Body&, const Scene&, const Parameters&, const SetupLimits&) {
+    static_assert(sizeof(Body) == 0,
+                  "palpate: MatrixFreeCG moves Tet4 with Corotational<...>; for others take "
+                  "Implicit<Newton<SparseCholesky>>");
+    return {};
+  }
+  template <class Base>
+  static PreparedMotion make_motion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene,
+                                    const Parameters& p, const SetupLimits& limits) {
+    PreparedMotion made;
+    made.start = VectorX::Zero(3 * body.rest.mesh.node_count());
+    if (p.settle) {
+      Equilibrium statics(make_held_body(body, scene, limits), limits);
+      made.start = detail::settled(statics);
+    }
+    const CorotatedMotionOptions options{p.scheme, p.mass_damping,       p.stiffness_damping, p.solve,
+                                         p.precondition_every, p.check, p.maximum_linearisations};
+    made.motion = std::make_unique<CorotatedTissueMotion<Base, S, Preconditioner>>(body, scene, options, limits);
+    return made;
+  }
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/implicit.ipp>
+#endif

@@ -1,0 +1,103 @@
+// The composition for tissue that moves: element, material, and a solver that integrates in time.
+#pragma once
+
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/concepts/mesh.hpp>
+#include <palpate/model/detail/admitted_mesh.hpp>
+#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/detail/element_body.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/model/moving/moving_tissue.hpp>
+
+#include <memory>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// A solver that moves a body: SolverTraits<P> has
+///   Parameters                                    an aggregate with `step` [s]; with `settle`, a body that can still
+///                                                 move as a whole is refused when that is true
+///   make_motion(body, scene, parameters, limits)  a PreparedMotion; `body` is a HyperelasticBody at large strain, at small
+///                                                 strain a Body or ViscousBody
+/// Shipped: Implicit<...> (model/moving/implicit.hpp), Explicit<...> (model/moving/explicit.hpp).
+template <class P>
+concept MotionPolicy = requires(const typename SolverTraits<P>::Parameters& parameters) {
+  { parameters.step } -> std::convertible_to<double>;
+};
+
+namespace detail {
+
+/// The part of a material body that is no material: mesh, elasticity at rest, densities.
+template <class MaterialBody>
+const auto& rest_body(const MaterialBody& body) noexcept {
+  if constexpr (requires { body.rest.mesh; })
+    return body.rest;
+  else if constexpr (requires { body.fast.mesh; })
+    return body.fast;
+  else
+    return body;
+}
+
+/// Throws bad_argument.
+void require_step(double step);
+
+}  // namespace detail
+
+/// Tissue that moves, by a solver that integrates in time; see MovingTissue. Initial strains are for linear materials.
+/// Set-up solves once per touchable dof.
+template <class E, class M, MotionPolicy Solver>
+class HapticFEModel<E, M, Solver> : public MovingTissue {
+ public:
+  static_assert(Element<E>, "palpate: the first argument of HapticFEModel is an element, for example Tet10");
+  static_assert(has_triangulated_faces<E>(),
+                "palpate: tools touch triangles; give the element's Face a list `triangles` of its nodes, like Tri6");
+  static_assert(Material<M>, "palpate: the second argument of HapticFEModel is a material, for example NeoHookean");
+  using ElementType = E;
+  using Traits = SolverTraits<Solver>;
+  using MaterialType = M;
+  using Parameters = typename Traits::Parameters;
+
+  /// One material everywhere. Throws what admission, assembly and the motion throw, bad_argument for a step that is not
+  /// positive, not_converged when there is no equilibrium to settle in, unsupported for a cache file.
+  template <MeshOf<E> Given>
+  HapticFEModel(const Given& mesh, const Scene& scene, const M& material, const SetupOptions& options = {},
+                const Parameters& parameters = {})
+      : HapticFEModel(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options, parameters) {}
+
+  /// One material per region.
+  template <MeshOf<E> Given>
+  HapticFEModel(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                const SetupOptions& options = {}, const Parameters& parameters = {})
+      : MovingTissue(options) {
+    detail::require_step(parameters.step);
+    AdmittedMesh<E> admitted = admit_mesh<E>(mesh, scene, options.admission, limits(), setup_report());
+    const ScopedIdTranslation translation(admitted.ids);
+    auto body = detail::make_any_body(std::move(admitted.mesh), materials);
+    auto rest = std::make_unique<ElementBody<E>>(detail::rest_body(body), admitted.origin);
+    rest->report_locking(setup_report());
+    const Touchable touchable =
+        admit(scene, {std::move(rest), std::move(admitted.node_map), std::move(admitted.ids), admitted.origin});
+    const ScopedIdTranslation own(original_ids());  // those of `admitted` are moved from
+    if constexpr (requires { parameters.settle; })
+      if (parameters.settle) elastic_body().require_constrained(elastic_body().conditions(this->scene()));
+    PreparedMotion prepared = Traits::make_motion(std::move(body), this->scene(), parameters, limits());
+    set_up(touchable, std::move(prepared), parameters.step, block_pattern(this->mesh()));
+  }
+
+  /// The admitted mesh, in the frame of `origin()`.
+  const Mesh<E>& mesh() const noexcept { return body().mesh; }
+  /// The mesh with what its materials are at small strain (assembly/body.hpp).
+  const Body<E>& body() const noexcept { return detail::element_body<E>(elastic_body()).body(); }
+  /// The faces of the mesh that belong to one element only.
+  const std::vector<BoundaryFace>& boundary() const noexcept {
+    return detail::element_body<E>(elastic_body()).boundary();
+  }
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/moving_model.ipp>
+#endif

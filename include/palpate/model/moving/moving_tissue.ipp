@@ -1,0 +1,212 @@
+// Definitions of moving_tissue.hpp.
+#pragma once
+
+#include <palpate/model/moving/moving_tissue.hpp>
+
+#include <palpate/core/realtime.hpp>
+#include <palpate/model/admission_report.hpp>
+#include <palpate/model/detail/elastic_body.hpp>
+#include <palpate/model/detail/stage_timer.hpp>
+#include <palpate/model/detail/touchable.hpp>
+
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE MovingTissue::MovingTissue(const SetupOptions& options) : ModelBase(options) {
+  if (!options.cache_file.empty())
+    raise(SetupErrorKind::unsupported, "a cache file for tissue in motion, which has nothing to keep in it",
+          "Leave cache_file empty");
+}
+PALPATE_INLINE MovingTissue::~MovingTissue() = default;
+
+PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMotion prepared, double step,
+                                         const BlockPattern& pattern) {
+  const ScopedIdTranslation translation(original_ids());
+  const StageTimer timer(setup_report(), "compliance");
+  step_ = step;
+  motion_ = std::move(prepared.motion);
+  accepts_initial_strains_ = prepared.accepts_initial_strains;
+  start_ = std::move(prepared.start);
+  const EssentialConditions conditions = elastic_body().conditions(scene());
+  start_prescribed_ = conditions.prescribed;
+  mass_ = elastic_body().nodal_mass();
+  applied_ = load_of(scene(), Vector3::Zero());
+  load_ = start_load_ = load_of(scene(), gravity());
+  full_ = start_load_;
+  rotations_ = NodalRotations(pattern, elastic_body().positions(), touchable.nodes);
+  motion_->set_load(load_);
+  motion_->rest_at(start_);
+  compliance_ = WarpedCompliance(*motion_, step_, touchable.nodes, rotations_, limits());
+  motion_->rest_at(start_);  // what reset() returns to
+  View view{std::vector<Vector3>(touchable.nodes.size()), std::vector<Matrix3>(touchable.nodes.size()), {}};
+  update_view(view);
+  surface_ = ContactSurface(view.free, touchable.triangles);
+  surface_.set_unloaded(unloaded());
+  views_.fill(view);
+  drawn_.fill(start_);
+  setup_report().compliance_bytes = compliance_.bytes();
+  setup_report().free_dofs = conditions.free_count();
+  setup_report().kept_dofs = 3 * setup_report().touchable_vertices;
+  if (accepts_initial_strains_) report_displacement(elastic_body().positions(), start_, setup_report());
+}
+
+PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
+  const std::scoped_lock lock(changes_);
+  const FlushDenormals flush;
+  pressing_.update();
+  full_.setZero();
+  add(pressing_.front(), 1.0, full_);
+  add(used_, -1.0, full_);
+  const bool corrected = full_.isZero(0.0) || motion_->correct(full_) || steps_ == 0;
+  used_ = pressing_.front();
+  full_ = load_;
+  add(used_, 1.0, full_);
+  motion_->set_load(full_);
+  const MotionStep done = motion_->step(step_);
+  Status status = done.status;
+  if (!corrected) status.set(StatusFlag::degraded_model);
+  publish(status);
+  ++steps_;
+  return done;
+}
+
+PALPATE_INLINE void MovingTissue::set_conditions(const Scene& scene) {
+  const std::scoped_lock lock(changes_);
+  const ScopedIdTranslation translation(original_ids());
+  const Scene mapped = this->mapped(scene, surface_.triangles());
+  const EssentialConditions changed = elastic_body().conditions(mapped);
+  if (changed.constrained != elastic_body().conditions(this->scene()).constrained)
+    raise(SetupErrorKind::unsupported, "the new scene prescribes other components than the one the model was made for",
+          "Values may change, the set of prescribed components may not: make a new model");
+  VectorX applied = load_of(mapped, Vector3::Zero());
+  VectorX load = load_of(mapped, local(scene.gravity(), pose()));
+  std::string others = mapped.loads_in_words();
+  motion_->set_prescribed(changed.prescribed);
+  applied_.swap(applied);
+  load_.swap(load);
+  keep_loads(scene.gravity(), others);
+}
+
+PALPATE_INLINE void MovingTissue::set_gravity(const Vector3& gravity) {
+  require_finite_gravity(gravity);
+  const std::scoped_lock lock(changes_);
+  load_ = applied_;
+  const Vector3 own = local(gravity, pose());
+  for (Index i = 0; i < mass_.size(); ++i) add_node_vector(load_, i, mass_[i] * own);
+  keep_gravity(gravity);
+}
+
+PALPATE_INLINE void MovingTissue::set_pose(const Eigen::Isometry3d& pose) {
+  require_rigid(pose);
+  {
+    const std::scoped_lock lock(changes_);
+    place(pose);
+  }
+  set_gravity(gravity());
+}
+
+PALPATE_INLINE void MovingTissue::reset() {
+  const std::scoped_lock lock(changes_);
+  VectorX applied = load_of(scene(), Vector3::Zero());
+  std::string others = scene().loads_in_words();
+  applied_.swap(applied);
+  load_ = start_load_;
+  motion_->set_load(load_);
+  motion_->set_prescribed(start_prescribed_);
+  motion_->rest_at(start_);
+  place(Eigen::Isometry3d::Identity());
+  keep_loads(scene().gravity(), others);
+  pressing_.update();
+  used_.count = 0;
+  steps_ = 0;
+  publish({});
+}
+
+PALPATE_INLINE SolveReport MovingTissue::displacement_with(std::span<const VertexForce>, VectorX& u) noexcept {
+  drawn_.update();
+  u = drawn_.front();
+  return {true, 0, 0.0};
+}
+
+PALPATE_INLINE VectorX MovingTissue::displacement(std::span<const VertexForce> forces) {
+  require_vertex_forces(forces, static_cast<int>(touchable_nodes().size()));
+  drawn_.update();
+  return drawn_.front();
+}
+
+PALPATE_INLINE void MovingTissue::prepare_tools(double, const ContactParameters&) {
+  const std::scoped_lock lock(changes_);
+  surface_.set_loads(loads_in_words(gravity(), other_loads()));
+}
+
+PALPATE_INLINE Status MovingTissue::begin_tick() noexcept {
+  if (views_.update()) {
+    surface_.move_to(views_.front().free);
+    ++revision_;
+  }
+  Status status = views_.front().status | ticked_;
+  if (slow_.load(std::memory_order_relaxed)) status.set(StatusFlag::slow_tissue);
+  return status;
+}
+
+PALPATE_INLINE void MovingTissue::end_tick(std::span<const VertexForce> forces) noexcept {
+  Forces& out = pressing_.back();
+  out.count = 0;
+  ticked_ = {};
+  for (const VertexForce& f : forces)
+    if (!all_finite(f.force.in_model_axes()))
+      ticked_.set(StatusFlag::non_finite_force);
+    else if (out.count < most_forces)
+      out.item[out.count++] = f;
+    else
+      ticked_.set(StatusFlag::degraded_model);
+  pressing_.publish();
+}
+
+PALPATE_INLINE VectorX MovingTissue::load_of(const Scene& scene, const Vector3& gravity) const {
+  const ElasticBody& body = elastic_body();
+  VectorX load = body.applied_load(scene);
+  if (!scene.initial_strains().empty()) {
+    if (!accepts_initial_strains_)
+      raise(SetupErrorKind::unsupported, "initial strains at large deformation or with viscoelasticity",
+            "Use a linear material");
+    load += body.initial_strain_load(body.initial_strains(scene));
+  }
+  for (Index i = 0; i < mass_.size(); ++i) add_node_vector(load, i, mass_[i] * gravity);
+  if (!all_finite(load)) raise(SetupErrorKind::non_finite, "the loads are not finite");
+  return load;
+}
+
+PALPATE_INLINE void MovingTissue::add(const Forces& forces, double factor, VectorX& load) const noexcept {
+  for (std::size_t k = 0; k < forces.count; ++k)
+    add_node_vector(load, touchable_nodes()[vertex(forces.item[k])], factor * forces.item[k].force.in_model_axes());
+}
+
+PALPATE_INLINE void MovingTissue::update_view(View& view) const noexcept {
+  const VectorX& u = motion_->displacement();
+  const std::vector<Vector3>& rest = elastic_body().positions();
+  const std::size_t n = touchable_nodes().size();
+  for (std::size_t i = 0; i < n; ++i) view.rotation[i] = rotations_(i, u);
+  std::array<Vector3, most_forces> unrotated;
+  for (std::size_t k = 0; k < used_.count; ++k)
+    unrotated[k] = view.rotation[vertex(used_.item[k])].transpose() * used_.item[k].force.in_model_axes();
+  for (std::size_t i = 0; i < n; ++i) {
+    Vector3 moved = Vector3::Zero();
+    for (std::size_t k = 0; k < used_.count; ++k)
+      moved += compliance_.at_rest(i, vertex(used_.item[k])) * unrotated[k];
+    const NodeId node = touchable_nodes()[i];
+    view.free[i] = rest[static_cast<std::size_t>(node)] + node_vector(u, node) - view.rotation[i] * moved;
+  }
+}
+
+PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {
+  View& view = views_.back();
+  update_view(view);
+  view.status = status;
+  views_.publish();
+  drawn_.back() = motion_->displacement();
+  drawn_.publish();
+}
+
+}}  // namespace palpate

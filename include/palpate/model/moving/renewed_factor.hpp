@@ -1,0 +1,102 @@
+// A factor that a thread of its own makes anew while steps go on with the last one.
+#pragma once
+
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/local/isotropic.hpp>
+#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/moving/detail/step_preconditioners.hpp>
+#include <palpate/model/moving/detail/tangent_solver.hpp>
+#include <palpate/model/static/detail/turned_solve.hpp>
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <thread>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Preconditioner of CorotatedMotion: the factor of A at a recent state, turned on from there with the nodes,
+/// (R R_s^T) A_s^-1 (R R_s^T)^T (asynchronous preconditioning, Courtecuisse et al. 2010). When it is due and the thread
+/// is free, an update hands it the state; a finished factor is taken in by the next update. No update waits, but for
+/// the first after the factors of M and K have changed, which factorises at rest. Two factors are held.
+class RenewedFactor {
+ public:
+  RenewedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits);
+  ~RenewedFactor();
+  RenewedFactor(const RenewedFactor&) = delete;
+  RenewedFactor& operator=(const RenewedFactor&) = delete;
+
+  template <class Tetrahedra>
+  void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool anew) noexcept {
+    const State state = state_.load(std::memory_order_acquire);
+    if (state == State::ready) {
+      if (spare().usable && spare().factors == factors) {
+        front_ = 1 - front_;
+        ++renewals_;
+      }
+      state_.store(State::idle, std::memory_order_relaxed);
+    }
+    if (front().factors != factors) {
+      make(front(), factors, rest_);
+    } else if (anew && state != State::asked) {
+      asked_ = u;
+      spare().factors = factors;
+      state_.store(State::asked, std::memory_order_release);
+      state_.notify_one();
+    }
+    turned_.turn(u, front().turn);
+  }
+  void apply(const VectorX& r, VectorX& z) const noexcept { turned_.solve(*made_[front_].factor, r, z); }
+  /// Factors of the thread taken in so far.
+  long renewals() const noexcept { return renewals_; }
+
+ private:
+  enum class State { idle, asked, ready, stopped };
+  struct TurningElement {
+    std::array<NodeId, 4> nodes;
+    Eigen::Matrix<double, 4, 3> gradient;
+    double volume;
+    LameConstants law;
+  };
+  struct Made {
+    Made(const DeformableBody& body, const EssentialConditions& conditions, const SetupLimits& limits);
+    std::unique_ptr<TangentSolver> factor;
+    std::vector<Matrix3> turn;  // of the nodes at its state
+    StepFactors factors;
+    bool usable = false;
+  };
+
+  Made& front() noexcept { return made_[front_]; }
+  Made& spare() noexcept { return made_[1 - front_]; }
+
+  void work() noexcept;
+
+  /// A at a state, and its factor.
+  void make(Made& made, const StepFactors& factors, const VectorX& u) const noexcept;
+  /// R K R^T of one element.
+  static void add(const TurningElement& e, double factor, const VectorX& u, BlockMatrix& a) noexcept;
+
+  mutable TurnedSolve turned_;
+  VectorX lumped_;
+  std::vector<TurningElement> elements_;
+  std::array<Made, 2> made_;
+  std::size_t front_ = 0;
+  VectorX asked_;  // the thread's while it is asked
+  VectorX rest_;   // no displacement
+  long renewals_ = 0;
+  std::atomic<State> state_{State::idle};
+  std::thread thread_;  // last: it uses all the others
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/renewed_factor.ipp>
+#endif

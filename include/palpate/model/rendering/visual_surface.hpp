@@ -1,0 +1,223 @@
+// A surface to draw: the body's own, or a finer one that moves with it.
+#pragma once
+
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/contact/detail/bvh.hpp>
+#include <palpate/contact/detail/triangle.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/rigid_motion.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/mesh/detail/element_search.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/quality.hpp>
+#include <palpate/mesh/surface.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Triangles over points that a renderer draws. `positions` in the frame of the mesh as given [m].
+struct VisualMesh {
+  std::vector<Vector3> positions;
+  std::vector<std::array<int, 3>> triangles;
+};
+
+/// What became of the points of a fine surface that was laid over a coarse mesh.
+struct EmbeddingReport {
+  Index outside = 0;          ///< points in no element: they follow the nearest one, continued beyond its border
+  double worst_distance = 0;  ///< of these from the boundary [m]
+  double element_size = 0;    ///< mean longest edge on the boundary, to compare with [m]
+};
+
+namespace detail {
+
+/// Unit normals of points, means of those of their triangles weighted by area, and both written as x y z of every
+/// point. `normal` has a place per point. No allocation.
+inline void write_surface(const std::vector<Vector3>& points, const std::vector<std::array<int, 3>>& triangles,
+                          std::vector<Vector3>& normal, std::span<float> positions, std::span<float> normals) noexcept {
+  for (Vector3& n : normal) n.setZero();
+  for (const auto& t : triangles) {
+    const auto at = [&](std::size_t k) { return static_cast<std::size_t>(t[k]); };
+    const Vector3 n = cross(points[at(1)] - points[at(0)], points[at(2)] - points[at(0)]);
+    for (std::size_t k = 0; k < 3; ++k) normal[at(k)] += n;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vector3 unit = normal[i].squaredNorm() > 0.0 ? normal[i].normalized() : Vector3(0.0, 0.0, 1.0);
+    for (int c = 0; c < 3; ++c) {
+      positions[3 * i + static_cast<std::size_t>(c)] = static_cast<float>(points[i][c]);
+      normals[3 * i + static_cast<std::size_t>(c)] = static_cast<float>(unit[c]);
+    }
+  }
+}
+
+}  // namespace detail
+
+/// Positions and normals for a renderer's own thread. Every point of the drawn surface is a fixed combination of the
+/// nodes of one element (its shape functions there), so a fine surface follows a coarse mesh smoothly. Reading recovers
+/// the displacement of the whole body from the contact forces of a tick (one back-substitution, exact); with
+/// HapticServo::read_snapshot it never waits for the haptic thread, nor that for the reader. Refers to the model; one
+/// reader at a time.
+template <class Model>
+class VisualSurface {
+ public:
+  using E = typename Model::ElementType;
+
+  /// The boundary of the body: what the scene lets be seen, or all of it. Nodes become points.
+  explicit VisualSurface(Model& model) : VisualSurface(model, boundary_of(model)) {}
+
+  /// A surface of one's own. Throws index_out_of_range for a triangle that names a point that does not exist,
+  /// non_finite, empty_mesh without triangles. O(points log elements), allocates.
+  VisualSurface(Model& model, VisualMesh surface)
+      : model_(&model), surface_(checked(std::move(surface))), displacement_(3 * model.mesh().node_count()) {
+    for (Vector3& x : surface_.positions) x -= model.origin();
+    embed();
+    normals_.resize(surface_.positions.size());
+    moved_.resize(surface_.positions.size());
+  }
+
+  /// For models that are cut: whether points and triangles are others now. Those of this model never change.
+  bool update() noexcept { return false; }
+
+  Index point_count() const noexcept { return static_cast<Index>(surface_.positions.size()); }
+  const std::vector<std::array<int, 3>>& triangles() const noexcept { return surface_.triangles; }
+  const EmbeddingReport& report() const noexcept { return report_; }
+
+  /// Writes x y z of every point and of its unit normal, world frame [m], under the contact forces of a tick
+  /// (`servo.read_snapshot().vertex_forces()`; empty: at rest). False when a span has not 3 numbers per point: nothing
+  /// is written then. For one thread, beside the haptic one; no allocation, no lock.
+  bool read_surface(std::span<const VertexForce> forces, std::span<float> positions,
+                    std::span<float> normals) noexcept {
+    const std::size_t size = 3 * surface_.positions.size();
+    if (positions.size() != size || normals.size() != size) return false;
+    model_->displacement_with(forces, displacement_);
+    const Eigen::Isometry3d pose = model_->to_world();
+    for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = pose * (surface_.positions[i] + displacement_at(i));
+    detail::write_surface(moved_, surface_.triangles, normals_, positions, normals);
+    return true;
+  }
+
+ private:
+  struct Anchor {
+    Index element = 0;
+    Eigen::Matrix<double, E::nodes, 1> weights;
+  };
+
+  static VisualMesh checked(VisualMesh surface) {
+    if (surface.triangles.empty()) raise(SetupErrorKind::empty_mesh, "the surface to draw has no triangles");
+    for (const Vector3& x : surface.positions)
+      if (!all_finite(x)) raise(SetupErrorKind::non_finite, "a point of the surface to draw is not finite");
+    for (const auto& t : surface.triangles)
+      for (const int v : t)
+        if (v < 0 || static_cast<std::size_t>(v) >= surface.positions.size())
+          raise(SetupErrorKind::index_out_of_range,
+                "a triangle of the surface to draw names point " + std::to_string(v));
+    return surface;
+  }
+
+  /// Triangles of the boundary faces all of whose nodes may be seen, in the frame of the mesh as given.
+  static VisualMesh boundary_of(const Model& model) {
+    std::vector<NodeId> nodes = model.seen_nodes();
+    if (nodes.empty()) nodes = nodes_of(model.boundary());
+    VisualMesh surface;
+    for (const NodeId i : nodes) surface.positions.push_back(model.rest_position(i));
+    const auto point = [&](NodeId i) { return static_cast<int>(std::ranges::lower_bound(nodes, i) - nodes.begin()); };
+    for (const auto& face : model.boundary()) {
+      if (!std::ranges::all_of(face.nodes, [&](NodeId i) { return std::ranges::binary_search(nodes, i); })) continue;
+      with_face_element<E>(face.nodes.size(), [&]<TriangulatedFace F>() {
+        for (const auto& t : F::triangles) {
+          const auto at = [&](std::size_t k) { return point(face.nodes[static_cast<std::size_t>(t[k])]); };
+          surface.triangles.push_back({at(0), at(1), at(2)});
+        }
+      });
+    }
+    return surface;
+  }
+
+  void embed() {
+    const Mesh<E>& mesh = model_->mesh();
+    const ElementSearch<E> inside(mesh);
+    const Boundary boundary(*model_);
+    report_.element_size = boundary.mean_edge;
+    for (const Vector3& p : surface_.positions) {
+      auto place = inside.find(p);
+      if (!place) {
+        const auto [element, distance] = boundary.nearest(p);
+        place = beyond(element, p);
+        ++report_.outside;
+        report_.worst_distance = std::max(report_.worst_distance, distance);
+      }
+      anchors_.push_back({place->element, E::shape(place->xi)});
+    }
+  }
+
+  /// The triangles of the body's boundary, to find the element nearest to a point outside.
+  struct Boundary {
+    explicit Boundary(const Model& model) {
+      for (const auto& face : model.boundary()) {
+        with_face_element<E>(face.nodes.size(), [&]<TriangulatedFace F>() {
+          const int first = static_cast<int>(corners.size());
+          for (const NodeId i : face.nodes) corners.push_back(model.mesh().position(i));
+          for (const auto& [a, b, c] : F::triangles) {
+            triangles.push_back({first + a, first + b, first + c});
+            owner.push_back(face.element);
+          }
+        });
+        mean_edge += longest_edge<E>(element_nodes<E>(model.mesh(), face.element));
+      }
+      mean_edge /= static_cast<double>(model.boundary().size());
+      bvh = Bvh(triangles, corners);
+    }
+
+    double squared_distance(const Vector3& p, int triangle) const {
+      const auto& [i, j, k] = triangles[static_cast<std::size_t>(triangle)];
+      const auto corner = [&](int v) -> const Vector3& { return corners[static_cast<std::size_t>(v)]; };
+      const Vector3& a = corner(i);
+      const Vector3& b = corner(j);
+      const Vector3& c = corner(k);
+      const auto w = closest_point(p, a, b, c).weights;
+      return (p - w[0] * a - w[1] * b - w[2] * c).squaredNorm();
+    }
+
+    std::pair<Index, double> nearest(const Vector3& p) const {
+      const int t = bvh.nearest(p, [&](int triangle) { return squared_distance(p, triangle); });
+      return {owner[static_cast<std::size_t>(t)], std::sqrt(squared_distance(p, t))};
+    }
+
+    std::vector<Vector3> corners;
+    std::vector<Triangle> triangles;
+    std::vector<Index> owner;
+    double mean_edge = 0.0;
+    Bvh bvh;
+  };
+
+  /// The point of an element's continuation; its middle where Newton's method finds nothing.
+  ElementPoint beyond(Index element, const Vector3& p) const noexcept {
+    const auto xi = reference_coordinates<E>(element_nodes<E>(model_->mesh(), element), p);
+    return {element, xi.value_or(reference_centre<E>())};
+  }
+
+  Vector3 displacement_at(std::size_t point) const noexcept {
+    const Anchor& anchor = anchors_[point];
+    Vector3 u = Vector3::Zero();
+    for (int a = 0; a < E::nodes; ++a)
+      u += anchor.weights[a] * node_vector(displacement_, model_->mesh().element_node(anchor.element, a));
+    return u;
+  }
+
+  Model* model_;
+  VisualMesh surface_;
+  EmbeddingReport report_;
+  std::vector<Anchor> anchors_;
+  std::vector<Vector3> moved_, normals_;
+  VectorX displacement_;
+};
+
+}}  // namespace palpate

@@ -1,0 +1,108 @@
+// Definitions of contact_compliance.hpp.
+#pragma once
+
+#include <palpate/model/static/detail/contact_compliance.hpp>
+
+#include <palpate/model/static/detail/column_worker.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+template <std::floating_point Scalar>
+ContactCompliance<Scalar>::ContactCompliance() = default;
+template <std::floating_point Scalar>
+ContactCompliance<Scalar>::ContactCompliance(ContactCompliance&&) noexcept = default;
+template <std::floating_point Scalar>
+ContactCompliance<Scalar>& ContactCompliance<Scalar>::operator=(ContactCompliance&&) noexcept = default;
+template <std::floating_point Scalar>
+ContactCompliance<Scalar>::~ContactCompliance() = default;
+
+template <std::floating_point Scalar>
+ContactCompliance<Scalar>::ContactCompliance(AnyStaticSystem system, std::vector<Index> kept_index, int slots,
+                                             const SetupLimits& limits)
+    : system_(std::move(system)),
+      slot_of_(kept_index.size() / 3, -1),
+      ordered_(slot_of_.size(), false),
+      column_(system_.kept()) {
+  slots = std::min(slots, static_cast<int>(slot_of_.size()));
+  columns_ = std::make_unique<ComplianceColumns<Scalar>>(std::move(kept_index), slots, limits);
+  vertex_of_.assign(static_cast<std::size_t>(slots), -1);
+  last_used_.assign(static_cast<std::size_t>(slots), 0);
+}
+
+template <std::floating_point Scalar>
+void ContactCompliance<Scalar>::fill_asynchronously() {
+  worker_ = std::make_unique<ColumnWorker<Scalar>>(system_, *columns_);
+}
+
+template <std::floating_point Scalar>
+Status ContactCompliance<Scalar>::require(std::span<const int> vertices) noexcept {
+  Status status = collect();
+  ++clock_;
+  for (int v : vertices)
+    if (has(v)) last_used_[slot(v)] = clock_;
+  for (int v : vertices)
+    if (!has(v)) status |= obtain(v);
+  return status;
+}
+
+template <std::floating_point Scalar>
+void ContactCompliance<Scalar>::prefetch(std::span<const int> vertices) noexcept {
+  if (!worker_) return;
+  for (int v : vertices)
+    if (has(v)) last_used_[slot(v)] = clock_;
+  for (int v : vertices)
+    if (!has(v)) obtain(v);
+}
+
+template <std::floating_point Scalar>
+void ContactCompliance<Scalar>::assume(double own_compliance) noexcept {
+  own_.fill(Scalar(0));
+  for (std::size_t i : {0u, 4u, 8u}) own_[i] = static_cast<Scalar>(own_compliance);
+}
+
+template <std::floating_point Scalar>
+Status ContactCompliance<Scalar>::collect() noexcept {
+  Status status;
+  ColumnOrder done;
+  while (worker_ && worker_->take(done)) {
+    slot_of_[static_cast<std::size_t>(done.vertex)] = done.slot;
+    ++revision_;
+    ordered_[static_cast<std::size_t>(done.vertex)] = false;
+    last_used_[static_cast<std::size_t>(done.slot)] = clock_;
+    if (!done.converged) status.set(StatusFlag::solver_not_converged);
+  }
+  return status;
+}
+
+template <std::floating_point Scalar>
+Status ContactCompliance<Scalar>::obtain(int v) noexcept {
+  Status status;
+  if (worker_) status.set(StatusFlag::degraded_model);
+  if (ordered_[static_cast<std::size_t>(v)]) return status;
+  const auto oldest = std::ranges::min_element(last_used_);
+  if (oldest == last_used_.end() || *oldest == clock_ || *oldest == in_work) return StatusFlag::degraded_model;
+  const auto s = static_cast<int>(oldest - last_used_.begin());
+  int& vertex = vertex_of_[static_cast<std::size_t>(s)];
+  if (worker_ && !worker_->order(v, s)) return status;
+  if (vertex >= 0) slot_of_[static_cast<std::size_t>(vertex)] = -1;
+  vertex = v;
+  *oldest = worker_ ? in_work : clock_;
+  if (worker_) {
+    ordered_[static_cast<std::size_t>(v)] = true;
+    return status;
+  }
+  slot_of_[static_cast<std::size_t>(v)] = s;
+  ++revision_;
+  if (!columns_->fill(system_, v, s, column_)) status.set(StatusFlag::solver_not_converged);
+  return status;
+}
+
+#if !PALPATE_HEADER_ONLY
+template class ContactCompliance<float>;
+template class ContactCompliance<double>;
+#endif
+
+}}  // namespace palpate

@@ -1,0 +1,35 @@
+// How much the surroundings of nodes have turned.
+#pragma once
+
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// For chosen nodes the rotation of the deformation that fits the motion of their neighbours best (shape matching,
+/// Mueller et al. 2005, over one ring). O(neighbours), no allocation after set-up.
+class NodalRotations {
+ public:
+  NodalRotations() = default;
+  /// `positions` at rest [m].
+  NodalRotations(const BlockPattern& pattern, const std::vector<Vector3>& positions, const std::vector<NodeId>& nodes);
+
+  /// Of node k of those chosen, under a displacement u with 3 entries per node [m].
+  Matrix3 operator()(std::size_t k, const VectorX& u) const noexcept;
+
+ private:
+  std::vector<NodeId> nodes_;
+  std::vector<Matrix3> inverse_;
+  std::vector<std::size_t> first_;
+  std::vector<NodeId> neighbour_;
+  std::vector<Vector3> offset_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/static/detail/nodal_rotation.ipp>
+#endif

@@ -1,0 +1,121 @@
+// Definitions of prepared_system.hpp.
+#pragma once
+
+#include <palpate/model/static/detail/prepared_system.hpp>
+
+#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/linear/condition.hpp>
+#include <palpate/model/cache/detail/prepared_cache.hpp>
+#include <palpate/model/detail/elastic_body.hpp>
+#include <palpate/model/detail/stage_timer.hpp>
+
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE AnyStaticSystem SystemSource::prepare(const std::string& cache_file, SetupReport& report) const {
+  if (!cache_file.empty()) {
+    if (recipe.read != nullptr) return prepare_with(cache_file, report);
+    report.cache.file = cache_file;
+    report.cache.supported = false;
+  }
+  return make(report);
+}
+
+PALPATE_INLINE AnyStaticSystem SystemSource::prepare_with(const std::string& cache_file, SetupReport& report) const {
+  limits.advance("cache", 0.0);
+  const CacheKey key =
+      cache_key(body.key(), conditions, kept_nodes, *stiffness.matrix(), recipe.cache_name, recipe.scalar_bytes);
+  PreparedCache cache(cache_file, key, report.cache);
+  if (auto system = read(cache, report)) return std::move(*system);
+  AnyStaticSystem system = make(report);
+  limits.advance("cache", 0.5);
+  const StageTimer timer(report, "write cache");
+  cache.store([&](BinaryWriter& out) {
+    out.value(report.condition_estimate);
+    system.write(out);
+  });
+  if (report.cache.mismatch != CacheMismatch::none)
+    report.set(SetupFlag::cache_rejected, cache_file + " was not used because " + report.cache.why);
+  if (!report.cache.written)
+    report.set(SetupFlag::cache_unwritten, cache_file + " could not be written because " + report.cache.problem);
+  return system;
+}
+
+PALPATE_INLINE std::optional<AnyStaticSystem> SystemSource::read(PreparedCache& cache, SetupReport& report) const {
+  const StageTimer timer(report, "read cache");
+  if (!cache.open()) return std::nullopt;
+  double condition = 0.0;
+  cache.payload().value(condition);
+  std::optional<AnyStaticSystem> system(recipe.read(cache.payload(), *stiffness.matrix(), conditions, dofs, limits));
+  if (!cache.verify()) return std::nullopt;
+  const double error = probe_error(FreeStiffness(stiffness.view(), conditions), *system);
+  if (!(error <= refused_probe_error)) {
+    cache.reject(CacheMismatch::answers, "a solve with a known answer is wrong");
+    return std::nullopt;
+  }
+  report.condition_estimate = condition;
+  report.probe_error = error;
+  judge(report);
+  return system;
+}
+
+PALPATE_INLINE AnyStaticSystem SystemSource::make(SetupReport& report) const {
+  AnyStaticSystem system = [&] {
+    const StageTimer timer(report, "factorisation");
+    return recipe.make(stiffness, conditions, dofs, limits);
+  }();
+  const StageTimer timer(report, "checks");
+  limits.advance("checks", 0.0);
+  const FreeStiffness free(stiffness.view(), conditions);
+  report.probe_error = probe_error(free, system);
+  if (recipe.estimates_condition)
+    report.condition_estimate = free_norm(*stiffness.matrix(), conditions) * inverse_norm_estimate(system);
+  require_softest_motion(free, system, report);
+  judge(report);
+  return system;
+}
+
+PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system,
+                                                         const SetupReport& report) const {
+  const bool doubtful = report.probe_error > flagged_probe_error || report.condition_estimate > flagged_condition;
+  if (!recipe.estimates_condition || !doubtful) return;
+  const SoftestMotion softest = probe_softest_motion(free, system);
+  if (!(softest.error > refused_softest_error)) return;
+  SetupProblem p;
+  p.kind = SetupErrorKind::ill_conditioned;
+  p.what = "a solve for the softest motion of the body is wrong by " + number(softest.error) +
+           " (relative); the node moves most in it";
+  p.hint = "Look there for a part that is hardly held: a mechanism, slivers, or extreme stiffness contrast";
+  if (const auto& nodes = dofs.node_of_dof; softest.largest >= 0 && !nodes.empty()) {
+    p.ids = {nodes[static_cast<std::size_t>(softest.largest)]};
+    p.ids_of = SetupIds::nodes;
+    p.count = 1;
+  }
+  p.value = softest.error;
+  p.threshold = refused_softest_error;
+  raise(std::move(p));
+}
+
+PALPATE_INLINE void SystemSource::judge(SetupReport& report) {
+  if (report.probe_error > refused_probe_error) {
+    SetupProblem p;
+    p.kind = SetupErrorKind::ill_conditioned;
+    p.what = "a solve with a known answer is wrong by " + number(report.probe_error) + " (relative)";
+    p.hint =
+        "Look for slivers, extreme stiffness contrast, or a Poisson ratio at its limit; prefer a direct solver in "
+        "double";
+    p.value = report.probe_error;
+    p.threshold = refused_probe_error;
+    raise(std::move(p));
+  }
+  if (report.probe_error > flagged_probe_error)
+    report.set(SetupFlag::ill_conditioned, "a solve with a known answer is wrong by " + number(report.probe_error) +
+                                               " (relative): forces keep no more digits than that");
+  else if (report.condition_estimate > flagged_condition)
+    report.set(SetupFlag::ill_conditioned, "the condition of the stiffness is about " +
+                                               number(report.condition_estimate) +
+                                               ": parameters that differ in the last digits give other forces");
+}
+
+}}  // namespace palpate

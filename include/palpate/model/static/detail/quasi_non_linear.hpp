@@ -1,0 +1,147 @@
+// Linear tissue that stiffens along measured curves.
+#pragma once
+
+#include <palpate/concepts/tissue_adaptor.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/core/types.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// How many times the force of the linear tissue a displacement takes: points (displacement [m], ratio [-]), from a
+/// displacement of 0 on, in between straight, beyond the last point constant.
+class StiffeningCurve {
+ public:
+  struct Point {
+    double displacement = 0.0, ratio = 1.0;
+  };
+
+  /// Linear tissue: the ratio is 1 everywhere.
+  StiffeningCurve() : points_{{0.0, 1.0}} {}
+  /// Throws bad_argument for no points, displacements that do not start at 0 and rise, ratios that are not positive,
+  /// and where the force, displacement times ratio, would fall while the displacement rises; value is that
+  /// displacement.
+  explicit StiffeningCurve(std::vector<Point> points);
+
+  /// O(points), no allocation.
+  double ratio(double displacement) const noexcept;
+
+ private:
+  [[noreturn]] static void refuse(const std::string& what, double value);
+
+  std::vector<Point> points_;
+};
+
+/// The quasi-non-linear elasticity of Cotin, Delingette and Ayache 1999: the force of the linear tissue is scaled by a
+/// curve measured along the direction of pressing (axial) and one measured across it (radial). Written as a compliance,
+///   C'_ij = T C_ij T,   T = n n^T / sqrt(s_axial) + (I - n n^T) / sqrt(s_radial),
+/// n the direction of the sum of the forces, so that it stays symmetric and positive, and contact stays one problem.
+/// The ratios follow the displacements of the loaded vertices, weighed with their forces: half of the way in each tick,
+/// so they arrive within a few. Right where it was measured; elsewhere as good as the measurement applies
+/// (docs/soft.md). Holds a reference to the tissue. Satisfies TissueModel.
+/// Cost: a tick pays the loaded vertices squared, and remembers no compliances from one tick to the next while it
+/// moves.
+template <TissueModel Tissue>
+class QuasiNonLinear : public TissueAdaptor<Tissue> {
+ public:
+  QuasiNonLinear(Tissue& tissue, StiffeningCurve axial, StiffeningCurve radial = {})
+      : TissueAdaptor<Tissue>(tissue),
+        axial_(std::move(axial)),
+        radial_(std::move(radial)),
+        along_(axial_.ratio(0.0)),
+        across_(radial_.ratio(0.0)) {
+    set_scale();
+  }
+  QuasiNonLinear(Tissue&&, StiffeningCurve, StiffeningCurve = {}) = delete;
+
+  void end_tick(std::span<const VertexForce> forces) noexcept {
+    follow(forces);
+    this->tissue().end_tick(forces);
+  }
+  Matrix3 compliance(int i, int j) const noexcept {
+    const Matrix3 c = this->tissue().compliance(i, j);
+    return scale_ * c * scale_;
+  }
+  std::uint64_t compliance_revision() const noexcept { return revision_ + this->tissue().compliance_revision(); }
+  double compliance_bound(int j) const noexcept { return this->tissue().compliance_bound(j) / std::min(along_, across_); }
+  double compliance_floor() const noexcept { return this->tissue().compliance_floor() / std::max(along_, across_); }
+
+  /// Back to the state after construction.
+  void reset() noexcept {
+    along_ = axial_.ratio(0.0);
+    across_ = radial_.ratio(0.0);
+    axis_ = Vector3(0.0, 0.0, 1.0);
+    set_scale();
+    ++revision_;
+  }
+
+  /// How many times stiffer than linear it is now, along the force and across.
+  double axial_ratio() const noexcept { return along_; }
+  double radial_ratio() const noexcept { return across_; }
+  /// T, for pictures: displacements are T times those of the linear tissue under forces T f.
+  const Matrix3& scale() const noexcept { return scale_; }
+
+ private:
+  /// Moves the ratios towards those of the present displacements.
+  void follow(std::span<const VertexForce> forces) noexcept {
+    Vector3 sum = Vector3::Zero(), moved = Vector3::Zero();
+    double weight = 0.0;
+    for (const VertexForce& f : forces) sum += f.force.in_model_axes();
+    const double total = sum.norm();
+    if (!(total > 0.0 && total < infinity)) return settle(axis_, 0.0, 0.0);
+    const Vector3 axis = sum / total;
+    for (const VertexForce& f : forces) {
+      Vector3 u = Vector3::Zero();
+      for (const VertexForce& g : forces) u += compliance(f.vertex, g.vertex) * g.force.in_model_axes();
+      const double share = std::max(0.0, f.force.in_model_axes().dot(axis));
+      moved += share * u;
+      weight += share;
+    }
+    moved /= weight;
+    const double along = moved.dot(axis);
+    settle(axis, along, (moved - along * axis).norm());
+  }
+  void settle(const Vector3& axis, double along, double across) noexcept {
+    const double next_along = half_way(along_, axial_.ratio(along)),
+                 next_across = half_way(across_, radial_.ratio(across));
+    const bool same_axis = along_ == across_ || (axis - axis_).norm() <= unfelt;
+    if (next_along == along_ && next_across == across_ && same_axis) return;
+    along_ = next_along;
+    across_ = next_across;
+    axis_ = axis;
+    set_scale();
+    ++revision_;
+  }
+  /// A change too small to feel is none, so that a hold keeps its compliances.
+  static double half_way(double now, double wanted) noexcept {
+    return std::abs(wanted - now) <= unfelt * now ? now : 0.5 * (now + wanted);
+  }
+  void set_scale() noexcept {
+    const double b = 1.0 / std::sqrt(across_);
+    scale_ = (1.0 / std::sqrt(along_) - b) * axis_ * axis_.transpose();
+    for (int c = 0; c < 3; ++c) scale_(c, c) += b;
+  }
+
+  static constexpr double unfelt = 1e-5;  // relative, and radians of the axis
+
+  StiffeningCurve axial_, radial_;
+  double along_, across_;
+  Vector3 axis_{0.0, 0.0, 1.0};
+  Matrix3 scale_;
+  std::uint64_t revision_ = 0;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/static/detail/quasi_non_linear.ipp>
+#endif

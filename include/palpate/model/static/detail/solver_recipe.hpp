@@ -1,0 +1,88 @@
+// The recipe of a solver policy.
+#pragma once
+
+#include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/detail/any_stiffness.hpp>
+#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/condensation/condensed_system.hpp>
+#include <palpate/condensation/uncondensed.hpp>
+#include <palpate/core/detail/binary_io.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/model/policies.hpp>
+#include <palpate/model/static/detail/any_static_system.hpp>
+#include <palpate/model/static/detail/prepared_system.hpp>
+
+#include <string_view>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+// Of policies.hpp: here the systems they make are complete.
+template <class AssemblyPolicy>
+Uncondensed SolverTraits<WithAssembly<ConjugateGradient, AssemblyPolicy>>::make(const StiffnessView& k,
+                                                                                const EssentialConditions& conditions,
+                                                                                const DofLayout& layout,
+                                                                                const SetupLimits& limits) {
+  return detail::make_iterative(k, conditions, layout, limits);
+}
+template <std::floating_point S>
+Uncondensed SolverTraits<BasicSelectiveInverse<S>>::make(const BlockMatrix& k, const EssentialConditions& conditions,
+                                                         const DofLayout& layout, const SetupLimits& limits) {
+  return detail::make_inverse(kind, k, conditions, layout, limits);
+}
+template <std::floating_point S>
+Uncondensed SolverTraits<BasicSelectiveInverse<S>>::read(BinaryReader& in, const BlockMatrix&,
+                                                         const EssentialConditions& conditions, const DofLayout& layout,
+                                                         const SetupLimits& limits) {
+  return detail::read_inverse(kind, in, conditions, layout, limits);
+}
+template <class Inner>
+CondensedSystem SolverTraits<Condensed<Inner>>::make(const BlockMatrix& k, const EssentialConditions& conditions,
+                                                     const DofLayout& layout, const SetupLimits& limits) {
+  return detail::make_condensed(CondensedTraits<Inner>::kind, k, conditions, layout, limits);
+}
+template <class Inner>
+CondensedSystem SolverTraits<Condensed<Inner>>::read(BinaryReader& in, const BlockMatrix& k,
+                                                     const EssentialConditions& conditions, const DofLayout& layout,
+                                                     const SetupLimits& limits) {
+  return detail::read_condensed(CondensedTraits<Inner>::kind, in, k, conditions, layout, limits);
+}
+
+/// A policy whose prepared system can be stored: `cache_name` tells it from all others, the system has `write`, and
+/// `read` makes it again from what was written, given the same stiffness, conditions and layout. `read` takes every
+/// size from these and none from the file, and returns whatever it likes when the reader fails.
+template <class P>
+concept CacheablePolicy = SolverPolicy<P> &&
+    requires(BinaryReader& in, BinaryWriter& out, const BlockMatrix& k, const EssentialConditions& conditions,
+             const DofLayout& layout, const SetupLimits& limits) {
+  requires std::same_as<typename SolverTraits<P>::Assembly, Assembled>;
+  { SolverTraits<P>::cache_name } -> std::convertible_to<std::string_view>;
+  SolverTraits<P>::read(in, k, conditions, layout, limits).write(out);
+};
+
+/// The recipe of a policy.
+template <SolverPolicy Policy>
+constexpr SolverRecipe solver_recipe() noexcept {
+  using Traits = SolverTraits<Policy>;
+  constexpr bool stored = std::same_as<typename Traits::Assembly, Assembled>;
+  SolverRecipe recipe{};
+  recipe.scalar_bytes = sizeof(typename Traits::Scalar);
+  recipe.eager = Traits::eager;
+  recipe.estimates_condition = stored && !std::same_as<Policy, WithAssembly<ConjugateGradient, Assembled>>;
+  recipe.make = [](const AnyStiffness& k, const EssentialConditions& conditions, const DofLayout& layout,
+                   const SetupLimits& limits) {
+    if constexpr (stored)
+      return AnyStaticSystem(Traits::make(*k.matrix(), conditions, layout, limits));
+    else
+      return AnyStaticSystem(Traits::make(k.view(), conditions, layout, limits));
+  };
+  if constexpr (CacheablePolicy<Policy>) {
+    recipe.cache_name = Traits::cache_name;
+    recipe.read = [](BinaryReader& in, const BlockMatrix& matrix, const EssentialConditions& conditions,
+                     const DofLayout& layout, const SetupLimits& limits) {
+      return AnyStaticSystem(Traits::read(in, matrix, conditions, layout, limits));
+    };
+  }
+  return recipe;
+}
+
+}}  // namespace palpate

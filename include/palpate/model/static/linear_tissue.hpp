@@ -1,0 +1,105 @@
+// Linear static tissue without its element, material and solver: what a session and a program see of a HapticFEModel.
+#pragma once
+
+#include <palpate/concepts/linear_solver.hpp>
+#include <palpate/concepts/still_tissue.hpp>
+#include <palpate/contact/contact_surface.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/model/model_base.hpp>
+#include <palpate/model/static/detail/contact_compliance.hpp>
+
+#include <Eigen/Geometry>
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+class AnyStiffness;
+class Statics;
+struct SolverRecipe;
+
+/// The part of HapticFEModel that is no template of element, material or solver. Scalar, float or double, is what the
+/// stored compliance is. Base of the static HapticFEModel. Satisfies TissueModel.
+template <std::floating_point Scalar>
+class LinearTissue : public ModelBase, public StillTissue {
+ public:
+  /// Displacement under the scene's loads, no tool: 3 per admitted node [m].
+  const VectorX& displacement() const noexcept;
+  /// K u - f_0: forces with which the body answers, 3 per admitted node [N].
+  VectorX internal_force() const;
+  /// Forces of the supports, zero on free dofs, 3 per admitted node [N].
+  VectorX reactions() const;
+  double strain_energy() const;
+
+  /// Displacement with these forces on the contact surface, for drawing: one back-substitution. u has 3 entries per
+  /// admitted node [m]. Resizes u when it has another size, which allocates; otherwise it does not. A force on a
+  /// vertex that does not exist is left out, and the report says not converged. May run beside a tick, but not twice at
+  /// once.
+  SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept;
+  /// The same as a new vector; allocates. Throws index_out_of_range for a vertex that does not exist, non_finite for a
+  /// force that is not finite, not_converged for a solve that stopped early.
+  VectorX displacement(std::span<const VertexForce> forces);
+
+  /// Replaces loads and prescribed values. Throws unsupported for another set of prescribed components, and when the
+  /// scene lets tools touch other nodes or faces than the model was made for. A scene without touch() keeps
+  /// the touched set; see() is ignored. Strong guarantee.
+  void set_conditions(const Scene& scene);
+  /// Gravity [m/s^2] in the world's frame. Strong guarantee.
+  void set_gravity(const Vector3& gravity);
+  /// Where the organ lies in the world; turns gravity with it. Throws bad_argument unless it is a rigid motion. Strong
+  /// guarantee.
+  void set_pose(const Eigen::Isometry3d& pose);
+  /// Back to the scene and pose of construction. Strong guarantee.
+  void reset();
+
+  // TissueModel
+  const ContactSurface& contact_surface() const noexcept { return surface_; }
+  Status require_columns(std::span<const int> vertices) noexcept { return compliance_.require(vertices); }
+  void prefetch(std::span<const int> vertices) noexcept { compliance_.prefetch(vertices); }
+  auto compliance(int i, int j) const noexcept { return compliance_(i, j); }
+  double compliance_bound(int j) const noexcept { return compliance_.bound(j); }
+  std::uint64_t compliance_revision() const noexcept { return compliance_.revision(); }
+  double compliance_floor() const noexcept { return compliance_floor_; }
+
+ protected:
+  using MakeStiffness = AnyStiffness (*)(const ElasticBody&, const SetupLimits&);
+
+  explicit LinearTissue(const SetupOptions& options);
+  LinearTissue(LinearTissue&&) noexcept;
+  LinearTissue& operator=(LinearTissue&&) noexcept;
+  ~LinearTissue();
+
+  /// All of the set-up that comes after admission. Throws what Statics and ContactCompliance throw.
+  void set_up(const Scene& scene, AdmittedBody admitted, MakeStiffness make_stiffness, const SolverRecipe& recipe,
+              const SetupOptions& options);
+
+ private:
+  void prepare_contact(const std::vector<Triangle>& triangles, bool eager, const SetupOptions& options);
+  /// Kept dof of every touchable dof, -1 when it is prescribed.
+  std::vector<Index> kept_index() const;
+  /// Computes a few columns: how soft the surface is, and how long a column takes; starts a thread where one is to
+  /// compute the others.
+  void sample_columns(ColumnFill fill);
+  /// Whether the three solves for a vertex would make a tick late.
+  bool is_column_late() const;
+  Vector3 deformed(NodeId node) const noexcept;
+  /// For changes of the loads: what is to be said of their displacement is said before they are accepted.
+  std::function<void(const VectorX&)> reporting_to(SetupReport& report) const;
+  void accept_displacement(SetupReport& report) noexcept;
+  void move_surface() noexcept;
+
+  std::unique_ptr<Statics> statics_;
+  ContactCompliance<Scalar> compliance_;
+  double compliance_floor_ = 0.0;
+  ContactSurface surface_;
+  std::vector<Vector3> moved_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/static/linear_tissue.ipp>
+#endif

@@ -1,0 +1,181 @@
+// Natural frequencies and mode shapes of a body.
+#pragma once
+
+#include <palpate/assembly/assembled.hpp>
+#include <palpate/assembly/body.hpp>
+#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/detail/smoothed_stiffness.hpp>
+#include <palpate/assembly/mass_matrix.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/core/voigt.hpp>
+#include <palpate/linear/detail/block_lanczos.hpp>
+#include <palpate/linear/sparse_cholesky.hpp>
+#include <palpate/mesh/detail/rigid_displacements.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/surface.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// The lowest elastic modes of a body, ascending, and the rigid motions it is left with.
+struct NaturalFrequencies {
+  VectorX frequencies;    ///< [Hz]
+  MatrixX shapes;         ///< one per column, 3 per node, shape^T M shape = 1 kg m^2; its largest component is positive
+  VectorX residuals;      ///< |K x - omega^2 M x| / |K x| [-]; means nothing at zero frequency (a mechanism)
+  MatrixX rigid_shapes;   ///< motions without strain and frequency, likewise M-orthonormal; six for a free body
+  double rounding = 0.0;  ///< largest relative difference of omega^2 (beyond the shift) computed from the factor and
+                          ///< from the matrices: digits lost to contrast and slenderness; above 1e-3 it is refused
+
+  int rigid_modes() const noexcept { return static_cast<int>(rigid_shapes.cols()); }
+};
+
+namespace detail {
+
+/// K and M of the free dofs, and the rigid motions among them.
+struct ModalProblem {
+  SparseMatrix stiffness, mass;  // lower halves
+  MatrixX rigid;
+
+  static MatrixX times(const SparseMatrix& lower, const MatrixX& x);
+
+  /// x^T K x / x^T M x of every column [1/s^2].
+  VectorX rayleigh(const MatrixX& x) const;
+};
+
+/// Refuses a region without mass: its inertia would be missing from the matrix.
+template <Element E>
+void require_density(const Body<E>& body) {
+  for (std::size_t r = 0; r < body.density.size(); ++r) {
+    if (body.density[r] > 0.0 && std::isfinite(body.density[r])) continue;
+    SetupProblem p;
+    p.kind = SetupErrorKind::bad_density;
+    p.what = "region '" + body.mesh.region_names[r] + "' has a density of " + number(body.density[r]);
+    p.hint = "Natural frequencies need the density of every region, in kg/m^3";
+    p.ids = {static_cast<std::int64_t>(r)};
+    p.count = 1;
+    p.value = body.density[r];
+    raise(std::move(p));
+  }
+}
+
+void require_count(Index wanted, Index available);
+
+/// The frequency scale of a body that can move rigidly [1/s^2]: the lowest Rayleigh quotient of the six uniform
+/// strains, with their rigid part taken out.
+template <Element E>
+double uniform_strain_quotient(const Body<E>& body, const EssentialConditions& conditions,
+                               const ModalProblem& problem) {
+  const Vector3 origin = body.mesh.position(0);
+  MatrixX fields(conditions.free_count(), 6);
+  VectorX full(conditions.dof_count()), part(conditions.free_count());
+  for (int k = 0; k < 6; ++k) {
+    const Matrix3 strain = voigt::stress_tensor(Vector6::Unit(k));
+    for (Index i = 0; i < body.mesh.node_count(); ++i)
+      full.segment<3>(3 * i) = strain * (body.mesh.position(i) - origin);
+    conditions.gather(full, part);
+    fields.col(k) = part;
+  }
+  const MatrixX& z = problem.rigid;
+  const MatrixX gram = z.transpose() * ModalProblem::times(problem.mass, z);
+  fields -= z * gram.ldlt().solve(z.transpose() * ModalProblem::times(problem.mass, fields));
+  return problem.rayleigh(fields).minCoeff();
+}
+
+/// Modes of the free dofs as shapes of all nodes, each with its largest component positive.
+MatrixX full_shapes(const MatrixX& free, const EssentialConditions& conditions);
+
+/// What is returned of modes of the free dofs: sorted, on all nodes, with their residuals. A template only to be
+/// compiled where it is used.
+template <class Problem>
+NaturalFrequencies natural_frequencies_of(const Problem& problem, const MatrixX& modes,
+                                          const EssentialConditions& conditions) {
+  const VectorX lambda = problem.rayleigh(modes);
+  std::vector<Index> order(static_cast<std::size_t>(lambda.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::ranges::sort(order, {}, [&](Index k) { return lambda[k]; });
+  const MatrixX sorted = modes(Eigen::all, order);
+  const VectorX squares = lambda(order);
+  const MatrixX forces = Problem::times(problem.stiffness, sorted);
+  const MatrixX inertia = Problem::times(problem.mass, sorted) * squares.asDiagonal();
+
+  NaturalFrequencies result;
+  result.frequencies = squares.cwiseMax(0.0).cwiseSqrt() / (2.0 * std::numbers::pi);
+  result.residuals = (forces - inertia).colwise().norm().cwiseQuotient(forces.colwise().norm()).transpose();
+  result.shapes = full_shapes(sorted, conditions);
+  const MatrixX gram = problem.rigid.transpose() * Problem::times(problem.mass, problem.rigid);
+  const MatrixX orthonormal = gram.llt().matrixL().solve(problem.rigid.transpose()).transpose();
+  result.rigid_shapes = full_shapes(orthonormal, conditions);
+  return result;
+}
+
+/// Largest relative difference between theta, which knows the factor only, and the quotients of K and M. Refuses pairs
+/// that did not converge or differ by more than 1e-3.
+double require_pairs(const LanczosPairs& pairs, const VectorX& lambda, double shift, double tolerance);
+
+}  // namespace detail
+
+/// The `count` lowest natural frequencies of a body held as in `scene` (prescribed components stay at rest, whatever
+/// their value; loads do not matter), or not held at all: the rigid motions that are left are found from geometry,
+/// returned apart and not counted. An eigenvalue of multiplicity m comes m times, its shapes are some basis. Consistent
+/// mass, stiffness with the element's own rule: frequencies converge from above where both are exact.
+///
+///   auto modes = natural_frequencies(model.body(), scene, 6);                                // of a model
+///   auto modes = natural_frequencies(make_body(admit<Tet10>(mesh).mesh, material), {}, 6);   // of a free body
+///
+/// Node ids and positions in `scene` are those of the body's mesh; for a model's body take
+/// `scene.mapped(model.node_map(), model.origin())`, unless the scene has names only.
+///
+/// Throws bad_density for a region without mass, bad_argument or count_too_large for the count, not_positive_definite
+/// for a held body that is a mechanism, not_converged, ill_conditioned, too_large, cancelled, and what assembly and
+/// conditions throw. Cost: a sparse factorisation of K - sigma M (sigma = 0 when held) and some 10 solves with count +
+/// 4 right-hand sides; a body with far softer parts may take up to four factorisations.
+template <Element E>
+NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, int count,
+                                       const SetupLimits& limits = {}) {
+  constexpr double tolerance = 1e-9;  // of theta; the error of a frequency is of the order of its square
+  detail::require_density(body);
+  const EssentialConditions conditions = resolve_essential(body.mesh, extract_boundary<E>(body.mesh), scene);
+  const MatrixX rigid_motions = rigid_displacements(body.mesh, conditions.constrained);
+  detail::require_count(count, conditions.free_count() - rigid_motions.cols());
+  limits.require_memory(BlockLanczos::bytes(conditions.free_count(), rigid_motions.cols(), count), "the modes");
+
+  detail::ModalProblem problem{free_matrix(assemble_stiffness<E>(body, limits), conditions),
+                               free_matrix(assemble_mass<E>(body, limits), conditions),
+                               rigid_motions(conditions.free_dofs, Eigen::all)};
+  const bool held = problem.rigid.cols() == 0;
+  double shift = held ? 0.0 : -1e-2 * detail::uniform_strain_quotient(body, conditions, problem);
+  LanczosPairs pairs;
+  VectorX lambda;
+  for (int attempt = 0; attempt < (held ? 1 : 4) && !pairs.converged; ++attempt) {
+    if (attempt > 0) shift = -1e-2 * lambda.cwiseAbs().minCoeff();  // far below the uniform strains: start again there
+    const SparseCholesky factor(held ? problem.stiffness : SparseMatrix(problem.stiffness - shift * problem.mass),
+                                limits);
+    BlockLanczos lanczos(factor, problem.mass, problem.rigid, count);
+    pairs = lanczos.run(tolerance, held ? 200 : 40, limits);
+    lambda = problem.rayleigh(pairs.vectors);
+  }
+  const double rounding = detail::require_pairs(pairs, lambda, shift, tolerance);
+  NaturalFrequencies result = detail::natural_frequencies_of(problem, pairs.vectors, conditions);
+  result.rounding = rounding;
+  return result;
+}
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/static/natural_frequencies.ipp>
+#endif
