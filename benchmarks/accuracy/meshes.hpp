@@ -114,9 +114,9 @@ Mesh<E> sphere_octant(double inner, double outer, int n, int layers) {
   std::vector<Mesh<E>> blocks;
   for (int axis = 0; axis < 3; ++axis)
     blocks.push_back(mapped_box<E>({layers, n, n}, [&](const Vector3& s) -> Vector3 {
-      const Vector3 way = Vector3(1.0, std::tan(quarter * s[1]), std::tan(quarter * s[2])).normalized();
+      const Vector3 path = Vector3(1.0, std::tan(quarter * s[1]), std::tan(quarter * s[2])).normalized();
       Vector3 x;
-      for (int i = 0; i < 3; ++i) x[(i + axis) % 3] = way[i];
+      for (int i = 0; i < 3; ++i) x[(i + axis) % 3] = path[i];
       return (inner + (outer - inner) * s[0]) * x;
     }));
   Mesh<E> mesh = joined(blocks, outer);

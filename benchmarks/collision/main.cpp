@@ -17,7 +17,7 @@ namespace {
 constexpr double pi = 3.141592653589793, radius = 0.05;  // [m] of the organ
 int wrong = 0;
 
-/// A ball with bumps, of 2 n (2 n - 2) ... triangles; `wave` moves the bumps.
+/// A sphere with bumps, of 2 n (2 n - 2) ... triangles; `wave` moves the bumps.
 Surface organ(int n, double wave) {
   Surface s;
   const auto at = [&](double u, double v) {

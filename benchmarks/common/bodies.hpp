@@ -29,13 +29,13 @@ std::vector<NodeId> nodes_where(const Mesh<Tet4>& mesh, Wanted wanted) {
 }
 
 /// A mesh, where it is held and where it may be touched.
-struct Held {
+struct Constrained {
   Mesh<Tet4> mesh;
-  std::vector<NodeId> held, touched;
+  std::vector<NodeId> constrained, touched;
 
   Scene scene() const {
     Scene s;
-    s.fix(held).touch(touched);
+    s.fix(constrained).touch(touched);
     return s;
   }
   Body<Tet4> body() const {
@@ -47,10 +47,10 @@ struct Held {
 
 /// Cube of 0.1 m in n x n x n cells of six tetrahedra, held at the bottom. In the middle of the top an odd number of
 /// nodes in both directions may be touched: 7 x 7 at n = 16, 11 x 11 at n = 24.
-inline Held standard_block(int n) {
-  Held b{box_tet4(Vector3(0.1, 0.1, 0.1), {n, n, n}, BoxSplit::six), {}, {}};
+inline Constrained standard_block(int n) {
+  Constrained b{box_tet4(Vector3(0.1, 0.1, 0.1), {n, n, n}, BoxSplit::six), {}, {}};
   const double half = 0.1 / n * (n < 16 ? 2 : n < 24 ? 3 : n < 32 ? 5 : 7) + 1e-6;
-  b.held = nodes_where(b.mesh, [](const Vector3& p) { return p.z() < 1e-9; });
+  b.constrained = nodes_where(b.mesh, [](const Vector3& p) { return p.z() < 1e-9; });
   b.touched = nodes_where(b.mesh, [=](const Vector3& p) {
     return p.z() > 0.1 - 1e-9 && std::abs(p.x() - 0.05) <= half && std::abs(p.y() - 0.05) <= half;
   });
@@ -79,14 +79,15 @@ Mesh<Tet4> part_of(const Mesh<Tet4>& mesh, Wanted wanted) {
   return part;
 }
 
-/// A body like an organ: a ball of `layers` layers, elements about `edge` long, with a cavity in it and its nodes moved
-/// at random. Held below; the 300 nodes of its surface that are nearest to the top may be touched.
-inline Held organ_like(int layers, double edge) {
+/// A body like an organ: a sphere of `layers` layers, elements about `edge` long, with a cavity in it and its nodes
+/// moved at random. Held below; the 300 nodes of its surface that are nearest to the top may be touched.
+inline Constrained organ_like(int layers, double edge) {
   const double radius = layers * edge;
   const Vector3 cavity = radius * Vector3(0.3, 0.1, -0.1);
-  Held b{part_of(ball_tet4(radius, layers), [&](const Vector3& c) { return (c - cavity).norm() > 0.35 * radius; }),
-         {},
-         {}};
+  Constrained b{
+      part_of(sphere_tet4(radius, layers), [&](const Vector3& c) { return (c - cavity).norm() > 0.35 * radius; }),
+      {},
+      {}};
   testing::Random random(7);
   for (Vector3& p : b.mesh.positions) p += edge * random.vector<3>(-0.1, 0.1);
   const Vector3 top(0.0, 0.0, radius);
@@ -95,7 +96,7 @@ inline Held organ_like(int layers, double edge) {
   if (outer.size() > 300) outer.resize(300);
   std::erase_if(outer, [&](NodeId i) { return b.mesh.position(i).z() < -0.5 * radius; });
   b.touched = std::move(outer);
-  b.held = nodes_where(b.mesh, [=](const Vector3& p) { return p.z() < -0.6 * radius; });
+  b.constrained = nodes_where(b.mesh, [=](const Vector3& p) { return p.z() < -0.6 * radius; });
   return b;
 }
 
@@ -105,14 +106,14 @@ struct System {
   DofLayout layout;          ///< nothing kept
   std::vector<Index> patch;  ///< free dofs of the touched nodes
 
-  explicit System(const Held& held) {
+  explicit System(const Constrained& constrained) {
     Scene scene;
-    scene.fix(held.held);
-    const auto conditions = resolve_essential(held.mesh, extract_boundary<Tet4>(held.mesh), scene);
-    lower = free_matrix(assemble_stiffness<Tet4>(held.body(), {}), conditions);
-    layout.positions = held.mesh.positions;
+    scene.fix(constrained.constrained);
+    const auto conditions = resolve_essential(constrained.mesh, extract_boundary<Tet4>(constrained.mesh), scene);
+    lower = free_matrix(assemble_stiffness<Tet4>(constrained.body(), {}), conditions);
+    layout.positions = constrained.mesh.positions;
     for (Index dof : conditions.free_dofs) layout.node_of_dof.push_back(dof / 3);
-    for (NodeId node : held.touched)
+    for (NodeId node : constrained.touched)
       for (int c = 0; c < 3; ++c)
         if (const Index f = conditions.free_index[static_cast<std::size_t>(3 * Index{node} + c)]; f >= 0)
           patch.push_back(f);

@@ -1,4 +1,4 @@
-// A ball that moves over a body, with a given number of contacts.
+// A sphere that moves over a body, with a given number of contacts.
 #pragma once
 
 #include <palpate/core/platform.hpp>
@@ -16,18 +16,18 @@ inline constexpr double cell = 1e-3;  ///< size of the elements of bodies that a
 
 /// Block of 1 mm cells; 17 x 17 nodes in the middle of its top may be touched, the same in every block. `across` is
 /// even and at least 16.
-inline Held touch_block(int across, int deep) {
+inline Constrained touch_block(int across, int deep) {
   const Vector3 size(cell * across, cell * across, cell * deep);
-  Held b{box_tet4(size, {across, across, deep}, BoxSplit::six), {}, {}};
+  Constrained b{box_tet4(size, {across, across, deep}, BoxSplit::six), {}, {}};
   for (Vector3& p : b.mesh.positions) p -= Vector3(0.5 * size.x(), 0.5 * size.y(), size.z());
-  b.held = nodes_where(b.mesh, [&](const Vector3& p) { return p.z() < 1e-6 * cell - size.z(); });
+  b.constrained = nodes_where(b.mesh, [&](const Vector3& p) { return p.z() < 1e-6 * cell - size.z(); });
   b.touched = nodes_where(
       b.mesh, [](const Vector3& p) { return p.z() > -1e-6 * cell && p.head<2>().cwiseAbs().maxCoeff() < 8.1 * cell; });
   return b;
 }
 /// An organ-like body of 1 mm elements, its top in the origin.
-inline Held touch_organ(int layers) {
-  Held b = organ_like(layers, cell);
+inline Constrained touch_organ(int layers) {
+  Constrained b = organ_like(layers, cell);
   for (Vector3& p : b.mesh.positions) p.z() -= layers * cell;
   return b;
 }
@@ -38,7 +38,8 @@ class Touching {
  public:
   using Model = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
 
-  explicit Touching(const Held& body) : model_(body.mesh, body.scene(), tissue), servo_(model_, SphereTool{radius}) {}
+  explicit Touching(const Constrained& body)
+      : model_(body.mesh, body.scene(), tissue), servo_(model_, SphereTool{radius}) {}
 
   /// Goes down until that many contacts press, on average over the circle.
   void press_until(int contacts) {
@@ -58,12 +59,12 @@ class Touching {
   }
   int pressing() const noexcept { return static_cast<int>(servo_.contacts().size()); }
 
-  /// Holds still, applies the forces to the whole body and measures how far the pressed points then are from the ball,
-  /// per depth. This goes through none of the stored compliance. Median of five places: now and then one contact of a
-  /// rough surface takes long to settle.
+  /// Holds still, applies the forces to the whole body and measures how far the pressed points then are from the
+  /// sphere, per depth. This goes through none of the stored compliance. Median of five places: now and then one
+  /// contact of a rough surface takes long to settle.
   double gap_error() {
     std::vector<double> gaps;
-    for (int i = 0; i < 5; ++i) gaps.push_back(gap_held());
+    for (int i = 0; i < 5; ++i) gaps.push_back(gap_constrained());
     return percentile(std::move(gaps), 0.5);
   }
 
@@ -84,7 +85,7 @@ class Touching {
   void stop() noexcept {}
 
  private:
-  double gap_held() {
+  double gap_constrained() {
     ToolState state = read();
     for (int i = 0; i < 50; ++i, state.time += 1e-3) servo_.tick({&state, 1});
     VectorX u(3 * model_.mesh().node_count());

@@ -139,12 +139,12 @@ void measure_scrambles(bench::RowFile& rows, int runs) {
       Status status;
       for (int i = 0; i < 6000 && (i < 100 || motion.kinetic_energy() > still); ++i)
         status |= motion.step(0.5 * motion.limit());
-      const bool held = status.has(StatusFlag::energy_grew) || status.has(StatusFlag::step_refused);
+      const bool constrained = status.has(StatusFlag::energy_grew) || status.has(StatusFlag::step_refused);
       const bool rests = motion.state().displacement.allFinite() && motion.kinetic_energy() <= still &&
                          motion.deformation().inverted == 0;
-      stopped += held ? 1 : 0;
+      stopped += constrained ? 1 : 0;
       at_rest += rests ? 1 : 0;
-      unseen += !rests && !held ? 1 : 0;
+      unseen += !rests && !constrained ? 1 : 0;
       home += motion.state().displacement.norm() < 1e-3 ? 1 : 0;
     }
     const double share = 1.0 / runs;

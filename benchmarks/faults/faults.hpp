@@ -12,7 +12,7 @@ namespace faults {
 
 using namespace palpate;
 
-inline constexpr double ball = 0.012, tick = 1e-3, duration = 6.0;
+inline constexpr double sphere = 0.012, tick = 1e-3, duration = 6.0;
 inline constexpr double stale_after = 0.5005;  // off the grid of ticks, so that rounding decides nothing
 inline const Vector3 pad_size(0.06, 0.06, 0.03);
 
@@ -66,7 +66,7 @@ inline ServoOptions session_options() {
 inline Outcome run(const Fault& fault, double tissue_step) {
   Pad tissue = make_pad(tissue_step);
   const ServoOptions options = session_options();
-  HapticServo servo(tissue, SphereTool{.radius = ball}, options, EnergyTank(EnergyLimits::from(options.device)));
+  HapticServo servo(tissue, SphereTool{.radius = sphere}, options, EnergyTank(EnergyLimits::from(options.device)));
   const ForceLimits limits = ForceLimits::from(options.device);
   PassivityObserver hand;
   const double damping = EnergyLimits::from(options.device).damping;
@@ -95,7 +95,7 @@ inline Outcome run(const Fault& fault, double tissue_step) {
     if (has_news || k == 0) news = t;
     ToolState state;
     state.time = t;
-    state.position = {0.5 * pad_size[0], 0.5 * pad_size[1], pad_size[2] + ball - depth_at(t)};
+    state.position = {0.5 * pad_size[0], 0.5 * pad_size[1], pad_size[2] + sphere - depth_at(t)};
     const int since = static_cast<int>(std::lround((t - 0.5 - second) / tick));
     const bool not_a_number = fault.bad_input && second >= 0 && since == 100,
                unreadable = fault.bad_input && second >= 0 && since == 300;
@@ -106,7 +106,7 @@ inline Outcome run(const Fault& fault, double tissue_step) {
     const bool is_good = state.valid && state.position.allFinite();
     if (is_good) {
       const auto step = hand.moved(state.position, t);
-      if (step.time > 0.0) damped += damping * step.way2 / step.time;
+      if (step.time > 0.0) damped += damping * step.squared_path / step.time;
     } else {
       hand.forget();
     }

@@ -36,13 +36,13 @@ int main() {
     if (c.name == cases[0].name) steady = o.last_force;
     const bool counted = o.stale == o.stale_due && o.missed == o.missed_due && o.disconnected == o.disconnected_due &&
                          o.bad == o.bad_due;
-    const bool calm =
+    const bool energy_bounded =
         o.not_finite == 0 && o.peak <= limits.peak_force && o.step <= limits.slew_rate * tick * (1.0 + 1e-9);
     const bool bounded = o.given <= energy.allowance + energy.refill * duration && (c.fault.fades() || o.taken >= 0.0);
-    if (!counted || !calm || !bounded || std::abs(o.last_force - steady) > 0.05 * steady) {
+    if (!counted || !energy_bounded || !bounded || std::abs(o.last_force - steady) > 0.05 * steady) {
       ++wrong;
-      std::printf("WRONG: counted %d, calm %d, bounded %d, force a second later %g instead of %g N\n", counted, calm,
-                  bounded, o.last_force, steady);
+      std::printf("WRONG: counted %d, calm %d, bounded %d, force a second later %g instead of %g N\n", counted,
+                  energy_bounded, bounded, o.last_force, steady);
     }
   }
   return wrong == 0 ? 0 : 1;

@@ -37,7 +37,7 @@ class BulletBlock {
     for (const double m : lumped) mass.push_back(static_cast<btScalar>(m));
     body_ = new btSoftBody(&world_.getWorldInfo(), static_cast<int>(x.size()), x.data(), mass.data());
     for (const auto& e : mesh.elements) body_->appendTetra(e[0], e[1], e[2], e[3]);
-    for (const NodeId node : pressing.block.held) body_->setMass(node, 0);
+    for (const NodeId node : pressing.block.constrained) body_->setMass(node, 0);
     body_->initializeDmInverse();
     body_->m_tetraScratches.resize(body_->m_tetras.size());
     body_->m_tetraScratchesTn.resize(body_->m_tetras.size());
@@ -79,7 +79,7 @@ class BulletBlock {
 void measure_bullet(bench::RowFile& rows, int n) {
   const Pressing pressing(n);
   Scene scene;
-  scene.fix(pressing.block.held).gravity(Vector3(0.0, 0.0, -9.81));
+  scene.fix(pressing.block.constrained).gravity(Vector3(0.0, 0.0, -9.81));
   CorotatedMotionOptions options;
   options.solve.tolerance = 3e-3;
   CorotatedMotion<LinearElastic, float> ours(pressing.body, scene, options);

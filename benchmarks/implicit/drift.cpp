@@ -68,9 +68,9 @@ void measure(bench::RowFile& rows, DeformableBody body, const TimeScheme& scheme
         10 * static_cast<long long>(k) < steps || 10 * static_cast<long long>(k) >= 9LL * steps ? now * 10.0 / steps
                                                                                                 : 0.0;
     if (k % 1000 == 999) {
-      const double turned = momenta(d, small_strain).angular.norm();
-      spin_gain = std::max(spin_gain, (turned - spin) / angular_scale);
-      spin = turned;
+      const double rotated = momenta(d, small_strain).angular.norm();
+      spin_gain = std::max(spin_gain, (rotated - spin) / angular_scale);
+      spin = rotated;
     }
   }
   const Momenta after = momenta(d, small_strain);
@@ -144,9 +144,9 @@ void scramble(bench::RowFile& rows, Motion& motion, const char* name, int runs) 
 }  // namespace
 
 void measure_implicit_scrambles(bench::RowFile& rows, int runs) {
-  const bench::Held block = bench::standard_block(2);
+  const bench::Constrained block = bench::standard_block(2);
   Scene scene;
-  scene.fix(block.held);
+  scene.fix(block.constrained);
   CorotatedMotionOptions options;
   options.mass_damping = 5.0;
   const std::vector<Corotational<LinearElastic>> turning{{soft.small_strain()}};
@@ -171,19 +171,20 @@ void measure_static_hold(bench::RowFile& rows, int ticks) {
   };
   const int settle = 10000;
   for (int k = 0; k < settle; ++k) tick(k);
-  const VectorX held = tissue.motion().displacement();
+  const VectorX constrained = tissue.motion().displacement();
   const Vector3 force = servo.contact_force();
   double off = 0.0, force_off = 0.0;
   for (int k = settle; k < settle + ticks; ++k) {
     tick(k);
     if (k % 1000 != 0) continue;
-    off = std::max(off, (tissue.motion().displacement() - held).norm() / held.norm());
+    off = std::max(off, (tissue.motion().displacement() - constrained).norm() / constrained.norm());
     force_off = std::max(force_off, (servo.contact_force() - force).norm() / force.norm());
   }
-  rows.add({.target = "m",
-            .what = "a ball held in a moving tissue over " + std::to_string(ticks) + " ticks: displacement, force off",
-            .figure = text_of("%.1e, %.1e", off, force_off),
-            .baseline = "1e-9 asked for",
-            .bound = {},
-            .error = off < 1e-3 ? "" : "it creeps"});
+  rows.add(
+      {.target = "m",
+       .what = "a sphere held in a moving tissue over " + std::to_string(ticks) + " ticks: displacement, force off",
+       .figure = text_of("%.1e, %.1e", off, force_off),
+       .baseline = "1e-9 asked for",
+       .bound = {},
+       .error = off < 1e-3 ? "" : "it creeps"});
 }

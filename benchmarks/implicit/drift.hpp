@@ -10,5 +10,5 @@ void measure_implicit_drift(bench::RowFile& rows);
 void measure_implicit_drift(bench::RowFile& rows, int steps);
 /// Blocks with all free nodes displaced at random: share that comes to rest.
 void measure_implicit_scrambles(bench::RowFile& rows, int runs);
-/// A ball held in a moving tissue: how far the tissue creeps in a million ticks.
+/// A sphere held in a moving tissue: how far the tissue creeps in a million ticks.
 void measure_static_hold(bench::RowFile& rows, int ticks);

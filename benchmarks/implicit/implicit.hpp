@@ -19,17 +19,17 @@ using Law = Corotational<LinearElastic>;
 /// The standard block under its weight, held below; a patch in the middle of its top is pressed 20 mm down and up
 /// again, twice a second.
 struct Pressing {
-  bench::Held block;
+  bench::Constrained block;
   HyperelasticBody<Tet4, Law> body;
   Scene scene;
 
   explicit Pressing(int n)
       : block(bench::standard_block(n)), body(make_hyperelastic_body(block.mesh, std::vector<Law>{{bench::tissue}})) {
-    scene.fix(block.held).fix(block.touched).gravity(Vector3(0.0, 0.0, -9.81));
+    scene.fix(block.constrained).fix(block.touched).gravity(Vector3(0.0, 0.0, -9.81));
   }
   double tets() const { return static_cast<double>(body.rest.mesh.element_count()); }
   /// Values of held dofs at a time [m].
-  VectorX held_at(double time) const {
+  VectorX constrained_at(double time) const {
     VectorX u = VectorX::Zero(3 * body.rest.mesh.node_count());
     for (const NodeId node : block.touched)
       u[3 * Index{node} + 2] = -0.01 * (1.0 - std::cos(4.0 * std::numbers::pi * time));
@@ -53,7 +53,7 @@ class PlainEigenStep {
     u_ = u;
     v_ = v;
   }
-  void step(double h, const VectorX& held);
+  void step(double h, const VectorX& constrained);
   const VectorX& displacement() const noexcept { return u_; }
   const VectorX& velocity() const noexcept { return v_; }
   long iterations() const noexcept { return iterations_; }

@@ -27,7 +27,7 @@ struct Sinking {
 };
 
 template <class M>
-M law_of() {
+M material_of() {
   const auto& t = bench::tissue;
   if constexpr (std::is_same_v<M, Law>)
     return {t};
@@ -41,11 +41,11 @@ M law_of() {
 }
 template <class M>
 HyperelasticBody<Tet4, M> body_of(int n) {
-  return make_hyperelastic_body(bench::standard_block(n).mesh, std::vector<M>{law_of<M>()});
+  return make_hyperelastic_body(bench::standard_block(n).mesh, std::vector<M>{material_of<M>()});
 }
 Scene scene_of(int n) {
   Scene scene;
-  scene.fix(bench::standard_block(n).held).gravity(Vector3(0.0, 0.0, -9.81));
+  scene.fix(bench::standard_block(n).constrained).gravity(Vector3(0.0, 0.0, -9.81));
   return scene;
 }
 
@@ -114,13 +114,13 @@ double median_tick(Sinking motion) {
 
 /// `allowed`: what the scheme loses at this step; implicit Euler damps the sway of a block that sinks by its weight.
 void measure(bench::RowFile& rows, const char* what, const Maker& make, const VectorX& exact, double allowed) {
-  double held = bench::unknown;
+  double constrained = bench::unknown;
   int largest = 0;
   for (const int n : {3, 4, 5, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 28, 32}) {
     const double time = median_tick(make(n));
     if (!(time <= tick)) break;
     largest = n;
-    held = time;
+    constrained = time;
   }
   Sinking same = make(reference_cells);
   bool good = largest > 0;
@@ -128,7 +128,7 @@ void measure(bench::RowFile& rows, const char* what, const Maker& make, const Ve
   const double error = (same.displacement() - exact).norm() / exact.norm();
   char text[120];
   std::snprintf(text, sizeof text, "%d tets (n = %d), %.3f ms; %.1e off after 0.1 s", 6 * largest * largest * largest,
-                largest, 1e3 * held, error);
+                largest, 1e3 * constrained, error);
   rows.add({.target = "n",
             .what = std::string("largest block held at 1 kHz on one core: ") + what,
             .figure = text,

@@ -75,10 +75,10 @@ void PlainEigenStep::turn(Element& e) const {
 
 void PlainEigenStep::add(Element& e, const VectorX& predicted, VectorX& residual) {
   const Matrix3 r = e.turn.matrix();
-  Matrix12 turned;
+  Matrix12 rotated;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j)
-      turned.block<3, 3>(3 * i, 3 * j).noalias() = r * e.stiffness.block<3, 3>(3 * i, 3 * j) * r.transpose();
+      rotated.block<3, 3>(3 * i, 3 * j).noalias() = r * e.stiffness.block<3, 3>(3 * i, 3 * j) * r.transpose();
   // force = R K (R^T x - x0) = turned (x - R x0): of linear tetrahedra only the deformation counts
   Matrix3 d = Matrix3::Identity();
   for (int a = 0; a < 4; ++a)
@@ -90,13 +90,13 @@ void PlainEigenStep::add(Element& e, const VectorX& predicted, VectorX& residual
     residual.segment<3>(3 * Index{e.nodes[static_cast<std::size_t>(a)]}) -= stress * e.gradient.row(a).transpose();
   double* const values = a_.valuePtr();
   for (int k = 0; k < 144; ++k)
-    if (const Index at = e.place[static_cast<std::size_t>(k)]; at >= 0) values[at] += turned.data()[k];
+    if (const Index at = e.place[static_cast<std::size_t>(k)]; at >= 0) values[at] += rotated.data()[k];
 }
 
-void PlainEigenStep::step(double h, const VectorX& held) {
+void PlainEigenStep::step(double h, const VectorX& constrained) {
   VectorX predicted = u_ + h * v_;
   for (Index dof = 0; dof < predicted.size(); ++dof)
-    if (conditions_.is_constrained(dof)) predicted[dof] = held[dof];
+    if (conditions_.is_constrained(dof)) predicted[dof] = constrained[dof];
   const VectorX before = u_;
   u_ = predicted;
   std::fill_n(a_.valuePtr(), a_.nonZeros(), 0.0);

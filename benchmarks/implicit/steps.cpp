@@ -37,7 +37,7 @@ struct Judge {
   /// From (u0, v0) a step to held(time) ended in (u, v): how far from where it should have?
   void look(const VectorX& u0, const VectorX& v0, double time, const VectorX& u, const VectorX& v) {
     solved.set_state(u0, v0);
-    solved.set_prescribed(pressing.held_at(time));
+    solved.set_prescribed(pressing.constrained_at(time));
     if (!solved.step(h).newton.converged) throw std::runtime_error("the reference step did not converge");
     norm.set_state(u0, v0);
     norm.prepare_response(h);
@@ -69,8 +69,8 @@ Measured run(const Pressing& pressing, double h, Motion& motion, Step&& step, st
   Measured m;
   std::vector<double> own;
   for (int k = 1; k <= steps; ++k) {
-    const VectorX held = pressing.held_at(k * h), u = motion.displacement(), v = motion.velocity();
-    own.push_back(bench::seconds_of([&] { m.iterations += static_cast<double>(step(held)); }));
+    const VectorX constrained = pressing.constrained_at(k * h), u = motion.displacement(), v = motion.velocity();
+    own.push_back(bench::seconds_of([&] { m.iterations += static_cast<double>(step(constrained)); }));
     if (k % look_every == 0) judge.look(u, v, k * h, motion.displacement(), motion.velocity());
   }
   m.time = bench::percentile(own, 0.5);
@@ -84,16 +84,16 @@ Measured run(const Pressing& pressing, double h, Motion& motion, Step&& step, st
 template <class S, class Preconditioner = BlockJacobi>
 Measured run_ours(const Pressing& pressing, double h, const CorotatedMotionOptions& options) {
   CorotatedMotion<LinearElastic, S, Preconditioner> motion(pressing.body, pressing.scene, options);
-  return run(pressing, h, motion, [&](const VectorX& held) {
-    motion.set_prescribed(held);
+  return run(pressing, h, motion, [&](const VectorX& constrained) {
+    motion.set_prescribed(constrained);
     return motion.step(h).solve.iterations;
   });
 }
 Measured run_plain(const Pressing& pressing, double h, double tolerance) {
   PlainEigenStep motion(pressing, tolerance);
-  return run(pressing, h, motion, [&](const VectorX& held) {
+  return run(pressing, h, motion, [&](const VectorX& constrained) {
     const long before = motion.iterations();
-    motion.step(h, held);
+    motion.step(h, constrained);
     return motion.iterations() - before;
   });
 }
@@ -169,13 +169,13 @@ void measure_preconditioners(bench::RowFile& rows, int n) {
   const Pressing pressing(n);
   for (const double h : {1e-3, 4e-3, 16e-3}) {
     const Measured jacobi = run_ours<float>(pressing, h, usual());
-    const Measured turned = run_ours<float, TurnedFactor>(pressing, h, usual());
+    const Measured rotated = run_ours<float, CorotatedFactor>(pressing, h, usual());
     CorotatedMotionOptions two = usual();
     two.solve = {2, 0.0};
-    const Measured fixed = run_ours<float, TurnedFactor>(pressing, h, two);
+    const Measured fixed = run_ours<float, CorotatedFactor>(pressing, h, two);
     const Measured renewed = run_ours<float, RenewedFactor>(pressing, h, usual());
     const std::string what = "step of " + bench::milliseconds(h) + ", " + block_of(pressing);
-    for (const auto& [name, m] : {std::pair{"the factor that turns", turned},
+    for (const auto& [name, m] : {std::pair{"the factor that turns", rotated},
                                   {"the same, two iterations", fixed},
                                   {"a factor that a thread renews (processor time of both)", renewed}})
       rows.add({.target = "o",

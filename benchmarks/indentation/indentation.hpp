@@ -1,4 +1,4 @@
-// What the two parts of the program share: graded boxes of tissue and a rigidly held ball.
+// What the two parts of the program share: graded boxes of tissue and a rigidly held sphere.
 #pragma once
 
 #include <palpate/haptic/haptic_servo.hpp>
@@ -11,7 +11,7 @@
 
 namespace indentation {
 
-inline constexpr double ball_radius = 4e-3;     ///< [m]
+inline constexpr double sphere_radius = 4e-3;   ///< [m]
 inline constexpr double youngs_modulus = 10e3;  ///< [Pa]
 
 /// Part 1: presses into a bonded layer of elements E and compares with the exact solution. False when the acceptance
@@ -56,7 +56,7 @@ std::vector<palpate::NodeId> top_nodes(const palpate::Mesh<E>& mesh, Near near) 
   return nodes;
 }
 
-/// A tissue and a ball that follows the device exactly; the gate's limits are out of reach.
+/// A tissue and a sphere that follows the device exactly; the gate's limits are out of reach.
 template <palpate::Element E>
 struct Session {
   using Model = palpate::HapticFEModel<E, palpate::LinearElastic>;
@@ -68,9 +68,9 @@ struct Session {
 
   Session(const palpate::Mesh<E>& mesh, const palpate::Scene& scene, double poisson_ratio)
       : model(mesh, scene, palpate::LinearElastic{.youngs_modulus = youngs_modulus, .poisson_ratio = poisson_ratio}),
-        servo(model, palpate::SphereTool{ball_radius}, options()) {}
+        servo(model, palpate::SphereTool{sphere_radius}, options()) {}
 
-  /// One tick with the ball's centre here; the contact force before the gate.
+  /// One tick with the sphere's centre here; the contact force before the gate.
   palpate::Vector3 tick(const palpate::Vector3& centre) {
     state.time += 1e-3;
     state.position = centre;

@@ -1,4 +1,4 @@
-// A ball pressed into an elastic layer bonded to a rigid base, without friction, against the exact solution.
+// A sphere pressed into an elastic layer bonded to a rigid base, without friction, against the exact solution.
 #pragma once
 
 #include <cmath>
@@ -26,10 +26,10 @@ inline constexpr std::array<Truth, 6> truths{{{0.30, 0.188, 1.2007},
                                               {0.4999, 0.185, 1.2698},
                                               {0.4999, 0.344, 1.6355}}};
 
-// The exact solution is that of a shallow ball. At a / R = 0.05 the finite slope still changes the force by less than
+// The exact solution is that of a shallow sphere. At a / R = 0.05 the finite slope still changes the force by less than
 // 1 %; at 0.25 it is up to 4 %, at 0.5 up to 14 % (nu = 0.45), on any mesh.
-inline constexpr double depth = ball_radius / 400.0;
-inline const double a = std::sqrt(ball_radius * depth);
+inline constexpr double depth = sphere_radius / 400.0;
+inline const double a = std::sqrt(sphere_radius * depth);
 
 struct Row {
   double cells_per_a = 0.0, force = 0.0, over_hertz = 0.0, seconds = 0.0;
@@ -51,14 +51,14 @@ Mesh<E> layer_mesh(double h, double width, double height) {
     return copy_mesh<E>(promote<Tet10>(box_tet4(x, x, z)));
 }
 
-/// A quarter of the layer: the ball's axis is the edge x = y = 0.
+/// A quarter of the layer: the sphere's axis is the edge x = y = 0.
 template <Element E>
 std::unique_ptr<Session<E>> make_layer(const Truth& truth, double h) {
   const double height = a / truth.chi;
   const Mesh<E> mesh = layer_mesh<E>(h, std::max(8.0 * a, 3.0 * height), height);
   Scene scene;
   scene.fix("z0").prescribe("x0", {0.0, std::nullopt, std::nullopt}).prescribe("y0", {std::nullopt, 0.0, std::nullopt});
-  // The ball touches up to 1.12 a. Fewer touchable nodes around that leave room for those that matter.
+  // The sphere touches up to 1.12 a. Fewer touchable nodes around that leave room for those that matter.
   scene.touch(top_nodes(mesh, [&](const Vector3& p) { return std::hypot(p.x(), p.y()) < 1.3 * a + h; }));
   return std::make_unique<Session<E>>(mesh, scene, truth.poisson_ratio);
 }
@@ -70,13 +70,13 @@ Row press(const Truth& truth, double cells_per_a) {
   Row row{.cells_per_a = cells_per_a};
   for (int i = 1; i <= 200 && !row.stationary; ++i) {
     const double d = depth * std::min(1.0, i / 50.0);
-    const double force = 4.0 * session->tick({0.0, 0.0, height + ball_radius - d}).z();
+    const double force = 4.0 * session->tick({0.0, 0.0, height + sphere_radius - d}).z();
     row.stationary = i > 60 && std::abs(force - row.force) <= 1e-9 * force;
     row.force = force;
     row.dropped = session->has(StatusFlag::degraded_model);
   }
   const double modulus = youngs_modulus / (1.0 - truth.poisson_ratio * truth.poisson_ratio);
-  row.over_hertz = row.force / (4.0 / 3.0 * modulus * std::sqrt(ball_radius) * std::pow(depth, 1.5));
+  row.over_hertz = row.force / (4.0 / 3.0 * modulus * std::sqrt(sphere_radius) * std::pow(depth, 1.5));
   row.dofs = session->model.report().free_dofs;
   row.seconds = session->model.report().total_seconds();
   row.candidates = session->servo.contact_rows();
@@ -134,7 +134,7 @@ bool force_converges(const char* element) {
   std::printf(
       "\n%s: indentation of a bonded layer: R = %.0f mm, depth = %.3f mm, a = sqrt(R d) = %.2f mm, quarter of the "
       "body\n",
-      element, 1e3 * ball_radius, 1e3 * depth, 1e3 * a);
+      element, 1e3 * sphere_radius, 1e3 * depth, 1e3 * a);
   bool good = true;
   for (const Truth& truth : truths) good = converges<E>(truth) && good;
   return good;

@@ -1,4 +1,4 @@
-// A ball sliding over a flat block at constant depth: the force should not change.
+// A sphere sliding over a flat block at constant depth: the force should not change.
 #include <cmath>
 #include <cstdio>
 
@@ -17,7 +17,7 @@ constexpr int ticks = 1000;
 struct Ripple {
   double mean = 0.0, rms = 0.0, range = 0.0, jump = 0.0, lateral = 0.0, pressing = 0.0, seconds = 0.0;
   Index dofs = 0;
-  bool dropped = false;  ///< some points far from the ball were left out for lack of room
+  bool dropped = false;  ///< some points far from the sphere were left out for lack of room
   bool clean = true;     ///< no other complaint
 };
 
@@ -42,7 +42,7 @@ std::unique_ptr<Session<Tet4>> make_block(double h) {
 /// 10 mm in one second, at a slant to the mesh, after a press in place.
 Ripple slide(double h) {
   const auto session = make_block(h);
-  const Vector3 start(0.5 * width - 5e-3, 0.5 * width - 1.1e-3, height + ball_radius);
+  const Vector3 start(0.5 * width - 5e-3, 0.5 * width - 1.1e-3, height + sphere_radius);
   for (int i = 1; i <= 200; ++i) session->tick(start - Vector3(0.0, 0.0, depth * std::min(1.0, i / 100.0)));
   Ripple r;
   Eigen::ArrayXd force(ticks);
@@ -70,12 +70,12 @@ bool sliding_is_smooth() {
   std::printf(
       "\nSliding at constant depth: R = %.0f mm, depth = %.0f mm, 10 um per tick, nu = %.2f; shares of the mean "
       "force\n",
-      1e3 * ball_radius, 1e3 * depth, poisson_ratio);
+      1e3 * sphere_radius, 1e3 * depth, poisson_ratio);
   std::printf("  %-5s %7s %6s %9s %10s %10s %10s %10s %9s\n", "h/R", "dofs", "press", "mean [N]", "ripple RMS", "range",
               "max jump", "lateral", "set-up");
   bool good = true;
   for (double h_over_r : {0.94, 0.63, 0.47, 0.33, 0.23}) {
-    const Ripple r = slide(h_over_r * ball_radius);
+    const Ripple r = slide(h_over_r * sphere_radius);
     const bool counts = h_over_r <= 1.0 / 3.0, smooth = r.rms <= allowed_ripple && r.clean;
     std::printf("  %-5.2f %7lld %6.1f %9.5f %8.2f %% %8.2f %% %8.3f %% %8.2f %% %7.1f s  %s", h_over_r,
                 static_cast<long long>(r.dofs), r.pressing, r.mean, 100.0 * r.rms, 100.0 * r.range, 100.0 * r.jump,

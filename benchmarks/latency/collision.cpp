@@ -12,7 +12,7 @@ namespace {
 
 using namespace palpate;
 
-/// A wavy sheet, 0.1 m a side, of 2 n^2 triangles, and 256 balls that touch it.
+/// A wavy sheet, 0.1 m a side, of 2 n^2 triangles, and 256 spheres that touch it.
 struct Sheet {
   std::vector<Vector3> positions, moved;
   std::vector<Triangle> triangles;
@@ -75,16 +75,16 @@ const Sheet& sheet(benchmark::State& state) {
   return *s;
 }
 
-/// Times query(centre) over the balls.
+/// Times query(centre) over the spheres.
 template <class Query>
-void over_balls(benchmark::State& state, const Sheet& s, Query query) {
+void over_spheres(benchmark::State& state, const Sheet& s, Query query) {
   std::size_t i = 0;
   for (auto _ : state) benchmark::DoNotOptimize(query(s.centres[++i % s.centres.size()]));
 }
 
 void all_in_sphere(benchmark::State& state) {
   const Sheet& s = sheet(state);
-  over_balls(state, s, [&](const Vector3& p) { return s.count_near(p); });
+  over_spheres(state, s, [&](const Vector3& p) { return s.count_near(p); });
   int hits = 0;
   for (const Vector3& p : s.centres) {
     hits += s.count_near(p);
@@ -94,7 +94,7 @@ void all_in_sphere(benchmark::State& state) {
 }
 void closest(benchmark::State& state) {
   const Sheet& s = sheet(state);
-  over_balls(state, s, [&](const Vector3& p) { return s.surface.closest(p).distance; });
+  over_spheres(state, s, [&](const Vector3& p) { return s.surface.closest(p).distance; });
   for (const Vector3& p : s.centres)
     if (std::abs(std::abs(s.surface.closest(p).distance) - s.brute_distance(p)) > 1e-15)
       return state.SkipWithError("the closest triangle is not closest");
@@ -112,11 +112,11 @@ void refit(benchmark::State& state) {
 }
 void brute_in_sphere(benchmark::State& state) {
   const Sheet& s = sheet(state);
-  over_balls(state, s, [&](const Vector3& p) { return s.brute_count(p); });
+  over_spheres(state, s, [&](const Vector3& p) { return s.brute_count(p); });
 }
 void brute_closest(benchmark::State& state) {
   const Sheet& s = sheet(state);
-  over_balls(state, s, [&](const Vector3& p) { return s.brute_distance(p); });
+  over_spheres(state, s, [&](const Vector3& p) { return s.brute_distance(p); });
 }
 
 void sizes(benchmark::internal::Benchmark* b) {

@@ -1,4 +1,4 @@
-// A ball that moves over a block with a given number of contacts.
+// A sphere that moves over a block with a given number of contacts.
 #pragma once
 
 #include <palpate/haptic/haptic_servo.hpp>
@@ -55,8 +55,8 @@ class Palpation {
   palpate::Vector3 contact_force() const noexcept { return servo_.contact_force(); }
   int pressing() const noexcept { return static_cast<int>(servo_.contacts().size()); }
 
-  /// Holds still, applies the forces to the whole body and measures how far the pressed points then are from the ball,
-  /// per depth. This goes through none of the stored compliance.
+  /// Holds still, applies the forces to the whole body and measures how far the pressed points then are from the
+  /// sphere, per depth. This goes through none of the stored compliance.
   double gap_error() {
     for (int i = 0; i < 50; ++i) hold();
     palpate::VectorX u(3 * model_.mesh().node_count());

@@ -26,9 +26,9 @@ struct Problem {
   Problem() {
     Palpation<palpate::Condensed<palpate::SelectiveInverse>> s(blocks[1]);
     const auto& model = s.model();
-    palpate::Scene held;
-    held.fix("z0");
-    const auto conditions = palpate::resolve_essential(model.mesh(), model.boundary(), held);
+    palpate::Scene constrained;
+    constrained.fix("z0");
+    const auto conditions = palpate::resolve_essential(model.mesh(), model.boundary(), constrained);
     k = palpate::free_matrix(palpate::assemble_stiffness<palpate::Tet4>(model.body(), {}), conditions);
     for (palpate::NodeId node : model.touchable_nodes())
       for (int c = 0; c < 3; ++c)

@@ -46,7 +46,7 @@ void tick(benchmark::State& state, bool flush) {
   s.press_until(10);
   run(state, flush, [&] { benchmark::DoNotOptimize(s.tick()); });
   s.describe(state);
-  if (!(s.gap_error() < 1e-5)) state.SkipWithError("the pressed points do not lie on the ball");
+  if (!(s.gap_error() < 1e-5)) state.SkipWithError("the pressed points do not lie on the sphere");
 }
 
 void as_single(benchmark::internal::Benchmark* b) {

@@ -11,7 +11,7 @@ void run(benchmark::State& state, Session& s, int contacts) {
   sample_ticks(state, [&] { benchmark::DoNotOptimize(s.tick()); });
   s.describe(state);
   const double error = s.gap_error();
-  if (!(error < 1e-5)) state.SkipWithError("the pressed points do not lie on the ball");
+  if (!(error < 1e-5)) state.SkipWithError("the pressed points do not lie on the sphere");
   state.counters["gap_err"] = error;
 }
 

@@ -38,7 +38,7 @@ void tick(benchmark::State& state) {
   s.describe(state);
   state.counters["force_err"] = error;
   if (!(error <= allowed_error<Policy>)) state.SkipWithError("the force is not that of the other policies");
-  if (!(s.gap_error() < 1e-4)) state.SkipWithError("the pressed points miss the ball");
+  if (!(s.gap_error() < 1e-4)) state.SkipWithError("the pressed points miss the sphere");
 }
 
 /// Lazy policies solve three times for a vertex touched for the first time; here with room for eight vertices, so that

@@ -1,5 +1,6 @@
 // Only what the scene requires, measured: what it costs to keep more of a body than is touched. Smoothed<Tet4>,
-// LinearElastic, Condensed<SelectiveInverse> on the organ, from the ten nodes nearest to the ball to the whole surface.
+// LinearElastic, Condensed<SelectiveInverse> on the organ, from the ten nodes nearest to the sphere to the whole
+// surface.
 //   bench_required [--out FOLDER] [--docs FILE]                  the table, also into a document
 //   bench_required --put FILE --marker WORD --docs FILE          another table into a document
 // Returns 1 when the force depends on what else is kept, which it must not.
@@ -22,7 +23,7 @@ std::unique_ptr<Contender> make_condensed(const Bench& bench, const std::string&
   return std::make_unique<LinearContender<Smoothed<Tet4>, Condensed<SelectiveInverse>>>(bench, "given", touched);
 }
 
-/// A group of the boundary nodes nearest to the ball and the faces between them. Its name.
+/// A group of the boundary nodes nearest to the sphere and the faces between them. Its name.
 std::string add_nearest(Mesh<Tet4>& mesh, const Vector3& point, std::size_t count) {
   const auto boundary = extract_boundary<Tet4>(mesh);
   std::vector<NodeId> nodes = nodes_of(boundary);
@@ -77,7 +78,7 @@ bool measure(Bench& bench, const std::string& out) {
   std::vector<std::string> groups;
   for (const std::size_t count :
        {std::size_t{10}, std::size_t{30}, std::size_t{100}, std::size_t{300}, std::numeric_limits<std::size_t>::max()})
-    groups.push_back(add_nearest(bench.scene.mesh, bench.scene.balls.front().point, count));
+    groups.push_back(add_nearest(bench.scene.mesh, bench.scene.spheres.front().point, count));
   std::vector<Required> rows;
   for (const std::string& group : groups) rows.push_back(measure_touched(bench, group));
   std::ofstream csv(out + "/required.csv"), page(out + "/required.md");

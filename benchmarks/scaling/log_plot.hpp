@@ -108,11 +108,11 @@ class LogPlot {
     }
     s += "<polyline points='" + path + "' fill='none' stroke='" + c.colour + "' stroke-width='1.5'/>\n";
     std::string name = c.name;
-    const PowerLaw law = fit(c.points, c.from);
-    if (c.fitted && law.factor > 0.0) {
+    const PowerLaw material = fit(c.points, c.from);
+    if (c.fitted && material.factor > 0.0) {
       const double a = c.from, b = c.points.back()[0];
-      s += line({x(a), y(law.at(a))}, {x(b), y(law.at(b))}, "stroke='#222' stroke-dasharray='4 4'");
-      name += ": tets^" + number(std::round(100.0 * law.exponent) / 100.0 + 0.0);
+      s += line({x(a), y(material.at(a))}, {x(b), y(material.at(b))}, "stroke='#222' stroke-dasharray='4 4'");
+      name += ": tets^" + number(std::round(100.0 * material.exponent) / 100.0 + 0.0);
     }
     s += "<rect x='" + number(left_ + 40) + "' y='" + number(key - 8) + "' width='10' height='10' fill='" + c.colour +
          "'/>\n" + text(left_ + 56, key + 1, name);

@@ -1,5 +1,5 @@
 // Set-up time, peak memory and tick over the size of the body: a block of 1 mm cells that grows, and an organ-like body
-// of 1 mm elements. The touchable patch, the ball and its ten contacts stay the same.
+// of 1 mm elements. The touchable patch, the sphere and its ten contacts stay the same.
 //   bench_scaling [--build <name>] [--csv <file to add rows to>] [--out <folder for scaling.svg and scaling.csv>]
 //                 [--up-to <tetrahedra>]
 #include "../common/row.hpp"
@@ -23,16 +23,16 @@ struct Sample {
 };
 
 /// Small bodies are set up several times.
-Sample measure(const std::string& name, const bench::Held& held) {
+Sample measure(const std::string& name, const bench::Constrained& constrained) {
   Sample s{.body = name, .tick = {}};
   std::unique_ptr<bench::Touching> body;
-  s.memory = bench::peak_growth([&] { body = std::make_unique<bench::Touching>(held); });
+  s.memory = bench::peak_growth([&] { body = std::make_unique<bench::Touching>(constrained); });
   s.setup = bench::seconds_of([&] {
     body.reset();
-    body = std::make_unique<bench::Touching>(held);
+    body = std::make_unique<bench::Touching>(constrained);
   });
   if (s.setup < 1.0)
-    s.setup = bench::median_seconds([&] { body = std::make_unique<bench::Touching>(held); }, {.seconds = 2.0});
+    s.setup = bench::median_seconds([&] { body = std::make_unique<bench::Touching>(constrained); }, {.seconds = 2.0});
   const SetupReport& r = body->report();
   s.tets = static_cast<double>(r.elements);
   s.dofs = static_cast<double>(r.free_dofs);
@@ -109,10 +109,10 @@ void write_samples(const std::vector<Sample>& samples, const std::string& path) 
 void add_exponents(bench::RowFile& rows, const std::vector<Sample>& samples) {
   for (const char* body : {"block", "organ"}) {
     const auto add = [&](const char* what, auto value) {
-      const PowerLaw law = fit(points(samples, body, value), fitted_from);
+      const PowerLaw material = fit(points(samples, body, value), fitted_from);
       rows.add({.target = "scaling",
                 .what = std::string(what) + " of the " + body + " ~ tets^e, e fitted from 9,000 tets on",
-                .figure = bench::with_unit(law.exponent, ""),
+                .figure = bench::with_unit(material.exponent, ""),
                 .baseline = "",
                 .bound = {},
                 .error = ""});
@@ -139,7 +139,7 @@ void add_targets(bench::RowFile& rows, const std::vector<Sample>& samples) {
             .baseline = bench::microseconds(least),
             .ratio = most / least,
             .bound = bench::at_most(1.2),
-            .error = error < 1e-5 ? "" : "the pressed points do not lie on the ball"});
+            .error = error < 1e-5 ? "" : "the pressed points do not lie on the sphere"});
   bool found = false;
   for (const Sample& s : samples) {
     if (s.tets < 9e5) continue;

@@ -116,8 +116,8 @@ void measure_factorisation(Session& session) {
 }
 
 void measure_irregular(Session& session, const char* organ_file) {
-  const auto measure = [&](const bench::Held& held, const std::string& name) {
-    const bench::System system(held);
+  const auto measure = [&](const bench::Constrained& constrained, const std::string& name) {
+    const bench::System system(constrained);
     const std::string where = ", " + name + ", " + std::to_string(system.lower.rows()) + " dofs";
     const Times t = factorise(system);
     add_cholmod_row(session, t, where, {});
@@ -130,11 +130,11 @@ void measure_irregular(Session& session, const char* organ_file) {
                         .bound = bench::at_most(1.3),
                         .error = ""});
   };
-  bench::Held organ{io::read_mesh<Tet4>(organ_file), {}, {}};
-  organ.held = organ.mesh.find_group("ligament")->nodes;
+  bench::Constrained organ{io::read_mesh<Tet4>(organ_file), {}, {}};
+  organ.constrained = organ.mesh.find_group("ligament")->nodes;
   organ.touched = organ.mesh.find_group("front")->nodes;
   measure(organ, "organ.msh");
-  measure(bench::organ_like(16, 3e-3), "ball with cavity");
+  measure(bench::organ_like(16, 3e-3), "sphere with cavity");
 }
 
 }  // namespace setup

@@ -40,7 +40,7 @@ void add_stiffness(const StaticProblem& problem, const std::vector<Index>& free_
 /// Number of every free dof, -1 where it is held, and how many there are.
 inline std::pair<std::vector<Index>, Index> free_dofs(const StaticProblem& problem) {
   std::vector<Index> index(3 * problem.mesh.positions.size(), 0);
-  for (NodeId node : problem.held)
+  for (NodeId node : problem.constrained)
     for (int c = 0; c < 3; ++c) index[static_cast<std::size_t>(3 * node + c)] = -1;
   Index count = 0;
   for (Index& i : index)

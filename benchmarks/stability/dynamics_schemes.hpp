@@ -31,7 +31,7 @@ struct ReportedSteps {
       said = "step not taken";
     else if (!converged(report))
       said = "not converged";
-    else if (!report.calm)
+    else if (!report.energy_bounded)
       said = "energy grew";
     else if (report.deformation.inverted > 0)
       said = "inverted";

@@ -28,12 +28,12 @@ void measure(Cell& c) {
     const double formula = testing::stiffness_limit(b, period, c.delay * period);
     expect(std::abs(c.linear - formula) <= 0.02 * formula, c, "limit without a hand", c.linear, formula);
   }
-  c.calm = largest_calm(c, false);
+  c.energy_bounded = largest_calm(c, false);
   c.late = largest_calm(c, true);
-  c.power = motor_power(c, 4.0 * c.calm, false);
-  c.power_tank = motor_power(c, 4.0 * c.calm, true);
+  c.power = motor_power(c, 4.0 * c.energy_bounded, false);
+  c.power_tank = motor_power(c, 4.0 * c.energy_bounded, true);
   // Softer walls than 20 N/m are pressed in by 1 N until they end.
-  if (c.exact > 20.0) expect(c.calm >= 0.9 * c.linear, c, "limit with friction", c.calm, c.linear);
+  if (c.exact > 20.0) expect(c.energy_bounded >= 0.9 * c.linear, c, "limit with friction", c.energy_bounded, c.linear);
 }
 
 std::vector<Cell> measure_all() {
@@ -52,7 +52,7 @@ std::vector<Cell> measure_all() {
           Cell c{.device = &device, .hand = &hand, .rate = rate, .delay = delay};
           measure(c);
           std::printf("%-8s %6.0f %6d | %9.4g %9.4g | %9.3g %9.3g | %9.3g %9.3g\n", hand.name, rate, delay, c.linear,
-                      c.exact, c.calm, c.late, 1e3 * c.power, 1e3 * c.power_tank);
+                      c.exact, c.energy_bounded, c.late, 1e3 * c.power, 1e3 * c.power_tank);
           std::fflush(stdout);
           cells.push_back(c);
         }
@@ -84,7 +84,8 @@ void check_rated() {
 void measure_tissues() {
   SimulatedOptions o = SimulatedOptions::stylus();
   const double limit = testing::stiffness_limit(o.damping, 1.0 / o.rate, 0.0);
-  std::printf("\nblock of 9 216 Tet4 under a ball of 4 mm, 0.1 N, stylus without hand, friction and encoder steps:\n");
+  std::printf(
+      "\nblock of 9 216 Tet4 under a sphere of 4 mm, 0.1 N, stylus without hand, friction and encoder steps:\n");
   Cell c{.device = devices().data(), .hand = hands().data(), .rate = o.rate, .delay = 0};
   for (double e : {30e3, 100e3, 300e3, 1e6}) {
     const TissueRow row = measure_tissue(e, o);
@@ -109,7 +110,7 @@ void summarise(const std::vector<Cell>& cells) {
     if (c.rate > 999.0) {
       bare.push_back(1e3 * c.power);
       tanked.push_back(1e3 * c.power_tank);
-      late.push_back(c.late / c.calm);
+      late.push_back(c.late / c.energy_bounded);
     }
   std::printf(
       "\nmedians at 1 kHz: motors at 4x calm %.3g mW, with a tank %.3g mW; late reads leave %.2f of the stiffness\n",
@@ -121,7 +122,7 @@ void write_csv(const std::vector<Cell>& cells, const std::string& path) {
   out << "device,hand,rate_hz,delay_ticks,linear,exact,calm,late,motors_4x_w,motors_4x_tank_w\n";
   for (const Cell& c : cells)
     out << c.device->name << ',' << c.hand->name << ',' << c.rate << ',' << c.delay << ',' << c.linear << ',' << c.exact
-        << ',' << c.calm << ',' << c.late << ',' << c.power << ',' << c.power_tank << '\n';
+        << ',' << c.energy_bounded << ',' << c.late << ',' << c.power << ',' << c.power_tank << '\n';
 }
 
 /// Of every device and grip: which stiffness is passive, which is calm without being so, and where it buzzes.
@@ -151,12 +152,14 @@ std::vector<maps::Grid> grids_of(const std::vector<Cell>& cells) {
     for (std::size_t r = 0; r < rows.size(); ++r)
       for (std::size_t c = 0; c < columns; ++c) {
         const Cell& cell = cells[first + c];
-        const bool calm = stiffness[r] <= cell.calm;
-        const char* const what = stiffness[r] <= passive[c] && calm ? "passive" : calm ? "calm" : "buzzes";
-        grid.squares.push_back({calm ? maps::Verdict::ok : maps::Verdict::flagged,
-                                stiffness[r] <= passive[c] && calm ? 1
-                                : calm                             ? 4
-                                                                   : 6,
+        const bool energy_bounded = stiffness[r] <= cell.energy_bounded;
+        const char* const what = stiffness[r] <= passive[c] && energy_bounded ? "passive"
+                                 : energy_bounded                             ? "calm"
+                                                                              : "buzzes";
+        grid.squares.push_back({energy_bounded ? maps::Verdict::ok : maps::Verdict::flagged,
+                                stiffness[r] <= passive[c] && energy_bounded ? 1
+                                : energy_bounded                             ? 4
+                                                                             : 6,
                                 grid.title + ", " + grid.columns[c] + ", " + rows[r] + " N/m: " + what});
       }
     grids.push_back(std::move(grid));

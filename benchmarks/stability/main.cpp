@@ -50,14 +50,14 @@ int main(int argc, char** argv) try {
   print(summary, "statics", page.statics.score);
   print(summary, "dynamics", page.dynamics.score);
   if (!page.haptics.empty()) {
-    int cells = 0, calm = 0;
+    int cells = 0, energy_bounded = 0;
     for (const maps::Grid& grid : page.haptics)
       for (const maps::Square& s : grid.squares) {
         ++cells;
-        calm += s.verdict == maps::Verdict::ok ? 1 : 0;
+        energy_bounded += s.verdict == maps::Verdict::ok ? 1 : 0;
       }
-    summary << "haptics: " << cells << " cells of " << page.haptics.size() << " devices and grips, " << calm
-            << " calm, " << cells - calm << " buzz, " << failures << " figures off their formula\n";
+    summary << "haptics: " << cells << " cells of " << page.haptics.size() << " devices and grips, " << energy_bounded
+            << " calm, " << cells - energy_bounded << " buzz, " << failures << " figures off their formula\n";
   }
   const int wrong = page.statics.score.wrong() + page.dynamics.score.wrong();
   std::printf("palpate: %d cells WRONG, %d figures off their formula\n", wrong, failures);

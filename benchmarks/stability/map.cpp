@@ -49,11 +49,12 @@ void write_map(const std::vector<Cell>& cells, const std::string& path) {
     const double py = top + panel_h * static_cast<double>(c.device - devices().data());
     const auto row = static_cast<double>(std::find(rates.begin(), rates.end(), c.rate) - rates.begin());
     const double x = px + w * c.delay, y = py + h * row;
-    const bool dark = c.calm > 1e3;
+    const bool dark = c.energy_bounded > 1e3;
     out << "<rect x='" << x << "' y='" << y << "' width='" << w - 2 << "' height='" << h - 2 << "' fill='"
-        << colour(c.calm) << "'"
-        << (c.calm < c.device->options.limits.stiffness ? " stroke='#333' stroke-dasharray='3 3'" : "") << "/>\n"
-        << text(x + 8, y + 16, short_number(c.calm), 11, dark ? "fill='white'" : "fill='#222'");
+        << colour(c.energy_bounded) << "'"
+        << (c.energy_bounded < c.device->options.limits.stiffness ? " stroke='#333' stroke-dasharray='3 3'" : "")
+        << "/>\n"
+        << text(x + 8, y + 16, short_number(c.energy_bounded), 11, dark ? "fill='white'" : "fill='#222'");
     if (c.delay == 0 && c.hand == hands().data())
       out << text(left - 52, y + 16, std::to_string(static_cast<int>(c.rate)) + " Hz", 11);
     if (row == 0.0) out << text(x + 24, py - 4, std::to_string(c.delay), 10);

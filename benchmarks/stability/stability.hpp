@@ -47,7 +47,7 @@ struct Cell {
   int delay;
   double linear = 0.0;      ///< [N/m] largest stable stiffness without friction and encoder steps
   double exact = 0.0;       ///< the same from the eigenvalues of the sampled loop
-  double calm = 0.0;        ///< with both, and the peak force
+  double energy_bounded = 0.0;  ///< with both, and the peak force
   double late = 0.0;        ///< with jitter and stalls
   double power = 0.0;       ///< [W] of the motors at four times `calm`
   double power_tank = 0.0;  ///< the same with an energy tank
@@ -89,12 +89,12 @@ InWall in_wall(const Cell& cell, MakeServo make_servo, bool late) {
 /// Two encoder steps are no motion that a hand feels: friction holds the handle, or it turns to and fro on an edge.
 inline double largest_calm(const Cell& cell, bool late) {
   const double still = 2.0 * cell.device->options.encoder_step;
-  const auto calm = [&](double stiffness) {
+  const auto energy_bounded = [&](double stiffness) {
     return in_wall(
                cell, [=] { return testing::VirtualWall{.stiffness = stiffness}; }, late)
                .travel <= still;
   };
-  return testing::largest_that(calm, 0.5 * cell.exact, highest, 0.02);
+  return testing::largest_that(energy_bounded, 0.5 * cell.exact, highest, 0.02);
 }
 
 inline double motor_power(const Cell& cell, double stiffness, bool tanked) {

@@ -44,7 +44,7 @@ StaticProblem block(int cells, double nu, double contrast, double height) {
   for (Index e = 0; e < p.mesh.element_count(); ++e)
     p.mesh.regions.push_back(element_nodes<Tet4>(p.mesh, e).col(0).mean() < 0.05 ? 0 : 1);
   p.materials = {{1e3, nu, 1000.0}, {contrast * 1e3, nu, 1000.0}};
-  p.held = p.mesh.find_group("x0")->nodes;
+  p.constrained = p.mesh.find_group("x0")->nodes;
   p.pulled = p.mesh.find_group("x1")->nodes;
   for (NodeId node : p.mesh.find_group("z1")->nodes)  // a strip across both materials
     if (p.mesh.position(node).y() > 0.049 && p.mesh.position(node).y() < 0.051 + 0.1 / cells) p.touched.push_back(node);
@@ -113,9 +113,9 @@ std::vector<Defect> defects() {
           {"nu -1", poisson(-1.0)},
           {"E negative", [](StaticProblem& p) { p.materials[0].youngs_modulus *= -1.0; }},
           {"E infinite", [](StaticProblem& p) { p.materials[1].youngs_modulus = infinity; }},
-          {"nothing held", [](StaticProblem& p) { p.held.clear(); }},
-          {"one node held", [](StaticProblem& p) { p.held.resize(1); }},
-          {"two nodes held", [](StaticProblem& p) { p.held.resize(2); }},
+          {"nothing held", [](StaticProblem& p) { p.constrained.clear(); }},
+          {"one node held", [](StaticProblem& p) { p.constrained.resize(1); }},
+          {"two nodes held", [](StaticProblem& p) { p.constrained.resize(2); }},
           {"element inverted", [](StaticProblem& p) { std::swap(p.mesh.elements[7][0], p.mesh.elements[7][1]); }},
           {"element flat",
            [](StaticProblem& p) {

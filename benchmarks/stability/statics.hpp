@@ -18,7 +18,7 @@ using namespace palpate;
 struct StaticProblem {
   Mesh<Tet4> mesh;
   std::vector<LinearElastic> materials;  ///< by region
-  std::vector<NodeId> held, pulled, touched;
+  std::vector<NodeId> constrained, pulled, touched;
   Vector3 force = Vector3(1.0, 0.5, -2.0);  ///< [N] in all, shared equally by `pulled`
 };
 

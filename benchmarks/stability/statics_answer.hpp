@@ -13,7 +13,7 @@ template <class Policy>
 Answer answer_of(const StaticProblem& problem) {
   Answer answer;
   Scene scene;
-  if (!problem.held.empty()) scene.fix(problem.held);
+  if (!problem.constrained.empty()) scene.fix(problem.constrained);
   scene.touch(problem.touched).point_load(problem.pulled, problem.force);
   RegionMaterials<LinearElastic> materials;
   for (std::size_t r = 0; r < problem.mesh.region_names.size(); ++r)

@@ -6,14 +6,14 @@ namespace stability {
 namespace {
 
 using Block = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
-constexpr double ball = 4e-3;    ///< [m] radius
+constexpr double sphere = 4e-3;  ///< [m] radius
 constexpr double pressed = 0.1;  ///< [N]
 
 Block make_block(double youngs_modulus) {
-  const bench::Held held = bench::touch_block(16, 6);
+  const bench::Constrained constrained = bench::touch_block(16, 6);
   LinearElastic material = bench::tissue;
   material.youngs_modulus = youngs_modulus;
-  return Block(held.mesh, held.scene(), material);
+  return Block(constrained.mesh, constrained.scene(), material);
 }
 ServoOptions options_with(double coupling, const SimulatedOptions& device) {
   ServoOptions options;
@@ -24,12 +24,12 @@ ServoOptions options_with(double coupling, const SimulatedOptions& device) {
 }
 
 /// Force over depth at a device held where the force is `pressed`: a difference of 2 um [N/m].
-double felt_stiffness(Block& block, double coupling, const SimulatedOptions& device) {
-  HapticServo servo(block, SphereTool{ball}, options_with(coupling, device));
+double handle_stiffness(Block& block, double coupling, const SimulatedOptions& device) {
+  HapticServo servo(block, SphereTool{sphere}, options_with(coupling, device));
   ToolState state;
   int ticks = 0;
   const auto force_at = [&](double depth) {
-    state.position = Vector3(0.0, 0.0, ball - depth);
+    state.position = Vector3(0.0, 0.0, sphere - depth);
     for (int i = 0; i < 60; ++i) {
       state.time = 1e-3 * ++ticks;
       servo.tick({&state, 1});
@@ -37,14 +37,14 @@ double felt_stiffness(Block& block, double coupling, const SimulatedOptions& dev
     return servo.contact_force()[2];
   };
   double depth = 0.0;
-  while (force_at(depth) < pressed && depth < ball) depth += 1e-5;
+  while (force_at(depth) < pressed && depth < sphere) depth += 1e-5;
   return (force_at(depth + 1e-6) - force_at(depth - 1e-6)) / 2e-6;
 }
 
 bool is_stable(Block& block, double coupling, SimulatedOptions o) {
   SimulatedDevice device(o);
   device.start();
-  HapticServo servo(block, SphereTool{ball}, options_with(coupling, o));
+  HapticServo servo(block, SphereTool{sphere}, options_with(coupling, o));
   while (device.time() < 1.0) {  // gently: what falls on the block bounces off it
     device.push(Vector3(0.0, 0.0, -pressed * device.time()));
     testing::tick(device, servo);
@@ -62,12 +62,12 @@ TissueRow measure_tissue(double youngs_modulus, const SimulatedOptions& device) 
   Block block = make_block(youngs_modulus);
   SimulatedOptions linear = device;
   linear.friction = linear.encoder_step = 0.0;
-  linear.start = Vector3(0.0, 0.0, ball);
+  linear.start = Vector3(0.0, 0.0, sphere);
   TissueRow row;
   row.youngs_modulus = youngs_modulus;
   row.coupling = testing::largest_that([&](double k) { return is_stable(block, k, linear); }, 10.0, highest, 0.02);
-  row.felt = felt_stiffness(block, row.coupling, device);
-  row.soft = felt_stiffness(block, infinity, device);
+  row.felt = handle_stiffness(block, row.coupling, device);
+  row.soft = handle_stiffness(block, infinity, device);
   return row;
 }
 

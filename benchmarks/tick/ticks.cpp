@@ -12,7 +12,7 @@ namespace {
 using palpate::platform::compute_ns;
 
 std::string wrong_if(bool wrong) {
-  return wrong ? "the pressed points do not lie on the ball" : "";
+  return wrong ? "the pressed points do not lie on the sphere" : "";
 }
 
 /// Times of work() [s], each after writing 64 MB and a millisecond of sleep; the cost of the clock is in them.

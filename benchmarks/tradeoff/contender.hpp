@@ -9,11 +9,11 @@
 
 namespace tradeoff {
 
-/// A tissue under balls, a tick at a time. Made by its constructor, which is what set-up time is.
+/// A tissue under spheres, a tick at a time. Made by its constructor, which is what set-up time is.
 class Contender {
  public:
   virtual ~Contender() = default;
-  /// Forces on the balls [N] when their centres are there, one tick after the last.
+  /// Forces on the spheres [N] when their centres are there, one tick after the last.
   virtual std::span<const Vector3> tick(std::span<const Vector3> centres) = 0;
   /// What goes on in a thread of its own: seconds between two updates, none with 0.
   virtual double update_period() const { return 0.0; }
@@ -22,7 +22,7 @@ class Contender {
   virtual bool has_inertia() const { return false; }
   /// Of the nodes of the mesh as given [m]; called after a hold.
   virtual VectorX displacement() = 0;
-  /// How far the state of a hold is from its own formula, relative: contacts off the ball, forces out of balance.
+  /// How far the state of a hold is from its own formula, relative: contacts off the sphere, forces out of balance.
   virtual double own_error() = 0;
   /// Share of its energy that the body gains (or loses, negative) when it is let go where it is, and swings for a tenth
   /// of a second without damping; not a number for what does not move.
@@ -54,7 +54,7 @@ struct Row : Description {
   double force_small = 0.0, force_large = 0.0;    ///< in holds
   double felt = 0.0;                              ///< root mean square in motion, of the largest force
   double moved_small = 0.0, moved_large = 0.0;    ///< displacement of all nodes, root mean square
-  double volume_small = 0.0, volume_large = 0.0;  ///< of the volume that the balls press in
+  double volume_small = 0.0, volume_large = 0.0;  ///< of the volume that the spheres press in
   double drift = 0.0;
   double own_error = 0.0;
   std::string verdict;  ///< empty: finite, and as its own formula says
@@ -72,7 +72,7 @@ struct Bench {
   PressScene scene;
   Reference reference;
   Stiffening stiffening;
-  Mesh<Tet4> near, all;  ///< refined under the balls, and everywhere
+  Mesh<Tet4> near, all;  ///< refined under the spheres, and everywhere
   bool full = false;
 
   const Mesh<Tet4>& mesh(const std::string& name) const {
@@ -81,7 +81,7 @@ struct Bench {
 };
 
 /// Names of meshes for what touches with nodes alone: also the refined one where the mesh as given is so coarse that a
-/// ball falls between its nodes.
+/// sphere falls between its nodes.
 std::vector<std::string> meshes_for_node_contact(const Bench& bench);
 
 inline std::string mesh_name(const std::string& mesh) {

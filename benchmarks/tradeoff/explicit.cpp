@@ -1,4 +1,4 @@
-// Neo-Hookean tissue in explicit steps; the balls push by a penalty, as there is no servo for it.
+// Neo-Hookean tissue in explicit steps; the spheres push by a penalty, as there is no servo for it.
 #include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/detail/element_frequency.hpp>
@@ -23,13 +23,13 @@ class ExplicitContender : public Contender {
         mass_(lumped_mass(body_.rest)),
         motion_(make(drag)),
         nodes_(body_.rest.mesh.find_group(near_group)->nodes),
-        forces_(bench.scene.balls.size()),
+        forces_(bench.scene.spheres.size()),
         now_(forces_) {
     // A millisecond in equal steps of at most 0.7 of the limit: pressed elements allow less than elements at rest.
     steps_ = static_cast<int>(std::ceil(1e-3 / (0.7 * motion_.limit())));
   }
 
-  /// The balls go evenly through a tick: a jump in its first step would be a blow.
+  /// The spheres go evenly through a tick: a jump in its first step would be a blow.
   std::span<const Vector3> tick(std::span<const Vector3> centres) override {
     if (before_.empty()) before_.assign(centres.begin(), centres.end());
     std::ranges::fill(forces_, Vector3::Zero());
@@ -82,7 +82,7 @@ class ExplicitContender : public Contender {
     return ExplicitMotion<Forces, Scheme>(Forces(body_), mass_, conditions_.free_dofs,
                                           element_frequency_bound(body_.rest), options);
   }
-  /// Half of the stiffness that a step could bear pushes every node out of the balls: by where it will be after the
+  /// Half of the stiffness that a step could bear pushes every node out of the spheres: by where it will be after the
   /// step, as the load of a step acts at its end. Forces that lag behind would feed a motion.
   void push(std::span<const Vector3> centres, double dt) {
     motion_.load().setZero();
@@ -105,7 +105,7 @@ class ExplicitContender : public Contender {
   VectorX mass_;
   ExplicitMotion<Forces, Scheme> motion_;
   std::vector<NodeId> nodes_;
-  std::vector<Vector3> forces_, now_, before_;  // of the balls; where they are in a step, where they were last
+  std::vector<Vector3> forces_, now_, before_;  // of the spheres; where they are in a step, where they were last
   int steps_ = 1;
   Status status_;
 };
@@ -122,7 +122,7 @@ void add(const Bench& bench, std::vector<Entry>& entries, const std::string& mes
   d.solver = scheme;
   d.scalar = scalar;
   d.allowed = 0.05;
-  d.paste = "using Motion = ExplicitMotion<" + forces + ", " + scheme + ">;   // balls by penalty loads";
+  d.paste = "using Motion = ExplicitMotion<" + forces + ", " + scheme + ">;   // spheres by penalty loads";
   entry.make = [&bench, mesh] { return std::make_unique<ExplicitContender<Forces, Scheme>>(bench, mesh); };
   entries.push_back(std::move(entry));
 }

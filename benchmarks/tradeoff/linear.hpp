@@ -11,14 +11,14 @@
 
 namespace tradeoff {
 
-/// A servo whose balls are where the device is, without coupling: the force is the tissue's alone.
+/// A servo whose spheres are where the device is, without coupling: the force is the tissue's alone.
 template <TissueModel Tissue>
 class Felt {
  public:
   Felt(Tissue& tissue, const PressScene& scene)
-      : servo_(tissue, std::vector<SphereTool>(scene.balls.size(), SphereTool{scene.radius}), uncoupled()),
-        states_(scene.balls.size()),
-        forces_(scene.balls.size()) {}
+      : servo_(tissue, std::vector<SphereTool>(scene.spheres.size(), SphereTool{scene.radius}), uncoupled()),
+        states_(scene.spheres.size()),
+        forces_(scene.spheres.size()) {}
 
   std::span<const Vector3> tick(std::span<const Vector3> centres) noexcept {
     for (std::size_t b = 0; b < centres.size(); ++b) {
@@ -76,11 +76,11 @@ inline VectorX of_given_nodes(const VectorX& u, const std::vector<NodeId>& map, 
   return given;
 }
 
-/// How far the points that press are from the ball when their forces act on the whole body (u, 3 per admitted node), of
-/// the small depth. It goes through none of the stored compliance. Contacts that carry next to nothing may still be on
-/// their way.
+/// How far the points that press are from the sphere when their forces act on the whole body (u, 3 per admitted node),
+/// of the small depth. It goes through none of the stored compliance. Contacts that carry next to nothing may still be
+/// on their way.
 template <class Model, class Servo>
-double distance_from_balls(const Model& model, const Servo& servo, const VectorX& u, const PressScene& scene) {
+double distance_from_spheres(const Model& model, const Servo& servo, const VectorX& u, const PressScene& scene) {
   double worst = 0.0, largest = 0.0;
   for (const ToolContact& c : servo.contacts()) largest = std::max(largest, c.force);
   for (const ToolContact& c : servo.contacts()) {
@@ -111,7 +111,7 @@ class LinearContender : public Contender {
     model_.displacement_with(felt_.vertex_forces(), u_);
     return of_given_nodes(u_, model_.node_map(), bench_.scene.mesh.node_count());
   }
-  double own_error() override { return distance_from_balls(model_, felt_.servo(), u_, bench_.scene); }
+  double own_error() override { return distance_from_spheres(model_, felt_.servo(), u_, bench_.scene); }
   Index nodes() const override { return model_.mesh().node_count(); }
   Index kept_dofs() const override { return model_.report().kept_dofs; }
   std::string remark() override { return felt_.remark(); }

@@ -1,4 +1,4 @@
-// Balls in linear tissue, solved to the end: for references.
+// Spheres in linear tissue, solved to the end: for references.
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
@@ -23,7 +23,7 @@ struct Pressed {
   VectorX displacement;
 };
 
-/// Throws not_converged where supports do not hold what the balls push.
+/// Throws not_converged where supports do not hold what the spheres push.
 inline void require_balance(const Pressed& pressed, Vector3 support, double depth) {
   double largest = 0.0;
   for (const Vector3& f : pressed.force) {
@@ -35,8 +35,8 @@ inline void require_balance(const Pressed& pressed, Vector3 support, double dept
                                              " m: supports are off by " + number(support.norm() / largest));
 }
 
-/// Linear tissue and rigid balls: nodes are kept out of them by forces along the normals, exactly, on the compliance of
-/// the nodes that press. One factorisation.
+/// Linear tissue and rigid spheres: nodes are kept out of them by forces along the normals, exactly, on the compliance
+/// of the nodes that press. One factorisation.
 template <class E>
 class LinearPress {
  public:
@@ -86,7 +86,7 @@ class LinearPress {
 
  private:
   struct Row {
-    std::size_t node, ball;
+    std::size_t node, sphere;
     Vector3 normal;
     double gap;
   };
@@ -115,7 +115,7 @@ class LinearPress {
     return u;
   }
   /// One linearisation of the distances at where the nodes are, solved by projected Gauss-Seidel.
-  void push(const std::vector<Vector3>& centres, std::vector<Vector3>& on_balls) {
+  void push(const std::vector<Vector3>& centres, std::vector<Vector3>& on_spheres) {
     std::vector<Row> rows;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const Vector3 u = moved(i);
@@ -140,11 +140,11 @@ class LinearPress {
     }
     push_apart(w, gap, lambda, {.sweeps = 3000, .tolerance = 1e-9});
     std::ranges::fill(force_, Vector3::Zero());
-    std::ranges::fill(on_balls, Vector3::Zero());
+    std::ranges::fill(on_spheres, Vector3::Zero());
     for (Index i = 0; i < n; ++i) {
       const Row& row = rows[static_cast<std::size_t>(i)];
       force_[row.node] += lambda[i] * row.normal;
-      on_balls[row.ball] -= lambda[i] * row.normal;
+      on_spheres[row.sphere] -= lambda[i] * row.normal;
     }
   }
 

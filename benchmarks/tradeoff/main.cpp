@@ -1,5 +1,6 @@
 // Speed against accuracy: compositions of element, mesh, material, kinematics, solver, condensation and scalar, and
-// what else is in use, pressed by the same balls and held against the same reference. Every row checks its own answer.
+// what else is in use, pressed by the same spheres and held against the same reference. Every row checks its own
+// answer.
 //   bench_tradeoff [MESH --fix GROUP --touch GROUP] [--scene palpate|retract|grasp] [--budget-us N] [--out FOLDER]
 //                  [--youngs PA] [--poisson NU] [--only WORD] [--full]
 //                  [--docs FILE]      also into a document, between <!-- tradeoff SCENE --> and <!-- end -->
@@ -23,7 +24,7 @@ using namespace tradeoff;
 SceneOptions scene_options(int argc, char** argv) {
   SceneOptions o;
   if (argc > 1 && std::string_view(argv[1]).substr(0, 2) != "--") o.mesh = argv[1];
-  o.held = bench::option(argc, argv, "--fix", "");
+  o.constrained = bench::option(argc, argv, "--fix", "");
   o.touched = bench::option(argc, argv, "--touch", "");
   o.kind = bench::option(argc, argv, "--scene", "palpate");
   o.youngs_modulus = std::stod(bench::option(argc, argv, "--youngs", number(o.youngs_modulus)));
@@ -61,7 +62,7 @@ int main(int argc, char** argv) try {
               .all = refined(scene.mesh, full),
               .full = full};
   std::printf(
-      "scene %s: balls of radius %.3g mm, depths %.3g and %.3g mm\n"
+      "scene %s: spheres of radius %.3g mm, depths %.3g and %.3g mm\n"
       "reference: %ld nodes, %.3g s; force %.4g and %.4g N; the next coarser mesh is %.2g %% and %.2g %% off\n\n",
       scene.name.c_str(), 1e3 * scene.radius, 1e3 * scene.small, 1e3 * scene.large,
       static_cast<long>(bench.reference.nodes), bench.reference.seconds, bench.reference.force(0, scene.small).norm(),

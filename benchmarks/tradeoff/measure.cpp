@@ -41,10 +41,10 @@ double force_error(const Bench& bench, const std::vector<Vector3>& force, double
   return std::sqrt(off / size);
 }
 
-/// Volume that the balls press in, were the surface flat.
+/// Volume that the spheres press in, were the surface flat.
 double pressed_volume(const PressScene& scene, double depth) {
   const double d = std::min(depth, scene.radius);
-  return static_cast<double>(scene.balls.size()) * std::numbers::pi * d * d * (scene.radius - d / 3.0);
+  return static_cast<double>(scene.spheres.size()) * std::numbers::pi * d * d * (scene.radius - d / 3.0);
 }
 
 struct HoldErrors {
@@ -87,7 +87,7 @@ void judge(const Bench& bench, Contender& contender, Row& row) {
   follow(motion.end());
 
   double largest = 0.0;
-  for (std::size_t b = 0; b < scene.balls.size(); ++b) largest = std::max(largest, r.force(b, scene.large).norm());
+  for (std::size_t b = 0; b < scene.spheres.size(); ++b) largest = std::max(largest, r.force(b, scene.large).norm());
   row.felt = std::sqrt(session.squared_error / session.judged) / largest;
   row.p50 = bench::percentile(session.ticks, 0.5);
   row.p99 = bench::percentile(session.ticks, 0.99);
@@ -121,11 +121,11 @@ std::string Description::name() const {
 }
 
 std::vector<std::string> meshes_for_node_contact(const Bench& bench) {
-  constexpr int enough = 6;  // nodes, within a radius of where a ball touches first
+  constexpr int enough = 6;  // nodes, within a radius of where a sphere touches first
   const Mesh<Tet4>& mesh = bench.scene.mesh;
-  for (const Ball& ball : bench.scene.balls)
+  for (const Sphere& sphere : bench.scene.spheres)
     if (std::ranges::count_if(mesh.find_group(near_group)->nodes, [&](NodeId node) {
-          return (mesh.position(node) - ball.point).norm() < bench.scene.radius;
+          return (mesh.position(node) - sphere.point).norm() < bench.scene.radius;
         }) < enough)
       return {"given", "near"};
   return {"given"};

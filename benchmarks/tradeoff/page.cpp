@@ -128,7 +128,7 @@ void write_page(const Bench& bench, const std::vector<Row>& rows, double budget,
          "th,td{border-bottom:1px solid #ddd;padding:3px 6px;text-align:right}td:first-child,th:first-child,"
          "td:last-child{text-align:left}tr.bad{background:#fee}pre{background:#f4f4f4;padding:1em;overflow:auto}"
          "svg{width:100%;height:auto}</style>\n<h1>Speed against accuracy: "
-      << s.name << "</h1>\n<p>" << s.balls.size() << " ball" << (s.balls.size() > 1 ? "s" : "") << " of "
+      << s.name << "</h1>\n<p>" << s.spheres.size() << " sphere" << (s.spheres.size() > 1 ? "s" : "") << " of "
       << three_digits(2e3 * s.radius) << " mm, pressed in " << three_digits(1e3 * s.small) << " and "
       << three_digits(1e3 * s.large) << " mm and then to and fro. Reference: neo-Hookean, quadratic tetrahedra, "
       << r.nodes << " nodes, " << figure(r.force(0, s.small).norm(), "%.4g") << " and "
@@ -151,8 +151,9 @@ void write_page(const Bench& bench, const std::vector<Row>& rows, double budget,
   write_table(out, rows);
   out << "<p>Times are processor times of one thread. felt: root mean square of what the device renders a thousand "
          "times "
-         "a second while the balls move, late ticks and updates included, of the largest force. moved: displacement of "
-         "all nodes of the mesh as given. volume: of the volume that the balls press in. energy: what a body that is "
+         "a second while the spheres move, late ticks and updates included, of the largest force. moved: displacement "
+         "of "
+         "all nodes of the mesh as given. volume: of the volume that the spheres press in. energy: what a body that is "
          "let go gains without damping. own check: how far the row is from its own formula.</p></html>\n";
 }
 

@@ -1,4 +1,4 @@
-// Nodes that move by themselves and are moved out of the balls; the force is what that takes.
+// Nodes that move by themselves and are moved out of the spheres; the force is what that takes.
 #pragma once
 
 #include <palpate/assembly/mass_matrix.hpp>
@@ -10,7 +10,7 @@
 
 namespace tradeoff {
 
-/// Nodes with mass that are held, or kept out of balls.
+/// Nodes with mass that are held, or kept out of spheres.
 struct Particles {
   std::vector<Vector3> rest, place, before, velocity, force;
   std::vector<double> inverse_mass;
@@ -27,9 +27,10 @@ struct Particles {
         radius(bench.scene.radius) {
     const VectorX mass = lumped_mass(make_body(mesh, bench.scene.materials));
     for (const double m : mass) inverse_mass.push_back(1.0 / m);
-    for (const NodeId node : mesh.find_group(held_group)->nodes) inverse_mass[static_cast<std::size_t>(node)] = 0.0;
+    for (const NodeId node : mesh.find_group(constrained_group)->nodes)
+      inverse_mass[static_cast<std::size_t>(node)] = 0.0;
   }
-  /// Moves nodes out of the balls; adds what that takes in a step of dt to the forces on the balls.
+  /// Moves nodes out of the spheres; adds what that takes in a step of dt to the forces on the spheres.
   void leave(std::span<const Vector3> centres, double dt, std::vector<Vector3>& forces) {
     for (const NodeId node : touchable)
       for (std::size_t b = 0; b < centres.size(); ++b) {
@@ -37,9 +38,9 @@ struct Particles {
         const Vector3 off = place[i] - centres[b];
         const double depth = radius - off.norm();
         if (!(depth > 0.0) || inverse_mass[i] == 0.0) continue;
-        const Vector3 way = depth * off.normalized();
-        place[i] += way;
-        forces[b] -= way / (inverse_mass[i] * dt * dt);
+        const Vector3 path = depth * off.normalized();
+        place[i] += path;
+        forces[b] -= path / (inverse_mass[i] * dt * dt);
       }
   }
   void coast(double dt) {
@@ -73,9 +74,9 @@ template <class Body>
 class ParticleContender : public Contender {
  public:
   ParticleContender(const Bench& bench, Body body, int steps)
-      : bench_(bench), body_(std::move(body)), steps_(steps), forces_(bench.scene.balls.size()), now_(forces_) {}
+      : bench_(bench), body_(std::move(body)), steps_(steps), forces_(bench.scene.spheres.size()), now_(forces_) {}
 
-  /// The balls go evenly through a tick: a jump in its first step would be a blow, the harder the shorter the step.
+  /// The spheres go evenly through a tick: a jump in its first step would be a blow, the harder the shorter the step.
   std::span<const Vector3> tick(std::span<const Vector3> centres) override {
     if (before_.empty()) before_.assign(centres.begin(), centres.end());
     std::ranges::fill(forces_, Vector3::Zero());
@@ -90,9 +91,9 @@ class ParticleContender : public Contender {
   }
   bool has_inertia() const override { return true; }
   VectorX displacement() override { return body_.particles.displacement().head(3 * bench_.scene.mesh.node_count()); }
-  /// How far the forces on held nodes are from what the balls push.
+  /// How far the forces on held nodes are from what the spheres push.
   double own_error() override {
-    Vector3 sum = body_.held_force();
+    Vector3 sum = body_.constrained_force();
     double size = 0.0;
     for (const Vector3& f : forces_) {
       sum -= f;
@@ -116,7 +117,7 @@ class ParticleContender : public Contender {
   const Bench& bench_;
   Body body_;
   int steps_;
-  std::vector<Vector3> forces_, now_, before_;  // of the balls; where they are in a step, where they were last
+  std::vector<Vector3> forces_, now_, before_;  // of the spheres; where they are in a step, where they were last
 };
 
 }  // namespace tradeoff

@@ -15,7 +15,7 @@ namespace {
 using Ldlt = Eigen::SimplicialLDLT<SparseMatrix>;
 using Gradients = Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper>;
 
-/// Nodes are kept out of the balls along the normals of the last tick: a solve for each of them, and a small problem
+/// Nodes are kept out of the spheres along the normals of the last tick: a solve for each of them, and a small problem
 /// with projected Gauss-Seidel.
 template <class Solver>
 class EveryTick : public Contender {
@@ -31,7 +31,7 @@ class EveryTick : public Contender {
     for (const NodeId node : mesh.find_group(near_group)->nodes)
       if (!conditions_.is_constrained(3 * Index{node})) nodes_.push_back(node);
     columns_.assign(nodes_.size(), VectorX::Zero(stiffness_.rows()));
-    forces_.assign(bench.scene.balls.size(), Vector3::Zero());
+    forces_.assign(bench.scene.spheres.size(), Vector3::Zero());
     u_ = VectorX::Zero(stiffness_.rows());
   }
 
@@ -59,7 +59,7 @@ class EveryTick : public Contender {
     std::ranges::fill(forces_, Vector3::Zero());
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       u_ += lambda[static_cast<Index>(i)] * columns_[rows_[i].node];
-      forces_[rows_[i].ball] -= lambda[static_cast<Index>(i)] * rows_[i].normal;
+      forces_[rows_[i].sphere] -= lambda[static_cast<Index>(i)] * rows_[i].normal;
     }
     return forces_;
   }
@@ -68,7 +68,7 @@ class EveryTick : public Contender {
     conditions_.scatter(u_, u);
     return u.head(3 * bench_.scene.mesh.node_count());
   }
-  /// K u against the forces of the balls.
+  /// K u against the forces of the spheres.
   double own_error() override {
     VectorX left = stiffness_ * u_;
     double size = 0.0;
@@ -88,13 +88,13 @@ class EveryTick : public Contender {
 
  private:
   struct Point {
-    std::size_t node, ball;
+    std::size_t node, sphere;
     Index at;
     Vector3 normal;
     double gap;
   };
 
-  /// Nodes in or near a ball as they lie now; gap [m] is that without any force, along the present normal.
+  /// Nodes in or near a sphere as they lie now; gap [m] is that without any force, along the present normal.
   void find_rows(std::span<const Vector3> centres) {
     rows_.clear();
     for (std::size_t k = 0; k < nodes_.size(); ++k)
@@ -123,8 +123,8 @@ class EveryTick : public Contender {
 /// 2005, chapter 1): smooth, and late by an update.
 class Interpolated : public Contender {
  public:
-  Interpolated(std::unique_ptr<Contender> slow, double period, std::size_t balls)
-      : slow_(std::move(slow)), period_(period), from_(balls, Vector3::Zero()), to_(from_), forces_(from_) {}
+  Interpolated(std::unique_ptr<Contender> slow, double period, std::size_t spheres)
+      : slow_(std::move(slow)), period_(period), from_(spheres, Vector3::Zero()), to_(from_), forces_(from_) {}
 
   std::span<const Vector3> tick(std::span<const Vector3> centres) override {
     centres_.assign(centres.begin(), centres.end());
@@ -168,7 +168,7 @@ void add_plain_eigen(const Bench& bench, std::vector<Entry>& entries) {
     entry.description.own_core = true;
     entry.make = [&bench, mesh] {
       return std::make_unique<Interpolated>(std::make_unique<EveryTick<Ldlt>>(bench, bench.mesh(mesh)), 1.0 / 30.0,
-                                            bench.scene.balls.size());
+                                            bench.scene.spheres.size());
     };
     entries.push_back(entry);
   }

@@ -27,8 +27,9 @@ struct PositionBased {
     const auto laws = materials_by_region(mesh, bench.scene.materials);
     for (Index e = 0; e < mesh.element_count(); ++e) {
       const auto g = constant_geometry<Tet4>(mesh, e);
-      const LinearElastic& law = laws[static_cast<std::size_t>(mesh.region(e))];
-      Element element{{}, g.gradient, g.volume, law.shear_modulus(), law.lame_lambda() + law.shear_modulus()};
+      const LinearElastic& material = laws[static_cast<std::size_t>(mesh.region(e))];
+      Element element{
+          {}, g.gradient, g.volume, material.shear_modulus(), material.lame_lambda() + material.shear_modulus()};
       for (int a = 0; a < 4; ++a)
         element.nodes[static_cast<std::size_t>(a)] = static_cast<std::size_t>(mesh.element_node(e, a));
       elements.push_back(element);
@@ -83,7 +84,7 @@ struct PositionBased {
     return sum;
   }
   /// By the derivative of the energy, which the multipliers meet where a step has converged.
-  Vector3 held_force() const {
+  Vector3 constrained_force() const {
     Vector3 sum = Vector3::Zero();
     for (const Element& e : elements) {
       const Matrix3 f = deformation(e), c = cofactor(f);

@@ -1,4 +1,4 @@
-// Balls pressed into a body, as a stiff potential: for references, which need no tick.
+// Spheres pressed into a body, as a stiff potential: for references, which need no tick.
 #pragma once
 
 #include <palpate/model/moving/equilibrium.hpp>
@@ -9,7 +9,7 @@ namespace tradeoff {
 
 using namespace palpate;
 
-/// The forces of a body, and of balls that push its nodes out: k/2 depth^2 for every node inside a ball.
+/// The forces of a body, and of spheres that push its nodes out: k/2 depth^2 for every node inside a sphere.
 class PressedForces : public ElasticForces {
  public:
   /// `nodes` may be pressed; `stiffness` [N/m] of each.
@@ -22,17 +22,17 @@ class PressedForces : public ElasticForces {
         stiffness_(stiffness) {}
 
   void place(std::vector<Vector3> centres) { centres_ = std::move(centres); }
-  /// Makes the balls softer than they are, for a while.
+  /// Makes the spheres softer than they are, for a while.
   void soften(double share) noexcept { share_ = share; }
-  /// Of the body on every ball [N].
-  std::vector<Vector3> forces_on_balls(const VectorX& u) const {
+  /// Of the body on every sphere [N].
+  std::vector<Vector3> forces_on_spheres(const VectorX& u) const {
     std::vector<Vector3> forces(centres_.size(), Vector3::Zero());
-    for_each_pressed(u, [&](std::size_t ball, NodeId, double depth, const Vector3& out) {
-      forces[ball] -= stiffness() * depth * out;
+    for_each_pressed(u, [&](std::size_t sphere, NodeId, double depth, const Vector3& out) {
+      forces[sphere] -= stiffness() * depth * out;
     });
     return forces;
   }
-  /// How deep a node is in a ball [m].
+  /// How deep a node is in a sphere [m].
   double largest_depth(const VectorX& u) const {
     double largest = 0.0;
     for_each_pressed(u, [&](std::size_t, NodeId, double depth, const Vector3&) { largest = std::max(largest, depth); });
@@ -80,7 +80,7 @@ class PressedForces : public ElasticForces {
   double radius_, stiffness_, share_ = 1.0;
 };
 
-/// Bodies in equilibrium with balls in them.
+/// Bodies in equilibrium with spheres in them.
 class PressedEquilibrium {
  public:
   PressedEquilibrium(DeformableBody body, std::vector<NodeId> nodes, double radius, double stiffness)
@@ -99,9 +99,9 @@ class PressedEquilibrium {
     if (!report.converged || report.deformation.inverted > 0) raise(SetupErrorKind::not_converged, describe(report));
   }
   const VectorX& displacement() const noexcept { return body_.displacement(); }
-  std::vector<Vector3> forces_on_balls() const { return pressed_->forces_on_balls(body_.displacement()); }
+  std::vector<Vector3> forces_on_spheres() const { return pressed_->forces_on_spheres(body_.displacement()); }
   double largest_depth() const { return pressed_->largest_depth(body_.displacement()); }
-  /// Of all supports [N]: what the balls push, they hold.
+  /// Of all supports [N]: what the spheres push, they hold.
   Vector3 support() const {
     VectorX f(displacement().size());
     pressed_->body().force(displacement(), f);

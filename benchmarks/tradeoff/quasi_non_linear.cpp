@@ -35,7 +35,7 @@ class CotinContender : public LinearContender<Smoothed<Tet4>, Condensed<Selectiv
 }  // namespace
 
 void add_quasi_non_linear(const Bench& bench, std::vector<Entry>& entries) {
-  if (bench.stiffening.depth.empty()) return;  // measured for one ball
+  if (bench.stiffening.depth.empty()) return;  // measured for one sphere
   for (const std::string mesh : {"given", "near"}) {
     Entry entry;
     Description& d = entry.description;

@@ -19,7 +19,7 @@ RegionMaterials<NeoHookean> large_strain(const RegionMaterials<LinearElastic>& m
   return laws;
 }
 
-/// Of a node [N/m]: a ball sinks in by some thousandths of the small depth.
+/// Of a node [N/m]: a sphere sinks in by some thousandths of the small depth.
 double contact_stiffness(const PressScene& scene) {
   double softest = infinity;
   for (const auto& region : scene.materials) softest = std::min(softest, region.second.youngs_modulus);
@@ -39,11 +39,11 @@ std::vector<Pressed> press(const PressScene& scene, DeformableBody body, const s
   std::vector<Pressed> all;
   for (const double depth : depths(scene)) {
     equilibrium.move_to(scene.centres(depth));
-    all.push_back({equilibrium.forces_on_balls(), equilibrium.displacement().head(3 * scene.mesh.node_count())});
+    all.push_back({equilibrium.forces_on_spheres(), equilibrium.displacement().head(3 * scene.mesh.node_count())});
     require_balance(all.back(), equilibrium.support(), depth);
     if (!(equilibrium.largest_depth() < 2e-2 * scene.small))
       raise(SetupErrorKind::not_converged,
-            "the ball of the reference sinks in by " + number(equilibrium.largest_depth()) + " m");
+            "the sphere of the reference sinks in by " + number(equilibrium.largest_depth()) + " m");
   }
   return all;
 }
@@ -58,14 +58,15 @@ std::vector<Pressed> press_linear(const PressScene& scene, const Mesh<E>& mesh) 
 
 template <class E>
 std::vector<Pressed> press_large_strain(const PressScene& scene, const Mesh<E>& mesh) {
-  return press(scene,
-               make_held_body(make_hyperelastic_body(mesh, large_strain(scene.materials)), scene.scene(near_group)),
-               mesh.find_group(near_group)->nodes);
+  return press(
+      scene,
+      make_constrained_body(make_hyperelastic_body(mesh, large_strain(scene.materials)), scene.scene(near_group)),
+      mesh.find_group(near_group)->nodes);
 }
 
 Reference reference_of(const PressScene& scene, const std::vector<Pressed>& all) {
   Reference r;
-  r.curve.push_back({0.0, std::vector<Vector3>(scene.balls.size(), Vector3::Zero())});
+  r.curve.push_back({0.0, std::vector<Vector3>(scene.spheres.size(), Vector3::Zero())});
   const std::vector<double> at = depths(scene);
   for (std::size_t i = 0; i < at.size(); ++i) {
     r.curve.push_back({at[i], all[i].force});
@@ -117,16 +118,16 @@ Reference make(const PressScene& scene, double edge, bool direct) {
 
 }  // namespace
 
-Vector3 Reference::force(std::size_t ball, double depth) const {
+Vector3 Reference::force(std::size_t sphere, double depth) const {
   if (depth <= 0.0) return Vector3::Zero();
   std::size_t i = 1;
   while (i + 1 < curve.size() && curve[i].depth < depth) ++i;
   const Point &a = curve[i - 1], &b = curve[i];
-  if (a.depth == 0.0) return std::pow(depth / b.depth, 1.5) * b.force[ball];
+  if (a.depth == 0.0) return std::pow(depth / b.depth, 1.5) * b.force[sphere];
   // F / d^1.5 is nearly straight in d, and that is interpolated
   const double t = (depth - a.depth) / (b.depth - a.depth);
   return std::pow(depth, 1.5) *
-         ((1.0 - t) * std::pow(a.depth, -1.5) * a.force[ball] + t * std::pow(b.depth, -1.5) * b.force[ball]);
+         ((1.0 - t) * std::pow(a.depth, -1.5) * a.force[sphere] + t * std::pow(b.depth, -1.5) * b.force[sphere]);
 }
 
 Reference make_reference(const PressScene& scene, double edge) {
@@ -140,14 +141,14 @@ Stiffening measure_stiffening(const PressScene& scene) {
   // Somewhere else on the touchable surface: a curve that was measured where it is used would prove nothing.
   const std::vector<NodeId>& wide = scene.mesh.find_group(wide_group)->nodes;
   PressScene other = scene;
-  const Vector3 from = scene.balls.front().point, wanted = from + 2.0 * scene.radius * Vector3::UnitX();
+  const Vector3 from = scene.spheres.front().point, wanted = from + 2.0 * scene.radius * Vector3::UnitX();
   const NodeId node =
       *std::ranges::min_element(wide, {}, [&](NodeId i) { return (scene.mesh.position(i) - wanted).squaredNorm(); });
-  other.balls = {ball_along_normal(scene.mesh, scene.mesh.position(node), scene.radius)};
+  other.spheres = {sphere_along_normal(scene.mesh, scene.mesh.position(node), scene.radius)};
   const double k = contact_stiffness(scene);
   PressedEquilibrium real(
-      make_held_body(make_hyperelastic_body(scene.mesh, large_strain(scene.materials)), scene.scene(near_group)), wide,
-      scene.radius, k),
+      make_constrained_body(make_hyperelastic_body(scene.mesh, large_strain(scene.materials)), scene.scene(near_group)),
+      wide, scene.radius, k),
       linear(make_deformable_body(make_body(scene.mesh, scene.materials), scene.scene(near_group)), wide, scene.radius,
              k);
   Stiffening s;
@@ -155,7 +156,7 @@ Stiffening measure_stiffening(const PressScene& scene) {
     real.move_to(other.centres(depth));
     linear.move_to(other.centres(depth));
     s.depth.push_back(depth);
-    s.ratio.push_back(real.forces_on_balls().front().norm() / linear.forces_on_balls().front().norm());
+    s.ratio.push_back(real.forces_on_spheres().front().norm() / linear.forces_on_spheres().front().norm());
   }
   return s;
 }

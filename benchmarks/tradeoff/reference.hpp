@@ -9,7 +9,7 @@ namespace tradeoff {
 struct Reference {
   struct Point {
     double depth = 0.0;
-    std::vector<Vector3> force;  ///< on every ball [N]
+    std::vector<Vector3> force;  ///< on every sphere [N]
   };
   std::vector<Point> curve;                        ///< from depth 0 on
   VectorX displacement_small, displacement_large;  ///< of the nodes of the mesh as given [m]
@@ -18,11 +18,11 @@ struct Reference {
   double seconds = 0.0;
   double mesh_error_small = 0.0, mesh_error_large = 0.0;  ///< how far a mesh with edges twice as long is, of the force
 
-  /// Of ball b at a depth, between the points of the curve by a power law.
-  Vector3 force(std::size_t ball, double depth) const;
+  /// Of sphere b at a depth, between the points of the curve by a power law.
+  Vector3 force(std::size_t sphere, double depth) const;
 };
 
-/// Neo-Hookean tissue in quadratic tetrahedra, `edge` radii long where the balls press: linear there, with exact
+/// Neo-Hookean tissue in quadratic tetrahedra, `edge` radii long where the spheres press: linear there, with exact
 /// contact, times what large strain changes of the force (and plus what it changes of the displacement) on a mesh of
 /// linear tetrahedra, where that is cheap. Throws SetupError where the body or the answer is not as it must be.
 Reference make_reference(const PressScene& scene, double edge);
@@ -31,7 +31,7 @@ Reference make_reference(const PressScene& scene, double edge);
 struct Stiffening {
   std::vector<double> depth, ratio;
 };
-/// Measured with one ball on the mesh as given, two radii beside the place where the scene presses.
+/// Measured with one sphere on the mesh as given, two radii beside the place where the scene presses.
 Stiffening measure_stiffening(const PressScene& scene);
 
 }  // namespace tradeoff

@@ -1,4 +1,4 @@
-// Shorter edges where balls press.
+// Shorter edges where spheres press.
 #include <queue>
 #include <set>
 #include <unordered_map>
@@ -137,7 +137,7 @@ Mesh<Tet4> refine_near(const PressScene& scene, double edge) {
   Bisection bisection(scene.mesh);
   bisection.refine([&](const Vector3& p) {
     double distance = infinity;
-    for (const Ball& b : scene.balls) distance = std::min(distance, (p - b.point).norm());
+    for (const Sphere& b : scene.spheres) distance = std::min(distance, (p - b.point).norm());
     return edge + 0.35 * distance;
   });
   return bisection.take(scene.mesh);

@@ -15,16 +15,16 @@ ContactSurface surface_of(const Mesh<Tet4>& mesh) {
   return {mesh.positions, std::move(triangles)};
 }
 
-/// The ball that comes along `towards` and touches at `point`, as far out as it just touches the whole surface.
-Ball ball_at(const ContactSurface& surface, const Vector3& point, const Vector3& towards, double radius) {
-  Ball ball{.touching = Vector3::Zero(), .towards = towards.normalized(), .point = point};
+/// The sphere that comes along `towards` and touches at `point`, as far out as it just touches the whole surface.
+Sphere sphere_at(const ContactSurface& surface, const Vector3& point, const Vector3& towards, double radius) {
+  Sphere sphere{.touching = Vector3::Zero(), .towards = towards.normalized(), .point = point};
   double in = 0.0, out = 3.0 * radius;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (in + out);
-    (surface.closest(point - middle * ball.towards).distance < radius ? in : out) = middle;
+    (surface.closest(point - middle * sphere.towards).distance < radius ? in : out) = middle;
   }
-  ball.touching = point - out * ball.towards;
-  return ball;
+  sphere.touching = point - out * sphere.towards;
+  return sphere;
 }
 
 /// Mean outward normal of the triangles round a point, by area.
@@ -66,27 +66,27 @@ Vector3 lobe_point(const Mesh<Tet4>& mesh, const std::vector<NodeId>& surface, c
   return contact.closest(at + side * 0.05 * Vector3::UnitZ()).point;
 }
 
-std::vector<Ball> make_balls(const PressScene& scene, const std::string& kind, const std::vector<NodeId>& touched,
-                             const std::vector<NodeId>& surface) {
+std::vector<Sphere> make_spheres(const PressScene& scene, const std::string& kind, const std::vector<NodeId>& touched,
+                                 const std::vector<NodeId>& surface) {
   const Mesh<Tet4>& mesh = scene.mesh;
   const ContactSurface contact = surface_of(mesh);
   if (kind == "retract")
-    return {ball_at(contact, lobe_point(mesh, surface, contact, 0.028, -1.0), Vector3::UnitZ(), scene.radius)};
+    return {sphere_at(contact, lobe_point(mesh, surface, contact, 0.028, -1.0), Vector3::UnitZ(), scene.radius)};
   if (kind == "grasp")
-    return {ball_at(contact, lobe_point(mesh, surface, contact, 0.028, 1.0), -Vector3::UnitZ(), scene.radius),
-            ball_at(contact, lobe_point(mesh, surface, contact, 0.028, -1.0), Vector3::UnitZ(), scene.radius)};
+    return {sphere_at(contact, lobe_point(mesh, surface, contact, 0.028, 1.0), -Vector3::UnitZ(), scene.radius),
+            sphere_at(contact, lobe_point(mesh, surface, contact, 0.028, -1.0), Vector3::UnitZ(), scene.radius)};
   Vector3 middle = Vector3::Zero();
   for (const NodeId i : touched) middle += mesh.position(i) / static_cast<double>(touched.size());
   const Vector3 point = mesh.position(nearest(mesh, touched, middle));
-  return {ball_along_normal(mesh, point, scene.radius)};
+  return {sphere_along_normal(mesh, point, scene.radius)};
 }
 
-/// The faces that a ball may come to, and their groups.
+/// The faces that a sphere may come to, and their groups.
 void add_touchable(PressScene& scene, const std::vector<BoundaryFace>& boundary,
                    const std::vector<BoundaryFace>& wide) {
   std::vector<BoundaryFace> near;
   for (const auto& f : boundary)
-    if (std::ranges::any_of(scene.balls, [&](const Ball& b) {
+    if (std::ranges::any_of(scene.spheres, [&](const Sphere& b) {
           return std::ranges::any_of(f.nodes,
                                      [&](NodeId i) { return (scene.mesh.position(i) - b.point).norm() < scene.reach; });
         }))
@@ -108,8 +108,8 @@ std::vector<std::array<NodeId, 3>> boundary_triangles(const Mesh<Tet4>& mesh) {
   return triangles;
 }
 
-Ball ball_along_normal(const Mesh<Tet4>& mesh, const Vector3& point, double radius) {
-  return ball_at(surface_of(mesh), point, -outward_at(mesh, boundary_triangles(mesh), point, radius), radius);
+Sphere sphere_along_normal(const Mesh<Tet4>& mesh, const Vector3& point, double radius) {
+  return sphere_at(surface_of(mesh), point, -outward_at(mesh, boundary_triangles(mesh), point, radius), radius);
 }
 
 double volume_of(const Mesh<Tet4>& mesh, const std::vector<std::array<NodeId, 3>>& boundary, const VectorX& u) {
@@ -127,31 +127,31 @@ PressScene make_scene(const SceneOptions& options) {
   PressScene scene;
   scene.name = options.kind;
   scene.mesh = io::read_mesh<Tet4>(organ ? PALPATE_BENCH_DATA "/organ.msh" : options.mesh);
-  const std::string held = organ ? "ligament" : options.held, touched = organ ? "front" : options.touched;
+  const std::string constrained = organ ? "ligament" : options.constrained, touched = organ ? "front" : options.touched;
   const auto boundary = extract_boundary<Tet4>(scene.mesh);
-  if (held.empty() || touched.empty()) {
+  if (constrained.empty() || touched.empty()) {
     std::string known;
     for (const Group& g : scene.mesh.groups.all()) known += " '" + g.name + "'";
     raise(SetupErrorKind::bad_argument, "what is held and what may be touched?",
           "Give --fix <group> --touch <group>; the mesh has" + (known.empty() ? " none" : known));
   }
   const auto wide =
-      resolve_faces(scene.mesh, boundary, held == touched ? Selection(std::string(surface_group)) : touched);
+      resolve_faces(scene.mesh, boundary, constrained == touched ? Selection(std::string(surface_group)) : touched);
   const auto touched_nodes = resolve_nodes(scene.mesh, boundary, touched);
-  const auto held_nodes = resolve_nodes(scene.mesh, boundary, held);
-  std::vector<BoundaryFace> held_faces;
+  const auto constrained_nodes = resolve_nodes(scene.mesh, boundary, constrained);
+  std::vector<BoundaryFace> constrained_faces;
   for (const auto& f : boundary)
-    if (std::ranges::all_of(f.nodes, [&](NodeId i) { return std::ranges::binary_search(held_nodes, i); }))
-      held_faces.push_back(f);
+    if (std::ranges::all_of(f.nodes, [&](NodeId i) { return std::ranges::binary_search(constrained_nodes, i); }))
+      constrained_faces.push_back(f);
 
   const LinearElastic tissue{
       .youngs_modulus = options.youngs_modulus, .poisson_ratio = options.poisson_ratio, .density = options.density};
   for (const std::string& region : scene.mesh.region_names) {
-    LinearElastic law = tissue;
-    if (organ && region == "lesion" && options.kind == "palpate") law.youngs_modulus *= 10.0;
-    scene.materials.push_back({region, law});
+    LinearElastic material = tissue;
+    if (organ && region == "lesion" && options.kind == "palpate") material.youngs_modulus *= 10.0;
+    scene.materials.push_back({region, material});
   }
-  // A ball that facets of this mesh can still resolve (docs/contact.md), pressed by four fifths of its radius.
+  // A sphere that facets of this mesh can still resolve (docs/contact.md), pressed by four fifths of its radius.
   scene.radius = 2.4 * mean_edge(scene.mesh, wide);
   if (organ) scene.radius = 0.010;
   scene.small = 0.1 * scene.radius;
@@ -163,12 +163,12 @@ PressScene make_scene(const SceneOptions& options) {
     scene.large = 0.4 * scene.radius;
   }
   scene.reach = options.kind == "retract" ? 2.4 * scene.radius : 1.8 * scene.radius;
-  scene.balls = make_balls(scene, options.kind, touched_nodes, nodes_of(boundary));
+  scene.spheres = make_spheres(scene, options.kind, touched_nodes, nodes_of(boundary));
   scene.mesh.groups = {};
-  if (held_faces.empty())
-    scene.mesh.groups.get_or_add(held_group, 0).nodes = held_nodes;
+  if (constrained_faces.empty())
+    scene.mesh.groups.get_or_add(constrained_group, 0).nodes = constrained_nodes;
   else
-    add_faces(scene.mesh, held_group, held_faces);
+    add_faces(scene.mesh, constrained_group, constrained_faces);
   add_touchable(scene, boundary, wide);
   scene.mesh.groups.get_or_add(std::string(surface_group), 2);
   scene.mesh.groups.all().pop_back();  // found by its name alone

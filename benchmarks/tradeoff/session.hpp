@@ -19,7 +19,7 @@ class Session {
  public:
   Session(const Bench& bench, Contender& contender)
       : bench_(bench), contender_(contender), clock_cost_(palpate::detail::measured_clock_cost()) {
-    force_.assign(bench.scene.balls.size(), Vector3::Zero());
+    force_.assign(bench.scene.spheres.size(), Vector3::Zero());
   }
 
   std::vector<double> ticks, updates;  ///< durations in motion [s]
@@ -29,7 +29,7 @@ class Session {
 
   const std::vector<Vector3>& force() const noexcept { return force_; }
 
-  /// A millisecond of the device with the balls at a depth.
+  /// A millisecond of the device with the spheres at a depth.
   void advance(double depth, bool judge) {
     const double period_of_update = contender_.update_period();
     if (period_of_update > 0.0 && time_ >= next_update_) {
@@ -60,7 +60,7 @@ class Session {
   }
   enum class Rest { reached, moving, lost };
   /// Rests until the force does for two windows, at most `most` milliseconds and seconds of work. Tissue that has left
-  /// the ball is still on its way, and lost after ten windows.
+  /// the sphere is still on its way, and lost after ten windows.
   Rest settle(double depth, int most, double seconds) {
     const double start = bench::process_seconds();
     std::vector<Vector3> before = force_;

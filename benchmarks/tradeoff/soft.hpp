@@ -12,7 +12,7 @@ template <class Law>
 RegionMaterials<Law> large_strain_laws(const RegionMaterials<LinearElastic>& materials) {
   RegionMaterials<Law> laws;
   for (const auto& [region, m] : materials)
-    if constexpr (requires(Law law) { law.base; })
+    if constexpr (requires(Law material) { material.base; })
       laws.push_back({region, Law{m}});
     else
       laws.push_back({region, Law{m.youngs_modulus, m.poisson_ratio, m.density}});
@@ -39,7 +39,7 @@ class SoftContender : public Contender {
   void update() override { tissue_.advance(); }
   bool has_inertia() const override { return true; }
   VectorX displacement() override { return tissue_.motion().displacement().head(3 * bench_.scene.mesh.node_count()); }
-  /// How far the supports, by the exact law, are from holding what the balls push, of the contact force.
+  /// How far the supports, by the exact law, are from holding what the spheres push, of the contact force.
   double own_error() override {
     const DeformableBody& body = exact();
     VectorX left(body.elastic->size()), contact = VectorX::Zero(left.size());
@@ -47,7 +47,7 @@ class SoftContender : public Contender {
     for (const VertexForce& f : felt_.vertex_forces())
       contact.segment<3>(3 * Index{tissue_.touchable_nodes()[static_cast<std::size_t>(f.vertex)]}) +=
           f.force.in_model_axes();
-    Vector3 sum = Vector3::Zero();  // the supports against the balls
+    Vector3 sum = Vector3::Zero();  // the supports against the spheres
     for (Index dof = 0; dof < left.size(); ++dof)
       if (body.conditions.is_constrained(dof)) sum[dof % 3] += left[dof];
     for (Index i = 0; i < contact.size() / 3; ++i) sum += contact.segment<3>(3 * i);
@@ -76,7 +76,8 @@ class SoftContender : public Contender {
 
  private:
   const DeformableBody& exact() {
-    if (!exact_.elastic) exact_ = make_held_body(make_hyperelastic_body(mesh_, laws_), bench_.scene.scene(near_group));
+    if (!exact_.elastic)
+      exact_ = make_constrained_body(make_hyperelastic_body(mesh_, laws_), bench_.scene.scene(near_group));
     return exact_;
   }
   const Bench& bench_;
@@ -90,13 +91,13 @@ class SoftContender : public Contender {
 
 /// An entry of a moving model; `paste` is C++ for it.
 template <class E, class Law, class Solver>
-Entry soft_entry(const Bench& bench, const std::string& element, const std::string& law, const std::string& solver,
+Entry soft_entry(const Bench& bench, const std::string& element, const std::string& material, const std::string& solver,
                  const std::string& mesh, const std::string& scalar, const std::string& work,
                  const typename HapticFEModel<E, Law, Solver>::Parameters& parameters, const std::string& paste) {
   Entry entry{{.family = "moving",
                .element = element,
                .mesh = mesh_name(mesh),
-               .kinematics = law,
+               .kinematics = material,
                .solver = solver,
                .kept = kept_name(near_group),
                .scalar = scalar,

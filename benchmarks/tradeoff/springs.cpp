@@ -47,9 +47,9 @@ struct MassSpring {
     std::ranges::fill(particles.force, Vector3::Zero());
     for (const Spring& s : springs) {
       const auto a = static_cast<std::size_t>(s.a), b = static_cast<std::size_t>(s.b);
-      const Vector3 way = particles.place[b] - particles.place[a];
-      const double length = way.norm();
-      const Vector3 f = s.stiffness * (1.0 - s.length / length) * way;
+      const Vector3 path = particles.place[b] - particles.place[a];
+      const double length = path.norm();
+      const Vector3 f = s.stiffness * (1.0 - s.length / length) * path;
       particles.force[a] += f;
       particles.force[b] -= f;
     }
@@ -70,7 +70,7 @@ struct MassSpring {
     }
     return sum;
   }
-  Vector3 held_force() {
+  Vector3 constrained_force() {
     pull();
     Vector3 sum = Vector3::Zero();
     for (std::size_t i = 0; i < particles.force.size(); ++i)
@@ -95,7 +95,7 @@ std::unique_ptr<Contender> make_tuned_springs(const Bench& bench, const Mesh<Tet
     for (int i = 0; i < 600; ++i)
       force = trial->tick(scene.centres(std::min(1.0, i / 100.0) * scene.small)).front().norm();
     if (!(force > 0.01 * wanted))
-      raise(SetupErrorKind::not_converged, "springs cannot be tuned: the ball at the small depth meets no node");
+      raise(SetupErrorKind::not_converged, "springs cannot be tuned: the sphere at the small depth meets no node");
     factor *= wanted / force;
   }
   return make_springs(bench, mesh, factor);

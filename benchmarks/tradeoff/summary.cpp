@@ -28,7 +28,7 @@ std::string summary(const Bench& bench, const std::vector<Row>& rows, double bud
   const Reference& ref = bench.reference;
   std::ostringstream out;
   out << "Written by `sh cmake/run tradeoff --scene " << s.name << " --budget-us " << three_digits(1e6 * budget)
-      << " --docs`: " << rows.size() << " rows; balls of " << three_digits(2e3 * s.radius) << " mm at "
+      << " --docs`: " << rows.size() << " rows; spheres of " << three_digits(2e3 * s.radius) << " mm at "
       << three_digits(1e3 * s.small) << " and " << three_digits(1e3 * s.large) << " mm; reference of " << ref.nodes
       << " nodes, " << three_digits(ref.force(0, s.small).norm()) << " and "
       << three_digits(ref.force(0, s.large).norm()) << " N, in doubt by " << three_digits(100.0 * ref.mesh_error_small)

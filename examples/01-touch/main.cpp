@@ -13,7 +13,7 @@
 //   2. HapticFEModel<Element, Material, Solver> prepares everything that can be known before the first touch: it
 //      assembles the stiffness, condenses it to the touchable nodes and inverts what is left. A second or two, once.
 //   3. HapticSession ticks in a thread of its own, once per millisecond, within the device's limits. A tick takes some
-//      microseconds. It finds where the ball meets the surface, solves for the contact forces, and passes their sum
+//      microseconds. It finds where the sphere meets the surface, solves for the contact forces, and passes their sum
 //      through a gate that no force gets round: never NaN, never longer than the device allows, never a jump.
 //   4. Meanwhile this thread does what a renderer does, thirty times a second: it takes the newest contact forces from
 //      the session, without either waiting for the other, and computes from them how all nodes have moved

@@ -47,7 +47,7 @@ class PageData {
       : organ_(organ),
         lesion_(region_surface(organ, "lesion")),
         vertex_of_(static_cast<std::size_t>(organ.mesh().node_count()), -1) {
-    for (const NodeId node : organ.seen_nodes()) include(node);
+    for (const NodeId node : organ.rendered_nodes()) include(node);
     surface_vertices_ = nodes_.size();
     for (const auto& face : lesion_)
       for (const NodeId node : face) include(node);
@@ -58,7 +58,7 @@ class PageData {
   }
 
   /// The colours' range [Pa], the same for all pictures. It ends at half the highest stress of the surface, where few
-  /// nodes near the ball go beyond: up to the top, the rest would look alike.
+  /// nodes near the sphere go beyond: up to the top, the rest would look alike.
   ColourScale scale() const {
     double highest = 2.0;
     for (const Picture* p : pictures_) highest = std::max(highest, surface_stress(*p));
@@ -117,7 +117,7 @@ class PageData {
         stress.add(static_cast<std::uint8_t>(std::lround(255.0 * colours.fraction(p->von_mises[node]))));
       }
       track.add(static_cast<float>(p->time));
-      track.add(p->ball);
+      track.add(p->sphere);
       track.add(p->force);
       track.add(static_cast<float>(p->penetration));
       track.add(static_cast<float>(surface_stress(*p)));

@@ -17,14 +17,15 @@ namespace touch {
 /// A frame with what follows from it.
 struct Picture {
   double time = 0.0;
-  Vector3 hand, ball, force;   ///< world frame: where the device is, where the ball rests [m]; force on the ball [N]
+  Vector3 hand, sphere,
+      force;  ///< world frame: where the device is, where the sphere rests [m]; force on the sphere [N]
   double penetration = 0.0;    ///< of the device into the surface at rest [m]; negative: above it
   VectorX displacement;        ///< 3 per node [m]
   VectorX von_mises;           ///< per node [Pa]
   VectorX von_mises_elements;  ///< per element [Pa]
 };
 
-/// How deep a ball at `position` is in the surface at rest [m].
+/// How deep a sphere at `position` is in the surface at rest [m].
 inline double penetration(const Organ& organ, const Vector3& position) {
   return tool.radius - organ.contact_surface().closest(organ.to_world().inverse() * position).distance;
 }
@@ -38,9 +39,9 @@ inline std::vector<Picture> develop(const Organ& organ, const Recording& session
         std::ranges::lower_bound(session.ticks, frame.time, {}, [](const RecordedTick& t) { return t.state.time; });
     if (tick == session.ticks.end()) continue;
     const Vector3 hand = tick->state.position;
-    // The hand is coupled to the ball by a spring of the device's stiffness: on the surface the two are apart.
-    const Vector3 ball = hand + frame.force / DeviceLimits{}.stiffness;
-    pictures.push_back({frame.time, hand, ball, frame.force, penetration(organ, hand), frame.displacement,
+    // The hand is coupled to the sphere by a spring of the device's stiffness: on the surface the two are apart.
+    const Vector3 sphere = hand + frame.force / DeviceLimits{}.stiffness;
+    pictures.push_back({frame.time, hand, sphere, frame.force, penetration(organ, hand), frame.displacement,
                         stress.von_mises_nodes, stress.von_mises_elements});
   }
   return pictures;

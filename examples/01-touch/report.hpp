@@ -71,7 +71,7 @@ inline std::string make_page(const Organ& organ, const TouchPath& path, const Re
       part("page.html"),
       {{"style", part("page.css")},
        {"script", part("viewer.js")},
-       {"summary", text("A ball of %g mm radius is pressed %g mm into a soft organ, dragged %g mm across a "
+       {"summary", text("A sphere of %g mm radius is pressed %g mm into a soft organ, dragged %g mm across a "
                         "stiffer lesion hidden %.0f mm below, and lifted. "
                         "palpate computed the force in every millisecond.",
                         1e3 * tool.radius, 1e3 * plan.depth, 1e3 * plan.drag, 1e3 * path.target_depth())},
@@ -90,7 +90,8 @@ inline std::string make_page(const Organ& organ, const TouchPath& path, const Re
        {"loop_facts", loop_facts(session.loop)},
        {"status", status_table(session.loop)},
        {"remarks",
-        "The tissue is linear: strains beyond a few per cent, as right under the ball, show the trend, not the truth. "
+        "The tissue is linear: strains beyond a few per cent, as right under the sphere, show the trend, not the "
+        "truth. "
         "It has no inertia and no memory, and contact has no friction; so lifting follows the curve of pressing at the "
         "same place, and "
         "the grey curve differs because the place does. Von Mises stress is averaged to the nodes."},

@@ -34,7 +34,7 @@ inline std::vector<NodeId> underside(const Mesh<Tet4>& mesh) {
 /// organ as it lies, so its weight is in the shape already. (Switched on, it would flatten it by another 2.8 mm.)
 inline Scene make_scene(const Mesh<Tet4>& mesh) {
   Scene scene;
-  scene.fix("ligament").fix(underside(mesh)).touch("front").see("surface");
+  scene.fix("ligament").fix(underside(mesh)).touch("front").render("surface");
   return scene;
 }
 
@@ -46,7 +46,7 @@ struct Plan {
   double seconds = 10.0;
   double depth = 5e-3;    ///< how far it is pressed in
   double drag = 30e-3;    ///< how far it is dragged, half of it on either side of the lesion
-  double height = 12e-3;  ///< of the ball over the surface before and after
+  double height = 12e-3;  ///< of the sphere over the surface before and after
 };
 
 /// A right-angled frame on the touchable surface: `x` along its longest extent, `z` outward.
@@ -98,7 +98,7 @@ class TouchPath {
     hill_ = monomials.colPivHouseholderQr().solve(heights);
   }
 
-  /// Centre of the ball [m], world frame.
+  /// Centre of the sphere [m], world frame.
   Vector3 operator()(double t) const noexcept {
     const Vector3 p = over_patch_(t);
     const double height = p[2] + row(p[0], p[1]).dot(hill_);

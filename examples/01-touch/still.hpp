@@ -27,9 +27,9 @@ class Still {
     add((a + b + c).dot(towards_) / 3.0,
         "<path d='M" + point(a) + 'L' + point(b) + 'L' + point(c) + "z' fill='" + fill + "' stroke='" + fill + "'/>");
   }
-  void ball(const Vector3& at, double radius) {
+  void sphere(const Vector3& at, double radius) {
     add(at.dot(towards_) + radius,
-        text("<circle cx='%.1f' cy='%.1f' r='%.1f' fill='url(#ball)'/>", x(at), y(at), scale_ * radius));
+        text("<circle cx='%.1f' cy='%.1f' r='%.1f' fill='url(#sphere)'/>", x(at), y(at), scale_ * radius));
   }
   /// Drawn over everything.
   void arrow(const Vector3& from, const Vector3& to) {
@@ -55,7 +55,7 @@ class Still {
         "font-size='13' stroke-width='.4'>",
         width, height);
     out +=
-        "<defs><radialGradient id='ball' cx='.35' cy='.3'><stop offset='0' stop-color='#fff'/>"
+        "<defs><radialGradient id='sphere' cx='.35' cy='.3'><stop offset='0' stop-color='#fff'/>"
         "<stop offset='1' stop-color='#666'/></radialGradient><marker id='head' orient='auto' markerWidth='5' "
         "markerHeight='5' refX='1.5' refY='2.5'><path d='M0 0L5 2.5L0 5z'/></marker></defs>"
         "<rect width='100%' height='100%' fill='#fff'/>";
@@ -76,18 +76,18 @@ class Still {
   std::vector<std::pair<double, std::string>> parts_;
 };
 
-/// The organ at the moment of the longest force: its surface coloured by stress, the ball, the force on it.
+/// The organ at the moment of the longest force: its surface coloured by stress, the sphere, the force on it.
 inline std::string draw_still(const Organ& organ, const TouchPath& path, const std::vector<Picture>& pictures) {
   const Picture& p = *std::ranges::max_element(pictures, {}, [](const Picture& q) { return q.force.norm(); });
   Vector3 low = organ.rest_position(0), high = low;
   double most = 0.0;
-  for (const NodeId node : organ.seen_nodes()) {
+  for (const NodeId node : organ.rendered_nodes()) {
     low = low.cwiseMin(organ.rest_position(node));
     high = high.cwiseMax(organ.rest_position(node));
     most = std::max(most, p.von_mises[node]);
   }
   const Vector3 size = high - low;
-  const ColourScale colours(0.0, round_up(0.5 * most));  // few nodes right under the ball are beyond
+  const ColourScale colours(0.0, round_up(0.5 * most));  // few nodes right under the sphere are beyond
   Still still(0.5 * (low + high), path.outward(), size.maxCoeff());
   const auto moved = [&](NodeId n) {
     return Vector3(organ.rest_position(n) + p.displacement.segment<3>(3 * Index{n}));
@@ -97,11 +97,11 @@ inline std::string draw_still(const Organ& organ, const TouchPath& path, const s
     for (const NodeId n : face.nodes) stress += p.von_mises[n] / 3.0;
     still.triangle(moved(face.nodes[0]), moved(face.nodes[1]), moved(face.nodes[2]), colours(stress));
   }
-  still.ball(p.ball, tool.radius);
+  still.sphere(p.sphere, tool.radius);
   const double per_newton = 0.25 * size.maxCoeff() / p.force.norm();
-  still.arrow(p.ball, p.ball + per_newton * p.force);
-  still.legend(colours, text("A ball of %g mm presses %.1f mm deep; arrow: the force on it, %.2f N", 1e3 * tool.radius,
-                             1e3 * p.penetration, p.force.norm()));
+  still.arrow(p.sphere, p.sphere + per_newton * p.force);
+  still.legend(colours, text("A sphere of %g mm presses %.1f mm deep; arrow: the force on it, %.2f N",
+                             1e3 * tool.radius, 1e3 * p.penetration, p.force.norm()));
   return still.svg();
 }
 

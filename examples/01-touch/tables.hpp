@@ -30,7 +30,7 @@ inline std::string scene_table(const Organ& organ, const Plan& plan, const Vecto
                                 m.poisson_ratio, m.density)});
   facts.push_back({"depth of the lesion", text("%.0f mm from the patch to its middle", 1e3 * lesion_depth)});
   facts.push_back({"held", "ligament and underside; no gravity (the mesh is the shape under it)"});
-  facts.push_back({"tool", text("rigid ball, radius %g mm, no friction", 1e3 * tool.radius)});
+  facts.push_back({"tool", text("rigid sphere, radius %g mm, no friction", 1e3 * tool.radius)});
   facts.push_back({"device", text("simulated: up to %g N, coupled by %g N/m", DeviceLimits{}.peak_force,
                                   DeviceLimits{}.stiffness)});
   facts.push_back(
@@ -43,7 +43,7 @@ inline std::string setup_table(const SetupReport& r) {
   const auto megabytes = [](std::size_t bytes) { return text("%.2f MB", 1e-6 * static_cast<double>(bytes)); };
   Fields facts{{"free degrees of freedom",
                 count(r.free_dofs) + ": " + count(r.kept_dofs) + " kept, " + count(r.condensed_dofs) + " condensed"},
-               {"touchable, seen", count(r.touchable_vertices) + " vertices, " + count(r.seen_nodes) + " nodes"},
+               {"touchable, seen", count(r.touchable_vertices) + " vertices, " + count(r.rendered_nodes) + " nodes"},
                {"memory", "stiffness " + megabytes(r.stiffness_bytes) + ", solver " + megabytes(r.solver_bytes) +
                               ", compliance " + megabytes(r.compliance_bytes)},
                {"mesh quality", text("worst %.2f, mean %.2f (1: regular)", r.worst_quality, r.mean_quality)},

@@ -8,7 +8,7 @@ const rest = new Float32Array(bytes(D.rest)),
   stress = new Uint8Array(bytes(D.stress));
 const organFaces = new Uint32Array(bytes(D.faces)),
   lesionFaces = new Uint32Array(bytes(D.lesion));
-const track = new Float32Array(bytes(D.track)); // per frame: time, ball x y z, force x y z, penetration, highest stress
+const track = new Float32Array(bytes(D.track)); // per frame: time, sphere x y z, force x y z, penetration, highest stress
 const palette = new Uint8Array(bytes(D.palette)),
   count = rest.length / 3,
   frames = track.length / 9;
@@ -241,7 +241,7 @@ function makeRenderer() {
     core = indexBuffer(lesionFaces),
     lineIds = edges(organFaces),
     lines = indexBuffer(lineIds);
-  const ball = fixedShape(ballShape()),
+  const sphere = fixedShape(ballShape()),
     arrow = fixedShape(arrowShape());
   gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB8, palette.length / 3, 1, 0, gl.RGB, gl.UNSIGNED_BYTE, palette);
@@ -327,9 +327,9 @@ function makeRenderer() {
       force = [of(frame, 4), of(frame, 5), of(frame, 6)],
       r = D.radius,
       size = Math.hypot(...force);
-    gl.bindVertexArray(ball.v);
+    gl.bindVertexArray(sphere.v);
     paint(0, 1, 0.35, [0.62, 0.65, 0.7, 1], placed([r, 0, 0], [0, r, 0], [0, 0, r], centre));
-    gl.drawElements(gl.TRIANGLES, ball.size, gl.UNSIGNED_INT, 0);
+    gl.drawElements(gl.TRIANGLES, sphere.size, gl.UNSIGNED_INT, 0);
     if (size < 1e-4) return;
     const z = unit(force),
       x = unit(cross(Math.abs(z[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0], z)),

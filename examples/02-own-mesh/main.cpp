@@ -2,7 +2,7 @@
 //
 //   example_02_own_mesh [FILE] [--scale METRES] [--fix GROUP] [--touch GROUP] [--radius METRES] [--out DIR]
 //
-// Reads a file, says what is wrong with it and what to do about that, and touches it with a scripted ball. Without a
+// Reads a file, says what is wrong with it and what to do about that, and touches it with a scripted sphere. Without a
 // file it takes the organ that comes with palpate. docs/from_images.md tells how to make such a file from a scan.
 //
 //   1. Read. The content of the file decides about its format. Positions become metres: --scale 1e-3 for a file in
@@ -15,7 +15,7 @@
 //      commonest. Mending is never done in silence: ask for it with AdmissionPolicy.
 //   5. Touch, and write what happened for ParaView: DIR/touched.vtu, with displacement and stress.
 //
-// The exit code is 0 when the ball was pressed in and felt something, 1 when it was not, 2 when the mesh or the
+// The exit code is 0 when the sphere was pressed in and felt something, 1 when it was not, 2 when the mesh or the
 // arguments were refused.
 #include "scene.hpp"
 
@@ -102,15 +102,15 @@ void print_quality(const MeshDiagnosis& d) {
   }
 }
 
-/// Presses the ball in, as fast as the machine goes. Returns the longest force [N] and leaves the displacement of the
+/// Presses the sphere in, as fast as the machine goes. Returns the longest force [N] and leaves the displacement of the
 /// deepest moment in `u`.
 double touch(Organ& organ, const Press& press, VectorX& u) {
   MockDevice stylus(trajectory::poke({.from = press.above, .to = press.deepest, .approach = 0.5, .hold = 0.2}));
-  HapticSession session(stylus, organ, press.ball);
+  HapticSession session(stylus, organ, press.sphere);
   const LoopReport report = session.run({.duration = 0.7, .paced = false});
   u.resize(3 * organ.mesh().node_count());
   organ.displacement_with(session.snapshot(), u);
-  std::cout << "touched with a ball of " << 1e3 * press.ball.radius << " mm, " << 1e3 * press.depth
+  std::cout << "touched with a sphere of " << 1e3 * press.sphere.radius << " mm, " << 1e3 * press.depth
             << " mm deep: " << report.peak_force << " N, status " << report.status << '\n';
   return report.peak_force;
 }
@@ -124,7 +124,7 @@ int run(const Arguments& arguments) {
   print_quality(diagnosis);
 
   const Chosen chosen = choose(mesh, diagnosis, arguments);
-  std::cout << "held: " << chosen.held << "; touched: " << chosen.touched << '\n';
+  std::cout << "held: " << chosen.constrained << "; touched: " << chosen.touched << '\n';
   Organ organ(mesh, chosen.scene, {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
   std::cout << organ.report();
 

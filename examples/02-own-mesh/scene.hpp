@@ -1,4 +1,4 @@
-// What holds a body, what of it is touched, and where the ball goes, for a mesh nobody has seen before.
+// What holds a body, what of it is touched, and where the sphere goes, for a mesh nobody has seen before.
 #pragma once
 
 #include <palpate/mesh/diagnosis.hpp>
@@ -15,13 +15,13 @@ struct Arguments {
   std::string fix, touch;  ///< names of groups; empty: see choose
   std::string out = "build/own_mesh";
   double scale = 1.0;   ///< unit of the file [m]
-  double radius = 0.0;  ///< of the ball [m]; 0: see plan_press
+  double radius = 0.0;  ///< of the sphere [m]; 0: see plan_press
 };
 
 /// A scene, and in words what was chosen.
 struct Chosen {
   Scene scene;
-  std::string held, touched;
+  std::string constrained, touched;
 };
 
 /// A height as a share of the body's (0 the lowest, 1 the highest point), z up.
@@ -37,22 +37,23 @@ inline Chosen choose(const Mesh<Tet4>& mesh, const MeshDiagnosis& diagnosis, con
     return !named.empty() ? named : mesh.find_group(usual) != nullptr ? std::string(usual) : std::string();
   };
   const std::string fix = name_of(arguments.fix, "ligament"), touch = name_of(arguments.touch, "front");
-  c.held = fix.empty() ? "the lowest tenth" : "group '" + fix + "'";
+  c.constrained = fix.empty() ? "the lowest tenth" : "group '" + fix + "'";
   c.touched = touch.empty() ? "the upper half of the surface" : "group '" + touch + "'";
   c.scene.fix(fix.empty() ? Selection(where::below(at_height(diagnosis, 0.1))) : Selection(fix));
-  c.scene.touch(touch.empty() ? Selection(where::above(at_height(diagnosis, 0.5))) : Selection(touch)).see("surface");
+  c.scene.touch(touch.empty() ? Selection(where::above(at_height(diagnosis, 0.5))) : Selection(touch))
+      .render("surface");
   return c;
 }
 
-/// A ball and its way: from above the surface to its deepest place, world frame [m].
+/// A sphere and its way: from above the surface to its deepest place, world frame [m].
 struct Press {
-  SphereTool ball;
+  SphereTool sphere;
   Vector3 above, deepest;
-  double depth;  ///< of the ball in the surface at rest
+  double depth;  ///< of the sphere in the surface at rest
 };
 
 /// In the middle of what may be touched, along the outward normal there, a quarter of the radius deep. Without a radius
-/// the ball is twice as large as the mean edge there: facets longer than half the radius make contact too stiff.
+/// the sphere is twice as large as the mean edge there: facets longer than half the radius make contact too stiff.
 template <class Organ>
 Press plan_press(const Organ& organ, double radius) {
   const ContactSurface& surface = organ.contact_surface();

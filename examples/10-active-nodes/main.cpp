@@ -31,13 +31,13 @@ Scene scene() {
   return Scene().fix("z0").touch("z1");
 }
 
-struct Held {
+struct Constrained {
   Vector3 force;  ///< of the hand on the tissue [N]
   std::vector<VertexForce> shared;
 };
 
-/// Takes hold of the point of the top below the ball and moves it.
-Held hold_and_move(Tissue& tissue, const Vector3& point, const Vector3& by) {
+/// Takes hold of the point of the top below the sphere and moves it.
+Constrained hold_and_move(Tissue& tissue, const Vector3& point, const Vector3& by) {
   ServoOptions options;
   options.coupling_stiffness = infinity;  // the device is where the point is
   options.grasp_buttons = 1;
@@ -75,15 +75,15 @@ int main() {
   for (int v = 0; v < top.vertex_count(); ++v)
     if ((top.position(v) - middle).norm() < (top.position(vertex) - middle).norm()) vertex = v;
   const NodeId node = tissue.touchable_nodes()[static_cast<std::size_t>(vertex)];
-  const Held held = hold_and_move(tissue, tissue.to_world() * top.position(vertex), by);
+  const Constrained constrained = hold_and_move(tissue, tissue.to_world() * top.position(vertex), by);
   const Tissue prescribed(mesh(), scene().prescribe(std::vector<NodeId>{node}, {by[0], by[1], by[2]}), material);
   const Vector3 reaction = prescribed.reactions().segment<3>(3 * Index{node});
-  bool right = agree("force at an active node, reaction", held.force, reaction);
+  bool right = agree("force at an active node, reaction", constrained.force, reaction);
 
   // 2. A point inside a face: its contact point nearest to a third of each corner.
   const Triangle& face = top.triangle(top.triangles_at(vertex)[0]);
   const Vector3 third = (top.position(face[0]) + top.position(face[1]) + top.position(face[2])) / 3.0;
-  const Held inside = hold_and_move(tissue, tissue.to_world() * third, by);
+  const Constrained inside = hold_and_move(tissue, tissue.to_world() * third, by);
   const VectorX u = tissue.displacement(inside.shared);
   Vector3 sum = Vector3::Zero(), moved = Vector3::Zero();
   double work = 0.0;

@@ -29,7 +29,7 @@ inline Rest rest_of(Organ& tissue) {
   tissue.read([&](const CutTopology<Tet4>& topology, const CutPhysics<Tet4>& physics) {
     std::vector<NodeId> node_map, origin;
     std::vector<Index> element_map;
-    rest.mesh = topology.extract(ElementState::held, node_map, element_map);
+    rest.mesh = topology.extract(ElementState::supported, node_map, element_map);
     origin.resize(rest.mesh.positions.size());
     rest.displacement.resize(3 * rest.mesh.node_count());
     for (std::size_t i = 0; i < node_map.size(); ++i) {

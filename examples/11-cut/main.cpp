@@ -62,14 +62,14 @@ class Record {
 };
 
 /// Pushes the blade in. The force of every tick [mm, N]; empty when one was not fine.
-std::vector<Vector2> push_blade(Organ& tissue, HapticServo& servo, const Vector3& start, double way) {
+std::vector<Vector2> push_blade(Organ& tissue, HapticServo& servo, const Vector3& start, double path) {
   std::vector<Vector2> force;
   const int ticks = 1000;
   for (int i = 0; i < ticks; ++i) {
     ToolState state;
-    state.position = start - Vector3(0.0, 0.0, way * i / ticks);
+    state.position = start - Vector3(0.0, 0.0, path * i / ticks);
     state.time = 1e-3 * i;
-    force.emplace_back(1e3 * way * i / ticks, servo.tick(state).force().norm());
+    force.emplace_back(1e3 * path * i / ticks, servo.tick(state).force().norm());
     if (!(force.back()[1] <= ForceLimits{}.peak_force * (1.0 + 1e-9))) return {};
     if (i % 16 == 15) tissue.work();
   }
@@ -91,8 +91,8 @@ std::array<double, 3> masses(const Organ& tissue) {
 /// Slices lengthwise and across until nothing is held, and burns the rest. The largest share of mass that was lost.
 double cut_apart(Organ& tissue, Index elements, Record& record) {
   const double whole = masses(tissue)[0];
-  double lost = 0.0, held = whole;
-  for (int k = 0; k < 20 && held > 0.0; ++k) {
+  double lost = 0.0, constrained = whole;
+  for (int k = 0; k < 20 && constrained > 0.0; ++k) {
     const double x = k % 2 == 0 ? -0.1 + 0.02 * k : 0.1 - 0.02 * (k - 1), y = -0.06 + 0.006 * k;
     tissue.cut(BladeSweep{{x, -1, -1}, {x, 1, -1}, {x, -1, 1}, {x, 1, 1}});
     tissue.cut(BladeSweep{{-1, y, -1}, {1, y, -1}, {-1, y, 1}, {1, y, 1}});
@@ -103,14 +103,14 @@ double cut_apart(Organ& tissue, Index elements, Record& record) {
     }
     tissue.work();
     const auto mass = masses(tissue);
-    held = mass[0];
+    constrained = mass[0];
     lost = std::max(lost, std::abs(mass[0] + mass[1] + mass[2] - whole) / whole);
     std::size_t pieces = 0;
-    tissue.read([&](const auto& topology, const auto&) { pieces = topology.loose_pieces().size(); });
-    if (k % 3 == 0 || held == 0.0)
-      record.add(tissue, 2.0 + k, text("%d pieces came off, %.3f kg held", static_cast<int>(pieces), held));
+    tissue.read([&](const auto& topology, const auto&) { pieces = topology.detached_fragments().size(); });
+    if (k % 3 == 0 || constrained == 0.0)
+      record.add(tissue, 2.0 + k, text("%d pieces came off, %.3f kg held", static_cast<int>(pieces), constrained));
   }
-  return held == 0.0 ? lost : infinity;
+  return constrained == 0.0 ? lost : infinity;
 }
 
 int run_example(const std::filesystem::path& out) {
@@ -142,7 +142,7 @@ int run_example(const std::filesystem::path& out) {
       {"cut against resistance",
        text("%.1f cm^2 with %.1f mJ", 1e4 * servo.blade()->area(), 1e3 * servo.blade()->work())},
       {"how far the wound gapes", text("%.2f mm", 1e3 * gape)},
-      {"the last cut of the slit was felt after", text("%.1f ms", 1e3 * slit.felt_seconds)},
+      {"the last cut of the slit was felt after", text("%.1f ms", 1e3 * slit.latency)},
       {"cuts, new factors", text("%d, %d", static_cast<int>(end.cuts), static_cast<int>(end.renewals))},
       {"error of the compliance after the slit", text("%.1e", slit.error)},
       {"share of the mass that was lost", text("%.1e", lost)}};

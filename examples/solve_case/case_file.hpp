@@ -66,16 +66,16 @@ inline std::vector<CaseFile> read_cube_in_time(const json& file, const std::file
     if (!std::filesystem::exists(folder / element)) continue;
     read.push_back(case_file_on(variant.at("mesh"), folder / element));
     const std::string before = element + "__";
-    const auto add = [&](const std::string& law, const std::string& hold, const std::string& table) {
-      read.back().load_cases.push_back({{"name", before + law + "__" + hold},
+    const auto add = [&](const std::string& material, const std::string& hold, const std::string& table) {
+      read.back().load_cases.push_back({{"name", before + material + "__" + hold},
                                         {"analysis", cube_in_time},
                                         {"material", file.at("material")},
-                                        {"law", law},
+                                        {"law", material},
                                         {"hold", hold},
                                         {"table", (folder / file.at("files").at(table).get<std::string>()).string()}});
     };
-    for (const auto& [law, text] : file.at("material").at("laws").items())
-      for (const auto& [hold, what] : file.at("cases").items()) add(law, hold, "relaxation");
+    for (const auto& [material, text] : file.at("material").at("laws").items())
+      for (const auto& [hold, what] : file.at("cases").items()) add(material, hold, "relaxation");
     for (const char* hold : {"ramp_shear", "ramp_uniaxial", "creep"}) add("all_moduli", hold, "ramp_creep");
     add("shear_only", "harmonic", "harmonic");
   }

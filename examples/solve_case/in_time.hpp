@@ -91,8 +91,8 @@ class CubeInTime {
                   .poisson_ratio = m.at("nu0").template get<double>(),
                   .density = 0.0},
                  {{{m.at("g").template get<double>(), m.at("tau").template get<double>()}}},
-                 law == "shear_only" ? palpate::Relaxation::shape_only : palpate::Relaxation::whole_stress};
-    body_.emplace(palpate::make_held_body(palpate::make_body(mesh_, material_), scene()));
+                 law == "shear_only" ? palpate::Relaxation::deviatoric : palpate::Relaxation::whole_stress};
+    body_.emplace(palpate::make_constrained_body(palpate::make_body(mesh_, material_), scene()));
     full_ = body_->conditions().prescribed;
   }
 

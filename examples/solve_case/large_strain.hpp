@@ -74,8 +74,13 @@ Solution solve_with_law(const palpate::Mesh<E>& mesh, const json& load_case) {
   const palpate::EquilibriumReport report = body.solve();
   if (!report.converged || !report.stable || report.deformation.inverted > 0)
     palpate::raise(SetupErrorKind::not_converged, palpate::describe(report), "Try smaller loads");
-  Solution s{
-      body.displacement(), body.internal_force(), body.reactions(), body.energy(), {}, held_nodes(mesh, scene), 0.0};
+  Solution s{body.displacement(),
+             body.internal_force(),
+             body.reactions(),
+             body.energy(),
+             {},
+             constrained_nodes(mesh, scene),
+             0.0};
   s.node_map = std::move(admitted.node_map);
   s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return s;

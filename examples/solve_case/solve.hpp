@@ -24,20 +24,20 @@ struct Solution {
   palpate::VectorX displacement, internal_force, reactions;
   double strain_energy = 0.0;
   std::vector<palpate::NodeId> node_map;
-  std::vector<palpate::NodeId> held;  ///< nodes of the file with a prescribed component
+  std::vector<palpate::NodeId> constrained;  ///< nodes of the file with a prescribed component
   double seconds = 0.0;
 };
 
 /// Nodes of a mesh with a prescribed component, ascending.
 template <palpate::Element E>
-std::vector<palpate::NodeId> held_nodes(const palpate::Mesh<E>& mesh, const palpate::Scene& scene) {
-  std::vector<palpate::NodeId> held;
+std::vector<palpate::NodeId> constrained_nodes(const palpate::Mesh<E>& mesh, const palpate::Scene& scene) {
+  std::vector<palpate::NodeId> constrained;
   const auto boundary = palpate::extract_boundary<E>(mesh);
   for (const auto& condition : scene.prescribed())
-    for (const palpate::NodeId i : palpate::resolve_nodes(mesh, boundary, condition.where)) held.push_back(i);
-  std::ranges::sort(held);
-  held.erase(std::unique(held.begin(), held.end()), held.end());
-  return held;
+    for (const palpate::NodeId i : palpate::resolve_nodes(mesh, boundary, condition.where)) constrained.push_back(i);
+  std::ranges::sort(constrained);
+  constrained.erase(std::unique(constrained.begin(), constrained.end()), constrained.end());
+  return constrained;
 }
 
 /// Sets up the model of a load case, which solves it. Throws SetupError.
@@ -55,7 +55,7 @@ Solution solve(const palpate::Mesh<E>& mesh, const json& load_case) {
              model.reactions(),
              model.strain_energy(),
              model.node_map(),
-             held_nodes(mesh, scene),
+             constrained_nodes(mesh, scene),
              0.0};
   s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return s;
@@ -95,7 +95,7 @@ void write_csv(const std::filesystem::path& folder, const std::string& name, con
                const Solution& s) {
   write_nodes(folder / (name + "_u.csv"), numbered, s.node_map, s.displacement);
   std::ofstream r = open_csv(folder / (name + "_reactions.csv"), "node,rx,ry,rz,ix,iy,iz");
-  for (const palpate::NodeId i : s.held) {
+  for (const palpate::NodeId i : s.constrained) {
     const palpate::Index k = s.node_map[static_cast<std::size_t>(i)];
     if (k < 0) continue;
     r << numbered.ids.node_tags[static_cast<std::size_t>(i)];

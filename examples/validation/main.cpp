@@ -125,7 +125,7 @@ void prescribe_shell(const std::vector<Bead>& beads, const std::string& out, Che
 
 void push_platen(const std::vector<Bead>& beads, const std::string& out, Checks& checks) {
   std::printf("## (b) The whole cube, base bonded, all 343 beads\n\n");
-  Table held = error_table(), fitted = error_table();
+  Table constrained = error_table(), fitted = error_table();
   std::string found;
   const auto run = [&]<class E>(std::type_identity<E>, const char* name, int n) {
     const auto unit = under_the_platen<E>(beads, n);
@@ -139,7 +139,7 @@ void push_platen(const std::vector<Bead>& beads, const std::string& out, Checks&
                ", " + millimetres(p[2]) + ") mm, widening " + text(100.0 * p[3], "%.1f") + " % at " + strains[s];
     }
     const std::string mesh = std::to_string(n) + "^3";
-    add_row(held, name, mesh, judge(beads, nominal, false, checks));
+    add_row(constrained, name, mesh, judge(beads, nominal, false, checks));
     add_row(fitted, name, mesh, judge(beads, best, false, checks));
     return best;
   };
@@ -152,10 +152,10 @@ void push_platen(const std::vector<Bead>& beads, const std::string& out, Checks&
   for (const int n : {4, 8}) {
     std::array<Motion, 3> far;
     for (std::size_t s = 0; s < 3; ++s) far[s] = pushed_far<Tet10>(beads, n, nominal_travel[s]);
-    add_row(held, "Tet10, neo-Hookean", std::to_string(n) + "^3", judge(beads, far, false, checks));
+    add_row(constrained, "Tet10, neo-Hookean", std::to_string(n) + "^3", judge(beads, far, false, checks));
   }
   std::printf("Platen held sideways, nominal travel (4, 10, 14.6 mm):\n\n");
-  held.print();
+  constrained.print();
   std::printf("Travel, shift and widening of the platen side fitted:\n\n");
   fitted.print();
   std::printf("%s.\n\nPer layer, fitted, MeanDilatation<Hex8>:\n\n", found.c_str());

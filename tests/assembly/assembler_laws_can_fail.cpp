@@ -29,14 +29,14 @@ struct Given {
   std::size_t bytes() const { return 8; }
 };
 
-const Body<Tet4> ball = body_of(ball_tet4(1.0, 1), {liver});
-const MatrixX right = testing::dense_matrix(assemble_stiffness<Tet4>(ball, {}));
+const Body<Tet4> sphere = body_of(sphere_tet4(1.0, 1), {liver});
+const MatrixX right = testing::dense_matrix(assemble_stiffness<Tet4>(sphere, {}));
 
 }  // namespace
 
 TEST_CASE("the laws accept the same matrix given by hand", "[testing][assembly]") {
-  CHECK(testing::describe(stiffness_laws(ball, Given(right))) == "");
-  Body<Tet4> soft = ball;
+  CHECK(testing::describe(stiffness_laws(sphere, Given(right))) == "");
+  Body<Tet4> soft = sphere;
   for (Matrix6& d : soft.elasticity) d *= 1e-300;
   CHECK(testing::describe(stiffness_laws(soft, Given(1e-300 * right))) == "");
 }
@@ -45,23 +45,23 @@ TEST_CASE("stiffness laws can fail", "[testing][assembly]") {
   Given k(right);
   SECTION("symmetric") {
     k.k(0, 5) += 1e-9 * right.maxCoeff();
-    CHECK(violates(stiffness_laws(ball, k), "symmetric"));
+    CHECK(violates(stiffness_laws(sphere, k), "symmetric"));
   }
   SECTION("diagonal blocks agree") {
     k.blocks[3](1, 1) *= 1.0 + 1e-9;
-    CHECK(violates(stiffness_laws(ball, k), "diagonal blocks agree"));
+    CHECK(violates(stiffness_laws(sphere, k), "diagonal blocks agree"));
     CHECK(violates(same_stiffness_laws(Given(right), k), "diagonal blocks agree"));
     k.blocks.pop_back();
-    CHECK(violates(stiffness_laws(ball, k), "diagonal blocks agree"));
+    CHECK(violates(stiffness_laws(sphere, k), "diagonal blocks agree"));
   }
   SECTION("apply overwrites") {
     k.leftover = 0.5;
-    CHECK(violates(stiffness_laws(ball, k), "apply overwrites"));
+    CHECK(violates(stiffness_laws(sphere, k), "apply overwrites"));
   }
   SECTION("a spring to the ground: the zero modes are gone") {
     k.k(0, 0) += 1e-6 * right.maxCoeff();
     k.blocks[0] = k.k.topLeftCorner<3, 3>();
-    const auto v = stiffness_laws(ball, k);
+    const auto v = stiffness_laws(sphere, k);
     CHECK(violates(v, "translation costs nothing"));
     CHECK(violates(v, "exact zero modes"));
     CHECK(violates(v, "affine patch"));
@@ -73,25 +73,25 @@ TEST_CASE("stiffness laws can fail", "[testing][assembly]") {
     for (int c = 0; c < 3; ++c)
       for (Index i = 0; i < springs.rows(); ++i)
         for (Index j = 0; j < springs.rows(); ++j) k.k(3 * i + c, 3 * j + c) = springs(i, j);
-    const auto v = stiffness_laws(ball, Given(k.k));
+    const auto v = stiffness_laws(sphere, Given(k.k));
     CHECK(violates(v, "rotation costs nothing"));
     CHECK_FALSE(violates(v, "translation costs nothing"));
   }
   SECTION("13 times too stiff: only the patch test sees it") {
-    const auto v = stiffness_laws(ball, Given(13.0639 * right));
+    const auto v = stiffness_laws(sphere, Given(13.0639 * right));
     CHECK(violates(v, "affine patch"));
     CHECK(violates(v, "affine energy"));
     CHECK_FALSE(violates(v, "exact zero modes"));
     CHECK_FALSE(violates(v, "rotation costs nothing"));
   }
   SECTION("the sign") {
-    CHECK(violates(stiffness_laws(ball, Given(-right)), "no negative mode"));
+    CHECK(violates(stiffness_laws(sphere, Given(-right)), "no negative mode"));
   }
   SECTION("size and finiteness") {
-    CHECK(violates(stiffness_laws(ball, Given(right.topLeftCorner(3, 3))), "size"));
+    CHECK(violates(stiffness_laws(sphere, Given(right.topLeftCorner(3, 3))), "size"));
     CHECK(violates(same_stiffness_laws(Given(right), Given(right.topLeftCorner(3, 3))), "size"));
     k.k(2, 2) = std::numeric_limits<double>::quiet_NaN();
-    CHECK(violates(stiffness_laws(ball, k), "finite"));
+    CHECK(violates(stiffness_laws(sphere, k), "finite"));
   }
   SECTION("products agree") {
     k.k *= 1.0 + 1e-9;

@@ -14,7 +14,7 @@ using namespace test;
 namespace {
 
 template <class M>
-M law(double stiffness = 1.0) {
+M material(double stiffness = 1.0) {
   if constexpr (std::is_same_v<M, MooneyRivlin>)
     return {.c10 = 900.0 * stiffness, .c01 = 250.0 * stiffness, .bulk_modulus = 9e3 * stiffness, .density = 1000.0};
   else
@@ -28,7 +28,7 @@ HyperelasticBody<Tet4, M> block(std::array<int, 3> cells) {
   mesh.region_names = {"below", "above"};
   for (Index e = 0; e < mesh.element_count(); ++e)
     mesh.regions.push_back(element_nodes<Tet4>(mesh, e).col(2).mean() > 0.03 ? 1 : 0);
-  return make_hyperelastic_body<Tet4, M>(std::move(mesh), std::vector<M>{law<M>(), law<M>(5.0)});
+  return make_hyperelastic_body<Tet4, M>(std::move(mesh), std::vector<M>{material<M>(), material<M>(5.0)});
 }
 
 VectorX random_displacement(Index dofs, double amount, std::uint64_t seed = 5) {
@@ -164,9 +164,9 @@ TEST_CASE("single precision keeps the strain of a body far from where it was", "
 
 TEST_CASE("meshes and laws that cannot be are refused", "[assembly][batched]") {
   auto body = block<NeoHookean>({2, 2, 2});
-  body.laws[1].poisson_ratio = 0.5;
+  body.materials[1].poisson_ratio = 0.5;
   CHECK_REFUSED(SetupErrorKind::bad_poisson_ratio, BatchedTetrahedra<NeoHookean>{body});
-  body.laws[1].poisson_ratio = 0.4;
+  body.materials[1].poisson_ratio = 0.4;
   std::swap(body.rest.mesh.elements[7][0], body.rest.mesh.elements[7][1]);
   CHECK_REFUSED(SetupErrorKind::inverted_element, BatchedTetrahedra<NeoHookean>{body});
 }

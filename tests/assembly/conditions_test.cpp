@@ -113,10 +113,10 @@ TEST_CASE("loads have the sums they should have", "[assembly][loads]") {
     CHECK(largest(total(load_of(Scene().pressure("fixed", 7.0))) - Vector3(7, 0, 0)) <= 1e-13);
   }
   SECTION("pressure on the whole surface has no sum and no moment") {
-    const Body<Tet4> ball = body_of(ball_tet4(1.0, 2), {liver});
-    const VectorX f = load_of(Scene().pressure("surface", 1.0), ball);
+    const Body<Tet4> sphere = body_of(sphere_tet4(1.0, 2), {liver});
+    const VectorX f = load_of(Scene().pressure("surface", 1.0), sphere);
     CHECK(largest(total(f)) <= 1e-14);
-    CHECK(largest(total_moment(f, ball)) <= 1e-14);
+    CHECK(largest(total_moment(f, sphere)) <= 1e-14);
     CHECK(largest(f) > 0.01);
     CHECK(largest(total(load_of(Scene().pressure("surface", 1.0)))) <= 1e-14);  // a group the mesh does not list
   }

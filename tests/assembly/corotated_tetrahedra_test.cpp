@@ -14,7 +14,7 @@ namespace {
 using Law = Corotational<LinearElastic>;
 
 /// A block in two regions, its inner nodes moved.
-HyperelasticBody<Tet4, Law> turning_block(std::array<int, 3> cells) {
+HyperelasticBody<Tet4, Law> rotational_block(std::array<int, 3> cells) {
   Mesh<Tet4> mesh = jittered(box_tet4(Vector3(0.1, 0.08, 0.06), cells, BoxSplit::six), 0.002, Vector3(0.1, 0.08, 0.06));
   mesh.region_names = {"below", "above"};
   for (Index e = 0; e < mesh.element_count(); ++e)
@@ -29,7 +29,7 @@ VectorX wild(Index dofs, double amount) {
   return u;
 }
 /// Turned about the origin, then moved and deformed.
-VectorX turned(const Mesh<Tet4>& mesh, const Matrix3& r, const VectorX& u) {
+VectorX rotated(const Mesh<Tet4>& mesh, const Matrix3& r, const VectorX& u) {
   VectorX t(u.size());
   for (Index i = 0; i < mesh.node_count(); ++i)
     t.segment<3>(3 * i) = r * (mesh.position(i) + u.segment<3>(3 * i)) - mesh.position(i);
@@ -52,7 +52,7 @@ VectorX plain_product(const HyperelasticBody<Tet4, Law>& body, const VectorX& u,
     }
     const Matrix3 f = Matrix3::Identity() + ue * g.gradient, df = xe * g.gradient;
     const Eigen::Matrix<double, 9, 1> dp =
-        body.laws[body.rest.region_of(e)].semidefinite_tangent(tensor3<double>(f)) * vector9(tensor3<double>(df));
+        body.materials[body.rest.region_of(e)].semidefinite_tangent(tensor3<double>(f)) * vector9(tensor3<double>(df));
     const Eigen::Matrix<double, 3, 4> fe = g.volume * Eigen::Map<const Matrix3>(dp.data()) * g.gradient.transpose();
     for (int a = 0; a < 4; ++a) y.segment<3>(3 * Index{mesh.element_node(e, a)}) += fe.col(a);
   }
@@ -79,12 +79,12 @@ void compare(const HyperelasticBody<Tet4, Law>& body, const VectorX& u, double t
 }  // namespace
 
 TEST_CASE("turning batches give force, energy and product of the law", "[assembly][corotated]") {
-  const Matrix3 turn = Eigen::AngleAxisd(2.5, Vector3(1, 2, -1).normalized()).toRotationMatrix();
+  const Matrix3 rotation = Eigen::AngleAxisd(2.5, Vector3(1, 2, -1).normalized()).toRotationMatrix();
   for (const std::array<int, 3> cells : {std::array{1, 1, 1}, {2, 1, 3}, {5, 4, 3}, {9, 8, 7}}) {
-    const auto body = turning_block(cells);
+    const auto body = rotational_block(cells);
     const VectorX small = wild(3 * body.rest.mesh.node_count(), 0.001);
     INFO(body.rest.mesh.element_count() << " elements");
-    for (const VectorX& u : {small, turned(body.rest.mesh, turn, small)}) {
+    for (const VectorX& u : {small, rotated(body.rest.mesh, rotation, small)}) {
       compare<double>(body, u, 1e-12);
       compare<float>(body, u, 5e-5);
     }
@@ -92,15 +92,15 @@ TEST_CASE("turning batches give force, energy and product of the law", "[assembl
 }
 
 TEST_CASE("turning batches follow a motion, elements inside out among it", "[assembly][corotated][E5]") {
-  const auto body = turning_block({3, 3, 3});
+  const auto body = rotational_block({3, 3, 3});
   const LargeStrain<Tet4, Law> plain(body);
   CorotatedTetrahedra<LinearElastic, double> batched(body);
-  const VectorX way = wild(3 * body.rest.mesh.node_count(), 0.03);
-  VectorX f(way.size()), exact(way.size());
+  const VectorX path = wild(3 * body.rest.mesh.node_count(), 0.03);
+  VectorX f(path.size()), exact(path.size());
   double energy = 0.0, worst = 0.0;
   Index inverted = 0;
   for (int k = 0; k <= 60; ++k) {
-    const VectorX u = std::sin(0.1 * k) * way;
+    const VectorX u = std::sin(0.1 * k) * path;
     inverted = std::max(inverted, batched.linearise(u, f, energy).inverted);
     plain.force(u, exact);
     worst = std::max(worst, (f - exact).cwiseAbs().maxCoeff());
@@ -111,7 +111,7 @@ TEST_CASE("turning batches follow a motion, elements inside out among it", "[ass
 
 TEST_CASE("a body that turns as a whole has no force, at all angles and exactly 180 degrees",
           "[assembly][corotated][E4]") {
-  const auto body = turning_block({4, 3, 2});
+  const auto body = rotational_block({4, 3, 2});
   const Mesh<Tet4>& mesh = body.rest.mesh;
   const VectorX rest = VectorX::Zero(3 * mesh.node_count());
   const double unit = 15e3 * 0.025 * 0.025;  // E h^2
@@ -120,7 +120,7 @@ TEST_CASE("a body that turns as a whole has no force, at all angles and exactly 
   VectorX f(rest.size());
   double energy = 0.0, worst = 0.0, worst_single = 0.0;
   const auto look = [&](const Matrix3& r) {
-    const VectorX u = turned(mesh, r, rest);
+    const VectorX u = rotated(mesh, r, rest);
     batched.linearise(u, f, energy);
     worst = std::max(worst, f.cwiseAbs().maxCoeff());
     single.linearise(u, f, energy);
@@ -135,7 +135,7 @@ TEST_CASE("a body that turns as a whole has no force, at all angles and exactly 
 }
 
 TEST_CASE("the blocks on the diagonal are those of the product", "[assembly][corotated]") {
-  const auto body = turning_block({2, 2, 2});
+  const auto body = rotational_block({2, 2, 2});
   CorotatedTetrahedra<LinearElastic, double> batched(body);
   const Index dofs = batched.size();
   VectorX f(dofs), straight(dofs), mixed(dofs), e = VectorX::Zero(dofs), y(dofs);
@@ -155,7 +155,7 @@ TEST_CASE("the blocks on the diagonal are those of the product", "[assembly][cor
 }
 
 TEST_CASE("the product is symmetric and never negative, whatever the state", "[assembly][corotated][E5]") {
-  const auto body = turning_block({3, 2, 2});
+  const auto body = rotational_block({3, 2, 2});
   CorotatedTetrahedra<LinearElastic, double> batched(body);
   const Index dofs = batched.size();
   VectorX f(dofs), kx(dofs), ky(dofs);
@@ -175,7 +175,7 @@ TEST_CASE("the product is symmetric and never negative, whatever the state", "[a
 }
 
 TEST_CASE("what is not finite is said, and forgotten with the next state", "[assembly][corotated]") {
-  const auto body = turning_block({3, 2, 2});
+  const auto body = rotational_block({3, 2, 2});
   CorotatedTetrahedra<LinearElastic, float> batched(body);
   VectorX u = wild(batched.size(), 0.001), f(u.size()), again(u.size());
   double energy = 0.0;
@@ -190,10 +190,10 @@ TEST_CASE("what is not finite is said, and forgotten with the next state", "[ass
 }
 
 TEST_CASE("turning batches refuse meshes and laws that cannot be", "[assembly][corotated]") {
-  auto body = turning_block({2, 2, 2});
-  body.laws[1].base.poisson_ratio = 0.5;
+  auto body = rotational_block({2, 2, 2});
+  body.materials[1].base.poisson_ratio = 0.5;
   CHECK_REFUSED(SetupErrorKind::bad_poisson_ratio, CorotatedTetrahedra<>{body});
-  body.laws[1].base.poisson_ratio = 0.4;
+  body.materials[1].base.poisson_ratio = 0.4;
   std::swap(body.rest.mesh.elements[7][0], body.rest.mesh.elements[7][1]);
   CHECK_REFUSED(SetupErrorKind::inverted_element, CorotatedTetrahedra<>{body});
 }

@@ -50,7 +50,7 @@ TEMPLATE_TEST_CASE("a body that is just held expands without stress", "[assembly
   scene.expand("body", 0.02);
   check(make_body(mesh, liver), 0.02);
   check(make_body(mesh, muscle), 0.02);
-  scene.heat(everywhere, 2e-4, -150.0);  // adds up: 0.02 - 0.03
+  scene.thermal_strain(everywhere, 2e-4, -150.0);  // adds up: 0.02 - 0.03
   check(make_body(mesh, liver), -0.01);
 }
 
@@ -78,8 +78,8 @@ TEST_CASE("expansions without meaning are refused", "[mesh][expansion]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_REFUSED(SetupErrorKind::non_finite, scene.expand(everywhere, nan));
   CHECK_REFUSED(SetupErrorKind::bad_argument, scene.expand(everywhere, -1.0));
-  CHECK_REFUSED(SetupErrorKind::non_finite, scene.heat(everywhere, nan, 1.0));
-  CHECK_REFUSED(SetupErrorKind::non_finite, scene.heat(everywhere, 1e-4, infinity));
+  CHECK_REFUSED(SetupErrorKind::non_finite, scene.thermal_strain(everywhere, nan, 1.0));
+  CHECK_REFUSED(SetupErrorKind::non_finite, scene.thermal_strain(everywhere, 1e-4, infinity));
   CHECK(scene.initial_strains().empty());
   scene.expand("nowhere", 0.01);
   CHECK_REFUSED(SetupErrorKind::unknown_group, initial_strains_by_region(two_cubes(), scene));

@@ -29,8 +29,8 @@ Mesh<E> block_of_fibres(bool alike) {
 }
 
 template <Element E>
-LargeStrain<E, FibredGel> pulled_along(const Mesh<E>& mesh, const FibredGel& law = fibred_gel) {
-  return LargeStrain<E, FibredGel>(make_hyperelastic_body(mesh, std::vector<FibredGel>{law}));
+LargeStrain<E, FibredGel> pulled_along(const Mesh<E>& mesh, const FibredGel& material = fibred_gel) {
+  return LargeStrain<E, FibredGel>(make_hyperelastic_body(mesh, std::vector<FibredGel>{material}));
 }
 
 VectorX stirred(Index dofs, double amount) {
@@ -47,21 +47,21 @@ TEMPLATE_TEST_CASE("a body turned with its fibres answers with turned forces", "
   const Mesh<TestType> mesh = block_of_fibres<TestType>(false);
   testing::Random random(5);
   const Matrix3 r = testing::random_rotation(random);
-  Mesh<TestType> turned = mesh, fibres_left = mesh;
+  Mesh<TestType> rotated = mesh, fibres_left = mesh;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-    turned.positions[i] = fibres_left.positions[i] = r * mesh.positions[i];
-  for (Vector3& fibre : turned.fibres) fibre = r * fibre;
+    rotated.positions[i] = fibres_left.positions[i] = r * mesh.positions[i];
+  for (Vector3& fibre : rotated.fibres) fibre = r * fibre;
   const VectorX u = stirred(3 * mesh.node_count(), 5e-3);
-  VectorX v(u.size()), f(u.size()), g(u.size()), h(u.size()), turned_f(u.size());
+  VectorX v(u.size()), f(u.size()), g(u.size()), h(u.size()), rotated_f(u.size());
   for (Index i = 0; i < mesh.node_count(); ++i) v.segment<3>(3 * i) = r * u.segment<3>(3 * i);
-  const auto body = pulled_along(mesh), turned_body = pulled_along(turned);
+  const auto body = pulled_along(mesh), rotated_body = pulled_along(rotated);
   body.force(u, f);
-  turned_body.force(v, g);
+  rotated_body.force(v, g);
   pulled_along(fibres_left).force(v, h);
-  for (Index i = 0; i < mesh.node_count(); ++i) turned_f.segment<3>(3 * i) = r * f.segment<3>(3 * i);
-  CHECK((g - turned_f).cwiseAbs().maxCoeff() <= 1e-12 * f.cwiseAbs().maxCoeff());
-  CHECK((h - turned_f).cwiseAbs().maxCoeff() >= 1e-2 * f.cwiseAbs().maxCoeff());
-  CHECK(std::abs(body.energy(u) - turned_body.energy(v)) <= 1e-12 * body.energy(u));
+  for (Index i = 0; i < mesh.node_count(); ++i) rotated_f.segment<3>(3 * i) = r * f.segment<3>(3 * i);
+  CHECK((g - rotated_f).cwiseAbs().maxCoeff() <= 1e-12 * f.cwiseAbs().maxCoeff());
+  CHECK((h - rotated_f).cwiseAbs().maxCoeff() >= 1e-2 * f.cwiseAbs().maxCoeff());
+  CHECK(std::abs(body.energy(u) - rotated_body.energy(v)) <= 1e-12 * body.energy(u));
 }
 
 TEST_CASE("with fibres force is the derivative of the energy, and the tangent that of the force",

@@ -99,7 +99,7 @@ TEMPLATE_TEST_CASE("a direction per element equals a turned material per region"
   CHECK(make_body(along_x, muscle).elasticity.size() == 1);  // equal neighbours share
   along_x.fibres.clear();
   CHECK(forces(make_body(along_x, muscle), u) == forces(make_body(along_x, muscle), u));
-  CHECK(make_body(along_x, muscle).laws.empty());
+  CHECK(make_body(along_x, muscle).materials.empty());
 }
 
 TEST_CASE("a body with fibres keeps the laws of assembly", "[assembly][fibres][laws]") {
@@ -121,11 +121,11 @@ TEST_CASE("turning body and fibres turns the forces", "[assembly][fibres][metamo
       for (Index i = 0; i < v.size(); i += 3) w.segment<3>(i) = r * v.segment<3>(i);
       return w;
     };
-    Mesh<Tet4> turned = mesh;
-    for (Vector3& x : turned.positions) x = (r * x).eval();
-    const VectorX forgotten = forces(make_body(turned, muscle), turn(u));
-    for (Vector3& fibre : turned.fibres) fibre = (r * fibre).eval();
-    CHECK((forces(make_body(turned, muscle), turn(u)) - turn(f)).norm() <= 1e-12 * f.norm());
+    Mesh<Tet4> rotated = mesh;
+    for (Vector3& x : rotated.positions) x = (r * x).eval();
+    const VectorX forgotten = forces(make_body(rotated, muscle), turn(u));
+    for (Vector3& fibre : rotated.fibres) fibre = (r * fibre).eval();
+    CHECK((forces(make_body(rotated, muscle), turn(u)) - turn(f)).norm() <= 1e-12 * f.norm());
     CHECK((forgotten - turn(f)).norm() > 1e-2 * f.norm());
   }
 }
@@ -138,7 +138,7 @@ TEST_CASE("isotropic constants do not care for fibres", "[assembly][fibres]") {
   const VectorX u = waves(3 * mesh.node_count()), f = forces(plain, u);
   CHECK((forces(make_body(mesh, iso), u) - f).norm() <= 1e-12 * f.norm());
   CHECK(forces(make_body(mesh, liver), u) == f);  // a material that does not ask
-  CHECK(make_body(mesh, liver).laws.empty());
+  CHECK(make_body(mesh, liver).materials.empty());
 }
 
 TEST_CASE("materials differ between regions and fibres between elements", "[assembly][fibres]") {

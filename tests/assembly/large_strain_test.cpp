@@ -33,8 +33,8 @@ Mesh<E> crooked_box() {
 }
 
 template <Element E, class M = NeoHookean>
-LargeStrain<E, M> elastic(const M& law = M{5e3, 0.4, 1e3}) {
-  return LargeStrain<E, M>(make_hyperelastic_body(crooked_box<E>(), std::vector<M>{law}));
+LargeStrain<E, M> elastic(const M& material = M{5e3, 0.4, 1e3}) {
+  return LargeStrain<E, M>(make_hyperelastic_body(crooked_box<E>(), std::vector<M>{material}));
 }
 
 VectorX random_vector(Index n, double size, std::uint64_t seed) {

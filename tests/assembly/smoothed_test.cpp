@@ -35,7 +35,7 @@ void mix_laws(Body<Averaged>& body) {
   testing::Random random(17);
   body.elasticity = {orthotropic(), 3.0 * orthotropic(), liver.elasticity()};
   for (Index e = 0; e < body.mesh.element_count(); ++e)
-    body.laws.push_back(static_cast<std::int32_t>(random.uniform(0.0, 2.999)));
+    body.materials.push_back(static_cast<std::int32_t>(random.uniform(0.0, 2.999)));
 }
 
 VectorX random_displacement(const Mesh<Averaged>& mesh) {

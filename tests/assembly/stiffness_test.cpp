@@ -42,20 +42,20 @@ TEST_CASE("assembled and matrix-free stiffness keep the laws", "[assembly][laws]
   SECTION("two cubes of two materials") {
     check_laws(body_of(two_cubes(), {liver, reference_material}));
   }
-  SECTION("ball") {
-    check_laws(body_of(ball_tet4(0.05, 2), {liver}));
+  SECTION("sphere") {
+    check_laws(body_of(sphere_tet4(0.05, 2), {liver}));
   }
   SECTION("distorted box") {
     check_laws(body_of(jittered(box_tet4({1, 2, 3}, {3, 2, 2}), 0.1, {1, 2, 3}), {liver}));
   }
   SECTION("a micrometre") {
-    check_laws(body_of(ball_tet4(1e-6, 1), {liver}));
+    check_laws(body_of(sphere_tet4(1e-6, 1), {liver}));
   }
   SECTION("two pieces have twelve rigid motions") {
     check_laws(body_of(twice(two_cubes()), {liver}), 2);
   }
   SECTION("an orthotropic body") {
-    Body<Tet4> body = body_of(ball_tet4(1.0, 1), {liver});
+    Body<Tet4> body = body_of(sphere_tet4(1.0, 1), {liver});
     body.elasticity.front() = orthotropic();
     check_laws(body);
   }

@@ -104,7 +104,7 @@ struct OnePointTri6 : user::Tri6 {
 struct TriangleOutOfRange : Quad4 {
   static constexpr std::array<std::array<int, 3>, 2> triangles{{{0, 1, 2}, {0, 2, 4}}};
 };
-struct TurnedTriangle : Quad4 {
+struct RotatedTriangle : Quad4 {
   static constexpr std::array<std::array<int, 3>, 2> triangles{{{0, 1, 2}, {0, 3, 2}}};
 };
 struct HalfCovered : Quad4 {
@@ -125,10 +125,10 @@ struct BrokenFace : Tet4 {
 };
 
 template <class E>
-bool breaks(const char* law) {
+bool breaks(const char* material) {
   const auto v = element_laws<E>();
   UNSCOPED_INFO(describe(v));
-  return violates(v, law);
+  return violates(v, material);
 }
 
 }  // namespace
@@ -147,11 +147,12 @@ TEST_CASE("shape function laws can fail", "[testing][element]") {
 }
 
 TEST_CASE("NaN in the shape functions breaks every law that looks at them", "[testing][element]") {
-  for (const char* law : {"Kronecker delta", "partition of unity", "gradient is the derivative", "linear completeness",
-                          "polynomial completeness", "face shape functions are the trace of the element's",
-                          "MassQuadrature exact for products"}) {
-    INFO(law);
-    CHECK(breaks<NonFiniteFunctions>(law));
+  for (const char* material :
+       {"Kronecker delta", "partition of unity", "gradient is the derivative", "linear completeness",
+        "polynomial completeness", "face shape functions are the trace of the element's",
+        "MassQuadrature exact for products"}) {
+    INFO(material);
+    CHECK(breaks<NonFiniteFunctions>(material));
   }
 }
 
@@ -192,7 +193,7 @@ TEST_CASE("triangulation laws can fail", "[testing][element]") {
   const auto vertex_law = "every node is a vertex of a triangle, and lies on no other";
   CHECK(face_element_laws<Quad8>().empty());
   CHECK(violates(face_element_laws<TriangleOutOfRange>(), "triangles name nodes of the face"));
-  CHECK(violates(face_element_laws<TurnedTriangle>(), "triangles are turned as the face is"));
+  CHECK(violates(face_element_laws<RotatedTriangle>(), "triangles are turned as the face is"));
   CHECK(violates(face_element_laws<HalfCovered>(), "triangles cover the face"));
   CHECK(violates(face_element_laws<CornersCoverTri6>(), vertex_law));
   CHECK_FALSE(violates(face_element_laws<CornersCoverTri6>(), "triangles cover the face"));

@@ -22,10 +22,10 @@ Mesh<Tet4> cube() {
   return mesh;
 }
 
-bool breaks(const Mesh<Tet4>& mesh, const char* law) {
+bool breaks(const Mesh<Tet4>& mesh, const char* material) {
   const auto v = mesh_laws<Tet4>(mesh);
   UNSCOPED_INFO(describe(v));
-  return violates(v, law);
+  return violates(v, material);
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ TEST_CASE("node laws can fail", "[testing][mesh]") {
     mesh.positions.emplace_back(0.5, 0.5, 0.5);
     const auto v = mesh_laws<Tet4>(mesh);
     REQUIRE(v.size() == 1);  // reported, and everything else still looked at
-    CHECK(v[0].law == "no orphan nodes");
+    CHECK(v[0].material == "no orphan nodes");
     CHECK(v[0].detail == "node 8");
   }
   SECTION("not finite") {
@@ -122,7 +122,7 @@ TEST_CASE("geometry laws can fail", "[testing][mesh]") {
     for (auto& e : mesh.elements) std::swap(e[0], e[1]);
     const auto v = mesh_laws<Tet4>(mesh);
     REQUIRE(v.size() == 1);
-    CHECK(v[0].law == "positive orientation");
+    CHECK(v[0].material == "positive orientation");
     CHECK_THAT(v[0].detail, test::contains("6 in all"));
   }
   SECTION("flat element") {

@@ -16,7 +16,17 @@ const std::vector<Index> kept_dofs{1, 4, 5, 9};
 /// A right system with one thing wrong.
 class Wrong {
  public:
-  enum What { nothing, loses_condensed, offset, wrong_column, unsymmetric, negative, remembers, wrong_count, gives_up };
+  enum What {
+    nothing,
+    loses_condensed,
+    offset,
+    wrong_column,
+    unsymmetric,
+    negative,
+    has_history,
+    wrong_count,
+    gives_up
+  };
   explicit Wrong(What what) : what_(what) {}
 
   Index size() const { return right_.size(); }
@@ -39,7 +49,7 @@ class Wrong {
     const SolveReport report = right_.compliance_column(what_ == wrong_column ? (j + 1) % 4 : j, column);
     if (what_ == unsymmetric && j == 0) column[2] += 1e-6 * column.norm();
     if (what_ == negative) column *= -1.0;
-    if (what_ == remembers) column[0] += 1e-15 * ++calls_ * column.norm();
+    if (what_ == has_history) column[0] += 1e-15 * ++calls_ * column.norm();
     return report;
   }
 
@@ -66,7 +76,7 @@ TEST_CASE("condensation laws can fail", "[testing][condensation]") {
   CHECK(violates(laws(Wrong::wrong_column), "compliance equals the full solve"));
   CHECK(violates(laws(Wrong::unsymmetric), "compliance is symmetric"));
   CHECK(violates(laws(Wrong::negative), "compliance is positive definite"));
-  CHECK(violates(laws(Wrong::remembers), "same column twice"));
+  CHECK(violates(laws(Wrong::has_history), "same column twice"));
   CHECK(violates(laws(Wrong::wrong_count), "number of kept dofs"));
   CHECK(violates(laws(Wrong::gives_up), "converges"));
 }

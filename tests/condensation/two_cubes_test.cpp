@@ -40,9 +40,9 @@ Problem cubes() {
   return {two_cubes(), reference_material, Scene().fix("fixed"), {8, 9, 10, 11}};
 }
 
-/// A ball held at its south, with the north kept: nodes inside and elsewhere on the surface are condensed.
-Problem ball() {
-  const Mesh<Tet4> mesh = ball_tet4(0.05, 3);
+/// A sphere held at its south, with the north kept: nodes inside and elsewhere on the surface are condensed.
+Problem sphere() {
+  const Mesh<Tet4> mesh = sphere_tet4(0.05, 3);
   std::vector<NodeId> south, north;
   for (NodeId i = 0; i < mesh.node_count(); ++i) {
     if (mesh.position(i)[2] < -0.04) south.push_back(i);
@@ -82,7 +82,7 @@ TEST_CASE("two cubes condensed to nodes 9 to 12 as by another code", "[condensat
 }
 
 TEST_CASE("condensed systems equal the full solve", "[condensation][laws][M11]") {
-  for (const Problem& p : {cubes(), ball()}) {
+  for (const Problem& p : {cubes(), sphere()}) {
     REQUIRE(p.kept.size() < static_cast<std::size_t>(p.lower.rows()));
     const DenseOperator op(full(p.lower));
     CondensedSystem inverse = CondensedSystem::with<DenseInverse<double>>(condense(p.lower, p.kept, {}), {});
@@ -99,7 +99,7 @@ TEST_CASE("condensed systems equal the full solve", "[condensation][laws][M11]")
 }
 
 TEST_CASE("gravity and initial strain on condensed dofs are not lost", "[condensation]") {
-  for (const Problem& p : {cubes(), ball()}) {
+  for (const Problem& p : {cubes(), sphere()}) {
     CHECK(gravity_and_strain_error<DenseCholesky>(p) <= 1e-12);
     CHECK(gravity_and_strain_error<DenseInverse<double>>(p) <= 1e-12);
     CHECK(gravity_and_strain_error<DenseConjugateGradient>(p) <= 1e-9);
@@ -131,7 +131,7 @@ TEST_CASE("order, nothing kept, everything kept", "[condensation]") {
 }
 
 TEST_CASE("condensing can be cancelled and is bounded in memory", "[condensation][extreme][B10]") {
-  const Problem p = ball();
+  const Problem p = sphere();
   SetupLimits limits;
   limits.progress = [](const Progress& progress) { return progress.stage != "factorisation"; };
   CHECK_REFUSED(SetupErrorKind::cancelled, condense(p.lower, p.kept, limits));

@@ -1,4 +1,4 @@
-// Presses a ball of 5 mm radius 2 mm into the pad: the force must push it out, straight up, and be a tissue's.
+// Presses a sphere of 5 mm radius 2 mm into the pad: the force must push it out, straight up, and be a tissue's.
 #include "tissue.hpp"
 
 #include <palpate/haptic/haptic_servo.hpp>

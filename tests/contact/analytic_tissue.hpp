@@ -11,8 +11,8 @@ namespace test {
 using namespace palpate;
 
 /// Vertices of a plane grid at z = 0, normal +z. Each moves with `own` [m/N] under its own force and all move with
-/// `common` [m/N] under the sum of all forces, alike in all directions. A ball of radius R at p then feels from vertex
-/// x the force max(0, R - |p - x|) / own along p - x, if the common displacement is taken off p first.
+/// `common` [m/N] under the sum of all forces, alike in all directions. A sphere of radius R at p then feels from
+/// vertex x the force max(0, R - |p - x|) / own along p - x, if the common displacement is taken off p first.
 class AnalyticTissue : public StillTissue {
  public:
   AnalyticTissue(int cells, double size, double own, double common = 0.0) : own_(own), common_(common) {
@@ -42,7 +42,7 @@ class AnalyticTissue : public StillTissue {
   double own() const noexcept { return own_; }
   double common() const noexcept { return common_; }
 
-  /// Force on a ball whose centre is p relative to the common displacement.
+  /// Force on a sphere whose centre is p relative to the common displacement.
   Vector3 spring_force(const Vector3& p, double radius) const {
     Vector3 f = Vector3::Zero();
     for (const Vector3& x : surface_.positions()) {
@@ -51,7 +51,7 @@ class AnalyticTissue : public StillTissue {
     }
     return f;
   }
-  /// Force on one ball whose device is at `target`: p = target + softness * F(p), by damped iteration.
+  /// Force on one sphere whose device is at `target`: p = target + softness * F(p), by damped iteration.
   Vector3 exact_force(const Vector3& target, double radius, double coupling_compliance) const {
     Vector3 f = Vector3::Zero();
     const double softness = coupling_compliance + common_;
@@ -65,7 +65,7 @@ class AnalyticTissue : public StillTissue {
     }
     return f;
   }
-  /// Energy stored when a rigidly coupled ball is at p (common = 0).
+  /// Energy stored when a rigidly coupled sphere is at p (common = 0).
   double energy(const Vector3& p, double radius) const {
     double e = 0.0;
     for (const Vector3& x : surface_.positions()) {
@@ -92,8 +92,8 @@ std::vector<Vector3> deformed_surface(const Tissue& tissue, std::span<const Vert
   return x;
 }
 
-/// Smallest gap between a ball at `proxy` (model frame) and any contact point of the deformed surface; those the ball
-/// is behind count too.
+/// Smallest gap between a sphere at `proxy` (model frame) and any contact point of the deformed surface; those the
+/// sphere is behind count too.
 template <TissueModel Tissue>
 double smallest_gap(const Tissue& tissue, const ContactSamples& samples, std::span<const VertexForce> forces,
                     const Vector3& proxy, double radius) {

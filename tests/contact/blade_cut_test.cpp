@@ -67,7 +67,7 @@ TEST_CASE("blades that make no sense are refused", "[contact][blade]") {
   constexpr auto bad = SetupErrorKind::bad_argument;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double stiffness : {0.0, -1.0, nan, infinity}) CHECK_REFUSED(bad, BladeCut({}, stiffness));
-  for (const double value : {0.0, -1.0, nan, infinity}) CHECK_REFUSED(bad, BladeCut({.stroke = value}, 400.0));
+  for (const double value : {0.0, -1.0, nan, infinity}) CHECK_REFUSED(bad, BladeCut({.cut_spacing = value}, 400.0));
   for (const double value : {-1.0, nan, infinity}) CHECK_REFUSED(bad, BladeCut({.toughness = value}, 400.0));
   CHECK_REFUSED(bad, BladeCut({.edge = Vector3::Zero()}, 400.0));
   CHECK_REFUSED(bad, BladeCut({.forward = Vector3::Zero()}, 400.0));

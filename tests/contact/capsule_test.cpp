@@ -92,7 +92,7 @@ TEST_CASE("the coupling for rotations is a spring in series", "[contact][capsule
                tilt = 2e-3;
   AnalyticTissue tissue(2, 2.0 * a, own);  // at -a, 0, a
   ContactTool tool = round_tool(radius, {0, 0, radius + 1e-3}, coupling, half);
-  tool.turning_compliance = turning;
+  tool.rotational_compliance = turning;
   ToolSession s(tissue, {tool});
   s.move(0, {0, 0, radius - depth}, 100);
   CHECK(s.tools[0].torque.norm() <= 1e-9);
@@ -109,17 +109,17 @@ TEST_CASE("the coupling for rotations is a spring in series", "[contact][capsule
   CHECK((lag.angle() * lag.axis() - turning * s.tools[0].torque).norm() <= 1e-6 * tilt);
 }
 
-TEST_CASE("a capsule without length is a ball, bit by bit", "[contact][capsule]") {
+TEST_CASE("a capsule without length is a sphere, bit by bit", "[contact][capsule]") {
   AnalyticTissue tissue(20, 0.02, 2e-2, 1e-3);
-  ToolSession ball(tissue, {round_tool(4e-3, {0, 0, 4.1e-3}, 1e-3)}),
+  ToolSession sphere(tissue, {round_tool(4e-3, {0, 0, 4.1e-3}, 1e-3)}),
       capsule(tissue, {round_tool(4e-3, {0, 0, 4.1e-3}, 1e-3, 0.0, {1, 2, 3})});
   for (int k = 0; k < 200; ++k) {
     const Vector3 to(1e-5 * k, 3e-6 * k, 4.1e-3 - 4e-6 * k);
-    ball.tick(0, to);
+    sphere.tick(0, to);
     capsule.tick(0, to, rotation_by(Vector3(0.01 * k, 0, 0)));
-    REQUIRE(ball.force() == capsule.force());
+    REQUIRE(sphere.force() == capsule.force());
   }
-  CHECK(ball.force()[2] > 0.0);
+  CHECK(sphere.force()[2] > 0.0);
 }
 
 TEST_CASE("capsules that cannot be are refused", "[contact][capsule]") {

@@ -40,7 +40,7 @@ class ChangingTissue : public TissueAdaptor<test::AnalyticTissue> {
 };
 static_assert(TissueModel<ChangingTissue>);
 
-/// A ball with friction over many contact points.
+/// A sphere with friction over many contact points.
 struct OverTriangles {
   static constexpr double radius = 6e-3;
   explicit OverTriangles(double friction = 0.4)

@@ -45,9 +45,9 @@ Case random_case(testing::Random& random, int n, double decades) {
   return c;
 }
 
-/// Contacts of a ball with a half space of softness `own` per point: normals within 60 degrees, coupled by the ball's
-/// own mobility.
-Case ball_case(testing::Random& random, int n, double own) {
+/// Contacts of a sphere with a half space of softness `own` per point: normals within 60 degrees, coupled by the
+/// sphere's own mobility.
+Case sphere_case(testing::Random& random, int n, double own) {
   MatrixX normals(n, 3);
   Case c;
   c.b.resize(n);
@@ -166,7 +166,7 @@ TEST_CASE("more contacts than degrees of freedom, copies among them", "[contact]
   int unsolved = 0, most = 0;
   for (int round = 0; round < 300; ++round)
     for (double own : {0.0, 1e-9, 1e-4}) {
-      const Case c = ball_case(random, 48, own);
+      const Case c = sphere_case(random, 48, own);
       Problem problem;
       load(problem, c);
       if (!problem.solve()) ++unsolved;
@@ -245,7 +245,7 @@ TEST_CASE("pivots are bounded and the result finite whatever the sizes", "[conta
   testing::Random random(56);
   int not_finite = 0, negative = 0, too_many = 0;
   for (int round = 0; round < 400; ++round) {
-    Case c = round % 2 == 0 ? random_case(random, 48, 16.0) : ball_case(random, 48, 0.0);
+    Case c = round % 2 == 0 ? random_case(random, 48, 16.0) : sphere_case(random, 48, 0.0);
     for (Index i = 0; i < 48; ++i) c.b[i] *= std::pow(10.0, random.uniform(-12.0, 6.0));
     Problem problem;
     load(problem, c);

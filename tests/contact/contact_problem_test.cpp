@@ -1,4 +1,4 @@
-// Balls on a tissue whose contact force is known in closed form.
+// Spheres on a tissue whose contact force is known in closed form.
 #include "contact/tool_session.hpp"
 
 #include <palpate/testing/random.hpp>
@@ -16,24 +16,24 @@ namespace {
 
 constexpr double radius = 4e-3;
 
-/// Spacing of contact points for balls this large: they are at the vertices alone, as the closed form has it.
+/// Spacing of contact points for spheres this large: they are at the vertices alone, as the closed form has it.
 constexpr double vertices_only = 1e3 * radius;
 
-std::vector<ContactTool> balls(const std::vector<Vector3>& start, double coupling_compliance) {
+std::vector<ContactTool> spheres(const std::vector<Vector3>& start, double coupling_compliance) {
   std::vector<ContactTool> tools;
   for (const Vector3& at : start) tools.push_back(test::round_tool(radius, at, coupling_compliance));
   return tools;
 }
 
-/// One or more balls that are moved in steps, like a servo does.
+/// One or more spheres that are moved in steps, like a servo does.
 struct Session : test::ToolSession {
   Session(AnalyticTissue& t, const std::vector<Vector3>& start, double coupling_compliance,
           double sampled_for = vertices_only, const ContactParameters& parameters = {.capacity = 48})
-      : ToolSession(t, balls(start, coupling_compliance), parameters, sampled_for) {}
+      : ToolSession(t, spheres(start, coupling_compliance), parameters, sampled_for) {}
   /// In equal steps of at most `step`.
   void move(std::size_t i, const Vector3& target, double step = 5e-5) {
-    const double way = (target - tools[i].target).norm();
-    ToolSession::move(i, target, std::max(1, static_cast<int>(std::ceil(way / step))));
+    const double path = (target - tools[i].target).norm();
+    ToolSession::move(i, target, std::max(1, static_cast<int>(std::ceil(path / step))));
   }
 };
 
@@ -55,7 +55,7 @@ TEST_CASE("one contact: force is penetration over tissue plus coupling complianc
     }
 }
 
-TEST_CASE("a touch off the vertex pushes along the line to the ball", "[contact][problem]") {
+TEST_CASE("a touch off the vertex pushes along the line to the sphere", "[contact][problem]") {
   AnalyticTissue tissue(4, 0.2, 1e-3);
   const Vector3 direction = Vector3(0.3, -0.2, 1.0).normalized();
   Session s(tissue, {direction * (radius + 1e-4)}, 0.0);
@@ -89,7 +89,7 @@ TEST_CASE("many contacts: the force of the closed form", "[contact][problem]") {
     }
 }
 
-TEST_CASE("a static ball gives the same force in every tick", "[contact][problem][M10]") {
+TEST_CASE("a static sphere gives the same force in every tick", "[contact][problem][M10]") {
   AnalyticTissue tissue(20, 0.02, 2e-2, 1e-3);
   Session s(tissue, {Vector3(2e-4, -3e-4, radius + 1e-4)}, 2e-3);
   s.move(0, Vector3(5e-4, -1e-4, radius - 1e-3));
@@ -101,7 +101,7 @@ TEST_CASE("a static ball gives the same force in every tick", "[contact][problem
   CHECK((s.force() - later).norm() <= 1e-9 * later.norm());
 }
 
-TEST_CASE("two balls: alone when far apart on independent springs", "[contact][problem]") {
+TEST_CASE("two spheres: alone when far apart on independent springs", "[contact][problem]") {
   AnalyticTissue tissue(40, 0.04, 2e-2);
   const Vector3 a(-0.01, 2e-4, radius + 1e-4), b(0.01, -1e-4, radius + 1e-4), down(0, 0, -1.1e-3);
   Session one(tissue, {a}, 1e-3), other(tissue, {b}, 1e-3), both(tissue, {a, b}, 1e-3);
@@ -115,7 +115,7 @@ TEST_CASE("two balls: alone when far apart on independent springs", "[contact][p
   CHECK((both.force(1) - other.force()).norm() <= 1e-9);
 }
 
-TEST_CASE("two balls on a common spring relieve each other as computed by hand", "[contact][problem]") {
+TEST_CASE("two spheres on a common spring relieve each other as computed by hand", "[contact][problem]") {
   const double own = 1e-3, common = 2e-3, coupling = 5e-4, depth = 1e-3;
   AnalyticTissue tissue(4, 0.2, own, common);
   const Vector3 a(-0.05, 0, radius + 1e-4), b(0.05, 0, radius + 1e-4);
@@ -160,7 +160,7 @@ TEST_CASE("the rendered stiffness never exceeds the coupling, however many conta
     }
 }
 
-TEST_CASE("the ball sinks into no contact point and is pushed out, not in", "[contact][problem]") {
+TEST_CASE("the sphere sinks into no contact point and is pushed out, not in", "[contact][problem]") {
   testing::Random random(63);
   for (double sampled_for : {radius, vertices_only}) {
     AnalyticTissue tissue(8, 0.02, 1e-2, 1e-3);  // 2.5 mm apart: the lattice matters
@@ -187,7 +187,7 @@ TEST_CASE("the ball sinks into no contact point and is pushed out, not in", "[co
   }
 }
 
-TEST_CASE("forces on the tissue are the forces on the balls, and balance them", "[contact][problem]") {
+TEST_CASE("forces on the tissue are the forces on the spheres, and balance them", "[contact][problem]") {
   AnalyticTissue tissue(16, 0.02, 1e-2, 1e-3);
   Session s(tissue, {Vector3(-3e-3, 0, radius + 1e-4), Vector3(4e-3, 1e-3, radius + 1e-4)}, 1e-3, radius);
   s.move(0, Vector3(-2.9e-3, 1e-4, radius - 8e-4));
@@ -205,8 +205,8 @@ TEST_CASE("forces on the tissue are the forces on the balls, and balance them", 
 
 namespace {
 
-/// Work of the tissue on a rigidly coupled ball that is pressed in, slid, released and taken back through the air, over
-/// the work of the press. Trapezoid rule.
+/// Work of the tissue on a rigidly coupled sphere that is pressed in, slid, released and taken back through the air,
+/// over the work of the press. Trapezoid rule.
 double work_of_loop(const ContactParameters& parameters, double sampled_for, int cells, double step) {
   AnalyticTissue tissue(cells, 0.02, 2e-2);
   Session s(tissue, {Vector3(-1.3e-3, -4e-4, radius + 1e-4)}, 0.0, sampled_for, parameters);
@@ -275,14 +275,15 @@ TEST_CASE("more contacts than fit: flagged, the nearest kept, still finite", "[c
   Session s(tissue, {Vector3(0, 0, radius + 1e-4)}, 2e-3, vertices_only, {.capacity = 8});
   s.move(0, Vector3(0, 0, radius - 1e-3));
   CHECK(s.status == Status(StatusFlag::degraded_model));                                // solved for those that fit
-  for (const Contact& c : s.problem.contacts()) CHECK(c.rest.head<2>().norm() < 1e-3);  // below the ball, not beside it
+  for (const Contact& c : s.problem.contacts())
+    CHECK(c.rest.head<2>().norm() < 1e-3);  // below the sphere, not beside it
   CHECK(s.problem.contacts().size() == 8);
   CHECK(s.force().allFinite());
   CHECK(s.force()[2] > 0.0);
   CHECK(s.force().norm() <= 500.0 * 1e-3 * (1.0 + 1e-6));
 }
 
-TEST_CASE("a ball in the air has exactly no force and no contacts", "[contact][problem]") {
+TEST_CASE("a sphere in the air has exactly no force and no contacts", "[contact][problem]") {
   AnalyticTissue tissue(20, 0.02, 2e-2);
   Session s(tissue, {Vector3(0, 0, 0.05)}, 2e-3, radius);
   s.move(0, Vector3(3e-3, 0, 0.02), 1e-3);

@@ -128,7 +128,7 @@ TEST_CASE("samples on a line of the mesh are not further apart than the spacing"
   }
 }
 
-TEST_CASE("a surface so coarse that a ball would fall between its points is refused", "[contact][samples][extreme]") {
+TEST_CASE("a surface so coarse that a sphere would fall between its points is refused", "[contact][samples][extreme]") {
   const auto sample = [](double edge, double radius) {
     const ContactSurface surface({{0, 0, 0}, {edge, 0, 0}, {0, edge / 2, 0}, {0, 0, edge / 4}}, {{0, 1, 2}, {0, 2, 3}});
     ContactProblem(surface, radius, {.capacity = 8});

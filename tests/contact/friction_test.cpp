@@ -38,7 +38,7 @@ TEST_CASE("one point sticks like a spring up to mu N, slips at mu N, and sticks 
   for (const double own : {1e-4, 5e-3})
     for (const double coupling : {0.0, 2e-3})
       for (const double mu : {0.1, 0.5, 1.2}) {
-        AnalyticTissue tissue(4, 0.2, own);  // 50 mm apart: the ball reaches one
+        AnalyticTissue tissue(4, 0.2, own);  // 50 mm apart: the sphere reaches one
         const double depth = 1e-4, soft = own + coupling, press = depth / soft;
         ToolSession s(tissue, {round_tool(flat, {0, 0, flat + 1e-5}, coupling)}, rough(mu));
         s.move(0, {0, 0, flat - depth}, 50);
@@ -110,7 +110,7 @@ TEST_CASE("many points together drag with mu N in any direction", "[contact][fri
   CHECK(most >= 9);
 }
 
-TEST_CASE("a ball of 4 mm that slides over a bed of points drags smoothly", "[contact][friction]") {
+TEST_CASE("a sphere of 4 mm that slides over a bed of points drags smoothly", "[contact][friction]") {
   AnalyticTissue tissue(40, 0.02, 2e-2, 1e-3);  // half a millimetre apart
   ToolSession s(tissue, {round_tool(4e-3, {-4e-3, 0, 4.1e-3}, 2e-3)}, rough(0.4));
   s.move(0, {-4e-3, 0, 3.4e-3}, 100);
@@ -163,7 +163,7 @@ TEST_CASE("friction never gives energy, wherever the hand goes", "[contact][fric
   }
 }
 
-TEST_CASE("a ball spins against friction: torque about its centre", "[contact][friction][torque]") {
+TEST_CASE("a sphere spins against friction: torque about its centre", "[contact][friction][torque]") {
   AnalyticTissue tissue(4, 0.2, 1e-3);
   const double radius = 0.01, depth = 2e-5, mu = 0.5;
   ToolSession s(tissue, {round_tool(radius, {0, 0, radius + 1e-5}, 0.0)}, rough(mu));
@@ -174,7 +174,7 @@ TEST_CASE("a ball spins against friction: torque about its centre", "[contact][f
     turn = rotation_by(Vector3(0, 1e-4 * k, 0));
     s.tick(0, s.tools[0].target, turn);
   }
-  // The point it spins over is dragged along x; the ball feels mu N against that, at the end of its radius.
+  // The point it spins over is dragged along x; the sphere feels mu N against that, at the end of its radius.
   CHECK_THAT(drag_of(s.force()), WithinRel(mu * press, 0.01));
   CHECK_THAT(s.tools[0].torque[1], WithinRel(-mu * press * radius, 0.02));
 }

@@ -72,9 +72,9 @@ TEST_CASE("full rows: those that press keep them, and the answer for them is exa
   CHECK(s.status == Status(StatusFlag::degraded_model));
   REQUIRE(s.problem.contacts().size() == row_count);
   for (const Contact& c : s.problem.contacts()) {
-    const Vector3 way = s.tools[0].proxy - c.rest;
-    CHECK_THAT(c.force, WithinRel((radius - way.norm()) / spring, 1e-6));  // independent springs
-    CHECK(c.rest.head<2>().norm() < 2e-3);  // those met first, below the middle of a ball that has come straight down
+    const Vector3 path = s.tools[0].proxy - c.rest;
+    CHECK_THAT(c.force, WithinRel((radius - path.norm()) / spring, 1e-6));  // independent springs
+    CHECK(c.rest.head<2>().norm() < 2e-3);  // those met first, below the middle of a sphere that has come straight down
   }
 }
 

@@ -14,7 +14,7 @@ namespace test {
 using Pad = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
 
 inline constexpr double pad_height = 0.02;
-inline constexpr double ball_radius = 4e-3;
+inline constexpr double sphere_radius = 4e-3;
 
 /// A block of 30 x 30 x 20 mm, fixed below; its top, or all of its surface, can be touched. Columns are computed in the
 /// tick unless asked otherwise.
@@ -51,7 +51,7 @@ struct ServoSession {
   double period = 1e-3;
 
   explicit ServoSession(Model& model, const ServoOptions& options = {}, std::size_t tools = 1)
-      : servo(model, std::vector<SphereTool>(tools, SphereTool{.radius = ball_radius}), options), states(tools) {}
+      : servo(model, std::vector<SphereTool>(tools, SphereTool{.radius = sphere_radius}), options), states(tools) {}
 
   /// One tick with the states as they are, a period later.
   const GatedForce& tick() {
@@ -74,10 +74,10 @@ struct ServoSession {
     for (int i = 0; i < ticks; ++i) tick();
     return forces.front();
   }
-  /// From the air straight down until the ball would be `depth` in the undeformed tissue.
+  /// From the air straight down until the sphere would be `depth` in the undeformed tissue.
   const GatedForce& press(double depth, double x = 0.0137, double y = 0.0159) {
-    tick(Vector3(x, y, pad_height + ball_radius + 1e-3));
-    return move(Vector3(x, y, pad_height + ball_radius - depth), 100);
+    tick(Vector3(x, y, pad_height + sphere_radius + 1e-3));
+    return move(Vector3(x, y, pad_height + sphere_radius - depth), 100);
   }
 };
 

@@ -72,18 +72,18 @@ class ThinPlate : public StillTissue {
 };
 static_assert(TissueModel<ThinPlate>);
 
-std::array<double, 4> turned_to(const Vector3& axis) {
+std::array<double, 4> rotated_to(const Vector3& axis) {
   const Eigen::Quaterniond q = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis);
   return {q.w(), q.x(), q.y(), q.z()};
 }
 
 }  // namespace
 
-TEST_CASE("a ball meets face, edge and corner of a triangle when the closed form says", "[contact][sweep]") {
+TEST_CASE("a sphere meets face, edge and corner of a triangle when the closed form says", "[contact][sweep]") {
   const std::array<Vector3, 3> corner{Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
   const Vector3 up = Vector3::UnitZ();
-  const auto meets = [&](const Vector3& from, const Vector3& way) {
-    return ball_meets_triangle(from, way, 0.1, corner, up);
+  const auto meets = [&](const Vector3& from, const Vector3& path) {
+    return sphere_meets_triangle(from, path, 0.1, corner, up);
   };
   CHECK_THAT(meets({0.2, 0.2, 1.0}, {0, 0, -2.0}), WithinRel(0.45, 1e-14));
   CHECK_THAT(meets({0.5, -0.06, 1.0}, {0, 0, -1.0}), WithinRel(0.92, 1e-14));   // edge: 0.08 above it
@@ -95,7 +95,7 @@ TEST_CASE("a ball meets face, edge and corner of a triangle when the closed form
   CHECK(meets({0.2, 0.2, 0.05}, {0.1, 0, -0.8}) == 0.0);    // touches already, and presses
 }
 
-TEST_CASE("where a ball is said to meet a triangle it touches, and before it does not", "[contact][sweep]") {
+TEST_CASE("where a sphere is said to meet a triangle it touches, and before it does not", "[contact][sweep]") {
   testing::Random random(91);
   int met = 0;
   double worst = 0.0, sunk = 0.0;
@@ -105,16 +105,16 @@ TEST_CASE("where a ball is said to meet a triangle it touches, and before it doe
     };
     const std::array<Vector3, 3> corner{point(1), point(1), point(1)};
     const Vector3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
-    const Vector3 from = point(3), way = point(6);
+    const Vector3 from = point(3), path = point(6);
     const double radius = random.uniform(0.01, 0.5);
     if (normal.dot(from - corner[0]) < radius) continue;
-    const double t = ball_meets_triangle(from, way, radius, corner, normal);
+    const double t = sphere_meets_triangle(from, path, radius, corner, normal);
     if (t <= 1.0) {
       ++met;
-      worst = std::max(worst, std::abs(distance_to(corner, from + t * way) - radius));
+      worst = std::max(worst, std::abs(distance_to(corner, from + t * path) - radius));
     }
     for (int k = 0; k <= 50; ++k)
-      sunk = std::max(sunk, radius - distance_to(corner, from + std::min(t, 1.0) * (k / 50.0) * way));
+      sunk = std::max(sunk, radius - distance_to(corner, from + std::min(t, 1.0) * (k / 50.0) * path));
   }
   CHECK(met > 500);
   CHECK(worst <= 1e-9);
@@ -138,7 +138,7 @@ TEST_CASE("a tool that teleports never gets through a plate of 0.2 mm", "[contac
         state.position +=
             Vector3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3));
       if (half > 0.0)
-        state.orientation = turned_to(Vector3(std::cos(0.01 * k), std::sin(0.01 * k), 0.3 * std::sin(0.02 * k)));
+        state.orientation = rotated_to(Vector3(std::cos(0.01 * k), std::sin(0.01 * k), 0.3 * std::sin(0.02 * k)));
       const GatedForce out = servo.tick({&state, 1})[0];
       if (!out.force().allFinite() || out.force().norm() > 3.3 * (1.0 + 1e-12)) ++wild;
       jumps += out.status.has(StatusFlag::reacquired);
@@ -189,7 +189,7 @@ TEST_CASE("torque goes through the gate, to a device that renders it", "[contact
   ServoOptions options;
   options.device.peak_torque = 0.02;
   CHECK_THROWS_AS(HapticServo(tissue, tool, options), SetupError);  // no turning stiffness
-  options.device.turning_stiffness = 2.0;
+  options.device.rotational_stiffness = 2.0;
   HapticServo six(tissue, tool, options), three(tissue, tool, ServoOptions{});
   ToolState state;
   double most = 0.0;

@@ -14,7 +14,7 @@ struct ToolSession {
   std::vector<ContactTool> tools;
   Status status;
 
-  /// Contact points for balls of the radius `sampled_for`.
+  /// Contact points for spheres of the radius `sampled_for`.
   ToolSession(AnalyticTissue& t, const std::vector<ContactTool>& start, const ContactParameters& parameters = {},
               double sampled_for = at_vertices_only)
       : tissue(t), problem(t.contact_surface(), sampled_for, parameters), tools(start) {}
@@ -24,11 +24,11 @@ struct ToolSession {
   void tick(std::size_t i, const Vector3& target, const Matrix3& rotation) {
     for (ContactTool& t : tools) {
       t.motion.setZero();
-      t.turned = 0.0;
+      t.rotated = 0.0;
     }
     ContactTool& t = tools[i];
     t.motion = target - t.target;
-    t.turned = t.half_length * ((rotation - t.target_rotation) * t.own_axis).norm();
+    t.rotated = t.half_length * ((rotation - t.target_rotation) * t.own_axis).norm();
     t.target = target;
     t.target_rotation = rotation;
     tick();

@@ -29,9 +29,9 @@ struct CutBlock {
     system.fold();
     system.update(topology, change);
   }
-  bool is_held(NodeId node) const {
+  bool is_constrained(NodeId node) const {
     const auto& star = topology.elements_at(node);
-    return !star.empty() && topology.state(star.front()) == ElementState::held;
+    return !star.empty() && topology.state(star.front()) == ElementState::supported;
   }
 
   /// Starts from a new factor when rounding has piled up; whether it did.
@@ -39,7 +39,7 @@ struct CutBlock {
     if (!(system.measured_error() > 1e-12)) return false;
     std::vector<NodeId> kept;
     for (NodeId node = 0; node < topology.mesh().node_count(); ++node)
-      if (is_held(node) && system.place(node, 2) >= 0) kept.push_back(node);
+      if (is_constrained(node) && system.place(node, 2) >= 0) kept.push_back(node);
     system = CutSystem<E>(topology, physics, kept);
     return true;
   }
@@ -48,7 +48,7 @@ struct CutBlock {
   double error() {
     std::vector<NodeId> kept;
     for (NodeId node = 0; node < topology.mesh().node_count(); ++node)
-      if (is_held(node) && (system.place(node, 0) >= 0 || system.place(node, 2) >= 0)) kept.push_back(node);
+      if (is_constrained(node) && (system.place(node, 0) >= 0 || system.place(node, 2) >= 0)) kept.push_back(node);
     const CutSystem<E> fresh(topology, physics, kept);
     const auto step = system.is_folded() ? system.folded_step() : last;
     const auto truth = fresh.folded_step();
@@ -67,7 +67,7 @@ struct CutBlock {
     double moved = 0.0, far = 0.0;
     system.recover();
     for (NodeId node = 0; node < topology.mesh().node_count(); ++node)
-      if (is_held(node)) {
+      if (is_constrained(node)) {
         const Vector3 exact = fresh.displacement().template segment<3>(3 * Index{node});
         moved = std::max(moved, (system.displacement().template segment<3>(3 * Index{node}) - exact).norm());
         far = std::max(far, exact.norm());
@@ -136,10 +136,11 @@ TEST_CASE("random cuts until nothing is held: right all the way", "[cut][extreme
       REQUIRE(b.system.displacement().allFinite());
       worst = std::max(worst, b.error());
     }
-    INFO(worst << ", renewed " << renewed << " times, with " << b.topology.loose_pieces().size() << " loose pieces");
+    INFO(worst << ", renewed " << renewed << " times, with " << b.topology.detached_fragments().size()
+               << " loose pieces");
     CHECK(worst < 1e-10);
     CHECK(renewed < 20);
-    CHECK(b.topology.loose_pieces().size() > 3);
+    CHECK(b.topology.detached_fragments().size() > 3);
     CutOrder rest;
     for (Index e = 0; e < mesh.element_count(); ++e) rest.remove.push_back(e);
     b.cut(rest);
@@ -169,7 +170,7 @@ TEST_CASE("a factor that was begun before the last cuts takes them in as one", "
     for (int k = 0; k < begun; ++k) cut();
     std::vector<NodeId> kept;
     for (const NodeId node : top_of(mesh))
-      if (b.is_held(node)) kept.push_back(node);
+      if (b.is_constrained(node)) kept.push_back(node);
     CutRenewal<Tet4> renewal(b.topology, b.physics, kept, {});
     for (int k = 0; k < 6; ++k) cut();
     while (!renewal.is_done()) std::this_thread::yield();
@@ -191,7 +192,7 @@ TEST_CASE("a load on the surface moves all nodes as in a new model", "[cut]") {
   const VectorX truth = fresh.displacement_with(forces);
   double wrong = 0.0;
   for (NodeId node = 0; node < b.topology.mesh().node_count(); ++node)
-    if (b.is_held(node)) wrong = std::max(wrong, (u - truth).segment<3>(3 * Index{node}).norm());
+    if (b.is_constrained(node)) wrong = std::max(wrong, (u - truth).segment<3>(3 * Index{node}).norm());
   CHECK(wrong < 1e-10 * truth.cwiseAbs().maxCoeff());
 }
 

@@ -26,7 +26,7 @@ const LinearElastic soft{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density =
 Mesh<Tet4> slab() {
   return box_tet4({0.1, 0.1, 0.05}, {8, 8, 4}, BoxSplit::six);
 }
-Scene held_below() {
+Scene constrained_below() {
   return Scene().fix("z0").touch("surface").gravity({0.0, 0.0, -9.81});
 }
 BladeSweep slit_at(double x, double bottom) {
@@ -49,11 +49,11 @@ ToolState at(const Vector3& x, double time) {
 }  // namespace
 
 TEST_CASE("a tissue keeps the laws of tissues while it is cut", "[cut]") {
-  Tissue tissue(slab(), held_below(), soft, {}, {.cuttable = Selection("surface")});
+  Tissue tissue(slab(), constrained_below(), soft, {}, {.cuttable = Selection("surface")});
   const auto check = [&] {
     tissue.begin_tick();
     for (const auto& broken : testing::tissue_laws(tissue, used_vertices(tissue, 20)))
-      FAIL_CHECK(broken.law << ' ' << broken.detail);
+      FAIL_CHECK(broken.material << ' ' << broken.detail);
   };
   check();
   const int vertices = tissue.contact_surface().vertex_count();
@@ -84,9 +84,9 @@ TEST_CASE("what is refused when a tissue is made is named as in the mesh as give
     for (NodeId& i : e) ++i;
   mesh.groups = {};
   const std::vector<NodeId> bottom{1, 2, 3, 4, 5, 6, 7, 8, 9}, one{5};
-  const Scene held = Scene().fix(bottom).touch("surface");
+  const Scene constrained = Scene().fix(bottom).touch("surface");
   const SetupProblem twice = test::refusal([&] {
-    Tissue(mesh, Scene(held).prescribe(one, {1e-3, 0.0, 0.0}), soft);
+    Tissue(mesh, Scene(constrained).prescribe(one, {1e-3, 0.0, 0.0}), soft);
   });
   CHECK(to_string(twice.kind) == "conflicting_conditions");
   CHECK(twice.ids == Ids{5});
@@ -150,7 +150,7 @@ TEST_CASE("what hangs by a thread is stretched beyond what can be touched: left 
 }
 
 TEST_CASE("a cut under the tool: the force goes on, and changes no faster than the gate allows", "[cut][extreme][F3]") {
-  Tissue tissue(slab(), held_below(), soft);
+  Tissue tissue(slab(), constrained_below(), soft);
   HapticServo servo(tissue, SphereTool{});
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
   double time = 0.0, before = 0.0, longest_step = 0.0;
@@ -183,7 +183,7 @@ TEST_CASE("a cut under the tool: the force goes on, and changes no faster than t
   CHECK(last.norm() < before);
   CHECK(longest_step <= limits.slew_rate * 1e-3 * (1.0 + 1e-9));
   // What is felt now is what a session that begins on the cut body feels.
-  Tissue fresh(slab(), held_below(), soft);
+  Tissue fresh(slab(), constrained_below(), soft);
   fresh.cut(slit_at(0.052, 0.012));
   fresh.work();
   fresh.begin_tick();
@@ -197,7 +197,7 @@ TEST_CASE("a cut under the tool: the force goes on, and changes no faster than t
 }
 
 TEST_CASE("made whole again under a tool and under a renderer: nothing refers to what is gone", "[cut][extreme][F3]") {
-  Tissue tissue(slab(), held_below(), soft);
+  Tissue tissue(slab(), constrained_below(), soft);
   HapticServo servo(tissue, SphereTool{});
   VisualSurface surface(tissue);
   const Index points = surface.point_count();
@@ -234,7 +234,7 @@ TEST_CASE("made whole again under a tool and under a renderer: nothing refers to
 TEST_CASE("cut while touched until nothing is left: every force finite and limited, no mass lost",
           "[cut][extreme][F1][F3][M15]") {
   const auto mesh = box_tet4({0.05, 0.05, 0.05}, {4, 4, 4});
-  Tissue tissue(mesh, held_below(), soft);
+  Tissue tissue(mesh, constrained_below(), soft);
   HapticServo servo(tissue, SphereTool{});
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
   testing::Random random(3);
@@ -268,14 +268,16 @@ TEST_CASE("cut while touched until nothing is left: every force finite and limit
       REQUIRE(!f.status.has(StatusFlag::non_finite_force));
       last = f.force();
     }
-    double held = 0.0, loose = 0.0, removed = 0.0;
+    double constrained = 0.0, loose = 0.0, removed = 0.0;
     tissue.read([&](const auto& t, const auto& p) {
       for (Index e = 0; e < t.mesh().element_count(); ++e)
-        (t.state(e) == ElementState::held ? held : t.state(e) == ElementState::loose ? loose : removed) += p.mass(e);
+        (t.state(e) == ElementState::supported  ? constrained
+         : t.state(e) == ElementState::detached ? loose
+                                                : removed) += p.mass(e);
     });
-    REQUIRE(std::abs(held + loose + removed - whole) < 1e-12 * whole);
-    left = held + loose;
-    if (held > 0.0) REQUIRE(!tissue.cut_report().failed);
+    REQUIRE(std::abs(constrained + loose + removed - whole) < 1e-12 * whole);
+    left = constrained + loose;
+    if (constrained > 0.0) REQUIRE(!tissue.cut_report().failed);
   }
   CHECK(tissue.contact_surface().triangles().empty());
   for (int i = 0; i < 200; ++i) {
@@ -286,7 +288,7 @@ TEST_CASE("cut while touched until nothing is left: every force finite and limit
 }
 
 TEST_CASE("a thread cuts while another ticks", "[cut][extreme][F3]") {
-  Tissue tissue(slab(), held_below(), soft);
+  Tissue tissue(slab(), constrained_below(), soft);
   HapticServo servo(tissue, SphereTool{});
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
   testing::Random random(8);

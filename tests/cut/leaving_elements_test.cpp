@@ -228,7 +228,7 @@ TEST_CASE("elements leave an explicit body one by one, down to the last", "[mode
 TEST_CASE("co-rotated motion goes on without elements as if they had never been", "[model][corotated][cut]") {
   CHECK(difference_to_fresh<BlockJacobi>(TimeScheme::implicit_euler()) <= 1e-10);
   CHECK(difference_to_fresh<BlockJacobi>(TimeScheme::newmark()) <= 1e-10);
-  CHECK(difference_to_fresh<TurnedFactor>(TimeScheme::implicit_euler()) <= 1e-10);  // with the factor of the whole
+  CHECK(difference_to_fresh<CorotatedFactor>(TimeScheme::implicit_euler()) <= 1e-10);  // with the factor of the whole
 }
 
 TEST_CASE("pieces of a co-rotated body keep their momentum, in single precision too", "[model][corotated][cut]") {
@@ -273,7 +273,7 @@ TEST_CASE("a body split by a blade moves on as two: state carried to a new motio
       }
   const auto change = topology.apply(order);
   REQUIRE(change.copies.size() == 9);  // nodes of the cross-section
-  const MotionOfPart<Tet4> part(topology, ElementState::held);
+  const MotionOfPart<Tet4> part(topology, ElementState::supported);
   Explicit split = explicit_bar(part.mesh());
   split.set(part.carried(whole.state().displacement), part.carried(whole.state().velocity));
   const VectorX now =

@@ -13,14 +13,14 @@ using namespace palpate;
 
 namespace {
 
-std::vector<std::uint8_t> held_at(const Mesh<Tet4>& mesh, const char* group) {
+std::vector<std::uint8_t> constrained_at(const Mesh<Tet4>& mesh, const char* group) {
   std::vector<std::uint8_t> constrained(mesh.positions.size(), 0);
   for (const NodeId node : mesh.find_group(group)->nodes) constrained[static_cast<std::size_t>(node)] = 7;
   return constrained;
 }
 CutTopology<Tet4> block(std::array<int, 3> cells, BoxSplit split = BoxSplit::five_mirrored) {
   const auto mesh = box_tet4({0.1, 0.1, 0.1}, cells, split);
-  return CutTopology<Tet4>(mesh, held_at(mesh, "z0"));
+  return CutTopology<Tet4>(mesh, constrained_at(mesh, "z0"));
 }
 BladeSweep plane_x(double x) {
   return {{x, -1, -1}, {x, 2, -1}, {x, -1, 2}, {x, 2, 2}};
@@ -33,14 +33,14 @@ std::vector<ElementFace> swept(const CutTopology<Tet4>& t, const BladeSweep& swe
 }
 
 struct Volumes {
-  double held = 0.0, loose = 0.0, removed = 0.0;
+  double constrained = 0.0, loose = 0.0, removed = 0.0;
 };
 Volumes volumes(const CutTopology<Tet4>& t) {
   Volumes v;
   for (Index e = 0; e < t.mesh().element_count(); ++e)
-    (t.state(e) == ElementState::held    ? v.held
-     : t.state(e) == ElementState::loose ? v.loose
-                                         : v.removed) += t.volume(e);
+    (t.state(e) == ElementState::supported  ? v.constrained
+     : t.state(e) == ElementState::detached ? v.loose
+                                            : v.removed) += t.volume(e);
   return v;
 }
 
@@ -48,7 +48,7 @@ Volumes volumes(const CutTopology<Tet4>& t) {
 void check_state(const CutTopology<Tet4>& t) {
   std::vector<NodeId> nodes;
   std::vector<Index> elements;
-  for (const ElementState state : {ElementState::held, ElementState::loose}) {
+  for (const ElementState state : {ElementState::supported, ElementState::detached}) {
     const Mesh<Tet4> part = t.extract(state, nodes, elements);
     if (part.elements.empty()) continue;
     const auto boundary = extract_boundary<Tet4>(part);  // refuses what is no mesh
@@ -61,8 +61,8 @@ void check_state(const CutTopology<Tet4>& t) {
     std::vector<std::uint8_t> constrained(part.positions.size());
     for (std::size_t i = 0; i < nodes.size(); ++i)
       if (nodes[i] >= 0) constrained[static_cast<std::size_t>(nodes[i])] = t.constrained()[i];
-    for (const FreeRigidModes& piece : free_rigid_modes(part, constrained))
-      CHECK((piece.count() == 0) == (state == ElementState::held));
+    for (const FreeRigidModes& fragment : free_rigid_modes(part, constrained))
+      CHECK((fragment.count() == 0) == (state == ElementState::supported));
   }
 }
 
@@ -70,7 +70,7 @@ void check_state(const CutTopology<Tet4>& t) {
 
 TEST_CASE("a removed element leaves the body and exposes what was behind it", "[cut]") {
   auto t = block({4, 4, 4});
-  const double whole = volumes(t).held;
+  const double whole = volumes(t).constrained;
   Index inner = -1;
   for (Index e = 0; e < t.mesh().element_count(); ++e)
     if (std::ranges::all_of(t.mesh().elements[static_cast<std::size_t>(e)], [&](NodeId node) {
@@ -85,37 +85,37 @@ TEST_CASE("a removed element leaves the body and exposes what was behind it", "[
   REQUIRE(change.elements.size() == 1);
   CHECK(change.elements[0].removed);
   CHECK(t.is_removed(inner));
-  CHECK(std::abs(volumes(t).held - (whole - own)) < 1e-18);
+  CHECK(std::abs(volumes(t).constrained - (whole - own)) < 1e-18);
   CHECK(t.apply({{inner}, {}}).empty());  // gone already
   check_state(t);
 }
 
 TEST_CASE("a blade across the body parts it in two; one held, one loose", "[cut]") {
   const auto mesh = box_tet4({0.1, 0.1, 0.1}, {6, 4, 4});
-  CutTopology<Tet4> t(mesh, held_at(mesh, "x0"));
+  CutTopology<Tet4> t(mesh, constrained_at(mesh, "x0"));
   const auto change = t.apply({{}, swept(t, plane_x(0.05))});
-  REQUIRE(change.pieces.size() == 1);
-  CHECK(change.pieces[0].free_modes == 6);
+  REQUIRE(change.fragments.size() == 1);
+  CHECK(change.fragments[0].free_modes == 6);
   const Volumes v = volumes(t);
-  CHECK(std::abs(v.held + v.loose - 1e-3) < 1e-15);
-  CHECK(std::abs(v.loose - change.pieces[0].volume) < 1e-17);
+  CHECK(std::abs(v.constrained + v.loose - 1e-3) < 1e-15);
+  CHECK(std::abs(v.loose - change.fragments[0].volume) < 1e-17);
   CHECK(std::abs(v.loose - 0.5e-3) < 1e-4);  // as far as faces follow the plane
   CHECK(swept(t, plane_x(0.05)).empty());    // nothing is left to open
   check_state(t);
   // Group and region follow the piece: x1 went with it, x0 did not.
   std::vector<NodeId> nodes;
   std::vector<Index> elements;
-  const auto held = t.extract(ElementState::held, nodes, elements);
-  CHECK(held.find_group("x1")->nodes.empty());
-  CHECK(held.find_group("x0")->nodes.size() == mesh.find_group("x0")->nodes.size());
-  CHECK(held.find_group("x0")->faces.size() == mesh.find_group("x0")->faces.size());
+  const auto constrained = t.extract(ElementState::supported, nodes, elements);
+  CHECK(constrained.find_group("x1")->nodes.empty());
+  CHECK(constrained.find_group("x0")->nodes.size() == mesh.find_group("x0")->nodes.size());
+  CHECK(constrained.find_group("x0")->faces.size() == mesh.find_group("x0")->faces.size());
 }
 
 TEST_CASE("a slit that ends in the body opens up to its tip", "[cut]") {
   auto t = block({6, 4, 6}, BoxSplit::six);
   const BladeSweep half{{0.05, -1, 0.05}, {0.05, 2, 0.05}, {0.05, -1, 0.2}, {0.05, 2, 0.2}};
   const auto change = t.apply({{}, swept(t, half)});
-  CHECK(change.pieces.empty());
+  CHECK(change.fragments.empty());
   CHECK(!change.copies.empty());
   CHECK(change.exposed.size() % 2 == 0);
   for (const NodeCopy& copy : change.copies) {
@@ -136,7 +136,7 @@ TEST_CASE("parts that touch in a node or an edge only are parted", "[cut][extrem
   }
   const auto change = t.apply({away, {}});
   CHECK(change.copies.size() == 2);  // the edge's two nodes
-  CHECK(change.pieces.empty());      // each stands on its own foot
+  CHECK(change.fragments.empty());   // each stands on its own foot
   check_state(t);
 }
 
@@ -157,11 +157,11 @@ TEST_CASE("a cut through nodes, edges and faces exactly is as good as any", "[cu
     for (const BoxSplit split : {BoxSplit::five_mirrored, BoxSplit::six}) {
       const auto mesh = box_tet4({0.1, 0.1, 0.1}, {cells, cells, cells}, split);
       double before = 1.0, after = 1.0;
-      CutTopology<Tet4> t(mesh, held_at(mesh, "x0")), again = t;
+      CutTopology<Tet4> t(mesh, constrained_at(mesh, "x0")), again = t;
       for (Index e = 0; e < mesh.element_count(); ++e)
         before = std::min(before, element_shape<Tet4>(element_nodes<Tet4>(mesh, e)).quality);
       const auto change = t.apply({{}, swept(t, plane_x(0.05))});
-      CHECK(change.pieces.size() == 1);
+      CHECK(change.fragments.size() == 1);
       CHECK(again.apply({{}, swept(again, plane_x(0.05))}).copies.size() == change.copies.size());
       for (Index e = 0; e < mesh.element_count(); ++e)
         after = std::min(after, element_shape<Tet4>(element_nodes<Tet4>(t.mesh(), e)).quality);
@@ -174,7 +174,7 @@ TEST_CASE("cut until the body falls apart: nothing is lost", "[cut][extreme][F1]
   for (const auto split : {BoxSplit::five_mirrored, BoxSplit::six}) {
     auto t = block({3, 3, 3}, split);
     testing::Random random(11);
-    const double whole = volumes(t).held;
+    const double whole = volumes(t).constrained;
     while (volumes(t).removed < whole * (1.0 - 1e-9)) {
       CutOrder order;
       for (int k = 0; k < 4; ++k) {
@@ -186,9 +186,9 @@ TEST_CASE("cut until the body falls apart: nothing is lost", "[cut][extreme][F1]
       }
       t.apply(order);
       const Volumes v = volumes(t);
-      REQUIRE(std::abs(v.held + v.loose + v.removed - whole) < 1e-12 * whole);
+      REQUIRE(std::abs(v.constrained + v.loose + v.removed - whole) < 1e-12 * whole);
       check_state(t);
     }
-    CHECK(volumes(t).held == 0.0);  // the last element is gone, and that is a state like any other
+    CHECK(volumes(t).constrained == 0.0);  // the last element is gone, and that is a state like any other
   }
 }

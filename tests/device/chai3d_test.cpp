@@ -164,7 +164,7 @@ TEST_CASE("chai3d: torque where there are motors", "[device][chai3d]") {
   stylus.write(gated(Vector3(1.0, 0.0, 0.0), Vector3(0.0, 0.02, 0.0)));
   CHECK(fake.torque.y() == 0.02);
   CHECK(stylus.limits().peak_torque == 0.1);
-  CHECK(stylus.limits().turning_stiffness == 1.5);
+  CHECK(stylus.limits().rotational_stiffness == 1.5);
   CHECK(stylus.write(gated(Vector3(1.0, 0.0, 0.0), Vector3(0.0, 3.0, 0.0))) == Status(StatusFlag::saturated));
   CHECK_THAT(fake.torque.y(), WithinAbs(0.1, 1e-15));
   stylus.write(gated(Vector3(1.0, 0.0, 0.0), Vector3(0.0, infinity, 0.0)));
@@ -188,7 +188,7 @@ TEST_CASE("chai3d: torque without limits of it is refused, limits without torque
   CHECK(chai_refusal([&] { Stylus stylus(fake, options); }) == SetupErrorKind::bad_argument);
   CHECK(!fake.is_open);
   options.torque = false;
-  options.limits->peak_torque = options.limits->turning_stiffness = 0.1;
+  options.limits->peak_torque = options.limits->rotational_stiffness = 0.1;
   CHECK(Stylus(fake, options).limits().peak_torque == 0.0);
 }
 

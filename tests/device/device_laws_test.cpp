@@ -96,7 +96,7 @@ struct Turns : Good {
     Good::stop();
     torque.setZero();
   }
-  DeviceLimits limits() const noexcept { return {.peak_torque = 0.1, .turning_stiffness = 1.0}; }
+  DeviceLimits limits() const noexcept { return {.peak_torque = 0.1, .rotational_stiffness = 1.0}; }
   const Vector3& last_torque() const noexcept { return torque; }
   Vector3 torque = Vector3::Zero();
 };
@@ -171,11 +171,11 @@ struct NoWorkspace : Good {
 };
 
 template <class Device>
-bool breaks(const char* law) {
+bool breaks(const char* material) {
   Device device;
   const auto violations = device_laws(device);
   INFO(testing::describe(violations));
-  return violates(violations, law);
+  return violates(violations, material);
 }
 
 template <class Device>
@@ -195,7 +195,7 @@ TEST_CASE("good devices keep the laws", "[device][laws]") {
   options.clock = DeviceClock::wall;
   options.limits.peak_force = 12.0;
   options.limits.peak_torque = 0.2;
-  options.limits.turning_stiffness = 2.0;
+  options.limits.rotational_stiffness = 2.0;
   CHECK(broken(MockDevice(trajectory::poke(), options)) == "");
 }
 

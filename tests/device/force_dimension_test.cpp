@@ -20,7 +20,7 @@ ForceDimensionOptions dhd_with_torque() {
   ForceDimensionOptions options;
   options.torque = true;
   options.limits.peak_torque = 0.1;
-  options.limits.turning_stiffness = 1.0;
+  options.limits.rotational_stiffness = 1.0;
   return options;
 }
 

@@ -23,7 +23,7 @@ Vector3 hd_force() {
 OpenHapticsOptions hd_with_torque() {
   OpenHapticsOptions options;
   options.torque = true;
-  options.limits = DeviceLimits{.peak_torque = 0.1, .turning_stiffness = 1.0};
+  options.limits = DeviceLimits{.peak_torque = 0.1, .rotational_stiffness = 1.0};
   return options;
 }
 /// A wall at y = 0 with a gate.

@@ -58,10 +58,10 @@ TEST_CASE("a spring in the scene is felt with scale times force_scale of its sti
   const double k = 700.0;
   const Vector3 rest(1.1, 2.2, 3.3), hand(0.02, 0.01, 0.04), step(1e-3, -2e-3, 5e-4);
   const auto felt = [&](const Vector3& x) { return p.force_to_device(k * (rest - p.to_scene(x))); };
-  CHECK((felt(hand + step) - felt(hand) + p.felt_stiffness(k) * step).norm() <= 1e-12 * k);
+  CHECK((felt(hand + step) - felt(hand) + p.handle_stiffness(k) * step).norm() <= 1e-12 * k);
   // work: force scaled by f, way by 1 / s
-  const Vector3 force(1, 2, 3), way = p.to_scene(hand + step) - p.to_scene(hand);
-  CHECK_THAT(p.force_to_device(force).dot(step), WithinRel(p.force_scale / p.scale * force.dot(way), 1e-12));
+  const Vector3 force(1, 2, 3), path = p.to_scene(hand + step) - p.to_scene(hand);
+  CHECK_THAT(p.force_to_device(force).dot(step), WithinRel(p.force_scale / p.scale * force.dot(path), 1e-12));
 }
 
 TEST_CASE("velocity, orientation and torque follow", "[device][placement]") {
@@ -77,8 +77,8 @@ TEST_CASE("velocity, orientation and torque follow", "[device][placement]") {
   CHECK((state.position - p.to_scene(device.state.position)).norm() == 0.0);
   CHECK((state.velocity - 0.25 * (p.rotation * device.state.velocity)).norm() <= 1e-15);
   const auto& q = state.orientation;
-  const Matrix3 turned = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
-  CHECK((turned - p.rotation * Eigen::AngleAxisd(0.4, Vector3::UnitX()).toRotationMatrix()).norm() <= 1e-12);
+  const Matrix3 rotated = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+  CHECK((rotated - p.rotation * Eigen::AngleAxisd(0.4, Vector3::UnitX()).toRotationMatrix()).norm() <= 1e-12);
   CHECK(state.time == 7.0);
   CHECK(state.buttons == 5);
   placed.write(testing::gated(Vector3(1, 2, 3), Vector3(4, 5, 6)));
@@ -91,7 +91,7 @@ TEST_CASE("limits as the scene sees them", "[device][placement]") {
   StillDevice device;
   const DeviceLimits scene = PlacedDevice(device, p).limits();
   CHECK_THAT(p.force_to_device(scene.peak_force * Vector3::UnitX()).norm(), WithinRel(device.given.peak_force, 1e-12));
-  CHECK_THAT(p.felt_stiffness(scene.stiffness), WithinRel(device.given.stiffness, 1e-12));
+  CHECK_THAT(p.handle_stiffness(scene.stiffness), WithinRel(device.given.stiffness, 1e-12));
   testing::Random random(2);
   for (int i = 0; i < 100; ++i) {
     const Vector3 x = random.vector<3>(-0.1, 0.1);

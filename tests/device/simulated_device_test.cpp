@@ -259,7 +259,7 @@ TEST_CASE("a linear loop grows beyond (b + B) / (T/2 + dT), and not below", "[de
     o.rate = 1.0 / c.period;
     o.delay = c.ticks * c.period;
     o.limits.peak_force = 1e9;
-    const auto calm = [&](double stiffness) {
+    const auto energy_bounded = [&](double stiffness) {
       SimulatedDevice device = started(o);
       VirtualWall wall{.stiffness = stiffness, .one_sided = false};
       device.push(Vector3(0.0, 0.0, 1e-6));
@@ -270,7 +270,7 @@ TEST_CASE("a linear loop grows beyond (b + B) / (T/2 + dT), and not below", "[de
     };
     const double expected = testing::stiffness_limit(c.damping, c.period, o.delay);
     INFO("m " << c.mass << " b " << c.damping << " T " << c.period << " d " << c.ticks);
-    CHECK_THAT(testing::largest_that(calm, 0.2 * expected, 5.0 * expected, 1e-3), WithinRel(expected, 0.02));
+    CHECK_THAT(testing::largest_that(energy_bounded, 0.2 * expected, 5.0 * expected, 1e-3), WithinRel(expected, 0.02));
   }
 }
 

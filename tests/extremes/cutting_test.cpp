@@ -29,16 +29,16 @@ Mesh<Tet4> body_to_cut(int kind) {
   if (kind == 0) return box_tet4({0.05, 0.05, 0.05}, {4, 4, 4});
   if (kind == 1) return box_tet4({0.06, 0.04, 0.03}, {5, 3, 3}, BoxSplit::six);
   if (kind == 2) return cylinder_tet4(0.03, 0.05, 3);
-  return ball_tet4(0.03, 1);
+  return sphere_tet4(0.03, 1);
 }
 /// What lies lowest is held.
 Scene scene_of(const Mesh<Tet4>& mesh) {
   double low = infinity, high = -infinity;
   for (const Vector3& x : mesh.positions) low = std::min(low, x[2]), high = std::max(high, x[2]);
-  std::vector<NodeId> held;
+  std::vector<NodeId> constrained;
   for (NodeId node = 0; node < mesh.node_count(); ++node)
-    if (mesh.position(node)[2] < low + 0.25 * (high - low)) held.push_back(node);
-  return Scene().fix(held).touch("surface").gravity({0.0, 0.0, -9.81});
+    if (mesh.position(node)[2] < low + 0.25 * (high - low)) constrained.push_back(node);
+  return Scene().fix(constrained).touch("surface").gravity({0.0, 0.0, -9.81});
 }
 
 CutOrder random_order(const Mesh<Tet4>& mesh, testing::Random& random) {
@@ -56,22 +56,24 @@ CutOrder random_order(const Mesh<Tet4>& mesh, testing::Random& random) {
 }
 
 void masses(Cut& tissue, double whole, double& left, ManyCuts& all) {
-  double held = 0.0, loose = 0.0, removed = 0.0, pieces = 0.0;
+  double constrained = 0.0, loose = 0.0, removed = 0.0, pieces = 0.0;
   tissue.read([&](const auto& t, const auto& p) {
     for (Index e = 0; e < t.mesh().element_count(); ++e)
-      (t.state(e) == ElementState::held ? held : t.state(e) == ElementState::loose ? loose : removed) += p.mass(e);
-    for (const LoosePiece& piece : t.loose_pieces()) {
+      (t.state(e) == ElementState::supported  ? constrained
+       : t.state(e) == ElementState::detached ? loose
+                                              : removed) += p.mass(e);
+    for (const Fragment& piece : t.detached_fragments()) {
       for (const Index e : piece.elements)
         if (!t.is_removed(e)) pieces += p.mass(e);
-      all.loose = std::max(all.loose, static_cast<int>(t.loose_pieces().size()));
+      all.loose = std::max(all.loose, static_cast<int>(t.detached_fragments().size()));
     }
   });
-  all.worst_mass =
-      std::max(all.worst_mass, std::max(std::abs(held + loose + removed - whole), std::abs(pieces - loose)) / whole);
-  left = held;
+  all.worst_mass = std::max(
+      all.worst_mass, std::max(std::abs(constrained + loose + removed - whole), std::abs(pieces - loose)) / whole);
+  left = constrained;
 }
 
-/// Cuts one body at random under a ball that wanders over it, until nothing is held or `most` cuts are made.
+/// Cuts one body at random under a sphere that wanders over it, until nothing is held or `most` cuts are made.
 void cut_apart(int kind, std::uint64_t seed, int most, ManyCuts& all) {
   const auto mesh = body_to_cut(kind);
   Cut tissue(mesh, scene_of(mesh),
@@ -228,10 +230,10 @@ TEST_CASE("the shipped organ, cut sixty times a second beside a finger: slew and
     const GatedForce f = servo.tick({&s, 1})[0];
     REQUIRE(f.force().allFinite());
     REQUIRE(f.force().norm() <= limits.peak_force * (1.0 + 1e-12));
-    const Vector3 way = i > 0 ? Vector3(s.position - was) : Vector3::Zero();
-    given += last.dot(way);
-    worst_work = std::max(worst_work, last.dot(way));
-    dissipated += energy.damping * way.squaredNorm() / 1e-3;
+    const Vector3 path = i > 0 ? Vector3(s.position - was) : Vector3::Zero();
+    given += last.dot(path);
+    worst_work = std::max(worst_work, last.dot(path));
+    dissipated += energy.damping * path.squaredNorm() / 1e-3;
     worst_slew = std::max(worst_slew, (f.force() - last).norm() / (limits.slew_rate * limits.period));
     if (cut) across_cut = std::max(across_cut, (f.force() - last).norm());
     longest = std::max(longest, f.force().norm());

@@ -115,7 +115,7 @@ void check_slivers() {
 template <Element E>
 void check_defects() {
   const Mesh<E> good = box_of<E>({0.1, 0.08, 0.06}, {3, 2, 2});
-  const Scene held = Scene().fix("x0");
+  const Scene constrained = Scene().fix("x0");
   const auto refused_as = [&](const Mesh<E>& mesh, const Scene& scene, SetupErrorKind kind) {
     const SetupProblem p = refusal([&] { StaticModel<E>(mesh, scene, liver); });
     INFO(describe(p));
@@ -125,20 +125,20 @@ void check_defects() {
   };
   Mesh<E> bad = good;
   for (NodeId i : bad.elements[5]) bad.positions[static_cast<std::size_t>(i)][2] = 0.02;
-  CHECK_THROWS_AS(StaticModel<E>(bad, held, liver), SetupError);
+  CHECK_THROWS_AS(StaticModel<E>(bad, constrained, liver), SetupError);
   bad = good;
   const auto corner = static_cast<std::size_t>(bad.elements[0][0]);
   bad.positions[corner] = bad.position(bad.elements[0][1]);
-  refused_as(bad, held, SetupErrorKind::duplicate_node);
+  refused_as(bad, constrained, SetupErrorKind::duplicate_node);
   bad = good;
   reorient(bad, {3});
-  refused_as(bad, held, SetupErrorKind::inverted_element);
+  refused_as(bad, constrained, SetupErrorKind::inverted_element);
   bad = good;
   bad.positions[4][1] = std::numeric_limits<double>::quiet_NaN();
-  refused_as(bad, held, SetupErrorKind::non_finite);
+  refused_as(bad, constrained, SetupErrorKind::non_finite);
   bad = good;
   bad.elements[2][1] = static_cast<NodeId>(bad.node_count());
-  refused_as(bad, held, SetupErrorKind::index_out_of_range);
+  refused_as(bad, constrained, SetupErrorKind::index_out_of_range);
   refused_as(good, Scene(), SetupErrorKind::unconstrained);
   refused_as(good, Scene().prescribe("x0", {0.0, std::nullopt, std::nullopt}), SetupErrorKind::unconstrained);
   refused_as(good, Scene().fix(std::vector<NodeId>{0}), SetupErrorKind::unconstrained);
@@ -175,9 +175,9 @@ void check_small_bodies() {
   CHECK(still.strain_energy() == 0.0);
   std::vector<NodeId> all(good.positions.size());
   std::iota(all.begin(), all.end(), 0);
-  const StaticModel<E> held(good, Scene().fix(all).gravity({0, 0, -10.0}), tissue);
-  CHECK(held.report().free_dofs == 0);
-  CHECK(held.displacement().isZero(0.0));
+  const StaticModel<E> constrained(good, Scene().fix(all).gravity({0, 0, -10.0}), tissue);
+  CHECK(constrained.report().free_dofs == 0);
+  CHECK(constrained.displacement().isZero(0.0));
 }
 
 template <Element E>

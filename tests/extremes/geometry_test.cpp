@@ -27,14 +27,14 @@ Mesh<Tet4> with_one_sliver(double height) {
   return mesh;
 }
 
-Mesh<Tet4> turned(Mesh<Tet4> mesh) {
+Mesh<Tet4> rotated(Mesh<Tet4> mesh) {
   testing::Random random(53);
   const Matrix3 r = testing::random_rotation(random);
   for (Vector3& x : mesh.positions) x = r * x;
   return mesh;
 }
 
-/// Two tetrahedra with `shared` nodes in common: 1 a ball joint, 2 a hinge, 3 a face.
+/// Two tetrahedra with `shared` nodes in common: 1 a sphere joint, 2 a hinge, 3 a face.
 Mesh<Tet4> joined(int shared) {
   Mesh<Tet4> mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.2, 1, 0}, {0.3, 0.3, 1}};
@@ -165,11 +165,11 @@ TEST_CASE("what is not held is refused", "[extreme][B7][B8]") {
 
 TEST_CASE("two tetrahedra joined at a node or an edge", "[extreme][B7][B8]") {
   for (bool turn : {false, true}) {
-    const auto mesh = [turn](int shared) { return turn ? turned(joined(shared)) : joined(shared); };
-    const auto held = std::vector<NodeId>{0, 1, 2, 3}, three = std::vector<NodeId>{1, 2, 3};
+    const auto mesh = [turn](int shared) { return turn ? rotated(joined(shared)) : joined(shared); };
+    const auto constrained = std::vector<NodeId>{0, 1, 2, 3}, three = std::vector<NodeId>{1, 2, 3};
     for (int shared : {1, 2}) {
       INFO(shared << " nodes shared");
-      for (const auto& nodes : {held, three}) {
+      for (const auto& nodes : {constrained, three}) {
         const Scene scene = Scene().fix(nodes);
         check_refused_by_all(mesh(shared), scene);                          // everything condensed
         check_refused_by_all(mesh(shared), Scene(scene).touch("surface"));  // everything kept
@@ -177,7 +177,7 @@ TEST_CASE("two tetrahedra joined at a node or an edge", "[extreme][B7][B8]") {
         check_refused_by_all(mesh(shared), Scene(scene).touch("surface").point_load("surface", {1, 2, 3}));
       }
     }
-    judge_all("a shared face holds", mesh(3), {plain}, Scene().fix(held).touch("surface").gravity({1, 2, 3}),
+    judge_all("a shared face holds", mesh(3), {plain}, Scene().fix(constrained).touch("surface").gravity({1, 2, 3}),
               [](PolicyName, const Outcome& o) { CHECK(o.verdict != Verdict::refused); });
   }
 }
@@ -186,7 +186,7 @@ TEST_CASE("two bricks joined by a hinge or a corner", "[extreme][B7][B8]") {
   for (bool edge : {true, false})
     for (bool turn : {false, true}) {
       INFO((edge ? "hinge" : "corner") << (turn ? ", turned" : ""));
-      const Mesh<Tet4> mesh = turn ? turned(hinged_bricks(edge)) : hinged_bricks(edge);
+      const Mesh<Tet4> mesh = turn ? rotated(hinged_bricks(edge)) : hinged_bricks(edge);
       REQUIRE(connected_components<Tet4>(mesh).count == 1);
       REQUIRE(mesh.node_count() == (edge ? 69 : 71));
       const Scene scene = Scene().fix(brick().find_group("x0")->nodes);
@@ -198,10 +198,10 @@ TEST_CASE("two bricks joined by a hinge or a corner", "[extreme][B7][B8]") {
 
 TEST_CASE("a surface whose edge four faces share is reported, and safe to touch", "[extreme][B11]") {
   const Mesh<Tet4> mesh = hinged_bricks(true);
-  std::vector<NodeId> held;
+  std::vector<NodeId> constrained;
   for (NodeId i = 0; i < mesh.node_count(); ++i)
-    if (mesh.position(i).x() < 1e-9 || mesh.position(i).x() > 0.2 - 1e-9) held.push_back(i);
-  const auto model = make_model(PolicyName::sparse_cholesky, mesh, Scene().fix(held).touch("surface"), plain);
+    if (mesh.position(i).x() < 1e-9 || mesh.position(i).x() > 0.2 - 1e-9) constrained.push_back(i);
+  const auto model = make_model(PolicyName::sparse_cholesky, mesh, Scene().fix(constrained).touch("surface"), plain);
   CHECK(model->report().has(SetupFlag::non_manifold));
   const auto plain_model = make_model(PolicyName::sparse_cholesky, brick(), brick_scene(), plain);
   CHECK(!plain_model->report().has(SetupFlag::non_manifold));

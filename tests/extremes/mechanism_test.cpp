@@ -1,4 +1,4 @@
-// Bodies that hang together and can still move: hinges, ball joints, chains and linkages of blocks.
+// Bodies that hang together and can still move: hinges, sphere joints, chains and linkages of blocks.
 #include <palpate/mesh/detail/mechanisms.hpp>
 
 #include "extremes/verdict.hpp"
@@ -9,7 +9,7 @@ using namespace test;
 
 namespace {
 
-const LinearElastic law{5e3, 0.3, 1000.0};
+const LinearElastic material{5e3, 0.3, 1000.0};
 /// Unit cubes of n^3 cells; nodes at the same place are one. `cube_of` says which cube made an element.
 struct Blocks {
   Mesh<Tet4> mesh;
@@ -57,17 +57,17 @@ struct Linkage {
 const std::vector<Linkage> linkages{
     {"a hinge", {{0, 0, 0}, {1, 0, 1}}, {0}, 1},
     {"half a hinge", {{0, 0, 0}, {1, 0.5, 1}}, {0}, 1},
-    {"a ball joint", {{0, 0, 0}, {1, 1, 1}}, {0}, 3},
+    {"a sphere joint", {{0, 0, 0}, {1, 1, 1}}, {0}, 3},
     {"two hinges in a row", {{0, 0, 0}, {1, 0, 1}, {2, 0, 2}}, {0}, 1},
-    {"a hinge and a ball joint in a row", {{0, 0, 0}, {1, 0, 1}, {2, 1, 2}}, {0}, 1},
+    {"a hinge and a sphere joint in a row", {{0, 0, 0}, {1, 0, 1}, {2, 1, 2}}, {0}, 1},
     {"four bars", {{0, 0, 0}, {1, 0, 1}, {2, 0, 0}, {1, 0, -1}}, {0}, 1},
-    {"a cube on two ball joints", {{0, 0, 0}, {1, 1, 1}, {2, 2, 0}}, {0, 2}, 1},
+    {"a cube on two sphere joints", {{0, 0, 0}, {1, 1, 1}, {2, 2, 0}}, {0, 2}, 1},
 };
-/// Nothing of these moves: hinges that are not parallel, ball joints off one line.
-const std::vector<Linkage> held_linkages{
+/// Nothing of these moves: hinges that are not parallel, sphere joints off one line.
+const std::vector<Linkage> constrained_linkages{
     {"two hinges across", {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}}, {0, 2}, 0},
     {"three hinges in a corner", {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}}, {0}, 0},
-    {"a hinge and a ball joint off its axis", {{0, 0, 0}, {1, 0, 1}, {2, 1, 0}}, {0, 2}, 0},
+    {"a hinge and a sphere joint off its axis", {{0, 0, 0}, {1, 0, 1}, {2, 1, 0}}, {0, 2}, 0},
 };
 
 Scene scene_of(const Blocks& b, const Linkage& l) {
@@ -121,7 +121,7 @@ TEST_CASE("mechanisms are refused before anything is factorised, with part, join
     REQUIRE(face_connected_parts(mesh_ref(mesh)).count == static_cast<Index>(l.corners.size()));
     for (const PolicyName policy : extreme_policies) {
       INFO(name(policy));
-      const SetupProblem p = refusal([&] { make_model(policy, mesh, scene, law); });
+      const SetupProblem p = refusal([&] { make_model(policy, mesh, scene, material); });
       INFO(describe(p));
       ++count[std::string(to_string(p.kind)) + (p.ids.empty() ? ", no ids" : "")];
       CHECK(to_string(p.kind) == "unconstrained");
@@ -142,10 +142,10 @@ TEST_CASE("mechanisms are refused before anything is factorised, with part, join
 }
 
 TEST_CASE("joints that hold are no mechanisms", "[extreme][B7][B8]") {
-  for_each_case(held_linkages, [&](const Linkage&, const Blocks&, const Mesh<Tet4>& mesh, const Scene& scene) {
+  for_each_case(constrained_linkages, [&](const Linkage&, const Blocks&, const Mesh<Tet4>& mesh, const Scene& scene) {
     for (const PolicyName policy : extreme_policies) {
       INFO(name(policy));
-      CHECK_NOTHROW(make_model(policy, mesh, scene, law));
+      CHECK_NOTHROW(make_model(policy, mesh, scene, material));
     }
   });
 }
@@ -155,8 +155,8 @@ TEST_CASE("the motion of a mechanism is named in the frame of the mesh as given"
   Mesh<Tet4> mesh = b.mesh;
   const Vector3 shift(5, 0, -2);
   for (Vector3& x : mesh.positions) x += shift;
-  const SetupProblem p =
-      refusal([&] { make_model(PolicyName::condensed_inverse, mesh, scene_of(b, linkages[0]).touch("surface"), law); });
+  const SetupProblem p = refusal(
+      [&] { make_model(PolicyName::condensed_inverse, mesh, scene_of(b, linkages[0]).touch("surface"), material); });
   CHECK_THAT(p.what, contains("a part of 40 elements shares no face with others, only 3 nodes"));
   CHECK_THAT(p.what, contains("1 free rigid motion: rotation about the axis (0, 1, 0) through (6, "));
   CHECK(p.count == 3);
@@ -187,7 +187,7 @@ TEST_CASE("a chain too long for geometry is refused by the factorisation", "[ext
   const Mesh<Tet4> mesh = placed(chain.mesh, 1, 0.01);
   for (const Scene& scene : touched_scenes(chain, {"a long chain", corners, {0}, 0}))
     for (const PolicyName policy : {PolicyName::sparse_cholesky, PolicyName::condensed_inverse})
-      CHECK_REFUSED(SetupErrorKind::not_positive_definite, make_model(policy, mesh, scene, law));
+      CHECK_REFUSED(SetupErrorKind::not_positive_definite, make_model(policy, mesh, scene, material));
 }
 
 TEST_CASE("supports on a line or in a point leave motions of the whole body", "[extreme][B8]") {
@@ -199,10 +199,10 @@ TEST_CASE("supports on a line or in a point leave motions of the whole body", "[
       const auto line = b.nodes(0, [](const Vector3& x) { return x.tail<2>().norm() < 1e-9; });
       for (const PolicyName policy : extreme_policies)
         for (const char* touched : {"surface", ""})
-          for (const auto& [held, motions] : {std::pair{point, 3.0}, {line, 1.0}}) {
-            Scene scene = Scene().fix(held);
+          for (const auto& [constrained, motions] : {std::pair{point, 3.0}, {line, 1.0}}) {
+            Scene scene = Scene().fix(constrained);
             if (*touched != '\0') scene.touch(touched);
-            const SetupProblem p = refusal([&] { make_model(policy, mesh, scene, law); });
+            const SetupProblem p = refusal([&] { make_model(policy, mesh, scene, material); });
             CHECK(to_string(p.kind) == "unconstrained");
             CHECK(p.value == motions);
             CHECK(!p.ids.empty());

@@ -89,9 +89,9 @@ class Model {
   void compare(const Force& force, const Force& torque) { rounded_ = force != force_ || torque != torque_; }
   /// Motors stay as hot as they are.
   void reset() {
-    const double heat = heat_;
+    const double thermal_strain = heat_;
     *this = Model(l_);
-    heat_ = heat;
+    heat_ = thermal_strain;
   }
 
  private:

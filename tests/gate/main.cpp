@@ -176,7 +176,7 @@ void check_start() {
 }
 
 /// A steady push of twice the continuous force ends at it; after cooling there is the peak again.
-void check_heat() {
+void check_thermal_strain() {
   ForceLimits limits;
   limits.peak_force = 3.0;
   limits.continuous_force = 1.0;
@@ -195,14 +195,14 @@ void check_heat() {
 }
 
 /// A device that is lost for a while, or whose last state is held: motors cool by the time that went, not twice.
-void check_held_input() {
+void check_constrained_input() {
   ForceLimits limits;
   limits.peak_force = 3.0;
   limits.continuous_force = 1.0;
   for (const bool valid : {false, true}) {
-    ForceGate held(limits), seen(limits);
+    ForceGate constrained(limits), seen(limits);
     const auto both = [&](double newtons, double t) {
-      const double a = held.apply({0.0, 0.0, newtons}, t, t, true, false).force()[2];
+      const double a = constrained.apply({0.0, 0.0, newtons}, t, t, true, false).force()[2];
       const double b = seen.apply({0.0, 0.0, newtons}, t, t, true, false).force()[2];
       return std::abs(a - b);
     };
@@ -210,7 +210,7 @@ void check_held_input() {
     for (; t < 20.0; t += 1e-3) both(3.0, t);  // hot
     const double last = t - 1e-3;
     for (int k = 0; k < 4000; ++k, t += 1e-3) {
-      held.apply(Vector3::Zero(), last, last, valid, false);
+      constrained.apply(Vector3::Zero(), last, last, valid, false);
       seen.apply(Vector3::Zero(), t, t, valid, false);
     }
     double difference = 0.0;  // in what they let through, after both ramps
@@ -227,7 +227,7 @@ void compare(const gate::Limits& chosen, std::uint64_t ticks) {
   gate::Model model(chosen);
   Random r;
   Clock clock;
-  Vector3 wanted = Vector3::Zero(), turning = Vector3::Zero(), before = Vector3::Zero(), turned = Vector3::Zero();
+  Vector3 wanted = Vector3::Zero(), turning = Vector3::Zero(), before = Vector3::Zero(), rotated = Vector3::Zero();
   std::uint64_t wrong_force = 0, wrong_status = 0, not_finite = 0, too_long = 0, too_fast = 0, rendered = 0;
   std::uint64_t warm = 0;
   bool lossy = false;  // for some ticks valid input is rare
@@ -236,7 +236,7 @@ void compare(const gate::Limits& chosen, std::uint64_t ticks) {
       real.reset();
       model.reset();
       before.setZero();
-      turned.setZero();
+      rotated.setZero();
       if (!(real.last_force() == before)) ++wrong_force;
     }
     if (r.below(1000) == 0) lossy = !lossy;
@@ -266,13 +266,13 @@ void compare(const gate::Limits& chosen, std::uint64_t ticks) {
     if (!(out.torque().norm() <= chosen.torque * (1.0 + 1e-12))) ++too_long;
     const bool zeroed = (out.status.bits() & (gate::disconnected | gate::non_finite_force)) != 0;
     if (!zeroed && !((out.force() - before).norm() <= chosen.slew * tick * (1.0 + 1e-12))) ++too_fast;
-    if (!zeroed &&
-        !((out.torque() - turned).norm() <= chosen.slew * tick * (chosen.torque / chosen.peak) * (1.0 + 1e-12) + 1e-15))
+    if (!zeroed && !((out.torque() - rotated).norm() <=
+                     chosen.slew * tick * (chosen.torque / chosen.peak) * (1.0 + 1e-12) + 1e-15))
       ++too_fast;
     if (!out.force().isZero(0.0)) ++rendered;
     if (is_warm(out.force(), chosen)) ++warm;
     before = out.force();
-    turned = out.torque();
+    rotated = out.torque();
   }
   std::printf(
       "%llu ticks, %.0f %% with a force: %llu forces and %llu statuses differ from the model; %llu not finite, "
@@ -294,8 +294,8 @@ int main(int argc, char** argv) {
   check_limits();
   check_defaults();
   check_start();
-  check_heat();
-  check_held_input();
+  check_thermal_strain();
+  check_constrained_input();
   const std::uint64_t ticks = is_long ? static_cast<std::uint64_t>(std::atof(argv[2])) : 1'000'000;
   compare(exact, ticks / 2);
   compare(plain, ticks - ticks / 2);

@@ -6,9 +6,9 @@
 #include <thread>
 
 using namespace palpate;
-using test::ball_radius;
 using test::pad_height;
 using test::ServoSession;
+using test::sphere_radius;
 
 namespace {
 
@@ -103,8 +103,8 @@ TEST_CASE("a column that is not there yet is flagged, and the force stays finite
           "[haptic][columns][extreme]") {
   Sparse asynchronous = make_model(ColumnFill::asynchronous), synchronous = make_model(ColumnFill::synchronous);
   ServoSession session(asynchronous), reference(synchronous);
-  const Vector3 above(0.0137, 0.0159, pad_height + ball_radius + 5e-3),
-      pressed(0.0137, 0.0159, pad_height + ball_radius - 1.5e-3);
+  const Vector3 above(0.0137, 0.0159, pad_height + sphere_radius + 5e-3),
+      pressed(0.0137, 0.0159, pad_height + sphere_radius - 1.5e-3);
   session.tick(above);
   reference.tick(above);
   const bool flagged = session.tick(pressed).status.has(StatusFlag::degraded_model);
@@ -115,7 +115,7 @@ TEST_CASE("a column that is not there yet is flagged, and the force stays finite
   if (!flagged) CHECK(std::abs(f - g) <= 1e-2 * g);  // the thread was faster
 }
 
-TEST_CASE("with less room than vertices near the ball the tick says so and goes on", "[haptic][columns][extreme]") {
+TEST_CASE("with less room than vertices near the sphere the tick says so and goes on", "[haptic][columns][extreme]") {
   Sparse asynchronous = make_model(ColumnFill::asynchronous, 4);
   ServoSession session(asynchronous);
   session.press(2e-3);

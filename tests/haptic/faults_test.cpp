@@ -60,7 +60,7 @@ struct HangingTissue : TissueAdaptor<MovingTissue> {
 TEST_CASE("a tissue's thread that hangs, a device's that is late, and load beside them", "[haptic][soft][faults]") {
   faults::Pad tissue = faults::make_pad(0.01);
   const ServoOptions options = faults::session_options();
-  HapticServo servo(tissue, SphereTool{.radius = faults::ball}, options);
+  HapticServo servo(tissue, SphereTool{.radius = faults::sphere}, options);
   HangingTissue hanging(tissue, 5, 60);
   std::atomic<bool> done{false};
   std::thread load([&] {
@@ -79,7 +79,7 @@ TEST_CASE("a tissue's thread that hangs, a device's that is late, and load besid
     std::this_thread::sleep_for(std::chrono::microseconds(k % 200 == 199 ? 30'000 : 800));
     ToolState state;
     state.time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    state.position = {0.03, 0.03, faults::pad_size[2] + faults::ball - std::min(0.006, 0.02 * state.time)};
+    state.position = {0.03, 0.03, faults::pad_size[2] + faults::sphere - std::min(0.006, 0.02 * state.time)};
     const GatedForce out = servo.tick({&state, 1})[0];
     counters.count(out.status);
     if (k > 0) late += state.time - before_time > 1.5 * limits.period;

@@ -90,7 +90,7 @@ class Source {
 };
 
 struct Count {
-  std::int64_t not_finite = 0, above_peak = 0, slew_broken = 0, not_zero = 0, flags_wrong = 0, turned = 0, at_work = 0;
+  std::int64_t not_finite = 0, above_peak = 0, slew_broken = 0, not_zero = 0, flags_wrong = 0, rotated = 0, at_work = 0;
 };
 
 void check_tick(const ForceLimits& limits, const Input& in, const Vector3& before, const GatedForce& out, Count& bad) {
@@ -110,7 +110,7 @@ void check_tick(const ForceLimits& limits, const Input& in, const Vector3& befor
   if (out.force().norm() > 1e-3 * limits.peak_force) ++bad.at_work;
   if (out.status.has(StatusFlag::saturated) && !out.status.has(StatusFlag::slew_limited) && out.force().norm() > 0.0 &&
       !(cosine(out.force(), in.wanted) >= 1.0 - 1e-12))
-    ++bad.turned;
+    ++bad.rotated;
 }
 
 Count run(const ForceLimits& limits, std::uint64_t seed, int ticks) {
@@ -133,7 +133,7 @@ void check(const Count& bad, int ticks) {
   CHECK(bad.slew_broken == 0);
   CHECK(bad.not_zero == 0);
   CHECK(bad.flags_wrong == 0);
-  CHECK(bad.turned == 0);
+  CHECK(bad.rotated == 0);
   CHECK(bad.at_work > ticks / 20);  // the test would be empty if the gate were shut all the time
 }
 

@@ -14,15 +14,15 @@
 #include "catch.hpp"
 
 using namespace palpate;
-using test::ball_radius;
 using test::pad_height;
+using test::sphere_radius;
 using test::whole_pad;
 
 namespace {
 
 static_assert(!std::is_copy_constructible_v<HapticSession> && !std::is_move_constructible_v<HapticSession>);
 
-constexpr SphereTool ball{.radius = ball_radius};
+constexpr SphereTool sphere{.radius = sphere_radius};
 
 LoopOptions simulated(double seconds) {
   LoopOptions options;
@@ -33,7 +33,7 @@ LoopOptions simulated(double seconds) {
 
 /// Down to `depth` within 50 ms, held after that.
 Trajectory press(double x, double depth) {
-  const double top = pad_height + ball_radius;
+  const double top = pad_height + sphere_radius;
   return trajectory::poke(
       {.from = {x, 0.015, top + 1e-3}, .to = {x, 0.015, top - depth}, .approach = 0.05, .hold = 1e6});
 }
@@ -67,7 +67,7 @@ void wait_until(const auto& holds) {
 TEST_CASE("a session takes limits, stiffness and rate from the device", "[haptic][session]") {
   const DeviceLimits limits{.peak_force = 1.7, .continuous_force = 1.1, .stiffness = 800.0};
   MockDevice stylus = pressing(0.015, 4e-3, limits, 500.0);
-  HapticSession session(stylus, whole_pad(), ball);
+  HapticSession session(stylus, whole_pad(), sphere);
   CHECK(session.rate() == 500.0);
   const LoopReport report = session.run(simulated(1.0));
   CHECK(report.rate == 500.0);
@@ -89,10 +89,10 @@ TEST_CASE("devices with different tools in one session: each within its own limi
           "[haptic][session]") {
   const DeviceLimits weak{.peak_force = 0.3, .continuous_force = 0.25, .stiffness = 300.0};
   const DeviceLimits strong{
-      .peak_force = 8.0, .continuous_force = 4.0, .stiffness = 2000.0, .peak_torque = 0.1, .turning_stiffness = 1.0};
+      .peak_force = 8.0, .continuous_force = 4.0, .stiffness = 2000.0, .peak_torque = 0.1, .rotational_stiffness = 1.0};
   MockDevice left = pressing(0.009, 5e-3, weak), right = pressing(0.021, 5e-3, strong);
-  const CapsuleTool capsule(ball_radius, 4e-3, Vector3::UnitY());
-  HapticSession session(std::tie(left, right), whole_pad(), {ball, capsule});
+  const CapsuleTool capsule(sphere_radius, 4e-3, Vector3::UnitY());
+  HapticSession session(std::tie(left, right), whole_pad(), {sphere, capsule});
   const LoopReport report = session.run(simulated(1.0));
   CHECK(left.reads() == 1000);
   CHECK(right.reads() == 1000);
@@ -117,7 +117,7 @@ TEST_CASE("devices with different tools in one session: each within its own limi
 
 TEST_CASE("a slower device slows a session and softens the coupling of a faster one", "[haptic][session]") {
   MockDevice fast = pressing(0.009, 3e-3), slow = pressing(0.021, 3e-3, {}, 250.0);
-  HapticSession session(std::tie(fast, slow), whole_pad(), {ball, ball});
+  HapticSession session(std::tie(fast, slow), whole_pad(), {sphere, sphere});
   CHECK(session.rate() == 250.0);
   session.run(simulated(1.0));
   const Vector3 stretched = session.servo().proxy(1) - press(0.021, 3e-3)(249.0 / 250.0);
@@ -130,7 +130,7 @@ TEST_CASE("a session refuses what its device does not allow, with value and thre
   MockDevice stylus = pressing(0.015, 1e-3), strong = pressing(0.015, 1e-3, {.peak_force = 8.0, .stiffness = 3000.0});
   const auto refused = [&](const SessionOptions& options, std::int64_t device = 1) {
     const SetupProblem problem = test::refusal([&] {
-      HapticSession session(std::tie(strong, stylus), whole_pad(), {ball, ball}, options);
+      HapticSession session(std::tie(strong, stylus), whole_pad(), {sphere, sphere}, options);
     });
     CHECK(problem.kind == SetupErrorKind::bad_argument);
     CHECK(problem.ids == std::vector<std::int64_t>{device});
@@ -154,7 +154,7 @@ TEST_CASE("a session refuses what its device does not allow, with value and thre
   forces.peak_torque = 0.1;
   CHECK(refused({.force_limits = forces}, 0).threshold == 0.0);
   const auto session = [&](const SessionOptions& options) {
-    HapticSession s(stylus, whole_pad(), ball, options);
+    HapticSession s(stylus, whole_pad(), sphere, options);
     return s.rate();
   };
   const SetupProblem period =
@@ -170,10 +170,10 @@ TEST_CASE("a session refuses what its device does not allow, with value and thre
 TEST_CASE("a session needs one tool per device, and every device once", "[haptic][session]") {
   MockDevice left = pressing(0.01, 1e-3), right = pressing(0.02, 1e-3);
   constexpr auto bad = SetupErrorKind::bad_argument;
-  CHECK_REFUSED(bad, HapticSession(left, whole_pad(), {ball, ball}));
+  CHECK_REFUSED(bad, HapticSession(left, whole_pad(), {sphere, sphere}));
   CHECK_REFUSED(bad, HapticSession(left, whole_pad(), ToolList{}));
-  CHECK_REFUSED(bad, HapticSession(std::tie(left, right), whole_pad(), ball));
-  CHECK_REFUSED(bad, HapticSession(std::tie(left, left), whole_pad(), {ball, ball}));
+  CHECK_REFUSED(bad, HapticSession(std::tie(left, right), whole_pad(), sphere));
+  CHECK_REFUSED(bad, HapticSession(std::tie(left, left), whole_pad(), {sphere, sphere}));
   CHECK_REFUSED(bad, HapticSession(std::tie(), whole_pad(), ToolList{}));
   CHECK_REFUSED(bad, HapticSession(left, whole_pad(), SphereTool{.radius = -1.0}));
 }
@@ -181,19 +181,19 @@ TEST_CASE("a session needs one tool per device, and every device once", "[haptic
 TEST_CASE("a servo of one's own has per-tool limits too", "[haptic][servo]") {
   ServoOptions options;
   options.devices = {{.peak_force = 1.0}, {.peak_force = 2.0, .rate = 500.0}};
-  const HapticServo servo(whole_pad(), {ball, CapsuleTool(ball_radius, 2e-3)}, options);
+  const HapticServo servo(whole_pad(), {sphere, CapsuleTool(sphere_radius, 2e-3)}, options);
   CHECK(servo.limits(0).peak_force == 1.0);
   CHECK(servo.limits(1).peak_force == 2.0);
   for (std::size_t i : {0u, 1u}) CHECK(servo.limits(i).period == 1.0 / 500.0);
-  CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(whole_pad(), ball, options));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(whole_pad(), sphere, options));
   options.devices[1].stiffness = -1.0;
-  const SetupProblem problem = test::refusal([&] { HapticServo(whole_pad(), {ball, ball}, options); });
+  const SetupProblem problem = test::refusal([&] { HapticServo(whole_pad(), {sphere, sphere}, options); });
   CHECK(problem.ids == std::vector<std::int64_t>{1});
 }
 
 TEST_CASE("start, look, stop, start again; the second run begins as the first did", "[haptic][session][timing]") {
   Counting stylus(0.015);
-  HapticSession session(stylus, whole_pad(), ball);
+  HapticSession session(stylus, whole_pad(), sphere);
   CHECK_FALSE(session.running());
   CHECK(session.stop().ticks == 0);
   CHECK(stylus.stops == 0);
@@ -238,7 +238,7 @@ TEST_CASE("a run after another gives the bits of the first", "[haptic][session]"
     }
     void stop() noexcept { inner->stop(); }
   } stylus;
-  HapticSession session(stylus, whole_pad(), ball, {.contact = {.friction = 0.3}});
+  HapticSession session(stylus, whole_pad(), sphere, {.contact = {.friction = 0.3}});
   session.run(simulated(0.2));
   const std::vector<Vector3> first = stylus.forces;
   session.run(simulated(0.2));
@@ -254,7 +254,7 @@ TEST_CASE("a session with a duration ends by itself; devices stop when it is sto
           "[haptic][session][timing]") {
   Counting stylus(0.015);
   {
-    HapticSession session(stylus, whole_pad(), ball);
+    HapticSession session(stylus, whole_pad(), sphere);
     LoopOptions options;
     options.duration = 0.02;
     session.start(options);
@@ -277,7 +277,7 @@ TEST_CASE("a session with a duration ends by itself; devices stop when it is sto
 
 TEST_CASE("senseless runs are refused and leave nothing running", "[haptic][session]") {
   Counting stylus(0.015);
-  HapticSession session(stylus, whole_pad(), ball);
+  HapticSession session(stylus, whole_pad(), sphere);
   constexpr auto bad = SetupErrorKind::bad_argument;
   CHECK_REFUSED(bad, session.run({}));  // nothing would end it
   for (const double duration : {0.0, -1.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
@@ -301,7 +301,7 @@ TEST_CASE("senseless runs are refused and leave nothing running", "[haptic][sess
 
 TEST_CASE("when the second device does not start, the first one is stopped and nothing runs", "[haptic][session]") {
   Counting left(0.01), right(0.015, true), third(0.02);
-  HapticSession session(std::tie(left, right, third), whole_pad(), {ball, ball, ball});
+  HapticSession session(std::tie(left, right, third), whole_pad(), {sphere, sphere, sphere});
   CHECK_REFUSED(SetupErrorKind::unsupported, session.start());
   CHECK_FALSE(session.running());
   CHECK(left.starts == 1);
@@ -332,13 +332,13 @@ TEST_CASE("a stopped session presses nothing any more", "[haptic][session]") {
 TEST_CASE("a hand that feels: simulated devices, unequal, come to rest on the tissue", "[haptic][session]") {
   const auto held = [](SimulatedOptions options, double x) {
     options.hand = SimulatedHand::firm();
-    options.start = Vector3(x, 0.015, pad_height + ball_radius);
+    options.start = Vector3(x, 0.015, pad_height + sphere_radius);
     return options;
   };
   SimulatedDevice left(held(SimulatedOptions::stylus(), 0.009)), right(held(SimulatedOptions::parallel_arm(), 0.021));
   left.push({0.0, 0.0, -0.5});
   right.push({0.0, 0.0, -0.8});
-  HapticSession session(std::tie(left, right), whole_pad(), {ball, ball}, {.limit_energy = true});
+  HapticSession session(std::tie(left, right), whole_pad(), {sphere, sphere}, {.limit_energy = true});
   const LoopReport report = session.run(simulated(2.0));
   CHECK(session.servo().energy(0)->limits().allowance == EnergyLimits::from(left.limits()).allowance);
   CHECK(session.servo().energy(1)->limits().allowance == EnergyLimits::from(right.limits()).allowance);
@@ -366,14 +366,14 @@ TEST_CASE("read, tick and write of several devices allocate nothing", "[haptic][
     std::uint64_t allocations = 1;
   } left(press(0.009, 2e-3));
   MockDevice right = pressing(0.021, 2e-3);
-  HapticSession session(std::tie(left, right), whole_pad(), {ball, CapsuleTool(ball_radius, 3e-3)});
+  HapticSession session(std::tie(left, right), whole_pad(), {sphere, CapsuleTool(sphere_radius, 3e-3)});
   CHECK(session.run(simulated(1.6)).ticks == 1600);
   CHECK(left.allocations == 0);
 }
 
 TEST_CASE("snapshots, statuses and reports print; a snapshot is what a displacement takes", "[haptic][session]") {
   MockDevice left = pressing(0.009, 2e-3), right = pressing(0.021, 2e-3);
-  HapticSession session(std::tie(left, right), whole_pad(), {ball, ball});
+  HapticSession session(std::tie(left, right), whole_pad(), {sphere, sphere});
   const LoopReport report = session.run(simulated(0.5));
   const ServoSnapshot& snapshot = session.snapshot();
   std::ostringstream out;

@@ -26,7 +26,7 @@ ToolState circling(int k, double phase) {
   s.time = 1e-3 * k;
   const double angle = 0.01 * k + phase;
   s.position = {0.015 + 0.004 * std::cos(angle), 0.015 + 0.004 * std::sin(angle),
-                test::pad_height + test::ball_radius - 0.001 * std::min(1.0, 0.01 * k)};
+                test::pad_height + test::sphere_radius - 0.001 * std::min(1.0, 0.01 * k)};
   return s;
 }
 
@@ -44,11 +44,11 @@ Vector3 ticked(PadServo& servo, double phase) {
 
 TEST_CASE("two models in two threads, each with a reader, are two models", "[haptic][threads][D9]") {
   test::Pad a = test::make_pad(), b = test::make_pad("z1", 3e3);
-  PadServo alone_a(a, SphereTool{.radius = test::ball_radius}), alone_b(b, SphereTool{.radius = test::ball_radius});
+  PadServo alone_a(a, SphereTool{.radius = test::sphere_radius}), alone_b(b, SphereTool{.radius = test::sphere_radius});
   const Vector3 expected_a = ticked(alone_a, 0.0), expected_b = ticked(alone_b, 1.0);
   CHECK(expected_a.norm() > 2.0 * expected_b.norm());
 
-  PadServo servo_a(a, SphereTool{.radius = test::ball_radius}), servo_b(b, SphereTool{.radius = test::ball_radius});
+  PadServo servo_a(a, SphereTool{.radius = test::sphere_radius}), servo_b(b, SphereTool{.radius = test::sphere_radius});
   std::atomic<bool> done{false};
   std::atomic<int> torn{0};
   const auto look = [&](PadServo& servo) {  // what a renderer does
@@ -81,7 +81,7 @@ TEST_CASE("sessions end before their tissue, and begin anew", "[haptic][threads]
   for (int round = 0; round < 3; ++round) {
     std::optional<test::Pad> model(test::make_pad());
     {
-      PadServo servo(*model, SphereTool{.radius = test::ball_radius});
+      PadServo servo(*model, SphereTool{.radius = test::sphere_radius});
       MockDevice device(trajectory::poke(
           {.from = {0.015, 0.015, 0.026}, .to = {0.015, 0.015, 0.023}, .approach = 0.05, .hold = 0.02}));
       int calls = 0;

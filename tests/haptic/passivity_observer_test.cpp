@@ -110,15 +110,15 @@ TEST_CASE("slow motion over encoder steps passes to the bit", "[haptic][energy]"
 
 TEST_CASE("a pump is stopped within the stated energy and comes back only as the tank refills", "[haptic][energy]") {
   Tanked<Pump> pump;
-  const double way = 20e-6;  // per tick; so slow that the device's own damping takes next to nothing
+  const double path = 20e-6;  // per tick; so slow that the device's own damping takes next to nothing
   double z = 0.0, most = 0.0;
   for (int i = 0; i < 20'000; ++i) {
-    z += (i / 50) % 2 == 0 ? way : -way;
+    z += (i / 50) % 2 == 0 ? path : -path;
     at(pump, z, 1e-3 * i);
-    const double credit = limits.damping * way * way / 1e-3 * i;
+    const double credit = limits.damping * path * path / 1e-3 * i;
     most = std::max(most, pump.tank.observer().given() - limits.allowance - limits.refill * 1e-3 * i - credit);
   }
-  CHECK(most <= 1.0 * way);
+  CHECK(most <= 1.0 * path);
   CHECK(pump.limited > 10'000);
   // Without the tank: 200 times round, 1 mm and 1 N each.
   CHECK(pump.tank.observer().given() < 0.2 * 0.2);

@@ -93,7 +93,7 @@ TEST_CASE("a blade's force is toughness times edge, and its sweeps lie side by s
   for (std::size_t k = 1; k < tissue.sweeps.size(); ++k) {
     CHECK((tissue.sweeps[k].a0 == tissue.sweeps[k - 1].a1));
     CHECK((tissue.sweeps[k].b0 == tissue.sweeps[k - 1].b1));
-    CHECK(tissue.sweeps[k].area() >= 0.01 * blade.stroke * (1.0 - 1e-9));
+    CHECK(tissue.sweeps[k].area() >= 0.01 * blade.cut_spacing * (1.0 - 1e-9));
   }
 }
 
@@ -214,7 +214,7 @@ TEST_CASE("a tissue that cannot be cut refuses a blade, and a blade a rigid coup
   ServoOptions rigid;
   rigid.coupling_stiffness = infinity;
   CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(tissue, blade, rigid));
-  CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(tissue, BladeTool{.stroke = 0.0}));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(tissue, BladeTool{.cut_spacing = 0.0}));
   CHECK_NOTHROW(HapticSession(stylus, tissue, blade));
 }
 

@@ -15,7 +15,7 @@ using test::ServoSession;
 
 namespace {
 
-using test::ball_radius;
+using test::sphere_radius;
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 /// A gate that lets 0.165 N pass per tick, so that its slew limit has something to do.
@@ -74,15 +74,15 @@ TEST_CASE("1e6 ticks of special and random values give finite forces within the 
   testing::Random random(81);
   Watch watch;
   std::int64_t unflagged = 0, forced_when_unreadable = 0;
-  Vector3 p(0.0137, 0.0159, pad_height + ball_radius);
+  Vector3 p(0.0137, 0.0159, pad_height + sphere_radius);
   for (int i = 0; i < 1'000'000; ++i) {
     ToolState& s = session.states[0];
     const double dice = random.uniform();
     p += random.vector<3>(-1e-4, 1e-4);
-    p = p.cwiseMax(Vector3(5e-3, 5e-3, pad_height + ball_radius - 1.5e-3))
-            .cwiseMin(Vector3(0.025, 0.025, pad_height + ball_radius));
-    const bool calm = i / 200 % 5 == 0;  // else the ramp would never open
-    if (calm || dice < 0.5)
+    p = p.cwiseMax(Vector3(5e-3, 5e-3, pad_height + sphere_radius - 1.5e-3))
+            .cwiseMin(Vector3(0.025, 0.025, pad_height + sphere_radius));
+    const bool energy_bounded = i / 200 % 5 == 0;  // else the ramp would never open
+    if (energy_bounded || dice < 0.5)
       s.position = p;
     else if (dice < 0.8)
       s.position[static_cast<Index>(random.bits() % 3)] = special(random);
@@ -92,11 +92,11 @@ TEST_CASE("1e6 ticks of special and random values give finite forces within the 
       s.position = Vector3(special(random), special(random), special(random));
     s.velocity = Vector3(special(random), nan_value, infinity);
     s.orientation = {special(random), special(random), special(random), special(random)};
-    if (calm || dice < 0.97)
+    if (energy_bounded || dice < 0.97)
       s.time = 1e-3 * i;
     else
       s.time = special(random);
-    s.valid = calm || random.uniform() < 0.98;
+    s.valid = energy_bounded || random.uniform() < 0.98;
     const bool finite = s.position.allFinite() && std::isfinite(s.time);
     const GatedForce f = session.servo.tick(session.states).front();
     watch.look(f);
@@ -191,8 +191,8 @@ TEST_CASE("a jump into the tissue within two radii ends at the static force", "[
   testing::Random random(82);
   int lost = 0, elsewhere = 0, jumps = 0;
   for (int i = 0; i < 200; ++i) {
-    const Vector3 start(random.uniform(8e-3, 22e-3), random.uniform(8e-3, 22e-3), pad_height + ball_radius + 1e-4);
-    const double length = ball_radius * random.uniform(0.2, 1.9);
+    const Vector3 start(random.uniform(8e-3, 22e-3), random.uniform(8e-3, 22e-3), pad_height + sphere_radius + 1e-4);
+    const double length = sphere_radius * random.uniform(0.2, 1.9);
     const Vector3 end =
         start + length * Vector3(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), -1.0).normalized();
     ServoSession jumped(pad), walked(pad);
@@ -211,7 +211,7 @@ TEST_CASE("a jump into the tissue within two radii ends at the static force", "[
   }
   INFO(lost << " lost, " << elsewhere << " elsewhere, of " << jumps);
   CHECK(lost == 0);
-  CHECK(elsewhere <= 4);  // on edges longer than the radius a deep ball has more than one place to rest
+  CHECK(elsewhere <= 4);  // on edges longer than the radius a deep sphere has more than one place to rest
 }
 
 TEST_CASE("a session that starts in the tissue ramps from zero to an outward force", "[haptic][servo][extreme][D3]") {
@@ -222,21 +222,22 @@ TEST_CASE("a session that starts in the tissue ramps from zero to an outward for
     double fall = 1e-3;  // relative loss of force allowed in a tick while it ramps
   };
   const Vector3 up = Vector3::UnitZ();
-  const std::vector<Start> starts{{"half a ball deep", Vector3(0.0137, 0.0159, pad_height + 0.5 * ball_radius), up},
-                                  {"ball's centre on the surface", Vector3(0.0137, 0.0159, pad_height), up},
-                                  {"deep inside", Vector3(0.0137, 0.0159, pad_height - 5e-3), up},
-                                  {"deep inside, between two nodes", Vector3(0.0125, 0.015, pad_height - 5e-3), up},
-                                  {"deep inside, below a node", Vector3(0.015, 0.015, pad_height - 4e-3), up},
-                                  {"on a node", Vector3(0.015, 0.015, pad_height), up},
-                                  {"on an edge of a triangle", Vector3(0.0125, 0.015, pad_height), up},
-                                  {"on an edge of the body", Vector3(0.0, 0.0137, pad_height), Vector3(-1, 0, 1)},
-                                  {"on a corner of the body", Vector3(0.03, 0.03, pad_height), Vector3(1, 1, 1),
-                                   0.08},  // it balances, then slides off: rounding decides how
-                                  {"inside, at the side", Vector3(0.002, 0.0137, 0.011), -Vector3::UnitX()},
-                                  {"in the very middle", Vector3(0.015, 0.015, 0.01), Vector3::Zero()},
-                                  {"on a fixed face", Vector3(0.0137, 0.0159, 0.0), -up},
-                                  {"on a fixed node", Vector3(0.015, 0.015, 0.0), -up},
-                                  {"touching exactly", Vector3(0.0137, 0.0159, pad_height + ball_radius), Vector3::Zero()}};
+  const std::vector<Start> starts{
+      {"half a sphere deep", Vector3(0.0137, 0.0159, pad_height + 0.5 * sphere_radius), up},
+      {"sphere's centre on the surface", Vector3(0.0137, 0.0159, pad_height), up},
+      {"deep inside", Vector3(0.0137, 0.0159, pad_height - 5e-3), up},
+      {"deep inside, between two nodes", Vector3(0.0125, 0.015, pad_height - 5e-3), up},
+      {"deep inside, below a node", Vector3(0.015, 0.015, pad_height - 4e-3), up},
+      {"on a node", Vector3(0.015, 0.015, pad_height), up},
+      {"on an edge of a triangle", Vector3(0.0125, 0.015, pad_height), up},
+      {"on an edge of the body", Vector3(0.0, 0.0137, pad_height), Vector3(-1, 0, 1)},
+      {"on a corner of the body", Vector3(0.03, 0.03, pad_height), Vector3(1, 1, 1),
+       0.08},  // it balances, then slides off: rounding decides how
+      {"inside, at the side", Vector3(0.002, 0.0137, 0.011), -Vector3::UnitX()},
+      {"in the very middle", Vector3(0.015, 0.015, 0.01), Vector3::Zero()},
+      {"on a fixed face", Vector3(0.0137, 0.0159, 0.0), -up},
+      {"on a fixed node", Vector3(0.015, 0.015, 0.0), -up},
+      {"touching exactly", Vector3(0.0137, 0.0159, pad_height + sphere_radius), Vector3::Zero()}};
   for (const Start& start : starts) {
     INFO(start.where);
     std::array<std::vector<Vector3>, 2> runs;
@@ -267,7 +268,7 @@ TEST_CASE("a session that starts beside or below a body whose top can be touched
           "[haptic][servo][extreme][D3]") {
   Pad pad = test::make_pad();
   double worst = 0.0;
-  for (double x = -0.02; x <= -ball_radius; x += 1.7e-3)
+  for (double x = -0.02; x <= -sphere_radius; x += 1.7e-3)
     for (double y : {0.0137, 0.015})
       for (double z = 0.0; z <= pad_height + 0.01; z += 2.3e-3) {
         ServoSession session(pad);
@@ -283,7 +284,7 @@ TEST_CASE("a session that starts beside or below a body whose top can be touched
 
 TEST_CASE("on fixed nodes the force is the coupling's, saturated if that is rigid",
           "[haptic][servo][extreme][D3][D7]") {
-  const Vector3 start(0.0137, 0.0159, -ball_radius - 1e-4);
+  const Vector3 start(0.0137, 0.0159, -sphere_radius - 1e-4);
   for (double k : {500.0, infinity}) {
     ServoOptions options;
     options.coupling_stiffness = k;
@@ -293,7 +294,7 @@ TEST_CASE("on fixed nodes the force is the coupling's, saturated if that is rigi
     session.move(start + Vector3(0, 0, 1.1e-3), 100);
     const GatedForce& f = session.hold(50);
     CHECK(f.force()[2] < 0.0);
-    CHECK(f.force().head<2>().norm() <= 0.3 * f.force().norm());  // the ball lies between the points
+    CHECK(f.force().head<2>().norm() <= 0.3 * f.force().norm());  // the sphere lies between the points
     if (k == 500.0) CHECK(f.force().norm() <= 0.5 * (1.0 + 1e-6));
     if (k == 500.0) CHECK(-f.force()[2] >= 0.3);
     if (k == infinity) CHECK_THAT(f.force().norm(), WithinAbs(3.3, 1e-9));
@@ -326,10 +327,10 @@ TEST_CASE("1e5 ticks of random contact sets: slew kept, contacts bounded", "[hap
     for (std::size_t t : {0u, 1u}) {
       Vector3& p = session.states[t].position;
       const double scale = i / 1000 % 4 == 0 ? 2e-3 : 2e-4;
-      if (i == 0) p = Vector3(0.01 + 0.01 * static_cast<double>(t), 0.015, pad_height + ball_radius);
+      if (i == 0) p = Vector3(0.01 + 0.01 * static_cast<double>(t), 0.015, pad_height + sphere_radius);
       p += random.vector<3>(-scale, scale);
-      p = p.cwiseMax(Vector3(0, 0, pad_height + ball_radius - 1.2e-3))
-              .cwiseMin(Vector3(0.03, 0.03, pad_height + ball_radius + 3e-4));
+      p = p.cwiseMax(Vector3(0, 0, pad_height + sphere_radius - 1.2e-3))
+              .cwiseMin(Vector3(0.03, 0.03, pad_height + sphere_radius + 3e-4));
     }
     session.tick();
     for (std::size_t t : {0u, 1u}) watch[t].look(session.forces[t]);
@@ -418,7 +419,7 @@ TEST_CASE("reads that fail at random: zero at once, ramp afterwards", "[haptic][
     ToolState& s = session.states[0];
     s.valid = random.uniform() < (i / 500 % 2 == 0 ? 0.995 : 0.8);
     if (!s.valid && random.uniform() < 0.5) s.position = Vector3(nan_value, infinity, 1e308);
-    if (s.valid) s.position = Vector3(0.0137, 0.0159, pad_height + ball_radius - 1.5e-3);
+    if (s.valid) s.position = Vector3(0.0137, 0.0159, pad_height + sphere_radius - 1.5e-3);
     session.tick();
     const GatedForce& f = session.forces[0];
     since_failure = s.valid ? since_failure + 1 : 0;

@@ -78,19 +78,20 @@ TEST_CASE("a session that was reset gives the bits of its first run", "[haptic][
   options.grasp_buttons = GENERATE(0u, 1u);
   INFO("friction " << options.contact.friction << ", grasp buttons " << options.grasp_buttons);
   SECTION("a sphere") {
-    HapticServo servo(test::whole_pad(), SphereTool{.radius = test::ball_radius}, options);
+    HapticServo servo(test::whole_pad(), SphereTool{.radius = test::sphere_radius}, options);
     check_replay(servo, 1);
   }
   SECTION("a capsule with torque, and another") {
     options.device.peak_torque = 0.1;
-    options.device.turning_stiffness = 1.0;
+    options.device.rotational_stiffness = 1.0;
     const CapsuleTool capsule(3e-3, 6e-3, Vector3(1.0, 0.0, 0.0));
     HapticServo servo(test::whole_pad(), std::vector<CapsuleTool>{capsule, capsule}, options);
     check_replay(servo, 2);
   }
   SECTION("more contacts than there is room for") {
     options.contact.capacity = 6;
-    HapticServo servo(test::whole_pad(), std::vector<SphereTool>(2, SphereTool{.radius = test::ball_radius}), options);
+    HapticServo servo(test::whole_pad(), std::vector<SphereTool>(2, SphereTool{.radius = test::sphere_radius}),
+                      options);
     check_replay(servo, 2);
   }
 }

@@ -1,4 +1,4 @@
-// What the hand feels when a ball slides over a mesh.
+// What the hand feels when a sphere slides over a mesh.
 #include "contact/servo_session.hpp"
 
 #include "catch.hpp"
@@ -14,7 +14,7 @@ struct Slide {
   bool degraded = false;
 };
 
-/// A ball slid 8 mm, not along a line of the mesh, over a block of 24 x 24 x 12 mm in n x n x n / 2 cells. Rigid
+/// A sphere slid 8 mm, not along a line of the mesh, over a block of 24 x 24 x 12 mm in n x n x n / 2 cells. Rigid
 /// coupling.
 Slide slide(int n, double radius, double depth) {
   Scene scene;

@@ -22,21 +22,21 @@ using test::ServoSession;
 
 namespace {
 
-using test::ball_radius;
+using test::sphere_radius;
 
 }  // namespace
 
 TEST_CASE("press, hold, release: the force rises, stays, and is gone", "[haptic][servo]") {
   Pad pad = test::make_pad();
   ServoSession session(pad);
-  session.tick(Vector3(0.0137, 0.0159, pad_height + ball_radius + 1e-3));
+  session.tick(Vector3(0.0137, 0.0159, pad_height + sphere_radius + 1e-3));
   session.hold(50);
   double before = 0.0;
   for (int i = 0; i <= 100; ++i) {
-    const double z = pad_height + ball_radius + 2e-4 - 2e-5 * i;
+    const double z = pad_height + sphere_radius + 2e-4 - 2e-5 * i;
     const GatedForce& f = session.tick(Vector3(0.0137, 0.0159, z));
     CHECK(f.status.ok());
-    if (z >= pad_height + ball_radius)
+    if (z >= pad_height + sphere_radius)
       CHECK(test::same(f.force(), Vector3::Zero()));
     else
       CHECK(f.force()[2] > before);
@@ -47,7 +47,7 @@ TEST_CASE("press, hold, release: the force rises, stays, and is gone", "[haptic]
   const Vector3 at_once = session.forces[0].force(), held = session.hold(200).force();
   CHECK((held - at_once).norm() <= 2e-3 * held.norm());
   CHECK((session.hold(500).force() - held).norm() <= 1e-9 * held.norm());
-  session.move(Vector3(0.0137, 0.0159, pad_height + ball_radius + 1e-4), 100);
+  session.move(Vector3(0.0137, 0.0159, pad_height + sphere_radius + 1e-4), 100);
   CHECK(test::same(session.hold(3).force(), Vector3::Zero()));
   CHECK(session.servo.read_snapshot().vertex_forces().empty());
   session.press(1.8e-3);
@@ -63,7 +63,7 @@ TEST_CASE("away from the tissue the force is exactly zero", "[haptic][servo]") {
   for (int i = 0; i < 3000; ++i) {
     Vector3 next = p + random.vector<3>(-3e-3, 3e-3);
     const double distance = ((next - half).cwiseAbs() - half).cwiseMax(Vector3::Zero()).norm();
-    if (distance < ball_radius + 1e-6 || next.norm() > 0.1) next = p;
+    if (distance < sphere_radius + 1e-6 || next.norm() > 0.1) next = p;
     p = next;
     const GatedForce& f = session.tick(p);
     if (!test::same(f.force(), Vector3::Zero()) || !test::same(session.servo.contact_force(), Vector3::Zero()))
@@ -89,7 +89,7 @@ TEST_CASE("a tick renders the force of the pose it was given", "[haptic][servo]"
 
 TEST_CASE("the force is the coupling spring between device and proxy, and the proxy is outside", "[haptic][servo]") {
   Pad pad = test::make_pad();
-  const ContactSamples samples(pad.contact_surface(), 0.5 * ball_radius);
+  const ContactSamples samples(pad.contact_surface(), 0.5 * sphere_radius);
   for (double k : {100.0, 500.0, 1e4}) {
     ServoOptions options;
     options.coupling_stiffness = k;
@@ -101,14 +101,15 @@ TEST_CASE("the force is the coupling spring between device and proxy, and the pr
       CHECK((f - k * stretch).norm() <= 1e-5 * f.norm());
       CHECK(f[2] <= k * 1.5e-3);
       CHECK(test::smallest_gap(pad, samples, session.servo.read_snapshot(),
-                               pad.to_world().inverse() * session.servo.proxy(), ball_radius) >= -1e-5 * ball_radius);
+                               pad.to_world().inverse() * session.servo.proxy(),
+                               sphere_radius) >= -1e-5 * sphere_radius);
     }
   }
 }
 
 TEST_CASE("near an edge of a body that can be touched all over no contact point is left out", "[haptic][servo]") {
   Pad& pad = test::whole_pad();
-  const ContactSamples samples(pad.contact_surface(), 0.5 * ball_radius);
+  const ContactSamples samples(pad.contact_surface(), 0.5 * sphere_radius);
   ServoSession session(pad);
   for (double x : {0.0, 5e-4, 1e-3, 2e-3, 4e-3}) {
     session.tick(Vector3(x, 0.015, 0.06));
@@ -117,7 +118,7 @@ TEST_CASE("near an edge of a body that can be touched all over no contact point 
     INFO("x " << x);
     CHECK(session.servo.contact_force()[2] > 0.01);
     CHECK(test::smallest_gap(pad, samples, session.servo.read_snapshot(),
-                             pad.to_world().inverse() * session.servo.proxy(), ball_radius) >= -1e-5 * ball_radius);
+                             pad.to_world().inverse() * session.servo.proxy(), sphere_radius) >= -1e-5 * sphere_radius);
   }
 }
 
@@ -126,7 +127,7 @@ TEST_CASE("two tools: alone when far apart, felt by each other when near", "[hap
   scene.fix("z0").touch("z1");
   Pad slab(box_tet4(Vector3(0.12, 0.02, 0.01), {24, 4, 2}, BoxSplit::six), scene,
            LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.3});
-  const Vector3 left(0.015, 0.0093, 0.01 + ball_radius + 1e-4), right(0.105, 0.0107, 0.01 + ball_radius + 1e-4),
+  const Vector3 left(0.015, 0.0093, 0.01 + sphere_radius + 1e-4), right(0.105, 0.0107, 0.01 + sphere_radius + 1e-4),
       down(0, 0, -1.1e-3);
   const auto run = [&](const Vector3& a, const Vector3& b, bool press_a, bool press_b) {
     ServoSession session(slab, {}, 2);
@@ -153,7 +154,7 @@ TEST_CASE("two tools: alone when far apart, felt by each other when near", "[hap
 
 TEST_CASE("tools in swapped order give swapped forces", "[haptic][servo]") {
   Pad pad = test::make_pad();
-  const Vector3 a(0.01, 0.011, pad_height + ball_radius), b(0.021, 0.019, pad_height + ball_radius);
+  const Vector3 a(0.01, 0.011, pad_height + sphere_radius), b(0.021, 0.019, pad_height + sphere_radius);
   std::array<std::array<Vector3, 2>, 2> force;
   for (std::size_t swapped : {0u, 1u}) {
     ServoSession session(pad, {}, 2);
@@ -169,15 +170,15 @@ TEST_CASE("tools in swapped order give swapped forces", "[haptic][servo]") {
 }
 
 TEST_CASE("turning model and tools together turns the forces", "[haptic][servo][M2]") {
-  Pad pad = test::make_pad(), turned = test::make_pad();
+  Pad pad = test::make_pad(), rotated = test::make_pad();
   testing::Random random(72);
   for (int round = 0; round < 3; ++round) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.linear() = testing::random_rotation(random);
     pose.translation() = random.vector<3>(-0.3, 0.3);
-    turned.set_pose(pose);
-    ServoSession plain(pad), other(turned);
-    const Vector3 start(0.0137, 0.0159, pad_height + ball_radius + 5e-4);
+    rotated.set_pose(pose);
+    ServoSession plain(pad), other(rotated);
+    const Vector3 start(0.0137, 0.0159, pad_height + sphere_radius + 5e-4);
     double worst = 0.0, largest = 0.0, worst_proxy = 0.0;
     for (int i = 0; i < 600; ++i) {
       const Vector3 p = start + Vector3(1e-5 * std::max(0, i - 200), 0, -1e-5 * std::min(i, 200));
@@ -188,7 +189,7 @@ TEST_CASE("turning model and tools together turns the forces", "[haptic][servo][
     }
     CHECK(largest > 0.05);
     CHECK(worst <= 1e-6 * largest);
-    CHECK(worst_proxy <= 1e-6 * ball_radius);
+    CHECK(worst_proxy <= 1e-6 * sphere_radius);
   }
 }
 
@@ -199,7 +200,8 @@ TEST_CASE("compliance in float gives the forces of double to 1e-4", "[haptic][se
   ServoSession in_float(single);
   double worst = 0.0, largest = 0.0;
   for (int i = 0; i < 600; ++i) {
-    const Vector3 p(0.0137 + 1e-5 * std::max(0, i - 200), 0.0159, pad_height + ball_radius + 5e-4 - 1e-5 * std::min(i, 200));
+    const Vector3 p(0.0137 + 1e-5 * std::max(0, i - 200), 0.0159,
+                    pad_height + sphere_radius + 5e-4 - 1e-5 * std::min(i, 200));
     const Vector3 f = in_double.tick(p).force();
     worst = std::max(worst, (f - in_float.tick(p).force()).norm());
     largest = std::max(largest, f.norm());
@@ -217,7 +219,8 @@ TEST_CASE("solvers that make compliance when needed give the same forces", "[hap
   ServoSession lazy_dense(dense);
   double worst = 0.0, largest = 0.0;
   for (int i = 0; i < 600; ++i) {
-    const Vector3 p(0.0137 + 1e-5 * std::max(0, i - 200), 0.0159, pad_height + ball_radius + 5e-4 - 1e-5 * std::min(i, 200));
+    const Vector3 p(0.0137 + 1e-5 * std::max(0, i - 200), 0.0159,
+                    pad_height + sphere_radius + 5e-4 - 1e-5 * std::min(i, 200));
     const Vector3 f = reference.tick(p).force();
     worst = std::max({worst, (f - lazy.tick(p).force()).norm(), (f - lazy_dense.tick(p).force()).norm()});
     largest = std::max(largest, f.norm());
@@ -244,7 +247,7 @@ TEST_CASE("static ticks of any length give the same static force", "[haptic][ser
 
 TEST_CASE("another way to the same place ends at the same force", "[haptic][servo]") {
   Pad pad = test::make_pad();
-  const Vector3 end(0.0137, 0.0159, pad_height + ball_radius - 1e-3);
+  const Vector3 end(0.0137, 0.0159, pad_height + sphere_radius - 1e-3);
   ServoSession straight(pad), around(pad);
   straight.press(1e-3);
   straight.hold(50);
@@ -261,12 +264,12 @@ TEST_CASE("two runs are the same bit by bit", "[haptic][servo]") {
     ServoSession session(pad, {}, 2);
     testing::Random random(73);
     std::vector<Vector3> forces;
-    Vector3 p(0.012, 0.012, pad_height + ball_radius), q(0.02, 0.02, pad_height + ball_radius);
+    Vector3 p(0.012, 0.012, pad_height + sphere_radius), q(0.02, 0.02, pad_height + sphere_radius);
     for (int i = 0; i < 2000; ++i) {
       p += random.vector<3>(-2e-4, 2e-4);
       q += random.vector<3>(-2e-4, 2e-4);
-      p[2] = std::clamp(p[2], pad_height + ball_radius - 2e-3, pad_height + ball_radius + 1e-3);
-      q[2] = std::clamp(q[2], pad_height + ball_radius - 2e-3, pad_height + ball_radius + 1e-3);
+      p[2] = std::clamp(p[2], pad_height + sphere_radius - 2e-3, pad_height + sphere_radius + 1e-3);
+      q[2] = std::clamp(q[2], pad_height + sphere_radius - 2e-3, pad_height + sphere_radius + 1e-3);
       session.states[0].position = p;
       session.states[1].position = q;
       session.tick();
@@ -293,16 +296,16 @@ TEST_CASE("a replayed recording gives the recorded forces bit by bit", "[haptic]
                  {.kind = Kind::teleport, .first = 1300, .count = 3, .offset = Vector3(0.2, 0, 0)},
                  {.kind = Kind::stall, .first = 1600, .seconds = 0.05}};
   trajectory::PressDragRelease path;
-  path.above = Vector3(0.011, 0.0137, pad_height + ball_radius + 5e-3);
-  path.pressed = Vector3(0.011, 0.0137, pad_height + ball_radius - 2e-3);
-  path.dragged = Vector3(0.021, 0.0159, pad_height + ball_radius - 2e-3);
+  path.above = Vector3(0.011, 0.0137, pad_height + sphere_radius + 5e-3);
+  path.pressed = Vector3(0.011, 0.0137, pad_height + sphere_radius - 2e-3);
+  path.dragged = Vector3(0.021, 0.0159, pad_height + sphere_radius - 2e-3);
   MockDevice stylus(trajectory::press_drag_release(path), mock);
   Recorder recorder(stylus, 5000);
   LoopOptions loop;
   loop.paced = false;
   loop.duration = 4.0;
   {
-    HapticServo servo(pad, SphereTool{.radius = ball_radius});
+    HapticServo servo(pad, SphereTool{.radius = sphere_radius});
     run_haptic_loop(recorder, servo, loop);
   }
   const std::string file = (std::filesystem::temp_directory_path() / "palpate_servo_test_recording.csv").string();
@@ -310,7 +313,7 @@ TEST_CASE("a replayed recording gives the recorded forces bit by bit", "[haptic]
   ReplayDevice replay(file);
   std::remove(file.c_str());
   REQUIRE(replay.recorded().size() == 4000);
-  HapticServo servo(pad, SphereTool{.radius = ball_radius});
+  HapticServo servo(pad, SphereTool{.radius = sphere_radius});
   int different = 0, at_work = 0;
   for (const RecordedTick& tick : replay.recorded()) {
     const ToolState state = replay.read();
@@ -368,7 +371,7 @@ TEST_CASE("contacts of a turned model are in the world, on the vertices that car
   pad.set_pose(pose);
   ServoSession session(pad);
   for (int i = 0; i < 250; ++i)
-    session.tick(pose * Vector3(0.0137, 0.0159, pad_height + ball_radius + 5e-4 - 1e-5 * std::min(i, 200)));
+    session.tick(pose * Vector3(0.0137, 0.0159, pad_height + sphere_radius + 5e-4 - 1e-5 * std::min(i, 200)));
   const std::span<const ToolContact> contacts = session.servo.contacts();
   const ServoSnapshot& snapshot = session.servo.read_snapshot();
   REQUIRE(!contacts.empty());
@@ -380,7 +383,7 @@ TEST_CASE("contacts of a turned model are in the world, on the vertices that car
     sum += c.force * c.normal + c.friction;
     Vector3 point = Vector3::Zero();
     for (std::size_t a = 0; a < 3; ++a) point += c.weights[a] * x[static_cast<std::size_t>(c.vertices[a])];
-    CHECK((c.point - pad.to_world() * point).norm() <= 1e-3 * ball_radius);  // linearised at the end of the tick
+    CHECK((c.point - pad.to_world() * point).norm() <= 1e-3 * sphere_radius);  // linearised at the end of the tick
     CHECK(((session.servo.proxy() - c.point).normalized() - c.normal).norm() <= 0.05);
   }
   for (const VertexForce& f : snapshot.vertex_forces()) on_vertices += f.force.in_world(pad.to_world());

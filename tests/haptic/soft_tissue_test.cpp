@@ -20,7 +20,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-constexpr double ball = 0.012;
+constexpr double sphere = 0.012;
 const Vector3 size(0.06, 0.06, 0.03);
 
 Mesh<Tet4> pad() {
@@ -42,11 +42,11 @@ ServoOptions device() {
   return o;
 }
 
-/// A ball over the middle of the pad, `depth` below first touch, at tick k of 1 kHz.
+/// A sphere over the middle of the pad, `depth` below first touch, at tick k of 1 kHz.
 ToolState above(int k, double depth, double aside = 0.0) {
   ToolState s;
   s.time = 1e-3 * k;
-  s.position = {0.5 * size[0] + aside, 0.5 * size[1], size[2] + ball - depth};
+  s.position = {0.5 * size[0] + aside, 0.5 * size[1], size[2] + sphere - depth};
   return s;
 }
 
@@ -60,7 +60,7 @@ struct Session {
 
 template <class Depth>
 Session press(MovingTissue& tissue, int ticks, Depth depth, double from = 0.0) {
-  HapticServo servo(tissue, SphereTool{.radius = ball}, device());
+  HapticServo servo(tissue, SphereTool{.radius = sphere}, device());
   Session s;
   double next = 0.0;
   Vector3 last = Vector3::Zero();
@@ -112,7 +112,7 @@ TEST_CASE("a slight touch feels as linear elasticity does", "[haptic][soft]") {
   Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
   const double soft = press(tissue, 600, slight).force[2];
   HapticFEModel<Tet4, LinearElastic> linear(pad(), pad_scene(), LinearElastic{5e3, 0.45, 1000.0});
-  HapticServo servo(linear, SphereTool{.radius = ball}, device());
+  HapticServo servo(linear, SphereTool{.radius = sphere}, device());
   for (int k = 0; k < 600; ++k) servo.tick({std::array{above(k, slight(1e-3 * k))}});
   CHECK_THAT(soft, WithinRel(servo.contact_force()[2], 0.02));
 }
@@ -125,7 +125,7 @@ TEST_CASE("a tissue that is let go comes back, and a stalled one stays elastic",
   CHECK(tissue.motion().displacement().norm() <= 0.01 * pressed);
 
   for (int k = 0; k < 50; ++k) tissue.advance();
-  HapticServo servo(tissue, SphereTool{.radius = ball}, device());
+  HapticServo servo(tissue, SphereTool{.radius = sphere}, device());
   double work = 0.0, depth = -0.001, most = 0.0;
   for (int k = 0; k < 400; ++k) {  // 0.4 s without a step: in, hold, out
     const double next = k < 100 ? depth + 5e-5 : k < 300 ? depth : depth - 5e-5;
@@ -161,7 +161,7 @@ TEST_CASE("neither a tick nor a step of the tissue allocates", "[haptic][soft][a
     return;
   }
   Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
-  HapticServo servo(tissue, SphereTool{.radius = ball}, device());
+  HapticServo servo(tissue, SphereTool{.radius = sphere}, device());
   const testing::AllocationScope scope;
   for (int k = 0; k < 300; ++k) {
     if (k % 10 == 0) tissue.advance();
@@ -174,7 +174,7 @@ TEST_CASE("neither a tick nor a step of the tissue allocates", "[haptic][soft][a
 
 TEST_CASE("thread and ticks exchange without waiting", "[haptic][soft]") {
   Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.005));
-  HapticServo servo(tissue, SphereTool{.radius = ball}, device());
+  HapticServo servo(tissue, SphereTool{.radius = sphere}, device());
   BackgroundWorker worker(tissue);
   double most = 0.0;
   for (int k = 0; k < 600; ++k) {
@@ -215,16 +215,16 @@ TEST_CASE("what a tissue refuses is named as in the mesh as given", "[haptic][so
   for (auto& e : mesh.elements)
     for (NodeId& i : e) ++i;
   mesh.groups = {};
-  const auto refused = [&](const Scene& scene, const NeoHookean& law, double step = 0.01) {
-    return test::refusal([&] { Soft<NeoHookean>(mesh, scene, law, {}, with_step(step)); });
+  const auto refused = [&](const Scene& scene, const NeoHookean& material, double step = 0.01) {
+    return test::refusal([&] { Soft<NeoHookean>(mesh, scene, material, {}, with_step(step)); });
   };
-  const NeoHookean law{5e3, 0.45, 1000.0};
+  const NeoHookean material{5e3, 0.45, 1000.0};
   const std::vector<NodeId> edge{1, 10, 19}, bottom{1, 2, 3, 4, 5, 6, 7, 8, 9};
-  const SetupProblem loose = refused(Scene().fix(edge).touch("surface"), law);
+  const SetupProblem loose = refused(Scene().fix(edge).touch("surface"), material);
   CHECK_THAT(loose.what, test::contains("through (3, -2, 0.01)"));
   CHECK(loose.ids.front() == 1);
   const std::vector<NodeId> one{5};
-  const SetupProblem twice = refused(Scene().fix(bottom).prescribe(one, {1e-3, 0.0, 0.0}).touch("surface"), law);
+  const SetupProblem twice = refused(Scene().fix(bottom).prescribe(one, {1e-3, 0.0, 0.0}).touch("surface"), material);
   CHECK(to_string(twice.kind) == "conflicting_conditions");
   CHECK(twice.ids == std::vector<std::int64_t>{5});
   const SetupProblem light = refused(Scene().fix(bottom).touch("surface"), {5e3, 0.45, 0.0});
@@ -281,10 +281,10 @@ TEST_CASE("the compliance is that of the settled body", "[haptic][soft]") {
 TEST_CASE("a tissue with memory that is held relaxes to the slow equilibrium, whatever the step",
           "[haptic][soft][viscous]") {
   const NeoHookean fast{5e3, 0.45, 1000.0};
-  const Viscoelastic<NeoHookean, 1> law{fast, {{{0.6, 0.3}}}};
+  const Viscoelastic<NeoHookean, 1> material{fast, {{{0.6, 0.3}}}};
   std::vector<double> early, late;
   for (const double h : {0.02, 0.01, 0.005}) {
-    Soft<Viscoelastic<NeoHookean, 1>> tissue(pad(), pad_scene(), law, {}, with_step(h));
+    Soft<Viscoelastic<NeoHookean, 1>> tissue(pad(), pad_scene(), material, {}, with_step(h));
     early.push_back(press(tissue, 500, ramp).force[2]);
     const Session s = press(tissue, 4000, [](double) { return ramp(1.0); });
     late.push_back(s.force[2]);
@@ -301,8 +301,8 @@ TEST_CASE("a tissue with memory that is held relaxes to the slow equilibrium, wh
 
 TEST_CASE("small strain with memory is felt as well", "[haptic][soft][viscous]") {
   const LinearElastic fast{5e3, 0.45, 1000.0};
-  const Viscoelastic<LinearElastic, 1> law{fast, {{{0.6, 0.3}}}};
-  Soft<Viscoelastic<LinearElastic, 1>> tissue(pad(), pad_scene(), law, {}, with_step(0.01));
+  const Viscoelastic<LinearElastic, 1> material{fast, {{{0.6, 0.3}}}};
+  Soft<Viscoelastic<LinearElastic, 1>> tissue(pad(), pad_scene(), material, {}, with_step(0.01));
   Soft<LinearElastic> elastic(pad(), pad_scene(), fast, {}, with_step(0.01));
   const auto slight = [](double t) { return std::min(0.001, 0.05 * t); };
   const double at_first = press(tissue, 60, slight).force[2], unrelaxed = press(elastic, 2000, slight).force[2];

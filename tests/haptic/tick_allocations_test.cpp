@@ -13,7 +13,7 @@ using test::pad_height;
 
 namespace {
 
-using test::ball_radius;
+using test::sphere_radius;
 
 struct Seen {
   std::uint64_t allocations = 0, frees = 0;
@@ -24,7 +24,7 @@ struct Seen {
 /// Presses, drags, releases, jumps, and sends NaN and failed reads in between, over and over.
 template <class Model>
 Seen abuse(Model& model, int ticks, const ServoOptions& options) {
-  HapticServo servo(model, std::vector<SphereTool>(2, SphereTool{.radius = ball_radius}), options);
+  HapticServo servo(model, std::vector<SphereTool>(2, SphereTool{.radius = sphere_radius}), options);
   std::array<ToolState, 2> states;
   testing::Random random(91);
   Seen seen;
@@ -32,12 +32,12 @@ Seen abuse(Model& model, int ticks, const ServoOptions& options) {
   for (int i = 0; i < ticks; ++i) {
     const int phase = i % 1000;
     const double drag = 1e-5 * phase;
-    const double z = pad_height + ball_radius + 3e-4 -
+    const double z = pad_height + sphere_radius + 3e-4 -
                      (phase < 200   ? 1e-5 * phase
                       : phase < 800 ? 2e-3
                                     : 2e-3 - 1e-5 * (phase - 800));
     states[0].position = Vector3(0.01 + drag, 0.0137, z);
-    states[1].position = Vector3(0.02, 0.02, pad_height + ball_radius + (phase > 400 && phase < 500 ? -5e-4 : 2e-3));
+    states[1].position = Vector3(0.02, 0.02, pad_height + sphere_radius + (phase > 400 && phase < 500 ? -5e-4 : 2e-3));
     for (ToolState& s : states) {
       s.time = 1e-3 * i;
       s.valid = true;

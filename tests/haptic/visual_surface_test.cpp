@@ -29,7 +29,7 @@ Mesh<Tet4> block() {
   return box_tet4({0.02, 0.02, 0.01}, {6, 6, 3});
 }
 Scene scene() {
-  return Scene().fix("z0").touch("z1").see("z1");
+  return Scene().fix("z0").touch("z1").render("z1");
 }
 
 ServoOptions stiff() {
@@ -84,14 +84,14 @@ TEST_CASE("the surface of the body is drawn where the body is", "[model][visual]
   model.displacement_with(servo.read_snapshot().vertex_forces(), u);
   double lowest = 0.01;
   for (std::size_t i = 0; i < 49; ++i) {
-    const NodeId node = model.seen_nodes()[i];
+    const NodeId node = model.rendered_nodes()[i];
     CHECK((at(positions, i) - (model.rest_position(node) + u.segment<3>(3 * Index{node}))).norm() <= 2e-9);
     CHECK(std::abs(at(normals, i).norm() - 1.0) <= 1e-6);
     CHECK(normals[3 * i + 2] > 0.5F);
     lowest = std::min(lowest, at(positions, i).z());
   }
   CHECK(lowest < 0.01 - 0.8e-3);
-  // no point sinks into the ball
+  // no point sinks into the sphere
   for (std::size_t i = 0; i < 49; ++i) CHECK((at(positions, i) - servo.proxy()).norm() >= tool_radius - 1e-5);
 }
 

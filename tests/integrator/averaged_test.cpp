@@ -26,9 +26,9 @@ VectorX some_displacement(Index dofs, double amount) {
 /// Deflection of the tip of a beam 4 x 1 x 1 under a small force, at rest.
 template <class Force>
 double tip_deflection(double nu) {
-  const NeoHookean law{.youngs_modulus = 1.0, .poisson_ratio = nu, .density = 1.0};
+  const NeoHookean material{.youngs_modulus = 1.0, .poisson_ratio = nu, .density = 1.0};
   const auto body = make_hyperelastic_body<Tet4, NeoHookean>(
-      box_tet4(Vector3(4.0, 1.0, 1.0), {16, 4, 4}, BoxSplit::six), std::vector<NeoHookean>{law});
+      box_tet4(Vector3(4.0, 1.0, 1.0), {16, 4, 4}, BoxSplit::six), std::vector<NeoHookean>{material});
   const Mesh<Tet4>& mesh = body.rest.mesh;
   ExplicitOptions options;
   options.damping = 0.12;  // twice the lowest frequency of the beam

@@ -34,8 +34,8 @@ double crossing(const std::vector<double>& values, double dt, int n) {
 }  // namespace
 
 TEST_CASE("a wave in a bar with dt = dx / c is d'Alembert's to the last digits", "[integrator][oracle]") {
-  const LinearElastic law{1e6, 0.0, 1000.0};
-  const Body<Hex8> body = make_body(box_hex8(Vector3(1.0, 0.1, 0.1), {100, 1, 1}), law);
+  const LinearElastic material{1e6, 0.0, 1000.0};
+  const Body<Hex8> body = make_body(box_hex8(Vector3(1.0, 0.1, 0.1), {100, 1, 1}), material);
   const Mesh<Hex8>& mesh = body.mesh;
   const double dt = 0.01 / std::sqrt(1e6 / 1000.0);
   ExplicitOptions options;
@@ -67,14 +67,14 @@ TEST_CASE("a wave in a bar with dt = dx / c is d'Alembert's to the last digits",
 TEMPLATE_TEST_CASE("a free cube swings in its Lame mode", "[integrator]", Hex8, Tet10) {
   // omega L sqrt(rho/mu) = pi sqrt(2) at any nu; mu = 1, rho = 1
   const double nu = 0.3;
-  const LinearElastic law{2.0 * (1.0 + nu), nu, 1.0};
+  const LinearElastic material{2.0 * (1.0 + nu), nu, 1.0};
   const auto frequency = [&](int n) {
     Mesh<TestType> mesh;
     if constexpr (TestType::nodes == 8)
       mesh = box_hex8(Vector3(1.0, 1.0, 1.0), {n, n, n});
     else
       mesh = box_tet10(Vector3(1.0, 1.0, 1.0), {n, n, n});
-    const Body<TestType> body = make_body(std::move(mesh), law);
+    const Body<TestType> body = make_body(std::move(mesh), material);
     auto motion = linear_motion<CentralDifference>(body, all_dofs(body.mesh));
     const VectorX mode = velocity_field(body.mesh, lame_mode);
     motion.set(-1e-3 * mode, VectorX::Zero(mode.size()));

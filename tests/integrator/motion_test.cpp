@@ -202,9 +202,9 @@ TEST_CASE("energy from nowhere stops the motion at its last good state", "[integ
   CHECK(status.has(StatusFlag::energy_grew));
   CHECK(motion.state().displacement.allFinite());
   CHECK(motion.kinetic_energy() + motion.stored_energy() <= 100.0 * energy);
-  const VectorX held = motion.state().displacement;
+  const VectorX constrained = motion.state().displacement;
   CHECK(motion.step(dt).has(StatusFlag::energy_grew));
-  CHECK(motion.state().displacement == held);
+  CHECK(motion.state().displacement == constrained);
   motion.set(still, still);
   CHECK(motion.step(1e-6).ok());
 

@@ -20,9 +20,9 @@ namespace test {
 
 inline const NeoHookean soft{.youngs_modulus = 3e3, .poisson_ratio = 0.45, .density = 1000.0};
 
-inline HyperelasticBody<Tet4, NeoHookean> soft_block(int n, NeoHookean law = soft) {
+inline HyperelasticBody<Tet4, NeoHookean> soft_block(int n, NeoHookean material = soft) {
   return make_hyperelastic_body<Tet4, NeoHookean>(box_tet4(Vector3(0.1, 0.1, 0.1), {n, n, n}, BoxSplit::six),
-                                                  std::vector<NeoHookean>{law});
+                                                  std::vector<NeoHookean>{material});
 }
 
 /// All dofs of the nodes for which is_free(position) holds.

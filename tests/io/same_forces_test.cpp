@@ -29,7 +29,7 @@ struct TemporaryFolder {
 
 /// What holds the organ and what may be touched, in the words of a format.
 struct Conditions {
-  Selection held, touched;
+  Selection constrained, touched;
 };
 
 /// A format: the file to read, and how it calls the two groups.
@@ -77,7 +77,7 @@ std::vector<Vector3> press(const std::string& path, const Conditions& conditions
   const auto mesh = io::read_mesh<Tet4>(path);
   REQUIRE(mesh.region_count() == 2);
   Scene scene;
-  scene.fix(conditions.held).touch(conditions.touched);
+  scene.fix(conditions.constrained).touch(conditions.touched);
   const LinearElastic soft{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0},
       stiff{.youngs_modulus = 50e3, .poisson_ratio = 0.45, .density = 1060.0};
   Organ organ(mesh, scene, {{mesh.region_name(0), soft}, {mesh.region_name(1), stiff}});

@@ -72,7 +72,7 @@ TEST_CASE("nested dissection orders every node once, kept ones last", "[linear][
 }
 
 TEST_CASE("the dofs of a node move together", "[linear][ordering]") {
-  const SparseCase c = ball_case(3);
+  const SparseCase c = sphere_case(3);
   const CholeskyAnalysis analysis(c.lower, c.layout);
   const detail::NodeVector& place = analysis.tree().place_of_dof;
   for (std::size_t dof = 1; dof < c.layout.node_of_dof.size(); ++dof)
@@ -86,7 +86,7 @@ TEST_CASE("the dofs of a node move together", "[linear][ordering]") {
 TEST_CASE("a separator separates", "[linear][ordering]") {
   const bool refined = GENERATE(false, true);
   for (bool coordinates : {true, false}) {
-    SparseCase c = ball_case(5);
+    SparseCase c = sphere_case(5);
     if (!coordinates) c.layout.positions.clear();
     const NodeGraph g = node_graph(c.lower, c.layout);
     detail::PartLists lists;
@@ -192,7 +192,7 @@ TEST_CASE("fronts cover the matrix and know their rows", "[linear][ordering]") {
 }
 
 TEST_CASE("the elimination order keeps fill low", "[linear][ordering]") {
-  const SparseCase c = ball_case(6);
+  const SparseCase c = sphere_case(6);
   Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> minimum_degree;
   minimum_degree.analyzePattern(c.lower);
   minimum_degree.factorize(c.lower);
@@ -202,7 +202,7 @@ TEST_CASE("the elimination order keeps fill low", "[linear][ordering]") {
 }
 
 TEST_CASE("layouts that do not fit are refused", "[linear][ordering]") {
-  const SparseMatrix lower = ball_stiffness(1);
+  const SparseMatrix lower = sphere_stiffness(1);
   const auto n = static_cast<std::size_t>(lower.rows());
   DofLayout layout;
   SECTION("too few nodes") {

@@ -31,11 +31,11 @@ void check_all_refuse(const MatrixX& m) {
 
 /// Stiffness of a free body: singular, six rigid motions.
 MatrixX free_body() {
-  const Body<Tet4> body = body_of(ball_tet4(0.05, 2), {liver});
+  const Body<Tet4> body = body_of(sphere_tet4(0.05, 2), {liver});
   return full(free_matrix(assemble_stiffness<Tet4>(body, {}), conditions_of(body.mesh, Scene())));
 }
 
-const MatrixX good = full(ball_stiffness(2));
+const MatrixX good = full(sphere_stiffness(2));
 
 }  // namespace
 
@@ -65,7 +65,7 @@ TEST_CASE("infinity is refused", "[linear][extreme][C3]") {
 }
 
 TEST_CASE("an indefinite matrix is refused, Eigen's LDLT says Success", "[linear][extreme][A1]") {
-  const MatrixX m = full(ball_stiffness(2, {5e3, 0.6, 0.0}));  // Poisson ratio beyond one half
+  const MatrixX m = full(sphere_stiffness(2, {5e3, 0.6, 0.0}));  // Poisson ratio beyond one half
   CHECK(eigen_says(m).sparse_ldlt == Eigen::Success);
   CHECK(eigen_says(m).dense_ldlt == Eigen::Success);
   check_all_refuse(m);
@@ -123,10 +123,10 @@ TEST_CASE("side by side with Eigen", "[.][table]") {
   zero_row.row(11).setZero();
   zero_row.col(11).setZero();
   const std::vector<std::pair<const char*, MatrixX>> matrices{
-      {"ball, held", good},
+      {"sphere, held", good},
       {"NaN in one entry", with_nan},
       {"infinity on the diagonal", with_infinity},
-      {"Poisson ratio 0.6", full(ball_stiffness(2, {5e3, 0.6, 0.0}))},
+      {"Poisson ratio 0.6", full(sphere_stiffness(2, {5e3, 0.6, 0.0}))},
       {"negative definite", -good},
       {"free body", free_body()},
       {"one row zero", zero_row},

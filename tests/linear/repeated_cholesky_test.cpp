@@ -38,7 +38,7 @@ TEST_CASE("a repeated factorisation gives the bits of a single one", "[linear][r
 
 TEST_CASE("a repeated factorisation says when there is no factor, and goes on with the next matrix",
           "[linear][repeated_cholesky]") {
-  const SparseCase c = ball_case(3);
+  const SparseCase c = sphere_case(3);
   const CholeskyAnalysis analysis(c.lower, c.layout);
   RepeatedCholesky repeated(analysis);
   const Index last = c.lower.rows() - 1;
@@ -61,7 +61,7 @@ TEST_CASE("factorising again and solving do not allocate", "[linear][repeated_ch
     WARN("allocations are not counted in this build");
     return;
   }
-  const SparseCase c = ball_case(3);
+  const SparseCase c = sphere_case(3);
   RepeatedCholesky repeated(CholeskyAnalysis(c.lower, c.layout));
   VectorX x = random_vector(repeated.size(), 9);
   const testing::AllocationScope scope;

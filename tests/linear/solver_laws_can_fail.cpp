@@ -14,7 +14,7 @@ const MatrixX k = with_condition(20, 100.0);
 
 /// A right solver with one thing wrong.
 struct Wrong {
-  enum What { nothing, scaled, remembers, touches_load, unsymmetric, offset, not_finite, wrong_size, lies, gives_up };
+  enum What { nothing, scaled, has_history, touches_load, unsymmetric, offset, not_finite, wrong_size, lies, gives_up };
   What what = nothing;
   DenseCholesky right{k, {}};
   int calls = 0;
@@ -24,7 +24,7 @@ struct Wrong {
     right.solve_into(b, x);
     ++calls;
     if (what == scaled) x *= 1.0 + 1e-6;
-    if (what == remembers) x[0] += 1e-15 * calls * x.norm();
+    if (what == has_history) x[0] += 1e-15 * calls * x.norm();
     if (what == touches_load) const_cast<VectorX&>(b)[0] += 1.0;
     if (what == unsymmetric) x[0] += 1e-3 * b[1];
     if (what == offset) x[0] += 1e-30;
@@ -52,7 +52,7 @@ TEST_CASE("the laws accept the right solver", "[testing][linear]") {
 TEST_CASE("solver laws can fail", "[testing][linear]") {
   CHECK(violates(laws(Wrong::scaled), "solves"));
   CHECK(violates(laws(Wrong::scaled), "report is truthful"));  // claims convergence, and iterations of a direct solver
-  CHECK(violates(laws(Wrong::remembers), "same answer twice"));
+  CHECK(violates(laws(Wrong::has_history), "same answer twice"));
   CHECK(violates(laws(Wrong::touches_load), "load is left alone"));
   CHECK(violates(laws(Wrong::unsymmetric), "symmetric"));
   CHECK(violates(laws(Wrong::offset), "zero load gives zero"));

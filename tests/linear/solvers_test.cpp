@@ -49,7 +49,7 @@ double worst_error(const MatrixX& m, S& solver) {
 TEMPLATE_TEST_CASE("solvers keep the laws and agree with long double", "[linear][laws]", SparseCholesky, DenseCholesky,
                    DenseInverse<double>, DenseInverse<float>, DenseConjugateGradient) {
   using S = TestType;
-  const MatrixX k = full(ball_stiffness(2));
+  const MatrixX k = full(sphere_stiffness(2));
   S solver = make<S>(k);
   CHECK(testing::describe(testing::solver_laws(op_of(k), solver, claims<S>())) == "");
   const double condition = exact_condition(k);
@@ -78,7 +78,7 @@ TEMPLATE_TEST_CASE("solvers keep the laws and agree with long double", "[linear]
 TEMPLATE_TEST_CASE("copies solve at the same time with the same answer", "[linear][threads]", SparseCholesky,
                    DenseConjugateGradient, DenseInverse<double>) {
   using S = TestType;
-  const MatrixX k = full(ball_stiffness(2));
+  const MatrixX k = full(sphere_stiffness(2));
   S original = make<S>(k);
   std::vector<S> copies(3, original);
   std::vector<VectorX> loads, expected, found(3, VectorX(k.rows()));
@@ -97,7 +97,7 @@ TEMPLATE_TEST_CASE("copies solve at the same time with the same answer", "[linea
 }
 
 TEST_CASE("many right-hand sides at once are one at a time", "[linear]") {
-  const SparseMatrix lower = ball_stiffness(2);
+  const SparseMatrix lower = sphere_stiffness(2);
   SparseCholesky solver(lower, {});
   testing::Random random(31);
   MatrixX b(lower.rows(), 13);
@@ -120,12 +120,12 @@ TEST_CASE("many right-hand sides at once are one at a time", "[linear]") {
 TEST_CASE("a factorisation can be cancelled", "[linear]") {
   SetupLimits limits;
   limits.progress = [](const Progress&) { return false; };
-  CHECK_REFUSED(SetupErrorKind::cancelled, SparseCholesky(ball_stiffness(1), limits));
+  CHECK_REFUSED(SetupErrorKind::cancelled, SparseCholesky(sphere_stiffness(1), limits));
 }
 
 TEST_CASE("conjugate gradients say when they do not converge", "[linear][cg]") {
   SECTION("too few iterations") {
-    const MatrixX k = full(ball_stiffness(2));
+    const MatrixX k = full(sphere_stiffness(2));
     const DenseOperator op(k);
     ConjugateGradientSolver solver(op.size(), {1e-12, 5});
     VectorX x(op.size());
@@ -145,7 +145,7 @@ TEST_CASE("conjugate gradients say when they do not converge", "[linear][cg]") {
     CHECK(x.allFinite());
   }
   SECTION("an indefinite matrix") {
-    MatrixX m = full(ball_stiffness(1));
+    MatrixX m = full(sphere_stiffness(1));
     m.diagonal().array() -= 0.5 * m.diagonal().maxCoeff();
     REQUIRE(Eigen::LLT<MatrixX>(m).info() != Eigen::Success);
     const DenseOperator op(m);
@@ -156,7 +156,7 @@ TEST_CASE("conjugate gradients say when they do not converge", "[linear][cg]") {
     CHECK((!report.converged || (b - m * x).norm() <= 1e-11 * b.norm()));
   }
   SECTION("NaN in the load or in the matrix") {
-    MatrixX m = full(ball_stiffness(1));
+    MatrixX m = full(sphere_stiffness(1));
     ConjugateGradientSolver solver(m.rows());
     VectorX b = VectorX::Ones(m.rows()), x(m.rows());
     b[3] = std::numeric_limits<double>::quiet_NaN();
@@ -164,7 +164,7 @@ TEST_CASE("conjugate gradients say when they do not converge", "[linear][cg]") {
     m(4, 2) = m(2, 4) = std::numeric_limits<double>::quiet_NaN();
     CHECK_FALSE(solver.solve_into(DenseOperator(m), VectorX::Ones(m.rows()), x).converged);
     b[3] = infinity;
-    CHECK_FALSE(solver.solve_into(DenseOperator(full(ball_stiffness(1))), b, x).converged);
+    CHECK_FALSE(solver.solve_into(DenseOperator(full(sphere_stiffness(1))), b, x).converged);
   }
 }
 
@@ -189,7 +189,7 @@ TEST_CASE("the condition estimate is within a factor of ten", "[linear][conditio
     CHECK(estimate <= 1.01 * exact * (1.0 + 1e-15 * exact));  // a lower bound but for rounding
     CHECK(estimate >= 0.1 * exact * (1.0 - 1e-15 * exact));
   }
-  const SparseMatrix lower = ball_stiffness(2);
+  const SparseMatrix lower = sphere_stiffness(2);
   const MatrixX k = full(lower);
   SparseCholesky solver(lower, {});
   const double estimate = k.cwiseAbs().colwise().sum().maxCoeff() * inverse_norm_estimate(solver);
@@ -199,7 +199,7 @@ TEST_CASE("the condition estimate is within a factor of ten", "[linear][conditio
 }
 
 TEST_CASE("the probe error is the error", "[linear][condition]") {
-  const MatrixX k = full(ball_stiffness(2));
+  const MatrixX k = full(sphere_stiffness(2));
   DenseCholesky good(k, {});
   CHECK(probe_error(op_of(k), good) <= 1e-12);
   DenseCholesky other(1.001 * k, {});  // a solver of another system

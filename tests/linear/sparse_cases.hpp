@@ -13,14 +13,14 @@ struct SparseCase {
   DofLayout layout;
 };
 
-/// A held ball with coordinates.
-inline SparseCase ball_case(int refinement) {
-  const Body<Tet4> body = body_of(ball_tet4(0.05, refinement), {liver});
+/// A held sphere with coordinates.
+inline SparseCase sphere_case(int refinement) {
+  const Body<Tet4> body = body_of(sphere_tet4(0.05, refinement), {liver});
   std::vector<NodeId> below;
   for (NodeId i = 0; i < body.mesh.node_count(); ++i)
     if (body.mesh.position(i)[2] < -0.02) below.push_back(i);
   const EssentialConditions conditions = conditions_of(body.mesh, Scene().fix(below));
-  SparseCase c{"ball " + std::to_string(refinement), free_matrix(assemble_stiffness<Tet4>(body, {}), conditions), {}};
+  SparseCase c{"sphere " + std::to_string(refinement), free_matrix(assemble_stiffness<Tet4>(body, {}), conditions), {}};
   for (Index dof : conditions.free_dofs) c.layout.node_of_dof.push_back(dof / 3);
   c.layout.positions = body.mesh.positions;
   return c;
@@ -61,10 +61,10 @@ inline std::vector<SparseCase> sparse_cases() {
   add("islands", dominant(200, islands));
   add("random", dominant(180, random_pairs));
   add("large dense", lower_half(with_condition(333, 1e3)));
-  cases.push_back(ball_case(1));
-  cases.push_back(ball_case(4));
-  add("ball without coordinates", ball_stiffness(4));
-  SparseCase partly = ball_case(3);  // some nodes with one or two free dofs, the others moved on the diagonal
+  cases.push_back(sphere_case(1));
+  cases.push_back(sphere_case(4));
+  add("sphere without coordinates", sphere_stiffness(4));
+  SparseCase partly = sphere_case(3);  // some nodes with one or two free dofs, the others moved on the diagonal
   partly.name = "nodes of 1 to 3 dofs";
   MatrixX m = full(partly.lower);
   std::vector<Index> stay;
@@ -80,7 +80,7 @@ inline std::vector<SparseCase> sparse_cases() {
   partly.lower = lower_half(less);
   partly.layout.node_of_dof = nodes;
   cases.push_back(partly);
-  SparseCase line = ball_case(4);  // all nodes at one place: the coordinates tell nothing
+  SparseCase line = sphere_case(4);  // all nodes at one place: the coordinates tell nothing
   line.name = "coincident coordinates";
   for (Vector3& x : line.layout.positions) x.setZero();
   cases.push_back(line);

@@ -16,15 +16,15 @@ SetupProblem problem_of(const SparseMatrix& lower) {
   return p;
 }
 
-SparseMatrix free_ball(int refinement) {
-  const Body<Tet4> body = body_of(ball_tet4(0.05, refinement), {liver});
+SparseMatrix free_sphere(int refinement) {
+  const Body<Tet4> body = body_of(sphere_tet4(0.05, refinement), {liver});
   return free_matrix(assemble_stiffness<Tet4>(body, {}), conditions_of(body.mesh, Scene()));
 }
 
 }  // namespace
 
 TEST_CASE("sparse Cholesky: NaN and infinity are refused wherever they are", "[linear][sparse_cholesky][extreme]") {
-  const SparseMatrix good = ball_stiffness(3);
+  const SparseMatrix good = sphere_stiffness(3);
   for (double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})
     for (Index at : {Index{0}, good.nonZeros() / 3, good.nonZeros() / 2, good.nonZeros() - 1}) {
       SparseMatrix m = good;
@@ -34,9 +34,9 @@ TEST_CASE("sparse Cholesky: NaN and infinity are refused wherever they are", "[l
 }
 
 TEST_CASE("sparse Cholesky: indefinite and negative matrices are refused", "[linear][sparse_cholesky][extreme]") {
-  CHECK(problem_of(ball_stiffness(3, {5e3, 0.6, 0.0})).value < 0.0);
-  CHECK(problem_of(SparseMatrix(-ball_stiffness(2))).value <= 0.0);
-  SparseMatrix m = ball_stiffness(2);
+  CHECK(problem_of(sphere_stiffness(3, {5e3, 0.6, 0.0})).value < 0.0);
+  CHECK(problem_of(SparseMatrix(-sphere_stiffness(2))).value <= 0.0);
+  SparseMatrix m = sphere_stiffness(2);
   m.coeffRef(31, 31) = -1.0;
   const SetupProblem p = problem_of(m);
   CHECK(p.value < 0.0);
@@ -73,7 +73,7 @@ TEST_CASE("sparse Cholesky: a free body is refused, at any size and in any unit"
   for (int refinement : {1, 2, 4, 7})
     for (double unit : {1e-9, 1.0, 1e9}) {
       INFO(refinement << " " << unit);
-      problem_of(SparseMatrix(unit * free_ball(refinement)));
+      problem_of(SparseMatrix(unit * free_sphere(refinement)));
     }
 }
 
@@ -86,7 +86,7 @@ TEST_CASE("sparse Cholesky: a barely definite matrix is taken", "[linear][sparse
 }
 
 TEST_CASE("sparse Cholesky: a refusal leaves nothing behind", "[linear][sparse_cholesky]") {
-  const SparseMatrix good = ball_stiffness(2);
+  const SparseMatrix good = sphere_stiffness(2);
   SparseMatrix bad = good;
   bad.coeffRef(4, 4) = -1.0;
   SparseCholesky solver(good, {});

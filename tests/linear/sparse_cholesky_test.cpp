@@ -49,7 +49,7 @@ TEST_CASE("the sparse solver solves to rounding", "[linear][sparse_cholesky]") {
 }
 
 TEST_CASE("the sparse solver keeps the laws of solvers", "[linear][sparse_cholesky][laws]") {
-  const SparseCase c = ball_case(3);
+  const SparseCase c = sphere_case(3);
   const MatrixX k = full(c.lower);
   SparseCholesky solver = factored(c);
   CHECK(testing::describe(testing::solver_laws(op_of(k), solver, {1e-13, true})) == "");
@@ -115,8 +115,8 @@ TEST_CASE("kept dofs: the Schur complement is exact", "[linear][sparse_cholesky]
 
     // The interior factor alone holds the kept dofs.
     interior.solve_into(b, x);
-    const VectorX held = interior.solve(b);
-    CHECK(largest(x - held) <= 1e-13 * (largest(x) + 1e-300));
+    const VectorX constrained = interior.solve(b);
+    CHECK(largest(x - constrained) <= 1e-13 * (largest(x) + 1e-300));
     for (Index dof : layout.kept) CHECK(x[dof] == 0.0);
   }
 }
@@ -185,7 +185,7 @@ TEST_CASE("blocks of right-hand sides are single ones", "[linear][sparse_cholesk
 }
 
 TEST_CASE("new values on an analysed pattern", "[linear][sparse_cholesky]") {
-  const SparseCase c = ball_case(3);
+  const SparseCase c = sphere_case(3);
   const CholeskyAnalysis analysis(c.lower, c.layout);
   SparseMatrix other = c.lower;
   for (Index j = 0; j < other.cols(); ++j) other.coeffRef(j, j) *= 1.5;
@@ -197,7 +197,7 @@ TEST_CASE("new values on an analysed pattern", "[linear][sparse_cholesky]") {
   CHECK(reused == fresh);  // to the last bit, and in every run
   CHECK(reused != again);
   CHECK(analysis.fits(other));
-  const SparseMatrix wrong = ball_stiffness(2);
+  const SparseMatrix wrong = sphere_stiffness(2);
   CHECK_FALSE(analysis.fits(wrong));
   CHECK_REFUSED(SetupErrorKind::bad_argument, SparseCholesky(analysis, wrong, {}));
   CHECK_FALSE(CholeskyAnalysis().fits(wrong));
@@ -205,7 +205,7 @@ TEST_CASE("new values on an analysed pattern", "[linear][sparse_cholesky]") {
 }
 
 TEST_CASE("sparse Cholesky: copies solve at the same time", "[linear][sparse_cholesky][threads]") {
-  const SparseCase c = ball_case(3);
+  const SparseCase c = sphere_case(3);
   SparseCholesky original = factored(c);
   std::vector<SparseCholesky> copies(3, original);
   std::vector<VectorX> expected(3, VectorX(original.size())), found = expected;
@@ -221,7 +221,7 @@ TEST_CASE("sparse Cholesky: copies solve at the same time", "[linear][sparse_cho
 }
 
 TEST_CASE("solves do not allocate", "[linear][sparse_cholesky][realtime]") {
-  const SparseCase c = ball_case(3);
+  const SparseCase c = sphere_case(3);
   const Index n = c.lower.rows();
   DofLayout layout = c.layout;
   layout.kept = some_dofs(n);
@@ -245,7 +245,7 @@ TEST_CASE("solves do not allocate", "[linear][sparse_cholesky][realtime]") {
 }
 
 TEST_CASE("limits of a factorisation", "[linear][sparse_cholesky]") {
-  const SparseCase c = ball_case(4);
+  const SparseCase c = sphere_case(4);
   const CholeskyAnalysis analysis(c.lower, c.layout);
   SetupLimits limits;
   limits.memory = static_cast<std::size_t>(analysis.peak_bytes()) - 1;

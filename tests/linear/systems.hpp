@@ -9,9 +9,9 @@
 
 namespace test {
 
-/// The free part of a held ball of liver, lower half.
-inline SparseMatrix ball_stiffness(int refinement, const LinearElastic& m = liver) {
-  const Body<Tet4> body{ball_tet4(0.05, refinement), {m.elasticity()}, {m.density}, {Vector6::Zero()}};  // unchecked
+/// The free part of a held sphere of liver, lower half.
+inline SparseMatrix sphere_stiffness(int refinement, const LinearElastic& m = liver) {
+  const Body<Tet4> body{sphere_tet4(0.05, refinement), {m.elasticity()}, {m.density}, {Vector6::Zero()}};  // unchecked
   std::vector<NodeId> below;
   for (NodeId i = 0; i < body.mesh.node_count(); ++i)
     if (body.mesh.position(i)[2] < -0.02) below.push_back(i);

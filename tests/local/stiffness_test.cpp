@@ -124,10 +124,10 @@ TEMPLATE_TEST_CASE("moving and turning an element", "[local][invariance][M1][M2]
   }
   SECTION("a rotation turns the blocks") {
     const Matrix3 r = testing::random_rotation(random);
-    const auto turned = element_stiffness<E>(x * r.transpose(), liver.elasticity());
+    const auto rotated = element_stiffness<E>(x * r.transpose(), liver.elasticity());
     for (int a = 0; a < E::nodes; ++a)
       for (int b = 0; b < E::nodes; ++b)
-        CHECK(largest(turned.template block<3, 3>(3 * a, 3 * b) -
+        CHECK(largest(rotated.template block<3, 3>(3 * a, 3 * b) -
                       r * k.template block<3, 3>(3 * a, 3 * b) * r.transpose()) <= 1e-13 * largest(k));
   }
   SECTION("twice the size, twice the stiffness, to the last bit") {

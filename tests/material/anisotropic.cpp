@@ -37,7 +37,7 @@ const TransverselyIsotropic muscle{.youngs_modulus_along = 60e3,
                                    .fibre = Vector3::UnitX(),
                                    .density = 1060.0};
 
-Orthotropic turned(const Matrix3& r) {
+Orthotropic rotated(const Matrix3& r) {
   Orthotropic m = wood();
   m.axes = r;
   return m;
@@ -51,7 +51,7 @@ TEST_CASE("anisotropic materials keep the laws", "[material][laws]") {
   CHECK(testing::describe(testing::linear_material_laws(muscle)) == "");
   for (int k = 0; k < 8; ++k) {
     const Matrix3 r = testing::random_rotation(random);
-    CHECK(testing::describe(testing::linear_material_laws(turned(r))) == "");
+    CHECK(testing::describe(testing::linear_material_laws(rotated(r))) == "");
     TransverselyIsotropic m = muscle;
     m.fibre = r.col(0);
     CHECK(testing::describe(testing::linear_material_laws(m)) == "");
@@ -74,7 +74,7 @@ TEST_CASE("shear rows stand in the order xy xz yz, also when the axes change pla
   // Axes 1 2 3 along y z x: G12 acts in yz, G13 in xy, G23 in xz. A permuted order of rows would mix these.
   Matrix3 cycle;
   cycle << 0, 0, 1, 1, 0, 0, 0, 1, 0;
-  const Matrix6 d = turned(cycle).elasticity(), d0 = wood().elasticity();
+  const Matrix6 d = rotated(cycle).elasticity(), d0 = wood().elasticity();
   CHECK_THAT(d(voigt::yz, voigt::yz), WithinRel(0.8e9, 1e-14));
   CHECK_THAT(d(voigt::xy, voigt::xy), WithinRel(0.7e9, 1e-14));
   CHECK_THAT(d(voigt::xz, voigt::xz), WithinRel(0.07e9, 1e-14));
@@ -86,12 +86,12 @@ TEST_CASE("the law turns with its axes: R sigma(R^T e R) R^T", "[material]") {
   testing::Random random(79);
   for (int k = 0; k < 20; ++k) {
     const Matrix3 r = testing::random_rotation(random), e = testing::random_symmetric(random);
-    const auto agree = [&](const Matrix6& turned_law, const Matrix6& law) {
-      const Matrix3 first = voigt::stress_tensor(turned_law * voigt::strain_vector(e));
-      const Matrix3 local = voigt::stress_tensor(law * voigt::strain_vector(r.transpose() * e * r));
-      return (first - r * local * r.transpose()).norm() <= 1e-13 * law.norm();
+    const auto agree = [&](const Matrix6& rotated_law, const Matrix6& material) {
+      const Matrix3 first = voigt::stress_tensor(rotated_law * voigt::strain_vector(e));
+      const Matrix3 local = voigt::stress_tensor(material * voigt::strain_vector(r.transpose() * e * r));
+      return (first - r * local * r.transpose()).norm() <= 1e-13 * material.norm();
     };
-    CHECK(agree(turned(r).elasticity(), wood().elasticity()));
+    CHECK(agree(rotated(r).elasticity(), wood().elasticity()));
     CHECK(agree(muscle.elasticity(Vector3(r.col(0))), muscle.elasticity()));
   }
 }
@@ -140,9 +140,9 @@ TEST_CASE("inadmissible anisotropic materials are refused", "[material][extreme]
     for (double value : {0.0, -1.0, nan, infinity, 1e-310}) with(member, value);
   for (double value : {nan, -infinity}) with(&Orthotropic::poisson_ratio_13, value);
   for (double value : {nan, -1.0}) with(&Orthotropic::density, value);
-  bad.push_back(turned(2.0 * Matrix3::Identity()));
-  bad.push_back(turned(-Matrix3::Identity()));
-  bad.push_back(turned(Matrix3::Constant(nan)));
+  bad.push_back(rotated(2.0 * Matrix3::Identity()));
+  bad.push_back(rotated(-Matrix3::Identity()));
+  bad.push_back(rotated(Matrix3::Constant(nan)));
   CHECK(testing::describe(testing::admission_laws<Orthotropic>({wood()}, bad)) == "");
 
   std::vector<TransverselyIsotropic> limp;

@@ -22,7 +22,7 @@ namespace {
 using Tensor = Tensor3<double>;
 
 struct Row {
-  std::string law;
+  std::string material;
   std::vector<double> x;
 };
 
@@ -34,7 +34,7 @@ std::vector<Row> table(const std::string& name) {
   while (std::getline(file, line)) {
     Row row;
     std::istringstream in(line);
-    std::getline(in, row.law, ',');
+    std::getline(in, row.material, ',');
     for (std::string word; std::getline(in, word, ',');) row.x.push_back(std::stod(word));
     rows.push_back(std::move(row));
   }
@@ -47,11 +47,11 @@ struct Answer {
   Tensor p;
 };
 
-std::optional<Answer> evaluate(const std::string& law, const Tensor& f) {
-  const auto at = law.find("_nu0.");
+std::optional<Answer> evaluate(const std::string& material, const Tensor& f) {
+  const auto at = material.find("_nu0.");
   if (at == std::string::npos) return std::nullopt;
-  const std::string name = law.substr(0, at);
-  const double nu = std::stod(law.substr(at + 3));
+  const std::string name = material.substr(0, at);
+  const double nu = std::stod(material.substr(at + 3));
   const auto of = [&f](const auto& m) { return Answer{m.energy(f), m.stress(f)}; };
   const LinearElastic e{1e4, nu, 0.0};
   const double mu = e.shear_modulus();
@@ -71,10 +71,10 @@ TEST_CASE("uniaxial tension with free sides", "[material][large][oracle]") {
   int rows = 0;
   for (const Row& row : table("closed_form_uniaxial.csv")) {
     const double l = row.x[0], side = row.x[1];
-    const auto a = evaluate(row.law, Tensor::diagonal(l, side, side));
+    const auto a = evaluate(row.material, Tensor::diagonal(l, side, side));
     if (!a) continue;  // incompressible
     ++rows;
-    INFO(row.law << " stretch " << l);
+    INFO(row.material << " stretch " << l);
     CHECK_THAT(l * side * side, WithinRel(row.x[2], printed));
     CHECK_THAT(a->p(0, 0), WithinAbs(row.x[3], 30.0 * printed * stress_scale));
     CHECK_THAT(a->p(0, 0) * l / row.x[2], WithinAbs(row.x[4], 30.0 * printed * stress_scale));
@@ -89,10 +89,10 @@ TEST_CASE("simple shear", "[material][large][oracle]") {
   for (const Row& row : table("closed_form_simple_shear.csv")) {
     Tensor f = Tensor::identity();
     f(0, 1) = row.x[0];
-    const auto a = evaluate(row.law, f);
+    const auto a = evaluate(row.material, f);
     REQUIRE(a);
     ++rows;
-    INFO(row.law << " gamma " << row.x[0]);
+    INFO(row.material << " gamma " << row.x[0]);
     const Tensor s = a->p * transpose(f);  // Cauchy: J = 1
     const double found[] = {s(0, 0),    s(1, 1),    s(2, 2),    s(0, 1),   a->p(0, 0),
                             a->p(0, 1), a->p(1, 0), a->p(1, 1), a->p(2, 2)};
@@ -112,10 +112,10 @@ TEST_CASE("random deformations", "[material][large][oracle]") {
       f(r, c) = row.x[i];
       p(r, c) = row.x[9 + i];
     }
-    const auto a = evaluate(row.law, f);
+    const auto a = evaluate(row.material, f);
     REQUIRE(a);
     ++rows;
-    INFO(row.law << " row " << rows);
+    INFO(row.material << " row " << rows);
     CHECK(vector9(a->p - p).cwiseAbs().maxCoeff() <= 10.0 * printed * vector9(p).norm());
     CHECK_THAT(a->energy, WithinRel(row.x[18], printed));
   }
@@ -128,16 +128,16 @@ TEST_CASE("incompressible closed forms", "[material][large]") {
   const double c1 = 1200.0, c2 = 500.0, mu = 2.0 * (c1 + c2), bulk = 3e4;
   const MooneyRivlin m{c1, c2, bulk, 0.0};
   const double nu = m.small_strain().poisson_ratio, young = m.small_strain().youngs_modulus;
-  const auto neo_hookean = [&](const auto& law) {
+  const auto neo_hookean = [&](const auto& material) {
     for (double l : {0.5, 0.8, 1.0, 1.3, 2.0, 3.0}) {
       const Tensor one = Tensor::diagonal(l, 1.0 / std::sqrt(l), 1.0 / std::sqrt(l)),
                    two = Tensor::diagonal(l, l, 1.0 / l / l), plane = Tensor::diagonal(l, 1.0, 1.0 / l);
-      CHECK_THAT(pull(law.stress(one), one), WithinAbs(mu * (l - std::pow(l, -2)), 1e-12 * young));
-      CHECK_THAT(pull(law.stress(two), two), WithinAbs(mu * (l - std::pow(l, -5)), 1e-10 * young));
-      CHECK_THAT(pull(law.stress(plane), plane), WithinAbs(mu * (l - std::pow(l, -3)), 1e-12 * young));
+      CHECK_THAT(pull(material.stress(one), one), WithinAbs(mu * (l - std::pow(l, -2)), 1e-12 * young));
+      CHECK_THAT(pull(material.stress(two), two), WithinAbs(mu * (l - std::pow(l, -5)), 1e-10 * young));
+      CHECK_THAT(pull(material.stress(plane), plane), WithinAbs(mu * (l - std::pow(l, -3)), 1e-12 * young));
       Tensor shear = Tensor::identity();
       shear(0, 1) = l;
-      const Tensor s = law.stress(shear) * transpose(shear);
+      const Tensor s = material.stress(shear) * transpose(shear);
       CHECK_THAT(s(0, 1), WithinRel(mu * l, 1e-13));
       CHECK_THAT(s(0, 0) - s(1, 1), WithinRel(mu * l * l, 1e-12));
     }

@@ -44,7 +44,7 @@ TEST_CASE("relaxation after a sudden strain is exact for any step", "[material][
   const auto rows = table("closed_form_relaxation.csv");
   REQUIRE(rows.size() == 18);
   const Vector6 shear = strain * Vector6::Unit(voigt::xy);
-  for (const auto relaxation : {Relaxation::whole_stress, Relaxation::shape_only}) {
+  for (const auto relaxation : {Relaxation::whole_stress, Relaxation::deviatoric}) {
     const std::size_t first = relaxation == Relaxation::whole_stress ? 1 : 4;
     const Linear m = cube(relaxation);
     Linear::SmallStrainHistory free, confined, sheared;
@@ -62,7 +62,7 @@ TEST_CASE("relaxation after a sudden strain is exact for any step", "[material][
 
 TEST_CASE("where only the shape relaxes free sides move, with a time of their own",
           "[material][viscoelastic][oracle]") {
-  const Linear m = cube(Relaxation::shape_only);
+  const Linear m = cube(Relaxation::deviatoric);
   const auto error = [&](int steps) {  // between two rows of the table
     Linear::SmallStrainHistory history;
     double time = 0.0, worst = 0.0;
@@ -139,7 +139,7 @@ TEST_CASE("large strain: relaxation of a held deformation, and turning it leaves
   const NeoHookeanIsochoric base{5e3, 0.45, 1060.0};  // its energy splits into shape and volume
   const Viscoelastic<NeoHookeanIsochoric, 2> whole{base, {{{0.3, 0.1}, {0.2, 2.0}}}};
   auto shape = whole;
-  shape.relaxation = Relaxation::shape_only;
+  shape.relaxation = Relaxation::deviatoric;
   CHECK(whole.density == 1060.0);
   for (int k = 0; k < 8; ++k) {
     const Tensor3<double> f = testing::random_deformation(base, random), p0 = base.stress(f);
@@ -175,16 +175,16 @@ TEMPLATE_TEST_CASE("within a step the law has an energy, whatever its base and w
     base = {.c10 = 600.0, .c01 = 300.0, .bulk_modulus = 2e4, .density = 1060.0};
   else
     base = {5e3, 0.45, 1060.0};
-  for (const auto relaxation : {Relaxation::whole_stress, Relaxation::shape_only}) {
+  for (const auto relaxation : {Relaxation::whole_stress, Relaxation::deviatoric}) {
     const Viscoelastic<TestType, 2> m{base, {{{0.3, 0.1}, {0.4, 2.0}}}, relaxation};
     for (int k = 0; k < 6; ++k) {
       typename Viscoelastic<TestType, 2>::LargeStrainHistory history;
       for (const double dt : {0.0, 0.05, 0.7}) m.stress(testing::random_deformation(base, random), history, dt);
       for (const double dt : {0.0, 0.08, 3.0, infinity}) {
         const auto step = m.over(dt);
-        const auto law = m.law_of_step(step, m.driving_stress(history, step));
-        const Tensor3<double> f = testing::random_deformation(base, random), p = law.stress(f);
-        const Matrix9 a = law.tangent(f);
+        const auto material = m.material_of_step(step, m.driving_stress(history, step));
+        const Tensor3<double> f = testing::random_deformation(base, random), p = material.stress(f);
+        const Matrix9 a = material.tangent(f);
         const double scale = base.tangent(f).norm() + a.norm();
         CHECK((a - a.transpose()).norm() <= 1e-10 * scale);
         for (int i = 0; i < 9; ++i) {
@@ -192,8 +192,8 @@ TEMPLATE_TEST_CASE("within a step the law has an energy, whatever its base and w
           Tensor3<double> up = f, down = f;
           up.e[i] += d;
           down.e[i] -= d;
-          CHECK_THAT((law.energy(up) - law.energy(down)) / (2.0 * d), WithinAbs(p.e[i], 1e-7 * scale));
-          const Eigen::Matrix<double, 9, 1> change = vector9(law.stress(up) - law.stress(down)) / (2.0 * d);
+          CHECK_THAT((material.energy(up) - material.energy(down)) / (2.0 * d), WithinAbs(p.e[i], 1e-7 * scale));
+          const Eigen::Matrix<double, 9, 1> change = vector9(material.stress(up) - material.stress(down)) / (2.0 * d);
           CHECK((change - a.col(i)).norm() <= 1e-6 * scale);
         }
         auto moved = history;
@@ -205,7 +205,7 @@ TEMPLATE_TEST_CASE("within a step the law has an energy, whatever its base and w
 
 TEST_CASE("a closed path yields no work, not even after a long time", "[material][viscoelastic][large]") {
   testing::Random random(53);
-  const Viscoelastic<NeoHookean, 1> m{{5e3, 0.45, 1060.0}, {{{0.6, 0.1}}}, Relaxation::shape_only};
+  const Viscoelastic<NeoHookean, 1> m{{5e3, 0.45, 1060.0}, {{{0.6, 0.1}}}, Relaxation::deviatoric};
   for (const double dt : {1e-4, 1e-2, 1e2}) {
     const Tensor3<double> a = testing::random_deformation(m.base, random),
                           b = testing::random_deformation(m.base, random);

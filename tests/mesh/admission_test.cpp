@@ -133,9 +133,9 @@ TEST_CASE("a flat tetrahedron far away stays flat though rounding gives it a vol
   Mesh<Tet4> flat = corner_tetrahedron();
   flat.positions[3] = {0.3, 0.3, 0.0};
   for (double shift : {0.0, 1e3, 1e6, 1e9}) {
-    Mesh<Tet4> turned = flat;
-    for (Vector3& x : turned.positions) x = turn * x + Vector3(1, -0.7, 0.3) * shift;
-    CHECK(diagnose<Tet4>(turned).degenerate.count == 1);
+    Mesh<Tet4> rotated = flat;
+    for (Vector3& x : rotated.positions) x = turn * x + Vector3(1, -0.7, 0.3) * shift;
+    CHECK(diagnose<Tet4>(rotated).degenerate.count == 1);
   }
 }
 
@@ -258,9 +258,9 @@ TEST_CASE("duplicate elements are refused or dropped", "[mesh][admission][extrem
   box.regions.assign(box.elements.size(), 0);
   box.regions[39] = 1;
   box.region_names = {"soft", "hard"};
-  auto turned = box.elements[7];  // the same nodes in another order
-  std::rotate(turned.begin(), turned.begin() + 2, turned.end());
-  box.elements.insert(box.elements.begin() + 20, turned);
+  auto rotated = box.elements[7];  // the same nodes in another order
+  std::rotate(rotated.begin(), rotated.begin() + 2, rotated.end());
+  box.elements.insert(box.elements.begin() + 20, rotated);
   box.regions.insert(box.regions.begin() + 20, 0);
   box.groups.get_or_add("last", 3).elements = {40};
   const auto p = refused(SetupErrorKind::duplicate_element, [&] { admit<Tet4>(box); });
@@ -477,8 +477,8 @@ TEST_CASE("foreign arrays are read without a copy", "[mesh][arrays]") {
   std::vector<float> x{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   const std::vector<unsigned> ids{0, 1, 2, 3};
   MeshArrays<Tet4, float, unsigned> view(x, ids);
-  const std::vector<NodeId> held{0, 2, 1, 0};
-  view.group("held", held);
+  const std::vector<NodeId> constrained{0, 2, 1, 0};
+  view.group("held", constrained);
   CHECK_THAT(diagnose<Tet4>(view).volume, WithinRel(1.0 / 6.0, 1e-7));
   x[3] = 2.0f;  // the view sees it: nothing was copied
   CHECK(view.position(1)[0] == 2.0);

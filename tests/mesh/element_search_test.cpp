@@ -62,9 +62,9 @@ TEMPLATE_TEST_CASE("every point inside is found, and where it is", "[mesh][searc
     CHECK(!search.find(out));
 }
 
-TEST_CASE("points between a ball and its box are in no element", "[mesh][search]") {
-  const Mesh<Tet4> ball = ball_tet4(0.05, 4);
-  const ElementSearch<Tet4> search(ball);
+TEST_CASE("points between a sphere and its box are in no element", "[mesh][search]") {
+  const Mesh<Tet4> sphere = sphere_tet4(0.05, 4);
+  const ElementSearch<Tet4> search(sphere);
   testing::Random random(10);
   int inside = 0;
   for (int i = 0; i < 2000; ++i) {

@@ -158,27 +158,27 @@ TEST_CASE("impossible bodies are refused", "[mesh][generators]") {
   refused(SetupErrorKind::bad_argument, [] { box_tet4({0, 1}, {0, 1, 1}, {0, 1}); });
   refused(SetupErrorKind::bad_argument, [] { box_tet4({0, 1}, {0}, {0, 1}); });
   refused(SetupErrorKind::count_too_large, [] { box_tet4({1, 1, 1}, {100000, 100000, 1}); });
-  refused(SetupErrorKind::bad_argument, [] { ball_tet4(0, 2); });
-  refused(SetupErrorKind::bad_argument, [] { ball_tet4(1, 0); });
+  refused(SetupErrorKind::bad_argument, [] { sphere_tet4(0, 2); });
+  refused(SetupErrorKind::bad_argument, [] { sphere_tet4(1, 0); });
   refused(SetupErrorKind::bad_argument, [&] { cylinder_tet4(1, nan, 2); });
-  refused(SetupErrorKind::count_too_large, [] { ball_tet4(1, 100000); });
+  refused(SetupErrorKind::count_too_large, [] { sphere_tet4(1, 100000); });
   refused(SetupErrorKind::count_too_large, [] { cylinder_tet4(1e-9, 1, 10); });
 }
 
-TEST_CASE("balls", "[mesh][generators]") {
+TEST_CASE("spheres", "[mesh][generators]") {
   double error = 1.0;
   for (int n : {1, 2, 4, 8}) {
-    const Mesh<Tet4> ball = ball_tet4(0.05, n);
-    CHECK(ball.element_count() == 20 * n * n * n);
-    check_sound(ball, 0.65);
-    check_closed(ball);
-    check_partition(ball, {"surface"});
-    const Group* surface = ball.find_group("surface");
+    const Mesh<Tet4> sphere = sphere_tet4(0.05, n);
+    CHECK(sphere.element_count() == 20 * n * n * n);
+    check_sound(sphere, 0.65);
+    check_closed(sphere);
+    check_partition(sphere, {"surface"});
+    const Group* surface = sphere.find_group("surface");
     CHECK(surface->nodes.size() == static_cast<std::size_t>(10 * n * n + 2));
-    CHECK(surface->nodes.size() < ball.positions.size());  // there are nodes inside
-    for (NodeId i : surface->nodes) CHECK_THAT(ball.position(i).norm(), WithinRel(0.05, 1e-14));
+    CHECK(surface->nodes.size() < sphere.positions.size());  // there are nodes inside
+    for (NodeId i : surface->nodes) CHECK_THAT(sphere.position(i).norm(), WithinRel(0.05, 1e-14));
     const double exact = 4.0 / 3.0 * std::numbers::pi * 0.05 * 0.05 * 0.05;
-    const double now = 1.0 - diagnose<Tet4>(ball).volume / exact;
+    const double now = 1.0 - diagnose<Tet4>(sphere).volume / exact;
     CHECK(now > 0.0);
     if (n > 1) CHECK(now < 0.36 * error);  // second order
     error = now;

@@ -50,8 +50,8 @@ void check_box(const Mesh<E>& box, Index nodes, Index elements) {
     }
 }
 
-Mesh<Tet4> ball_with_regions() {
-  Mesh<Tet4> mesh = ball_tet4(1.0, 1);
+Mesh<Tet4> sphere_with_regions() {
+  Mesh<Tet4> mesh = sphere_tet4(1.0, 1);
   mesh.region_names = {"left", "right"};
   mesh.regions.clear();
   Group& right = mesh.groups.get_or_add("right half", 3);
@@ -67,7 +67,7 @@ Mesh<Tet4> ball_with_regions() {
 }
 
 template <Element E>
-void check_turned_round(Mesh<E> mesh) {
+void check_rotated_round(Mesh<E> mesh) {
   const double volume = diagnose<E>(mesh).volume;
   reorient(mesh, {0});
   refused(SetupErrorKind::inverted_element, [&] { admit<E>(mesh); });
@@ -92,7 +92,7 @@ TEST_CASE("boxes of hexahedra and quadratic elements", "[mesh][generators]") {
 }
 
 TEST_CASE("promotion keeps regions and groups", "[mesh][promote]") {
-  const Mesh<Tet4> linear = ball_with_regions();
+  const Mesh<Tet4> linear = sphere_with_regions();
   const Mesh<Tet10> mesh = promote<Tet10>(linear);
   CHECK(testing::describe(testing::mesh_laws<Tet10>(mesh)) == "");
   CHECK_THAT(diagnose<Tet10>(mesh).volume, WithinRel(diagnose<Tet4>(linear).volume, 1e-12));
@@ -116,7 +116,7 @@ TEST_CASE("promotion refuses a group's face that no element has", "[mesh][promot
 }
 
 TEST_CASE("refinement cuts every tetrahedron into eight and conforms", "[mesh][refine]") {
-  const Mesh<Tet4> coarse = ball_with_regions(), fine = refine(coarse);
+  const Mesh<Tet4> coarse = sphere_with_regions(), fine = refine(coarse);
   CHECK(testing::describe(testing::mesh_laws<Tet4>(fine)) == "");
   REQUIRE(fine.element_count() == 8 * coarse.element_count());
   for (Index e = 0; e < fine.element_count(); ++e) {
@@ -163,7 +163,7 @@ TEST_CASE("admission sees an element that is inside out at a node only", "[mesh]
 }
 
 TEST_CASE("admission turns elements of every kind round", "[mesh][admission]") {
-  check_turned_round(box_tet10({1, 1, 1}, {1, 1, 1}));
-  check_turned_round(box_hex8({1, 1, 1}, {2, 1, 1}));
-  check_turned_round(box_hex20({1, 1, 1}, {2, 1, 1}));
+  check_rotated_round(box_tet10({1, 1, 1}, {1, 1, 1}));
+  check_rotated_round(box_hex8({1, 1, 1}, {2, 1, 1}));
+  check_rotated_round(box_hex20({1, 1, 1}, {2, 1, 1}));
 }

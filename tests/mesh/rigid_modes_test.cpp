@@ -102,10 +102,10 @@ TEST_CASE("free motions are named", "[mesh][rigid_modes][extreme][B8]") {
   SECTION("a slanted slide") {
     // x and y of node 0 and 3 are tied down except for their common slide: none is axis aligned, so give each node one
     // component.
-    Mesh<Tet4> turned = mesh;
+    Mesh<Tet4> rotated = mesh;
     const Matrix3 turn = Eigen::AngleAxisd(0.5, Vector3(1, 1, 0).normalized()).toRotationMatrix();
-    for (Vector3& x : turned.positions) x = turn * x;
-    for (const std::string& name : modes_of(turned, {1, 2, 4, 1})) {
+    for (Vector3& x : rotated.positions) x = turn * x;
+    for (const std::string& name : modes_of(rotated, {1, 2, 4, 1})) {
       INFO(name);
       CHECK((name.starts_with("translation") || name.starts_with("rotation about") || name.starts_with("screw about")));
     }

@@ -56,7 +56,7 @@ TEST_CASE("sets of points contain what geometry says", "[mesh][where]") {
     for (int i = 0; i <= 1000; ++i) nearest = std::min(nearest, (x - low - 1e-3 * i * (high - low)).norm());
     if (std::abs(nearest - 0.3) > 1e-4) CHECK(capsule.contains(x) == (nearest < 0.3));
     CHECK(where::inside([](const Vector3& p) { return p.x() > p.y(); }).contains(x) == (x.x() > x.y()));
-    CHECK(sphere.seen_from({0.1, 0.2, 0.3}).contains(Vector3(x - Vector3(0.1, 0.2, 0.3)), 1e-12) ==
+    CHECK(sphere.relative_to({0.1, 0.2, 0.3}).contains(Vector3(x - Vector3(0.1, 0.2, 0.3)), 1e-12) ==
           sphere.contains(x, 1e-12));
   }
   CHECK(where::box({-infinity, -infinity, 0.0}, {infinity, infinity, infinity}).contains({1e9, -1e9, 0.0}));
@@ -132,7 +132,7 @@ TEST_CASE("a scene is mapped with all its sets of points", "[mesh][where]") {
   const Vector3 origin(3, -2, 7);
   const auto top = where::above(Vector3(0, 0, 8), Vector3::UnitZ());
   Scene given;
-  given.fix(top).traction(top, {1, 2, 3}).pressure(top, 1.0).point_load(top, {1, 0, 0}).touch(top).see(top);
+  given.fix(top).traction(top, {1, 2, 3}).pressure(top, 1.0).point_load(top, {1, 0, 0}).touch(top).render(top);
   const Scene scene = given.mapped({}, origin);
   const auto expected = group_nodes(mesh, "z1");
   CHECK(resolve_nodes(mesh, boundary, scene.prescribed()[0].where) == expected);
@@ -146,8 +146,8 @@ TEST_CASE("a scene is mapped with all its sets of points", "[mesh][where]") {
 
 TEST_CASE("elements by their centres: a set and its complement share them out", "[mesh][where]") {
   const Mesh<Tet4> mesh = box_tet4({1, 1, 1}, {5, 5, 5});
-  const auto ball = where::sphere({0.5, 0.5, 0.5}, 0.4);
-  const auto in = elements_within(mesh, ball), out = elements_within(mesh, !ball);
+  const auto sphere = where::sphere({0.5, 0.5, 0.5}, 0.4);
+  const auto in = elements_within(mesh, sphere), out = elements_within(mesh, !sphere);
   CHECK(in.size() + out.size() == static_cast<std::size_t>(mesh.element_count()));
   CHECK(!in.empty());
   CHECK(!out.empty());
@@ -164,6 +164,6 @@ TEST_CASE("elements by their centres: a set and its complement share them out", 
   const MeshArrays<Tet4, double, NodeId> view(
       std::span<const double>(mesh.positions[0].data(), 3 * count(mesh.node_count())),
       std::span<const NodeId>(mesh.elements[0].data(), 4 * count(mesh.element_count())));
-  CHECK(elements_within<Tet4>(view, ball) == in);
-  CHECK(nodes_within<Tet4>(view, ball) == nodes_within(mesh, ball));
+  CHECK(elements_within<Tet4>(view, sphere) == in);
+  CHECK(nodes_within<Tet4>(view, sphere) == nodes_within(mesh, sphere));
 }

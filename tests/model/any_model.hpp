@@ -53,7 +53,7 @@ class AnyModel : public StillTissue {
   virtual const Mesh<Tet4>& mesh() const = 0;
   virtual const std::vector<NodeId>& node_map() const = 0;
   virtual const std::vector<NodeId>& touchable_nodes() const = 0;
-  virtual const std::vector<NodeId>& seen_nodes() const = 0;
+  virtual const std::vector<NodeId>& rendered_nodes() const = 0;
   virtual Vector3 rest_position(NodeId) const = 0;
   virtual const VectorX& displacement() const = 0;
   virtual VectorX internal_force() const = 0;

@@ -53,7 +53,7 @@ VectorX bent(const Exact& m, double amount) {
 
 /// Largest distance of two motions on the way, of the largest displacement.
 template <class Motion>
-double apart_on_the_way(Motion& motion, ImplicitDynamics& reference, double h, int steps) {
+double apart_on_the_path(Motion& motion, ImplicitDynamics& reference, double h, int steps) {
   double apart = 0.0, largest = 0.0;
   for (int k = 0; k < steps; ++k) {
     REQUIRE(motion.step(h).taken);
@@ -76,7 +76,7 @@ TEST_CASE("one linearisation per step follows the solved steps, closer with shor
       const VectorX u = bent(motion, 4.0), v = VectorX::Zero(u.size());
       motion.set_state(u, v);
       reference.set_state(u, v);
-      error[fine] = apart_on_the_way(motion, reference, h, fine ? 80 : 40);
+      error[fine] = apart_on_the_path(motion, reference, h, fine ? 80 : 40);
     }
     INFO("errors " << error[0] << ", " << error[1]);
     CHECK(error[0] <= 5e-3);
@@ -112,7 +112,7 @@ TEST_CASE("it comes to rest in the equilibrium, whatever the step and the precon
   options.solve.tolerance = 1e-2;
   settles(Exact(pad(), standing(), options), 1e-2, 1e-9);
   settles(CorotatedMotion<LinearElastic, float>(pad(), standing(), options), 1e-2, 1e-4);
-  settles(CorotatedMotion<LinearElastic, double, TurnedFactor>(pad(), standing(), options), 5e-2, 1e-9);
+  settles(CorotatedMotion<LinearElastic, double, CorotatedFactor>(pad(), standing(), options), 5e-2, 1e-9);
   options.stiffness_damping = 1e-2;
   settles(Exact(pad(), standing(), options), 2e-3, 1e-9);
 }
@@ -145,7 +145,7 @@ TEST_CASE("implicit Euler never adds energy, from any state", "[model][corotated
       for (int k = 0; k < 40; ++k) {
         const CorotatedStep step = motion.step(h);
         REQUIRE(step.taken);
-        CHECK(step.calm);
+        CHECK(step.energy_bounded);
         const double now = stored(pad(0.45), motion.displacement()) + motion.kinetic_energy();
         CHECK(now <= energy + 1e-12 * start);
         energy = now;
@@ -234,13 +234,13 @@ TEST_CASE("steps that are none change nothing", "[model][corotated][E1]") {
 
 TEST_CASE("co-rotated steps do not allocate", "[model][corotated]") {
   CorotatedMotion<LinearElastic, float> motion(pad(), standing());
-  CorotatedMotion<LinearElastic, double, TurnedFactor> turned(pad(), standing());
+  CorotatedMotion<LinearElastic, double, CorotatedFactor> rotated(pad(), standing());
   const VectorX load = motion.body().load;
   const testing::AllocationScope scope;
   for (int k = 0; k < 20; ++k) {
     motion.step(1e-3);
     motion.correct(load);
-    turned.step(1e-2);
+    rotated.step(1e-2);
   }
   CHECK(scope.allocations() == 0);
 }
@@ -301,7 +301,7 @@ TEST_CASE("after a refused step the next is as if there had been none", "[model]
   REQUIRE_FALSE(motion.step(5e-3).taken);
   motion.set_prescribed(good);
   const CorotatedStep a = motion.step(5e-3), b = same.step(5e-3);
-  CHECK(a.calm);
+  CHECK(a.energy_bounded);
   CHECK(a.linearisations == b.linearisations);
   CHECK((motion.displacement() - same.displacement()).norm() <= 1e-10 * same.displacement().norm());
   CHECK_REFUSED(SetupErrorKind::bad_argument, motion.set_load(good.head(3)));

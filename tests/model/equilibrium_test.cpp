@@ -130,12 +130,12 @@ TEST_CASE("equilibrium refuses the meshes that a linear model refuses, with the 
   const auto good = [] { return test::with_orphan_in_front(box_tet4(size, {2, 2, 3}), Vector3(1, 1, 1)); };
   const NeoHookean rubber{5e3, 0.4, 1000.0};
   const LinearElastic linear{5e3, 0.4, 1000.0};
-  const auto check = [&](const char* what, const Mesh<Tet4>& mesh, const Scene& held) {
+  const auto check = [&](const char* what, const Mesh<Tet4>& mesh, const Scene& constrained) {
     INFO(what);
     const SetupProblem expected =
-        test::refusal([&] { HapticFEModel<Tet4, LinearElastic, SparseCholesky>(mesh, held, linear); });
-    for (const SetupProblem& p : {test::refusal([&] { Equilibrium(mesh, held, rubber); }),
-                                  test::refusal([&] { Equilibrium(mesh, held, linear); })}) {
+        test::refusal([&] { HapticFEModel<Tet4, LinearElastic, SparseCholesky>(mesh, constrained, linear); });
+    for (const SetupProblem& p : {test::refusal([&] { Equilibrium(mesh, constrained, rubber); }),
+                                  test::refusal([&] { Equilibrium(mesh, constrained, linear); })}) {
       CHECK(to_string(p.kind) == to_string(expected.kind));
       CHECK(p.what == expected.what);
       CHECK(p.ids == expected.ids);

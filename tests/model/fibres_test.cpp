@@ -30,11 +30,11 @@ TEST_CASE("a cache is not for a body with other fibres", "[model][cache][fibres]
   const CacheKey key = key_of(make_body(mesh, muscle));
   std::string why;
   CHECK(compare(key, key_of(make_body(mesh, muscle)), why) == CacheMismatch::none);
-  Mesh<Tet4> turned = mesh, swapped = mesh, without = mesh;
-  turned.fibres[5] = mesh.fibres[6];
+  Mesh<Tet4> rotated = mesh, swapped = mesh, without = mesh;
+  rotated.fibres[5] = mesh.fibres[6];
   std::swap(swapped.fibres[2], swapped.fibres[3]);
   without.fibres.clear();
-  for (const Mesh<Tet4>& other : {turned, swapped, without})
+  for (const Mesh<Tet4>& other : {rotated, swapped, without})
     CHECK(compare(key, key_of(make_body(other, muscle)), why) == CacheMismatch::material);
 }
 
@@ -58,8 +58,8 @@ TEST_CASE("a model of a body with fibres solves what its parts say", "[model][fi
   Mesh<Tet4> spoilt = mesh;
   spoilt.fibres[4].setZero();
   CHECK(refusal([&] { Model(spoilt, scene, muscle); }).ids == std::vector<std::int64_t>{4});
-  Mesh<Tet4> turned = mesh;
-  for (Vector3& f : turned.fibres) f = Vector3::UnitY();
-  CHECK((Model(turned, scene, muscle).displacement() - model.displacement()).norm() >
+  Mesh<Tet4> rotated = mesh;
+  for (Vector3& f : rotated.fibres) f = Vector3::UnitY();
+  CHECK((Model(rotated, scene, muscle).displacement() - model.displacement()).norm() >
         0.01 * model.displacement().norm());
 }

@@ -399,8 +399,8 @@ TEST_CASE("vectors of another size are refused by motions and equilibria", "[mod
 TEST_CASE("a linear body at rest is an equilibrium like any other", "[model][equilibrium]") {
   const auto body = make_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}), LinearElastic{5e3, 0.4, density});
   const Scene scene = Scene().fix("z0").gravity({0.0, 0.0, -9.81});
-  Equilibrium statics(make_held_body(body, scene));
+  Equilibrium statics(make_constrained_body(body, scene));
   REQUIRE(statics.solve().converged);
   CHECK_THAT(statics.reactions().sum(), WithinRel(density * 0.04 * 0.04 * 0.08 * 9.81, 1e-9));
-  CHECK_REFUSED(SetupErrorKind::unconstrained, make_held_body(body, Scene().gravity({0.0, 0.0, -9.81})));
+  CHECK_REFUSED(SetupErrorKind::unconstrained, make_constrained_body(body, Scene().gravity({0.0, 0.0, -9.81})));
 }

@@ -21,7 +21,7 @@ class ModelOf final : public AnyModel {
   const Mesh<Tet4>& mesh() const override { return model_.mesh(); }
   const std::vector<NodeId>& node_map() const override { return model_.node_map(); }
   const std::vector<NodeId>& touchable_nodes() const override { return model_.touchable_nodes(); }
-  const std::vector<NodeId>& seen_nodes() const override { return model_.seen_nodes(); }
+  const std::vector<NodeId>& rendered_nodes() const override { return model_.rendered_nodes(); }
   Vector3 rest_position(NodeId node) const override { return model_.rest_position(node); }
   const VectorX& displacement() const override { return model_.displacement(); }
   VectorX internal_force() const override { return model_.internal_force(); }

@@ -93,10 +93,10 @@ TEMPLATE_TEST_CASE("few dofs: the frequencies are those of a dense solver", "[mo
     if constexpr (E::nodes == 8) return make_body(box_hex8({1, 2, 3}, {2, 2, 3}), liver);
     if constexpr (E::nodes == 10) return make_body(box_tet10({1, 2, 3}, {1, 1, 2}), liver);
   }();
-  Scene held, sliding;
-  held.fix("z0");
+  Scene constrained, sliding;
+  constrained.fix("z0");
   sliding.prescribe("z0", {std::nullopt, std::nullopt, 0.0});
-  for (const auto& [scene, rigid] : {std::pair(Scene{}, 6), std::pair(sliding, 3), std::pair(held, 0)}) {
+  for (const auto& [scene, rigid] : {std::pair(Scene{}, 6), std::pair(sliding, 3), std::pair(constrained, 0)}) {
     const VectorX all = dense_eigenvalues(body, scene);
     for (int count : {1, 7, static_cast<int>(all.size()) - rigid}) {
       INFO(rigid << " rigid, " << count << " modes");
@@ -186,7 +186,7 @@ TEST_CASE("hard cases: slender, nearly incompressible, soft part in a hard body"
 
 TEST_CASE("rounding is reported, and refused when it is all there is", "[model][modal][extreme]") {
   LinearElastic hard = reference_material;
-  const auto held_with_contrast = [&](double contrast) {
+  const auto constrained_with_contrast = [&](double contrast) {
     Mesh<Hex20> mesh = box_hex20({1, 1, 1}, {3, 3, 3});
     mesh.region_names = {"soft", "hard"};
     mesh.regions.assign(27, 0);
@@ -196,12 +196,12 @@ TEST_CASE("rounding is reported, and refused when it is all there is", "[model][
     scene.fix("z0");
     return natural_frequencies(make_body(mesh, std::vector{reference_material, hard}), scene, 4).rounding;
   };
-  CHECK(held_with_contrast(1.0) <= 1e-10);
-  const double some = held_with_contrast(1e8);
+  CHECK(constrained_with_contrast(1.0) <= 1e-10);
+  const double some = constrained_with_contrast(1e8);
   CHECK(some > 1e-10);
   CHECK(some <= 1e-3);
-  CHECK_REFUSED(SetupErrorKind::ill_conditioned, held_with_contrast(3e12));
-  CHECK_REFUSED(SetupErrorKind::not_positive_definite, held_with_contrast(1e15));  // by the pivots already
+  CHECK_REFUSED(SetupErrorKind::ill_conditioned, constrained_with_contrast(3e12));
+  CHECK_REFUSED(SetupErrorKind::not_positive_definite, constrained_with_contrast(1e15));  // by the pivots already
 }
 
 TEST_CASE("two tetrahedra joined in a node are a mechanism", "[model][modal]") {

@@ -42,7 +42,7 @@ M material(double nu = 0.4) {
   else
     return M{5e3, nu, 1000.0};
 }
-inline Scene held_block() {
+inline Scene constrained_block() {
   return Scene().fix("z0").touch("z1");
 }
 
@@ -97,7 +97,7 @@ void run() {
   using M = typename Model::MaterialType;
   const auto mesh = block_of<E>();
   int stages = 0;
-  Model model(mesh, held_block(), material<M>(), {.progress = [&](const Progress&) { return ++stages > 0; }});
+  Model model(mesh, constrained_block(), material<M>(), {.progress = [&](const Progress&) { return ++stages > 0; }});
 
   CHECK(stages > 0);
   CHECK(model.report().nodes == mesh.node_count());
@@ -141,8 +141,8 @@ void run() {
   pose.translation() = Vector3(0.4, -0.1, 1.3);
   model.set_pose(pose);
   CHECK(model.pose().matrix() == pose.matrix());
-  const Vector3 turned = pose.linear().transpose() * press(model, servo, 0.004).back();
-  CHECK((turned - first.back()).norm() < 2e-3 * force);
+  const Vector3 rotated = pose.linear().transpose() * press(model, servo, 0.004).back();
+  CHECK((rotated - first.back()).norm() < 2e-3 * force);
   Eigen::Isometry3d scaled = pose;
   scaled.linear() *= 1.5;
   CHECK_REFUSED(SetupErrorKind::bad_argument, model.set_pose(scaled));
@@ -159,7 +159,7 @@ void run() {
   CHECK(std::abs(sunk([] {})) < 1e-5);
   const double by_gravity = sunk([&] { model.set_gravity({0.0, 0.0, -9.81}); });
   CHECK(by_gravity < -5e-4);
-  const double by_scene = sunk([&] { model.set_conditions(held_block().gravity({0.0, 0.0, -9.81})); });
+  const double by_scene = sunk([&] { model.set_conditions(constrained_block().gravity({0.0, 0.0, -9.81})); });
   CHECK(std::abs(by_scene - by_gravity) < 0.01 * std::abs(by_gravity));
   CHECK_REFUSED(SetupErrorKind::unsupported, model.set_conditions(Scene().fix("z0").fix("x0").touch("z1")));
   CHECK_REFUSED(SetupErrorKind::unsupported, model.set_conditions(Scene().fix("z0").touch("x1")));
@@ -186,10 +186,10 @@ void run() {
   CHECK_REFUSED(SetupErrorKind::unknown_group, Model(mesh, Scene().fix("nowhere").touch("z1"), material<M>()));
   auto bad = mesh;
   std::swap(bad.elements[7][0], bad.elements[7][1]);
-  CHECK_REFUSED(SetupErrorKind::inverted_element, Model(bad, held_block(), material<M>()));
+  CHECK_REFUSED(SetupErrorKind::inverted_element, Model(bad, constrained_block(), material<M>()));
   if constexpr (requires { E::locking_poisson_ratio; })
     if (E::locking_poisson_ratio < 0.48) {
-      const Model locks(mesh, held_block(), material<M>(0.49));
+      const Model locks(mesh, constrained_block(), material<M>(0.49));
       CHECK(locks.report().has(SetupFlag::locking));
     }
 }

@@ -99,19 +99,19 @@ TEST_CASE("conflicting conditions name the node of the mesh as given", "[model][
   const auto twice = [&](NodeId node) {
     return Scene(scene).prescribe(std::vector<NodeId>{node}, {std::nullopt, 1e-3, std::nullopt});
   };
-  const auto held = static_cast<NodeId>(5);  // node 4 of the brick, at x = 0
-  REQUIRE(mesh.position(held)[0] == 0.0);
+  const auto constrained = static_cast<NodeId>(5);  // node 4 of the brick, at x = 0
+  REQUIRE(mesh.position(constrained)[0] == 0.0);
   const auto check = [&](const SetupProblem& p) {
     CHECK(to_string(p.kind) == "conflicting_conditions");
-    CHECK(p.ids == Ids{held});
+    CHECK(p.ids == Ids{constrained});
     CHECK(p.count == 1);
     CHECK_THAT(p.what, contains("component y"));
     CHECK_THAT(describe(p), contains("node 5"));
   };
-  check(refusal([&] { model_of(mesh, twice(held)); }));
+  check(refusal([&] { model_of(mesh, twice(constrained)); }));
   SECTION("and later changes as well") {
     const auto model = model_of(mesh, scene);
-    check(refusal([&] { model->set_conditions(twice(held)); }));
+    check(refusal([&] { model->set_conditions(twice(constrained)); }));
   }
 }
 

@@ -89,13 +89,13 @@ TEST_CASE("what does not touch the stored numbers does not spoil the cache", "[m
     setup.scene.gravity({0, 0, -9.81}).traction("x1", {5, 2, -10}).point_load("z1", {0, 0, -1});
   }
   SECTION("prescribed values") {
-    setup.scene = Scene().prescribe("x0", {1e-3, 0.0, 0.0}).touch("z1").see("surface");
+    setup.scene = Scene().prescribe("x0", {1e-3, 0.0, 0.0}).touch("z1").render("surface");
   }
   SECTION("density") {
     setup.materials[0].second.density = 1.0;
   }
   SECTION("what is looked at") {
-    setup.scene.see("x1");
+    setup.scene.render("x1");
   }
   SECTION("names of regions") {
     setup.mesh.region_names = {"liver"};

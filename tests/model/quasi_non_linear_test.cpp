@@ -94,13 +94,13 @@ StiffeningCurve measured(const LinearBlock& linear, int axis, double sign) {
 }
 /// Force of the wrapped tissue where the vertex is held at the given components, after some ticks.
 template <class Tissue>
-Vector3 settled_force(Tissue& tissue, int node, const std::vector<int>& held, const Vector3& u) {
+Vector3 settled_force(Tissue& tissue, int node, const std::vector<int>& constrained, const Vector3& u) {
   Vector3 force = Vector3::Zero();
   for (int tick = 0; tick < 60; ++tick) {
     const Matrix3 c = tissue.compliance(node, node);
-    const VectorX f = MatrixX(c(held, held)).llt().solve(VectorX(u(held)));
+    const VectorX f = MatrixX(c(constrained, constrained)).llt().solve(VectorX(u(constrained)));
     force.setZero();
-    for (std::size_t k = 0; k < held.size(); ++k) force[held[k]] = f[static_cast<Index>(k)];
+    for (std::size_t k = 0; k < constrained.size(); ++k) force[constrained[k]] = f[static_cast<Index>(k)];
     const VertexForce on{node, ModelVector(force)};
     tissue.end_tick({&on, 1});
   }
@@ -172,8 +172,8 @@ TEST_CASE("a tissue that has stiffened keeps the laws of tissues", "[model][quas
   CHECK(tissue.compliance_revision() == still);  // a hold keeps its compliances
   const Vector3 force = settled_force(tissue, node, {0, 1, 2}, {2e-3, 1e-3, -4e-3});
   for (const double turn : {1e-9, -1e-9, 0.0}) {  // as rounding does, and a shaking sensor
-    const VertexForce turned{node, ModelVector(force + turn * force.unitOrthogonal() * force.norm())};
-    tissue.end_tick({&turned, 1});
+    const VertexForce rotated{node, ModelVector(force + turn * force.unitOrthogonal() * force.norm())};
+    tissue.end_tick({&rotated, 1});
   }
   CHECK(tissue.compliance_revision() == still);
   const VertexForce elsewhere{node, ModelVector(force + 0.1 * force.norm() * force.unitOrthogonal())};

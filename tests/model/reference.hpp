@@ -85,7 +85,7 @@ inline Mesh<Tet4> brick() {
   return box_tet4({0.1, 0.06, 0.04}, {3, 2, 2});
 }
 inline Scene brick_scene() {
-  return Scene().fix("x0").touch("z1").see("surface");
+  return Scene().fix("x0").touch("z1").render("surface");
 }
 
 /// Loads of every kind, on touched and on condensed nodes.

@@ -13,7 +13,7 @@ using namespace palpate;
 namespace {
 
 using Renewed = CorotatedMotion<LinearElastic, double, RenewedFactor>;
-using Turned = CorotatedMotion<LinearElastic, double, TurnedFactor>;
+using Rotated = CorotatedMotion<LinearElastic, double, CorotatedFactor>;
 
 HyperelasticBody<Tet4, Corotational<LinearElastic>> column() {
   return make_hyperelastic_body(box_tet4({0.02, 0.02, 0.08}, {2, 2, 8}),
@@ -28,14 +28,14 @@ struct Twisting {
   explicit Twisting(const CorotatedMotionOptions& options) : motion(column(), Scene().fix("z0").fix("z1"), options) {}
   CorotatedStep move(double h) {
     const double angle = std::min(2.5, 0.02 * ++k);
-    VectorX held = VectorX::Zero(motion.size());
-    for (Index i = 0; i < held.size() / 3; ++i) {
+    VectorX constrained = VectorX::Zero(motion.size());
+    for (Index i = 0; i < constrained.size() / 3; ++i) {
       const Vector3& x = motion.body().positions[static_cast<std::size_t>(i)];
       if (x.z() < 0.079) continue;
       const double a = x.x() - 0.01, b = x.y() - 0.01, c = std::cos(angle) - 1.0, s = std::sin(angle);
-      held.segment<3>(3 * i) = Vector3(c * a - s * b, s * a + c * b, 0.0);
+      constrained.segment<3>(3 * i) = Vector3(c * a - s * b, s * a + c * b, 0.0);
     }
-    motion.set_prescribed(held);
+    motion.set_prescribed(constrained);
     return motion.step(h);
   }
 };
@@ -51,13 +51,13 @@ CorotatedMotionOptions solved_well() {
 
 TEST_CASE("steps with a renewed factor are the same steps, in fewer iterations", "[model][corotated][renewed]") {
   Twisting<Renewed> renewed(solved_well());
-  Twisting<Turned> turned(solved_well());
-  long late = 0, late_turned = 0;
+  Twisting<Rotated> rotated(solved_well());
+  long late = 0, late_rotated = 0;
   for (int k = 0; k < 200; ++k) {
-    const CorotatedStep a = renewed.move(0.02), b = turned.move(0.02);
+    const CorotatedStep a = renewed.move(0.02), b = rotated.move(0.02);
     REQUIRE(a.taken);
-    CHECK((renewed.motion.displacement() - turned.motion.displacement()).norm() <=
-          1e-7 * turned.motion.displacement().norm());
+    CHECK((renewed.motion.displacement() - rotated.motion.displacement()).norm() <=
+          1e-7 * rotated.motion.displacement().norm());
     if (k < 150) continue;
     if (k == 150)  // the thread may have had no time yet: wait for it
       for (const long before = renewed.motion.preconditioner().renewals();
@@ -66,10 +66,10 @@ TEST_CASE("steps with a renewed factor are the same steps, in fewer iterations",
         renewed.motion.prepare_response(0.02);
       }
     late += a.solve.iterations;
-    late_turned += b.solve.iterations;
+    late_rotated += b.solve.iterations;
   }
-  INFO(late << " iterations against " << late_turned);
-  CHECK(late < late_turned);
+  INFO(late << " iterations against " << late_rotated);
+  CHECK(late < late_rotated);
 }
 
 TEST_CASE("renewing does not allocate in the stepping thread", "[model][corotated][renewed]") {

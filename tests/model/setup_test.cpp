@@ -29,7 +29,7 @@ TEST_CASE("the report counts and measures", "[model][report]") {
     CHECK(r.kept_dofs == 27);  // twelve touched nodes, three of them held
     CHECK(r.condensed_dofs == 54);
     CHECK(r.touchable_vertices == 12);
-    CHECK(r.seen_nodes == 34);  // two nodes are inside
+    CHECK(r.rendered_nodes == 34);  // two nodes are inside
     CHECK(r.stiffness_bytes > 0);
     CHECK(r.solver_bytes > 0);
     CHECK(r.compliance_bytes == (policy == PolicyName::condensed_float ? 4u : 8u) * 36 * 36);
@@ -122,10 +122,10 @@ TEST_CASE("flags", "[model][report]") {
       for (NodeId& i : e) i += 36;
       mesh.elements.push_back(e);
     }
-    std::vector<NodeId> held;
+    std::vector<NodeId> constrained;
     for (NodeId i = 0; i < 72; ++i)
-      if (i % 4 == 0) held.push_back(i);
-    CHECK(model_of(mesh, Scene().fix(held).touch("z1"))->report().has(SetupFlag::disconnected));
+      if (i % 4 == 0) constrained.push_back(i);
+    CHECK(model_of(mesh, Scene().fix(constrained).touch("z1"))->report().has(SetupFlag::disconnected));
   }
   SECTION("slivers") {
     const Mesh<Tet4> mesh = box_tet4({0.0, 0.1, 0.1001}, {0.0, 0.05}, {0.0, 0.05});
@@ -246,7 +246,7 @@ TEST_CASE("scenes that do not fit the mesh are refused", "[model][scene]") {
   const auto with = [](Scene scene) { return model_of(brick(), scene); };
   CHECK_REFUSED(SetupErrorKind::unknown_group, with(brick_scene().fix("liver")));
   CHECK_REFUSED(SetupErrorKind::unknown_group, with(brick_scene().touch("liver")));
-  CHECK_REFUSED(SetupErrorKind::unknown_group, with(brick_scene().see("liver")));
+  CHECK_REFUSED(SetupErrorKind::unknown_group, with(brick_scene().render("liver")));
   CHECK_REFUSED(SetupErrorKind::index_out_of_range, with(brick_scene().touch(std::vector<NodeId>{36})));
   CHECK_REFUSED(SetupErrorKind::empty_group, with(brick_scene().touch(std::vector<NodeId>{5})));  // no face
   CHECK_REFUSED(SetupErrorKind::unconstrained, with(Scene().touch("z1")));

@@ -7,7 +7,7 @@
 
 #include "catch.hpp"
 
-/// A block of any element under a ball, written once; each element is compiled in a file of its own.
+/// A block of any element under a sphere, written once; each element is compiled in a file of its own.
 namespace test {
 
 using namespace palpate;

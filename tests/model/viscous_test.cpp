@@ -23,7 +23,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-constexpr double share = 0.5, tau = 0.5, held_strain = 0.01;
+constexpr double share = 0.5, tau = 0.5, constrained_strain = 0.01;
 using Cube = Viscoelastic<LinearElastic, 1>;
 
 Cube cube_law(Relaxation relaxation) {
@@ -50,7 +50,7 @@ struct Hold {
 constexpr Hold pulled{"uniaxial_free", 1}, confined{"confined", 2}, sheared{"shear", 3};
 
 template <Element E>
-Scene held_as(const Hold& hold, const Mesh<E>& mesh, double size) {
+Scene constrained_as(const Hold& hold, const Mesh<E>& mesh, double size) {
   const auto along = [](int axis, double u) {
     Components c;
     c[static_cast<std::size_t>(axis)] = u;
@@ -81,7 +81,8 @@ double stress_of(const Hold& hold, const Mesh<E>& mesh, const Equilibrium& body)
 /// Largest relative error over the rows of the table, with `steps` steps between two.
 template <Element E>
 double relaxation_error(const Mesh<E>& mesh, const Hold& hold, Relaxation relaxation, int steps) {
-  Equilibrium body(make_held_body(make_body(mesh, cube_law(relaxation)), held_as(hold, mesh, held_strain)));
+  Equilibrium body(
+      make_constrained_body(make_body(mesh, cube_law(relaxation)), constrained_as(hold, mesh, constrained_strain)));
   double time = 0.0, worst = 0.0;
   const auto rows = oracle_rows("closed_form_relaxation.csv");
   REQUIRE(rows.size() == 18);
@@ -89,7 +90,7 @@ double relaxation_error(const Mesh<E>& mesh, const Hold& hold, Relaxation relaxa
     const int count = row[0] == 0.0 ? 1 : steps;
     for (int k = 0; k < count; ++k) REQUIRE(body.step((row[0] - time) / count).converged);
     time = row[0];
-    const double exact = row[hold.column + (relaxation == Relaxation::shape_only ? 3 : 0)];
+    const double exact = row[hold.column + (relaxation == Relaxation::deviatoric ? 3 : 0)];
     worst = std::max(worst, std::abs(stress_of(hold, mesh, body) / exact - 1.0));
   }
   return worst;
@@ -109,11 +110,11 @@ TEMPLATE_TEST_CASE("a held cube relaxes as its closed form", "[model][viscous][o
   for (const Hold& hold : {pulled, confined, sheared}) {
     INFO(hold.name);
     CHECK(relaxation_error(mesh, hold, Relaxation::whole_stress, 1) <= 1e-9);
-    if (hold.column != pulled.column) CHECK(relaxation_error(mesh, hold, Relaxation::shape_only, 1) <= 1e-9);
+    if (hold.column != pulled.column) CHECK(relaxation_error(mesh, hold, Relaxation::deviatoric, 1) <= 1e-9);
   }
   // The sides move while only the shape relaxes: of second order.
-  const double rough = relaxation_error(mesh, pulled, Relaxation::shape_only, 10);
-  const double fine = relaxation_error(mesh, pulled, Relaxation::shape_only, 20);
+  const double rough = relaxation_error(mesh, pulled, Relaxation::deviatoric, 10);
+  const double fine = relaxation_error(mesh, pulled, Relaxation::deviatoric, 20);
   CHECK(fine <= 1e-5);
   CHECK(rough / fine > 3.5);
 }
@@ -123,8 +124,8 @@ TEST_CASE("a ramp is exact at any step, creep of second order", "[model][viscous
   const auto rows = oracle_rows("closed_form_ramp_creep_harmonic.csv");
   REQUIRE(rows.size() == 18);
   for (const Hold& hold : {sheared, pulled}) {
-    Equilibrium body(
-        make_held_body(make_body(mesh, cube_law(Relaxation::whole_stress)), held_as(hold, mesh, held_strain)));
+    Equilibrium body(make_constrained_body(make_body(mesh, cube_law(Relaxation::whole_stress)),
+                                           constrained_as(hold, mesh, constrained_strain)));
     const VectorX full = body.conditions().prescribed;
     double time = 0.0;
     for (const auto& row : rows) {
@@ -139,7 +140,7 @@ TEST_CASE("a ramp is exact at any step, creep of second order", "[model][viscous
     Scene loaded;
     loaded.prescribe("x0", no_x).prescribe("y0", no_y).prescribe("z0", Components{std::nullopt, std::nullopt, 0.0});
     loaded.traction("x1", {100.0, 0.0, 0.0});
-    Equilibrium body(make_held_body(make_body(mesh, cube_law(Relaxation::whole_stress)), loaded));
+    Equilibrium body(make_constrained_body(make_body(mesh, cube_law(Relaxation::whole_stress)), loaded));
     double time = 0.0, worst = 0.0;
     for (const auto& row : rows) {
       const int count = row[0] == 0.0 ? 1 : steps;
@@ -160,17 +161,18 @@ TEST_CASE("a ramp is exact at any step, creep of second order", "[model][viscous
 TEST_CASE("a body that is shaken answers with its complex modulus", "[model][viscous][oracle]") {
   const Mesh<Hex8> mesh = box_hex8({1, 1, 1}, {2, 2, 2});
   const auto error = [&](const std::vector<double>& row, int steps) {
-    Equilibrium body(make_held_body(make_body(mesh, cube_law(Relaxation::shape_only)), held_as(sheared, mesh, 1.0)));
+    Equilibrium body(
+        make_constrained_body(make_body(mesh, cube_law(Relaxation::deviatoric)), constrained_as(sheared, mesh, 1.0)));
     const VectorX full = body.conditions().prescribed;
     const double h = period / row[0] / steps;
     const int still = steps * (1 + static_cast<int>(20.0 * tau * row[0] / period));  // until the start is forgotten
     double storage = 0.0, loss = 0.0;
     for (int k = 1; k <= still + steps; ++k) {
       const double angle = period * k / steps;
-      body.set_prescribed(held_strain * std::sin(angle) * full);
+      body.set_prescribed(constrained_strain * std::sin(angle) * full);
       REQUIRE(body.step(h).converged);
       if (k <= still) continue;
-      const double modulus = stress_of(sheared, mesh, body) / held_strain * 2.0 / steps;
+      const double modulus = stress_of(sheared, mesh, body) / constrained_strain * 2.0 / steps;
       storage += modulus * std::sin(angle);
       loss += modulus * std::cos(angle);
     }
@@ -194,11 +196,11 @@ TEST_CASE("regions relax each at their own time", "[model][viscous]") {
   mesh.regions[1] = 1;
   const LinearElastic base{1e4, 0.0, 1000.0};  // in a row: the same force in both
   const RegionMaterials<Cube> laws{{"left", Cube{base, {{{0.5, 0.1}}}}}, {"right", Cube{base, {{{0.3, 10.0}}}}}};
-  Equilibrium body(make_held_body(make_body(mesh, laws), held_as(pulled, mesh, held_strain)));
+  Equilibrium body(make_constrained_body(make_body(mesh, laws), constrained_as(pulled, mesh, constrained_strain)));
   REQUIRE(body.step(0.0).converged);
   CHECK_THAT(stress_of(pulled, mesh, body), WithinRel(100.0, 1e-9));
   REQUIRE(body.step(infinity).converged);
-  CHECK_THAT(stress_of(pulled, mesh, body), WithinRel(1e4 * 2.0 * held_strain / (1.0 / 0.5 + 1.0 / 0.7), 1e-9));
+  CHECK_THAT(stress_of(pulled, mesh, body), WithinRel(1e4 * 2.0 * constrained_strain / (1.0 / 0.5 + 1.0 / 0.7), 1e-9));
 }
 
 TEST_CASE("a deformation that is held relaxes exactly at large strain too", "[model][viscous]") {
@@ -214,8 +216,8 @@ TEST_CASE("a deformation that is held relaxes exactly at large strain too", "[mo
   Equilibrium elastic(make_hyperelastic_body(mesh, std::vector<NeoHookean>{base}), scene);
   REQUIRE(elastic.solve().converged);
   const VectorX fast = elastic.reactions();
-  const Viscoelastic<NeoHookean, 2> law{base, {{{0.3, 0.1}, {0.2, 2.0}}}};
-  Equilibrium body(make_hyperelastic_body(mesh, std::vector{law}), scene);
+  const Viscoelastic<NeoHookean, 2> material{base, {{{0.3, 0.1}, {0.2, 2.0}}}};
+  Equilibrium body(make_hyperelastic_body(mesh, std::vector{material}), scene);
   double time = 0.0;
   for (const double dt : {0.0, 0.02, 0.3, 1.0, 5.0}) {
     time += dt;
@@ -229,12 +231,13 @@ TEST_CASE("a deformation that is held relaxes exactly at large strain too", "[mo
 
 TEST_CASE("at small strain both kinematics agree", "[model][viscous]") {
   const Mesh<Hex8> mesh = box_hex8({1, 1, 1}, {2, 2, 2});
-  for (const auto relaxation : {Relaxation::whole_stress, Relaxation::shape_only}) {
+  for (const auto relaxation : {Relaxation::whole_stress, Relaxation::deviatoric}) {
     const double small = 1e-6;
-    Equilibrium linear(make_held_body(make_body(mesh, cube_law(relaxation)), held_as(pulled, mesh, small)));
+    Equilibrium linear(
+        make_constrained_body(make_body(mesh, cube_law(relaxation)), constrained_as(pulled, mesh, small)));
     Equilibrium large(make_hyperelastic_body(mesh, std::vector{Viscoelastic<NeoHookean, 1>{
                                                        {1e4, 0.45, 1000.0}, {{{share, tau}}}, relaxation}}),
-                      held_as(pulled, mesh, small));
+                      constrained_as(pulled, mesh, small));
     for (const double dt : {0.0, 0.1, 0.1, 0.5, 2.0}) {
       REQUIRE(linear.step(dt).converged);
       REQUIRE(large.step(dt).converged);
@@ -320,20 +323,20 @@ TEST_CASE("a correction counts once in what a body remembers", "[model][viscous]
 
 TEST_CASE("a step that is refused leaves the memory alone", "[model][viscous][dynamics]") {
   const Mesh<Tet4> mesh = box_tet4({0.04, 0.04, 0.04}, {2, 2, 2});
-  const Viscoelastic<NeoHookean, 1> law{{5e3, 0.45, 1000.0}, {{{0.6, 0.05}}}};
+  const Viscoelastic<NeoHookean, 1> material{{5e3, 0.45, 1000.0}, {{{0.6, 0.05}}}};
   const auto body = [&] {
-    return make_deformable_body(make_hyperelastic_body(mesh, std::vector{law}),
+    return make_deformable_body(make_hyperelastic_body(mesh, std::vector{material}),
                                 Scene().fix("z0").gravity({9.81, 0.0, 0.0}));
   };
   ImplicitDynamics one(body(), {}), other(body(), {});
-  const VectorX held = one.body().conditions.prescribed;
+  const VectorX constrained = one.body().conditions.prescribed;
   for (int k = 0; k < 20; ++k) {
     REQUIRE(one.step(0.01).taken);
     REQUIRE(other.step(0.01).taken);
-    other.set_prescribed(VectorX::Constant(held.size(), std::numeric_limits<double>::quiet_NaN()));
+    other.set_prescribed(VectorX::Constant(constrained.size(), std::numeric_limits<double>::quiet_NaN()));
     REQUIRE_FALSE(other.step(0.5).taken);
     CHECK_FALSE(other.step(-1.0).taken);
-    other.set_prescribed(held);
+    other.set_prescribed(constrained);
     CHECK(other.prepare_response(0.3));
   }
   CHECK(one.displacement() == other.displacement());
@@ -342,11 +345,11 @@ TEST_CASE("a step that is refused leaves the memory alone", "[model][viscous][dy
 TEST_CASE("motion with memory loses energy and ends where statics does", "[model][viscous][dynamics]") {
   const Mesh<Tet4> mesh = box_tet4({0.04, 0.04, 0.08}, {2, 2, 4});
   const Scene scene = Scene().fix("z0").gravity({4.0, 0.0, -9.81});
-  for (const auto relaxation : {Relaxation::whole_stress, Relaxation::shape_only}) {
-    const Viscoelastic<NeoHookean, 2> law{{8e3, 0.4, 1000.0}, {{{0.3, 0.02}, {0.2, 0.2}}}, relaxation};
-    Equilibrium statics(make_hyperelastic_body(mesh, std::vector{law}), scene);
+  for (const auto relaxation : {Relaxation::whole_stress, Relaxation::deviatoric}) {
+    const Viscoelastic<NeoHookean, 2> material{{8e3, 0.4, 1000.0}, {{{0.3, 0.02}, {0.2, 0.2}}}, relaxation};
+    Equilibrium statics(make_hyperelastic_body(mesh, std::vector{material}), scene);
     REQUIRE(statics.solve().converged);
-    ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(mesh, std::vector{law}), scene), {});
+    ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(mesh, std::vector{material}), scene), {});
     StepReport report;
     for (int k = 0; k < 400; ++k) report = d.step(0.02);
     REQUIRE(report.newton.converged);
@@ -359,9 +362,9 @@ TEST_CASE("a step with memory allocates nothing; without terms it is that of the
   const Mesh<Tet4> mesh = box_tet4({0.04, 0.04, 0.08}, {2, 2, 4});
   const Scene scene = Scene().fix("z0").gravity({4.0, 0.0, -9.81});
   const NeoHookean base{8e3, 0.4, 1000.0};
-  const Viscoelastic<NeoHookean, 1> law{base, {{{0.3, 0.02}}}}, none{base, {{{0.0, 0.02}}}};
+  const Viscoelastic<NeoHookean, 1> material{base, {{{0.3, 0.02}}}}, none{base, {{{0.0, 0.02}}}};
   ImplicitDynamics plain(make_deformable_body(make_hyperelastic_body(mesh, std::vector{base}), scene), {});
-  ImplicitDynamics viscous(make_deformable_body(make_hyperelastic_body(mesh, std::vector{law}), scene), {});
+  ImplicitDynamics viscous(make_deformable_body(make_hyperelastic_body(mesh, std::vector{material}), scene), {});
   ImplicitDynamics idle(make_deformable_body(make_hyperelastic_body(mesh, std::vector{none}), scene), {});
   ImplicitDynamics small(
       make_deformable_body(make_body(mesh, Cube{LinearElastic{8e3, 0.4, 1000.0}, {{{0.3, 0.02}}}}), scene), {});
@@ -372,7 +375,7 @@ TEST_CASE("a step with memory allocates nothing; without terms it is that of the
   CHECK(allocations == 0);
   CHECK((plain.displacement() - idle.displacement()).norm() <= 1e-9 * plain.displacement().norm());
   CHECK((plain.displacement() - viscous.displacement()).norm() > 1e-3 * plain.displacement().norm());
-  STATIC_REQUIRE(std::is_empty_v<detail::PointMemory<NeoHookean, 1>::type>);
+  STATIC_REQUIRE(std::is_empty_v<detail::PointHistory<NeoHookean, 1>::type>);
 }
 
 TEST_CASE("bodies with memory refuse what they cannot be", "[model][viscous]") {
@@ -392,18 +395,18 @@ TEST_CASE("bodies with memory refuse what they cannot be", "[model][viscous]") {
                                       .shear_modulus_along = 4e3,
                                       .density = 1e3};
   using Muscle = Viscoelastic<TransverselyIsotropic, 1>;
-  const Muscle whole{fibrous, {{{0.5, 1.0}}}}, shape{fibrous, {{{0.5, 1.0}}}, Relaxation::shape_only};
-  const Scene held = Scene().fix("z0");
-  CHECK(kind([&] { make_held_body(make_body(mesh, whole), held); }) == SetupErrorKind::cancelled);
-  CHECK(kind([&] { make_held_body(make_body(mesh, shape), held); }) == SetupErrorKind::unsupported);
+  const Muscle whole{fibrous, {{{0.5, 1.0}}}}, shape{fibrous, {{{0.5, 1.0}}}, Relaxation::deviatoric};
+  const Scene constrained = Scene().fix("z0");
+  CHECK(kind([&] { make_constrained_body(make_body(mesh, whole), constrained); }) == SetupErrorKind::cancelled);
+  CHECK(kind([&] { make_constrained_body(make_body(mesh, shape), constrained); }) == SetupErrorKind::unsupported);
   const Cube cube = cube_law(Relaxation::whole_stress);
-  CHECK(kind([&] { make_held_body(make_body(mesh, cube), Scene()); }) == SetupErrorKind::unconstrained);
+  CHECK(kind([&] { make_constrained_body(make_body(mesh, cube), Scene()); }) == SetupErrorKind::unconstrained);
   CHECK(kind([&] {
-          Scene expanding = held;
-          make_held_body(make_body(mesh, cube), expanding.expand(std::string(everywhere), 0.01));
+          Scene expanding = constrained;
+          make_constrained_body(make_body(mesh, cube), expanding.expand(std::string(everywhere), 0.01));
         }) == SetupErrorKind::unsupported);
   CHECK(kind([&] { make_body(mesh, Cube{cube.base, {{{1.5, 1.0}}}}); }) == SetupErrorKind::bad_argument);
-  Equilibrium body(make_held_body(make_body(mesh, cube), held));
+  Equilibrium body(make_constrained_body(make_body(mesh, cube), constrained));
   for (const double dt : {-1.0, std::numeric_limits<double>::quiet_NaN()})
     CHECK(kind([&] { body.step(dt); }) == SetupErrorKind::bad_argument);
 }

@@ -34,13 +34,13 @@ const auto bottom = where::below(slab_place);
 const auto top = where::above(Vector3(slab_place + Vector3(0, 0, slab_size[2])));
 
 Scene by_name() {
-  return Scene().fix("z0").touch("z1").see("surface").pressure("z1", 5.0).point_load("z1", {0.0, 0.01, 0.0});
+  return Scene().fix("z0").touch("z1").render("surface").pressure("z1", 5.0).point_load("z1", {0.0, 0.01, 0.0});
 }
 Scene by_place() {
   return Scene()
       .fix(bottom)
       .touch(top)
-      .see(where::inside([](const Vector3&) { return true; }))
+      .render(where::inside([](const Vector3&) { return true; }))
       .pressure(top, 5.0)
       .point_load(top, {0.0, 0.01, 0.0});
 }
@@ -61,7 +61,7 @@ TEST_CASE("a linear model takes positions for names", "[model][where]") {
   CHECK(named.displacement() == placed.displacement());
   CHECK(named.touchable_nodes() == placed.touchable_nodes());
   check_same_surface(named, placed);
-  CHECK(placed.seen_nodes().size() == static_cast<std::size_t>(placed.mesh().node_count()));
+  CHECK(placed.rendered_nodes().size() == static_cast<std::size_t>(placed.mesh().node_count()));
 
   // Changes of the loads afterwards, too.
   const Scene other = Scene().fix("z0").traction("x1", {2.0, 0.0, 0.0});
@@ -77,7 +77,7 @@ TEST_CASE("only the surface of a set of points is touched", "[model][where]") {
   const HapticFEModel<Tet4, LinearElastic, SparseCholesky> model(distant_slab(), Scene().fix(bottom).touch(upper),
                                                                  tissue_law, {.admission = drop_orphans()});
   const std::vector<NodeId> surface = nodes_of(extract_boundary<Tet4>(model.mesh()));
-  CHECK(nodes_within(model.mesh(), upper.seen_from(model.origin())).size() > model.touchable_nodes().size());
+  CHECK(nodes_within(model.mesh(), upper.relative_to(model.origin())).size() > model.touchable_nodes().size());
   for (const NodeId i : model.touchable_nodes()) CHECK(std::ranges::binary_search(surface, i));
   for (int v = 0; v < model.contact_surface().vertex_count(); ++v)
     CHECK(!model.contact_surface().triangles_at(v).empty());
@@ -92,7 +92,7 @@ TEST_CASE("a set that selects nothing is refused where the mesh was given", "[mo
   };
   const auto far = where::sphere({0, 0, 0}, 0.01);
   for (const Scene& scene : {Scene().fix(far), Scene().fix(bottom).touch(far), Scene().fix(bottom).pressure(far, 1.0),
-                             Scene().fix(bottom).see(far)}) {
+                             Scene().fix(bottom).render(far)}) {
     const SetupProblem p = refused(scene);
     CHECK(p.kind == SetupErrorKind::empty_group);
     CHECK_THAT(p.what, test::contains("the sphere of radius 0.01 round (0, 0, 0)"));
@@ -124,8 +124,9 @@ TEST_CASE("tissue that moves takes positions for names", "[model][where]") {
   const NeoHookean rubber{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0};
   check(Rubber(distant_slab(), by_name(), rubber, mending), Rubber(distant_slab(), by_place(), rubber, mending));
   using Corotated = HapticFEModel<Tet4, Corotational<LinearElastic>, Implicit<MatrixFreeCG<BlockJacobi>>>;
-  const Corotational<LinearElastic> law{tissue_law};
-  check(Corotated(distant_slab(), by_name(), law, mending), Corotated(distant_slab(), by_place(), law, mending));
+  const Corotational<LinearElastic> material{tissue_law};
+  check(Corotated(distant_slab(), by_name(), material, mending),
+        Corotated(distant_slab(), by_place(), material, mending));
 }
 
 TEST_CASE("tissue that is cut takes positions for names", "[model][cut][where]") {
@@ -144,7 +145,7 @@ TEST_CASE("tissue that is cut takes positions for names", "[model][cut][where]")
       where::capsule(slab_place + Vector3(0.03, 0.03, 0.03), slab_place + Vector3(0.03, 0.03, 0.02), 0.015);
   CutOrder order;
   placed.read([&](const auto& topology, const auto&) {
-    order.remove = elements_within(topology.mesh(), tool.seen_from(placed.origin()));
+    order.remove = elements_within(topology.mesh(), tool.relative_to(placed.origin()));
   });
   CHECK(order.remove == elements_within(distant_slab(), tool));
   CHECK(order.remove.size() > 4);

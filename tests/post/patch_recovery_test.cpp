@@ -210,15 +210,15 @@ TEST_CASE("recovered stress turns with the body, and does not depend on where it
   for_elements<Tet4, Tet10, Hex8, Hex20>([&]<class E>(std::type_identity<E>) {
     for (const std::array<int, 3>& cells : {std::array{3, 2, 2}, {1, 1, 1}, {3, 1, 1}}) {
       const Mesh<E> mesh = jittered(box_of<E>({1, 0.8, 0.02}, cells), 0.002);
-      Mesh<E> turned = mesh;
-      for (Vector3& x : turned.positions) x = r * x + Vector3(10, -7, 3);
+      Mesh<E> rotated = mesh;
+      for (Vector3& x : rotated.positions) x = r * x + Vector3(10, -7, 3);
       const VectorX u = nodal_values(mesh, [](const Vector3& x) -> Vector3 {
         return {std::sin(3.0 * x[0]), x[0] * x[1] + 20.0 * x[2] * x[2], std::cos(2.0 * x[1] + x[2])};
       });
       VectorX v(u.size());
       for (Index i = 0; i < mesh.node_count(); ++i) v.segment<3>(3 * i) = r * u.segment<3>(3 * i);
       const NodalStress before = patch_recovery(body_of(mesh, {soft}), u),
-                        after = patch_recovery(body_of(turned, {soft}), v);
+                        after = patch_recovery(body_of(rotated, {soft}), v);
       double worst = 0.0;
       for (Index i = 0; i < mesh.node_count(); ++i)
         worst =
@@ -237,10 +237,10 @@ TEST_CASE("patch recovery: initial strain, lone nodes, single elements, bad inpu
   body.initial_strain.front() = swelling;
   body.mesh.positions.emplace_back(9, 9, 9);  // a node of no element
   VectorX u = VectorX::Zero(3 * body.mesh.node_count());
-  const NodalStress held = patch_recovery(body, u);
+  const NodalStress constrained = patch_recovery(body, u);
   for (Index i = 0; i + 1 < body.mesh.node_count(); ++i)
-    CHECK((held.at(i) + soft.elasticity() * swelling).norm() <= 1e-12 * 5e3);
-  CHECK(held.at(body.mesh.node_count() - 1).isZero(0.0));
+    CHECK((constrained.at(i) + soft.elasticity() * swelling).norm() <= 1e-12 * 5e3);
+  CHECK(constrained.at(body.mesh.node_count() - 1).isZero(0.0));
 
   u[0] = std::numeric_limits<double>::quiet_NaN();
   const NodalStress bad = patch_recovery(body, u);

@@ -92,11 +92,11 @@ TEST_CASE("M2: rotation", "[property][M2]") {
   testing::Random random(41);
   for (int trial = 0; trial < 3; ++trial) {
     const Matrix3 r = testing::random_rotation(random);
-    const Mesh<Tet4> turned = moved(brick(), r, Vector3::Zero());
-    CHECK(difference(dense_stiffness(turned), mapped(dense_stiffness(brick()), r)) <= 1e-13);
+    const Mesh<Tet4> rotated = moved(brick(), r, Vector3::Zero());
+    CHECK(difference(dense_stiffness(rotated), mapped(dense_stiffness(brick()), r)) <= 1e-13);
     for (PolicyName policy : direct) {
       const auto a = make_model(policy, brick(), hanging(g), liver),
-                 b = make_model(policy, turned, hanging(r * g), liver);
+                 b = make_model(policy, rotated, hanging(r * g), liver);
       CHECK(relative(b->displacement(), mapped(a->displacement(), r)) <= 1e-11);
       CHECK(relative(b->reactions(), mapped(a->reactions(), r)) <= 1e-11);
       CHECK(difference(all_compliance(*b), mapped(all_compliance(*a), r)) <= 1e-11);
@@ -255,13 +255,13 @@ TEST_CASE("M9: two bodies in one mesh do not know of each other", "[property][M9
 }
 
 TEST_CASE("M11: condensed as full", "[property][M11]") {
-  const Mesh<Tet4> ball = ball_tet4(0.05, 3);
+  const Mesh<Tet4> sphere = sphere_tet4(0.05, 3);
   std::vector<NodeId> south;
-  for (NodeId i = 0; i < ball.node_count(); ++i)
-    if (ball.position(i)[2] < -0.03) south.push_back(i);
+  for (NodeId i = 0; i < sphere.node_count(); ++i)
+    if (sphere.position(i)[2] < -0.03) south.push_back(i);
   const Scene scene = Scene().fix(south).touch("surface").gravity(g).pressure("surface", 10.0);
-  const auto full = make_model(PolicyName::sparse_cholesky, ball, scene, liver);
-  const auto condensed = make_model(PolicyName::condensed_inverse, ball, scene, liver);
+  const auto full = make_model(PolicyName::sparse_cholesky, sphere, scene, liver);
+  const auto condensed = make_model(PolicyName::condensed_inverse, sphere, scene, liver);
   CHECK(condensed->report().condensed_dofs > 0);
   CHECK(relative(condensed->displacement(), full->displacement()) <= 1e-12);
   CHECK(difference(all_compliance(*condensed), all_compliance(*full)) <= 1e-11);

@@ -64,7 +64,7 @@ void check_solution(const std::string& folder, const solve_case::NumberedMesh<E>
     CHECK(u.size() == s.node_map.size());
     CHECK(difference(u, 3, s.displacement, mesh, s.node_map) <= oracle_tolerance);
   }
-  CHECK(forces.size() == s.held.size());
+  CHECK(forces.size() == s.constrained.size());
   CHECK(difference(forces, 0, s.reactions, mesh, s.node_map) <= oracle_tolerance);
   CHECK(difference(forces, 3, s.internal_force, mesh, s.node_map) <= oracle_tolerance);
 

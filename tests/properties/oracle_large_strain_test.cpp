@@ -20,7 +20,7 @@ int check_large_strain(const std::string& folder, const std::string& element) {
     if (!c.contains("closed_form") || !c.at("closed_form").contains("axial_force")) return;
     INFO(c.at("name"));
     double axial = 0.0;  // on the face that is pulled, of a cube of side 1
-    for (const NodeId i : s.held)
+    for (const NodeId i : s.constrained)
       if (mesh.mesh.position(i)[0] > 0.5) axial += s.reactions[3 * Index{s.node_map[static_cast<std::size_t>(i)]}];
     CHECK_THAT(axial, Catch::Matchers::WithinRel(c.at("closed_form").at("axial_force").template get<double>(), 1e-9));
     CHECK_THAT(s.strain_energy,

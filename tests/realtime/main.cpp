@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   options.contact.friction = 0.4;
   options.grasp_buttons = 1;
   options.device.peak_torque = 0.05;
-  options.device.turning_stiffness = 1.0;
+  options.device.rotational_stiffness = 1.0;
   const std::vector<CapsuleTool> tools{CapsuleTool(4e-3, 6e-3, Vector3::UnitX()), CapsuleTool(SphereTool{3e-3})};
   Session first(a, tools, options, EnergyTank(EnergyLimits::from(options.device))),
       second(b, tools, options, EnergyTank(EnergyLimits::from(options.device)));

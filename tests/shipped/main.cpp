@@ -18,9 +18,9 @@ namespace {
 int failures = 0;
 
 Scene scene() {
-  Scene held;
-  held.fix("z0").touch("z1").see("surface").gravity({1.0, 2.0, -9.81});
-  return held;
+  Scene constrained;
+  constrained.fix("z0").touch("z1").render("surface").gravity({1.0, 2.0, -9.81});
+  return constrained;
 }
 
 /// Displacement of a model, after a look at the members that are templates.

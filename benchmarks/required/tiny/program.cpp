@@ -1,5 +1,5 @@
 // A small haptic program, to see what each policy costs: measure.sh compiles it with the macros below and counts.
-//   program <ticks>     presses a ball into a block, so many ticks, and prints the force
+//   program <ticks>     presses a sphere into a block, so many ticks, and prints the force
 #ifdef TINY_UMBRELLA
 #include <palpate/palpate.hpp>
 #else

@@ -26,13 +26,13 @@ static_assert(StiffnessOperator<BlockMatrix>);
 
 /// Fills `k` element by element, for elements and laws of any kind. `law(e)` is what element_stiffness takes: a matrix
 /// or Lame's constants.
-template <Element E, class Law>
-void assemble_elements(const Body<E>& body, BlockMatrix& k, const SetupLimits& limits, Law law) {
+template <Element E, class MaterialOf>
+void assemble_elements(const Body<E>& body, BlockMatrix& k, const SetupLimits& limits, MaterialOf material) {
   const Index count = body.mesh.element_count();
   for (Index e = 0; e < count; ++e) {
     if (e % 8192 == 0) limits.advance("assembly", static_cast<double>(e) / static_cast<double>(count));
     const ElementNodes<E> x = element_nodes<E>(body.mesh, e);
-    const ElementStiffness<E> ke = element_stiffness<E>(x, law(e));
+    const ElementStiffness<E> ke = element_stiffness<E>(x, material(e));
     if (!all_finite(ke)) raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
     if (!is_positively_oriented<E>(x))
       raise_element(SetupErrorKind::inverted_element, e, "has a negative Jacobian at an integration point");
@@ -55,7 +55,8 @@ template <Element E>
 BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
   const NodeElements around(body.mesh);
   BlockMatrix k = make_stiffness(block_pattern(body.mesh, around), limits);
-  const auto constants = body.laws.empty() ? all_isotropic(body.elasticity) : std::nullopt;  // per region, if at all
+  const auto constants =
+      body.materials.empty() ? all_isotropic(body.elasticity) : std::nullopt;  // per region, if at all
   if (!constants)
     assemble_elements(body, k, limits, [&](Index e) -> const Matrix6& { return body.elasticity_of(e); });
   else if constexpr (ConstantGradient<E>)

@@ -41,7 +41,7 @@ class AveragedTetrahedra {
   AveragedTetrahedra() = default;
   /// Throws as make_batches.
   explicit AveragedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {})
-      : layout_(make_batches<S, N>(body, 180.0, limits)), laws_(body.laws) {
+      : layout_(make_batches<S, N>(body, 180.0, limits)), materials_(body.materials) {
     rows_.assign(4 * layout_.nodes.size(), S(0));
     sums_.assign(layout_.nodes.size(), S(0));
     place_averages();
@@ -87,7 +87,7 @@ class AveragedTetrahedra {
     average_volumes(u);
     double sum = 0.0;
     for_each_element(u, [&](const TetrahedronBlock& block, const Batch& batch, const Gradient& gradient) {
-      const Number part = batch.volume * law_of(block).energy(averaged(block, batch, gradient).ratio * gradient);
+      const Number part = batch.volume * material_of(block).energy(averaged(block, batch, gradient).ratio * gradient);
       for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(part[lane]);
     });
     return sum;
@@ -105,8 +105,8 @@ class AveragedTetrahedra {
   };
 
   static Number least() noexcept { return Number(S(0.1f)); }
-  const M& law_of(const TetrahedronBlock& block) const noexcept {
-    return laws_[static_cast<std::size_t>(block.region)];
+  const M& material_of(const TetrahedronBlock& block) const noexcept {
+    return materials_[static_cast<std::size_t>(block.region)];
   }
   static void clear(std::vector<S>& values) noexcept { std::fill(values.begin(), values.end(), S(0)); }
 
@@ -117,7 +117,7 @@ class AveragedTetrahedra {
     a.mean = max(mean_of_nodes(block, batch, volume_ratio_), least());
     a.ratio = cbrt(a.mean / a.own);
     const Gradient seen = a.ratio * f;
-    a.stress = law_of(block).stress(seen);
+    a.stress = material_of(block).stress(seen);
     a.pressure = S(1.0 / 3.0) * contract(a.stress, seen);
     return a;
   }
@@ -159,7 +159,7 @@ class AveragedTetrahedra {
       detail::VolumeWatch<S, N> watch;
       layout_.for_each_gradient(block, u, [&](const Batch& batch, const Gradient& gradient) {
         const Number j = determinant(gradient);
-        watch.see(j, batch.volume);
+        watch.observe(j, batch.volume);
         add_to_rows(batch, sums_.data() + block.first_row, batch.volume * j);
       });
       detail::add_report(watch.summary(layout_, block, M::survives_inversion), report);
@@ -176,7 +176,7 @@ class AveragedTetrahedra {
   }
 
   TetrahedronBatches<S, N> layout_;
-  std::vector<M> laws_;                               // by region
+  std::vector<M> materials_;                          // by region
   std::vector<S> rows_, sums_;                        // by row: force, four numbers; a number
   std::vector<std::int32_t> place_;                   // by row: which average
   VectorX inverse_volume_, volume_ratio_, pressure_;  // by node and region; the volume is that of its elements there

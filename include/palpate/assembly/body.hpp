@@ -28,13 +28,13 @@ struct Body {
   std::vector<Matrix6> elasticity;
   std::vector<double> density;
   std::vector<Vector6> initial_strain;
-  std::vector<std::int32_t> laws{};  ///< place in `elasticity` of every element's law; empty: its region
+  std::vector<std::int32_t> materials{};  ///< place in `elasticity` of every element's law; empty: its region
 
   std::size_t region_of(Index e) const noexcept { return static_cast<std::size_t>(mesh.region(e)); }
-  std::size_t law_of(Index e) const noexcept {
-    return laws.empty() ? region_of(e) : static_cast<std::size_t>(laws[static_cast<std::size_t>(e)]);
+  std::size_t material_of(Index e) const noexcept {
+    return materials.empty() ? region_of(e) : static_cast<std::size_t>(materials[static_cast<std::size_t>(e)]);
   }
-  const Matrix6& elasticity_of(Index e) const noexcept { return elasticity[law_of(e)]; }
+  const Matrix6& elasticity_of(Index e) const noexcept { return elasticity[material_of(e)]; }
 };
 
 /// Refuses with the id of one element.
@@ -95,11 +95,11 @@ template <Element E, class Elasticity>
 void add_fibre_laws(Body<E>& body, Elasticity elasticity) {
   const Mesh<E>& mesh = body.mesh;
   body.elasticity.clear();
-  body.laws.reserve(static_cast<std::size_t>(mesh.element_count()));
+  body.materials.reserve(static_cast<std::size_t>(mesh.element_count()));
   for (Index e = 0; e < mesh.element_count(); ++e) {
     const bool same = e > 0 && mesh.region(e) == mesh.region(e - 1) && mesh.fibre(e) == mesh.fibre(e - 1);
     if (!same) body.elasticity.push_back(elasticity(body.region_of(e), mesh.fibre(e)));
-    body.laws.push_back(static_cast<std::int32_t>(body.elasticity.size()) - 1);
+    body.materials.push_back(static_cast<std::int32_t>(body.elasticity.size()) - 1);
   }
 }
 

@@ -19,36 +19,36 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// The law of one element: along the element's own fibres where there are some, else as the law has it.
 template <HyperelasticMaterial M>
-class ElementLaw {
+class ElementMaterial {
  public:
-  ElementLaw(const M& law, const Vector3* fibre) noexcept : law_(law) {
+  ElementMaterial(const M& material, const Vector3* fibre) noexcept : material_(material) {
     if (fibre == nullptr) return;
     along_ = {(*fibre)[0], (*fibre)[1], (*fibre)[2]};
     has_fibre_ = true;
   }
   double energy(const Tensor3<double>& f) const noexcept {
     if constexpr (FibreHyperelasticMaterial<M>)
-      if (has_fibre_) return law_.energy(f, along_);
-    return law_.energy(f);
+      if (has_fibre_) return material_.energy(f, along_);
+    return material_.energy(f);
   }
   Tensor3<double> stress(const Tensor3<double>& f) const noexcept {
     if constexpr (FibreHyperelasticMaterial<M>)
-      if (has_fibre_) return law_.stress(f, along_);
-    return law_.stress(f);
+      if (has_fibre_) return material_.stress(f, along_);
+    return material_.stress(f);
   }
   Matrix9 tangent(const Tensor3<double>& f) const noexcept {
     if constexpr (FibreHyperelasticMaterial<M>)
-      if (has_fibre_) return law_.tangent(f, along_);
-    return law_.tangent(f);
+      if (has_fibre_) return material_.tangent(f, along_);
+    return material_.tangent(f);
   }
   bool admits(const Tensor3<double>& f) const noexcept {
     if constexpr (FibreHyperelasticMaterial<M>)
-      if (has_fibre_) return law_.admits(f, along_);
-    return law_.admits(f);
+      if (has_fibre_) return material_.admits(f, along_);
+    return material_.admits(f);
   }
 
  private:
-  const M& law_;
+  const M& material_;
   Triple<double> along_{};
   bool has_fibre_ = false;
 };
@@ -61,15 +61,15 @@ concept LargeStrainMaterial = HyperelasticMaterial<M> || ViscousMaterial<M>;
 template <Element E, LargeStrainMaterial M>
 struct HyperelasticBody {
   Body<E> rest;
-  std::vector<M> laws;  ///< by region
+  std::vector<M> materials;  ///< by region
 
   /// The law of a region; an ElementLaw, with the direction of the element's fibres if the mesh has any, for a law that
   /// asks for them. Refers to the body.
-  decltype(auto) law_of(Index e) const noexcept {
+  decltype(auto) material_of(Index e) const noexcept {
     if constexpr (FibreHyperelasticMaterial<M>)
-      return ElementLaw<M>(laws[rest.region_of(e)], uses_fibres() ? &rest.mesh.fibre(e) : nullptr);
+      return ElementMaterial<M>(materials[rest.region_of(e)], uses_fibres() ? &rest.mesh.fibre(e) : nullptr);
     else
-      return (laws[rest.region_of(e)]);
+      return (materials[rest.region_of(e)]);
   }
   bool uses_fibres() const noexcept { return FibreHyperelasticMaterial<M> && rest.mesh.has_fibres(); }
 };
@@ -81,21 +81,21 @@ template <Element E, LargeStrainMaterial M>
 HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, std::vector<M> by_region) {
   require_material_per_region(by_region, mesh);
   HyperelasticBody<E, M> body{{std::move(mesh), {}, {}, {}}, std::move(by_region)};
-  for (const M& law : body.laws) {
-    body.rest.elasticity.push_back(law.rest_elasticity());
-    body.rest.density.push_back(law.density);
+  for (const M& material : body.materials) {
+    body.rest.elasticity.push_back(material.rest_elasticity());
+    body.rest.density.push_back(material.density);
   }
-  if constexpr (requires(const M& law) { law.base; } && !FibreHyperelasticMaterial<M>)
+  if constexpr (requires(const M& material) { material.base; } && !FibreHyperelasticMaterial<M>)
     if (FibreHyperelasticMaterial<decltype(M::base)> && body.rest.mesh.has_fibres())
       raise(SetupErrorKind::unsupported, "a law with memory and a fibre direction per element",
             "Clear the mesh's fibres so that the law's own direction counts");
-  body.rest.initial_strain.assign(body.laws.size(), Vector6::Zero());
+  body.rest.initial_strain.assign(body.materials.size(), Vector6::Zero());
   if constexpr (FibreHyperelasticMaterial<M>) {
     require_unit_fibres(body.rest.mesh);
     for (Vector3& fibre : body.rest.mesh.fibres) fibre.normalize();
     if (body.rest.mesh.has_fibres())
       add_fibre_laws(body.rest, [&](std::size_t r, const Vector3& a) {
-        return body.laws[r].rest_elasticity(Triple<double>{a[0], a[1], a[2]});
+        return body.materials[r].rest_elasticity(Triple<double>{a[0], a[1], a[2]});
       });
   }
   return body;

@@ -4,7 +4,7 @@
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/detail/elastic_forces.hpp>
-#include <palpate/assembly/detail/point_memory.hpp>
+#include <palpate/assembly/detail/point_history.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/integrator.hpp>
@@ -41,7 +41,7 @@ class LargeStrain final : public ElasticForces {
   static_assert(!HasSmoothedStrain<E> && !HasMeanDilatation<E>,
                 "palpate: Smoothed and MeanDilatation average strains of small deformations; choose Tet10 or Hex20, or "
                 "AveragedTetrahedra for explicit motion");
-  static constexpr bool remembers = ViscousMaterial<M>;
+  static constexpr bool has_history = ViscousMaterial<M>;
 
   /// Throws inverted_element or non_finite for a mesh that is so at rest, too_large.
   explicit LargeStrain(HyperelasticBody<E, M> body, const SetupLimits& limits = {}) : body_(std::move(body)) {
@@ -60,7 +60,7 @@ class LargeStrain final : public ElasticForces {
         if (!g.gradient.allFinite()) raise_element(SetupErrorKind::non_finite, e, "has gradients that are not finite");
       }
     }
-    memory_.start(body_, limits);
+    history_.start(body_, limits);
   }
 
   const HyperelasticBody<E, M>& body() const noexcept { return body_; }
@@ -74,9 +74,9 @@ class LargeStrain final : public ElasticForces {
       const Displacements ue = displacements(e, u);
       for (const PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
-        const auto& law = law_at(e, g);
-        if (!law.admits(f)) return infinity;
-        sum += g.volume * law.energy(f);
+        const auto& material = material_at(e, g);
+        if (!material.admits(f)) return infinity;
+        sum += g.volume * material.energy(f);
       }
     }
     return sum;
@@ -93,10 +93,10 @@ class LargeStrain final : public ElasticForces {
       bool inverted = false;
       for (const PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
-        inverted = !see(determinant(f), e, report) || inverted;
-        const auto& law = law_at(e, g);
-        if (law.admits(f))
-          fe.noalias() += g.volume * matrix3(law.stress(f)) * g.gradient.transpose();
+        inverted = !observe(determinant(f), e, report) || inverted;
+        const auto& material = material_at(e, g);
+        if (material.admits(f))
+          fe.noalias() += g.volume * matrix3(material.stress(f)) * g.gradient.transpose();
         else
           report.admissible = false;
       }
@@ -113,7 +113,7 @@ class LargeStrain final : public ElasticForces {
       const Displacements ue = displacements(e, u);
       for (const PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
-        if (const auto& law = law_at(e, g); law.admits(f)) add_tangent(e, g, law.tangent(f), k);
+        if (const auto& material = material_at(e, g); material.admits(f)) add_tangent(e, g, material.tangent(f), k);
       }
     }
   }
@@ -122,14 +122,14 @@ class LargeStrain final : public ElasticForces {
   double probe_length() const noexcept { return probe_length_; }
 
   void begin_step(double dt) noexcept override {
-    if constexpr (remembers) memory_.begin_step(body_, dt);
+    if constexpr (has_history) history_.begin_step(body_, dt);
   }
   void end_step(const VectorX& u) noexcept override {
-    if constexpr (remembers)
+    if constexpr (has_history)
       for (Index e = 0; e < mesh().element_count(); ++e) {
         const Displacements ue = displacements(e, u);
         for (const PointGeometry<E>& g : points_of(e))
-          memory_.remember(body_, e, number_of(e, g), deformation_gradient(ue, g));
+          history_.update_history(body_, e, number_of(e, g), deformation_gradient(ue, g));
       }
   }
 
@@ -143,8 +143,8 @@ class LargeStrain final : public ElasticForces {
     return static_cast<std::size_t>(&g - points_of(e).data());
   }
   /// The law of a point: with memory, that of the present step.
-  decltype(auto) law_at(Index e, const PointGeometry<E>& g) const noexcept {
-    return memory_.law(body_, e, number_of(e, g));
+  decltype(auto) material_at(Index e, const PointGeometry<E>& g) const noexcept {
+    return history_.material(body_, e, number_of(e, g));
   }
   const Points& points_of(Index e) const noexcept { return points_[static_cast<std::size_t>(e)]; }
 
@@ -158,7 +158,7 @@ class LargeStrain final : public ElasticForces {
     f.noalias() += u * g.gradient;
     return tensor3<double>(f);
   }
-  static bool see(double volume_ratio, Index e, DeformationReport& report) noexcept {
+  static bool observe(double volume_ratio, Index e, DeformationReport& report) noexcept {
     if (!(volume_ratio >= report.smallest_volume_ratio)) {
       report.smallest_volume_ratio = volume_ratio;
       report.worst_element = e;
@@ -184,7 +184,7 @@ class LargeStrain final : public ElasticForces {
 
   HyperelasticBody<E, M> body_;
   std::vector<Points> points_;
-  [[no_unique_address]] typename detail::PointMemory<M, point_count>::type memory_;
+  [[no_unique_address]] typename detail::PointHistory<M, point_count>::type history_;
   double probe_length_ = 0.0;
 };
 

@@ -30,11 +30,11 @@ class MatrixFreeStiffness {
     const Index count = body.mesh.element_count();
     limits.require_memory(static_cast<double>(count) * E::Quadrature::points.size() * sizeof(IntegrationPoint<E>),
                           "the element gradients");
-    laws_.reserve(static_cast<std::size_t>(count));
+    materials_.reserve(static_cast<std::size_t>(count));
     points_.reserve(static_cast<std::size_t>(count) * E::Quadrature::points.size());
     for (Index e = 0; e < count; ++e) {
       if (e % 8192 == 0) limits.advance("assembly", static_cast<double>(e) / static_cast<double>(count));
-      laws_.push_back(body.law_of(e));
+      materials_.push_back(body.material_of(e));
       for (const IntegrationPoint<E>& point : integration_points<E>(element_nodes<E>(body.mesh, e))) {
         points_.push_back(point);
         if (!all_finite(points_.back().gradient))
@@ -46,7 +46,7 @@ class MatrixFreeStiffness {
   Index size() const noexcept { return 3 * nodes_; }
   std::size_t bytes() const noexcept {
     return points_.size() * sizeof(points_[0]) + connectivity_.size() * sizeof(connectivity_[0]) +
-           laws_.size() * sizeof(std::size_t) + elasticity_.size() * sizeof(Matrix6);
+           materials_.size() * sizeof(std::size_t) + elasticity_.size() * sizeof(Matrix6);
   }
 
   /// y = K x. No allocation.
@@ -59,7 +59,7 @@ class MatrixFreeStiffness {
         for (int c = 0; c < 3; ++c) u.coeffRef(a, c) = x[3 * Index{connectivity_[e][static_cast<std::size_t>(a)]} + c];
       ElementNodes<E> f = ElementNodes<E>::Zero();
       for (std::size_t q = 0; q < E::Quadrature::points.size(); ++q, ++geometry) {
-        const Vector6 stress = elasticity_[laws_[e]] * strain_at<E>(*geometry, u);
+        const Vector6 stress = elasticity_[materials_[e]] * strain_at<E>(*geometry, u);
         f += force_of_stress<E>(*geometry, stress);
       }
       for (int a = 0; a < E::nodes; ++a)
@@ -75,7 +75,7 @@ class MatrixFreeStiffness {
         for (int a = 0; a < E::nodes; ++a) {
           const StrainBlock b = strain_block<E>(*geometry, a);
           d[static_cast<std::size_t>(connectivity_[e][static_cast<std::size_t>(a)])] +=
-              force_block(b, stress_block(geometry->volume, elasticity_[laws_[e]], b));
+              force_block(b, stress_block(geometry->volume, elasticity_[materials_[e]], b));
         }
     return d;
   }
@@ -83,7 +83,7 @@ class MatrixFreeStiffness {
  private:
   Index nodes_ = 0;
   std::vector<typename Mesh<E>::Connectivity> connectivity_;
-  std::vector<std::size_t> laws_;
+  std::vector<std::size_t> materials_;
   std::vector<IntegrationPoint<E>> points_;
   std::vector<Matrix6> elasticity_;
 };

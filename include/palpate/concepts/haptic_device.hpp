@@ -52,7 +52,7 @@ struct DeviceLimits {
   Vector3 workspace_low = Vector3::Constant(-0.1);  ///< [m]
   Vector3 workspace_high = Vector3::Constant(0.1);  ///< [m]
   double peak_torque = 0.0;                         ///< [N m]; 0: three actuated degrees of freedom, no torque
-  double turning_stiffness = 0.0;                   ///< [N m/rad] the most it renders stably; 0 without torque
+  double rotational_stiffness = 0.0;                   ///< [N m/rad] the most it renders stably; 0 without torque
   double rate = 1000.0;                             ///< [1/s] what it is meant to be served at, at most
 };
 

@@ -37,9 +37,9 @@ struct MotionState {
   VectorX load;                ///< external force [N]
   VectorX mass;          ///< lumped [kg]
   VectorX inverse_mass;  ///< [1/kg]; zero on held dofs
-  VectorX held_speed;    ///< of held dofs in this step, in the order of `held` [m/s]
+  VectorX prescribed_speed;    ///< of held dofs in this step, in the order of `held` [m/s]
   VectorX target;              ///< where held dofs are at the end of the next step [m]; not read elsewhere
-  std::vector<Index> free, held;  ///< dofs
+  std::vector<Index> free, constrained;  ///< dofs
   double damping = 0.0;        ///< alpha of the mass-proportional damping force alpha M v [1/s]
   double time = 0.0;           ///< [s]
   DeformationReport deformation;  ///< what `force` saw at this displacement

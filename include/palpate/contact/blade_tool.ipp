@@ -9,7 +9,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE void BladeTool::require_valid() const {
   const double length = edge.norm(), sharp = forward.norm();
-  for (const double value : {length, sharp, stroke})
+  for (const double value : {length, sharp, cut_spacing})
     if (!(value > 0.0 && value < infinity))
       raise(SetupErrorKind::bad_argument, "the edge, forward direction or stroke of a blade is " + number(value),
             "Give positive SI values");

@@ -7,14 +7,15 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// A rigid capsule: all points within `radius` of a piece of its axis, from `-half_length` to `half_length` about the
-/// tool's position. The thesis' cylinder, with round ends. Turns with the device's orientation; without length a ball.
+/// tool's position. The thesis' cylinder, with round ends. Turns with the device's orientation; without length a
+/// sphere.
 struct CapsuleTool {
   double radius = 4e-3;         ///< [m]
   double half_length = 0.0;     ///< [m]
   Vector3 axis{0.0, 0.0, 1.0};  ///< in the tool's own frame, any length but zero
 
   CapsuleTool() = default;
-  CapsuleTool(const SphereTool& ball) : radius(ball.radius) {}  // NOLINT(google-explicit-constructor)
+  CapsuleTool(const SphereTool& sphere) : radius(sphere.radius) {}  // NOLINT(google-explicit-constructor)
   CapsuleTool(double r, double half, const Vector3& direction = {0.0, 0.0, 1.0})
       : radius(r), half_length(half), axis(direction) {}
 

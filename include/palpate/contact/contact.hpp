@@ -19,26 +19,27 @@ struct ContactParameters {
   int capacity = default_contact_capacity;  ///< contacts of all tools; more are left out (degraded_model)
 };
 
-/// A ball or capsule as the contact problem knows it, in the model's frame.
+/// A sphere or capsule as the contact problem knows it, in the model's frame.
 struct ContactTool {
   Vector3 target = Vector3::Zero();  ///< where the device is [m]
-  Vector3 proxy = Vector3::Zero();   ///< where the ball is: on the surface, never in it [m]
-  Vector3 force = Vector3::Zero();   ///< of the tissue on the ball [N]
+  Vector3 proxy = Vector3::Zero();   ///< where the sphere is: on the surface, never in it [m]
+  Vector3 force = Vector3::Zero();   ///< of the tissue on the sphere [N]
   double radius = 0.0;               ///< [m]
   double compliance = 0.0;           ///< of the coupling between proxy and device [m/N]; 0 is rigid
   Vector3 motion = Vector3::Zero();  ///< of the device since the last tick [m]
   bool active = false;               ///< takes part in this tick
   bool grasping = false;             ///< holds the point it touched when this became true
 
-  double half_length = 0.0;                       ///< of a capsule's axis [m]; 0 is a ball
+  double half_length = 0.0;                       ///< of a capsule's axis [m]; 0 is a sphere
   Vector3 own_axis{0.0, 0.0, 1.0};                ///< of a capsule, in the tool's own frame, unit
   Matrix3 target_rotation = Matrix3::Identity();  ///< of the device: from the tool's own frame
   Matrix3 rotation = Matrix3::Identity();         ///< of the proxy
   Vector3 torque = Vector3::Zero();               ///< of the tissue on the tool, about the proxy [N m]
-  double turning_compliance = 0.0;                ///< of the coupling [rad/(N m)]; 0 is rigid
-  double turned = 0.0;                            ///< way of the capsule's ends round its middle, last tick [m]
+  double rotational_compliance = 0.0;             ///< of the coupling [rad/(N m)]; 0 is rigid
+  double end_path = 0.0;                          ///< way of the capsule's ends round its middle, last tick [m]
 
-  Vector3 drag_way = Vector3::Zero(), drag_turn = Vector3::Zero();  ///< of the coupling under friction [m], [rad]
+  Vector3 friction_displacement = Vector3::Zero(),
+          friction_rotation = Vector3::Zero();  ///< of the coupling under friction [m], [rad]
 
   /// Takes part in nothing, and nothing presses it.
   void lift() noexcept;
@@ -52,9 +53,9 @@ struct ContactTool {
   /// Where on the axis the point next to `p` lies, from the middle [m].
   double along(const Vector3& p) const noexcept { return half_length > 0.0 ? along_capsule(p) : 0.0; }
   /// Way of the device since the last tick, at the end that moved most, at most [m].
-  double way() const noexcept;
+  double path_length() const noexcept;
   /// The longest way of the proxy in one linearisation: points that far off are known.
-  double longest_step() const noexcept { return 0.25 * radius + way(); }
+  double longest_step() const noexcept { return 0.25 * radius + path_length(); }
 
  private:
   double along_capsule(const Vector3& p) const noexcept;
@@ -67,7 +68,7 @@ struct Contact {
   int tool = 0;
   Triangle vertices{};
   std::array<double, 3> weights{};
-  Vector3 normal = Vector3::Zero();    ///< unit, from the surface to the ball's centre
+  Vector3 normal = Vector3::Zero();    ///< unit, from the surface to the sphere's centre
   Vector3 rest = Vector3::Zero();      ///< the point when nothing touches [m]
   double force = 0.0;                  ///< normal force [N], >= 0; of a grasp, along `normal`, any
   Vector3 point = Vector3::Zero();     ///< on the deformed surface [m]

@@ -19,14 +19,14 @@ PALPATE_INLINE void ContactTool::reset() noexcept {
   fresh.compliance = compliance;
   fresh.half_length = half_length;
   fresh.own_axis = own_axis;
-  fresh.turning_compliance = turning_compliance;
+  fresh.rotational_compliance = rotational_compliance;
   *this = fresh;
 }
 PALPATE_INLINE Vector3 ContactTool::goal(double floor) const noexcept {
   return target + (compliance + floor) * force;
 }
 PALPATE_INLINE Matrix3 ContactTool::goal_rotation() const noexcept {
-  return turning_compliance > 0.0 ? rotation_by(turning_compliance * torque) * target_rotation : target_rotation;
+  return rotational_compliance > 0.0 ? rotation_by(rotational_compliance * torque) * target_rotation : target_rotation;
 }
 PALPATE_INLINE Vector3 ContactTool::axis() const noexcept {
   return rotation * own_axis;
@@ -34,8 +34,8 @@ PALPATE_INLINE Vector3 ContactTool::axis() const noexcept {
 PALPATE_INLINE double ContactTool::along_capsule(const Vector3& p) const noexcept {
   return std::clamp(axis().dot(p - proxy), -half_length, half_length);
 }
-PALPATE_INLINE double ContactTool::way() const noexcept {
-  return motion.norm() + turned;
+PALPATE_INLINE double ContactTool::path_length() const noexcept {
+  return motion.norm() + end_path;
 }
 PALPATE_INLINE Vector3 Contact::total() const noexcept {
   return force * normal + friction;

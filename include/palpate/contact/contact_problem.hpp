@@ -1,4 +1,4 @@
-// Rigid balls and capsules against a deformable surface, solved exactly in every tick.
+// Rigid spheres and capsules against a deformable surface, solved exactly in every tick.
 #pragma once
 
 #include <palpate/contact/detail/contact_rows.hpp>
@@ -7,24 +7,24 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// All contacts of all tools with one tissue. The surface is held off the ball at material points: vertices, and a
-/// lattice on edges longer than `sample_spacing` radii. Points fixed in the material meet a sliding ball one after the
-/// other, each with zero force at first, so the force has no jump at edges. Each tick linearises the distance between
-/// ball and deformed surface at the last proxy position (Ruspini's proxy on a deforming surface), solves the Signorini
-/// problem on the contact compliance J C J^T exactly, and repeats while the force still changes. Rows of that problem
-/// are the points that pressed last and those the answer would let sink in, added until there are none. The coupling
-/// between proxy and device enters as n_i . n_j / k between contacts of one tool: the device never feels more than k,
-/// however many contacts there are, and the proxy never sinks in. docs/contact.md has the law, its limits and figures.
-/// Work is bounded by `ContactParameters::capacity`, iterations, rounds and candidates.
+/// All contacts of all tools with one tissue. The surface is held off the sphere at material points: vertices, and a
+/// lattice on edges longer than `sample_spacing` radii. Points fixed in the material meet a sliding sphere one after
+/// the other, each with zero force at first, so the force has no jump at edges. Each tick linearises the distance
+/// between sphere and deformed surface at the last proxy position (Ruspini's proxy on a deforming surface), solves the
+/// Signorini problem on the contact compliance J C J^T exactly, and repeats while the force still changes. Rows of that
+/// problem are the points that pressed last and those the answer would let sink in, added until there are none. The
+/// coupling between proxy and device enters as n_i . n_j / k between contacts of one tool: the device never feels more
+/// than k, however many contacts there are, and the proxy never sinks in. docs/contact.md has the law, its limits and
+/// figures. Work is bounded by `ContactParameters::capacity`, iterations, rounds and candidates.
 class ContactProblem {
  public:
   /// The most that ContactParameters::capacity may be.
   static constexpr int maximum_capacity = 1024;
 
-  /// Places the contact points for balls of at least `smallest_radius` [m]. Allocates workspaces; for set-up.
+  /// Places the contact points for spheres of at least `smallest_radius` [m]. Allocates workspaces; for set-up.
   /// Throws bad_argument unless 0.4 <= sample_spacing <= 1, there is at least one iteration and room for a contact, and
   /// for an edge of the surface longer than 32 radii (ids: its vertices): the lattice of points ends there, and the
-  /// ball would fall through.
+  /// sphere would fall through.
   ContactProblem(const ContactSurface& surface, double smallest_radius, const ContactParameters& parameters = {});
 
   /// Finds the forces for the tools' new targets; updates proxy and force of every active tool. At most
@@ -46,7 +46,7 @@ class ContactProblem {
   std::span<const Contact> contacts() const noexcept { return rows_.contacts(); }
   /// The forces of the last tick on the vertices.
   std::span<const VertexForce> vertex_forces() const noexcept { return displacement_.forces(); }
-  /// Whether a contact point is near a tool's ball.
+  /// Whether a contact point is near a tool's sphere.
   bool is_near(int tool) const noexcept { return candidates_.has_any(tool); }
   /// Whether a tool holds a point.
   bool is_holding(std::size_t tool) const noexcept { return grasps_[tool].sample >= 0; }
@@ -65,7 +65,7 @@ class ContactProblem {
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static ContactParameters checked(const ContactParameters& p);
   void grasp(const TissueView& tissue, Tools tools) noexcept;
-  inline bool is_held(const Candidate& c) const noexcept;
+  inline bool is_grasped(const Candidate& c) const noexcept;
   void prefetch(const TissueView& tissue) noexcept;
   Status solve_linearised(const TissueView& tissue, Tools tools, int iteration) noexcept;
   void gather_pressing(Tools tools) noexcept;

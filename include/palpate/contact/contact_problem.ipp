@@ -22,7 +22,7 @@ PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, dou
 PALPATE_INLINE ContactParameters ContactProblem::checked(const ContactParameters& p) {
   if (!(p.sample_spacing >= 0.4 && p.sample_spacing <= 1.0))
     raise(SetupErrorKind::bad_argument, "the sample spacing is " + number(p.sample_spacing) + " radii",
-          "Below 0.4 there is no room for all points under a ball, above 1 the ball falls between them");
+          "Below 0.4 there is no room for all points under a sphere, above 1 the sphere falls between them");
   if (!(p.friction >= 0.0 && p.friction <= 4.0))
     raise(SetupErrorKind::bad_argument, "the coefficient of friction is " + number(p.friction), "Give 0 to 4");
   if (p.maximum_iterations < 1) raise(SetupErrorKind::bad_argument, "a tick needs at least one linearisation");
@@ -32,7 +32,7 @@ PALPATE_INLINE ContactParameters ContactProblem::checked(const ContactParameters
   return p;
 }
 
-inline bool ContactProblem::is_held(const Candidate& c) const noexcept {
+inline bool ContactProblem::is_grasped(const Candidate& c) const noexcept {
   return c.sample == grasps_[at(c.tool)].sample;
 }
 
@@ -64,7 +64,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     status |= solve_linearised(tissue, tools, iteration);
     follow(tools);
     change = proxies_.relative_change(tools);
-    // Each step is smaller than the last by about the same ratio (the curvature of the ball is left out of the
+    // Each step is smaller than the last by about the same ratio (the curvature of the sphere is left out of the
     // linearisation), so that the steps still to come sum to this. The first step is the hand's, so that the second
     // says nothing about the ratio yet.
     const double expected = iteration == 0                     ? 10.0 * change
@@ -73,7 +73,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     before = change;
     if (arrived_ && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) break;
   }
-  rows_.cling(tools);
+  rows_.stick(tools);
   if (change > unsettled) status.set(StatusFlag::solver_not_converged);
   return status;
 }
@@ -121,7 +121,7 @@ PALPATE_INLINE void ContactProblem::grasp(const TissueView& tissue, Tools tools)
   }
 }
 
-/// Tells a tissue that wants to know which vertices lie near the balls.
+/// Tells a tissue that wants to know which vertices lie near the spheres.
 PALPATE_INLINE void ContactProblem::prefetch(const TissueView& tissue) noexcept {
   if (!tissue.prefetches()) return;
   for (const Candidate& c : candidates_.items()) {
@@ -143,7 +143,7 @@ PALPATE_INLINE Status ContactProblem::solve_linearised(const TissueView& tissue,
       if (is_holding(t)) rows_.add(tissue.contact_surface(), candidates_, c);
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
-    if (rows_.count() < rows_.capacity() && !is_held(c))
+    if (rows_.count() < rows_.capacity() && !is_grasped(c))
       rows_.add(tissue.contact_surface(), candidates_, c);
     else
       c.lift();  // only rows carry forces
@@ -166,13 +166,13 @@ PALPATE_INLINE Status ContactProblem::solve_linearised(const TissueView& tissue,
     rows_.apply(tools, displacement_, candidates_);
   }
   if (rows_.has_friction() && built > 0 && built == rows_.count()) {
-    if (!rows_.rub()) status.set(StatusFlag::solver_not_converged);
+    if (!rows_.slide()) status.set(StatusFlag::solver_not_converged);
     rows_.apply(tools, displacement_, candidates_);
   }
   return status;
 }
 
-/// Lists the candidates that press and puts them where ball and surface are now.
+/// Lists the candidates that press and puts them where sphere and surface are now.
 PALPATE_INLINE void ContactProblem::gather_pressing(Tools tools) noexcept {
   pressing_count_ = 0;
   if (candidates_.is_new()) {
@@ -214,12 +214,12 @@ PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools
   proxies_.look_ahead(tools, floor_);
   const double allowed = built > 0 ? violation * rows_.deepest_push() : 0.0;
   for (Candidate& c : candidates_.items()) {
-    if (c.row >= 0 || is_held(c)) continue;
+    if (c.row >= 0 || is_grasped(c)) continue;
     const ContactTool& tool = tools[at(c.tool)];
     const ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
     if (candidates_.least_gap(c) > ahead.farthest) continue;
     if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
-    const double gap = c.gap + c.normal.dot(ahead.way + c.along * ahead.axis);
+    const double gap = c.gap + c.normal.dot(ahead.path + c.along * ahead.axis);
     if (c.facing && gap < -allowed) violated_[at(violated_count_++)] = {gap, &c};
   }
   const auto wanted = std::min(violated_count_, added_per_round);
@@ -234,7 +234,7 @@ PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools
 PALPATE_INLINE void ContactProblem::follow(Tools tools) noexcept {
   arrived_ = proxies_.follow(tools, floor_);
   for (std::size_t t = 0; t < tools.size(); ++t)
-    if (tools[t].active) candidates_.move_ball(t, tools[t]);
+    if (tools[t].active) candidates_.move_sphere(t, tools[t]);
 }
 
 }}  // namespace palpate

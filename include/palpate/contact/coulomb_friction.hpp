@@ -23,8 +23,8 @@ class CoulombFriction {
     Vector3 normal = Vector3::Zero();
     double pressing = 0.0;            ///< lambda [N]
     Vector3 drift = Vector3::Zero();  ///< d [m]
-    Vector3 drag = Vector3::Zero();   ///< t [N], on the tool: start and answer
-    bool clings = false;              ///< false: no friction, it has touched only now
+    Vector3 friction_force = Vector3::Zero();  ///< t [N], on the tool: start and answer
+    bool sticks = false;                       ///< false: no friction, it has touched only now
   };
 
   /// For up to `capacity` contacts. Allocates unless the coefficient is zero; for set-up.
@@ -49,7 +49,7 @@ class CoulombFriction {
   double* column(int j) noexcept { return w_.data() + at(j) * stride_; }
   const double* column(int j) const noexcept { return w_.data() + at(j) * stride_; }
 
-  Vector3 within(const Row& r, const Vector3& drag) const noexcept;
+  Vector3 within(const Row& r, const Vector3& friction_force) const noexcept;
   void push(double* sum, int count, int j, const Vector3& force) const noexcept;
   static double stiffest(const Matrix3& w, const Vector3& normal) noexcept;
 

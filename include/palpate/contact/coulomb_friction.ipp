@@ -28,21 +28,21 @@ PALPATE_INLINE void CoulombFriction::solve(int count) noexcept {
   for (int i = 0; i < count; ++i) {
     const Row& r = rows_[at(i)];
     for (int c = 0; c < 3; ++c) slip_[at(3 * i + c)] = r.drift[c];
-    if (r.clings) largest = std::max(largest, coefficient_ * r.pressing);
+    if (r.sticks) largest = std::max(largest, coefficient_ * r.pressing);
   }
   for (int j = 0; j < count; ++j) {
     const Row& r = rows_[at(j)];
-    push(slip_.data(), count, j, r.pressing * r.normal + r.drag);
+    push(slip_.data(), count, j, r.pressing * r.normal + r.friction_force);
   }
   for (int sweep = 0; sweep < maximum_sweeps; ++sweep) {
     double change = 0.0;
     for (int i = 0; i < count; ++i) {
       Row& r = rows_[at(i)];
-      if (!r.clings || !(r.pressing > 0.0)) continue;
+      if (!r.sticks || !(r.pressing > 0.0)) continue;
       const Vector3 slip(slip_[at(3 * i)], slip_[at(3 * i + 1)], slip_[at(3 * i + 2)]);
-      const Vector3 drag = within(r, r.drag - step_[at(i)] * slip);
-      const Vector3 by = drag - r.drag;
-      r.drag = drag;
+      const Vector3 friction_force = within(r, r.friction_force - step_[at(i)] * slip);
+      const Vector3 by = friction_force - r.friction_force;
+      r.friction_force = friction_force;
       push(slip_.data(), count, i, by);
       change = std::max(change, by.norm());
     }
@@ -55,8 +55,9 @@ PALPATE_INLINE void CoulombFriction::press(int count, const double* lambda) noex
   for (int i = 0; i < count; ++i) {
     Row& r = rows_[at(i)];
     r.pressing = lambda[i];
-    r.drag = r.clings ? within(r, r.drag) : Vector3(0.0, 0.0, 0.0);
-    if (r.drag[0] != 0.0 || r.drag[1] != 0.0 || r.drag[2] != 0.0) push(moved_.data(), count, i, r.drag);
+    r.friction_force = r.sticks ? within(r, r.friction_force) : Vector3(0.0, 0.0, 0.0);
+    if (r.friction_force[0] != 0.0 || r.friction_force[1] != 0.0 || r.friction_force[2] != 0.0)
+      push(moved_.data(), count, i, r.friction_force);
   }
 }
 
@@ -65,8 +66,8 @@ PALPATE_INLINE Vector3 CoulombFriction::moved(int i) const noexcept {
 }
 
 /// A drag as its contact allows: across the normal, at most mu lambda.
-PALPATE_INLINE Vector3 CoulombFriction::within(const Row& r, const Vector3& drag) const noexcept {
-  const Vector3 across = drag - r.normal.dot(drag) * r.normal;
+PALPATE_INLINE Vector3 CoulombFriction::within(const Row& r, const Vector3& friction_force) const noexcept {
+  const Vector3 across = friction_force - r.normal.dot(friction_force) * r.normal;
   const double most = coefficient_ * std::max(0.0, r.pressing), length = across.norm();
   return length <= most ? across : Vector3(across * (most / length));
 }

@@ -5,7 +5,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A rigid ball at the tool's position.
+/// A rigid sphere at the tool's position.
 struct SphereTool {
   double radius = 4e-3;  ///< [m]
 

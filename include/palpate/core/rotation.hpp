@@ -138,13 +138,13 @@ PALPATE_COLD Quaternion<S> jacobi_eigenvector(const Davenport<S>& k) noexcept {
   for (const auto& row : a)
     for (S x : row) size = std::max(size, std::abs(x));
   const S negligible = std::numeric_limits<S>::epsilon() / 8 * size;
-  bool turned = true;
-  for (int sweep = 0; turned && sweep < 10; ++sweep) {
-    turned = false;
+  bool rotated = true;
+  for (int sweep = 0; rotated && sweep < 10; ++sweep) {
+    rotated = false;
     for (int p = 0; p < 3; ++p)
       for (int q = p + 1; q < 4; ++q) {
         if (!(std::abs(a[p][q]) > negligible)) continue;
-        turned = true;
+        rotated = true;
         const S theta = (a[q][q] - a[p][p]) / (S(2) * a[p][q]);
         const S t = std::copysign(S(1), theta) / (std::abs(theta) + std::sqrt(theta * theta + S(1)));
         const S c = S(1) / std::sqrt(t * t + S(1)), s = t * c;

@@ -34,8 +34,8 @@ inline Matrix6 stress_rotation(const Matrix3& r) {
   for (int k = 0; k < 6; ++k) {
     Vector6 unit = Vector6::Zero();
     unit[k] = 1.0;
-    const Vector6 turned = stress_vector(r * stress_tensor(unit) * r.transpose());
-    for (int i = 0; i < 6; ++i) t(i, k) = turned[i];
+    const Vector6 rotated = stress_vector(r * stress_tensor(unit) * r.transpose());
+    for (int i = 0; i < 6; ++i) t(i, k) = rotated[i];
   }
   return t;
 }

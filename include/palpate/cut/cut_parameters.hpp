@@ -28,7 +28,7 @@ struct CutReport {
   double smallest = 1.0;       ///< CutStep::smallest of the last cut
   double error = 0.0;          ///< of the compliance, as last measured, relative
   int unchecked = 0;           ///< cuts since that
-  double felt_seconds = 0.0;   ///< of the last cut: from taking the order to handing the surface to the tick
+  double latency = 0.0;        ///< of the last cut: from taking the order to handing the surface to the tick
   double fold_seconds = 0.0;   ///< of the last cut: until nothing was left to add up in the tick
   bool failed = false;         ///< what is left cannot be computed; the last good state is felt, degraded_model
 };

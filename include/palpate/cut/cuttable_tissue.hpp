@@ -50,7 +50,7 @@ class CuttableTissue : public ModelBase {
 
   /// Applies all orders as one cut, publishes the new compliance, then folds the update in. Without orders, runs one of
   /// the deferred checks: error, bounds, nodes inside. True when there was something to do.
-  bool work() {
+  bool process_cuts() {
     const std::scoped_lock lock(changes_);
     const ScopedIdTranslation translation(original_ids());
     const CutOrders::Taken taken = orders_.take();
@@ -61,7 +61,7 @@ class CuttableTissue : public ModelBase {
   }
   /// The same for BackgroundWorker: looks for orders every 0.2 ms.
   BackgroundStep background_work() {
-    const bool worked = work();
+    const bool worked = process_cuts();
     return {worked, worked ? 0.0 : 2e-4};
   }
   CutReport cut_report() const {

@@ -102,7 +102,7 @@ class Chai3dDevice {
             .workspace_low = Vector3::Constant(-radius),
             .workspace_high = Vector3::Constant(radius),
             .peak_torque = info.m_maxAngularTorque,
-            .turning_stiffness = info.m_maxAngularStiffness};
+            .rotational_stiffness = info.m_maxAngularStiffness};
   }
   static void orient(ToolState& state, const Matrix& m) noexcept {
     Matrix3 rotation;

@@ -28,7 +28,7 @@ struct Placement {
   Vector3 to_scene(const Vector3& device) const noexcept;
   Vector3 to_device(const Vector3& scene) const noexcept;
   /// What the hand feels of a stiffness in the scene [N/m].
-  double felt_stiffness(double scene_stiffness) const noexcept { return scale * force_scale * scene_stiffness; }
+  double handle_stiffness(double scene_stiffness) const noexcept { return scale * force_scale * scene_stiffness; }
 
   /// The state of a tool in the scene: position, velocity and orientation.
   ToolState to_scene(ToolState state) const noexcept;

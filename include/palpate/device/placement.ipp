@@ -34,8 +34,8 @@ PALPATE_INLINE ToolState Placement::to_scene(ToolState state) const noexcept {
   state.position = to_scene(state.position);
   state.velocity = scale * (rotation * state.velocity);
   const auto& q = state.orientation;
-  const Quaternion<double> turned = quaternion_of(rotation) * Quaternion<double>{q[0], q[1], q[2], q[3]};
-  state.orientation = {turned.w, turned.x, turned.y, turned.z};
+  const Quaternion<double> rotated = quaternion_of(rotation) * Quaternion<double>{q[0], q[1], q[2], q[3]};
+  state.orientation = {rotated.w, rotated.x, rotated.y, rotated.z};
   return state;
 }
 
@@ -56,7 +56,7 @@ PALPATE_INLINE DeviceLimits Placement::limits_in_scene(const DeviceLimits& devic
   scene.peak_force = device.peak_force / force_scale;
   scene.continuous_force = device.continuous_force / force_scale;
   scene.peak_torque = device.peak_torque * scale / force_scale;
-  scene.turning_stiffness = device.turning_stiffness * scale / force_scale;
+  scene.rotational_stiffness = device.rotational_stiffness * scale / force_scale;
   scene.stiffness = device.stiffness / (scale * force_scale);
   const Vector3 middle = 0.5 * (device.workspace_low + device.workspace_high);
   const Vector3 reach = 0.5 * (device.workspace_high - device.workspace_low);
@@ -70,11 +70,11 @@ PALPATE_INLINE DeviceLimits Placement::limits_in_scene(const DeviceLimits& devic
 }
 
 PALPATE_INLINE std::optional<std::string> Placement::warning(const DeviceLimits& device, double scene_stiffness) const {
-  const double felt = felt_stiffness(scene_stiffness);
-  if (felt <= device.stiffness) return std::nullopt;
-  return "the hand would feel " + number(felt) + " N/m (" + number(scene_stiffness) + " N/m times scale " +
+  const double rendered = handle_stiffness(scene_stiffness);
+  if (rendered <= device.stiffness) return std::nullopt;
+  return "the hand would feel " + number(rendered) + " N/m (" + number(scene_stiffness) + " N/m times scale " +
          number(scale) + " times force_scale " + number(force_scale) + "), the device renders " +
-         number(device.stiffness) + " N/m stably: make scale or force_scale " + number(device.stiffness / felt) +
+         number(device.stiffness) + " N/m stably: make scale or force_scale " + number(device.stiffness / rendered) +
          " times as large, or set coupling_stiffness to " + number(device.stiffness / (scale * force_scale)) + " N/m";
 }
 

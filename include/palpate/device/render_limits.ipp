@@ -11,12 +11,12 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE DeviceLimits with_torque(DeviceLimits limits, bool torque) {
-  if (!torque) limits.peak_torque = limits.turning_stiffness = 0.0;
-  for (const double value : {limits.peak_torque, limits.turning_stiffness})
+  if (!torque) limits.peak_torque = limits.rotational_stiffness = 0.0;
+  for (const double value : {limits.peak_torque, limits.rotational_stiffness})
     if (torque && !(value > 0.0 && std::isfinite(value)))
       raise(SetupErrorKind::bad_argument,
             "a device that renders torque has a peak torque of " + number(limits.peak_torque) +
-                " N m and a turning stiffness of " + number(limits.turning_stiffness) + " N m/rad",
+                " N m and a turning stiffness of " + number(limits.rotational_stiffness) + " N m/rad",
             "Give both in the option `limits`, from the data sheet");
   return limits;
 }

@@ -42,7 +42,7 @@ class EnergyTank {
   /// energy_injected when that is less.
   Vector3 limit(const Vector3& wanted, const Vector3& position, double time, Status& status) noexcept;
   /// Takes in the work of a torque on the tool since the last call of limit [J], before that is called again.
-  void turned(double work) noexcept;
+  void rotated(double work) noexcept;
   /// What was rendered in the end.
   void gave(const Vector3& force) noexcept;
   /// The device was lost, or the tool jumped: the way to the next sample does not count.

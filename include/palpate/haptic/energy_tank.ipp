@@ -31,7 +31,7 @@ PALPATE_INLINE Vector3 EnergyTank::limit(const Vector3& wanted, const Vector3& p
   if (observer_.acting().isZero(0.0)) level_ = std::min(level_, limits_.allowance);
   const auto step = observer_.moved(position, time);
   level_ -= step.work;
-  if (step.time > 0.0) level_ += limits_.damping * step.way2 / std::max(step.time, shortest_step);
+  if (step.time > 0.0) level_ += limits_.damping * step.squared_path / std::max(step.time, shortest_step);
   if (level_ < limits_.allowance)
     level_ = std::min(limits_.allowance, level_ + limits_.refill * std::min(step.time, longest_refill));
   level_ = std::clamp(level_, -limits_.allowance, limits_.capacity);
@@ -40,7 +40,7 @@ PALPATE_INLINE Vector3 EnergyTank::limit(const Vector3& wanted, const Vector3& p
   return gain() * wanted;
 }
 
-PALPATE_INLINE void EnergyTank::turned(double work) noexcept {
+PALPATE_INLINE void EnergyTank::rotated(double work) noexcept {
   if (!std::isfinite(work)) return;
   observer_.moved_by(work);
   level_ = std::clamp(level_ - work, -limits_.allowance, limits_.capacity);

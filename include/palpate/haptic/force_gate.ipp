@@ -40,10 +40,10 @@ PALPATE_INLINE GatedForce ForceGate::apply(const Vector3& wanted, double now, do
 PALPATE_INLINE GatedForce ForceGate::apply(const Vector3& wanted, const Vector3& torque, double now, double input_time,
                                            bool input_valid, bool restart) noexcept {
   Status status;
-  const double told = time_since_last_tick(now);
-  const double dt = told > 0.0 ? told : limits_.period;
+  const double measured = time_since_last_tick(now);
+  const double dt = measured > 0.0 ? measured : limits_.period;
   const double warming = (last_.squaredNorm() - heat_) * std::min(1.0, dt / limits_.heating_time);
-  heat_ += told > 0.0 ? warming : std::max(0.0, warming);
+  heat_ += measured > 0.0 ? warming : std::max(0.0, warming);
   const double overdue = time_overdue(dt, now, input_time);
   if (dt > late_factor * limits_.period) status.set(StatusFlag::deadline_missed);
 

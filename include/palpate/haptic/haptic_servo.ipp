@@ -134,7 +134,7 @@ PALPATE_INLINE void HapticServo::note_updates() noexcept {
 PALPATE_INLINE void HapticServo::take(std::size_t i, const ToolState& state) noexcept {
   if (blades_[i]) return take_blade(*blades_[i], i, state);
   inputs_[i].take(state, tissue_.to_world(), tissue_.contact_surface(), problem_.contacts(), contact_tools_[i]);
-  if (!energies_.empty()) energies_[i].turned(gates_[i].last_torque().dot(inputs_[i].rotation()));
+  if (!energies_.empty()) energies_[i].rotated(gates_[i].last_torque().dot(inputs_[i].rotation()));
 }
 
 /// A blade starts again where it moved farther in a tick than its edge is long.
@@ -147,7 +147,7 @@ PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, co
     blade.lift();
 }
 
-/// A ball whose centre is in the body without any contact has lost the surface: it is put back in the next tick, with
+/// A sphere whose centre is in the body without any contact has lost the surface: it is put back in the next tick, with
 /// the ramp.
 PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
   const ContactTool& tool = contact_tools_[i];

@@ -18,7 +18,7 @@ class PassivityObserver {
   /// One interval between two samples.
   struct Step {
     double work = 0.0;  ///< [J] given to the tool
-    double way2 = 0.0;  ///< [m^2] square of the way
+    double squared_path = 0.0;  ///< [m^2] square of the way
     double time = 0.0;  ///< [s] > 0, or 0 when stamps do not tell
   };
 

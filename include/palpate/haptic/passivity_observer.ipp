@@ -15,11 +15,11 @@ PALPATE_INLINE PassivityObserver::PassivityObserver(int delay) noexcept
 
 PALPATE_INLINE PassivityObserver::Step PassivityObserver::moved(const Vector3& position, double time) noexcept {
   Step step;
-  const Vector3 way = position - last_;
-  const double work = acting().dot(way), way2 = way.squaredNorm(), dt = time - last_time_;
-  if (known_ && std::isfinite(work) && std::isfinite(way2)) {
+  const Vector3 path = position - last_;
+  const double work = acting().dot(path), squared_path = path.squaredNorm(), dt = time - last_time_;
+  if (known_ && std::isfinite(work) && std::isfinite(squared_path)) {
     step.work = work;
-    step.way2 = way2;
+    step.squared_path = squared_path;
     if (dt > 0.0 && std::isfinite(dt)) step.time = dt;
     add(work);
   }

@@ -18,8 +18,8 @@ struct ServoOptions {
   std::optional<double> rate{};                ///< [1/s] of ticks; default the slowest device's
   std::optional<double> coupling_stiffness{};  ///< [N/m] between proxy and device; default each device's, less in
                                                ///< proportion at a lower rate; infinity for verification
-  std::optional<double> turning_stiffness{};   ///< [N m/rad] the same for rotations; default each device's, or rigid
-                                               ///< for a device that renders no torque
+  std::optional<double> rotational_stiffness{};  ///< [N m/rad] the same for rotations; default each device's, or rigid
+                                                 ///< for a device that renders no torque
   std::optional<ForceLimits> force_limits{};   ///< of every tool; default ForceLimits::from(its device, rate)
   ContactParameters contact{};                 ///< friction too
   double stale_tissue_after = 0.5;             ///< [s] without news of a tissue that moves by itself until forces fade

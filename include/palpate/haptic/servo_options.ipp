@@ -46,9 +46,9 @@ PALPATE_INLINE double coupling_stiffness_of(std::size_t tool, const ServoOptions
 inline ContactTool make_contact_tool(const CapsuleTool& tool, std::size_t i, const ServoOptions& options) {
   const DeviceLimits& device = options.device_of(i);
   const double rate = options.tick_rate(), stiffness = coupling_stiffness_of(i, options);
-  const bool renders_torque = device.turning_stiffness > 0.0 || options.limits(i).peak_torque > 0.0;
-  const double turning =
-      options.turning_stiffness.value_or(renders_torque ? stable_at(rate, device, device.turning_stiffness) : infinity);
+  const bool renders_torque = device.rotational_stiffness > 0.0 || options.limits(i).peak_torque > 0.0;
+  const double turning = options.rotational_stiffness.value_or(
+      renders_torque ? stable_at(rate, device, device.rotational_stiffness) : infinity);
   if (!(turning > 0.0))
     refuse_stiffness(i, "turning", turning, "A device that renders torque needs one, in N m/rad; infinity is allowed");
   tool.require_valid();
@@ -57,7 +57,7 @@ inline ContactTool make_contact_tool(const CapsuleTool& tool, std::size_t i, con
   made.half_length = tool.half_length;
   if (tool.half_length > 0.0) made.own_axis = tool.axis.normalized();
   made.compliance = 1.0 / stiffness;
-  made.turning_compliance = 1.0 / turning;
+  made.rotational_compliance = 1.0 / turning;
   return made;
 }
 
@@ -74,8 +74,8 @@ PALPATE_INLINE std::vector<ContactTool> make_contact_tools(const ToolList& tools
           "Give ServoOptions::devices one per tool, or none and `device` for all");
   std::vector<ContactTool> made;
   for (std::size_t i = 0; i < tools.size(); ++i) {
-    if (const auto* ball = std::get_if<SphereTool>(&tools[i]))
-      made.push_back(detail::make_contact_tool(*ball, i, options));
+    if (const auto* sphere = std::get_if<SphereTool>(&tools[i]))
+      made.push_back(detail::make_contact_tool(*sphere, i, options));
     else if (const auto* capsule = std::get_if<CapsuleTool>(&tools[i]))
       made.push_back(detail::make_contact_tool(*capsule, i, options));
     else

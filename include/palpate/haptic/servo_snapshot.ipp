@@ -63,8 +63,8 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const ServoSnapshot& 
 PALPATE_INLINE void ServoSnapshot::note_held(const Contact& row, const Vector3& point, const Vector3& total) noexcept {
   const double force = total.norm();
   if (!(force > 0.0)) return;
-  ToolContact& held = contacts[contact_count++];
-  held = {row.tool, point, total / force, force, Vector3::Zero(), true, false, row.vertices, row.weights};
+  ToolContact& grasp = contacts[contact_count++];
+  grasp = {row.tool, point, total / force, force, Vector3::Zero(), true, false, row.vertices, row.weights};
 }
 
 }}  // namespace palpate

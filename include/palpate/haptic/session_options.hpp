@@ -11,7 +11,7 @@ struct SessionOptions {
   std::optional<double> rate{};                ///< [1/s] default the slowest device's
   std::optional<double> coupling_stiffness{};  ///< [N/m] between proxy and device; default each device's, less in
                                                ///< proportion at a lower rate
-  std::optional<double> turning_stiffness{};   ///< [N m/rad] the same for rotations
+  std::optional<double> rotational_stiffness{};  ///< [N m/rad] the same for rotations
   std::optional<ForceLimits> force_limits{};   ///< default ForceLimits::from(each device, rate)
   ContactParameters contact{};                 ///< friction too
   double stale_tissue_after = 0.5;             ///< [s] without news of a tissue that moves by itself until forces fade

@@ -68,14 +68,14 @@ PALPATE_INLINE ServoOptions servo_options(const std::vector<DeviceLimits>& devic
     if (options.coupling_stiffness)
       within.require(*options.coupling_stiffness, detail::stable_at(rate, device, device.stiffness),
                      "coupling stiffness", "N/m", "Leave it out; a stiffer one is a HapticServo's, for verification");
-    if (options.turning_stiffness && device.peak_torque > 0.0)
-      within.require(*options.turning_stiffness, detail::stable_at(rate, device, device.turning_stiffness),
+    if (options.rotational_stiffness && device.peak_torque > 0.0)
+      within.require(*options.rotational_stiffness, detail::stable_at(rate, device, device.rotational_stiffness),
                      "turning stiffness", "N m/rad", "Leave it out");
     if (options.force_limits) within.require(*options.force_limits, device);
   }
   if (options.force_limits) detail::require_period(*options.force_limits, rate);
   o.coupling_stiffness = options.coupling_stiffness;
-  o.turning_stiffness = options.turning_stiffness;
+  o.rotational_stiffness = options.rotational_stiffness;
   o.force_limits = options.force_limits;
   o.contact = options.contact;
   o.stale_tissue_after = options.stale_tissue_after;

@@ -9,10 +9,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 namespace detail {
 
 /// Held dofs stay out of what all dofs do: their inverse mass is zero, and so is their velocity meanwhile.
-void leave_out_held(MotionState& s) noexcept;
+void clear_constrained_velocity(MotionState& s) noexcept;
 /// They go to their targets at constant speed.
-void move_held(MotionState& s, double dt) noexcept;
-void show_held(MotionState& s) noexcept;
+void move_constrained(MotionState& s, double dt) noexcept;
+void show_constrained(MotionState& s) noexcept;
 
 }  // namespace detail
 
@@ -27,13 +27,13 @@ struct CentralDifference {
   template <class Refresh>
   static void step(MotionState& s, double dt, Refresh&& refresh) noexcept {
     const double half = 0.5 * dt, shrink = 1.0 / (1.0 + s.damping * half), keep = 1.0 - s.damping * half;
-    detail::leave_out_held(s);
+    detail::clear_constrained_velocity(s);
     s.velocity = shrink * (s.velocity + half * (s.load - s.force).cwiseProduct(s.inverse_mass));
     s.displacement += dt * s.velocity;
-    detail::move_held(s, dt);
+    detail::move_constrained(s, dt);
     refresh();
     s.velocity = keep * s.velocity + half * (s.load - s.force).cwiseProduct(s.inverse_mass);
-    detail::show_held(s);
+    detail::show_constrained(s);
     s.time += dt;
   }
 };

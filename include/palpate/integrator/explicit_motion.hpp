@@ -41,7 +41,7 @@ struct ExplicitOptions {
 template <ForceOperator Force, ExplicitScheme Scheme>
 class ExplicitMotion {
   static_assert(
-      !requires { requires Force::remembers; },
+      !requires { requires Force::has_history; },
       "palpate: explicit steps do not move what a material remembers; use ImplicitDynamics");
 
  public:
@@ -62,12 +62,13 @@ class ExplicitMotion {
     std::vector<char> is_free(static_cast<std::size_t>(dofs), 0);
     for (Index dof : free_dofs) is_free[static_cast<std::size_t>(dof)] = 1;
     for (Index dof = 0; dof < dofs; ++dof)
-      if (is_free[static_cast<std::size_t>(dof)] == 0) state_.held.push_back(dof);
+      if (is_free[static_cast<std::size_t>(dof)] == 0) state_.constrained.push_back(dof);
     state_.inverse_mass = VectorX::Zero(dofs);
     for (Index dof : free_dofs) state_.inverse_mass[dof] = 1.0 / state_.mass[dof];
     state_.damping = options.damping;
     total_mass_ = nodal_mass.sum();
-    state_.held_speed = reactions_ = held_before_ = VectorX::Zero(static_cast<Index>(state_.held.size()));
+    state_.prescribed_speed = reactions_ = constrained_before_ =
+        VectorX::Zero(static_cast<Index>(state_.constrained.size()));
     begin();
     limit_.iterate(force_, state_, options_.first_iterations);
   }
@@ -194,7 +195,7 @@ class ExplicitMotion {
   /// Of the free dofs [J].
   double kinetic_energy() const noexcept {
     double sum = state_.mass.dot(state_.velocity.cwiseAbs2());
-    for (Index dof : state_.held) sum -= state_.mass[dof] * state_.velocity[dof] * state_.velocity[dof];
+    for (Index dof : state_.constrained) sum -= state_.mass[dof] * state_.velocity[dof] * state_.velocity[dof];
     return 0.5 * sum;
   }
   double stored_energy() noexcept { return force_.energy(state_.displacement); }
@@ -260,17 +261,17 @@ class ExplicitMotion {
   }
   void before_step() noexcept {
     load_work_ = -state_.load.dot(state_.displacement);
-    for (std::size_t k = 0; k < state_.held.size(); ++k) {
-      reactions_[static_cast<Index>(k)] = state_.force[state_.held[k]];
-      held_before_[static_cast<Index>(k)] = state_.displacement[state_.held[k]];
+    for (std::size_t k = 0; k < state_.constrained.size(); ++k) {
+      reactions_[static_cast<Index>(k)] = state_.force[state_.constrained[k]];
+      constrained_before_[static_cast<Index>(k)] = state_.displacement[state_.constrained[k]];
     }
   }
   void after_step() noexcept {
     load_work_ += state_.load.dot(state_.displacement);
-    for (std::size_t k = 0; k < state_.held.size(); ++k) {
-      const Index dof = state_.held[k], i = static_cast<Index>(k);
-      load_work_ +=
-          (0.5 * (reactions_[i] + state_.force[dof]) - state_.load[dof]) * (state_.displacement[dof] - held_before_[i]);
+    for (std::size_t k = 0; k < state_.constrained.size(); ++k) {
+      const Index dof = state_.constrained[k], i = static_cast<Index>(k);
+      load_work_ += (0.5 * (reactions_[i] + state_.force[dof]) - state_.load[dof]) *
+                    (state_.displacement[dof] - constrained_before_[i]);
     }
     work_ += load_work_;
     gross_ += std::abs(load_work_);
@@ -305,7 +306,7 @@ class ExplicitMotion {
   MotionState state_;
   StepLimit limit_;
   Good good_;
-  VectorX reactions_, held_before_;
+  VectorX reactions_, constrained_before_;
   double work_ = 0.0, gross_ = 0.0, load_work_ = 0.0, start_energy_ = 0.0, total_mass_ = 0.0;
   std::int64_t steps_ = 0;
   bool stopped_ = false;

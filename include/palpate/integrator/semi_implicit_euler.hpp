@@ -16,12 +16,12 @@ struct SemiImplicitEuler {
   template <class Refresh>
   static void step(MotionState& s, double dt, Refresh&& refresh) noexcept {
     const double shrink = 1.0 / (1.0 + s.damping * dt);
-    detail::leave_out_held(s);
+    detail::clear_constrained_velocity(s);
     s.velocity = shrink * (s.velocity + dt * (s.load - s.force).cwiseProduct(s.inverse_mass));
     s.displacement += dt * s.velocity;
-    detail::move_held(s, dt);
+    detail::move_constrained(s, dt);
     refresh();
-    detail::show_held(s);
+    detail::show_constrained(s);
     s.time += dt;
   }
 };

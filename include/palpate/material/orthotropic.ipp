@@ -16,7 +16,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 namespace detail {
 
 /// t d t^T
-inline Matrix6 turned(const Matrix6& t, const Matrix6& d) noexcept {
+inline Matrix6 rotated(const Matrix6& t, const Matrix6& d) noexcept {
   Matrix6 td = Matrix6::Zero(), result = Matrix6::Zero();
   for (int j = 0; j < 6; ++j)
     for (int k = 0; k < 6; ++k)
@@ -57,7 +57,7 @@ PALPATE_INLINE Matrix6 Orthotropic::elasticity() const noexcept {
   d(voigt::xy, voigt::xy) = shear_modulus_12;
   d(voigt::xz, voigt::xz) = shear_modulus_13;
   d(voigt::yz, voigt::yz) = shear_modulus_23;
-  if (!axes.isIdentity(0.0)) d = detail::turned(voigt::stress_rotation(axes), d);
+  if (!axes.isIdentity(0.0)) d = detail::rotated(voigt::stress_rotation(axes), d);
   for (int j = 0; j < 6; ++j)
     for (int i = 0; i < j; ++i) d(i, j) = d(j, i) = 0.5 * (d(i, j) + d(j, i));
   return d;

@@ -31,7 +31,7 @@ double mean_decay(double x) noexcept;
 }  // namespace detail
 
 /// What fades: the whole stress, or the part that changes the shape.
-enum class Relaxation { whole_stress, shape_only };
+enum class Relaxation { whole_stress, deviatoric };
 
 /// What an integration point remembers: plain numbers, zero at rest. `Stress` is Vector6 at small strain and
 /// Tensor3<double>, second Piola-Kirchhoff, at large strain.
@@ -99,7 +99,7 @@ struct Viscoelastic {
   Vector6 stress(const Vector6& strain, SmallStrainHistory& history,
                  double dt) const noexcept requires LinearMaterial<Base> {
     Vector6 fading = base.elasticity() * strain, kept = Vector6::Zero();
-    if (relaxation == Relaxation::shape_only) {
+    if (relaxation == Relaxation::deviatoric) {
       kept.head<3>().setConstant(fading.head<3>().sum() / 3.0);
       fading -= kept;
     }
@@ -109,8 +109,8 @@ struct Viscoelastic {
   /// First Piola-Kirchhoff stress [Pa] at the end of a step dt [s] that ends at F; moves the history on.
   Tensor3<double> stress(const Tensor3<double>& f, LargeStrainHistory& history,
                          double dt) const noexcept requires HyperelasticMaterial<Base> {
-    const Tensor3<double> p = law_of_step(over(dt), driving_stress(history, over(dt))).stress(f);
-    remember(f, history, over(dt));
+    const Tensor3<double> p = material_of_step(over(dt), driving_stress(history, over(dt))).stress(f);
+    update_history(f, history, over(dt));
     return p;
   }
 
@@ -124,15 +124,15 @@ struct Viscoelastic {
     return sum;
   }
   /// Refers to this material.
-  ViscousStep<Base> law_of_step(const PronyStep<Terms>& step,
-                                const Tensor3<double>& driving) const noexcept requires HyperelasticMaterial<Base> {
-    return {base, step.share, relaxation == Relaxation::shape_only ? 1.0 - step.share : 0.0, driving};
+  ViscousStep<Base> material_of_step(
+      const PronyStep<Terms>& step, const Tensor3<double>& driving) const noexcept requires HyperelasticMaterial<Base> {
+    return {base, step.share, relaxation == Relaxation::deviatoric ? 1.0 - step.share : 0.0, driving};
   }
   /// Moves the history on over a step that ends at F.
-  void remember(const Tensor3<double>& f, LargeStrainHistory& history,
-                const PronyStep<Terms>& step) const noexcept requires HyperelasticMaterial<Base> {
+  void update_history(const Tensor3<double>& f, LargeStrainHistory& history,
+                      const PronyStep<Terms>& step) const noexcept requires HyperelasticMaterial<Base> {
     Tensor3<double> p = base.stress(f);
-    if (relaxation == Relaxation::shape_only) p = p - detail::VolumeStress<Base>(base, f).stress();
+    if (relaxation == Relaxation::deviatoric) p = p - detail::VolumeStress<Base>(base, f).stress();
     const Tensor3<double> c = cofactor(f);
     advance((1.0 / determinant(f, c)) * (transpose(c) * p), history, step);
   }
@@ -182,8 +182,8 @@ struct Viscoelastic {
 template <class M>
 concept ViscousMaterial =
     Material<M> && requires(const M& m, const Tensor3<double>& f, typename M::LargeStrainHistory& history) {
-      { m.remember(f, history, m.over(0.0)) } noexcept;
-      { m.law_of_step(m.over(0.0), f).energy(f) } noexcept -> std::same_as<double>;
+      { m.update_history(f, history, m.over(0.0)) } noexcept;
+      { m.material_of_step(m.over(0.0), f).energy(f) } noexcept -> std::same_as<double>;
     };
 // clang-format on
 

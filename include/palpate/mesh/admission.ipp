@@ -97,7 +97,7 @@ inline bool drop_elements(Candidate& work, const AdmissionPolicy& policy) {
 }
 
 /// Turns inverted elements round. Returns whether there were any.
-inline bool turn_round(Candidate& work, const MeshThresholds& thresholds) {
+inline bool reverse_inverted(Candidate& work, const MeshThresholds& thresholds) {
   std::vector<Index> inverted;
   for (Index e = 0; e < work.mesh.element_count; ++e)
     if (orientation_of(work, e, thresholds) < 0) inverted.push_back(e);
@@ -123,7 +123,7 @@ inline bool repair(Candidate& work, const AdmissionPolicy& policy) {
   bool changed = false;
   if (policy.duplicate_nodes == Admission::repair) changed = weld(work, policy.thresholds) || changed;
   changed = drop_elements(work, policy) || changed;
-  if (policy.inverted == Admission::repair) changed = turn_round(work, policy.thresholds) || changed;
+  if (policy.inverted == Admission::repair) changed = reverse_inverted(work, policy.thresholds) || changed;
   if (policy.orphans == Admission::repair) changed = drop_orphans(work) || changed;
   return changed;
 }

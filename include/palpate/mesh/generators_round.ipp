@@ -49,11 +49,11 @@ inline std::vector<std::array<int, 3>> icosahedron_faces(const std::array<Vector
   return faces;
 }
 
-/// Builds a ball from 20 tetrahedra between the centre and the faces of an icosahedron, each cut into n^3 by planes
+/// Builds a sphere from 20 tetrahedra between the centre and the faces of an icosahedron, each cut into n^3 by planes
 /// parallel to Kuhn's.
-class BallBuilder {
+class SphereBuilder {
  public:
-  BallBuilder(double radius, int layers) : radius_(radius), layers_(layers), points_(icosahedron_points()) {}
+  SphereBuilder(double radius, int layers) : radius_(radius), layers_(layers), points_(icosahedron_points()) {}
 
   Mesh<Tet4> build() {
     for (const auto& face : icosahedron_faces(points_)) fill({0, face[0], face[1], face[2]});
@@ -151,10 +151,10 @@ inline void require_round(double radius, double height, int count) {
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE Mesh<Tet4> ball_tet4(double radius, int refinement) {
+PALPATE_INLINE Mesh<Tet4> sphere_tet4(double radius, int refinement) {
   detail::require_round(radius, radius, refinement);
-  if (refinement > 400) raise(SetupErrorKind::count_too_large, "a ball of " + std::to_string(refinement) + " layers");
-  Mesh<Tet4> mesh = detail::BallBuilder(radius, refinement).build();
+  if (refinement > 400) raise(SetupErrorKind::count_too_large, "a sphere of " + std::to_string(refinement) + " layers");
+  Mesh<Tet4> mesh = detail::SphereBuilder(radius, refinement).build();
   detail::add_boundary_group(mesh, extract_boundary<Tet4>(mesh), surface_group,
                              [](const BoundaryFace&) { return true; });
   return mesh;

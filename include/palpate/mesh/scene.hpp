@@ -89,12 +89,12 @@ class Scene {
   /// elongation of v / 3 (small strain).
   Scene& expand(std::string region, double elongation);
   /// Thermal expansion of a region, or `everywhere`: coefficient [1/K] times rise of temperature [K].
-  Scene& heat(std::string region, double coefficient, double rise);
+  Scene& thermal_strain(std::string region, double coefficient, double rise);
   /// What a tool may touch: the dofs of these nodes are kept, all others are condensed away. Of a set of points only
   /// boundary faces all of whose nodes it contains.
   Scene& touch(Selection where);
   /// Nodes somebody looks at: their displacement is recovered at visual rate.
-  Scene& see(Selection where);
+  Scene& render(Selection where);
 
   const std::vector<Prescribed>& prescribed() const noexcept { return prescribed_; }
   const std::vector<Traction>& tractions() const noexcept { return tractions_; }
@@ -103,7 +103,7 @@ class Scene {
   const std::vector<BodyLoad>& body_loads() const noexcept { return body_loads_; }
   const std::vector<InitialStrain>& initial_strains() const noexcept { return initial_strains_; }
   const std::vector<Selection>& touched() const noexcept { return touched_; }
-  const std::vector<Selection>& seen() const noexcept { return seen_; }
+  const std::vector<Selection>& rendered() const noexcept { return rendered_; }
   const Vector3& gravity() const noexcept { return gravity_; }
 
   /// The same scene for an admitted mesh, see `mapped` of a Selection.
@@ -125,7 +125,7 @@ class Scene {
   std::vector<BodyLoad> body_loads_;
   std::vector<InitialStrain> initial_strains_;
   std::vector<Selection> touched_;
-  std::vector<Selection> seen_;
+  std::vector<Selection> rendered_;
   Vector3 gravity_ = Vector3::Zero();
 };
 

@@ -68,7 +68,7 @@ PALPATE_INLINE Scene& Scene::expand(std::string region, double elongation) {
   return initial_strain(std::move(region), strain);
 }
 
-PALPATE_INLINE Scene& Scene::heat(std::string region, double coefficient, double rise) {
+PALPATE_INLINE Scene& Scene::thermal_strain(std::string region, double coefficient, double rise) {
   require_finite(coefficient, "a coefficient of expansion");
   require_finite(rise, "a rise of temperature");
   return expand(std::move(region), coefficient * rise);
@@ -79,13 +79,13 @@ PALPATE_INLINE Scene& Scene::touch(Selection where) {
   return *this;
 }
 
-PALPATE_INLINE Scene& Scene::see(Selection where) {
-  seen_.push_back(std::move(where));
+PALPATE_INLINE Scene& Scene::render(Selection where) {
+  rendered_.push_back(std::move(where));
   return *this;
 }
 
 PALPATE_INLINE Selection mapped(const Selection& selection, const std::vector<NodeId>& map, const Vector3& origin) {
-  if (const auto* points = std::get_if<where::PointSet>(&selection)) return points->seen_from(origin);
+  if (const auto* points = std::get_if<where::PointSet>(&selection)) return points->relative_to(origin);
   const auto* nodes = std::get_if<std::vector<NodeId>>(&selection);
   if (nodes == nullptr) return selection;
   std::vector<NodeId> mapped_nodes;
@@ -106,7 +106,7 @@ PALPATE_INLINE Scene Scene::mapped(const std::vector<NodeId>& map, const Vector3
   for (auto& c : s.pressures_) renew(c.where);
   for (auto& c : s.point_loads_) renew(c.where);
   for (auto& c : s.touched_) renew(c);
-  for (auto& c : s.seen_) renew(c);
+  for (auto& c : s.rendered_) renew(c);
   return s;
 }
 
@@ -143,7 +143,7 @@ PALPATE_INLINE std::vector<std::string> Scene::group_names() const {
   for (const auto& c : pressures_) add(c.where);
   for (const auto& c : point_loads_) add(c.where);
   for (const auto& c : touched_) add(c);
-  for (const auto& c : seen_) add(c);
+  for (const auto& c : rendered_) add(c);
   return names;
 }
 

@@ -33,7 +33,7 @@ class PointSet {
   /// Where the frame of the points that `contains` is asked for lies in the frame in which the set was made [m].
   const Vector3& origin() const noexcept { return origin_; }
   /// The same set for points in a frame whose origin lies at `origin` in the present one [m].
-  PointSet seen_from(const Vector3& origin) const;
+  PointSet relative_to(const Vector3& origin) const;
 
  private:
   struct Definition;
@@ -55,7 +55,7 @@ PointSet box(const Vector3& low, const Vector3& high);
 PointSet below(const Vector3& point, const Vector3& normal = Vector3::UnitZ());
 /// The half-space on the side that the normal points to. Throws as `below`.
 PointSet above(const Vector3& point, const Vector3& normal = Vector3::UnitZ());
-/// A ball. Throws bad_argument unless the radius is positive, non_finite.
+/// A sphere. Throws bad_argument unless the radius is positive, non_finite.
 PointSet sphere(const Vector3& centre, double radius);
 /// The points within `radius` of a segment. Throws as `sphere`.
 PointSet capsule(const Vector3& from, const Vector3& to, double radius);

@@ -48,7 +48,7 @@ PALPATE_INLINE const std::string& PointSet::name() const noexcept {
   return definition_->name;
 }
 
-PALPATE_INLINE PointSet PointSet::seen_from(const Vector3& origin) const {
+PALPATE_INLINE PointSet PointSet::relative_to(const Vector3& origin) const {
   PointSet moved = *this;
   moved.origin_ += origin;
   return moved;
@@ -116,10 +116,10 @@ PALPATE_INLINE PointSet capsule(const Vector3& from, const Vector3& to, double r
   detail::require_finite_set(from, "an end of a capsule");
   detail::require_finite_set(to, "an end of a capsule");
   detail::require_radius(radius);
-  return {[from, way = Vector3(to - from), radius](const Vector3& x, double margin) {
-            const double square = way.squaredNorm();
-            const double t = square > 0.0 ? std::clamp((x - from).dot(way) / square, 0.0, 1.0) : 0.0;
-            return (x - from - t * way).norm() <= radius + margin;
+  return {[from, path = Vector3(to - from), radius](const Vector3& x, double margin) {
+            const double square = path.squaredNorm();
+            const double t = square > 0.0 ? std::clamp((x - from).dot(path) / square, 0.0, 1.0) : 0.0;
+            return (x - from - t * path).norm() <= radius + margin;
           },
           "the capsule of radius " + number(radius) + " from " + detail::point_text(from) + " to " +
               detail::point_text(to)};

@@ -54,7 +54,7 @@ class ModelBase {
   Vector3 rest_position(NodeId node) const noexcept;
   /// Node of every vertex of the contact surface.
   const std::vector<NodeId>& touchable_nodes() const noexcept { return touchable_; }
-  const std::vector<NodeId>& seen_nodes() const noexcept { return seen_; }
+  const std::vector<NodeId>& rendered_nodes() const noexcept { return rendered_; }
   /// Where the organ lies in the world, as set last: from the frame of the mesh as given to the world's.
   const Eigen::Isometry3d& pose() const noexcept { return pose_; }
   /// From the frame of the contact surface, whose origin is `origin()`, to the world's.
@@ -107,7 +107,7 @@ class ModelBase {
   SetupLimits limits_;
   SetupReport report_;
   Scene scene_;
-  std::vector<NodeId> node_map_, touchable_, seen_;
+  std::vector<NodeId> node_map_, touchable_, rendered_;
   OriginalIds original_ids_;
   std::unique_ptr<ElasticBody> body_;
   std::string other_loads_;

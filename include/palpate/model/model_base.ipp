@@ -32,9 +32,9 @@ PALPATE_INLINE Touchable ModelBase::admit(const Scene& scene, AdmittedBody admit
   place(Eigen::Isometry3d::Identity());
   Touchable touchable = body_->touchable(scene_);
   touchable_ = touchable.nodes;
-  seen_ = body_->seen(scene_);
+  rendered_ = body_->rendered(scene_);
   report_.touchable_vertices = static_cast<Index>(touchable_.size());
-  report_.seen_nodes = static_cast<Index>(seen_.size());
+  report_.rendered_nodes = static_cast<Index>(rendered_.size());
   return touchable;
 }
 

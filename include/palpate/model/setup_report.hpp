@@ -31,7 +31,7 @@ enum class SetupFlag : std::uint32_t {
 /// Sizes, memory, times and findings of a set-up.
 struct SetupReport {
   Index nodes = 0, elements = 0, free_dofs = 0, condensed_dofs = 0, kept_dofs = 0, touchable_vertices = 0,
-        seen_nodes = 0;
+        rendered_nodes = 0;
   std::size_t stiffness_bytes = 0, solver_bytes = 0, compliance_bytes = 0;
   double worst_quality = 1.0, mean_quality = 1.0;       ///< mean ratio, 1 is a regular element
   double condition_estimate = 0.0;                      ///< 1-norm; 0 when not estimated (iterative solvers)

@@ -25,7 +25,7 @@ PALPATE_INLINE double SetupReport::total_seconds() const noexcept {
 PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const SetupReport& r) {
   out << "set-up: " << r.nodes << " nodes, " << r.elements << " elements, " << r.free_dofs
       << " free dofs: " << r.kept_dofs << " kept, " << r.condensed_dofs << " condensed; " << r.touchable_vertices
-      << " touchable vertices, " << r.seen_nodes << " seen nodes\n"
+      << " touchable vertices, " << r.rendered_nodes << " seen nodes\n"
       << "  memory: stiffness " << number(static_cast<double>(r.stiffness_bytes) / 1e6) << " MB, solver "
       << number(static_cast<double>(r.solver_bytes) / 1e6) << " MB, compliance "
       << number(static_cast<double>(r.compliance_bytes) / 1e6) << " MB\n  time:";

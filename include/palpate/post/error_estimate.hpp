@@ -54,7 +54,7 @@ ErrorEstimate estimate_error(const Body<E>& body, const VectorX& u, const NodalS
     Eigen::Matrix<double, 6, E::nodes> at_nodes;
     for (int a = 0; a < E::nodes; ++a)
       at_nodes.col(a) = nodal.stress.col(nodal.column(body.mesh.element_node(e, a), body.mesh.region(e)));
-    const auto& compliance = elasticity[body.law_of(e)];
+    const auto& compliance = elasticity[body.material_of(e)];
     const auto points = state.template points<typename E::MassQuadrature>(e);
     double square = 0.0;
     for (std::size_t q = 0; q < points.size(); ++q) {

@@ -61,8 +61,8 @@ Violations operator_laws(const K& k, const MatrixX& dense) {
   expect_true(v, "diagonal blocks agree", static_cast<Index>(blocks.size()) == n / 3, "number of blocks");
   Worst worst("diagonal blocks agree", 1e-13 * scale);
   for (Index i = 0; i < std::min<Index>(n / 3, static_cast<Index>(blocks.size())); ++i)
-    worst.see((blocks[static_cast<std::size_t>(i)] - dense.block<3, 3>(3 * i, 3 * i)).cwiseAbs().maxCoeff(),
-              [i] { return "node " + std::to_string(i); });
+    worst.observe((blocks[static_cast<std::size_t>(i)] - dense.block<3, 3>(3 * i, 3 * i)).cwiseAbs().maxCoeff(),
+                  [i] { return "node " + std::to_string(i); });
   worst.report(v);
   Random random(1822);
   const VectorX x = random_vector(random, n);
@@ -175,7 +175,7 @@ Violations same_stiffness_laws(const A& a, const B& b, double tolerance = 1e-13)
   expect_true(v, "diagonal blocks agree", da.size() == db.size(), "number of blocks");
   Worst worst("diagonal blocks agree", tolerance);
   for (std::size_t i = 0; i < std::min(da.size(), db.size()); ++i)
-    worst.see((da[i] - db[i]).norm() / da[i].norm(), [i] { return "node " + std::to_string(i); });
+    worst.observe((da[i] - db[i]).norm() / da[i].norm(), [i] { return "node " + std::to_string(i); });
   worst.report(v);
   return v;
 }

@@ -80,7 +80,7 @@ class DeviceLaws {
     expect_at_least(violations_, "limits are sane", limits_.peak_torque, 0.0, "peak torque");
     expect_at_most(violations_, "limits are sane", limits_.peak_torque, 1e4, "peak torque");
     if (limits_.peak_torque > 0.0)
-      expect_above(violations_, "limits are sane", limits_.turning_stiffness, 0.0, "turning stiffness");
+      expect_above(violations_, "limits are sane", limits_.rotational_stiffness, 0.0, "turning stiffness");
   }
 
   /// A device without motors for torque renders none, whatever it is told.

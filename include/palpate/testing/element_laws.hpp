@@ -67,7 +67,8 @@ Violations face_element_laws() {
   Worst linear("linear completeness", 1e-12), load("rule integrates the shape functions", 1e-13);
   const auto points = sample_points<F::nodes, 2>(F::reference_nodes());
   for (const auto& p : exponents<2>(1))
-    if (total_degree(p) <= 1) linear.see(interpolation_error<F, 2>(points, p), [] { return std::string("1, u or v"); });
+    if (total_degree(p) <= 1)
+      linear.observe(interpolation_error<F, 2>(points, p), [] { return std::string("1, u or v"); });
   linear.report(v);
 
   const auto cell = cell_of<F>();
@@ -79,7 +80,7 @@ Violations face_element_laws() {
   for (const auto& q : F::Quadrature::points) by_rule += q.weight * F::shape(point_of(q.xi));
   for (int a = 0; a < F::nodes; ++a) {
     const double exact = integrate(*cell, [a](const Point<2>& xi) { return F::shape(xi)[a]; });
-    load.see(std::abs(by_rule[a] - exact), [a] { return "node " + std::to_string(a); });
+    load.observe(std::abs(by_rule[a] - exact), [a] { return "node " + std::to_string(a); });
   }
   load.report(v);
   return v;
@@ -123,8 +124,8 @@ Violations rule_choice_laws(const ReferenceCell<3>& cell) {
       const auto product = [a, b](const Point<3>& xi) { return E::shape(xi)[a] * E::shape(xi)[b]; };
       double by_rule = 0.0;
       for (const auto& q : E::MassQuadrature::points) by_rule += q.weight * product(point_of(q.xi));
-      products.see(std::abs(by_rule - integrate(cell, product)),
-                   [a, b] { return "functions " + std::to_string(a) + " and " + std::to_string(b); });
+      products.observe(std::abs(by_rule - integrate(cell, product)),
+                       [a, b] { return "functions " + std::to_string(a) + " and " + std::to_string(b); });
     }
   products.report(v);
   expect_at_least(v, "degree of Quadrature", E::Quadrature::degree, 2.0 * (E::order - 1));

@@ -72,7 +72,7 @@ Violations rest_laws(const M& m, double modulus) {
   for (int k = 0; k < 9; ++k) {
     const Matrix3 h = Eigen::Map<const Matrix3>(Eigen::Matrix<double, 9, 1>::Unit(k).eval().data());
     const Matrix3 expected = voigt::stress_tensor(d * voigt::strain_vector(0.5 * (h + h.transpose())));
-    worst.see((t.col(k) - expected.reshaped()).norm(), [k] { return "entry " + std::to_string(k); });
+    worst.observe((t.col(k) - expected.reshaped()).norm(), [k] { return "entry " + std::to_string(k); });
   }
   worst.report(v);
   return v;
@@ -92,11 +92,11 @@ Violations derivative_laws(const M& m) {
     const double size = t.norm();
     for (int i = 0; i < 9; ++i) {
       const double slope = detail::derivative([&](double h) { return m.energy(detail::stepped(f, i, h)); });
-      first.see(std::abs(slope - p.e[i]) / size, [k] { return detail::name_of(k); });
+      first.observe(std::abs(slope - p.e[i]) / size, [k] { return detail::name_of(k); });
       const auto slopes = detail::derivative([&](double h) { return m.stress(detail::stepped(f, i, h)); });
-      second.see((vector9(slopes) - t.col(i)).norm() / size, [k] { return detail::name_of(k); });
+      second.observe((vector9(slopes) - t.col(i)).norm() / size, [k] { return detail::name_of(k); });
     }
-    symmetric.see((t - t.transpose()).norm() / size, [k] { return detail::name_of(k); });
+    symmetric.observe((t - t.transpose()).norm() / size, [k] { return detail::name_of(k); });
     expect_above(v, "energy is positive", m.energy(f), 0.0, detail::name_of(k));
   }
   first.report(v);
@@ -114,11 +114,11 @@ Violations rotation_laws(const M& m, double modulus, bool isotropic) {
   for (int k = 0; k < 16; ++k) {
     const Tensor3<double> f = random_deformation(m, random), q = tensor3(random_rotation(random)), p = m.stress(f);
     const double w = m.energy(f), size = modulus + m.tangent(f).norm();
-    const auto error = [&](const Tensor3<double>& turned, const Tensor3<double>& expected) {
-      return (std::abs(m.energy(turned) - w) + detail::norm(m.stress(turned) - expected)) / size;
+    const auto error = [&](const Tensor3<double>& rotated, const Tensor3<double>& expected) {
+      return (std::abs(m.energy(rotated) - w) + detail::norm(m.stress(rotated) - expected)) / size;
     };
-    objective.see(error(q * f, q * p), [k] { return detail::name_of(k); });
-    if (isotropic) same.see(error(f * q, p * q), [k] { return detail::name_of(k); });
+    objective.observe(error(q * f, q * p), [k] { return detail::name_of(k); });
+    if (isotropic) same.observe(error(f * q, p * q), [k] { return detail::name_of(k); });
   }
   objective.report(v);
   same.report(v);
@@ -147,7 +147,8 @@ Violations precision_law(const M& m, double modulus, const char* law) {
     for (int i = 0; i < lanes; ++i) {
       const Tensor3<double> same = detail::lane(f, i), difference = detail::lane(p, i) - m.stress(same);
       const double size = modulus + m.tangent(same).norm() * detail::norm(same);
-      worst.see(detail::norm(difference) / size, [&] { return detail::name_of(k) + ", lane " + std::to_string(i); });
+      worst.observe(detail::norm(difference) / size,
+                    [&] { return detail::name_of(k) + ", lane " + std::to_string(i); });
     }
   }
   worst.report(v);

@@ -25,8 +25,8 @@ PALPATE_INLINE Violations isotropy_laws(const Matrix6& d) {
     const Matrix3 r = random_rotation(random), e = random_symmetric(random);
     const Vector6 rotated_first = d * voigt::strain_vector(r * e * r.transpose());
     const Matrix3 rotated_last = r * voigt::stress_tensor(d * voigt::strain_vector(e)) * r.transpose();
-    worst.see((voigt::stress_tensor(rotated_first) - rotated_last).norm(),
-              [k] { return "rotation " + std::to_string(k); });
+    worst.observe((voigt::stress_tensor(rotated_first) - rotated_last).norm(),
+                  [k] { return "rotation " + std::to_string(k); });
   }
   worst.report(v);
   return v;
@@ -43,7 +43,7 @@ PALPATE_INLINE Violations energy_laws(const Matrix6& d) {
     for (int i = 0; i < 6; ++i) {
       const Vector6 step = h * Vector6::Unit(i);
       const double numerical = (energy(e + step) - energy(e - step)) / (2.0 * h);
-      derivative.see(std::abs(numerical - stress[i]), [i] { return "component " + std::to_string(i); });
+      derivative.observe(std::abs(numerical - stress[i]), [i] { return "component " + std::to_string(i); });
     }
     expect_above(v, "energy is positive", energy(e), 0.0, "strain " + std::to_string(k));
   }

@@ -37,14 +37,14 @@ Violations connectivity_laws(const M& mesh) {
     const auto name = [e] { return element_name(e); };
     for (int a = 0; a < E::nodes; ++a) {
       const auto i = static_cast<Index>(mesh.element_node(e, a));
-      range.see(i < 0 || i >= n ? 1.0 : 0.0, [&] { return name() + " has node " + std::to_string(i); });
+      range.observe(i < 0 || i >= n ? 1.0 : 0.0, [&] { return name() + " has node " + std::to_string(i); });
       for (int b = 0; b < a; ++b)
-        repeated.see(static_cast<Index>(mesh.element_node(e, b)) == i ? 1.0 : 0.0,
-                     [&] { return name() + " has node " + std::to_string(i) + " twice"; });
+        repeated.observe(static_cast<Index>(mesh.element_node(e, b)) == i ? 1.0 : 0.0,
+                         [&] { return name() + " has node " + std::to_string(i) + " twice"; });
     }
     const int r = static_cast<int>(mesh.region(e));
-    region.see(r < 0 || r >= static_cast<int>(mesh.region_count()) ? 1.0 : 0.0,
-               [&] { return name() + " is in region " + std::to_string(r); });
+    region.observe(r < 0 || r >= static_cast<int>(mesh.region_count()) ? 1.0 : 0.0,
+                   [&] { return name() + " is in region " + std::to_string(r); });
   }
   for (const Worst* law : {&range, &repeated, &region}) law->report(v);
   return v;
@@ -62,8 +62,8 @@ Violations node_laws(const M& mesh) {
   Worst finite("positions finite", 0.0), orphan("no orphan nodes", 0.0);
   for (Index i = 0; i < n; ++i) {
     const auto name = [i] { return "node " + std::to_string(i); };
-    finite.see(mesh.position(i).allFinite() ? 0.0 : 1.0, name);
-    orphan.see(used[static_cast<std::size_t>(i)] != 0 ? 0.0 : 1.0, name);
+    finite.observe(mesh.position(i).allFinite() ? 0.0 : 1.0, name);
+    orphan.observe(used[static_cast<std::size_t>(i)] != 0 ? 0.0 : 1.0, name);
   }
   finite.report(v);
   orphan.report(v);
@@ -155,8 +155,8 @@ Violations surface_laws(const M& mesh) {
   for (std::size_t i = 0, j = 0; i < faces.size(); i = j) {
     while (j < faces.size() && faces[j].key == faces[i].key) ++j;
     const auto name = [&] { return element_name(faces[i].element); };
-    shared.see(static_cast<double>(j - i), name);
-    if (j - i == 2) opposite.see((faces[i].area + faces[i + 1].area).norm() / faces[i].area.norm(), name);
+    shared.observe(static_cast<double>(j - i), name);
+    if (j - i == 2) opposite.observe((faces[i].area + faces[i + 1].area).norm() / faces[i].area.norm(), name);
     if (j - i != 1) continue;
     sum += faces[i].area;
     area += faces[i].area.norm();

@@ -66,7 +66,7 @@ Violations quadrature_laws(const ReferenceCell<Q::dimension>& cell) {
       beyond = std::max(beyond, error);
       continue;
     }
-    exactness.see(error, [&] {
+    exactness.observe(error, [&] {
       std::string text = "exponents";
       for (int k : p) text += ' ' + std::to_string(k);
       return text;

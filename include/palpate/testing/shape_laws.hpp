@@ -67,18 +67,18 @@ Violations basic_shape_laws() {
   for (int b = 0; b < S::nodes; ++b) {
     const Eigen::Matrix<double, S::nodes, 1> n = S::shape(Point<Dim>(x.row(b).transpose()));
     for (int a = 0; a < S::nodes; ++a)
-      delta.see(std::abs(n[a] - (a == b ? 1.0 : 0.0)),
-                [&] { return "function " + std::to_string(a) + " at " + name(b); });
+      delta.observe(std::abs(n[a] - (a == b ? 1.0 : 0.0)),
+                    [&] { return "function " + std::to_string(a) + " at " + name(b); });
   }
   int k = 0;
   for (const auto& xi : sample_points<S::nodes, Dim>(x)) {
     const auto here = [&k] { return "sample point " + std::to_string(k); };
     const Eigen::Matrix<double, S::nodes, Dim> g = S::gradient(xi), numerical = numerical_gradient<S, Dim>(xi);
-    unity.see(std::abs(S::shape(xi).sum() - 1.0), here);
-    for (int i = 0; i < Dim; ++i) zero_sum.see(std::abs(g.col(i).sum()), here);
+    unity.observe(std::abs(S::shape(xi).sum() - 1.0), here);
+    for (int i = 0; i < Dim; ++i) zero_sum.observe(std::abs(g.col(i).sum()), here);
     for (int a = 0; a < S::nodes; ++a)
       for (int i = 0; i < Dim; ++i)
-        derivative.see(std::abs(g(a, i) - numerical(a, i)), [&] { return name(a) + ", " + here(); });
+        derivative.observe(std::abs(g(a, i) - numerical(a, i)), [&] { return name(a) + ", " + here(); });
     ++k;
   }
   Violations v;
@@ -99,8 +99,8 @@ Violations completeness_laws(int order) {
     if (degree > order + 1) continue;
     const double error = interpolation_error<S, Dim>(points, p);
     const auto name = [degree] { return "a monomial of degree " + std::to_string(degree); };
-    if (degree <= 1) linear.see(error, name);
-    if (degree <= order) polynomial.see(error, name);
+    if (degree <= 1) linear.observe(error, name);
+    if (degree <= order) polynomial.observe(error, name);
     if (degree == order + 1) beyond = std::max(beyond, error);
   }
   Violations v;

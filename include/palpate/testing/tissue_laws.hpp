@@ -46,8 +46,8 @@ Violations bound_laws(const T& tissue, std::span<const int> vertices) {
       const double squared =
           Eigen::SelfAdjointEigenSolver<Matrix3>(c.transpose() * c, Eigen::EigenvaluesOnly).eigenvalues()[2];
       const double moved = std::sqrt(std::max(squared, 0.0)), bound = tissue.compliance_bound(j);
-      worst.see(moved == 0.0 ? 0.0 : moved / bound,
-                [i, j] { return "vertex " + std::to_string(i) + " loaded at " + std::to_string(j); });
+      worst.observe(moved == 0.0 ? 0.0 : moved / bound,
+                    [i, j] { return "vertex " + std::to_string(i) + " loaded at " + std::to_string(j); });
     }
   worst.report(v);
   return v;

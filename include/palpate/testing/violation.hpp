@@ -52,7 +52,7 @@ class Worst {
   /// `detail` is called for its text only when the value is the worst so far and above the bound. NaN is the worst of
   /// all.
   template <class Detail>
-  void see(double value, Detail detail) {
+  void observe(double value, Detail detail) {
     if (value <= bound_) return;
     ++count_;
     if (count_ > 1 && !(value > value_ || (std::isnan(value) && !std::isnan(value_)))) return;

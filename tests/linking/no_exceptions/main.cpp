@@ -29,7 +29,7 @@ void show_and_exit(const palpate::SetupProblem& problem) {
   std::_Exit(7);
 }
 
-/// A ball of 5 mm pressed 2 mm into a pad of this Poisson ratio; the force [N], straight up.
+/// A sphere of 5 mm pressed 2 mm into a pad of this Poisson ratio; the force [N], straight up.
 double press(double poisson_ratio, bool invert) {
   auto mesh = palpate::box_tet4({0.04, 0.04, 0.02}, {4, 4, 2});
   if (invert) std::swap(mesh.elements[3][0], mesh.elements[3][1]);

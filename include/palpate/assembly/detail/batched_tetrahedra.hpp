@@ -35,9 +35,9 @@ class BatchedTetrahedra {
   BatchedTetrahedra() = default;
   /// Throws as make_batches.
   explicit BatchedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {})
-      : layout_(make_batches<S, N>(body, 160.0, limits)), laws_(body.laws) {
+      : layout_(make_batches<S, N>(body, 160.0, limits)), materials_(body.materials) {
     rows_.assign(4 * layout_.nodes.size(), S(0));
-    seen_.resize(layout_.blocks.size());
+    reports_.resize(layout_.blocks.size());
     probe_length_ = std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * shortest_edge(body.rest.mesh);
   }
 
@@ -63,10 +63,10 @@ class BatchedTetrahedra {
   double energy(const VectorX& u) noexcept {
     double sum = 0.0;
     for (const TetrahedronBlock& block : layout_.blocks) {
-      const M law = laws_[static_cast<std::size_t>(block.region)];
+      const M material = materials_[static_cast<std::size_t>(block.region)];
       Lanes<S, N> part(S(0));
-      layout_.for_each_gradient(block, u,
-                                [&](const Batch& batch, const Gradient& f) { part += batch.volume * law.energy(f); });
+      layout_.for_each_gradient(
+          block, u, [&](const Batch& batch, const Gradient& f) { part += batch.volume * material.energy(f); });
       for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(part[lane]);
     }
     return sum;
@@ -79,27 +79,27 @@ class BatchedTetrahedra {
   void compute_block(Index index, const VectorX& u) noexcept {
     const TetrahedronBlock block = layout_.blocks[static_cast<std::size_t>(index)];
     S* const rows = layout_.cleared(block, rows_);
-    const M law = laws_[static_cast<std::size_t>(block.region)];
+    const M material = materials_[static_cast<std::size_t>(block.region)];
     detail::VolumeWatch<S, N> watch;
     layout_.for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
-      watch.see(determinant(f, cofactor(f)), batch.volume);
-      batch.add_force(law.stress(f), rows);
+      watch.observe(determinant(f, cofactor(f)), batch.volume);
+      batch.add_force(material.stress(f), rows);
     });
-    seen_[static_cast<std::size_t>(index)] = watch.summary(layout_, block, M::survives_inversion);
+    reports_[static_cast<std::size_t>(index)] = watch.summary(layout_, block, M::survives_inversion);
   }
   void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
     layout_.add_up(rows_.data(), first_node, last_node, f);
   }
-  DeformationReport report() const noexcept { return detail::report_of(seen_); }
+  DeformationReport report() const noexcept { return detail::report_of(reports_); }
 
  private:
   using Batch = TetrahedronBatch<S, N>;
   using Gradient = Tensor3<Lanes<S, N>>;
 
   TetrahedronBatches<S, N> layout_;
-  std::vector<M> laws_;                  // by region
+  std::vector<M> materials_;             // by region
   std::vector<S> rows_;                  // force on every row, four numbers
-  std::vector<DeformationReport> seen_;  // by block
+  std::vector<DeformationReport> reports_;  // by block
   double probe_length_ = 0.0;
 };
 

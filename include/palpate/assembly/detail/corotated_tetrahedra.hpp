@@ -41,10 +41,10 @@ class CorotatedTetrahedra {
   /// Throws as make_batches.
   explicit CorotatedTetrahedra(const HyperelasticBody<Tet4, Material>& body, const SetupLimits& limits = {})
       : layout_(make_batches<S, N>(body, 280.0, limits)) {
-    for (const Material& law : body.laws) laws_.push_back(detail::lame<Lane>(law.base));
+    for (const Material& material : body.materials) materials_.push_back(detail::lame<Lane>(material.base));
     rows_.assign(4 * layout_.nodes.size(), S(0));
-    seen_.resize(layout_.blocks.size());
-    for (const Batch& batch : layout_.batches) turned_.push_back(at_rest(batch));
+    reports_.resize(layout_.blocks.size());
+    for (const Batch& batch : layout_.batches) rotated_.push_back(at_rest(batch));
   }
 
   Index size() const noexcept { return 3 * layout_.node_count(); }
@@ -52,21 +52,21 @@ class CorotatedTetrahedra {
   template <class Gone>
   void remove_if(Gone&& gone) {
     layout_.remove_if(gone, [this](std::size_t batch, int lane) {
-      for (Vector& g : turned_[batch].gradient) TetrahedronBatches<S, N>::clear_lane(g, lane);
-      turned_[batch].root_volume.set(lane, S(0));
+      for (Vector& g : rotated_[batch].gradient) TetrahedronBatches<S, N>::clear_lane(g, lane);
+      rotated_[batch].root_volume.set(lane, S(0));
     });
   }
 
   /// Rotations are found from those at rest next time, not from the last ones.
   void forget_rotations() noexcept {
-    for (TurnedBatch& turned : turned_) turned.turn = {Lane(S(1)), Lane(S(0)), Lane(S(0)), Lane(S(0))};
+    for (RotatedBatch& rotated : rotated_) rotated.rotation = {Lane(S(1)), Lane(S(0)), Lane(S(0)), Lane(S(0))};
   }
   /// Takes the rotations at u; f = internal force there [N], energy [J]. Finite where the square of F is, in S.
   DeformationReport linearise(const VectorX& u, VectorX& f, double& energy) noexcept {
     energy = 0.0;
     for (std::size_t b = 0; b < layout_.blocks.size(); ++b) energy += linearise_block(b, u);
     layout_.add_up(rows_.data(), 0, layout_.node_count(), f);
-    return detail::report_of(seen_);
+    return detail::report_of(reports_);
   }
 
   /// y = R K R^T x with the rotations taken last.
@@ -93,21 +93,21 @@ class CorotatedTetrahedra {
   using Batch = TetrahedronBatch<S, N>;
   using Lane = Lanes<S, N>;
   using Vector = Triple<Lane>;
-  struct TurnedBatch {
+  struct RotatedBatch {
     Vector gradient[3];  // R grad N_a sqrt(V)
     Lane root_volume;    // sqrt(V)
-    Quaternion<Lane> turn;
+    Quaternion<Lane> rotation;
   };
 
-  static TurnedBatch at_rest(const Batch& batch) {
-    TurnedBatch turned;
-    for (int lane = 0; lane < N; ++lane) turned.root_volume.set(lane, std::sqrt(batch.volume[lane]));
-    turned.turn = {Lane(S(1)), Lane(S(0)), Lane(S(0)), Lane(S(0))};
-    turn_gradients(Tensor3<Lane>::identity(), batch, turned);
-    return turned;
+  static RotatedBatch at_rest(const Batch& batch) {
+    RotatedBatch rotated;
+    for (int lane = 0; lane < N; ++lane) rotated.root_volume.set(lane, std::sqrt(batch.volume[lane]));
+    rotated.rotation = {Lane(S(1)), Lane(S(0)), Lane(S(0)), Lane(S(0))};
+    rotate_gradients(Tensor3<Lane>::identity(), batch, rotated);
+    return rotated;
   }
-  PALPATE_ALWAYS_INLINE static void turn_gradients(const Tensor3<Lane>& r, const Batch& batch,
-                                                   TurnedBatch& to) noexcept {
+  PALPATE_ALWAYS_INLINE static void rotate_gradients(const Tensor3<Lane>& r, const Batch& batch,
+                                                     RotatedBatch& to) noexcept {
     const Tensor3<Lane> scaled = to.root_volume * r;
     for (int a = 0; a < 3; ++a) to.gradient[a] = scaled * batch.gradient[a];
   }
@@ -117,19 +117,19 @@ class CorotatedTetrahedra {
     alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
     layout_.load_displacements(block, u, local);
     S* const rows = layout_.cleared(block, rows_);
-    const detail::Lame<Lane> law = laws_[static_cast<std::size_t>(block.region)];
+    const detail::Lame<Lane> material = materials_[static_cast<std::size_t>(block.region)];
     detail::VolumeWatch<S, N> watch;
     Lane stored(S(0));
     for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
       const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
-      TurnedBatch& turned = turned_[static_cast<std::size_t>(b)];
-      const Tensor3<Lane> f = batch.deformation_gradient(local), r = tracked_rotation(f, turned.turn), d = f - r;
-      watch.see(determinant(f, cofactor(f)), batch.volume);
-      stored += batch.volume * detail::corotated_energy(law, r, d);
-      batch.add_force(detail::corotated_stress(law, r, d), rows);
-      turn_gradients(r, batch, turned);
+      RotatedBatch& rotated = rotated_[static_cast<std::size_t>(b)];
+      const Tensor3<Lane> f = batch.deformation_gradient(local), r = tracked_rotation(f, rotated.rotation), d = f - r;
+      watch.observe(determinant(f, cofactor(f)), batch.volume);
+      stored += batch.volume * detail::corotated_energy(material, r, d);
+      batch.add_force(detail::corotated_stress(material, r, d), rows);
+      rotate_gradients(r, batch, rotated);
     }
-    seen_[index] = watch.summary(layout_, block, true);
+    reports_[index] = watch.summary(layout_, block, true);
     double sum = 0.0;
     for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(stored[lane]);
     return sum;
@@ -139,10 +139,10 @@ class CorotatedTetrahedra {
     alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
     layout_.load_displacements(block, x, local);
     S* const rows = layout_.cleared(block, rows_);
-    const auto [lambda, mu] = laws_[static_cast<std::size_t>(block.region)];
+    const auto [lambda, mu] = materials_[static_cast<std::size_t>(block.region)];
     for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
       const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
-      const Vector(&g)[3] = turned_[static_cast<std::size_t>(b)].gradient;
+      const Vector(&g)[3] = rotated_[static_cast<std::size_t>(b)].gradient;
       Vector d[3];
       batch.differences(local, d);
       const Tensor3<Lane> h = outer(d[0], g[0]) + outer(d[1], g[1]) + outer(d[2], g[2]);
@@ -156,9 +156,9 @@ class CorotatedTetrahedra {
   void add_diagonals(Part part, VectorX& to) const noexcept {
     for (const TetrahedronBlock& block : layout_.blocks) {
       S* const rows = layout_.cleared(block, rows_);
-      const auto [lambda, mu] = laws_[static_cast<std::size_t>(block.region)];
+      const auto [lambda, mu] = materials_[static_cast<std::size_t>(block.region)];
       for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
-        const Vector(&g)[3] = turned_[static_cast<std::size_t>(b)].gradient;
+        const Vector(&g)[3] = rotated_[static_cast<std::size_t>(b)].gradient;
         const Vector first{-(g[0].x + g[1].x + g[2].x), -(g[0].y + g[1].y + g[2].y), -(g[0].z + g[1].z + g[2].z)};
         const Vector* const all[4] = {&first, &g[0], &g[1], &g[2]};
         for (int a = 0; a < 4; ++a)
@@ -170,10 +170,10 @@ class CorotatedTetrahedra {
   }
 
   TetrahedronBatches<S, N> layout_;
-  std::vector<detail::Lame<Lane>> laws_;  // by region
-  std::vector<TurnedBatch> turned_;
+  std::vector<detail::Lame<Lane>> materials_;  // by region
+  std::vector<RotatedBatch> rotated_;
   mutable std::vector<S> rows_;          // force on every row, four numbers: a workspace
-  std::vector<DeformationReport> seen_;  // by block
+  std::vector<DeformationReport> reports_;  // by block
 };
 
 }}  // namespace palpate

@@ -21,15 +21,15 @@ class DomainElasticity {
   DomainElasticity() = default;
 
   template <HasSmoothedStrain E>
-  DomainElasticity(const Body<E>& body, const StrainDomains<E>& domains) : by_domain_(!body.laws.empty()) {
-    std::vector<Matrix6> laws;  // both parts of each
+  DomainElasticity(const Body<E>& body, const StrainDomains<E>& domains) : by_domain_(!body.materials.empty()) {
+    std::vector<Matrix6> materials;  // both parts of each
     for (const Matrix6& d : body.elasticity) {
       const SplitElasticity split = split_elasticity(d);
-      laws.push_back(split.deviatoric);
-      laws.push_back(split.volumetric);
+      materials.push_back(split.deviatoric);
+      materials.push_back(split.volumetric);
     }
     if (!by_domain_) {
-      elasticity_ = std::move(laws);
+      elasticity_ = std::move(materials);
       return;
     }
     for (Index d = 0; d < domains.size(); ++d) {
@@ -38,7 +38,7 @@ class DomainElasticity {
       double volume = 0.0;
       for (const NodeId e : domain.elements) {
         const double v = constant_geometry(body.mesh, Index{e}).volume;
-        sum += v * laws[place(body.law_of(e), domain.part)];
+        sum += v * materials[place(body.material_of(e), domain.part)];
         volume += v;
       }
       elasticity_.push_back(sum / volume);
@@ -50,7 +50,7 @@ class DomainElasticity {
   const Matrix6& operator()(Index d, const StrainDomain& domain) const noexcept;
 
  private:
-  static std::size_t place(std::size_t law, StrainPart part) noexcept;
+  static std::size_t place(std::size_t material, StrainPart part) noexcept;
 
   bool by_domain_ = false;
   std::vector<Matrix6> elasticity_;  // of every domain, or both parts of every region

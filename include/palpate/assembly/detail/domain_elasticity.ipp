@@ -10,8 +10,8 @@ PALPATE_INLINE const Matrix6& DomainElasticity::operator()(Index d, const Strain
                                 : place(static_cast<std::size_t>(domain.region), domain.part)];
 }
 
-PALPATE_INLINE std::size_t DomainElasticity::place(std::size_t law, StrainPart part) noexcept {
-  return 2 * law + (part == StrainPart::volumetric ? 1 : 0);
+PALPATE_INLINE std::size_t DomainElasticity::place(std::size_t material, StrainPart part) noexcept {
+  return 2 * material + (part == StrainPart::volumetric ? 1 : 0);
 }
 
 }}  // namespace palpate

@@ -26,7 +26,7 @@ struct EssentialConditions {
   /// Entries of the free dofs of a full vector. No allocation when `free_part` has its size.
   void gather(const VectorX& full, VectorX& free_part) const noexcept;
   /// Full vector of free entries, and of another full vector on prescribed dofs.
-  void place(const VectorX& free_part, const VectorX& held, VectorX& full) const noexcept;
+  void place(const VectorX& free_part, const VectorX& values, VectorX& full) const noexcept;
   /// Full vector with zeros on prescribed dofs.
   void scatter(const VectorX& free_part, VectorX& full) const noexcept;
 };

@@ -13,9 +13,9 @@ PALPATE_INLINE void EssentialConditions::gather(const VectorX& full, VectorX& fr
   for (Index k = 0; k < free_count(); ++k) free_part[k] = full[free_dofs[static_cast<std::size_t>(k)]];
 }
 
-PALPATE_INLINE void EssentialConditions::place(const VectorX& free_part, const VectorX& held,
+PALPATE_INLINE void EssentialConditions::place(const VectorX& free_part, const VectorX& values,
                                                VectorX& full) const noexcept {
-  full = held;
+  full = values;
   for (Index k = 0; k < free_count(); ++k) full[free_dofs[static_cast<std::size_t>(k)]] = free_part[k];
 }
 

@@ -205,8 +205,8 @@ struct TetrahedronBatches {
 template <class S, int N, HyperelasticMaterial M>
 TetrahedronBatches<S, N> make_batches(const HyperelasticBody<Tet4, M>& body, double bytes_per_element,
                                       const SetupLimits& limits) {
-  for (const M& law : body.laws)
-    if (auto problem = law.check()) raise(std::move(*problem));
+  for (const M& material : body.materials)
+    if (auto problem = material.check()) raise(std::move(*problem));
   require_no_fibres(body);
   limits.require_memory(static_cast<double>(body.rest.mesh.element_count()) * bytes_per_element,
                         "the batches of elements");

@@ -38,12 +38,12 @@ template <Element E, class Share>
 std::vector<Matrix6> shares_of_elasticity(const ViscousBody<E>& body, double kept, Share share) {
   const Body<E>& fast = body.fast;
   std::vector<std::size_t> region(fast.elasticity.size());
-  for (Index e = 0; e < fast.mesh.element_count(); ++e) region[fast.law_of(e)] = fast.region_of(e);
+  for (Index e = 0; e < fast.mesh.element_count(); ++e) region[fast.material_of(e)] = fast.region_of(e);
   std::vector<Matrix6> shares;
-  for (std::size_t law = 0; law < region.size(); ++law) {
-    const Matrix6& d = fast.elasticity[law];
+  for (std::size_t material = 0; material < region.size(); ++material) {
+    const Matrix6& d = fast.elasticity[material];
     Matrix6 lasting = Matrix6::Zero();
-    if (body.relaxation[region[law]] == Relaxation::shape_only) {
+    if (body.relaxation[region[material]] == Relaxation::deviatoric) {
       Vector6 pressure;  // per strain
       for (int i = 0; i < 6; ++i) pressure[i] = (d(0, i) + d(1, i) + d(2, i)) / 3.0;
       const double bulk = (pressure[0] + pressure[1] + pressure[2]) / 3.0;
@@ -55,7 +55,7 @@ std::vector<Matrix6> shares_of_elasticity(const ViscousBody<E>& body, double kep
         raise(SetupErrorKind::unsupported, "relaxation of the shape alone in an anisotropic material",
               "Let the whole stress relax");
     }
-    shares.push_back(share(region[law]) * (d - lasting) + kept * lasting);
+    shares.push_back(share(region[material]) * (d - lasting) + kept * lasting);
   }
   return shares;
 }
@@ -70,11 +70,11 @@ template <Element E, LinearMaterial Base, int Terms>
 ViscousBody<E> make_body(Mesh<E> mesh, const RegionMaterials<Viscoelastic<Base, Terms>>& materials) {
   ViscousBody<E> body;
   std::vector<Base> bases;
-  for (const auto& law : materials_by_region(mesh, materials)) {
-    bases.push_back(law.base);
-    bases.back().density = law.density;
-    body.terms.emplace_back(law.terms.begin(), law.terms.end());
-    body.relaxation.push_back(law.relaxation);
+  for (const auto& material : materials_by_region(mesh, materials)) {
+    bases.push_back(material.base);
+    bases.back().density = material.density;
+    body.terms.emplace_back(material.terms.begin(), material.terms.end());
+    body.relaxation.push_back(material.relaxation);
   }
   body.fast = make_body(std::move(mesh), bases);
   return body;
@@ -91,7 +91,7 @@ ViscousBody<E> make_body(Mesh<E> mesh, const Viscoelastic<Base, Terms>& material
 /// and a product per relaxation time. One BlockMatrix each.
 class ViscousForces final : public ElasticForces {
  public:
-  static constexpr bool remembers = true;
+  static constexpr bool has_history = true;
 
   /// Throws as assemble_stiffness, and unsupported for relaxation of the shape alone in an anisotropic material.
   template <Element E>
@@ -116,7 +116,7 @@ class ViscousForces final : public ElasticForces {
       fading_.push_back(assemble(body, 0.0, [&](std::size_t r) { return share_of(r, time); }));
     step_ = slow_;
     last_ = past_ = trial_ = product_ = VectorX::Zero(slow_.size());
-    memory_.assign(times_.size(), last_);
+    history_.assign(times_.size(), last_);
     decay_.resize(times_.size());
     gain_.resize(times_.size());
     ViscousForces::begin_step(0.0);
@@ -137,7 +137,7 @@ class ViscousForces final : public ElasticForces {
   std::vector<double> times_, decay_, gain_;
   BlockMatrix slow_, step_;
   std::vector<BlockMatrix> fading_;
-  std::vector<VectorX> memory_;
+  std::vector<VectorX> history_;
   VectorX last_, past_, trial_;
   mutable VectorX product_;
   double dt_ = -1.0;

@@ -38,14 +38,14 @@ PALPATE_INLINE void ViscousForces::begin_step(double dt) noexcept {
   if (dt != dt_) set_length(dt);
   past_.setZero();
   for (std::size_t i = 0; i < times_.size(); ++i) {
-    trial_ = decay_[i] * memory_[i] - gain_[i] * last_;
+    trial_ = decay_[i] * history_[i] - gain_[i] * last_;
     fading_[i].apply(trial_, product_);
     past_ += product_;
   }
 }
 
 PALPATE_INLINE void ViscousForces::end_step(const VectorX& u) noexcept {
-  for (std::size_t i = 0; i < times_.size(); ++i) memory_[i] = decay_[i] * memory_[i] + gain_[i] * (u - last_);
+  for (std::size_t i = 0; i < times_.size(); ++i) history_[i] = decay_[i] * history_[i] + gain_[i] * (u - last_);
   last_ = u;
 }
 

@@ -22,7 +22,7 @@ template <class S, int N>
 class VolumeWatch {
  public:
   /// The next batch: its J, and its volumes at rest, zero in lanes without an element, which do not count.
-  PALPATE_ALWAYS_INLINE void see(const Lanes<S, N>& j, const Lanes<S, N>& volume) noexcept {
+  PALPATE_ALWAYS_INLINE void observe(const Lanes<S, N>& j, const Lanes<S, N>& volume) noexcept {
     const Lanes<S, N> none(std::numeric_limits<S>::infinity()), zero(S(0)), one(S(1));
     const Lanes<S, N> seen = select(volume > zero, j, none);
     const auto ahead = seen < smallest_;

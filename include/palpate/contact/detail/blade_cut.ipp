@@ -41,10 +41,10 @@ PALPATE_INLINE Vector3 BladeCut::advance(const Vector3& hand, double width) noex
     edge_ = hand;
   } else {
     const double free = std::clamp(deepest_ - depth, 0.0, pull);
-    const double hold = threshold / stiffness_, way = std::max(0.0, pull - free - hold);
-    edge_ += (free + way) * forward;
-    work_ += threshold * way;
-    area_ += width * way;
+    const double hold = threshold / stiffness_, path = std::max(0.0, pull - free - hold);
+    edge_ += (free + path) * forward;
+    work_ += threshold * path;
+    area_ += width * path;
   }
   if (width > 0.0 && edge_.dot(forward) > deepest_) {
     deepest_ = edge_.dot(forward);

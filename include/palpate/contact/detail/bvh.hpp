@@ -33,9 +33,9 @@ class Bvh {
   /// Calls visit(triangle) for the triangles of leaves that the way from a point crosses within `margin`. It returns
   /// the share of the way beyond which nothing matters any more.
   template <class Visit>
-  void visit_along(const Vector3& from, const Vector3& way, double margin, Visit&& visit) const noexcept {
+  void visit_along(const Vector3& from, const Vector3& path, double margin, Visit&& visit) const noexcept {
     double until = 1.0;
-    descend([&](const Box& box) { return box.is_crossed(from, way, margin, until); },
+    descend([&](const Box& box) { return box.is_crossed(from, path, margin, until); },
             [&](int triangle) { until = visit(triangle); });
   }
 

@@ -1,4 +1,4 @@
-// The contact points near the balls, remembered from tick to tick.
+// The contact points near the spheres, remembered from tick to tick.
 #pragma once
 
 #include <palpate/contact/contact.hpp>
@@ -12,38 +12,38 @@ struct NormalHistory {
   int known = 0;  ///< how many linearisations in a row, at most 2
 };
 
-/// A contact point near the ball of one tool, as it was when last looked at.
+/// A contact point near the sphere of one tool, as it was when last looked at.
 struct Candidate {
   int sample = 0;
   int triangle = 0;
   int tool = 0;
   int row = -1;                      ///< of the contact problem, -1 when it has none
   int slot = -1;                     ///< where its compliance was remembered last
-  bool facing = true;                ///< the ball is on the outer side
+  bool facing = true;                ///< the sphere is on the outer side
   double gap = 0.0;                  ///< [m]
-  double seen = 0.0;                 ///< travel of ball and surface until then [m]
+  double seen = 0.0;                 ///< travel of sphere and surface until then [m]
   double force = 0.0;                ///< of the last solution [N]
   Vector3 point = Vector3::Zero();   ///< on the deformed surface [m]
-  Vector3 normal = Vector3::Zero();  ///< unit, from the point to the ball's centre
+  Vector3 normal = Vector3::Zero();  ///< unit, from the point to the sphere's centre
   double along = 0.0;                ///< where on a capsule's axis that centre lies [m]
   NormalHistory history;
 
   Vector3 friction = Vector3::Zero();  ///< of the last solution, on the tool [N]
   Vector3 anchor = Vector3::Zero();    ///< where the point clung to the tool after the last tick, tool's own frame [m]
-  std::uint64_t clung = 0;             ///< the tick after which it did
-  bool grasped = false;                ///< no point near a ball, but one that is held
+  std::uint64_t stuck_tick = 0;        ///< the tick after which it did
+  bool grasped = false;                ///< no point near a sphere, but one that is held
 
   /// Forgets what it carried.
   void lift() noexcept {
     force = 0.0;
-    clung = 0;
+    stuck_tick = 0;
     history.known = 0;
   }
 };
 
-/// All contact points that a ball can reach within a tick, and some more, so that the list holds for a while: the way
-/// of ball and surface since then is summed up and the list made anew when the margin is used up (as neighbour lists in
-/// molecular dynamics, Verlet 1967). A point is evaluated again only when that way could have closed its gap. The
+/// All contact points that a sphere can reach within a tick, and some more, so that the list holds for a while: the way
+/// of sphere and surface since then is summed up and the list made anew when the margin is used up (as neighbour lists
+/// in molecular dynamics, Verlet 1967). A point is evaluated again only when that way could have closed its gap. The
 /// search on the resting surface reaches as far as the surface has moved (SurfaceDisplacement::reach); a round over all
 /// vertices, a few per tick, finds what moved farther. No allocation; work bounded by `maximum` and, when the
 /// list is made anew, by the samples of all triangles in reach: each is looked at.
@@ -75,17 +75,17 @@ class Candidates {
 
   /// Takes in what happened since the last tick: tools put elsewhere, lifted or set down, a moved resting surface.
   void begin_tick(const ContactSurface& surface, std::span<const ContactTool> tools) noexcept;
-  /// The ball of a tool is here now.
-  void move_ball(std::size_t t, const ContactTool& tool) noexcept;
+  /// The sphere of a tool is here now.
+  void move_sphere(std::size_t t, const ContactTool& tool) noexcept;
   /// No point of the surface has moved farther than this.
   void move_surface(double distance) noexcept { surface_travel_ += distance; }
 
   /// Makes the list anew unless it still holds for another linearisation. degraded_model when there is no room for all
-  /// that a ball may reach.
+  /// that a sphere may reach.
   Status update(const TissueView& tissue, std::span<const ContactTool> tools,
                 SurfaceDisplacement& displacement) noexcept;
 
-  /// Whether ball or surface may have moved since a candidate was looked at.
+  /// Whether sphere or surface may have moved since a candidate was looked at.
   bool is_stale(const Candidate& c) const noexcept { return travel(static_cast<std::size_t>(c.tool)) != c.seen; }
   /// At least the gap of a candidate now.
   double least_gap(const Candidate& c) const noexcept {
@@ -117,7 +117,7 @@ class Candidates {
   bool is_loaded(int tool, int sample) const noexcept;
   void consider(const TissueView& tissue, const ContactTool& tool, int t, int triangle, int sample,
                 SurfaceDisplacement& displacement) noexcept;
-  bool faces_ball(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
+  bool faces_sphere(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
 
   ContactSamples samples_;
   std::vector<Candidate> items_, loaded_;  // loaded: of the list before

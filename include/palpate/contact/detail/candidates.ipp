@@ -36,9 +36,9 @@ PALPATE_INLINE void Candidates::reset() noexcept {
   next_ = 0;
 }
 
-/// Points this near may be reached while the linearisation settles; leaving one out lets the ball fall through it.
+/// Points this near may be reached while the linearisation settles; leaving one out lets the sphere fall through it.
 inline double Candidates::needed(const ContactTool& tool) noexcept {
-  return tool.longest_step() + 0.5 * tool.way();
+  return tool.longest_step() + 0.5 * tool.path_length();
 }
 
 inline Vector3 Candidates::rest(const ContactSurface& surface, int s) const noexcept {
@@ -105,11 +105,11 @@ PALPATE_INLINE void Candidates::begin_tick(const ContactSurface& surface, std::s
   for (std::size_t t = 0; t < tools.size(); ++t) {
     if (tools[t].active != was_active_[t]) forget();
     was_active_[t] = tools[t].active;
-    if (tools[t].active) move_ball(t, tools[t]);
+    if (tools[t].active) move_sphere(t, tools[t]);
   }
 }
 
-PALPATE_INLINE void Candidates::move_ball(std::size_t t, const ContactTool& tool) noexcept {
+PALPATE_INLINE void Candidates::move_sphere(std::size_t t, const ContactTool& tool) noexcept {
   travel_[t] += (tool.proxy - proxy_[t]).norm();
   proxy_[t] = tool.proxy;
   if (tool.half_length == 0.0) return;
@@ -138,7 +138,7 @@ PALPATE_INLINE void Candidates::evaluate(const TissueView& tissue, const Contact
   for (std::size_t a = 0; a < 3; ++a)
     if (sample.weights[a] > 0.0) point += sample.weights[a] * displacement.position(tissue, sample.vertices[a]);
   place(c, point, tool);
-  c.facing = faces_ball(tissue, displacement, c);
+  c.facing = faces_sphere(tissue, displacement, c);
 }
 
 PALPATE_INLINE void Candidates::look_round(const TissueView& tissue, std::span<const ContactTool> tools,
@@ -195,7 +195,7 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
   valid_ = !lost_forces_;
 }
 
-/// Begins a new list with what presses, and goes on pressing however far the ball is still from where it goes.
+/// Begins a new list with what presses, and goes on pressing however far the sphere is still from where it goes.
 PALPATE_INLINE void Candidates::keep_loaded(const TissueView& tissue, std::span<const ContactTool> tools,
                                             SurfaceDisplacement& displacement) noexcept {
   lost_forces_ = false;
@@ -240,10 +240,10 @@ PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const Contact
   if (farthest.gap > c.gap) farthest = c;
 }
 
-/// Whether the ball lies on the outer side of a triangle that the point belongs to, as it rests or as it is deformed:
-/// in a steep dent only the latter holds. What the ball sees through a thin part from behind fails both.
-PALPATE_INLINE bool Candidates::faces_ball(const TissueView& tissue, SurfaceDisplacement& displacement,
-                                           const Candidate& c) const noexcept {
+/// Whether the sphere lies on the outer side of a triangle that the point belongs to, as it rests or as it is deformed:
+/// in a steep dent only the latter holds. What the sphere sees through a thin part from behind fails both.
+PALPATE_INLINE bool Candidates::faces_sphere(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                             const Candidate& c) const noexcept {
   const ContactSurface& surface = tissue.contact_surface();
   if (c.normal.dot(surface.normal(c.triangle)) > 0.0) return true;
   const ContactSample& sample = samples_[c.sample];

@@ -43,7 +43,7 @@ class ContactRows {
   bool solve() noexcept;
   /// Drags, and presses once more: each exact for the other (Panagiotopoulos 1975); linearisations and ticks go on with
   /// it. False when the forces are a cut-off answer.
-  bool rub() noexcept;
+  bool slide() noexcept;
   bool has_friction() const noexcept { return friction_.acts(); }
   /// How far the tools would go in without contact force, at the deepest row built [m].
   double deepest_push() const noexcept;
@@ -51,11 +51,11 @@ class ContactRows {
   /// Hands the answer to points, vertices and tools.
   void apply(std::span<ContactTool> tools, SurfaceDisplacement& displacement, Candidates& candidates) noexcept;
   /// At the end of a tick: what slipped clings where it is now; what sticks keeps its place.
-  void cling(std::span<const ContactTool> tools) noexcept;
+  void stick(std::span<const ContactTool> tools) noexcept;
 
  private:
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-  inline bool clings(const Candidate& c) const noexcept;
+  inline bool sticks(const Candidate& c) const noexcept;
   inline static void reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept;
   void build_friction(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool, int i) noexcept;
   inline Matrix3 between(const TissueView& tissue, const ContactSamples& samples, int i, int j) noexcept;

@@ -21,8 +21,8 @@ PALPATE_INLINE ContactRows::ContactRows(int vertices, double friction, int capac
       vertices_(3 * at(capacity)),
       slot_(at(vertices), -1) {}
 
-inline bool ContactRows::clings(const Candidate& c) const noexcept {
-  return c.clung != 0 && c.clung + 1 == tick_;
+inline bool ContactRows::sticks(const Candidate& c) const noexcept {
+  return c.stuck_tick != 0 && c.stuck_tick + 1 == tick_;
 }
 
 /// Where the tool touches a row's point.
@@ -47,7 +47,7 @@ inline Matrix3 ContactRows::between(const TissueView& tissue, const ContactSampl
 
 /// How far the couplings give way to the drags where a tool touches; the rest of CoulombFriction::moved is tissue.
 inline Vector3 ContactRows::sprung(const ContactTool& tool, const Contact& row) noexcept {
-  return tool.drag_way + cross(tool.drag_turn, row.arm);
+  return tool.friction_displacement + cross(tool.friction_rotation, row.arm);
 }
 
 /// Displacement of two points per force on the other along its row's normal, m and n; their compliance is c, 3 x 3.
@@ -70,7 +70,7 @@ inline void ContactRows::build_row(const TissueView& tissue, const ContactSample
                                    int i) noexcept {
   const Contact& ci = rows_[at(i)];
   const int p = candidate_[at(i)]->slot;
-  const bool turns = tool.turning_compliance > 0.0;
+  const bool turns = tool.rotational_compliance > 0.0;
   const double* const m = ci.normal.data();
   double *column = &problem_.w(0, i), *row = &problem_.w(i, 0);
   Vector3 *on_j = &response(i, 0), *on_i = &response(0, i);
@@ -82,7 +82,7 @@ inline void ContactRows::build_row(const TissueView& tissue, const ContactSample
                       : set_responses(compliance_(tissue, samples, q, p).data(), n, m, on_i->data(), on_j->data());
     if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
     if (turns && ci.tool == cj.tool)
-      w += tool.turning_compliance * cross(ci.arm, ci.normal).dot(cross(cj.arm, cj.normal));
+      w += tool.rotational_compliance * cross(ci.arm, ci.normal).dot(cross(cj.arm, cj.normal));
     column[j] = *row = w;
   }
 }
@@ -185,7 +185,7 @@ PALPATE_INLINE bool ContactRows::solve() noexcept {
   return solved;
 }
 
-PALPATE_INLINE bool ContactRows::rub() noexcept {
+PALPATE_INLINE bool ContactRows::slide() noexcept {
   friction_.solve(count_);
   friction_.press(count_, problem_.lambda.data());
   return solve();
@@ -218,7 +218,7 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
   for (int i = 0; i < count_; ++i) {
     Contact& row = rows_[at(i)];
     row.force = problem_.lambda[at(i)];
-    if (friction_.acts()) row.friction = friction_.row(i).drag;
+    if (friction_.acts()) row.friction = friction_.row(i).friction_force;
     Vector3 point = moved_point(i);
     if (friction_.acts()) point -= friction_.moved(i) - sprung(tools[at(row.tool)], row);
     largest = std::max(largest, (point - row.point).squaredNorm());
@@ -246,15 +246,15 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
   }
 }
 
-PALPATE_INLINE void ContactRows::cling(std::span<const ContactTool> tools) noexcept {
+PALPATE_INLINE void ContactRows::stick(std::span<const ContactTool> tools) noexcept {
   if (!friction_.acts()) return;
   for (int i = 0; i < count_; ++i) {
     Candidate& c = *candidate_[at(i)];
     if (c.grasped || !(c.force > 0.0)) continue;
-    const bool sticks = clings(c) && c.friction.norm() < (1.0 - 1e-6) * friction_.coefficient() * c.force;
+    const bool kept = sticks(c) && c.friction.norm() < (1.0 - 1e-6) * friction_.coefficient() * c.force;
     const ContactTool& tool = tools[at(c.tool)];
-    if (!sticks) c.anchor = tool.rotation.transpose() * (c.point - tool.proxy);
-    c.clung = tick_;
+    if (!kept) c.anchor = tool.rotation.transpose() * (c.point - tool.proxy);
+    c.stuck_tick = tick_;
   }
 }
 
@@ -264,32 +264,32 @@ PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const 
   const Candidate& c = *candidate_[at(i)];
   const Contact& ci = rows_[at(i)];
   const Vector3 drift = tool.target + tool.target_rotation * c.anchor - ci.rest;
-  const bool holds = !c.grasped && clings(c);
+  const bool holds = !c.grasped && sticks(c);
   friction_.row(i) = {ci.normal, 0.0, drift, holds ? c.friction : Vector3(0.0, 0.0, 0.0), holds};
   for (int j = 0; j <= i; ++j) {
     const Contact& cj = rows_[at(j)];
     Matrix3 w = between(tissue, samples, i, j);
     if (ci.tool == cj.tool) {
-      const double own = tool.compliance + floor_ + tool.turning_compliance * ci.arm.dot(cj.arm);
+      const double own = tool.compliance + floor_ + tool.rotational_compliance * ci.arm.dot(cj.arm);
       for (int r = 0; r < 3; ++r) w(r, r) += own;
     }
-    if (ci.tool == cj.tool && tool.turning_compliance > 0.0)
+    if (ci.tool == cj.tool && tool.rotational_compliance > 0.0)
       for (int col = 0; col < 3; ++col)
-        for (int r = 0; r < 3; ++r) w(r, col) -= tool.turning_compliance * cj.arm[r] * ci.arm[col];
+        for (int r = 0; r < 3; ++r) w(r, col) -= tool.rotational_compliance * cj.arm[r] * ci.arm[col];
     friction_.set(i, j, w);
   }
 }
 
 PALPATE_INLINE void ContactRows::note_drags(std::span<ContactTool> tools) const noexcept {
   for (ContactTool& tool : tools) {
-    tool.drag_way.setZero();
-    tool.drag_turn.setZero();
+    tool.friction_displacement.setZero();
+    tool.friction_rotation.setZero();
   }
   for (int j = 0; j < count_; ++j) {
     const Contact& row = rows_[at(j)];
     ContactTool& tool = tools[at(row.tool)];
-    tool.drag_way += (tool.compliance + floor_) * friction_.row(j).drag;
-    tool.drag_turn += tool.turning_compliance * cross(row.arm, friction_.row(j).drag);
+    tool.friction_displacement += (tool.compliance + floor_) * friction_.row(j).friction_force;
+    tool.friction_rotation += tool.rotational_compliance * cross(row.arm, friction_.row(j).friction_force);
   }
 }
 

@@ -14,7 +14,7 @@ struct ContactSample {
 
 /// Points spread over all triangles so that no two neighbours are further apart than `spacing`, as far as
 /// `maximum_subdivision` allows: all vertices, and a barycentric lattice on edges and faces that are longer. Fixed in
-/// the material, so that a ball sliding over them meets a smooth sequence of constraints. Every sample belongs to one
+/// the material, so that a sphere sliding over them meets a smooth sequence of constraints. Every sample belongs to one
 /// triangle.
 class ContactSamples {
  public:

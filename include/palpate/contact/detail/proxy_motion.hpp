@@ -15,13 +15,13 @@ class ProxyMotion {
   using Tools = std::span<ContactTool>;
   /// How far the present force lets a proxy go.
   struct Ahead {
-    Vector3 way = Vector3::Zero(),
+    Vector3 path = Vector3::Zero(),
             axis = Vector3::Zero();  ///< of the proxy; of the end of a capsule's axis of length 1
     double farthest = 0.0;           ///< way of any of its points, at most [m]
   };
 
   /// Takes the proxies along with their devices, across the contact force: from there the first linearisation is nearly
-  /// right for a ball that slides.
+  /// right for a sphere that slides.
   static void slide(Tools tools) noexcept;
   /// Remembers the forces that a linearisation begins with.
   void begin(Tools tools) noexcept;

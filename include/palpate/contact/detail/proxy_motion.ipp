@@ -36,8 +36,8 @@ PALPATE_INLINE void ProxyMotion::look_ahead(Tools tools, double floor) noexcept 
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const ContactTool& tool = tools[t];
     Ahead& ahead = ahead_[t];
-    ahead.way = tool.goal(floor) - tool.proxy;
-    ahead.farthest = ahead.way.norm();
+    ahead.path = tool.goal(floor) - tool.proxy;
+    ahead.farthest = ahead.path.norm();
     if (tool.half_length == 0.0) continue;
     ahead.axis = (tool.goal_rotation() - tool.rotation) * tool.own_axis;
     ahead.farthest += tool.half_length * ahead.axis.norm();
@@ -52,7 +52,7 @@ PALPATE_INLINE bool ProxyMotion::follow(Tools tools, double floor) noexcept {
     if (!tool.active) continue;
     const double length = ahead_[t].farthest, longest = tool.longest_step();
     const double part = length <= longest ? 1.0 : longest / length;
-    tool.proxy += part * ahead_[t].way;
+    tool.proxy += part * ahead_[t].path;
     turn(tool, part);
     arrived = arrived && length <= longest;
   }

@@ -1,25 +1,25 @@
-// Where a ball or capsule that moves far in one tick first meets the surface.
+// Where a sphere or capsule that moves far in one tick first meets the surface.
 #pragma once
 
 #include <palpate/contact/contact_surface.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// When a ball whose centre goes from `from` along `way` comes within `radius` of a point, as a share of the way;
+/// When a sphere whose centre goes from `from` along `way` comes within `radius` of a point, as a share of the way;
 /// infinity when it does not, or moves away from it.
-double ball_meets_point(const Vector3& from, const Vector3& way, double radius, const Vector3& point) noexcept;
+double sphere_meets_point(const Vector3& from, const Vector3& path, double radius, const Vector3& point) noexcept;
 
 /// The same for the segment between two points; its ends are points of their own.
-double ball_meets_segment(const Vector3& from, const Vector3& way, double radius, const Vector3& p,
-                          const Vector3& q) noexcept;
+double sphere_meets_segment(const Vector3& from, const Vector3& path, double radius, const Vector3& p,
+                            const Vector3& q) noexcept;
 
 /// The same for a triangle met from its outer side, the one `normal` points to.
-double ball_meets_triangle(const Vector3& from, const Vector3& way, double radius, const std::array<Vector3, 3>& corner,
-                           const Vector3& normal) noexcept;
+double sphere_meets_triangle(const Vector3& from, const Vector3& path, double radius,
+                             const std::array<Vector3, 3>& corner, const Vector3& normal) noexcept;
 
-/// The share of `way` after which a ball first meets the resting surface from outside, at most 1 (it does not). Exact:
-/// nothing is too thin to be met. Cost: the triangles whose boxes the way crosses.
-double first_touch(const ContactSurface& surface, const Vector3& from, const Vector3& way, double radius) noexcept;
+/// The share of `way` after which a sphere first meets the resting surface from outside, at most 1 (it does not).
+/// Exact: nothing is too thin to be met. Cost: the triangles whose boxes the way crosses.
+double first_touch(const ContactSurface& surface, const Vector3& from, const Vector3& path, double radius) noexcept;
 
 }}  // namespace palpate
 

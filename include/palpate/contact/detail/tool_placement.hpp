@@ -7,7 +7,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Puts the proxy where the tool does not touch the resting surface: at the position if it is free there, else next to
-/// the closest point; a capsule is moved by what its deepest ball needs, a few times. Forces are zero. No allocation.
+/// the closest point; a capsule is moved by what its deepest sphere needs, a few times. Forces are zero. No allocation.
 void place_beside(ContactTool& tool, const ContactSurface& surface, const Vector3& position) noexcept;
 
 /// Moves the proxy from `from` towards the position, and turns it, until the tool first meets the resting surface from

@@ -12,10 +12,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Centres of the balls that stand for a capsule where single points are looked at: the ends, and between them no
+/// Centres of the spheres that stand for a capsule where single points are looked at: the ends, and between them no
 /// farther apart than a radius. Calls look(place on the axis from the middle [m]) for each.
 template <class Look>
-void for_each_ball(const ContactTool& tool, Look&& look) {
+void for_each_sphere(const ContactTool& tool, Look&& look) {
   if (tool.half_length == 0.0) {
     look(0.0);
     return;
@@ -35,7 +35,7 @@ PALPATE_INLINE void place_beside(ContactTool& tool, const ContactSurface& surfac
   for (int round = 0; round < (tool.half_length > 0.0 ? 4 : 1); ++round) {
     Vector3 move = Vector3::Zero();
     double deepest = tool.radius;
-    detail::for_each_ball(tool, [&](double s) {
+    detail::for_each_sphere(tool, [&](double s) {
       const Vector3 centre = tool.proxy + s * axis;
       const auto closest = surface.closest(centre);
       if (closest.distance >= deepest) return;
@@ -49,12 +49,12 @@ PALPATE_INLINE void place_beside(ContactTool& tool, const ContactSurface& surfac
 
 PALPATE_INLINE void sweep(ContactTool& tool, const ContactSurface& surface, const Vector3& from,
                           const Vector3& position) noexcept {
-  const Vector3 way = position - from, axis = tool.axis(), turn = tool.target_rotation * tool.own_axis - axis;
+  const Vector3 path = position - from, axis = tool.axis(), turn = tool.target_rotation * tool.own_axis - axis;
   double part = 1.0;
-  detail::for_each_ball(tool, [&](double s) {  // a little smaller: what touches already and moves away meets nothing
-    part = std::min(part, first_touch(surface, from + s * axis, way + s * turn, (1.0 - 1e-6) * tool.radius));
+  detail::for_each_sphere(tool, [&](double s) {  // a little smaller: what touches already and moves away meets nothing
+    part = std::min(part, first_touch(surface, from + s * axis, path + s * turn, (1.0 - 1e-6) * tool.radius));
   });
-  tool.proxy = from + part * way;
+  tool.proxy = from + part * path;
   const Vector3 by = rotation_vector(tool.target_rotation * tool.rotation.transpose());
   tool.rotation = part < 1.0 ? rotation_by(part * by) * tool.rotation : tool.target_rotation;
   tool.force.setZero();

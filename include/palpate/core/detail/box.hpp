@@ -22,16 +22,16 @@ struct Box {
     return x * x + (y * y + z * z);
   }
   /// Whether the way from a point enters the box, widened by `margin`, before the share `until` of it is gone.
-  bool is_crossed(const Vector3& from, const Vector3& way, double margin, double until) const noexcept {
+  bool is_crossed(const Vector3& from, const Vector3& path, double margin, double until) const noexcept {
     double enter = 0.0, leave = until;
     for (int k = 0; k < 3; ++k) {
       const double a = low[k] - margin - from[k], b = high[k] + margin - from[k];
-      if (way[k] == 0.0) {
+      if (path[k] == 0.0) {
         if (a > 0.0 || b < 0.0) return false;
         continue;
       }
-      enter = std::max(enter, std::min(a / way[k], b / way[k]));
-      leave = std::min(leave, std::max(a / way[k], b / way[k]));
+      enter = std::max(enter, std::min(a / path[k], b / path[k]));
+      leave = std::min(leave, std::max(a / path[k], b / path[k]));
     }
     return enter <= leave;
   }

@@ -12,7 +12,7 @@ namespace detail {
 
 /// q turned by the half angles (x, y, z), and made of unit length again without a root: for half angles up to 1/2.
 template <class S>
-PALPATE_ALWAYS_INLINE Quaternion<S> turned_by(const Quaternion<S>& q, const S& x, const S& y, const S& z) noexcept {
+PALPATE_ALWAYS_INLINE Quaternion<S> rotated_by(const Quaternion<S>& q, const S& x, const S& y, const S& z) noexcept {
   const Quaternion<S> p{q.w - q.x * x - q.y * y - q.z * z, q.x + q.w * x + q.y * z - q.z * y,
                         q.y + q.w * y + q.z * x - q.x * z, q.z + q.w * z + q.x * y - q.y * x};
   const S half = S(0.5f) * (p.w * p.w + p.x * p.x + p.y * p.y + p.z * p.z), more = S(1.5f);
@@ -44,7 +44,7 @@ PALPATE_ALWAYS_INLINE Tensor3<S> tracked_rotation(const Tensor3<S>& f, Quaternio
     const auto sure =
         (size > S(0)) & (trace(c) > S(0)) & (j > S(Scalar(1e-3)) * size * size * size) & (turn < S(0.25f));
     if (!all(sure)) break;
-    q = detail::turned_by(q, x, y, z);
+    q = detail::rotated_by(q, x, y, z);
     if (all(turn < S(detail::last_turn<Scalar>))) return detail::rotation_of(q);
   }
   q = closest_quaternion(f);

@@ -15,7 +15,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
-#include <palpate/cut/detail/held_pieces.hpp>
+#include <palpate/cut/detail/fragments.hpp>
 #include <palpate/cut/detail/kept_dofs.hpp>
 #include <palpate/linear/detail/node_graph.hpp>
 #include <palpate/linear/detail/spd_inverse.hpp>
@@ -38,19 +38,21 @@ class CutBase {
           const SetupLimits& limits = {}) {
     std::vector<NodeId> node_map;
     std::vector<Index> element_map;
-    Body<E> held{topology.extract(ElementState::held, node_map, element_map),
-                 physics.body.elasticity,
-                 physics.body.density,
-                 physics.body.initial_strain,
-                 {}};
-    if (!physics.body.laws.empty())
-      for (const Index e : element_map) held.laws.push_back(physics.body.laws[static_cast<std::size_t>(e)]);
-    const EssentialConditions conditions = held_conditions(topology, physics, node_map, held.mesh.node_count());
+    Body<E> constrained{topology.extract(ElementState::supported, node_map, element_map),
+                        physics.body.elasticity,
+                        physics.body.density,
+                        physics.body.initial_strain,
+                        {}};
+    if (!physics.body.materials.empty())
+      for (const Index e : element_map)
+        constrained.materials.push_back(physics.body.materials[static_cast<std::size_t>(e)]);
+    const EssentialConditions conditions =
+        constrained_conditions(topology, physics, node_map, constrained.mesh.node_count());
     place_.assign(3 * node_map.size(), -1);
     for (std::size_t i = 0; i < place_.size(); ++i)
       if (const NodeId node = node_map[i / 3]; node >= 0)
         place_[i] = conditions.free_index[static_cast<std::size_t>(3 * Index{node}) + i % 3];
-    DofLayout layout{{}, held.mesh.positions, {}};
+    DofLayout layout{{}, constrained.mesh.positions, {}};
     for (const NodeId node : kept_nodes)
       for (int c = 0; c < 3; ++c)
         if (place_of(node, c) >= 0) {
@@ -61,7 +63,7 @@ class CutBase {
     size_ = conditions.free_count();
     VectorX load = VectorX::Zero(size_);
     if (size_ > 0) {
-      const BlockMatrix k = assemble_stiffness<E>(held, limits);
+      const BlockMatrix k = assemble_stiffness<E>(constrained, limits);
       SchurComplement schur = condense(free_matrix(k, conditions), layout, limits);
       if (schur.stiffness.rows() > 0)
         SpdInverse::invert(schur.stiffness, 1e-15, "the condensed stiffness is not positive definite");
@@ -98,8 +100,8 @@ class CutBase {
   }
 
  private:
-  static EssentialConditions held_conditions(const CutTopology<E>& topology, const CutPhysics<E>& physics,
-                                             const std::vector<NodeId>& node_map, Index count) {
+  static EssentialConditions constrained_conditions(const CutTopology<E>& topology, const CutPhysics<E>& physics,
+                                                    const std::vector<NodeId>& node_map, Index count) {
     EssentialConditions c;
     c.constrained.assign(static_cast<std::size_t>(count), 0);
     c.prescribed = VectorX::Zero(3 * count);
@@ -124,7 +126,7 @@ class CutBase {
     k.apply(conditions.prescribed, full);
     full = -full;
     for (Index e = 0; e < topology.mesh().element_count(); ++e)
-      if (topology.state(e) == ElementState::held)
+      if (topology.state(e) == ElementState::supported)
         for (int a = 0; a < E::nodes; ++a)
           full.template segment<3>(3 * Index{node_map[static_cast<std::size_t>(topology.mesh().element_node(e, a))]}) +=
               physics.load[static_cast<std::size_t>(e)].row(a).transpose();

@@ -85,10 +85,10 @@ class CutPlan {
       const NodeId known = 3 * Index{node} < displacement.size() ? node : parent_of(node);
       pins.push_back({node, stiffness, displacement.template segment<3>(3 * Index{known})});
     };
-    for (const LoosePiece& piece : change->pieces) {
-      Index best = piece.elements.front();
+    for (const Fragment& fragment : change->fragments) {
+      Index best = fragment.elements.front();
       int most = -1;
-      for (const Index e : piece.elements) {
+      for (const Index e : fragment.elements) {
         int known = 0;
         for (const NodeId node : topology.mesh().elements[static_cast<std::size_t>(e)])
           if (kept_->place(node, 0) >= 0 || 3 * Index{node} >= displacement.size()) ++known;

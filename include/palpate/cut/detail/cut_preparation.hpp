@@ -45,12 +45,12 @@ void add_copied_nodes(const CutTopology<E>& topology, Index admitted_nodes, Orig
     ids.nodes.push_back(ids.nodes[static_cast<std::size_t>(topology.origin_of(node))]);
 }
 
-[[noreturn]] inline void refuse_loose(const LoosePiece& piece) {
+[[noreturn]] inline void refuse_detached(const Fragment& fragment) {
   SetupProblem p;
   p.kind = SetupErrorKind::unconstrained;
-  p.what = "a part of " + std::to_string(piece.elements.size()) + " elements is not held";
+  p.what = "a part of " + std::to_string(fragment.elements.size()) + " elements is not held";
   p.hint = "Parts that hang together by nodes or edges only are separate here; hold each";
-  p.set_ids(piece.elements, SetupIds::elements);
+  p.set_ids(fragment.elements, SetupIds::elements);
   raise(std::move(p));
 }
 
@@ -63,7 +63,7 @@ CutPreparation<E> prepare_cut(const Body<E>& body, const std::vector<BoundaryFac
                               const std::optional<Selection>& cuttable, OriginalIds& ids) {
   CutTopology<E> topology(body.mesh, resolve_essential(body.mesh, boundary, scene).constrained);
   detail::add_copied_nodes(topology, body.mesh.node_count(), ids);
-  if (!topology.loose_pieces().empty()) detail::refuse_loose(topology.loose_pieces()[0]);
+  if (!topology.detached_fragments().empty()) detail::refuse_detached(topology.detached_fragments()[0]);
   CutSurface<E> touchable(topology, boundary, scene);
   std::vector<NodeId> kept;
   if (cuttable) kept = resolve_nodes(body.mesh, boundary, *cuttable);

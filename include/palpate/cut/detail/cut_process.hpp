@@ -67,7 +67,7 @@ class CutProcess {
     ++report_.changes;
     touchable_.update(topology_, change);
     take_in(change);
-    report_.felt_seconds = seconds();
+    report_.latency = seconds();
     settle();
     report_.fold_seconds = seconds();
     return true;

@@ -6,7 +6,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
-#include <palpate/cut/detail/held_pieces.hpp>
+#include <palpate/cut/detail/fragments.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
@@ -42,7 +42,7 @@ class CutSurface {
   /// Takes in a cut: faces that came to light, nodes that were split, and what is gone. O(touchable faces).
   void update(const CutTopology<E>& topology, const TopologyChange<E>& change) {
     faces_.insert(faces_.end(), change.exposed.begin(), change.exposed.end());
-    std::erase_if(faces_, [&](const ElementFace& f) { return topology.state(f.element) != ElementState::held; });
+    std::erase_if(faces_, [&](const ElementFace& f) { return topology.state(f.element) != ElementState::supported; });
     triangles_.clear();
     used_.assign(nodes_.size(), 0);
     for (const ElementFace& f : faces_) {

@@ -6,7 +6,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/cut/detail/held_pieces.hpp>
+#include <palpate/cut/detail/fragments.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 #include <palpate/mesh/detail/face_ids.hpp>
 #include <palpate/mesh/mesh.hpp>
@@ -23,7 +23,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Where an element is.
-enum class ElementState : std::uint8_t { held, loose, removed };
+enum class ElementState : std::uint8_t { supported, detached, removed };
 
 /// A mesh under a sequence of cuts. Ids of nodes and elements never change: nodes that a cut makes are appended, and
 /// what goes stays as a number. Elements never change their shape, so no cut makes a sliver.
@@ -51,11 +51,11 @@ class CutTopology {
     parent_.resize(mesh_.positions.size());
     std::iota(parent_.begin(), parent_.end(), NodeId{0});
     copied_from_ = parent_;
-    state_.assign(static_cast<std::size_t>(mesh_.element_count()), ElementState::held);
+    state_.assign(static_cast<std::size_t>(mesh_.element_count()), ElementState::supported);
     TopologyChange<E> split;
     for (NodeId node = 0, count = static_cast<NodeId>(mesh_.node_count()); node < count; ++node)
       split_star(node, split);
-    loosen(split);
+    detach(split);
   }
 
   /// Does as ordered. Throws index_out_of_range before anything is changed. O(elements) for the pieces, little else.
@@ -73,7 +73,7 @@ class CutTopology {
         if (star_[at(node)].empty() && std::exchange(bare_[at(node)], 1) == 0) change.bare_nodes.push_back(node);
     expose_welded(change);
     std::ranges::sort(change.elements, {}, &ChangedElement<E>::element);
-    if (!change.elements.empty()) loosen(change);
+    if (!change.elements.empty()) detach(change);
     return change;
   }
 
@@ -96,7 +96,7 @@ class CutTopology {
   }
   /// [m^3] by the element's quadrature.
   double volume(Index e) const { return element_shape<E>(element_nodes<E>(mesh_, e)).volume; }
-  const std::vector<LoosePiece>& loose_pieces() const noexcept { return loose_; }
+  const std::vector<Fragment>& detached_fragments() const noexcept { return detached_; }
 
   /// What is left of one state, with groups and regions, as a mesh of its own. `node_map` gets the new id of every
   /// node, -1 where it has none; `element_map` the id here of every element there.
@@ -183,7 +183,7 @@ class CutTopology {
       std::erase(star_[at(node)], e);
       affected.push_back(node);
     }
-    auto& list = state(e) == ElementState::held ? change.elements : change.loose_elements;
+    auto& list = state(e) == ElementState::supported ? change.elements : change.detached_elements;
     list.push_back({e, nodes, nodes, true});
     state_[at(e)] = ElementState::removed;
     std::erase_if(change.exposed, [e](const ElementFace& x) { return x.element == e; });
@@ -217,7 +217,7 @@ class CutTopology {
     star_[at(node)] = parts[0];
   }
   void reconnect(Index e, NodeId from, NodeId to, TopologyChange<E>& change) {
-    auto& list = state(e) == ElementState::held ? change.elements : change.loose_elements;
+    auto& list = state(e) == ElementState::supported ? change.elements : change.detached_elements;
     auto found = std::ranges::find(list, e, &ChangedElement<E>::element);
     if (found == list.end()) found = list.insert(list.end(), {e, mesh_.elements[at(e)], {}, false});
     std::ranges::replace(mesh_.elements[at(e)], from, to);
@@ -241,11 +241,11 @@ class CutTopology {
   }
 
   /// Finds the pieces that nothing holds any more.
-  void loosen(TopologyChange<E>& change) {
-    for (LoosePiece& piece : unheld_pieces(*this)) {
-      for (const Index e : piece.elements) state_[at(e)] = ElementState::loose;
-      loose_.push_back(piece);
-      change.pieces.push_back(std::move(piece));
+  void detach(TopologyChange<E>& change) {
+    for (Fragment& fragment : unsupported_fragments(*this)) {
+      for (const Index e : fragment.elements) state_[at(e)] = ElementState::detached;
+      detached_.push_back(fragment);
+      change.fragments.push_back(std::move(fragment));
     }
   }
 
@@ -291,7 +291,7 @@ class CutTopology {
   std::vector<NodeId> parent_, copied_from_;
   std::vector<ElementState> state_;
   std::vector<std::array<ElementFace, 2>> welded_;
-  std::vector<LoosePiece> loose_;
+  std::vector<Fragment> detached_;
   std::vector<std::vector<ElementFace>> group_faces_;
 };
 
@@ -300,9 +300,9 @@ template <Element E>
 TopologyChange<E> difference(const CutTopology<E>& then, const CutTopology<E>& now) {
   TopologyChange<E> change;
   const auto old = static_cast<NodeId>(then.mesh().node_count());
-  const auto was_held = [&](Index e) { return then.state(e) == ElementState::held; };
+  const auto was_supported = [&](Index e) { return then.state(e) == ElementState::supported; };
   for (Index e = 0; e < now.mesh().element_count(); ++e) {
-    if (!was_held(e)) continue;
+    if (!was_supported(e)) continue;
     const auto& before = then.mesh().elements[static_cast<std::size_t>(e)];
     const auto& after = now.mesh().elements[static_cast<std::size_t>(e)];
     if (now.is_removed(e))
@@ -321,7 +321,8 @@ TopologyChange<E> difference(const CutTopology<E>& then, const CutTopology<E>& n
   std::ranges::sort(change.bare_nodes);
   const auto repeated = std::unique(change.bare_nodes.begin(), change.bare_nodes.end());
   change.bare_nodes.erase(repeated, change.bare_nodes.end());
-  change.pieces = connected_pieces(now, [&](Index e) { return was_held(e) && now.state(e) == ElementState::loose; });
+  change.fragments =
+      connected_fragments(now, [&](Index e) { return was_supported(e) && now.state(e) == ElementState::detached; });
   return change;
 }
 

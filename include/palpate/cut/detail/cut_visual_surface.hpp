@@ -27,7 +27,7 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
 
   explicit VisualSurface(Model& model) : model_(&model) {
     const auto& boundary = model.boundary();
-    seen_ = model.seen_nodes();
+    rendered_ = model.rendered_nodes();
     model.read([&](const CutTopology<E>& topology, const auto&) {
       hidden_.assign(static_cast<std::size_t>(topology.mesh().element_count()), {});
       for (const BoundaryFace& face : boundary) hide_unseen(topology, face);
@@ -68,8 +68,8 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
 
   /// Notes a face of the body as given that the scene does not let be seen.
   void hide_unseen(const CutTopology<E>& topology, const BoundaryFace& face) {
-    if (seen_.empty()) return;
-    if (std::ranges::all_of(face.nodes, [&](NodeId i) { return std::ranges::binary_search(seen_, i); })) return;
+    if (rendered_.empty()) return;
+    if (std::ranges::all_of(face.nodes, [&](NodeId i) { return std::ranges::binary_search(rendered_, i); })) return;
     for (std::size_t local = 0; local < E::faces.size(); ++local) {
       const auto nodes = topology.face_nodes({face.element, static_cast<int>(local)});
       if (std::ranges::equal(nodes, face.nodes, {}, [&](NodeId i) { return topology.origin_of(i); }))
@@ -110,7 +110,7 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
   }
 
   Model* model_;
-  std::vector<NodeId> seen_;   // sorted
+  std::vector<NodeId> rendered_;  // sorted
   std::vector<Flags> hidden_;  // per element and face
   std::vector<NodeId> nodes_;  // of the points
   std::vector<std::array<int, 3>> triangles_;

@@ -5,7 +5,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
-#include <palpate/cut/detail/held_pieces.hpp>
+#include <palpate/cut/detail/fragments.hpp>
 #include <palpate/mesh/mesh.hpp>
 
 #include <vector>

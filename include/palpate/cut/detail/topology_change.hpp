@@ -39,7 +39,7 @@ struct NodeCopy {
 };
 
 /// A part of the body that nothing holds any more: a body of its own, for the caller to move or to show.
-struct LoosePiece {
+struct Fragment {
   std::vector<Index> elements;
   std::vector<NodeId> nodes;  ///< sorted
   double volume = 0.0;        ///< [m^3]
@@ -50,13 +50,13 @@ struct LoosePiece {
 template <Element E>
 struct TopologyChange {
   std::vector<ChangedElement<E>> elements;        ///< of the held body, by ascending number
-  std::vector<ChangedElement<E>> loose_elements;  ///< of pieces that were loose before
+  std::vector<ChangedElement<E>> detached_elements;  ///< of pieces that were loose before
   std::vector<NodeCopy> copies;                   ///< with ascending ids
   std::vector<NodeId> bare_nodes;                 ///< of the held body, that no element uses any more
   std::vector<ElementFace> exposed;               ///< faces that lie on the surface since
-  std::vector<LoosePiece> pieces;                 ///< that came off
+  std::vector<Fragment> fragments;                ///< that came off
 
-  bool empty() const noexcept { return elements.empty() && loose_elements.empty(); }
+  bool empty() const noexcept { return elements.empty() && detached_elements.empty(); }
 };
 
 }}  // namespace palpate

@@ -43,7 +43,7 @@ PALPATE_INLINE bool ServoBlade::order_cut(const TissueView& tissue) noexcept {
   const BladeTool& tool = cut_.tool();
   const Vector3 path = cut_.edge() - ordered_;
   if (path.dot(tool.forward) < 0.0) ordered_ = cut_.edge();  // back through the slit
-  if (path.norm() < tool.stroke) return true;
+  if (path.norm() < tool.cut_spacing) return true;
   const Vector3 half = 0.5 * tool.edge;
   if (!tissue.try_cut({ordered_ - half, ordered_ + half, cut_.edge() - half, cut_.edge() + half})) return false;
   ordered_ = cut_.edge();

@@ -17,7 +17,7 @@ class ToolInput {
   /// For the tool of this number. `turns`: orientation and torque matter. The tool holds what it touches while one of
   /// `grasp_buttons` is pressed.
   ToolInput(int tool, bool turns, std::uint32_t grasp_buttons) noexcept
-      : number_(tool), turns_(turns), grasp_buttons_(grasp_buttons) {}
+      : number_(tool), rotates_(turns), grasp_buttons_(grasp_buttons) {}
 
   /// Takes in a state, world frame, for a tissue at `pose` with this surface and the contacts of the last tick, and
   /// moves the tool's target. Sets `status` to what was wrong with it.
@@ -41,21 +41,21 @@ class ToolInput {
   double time() const noexcept { return time_; }                  ///< of the last good one [s]
   bool readable() const noexcept { return readable_; }
   bool restarted() const noexcept { return restarted_; }  ///< forces begin from nothing
-  bool turns() const noexcept { return turns_; }
+  bool turns() const noexcept { return rotates_; }
   Status status() const noexcept { return status_; }
 
  private:
   /// Beyond 1e6 m no workspace reaches, and squares keep clear of overflow.
-  static bool is_sound(const Vector3& position, const Quaternion<double>& turn, double time) noexcept;
+  static bool is_sound(const Vector3& position, const Quaternion<double>& orientation, double time) noexcept;
 
   struct Pose {
     Vector3 position;  // model frame
-    Quaternion<double> turn;
+    Quaternion<double> orientation;
   };
   /// Sets status, readability and time. False when the last good pose is held, or none is known.
   bool accept(const ToolState& state, const Eigen::Isometry3d& pose, Pose& taken) noexcept;
 
-  void rotate(const Quaternion<double>& turn, const Eigen::Isometry3d& pose, ContactTool& tool) noexcept;
+  void rotate(const Quaternion<double>& orientation, const Eigen::Isometry3d& pose, ContactTool& tool) noexcept;
 
   /// A tool that moved farther than its diameter starts anew where its way first met the surface, else where it is:
   /// however fast it is, it gets through nothing.
@@ -70,7 +70,7 @@ class ToolInput {
   double time_ = 0.0;
   double news_ = 0.0;   // when the tissue had moved last
   bool known_ = false;  // position_ is valid
-  bool readable_ = false, restarted_ = false, turns_;
+  bool readable_ = false, restarted_ = false, rotates_;
   std::uint32_t grasp_buttons_;
   Status status_;
 };

@@ -14,12 +14,12 @@ PALPATE_INLINE void ToolInput::take(const ToolState& state, const Eigen::Isometr
                                     const ContactSurface& surface, std::span<const Contact> contacts,
                                     ContactTool& tool) noexcept {
   tool.motion.setZero();
-  tool.turned = 0.0;
+  tool.end_path = 0.0;
   if (!state.valid) tool.lift();
   Pose taken{position_, {1.0, 0.0, 0.0, 0.0}};
   if (!accept(state, pose, taken)) return;
   tool.grasping = (state.buttons & grasp_buttons_) != 0;
-  if (turns_) rotate(taken.turn, pose, tool);
+  if (rotates_) rotate(taken.orientation, pose, tool);
   follow(taken.position, surface, contacts, tool);
 }
 
@@ -44,11 +44,11 @@ PALPATE_INLINE bool ToolInput::accept(const ToolState& state, const Eigen::Isome
     return false;
   }
   taken.position = inverse(pose) * state.position;
-  if (turns_) {
+  if (rotates_) {
     const auto& q = state.orientation;
-    taken.turn = {q[0], q[1], q[2], q[3]};
+    taken.orientation = {q[0], q[1], q[2], q[3]};
   }
-  if (!is_sound(taken.position, taken.turn, state.time)) {
+  if (!is_sound(taken.position, taken.orientation, state.time)) {
     // The last good pose is held; its old time stamp makes the gate fade the force.
     status_.set(StatusFlag::non_finite_input);
     readable_ = known_;
@@ -68,20 +68,22 @@ PALPATE_INLINE void ToolInput::lose() noexcept {
 }
 
 PALPATE_INLINE void ToolInput::reset() noexcept {
-  *this = ToolInput(number_, turns_, grasp_buttons_);
+  *this = ToolInput(number_, rotates_, grasp_buttons_);
 }
 
-PALPATE_INLINE bool ToolInput::is_sound(const Vector3& position, const Quaternion<double>& turn, double time) noexcept {
-  const double length = std::sqrt(turn.w * turn.w + turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
+PALPATE_INLINE bool ToolInput::is_sound(const Vector3& position, const Quaternion<double>& orientation,
+                                        double time) noexcept {
+  const double length = std::sqrt(orientation.w * orientation.w + orientation.x * orientation.x +
+                                  orientation.y * orientation.y + orientation.z * orientation.z);
   return all_finite(position) && max_abs(position) < 1e6 && std::isfinite(time) && length > 0.5 && length < 2.0;
 }
 
-PALPATE_INLINE void ToolInput::rotate(const Quaternion<double>& turn, const Eigen::Isometry3d& pose,
+PALPATE_INLINE void ToolInput::rotate(const Quaternion<double>& orientation, const Eigen::Isometry3d& pose,
                                       ContactTool& tool) noexcept {
-  const Matrix3 rotation = rotation_of(pose).transpose() * rotation_matrix(turn);
+  const Matrix3 rotation = rotation_of(pose).transpose() * rotation_matrix(orientation);
   if (known_) {
     rotation_ = rotation_of(pose) * rotation_vector(rotation * tool.target_rotation.transpose());
-    tool.turned = tool.half_length * ((rotation - tool.target_rotation) * tool.own_axis).norm();
+    tool.end_path = tool.half_length * ((rotation - tool.target_rotation) * tool.own_axis).norm();
   }
   tool.target_rotation = rotation;
 }
@@ -92,9 +94,9 @@ PALPATE_INLINE void ToolInput::follow(const Vector3& position, const ContactSurf
   restarted_ = !known_;
   if (!known_) {
     place_beside(tool, surface, position);
-  } else if (motion.norm() + tool.turned > 2.0 * tool.radius) {
+  } else if (motion.norm() + tool.end_path > 2.0 * tool.radius) {
     sweep(tool, surface, off_surface(contacts, tool), position);
-    tool.turned = 0.0;
+    tool.end_path = 0.0;
     tool.grasping = false;
     restarted_ = true;
     status_.set(StatusFlag::reacquired);

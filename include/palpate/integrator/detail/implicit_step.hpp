@@ -26,7 +26,7 @@ class ImplicitStep {
   const VectorX& predicted() const noexcept { return predicted_; }  ///< where it coasts to [m]
   void find_motion(const VectorX& end, VectorX& velocity, VectorX& acceleration) const noexcept;
   /// What inertia M a and damping D v at the end add to the potential of the step [J].
-  double potential(const VectorX& velocity, const VectorX& drag, const VectorX& acceleration,
+  double potential(const VectorX& velocity, const VectorX& damping_force, const VectorX& acceleration,
                    const VectorX& inertia) const noexcept;
 
  private:

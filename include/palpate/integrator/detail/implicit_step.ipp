@@ -23,9 +23,9 @@ PALPATE_INLINE void ImplicitStep::find_motion(const VectorX& end, VectorX& veloc
   velocity = coasting_ + (scheme_.new_in_v * h_) * acceleration;
 }
 
-PALPATE_INLINE double ImplicitStep::potential(const VectorX& velocity, const VectorX& drag, const VectorX& acceleration,
-                                              const VectorX& inertia) const noexcept {
-  return 0.5 / velocity_per_displacement() * velocity.dot(drag) +
+PALPATE_INLINE double ImplicitStep::potential(const VectorX& velocity, const VectorX& damping_force,
+                                              const VectorX& acceleration, const VectorX& inertia) const noexcept {
+  return 0.5 / velocity_per_displacement() * velocity.dot(damping_force) +
          0.5 / acceleration_per_displacement() * acceleration.dot(inertia);
 }
 

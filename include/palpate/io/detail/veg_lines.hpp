@@ -2,9 +2,12 @@
 #pragma once
 
 #include <palpate/io/detail/text_reader.hpp>
-#include <palpate/io/veg.hpp>
 
+#include <functional>
 #include <list>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::veg {
 
@@ -12,6 +15,8 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io::veg {
 /// files which include themselves come to an end.
 class Lines {
  public:
+  using Include = std::function<std::string(const std::string& name)>;
+
   Lines(std::string_view text, const std::string& name, Include include);
 
   /// Moves to the next line that is not blank; false at the end of the first file.

@@ -5,7 +5,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::veg {
 
-PALPATE_COLD PALPATE_INLINE Lines::Lines(std::string_view text, const std::string& name, Include include)
+PALPATE_COLD PALPATE_INLINE Lines::Lines(std::string_view text, const std::string& name, Lines::Include include)
     : include_(std::move(include)) {
   open_.push_back({{}, TextReader(text, name, syntax)});
   names.push_back(name);

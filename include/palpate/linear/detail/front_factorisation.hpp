@@ -38,12 +38,12 @@ class FrontFactorisation {
 
   /// Eliminates the first `count` fronts. Throws not_positive_definite or cancelled.
   void eliminate(Index count, double threshold, const SetupLimits& limits) {
-    double done = 0.0, told = 0.0;
+    double done = 0.0, reported = 0.0;
     for (Index f = 0; f < count; ++f) {
       eliminate_front(tree_.fronts[f], threshold);
       done += tree_.fronts[f].flops();
-      if (done - told < 0.01 * tree_.flops) continue;
-      told = done;
+      if (done - reported < 0.01 * tree_.flops) continue;
+      reported = done;
       limits.advance("factorisation", done / tree_.flops);
     }
     const Index checked = count == 0 ? 0 : tree_.fronts[count - 1].first + tree_.fronts[count - 1].pivots;

@@ -143,12 +143,12 @@ class SupernodeBuilder {
       first_child_[s] = -1;
       for (NodeId c : children) adopt(s, c);  // each goes before the ones so far
       left[s] = LowerPanels::of(rows_[s], rows_[s]).size();
-      Index held = 0;
+      Index constrained = 0;
       for (NodeId c = first_child_[s]; c >= 0; c = next_sibling_[c]) {
-        peak[s] = std::max(peak[s], held + peak[c]);
-        held += left[c];
+        peak[s] = std::max(peak[s], constrained + peak[c]);
+        constrained += left[c];
       }
-      peak[s] = std::max(peak[s], held + left[s]);
+      peak[s] = std::max(peak[s], constrained + left[s]);
     }
   }
 

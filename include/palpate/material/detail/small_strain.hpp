@@ -15,8 +15,8 @@ struct Lame {
 
 /// Two divisions, which a compiler moves out of a loop when the law is a local variable.
 template <class S>
-PALPATE_ALWAYS_INLINE Lame<S> lame(const LinearElastic& law) noexcept {
-  return {static_cast<scalar_of<S>>(law.lame_lambda()), static_cast<scalar_of<S>>(law.shear_modulus())};
+PALPATE_ALWAYS_INLINE Lame<S> lame(const LinearElastic& material) noexcept {
+  return {static_cast<scalar_of<S>>(material.lame_lambda()), static_cast<scalar_of<S>>(material.shear_modulus())};
 }
 
 }}}  // namespace palpate::detail

@@ -20,17 +20,17 @@ class VolumeStress {
  public:
   VolumeStress(const Base& base, const Tensor3<double>& f) noexcept
       : base_(base), cofactor_(cofactor(f)), side_(std::cbrt(determinant(f, cofactor_))) {
-    pressure_ = trace(base.stress(ball())) / (3.0 * side_ * side_);
+    pressure_ = trace(base.stress(sphere())) / (3.0 * side_ * side_);
   }
 
-  double energy() const noexcept { return base_.energy(ball()); }
+  double energy() const noexcept { return base_.energy(sphere()); }
   /// dU/dF = U' cof F [Pa]
   Tensor3<double> stress() const noexcept { return pressure_ * cofactor_; }
   /// d2U/dF2
   Matrix9 tangent(const Tensor3<double>& f) const noexcept {
     const auto unit = vector9(Tensor3<double>::identity());
     const double along =
-        unit.dot(base_.tangent(ball()) * unit) / (3.0 * side_ * side_);  // d(3 s^2 U')/ds and its share
+        unit.dot(base_.tangent(sphere()) * unit) / (3.0 * side_ * side_);  // d(3 s^2 U')/ds and its share
     const double second = (along - 2.0 * pressure_ / side_) / (3.0 * side_ * side_);
     const auto column = vector9(cofactor_);
     Matrix9 t = pressure_ * cofactor_derivative(f);
@@ -39,7 +39,7 @@ class VolumeStress {
   }
 
  private:
-  Tensor3<double> ball() const noexcept { return Tensor3<double>::diagonal(side_, side_, side_); }
+  Tensor3<double> sphere() const noexcept { return Tensor3<double>::diagonal(side_, side_, side_); }
 
   const Base& base_;
   Tensor3<double> cofactor_;

@@ -34,9 +34,9 @@ struct Mechanism {
 
 /// Elements that share a face cannot move against each other without strain, so a part moves without strain as a rigid
 /// body only. Finds the first part with a rigid motion that neither the constraints nor the joints with other parts
-/// prevent, to first order: hinges, ball joints, chains and loops of them. None when every component is a single part:
-/// for these see free_rigid_modes, which also has the arguments. Lever arms below one millionth of a part count as
-/// none. Clusters in which more than 900 motions depend on each other are passed over. O(elements), and for jointed
+/// prevent, to first order: hinges, sphere joints, chains and loops of them. None when every component is a single
+/// part: for these see free_rigid_modes, which also has the arguments. Lever arms below one millionth of a part count
+/// as none. Clusters in which more than 900 motions depend on each other are passed over. O(elements), and for jointed
 /// parts the cube of the motions in a cluster; allocates.
 std::optional<Mechanism> find_mechanism(const MeshRef& mesh, std::span<const std::uint8_t> constrained,
                                         const Vector3& origin = Vector3::Zero());

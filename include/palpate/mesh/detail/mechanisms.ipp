@@ -53,8 +53,10 @@ class JointedParts {
  public:
   JointedParts(const MeshRef& mesh, const MeshParts& parts, std::span<const std::uint8_t> constrained,
                const Vector3& origin)
-      : origin_(origin), held_(constrained.begin(), constrained.end()), parts_(static_cast<std::size_t>(parts.count)) {
-    positions_.reserve(held_.size());
+      : origin_(origin),
+        constrained_(constrained.begin(), constrained.end()),
+        parts_(static_cast<std::size_t>(parts.count)) {
+    positions_.reserve(constrained_.size());
     for (Index i = 0; i < mesh.node_count; ++i)
       positions_.emplace_back(mesh.position(i)[0], mesh.position(i)[1], mesh.position(i)[2]);
     for (Index e = 0; e < mesh.element_count; ++e) {
@@ -62,7 +64,7 @@ class JointedParts {
       ++part.element_count;
       part.nodes.insert(part.nodes.end(), mesh.nodes_of(e), mesh.nodes_of(e + 1));
     }
-    users_.resize(held_.size());
+    users_.resize(constrained_.size());
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       std::vector<NodeId>& nodes = parts_[p].nodes;
       std::ranges::sort(nodes);
@@ -75,7 +77,7 @@ class JointedParts {
     hold_one_by_one();
     std::vector<char> seen(parts_.size(), 0);
     for (std::size_t p = 0; p < parts_.size(); ++p)
-      if (!parts_[p].is_held && seen[p] == 0)
+      if (!parts_[p].is_constrained && seen[p] == 0)
         if (auto found = find_in(cluster_of(p, seen))) return found;
     return std::nullopt;
   }
@@ -86,7 +88,7 @@ class JointedParts {
     std::vector<NodeId> nodes;
     RigidMotions motions;  ///< left by the constraints and by held parts
     RigidFrame frame;
-    bool is_held = false;
+    bool is_constrained = false;
     std::size_t first = 0;  ///< unknown of its cluster
   };
   static constexpr std::size_t most_motions = 900;
@@ -101,24 +103,24 @@ class JointedParts {
       pending.erase(std::unique(pending.begin(), pending.end()), pending.end());
       for (const std::size_t p : pending) {
         Part& part = parts_[p];
-        if (part.is_held) continue;
-        part.frame = RigidFrame(positions_, part.nodes, held_);
-        part.motions = free_motions(positions_, part.nodes, held_, part.frame);
+        if (part.is_constrained) continue;
+        part.frame = RigidFrame(positions_, part.nodes, constrained_);
+        part.motions = free_motions(positions_, part.nodes, constrained_, part.frame);
         if (part.motions.empty()) hold(part, next);
       }
     }
   }
   void hold(Part& part, std::vector<std::size_t>& neighbours) {
-    part.is_held = true;
+    part.is_constrained = true;
     for (const NodeId i : part.nodes) {
-      held_[static_cast<std::size_t>(i)] = 7;
+      constrained_[static_cast<std::size_t>(i)] = 7;
       for (const std::size_t q : users_[static_cast<std::size_t>(i)])
-        if (!parts_[q].is_held) neighbours.push_back(q);
+        if (!parts_[q].is_constrained) neighbours.push_back(q);
     }
   }
 
   bool is_free_joint(NodeId i) const noexcept {
-    return users_[static_cast<std::size_t>(i)].size() > 1 && held_[static_cast<std::size_t>(i)] != 7;
+    return users_[static_cast<std::size_t>(i)].size() > 1 && constrained_[static_cast<std::size_t>(i)] != 7;
   }
 
   /// Parts that are not held and hang together, with `first`.
@@ -161,7 +163,7 @@ class JointedParts {
         const std::vector<std::size_t>& users = users_[static_cast<std::size_t>(i)];
         if (!is_free_joint(i) || users.front() == p) continue;
         for (int axis = 0; axis < 3; ++axis) {
-          if ((held_[static_cast<std::size_t>(i)] >> axis & 1u) != 0) continue;
+          if ((constrained_[static_cast<std::size_t>(i)] >> axis & 1u) != 0) continue;
           Row row(unknowns, 0.0);
           add_displacement(parts_[users.front()], i, axis, 1.0, row);
           add_displacement(parts_[p], i, axis, -1.0, row);
@@ -205,7 +207,7 @@ class JointedParts {
 
   Vector3 origin_;
   std::vector<Vector3> positions_;
-  std::vector<std::uint8_t> held_;  ///< per node: components that are given, or held by a part that is
+  std::vector<std::uint8_t> constrained_;  ///< per node: components that are given, or held by a part that is
   std::vector<Part> parts_;
   std::vector<std::vector<std::size_t>> users_;  ///< parts of every node, ascending
 };

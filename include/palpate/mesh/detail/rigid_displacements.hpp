@@ -38,7 +38,7 @@ MatrixX rigid_displacements(const Mesh<E>& mesh, std::span<const std::uint8_t> c
       for (Index k = 0; k < count; ++k) {
         const Vector6& motion = motions[static_cast<std::size_t>(k)];
         const Vector3 p = (mesh.position(Index{node}) - frame.centre) / frame.size;
-        const Vector3 u = detail::shift_of(motion) + cross(detail::turn_of(motion), p);
+        const Vector3 u = detail::shift_of(motion) + cross(detail::rotation_of(motion), p);
         for (int c = 0; c < 3; ++c) modes(3 * Index{node} + c, first + k) = u[c];
       }
   }

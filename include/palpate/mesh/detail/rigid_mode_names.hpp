@@ -12,7 +12,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 /// Up to six rigid motions (w, t).
 using RigidMotions = std::vector<Vector6>;
 
-inline Vector3 turn_of(const Vector6& motion) noexcept {
+inline Vector3 rotation_of(const Vector6& motion) noexcept {
   return {motion[0], motion[1], motion[2]};
 }
 inline Vector3 shift_of(const Vector6& motion) noexcept {

@@ -65,14 +65,14 @@ PALPATE_INLINE std::vector<std::string> name_rigid_motions(const RigidMotions& m
   std::vector<std::string> translations, rotations;
   Matrix3 slide = Matrix3::Zero();  // projector on the free translations, built from an orthonormal basis
   for (const Vector6& row : rows) {
-    const Vector3 w = turn_of(row), t = shift_of(row);
+    const Vector3 w = rotation_of(row), t = shift_of(row);
     if (w.norm() > 1e-7) continue;
     translations.push_back(name_translation(t));
     const Vector3 d = (t - slide * t).normalized();
     slide += d * d.transpose();
   }
   for (const Vector6& row : rows) {
-    const Vector3 w = turn_of(row);
+    const Vector3 w = rotation_of(row);
     Vector3 t = shift_of(row);
     if (w.norm() <= 1e-7) continue;
     const Vector3 along = slide * w;  // a free translation along the axis takes the advance out of a screw

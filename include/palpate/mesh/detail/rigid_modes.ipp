@@ -25,8 +25,8 @@ PALPATE_INLINE RigidFrame::RigidFrame(std::span<const Vector3> positions, std::s
   const auto at = [&](NodeId node) -> const Vector3& { return positions[static_cast<std::size_t>(node)]; };
   const Vector3 origin = at(nodes.front());  // offsets keep their digits far from zero
   Box box;
-  Vector3 all = Vector3::Zero(), held = Vector3::Zero();
-  Index held_count = 0;
+  Vector3 all = Vector3::Zero(), supported = Vector3::Zero();
+  Index supported_count = 0;
   double farthest = 0.0;
   for (NodeId node : nodes) {
     const Vector3 x = at(node) - origin;
@@ -34,11 +34,11 @@ PALPATE_INLINE RigidFrame::RigidFrame(std::span<const Vector3> positions, std::s
     all += x;
     farthest = std::max(farthest, max_abs(at(node)));
     if ((constrained[static_cast<std::size_t>(node)] & 7u) == 0) continue;
-    held += x;
-    ++held_count;
+    supported += x;
+    ++supported_count;
   }
-  centre = origin + (held_count > 0 ? Vector3(held / static_cast<double>(held_count))
-                                    : Vector3(all / static_cast<double>(nodes.size())));
+  centre = origin + (supported_count > 0 ? Vector3(supported / static_cast<double>(supported_count))
+                                         : Vector3(all / static_cast<double>(nodes.size())));
   const double diagonal = box.size().norm();
   if (diagonal > 0.0) size = diagonal;
   resolution = 8.0 * std::numeric_limits<double>::epsilon() * farthest / size;

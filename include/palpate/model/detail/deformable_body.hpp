@@ -76,7 +76,7 @@ DeformableBody body_with_mass(const Body<E>& rest, const Scene& scene, const Set
 }
 
 template <Element E>
-DeformableBody held_body_without_forces(const Body<E>& rest, const Scene& scene) {
+DeformableBody constrained_body_without_forces(const Body<E>& rest, const Scene& scene) {
   DeformableBody body = body_without_mass(rest, scene);
   require_constrained(rest.mesh, body.conditions.constrained);
   body.pattern = block_pattern(rest.mesh);
@@ -111,9 +111,9 @@ DeformableBody make_deformable_body(HyperelasticBody<E, M> body, const Scene& sc
 
 /// The same for statics: without mass, and unconstrained is thrown where the scene lets it move as a whole.
 template <Element E, LargeStrainMaterial M>
-DeformableBody make_held_body(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
+DeformableBody make_constrained_body(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
   detail::refuse_initial_strains(scene);
-  DeformableBody made = detail::held_body_without_forces(body.rest, scene);
+  DeformableBody made = detail::constrained_body_without_forces(body.rest, scene);
   made.elastic = std::make_unique<LargeStrain<E, M>>(std::move(body), limits);
   return made;
 }
@@ -131,9 +131,9 @@ DeformableBody make_deformable_body(Body<E> body, const Scene& scene, const Setu
 
 /// The same for statics, as above.
 template <Element E>
-DeformableBody make_held_body(Body<E> body, const Scene& scene, const SetupLimits& limits = {}) {
+DeformableBody make_constrained_body(Body<E> body, const Scene& scene, const SetupLimits& limits = {}) {
   static_assert(!HasSmoothedStrain<E>, "palpate: statics at small strain with smoothed elements is HapticFEModel's");
-  DeformableBody made = detail::held_body_without_forces(body, scene);
+  DeformableBody made = detail::constrained_body_without_forces(body, scene);
   made.load += initial_strain_load(body, initial_strains_by_region(body.mesh, scene));
   made.elastic = std::make_unique<LinearForces>(assemble_stiffness<E>(body, limits));
   return made;
@@ -152,11 +152,11 @@ DeformableBody make_deformable_body(ViscousBody<E> body, const Scene& scene, con
 
 /// The same for statics, as above.
 template <Element E>
-DeformableBody make_held_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {
+DeformableBody make_constrained_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {
   static_assert(!HasSmoothedStrain<E>,
                 "palpate: the stiffness of a smoothed element has another pattern than its mesh");
   detail::refuse_initial_strains(scene);
-  DeformableBody made = detail::held_body_without_forces(body.fast, scene);
+  DeformableBody made = detail::constrained_body_without_forces(body.fast, scene);
   made.elastic = std::make_unique<ViscousForces>(std::move(body), limits);
   return made;
 }

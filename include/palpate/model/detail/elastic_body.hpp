@@ -32,7 +32,7 @@ class ElasticBody {
   virtual void require_constrained(const EssentialConditions& conditions) const = 0;
   virtual EssentialConditions conditions(const Scene& scene) const = 0;
   virtual Touchable touchable(const Scene& scene) const = 0;
-  virtual std::vector<NodeId> seen(const Scene& scene) const = 0;
+  virtual std::vector<NodeId> rendered(const Scene& scene) const = 0;
 
   /// All loads of a scene but gravity [N].
   virtual VectorX applied_load(const Scene& scene) const = 0;

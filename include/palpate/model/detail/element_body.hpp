@@ -27,7 +27,7 @@ class ElementBody final : public ElasticBody {
   void require_constrained(const EssentialConditions& conditions) const override;
   EssentialConditions conditions(const Scene& scene) const override;
   Touchable touchable(const Scene& scene) const override;
-  std::vector<NodeId> seen(const Scene& scene) const override;
+  std::vector<NodeId> rendered(const Scene& scene) const override;
   VectorX applied_load(const Scene& scene) const override;
   std::vector<Vector6> initial_strains(const Scene& scene) const override;
   VectorX initial_strain_load(const std::vector<Vector6>& strains) const override;
@@ -81,8 +81,8 @@ Touchable ElementBody<E>::touchable(const Scene& scene) const {
   return resolve_touchable(mesh_ref(body_.mesh), boundary_, scene);
 }
 template <Element E>
-std::vector<NodeId> ElementBody<E>::seen(const Scene& scene) const {
-  return resolve_seen(mesh_ref(body_.mesh), boundary_, scene);
+std::vector<NodeId> ElementBody<E>::rendered(const Scene& scene) const {
+  return resolve_rendered(mesh_ref(body_.mesh), boundary_, scene);
 }
 template <Element E>
 VectorX ElementBody<E>::applied_load(const Scene& scene) const {

@@ -34,7 +34,8 @@ Touchable resolve_touchable(const MeshRef& mesh, const std::vector<BoundaryFace>
 void require_vertex_forces(std::span<const VertexForce> forces, int vertices);
 
 /// The nodes somebody looks at, sorted.
-std::vector<NodeId> resolve_seen(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary, const Scene& scene);
+std::vector<NodeId> resolve_rendered(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
+                                     const Scene& scene);
 
 }}  // namespace palpate
 

@@ -56,15 +56,15 @@ PALPATE_INLINE void require_vertex_forces(std::span<const VertexForce> forces, i
   }
 }
 
-PALPATE_INLINE std::vector<NodeId> resolve_seen(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
-                                                const Scene& scene) {
-  std::vector<NodeId> seen;
-  for (const Selection& selection : scene.seen()) {
+PALPATE_INLINE std::vector<NodeId> resolve_rendered(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
+                                                    const Scene& scene) {
+  std::vector<NodeId> rendered;
+  for (const Selection& selection : scene.rendered()) {
     const std::vector<NodeId> nodes = resolve_nodes(mesh, boundary, selection);
-    seen.insert(seen.end(), nodes.begin(), nodes.end());
+    rendered.insert(rendered.end(), nodes.begin(), nodes.end());
   }
-  sort_unique(seen);
-  return seen;
+  sort_unique(rendered);
+  return rendered;
 }
 
 }}  // namespace palpate

@@ -67,7 +67,7 @@ class Equilibrium {
   /// unconstrained.
   template <Element E, LargeStrainMaterial M>
   Equilibrium(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {})
-      : Equilibrium(make_held_body(std::move(body), scene, limits), limits) {}
+      : Equilibrium(make_constrained_body(std::move(body), scene, limits), limits) {}
   /// A body that is held, with or without mass, at any strain, of a mesh that has been admitted.
   explicit Equilibrium(DeformableBody body, const SetupLimits& limits = {});
   Equilibrium(const Equilibrium&) = delete;
@@ -126,7 +126,8 @@ class Equilibrium {
     require_constrained(admitted.mesh,
                         resolve_essential(admitted.mesh, extract_boundary<E>(admitted.mesh), mapped).constrained,
                         origin);
-    prepared.body = make_held_body(detail::make_any_body(std::move(admitted.mesh), materials), mapped, options.limits);
+    prepared.body =
+        make_constrained_body(detail::make_any_body(std::move(admitted.mesh), materials), mapped, options.limits);
     return prepared;
   }
   Equilibrium(Prepared prepared, const SetupLimits& limits);
@@ -142,7 +143,7 @@ class Equilibrium {
   /// Sets loads and held values to a fraction of the way.
   void go(double fraction) noexcept;
   /// Full displacement from the free dofs, with the present held values.
-  void place(const VectorX& x) noexcept { body_.conditions.place(x, held_, displacement_); }
+  void place(const VectorX& x) noexcept { body_.conditions.place(x, prescribed_, displacement_); }
 
   /// From equilibrium at the present loads to equilibrium at another fraction: a step along the tangent, then Newton's
   /// method.
@@ -150,13 +151,13 @@ class Equilibrium {
 
   /// Where the tangent is not positive definite the state may be an unstable equilibrium, which the residual alone does
   /// not leave (a column pressed straight): adds the direction of most negative curvature, by inverse iteration.
-  void add_way_down(const VectorX& residual, VectorX& d) noexcept;
+  void add_descent_direction(const VectorX& residual, VectorX& d) noexcept;
 
   OriginalIds ids_;
   std::vector<NodeId> node_map_;
   DeformableBody body_;
   TangentSolver tangent_;
-  VectorX displacement_, force_, full_, held_, load_, from_held_, from_load_;
+  VectorX displacement_, force_, full_, prescribed_, load_, from_prescribed_, from_load_;
   VectorX x_, start_, residual_, direction_, buckling_, trial_;
   bool stepped_ = false;  // displacement_ is the end of a step
   double scale_ = 0.0, size_ = 0.0, rounding_ = 0.0;

@@ -37,9 +37,9 @@ PALPATE_INLINE Equilibrium::Equilibrium(DeformableBody body, const SetupLimits& 
       displacement_(VectorX::Zero(body_.elastic->size())),
       force_(displacement_),
       full_(displacement_),
-      held_(displacement_),
+      prescribed_(displacement_),
       load_(displacement_),
-      from_held_(displacement_),
+      from_prescribed_(displacement_),
       from_load_(displacement_),
       x_(VectorX::Zero(size())),
       start_(x_),
@@ -57,7 +57,7 @@ PALPATE_INLINE EquilibriumReport Equilibrium::solve(const EquilibriumParameters&
   require_usable(parameters);
   stepped_ = false;
   body_.elastic->begin_step(infinity);
-  from_held_.setZero();
+  from_prescribed_.setZero();
   from_load_.setZero();
   x_.setZero();
   return follow_loads(parameters);
@@ -68,7 +68,7 @@ PALPATE_INLINE EquilibriumReport Equilibrium::step(double dt, const EquilibriumP
   if (!(dt >= 0.0)) raise(SetupErrorKind::bad_argument, "a step of " + number(dt), "Give a time in seconds");
   end();
   body_.elastic->begin_step(dt);
-  from_held_ = held_;
+  from_prescribed_ = prescribed_;
   from_load_ = load_;
   const VectorX before = x_;
   const EquilibriumReport report = follow_loads(parameters);
@@ -126,7 +126,7 @@ PALPATE_INLINE bool Equilibrium::prepare(const VectorX& x) noexcept {
 
 PALPATE_INLINE void Equilibrium::direction(const VectorX& residual, VectorX& d) noexcept {
   tangent_.solve(residual, d);
-  if (tangent_.shift() > 0.0 && residual.norm() <= 1e-3 * scale_) add_way_down(residual, d);
+  if (tangent_.shift() > 0.0 && residual.norm() <= 1e-3 * scale_) add_descent_direction(residual, d);
 }
 
 PALPATE_INLINE void Equilibrium::require_usable(const EquilibriumParameters& p) {
@@ -176,16 +176,16 @@ PALPATE_INLINE EquilibriumReport Equilibrium::follow_loads(const EquilibriumPara
 }
 
 PALPATE_INLINE void Equilibrium::go(double fraction) noexcept {
-  held_ = from_held_ + fraction * (body_.conditions.prescribed - from_held_);
+  prescribed_ = from_prescribed_ + fraction * (body_.conditions.prescribed - from_prescribed_);
   load_ = from_load_ + fraction * (body_.load - from_load_);
 }
 
 PALPATE_INLINE NewtonReport Equilibrium::advance(NewtonMethod& newton, double to) noexcept {
   if (!prepare(x_)) return {};
   body_.elastic->force(displacement_, force_);
-  displacement_ = held_;
+  displacement_ = prescribed_;
   go(to);
-  displacement_ = held_ - displacement_;
+  displacement_ = prescribed_ - displacement_;
   tangent_.matrix().apply(displacement_, full_);
   full_ = load_ - force_ - full_;
   body_.conditions.gather(full_, residual_);
@@ -194,7 +194,7 @@ PALPATE_INLINE NewtonReport Equilibrium::advance(NewtonMethod& newton, double to
   return newton.solve(*this, x_);
 }
 
-PALPATE_INLINE void Equilibrium::add_way_down(const VectorX& residual, VectorX& d) noexcept {
+PALPATE_INLINE void Equilibrium::add_descent_direction(const VectorX& residual, VectorX& d) noexcept {
   double softest = infinity;
   for (int k = 0; k < 6; ++k) {
     buckling_.normalize();

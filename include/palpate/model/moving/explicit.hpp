@@ -97,7 +97,7 @@ class ExplicitTissueMotion final : public TissueMotion {
 
   void rest_at(const VectorX& u) override {
     VectorX placed = u;
-    for (const Index dof : motion_.state().held) placed[dof] = prescribed_[dof];
+    for (const Index dof : motion_.state().constrained) placed[dof] = prescribed_[dof];
     motion_.set(placed, VectorX::Zero(u.size()));
     length_ = 0.0;
   }
@@ -127,7 +127,7 @@ class ExplicitTissueMotion final : public TissueMotion {
     }
     const auto steps = static_cast<int>(count);
     for (int k = 0; k < steps; ++k) {
-      for (const Index dof : motion_.state().held) {
+      for (const Index dof : motion_.state().constrained) {
         const double from = motion_.state().displacement[dof];
         motion_.target()[dof] = from + (prescribed_[dof] - from) / (steps - k);
       }
@@ -150,11 +150,11 @@ namespace detail {
 
 /// Whether the materials of a body are viscoelastic.
 template <class MaterialBody>
-inline constexpr bool remembers = false;
+inline constexpr bool has_history = false;
 template <Element E>
-inline constexpr bool remembers<ViscousBody<E>> = true;
+inline constexpr bool has_history<ViscousBody<E>> = true;
 template <Element E, ViscousMaterial M>
-inline constexpr bool remembers<HyperelasticBody<E, M>> = true;
+inline constexpr bool has_history<HyperelasticBody<E, M>> = true;
 
 }  // namespace detail
 
@@ -165,8 +165,9 @@ struct SolverTraits<Explicit<Scheme>> {
   template <class MaterialBody>
   static PreparedMotion make_motion(MaterialBody body, const Scene& scene, const Parameters& p,
                                     const SetupLimits& limits) {
-    static_assert(!detail::remembers<MaterialBody>,
-                  "palpate: explicit steps do not move what a material remembers; use Implicit<Newton<SparseCholesky>>");
+    static_assert(
+        !detail::has_history<MaterialBody>,
+        "palpate: explicit steps do not move what a material remembers; use Implicit<Newton<SparseCholesky>>");
     const Body rest = detail::rest_body(body);
     return make_motion(rest, std::move(body), scene, p, limits);
   }
@@ -179,7 +180,7 @@ struct SolverTraits<Explicit<Scheme>> {
     made.accepts_initial_strains = requires { body.mesh; };
     made.start = VectorX::Zero(3 * rest.mesh.node_count());
     if (p.settle) {
-      Equilibrium statics(make_held_body(body, scene, limits), limits);
+      Equilibrium statics(make_constrained_body(body, scene, limits), limits);
       made.start = detail::settled(statics);
     }
     const auto conditions = resolve_essential(rest.mesh, extract_boundary<E>(rest.mesh), scene);

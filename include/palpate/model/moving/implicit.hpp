@@ -80,7 +80,7 @@ class CorotatedTissueMotion final : public TissueMotion {
     const CorotatedStep done = motion_.step(h);
     MotionStep step{done.taken, {}, done.deformation};
     if (done.deformation.inverted > 0) step.status.set(StatusFlag::inverted);
-    if (!done.taken || !done.calm || !(done.solve.error <= Motion::tolerable_error))
+    if (!done.taken || !done.energy_bounded || !(done.solve.error <= Motion::tolerable_error))
       step.status.set(StatusFlag::solver_not_converged);
     return step;
   }
@@ -114,7 +114,7 @@ struct SolverTraits<Implicit<MatrixFreeCG<Preconditioner, S>>> {
     PreparedMotion made;
     made.start = VectorX::Zero(3 * body.rest.mesh.node_count());
     if (p.settle) {
-      Equilibrium statics(make_held_body(body, scene, limits), limits);
+      Equilibrium statics(make_constrained_body(body, scene, limits), limits);
       made.start = detail::settled(statics);
     }
     const CorotatedMotionOptions options{p.scheme, p.mass_damping,       p.stiffness_damping, p.solve,

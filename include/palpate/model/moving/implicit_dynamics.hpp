@@ -29,7 +29,8 @@ struct StepReport {
   bool taken = false;     ///< false: the step was not a positive number, or there is no way on; nothing has changed
   NewtonReport newton{};  ///< not converged: the state is the best found, and relative_residual says what is missing
   DeformationReport deformation{};
-  bool calm = true;  ///< false: half as much again kinetic and stored energy as there was and as was put in since
+  bool energy_bounded =
+      true;  ///< false: half as much again kinetic and stored energy as there was and as was put in since
 };
 
 /// M a + D v + f(u) = load: every step minimises its incremental potential (Ortiz and Stainier 1999; Gast et al. 2015),
@@ -126,9 +127,9 @@ class ImplicitDynamics {
   BlockMatrix damping_;
   NewtonMethod newton_;
   VectorX u_, v_, a_, load_;
-  VectorX held_;                         // prescribed components at the end of the last step
+  VectorX prescribed_;                   // prescribed components at the end of the last step
   VectorX from_, unbalanced_, balance_;  // displacement and forces left over at the start of a step, and now
-  VectorX trial_, velocity_, acceleration_, force_, full_, other_, drag_, x_, residual_;
+  VectorX trial_, velocity_, acceleration_, force_, full_, other_, damping_force_, x_, residual_;
   VectorX kept_load_, step_load_, change_, start_;  // of corrections
   DeformationReport deformation_;
   bool stepped_ = false;     // the state is the end of step_

@@ -24,7 +24,7 @@ PALPATE_INLINE ImplicitDynamics::ImplicitDynamics(DeformableBody body, const Dyn
       v_(u_),
       a_(u_),
       load_(body_.load),
-      held_(body_.conditions.prescribed),
+      prescribed_(body_.conditions.prescribed),
       from_(u_),
       unbalanced_(u_),
       trial_(u_),
@@ -48,7 +48,7 @@ PALPATE_INLINE StepReport ImplicitDynamics::step(double h) noexcept {
   if (!ImplicitStep::is_length(h)) return report;
   begin(h);
   step_.coast(u_, v_, a_);
-  held_ = body_.conditions.prescribed;
+  prescribed_ = body_.conditions.prescribed;
   from_ = u_;
   unbalanced_ = balance_;
   work_before_ = work_;
@@ -59,7 +59,7 @@ PALPATE_INLINE StepReport ImplicitDynamics::step(double h) noexcept {
   report.taken = true;
   report.deformation = deformation_;
   accept();
-  report.calm = energy_is_explained();
+  report.energy_bounded = energy_is_explained();
   step_load_ = load_;
   stepped_ = true;
   time_ += h;
@@ -118,9 +118,9 @@ PALPATE_INLINE void ImplicitDynamics::set_state(const VectorX& u, const VectorX&
   end();
   body_.elastic->begin_step(seconds);
   for (Index dof = 0; dof < u_.size(); ++dof) {  // u and v may be those of this motion
-    const bool held = body_.conditions.is_constrained(dof);
-    u_[dof] = held ? body_.conditions.prescribed[dof] : u[dof];
-    v_[dof] = held ? 0.0 : v[dof];
+    const bool constrained = body_.conditions.is_constrained(dof);
+    u_[dof] = constrained ? body_.conditions.prescribed[dof] : u[dof];
+    v_[dof] = constrained ? 0.0 : v[dof];
   }
   body_.elastic->end_step(u_);
   body_.elastic->begin_step(0.0);
@@ -147,7 +147,7 @@ PALPATE_INLINE double ImplicitDynamics::energy() noexcept {
 }
 
 PALPATE_INLINE double ImplicitDynamics::evaluate(const VectorX& x, VectorX& residual) noexcept {
-  body_.conditions.place(x, held_, trial_);
+  body_.conditions.place(x, prescribed_, trial_);
   deformation_ = body_.elastic->force(trial_, force_);
   if (!deformation_.admissible) return infinity;
   step_.find_motion(trial_, velocity_, acceleration_);
@@ -162,7 +162,7 @@ PALPATE_INLINE double ImplicitDynamics::evaluate(const VectorX& x, VectorX& resi
 }
 
 PALPATE_INLINE bool ImplicitDynamics::prepare(const VectorX& x) noexcept {
-  body_.conditions.place(x, held_, trial_);
+  body_.conditions.place(x, prescribed_, trial_);
   return prepare_at(trial_);
 }
 
@@ -206,14 +206,14 @@ PALPATE_INLINE void ImplicitDynamics::start_from_the_lower() noexcept {
 }
 
 PALPATE_INLINE void ImplicitDynamics::accept() noexcept {
-  double held = 0.0;
+  double support_work = 0.0;
   for (Index dof = 0; dof < u_.size(); ++dof)
     if (body_.conditions.is_constrained(dof))
-      held += 0.5 * (unbalanced_[dof] + full_[dof]) * (trial_[dof] - from_[dof]);
+      support_work += 0.5 * (unbalanced_[dof] + full_[dof]) * (trial_[dof] - from_[dof]);
   work_ = work_before_;
   work_.of_loads += load_.dot(trial_ - from_);
   work_.most = std::max(work_.most, std::abs(work_.of_loads));
-  work_.of_supports += std::abs(held);
+  work_.of_supports += std::abs(support_work);
   balance_ = full_;
   u_ = trial_;
   v_ = velocity_;
@@ -246,12 +246,12 @@ PALPATE_INLINE void ImplicitDynamics::apply_damping(const VectorX& v, VectorX& y
     y.setZero();
   }
   if (parameters_.mass_damping == 0.0) return;
-  apply_mass(v, drag_);
-  y += parameters_.mass_damping * drag_;
+  apply_mass(v, damping_force_);
+  y += parameters_.mass_damping * damping_force_;
 }
 
 PALPATE_INLINE void ImplicitDynamics::find_acceleration() {
-  drag_ = acceleration_ = velocity_ = VectorX::Zero(u_.size());
+  damping_force_ = acceleration_ = velocity_ = VectorX::Zero(u_.size());
   residual_.resize(size());
   if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
   body_.elastic->force(u_, force_);

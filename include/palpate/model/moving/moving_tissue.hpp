@@ -9,7 +9,7 @@
 #include <palpate/model/model_base.hpp>
 #include <palpate/model/moving/detail/warped_compliance.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
-#include <palpate/model/static/detail/nodal_rotation.hpp>
+#include <palpate/model/detail/nodal_rotation.hpp>
 
 #include <array>
 #include <atomic>
@@ -89,7 +89,7 @@ class MovingTissue : public ModelBase {
   void end_tick(std::span<const VertexForce> forces) noexcept;
   const ContactSurface& contact_surface() const noexcept { return surface_; }
   Status require_columns(std::span<const int>) noexcept { return {}; }
-  Matrix3 compliance(int i, int j) const noexcept { return compliance_.turned(views_.front().rotation, i, j); }
+  Matrix3 compliance(int i, int j) const noexcept { return compliance_.rotated(views_.front().rotation, i, j); }
   std::uint64_t compliance_revision() const noexcept { return revision_; }
   /// Surfaces brought in so far.
   std::uint64_t updates() const noexcept { return revision_; }

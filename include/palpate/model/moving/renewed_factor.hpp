@@ -12,7 +12,7 @@
 #include <palpate/model/detail/deformable_body.hpp>
 #include <palpate/model/moving/detail/step_preconditioners.hpp>
 #include <palpate/model/moving/detail/tangent_solver.hpp>
-#include <palpate/model/static/detail/turned_solve.hpp>
+#include <palpate/model/moving/detail/corotated_solve.hpp>
 
 #include <array>
 #include <atomic>
@@ -34,7 +34,7 @@ class RenewedFactor {
   RenewedFactor& operator=(const RenewedFactor&) = delete;
 
   template <class Tetrahedra>
-  void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool anew) noexcept {
+  void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool again) noexcept {
     const State state = state_.load(std::memory_order_acquire);
     if (state == State::ready) {
       if (spare().usable && spare().factors == factors) {
@@ -45,30 +45,30 @@ class RenewedFactor {
     }
     if (front().factors != factors) {
       make(front(), factors, rest_);
-    } else if (anew && state != State::asked) {
+    } else if (again && state != State::asked) {
       asked_ = u;
       spare().factors = factors;
       state_.store(State::asked, std::memory_order_release);
       state_.notify_one();
     }
-    turned_.turn(u, front().turn);
+    corotated_.update(u, front().rotation);
   }
-  void apply(const VectorX& r, VectorX& z) const noexcept { turned_.solve(*made_[front_].factor, r, z); }
+  void apply(const VectorX& r, VectorX& z) const noexcept { corotated_.solve(*made_[front_].factor, r, z); }
   /// Factors of the thread taken in so far.
   long renewals() const noexcept { return renewals_; }
 
  private:
   enum class State { idle, asked, ready, stopped };
-  struct TurningElement {
+  struct RotatingElement {
     std::array<NodeId, 4> nodes;
     Eigen::Matrix<double, 4, 3> gradient;
     double volume;
-    LameConstants law;
+    LameConstants material;
   };
   struct Made {
     Made(const DeformableBody& body, const EssentialConditions& conditions, const SetupLimits& limits);
     std::unique_ptr<TangentSolver> factor;
-    std::vector<Matrix3> turn;  // of the nodes at its state
+    std::vector<Matrix3> rotation;  // of the nodes at its state
     StepFactors factors;
     bool usable = false;
   };
@@ -81,11 +81,11 @@ class RenewedFactor {
   /// A at a state, and its factor.
   void make(Made& made, const StepFactors& factors, const VectorX& u) const noexcept;
   /// R K R^T of one element.
-  static void add(const TurningElement& e, double factor, const VectorX& u, BlockMatrix& a) noexcept;
+  static void add(const RotatingElement& e, double factor, const VectorX& u, BlockMatrix& a) noexcept;
 
-  mutable TurnedSolve turned_;
+  mutable CorotatedSolve corotated_;
   VectorX lumped_;
-  std::vector<TurningElement> elements_;
+  std::vector<RotatingElement> elements_;
   std::array<Made, 2> made_;
   std::size_t front_ = 0;
   VectorX asked_;  // the thread's while it is asked

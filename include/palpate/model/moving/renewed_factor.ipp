@@ -11,9 +11,9 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE RenewedFactor::RenewedFactor(const DeformableBody& body, const Body<Tet4>& rest,
                                             const SetupLimits& limits)
-    : turned_(body),
+    : corotated_(body),
       lumped_(body.lumped),
-      made_{{Made(body, turned_.conditions(), limits), Made(body, turned_.conditions(), limits)}},
+      made_{{Made(body, corotated_.conditions(), limits), Made(body, corotated_.conditions(), limits)}},
       asked_(VectorX::Zero(3 * lumped_.size())),
       rest_(asked_) {
   for (Index e = 0; e < rest.mesh.element_count(); ++e) {
@@ -33,7 +33,7 @@ PALPATE_INLINE RenewedFactor::~RenewedFactor() {
 PALPATE_INLINE RenewedFactor::Made::Made(const DeformableBody& body, const EssentialConditions& conditions,
                                          const SetupLimits& limits)
     : factor(std::make_unique<TangentSolver>(body.pattern, conditions, body.positions, limits)),
-      turn(body.positions.size(), Matrix3::Identity()) {}
+      rotation(body.positions.size(), Matrix3::Identity()) {}
 
 PALPATE_INLINE void RenewedFactor::work() noexcept {
   for (;;) {
@@ -58,16 +58,16 @@ PALPATE_INLINE void RenewedFactor::work() noexcept {
 }
 
 PALPATE_INLINE void RenewedFactor::make(Made& made, const StepFactors& factors, const VectorX& u) const noexcept {
-  turned_.fit(u, made.turn);
+  corotated_.fit(u, made.rotation);
   BlockMatrix& a = made.factor->matrix();
   a.set_zero();
-  for (const TurningElement& e : elements_) add(e, factors.stiffness, u, a);
+  for (const RotatingElement& e : elements_) add(e, factors.stiffness, u, a);
   a.add_nodal(factors.mass, lumped_);
   made.usable = made.factor->factorise();
   made.factors = factors;
 }
 
-PALPATE_INLINE void RenewedFactor::add(const TurningElement& e, double factor, const VectorX& u,
+PALPATE_INLINE void RenewedFactor::add(const RotatingElement& e, double factor, const VectorX& u,
                                        BlockMatrix& a) noexcept {
   Matrix3 f = Matrix3::Identity();
   for (int n = 0; n < 4; ++n)
@@ -80,7 +80,7 @@ PALPATE_INLINE void RenewedFactor::add(const TurningElement& e, double factor, c
       const NodeId row = e.nodes[static_cast<std::size_t>(i)], column = e.nodes[static_cast<std::size_t>(j)];
       if (column > row) continue;
       Matrix3 block = Matrix3::Zero();
-      add_isotropic_block(e.law, g.row(i), g.row(j), block.data());
+      add_isotropic_block(e.material, g.row(i), g.row(j), block.data());
       a.block(a.pattern().find(row, column)) += factor * e.volume * block;
     }
 }

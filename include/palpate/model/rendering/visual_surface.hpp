@@ -124,7 +124,7 @@ class VisualSurface {
 
   /// Triangles of the boundary faces all of whose nodes may be seen, in the frame of the mesh as given.
   static VisualMesh boundary_of(const Model& model) {
-    std::vector<NodeId> nodes = model.seen_nodes();
+    std::vector<NodeId> nodes = model.rendered_nodes();
     if (nodes.empty()) nodes = nodes_of(model.boundary());
     VisualMesh surface;
     for (const NodeId i : nodes) surface.positions.push_back(model.rest_position(i));

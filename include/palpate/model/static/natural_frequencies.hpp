@@ -156,16 +156,16 @@ NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, 
   detail::ModalProblem problem{free_matrix(assemble_stiffness<E>(body, limits), conditions),
                                free_matrix(assemble_mass<E>(body, limits), conditions),
                                rigid_motions(conditions.free_dofs, Eigen::all)};
-  const bool held = problem.rigid.cols() == 0;
-  double shift = held ? 0.0 : -1e-2 * detail::uniform_strain_quotient(body, conditions, problem);
+  const bool constrained = problem.rigid.cols() == 0;
+  double shift = constrained ? 0.0 : -1e-2 * detail::uniform_strain_quotient(body, conditions, problem);
   LanczosPairs pairs;
   VectorX lambda;
-  for (int attempt = 0; attempt < (held ? 1 : 4) && !pairs.converged; ++attempt) {
+  for (int attempt = 0; attempt < (constrained ? 1 : 4) && !pairs.converged; ++attempt) {
     if (attempt > 0) shift = -1e-2 * lambda.cwiseAbs().minCoeff();  // far below the uniform strains: start again there
-    const SparseCholesky factor(held ? problem.stiffness : SparseMatrix(problem.stiffness - shift * problem.mass),
-                                limits);
+    const SparseCholesky factor(
+        constrained ? problem.stiffness : SparseMatrix(problem.stiffness - shift * problem.mass), limits);
     BlockLanczos lanczos(factor, problem.mass, problem.rigid, count);
-    pairs = lanczos.run(tolerance, held ? 200 : 40, limits);
+    pairs = lanczos.run(tolerance, constrained ? 200 : 40, limits);
     lambda = problem.rayleigh(pairs.vectors);
   }
   const double rounding = detail::require_pairs(pairs, lambda, shift, tolerance);

@@ -13,7 +13,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Coordinates in which a patch of elements is about a unit ball round its centre, however stretched it is.
+/// Coordinates in which a patch of elements is about a unit sphere round its centre, however stretched it is.
 struct PatchFrame {
   Vector3 centre = Vector3::Zero();
   Matrix3 map = Matrix3::Identity();  ///< [1/m]

@@ -79,7 +79,7 @@ CacheKey body_key(const Body<E>& body) noexcept {
   key.mesh = detail::hash_of_mesh(body.mesh);
   ContentHash material;
   for (const Matrix6& d : body.elasticity) detail::add_entries(material, d);
-  material.add(std::span<const std::int32_t>(body.laws));
+  material.add(std::span<const std::int32_t>(body.materials));
   key.material = material.digest();
   return key;
 }

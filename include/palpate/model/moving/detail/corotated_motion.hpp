@@ -60,11 +60,11 @@ class CorotatedMotion {
         preconditioner_(body_, body.rest, limits),
         gradients_(mass_.size()),
         load_(body_.load) {
-    for (VectorX* v :
-         {&u_, &v_, &a_, &trial_, &velocity_, &acceleration_, &increment_, &force_, &residual_, &drag_, &inertia_})
+    for (VectorX* v : {&u_, &v_, &a_, &trial_, &velocity_, &acceleration_, &increment_, &force_, &residual_,
+                       &damping_force_, &inertia_})
       *v = VectorX::Zero(mass_.size());
     for (Index dof = 0; dof < mass_.size(); ++dof)
-      if (body_.conditions.is_constrained(dof)) held_.push_back(dof);
+      if (body_.conditions.is_constrained(dof)) constrained_dofs_.push_back(dof);
     set_state(trial_, velocity_);
   }
   CorotatedMotion(const CorotatedMotion&) = delete;
@@ -88,8 +88,8 @@ class CorotatedMotion {
       trial_ += increment_;
       find_motion();
       ++report.linearisations;
-      if (options_.check) report.calm = settle(highest, reached, report);
-    } while (!report.calm && report.linearisations < options_.maximum_linearisations);
+      if (options_.check) report.energy_bounded = settle(highest, reached, report);
+    } while (!report.energy_bounded && report.linearisations < options_.maximum_linearisations);
     if (!all_finite(trial_) || !all_finite(velocity_)) return report;
     accept();
     energy_known_ = options_.check;
@@ -141,15 +141,15 @@ class CorotatedMotion {
   const VectorX& resistance() noexcept {
     tetrahedra_.linearise(u_, force_, energy_);
     energy_known_ = true;
-    damp(v_, drag_);
-    return drag_ += force_ + mass_.cwiseProduct(a_);
+    damp(v_, damping_force_);
+    return damping_force_ += force_ + mass_.cwiseProduct(a_);
   }
 
   /// Changes the state; prescribed components rest where they are prescribed. The acceleration follows from the forces.
   /// Throws bad_argument, without a change, for vectors of another size.
   void set_state(const VectorX& u, const VectorX& v) {
     for (const VectorX* given : {&u, &v}) require_entries(*given, u_.size());
-    for (const Index dof : held_) {
+    for (const Index dof : constrained_dofs_) {
       u_[dof] = body_.conditions.prescribed[dof];
       v_[dof] = a_[dof] = 0.0;
     }
@@ -158,8 +158,9 @@ class CorotatedMotion {
       v_[dof] = v[dof];
     }
     tetrahedra_.linearise(u_, force_, energy_);
-    damp(v_, drag_);
-    for (const Index dof : body_.conditions.free_dofs) a_[dof] = (load_[dof] - force_[dof] - drag_[dof]) / mass_[dof];
+    damp(v_, damping_force_);
+    for (const Index dof : body_.conditions.free_dofs)
+      a_[dof] = (load_[dof] - force_[dof] - damping_force_[dof]) / mass_[dof];
     if (!all_finite(a_)) a_.setZero();  // of loads that are none: steps refuse these
     energy_known_ = true;
     stepped_ = false;
@@ -243,7 +244,7 @@ class CorotatedMotion {
       bare_.push_back(dof);
       c.prescribed[dof] = u_[dof];
       c.constrained[static_cast<std::size_t>(dof / 3)] = 7;
-      if (!c.is_constrained(dof)) held_.push_back(dof);
+      if (!c.is_constrained(dof)) constrained_dofs_.push_back(dof);
       c.free_index[static_cast<std::size_t>(dof)] = -1;
     }
     std::erase_if(c.free_dofs, [&c](Index dof) { return c.is_constrained(dof); });
@@ -268,7 +269,7 @@ class CorotatedMotion {
   /// Where the step would end without new acceleration, held dofs where they are told to be.
   void coast() noexcept {
     trial_ = step_.predicted();
-    for (const Index dof : held_) trial_[dof] = body_.conditions.prescribed[dof];
+    for (const Index dof : constrained_dofs_) trial_[dof] = body_.conditions.prescribed[dof];
     find_motion();
   }
   void find_motion() noexcept { step_.find_motion(trial_, velocity_, acceleration_); }
@@ -291,21 +292,21 @@ class CorotatedMotion {
 
   /// Potential of the step at trial_, given the energy stored there; leaves drag and inertia.
   double potential(double stored) noexcept {
-    damp(velocity_, drag_);
+    damp(velocity_, damping_force_);
     inertia_ = mass_.cwiseProduct(acceleration_);
-    return stored - load_.dot(trial_) + step_.potential(velocity_, drag_, acceleration_, inertia_);
+    return stored - load_.dot(trial_) + step_.potential(velocity_, damping_force_, acceleration_, inertia_);
   }
   /// The same with the force that is left there on free dofs.
   double evaluate(DeformationReport& deformation) noexcept {
     deformation = tetrahedra_.linearise(trial_, force_, trial_energy_);
     const double at_trial = potential(trial_energy_);
-    residual_ = load_ - force_ - drag_ - inertia_;
-    for (const Index dof : held_) residual_[dof] = 0.0;
+    residual_ = load_ - force_ - damping_force_ - inertia_;
+    for (const Index dof : constrained_dofs_) residual_[dof] = 0.0;
     return at_trial;
   }
   /// Potential of the step at the state it starts from; no limit where held dofs move, which does work.
   double limit() noexcept {
-    for (const Index dof : held_)
+    for (const Index dof : constrained_dofs_)
       if (u_[dof] != body_.conditions.prescribed[dof]) return infinity;
     if (!energy_known_) tetrahedra_.linearise(u_, force_, energy_);
     trial_ = u_;
@@ -324,7 +325,8 @@ class CorotatedMotion {
       find_motion();
     }
     const double left = residual_.norm();
-    report.residual = left > 0.0 ? left / std::max({force_.norm(), inertia_.norm(), drag_.norm(), load_.norm()}) : 0.0;
+    report.residual =
+        left > 0.0 ? left / std::max({force_.norm(), inertia_.norm(), damping_force_.norm(), load_.norm()}) : 0.0;
     return reached <= highest + noise;
   }
 
@@ -335,9 +337,9 @@ class CorotatedMotion {
   ImplicitStep step_;
   Preconditioner preconditioner_;
   BoundedConjugateGradient gradients_;
-  std::vector<Index> held_, bare_;  // dofs; bare ones belong to nodes without an element
+  std::vector<Index> constrained_dofs_, bare_;  // dofs; bare ones belong to nodes without an element
   VectorX u_, v_, a_, load_;
-  VectorX trial_, velocity_, acceleration_, increment_, force_, residual_, drag_, inertia_;
+  VectorX trial_, velocity_, acceleration_, increment_, force_, residual_, damping_force_, inertia_;
   StepFactors factors_;
   double energy_ = 0.0, trial_energy_ = 0.0;  // stored
   bool energy_known_ = false;                 // at the present state

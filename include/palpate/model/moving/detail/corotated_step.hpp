@@ -25,7 +25,7 @@ struct CorotatedStep {
   bool taken = false;  ///< false: the step was not a positive number, or nothing finite came of it; nothing has changed
   BoundedSolveReport solve{};  ///< the last one
   int linearisations = 0;
-  bool calm = true;                 ///< false: checked, and the energy is still above that at the start of the step
+  bool energy_bounded = true;       ///< false: checked, and the energy is still above that at the start of the step
   double residual = infinity;       ///< force left over, of the largest force of the step; infinite without the check
   DeformationReport deformation{};  ///< at the end; without the check where it coasts to
 };

@@ -16,7 +16,7 @@ PALPATE_INLINE MotionStep ImplicitMotion::step(double h) noexcept {
   MotionStep step{done.taken, {}, done.deformation};
   if (done.deformation.inverted > 0) step.status.set(StatusFlag::inverted);
   const bool accurate = done.newton.converged || done.newton.relative_residual <= tolerable_residual;
-  if (!done.taken || !done.calm || !accurate) step.status.set(StatusFlag::solver_not_converged);
+  if (!done.taken || !done.energy_bounded || !accurate) step.status.set(StatusFlag::solver_not_converged);
   return step;
 }
 PALPATE_INLINE bool ImplicitMotion::correct(const VectorX& more) noexcept {

@@ -11,7 +11,7 @@
 #include <palpate/element/tet4.hpp>
 #include <palpate/model/detail/deformable_body.hpp>
 #include <palpate/model/moving/detail/tangent_solver.hpp>
-#include <palpate/model/static/detail/turned_solve.hpp>
+#include <palpate/model/moving/detail/corotated_solve.hpp>
 
 #include <vector>
 
@@ -46,8 +46,8 @@ class BlockJacobi {
   /// Another mass, and other dofs held; the next update must be anew.
   void change(const DeformableBody& body);
   template <class Tetrahedra>
-  void update(const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX&, bool anew) noexcept {
-    if (!anew) return;
+  void update(const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX&, bool again) noexcept {
+    if (!again) return;
     tetrahedra.diagonal_blocks(straight_, mixed_);
     for (std::size_t i = 0; i < inverse_.size(); ++i) {
       const auto node = static_cast<Index>(i);
@@ -73,15 +73,15 @@ class BlockJacobi {
 /// The factor of A at rest, between the rotations of the nodes: R (M + K0)^-1 R^T. Wins where steps are long.
 /// Factorised again when the factors of M and K change, which takes as long as it takes; rotations are fitted in every
 /// step.
-class TurnedFactor {
+class CorotatedFactor {
  public:
-  TurnedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
-      : turned_(body),
+  CorotatedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
+      : corotated_(body),
         lumped_(body.lumped),
         stiffness_(assemble_stiffness<Tet4>(rest, limits)),
-        factor_(body.pattern, turned_.conditions(), body.positions, limits) {}
-  TurnedFactor(const TurnedFactor&) = delete;
-  TurnedFactor& operator=(const TurnedFactor&) = delete;
+        factor_(body.pattern, corotated_.conditions(), body.positions, limits) {}
+  CorotatedFactor(const CorotatedFactor&) = delete;
+  CorotatedFactor& operator=(const CorotatedFactor&) = delete;
 
   template <class Tetrahedra>
   void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool) noexcept {
@@ -93,12 +93,12 @@ class TurnedFactor {
       factor_.factorise();
       factors_ = factors;
     }
-    turned_.turn(u);
+    corotated_.update(u);
   }
-  void apply(const VectorX& r, VectorX& z) const noexcept { turned_.solve(factor_, r, z); }
+  void apply(const VectorX& r, VectorX& z) const noexcept { corotated_.solve(factor_, r, z); }
 
  private:
-  mutable TurnedSolve turned_;
+  mutable CorotatedSolve corotated_;
   VectorX lumped_;
   BlockMatrix stiffness_;
   mutable TangentSolver factor_;

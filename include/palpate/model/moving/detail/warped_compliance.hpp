@@ -5,7 +5,7 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/model/static/detail/nodal_rotation.hpp>
+#include <palpate/model/detail/nodal_rotation.hpp>
 
 #include <string>
 #include <vector>
@@ -27,8 +27,8 @@ class WarpedCompliance {
                           "the contact compliance");
     rest_.resize(count_ * count_);
     if (!motion.prepare_response(h)) raise(SetupErrorKind::not_positive_definite, "the body at rest has no stiffness");
-    std::vector<Matrix3> turned(count_);
-    for (std::size_t i = 0; i < count_; ++i) turned[i] = rotations(i, motion.displacement());
+    std::vector<Matrix3> rotated(count_);
+    for (std::size_t i = 0; i < count_; ++i) rotated[i] = rotations(i, motion.displacement());
     VectorX force = VectorX::Zero(motion.displacement().size()), u(force.size());
     for (std::size_t j = 0; j < count_; ++j) {
       if (j % 64 == 0) limits.advance("compliance", static_cast<double>(j) / static_cast<double>(count_));
@@ -42,7 +42,7 @@ class WarpedCompliance {
           for (int d = 0; d < 3; ++d) rest_[i + count_ * j](d, c) = u[3 * Index{nodes[i]} + d];
       }
       for (std::size_t i = 0; i < count_; ++i)
-        rest_[i + count_ * j] = turned[i].transpose() * rest_[i + count_ * j] * turned[j];
+        rest_[i + count_ * j] = rotated[i].transpose() * rest_[i + count_ * j] * rotated[j];
     }
     find_bounds();
   }
@@ -50,7 +50,7 @@ class WarpedCompliance {
   /// Turned back to the shape at rest [m/N].
   const Matrix3& at_rest(std::size_t i, std::size_t j) const noexcept { return rest_[i + count_ * j]; }
   /// Where vertices have turned by `rotation`.
-  Matrix3 turned(const std::vector<Matrix3>& rotation, int i, int j) const noexcept;
+  Matrix3 rotated(const std::vector<Matrix3>& rotation, int i, int j) const noexcept;
   /// As TissueModel has them.
   double bound(int j) const noexcept { return bound_[static_cast<std::size_t>(j)]; }
   double floor() const noexcept { return floor_; }

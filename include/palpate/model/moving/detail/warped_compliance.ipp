@@ -7,7 +7,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE Matrix3 WarpedCompliance::turned(const std::vector<Matrix3>& rotation, int i, int j) const noexcept {
+PALPATE_INLINE Matrix3 WarpedCompliance::rotated(const std::vector<Matrix3>& rotation, int i, int j) const noexcept {
   const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
   return rotation[a] * at_rest(a, b) * rotation[b].transpose();
 }

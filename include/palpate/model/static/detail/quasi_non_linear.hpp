@@ -111,8 +111,7 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
     settle(axis, along, (moved - along * axis).norm());
   }
   void settle(const Vector3& axis, double along, double across) noexcept {
-    const double next_along = half_way(along_, axial_.ratio(along)),
-                 next_across = half_way(across_, radial_.ratio(across));
+    const double next_along = midway(along_, axial_.ratio(along)), next_across = midway(across_, radial_.ratio(across));
     const bool same_axis = along_ == across_ || (axis - axis_).norm() <= unfelt;
     if (next_along == along_ && next_across == across_ && same_axis) return;
     along_ = next_along;
@@ -122,7 +121,7 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
     ++revision_;
   }
   /// A change too small to feel is none, so that a hold keeps its compliances.
-  static double half_way(double now, double wanted) noexcept {
+  static double midway(double now, double wanted) noexcept {
     return std::abs(wanted - now) <= unfelt * now ? now : 0.5 * (now + wanted);
   }
   void set_scale() noexcept {

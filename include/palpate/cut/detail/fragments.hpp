@@ -55,39 +55,40 @@ int free_mode_count(std::span<const Vector3> positions, std::span<const NodeId> 
 /// The elements for which `belongs(element)` in pieces that hang together by faces, all rigid motions free.
 /// O(elements).
 template <Element E, class Belongs>
-std::vector<LoosePiece> connected_pieces(const CutTopology<E>& topology, Belongs&& belongs) {
+std::vector<Fragment> connected_fragments(const CutTopology<E>& topology, Belongs&& belongs) {
   const Mesh<E>& mesh = topology.mesh();
   std::vector<char> seen(static_cast<std::size_t>(mesh.element_count()), 0), listed(mesh.positions.size(), 0);
-  std::vector<LoosePiece> pieces;
+  std::vector<Fragment> fragments;
   for (Index first = 0; first < mesh.element_count(); ++first) {
     if (seen[static_cast<std::size_t>(first)] != 0 || !belongs(first)) continue;
-    LoosePiece& piece = pieces.emplace_back();
+    Fragment& fragment = fragments.emplace_back();
     seen[static_cast<std::size_t>(first)] = 1;
-    piece.elements.push_back(first);
-    for (std::size_t k = 0; k < piece.elements.size(); ++k) {
-      const Index e = piece.elements[k];
+    fragment.elements.push_back(first);
+    for (std::size_t k = 0; k < fragment.elements.size(); ++k) {
+      const Index e = fragment.elements[k];
       for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)])
-        if (std::exchange(listed[static_cast<std::size_t>(node)], 1) == 0) piece.nodes.push_back(node);
+        if (std::exchange(listed[static_cast<std::size_t>(node)], 1) == 0) fragment.nodes.push_back(node);
       for (std::size_t f = 0; f < CutTopology<E>::faces; ++f)
         if (const Index other = topology.neighbour(e, f);
             other >= 0 && belongs(other) && std::exchange(seen[static_cast<std::size_t>(other)], 1) == 0)
-          piece.elements.push_back(other);
+          fragment.elements.push_back(other);
     }
   }
-  return pieces;
+  return fragments;
 }
 
 /// The pieces of held elements that can move as a whole. O(elements).
 template <Element E>
-std::vector<LoosePiece> unheld_pieces(const CutTopology<E>& topology) {
-  std::vector<LoosePiece> unheld;
-  for (LoosePiece& piece : connected_pieces(topology, [&](Index e) { return topology.state(e) == ElementState{}; })) {
-    piece.free_modes = free_mode_count(topology.mesh().positions, piece.nodes, topology.constrained());
-    if (piece.free_modes == 0) continue;
-    std::ranges::sort(piece.elements);
-    std::ranges::sort(piece.nodes);
-    for (const Index e : piece.elements) piece.volume += topology.volume(e);
-    unheld.push_back(std::move(piece));
+std::vector<Fragment> unsupported_fragments(const CutTopology<E>& topology) {
+  std::vector<Fragment> unheld;
+  for (Fragment& fragment :
+       connected_fragments(topology, [&](Index e) { return topology.state(e) == ElementState{}; })) {
+    fragment.free_modes = free_mode_count(topology.mesh().positions, fragment.nodes, topology.constrained());
+    if (fragment.free_modes == 0) continue;
+    std::ranges::sort(fragment.elements);
+    std::ranges::sort(fragment.nodes);
+    for (const Index e : fragment.elements) fragment.volume += topology.volume(e);
+    unheld.push_back(std::move(fragment));
   }
   return unheld;
 }
@@ -95,5 +96,5 @@ std::vector<LoosePiece> unheld_pieces(const CutTopology<E>& topology) {
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY
-#include <palpate/cut/detail/held_pieces.ipp>
+#include <palpate/cut/detail/fragments.ipp>
 #endif

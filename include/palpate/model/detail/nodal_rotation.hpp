@@ -31,5 +31,5 @@ class NodalRotations {
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY
-#include <palpate/model/static/detail/nodal_rotation.ipp>
+#include <palpate/model/detail/nodal_rotation.ipp>
 #endif

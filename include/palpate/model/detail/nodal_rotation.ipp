@@ -1,7 +1,7 @@
 // Definitions of nodal_rotation.hpp.
 #pragma once
 
-#include <palpate/model/static/detail/nodal_rotation.hpp>
+#include <palpate/model/detail/nodal_rotation.hpp>
 #include <palpate/core/rotation.hpp>
 #include <palpate/core/tensor3.hpp>
 

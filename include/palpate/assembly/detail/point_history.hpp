@@ -14,18 +14,18 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Nothing: the law of a point is that of its region, and no step costs anything.
-struct NoMemory {
+struct NoHistory {
   template <class Body>
   void start(const Body&, const SetupLimits&) noexcept {}
   template <class Body>
-  static decltype(auto) law(const Body& body, Index e, std::size_t) noexcept {
-    return body.law_of(e);
+  static decltype(auto) material(const Body& body, Index e, std::size_t) noexcept {
+    return body.material_of(e);
   }
 };
 
 /// The history of a Prony series: (2 + terms) x 72 bytes per point. No function but `start` allocates.
 template <ViscousMaterial M, std::size_t Points>
-class PronyMemory {
+class PronyPoints {
  public:
   /// At rest, with a sudden step begun.
   template <class Body>
@@ -33,27 +33,28 @@ class PronyMemory {
     const auto count = static_cast<std::size_t>(body.rest.mesh.element_count());
     limits.require_memory(static_cast<double>(count) * Points * sizeof(Point), "what the points remember");
     points_.resize(count);
-    steps_.resize(body.laws.size());
+    steps_.resize(body.materials.size());
     begin_step(body, 0.0);
   }
 
   template <class Body>
-  auto law(const Body& body, Index e, std::size_t q) const noexcept {
+  auto material(const Body& body, Index e, std::size_t q) const noexcept {
     const Point& point = points_[static_cast<std::size_t>(e)][q];
-    return body.law_of(e).law_of_step(steps_[body.rest.region_of(e)], point.driving);
+    return body.material_of(e).material_of_step(steps_[body.rest.region_of(e)], point.driving);
   }
 
   template <class Body>
   void begin_step(const Body& body, double dt) noexcept {
-    for (std::size_t r = 0; r < steps_.size(); ++r) steps_[r] = body.laws[r].over(dt);
+    for (std::size_t r = 0; r < steps_.size(); ++r) steps_[r] = body.materials[r].over(dt);
     for (std::size_t e = 0; e < points_.size(); ++e)
       for (Point& point : points_[e])
         point.driving = M::driving_stress(point.history, steps_[body.rest.region_of(static_cast<Index>(e))]);
   }
   template <class Body>
-  void remember(const Body& body, Index e, std::size_t q, const Tensor3<double>& f) noexcept {
-    if (body.law_of(e).admits(f))
-      body.law_of(e).remember(f, points_[static_cast<std::size_t>(e)][q].history, steps_[body.rest.region_of(e)]);
+  void update_history(const Body& body, Index e, std::size_t q, const Tensor3<double>& f) noexcept {
+    if (body.material_of(e).admits(f))
+      body.material_of(e).update_history(f, points_[static_cast<std::size_t>(e)][q].history,
+                                         steps_[body.rest.region_of(e)]);
   }
 
  private:
@@ -67,12 +68,12 @@ class PronyMemory {
 };
 
 template <class M, std::size_t Points>
-struct PointMemory {
-  using type = NoMemory;
+struct PointHistory {
+  using type = NoHistory;
 };
 template <ViscousMaterial M, std::size_t Points>
-struct PointMemory<M, Points> {
-  using type = PronyMemory<M, Points>;
+struct PointHistory<M, Points> {
+  using type = PronyPoints<M, Points>;
 };
 
 }}}  // namespace palpate::detail

@@ -1,0 +1,46 @@
+// A factor of a body, used for the same body when its parts have rotated.
+#pragma once
+
+#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/moving/detail/tangent_solver.hpp>
+#include <palpate/model/detail/nodal_rotation.hpp>
+
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// z = R A^-1 R^T r with a factor of A and a rotation per node. Exact for a body that rotates as a whole, good where
+/// neighbours rotate alike. O(nodes) beside the solve; allocates when it is made only.
+class CorotatedSolve {
+ public:
+  explicit CorotatedSolve(const DeformableBody& body);
+
+  const EssentialConditions& conditions() const noexcept { return conditions_; }
+
+  /// The rotation of every node under a displacement [m].
+  void fit(const VectorX& u, std::vector<Matrix3>& rotation) const noexcept;
+  /// Takes the rotations of u, for a factor of the body at rest.
+  void update(const VectorX& u) noexcept { fit(u, rotation_); }
+  /// The same for a factor of the body whose nodes were rotated by `since`.
+  void update(const VectorX& u, const std::vector<Matrix3>& since) noexcept;
+
+  /// Vectors have 3 entries per node; z is zero on constrained dofs.
+  void solve(TangentSolver& factor, const VectorX& r, VectorX& z) noexcept;
+
+ private:
+  static std::vector<NodeId> all_nodes(std::size_t count);
+
+  EssentialConditions conditions_;
+  NodalRotations rotations_;
+  std::vector<Matrix3> rotation_;
+  VectorX full_, x_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/detail/corotated_solve.ipp>
+#endif
