@@ -24,11 +24,11 @@ struct ToolSession {
   void tick(std::size_t i, const Vector3& target, const Matrix3& rotation) {
     for (ContactTool& t : tools) {
       t.motion.setZero();
-      t.rotated = 0.0;
+      t.end_path = 0.0;
     }
     ContactTool& t = tools[i];
     t.motion = target - t.target;
-    t.rotated = t.half_length * ((rotation - t.target_rotation) * t.own_axis).norm();
+    t.end_path = t.half_length * ((rotation - t.target_rotation) * t.own_axis).norm();
     t.target = target;
     t.target_rotation = rotation;
     tick();
