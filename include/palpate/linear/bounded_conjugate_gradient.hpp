@@ -16,7 +16,7 @@ struct BoundedSolveReport {
   double error = infinity;  ///< relative size of the last update, in the energy norm; infinite before the first
 };
 
-///  K x = b by preconditioned conjugate gradients, starting from zero. Every iteration adds alpha r.z to the squared
+/// K x = b by preconditioned conjugate gradients, starting from zero. Every iteration adds alpha r.z to the squared
 /// energy norm of x (Hestenes and Stiefel 1952), the norm in which CG is optimal. The solve stops when the last
 /// iteration added less than tolerance^2 of the total. This estimates the error before the last iteration; it omits
 /// only what further iterations would add. The residual is not recomputed. Owns its workspace; solving does not

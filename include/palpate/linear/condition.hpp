@@ -5,11 +5,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-///  Estimate of |K^-1|_1 for symmetric K from a few solves (Hager 1984, Higham 1988; usually within a factor 3, always
+/// Estimate of |K^-1|_1 for symmetric K from a few solves (Hager 1984, Higham 1988; usually within a factor 3, always
 /// a lower bound). Allocates; NaN when a solve is not finite.
 double inverse_norm_estimate(SolverView solver);
 
-///  Solves K x = K t for a fixed random t and returns |x - t| / |t|: the measured accuracy, independent of residuals.
+/// Solves K x = K t for a fixed random t and returns |x - t| / |t|: the measured accuracy, independent of residuals.
 /// Infinity when the solution is not finite. Allocates.
 double probe_error(const OperatorView& op, SolverView solver);
 
@@ -19,7 +19,7 @@ struct SoftestMotion {
   Index largest = -1;  ///< its largest entry
 };
 
-///  Finds the softest motion by inverse iteration from a fixed random start, and solves for it as `probe_error` does.
+/// Finds the softest motion by inverse iteration from a fixed random start, and solves for it as `probe_error` does.
 /// In a random solution one motion has only a share of 1 / sqrt(n); if rounding loses a single motion, this test shows
 /// the full loss. Infinity when a solution is not finite. Three solves; allocates.
 SoftestMotion probe_softest_motion(const OperatorView& op, SolverView solver);

@@ -15,7 +15,7 @@ namespace detail {
 class BigArray;
 }
 
-///  L L^T of a dense SPD matrix with checked pivots. `solve_into` costs n^2 multiply-adds and does not allocate. Copies
+/// L L^T of a dense SPD matrix with checked pivots. `solve_into` costs n^2 multiply-adds and does not allocate. Copies
 /// share the factor; each owns its workspace.
 class DenseCholesky {
  public:

@@ -11,7 +11,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 class BinaryReader;
 class BinaryWriter;
 
-///  The inverse of a dense SPD matrix, computed in double and stored as Scalar, double or float. `solve_into`
+/// The inverse of a dense SPD matrix, computed in double and stored as Scalar, double or float. `solve_into`
 /// multiplies only with the columns of non-zero loads: n multiply-adds per loaded dof. Copies share the matrix.
 template <std::floating_point Scalar>
 class DenseInverse {

@@ -11,7 +11,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-///  x += columns of an n x n matrix times their loads. A plain loop: compilers vectorise it together with the
+/// x += columns of an n x n matrix times their loads. A plain loop: compilers vectorise it together with the
 /// conversion of precision, whereas Eigen's casts between scalar types of different width are not vectorised.
 template <int N, class Scalar>
 void add_loaded_columns(const Scalar* matrix, Index n, const Index* columns, const double* b, double* x) noexcept {

@@ -6,7 +6,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-///  Factorises K = L L^T repeatedly on one analysis, into the same memory, for iterations and time steps. Neither
+/// Factorises K = L L^T repeatedly on one analysis, into the same memory, for iterations and time steps. Neither
 /// factorising nor solving allocates or throws. Not thread safe; neither copied nor moved.
 class RepeatedCholesky {
  public:
@@ -16,7 +16,7 @@ class RepeatedCholesky {
   RepeatedCholesky(const RepeatedCholesky&) = delete;
   RepeatedCholesky& operator=(const RepeatedCholesky&) = delete;
 
-  ///  Returns false, without a factor, when a pivot fails: the matrix is not positive definite, or not finite. The
+  /// Returns false, without a factor, when a pivot fails: the matrix is not positive definite, or not finite. The
   /// matrix must have the analysed pattern.
   bool factorise(const SparseLower& lower) noexcept;
   /// True when the last matrix was factorised.

@@ -13,7 +13,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 class BinaryReader;
 class BinaryWriter;
 
-///  K = L L^T of a sparse SPD matrix, with every pivot checked. Factorisation allocates what the analysis predicted;
+/// K = L L^T of a sparse SPD matrix, with every pivot checked. Factorisation allocates what the analysis predicted;
 /// `solve_into` reads every entry of L twice and does not allocate. Copies share the factor; each owns its workspace,
 /// so two threads can solve simultaneously with a copy each.
 ///
@@ -23,27 +23,27 @@ class BinaryWriter;
 class SparseCholesky {
  public:
   using Matrix = SparseLower;
-  ///  Smallest pivot allowed, relative to its own diagonal entry. Rounding turns the zero pivots of a free body into
+  /// Smallest pivot allowed, relative to its own diagonal entry. Rounding turns the zero pivots of a free body into
   /// values that start at 1e-15 and grow with the mesh; a supported beam 3000 times as long as thick still has 1e-12.
   static constexpr double pivot_threshold = 1e-13;
 
   SparseCholesky() = default;
 
-  ///  Analyses and factorises the matrix, given by its lower half. Throws not_positive_definite, too_large or
+  /// Analyses and factorises the matrix, given by its lower half. Throws not_positive_definite, too_large or
   /// cancelled.
   SparseCholesky(const Matrix& lower, const SetupLimits& limits);
 
   /// Factorises new values on an analysed pattern. Throws as above, and bad_argument for a different pattern.
   SparseCholesky(CholeskyAnalysis analysis, const Matrix& lower, const SetupLimits& limits);
 
-  ///  Factorises all but the kept dofs and writes their exact Schur complement K_kk - K_ki K_ii^-1 K_ik, symmetric to
+  /// Factorises all but the kept dofs and writes their exact Schur complement K_kk - K_ki K_ii^-1 K_ik, symmetric to
   /// the last bit, in the given order of the kept dofs [kept x kept]. Costs one factorisation. Throws as above.
   static SparseCholesky interior(CholeskyAnalysis analysis, const Matrix& lower, MatrixX& schur,
                                  const SetupLimits& limits);
 
   /// Writes the numbers of the factor. The structure is recomputed by analysis, so a file contains no indices.
   void write(BinaryWriter& out) const;
-  ///  Reads what `write` stored of a complete (or interior) factor of a matrix with this analysis. Valid only when the
+  /// Reads what `write` stored of a complete (or interior) factor of a matrix with this analysis. Valid only when the
   /// reader is good. Throws too_large.
   static SparseCholesky read(BinaryReader& in, CholeskyAnalysis analysis, bool interior, const SetupLimits& limits);
 
@@ -60,18 +60,18 @@ class SparseCholesky {
   /// Solves for several right-hand sides. Allocates a workspace; for set-up.
   MatrixX solve(const MatrixX& b) const;
 
-  ///  Interior factor: kept_load = b_k - K_ki K_ii^-1 b_i; stores b_i for `recover_into`. No allocation when kept_load
+  /// Interior factor: kept_load = b_k - K_ki K_ii^-1 b_i; stores b_i for `recover_into`. No allocation when kept_load
   /// has its size.
   void eliminate_into(const VectorX& b, VectorX& kept_load) noexcept;
-  ///  Interior factor: x from the kept part of the solution and the load of the last `eliminate_into`. No allocation
+  /// Interior factor: x from the kept part of the solution and the load of the last `eliminate_into`. No allocation
   /// when x has its size.
   void recover_into(const VectorX& kept_answer, VectorX& x) noexcept;
 
-  ///  Interior factor: forward substitution of unit loads on `dofs`, none of them kept. Visits only the fronts above
+  /// Interior factor: forward substitution of unit loads on `dofs`, none of them kept. Visits only the fronts above
   /// them. Allocates a workspace.
   ReducedUnits reduce_units(std::span<const Index> dofs) const;
 
-  ///  Entries `wanted` of K^-1 b, where b is zero except for `loads` on the dofs `loaded`. Visits only the fronts above
+  /// Entries `wanted` of K^-1 b, where b is zero except for `loads` on the dofs `loaded`. Visits only the fronts above
   /// the loaded and the wanted dofs; equals `solve_into` to the last bit. No allocation.
   void solve_path_into(std::span<const Index> loaded, std::span<const double> loads, std::span<const Index> wanted,
                        std::span<double> answer) noexcept;

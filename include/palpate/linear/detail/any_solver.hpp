@@ -57,7 +57,7 @@ class AnyOperator {
   std::unique_ptr<Base> op_;
 };
 
-///  Owns any copyable LinearSolver that reports its `bytes`; copying copies the solver. One indirect call per solve.
+/// Owns any copyable LinearSolver that reports its `bytes`; copying copies the solver. One indirect call per solve.
 /// Satisfies LinearSolver.
 class AnySolver {
  public:

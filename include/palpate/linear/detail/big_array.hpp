@@ -13,7 +13,7 @@ struct AlignedDelete {
   void operator()(double* p) const noexcept { ::operator delete (p, std::align_val_t{alignment}); }
 };
 
-///  Uninitialised doubles, aligned for any packet. On Linux, large arrays request huge pages, so that a factorisation
+/// Uninitialised doubles, aligned for any packet. On Linux, large arrays request huge pages, so that a factorisation
 /// causes fewer page faults while it fills them.
 class BigArray {
  public:

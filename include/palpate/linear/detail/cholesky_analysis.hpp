@@ -17,7 +17,7 @@ class CholeskyAnalysis {
  public:
   CholeskyAnalysis() = default;
 
-  ///  Analyses the pattern of the lower half of a matrix. O(nonzeros + nodes log nodes), a few per cent of the
+  /// Analyses the pattern of the lower half of a matrix. O(nonzeros + nodes log nodes), a few per cent of the
   /// factorisation. Throws bad_argument when the layout does not fit the matrix, or cancelled.
   explicit CholeskyAnalysis(const SparseLower& lower, const DofLayout& layout = {}, const SetupLimits& limits = {});
 
@@ -40,7 +40,7 @@ class CholeskyAnalysis {
   /// True when the matrix has the pattern that was analysed.
   bool fits(const SparseLower& lower) const noexcept;
 
-  ///  Hash of the elimination order and of the memory layout of a factor: a stored factor belongs to an analysis with
+  /// Hash of the elimination order and of the memory layout of a factor: a stored factor belongs to an analysis with
   /// the same hash. The order depends on floating-point positions, so it may differ between builds.
   std::uint64_t order_hash() const noexcept;
 

@@ -21,7 +21,7 @@ inline Operand transposed(const Operand& m) noexcept {
   return {m.data, m.stride, m.read == Read::plain ? Read::transposed : Read::plain};
 }
 
-///  Packs rows `first` ... of `steps` columns from `step` on, times a factor, in strips of `Height` rows, with zeros
+/// Packs rows `first` ... of `steps` columns from `step` on, times a factor, in strips of `Height` rows, with zeros
 /// after the last row.
 template <int Height>
 inline void pack_operand(const Operand& m, double factor, Index first, Index count, Index step, Index steps,

@@ -39,7 +39,7 @@ inline NodeVector postorder_places(const NodeVector& parent) {
   return place;
 }
 
-///  Row counts of all columns without forming the factor (Gilbert, Ng and Peyton 1994), weighted with the dofs of the
+/// Row counts of all columns without forming the factor (Gilbert, Ng and Peyton 1994), weighted with the dofs of the
 /// rows. Nearly O(edges).
 class RowCounts {
  public:

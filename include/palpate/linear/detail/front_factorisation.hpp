@@ -61,7 +61,7 @@ class FrontFactorisation {
     return true;
   }
 
-  ///  Returns the last front before its elimination: the Schur complement of the kept dofs in the given order. No front
+  /// Returns the last front before its elimination: the Schur complement of the kept dofs in the given order. No front
   /// can be eliminated afterwards.
   MatrixX schur(const std::vector<Index>& kept) {
     const auto k = static_cast<Index>(kept.size());
@@ -124,7 +124,7 @@ class FrontFactorisation {
       for (Index i = 0; i < tree_.runs[r].count; ++i) local_[tree_.runs[r].first + i] = next++;
   }
 
-  ///  Adds those columns of the children's updates that belong to columns begin ... end of the front. `column` returns
+  /// Adds those columns of the children's updates that belong to columns begin ... end of the front. `column` returns
   /// the address of row 0 of a column.
   template <class Column>
   void add_children(const Front& front, Column&& column, Index begin, Index end) {

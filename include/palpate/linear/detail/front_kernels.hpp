@@ -22,7 +22,7 @@ struct PivotSink {
   }
 };
 
-///  Lower part of c (rows x columns, column major): subtracts A A^T or sets c to -A A^T; A is given by columns. The
+/// Lower part of c (rows x columns, column major): subtracts A A^T or sets c to -A A^T; A is given by columns. The
 /// number of rows is a multiple of LowerPanels::alignment; entries above the diagonal are overwritten with arbitrary
 /// values.
 template <Into Mode>
@@ -53,7 +53,7 @@ inline void subtract_small(double* c, const LowerPanels& shape, Steps a, Index s
                           {a.data + shape.panel_begin(p), a.step}, steps);
 }
 
-///  The same through packed copies, for operands that do not fit into the cache or span too many pages. `packed` holds
+/// The same through packed copies, for operands that do not fit into the cache or span too many pages. `packed` holds
 /// 2 * (height + tile_rows) * steps doubles.
 template <Into Mode>
 inline void subtract_packed(double* c, const LowerPanels& shape, Steps a, Index steps, double* packed) noexcept {
@@ -144,7 +144,7 @@ inline void factor_trapezoid(double* a, Index stride, Index rows, Index columns,
   factor_few<column_block>(a, stride, rows, columns, place, sink);
 }
 
-///  Factorises the pivot columns of a front and writes -L21 L21^T to the lower triangle `update` of its `rows` other
+/// Factorises the pivot columns of a front and writes -L21 L21^T to the lower triangle `update` of its `rows` other
 /// rows. `packed` is workspace.
 inline void factor_front(double* front, Index pivots, Index rows, double* update, Index place, const PivotSink& sink,
                          double* packed) noexcept {

@@ -8,7 +8,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-///  The non-zero rows of L^-1 e for unit loads e on some dofs of an interior factor, and the loads to which they
+/// The non-zero rows of L^-1 e for unit loads e on some dofs of an interior factor, and the loads to which they
 /// condense on the kept dofs. These give entries of the inverse without a backward substitution: with F the condensed
 /// loads and C the compliance of the kept dofs, G_ij = y_i . y_j + f_i . C f_j.
 struct ReducedUnits {
@@ -25,7 +25,7 @@ namespace detail {
 
 struct FrontTree;
 
-///  Forward substitution of unit loads on `dofs`, none of them kept, through the first `fronts` fronts; `kept` are the
+/// Forward substitution of unit loads on `dofs`, none of them kept, through the first `fronts` fronts; `kept` are the
 /// dofs of the front after them. Visits only the fronts above the dofs. Allocates.
 ReducedUnits reduce_units(const FrontTree& tree, const double* factor, Index fronts, std::span<const Index> dofs,
                           std::span<const Index> kept);

@@ -89,7 +89,7 @@ inline void with_width(Index width, Visit&& visit) noexcept {
   }
 }
 
-///  One right-hand side. In: v holds the loads of the pivots and zeros for the rows below, padded to the height. Out:
+/// One right-hand side. In: v holds the loads of the pivots and zeros for the rows below, padded to the height. Out:
 /// L11^-1 times the loads, and -L21 times that. Reads L once.
 inline void forward_front(const double* l, const LowerPanels& shape, double* v) noexcept {
   for (Index p = 0; p < shape.panels(); ++p) {

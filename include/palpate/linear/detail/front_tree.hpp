@@ -11,7 +11,7 @@ struct Run {
   NodeId first = 0, count = 0;
 };
 
-///  Entries that are consecutive in the value array of the matrix and go to one column of a front (count > 0) or to one
+/// Entries that are consecutive in the value array of the matrix and go to one column of a front (count > 0) or to one
 /// row (count < 0).
 struct EntryRun {
   Index source = 0;

@@ -124,7 +124,7 @@ class FrontTreeBuilder {
     });
   }
 
-  ///  Updates are stored in one workspace as two stacks that grow towards each other, one for odd and one for even
+  /// Updates are stored in one workspace as two stacks that grow towards each other, one for odd and one for even
   /// depth. So the update of a front never overlaps those of its children, which are freed before.
   void place_updates() {
     const Index count = tree_.fronts.size();

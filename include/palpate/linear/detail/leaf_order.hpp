@@ -8,7 +8,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-///  Orders the small parts left by nested dissection. Neighbours outside the part count in the degrees, as far as they
+/// Orders the small parts left by nested dissection. Neighbours outside the part count in the degrees, as far as they
 /// fit into the bit sets. O(nodes x neighbours) operations on bit sets.
 class LeafOrder {
  public:
@@ -16,7 +16,7 @@ class LeafOrder {
 
   explicit LeafOrder(const NodeGraph& graph) : graph_(graph), bit_(graph.nodes(), -1) {}
 
-  ///  Puts `count` nodes, at most max_nodes, into elimination order. `outside(v)` is true for nodes eliminated later;
+  /// Puts `count` nodes, at most max_nodes, into elimination order. `outside(v)` is true for nodes eliminated later;
   /// nodes already eliminated are ignored.
   template <class Outside>
   void order(NodeId* nodes, Index count, Outside&& outside) {

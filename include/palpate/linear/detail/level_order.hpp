@@ -5,7 +5,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-///  Sorts a part along three "axes" found by breadth-first search: from one end to the other, from a node far from both
+/// Sorts a part along three "axes" found by breadth-first search: from one end to the other, from a node far from both
 /// ends, and by the difference of the distances from the ends. O(edges) per part.
 class LevelOrder {
  public:

@@ -7,7 +7,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-///  The leading columns of a lower triangle, divided into panels of `width` columns that each start at their first
+/// The leading columns of a lower triangle, divided into panels of `width` columns that each start at their first
 /// diagonal entry; column major inside a panel. Wastes half a panel per column, whereas a full square wastes half of
 /// its entries.
 struct LowerPanels {

@@ -11,7 +11,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-///  Assigns consecutive dofs with the same neighbours, including each other, to the same node. This recovers the dofs
+/// Assigns consecutive dofs with the same neighbours, including each other, to the same node. This recovers the dofs
 /// of a mesh node when no layout is given. O(nonzeros).
 inline std::vector<Index> nodes_from_equal_rows(const SparseLower& lower) {
   const Index n = lower.rows();

@@ -31,7 +31,7 @@ struct PartLists {
   IndexedVector<Side> side;                        ///< per node, from the last cut
 };
 
-///  Cost of a separator: its size first, then the balance of the two sides. In three dimensions halves of 0.4 and 0.6
+/// Cost of a separator: its size first, then the balance of the two sides. In three dimensions halves of 0.4 and 0.6
 /// cost about as much as a separator that is some per cent larger.
 inline double separator_cost(double separator, double bias) noexcept {
   return (separator + 0.5) * (1.0 + 7.0 * bias * bias);

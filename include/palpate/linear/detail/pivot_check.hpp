@@ -11,7 +11,7 @@ inline bool pivot_is_good(double pivot, double diagonal, double threshold) noexc
   return std::isfinite(pivot) && pivot > 0.0 && pivot > threshold * diagonal;
 }
 
-///  Throws not_positive_definite when a pivot is not finite, not positive or not larger than `threshold` times its own
+/// Throws not_positive_definite when a pivot is not finite, not positive or not larger than `threshold` times its own
 /// diagonal entry. `pivots` and `diagonal` are in elimination order; the reported ids are nodes, or dofs when
 /// `node_of_dof` is empty.
 void check_pivots(const VectorX& pivots, const VectorX& diagonal, const NodeVector& place_of_dof,

@@ -6,7 +6,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-///  Cuts a part at a position of one of its sorted lists. Scans every position of every list in one sweep, then
+/// Cuts a part at a position of one of its sorted lists. Scans every position of every list in one sweep, then
 /// replaces the layer of nodes at the best positions by a minimum vertex cover of the cut edges. O(edges) plus the
 /// matching.
 class SeparatorFinder {

@@ -5,7 +5,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-///  Moves nodes from a separator to either side, which draws their neighbours on the other side into it. Takes the best
+/// Moves nodes from a separator to either side, which draws their neighbours on the other side into it. Takes the best
 /// gain first, accepts some losses, and keeps the best state. O(separator x neighbours x log) per pass.
 class SeparatorRefinement {
  public:

@@ -5,12 +5,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-///  Replaces the lower half of an SPD matrix by that of its inverse, recursively in halves: with S the Schur complement
+/// Replaces the lower half of an SPD matrix by that of its inverse, recursively in halves: with S the Schur complement
 /// of A_11, B_22 = S^-1, B_21 = -B_22 T, B_11 = A_11^-1 + T^T B_22 T, T = A_21 A_11^-1. About n^3 multiplications and
 /// additions in total, almost all in matrix products; the workspace is a quarter of the matrix.
 class SpdInverse {
  public:
-  ///  Throws not_positive_definite with `what` for a pivot that is not finite, not positive or below `threshold` times
+  /// Throws not_positive_definite with `what` for a pivot that is not finite, not positive or below `threshold` times
   /// its own diagonal entry. The upper half is not read; afterwards the matrix is symmetric to the last bit.
   static void invert(MatrixX& matrix, double threshold, const char* what);
 

@@ -8,7 +8,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-///  Modelled time of a front in floating-point operations: a fixed cost, the cost of moving its entries, and the
+/// Modelled time of a front in floating-point operations: a fixed cost, the cost of moving its entries, and the
 /// factorisation. Merging small fronts adds operations on zeros and saves part of the first two.
 inline double front_cost(double pivots, double rows) noexcept {
   constexpr double per_front = 60000.0, per_entry = 16.0;

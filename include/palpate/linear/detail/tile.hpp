@@ -45,7 +45,7 @@ struct Steps {
   Index step;
 };
 
-///  c = c - A B (Into::full) or -A B (Into::empty), where step s of A is a column of `V` packets and step s of B is a
+/// c = c - A B (Into::full) or -A B (Into::empty), where step s of A is a column of `V` packets and step s of B is a
 /// row whose entry j is at j * `b_apart`. Writes only the first `valid` columns of c; reads all of B.
 template <int V, int Columns, Into Mode>
 PALPATE_ALWAYS_INLINE void subtract_tile_here(Index steps, Steps a, Steps b, Index b_apart, double* c, Index c_stride,
