@@ -31,7 +31,7 @@ Mesh<Averaged> box() {
 }
 
 /// Two materials that alternate between elements, as along fibres.
-void mix_laws(Body<Averaged>& body) {
+void mix_materials(Body<Averaged>& body) {
   testing::Random random(17);
   body.elasticity = {orthotropic(), 3.0 * orthotropic(), liver.elasticity()};
   for (Index e = 0; e < body.mesh.element_count(); ++e)
@@ -49,7 +49,7 @@ TEST_CASE("Smoothed<Tet4> passes the stiffness law suite, stored and matrix-free
   const int materials = GENERATE(1, 2, 3, 4);
   Body<Averaged> body = body_of(box(), {liver, materials == 2 ? LinearElastic{2e5, 0.2, 900.0} : liver});
   if (materials == 3) body.elasticity = {orthotropic(), 3.0 * orthotropic()};
-  if (materials == 4) mix_laws(body);
+  if (materials == 4) mix_materials(body);
   const BlockMatrix stored = assemble_stiffness<Averaged>(body, {});
   const MatrixFreeStiffness<Averaged> free(body, {});
   CHECK(testing::describe(testing::stiffness_laws(body, stored)) == "");
@@ -81,7 +81,7 @@ TEST_CASE("Smoothed<Tet4>: energy, forces and stress are consistent", "[assembly
   Body<Averaged> body = body_of(box(), {liver, {2e5, 0.2, 900.0}});
   const int materials = GENERATE(1, 2, 3);
   if (materials == 2) body.elasticity = {orthotropic(), 3.0 * orthotropic()};
-  if (materials == 3) mix_laws(body);
+  if (materials == 3) mix_materials(body);
   body.initial_strain[0] << 0.01, -0.02, 0.03, 0.04, 0.05, -0.06;
   const VectorX u = 0.1 * random_displacement(body.mesh);
   VectorX force(u.size());

@@ -202,9 +202,9 @@ TEST_CASE("an unexplained energy growth stops the motion at its last good state"
   CHECK(status.has(StatusFlag::energy_grew));
   CHECK(motion.state().displacement.allFinite());
   CHECK(motion.kinetic_energy() + motion.stored_energy() <= 100.0 * energy);
-  const VectorX constrained = motion.state().displacement;
+  const VectorX stopped = motion.state().displacement;
   CHECK(motion.step(dt).has(StatusFlag::energy_grew));
-  CHECK(motion.state().displacement == constrained);
+  CHECK(motion.state().displacement == stopped);
   motion.set(still, still);
   CHECK(motion.step(1e-6).ok());
 
