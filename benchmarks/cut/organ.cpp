@@ -83,7 +83,7 @@ Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& ord
     std::uint64_t done = 0;
     while (!stop.load()) {
       const double start = thread_seconds();
-      const bool worked = tissue.work();
+      const bool worked = tissue.process_cuts();
       const double seconds = thread_seconds() - start;
       if (const std::uint64_t cuts = tissue.cut_report().cuts; cuts != done) {
         done = cuts;

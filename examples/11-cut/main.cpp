@@ -8,7 +8,7 @@
 //   1. With Cuttable<...> as solver the model can be cut. A session can touch it as any other model.
 //   2. A BladeTool gives the hand the force of cutting: toughness times the length of edge that is in the tissue. What
 //      the edge sweeps is ordered from the tissue, a stroke at a time.
-//   3. `tissue.work()` cuts: here every sixteenth tick in this thread, so that the run is the same every time; in a
+//   3. `tissue.process_cuts()` cuts: here every sixteenth tick in this thread, so that the run is the same every time; in a
 //      program of yours a BackgroundWorker does it beside the ticks. A cut is a change of a few rows, not a new inverse: the
 //      report says how long it took until it could be felt.
 //   4. Parts that nothing holds come off as pieces; the rest goes on. No solve is ever singular.
@@ -71,9 +71,9 @@ std::vector<Vector2> push_blade(Organ& tissue, HapticServo& servo, const Vector3
     state.time = 1e-3 * i;
     force.emplace_back(1e3 * path * i / ticks, servo.tick(state).force().norm());
     if (!(force.back()[1] <= ForceLimits{}.peak_force * (1.0 + 1e-9))) return {};
-    if (i % 16 == 15) tissue.work();
+    if (i % 16 == 15) tissue.process_cuts();
   }
-  while (tissue.work()) {  // nothing is ordered any more: the error is measured, nodes inside follow
+  while (tissue.process_cuts()) {  // nothing is ordered any more: the error is measured, nodes inside follow
   }
   return force;
 }
@@ -101,7 +101,7 @@ double cut_apart(Organ& tissue, Index elements, Record& record) {
       for (Index e = 0; e < elements; ++e) all.remove.push_back(e);
       tissue.cut(all);
     }
-    tissue.work();
+    tissue.process_cuts();
     const auto mass = masses(tissue);
     constrained = mass[0];
     lost = std::max(lost, std::abs(mass[0] + mass[1] + mass[2] - whole) / whole);

@@ -44,9 +44,9 @@ TEST_CASE("a blade opens the tissue that it is pushed into, with a rendered forc
     REQUIRE((f.force() - last).norm() <= limits.slew_rate * limits.period * (1.0 + 1e-9));
     last = f.force();
     most = std::max(most, last.norm());
-    if (i % 16 == 0) tissue.work();
+    if (i % 16 == 0) tissue.process_cuts();
   }
-  tissue.work();
+  tissue.process_cuts();
   tissue.begin_tick();
   CHECK(most > 0.5);
   CHECK(most <= 40.0 * 0.05 + 1e-9);
@@ -70,7 +70,7 @@ TEST_CASE("a blade alone follows a session with another tool", "[cut][blade]") {
     s.time = 1e-3 * i;
     servo.tick(s);
     cutting += servo.read_snapshot().contact_count == 1;
-    if (i % 16 == 0) tissue.work();
+    if (i % 16 == 0) tissue.process_cuts();
   }
   CHECK(tissue.cut_report().cuts > 1);
   CHECK(cutting > 10);
@@ -84,7 +84,7 @@ TEST_CASE("one tool touches the tissue while another cuts it", "[cut][blade]") {
   MockDevice finger(down(0.012, 0.032, 0.1)), scalpel(down(0.0451, 0.018, 0.4));
   HapticSession session(std::tie(finger, scalpel), tissue, {SphereTool{}, long_blade});
   const LoopReport report = session.run({.duration = 0.4, .paced = false});
-  while (tissue.work()) {}
+  while (tissue.process_cuts()) {}
   CHECK(report.devices[0].peak_force > 0.05);
   CHECK(report.devices[1].peak_force > 0.5);
   CHECK(session.servo().blade(0) == nullptr);

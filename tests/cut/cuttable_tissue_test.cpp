@@ -59,11 +59,11 @@ TEST_CASE("a tissue passes the tissue law suite while it is cut", "[cut]") {
   const int vertices = tissue.contact_surface().vertex_count();
   tissue.cut(slit_at(0.052, 0.02));
   CHECK(tissue.begin_tick().has(StatusFlag::degraded_model));
-  CHECK(tissue.work());
+  CHECK(tissue.process_cuts());
   CHECK(tissue.begin_tick().ok());  // published and folded; deferred checks come later
   CHECK(tissue.cut_report().unchecked == 1);
   int checks = 0;
-  while (tissue.work()) ++checks;
+  while (tissue.process_cuts()) ++checks;
   CHECK(checks == 3);
   CHECK(tissue.cut_report().unchecked == 0);
   CHECK(tissue.begin_tick().ok());
@@ -71,7 +71,7 @@ TEST_CASE("a tissue passes the tissue law suite while it is cut", "[cut]") {
   CHECK(tissue.cut_report().error < 1e-10);
   check();
   tissue.cut(CutOrder{{0, 1, 2, 3, 4, 5}, {}});
-  tissue.work();
+  tissue.process_cuts();
   check();
   CHECK_REFUSED(SetupErrorKind::index_out_of_range, tissue.cut(CutOrder{{1000000}, {}}));
 }
@@ -130,7 +130,7 @@ TEST_CASE("overstretched remains of a cut are left out of contact and reported, 
   tissue.cut(order);
   const int vertices = tissue.contact_surface().vertex_count();
   const std::size_t triangles = tissue.contact_surface().triangles().size();
-  while (tissue.work()) {}
+  while (tissue.process_cuts()) {}
   CHECK(tissue.begin_tick().has(StatusFlag::degraded_model));
   CHECK(!tissue.cut_report().failed);
   CHECK(tissue.contact_surface().vertex_count() >= vertices);
@@ -145,7 +145,7 @@ TEST_CASE("overstretched remains of a cut are left out of contact and reported, 
   for (Index e = 0; e < mesh.element_count(); ++e)
     if (const double z = element_nodes<Tet4>(mesh, e).col(2).mean(); z > 0.14 && z < 0.15) rest.remove.push_back(e);
   tissue.cut(rest);
-  while (tissue.work()) {}
+  while (tissue.process_cuts()) {}
   CHECK(tissue.begin_tick().ok());
 }
 
@@ -175,7 +175,7 @@ TEST_CASE("a cut under the tool: the force continues, and its rate of change is 
   tissue.cut(slit_at(0.052, 0.012));
   CHECK(tick(6e-3).status.has(StatusFlag::degraded_model));  // not up to date, and reported
   CHECK(std::abs(servo.contact_force().norm() - contact_before.norm()) < 0.02 * contact_before.norm());
-  tissue.work();
+  tissue.process_cuts();
   const GatedForce after = tick(6e-3);
   CHECK(!after.status.has(StatusFlag::degraded_model));
   CHECK(servo.contact_force().norm() > 0.2 * contact_before.norm());  // contact with the surface is not lost
@@ -186,7 +186,7 @@ TEST_CASE("a cut under the tool: the force continues, and its rate of change is 
   // The rendered force equals that of a new session on the cut body.
   Tissue fresh(slab(), constrained_below(), soft);
   fresh.cut(slit_at(0.052, 0.012));
-  fresh.work();
+  fresh.process_cuts();
   fresh.begin_tick();
   HapticServo other(fresh, SphereTool{});
   Vector3 settled = Vector3::Zero();
@@ -211,7 +211,7 @@ TEST_CASE("reset under a tool and a renderer: no reference to deleted data", "[c
     }
   };
   tissue.cut(slit_at(0.052, 0.012));
-  while (tissue.work()) {}
+  while (tissue.process_cuts()) {}
   press(200);
   CHECK(surface.update());
   CHECK(surface.point_count() > points);
@@ -259,7 +259,7 @@ TEST_CASE("cut while touched until nothing is left: all forces finite and limite
     tissue.cut(order);
     ++cuts;
     for (int i = 0; i < 4; ++i) {
-      if (i == 2) tissue.work();
+      if (i == 2) tissue.process_cuts();
       const ToolState s = at({random.uniform(0.0, 0.05), random.uniform(0.0, 0.05), 0.05}, time += 1e-3);
       const GatedForce f = servo.tick({&s, 1})[0];
       REQUIRE(f.force().allFinite());
@@ -310,7 +310,7 @@ TEST_CASE("one thread cuts while another ticks", "[cut][extreme][F3]") {
       std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
   }
-  while (tissue.work()) {}
+  while (tissue.process_cuts()) {}
   CHECK(tissue.cut_report().cuts > 2);
   CHECK(tissue.cut_report().error < 1e-10);
 }

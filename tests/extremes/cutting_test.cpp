@@ -92,7 +92,7 @@ void cut_apart(int kind, std::uint64_t seed, int most, ManyCuts& all) {
     ++all.cuts;
     for (int i = 0; i < 3; ++i) {
       if (i == 1)
-        while (tissue.work()) {}
+        while (tissue.process_cuts()) {}
       ToolState s;
       s.position = x += random.vector<3>(-2e-3, 2e-3);
       if (x.norm() > 0.1) x = mesh.position(0);
@@ -175,8 +175,8 @@ TEST_CASE("cuts through nodes, edges and faces exactly, along nothing, and outsi
   const double floor = least_quality(one);
   for (const BladeSweep& s : nothing) {
     one.cut(s);
-    CHECK(one.work());
-    CHECK(!one.work());
+    CHECK(one.process_cuts());
+    CHECK(!one.process_cuts());
     CHECK(one.cut_report().cuts == 0);
     CHECK(one.begin_tick().ok());
   }
@@ -185,7 +185,7 @@ TEST_CASE("cuts through nodes, edges and faces exactly, along nothing, and outsi
     for (int again = 0; again < 2; ++again) {  // the second time there is nothing left to open
       for (Cut* t : {&one, &other}) {
         t->cut(s);
-        while (t->work()) {}
+        while (t->process_cuts()) {}
         CHECK(t->begin_tick().ok());
       }
       if (again == 0) ++cuts;
@@ -222,7 +222,7 @@ TEST_CASE("the shipped organ, cut sixty times a second beside a finger: slew and
     if (cut) {  // 20 mm long, through where the finger is
       const Vector3 from = middle + Vector3(-0.01 + 0.02 * frame / 18.0, 0, 0), to = from + Vector3(0.02 / 18.0, 0, 0);
       tissue.cut(BladeSweep{from - 8e-3 * outward, from + 0.01 * outward, to - 8e-3 * outward, to + 0.01 * outward});
-      tissue.work();
+      tissue.process_cuts();
     }
     ToolState s;
     s.time = 1e-3 * i;
@@ -241,7 +241,7 @@ TEST_CASE("the shipped organ, cut sixty times a second beside a finger: slew and
     was = s.position;
     REQUIRE(given <= energy.allowance + energy.refill * s.time + dissipated + worst_work);
   }
-  while (tissue.work()) {}
+  while (tissue.process_cuts()) {}
   const CutReport report = tissue.cut_report();
   INFO(report.cuts << " cuts, error " << report.error << ", " << longest << " N at most, " << across_cut
                    << " N across a cut, " << worst_slew << " of the slew limit");
