@@ -53,7 +53,7 @@ TEST_CASE("a tissue passes the tissue law suite while it is cut", "[cut]") {
   const auto check = [&] {
     tissue.begin_tick();
     for (const auto& broken : testing::tissue_laws(tissue, used_vertices(tissue, 20)))
-      FAIL_CHECK(broken.material << ' ' << broken.detail);
+      FAIL_CHECK(broken.law << ' ' << broken.detail);
   };
   check();
   const int vertices = tissue.contact_surface().vertex_count();

@@ -20,8 +20,8 @@ using namespace palpate;
 
 namespace {
 
-using Turning = Corotational<LinearElastic>;
-using TurningBody = HyperelasticBody<Tet4, Turning>;
+using CorotatedMaterial = Corotational<LinearElastic>;
+using CorotatedBody = HyperelasticBody<Tet4, CorotatedMaterial>;
 template <class Preconditioner = BlockJacobi>
 using Implicit = CorotatedMotion<LinearElastic, double, Preconditioner>;
 using Explicit = ExplicitMotion<BatchedTetrahedra<NeoHookean>, CentralDifference>;
@@ -105,8 +105,8 @@ double largest(const VectorX& x) {
   return x.cwiseAbs().maxCoeff();
 }
 
-TurningBody turning(const Mesh<Tet4>& mesh) {
-  return make_hyperelastic_body(mesh, std::vector<Turning>{{{5e3, 0.4, 1000.0}}});
+CorotatedBody corotated(const Mesh<Tet4>& mesh) {
+  return make_hyperelastic_body(mesh, std::vector<CorotatedMaterial>{{{5e3, 0.4, 1000.0}}});
 }
 CorotatedMotionOptions solved(TimeScheme scheme) {
   return {.scheme = scheme, .mass_damping = 0.3, .stiffness_damping = 2e-4, .solve = {3000, 1e-14}};
@@ -121,14 +121,14 @@ double difference_to_fresh(TimeScheme scheme) {
   std::vector<NodeId> number;
   const auto rest = without(mesh, gone, number);
   const Scene scene = Scene().gravity(gravity);
-  Implicit<Preconditioner> motion(turning(mesh), scene, solved(scheme));
+  Implicit<Preconditioner> motion(corotated(mesh), scene, solved(scheme));
   motion.set_state(drawn_out(mesh), spinning(mesh));
   for (int k = 0; k < 20; ++k) REQUIRE(motion.step(1e-3).taken);
 
-  Implicit<Preconditioner> fresh(turning(rest), scene, solved(scheme));
+  Implicit<Preconditioner> fresh(corotated(rest), scene, solved(scheme));
   fresh.set_state(pick(motion.displacement(), number), pick(motion.velocity(), number));
-  const CutPhysics<Tet4> physics(turning(mesh).rest, extract_boundary<Tet4>(mesh), scene);
-  motion.remove_elements(is_gone, lumped_mass(turning(mesh).rest, is_gone), physics.load_left(is_gone));
+  const CutPhysics<Tet4> physics(corotated(mesh).rest, extract_boundary<Tet4>(mesh), scene);
+  motion.remove_elements(is_gone, lumped_mass(corotated(mesh).rest, is_gone), physics.load_left(is_gone));
   const VectorX where = motion.displacement();
   double worst = 0.0;
   for (int k = 0; k < 60; ++k) {
@@ -235,9 +235,9 @@ TEST_CASE("fragments of a co-rotated body conserve momentum, in single precision
   const auto mesh = bar();
   const auto gone = middle_of(mesh);
   const auto is_gone = [&](Index e) { return gone[static_cast<std::size_t>(e)] != 0; };
-  CorotatedMotion<LinearElastic, float> motion(turning(mesh), Scene(), {.solve = {300, 1e-6}});
+  CorotatedMotion<LinearElastic, float> motion(corotated(mesh), Scene(), {.solve = {300, 1e-6}});
   motion.set_state(drawn_out(mesh), spinning(mesh));
-  const VectorX mass = lumped_mass(turning(mesh).rest, is_gone);
+  const VectorX mass = lumped_mass(corotated(mesh).rest, is_gone);
   motion.remove_elements(is_gone, mass, VectorX::Zero(motion.size()));
   VectorX left = mass;
   for (Index i = 0; i < mass.size(); ++i)

@@ -19,8 +19,10 @@ void show_constrained(MotionState& s) noexcept;
 
 /// Central differences (Belytschko, Liu, Moran, Nonlinear Finite Elements, 6.2), as half a velocity update, a position
 /// update, half a velocity update: u and v belong to the same time, the step may change, and with a constant step the
-/// displacements satisfy   u_n+1 = [dt^2 (R - F) / m + 2 u_n - (1 - alpha dt/2) u_n-1] / (1 + alpha dt/2). Order 2;
-/// symplectic without damping: energy does not drift, momentum is exact. Stable up to 2 / omega_max for any alpha.
+/// displacements satisfy
+///   u_n+1 = [dt^2 (R - F) / m + 2 u_n - (1 - alpha dt/2) u_n-1] / (1 + alpha dt/2).
+/// Order 2; symplectic without damping: energy does not drift, momentum is exact. Stable up to 2 / omega_max for any
+/// alpha.
 struct CentralDifference {
   static constexpr int order = 2;
 

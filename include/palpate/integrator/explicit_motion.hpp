@@ -29,14 +29,16 @@ struct ExplicitOptions {
 };
 
 /// Integrates M u'' + alpha M u' + f(u) = R with a lumped mass. step() neither allocates nor throws and flushes
-/// denormals. A refused step sets a flag and changes nothing:   step_refused   dt is not positive, NaN, or above
-/// limit(); load() or target() does not have one entry per dof   energy_grew    kinetic and stored energy exceed the
-/// energy at the start plus the work of loads and constrained dofs                  since, or are not finite; the body
-/// is back in its last good state, and stays there until restart() A step that is taken reports the state at its end:
-/// inverted         elements are inverted (deformation() gives their number and the worst one)   degraded_model   a
-/// material was evaluated where it is not admissible, and its stress there is meaningless The energy of a stable motion
-/// near the limit oscillates above its mean by a factor of up to 1 / (1 - dt / limit); the check allows for that. Cost
-/// per step: one force, 1/limit_every forces, 1/energy_every energies, and about 20 numbers per dof.
+/// denormals. A refused step sets a flag and changes nothing:
+///   step_refused   dt is not positive, NaN, or above limit(); load() or target() does not have one entry per dof
+///   energy_grew    kinetic and stored energy exceed the energy at the start plus the work done since by loads and
+///                  constrained dofs, or are not finite; the body returns to its last good state, and stays there until
+///                  restart()
+/// A step that is taken reports the state at its end:
+///   inverted         elements are inverted (deformation() gives their number and the worst one)
+///   degraded_model   a material was evaluated where it is not admissible, and its stress there is meaningless
+/// The energy of a stable motion near the limit oscillates up to 1 / (1 - dt / limit) times its value; the check allows
+/// for that. Cost per step: one force, 1/limit_every forces, 1/energy_every energies, and about 20 numbers per dof.
 template <ForceOperator Force, ExplicitScheme Scheme>
 class ExplicitMotion {
   static_assert(

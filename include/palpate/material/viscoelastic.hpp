@@ -56,14 +56,15 @@ struct PronyStep {
 };
 
 /// A viscoelastic material: the stress right after a sudden strain is that of the base, and a share g_i of it relaxes
-/// as exp(-t / tau_i). Over a step dt, with S0 the stress of the base (Simo 1987; Simo and Hughes 1998, 10.3):   h_i' =
-/// exp(-dt / tau_i) h_i + g_i (1 - exp(-dt / tau_i)) tau_i / dt (S0' - S0),   S = (1 - sum g_i) S0' + sum h_i', exact
-/// if S0 is linear in time over the step and stable for every dt >= 0. dt = 0 is a sudden strain, an infinite dt gives
-/// full relaxation. Parameters of the base are the instantaneous ones; the long-term ones are 1 - sum g_i times these.
-/// Admissible: base admissible, g_i >= 0, their sum below 1, tau_i > 0. At large strain S is F^-1 P, which needs J > 0
-/// for every base. With deviatoric relaxation the part that does not relax is the stress of a pure change of volume,
-/// that of the base at J^(1/3) I. So the long-term stress still derives from an energy, and no closed path releases
-/// any. For a base whose energy splits into isochoric and volumetric parts it is the pressure, unchanged.
+/// as exp(-t / tau_i). Over a step dt, with S0 the stress of the base (Simo 1987; Simo and Hughes 1998, 10.3):
+///   h_i' = exp(-dt / tau_i) h_i + g_i (1 - exp(-dt / tau_i)) tau_i / dt (S0' - S0),
+///   S = (1 - sum g_i) S0' + sum h_i',
+/// exact if S0 is linear in time over the step and stable for every dt >= 0. dt = 0 is a sudden strain, an infinite dt
+/// gives full relaxation. Parameters of the base are the instantaneous ones; the long-term ones are 1 - sum g_i times
+/// these. Admissible: base admissible, g_i >= 0, their sum below 1, tau_i > 0. At large strain S is F^-1 P, which needs
+/// J > 0 for every base. With deviatoric relaxation the part that does not relax is the stress of a pure change of
+/// volume, that of the base at J^(1/3) I. So the long-term stress still derives from an energy, and no closed path
+/// releases any. For a base whose energy splits into isochoric and volumetric parts it is the pressure, unchanged.
 template <Material Base, int Terms>
 struct Viscoelastic {
   Base base{};

@@ -47,7 +47,7 @@ class AnyStiffness {
   std::vector<Matrix3> diagonal_blocks() const { return owned_->view.diagonal_blocks(); }
   std::size_t bytes() const noexcept { return owned_->bytes; }
   StiffnessView view() const noexcept { return owned_->view; }
-  /// The stored matrix, or null if there is none.
+  /// The stored matrix; null without one.
   const BlockMatrix* matrix() const noexcept { return owned_->matrix; }
 
  private:

@@ -88,7 +88,7 @@ class CutTopology {
   NodeId copied_from(NodeId node) const noexcept { return copied_from_[at(node)]; }
   /// Elements around a node, without removed ones.
   const std::vector<Index>& elements_at(NodeId node) const noexcept { return star_[at(node)]; }
-  /// Neighbour element across a face, -1 when there is none or the face is open.
+  /// Neighbour element across a face, -1 on the surface and at an open face.
   Index neighbour(Index e, std::size_t face) const noexcept { return neighbour_[at(e)][face]; }
   /// Nodes of a face, outward.
   FaceIds<E> face_nodes(const ElementFace& f) const {
@@ -162,7 +162,7 @@ class CutTopology {
     for (Index e = 0; e < mesh_.element_count(); ++e)
       for (const NodeId node : mesh_.elements[at(e)]) star_[at(node)].push_back(e);
   }
-  /// The face of element e towards `other`, -1 if there is none.
+  /// The face of element e towards `other`, -1 if they share no face.
   int face_towards(Index e, Index other) const noexcept {
     for (std::size_t f = 0; f < faces; ++f)
       if (neighbour_[at(e)][f] == other) return static_cast<int>(f);

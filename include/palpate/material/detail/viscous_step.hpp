@@ -49,9 +49,10 @@ class VolumeStress {
 }  // namespace detail
 
 /// The incremental potential of a Prony series over a step (Ortiz and Stainier 1999), after relaxation over the step:
-/// W = share W0(F) + kept U(J) + driving : E,   E = (F^T F - I)/2, where `driving` is the remaining second
-/// Piola-Kirchhoff stress of the history and U the part of W0 from a change of volume. It exists for every base, so a
-/// viscoelastic step is minimised like an elastic one. Needs J > 0. Refers to the base.
+///   W = share W0(F) + kept U(J) + driving : E,   E = (F^T F - I)/2,
+/// where `driving` is the remaining second Piola-Kirchhoff stress of the history and U the part of W0 from a change of
+/// volume. It exists for every base, so a viscoelastic step is minimised like an elastic one. Needs J > 0. Refers to
+/// the base.
 template <class Base>
 struct ViscousStep {
   const Base& base;
