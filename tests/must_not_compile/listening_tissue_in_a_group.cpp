@@ -1,4 +1,4 @@
-// expect: a TissueGroup hands on no hook but prefetch
+// expect: a TissueGroup forwards no hook but prefetch
 // The group would not tell its member what presses, and the member would never stiffen.
 #include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/contact/tissue_group.hpp>
