@@ -1,5 +1,5 @@
-// Tissue that is cut while it is touched, to be had beside palpate.hpp: HapticFEModel on Cuttable<...>, its drawn surface,
-// and the thread that cuts.
+// Cutting of tissue while it is touched, in addition to palpate.hpp: HapticFEModel on Cuttable<...>, its rendered
+// surface, and the background thread that computes the cuts.
 #pragma once
 
 #include <palpate/cut/cuttable.hpp>
