@@ -96,7 +96,7 @@ TEST_CASE("openhaptics: torque without limits of it is refused", "[device][openh
   options.torque = true;  // the SDK is not asked for limits of torque
   CHECK_THAT(hd_refusal([&] { OpenHapticsDevice device(options); }), contains("peak torque of 0 N m"));
   options.limits = DeviceLimits{.peak_torque = 0.1};
-  CHECK_THAT(hd_refusal([&] { OpenHapticsDevice device(options); }), contains("turning stiffness of 0"));
+  CHECK_THAT(hd_refusal([&] { OpenHapticsDevice device(options); }), contains("rotational stiffness of 0"));
 }
 
 TEST_CASE("openhaptics: limits are asked from the SDK", "[device][openhaptics]") {

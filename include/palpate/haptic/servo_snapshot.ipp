@@ -59,7 +59,7 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const ServoSnapshot& 
   return out;
 }
 
-/// The three rows of a held point as the one force that they are.
+/// Combines the three rows of a grasped point into one force.
 PALPATE_INLINE void ServoSnapshot::note_held(const Contact& row, const Vector3& point, const Vector3& total) noexcept {
   const double force = total.norm();
   if (!(force > 0.0)) return;
