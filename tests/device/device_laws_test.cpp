@@ -1,4 +1,4 @@
-// The law suite for devices passes good devices and catches each kind of bad one.
+// The law suite for devices accepts correct devices and detects each kind of faulty one.
 #include <palpate/core/detail/limit_length.hpp>
 #include <palpate/device/mock_device.hpp>
 #include <palpate/device/replay_device.hpp>
@@ -14,7 +14,7 @@ using palpate::testing::violates;
 
 namespace {
 
-/// A good device of the plainest kind; the bad ones below differ in one thing.
+/// A minimal correct device; the faulty ones below differ in one respect.
 struct Good {
   ToolState read() noexcept {
     ToolState s;
@@ -74,7 +74,7 @@ struct KeepsForceWhenLost : Good {
     return s;
   }
 };
-/// A good device with motors for torque; those below differ in one thing.
+/// A correct device with motors for torque; those below differ in one respect.
 struct Turns : Good {
   Status write(const GatedForce& given) noexcept {
     torque.setZero();
@@ -107,7 +107,7 @@ struct UnlimitedTorque : Turns {
     return status;
   }
 };
-struct TorqueWithoutLimit : Turns {  // as if no limit were no bound
+struct TorqueWithoutLimit : Turns {  // as if a torque limit of zero were unlimited
   DeviceLimits limits() const noexcept { return {}; }
 };
 struct QuietTorque : Turns {
@@ -171,11 +171,11 @@ struct NoWorkspace : Good {
 };
 
 template <class Device>
-bool breaks(const char* material) {
+bool breaks(const char* law) {
   Device device;
   const auto violations = device_laws(device);
   INFO(testing::describe(violations));
-  return violates(violations, material);
+  return violates(violations, law);
 }
 
 template <class Device>
@@ -185,7 +185,7 @@ std::string broken(Device device) {
 
 }  // namespace
 
-TEST_CASE("good devices keep the laws", "[device][laws]") {
+TEST_CASE("correct devices satisfy the laws", "[device][laws]") {
   CHECK(broken(Good{}) == "");
   CHECK(broken(Turns{}) == "");
   CHECK(broken(MockDevice(trajectory::poke())) == "");
@@ -199,15 +199,15 @@ TEST_CASE("good devices keep the laws", "[device][laws]") {
   CHECK(broken(MockDevice(trajectory::poke(), options)) == "");
 }
 
-TEST_CASE("a replay keeps the laws", "[device][laws]") {
+TEST_CASE("a replay satisfies the laws", "[device][laws]") {
   std::vector<RecordedTick> ticks(20'000);
   for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].state.time = 1e-3 * static_cast<double>(i);
   CHECK(broken(ReplayDevice(ticks)) == "");
-  ticks.resize(5000);  // over before the law suite is
+  ticks.resize(5000);  // ends before the law suite does
   CHECK(broken(ReplayDevice(ticks)) == "");
 }
 
-TEST_CASE("a recorder keeps the laws of its device", "[device][laws]") {
+TEST_CASE("a recorder satisfies the laws of its device", "[device][laws]") {
   MockDevice stylus(trajectory::poke());
   Recorder recorder(stylus, 100);
   testing::DeviceProbe<Recorder<MockDevice<>>> probe;
@@ -216,7 +216,7 @@ TEST_CASE("a recorder keeps the laws of its device", "[device][laws]") {
   CHECK(testing::describe(device_laws(recorder, probe)) == "");
 }
 
-TEST_CASE("each kind of bad device is caught", "[device][laws][extreme][D6][D7]") {
+TEST_CASE("each kind of faulty device is detected", "[device][laws][extreme][D6][D7]") {
   CHECK(breaks<Unlimited>("never above the peak"));
   CHECK(breaks<ClampsAxes>("keeps the direction"));
   CHECK(breaks<KeepsForceAfterStop>("zero after stop"));

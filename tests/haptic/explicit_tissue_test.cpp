@@ -1,4 +1,4 @@
-// Tissue that moves by explicit steps under a servo: the steady forces of implicit steps, and no allocation.
+// Tissue that moves by explicit steps under a servo: the same steady forces as implicit steps, and no allocation.
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
@@ -31,7 +31,7 @@ Scene held_cushion() {
   return Scene().fix("z0").touch("z1").gravity({0.0, 0.0, -9.81});
 }
 
-/// Normal force [N], and what the last ticks said.
+/// Normal force [N], and the status of the last ticks.
 std::pair<double, Status> force_of_hold(MovingTissue& tissue) {
   const auto [force, status] = test::press_and_hold(tissue, {0.03, 0.03, 0.03}, tip_radius, 2000);
   return {force[2], status};
@@ -39,7 +39,7 @@ std::pair<double, Status> force_of_hold(MovingTissue& tissue) {
 
 }  // namespace
 
-TEST_CASE("explicit steps come to the steady force of implicit ones, whatever the step", "[haptic][explicit]") {
+TEST_CASE("explicit steps reach the steady force of implicit ones for any step", "[haptic][explicit]") {
   NewtonTissue solved(cushion(), held_cushion(), gel);
   const double wanted = force_of_hold(solved).first;
   CHECK(wanted > 0.3);
@@ -52,7 +52,7 @@ TEST_CASE("explicit steps come to the steady force of implicit ones, whatever th
   }
 }
 
-TEST_CASE("explicit tissue keeps the laws of tissues, settles under its weight and does not allocate",
+TEST_CASE("explicit tissue satisfies the laws of tissues, settles under its weight and does not allocate",
           "[haptic][explicit]") {
   ExplicitTissue<NeoHookean> tissue(cushion(), held_cushion(), gel);
   CHECK(testing::describe(testing::tissue_laws(tissue, std::array{0, 14, 21, 35}, {1e-3})) == "");
@@ -79,14 +79,14 @@ TEST_CASE("explicit tissue keeps the laws of tissues, settles under its weight a
   CHECK((tissue.displacement() - start).norm() <= 1e-3 * start.norm());
 }
 
-TEST_CASE("explicit steps at small strain feel as Newton's method does", "[haptic][explicit]") {
+TEST_CASE("explicit steps at small strain give the same force as Newton's method", "[haptic][explicit]") {
   const LinearElastic linear{5e3, 0.4, 1000.0};
   HapticFEModel<Tet4, LinearElastic, Implicit<Newton<SparseCholesky>>> solved(cushion(), held_cushion(), linear);
   ExplicitTissue<LinearElastic> tissue(cushion(), held_cushion(), linear, {}, {.mass_damping = 40.0});
   CHECK_THAT(force_of_hold(tissue).first, WithinRel(force_of_hold(solved).first, 5e-3));
 }
 
-TEST_CASE("explicit steps that would take too many stable ones are refused", "[haptic][explicit]") {
+TEST_CASE("explicit steps that need too many stable substeps are refused", "[haptic][explicit]") {
   const SetupProblem p = test::refusal([] {
     ExplicitTissue<NeoHookean>(cushion(), held_cushion(), gel, {}, {.step = 1e-2, .maximum_substeps = 3});
   });
