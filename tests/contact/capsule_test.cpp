@@ -88,11 +88,11 @@ TEST_CASE("a capsule that rotates over springs", "[contact][capsule]") {
 
 TEST_CASE("the coupling for rotations is a spring in series", "[contact][capsule][torque]") {
   // Two vertices under the ends of a long capsule; a rotation about y lowers one end.
-  const double radius = 0.02, half = 0.06, a = 0.05, own = 1e-3, coupling = 5e-4, turning = 0.4, depth = 1e-3,
+  const double radius = 0.02, half = 0.06, a = 0.05, own = 1e-3, coupling = 5e-4, rotational = 0.4, depth = 1e-3,
                tilt = 2e-3;
   AnalyticTissue tissue(2, 2.0 * a, own);  // at -a, 0, a
   ContactTool tool = round_tool(radius, {0, 0, radius + 1e-3}, coupling, half);
-  tool.rotational_compliance = turning;
+  tool.rotational_compliance = rotational;
   ToolSession s(tissue, {tool});
   s.move(0, {0, 0, radius - depth}, 100);
   CHECK(s.tools[0].torque.norm() <= 1e-9);
@@ -101,12 +101,12 @@ TEST_CASE("the coupling for rotations is a spring in series", "[contact][capsule
   // Ends move down by depth +- a theta, the middle by depth: three springs of 1/own.
   const double force = 3.0 * depth / (own + 3.0 * coupling);
   const double stiffness = 2.0 * a * a / own;  // [N m/rad] of the two ends
-  const double torque = -tilt * stiffness / (1.0 + turning * stiffness);
+  const double torque = -tilt * stiffness / (1.0 + rotational * stiffness);
   CHECK_THAT(s.force()[2], WithinRel(force, 2e-3));
   CHECK_THAT(s.tools[0].torque[1], WithinRel(torque, 2e-3));
   // Rendered: the torque is the rotational stiffness times the angle between device and proxy.
   const Eigen::AngleAxisd lag(Matrix3(s.tools[0].rotation * s.tools[0].target_rotation.transpose()));
-  CHECK((lag.angle() * lag.axis() - turning * s.tools[0].torque).norm() <= 1e-6 * tilt);
+  CHECK((lag.angle() * lag.axis() - rotational * s.tools[0].torque).norm() <= 1e-6 * tilt);
 }
 
 TEST_CASE("a capsule of zero length is bitwise equal to a sphere", "[contact][capsule]") {

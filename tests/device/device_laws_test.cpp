@@ -75,14 +75,14 @@ struct KeepsForceWhenLost : Good {
   }
 };
 /// A correct device with motors for torque; those below differ in one respect.
-struct Turns : Good {
+struct WithTorque : Good {
   Status write(const GatedForce& given) noexcept {
     torque.setZero();
     Status status = Good::write(given);
-    if (running && readable) turn(given.torque(), status);
+    if (running && readable) render_torque(given.torque(), status);
     return status;
   }
-  void turn(const Vector3& wanted, Status& status) noexcept {
+  void render_torque(const Vector3& wanted, Status& status) noexcept {
     bool shortened = false;
     torque = limit_length(wanted, 0.1, shortened);
     if (shortened) status.set(StatusFlag::saturated);
@@ -100,26 +100,26 @@ struct Turns : Good {
   const Vector3& last_torque() const noexcept { return torque; }
   Vector3 torque = Vector3::Zero();
 };
-struct UnlimitedTorque : Turns {
+struct UnlimitedTorque : WithTorque {
   Status write(const GatedForce& given) noexcept {
-    const Status status = Turns::write(given);
+    const Status status = WithTorque::write(given);
     if (status.has(StatusFlag::saturated)) torque = given.torque();
     return status;
   }
 };
-struct TorqueWithoutLimit : Turns {  // as if a torque limit of zero were unlimited
+struct TorqueWithoutLimit : WithTorque {  // as if a torque limit of zero were unlimited
   DeviceLimits limits() const noexcept { return {}; }
 };
-struct QuietTorque : Turns {
+struct QuietTorque : WithTorque {
   Status write(const GatedForce& given) noexcept {
-    Turns::write(given);
+    WithTorque::write(given);
     return Good::write(given);
   }
 };
-struct TurnsAfterStop : Turns {
+struct TorqueAfterStop : WithTorque {
   void stop() noexcept { Good::stop(); }
 };
-struct NoTurningStiffness : Turns {
+struct NoRotationalStiffness : WithTorque {
   DeviceLimits limits() const noexcept { return {.peak_torque = 0.1}; }
 };
 struct Weak : Good {
@@ -129,7 +129,7 @@ struct Weak : Good {
     return status;
   }
 };
-struct SaysNothing : Good {
+struct ReportsNothing : Good {
   Status write(const GatedForce& given) noexcept {
     Good::write(given);
     return {};
@@ -187,7 +187,7 @@ std::string broken(Device device) {
 
 TEST_CASE("correct devices satisfy the laws", "[device][laws]") {
   CHECK(broken(Good{}) == "");
-  CHECK(broken(Turns{}) == "");
+  CHECK(broken(WithTorque{}) == "");
   CHECK(broken(MockDevice(trajectory::poke())) == "");
   CHECK(broken(MockDevice(trajectory::press_drag_release())) == "");
   CHECK(broken(MockDevice([](double t) { return Vector3(std::sin(t), 0.0, 0.0); })) == "");
@@ -225,11 +225,11 @@ TEST_CASE("each kind of faulty device is detected", "[device][laws][extreme][D6]
   CHECK(breaks<UnlimitedTorque>("torque within its peak"));
   CHECK(breaks<TorqueWithoutLimit>("torque within its peak"));
   CHECK(breaks<QuietTorque>("says that it saturates"));
-  CHECK(breaks<TurnsAfterStop>("zero after stop"));
-  CHECK(breaks<NoTurningStiffness>("limits are sane"));
+  CHECK(breaks<TorqueAfterStop>("zero after stop"));
+  CHECK(breaks<NoRotationalStiffness>("limits are sane"));
   CHECK(breaks<Weak>("renders what it can"));
-  CHECK(breaks<SaysNothing>("says that it saturates"));
-  CHECK(breaks<SaysNothing>("says that it is disconnected"));
+  CHECK(breaks<ReportsNothing>("says that it saturates"));
+  CHECK(breaks<ReportsNothing>("says that it is disconnected"));
   CHECK(breaks<NanState>("valid states are finite"));
   CHECK(breaks<HalfVelocity>("valid states are finite"));
   CHECK(breaks<NoRotation>("valid states are finite"));

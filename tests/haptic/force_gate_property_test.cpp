@@ -216,7 +216,7 @@ TEST_CASE("ramp and fade are monotone for 1000 constant forces", "[haptic][gate]
       before = size;
     }
     if (broken > 0 || before != 0.0)
-      FAIL("force " << i << ": " << broken << " steps the wrong way, ends at " << before);
+      FAIL("force " << i << ": " << broken << " steps in the wrong direction, ends at " << before);
   }
   SUCCEED();
 }

@@ -209,7 +209,7 @@ TEST_CASE("special values keep the level within bounds and the gain valid", "[ha
     const Vector3 f(any(), any(), any()), out = tank.limit(f, Vector3(any(), any(), any()), any(), status);
     tank.gave(Vector3(any(), any(), any()));
     if (!(tank.level() >= -limits.allowance && tank.level() <= limits.capacity)) FAIL("level " << tank.level());
-    if (f.allFinite() && !out.allFinite()) FAIL("made " << out.transpose());
+    if (f.allFinite() && !out.allFinite()) FAIL("result " << out.transpose());
     if (!std::isfinite(tank.observer().given())) FAIL("given " << tank.observer().given());
   }
   tank.reset();

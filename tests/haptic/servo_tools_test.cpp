@@ -85,7 +85,7 @@ TEST_CASE("the sum of a snapshot's contacts is the contact force, also with gras
       CHECK((sum[i] - tools.servo.contact_force(i)).norm() <= 1e-9 * tools.servo.contact_force(i).norm());
   };
   look(0);
-  tools.move(0, {-0.007, 0.0006, round_radius - 1e-3}, 20);  // drags
+  tools.move(0, {-0.007, 0.0006, round_radius - 1e-3}, 20);  // lateral motion
   REQUIRE(tools.servo.is_holding(0));
   look(1);
   tools.move(0, {-0.008, -0.0005, round_radius + 3e-3}, 40);  // pulls: only the grasped point, towards the surface

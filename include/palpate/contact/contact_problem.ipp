@@ -109,15 +109,15 @@ PALPATE_INLINE void ContactProblem::grasp(const TissueView& tissue, Tools tools)
     const ContactTool& tool = tools[t];
     Grasp& g = grasps_[t];
     if (!tool.active || !tool.grasping) g = Grasp{};
-    if (!tool.active || !tool.grasping || g.asked) continue;
-    g.asked = true;
+    if (!tool.active || !tool.grasping || g.requested) continue;
+    g.requested = true;
     const Candidate* nearest = nullptr;
     for (Candidate& c : candidates_.items()) {
       if (c.tool != static_cast<int>(t)) continue;
       if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
       if (c.facing && c.gap <= Grasp::reach * tool.radius && (nearest == nullptr || c.gap < nearest->gap)) nearest = &c;
     }
-    if (nearest != nullptr) g.hold(*nearest, tool);
+    if (nearest != nullptr) g.take(*nearest, tool);
   }
 }
 

@@ -9,12 +9,12 @@ namespace palpate { inline namespace PALPATE_ABI {
 struct Grasp {
   static constexpr double reach = 0.1;  ///< largest gap, in radii, of a point that can be grasped
 
-  bool asked = false;
+  bool requested = false;  ///< since the tool began to grasp
   int sample = -1;  ///< -1: no point was near enough
   std::array<Candidate, 3> rows{};
 
   /// Grasps this point at its present place on the tool.
-  void hold(const Candidate& point, const ContactTool& tool) noexcept;
+  void take(const Candidate& point, const ContactTool& tool) noexcept;
 };
 
 }}  // namespace palpate

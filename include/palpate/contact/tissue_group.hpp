@@ -69,12 +69,12 @@ class TissueGroup : public StillTissue {
   static TissueView checked(T& tissue) {
     static_assert(
         !AnnouncesChanges<T>,
-        "palpate: a tissue that moves by itself cannot be in a TissueGroup; give it a HapticServo of its own");
+        "palpate: a tissue that moves by itself cannot be in a TissueGroup; use a separate HapticServo for it");
     const TissueView view(tissue);
     if constexpr (TissueModel<T> && !AnnouncesChanges<T>)
-      static_assert(
-          detail::HooksOnlyPrefetch<T>,
-          "palpate: a TissueGroup forwards no hook but prefetch; give a tissue with others a HapticServo of its own");
+      static_assert(detail::HooksOnlyPrefetch<T>,
+                    "palpate: a TissueGroup forwards no hook but prefetch; use a separate HapticServo for a tissue "
+                    "with other hooks");
     return view;
   }
   void add(const TissueView& tissue);

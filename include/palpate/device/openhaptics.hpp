@@ -50,7 +50,7 @@ class OpenHapticsDevice {
   explicit OpenHapticsDevice(const OpenHapticsOptions& options = {})
       : options_(options), handle_(open(options.name)), rendered_(DeviceLimits{}) {
     try {
-      rendered_ = RenderLimits(with_torque(options_.limits ? *options_.limits : asked_limits(), options_.torque));
+      rendered_ = RenderLimits(with_torque(options_.limits ? *options_.limits : sdk_limits(), options_.torque));
     } catch (...) {
       hdDisableDevice(handle_);
       throw;
@@ -128,7 +128,7 @@ class OpenHapticsDevice {
     return handle;
   }
 
-  static double asked(HDenum parameter, double scale, const char* what) {
+  static double read_limit(HDenum parameter, double scale, const char* what) {
     std::array<HDdouble, 16> values{};  // room for the largest parameter, in case a driver writes too much
     hdGetDoublev(parameter, values.data());
     const HDdouble value = values[0];
@@ -138,13 +138,13 @@ class OpenHapticsDevice {
             "Give OpenHapticsOptions::limits");
     return scale * value;
   }
-  DeviceLimits asked_limits() const {
+  DeviceLimits sdk_limits() const {
     hdMakeCurrentDevice(handle_);
     DeviceLimits limits;
-    limits.peak_force = asked(HD_NOMINAL_MAX_FORCE, 1.0, "largest force");
+    limits.peak_force = read_limit(HD_NOMINAL_MAX_FORCE, 1.0, "largest force");
     limits.continuous_force =
-        std::min(asked(HD_NOMINAL_MAX_CONTINUOUS_FORCE, 1.0, "continuous force"), limits.peak_force);
-    limits.stiffness = asked(HD_NOMINAL_MAX_STIFFNESS, 1e3, "largest stiffness");  // N/mm
+        std::min(read_limit(HD_NOMINAL_MAX_CONTINUOUS_FORCE, 1.0, "continuous force"), limits.peak_force);
+    limits.stiffness = read_limit(HD_NOMINAL_MAX_STIFFNESS, 1e3, "largest stiffness");  // N/mm
     std::array<HDdouble, 6> box{};
     hdGetDoublev(HD_USABLE_WORKSPACE_DIMENSIONS, box.data());
     require_no_error("report its workspace");

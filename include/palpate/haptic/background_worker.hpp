@@ -16,7 +16,7 @@ struct WorkerReport {
   double worst_seconds = 0.0;  ///< of one piece
   double mean_seconds = 0.0;
   /// Simulated time over wall time: 1 keeps up; below 1 the tissue moves in slow motion. Static forces stay right. 1
-  /// for work without a pace of its own.
+  /// for work without a prescribed pace.
   double rate = 1.0;
 };
 

@@ -58,8 +58,8 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
   for (std::size_t i = 0; i < tools.size(); ++i) {
     if (const auto* blade = std::get_if<BladeTool>(&tools[i])) add_blade(*blade, i, options);
     gates_.emplace_back(options.limits(i));
-    const bool turns = !blades_[i] && (contact_tools_[i].half_length > 0.0 || gates_[i].limits().peak_torque > 0.0);
-    inputs_.emplace_back(static_cast<int>(i), turns, options.grasp_buttons);
+    const bool rotates = !blades_[i] && (contact_tools_[i].half_length > 0.0 || gates_[i].limits().peak_torque > 0.0);
+    inputs_.emplace_back(static_cast<int>(i), rotates, options.grasp_buttons);
   }
   Snapshot empty(options.contact.capacity);
   empty.tool_count = tools.size();
@@ -172,7 +172,7 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   Vector3 force(0.0, 0.0, 0.0), torque(0.0, 0.0, 0.0);
   if (blades_[i]) force = blades_[i]->force();
   if (tool.active) force = rotation_of(pose) * tool.force;
-  if (tool.active && input.turns()) torque = rotation_of(pose) * tool.torque;
+  if (tool.active && input.rotates()) torque = rotation_of(pose) * tool.torque;
   Status limited = blades_[i] ? blades_[i]->status() : Status{};
   if (energy != nullptr) {
     if (!input.readable() || input.restarted()) energy->forget();

@@ -59,7 +59,7 @@ struct ServoSnapshot {
             const Eigen::Isometry3d& pose) noexcept;
   /// Adds a blade; call it after `note`.
   void note_blade(int tool, const Vector3& edge, const Vector3& force) noexcept;
-  void note_held(const Contact& row, const Vector3& point, const Vector3& total) noexcept;
+  void note_grasped(const Contact& row, const Vector3& point, const Vector3& total) noexcept;
 };
 
 /// One line: time, number of contacts, and for every tool its force and proxy. Not for use in the tick.

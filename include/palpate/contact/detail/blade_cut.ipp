@@ -41,7 +41,7 @@ PALPATE_INLINE Vector3 BladeCut::advance(const Vector3& hand, double width) noex
     edge_ = hand;
   } else {
     const double free = std::clamp(deepest_ - depth, 0.0, pull);
-    const double hold = threshold / stiffness_, path = std::max(0.0, pull - free - hold);
+    const double stretch = threshold / stiffness_, path = std::max(0.0, pull - free - stretch);
     edge_ += (free + path) * forward;
     work_ += threshold * path;
     area_ += width * path;

@@ -60,8 +60,8 @@ class ContactRows {
   inline static void reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept;
   void build_friction(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool, int i) noexcept;
   inline Matrix3 between(const TissueView& tissue, const ContactSamples& samples, int i, int j) noexcept;
-  inline static Vector3 sprung(const ContactTool& tool, const Contact& row) noexcept;
-  void note_drags(std::span<ContactTool> tools) const noexcept;
+  inline static Vector3 coupling_displacement(const ContactTool& tool, const Contact& row) noexcept;
+  void store_friction(std::span<ContactTool> tools) const noexcept;
   inline static double set_responses(const double* c, const double* m, const double* n, double* of_n,
                                      double* of_m) noexcept;
   inline void build_row(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool,

@@ -47,7 +47,7 @@ inline Matrix3 ContactRows::between(const TissueView& tissue, const ContactSampl
 
 /// Displacement of the coupling due to friction forces, at the contact point; the rest of CoulombFriction::moved is the
 /// tissue's.
-inline Vector3 ContactRows::sprung(const ContactTool& tool, const Contact& row) noexcept {
+inline Vector3 ContactRows::coupling_displacement(const ContactTool& tool, const Contact& row) noexcept {
   return tool.friction_displacement + cross(tool.friction_rotation, row.arm);
 }
 
@@ -71,7 +71,7 @@ inline void ContactRows::build_row(const TissueView& tissue, const ContactSample
                                    int i) noexcept {
   const Contact& ci = rows_[at(i)];
   const int p = candidate_[at(i)]->slot;
-  const bool turns = tool.rotational_compliance > 0.0;
+  const bool rotates = tool.rotational_compliance > 0.0;
   const double* const m = ci.normal.data();
   double *column = &problem_.w(0, i), *row = &problem_.w(i, 0);
   Vector3 *on_j = &response(i, 0), *on_i = &response(0, i);
@@ -82,7 +82,7 @@ inline void ContactRows::build_row(const TissueView& tissue, const ContactSample
     double w = p >= q ? set_responses(compliance_(tissue, samples, p, q).data(), m, n, on_j->data(), on_i->data())
                       : set_responses(compliance_(tissue, samples, q, p).data(), n, m, on_i->data(), on_j->data());
     if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
-    if (turns && ci.tool == cj.tool)
+    if (rotates && ci.tool == cj.tool)
       w += tool.rotational_compliance * cross(ci.arm, ci.normal).dot(cross(cj.arm, cj.normal));
     column[j] = *row = w;
   }
@@ -214,14 +214,14 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
     tool.force.setZero();
     tool.torque.setZero();
   }
-  if (friction_.acts()) note_drags(tools);
+  if (friction_.acts()) store_friction(tools);
   double largest = 0.0;
   for (int i = 0; i < count_; ++i) {
     Contact& row = rows_[at(i)];
     row.force = problem_.lambda[at(i)];
     if (friction_.acts()) row.friction = friction_.row(i).friction_force;
     Vector3 point = moved_point(i);
-    if (friction_.acts()) point -= friction_.moved(i) - sprung(tools[at(row.tool)], row);
+    if (friction_.acts()) point -= friction_.moved(i) - coupling_displacement(tools[at(row.tool)], row);
     largest = std::max(largest, (point - row.point).squaredNorm());
     row.point = point;
     if (row.force == 0.0) continue;
@@ -281,7 +281,7 @@ PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const 
   }
 }
 
-PALPATE_INLINE void ContactRows::note_drags(std::span<ContactTool> tools) const noexcept {
+PALPATE_INLINE void ContactRows::store_friction(std::span<ContactTool> tools) const noexcept {
   for (ContactTool& tool : tools) {
     tool.friction_displacement.setZero();
     tool.friction_rotation.setZero();

@@ -34,7 +34,7 @@ class ProxyMotion {
   double relative_change(Tools tools) const noexcept;
 
  private:
-  static void turn(ContactTool& tool, double part) noexcept;
+  static void rotate(ContactTool& tool, double part) noexcept;
 
   std::array<Vector3, maximum_tools> start_force_{}, start_torque_{};
   std::array<Ahead, maximum_tools> ahead_{};

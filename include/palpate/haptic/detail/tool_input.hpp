@@ -14,10 +14,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// pose is kept, or the tool is placed on the surface again. Everything runs in the tick: no throw, no allocation.
 class ToolInput {
  public:
-  /// `tool` is the number of the tool. `turns`: orientation and torque are used. The tool grasps the point it touches
+  /// `tool` is the number of the tool. `rotates`: orientation and torque are used. The tool grasps the point it touches
   /// while one of `grasp_buttons` is pressed.
-  ToolInput(int tool, bool turns, std::uint32_t grasp_buttons) noexcept
-      : number_(tool), rotates_(turns), grasp_buttons_(grasp_buttons) {}
+  ToolInput(int tool, bool rotates, std::uint32_t grasp_buttons) noexcept
+      : number_(tool), rotates_(rotates), grasp_buttons_(grasp_buttons) {}
 
   /// Processes a state, world frame, for a tissue at `pose` with this surface and the contacts of the last tick, and
   /// moves the tool's target. Sets `status` to the faults of the state.
@@ -42,7 +42,7 @@ class ToolInput {
   double time() const noexcept { return time_; }                  ///< of the last valid one [s]
   bool readable() const noexcept { return readable_; }
   bool restarted() const noexcept { return restarted_; }  ///< forces begin from zero
-  bool turns() const noexcept { return rotates_; }
+  bool rotates() const noexcept { return rotates_; }
   Status status() const noexcept { return status_; }
 
  private:
