@@ -140,14 +140,14 @@ TEST_CASE("a grasped point is bilateral: pull, push and lateral motion act on on
   s.tools[0].grasping = true;  // a gap of a tenth of a millimetre: near enough
   s.tick();
   REQUIRE(s.problem.is_holding(0));
-  const Vector3 held = s.tools[0].target;
+  const Vector3 grasped_at = s.tools[0].target;
   for (const Vector3& by :
        {Vector3(0, 0, 2e-3), Vector3(1e-3, -2e-3, 3e-3), Vector3(0, 0, -1e-3), Vector3(-3e-3, 0, 0)}) {
-    s.move(0, held + by, 40);
+    s.move(0, grasped_at + by, 40);
     CHECK((s.force() + by / soft).norm() <= 1e-5 * by.norm() / soft);
-    CHECK_THAT((s.tools[0].proxy - held - by * (own + common) / soft).norm(), WithinAbs(0.0, 1e-8));
+    CHECK_THAT((s.tools[0].proxy - grasped_at - by * (own + common) / soft).norm(), WithinAbs(0.0, 1e-8));
   }
-  s.move(0, held + Vector3(0, 0, 2e-3), 40);
+  s.move(0, grasped_at + Vector3(0, 0, 2e-3), 40);
   s.tools[0].grasping = false;
   s.tick();
   CHECK_FALSE(s.problem.is_holding(0));
@@ -155,7 +155,7 @@ TEST_CASE("a grasped point is bilateral: pull, push and lateral motion act on on
   s.tools[0].grasping = true;  // no point within reach any more
   s.tick();
   CHECK_FALSE(s.problem.is_holding(0));
-  s.move(0, held, 40);  // a tool that is already grasping does not grasp points that it reaches later
+  s.move(0, grasped_at, 40);  // a tool that is already grasping does not grasp points that it reaches later
   CHECK_FALSE(s.problem.is_holding(0));
 }
 

@@ -220,7 +220,7 @@ TEST_CASE("a recorder keeps the newest ticks and reports how many it dropped", "
 TEST_CASE("files that are not recordings are refused with file and line",
           "[device][recording][extreme][C1][C2][C3][C5]") {
   struct Case {
-    std::string content, line, says;
+    std::string content, line, message;
   };
   const std::vector<Case> cases{
       {"", ":1: ", "header"},
@@ -255,7 +255,7 @@ TEST_CASE("files that are not recordings are refused with file and line",
     } catch (const SetupError& error) {
       CHECK(error.kind() == SetupErrorKind::bad_file);
       CHECK_THAT(std::string(error.what()), test::contains(file.path + c.line));
-      CHECK_THAT(std::string(error.what()), test::contains(c.says));
+      CHECK_THAT(std::string(error.what()), test::contains(c.message));
     }
   }
 }

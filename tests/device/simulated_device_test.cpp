@@ -35,7 +35,7 @@ void run(SimulatedDevice& device, int ticks) {
 
 }  // namespace
 
-TEST_CASE("a handle held by a hand follows the damped oscillator", "[device][simulated]") {
+TEST_CASE("a handle in a hand follows the damped oscillator", "[device][simulated]") {
   for (double damping : {0.0, 0.4, 6.0, 40.0}) {  // undamped, underdamped, overdamped
     SimulatedOptions o = linear(0.1, 0.25 * damping);
     o.rate = GENERATE(1000.0, 3.0);

@@ -19,7 +19,7 @@ using Cut = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInver
 using CutSession = HapticServo;
 
 struct ManyCuts {
-  int cuts = 0, bodies = 0, loose = 0;
+  int cuts = 0, bodies = 0, detached = 0;
   std::uint64_t renewals = 0;
   double worst_error = 0.0, worst_mass = 0.0, worst_slew = 0.0, weakest = 1.0;
   Status seen;
@@ -56,20 +56,21 @@ CutOrder random_order(const Mesh<Tet4>& mesh, testing::Random& random) {
 }
 
 void masses(Cut& tissue, double whole, double& left, ManyCuts& all) {
-  double constrained = 0.0, loose = 0.0, removed = 0.0, pieces = 0.0;
+  double constrained = 0.0, detached = 0.0, removed = 0.0, pieces = 0.0;
   tissue.read([&](const auto& t, const auto& p) {
     for (Index e = 0; e < t.mesh().element_count(); ++e)
       (t.state(e) == ElementState::supported  ? constrained
-       : t.state(e) == ElementState::detached ? loose
+       : t.state(e) == ElementState::detached ? detached
                                               : removed) += p.mass(e);
     for (const Fragment& piece : t.detached_fragments()) {
       for (const Index e : piece.elements)
         if (!t.is_removed(e)) pieces += p.mass(e);
-      all.loose = std::max(all.loose, static_cast<int>(t.detached_fragments().size()));
+      all.detached = std::max(all.detached, static_cast<int>(t.detached_fragments().size()));
     }
   });
-  all.worst_mass = std::max(
-      all.worst_mass, std::max(std::abs(constrained + loose + removed - whole), std::abs(pieces - loose)) / whole);
+  all.worst_mass =
+      std::max(all.worst_mass,
+               std::max(std::abs(constrained + detached + removed - whole), std::abs(pieces - detached)) / whole);
   left = constrained;
 }
 
@@ -117,13 +118,13 @@ void cut_apart(int kind, std::uint64_t seed, int most, ManyCuts& all) {
 
 void cut_many(int cuts, std::uint64_t seed, ManyCuts& all) {
   for (int kind = 0; all.cuts < cuts; kind = (kind + 1) % 4) cut_apart(kind, ++seed, cuts - all.cuts, all);
-  INFO(all.cuts << " cuts of " << all.bodies << " bodies, at most " << all.loose << " detached fragments, "
+  INFO(all.cuts << " cuts of " << all.bodies << " bodies, at most " << all.detached << " detached fragments, "
                 << all.renewals << " new factors, weakest direction " << all.weakest << ", error " << all.worst_error
                 << ", mass " << all.worst_mass << ", slew " << all.worst_slew);
   CHECK(all.worst_error <= 1e-10);
   CHECK(all.worst_mass <= 1e-12);
   CHECK(all.worst_slew <= 1.0 + 1e-9);
-  CHECK(all.loose > 0);
+  CHECK(all.detached > 0);
 }
 
 /// Smallest quality of an element that is not removed.
@@ -147,7 +148,7 @@ TEST_CASE("many random cuts of several bodies", "[cut][extreme][F1][F3]") {
 TEST_CASE("ten thousand random cuts of several bodies", "[.][long]") {
   ManyCuts all;
   cut_many(10000, 1000, all);
-  WARN(all.cuts << " cuts of " << all.bodies << " bodies, at most " << all.loose << " detached fragments, "
+  WARN(all.cuts << " cuts of " << all.bodies << " bodies, at most " << all.detached << " detached fragments, "
                 << all.renewals << " new factors, weakest direction " << all.weakest << ", error " << all.worst_error
                 << ", mass " << all.worst_mass << ", slew " << all.worst_slew << ", status " << all.seen.bits());
 }

@@ -111,7 +111,7 @@ TEST_CASE("a free soft body keeps its momentum, and never gains angular momentum
   CHECK(end.spin.norm() <= start.spin.norm());
 }
 
-TEST_CASE("a sphere that is held still leaves a moving tissue at rest", "[extreme][E3]") {
+TEST_CASE("a sphere at rest leaves a moving tissue at rest", "[extreme][E3]") {
   Jelly tissue(box_tet4({0.06, 0.06, 0.03}, {4, 4, 2}), Scene().fix("z0").touch("z1"), jelly, {}, {.step = 0.01});
   HapticServo servo(tissue, SphereTool{.radius = 0.012});
   const auto tick = [&](int k) {
@@ -197,20 +197,20 @@ TEST_CASE("artificial energy is reported, and nothing else", "[extreme][E6]") {
                                             Scene().fix("z0").gravity({9.81, 0.0, 0.0})),
                        {.scheme = scheme});
     double most_work = 0.0, most_energy = 0.0;
-    int said = 0;
+    int reported = 0;
     for (int k = 0; k < 100; ++k) {
       const StepReport report = d.step(h);
       REQUIRE(report.taken);
       most_work = std::max(most_work, std::abs(d.body().load.dot(d.displacement())));
       most_energy = std::max(most_energy, d.kinetic_energy() + d.elastic_energy());
-      if (!report.energy_bounded) ++said;
-      if (said == 0) CHECK(most_energy <= 10.0 * most_work);
+      if (!report.energy_bounded) ++reported;
+      if (reported == 0) CHECK(most_energy <= 10.0 * most_work);
     }
-    return std::pair(said, most_energy / most_work);
+    return std::pair(reported, most_energy / most_work);
   };
   // Newmark at large strain, steps of a hundred periods of the body.
-  const auto [said, energy] = run(TimeScheme::newmark(), 1e4, 0.4999, 0.0316);
-  CHECK(said > 0);
+  const auto [reported, energy] = run(TimeScheme::newmark(), 1e4, 0.4999, 0.0316);
+  CHECK(reported > 0);
   CHECK(energy > 10.0);
   for (double h : {1e-6, 1e-3, 0.03, 1.0})
     for (double young : {1e3, 1e5, 1e8}) {

@@ -32,20 +32,20 @@ Scene slab_scene() {
   return Scene().fix("z0").touch("z1").gravity({0.0, 0.0, -9.81});
 }
 
-std::pair<Vector3, Status> held_force(MovingTissue& tissue) {
+std::pair<Vector3, Status> steady_force(MovingTissue& tissue) {
   return test::press_and_hold(tissue, {0.5 * slab_size[0], 0.5 * slab_size[1], slab_size[2]}, tip, 1500);
 }
 
 }  // namespace
 
-TEST_CASE("the force on a sphere held in co-rotated tissue equals that of the solved one for any step",
+TEST_CASE("the steady force of a sphere in co-rotated tissue equals that of the solved one for any step",
           "[haptic][corotated]") {
   SolvedTissue solved(slab(), slab_scene(), soft_material);
-  const double wanted = held_force(solved).first[2];
+  const double wanted = steady_force(solved).first[2];
   CHECK(wanted > 0.3);
   for (const double h : {1e-3, 5e-3, 1e-2}) {
     CorotatedTissue tissue(slab(), slab_scene(), soft_material, {}, {.step = h});
-    const auto [force, status] = held_force(tissue);
+    const auto [force, status] = steady_force(tissue);
     INFO("step " << h << ", status " << status.bits() << ", inverted " << tissue.advance().deformation.inverted);
     CHECK_THAT(force[2], WithinRel(wanted, 2e-3));
     CHECK(status.ok());

@@ -27,7 +27,7 @@ constexpr double tip_radius = 0.012;
 Mesh<Tet4> cushion() {
   return box_tet4({0.06, 0.06, 0.03}, {5, 5, 3});
 }
-Scene held_cushion() {
+Scene cushion_scene() {
   return Scene().fix("z0").touch("z1").gravity({0.0, 0.0, -9.81});
 }
 
@@ -40,11 +40,11 @@ std::pair<double, Status> force_of_hold(MovingTissue& tissue) {
 }  // namespace
 
 TEST_CASE("explicit steps reach the steady force of implicit ones for any step", "[haptic][explicit]") {
-  NewtonTissue solved(cushion(), held_cushion(), gel);
+  NewtonTissue solved(cushion(), cushion_scene(), gel);
   const double wanted = force_of_hold(solved).first;
   CHECK(wanted > 0.3);
   for (const double step : {1e-3, 3e-3}) {
-    ExplicitTissue<NeoHookean> tissue(cushion(), held_cushion(), gel, {}, {.step = step, .mass_damping = 40.0});
+    ExplicitTissue<NeoHookean> tissue(cushion(), cushion_scene(), gel, {}, {.step = step, .mass_damping = 40.0});
     const auto [force, status] = force_of_hold(tissue);
     INFO("step " << step << ", status " << status);
     CHECK_THAT(force, WithinRel(wanted, 5e-3));
@@ -54,7 +54,7 @@ TEST_CASE("explicit steps reach the steady force of implicit ones for any step",
 
 TEST_CASE("explicit tissue satisfies the laws of tissues, settles under its weight and does not allocate",
           "[haptic][explicit]") {
-  ExplicitTissue<NeoHookean> tissue(cushion(), held_cushion(), gel);
+  ExplicitTissue<NeoHookean> tissue(cushion(), cushion_scene(), gel);
   CHECK(testing::describe(testing::tissue_laws(tissue, std::array{0, 14, 21, 35}, {1e-3})) == "");
   const VectorX start = tissue.displacement();
   CHECK(start.minCoeff() < -1e-4);
@@ -81,18 +81,17 @@ TEST_CASE("explicit tissue satisfies the laws of tissues, settles under its weig
 
 TEST_CASE("explicit steps at small strain give the same force as Newton's method", "[haptic][explicit]") {
   const LinearElastic linear{5e3, 0.4, 1000.0};
-  HapticFEModel<Tet4, LinearElastic, Implicit<Newton<SparseCholesky>>> solved(cushion(), held_cushion(), linear);
-  ExplicitTissue<LinearElastic> tissue(cushion(), held_cushion(), linear, {}, {.mass_damping = 40.0});
+  HapticFEModel<Tet4, LinearElastic, Implicit<Newton<SparseCholesky>>> solved(cushion(), cushion_scene(), linear);
+  ExplicitTissue<LinearElastic> tissue(cushion(), cushion_scene(), linear, {}, {.mass_damping = 40.0});
   CHECK_THAT(force_of_hold(tissue).first, WithinRel(force_of_hold(solved).first, 5e-3));
 }
 
 TEST_CASE("explicit steps that need too many stable substeps are refused", "[haptic][explicit]") {
-  const SetupProblem p = test::refusal([] {
-    ExplicitTissue<NeoHookean>(cushion(), held_cushion(), gel, {}, {.step = 1e-2, .maximum_substeps = 3});
-  });
+  const SetupProblem p = test::refusal(
+      [] { ExplicitTissue<NeoHookean>(cushion(), cushion_scene(), gel, {}, {.step = 1e-2, .maximum_substeps = 3}); });
   CHECK(p.kind == SetupErrorKind::bad_argument);
   CHECK(p.value > 3.0);
   CHECK(p.threshold == 3.0);
   CHECK_REFUSED(SetupErrorKind::bad_argument,
-                ExplicitTissue<NeoHookean>(cushion(), held_cushion(), gel, {}, {.step = 0.0}));
+                ExplicitTissue<NeoHookean>(cushion(), cushion_scene(), gel, {}, {.step = 0.0}));
 }

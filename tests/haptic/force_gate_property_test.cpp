@@ -73,11 +73,11 @@ class Source {
   Input next() {
     const double dice = random_.uniform();
     time_ += dice < 0.9 ? 1e-3 : dice < 0.95 ? random_.uniform(-0.01, 0.05) : dice < 0.97 ? 0.0 : 1e-3;
-    if (!(random_.uniform() < 0.95)) held_ = random_.uniform() < 0.5 ? special(random_) : stamp_;
+    if (!(random_.uniform() < 0.95)) faulty_stamp_ = random_.uniform() < 0.5 ? special(random_) : stamp_;
     const bool fresh = random_.uniform() < 0.9;
     if (fresh) stamp_ = time_;
     const double now = random_.uniform() < 0.01 ? special(random_) : time_;
-    const double stamp = random_.uniform() < 0.02 ? held_ : stamp_;
+    const double stamp = random_.uniform() < 0.02 ? faulty_stamp_ : stamp_;
     if (random_.uniform() < 0.2) force_ = random_force(random_);
     return {force_, now, stamp, random_.uniform() < 0.99, random_.uniform() < 0.005};
   }
@@ -86,7 +86,7 @@ class Source {
  private:
   testing::Random random_;
   Vector3 force_ = Vector3::Zero();
-  double time_ = 0.0, stamp_ = 0.0, held_ = 0.0;
+  double time_ = 0.0, stamp_ = 0.0, faulty_stamp_ = 0.0;
 };
 
 struct Count {

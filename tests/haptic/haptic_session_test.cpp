@@ -330,12 +330,13 @@ TEST_CASE("a stopped session exerts no force on the tissue", "[haptic][session]"
 }
 
 TEST_CASE("simulated hands: different devices come to rest on the tissue", "[haptic][session]") {
-  const auto held = [](SimulatedOptions options, double x) {
+  const auto in_hand = [](SimulatedOptions options, double x) {
     options.hand = SimulatedHand::firm();
     options.start = Vector3(x, 0.015, pad_height + sphere_radius);
     return options;
   };
-  SimulatedDevice left(held(SimulatedOptions::stylus(), 0.009)), right(held(SimulatedOptions::parallel_arm(), 0.021));
+  SimulatedDevice left(in_hand(SimulatedOptions::stylus(), 0.009)),
+      right(in_hand(SimulatedOptions::parallel_arm(), 0.021));
   left.push({0.0, 0.0, -0.5});
   right.push({0.0, 0.0, -0.8});
   HapticSession session(std::tie(left, right), whole_pad(), {sphere, sphere}, {.limit_energy = true});

@@ -124,25 +124,25 @@ TEST_CASE("a pose that is not finite: last force kept, then faded to zero, then 
     for (int axis = 0; axis < 3; ++axis) {
       ServoSession session(pad);
       session.press(1.5e-3);
-      const Vector3 held = session.hold(100).force(), place = session.states[0].position;
+      const Vector3 steady = session.hold(100).force(), place = session.states[0].position;
       Vector3 wrong = place;
       wrong[axis] = bad;
-      double before = held.norm();
+      double before = steady.norm();
       for (int i = 1; i <= 40; ++i) {
         const GatedForce& f = session.tick(wrong);
         CHECK(f.status.has(StatusFlag::non_finite_input));
-        if (i <= 2) CHECK((f.force() - held).norm() <= 1e-6 * held.norm());
+        if (i <= 2) CHECK((f.force() - steady).norm() <= 1e-6 * steady.norm());
         CHECK(f.force().norm() <= before * (1.0 + 1e-6));
         before = f.force().norm();
       }
       CHECK(before == 0.0);
       for (int i = 0; i < 60; ++i) {
         const GatedForce& f = session.tick(place);
-        if (i == 0) CHECK(f.force().norm() <= 0.05 * held.norm());
+        if (i == 0) CHECK(f.force().norm() <= 0.05 * steady.norm());
         CHECK(f.force().norm() >= before - 1e-9);
         before = f.force().norm();
       }
-      CHECK((session.forces[0].force() - held).norm() <= 1e-6 * held.norm());
+      CHECK((session.forces[0].force() - steady).norm() <= 1e-6 * steady.norm());
     }
 }
 

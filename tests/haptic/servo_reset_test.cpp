@@ -19,11 +19,11 @@ struct ListeningTissue : test::AnalyticTissue {
   void end_tick(std::span<const VertexForce> forces) noexcept {
     pressing = Vector3::Zero();
     for (const VertexForce& f : forces) pressing += f.force.in_model_axes();
-    ++told;
+    ++calls;
   }
 
   Vector3 pressing = Vector3::Zero();
-  int told = 0;
+  int calls = 0;
 };
 static_assert(TissueModel<ListeningTissue> && AnnouncesChanges<ListeningTissue>);
 static_assert(!AnnouncesChanges<test::AnalyticTissue>);
@@ -105,13 +105,13 @@ TEST_CASE("a reset reports to the tissue that nothing presses any more", "[hapti
     state.position = Vector3(0.0, 0.0, 5.5e-3 - 4e-5 * k);
     servo.tick({&state, 1});
   }
-  CHECK(tissue.told == 50);
+  CHECK(tissue.calls == 50);
   CHECK(tissue.pressing.z() < -1e-3);
   CHECK(!servo.read_snapshot().vertex_forces().empty());
   servo.reset();
   CHECK(servo.read_snapshot().vertex_forces().empty());  // a renderer shows no dent any more
   CHECK(servo.read_snapshot().tool_contacts().empty());
-  CHECK(tissue.told == 51);
+  CHECK(tissue.calls == 51);
   CHECK(tissue.pressing == Vector3::Zero());
   CHECK(servo.contacts().empty());
 }

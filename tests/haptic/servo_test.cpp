@@ -44,14 +44,14 @@ TEST_CASE("press, hold, release: the force rises, stays constant, and returns to
   }
   CHECK(before > 0.05);
   CHECK(session.forces[0].force().head<2>().norm() < 0.5 * before);
-  const Vector3 at_once = session.forces[0].force(), held = session.hold(200).force();
-  CHECK((held - at_once).norm() <= 2e-3 * held.norm());
-  CHECK((session.hold(500).force() - held).norm() <= 1e-9 * held.norm());
+  const Vector3 at_once = session.forces[0].force(), steady = session.hold(200).force();
+  CHECK((steady - at_once).norm() <= 2e-3 * steady.norm());
+  CHECK((session.hold(500).force() - steady).norm() <= 1e-9 * steady.norm());
   session.move(Vector3(0.0137, 0.0159, pad_height + sphere_radius + 1e-4), 100);
   CHECK(test::same(session.hold(3).force(), Vector3::Zero()));
   CHECK(session.servo.read_snapshot().vertex_forces().empty());
   session.press(1.8e-3);
-  CHECK((session.hold(200).force() - held).norm() <= 1e-6 * held.norm());
+  CHECK((session.hold(200).force() - steady).norm() <= 1e-6 * steady.norm());
 }
 
 TEST_CASE("away from the tissue the force is exactly zero", "[haptic][servo]") {

@@ -70,7 +70,7 @@ TEST_CASE("the sum of a snapshot's contacts is the contact force, also with gras
   tools.move(0, {-0.008, 0.0, round_radius - 1e-3}, 40);
   tools.move(1, {0.008, 0.001, round_radius - 1e-3}, 40);
   tools.states[0].buttons = 1;
-  const auto look = [&](std::size_t held) {
+  const auto look = [&](std::size_t expected) {
     const auto& snapshot = tools.servo.read_snapshot();
     std::array<Vector3, 2> sum{Vector3::Zero(), Vector3::Zero()};
     std::size_t grasped = 0;
@@ -80,7 +80,7 @@ TEST_CASE("the sum of a snapshot's contacts is the contact force, also with gras
       CHECK(std::abs(c.normal.norm() - 1.0) < 1e-12);
       if (c.grasped) ++grasped;
     }
-    CHECK(grasped == held);
+    CHECK(grasped == expected);
     for (std::size_t i : {0u, 1u})
       CHECK((sum[i] - tools.servo.contact_force(i)).norm() <= 1e-9 * tools.servo.contact_force(i).norm());
   };

@@ -140,7 +140,8 @@ TEST_CASE("a released tissue returns to rest, and a stalled one stays elastic", 
 }
 
 TEST_CASE("the tissue is settled under gravity before the first touch", "[haptic][soft]") {
-  Soft<NeoHookean> tissue(pad(), pad_scene().gravity({0.0, 0.0, -9.81}), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
+  Soft<NeoHookean> tissue(pad(), pad_scene().gravity({0.0, 0.0, -9.81}), NeoHookean{5e3, 0.45, 1000.0}, {},
+                          with_step(0.01));
   const VectorX u = tissue.motion().displacement();
   CHECK(u.norm() > 0.0);
   for (int k = 0; k < 20; ++k) tissue.advance();
@@ -220,9 +221,9 @@ TEST_CASE("errors of a tissue use the node numbers and positions of the given me
   };
   const NeoHookean material{5e3, 0.45, 1000.0};
   const std::vector<NodeId> edge{1, 10, 19}, bottom{1, 2, 3, 4, 5, 6, 7, 8, 9};
-  const SetupProblem loose = refused(Scene().fix(edge).touch("surface"), material);
-  CHECK_THAT(loose.what, test::contains("through (3, -2, 0.01)"));
-  CHECK(loose.ids.front() == 1);
+  const SetupProblem movable = refused(Scene().fix(edge).touch("surface"), material);
+  CHECK_THAT(movable.what, test::contains("through (3, -2, 0.01)"));
+  CHECK(movable.ids.front() == 1);
   const std::vector<NodeId> one{5};
   const SetupProblem twice = refused(Scene().fix(bottom).prescribe(one, {1e-3, 0.0, 0.0}).touch("surface"), material);
   CHECK(to_string(twice.kind) == "conflicting_conditions");

@@ -99,16 +99,16 @@ TEST_CASE("a fine surface follows an affine displacement exactly, on the body an
   Matrix3 a;
   a << 0.1, 0.02, 0.0, 0.03, -0.05, 0.01, 0.0, 0.04, 0.08;
   const Mesh<Tet4> mesh = block();
-  Scene held = Scene().touch("z1");
+  Scene supported = Scene().touch("z1");
   for (NodeId i = 0; i < mesh.node_count(); ++i) {
     const Vector3 u = a * mesh.position(i);
-    if (mesh.position(i).z() < 0.01 - 1e-9) held.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
+    if (mesh.position(i).z() < 0.01 - 1e-9) supported.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
   }
   for (NodeId i = 0; i < mesh.node_count(); ++i) {
     const Vector3 u = a * mesh.position(i);
-    if (mesh.position(i).z() >= 0.01 - 1e-9) held.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
+    if (mesh.position(i).z() >= 0.01 - 1e-9) supported.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
   }
-  Model model(mesh, held, soft);
+  Model model(mesh, supported, soft);
   for (const double above : {-1e-4, 0.0, 5e-4}) {
     VisualSurface fine(model, fine_top(above));
     CHECK((fine.report().outside > 0) == (above > 0.0));

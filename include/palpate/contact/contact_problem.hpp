@@ -12,8 +12,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// with zero force at first, so the force has no jump at edges. Each tick linearises the distance between sphere and
 /// deformed surface at the last proxy position (Ruspini's proxy on a deforming surface), solves the Signorini problem
 /// on the contact compliance J C J^T exactly, and repeats while the force still changes. The rows of that problem are
-/// the points that pressed last and those that the solution would let penetrate; rows are added until there are none of
-/// the latter. The coupling between proxy and device enters as n_i . n_j / k between contacts of one tool: the
+/// the points that pressed last and those that the solution would let penetrate; rows are added until no point
+/// penetrates. The coupling between proxy and device enters as n_i . n_j / k between contacts of one tool: the
 /// stiffness rendered by the device is never more than k for any number of contacts, and the proxy never penetrates.
 /// docs/contact.md has the equations, limits and figures. Work is bounded by `ContactParameters::capacity`, iterations,
 /// rounds and candidates.

@@ -24,7 +24,7 @@ struct ForceDimensionOptions {
 /// SDK's own limit is set to the peak force as a second guard; its brakes and its time guard stay unchanged.
 class ForceDimensionDevice {
  public:
-  /// Opens the first device that is free. Throws SetupError(unsupported) with the SDK's message when there is none,
+  /// Opens the first device that is free. Throws SetupError(unsupported) with the SDK's message when no device is free,
   /// (bad_argument) for torque without limits for it.
   explicit ForceDimensionDevice(const ForceDimensionOptions& options = {})
       : options_(options), rendered_(with_torque(options.limits, options.torque)) {

@@ -228,7 +228,7 @@ class OpenHapticsLoop {
   OpenHapticsLoop& operator=(const OpenHapticsLoop&) = delete;
 
   /// Starts the device, then the callback and the scheduler at `rate` [1/s] (500 and 1000 are typical), and waits for
-  /// the first tick. Throws SetupError(unsupported) when there is none within a second: after the scheduler has
+  /// the first tick. Throws SetupError(unsupported) when no tick follows within a second: after the scheduler has
   /// started, only the callback reads the stack of errors; (bad_argument) after a start without a stop.
   void start(unsigned rate = 1000) {
     if (scheduled_)

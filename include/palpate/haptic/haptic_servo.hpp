@@ -74,7 +74,7 @@ class HapticServo {
   const BladeCut* blade(std::size_t tool = 0) const noexcept { return blades_[tool] ? &blades_[tool]->cut() : nullptr; }
   /// Limits of a tool's gate.
   const ForceLimits& limits(std::size_t tool = 0) const noexcept { return gates_[tool].limits(); }
-  /// Energy tank of a tool; null when there is none. For the tick's own thread.
+  /// Energy tank of a tool; null without one. For the tick's own thread.
   const EnergyTank* energy(std::size_t tool = 0) const noexcept {
     return energies_.empty() ? nullptr : &energies_[tool];
   }

@@ -71,7 +71,7 @@ class Candidates {
   /// Points on triangles that no longer exist lose their force. `fresh` was constructed for that surface and receives
   /// the old samples. No allocation.
   void move_to(Candidates& fresh, const ContactSurface& surface) noexcept;
-  /// Moves a candidate to the sample nearest to its sample of another surface; false when there is none.
+  /// Moves a candidate to the sample nearest to its sample of another surface; false when no sample is near.
   bool move(Candidate& c, const ContactSamples& before, const ContactSurface& surface) const noexcept;
 
   /// Applies changes since the last tick: tools moved elsewhere, lifted or set down, a moved resting surface.

@@ -30,7 +30,7 @@ class ContactRows {
 
   /// The caller guarantees that there is room.
   void add(const ContactSurface& surface, const Candidates& candidates, Candidate& c) noexcept;
-  /// Drops rows without force to make room; W must then be rebuilt. False when there are none.
+  /// Drops rows without force to make room; W must then be rebuilt. False when all rows have force.
   bool drop_idle() noexcept;
   /// Requests the compliance columns of all vertices that carry rows.
   Status require_columns(const TissueView& tissue) noexcept;

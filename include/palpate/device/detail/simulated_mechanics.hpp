@@ -1,4 +1,4 @@
-// A handle with mass, damping and friction, held by a hand that is modelled as a mass, a damper and a spring.
+// A handle with mass, damping and friction, in a hand that is modelled as a mass, a damper and a spring.
 #pragma once
 
 #include <palpate/core/config.hpp>

@@ -53,7 +53,7 @@ class ToolInput {
     Vector3 position;  // model frame
     Quaternion<double> orientation;
   };
-  /// Sets status, readability and time. False when the last valid pose is kept, or there is none.
+  /// Sets status, readability and time. False when the last valid pose is kept, or no pose is known.
   bool accept(const ToolState& state, const Eigen::Isometry3d& pose, Pose& taken) noexcept;
 
   void rotate(const Quaternion<double>& orientation, const Eigen::Isometry3d& pose, ContactTool& tool) noexcept;
