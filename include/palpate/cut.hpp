@@ -1,5 +1,5 @@
-// Cutting of tissue while it is touched, in addition to palpate.hpp: HapticFEModel on Cuttable<...>, its rendered
-// surface, and the background thread that computes the cuts.
+// Include next to palpate.hpp for tissue that is cut while it is touched: HapticFEModel on Cuttable<...>, its visual
+// surface, and the thread that applies the cuts.
 #pragma once
 
 #include <palpate/cut/cuttable.hpp>
