@@ -5,7 +5,7 @@
 
 namespace test {
 
-/// Contact points at the vertices alone, as closed forms have them.
+/// Contact points at the vertices only, as the closed forms assume.
 inline constexpr double at_vertices_only = 1e9;
 
 struct ToolSession {
@@ -20,7 +20,7 @@ struct ToolSession {
       : tissue(t), problem(t.contact_surface(), sampled_for, parameters), tools(start) {}
 
   void tick() { status |= problem.solve(tissue, tools); }
-  /// The device of one tool is elsewhere.
+  /// Moves the device of one tool.
   void tick(std::size_t i, const Vector3& target, const Matrix3& rotation) {
     for (ContactTool& t : tools) {
       t.motion.setZero();
