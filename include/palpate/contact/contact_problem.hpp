@@ -58,6 +58,8 @@ class ContactProblem {
     double gap;
     Candidate* candidate;
   };
+  /// Vertices that may carry force, per contact: those of the rows, and of the rows before where steps are cut short.
+  static constexpr int vertices_per_contact = 12;
   static constexpr int maximum_rounds = 12;   // solutions of the contact problem per tick
   static constexpr int added_per_round = 16;  // rows, those of deepest penetration
   static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
@@ -68,15 +70,15 @@ class ContactProblem {
   void grasp(const TissueView& tissue, Tools tools) noexcept;
   inline bool is_grasped(const Candidate& c) const noexcept;
   void prefetch(const TissueView& tissue) noexcept;
-  Status solve_linearised(const TissueView& tissue, Tools tools, int iteration) noexcept;
-  void gather_pressing(Tools tools) noexcept;
+  bool solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;
+  void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
   inline void note_pressing(Candidate& c) noexcept;
   void predict_normals(int iteration) noexcept;
   bool add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
   void follow(Tools tools) noexcept;
 
   ContactParameters parameters_;
-  SurfaceDisplacement displacement_;
+  SurfaceDisplacement displacement_, start_;  // now; where the last linearisation started
   Candidates candidates_;
   ContactRows rows_;
   std::vector<Candidate*> pressing_;  // those of the last linearisation

@@ -5,13 +5,15 @@
 #include <palpate/core/setup_error.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, double smallest_radius,
                                               const ContactParameters& parameters)
     : parameters_(checked(parameters)),
-      displacement_(surface.vertex_count(), 3 * parameters.capacity),
+      displacement_(surface.vertex_count(), vertices_per_contact * parameters.capacity),
+      start_(surface.vertex_count(), vertices_per_contact * parameters.capacity),
       candidates_(surface, parameters.sample_spacing * smallest_radius, parameters.capacity),
       rows_(surface.vertex_count(), parameters.friction, parameters.capacity),
       pressing_(at(parameters.capacity)),
@@ -61,7 +63,11 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     status |= candidates_.update(tissue, tools, displacement_);
     if (iteration == 0) grasp(tissue, tools);
     if (candidates_.is_new()) prefetch(tissue);
-    status |= solve_linearised(tissue, tools, iteration);
+    std::swap(start_, displacement_);
+    if (!solve_linearised(tissue, tools, iteration, status)) {
+      std::swap(start_, displacement_);
+      break;
+    }
     follow(tools);
     change = proxies_.relative_change(tools);
     // Each step is smaller than the last by about the same ratio (the linearisation neglects the curvature of the
@@ -80,6 +86,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
 
 PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const ContactSurface& surface) noexcept {
   displacement_.move_to(fresh.displacement_);
+  start_.move_to(fresh.start_);
   candidates_.move_to(fresh.candidates_, surface);
   for (Grasp& g : grasps_) {
     if (g.sample < 0) continue;
@@ -94,6 +101,7 @@ PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const Contact
 
 PALPATE_INLINE void ContactProblem::reset() noexcept {
   displacement_.clear();
+  start_.clear();
   candidates_.reset();
   rows_.reset();
   proxies_ = {};
@@ -131,11 +139,13 @@ PALPATE_INLINE void ContactProblem::prefetch(const TissueView& tissue) noexcept 
   }
 }
 
-/// One Signorini problem at the present proxies; updates the forces of points, vertices and tools. Rows are added
-/// until no point penetrates.
-PALPATE_INLINE Status ContactProblem::solve_linearised(const TissueView& tissue, Tools tools, int iteration) noexcept {
-  Status status;
-  gather_pressing(tools);
+/// One Signorini problem, linearised where proxies and surface are (`start_`): distances and normals of all points stay
+/// as they are there while rows are added until no point penetrates. The distance to a point is a convex function, so a
+/// step of any length to the solution keeps all points out of the sphere. Updates the forces of points, vertices and
+/// tools; false when no rounds were left, and nothing has changed.
+PALPATE_INLINE bool ContactProblem::solve_linearised(const TissueView& tissue, Tools tools, int iteration,
+                                                     Status& status) noexcept {
+  gather_pressing(tissue, tools);
   predict_normals(iteration);
   rows_.clear();
   for (std::size_t t = 0; t < tools.size(); ++t)
@@ -148,14 +158,13 @@ PALPATE_INLINE Status ContactProblem::solve_linearised(const TissueView& tissue,
     else
       c.lift();  // only rows carry forces
   }
+  if (rows_.count() == 0) rows_.apply(tools, displacement_);
+  bool applied = rows_.count() == 0;
   int built = 0;
   for (;; built = rows_.count()) {
     if (built > 0 || rows_.count() == 0)
       if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);  // solved for the rows that fit
-    if (rows_.count() == built) {
-      if (built == 0) rows_.apply(tools, displacement_, candidates_);
-      break;
-    }
+    if (rows_.count() == built) break;
     if (rounds_left_-- <= 0) {
       status.set(StatusFlag::solver_not_converged);
       break;
@@ -163,17 +172,18 @@ PALPATE_INLINE Status ContactProblem::solve_linearised(const TissueView& tissue,
     status |= rows_.require_columns(tissue);
     rows_.build(tissue, candidates_.samples(), tools, floor_, built);
     if (!rows_.solve()) status.set(StatusFlag::solver_not_converged);
-    rows_.apply(tools, displacement_, candidates_);
+    rows_.apply(tools, displacement_);
+    applied = true;
   }
   if (rows_.has_friction() && built > 0 && built == rows_.count()) {
     if (!rows_.slide()) status.set(StatusFlag::solver_not_converged);
-    rows_.apply(tools, displacement_, candidates_);
+    rows_.apply(tools, displacement_);
   }
-  return status;
+  return applied;
 }
 
 /// Lists the candidates that press and updates their geometry for the present positions of sphere and surface.
-PALPATE_INLINE void ContactProblem::gather_pressing(Tools tools) noexcept {
+PALPATE_INLINE void ContactProblem::gather_pressing(const TissueView& tissue, Tools tools) noexcept {
   pressing_count_ = 0;
   if (candidates_.is_new()) {
     for (Candidate& c : candidates_.items()) note_pressing(c);
@@ -182,8 +192,13 @@ PALPATE_INLINE void ContactProblem::gather_pressing(Tools tools) noexcept {
   }
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
-    if (!arrived_) c.history.known = 0;
-    candidates_.place(c, c.point, tools[at(c.tool)]);
+    const ContactTool& tool = tools[at(c.tool)];
+    if (arrived_) {
+      candidates_.place(c, c.point, tool);
+    } else {
+      c.history.known = 0;
+      candidates_.evaluate(tissue, tool, start_, c);
+    }
   }
 }
 
@@ -217,10 +232,12 @@ PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools
     if (c.row >= 0 || is_grasped(c)) continue;
     const ContactTool& tool = tools[at(c.tool)];
     const ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
-    if (candidates_.least_gap(c) > ahead.farthest) continue;
-    if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
-    const double gap = c.gap + c.normal.dot(ahead.path + c.along * ahead.axis);
-    if (c.facing && gap < -allowed) violated_[at(violated_count_++)] = {gap, &c};
+    if (candidates_.least_gap(c) > ahead.farthest + 2.0 * rows_.longest_path()) continue;
+    if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, start_, c);
+    if (!c.facing) continue;
+    const Vector3 moved = candidates_.position(tissue, displacement_, c) - c.point;
+    const double gap = c.gap + c.normal.dot(ahead.path + c.along * ahead.axis - moved);
+    if (gap < -allowed) violated_[at(violated_count_++)] = {gap, &c};
   }
   const auto wanted = std::min(violated_count_, added_per_round);
   std::partial_sort(violated_.begin(), violated_.begin() + wanted, violated_.begin() + violated_count_,
@@ -231,8 +248,15 @@ PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools
   return room > 0 || wanted == 0;
 }
 
+/// Takes the step to the solution, or the part of it within which the list of candidates is complete.
 PALPATE_INLINE void ContactProblem::follow(Tools tools) noexcept {
-  arrived_ = proxies_.follow(tools, floor_);
+  const double part = proxies_.follow(tools, floor_, rows_.longest_path());
+  arrived_ = part == 1.0;
+  if (arrived_)
+    rows_.place_points();
+  else
+    displacement_.blend(start_, part);
+  candidates_.move_surface(2.0 * part * rows_.longest_path());
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (tools[t].active) candidates_.move_sphere(t, tools[t]);
 }

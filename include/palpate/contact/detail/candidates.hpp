@@ -96,6 +96,8 @@ class Candidates {
   /// Evaluates a candidate at the present deformation and proxy.
   void evaluate(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
                 Candidate& c) noexcept;
+  /// Deformed position of a candidate's point [m].
+  Vector3 position(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
   /// Sets the position of a candidate's point and updates its gap and normal.
   inline void place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept;
 

@@ -132,13 +132,18 @@ PALPATE_INLINE Status Candidates::update(const TissueView& tissue, std::span<con
   return status;
 }
 
-PALPATE_INLINE void Candidates::evaluate(const TissueView& tissue, const ContactTool& tool,
-                                         SurfaceDisplacement& displacement, Candidate& c) noexcept {
+PALPATE_INLINE Vector3 Candidates::position(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                            const Candidate& c) const noexcept {
   const ContactSample& sample = samples_[c.sample];
   Vector3 point = Vector3::Zero();
   for (std::size_t a = 0; a < 3; ++a)
     if (sample.weights[a] > 0.0) point += sample.weights[a] * displacement.position(tissue, sample.vertices[a]);
-  place(c, point, tool);
+  return point;
+}
+
+PALPATE_INLINE void Candidates::evaluate(const TissueView& tissue, const ContactTool& tool,
+                                         SurfaceDisplacement& displacement, Candidate& c) noexcept {
+  place(c, position(tissue, displacement, c), tool);
   c.facing = faces_sphere(tissue, displacement, c);
 }
 

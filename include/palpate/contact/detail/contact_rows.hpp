@@ -48,8 +48,12 @@ class ContactRows {
   /// Penetration without contact force, at the deepest row built [m].
   double deepest_push() const noexcept;
 
-  /// Writes the solution to points, vertices and tools.
-  void apply(std::span<ContactTool> tools, SurfaceDisplacement& displacement, Candidates& candidates) noexcept;
+  /// Writes the solution to rows, vertices and tools. Candidates get their forces; they stay where they are.
+  void apply(std::span<ContactTool> tools, SurfaceDisplacement& displacement) noexcept;
+  /// The longest displacement of a row's point from where its candidate is to the solution [m].
+  double longest_path() const noexcept { return longest_path_; }
+  /// Moves the candidates of the rows to the solution.
+  void place_points() noexcept;
   /// At the end of a tick: a point that slipped gets a new stick anchor at its present place; one that sticks keeps its
   /// anchor.
   void stick(std::span<const ContactTool> tools) noexcept;
@@ -76,7 +80,7 @@ class ContactRows {
   ComplementarityProblem problem_;
   CoulombFriction friction_;
   std::vector<double> free_gap_, pressing_before_;
-  double floor_ = 0.0;
+  double floor_ = 0.0, longest_path_ = 0.0;
   std::uint64_t tick_ = 0;
   PointCompliance compliance_;
   std::vector<Contact> rows_;

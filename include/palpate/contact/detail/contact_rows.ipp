@@ -95,6 +95,7 @@ PALPATE_INLINE void ContactRows::begin_tick(std::uint64_t compliance_revision) n
 
 PALPATE_INLINE void ContactRows::clear() noexcept {
   count_ = 0;
+  longest_path_ = 0.0;
   compliance_.begin_rows();
 }
 
@@ -207,23 +208,23 @@ inline Vector3 ContactRows::moved_point(int i) const noexcept {
   return point;
 }
 
-PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisplacement& displacement,
-                                       Candidates& candidates) noexcept {
+PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisplacement& displacement) noexcept {
   displacement.clear();
   for (ContactTool& tool : tools) {
     tool.force.setZero();
     tool.torque.setZero();
   }
   if (friction_.acts()) store_friction(tools);
-  double largest = 0.0;
+  double longest = 0.0;
   for (int i = 0; i < count_; ++i) {
     Contact& row = rows_[at(i)];
-    row.force = problem_.lambda[at(i)];
-    if (friction_.acts()) row.friction = friction_.row(i).friction_force;
-    Vector3 point = moved_point(i);
-    if (friction_.acts()) point -= friction_.moved(i) - coupling_displacement(tools[at(row.tool)], row);
-    largest = std::max(largest, (point - row.point).squaredNorm());
-    row.point = point;
+    Candidate& c = *candidate_[at(i)];
+    c.force = row.force = problem_.lambda[at(i)];
+    if (friction_.acts()) c.friction = row.friction = friction_.row(i).friction_force;
+    if (c.force == 0.0 && !c.grasped) c.history.known = 0;
+    row.point = moved_point(i);
+    if (friction_.acts()) row.point -= friction_.moved(i) - coupling_displacement(tools[at(row.tool)], row);
+    longest = std::max(longest, (row.point - c.point).squaredNorm());
     if (row.force == 0.0) continue;
     ContactTool& tool = tools[at(row.tool)];
     const Vector3 total = friction_.acts() ? row.total() : Vector3(row.force * row.normal);
@@ -233,18 +234,11 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
       if (row.weights[a] > 0.0) displacement.add(row.vertices[a], -row.weights[a] * total, slot_[at(row.vertices[a])]);
   }
   for (const VertexForce& f : displacement.forces()) slot_[at(f.vertex)] = -1;
-  candidates.move_surface(2.0 * std::sqrt(largest));
-  for (int i = 0; i < count_; ++i) {
-    Candidate& c = *candidate_[at(i)];
-    c.force = rows_[at(i)].force;
-    c.friction = rows_[at(i)].friction;
-    if (c.grasped) {
-      c.point = rows_[at(i)].point;
-      continue;
-    }
-    candidates.place(c, rows_[at(i)].point, tools[at(c.tool)]);
-    if (c.force == 0.0) c.history.known = 0;
-  }
+  longest_path_ = std::sqrt(longest);
+}
+
+PALPATE_INLINE void ContactRows::place_points() noexcept {
+  for (int i = 0; i < count_; ++i) candidate_[at(i)]->point = rows_[at(i)].point;
 }
 
 PALPATE_INLINE void ContactRows::stick(std::span<const ContactTool> tools) noexcept {
@@ -254,7 +248,7 @@ PALPATE_INLINE void ContactRows::stick(std::span<const ContactTool> tools) noexc
     if (c.grasped || !(c.force > 0.0)) continue;
     const bool kept = sticks(c) && c.friction.norm() < (1.0 - 1e-6) * friction_.coefficient() * c.force;
     const ContactTool& tool = tools[at(c.tool)];
-    if (!kept) c.anchor = tool.rotation.transpose() * (c.point - tool.proxy);
+    if (!kept) c.anchor = tool.rotation.transpose() * (rows_[at(i)].point - tool.proxy);
     c.stuck_tick = tick_;
   }
 }

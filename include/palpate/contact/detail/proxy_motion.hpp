@@ -25,11 +25,12 @@ class ProxyMotion {
   static void slide(Tools tools) noexcept;
   /// Stores the forces at the start of a linearisation.
   void begin(Tools tools) noexcept;
-  /// N], as TissueModel has it./N], as TissueModel has it.
+  /// Computes `ahead` of every tool. `floor`: the least compliance of a contact [m/N], as TissueModel has it.
   void look_ahead(Tools tools, double floor) noexcept;
   const Ahead& ahead(std::size_t tool) const noexcept { return ahead_[tool]; }
-  /// Moves the proxies to the positions of the solution, as far as one linearisation may go; true when all arrive.
-  bool follow(Tools tools, double floor) noexcept;
+  /// Moves the proxies towards the positions of the solution, and the forces with them, by the part of the step that is
+  /// returned: 1, or less where a proxy or the surface (`surface` [m]) would move farther than one linearisation may.
+  double follow(Tools tools, double floor, double surface) noexcept;
   /// Relative change of the tools' forces and torques since `begin`.
   double relative_change(Tools tools) const noexcept;
 

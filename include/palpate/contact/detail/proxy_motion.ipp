@@ -44,19 +44,23 @@ PALPATE_INLINE void ProxyMotion::look_ahead(Tools tools, double floor) noexcept 
   }
 }
 
-PALPATE_INLINE bool ProxyMotion::follow(Tools tools, double floor) noexcept {
-  bool arrived = true;
+PALPATE_INLINE double ProxyMotion::follow(Tools tools, double floor, double surface) noexcept {
   look_ahead(tools, floor);
+  double part = 1.0;
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    const double longest = tools[t].longest_step(), path = std::max(surface, ahead_[t].farthest);
+    if (tools[t].active && path > longest) part = std::min(part, longest / path);
+  }
   for (std::size_t t = 0; t < tools.size(); ++t) {
     ContactTool& tool = tools[t];
     if (!tool.active) continue;
-    const double length = ahead_[t].farthest, longest = tool.longest_step();
-    const double part = length <= longest ? 1.0 : longest / length;
     tool.proxy += part * ahead_[t].path;
     rotate(tool, part);
-    arrived = arrived && length <= longest;
+    if (part == 1.0) continue;
+    tool.force = start_force_[t] + part * (tool.force - start_force_[t]);
+    tool.torque = start_torque_[t] + part * (tool.torque - start_torque_[t]);
   }
-  return arrived;
+  return part;
 }
 
 PALPATE_INLINE double ProxyMotion::relative_change(Tools tools) const noexcept {

@@ -28,6 +28,9 @@ class SurfaceDisplacement {
   /// Adds a force on a vertex; `slot` stores its entry between calls (initially -1).
   void add(int vertex, const Vector3& force, int& slot) noexcept;
 
+  /// Takes `part` of these forces and 1 - `part` of those of `before`. Forces beyond the capacity are dropped.
+  void blend(const SurfaceDisplacement& before, double part) noexcept;
+
   /// Displacement of a vertex under the forces [m].
   const Vector3& at(const TissueView& tissue, int vertex) noexcept {
     const auto i = static_cast<std::size_t>(vertex);
@@ -50,6 +53,7 @@ class SurfaceDisplacement {
   int count_ = 0;
   std::vector<Vector3> displacement_;
   std::vector<std::uint64_t> stamp_;
+  std::vector<int> slot_;  // of a vertex's force; -1 between calls
   std::uint64_t generation_ = 1, revision_ = 0;
 };
 

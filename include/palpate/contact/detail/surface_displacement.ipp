@@ -11,7 +11,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capacity)
     : forces_(static_cast<std::size_t>(capacity)),
       displacement_(static_cast<std::size_t>(vertices)),
-      stamp_(static_cast<std::size_t>(vertices), 0) {}
+      stamp_(static_cast<std::size_t>(vertices), 0),
+      slot_(static_cast<std::size_t>(vertices), -1) {}
 
 PALPATE_INLINE void SurfaceDisplacement::begin_tick(std::uint64_t revision) noexcept {
   if (revision != std::exchange(revision_, revision)) ++generation_;
@@ -20,6 +21,7 @@ PALPATE_INLINE void SurfaceDisplacement::begin_tick(std::uint64_t revision) noex
 PALPATE_INLINE void SurfaceDisplacement::move_to(SurfaceDisplacement& fresh) noexcept {
   displacement_.swap(fresh.displacement_);
   stamp_.swap(fresh.stamp_);
+  slot_.swap(fresh.slot_);
   ++generation_;
 }
 
@@ -32,6 +34,21 @@ PALPATE_INLINE void SurfaceDisplacement::add(int vertex, const Vector3& force, i
   VertexForce& f = forces_[static_cast<std::size_t>(count_++)];
   f.vertex = vertex;
   f.force = ModelVector(force);
+}
+
+PALPATE_INLINE void SurfaceDisplacement::blend(const SurfaceDisplacement& before, double part) noexcept {
+  ++generation_;
+  for (int i = 0; i < count_; ++i) {
+    VertexForce& f = forces_[static_cast<std::size_t>(i)];
+    f.force = ModelVector(part * f.force.in_model_axes());
+    slot_[static_cast<std::size_t>(f.vertex)] = i;
+  }
+  for (const VertexForce& f : before.forces()) {
+    int& slot = slot_[static_cast<std::size_t>(f.vertex)];
+    if (slot >= 0 || count_ < static_cast<int>(forces_.size()))
+      add(f.vertex, Vector3((1.0 - part) * f.force.in_model_axes()), slot);
+  }
+  for (const VertexForce& f : forces()) slot_[static_cast<std::size_t>(f.vertex)] = -1;
 }
 
 PALPATE_INLINE Vector3 SurfaceDisplacement::position(const TissueView& tissue, int vertex) noexcept {
