@@ -26,7 +26,7 @@ PALPATE_INLINE Matrix3 rotation_by(const Vector3& v) noexcept {
 }
 
 PALPATE_INLINE Quaternion<double> quaternion_of(const Matrix3& rotation) noexcept {
-  // The quaternion whose largest component comes from the diagonal (Shepperd 1978): no cancellation at any angle.
+  // The largest component is computed from the diagonal (Shepperd 1978): no cancellation at any angle.
   const Matrix3& r = rotation;
   const double trace = r(0, 0) + r(1, 1) + r(2, 2);
   double w;
