@@ -105,7 +105,7 @@ TEST_CASE("a face is selected when all its nodes are, and only on the boundary",
     CHECK(faces_of(mesh, where::box({-1, -1, -1}, {2, 2, 2})).size() == 6 * of_a_side);
     CHECK(faces_of(mesh, where::inside([](const Vector3& x) { return x.z() > 0.9; })).size() == of_a_side);
     const auto p = refused(SetupErrorKind::empty_group, [&] { faces_of(mesh, where::sphere({0.5, 0.5, 0.5}, 0.3)); });
-    CHECK_THAT(p.what, contains("the sphere of radius 0.3 round (0.5, 0.5, 0.5) holds no boundary face"));
+    CHECK_THAT(p.what, contains("the sphere of radius 0.3 around (0.5, 0.5, 0.5) contains no boundary face"));
   };
   check(box_tet4({1, 1, 1}, {4, 4, 4}), 32);
   check(box_tet10({1, 1, 1}, {4, 4, 4}), 32);
@@ -118,7 +118,7 @@ TEST_CASE("a set that selects nothing is refused with the extent of the mesh", "
   const auto p = refused(SetupErrorKind::empty_group, [&] {
     resolve_nodes(mesh, boundary, where::sphere({10, 0, 0}, 1));
   });
-  CHECK_THAT(p.what, contains("the sphere of radius 1 round (10, 0, 0) holds no node"));
+  CHECK_THAT(p.what, contains("the sphere of radius 1 around (10, 0, 0) contains no node"));
   CHECK(p.hint == "The mesh extends from (0, 0, 0) to (0.1, 0.2, 0.3) [m]");
   // A mesh that was moved to a frame of its own is described where it was.
   const Selection moved = mapped(where::sphere({10, 0, 0}, 1), {}, {1, 2, 3});
