@@ -37,7 +37,7 @@ PALPATE_COLD inline MeshFormat format_of_ending(const std::string& name) {
   return MeshFormat::unknown;
 }
 
-/// Refuses a file that holds a surface, with the command that meshes it.
+/// Refuses a file that contains a surface, with the command that meshes it.
 [[noreturn]] PALPATE_COLD inline void refuse_surface(const std::string& name) {
   std::string hint = joined({"Fill it: tetgen -pq ", name, ", then read the .ele file it writes"});
   if (has_ending(name, ".stl") || has_ending(name, ".ply")) hint = fill_command(name);
@@ -55,7 +55,7 @@ PALPATE_COLD inline MeshFormat format_of_ending(const std::string& name) {
             {"meshio and gmsh convert others: meshio convert ", name, " converted.msh"});
 }
 
-/// Stands for the files that a text on its own cannot include.
+/// Include function for a text that is not a file: refuses every included file.
 struct RefuseInclude {
   std::string name;
   [[noreturn]] std::string operator()(const std::string& other) const {
