@@ -17,9 +17,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// How to look behind a device. `rendered` tells what its motors get [N]; an adapter of an SDK asks the SDK, or a fake
-/// of it. `break_reads(device, true)` makes reads invalid, `false` mends them; empty: that law is not tested.
-/// `tolerance` is relative; a device that stores floats needs 1e-6.
+/// Access to the internals of a device for the tests. `rendered` returns the force that its motors receive [N]; an
+/// adapter of an SDK queries the SDK, or a fake of it. `break_reads(device, true)` makes reads invalid, `false`
+/// restores them; if it is empty, that law is not tested. `tolerance` is relative; a device that stores floats needs
+/// 1e-6.
 template <class Device>
 struct DeviceProbe {
   std::function<Vector3(const Device&)> rendered;
@@ -28,7 +29,7 @@ struct DeviceProbe {
   double tolerance = 1e-12;
 };
 
-/// Uses last_force() and, where there is one, unplug(bool).
+/// Uses last_force() and, if they exist, last_torque() and unplug(bool).
 template <class Device>
 DeviceProbe<Device> default_probe() {
   DeviceProbe<Device> probe;
@@ -83,7 +84,7 @@ class DeviceLaws {
       expect_above(violations_, "limits are sane", limits_.rotational_stiffness, 0.0, "turning stiffness");
   }
 
-  /// A device without motors for torque renders none, whatever it is told.
+  /// A device without motors for torque renders no torque, whatever it receives.
   void limits_torque() {
     const double peak = limits_.peak_torque;
     for (const Vector3& direction : {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(1, 2, -3)})
@@ -153,7 +154,7 @@ class DeviceLaws {
     expect_at_most(violations_, "never above the peak", rendered().norm(), limits_.peak_force, "after many reads");
   }
 
-  /// Finite; velocity finite or not given at all; orientation a unit quaternion.
+  /// Finite; velocity finite or NaN in all components (not provided); orientation a unit quaternion.
   static bool is_sound(const ToolState& s) {
     const bool no_velocity = std::isnan(s.velocity[0]) && std::isnan(s.velocity[1]) && std::isnan(s.velocity[2]);
     double square = 0.0;
@@ -181,12 +182,12 @@ class DeviceLaws {
 
 }  // namespace detail
 
-/// Starts the device, tries the laws, stops it. It must not be connected to anybody's hand: forces up to the peak are
-/// written. Laws: "limits are sane", "never above the peak", "renders what it can", "saturates at the peak", "keeps the
-/// direction", "says that it saturates", "says that a read failed", "zero after an invalid read", "says that it is
-/// disconnected", "renders again when reads are valid", "valid states are finite", "time does not run backwards", "zero
-/// after stop"; where the probe tells the torque, "torque within its peak", and those of force for torque. The concept
-/// checks that nothing throws, and that a device takes forces of a gate only, which are finite.
+/// Starts the device, tests the laws, stops it. Nobody may hold the device: forces up to the peak are written. Laws:
+/// "limits are sane", "never above the peak", "renders what it can", "saturates at the peak", "keeps the direction",
+/// "says that it saturates", "says that a read failed", "zero after an invalid read", "says that it is disconnected",
+/// "renders again when reads are valid", "valid states are finite", "time does not run backwards", "zero after stop";
+/// if the probe returns the torque, "torque within its peak", and the laws of force for torque. The concept checks that
+/// nothing throws, and that a device accepts only forces from a gate, which are finite.
 template <HapticDevice Device>
 Violations device_laws(Device& device, const DeviceProbe<Device>& probe = default_probe<Device>(), int reads = 10'000) {
   return detail::DeviceLaws<Device>(device, probe).run(reads);

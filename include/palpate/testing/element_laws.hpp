@@ -72,7 +72,7 @@ Violations face_element_laws() {
   linear.report(v);
 
   const auto cell = cell_of<F>();
-  expect_true(v, "reference cell", cell.has_value(), "the corners make no triangle and no box");
+  expect_true(v, "reference cell", cell.has_value(), "the corners form neither a triangle nor a box");
   if (!cell) return v;
   append(v, quadrature_laws<typename F::Quadrature>(*cell), "Quadrature");
   if constexpr (TriangulatedFace<F>) append(v, triangulation_laws<F>(cell->volume()), "triangles");
@@ -146,7 +146,7 @@ Violations element_laws() {
   if (!face_nodes_in_range<E>()) return v;
   append(v, face_laws<E>());
   const auto cell = cell_of<E>();
-  expect_true(v, "reference cell", cell.has_value(), "nodes on three faces make no tetrahedron and no box");
+  expect_true(v, "reference cell", cell.has_value(), "nodes on three faces form neither a tetrahedron nor a box");
   if (!cell) return v;
   append(v, volume_laws<E>(*cell));
   append(v, numbering_laws<E>(cell->domain));
