@@ -224,12 +224,12 @@ TEST_CASE("each kind of bad device is caught", "[device][laws][extreme][D6][D7]"
   CHECK(breaks<KeepsForceWhenLost>("zero after an invalid read"));
   CHECK(breaks<UnlimitedTorque>("torque within its peak"));
   CHECK(breaks<TorqueWithoutLimit>("torque within its peak"));
-  CHECK(breaks<QuietTorque>("says that it saturates"));
+  CHECK(breaks<QuietTorque>("reports saturation"));
   CHECK(breaks<TurnsAfterStop>("zero after stop"));
   CHECK(breaks<NoTurningStiffness>("limits are sane"));
   CHECK(breaks<Weak>("renders what it can"));
-  CHECK(breaks<SaysNothing>("says that it saturates"));
-  CHECK(breaks<SaysNothing>("says that it is disconnected"));
+  CHECK(breaks<SaysNothing>("reports saturation"));
+  CHECK(breaks<SaysNothing>("reports disconnection"));
   CHECK(breaks<NanState>("valid states are finite"));
   CHECK(breaks<HalfVelocity>("valid states are finite"));
   CHECK(breaks<NoRotation>("valid states are finite"));

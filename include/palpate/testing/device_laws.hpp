@@ -101,7 +101,7 @@ class DeviceLaws {
         if (size <= 1.0) continue;
         expect_at_least(violations_, "saturates at the peak", given.norm(), peak * (1.0 - probe_.tolerance), detail);
         expect_at_least(violations_, "keeps the direction", unit.dot(given.normalized()), 1.0 - 1e-12, detail);
-        expect_true(violations_, "says that it saturates", status.has(StatusFlag::saturated), detail);
+        expect_true(violations_, "reports saturation", status.has(StatusFlag::saturated), detail);
       }
   }
 
@@ -120,7 +120,7 @@ class DeviceLaws {
         if (size <= 1.0) continue;
         expect_at_least(violations_, "saturates at the peak", given.norm(), peak * (1.0 - probe_.tolerance), detail);
         expect_at_least(violations_, "keeps the direction", unit.dot(given.normalized()), 1.0 - 1e-12, detail);
-        expect_true(violations_, "says that it saturates", status.has(StatusFlag::saturated), detail);
+        expect_true(violations_, "reports saturation", status.has(StatusFlag::saturated), detail);
       }
   }
 
@@ -129,10 +129,10 @@ class DeviceLaws {
     turn(force);
     probe_.break_reads(device_, true);
     const ToolState state = device_.read();
-    expect_true(violations_, "says that a read failed", !state.valid);
+    expect_true(violations_, "reports a failed read", !state.valid);
     const Status status = turn(force);
     expect_at_most(violations_, "zero after an invalid read", anything(), 0.0);
-    expect_true(violations_, "says that it is disconnected", status.has(StatusFlag::disconnected));
+    expect_true(violations_, "reports disconnection", status.has(StatusFlag::disconnected));
     probe_.break_reads(device_, false);
     const bool mended = device_.read().valid;
     write(force);
@@ -184,10 +184,10 @@ class DeviceLaws {
 
 /// Starts the device, tests the laws, stops it. Nobody may hold the device: forces up to the peak are written. Laws:
 /// "limits are sane", "never above the peak", "renders what it can", "saturates at the peak", "keeps the direction",
-/// "says that it saturates", "says that a read failed", "zero after an invalid read", "says that it is disconnected",
-/// "renders again when reads are valid", "valid states are finite", "time does not run backwards", "zero after stop";
-/// if the probe returns the torque, "torque within its peak", and the laws of force for torque. The concept checks that
-/// nothing throws, and that a device accepts only forces from a gate, which are finite.
+/// "reports saturation", "reports a failed read", "zero after an invalid read", "reports disconnection", "renders again
+/// when reads are valid", "valid states are finite", "time does not run backwards", "zero after stop"; if the probe
+/// returns the torque, "torque within its peak", and the laws of force for torque. The concept checks that nothing
+/// throws, and that a device accepts only forces from a gate, which are finite.
 template <HapticDevice Device>
 Violations device_laws(Device& device, const DeviceProbe<Device>& probe = default_probe<Device>(), int reads = 10'000) {
   return detail::DeviceLaws<Device>(device, probe).run(reads);

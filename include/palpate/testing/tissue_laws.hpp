@@ -70,8 +70,8 @@ Violations scale_laws(const T& tissue, std::span<const int> vertices) {
 }
 
 /// Laws for the given vertices, whose columns must all be available simultaneously: "columns available", "finite",
-/// "reciprocity" (C(i, j) = C(j, i)^T, Betti), "positive semidefinite" and "a vertex gives way" (deforms) where it is
-/// not constrained, the bound, the floor, and "same columns again". At least one of the vertices must be able to move.
+/// "reciprocity" (C(i, j) = C(j, i)^T, Betti), "positive semidefinite" and "a loaded vertex moves" where it is not
+/// constrained, the bound, the floor, and "same columns again". At least one of the vertices must be able to move.
 template <TissueModel T>
 Violations tissue_laws(T& tissue, std::span<const int> vertices, TissueClaims claims = {}) {
   Violations v;
@@ -89,8 +89,9 @@ Violations tissue_laws(T& tissue, std::span<const int> vertices, TissueClaims cl
     const VectorX own = c.diagonal().segment<3>(3 * static_cast<Index>(i));
     const MatrixX column = c.middleCols<3>(3 * static_cast<Index>(i));
     if (!column.isZero(0.0))
-      expect_at_least(v, "a vertex gives way", own.minCoeff(), 0.0, "vertex " + std::to_string(i));
-    if (!column.isZero(0.0)) expect_above(v, "a vertex gives way", own.maxCoeff(), 0.0, "vertex " + std::to_string(i));
+      expect_at_least(v, "a loaded vertex moves", own.minCoeff(), 0.0, "vertex " + std::to_string(i));
+    if (!column.isZero(0.0))
+      expect_above(v, "a loaded vertex moves", own.maxCoeff(), 0.0, "vertex " + std::to_string(i));
   }
   append(v, bound_laws(tissue, vertices));
   append(v, scale_laws(tissue, vertices));
