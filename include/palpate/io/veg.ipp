@@ -158,7 +158,7 @@ inline void Parser::read_set() {
   std::vector<Index>& set = add_set(name).elements;
   const Index base = std::max<Index>(elements_.base(), 0), count = elements_.count();
   while (lines_.next_line()) {
-    if (in().line().front() == '*') return lines_.hold();
+    if (in().line().front() == '*') return lines_.stay();
     while (!in().rest().empty()) set.push_back(in().integer("an element id", base, base + count - 1) - base);
   }
 }

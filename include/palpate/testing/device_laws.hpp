@@ -64,7 +64,7 @@ class DeviceLaws {
  private:
   Status write(const Vector3& force) { return device_.write(gated(force)); }
   /// With half of the peak torque.
-  Status turn(const Vector3& force) {
+  Status write_with_torque(const Vector3& force) {
     return device_.write(gated(force, Vector3(0.0, 0.0, 0.5 * limits_.peak_torque)));
   }
   Vector3 rendered() const { return probe_.rendered(device_); }
@@ -81,7 +81,7 @@ class DeviceLaws {
     expect_at_least(violations_, "limits are sane", limits_.peak_torque, 0.0, "peak torque");
     expect_at_most(violations_, "limits are sane", limits_.peak_torque, 1e4, "peak torque");
     if (limits_.peak_torque > 0.0)
-      expect_above(violations_, "limits are sane", limits_.rotational_stiffness, 0.0, "turning stiffness");
+      expect_above(violations_, "limits are sane", limits_.rotational_stiffness, 0.0, "rotational stiffness");
   }
 
   /// A device without motors for torque renders no torque, whatever it receives.
@@ -126,17 +126,17 @@ class DeviceLaws {
 
   void zero_after_invalid_read() {
     const Vector3 force = Vector3(0.0, 0.0, 0.5 * limits_.peak_force);
-    turn(force);
+    write_with_torque(force);
     probe_.break_reads(device_, true);
     const ToolState state = device_.read();
     expect_true(violations_, "reports a failed read", !state.valid);
-    const Status status = turn(force);
+    const Status status = write_with_torque(force);
     expect_at_most(violations_, "zero after an invalid read", anything(), 0.0);
     expect_true(violations_, "reports disconnection", status.has(StatusFlag::disconnected));
     probe_.break_reads(device_, false);
-    const bool mended = device_.read().valid;
+    const bool restored = device_.read().valid;
     write(force);
-    expect_true(violations_, "renders again when reads are valid", mended && rendered().norm() > 0.0);
+    expect_true(violations_, "renders again when reads are valid", restored && rendered().norm() > 0.0);
   }
 
   void survives(int reads) {
@@ -165,10 +165,10 @@ class DeviceLaws {
 
   void zero_after_stop() {
     const Vector3 force = Vector3(0.0, 0.5 * limits_.peak_force, 0.0);
-    turn(force);
+    write_with_torque(force);
     device_.stop();
     expect_at_most(violations_, "zero after stop", anything(), 0.0, "at once");
-    turn(force);
+    write_with_torque(force);
     expect_at_most(violations_, "zero after stop", anything(), 0.0, "although written to");
     device_.stop();
     expect_at_most(violations_, "zero after stop", anything(), 0.0, "stopped twice");

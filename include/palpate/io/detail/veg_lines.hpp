@@ -25,7 +25,7 @@ class Lines {
   void need_line(std::string_view expected);
 
   /// The next call of next_line() stays on the current line.
-  void hold() noexcept { held_ = true; }
+  void stay() noexcept { stays_ = true; }
 
   TextReader& in() noexcept { return open_.back().reader; }    ///< the reader of the current line
   std::uint8_t file() const noexcept { return file_.back(); }  ///< its entry in `names`
@@ -46,7 +46,7 @@ class Lines {
   Include include_;
   std::list<File> open_;
   std::vector<std::uint8_t> file_;
-  bool held_ = false;
+  bool stays_ = false;
 };
 
 }}}  // namespace palpate::PALPATE_ABI::io::veg

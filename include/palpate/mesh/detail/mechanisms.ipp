@@ -74,7 +74,7 @@ class JointedParts {
   }
 
   std::optional<Mechanism> find() {
-    hold_one_by_one();
+    propagate_constraints();
     std::vector<char> seen(parts_.size(), 0);
     for (std::size_t p = 0; p < parts_.size(); ++p)
       if (!parts_[p].is_constrained && seen[p] == 0)
@@ -95,7 +95,7 @@ class JointedParts {
   static constexpr double tolerance = 1e-6;
 
   /// A part that is fully constrained, by constraints or by other constrained parts, constrains its neighbours in turn.
-  void hold_one_by_one() {
+  void propagate_constraints() {
     std::vector<std::size_t> pending(parts_.size()), next;
     std::iota(pending.begin(), pending.end(), std::size_t{0});
     for (; !pending.empty(); pending = std::exchange(next, {})) {
@@ -106,11 +106,11 @@ class JointedParts {
         if (part.is_constrained) continue;
         part.frame = RigidFrame(positions_, part.nodes, constrained_);
         part.motions = free_motions(positions_, part.nodes, constrained_, part.frame);
-        if (part.motions.empty()) hold(part, next);
+        if (part.motions.empty()) constrain(part, next);
       }
     }
   }
-  void hold(Part& part, std::vector<std::size_t>& neighbours) {
+  void constrain(Part& part, std::vector<std::size_t>& neighbours) {
     part.is_constrained = true;
     for (const NodeId i : part.nodes) {
       constrained_[static_cast<std::size_t>(i)] = 7;
