@@ -48,7 +48,7 @@ TEST_CASE("a rotation of many turns is tracked without drift", "[core][rotation]
   const Vector3 axis = Vector3(1.0, -2.0, 0.5).normalized();
   Quaternion<double> q{1.0, 0.0, 0.0, 0.0};
   double worst = 0.0;
-  for (int k = 0; k <= 20000; ++k) {  // three turns and a bit
+  for (int k = 0; k <= 20000; ++k) {  // a little more than three turns
     const Matrix3 r = Eigen::AngleAxisd(1e-3 * k, axis).toRotationMatrix();
     worst = std::max(worst, (matrix3(tracked_rotation(tensor3<double>(Matrix3(r * stretch)), q)) - r).norm());
   }

@@ -149,7 +149,7 @@ class WaitableTimer {
   WaitableTimer(const WaitableTimer&) = delete;
   WaitableTimer& operator=(const WaitableTimer&) = delete;
 
-  /// False when there is no timer.
+  /// False if there is no timer.
   bool wait(std::int64_t ns) const noexcept {
     const std::int64_t hundreds = -(ns + 99) / 100;  // negative: from now
     if (handle_ == nullptr) return false;

@@ -21,7 +21,8 @@ using ProgressCallback = std::function<bool(const Progress&)>;
 /// Limits of a set-up.
 struct SetupLimits {
   ProgressCallback progress;                                     ///< empty: no reports
-  std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< [bytes] a set-up may allocate at once for matrices
+  std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< [bytes] largest amount a set-up may allocate in
+                                                                 ///< one step for matrices
 
   /// Reports progress; throws SetupError(cancelled) if the callback returns false.
   void advance(std::string_view stage, double fraction) const;

@@ -29,8 +29,8 @@ FileMesh parse_file(std::string_view text, const std::string& name);
 /// The parsed file of any format, with the files that belong to it.
 FileMesh read_file_mesh(const std::string& path);
 
-/// Reads a mesh from a text that holds a whole file; `name` is the file name in messages, and its extension gives the
-/// format if the text does not. For the rest see read_mesh.
+/// Reads a mesh from a text with the content of a whole file; `name` is the file name in messages, and its extension
+/// gives the format if the text does not. For the rest see read_mesh.
 template <Element E>
 Mesh<E> parse_mesh(std::string_view text, const std::string& name = "text", const ReadOptions& options = {}) {
   return build_mesh<E>(parse_file(text, name), options.scale, options.numbering);

@@ -43,7 +43,7 @@ PALPATE_COLD inline MeshFormat format_of_ending(const std::string& name) {
   if (has_ending(name, ".stl") || has_ending(name, ".ply")) hint = fill_command(name);
   if (has_ending(name, ".obj") || has_ending(name, ".gltf"))
     hint = joined({"First: meshio convert ", name, " surface.stl. ", fill_command("surface.stl")});
-  if (has_ending(name, ".edge")) hint = "Read the .ele file beside it";
+  if (has_ending(name, ".edge")) hint = "Read the .ele file of the same mesh";
   refuse(SetupErrorKind::unsupported, {name, ":1: expected solid elements, found a surface"}, hint);
 }
 
@@ -59,7 +59,7 @@ PALPATE_COLD inline MeshFormat format_of_ending(const std::string& name) {
 struct RefuseInclude {
   std::string name;
   [[noreturn]] std::string operator()(const std::string& other) const {
-    refuse(SetupErrorKind::unsupported, {name, ": *INCLUDE ", other, " in a text that is no file"});
+    refuse(SetupErrorKind::unsupported, {name, ": *INCLUDE ", other, " is not possible in a text without a file"});
   }
 };
 

@@ -84,7 +84,7 @@ class DeviceLaws {
       expect_above(violations_, "limits are sane", limits_.rotational_stiffness, 0.0, "rotational stiffness");
   }
 
-  /// A device without motors for torque renders no torque, whatever it receives.
+  /// A device without motors for torque renders no torque, whatever is written to it.
   void limits_torque() {
     const double peak = limits_.peak_torque;
     for (const Vector3& direction : {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(1, 2, -3)})
@@ -167,7 +167,7 @@ class DeviceLaws {
     const Vector3 force = Vector3(0.0, 0.5 * limits_.peak_force, 0.0);
     write_with_torque(force);
     device_.stop();
-    expect_at_most(violations_, "zero after stop", anything(), 0.0, "at once");
+    expect_at_most(violations_, "zero after stop", anything(), 0.0, "immediately");
     write_with_torque(force);
     expect_at_most(violations_, "zero after stop", anything(), 0.0, "although written to");
     device_.stop();

@@ -125,7 +125,7 @@ Violations rotation_laws(const M& m, double modulus, bool isotropic) {
   return v;
 }
 
-/// `law`: the stress in S equals that in double at the same F, to 32 roundings of what an error of F makes.
+/// `law`: the stress in S equals that in double at the same F, to 32 times the effect of a rounding error in F.
 template <class S, HyperelasticMaterial M>
 Violations precision_law(const M& m, double modulus, const char* law) {
   using Scalar = scalar_of<S>;

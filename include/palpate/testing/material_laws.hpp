@@ -58,8 +58,7 @@ Violations linear_material_laws(const M& material, LinearMaterialClaims claims =
   return v;
 }
 
-/// "check accepts" every admissible material; "check refuses" every inadmissible one, and "refusal says why": the
-/// refusal has a message.
+/// "check accepts" every admissible material; "check refuses" every inadmissible one, and "refusal has a message".
 template <Material M>
 Violations admission_laws(const std::vector<M>& admissible, const std::vector<M>& inadmissible) {
   Violations v;
@@ -71,7 +70,7 @@ Violations admission_laws(const std::vector<M>& admissible, const std::vector<M>
   for (std::size_t i = 0; i < inadmissible.size(); ++i) {
     const auto problem = inadmissible[i].check();
     expect_true(v, "check refuses", problem.has_value(), "number " + std::to_string(i));
-    if (problem) expect_true(v, "refusal says why", !problem->what.empty(), "number " + std::to_string(i));
+    if (problem) expect_true(v, "refusal has a message", !problem->what.empty(), "number " + std::to_string(i));
   }
   return v;
 }

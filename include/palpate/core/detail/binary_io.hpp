@@ -14,7 +14,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(std::numeric_limits<double>::is_iec559 && std::numeric_limits<float>::is_iec559,
-              "binary files hold IEEE 754 numbers");
+              "binary files contain IEEE 754 numbers");
 
 namespace detail {
 

@@ -25,7 +25,7 @@ struct NodeHeader {
   static NodeHeader read(TextReader& in, std::size_t bytes_left);
 };
 
-/// A node: `id x y z attributes... [marker]`. Returns the marker, 0 when there is none.
+/// A node: `id x y z attributes... [marker]`. Returns the marker, 0 if there is none.
 int read_node_row(TextReader& in, const NodeHeader& header, RowNumbers& numbers, FileMesh& mesh);
 
 /// Reads `nodes` node ids counted from `base` into FileMesh::cell_nodes.
