@@ -189,10 +189,10 @@ TEST_CASE("surface element laws can fail", "[testing][element]") {
 }
 
 TEST_CASE("triangulation laws can fail", "[testing][element]") {
-  const auto vertex_law = "every node is a vertex of a triangle, and lies on no other";
+  const auto vertex_law = "every node is a vertex of a triangle, and is in no other";
   CHECK(face_element_laws<Quad8>().empty());
   CHECK(violates(face_element_laws<TriangleOutOfRange>(), "triangles name nodes of the face"));
-  CHECK(violates(face_element_laws<RotatedTriangle>(), "triangles are turned as the face is"));
+  CHECK(violates(face_element_laws<RotatedTriangle>(), "triangles have the orientation of the face"));
   CHECK(violates(face_element_laws<HalfCovered>(), "triangles cover the face"));
   CHECK(violates(face_element_laws<CornersCoverTri6>(), vertex_law));
   CHECK_FALSE(violates(face_element_laws<CornersCoverTri6>(), "triangles cover the face"));

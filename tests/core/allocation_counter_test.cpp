@@ -8,7 +8,7 @@
 
 using namespace palpate;
 
-TEST_CASE("what is allocated is counted, where malloc can be replaced", "[core][allocation]") {
+TEST_CASE("allocations are counted if malloc can be replaced", "[core][allocation]") {
 #if defined(__GLIBC__) && !defined(PALPATE_SANITIZER_HAS_MALLOC)
   REQUIRE(testing::allocations_are_counted());
   const testing::AllocationScope scope;

@@ -25,7 +25,7 @@ std::vector<unsigned char> pattern(std::size_t size) {
   return bytes;
 }
 
-/// A folder of this test's own, gone afterwards.
+/// A temporary folder for one test, removed afterwards.
 class Folder {
  public:
   Folder() { fs::create_directories(path_); }
@@ -65,7 +65,7 @@ TEST_CASE("every flipped bit changes the hash", "[core][hash]") {
 }
 
 TEST_CASE("every change within one word changes the hash", "[core][hash]") {
-  // What the documentation promises: all changes of a word, not only single bits.
+  // As documented: all changes within a word are detected, not only single bits.
   std::vector<unsigned char> bytes = pattern(96);
   const std::uint64_t right = hash_of(bytes);
   for (std::size_t w = 0; w < bytes.size(); w += 8)
@@ -76,7 +76,7 @@ TEST_CASE("every change within one word changes the hash", "[core][hash]") {
     }
 }
 
-TEST_CASE("lengths, order and splitting count", "[core][hash]") {
+TEST_CASE("the hash depends on lengths, order and splitting", "[core][hash]") {
   const std::vector<unsigned char> zeros(70, 0);
   std::vector<std::uint64_t> seen;
   for (std::size_t n = 0; n <= zeros.size(); ++n) seen.push_back(hash_of(std::span(zeros).first(n)));
@@ -100,13 +100,13 @@ TEST_CASE("lengths, order and splitting count", "[core][hash]") {
 
 TEST_CASE("the hash is part of the file format", "[core][hash]") {
   if constexpr (std::endian::native == std::endian::little) {
-    // No outside truth: the numbers this code gave when layout 1 of the cache file was fixed.
+    // Not an independent reference: the values that this code computed when layout 1 of the cache file was fixed.
     CHECK(hash_of({}) == 0xe4a85dc57c731a2bu);
     CHECK(hash_of(pattern(100)) == 0x048ab58712b35dc6u);
   }
 }
 
-TEST_CASE("arrays come back bit by bit, however long", "[core][binary]") {
+TEST_CASE("arrays of any length are read back bit by bit", "[core][binary]") {
   const Folder folder;
   for (std::size_t count : {0u, 1u, 3u, 32768u, 32769u, 100000u}) {
     std::vector<double> numbers(count);
@@ -133,7 +133,7 @@ TEST_CASE("arrays come back bit by bit, however long", "[core][binary]") {
   }
 }
 
-TEST_CASE("a reader stops at the first thing that is wrong", "[core][binary]") {
+TEST_CASE("a reader stops at the first error", "[core][binary]") {
   const Folder folder;
   {
     const detail::File out(std::fopen((folder / "a").string().c_str(), "wb"));
@@ -156,7 +156,7 @@ TEST_CASE("a reader stops at the first thing that is wrong", "[core][binary]") {
   CHECK(failure(5, 3) == ReadFailure::damaged);
 }
 
-TEST_CASE("a file is replaced whole or not at all", "[core][atomic_file]") {
+TEST_CASE("a file is replaced completely or not at all", "[core][atomic_file]") {
   const Folder folder;
   const std::string path = (folder / "a").string();
   std::ofstream(path) << "old";
@@ -177,7 +177,7 @@ TEST_CASE("a file is replaced whole or not at all", "[core][atomic_file]") {
   CHECK(folder.files() == 1);
 }
 
-TEST_CASE("writers of one file do not meet", "[core][atomic_file]") {
+TEST_CASE("several writers of one file do not interfere", "[core][atomic_file]") {
   const Folder folder;
   const std::string path = (folder / "a").string();
   AtomicFile one(path), two(path);
@@ -189,7 +189,7 @@ TEST_CASE("writers of one file do not meet", "[core][atomic_file]") {
   CHECK(folder.files() == 1);
 }
 
-TEST_CASE("what cannot be written is said", "[core][atomic_file]") {
+TEST_CASE("a failed write is reported", "[core][atomic_file]") {
   const Folder folder;
   std::ofstream(folder / "file") << "x";
   fs::create_directory(folder / "folder");
@@ -212,8 +212,8 @@ TEST_CASE("only old leftovers of the same file are removed", "[core][atomic_file
     fs::last_write_time(folder / name, fs::file_time_type::clock::now() - std::chrono::hours(hours_old));
   };
   put("a.tmp-0123456789abcdef", 2);
-  put("a.tmp-0123456789abcdee", 0);   // somebody may be writing it
-  put("b.tmp-0123456789abcdef", 2);   // another file's
+  put("a.tmp-0123456789abcdee", 0);   // another process may be writing it
+  put("b.tmp-0123456789abcdef", 2);   // belongs to another file
   put("a.tmp-0123456789abcdeX", 2);   // not our pattern
   put("a.tmp-0123456789abcdef0", 2);  // nor this
   AtomicFile file((folder / "a").string());

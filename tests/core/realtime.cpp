@@ -28,7 +28,7 @@ double grown_denormal() {
 
 }  // namespace
 
-TEST_CASE("denormals are zero inside FlushDenormals and whole outside", "[core][realtime]") {
+TEST_CASE("denormals are flushed to zero inside FlushDenormals and kept outside", "[core][realtime]") {
   REQUIRE(half_of_smallest() > 0.0);
   REQUIRE(grown_denormal() > 0.0);
   {
@@ -39,7 +39,7 @@ TEST_CASE("denormals are zero inside FlushDenormals and whole outside", "[core][
       const FlushDenormals again;
       CHECK(half_of_smallest() == 0.0);
     }
-    CHECK(half_of_smallest() == 0.0);  // an inner scope gives back the mode it found, not the default
+    CHECK(half_of_smallest() == 0.0);  // an inner scope restores the mode it found, not the default
   }
   CHECK(half_of_smallest() > 0.0);
   CHECK(grown_denormal() > 0.0);
@@ -54,7 +54,7 @@ TEST_CASE("an exception restores the mode too", "[core][realtime]") {
   }
 }
 
-TEST_CASE("normal numbers are not touched", "[core][realtime]") {
+TEST_CASE("normal numbers are not changed", "[core][realtime]") {
   const FlushDenormals flush;
   volatile double smallest = std::numeric_limits<double>::min(), one = 1.0;
   CHECK(smallest * one == std::numeric_limits<double>::min());

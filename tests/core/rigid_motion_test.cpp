@@ -11,13 +11,13 @@ using testing::Random;
 
 namespace {
 
-/// Angles at which formulas lose digits: none, tiny, small, a half turn and next to it.
+/// Angles at which formulas lose digits: zero, tiny, small, 180 degrees and close to it.
 const double angles[] = {
     0.0, 1e-300, 1e-160, 1e-16, 1e-8, 1e-4, 0.5, 1.5, 3.0, std::numbers::pi - 1e-8, std::numbers::pi};
 
 }  // namespace
 
-TEST_CASE("the rotation by a vector is Eigen's, and orthogonal", "[core]") {
+TEST_CASE("rotation_by agrees with Eigen and is orthogonal", "[core]") {
   Random random(3);
   for (const double angle : angles)
     for (int k = 0; k < 20; ++k) {
@@ -29,7 +29,7 @@ TEST_CASE("the rotation by a vector is Eigen's, and orthogonal", "[core]") {
     }
 }
 
-TEST_CASE("a rotation vector comes back from its rotation, to rounding at every angle", "[core]") {
+TEST_CASE("rotation_vector inverts rotation_by to rounding at every angle", "[core]") {
   Random random(4);
   for (const double angle : angles)
     for (int k = 0; k < 20; ++k) {
@@ -40,7 +40,7 @@ TEST_CASE("a rotation vector comes back from its rotation, to rounding at every 
       CHECK((rotation_by(back) - r).cwiseAbs().maxCoeff() <= 2e-15);
       if (angle < 3.1) CHECK((back - v).norm() <= 4e-15 * (1.0 + angle / (std::numbers::pi - angle)));
     }
-  // Half turns about the axes and between them, where all of R - R^T vanishes.
+  // Rotations by 180 degrees about the axes and between them, where all of R - R^T vanishes.
   for (const Vector3& axis :
        {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1), Vector3(1, 1, 0), Vector3(1, -1, 1)}) {
     const Matrix3 r = 2.0 / axis.squaredNorm() * (axis * axis.transpose()) - Matrix3(Matrix3::Identity());
@@ -61,7 +61,7 @@ TEST_CASE("quaternions of any length and their rotations", "[core]") {
   }
 }
 
-TEST_CASE("poses move points and are undone", "[core]") {
+TEST_CASE("poses move points and have an inverse", "[core]") {
   Random random(6);
   for (int k = 0; k < 20; ++k) {
     const Matrix3 r = rotation_by(random.vector<3>(-2.0, 2.0));
@@ -74,7 +74,7 @@ TEST_CASE("poses move points and are undone", "[core]") {
   }
 }
 
-TEST_CASE("what is no rotation", "[core]") {
+TEST_CASE("matrices that are not rotations are detected", "[core]") {
   CHECK(is_rotation(Matrix3::Identity()));
   CHECK(!is_rotation(-Matrix3(Matrix3::Identity())));
   CHECK(!is_rotation(1.001 * Matrix3(Matrix3::Identity())));

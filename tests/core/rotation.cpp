@@ -1,4 +1,4 @@
-// The closest rotation of any tensor: whole, flat, inverted, zero.
+// The closest rotation of any tensor: regular, flat, inverted, zero.
 #include <palpate/core/rotation.hpp>
 #include <palpate/testing/random.hpp>
 
@@ -50,7 +50,8 @@ TEST_CASE("the closest rotation of a rotation, at all angles and exactly 180 deg
   }
 }
 
-TEST_CASE("the closest rotation is right to rounding over the sum of the two smallest stretches", "[core][rotation]") {
+TEST_CASE("the error of the closest rotation is rounding over the sum of the two smallest stretches",
+          "[core][rotation]") {
   testing::Random random(8);
   double worst = 0.0;
   for (int k = 0; k < 4000; ++k) {
@@ -68,7 +69,7 @@ TEST_CASE("the closest rotation is right to rounding over the sum of the two sma
   CHECK(worst <= 5e-14);
 }
 
-TEST_CASE("where several rotations are closest it is one of them", "[core][rotation][extreme][E5]") {
+TEST_CASE("if several rotations are closest, the result is one of them", "[core][rotation][extreme][E5]") {
   testing::Random random(9);
   const auto optimal = [](const Matrix3& f, double best) {
     const Matrix3 r = closest(f);
@@ -94,7 +95,7 @@ TEST_CASE("the closest rotation in float and in lanes", "[core][rotation]") {
     Tensor3<Lanes<double, 8>> wide;
     Tensor3<Lanes<float, 16>> single;
     std::vector<Known> known;
-    for (int i = 0; i < 16; ++i) {  // one lane in four is degenerate: the others must not notice
+    for (int i = 0; i < 16; ++i) {  // one lane in four is degenerate: the others must not be affected
       known.emplace_back(random, i % 4 == 0 ? Vector3(1.0, 0.0, 0.0) : Vector3(1.2, 0.9, random.uniform(-0.5, 0.8)));
       for (int e = 0; e < 9; ++e) {
         if (i < 8) wide.e[e].set(i, known.back().f.data()[e]);

@@ -9,7 +9,7 @@
 
 using namespace palpate;
 
-TEST_CASE("a problem keeps the first sixteen ids and counts all", "[core][setup_error]") {
+TEST_CASE("a problem stores the first sixteen ids and the total count", "[core][setup_error]") {
   SetupProblem p;
   std::vector<std::int64_t> ids(1000);
   std::iota(ids.begin(), ids.end(), 100);
@@ -38,7 +38,7 @@ TEST_CASE("a problem keeps the first sixteen ids and counts all", "[core][setup_
   }
 }
 
-TEST_CASE("a problem reads as one line", "[core][setup_error]") {
+TEST_CASE("a problem is described in one line", "[core][setup_error]") {
   SetupProblem p;
   p.kind = SetupErrorKind::inverted_element;
   p.what = "2 elements have negative volume";
@@ -61,7 +61,7 @@ TEST_CASE("numbers in messages", "[core][setup_error]") {
   CHECK_THAT(number(std::numeric_limits<double>::quiet_NaN()), test::contains("nan"));
 }
 
-TEST_CASE("every kind has a name of its own", "[core][setup_error]") {
+TEST_CASE("every kind has a unique name", "[core][setup_error]") {
   std::set<std::string_view> names;
   const int last = static_cast<int>(SetupErrorKind::unsupported);
   for (int k = 0; k <= last; ++k) names.insert(to_string(static_cast<SetupErrorKind>(k)));
@@ -93,7 +93,7 @@ TEST_CASE("raise throws the problem it was given", "[core][setup_error]") {
   CHECK_THROWS_AS(raise(SetupErrorKind::bad_file, ""), std::runtime_error);
 }
 
-TEST_CASE("a problem says what its ids number", "[core][setup_error]") {
+TEST_CASE("a problem states what its ids refer to", "[core][setup_error]") {
   const auto text = [](SetupIds of, std::vector<std::int64_t> ids) {
     SetupProblem p;
     p.what = "so";
@@ -130,7 +130,7 @@ TEST_CASE("ids of refusals are translated to the mesh as given", "[core][setup_e
     CHECK(refused_ids(SetupIds::nodes, {0, 2}) == Ids{10, 13});
     CHECK(refused_ids(SetupIds::elements, {0, 1}) == Ids{20, 22});
     CHECK(refused_ids(SetupIds::others, {0, 2}) == Ids{0, 2});
-    CHECK(refused_ids(SetupIds::elements, {-1, 2}) == Ids{-1, 2});  // of no element: unchanged
+    CHECK(refused_ids(SetupIds::elements, {-1, 2}) == Ids{-1, 2});  // does not refer to an element: unchanged
     CHECK_THROWS_WITH(raise_at(SetupIds::nodes, 2, SetupErrorKind::bad_density, "a node has no mass", "Give one"),
                       "bad_density: a node has no mass [node 13]. Give one");
     {
@@ -145,7 +145,7 @@ TEST_CASE("ids of refusals are translated to the mesh as given", "[core][setup_e
       return true;
     };
     limits.advance("checks", 0.0);
-    CHECK(inside == Ids{0, 2});  // what a callback refuses is not of this mesh
+    CHECK(inside == Ids{0, 2});  // ids of a refusal in a callback do not belong to this mesh
   }
   CHECK(refused_ids(SetupIds::nodes, {0, 2}) == Ids{0, 2});
 }

@@ -14,7 +14,7 @@ using testing::Random;
 
 namespace {
 
-// Maps are no operands of ours: what is made of them is Eigen's.
+// Eigen::Map operands do not use these operators: they give Eigen's expressions.
 template <class M>
 Eigen::Map<const M> eigen(const M& m) {
   return Eigen::Map<const M>(m.data());
@@ -79,7 +79,7 @@ TEST_CASE("products of small matrices and vectors are values, equal to Eigen's",
   }
 }
 
-TEST_CASE("a vector may be an operand and the target at once", "[core]") {
+TEST_CASE("a vector may be operand and target simultaneously", "[core]") {
   Matrix3 a;
   a << 1, 2, 3, 4, 5, 6, 7, 8, 10;
   Vector3 v(1, 2, 3);
@@ -91,7 +91,7 @@ TEST_CASE("a vector may be an operand and the target at once", "[core]") {
   CHECK(b == Matrix3(eigen(a) * eigen(a).transpose()));
 }
 
-TEST_CASE("what is not finite is seen in any place", "[core]") {
+TEST_CASE("a non-finite entry is detected in any place", "[core]") {
   Vector6 v = Vector6::Constant(1e308);
   CHECK(all_finite(v));
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})

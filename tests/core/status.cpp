@@ -63,7 +63,7 @@ TEST_CASE("every flag has one bit and one name", "[core][status]") {
   CHECK(name(StatusFlag::slow_tissue) == "SlowTissue");
 }
 
-TEST_CASE("counters add one per flag and tick", "[core][status]") {
+TEST_CASE("counters add one per set flag and tick", "[core][status]") {
   StatusCounters counters;
   for (int bit = 0; bit < status_flag_count; ++bit) CHECK(counters.at(bit) == 0);
   for (int tick = 0; tick < 1000; ++tick) {

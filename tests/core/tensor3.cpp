@@ -10,13 +10,13 @@
 
 using namespace palpate;
 
-TEST_CASE("lanes do what one number does", "[core][lanes]") {
+TEST_CASE("lanes compute the same as single numbers", "[core][lanes]") {
   using Eight = Lanes<double, 8>;
   STATIC_REQUIRE(sizeof(Eight) == 64);
   STATIC_REQUIRE(alignof(Eight) == 64);
   STATIC_REQUIRE(sizeof(Lanes<float, 16>) == 64);
   const double from[] = {9, 0.1, -1.5, 2, -3, 0.25, 1e300, -1e-300, 7}, to[] = {9, 2, 3, -1.5, 0.5, 1, 0.25, 4, 5};
-  const Eight a = Eight::load(from + 1), b = Eight::load(to + 1);  // no alignment is asked for
+  const Eight a = Eight::load(from + 1), b = Eight::load(to + 1);  // no alignment is required
   double out[8];
   (a + b * 2.0).store(out);
   for (int i = 0; i < 8; ++i) {
@@ -43,7 +43,7 @@ TEST_CASE("lanes do what one number does", "[core][lanes]") {
   CHECK_FALSE(any(Eight(std::numeric_limits<double>::quiet_NaN()) <= a));
 }
 
-TEST_CASE("tensors do what Eigen's do", "[core][tensor]") {
+TEST_CASE("tensors compute the same as Eigen", "[core][tensor]") {
   testing::Random random(3);
   for (int k = 0; k < 10; ++k) {
     const auto any_matrix = [&] { return Matrix3(Eigen::Map<const Matrix3>(random.vector<9>(-1, 1).eval().data())); };
@@ -67,7 +67,8 @@ TEST_CASE("tensors do what Eigen's do", "[core][tensor]") {
   }
 }
 
-TEST_CASE("materials for large strain do not pass as linear ones, nor linear ones as these", "[concepts][material]") {
+TEST_CASE("hyperelastic materials do not satisfy the linear concept, nor linear ones the hyperelastic concept",
+          "[concepts][material]") {
   STATIC_REQUIRE(HyperelasticMaterial<NeoHookean>);
   STATIC_REQUIRE_FALSE(LinearMaterial<NeoHookean>);
   STATIC_REQUIRE_FALSE(HyperelasticMaterial<LinearElastic>);

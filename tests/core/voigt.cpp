@@ -21,7 +21,7 @@ TEST_CASE("Voigt order is xx yy zz xy xz yz", "[core][voigt]") {
   CHECK(expected[voigt::yz] == t(1, 2));
 }
 
-TEST_CASE("strain vectors carry engineering shear", "[core][voigt]") {
+TEST_CASE("strain vectors contain engineering shear", "[core][voigt]") {
   Matrix3 e;
   e << 1, 4, 5,  //
       4, 2, 6,   //
@@ -51,7 +51,7 @@ TEST_CASE("von Mises stress", "[core][voigt]") {
   for (int i : {voigt::xy, voigt::xz, voigt::yz})
     CHECK_THAT(voigt::von_mises(at(i, -7e3)), WithinRel(7e3 * std::sqrt(3.0), 1e-14));
 
-  SECTION("pressure does not count") {
+  SECTION("pressure has no influence") {
     const Vector6 pressure = at(0, 5.0) + at(1, 5.0) + at(2, 5.0);
     CHECK(voigt::von_mises(pressure) == 0.0);
     CHECK_THAT(voigt::von_mises(pressure + at(voigt::xz, 2.0)), WithinRel(2.0 * std::sqrt(3.0), 1e-14));

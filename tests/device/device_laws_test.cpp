@@ -224,12 +224,12 @@ TEST_CASE("each kind of faulty device is detected", "[device][laws][extreme][D6]
   CHECK(breaks<KeepsForceWhenLost>("zero after an invalid read"));
   CHECK(breaks<UnlimitedTorque>("torque within its peak"));
   CHECK(breaks<TorqueWithoutLimit>("torque within its peak"));
-  CHECK(breaks<QuietTorque>("says that it saturates"));
+  CHECK(breaks<QuietTorque>("reports saturation"));
   CHECK(breaks<TorqueAfterStop>("zero after stop"));
   CHECK(breaks<NoRotationalStiffness>("limits are sane"));
   CHECK(breaks<Weak>("renders what it can"));
-  CHECK(breaks<ReportsNothing>("says that it saturates"));
-  CHECK(breaks<ReportsNothing>("says that it is disconnected"));
+  CHECK(breaks<ReportsNothing>("reports saturation"));
+  CHECK(breaks<ReportsNothing>("reports disconnection"));
   CHECK(breaks<NanState>("valid states are finite"));
   CHECK(breaks<HalfVelocity>("valid states are finite"));
   CHECK(breaks<NoRotation>("valid states are finite"));

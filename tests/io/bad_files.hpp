@@ -1,4 +1,4 @@
-// Every bad file that is tried: an edit of a good sample and what becomes of it.
+// All bad files that are tested: an edit of a good sample and the expected result.
 #pragma once
 
 #include "samples.hpp"

@@ -1,4 +1,4 @@
-// What a bad file gets: every row of the table has its verdict. `test_io "[table]"` prints the table.
+// Bad files: every row of the table has its expected result. `test_io "[table]"` prints the table.
 #include "bad_files.hpp"
 
 #include <cstdio>
@@ -26,7 +26,7 @@ std::string printable(const std::string& text, std::size_t length = 60) {
 
 }  // namespace
 
-TEST_CASE("Every sample is good", "[io]") {
+TEST_CASE("Every sample is accepted", "[io]") {
   for (const auto& [format, text] : test::samples()) {
     INFO(format);
     CHECK(test::complaint(text, format) == "");
@@ -34,7 +34,7 @@ TEST_CASE("Every sample is good", "[io]") {
   }
 }
 
-TEST_CASE("Every bad file gets its refusal", "[io][extreme][C2][C3][C5]") {
+TEST_CASE("Every bad file is refused as expected", "[io][extreme][C2][C3][C5]") {
   std::set<std::pair<std::string, std::string>> distinct;
   std::size_t refused = 0;
   for (const BadFile& f : test::table::files) {
@@ -44,11 +44,11 @@ TEST_CASE("Every bad file gets its refusal", "[io][extreme][C2][C3][C5]") {
     refused += f.verdict == "accepted" ? 0 : 1;
     distinct.emplace(f.format, text);
   }
-  CHECK(distinct.size() == test::table::files.size());  // no row stands twice
+  CHECK(distinct.size() == test::table::files.size());  // no row is repeated
   CHECK(refused >= 200);
 }
 
-TEST_CASE("A refusal says where, what was expected and what was found", "[io]") {
+TEST_CASE("A refusal states the place, what was expected and what was found", "[io]") {
   for (const BadFile& f : test::table::files) {
     if (f.verdict == "accepted") continue;
     const std::string text = edited(f), message = test::complaint(text, f.format);

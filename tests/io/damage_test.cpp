@@ -1,4 +1,5 @@
-// What text-level damage does to every format: spellings of numbers, line ends, cut files, random damage, locale.
+// Effects of text-level damage in every format: spellings of numbers, line ends, truncated files, random damage,
+// locale.
 #include "samples.hpp"
 
 #include <algorithm>
@@ -50,7 +51,8 @@ TEST_CASE("Coordinates are plain finite decimals", "[io][extreme][C3]") {
     }
 }
 
-TEST_CASE("Formats of Gmsh that are not read are named, with the command that converts them", "[io][extreme][C5]") {
+TEST_CASE("Unsupported Gmsh formats are refused with their name and the command that converts them",
+          "[io][extreme][C5]") {
   for (const std::string& base : {test::msh2, test::msh4}) {
     const std::string format = base.substr(12, 7);
     for (const auto& [to, expected] : std::vector<std::pair<std::string, std::string>>{{"4 0 8", other},
@@ -102,7 +104,7 @@ TEST_CASE("Line ends, tabs, blanks, marks and long lines do not matter", "[io][e
   CHECK(test::verdict(replace_all(test::msh2, " 1 ", "\t1\t")) == good);
 }
 
-TEST_CASE("A text taken for a file of another format is refused", "[io][extreme][C5]") {
+TEST_CASE("A text read as another format is refused", "[io][extreme][C5]") {
   for (const auto& [format, base] : test::samples())
     for (const auto& [wanted, ignored] : test::samples()) {
       if (format.substr(0, 3) == wanted.substr(0, 3)) continue;
@@ -112,7 +114,7 @@ TEST_CASE("A text taken for a file of another format is refused", "[io][extreme]
     }
 }
 
-TEST_CASE("A mesh without the wanted solids says what to do", "[io]") {
+TEST_CASE("A mesh without the requested solids is refused with a hint", "[io]") {
   const auto surface =
       with(with(test::msh2, "3 4 2 1 1 1 2 3 4\n4 4 2 1 1 2 3 4 5\n", ""), "Elements\n4", "Elements\n2");
   CHECK(test::verdict(surface) == other);
@@ -125,7 +127,7 @@ TEST_CASE("A mesh without the wanted solids says what to do", "[io]") {
                                                     "found a 10-node tetrahedron"));
 }
 
-TEST_CASE("A refusal names file, line, what was expected and what was found", "[io]") {
+TEST_CASE("A refusal states file, line, what was expected and what was found", "[io]") {
   CHECK(test::complaint(with(test::msh2, "1.5 1 1", "1,5 1 1")) ==
         "bad_file: mesh:16: expected a coordinate, found '1,5'");
   CHECK(test::complaint(with(test::msh2, "2 3 4 5\n", "2 3 4 6\n")) ==
@@ -146,19 +148,20 @@ TEST_CASE("A refusal names file, line, what was expected and what was found", "[
             .starts_with("non_finite: mesh:byte 2"));
 }
 
-TEST_CASE("No prefix of a file is taken for a file", "[io][extreme][C1]") {
+TEST_CASE("No truncated file is accepted", "[io][extreme][C1]") {
   for (const auto& [format, base] : test::samples()) {
     INFO(format);
     const std::size_t types = base.find("10 10 \n"), binary_types = base.find("\n\nCELL_DATA");
     std::size_t accepted = 0, unsound = 0;
     for (std::size_t size = 0; size <= base.size(); ++size) {
-      const std::string copy = base.substr(0, size);  // a text of its own, so that a sanitizer sees its end
+      const std::string copy =
+          base.substr(0, size);  // a separate copy of the text, so that a sanitizer detects reads beyond its end
       const std::string found = test::verdict(copy, format);
       unsound += found == "unsound" ? 1 : 0;
       if (found != good) continue;
       ++accepted;
       INFO(size << " of " << base.size() << " bytes");
-      // Without a mark at the end only what stands behind the elements can be missing, and only whole lines of it.
+      // In formats without an end mark, only whole lines after the elements may be missing.
       if (is_gmsh(format)) CHECK(size + 1 >= base.size());
       if (format.starts_with("vtk")) CHECK(size >= std::min(types, binary_types));
       if (format == "veg") CHECK((size > base.find("\n\n*MATERIAL") && copy.back() == '\n'));
@@ -208,7 +211,7 @@ TEST_CASE("Random damage is refused or harmless", "[io][extreme][C2]") {
   CHECK(unsound == 0);
 }
 
-TEST_CASE("A few bytes cannot ask for much memory or time", "[io][extreme][C2]") {
+TEST_CASE("A few bytes cannot cause large memory use or long run time", "[io][extreme][C2]") {
   // Every one of 3000 elements in 3000 groups: 30 kB of text, 9 million memberships.
   std::string tags, elements, names;
   for (int i = 1; i <= 3000; ++i) tags += ' ' + std::to_string(i);
@@ -249,7 +252,7 @@ TEST_CASE("The locale of the process does not matter", "[io][extreme][C4]") {
   for (const auto& [format, verdict] : verdicts) {
     INFO(format);
     CHECK(verdict == good);
-    CHECK(with_comma[format] == (is_text(format) ? bad : good));  // binary files hold no decimals to damage
+    CHECK(with_comma[format] == (is_text(format) ? bad : good));  // binary files contain no decimals to damage
   }
   CHECK(mesh.positions[4] == Vector3(1.5, 1.0, 1.0));
   CHECK(comma == bad);

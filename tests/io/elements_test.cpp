@@ -23,7 +23,7 @@ Mesh<E> beam(const std::string& format) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("Gmsh's node order is turned into the library's", "[io][gmsh]", Tet10, Hex8, Hex20) {
+TEMPLATE_TEST_CASE("Gmsh's node order is converted to the library's", "[io][gmsh]", Tet10, Hex8, Hex20) {
   using E = TestType;
   const Mesh<E> mesh = beam<E>("v22"), same = beam<E>("v41");
   CHECK(testing::describe(testing::mesh_laws<E>(mesh)) == "");

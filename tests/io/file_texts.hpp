@@ -1,4 +1,4 @@
-// Writes what a file says in every format that is read: small writers that know the formats, not the readers.
+// Writes a parsed file in every supported format: small writers, independent of the readers.
 #pragma once
 
 #include <palpate/io/file_mesh.hpp>
@@ -16,7 +16,7 @@ using palpate::io::facts;
 using palpate::io::FileCell;
 using palpate::io::FileMesh;
 
-/// The bytes of a number, turned round if `swap`.
+/// The bytes of a number, in reversed order if `swap`.
 template <class T>
 std::string bytes(T value, bool swap) {
   std::string raw(sizeof(T), '\0');

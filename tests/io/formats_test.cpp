@@ -21,7 +21,7 @@ void check_same_groups(const Mesh<Tet4>& a, const Mesh<Tet4>& b, int dimension) 
   }
 }
 
-/// What `format` can say of a file: MSH 1, TetGen and VTK know no names, VegaFEM no points and faces.
+/// The part of a mesh that `format` can store: MSH 1, TetGen and VTK have no names, VegaFEM no points and faces.
 Mesh<Tet4> expected_from(io::FileMesh file, const std::string& format) {
   const bool has_names = format == "veg" || format.starts_with("msh2") || format.starts_with("msh4");
   if (!has_names) file.names.clear();
@@ -72,7 +72,7 @@ TEST_CASE("The sample is the same mesh in every format", "[io]") {
 TEST_CASE("An organ is the same mesh in every format", "[io]") {
   const std::string path = PALPATE_TEST_DATA "/oracle/J_organ/tet4_2k/mesh_v22.msh";
   auto file = io::gmsh::parse(io::read_file(path), path);
-  // TetGen keeps one marker per node and no repeated faces; of the groups here, points that share a node go.
+  // TetGen stores one marker per node and no repeated faces; of the groups here, points that share a node are lost.
   std::vector<io::FileCell> cells;
   std::map<NodeId, int> points;
   for (const auto& c : file.cells)
@@ -90,7 +90,7 @@ TEST_CASE("An organ is the same mesh in every format", "[io]") {
   check_all_formats(file);
 }
 
-TEST_CASE("What Gmsh writes in its formats is one mesh", "[io]") {
+TEST_CASE("The formats written by Gmsh contain the same mesh", "[io]") {
   const auto reference = io::read_mesh<Tet4>(gmsh_seed("gmsh/two_msh22_0.msh"));
   REQUIRE(reference.element_count() == 2);
   for (const char* name : {"gmsh/two_msh22_1.msh", "gmsh/two_msh41_0.msh", "gmsh/two_msh41_1.msh",
@@ -134,7 +134,7 @@ TEST_CASE("VegaFEM: later regions override, sets are groups, includes are read",
   CHECK(io::build_mesh<Tet4>(parts, 1.0, nullptr).positions == mesh.positions);
 }
 
-TEST_CASE("Legacy VTK: regions by the name of the array, other data passed over", "[io]") {
+TEST_CASE("Legacy VTK: regions are found by the name of the array, other data is skipped", "[io]") {
   const std::string base = test::samples().at("vtk2");
   const auto regions = [](const std::string& t) {
     return io::build_mesh<Tet4>(test::parse_as("vtk2", t), 1.0, nullptr).region_names;
@@ -154,7 +154,7 @@ TEST_CASE("Legacy VTK: regions by the name of the array, other data passed over"
   CHECK(test::verdict(base + test::with(more, "11 12", "11"), "vtk2") == "bad_file");
 }
 
-TEST_CASE("The content tells the format, then the name; surfaces are refused with the command that meshes them",
+TEST_CASE("The format is detected by content, then by name; surfaces are refused with the command that meshes them",
           "[io]") {
   for (const auto& [format, text] : test::samples()) {
     if (format.starts_with("tetgen")) continue;

@@ -1,4 +1,4 @@
-// What a good file becomes.
+// Meshes read from valid files.
 #include "samples.hpp"
 
 #include <filesystem>
@@ -101,10 +101,10 @@ TEST_CASE("An element in two volume groups is one element", "[io]") {
   }
   const auto duplicate = with(with(test::msh2, "Elements\n4", "Elements\n5"), "4 4 2 1", "7 4 2 1 1 1 2 3 4\n4 4 2 1");
   CHECK(io::parse_mesh<Tet4>(duplicate).element_count() ==
-        3);  // the same group twice is a fault, for admission to refuse
+        3);  // the same group twice is a defect that admission refuses
 }
 
-TEST_CASE("A name in several dimensions is one group; a face counts once in it", "[io]") {
+TEST_CASE("A name in several dimensions is one group; a face is in it once", "[io]") {
   const auto shared = with(with(test::msh2, "\"tip\"", "\"base\""), "Elements\n4", "Elements\n5");
   const auto mesh = io::parse_mesh<Tet4>(with(shared, "3 4 2 1", "9 2 2 2 1 3 2 1\n3 4 2 1"));
   const Group& base = *mesh.find_group("base");
@@ -146,7 +146,7 @@ TEST_CASE("The unit of the file is scaled to metres", "[io]") {
   CHECK_THROWS_AS(io::parse_mesh<Tet4>(with(test::msh2, "1.5", "1e300"), "mesh", {.scale = 1e10}), SetupError);
 }
 
-TEST_CASE("Sections that nobody needs are skipped", "[io]") {
+TEST_CASE("Unused sections are skipped", "[io]") {
   for (const std::string& text : {test::msh2, test::msh4}) {
     CHECK(test::verdict("$MeshFormat" + text.substr(11) + "$NodeData\n1\n\"u\"\n$Nodes\n$EndNodeData\n") == "accepted");
     CHECK(test::verdict(with(text, "$Nodes", "$Comments\nmade by hand\n$EndComments\n$Nodes")) == "accepted");
@@ -157,7 +157,7 @@ TEST_CASE("Sections that nobody needs are skipped", "[io]") {
   CHECK(mesh.find_group("base")->nodes.empty());
 }
 
-TEST_CASE("A file that is not there, a folder and an empty file are refused", "[io]") {
+TEST_CASE("A missing file, a folder and an empty file are refused", "[io]") {
   const auto folder = std::filesystem::temp_directory_path();
   CHECK_THROWS_AS(io::read_mesh<Tet4>((folder / "palpate no such file.msh").string()), SetupError);
   CHECK_THROWS_AS(io::read_mesh<Tet4>(folder.string()), SetupError);

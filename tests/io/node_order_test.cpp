@@ -1,5 +1,5 @@
-// Node orders: the tables are permutations, and files of other programs prove them: every mid-edge node must lie where
-// the element says.
+// Node orders: the tables are permutations, and files of other programs confirm them: every mid-edge node must be at
+// the position that the element defines.
 #include "samples.hpp"
 #include "element/user_elements.hpp"
 
@@ -18,8 +18,8 @@ namespace {
 template <int R, int C>
 using Table = Eigen::Matrix<double, R, C>;
 
-/// Stands for a hexahedron of 20 nodes in an order of no file format: corners counted like binary numbers, then the
-/// middles of the edges along z, y and x. Only the places of its nodes matter here, its functions are all zero.
+/// A hexahedron of 20 nodes in an order that no file format uses: corners in binary order, then the middles of the
+/// edges along z, y and x. Only the positions of its nodes matter here; its functions are all zero.
 struct Quad8 {
   static constexpr int nodes = 8;
   using Quadrature = user::TensorRule<2, 2>;
@@ -51,7 +51,7 @@ struct Hex20 {
   }
 };
 
-/// Both ends of a hexahedron or tetrahedron turned round: the orders must still fit.
+/// A hexahedron or tetrahedron with reversed ends: the orders must still match.
 struct LastFirst : user::Hex8 {
   static Table<8, 3> reference_nodes() noexcept { return user::Hex8::reference_nodes().colwise().reverse(); }
 };
@@ -63,7 +63,7 @@ bool is_permutation_of(std::span<const int> order, std::size_t count) {
   return sorted == expected;
 }
 
-/// The largest distance of a node from where the element puts it between its corners, straight edges assumed.
+/// The largest distance of a node from its expected position between the corners, for straight edges.
 template <class E>
 double mid_edge_error(const Mesh<E>& mesh) {
   double worst = 0.0;
@@ -155,8 +155,8 @@ TEST_CASE("Every table of node orders is a permutation", "[io]") {
     CHECK((type.order.empty() || static_cast<int>(type.order.size()) == io::facts(type.shape).nodes));
 }
 
-TEMPLATE_TEST_CASE("An element finds its nodes on VTK's and back", "[io]", Tet4, user::Tet10, user::Hex8, LastFirst,
-                   Hex20) {
+TEMPLATE_TEST_CASE("The node order of an element maps to VTK's and back", "[io]", Tet4, user::Tet10, user::Hex8,
+                   LastFirst, Hex20) {
   const auto from = io::element_order<TestType>();
   const auto back = io::vtk_order<TestType>();
   CHECK(is_permutation_of(from, from.size()));
@@ -182,13 +182,13 @@ TEST_CASE("Mid-edge nodes of real files lie on their edges", "[io]") {
   CHECK(tet10.element_count() == 2);
   CHECK(tet10.find_group("surface 7")->faces == std::vector<std::vector<NodeId>>{{2, 0, 3, 9, 10, 12}});
   CHECK(mid_edge_error(tet10) < 1e-12);
-  // The measure can fail: two swapped nodes are half an edge away.
+  // The check can fail: two swapped nodes are half an edge away.
   auto wrong = tet10;
   std::swap(wrong.elements[0][4], wrong.elements[0][9]);
   CHECK(mid_edge_error(wrong) > 0.4);
 }
 
-TEST_CASE("A file written for Gmsh comes back with every element type", "[io]") {
+TEST_CASE("A file written for Gmsh reads back for every element type", "[io]") {
   const auto there_and_back = [](const auto& mesh, auto element) {
     using E = decltype(element);
     const std::string text = io::msh_text(mesh);

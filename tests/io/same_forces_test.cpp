@@ -1,5 +1,5 @@
-// A format is a way to write a body down, not another body: the shipped organ, written in every format that is read,
-// gives the same forces in every tick.
+// The file format must not change the body: the shipped organ, written in every supported format, gives the same forces
+// in every tick.
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/io/write_msh.hpp>
 #include <palpate/material/linear_elastic.hpp>
@@ -27,19 +27,19 @@ struct TemporaryFolder {
   }
 };
 
-/// What holds the organ and what may be touched, in the words of a format.
+/// The constrained and the touchable nodes of the organ, as a format names them.
 struct Conditions {
   Selection constrained, touched;
 };
 
-/// A format: the file to read, and how it calls the two groups.
+/// A format: the file to read and its names of the two groups.
 struct Written {
   std::string name, path;
   Conditions conditions;
 };
 
-/// The organ in every format. MSH 1, TetGen and VTK keep numbers instead of names; VegaFEM keeps no surfaces, so its
-/// user lists nodes, which have the order of the file in all of them.
+/// The organ in every format. MSH 1, TetGen and VTK store numbers instead of names; VegaFEM stores no surfaces, so
+/// nodes are listed instead; their order is that of the file in all formats.
 std::vector<Written> write_all(const TemporaryFolder& folder) {
   const io::FileMesh m = io::gmsh::parse(io::read_file(organ_file), organ_file);
   const auto mesh = io::read_mesh<Tet4>(organ_file);
@@ -72,7 +72,7 @@ std::vector<Written> write_all(const TemporaryFolder& folder) {
   return all;
 }
 
-/// The force of every tick of a press beside the lesion and a drag across it.
+/// The force of every tick while the tool presses next to the lesion and slides across it.
 std::vector<Vector3> press(const std::string& path, const Conditions& conditions) {
   const auto mesh = io::read_mesh<Tet4>(path);
   REQUIRE(mesh.region_count() == 2);

@@ -1,4 +1,4 @@
-// Two tetrahedra with a named point, a named face and a named volume, in every format, and what a reader says of a
+// Two tetrahedra with a named point, a named face and a named volume, in every format, and the result of reading a
 // text.
 #pragma once
 
@@ -87,7 +87,7 @@ $Elements
 $EndElements
 )";
 
-/// `text` with the first `from` replaced; fails the test when there is none.
+/// `text` with the first `from` replaced; fails the test if there is none.
 inline std::string with(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   INFO(from);
@@ -117,7 +117,7 @@ inline const std::map<std::string, std::string>& samples() {
   return all;
 }
 
-/// Parses a text as that format ("" is Gmsh). Texts of TetGen hold three files with the byte 0x1F between them.
+/// Parses a text as that format ("" is Gmsh). Texts of TetGen contain three files, separated by the byte 0x1F.
 inline palpate::io::FileMesh parse_as(const std::string& format, std::string_view text) {
   using namespace palpate::io;
   if (format.starts_with("tetgen")) {
@@ -137,7 +137,7 @@ inline palpate::io::FileMesh parse_as(const std::string& format, std::string_vie
   return gmsh::parse(text, "mesh");
 }
 
-/// "accepted", or the kind of the refusal. Whatever is accepted must be sound.
+/// "accepted", or the kind of the refusal. An accepted mesh must be valid.
 inline std::string verdict(std::string_view text, const std::string& format = {}) {
   using namespace palpate;
   Mesh<Tet4> mesh;

@@ -1,4 +1,4 @@
-// VTU files are read back by a reader that knows the format, not the writer.
+// VTU files are read back by a reader that is independent of the writer.
 #include "samples.hpp"
 
 #include <palpate/io/pvd.hpp>
@@ -45,7 +45,7 @@ Vtu read_vtu(const std::string& path) {
   for (std::size_t at = 0; (at = file.head.find("<DataArray", at)) != std::string::npos; ++at) {
     const std::string tag = file.head.substr(at, file.head.find("/>", at) - at);
     const std::size_t block = raw + std::stoul(attribute(tag, "offset"));
-    CHECK(block == end);  // blocks follow each other without a gap
+    CHECK(block == end);  // blocks are contiguous
     std::uint64_t bytes = 0;
     REQUIRE(block + sizeof bytes <= text.size());
     std::memcpy(&bytes, text.data() + block, sizeof bytes);
@@ -69,7 +69,7 @@ Vtu read_vtu(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("A VTU file holds the mesh and its fields", "[io]") {
+TEST_CASE("A VTU file contains the mesh and its fields", "[io]") {
   const auto mesh = io::read_mesh<Tet4>(PALPATE_TEST_DATA "/oracle/A_two_cubes/tet4/mesh_v22.msh");
   const VectorX u = VectorX::LinSpaced(36, -1.0, 1.0), p = VectorX::LinSpaced(12, 0.0, 1.0),
                 s = VectorX::LinSpaced(10, 1.0, 2.0);

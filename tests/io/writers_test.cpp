@@ -65,7 +65,7 @@ double enclosed_volume(const io::TriangleSurface& s) {
 
 }  // namespace
 
-TEST_CASE("A Gmsh file comes back as it was", "[io]") {
+TEST_CASE("A Gmsh file is read back unchanged", "[io]") {
   check_round_trip(io::parse_mesh<Tet4>(test::msh2));
   const auto twice =
       test::with(test::with(test::with(test::msh2, "3\n0 3", "4\n3 9 \"half\"\n0 3"), "Elements\n4", "Elements\n5"),
@@ -94,7 +94,7 @@ TEST_CASE("A mesh with a region in the middle called body keeps its regions", "[
   check_round_trip(mesh);
 }
 
-TEST_CASE("Names that a Gmsh file cannot hold are refused and no file is begun", "[io]") {
+TEST_CASE("Names that are not possible in a Gmsh file are refused and no file is created", "[io]") {
   auto mesh = io::parse_mesh<Tet4>(test::msh2);
   const test::TemporaryFile file("palpate_io_names.msh");
   for (const char* name : {"a \"b\"", "a\nb", ""}) {
@@ -128,7 +128,7 @@ TEST_CASE("An OBJ surface is closed, points outward and follows the displacement
   CHECK_THROWS_AS(io::write_obj(file.path, mesh, VectorX::Zero(5)), SetupError);
 }
 
-TEST_CASE("A binary STL file has a head, a count and 50 bytes for each triangle", "[io]") {
+TEST_CASE("A binary STL file has a header, a count and 50 bytes for each triangle", "[io]") {
   const auto mesh = io::parse_mesh<Tet4>(test::msh2);
   const test::TemporaryFile file("palpate_io_surface.stl");
   io::write_stl(file.path, mesh);

@@ -41,7 +41,7 @@ std::vector<Mesh<Tet4>> flat_tetrahedra() {
 
 }  // namespace
 
-TEST_CASE("a sound mesh is admitted unchanged", "[mesh][admission]") {
+TEST_CASE("a valid mesh is admitted unchanged", "[mesh][admission]") {
   const Mesh<Tet4> box = sound_box();
   const auto a = admit<Tet4>(box);
   CHECK(a.mesh.positions == box.positions);
@@ -68,7 +68,7 @@ TEST_CASE("only the named groups of a view are copied", "[mesh][admission]") {
   CHECK(a.mesh.find_group("x0") != nullptr);
 }
 
-TEST_CASE("verdicts do not depend on scale or place", "[mesh][admission][extreme][B1][B2]") {
+TEST_CASE("admission does not depend on scale or position", "[mesh][admission][extreme][B1][B2]") {
   Mesh<Tet4> bad = box_tet4({1, 1, 1}, {2, 2, 2});
   std::swap(bad.elements[3][0], bad.elements[3][1]);  // inverted
   bad.elements.push_back({0, 1, 2, 2});               // flat
@@ -89,7 +89,7 @@ TEST_CASE("verdicts do not depend on scale or place", "[mesh][admission][extreme
     }
 }
 
-TEST_CASE("volumes keep their digits far from the origin", "[mesh][admission][extreme][B2]") {
+TEST_CASE("volumes are accurate far from the origin", "[mesh][admission][extreme][B2]") {
   const auto near = diagnose<Tet4>(box_tet4({1, 1, 1}, {3, 2, 2}));
   const auto far = diagnose<Tet4>(box_tet4({1, 1, 1}, {3, 2, 2}, BoxSplit::five_mirrored, Vector3(1e6, 1e6, -1e6)));
   CHECK_THAT(near.volume, WithinRel(1.0, 1e-14));
@@ -127,7 +127,7 @@ TEST_CASE("every flat tetrahedron is found, refused or dropped", "[mesh][admissi
   }
 }
 
-TEST_CASE("a flat tetrahedron far away stays flat though rounding gives it a volume",
+TEST_CASE("a flat tetrahedron far away counts as flat although rounding gives it a volume",
           "[mesh][admission][extreme][B2][B3]") {
   const Matrix3 turn = Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()).toRotationMatrix();
   Mesh<Tet4> flat = corner_tetrahedron();
@@ -139,7 +139,7 @@ TEST_CASE("a flat tetrahedron far away stays flat though rounding gives it a vol
   }
 }
 
-TEST_CASE("inverted elements are refused or turned round", "[mesh][admission][extreme][B4]") {
+TEST_CASE("inverted elements are refused or reversed", "[mesh][admission][extreme][B4]") {
   const Mesh<Tet4> box = sound_box();
   Mesh<Tet4> inverted = box;
   for (std::size_t e = 0; e < inverted.elements.size(); e += 2)
@@ -153,7 +153,7 @@ TEST_CASE("inverted elements are refused or turned round", "[mesh][admission][ex
   AdmissionPolicy policy;
   policy.inverted = Admission::repair;
   const auto a = admit<Tet4>(inverted, policy);
-  CHECK(a.mesh.elements == box.elements);  // the same swap back: the mesh is bitwise the correct one
+  CHECK(a.mesh.elements == box.elements);  // the same swap reversed: the mesh is bitwise the correct one
   CHECK(a.diagnosis.inverted.count == 20);
   CHECK(a.admitted.inverted.count == 0);
   CHECK_THAT(a.admitted.volume, WithinRel(1e-3, 1e-12));
@@ -191,7 +191,7 @@ TEST_CASE("duplicate nodes are refused, welded or accepted", "[mesh][admission][
   for (double scale : {1e-6, 1e-2, 1e3})
     for (double shift : {0.0, 1e6})
       for (double gap : {0.0, 1e-9}) {
-        if (shift > 0.0 && gap > 0.0) continue;  // such a gap cannot be told from rounding there
+        if (shift > 0.0 && gap > 0.0) continue;  // there such a gap cannot be distinguished from rounding
         const Mesh<Tet4> right = box_tet4({1, 1, 1}, {2, 2, 2}, BoxSplit::six, Vector3(1 + gap, 0, 0));
         const Mesh<Tet4> both = transformed(side_by_side(left, right), scale, Vector3(1, 0.5, -1) * scale * shift);
         const auto p = refused(SetupErrorKind::duplicate_node, [&] { admit<Tet4>(both); });
@@ -222,7 +222,7 @@ TEST_CASE("nodes that are merely close are not duplicates", "[mesh][admission][e
   CHECK(diagnose<Tet4>(side_by_side(sound_box(), small)).duplicate_nodes.count == 0);
 }
 
-TEST_CASE("many nodes in one place are found in reasonable time", "[mesh][admission][extreme][B6]") {
+TEST_CASE("many coincident nodes are found in reasonable time", "[mesh][admission][extreme][B6]") {
   Mesh<Tet4> pile;
   for (int copy = 0; copy < 20000; ++copy) {
     const auto first = static_cast<NodeId>(pile.positions.size());
@@ -237,7 +237,7 @@ TEST_CASE("many nodes in one place are found in reasonable time", "[mesh][admiss
   CHECK(a.mesh.element_count() == 1);
 }
 
-TEST_CASE("an orphan far away does not widen the search for duplicates", "[mesh][admission][extreme][B6]") {
+TEST_CASE("an orphan far away does not increase the tolerance for duplicates", "[mesh][admission][extreme][B6]") {
   for (bool first : {true, false}) {
     Mesh<Tet4> box = box_tet4({0.1, 0.1, 0.1}, {20, 20, 20});
     box.positions.push_back({1e90, 1e90, 1e90});
@@ -279,7 +279,7 @@ TEST_CASE("duplicate elements are refused or dropped", "[mesh][admission][extrem
   CHECK(admit<Tet4>(box, policy).mesh.element_count() == 41);
 }
 
-TEST_CASE("orphans are dropped by default and groups follow", "[mesh][admission][extreme][B6]") {
+TEST_CASE("orphans are dropped by default and groups are updated", "[mesh][admission][extreme][B6]") {
   Mesh<Tet4> box = sound_box();
   box.positions.insert(box.positions.begin(), Vector3(5, 5, 5));
   for (auto& element : box.elements)
@@ -307,7 +307,7 @@ TEST_CASE("orphans are dropped by default and groups follow", "[mesh][admission]
   CHECK(admit<Tet4>(box, policy).mesh.node_count() == 28);
 }
 
-TEST_CASE("welded groups lose faces that fell together", "[mesh][admission][extreme][B6]") {
+TEST_CASE("welded groups lose faces that became equal", "[mesh][admission][extreme][B6]") {
   Mesh<Tet4> both = side_by_side(box_tet4({1, 1, 1}, {1, 1, 1}, BoxSplit::six),
                                  box_tet4({1, 1, 1}, {1, 1, 1}, BoxSplit::six, Vector3(1, 0, 0)));
   detail::add_boundary_group(both, extract_boundary<Tet4>(both), "skin", [](const BoundaryFace&) { return true; });
@@ -330,7 +330,7 @@ TEST_CASE("repairs work together and refusals name the mesh as given", "[mesh][a
   AdmissionPolicy policy;
   policy.duplicate_nodes = policy.degenerate = Admission::repair;
   const auto p = refused(SetupErrorKind::inverted_element, [&] { admit<Tet4>(bad, policy); });
-  CHECK(p.ids == std::vector<std::int64_t>{11});  // it was number 10 by then
+  CHECK(p.ids == std::vector<std::int64_t>{11});  // its number at that stage was 10
   policy.inverted = Admission::repair;
   const auto a = admit<Tet4>(bad, policy);
   CHECK(a.mesh.node_count() == 12);
@@ -386,7 +386,7 @@ TEST_CASE("millimetres are suspected above two metres", "[mesh][admission][extre
              WithinRel(100 * std::sqrt(3.0), 1e-12));
 }
 
-TEST_CASE("what cannot be repaired says so", "[mesh][admission]") {
+TEST_CASE("a repair that does not exist is refused", "[mesh][admission]") {
   for (auto decision : {&AdmissionPolicy::poor_quality, &AdmissionPolicy::disconnected, &AdmissionPolicy::units}) {
     AdmissionPolicy policy;
     policy.*decision = Admission::repair;
@@ -394,7 +394,7 @@ TEST_CASE("what cannot be repaired says so", "[mesh][admission]") {
   }
 }
 
-TEST_CASE("thresholds that are no numbers are refused", "[mesh][admission]") {
+TEST_CASE("NaN thresholds are refused", "[mesh][admission]") {
   for (auto bound : {&MeshThresholds::degenerate, &MeshThresholds::poor_quality, &MeshThresholds::quality_floor,
                      &MeshThresholds::coincidence, &MeshThresholds::millimetres})
     for (double bad : {std::numeric_limits<double>::quiet_NaN(), -1.0}) {
@@ -433,7 +433,7 @@ TEST_CASE("ids outside the mesh are refused before anything is read", "[mesh][ad
   Mesh<Tet4> box = sound_box();
   box.regions.assign(3, 0);
   refused(SetupErrorKind::bad_argument, [&] { admit<Tet4>(box); });
-  // 64 bit ids must not be cut to 32 bits before they are checked.
+  // 64-bit ids must not be truncated to 32 bits before they are checked.
   const std::vector<double> x{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   const std::vector<std::uint64_t> ids{0, 1, 2, 3 + (std::uint64_t{1} << 32)};
   refused(SetupErrorKind::index_out_of_range, [&] { admit<Tet4>(MeshArrays<Tet4, double, std::uint64_t>(x, ids)); });
@@ -464,7 +464,7 @@ TEST_CASE("positions that are not finite are refused", "[mesh][admission][extrem
     }
 }
 
-TEST_CASE("the diagnosis can be read", "[mesh][admission]") {
+TEST_CASE("the diagnosis is described as text", "[mesh][admission]") {
   Mesh<Tet4> box = sound_box();
   std::swap(box.elements[3][0], box.elements[3][1]);
   const std::string text = describe(diagnose<Tet4>(box));
@@ -473,14 +473,14 @@ TEST_CASE("the diagnosis can be read", "[mesh][admission]") {
   CHECK_THAT(text, contains("ids 3"));
 }
 
-TEST_CASE("foreign arrays are read without a copy", "[mesh][arrays]") {
+TEST_CASE("arrays of the caller are used without a copy", "[mesh][arrays]") {
   std::vector<float> x{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   const std::vector<unsigned> ids{0, 1, 2, 3};
   MeshArrays<Tet4, float, unsigned> view(x, ids);
   const std::vector<NodeId> constrained{0, 2, 1, 0};
   view.group("held", constrained);
   CHECK_THAT(diagnose<Tet4>(view).volume, WithinRel(1.0 / 6.0, 1e-7));
-  x[3] = 2.0f;  // the view sees it: nothing was copied
+  x[3] = 2.0f;  // the view shows the change: nothing was copied
   CHECK(view.position(1)[0] == 2.0);
   CHECK_THAT(diagnose<Tet4>(view).volume, WithinRel(1.0 / 3.0, 1e-7));
   const auto a = admit<Tet4>(view, {}, {"held"});

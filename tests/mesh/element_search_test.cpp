@@ -41,7 +41,8 @@ Vector3 position(const Mesh<E>& mesh, const ElementPoint& p) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("every point inside is found, and where it is", "[mesh][search]", Tet4, Tet10, Hex8, Hex20) {
+TEMPLATE_TEST_CASE("every point inside is found with its reference coordinates", "[mesh][search]", Tet4, Tet10, Hex8,
+                   Hex20) {
   const Mesh<TestType> mesh = shaken<TestType>();
   const ElementSearch<TestType> search(mesh);
   testing::Random random(9);
@@ -52,7 +53,8 @@ TEMPLATE_TEST_CASE("every point inside is found, and where it is", "[mesh][searc
     CHECK((position(mesh, *found) - p).norm() <= 1e-10);
     CHECK(beyond_faces<TestType>(found->xi) <= 1e-9);
   }
-  for (const Vector3& node : mesh.positions) {  // borders count, but those of curved elements are where they are
+  for (const Vector3& node :
+       mesh.positions) {  // nodes are on element boundaries, which count as inside
     const auto found = search.find(node);
     REQUIRE(found);
     CHECK((position(mesh, *found) - node).norm() <= 1e-10);
@@ -75,10 +77,10 @@ TEST_CASE("points between a sphere and its box are in no element", "[mesh][searc
     inside += found ? 1 : 0;
   }
   CHECK(inside > 900);
-  CHECK(inside < 1100);  // pi / 6 of the box, less what facets cut off
+  CHECK(inside < 1100);  // pi / 6 of the box, minus the volume cut off by facets
 }
 
-TEST_CASE("a flat mesh and a mesh of one element are searched", "[mesh][search]") {
+TEST_CASE("the search works for a flat mesh and for a mesh of one element", "[mesh][search]") {
   const Mesh<Hex8> plate = box_hex8({1.0, 1.0, 1e-4}, {20, 20, 1});
   CHECK(ElementSearch<Hex8>(plate).find({0.51, 0.49, 5e-5}));
   const Mesh<Hex8> one = box_hex8({1, 1, 1}, {1, 1, 1});

@@ -23,7 +23,7 @@ void check_sound(const Mesh<Tet4>& mesh, double least_quality) {
   CHECK(d.min_quality > least_quality);
 }
 
-/// The surface is closed, of one piece without handles, and encloses the volume of the elements.
+/// The surface is closed, connected and without handles, and encloses the volume of the elements.
 void check_closed(const Mesh<Tet4>& mesh) {
   const SurfaceMeasures s = measure_boundary(mesh);
   CHECK(s.area_vector.norm() < 1e-12 * s.area);
@@ -63,7 +63,7 @@ Vector3 area_vector(const Mesh<Tet4>& mesh, const char* group) {
   return measure_surface(mesh.positions, mesh.find_group(group)->faces).area_vector;
 }
 
-/// The file of the reference results, wherever it is; empty if absent.
+/// Path of the file of the reference results; empty if absent.
 std::string oracle_mesh() {
   for (const char* folder : {
 #ifdef PALPATE_TEST_DATA
@@ -221,7 +221,7 @@ TEST_CASE("the two cubes of the thesis", "[mesh][generators][thesis]") {
   for (Index e = 0; e < 10; ++e) CHECK(cubes.region_name(cubes.region(e)) == (e < 5 ? "cube_a" : "cube_b"));
 }
 
-TEST_CASE("the two cubes are those of the reference results", "[mesh][generators][oracle]") {
+TEST_CASE("the two cubes equal those of the reference results", "[mesh][generators][oracle]") {
   const std::string text = oracle_mesh();
   if (text.empty()) {
     WARN("no reference results here; skipped");

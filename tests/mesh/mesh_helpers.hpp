@@ -27,7 +27,7 @@ inline SetupProblem refused(SetupErrorKind kind, const std::function<void()>& wh
   return {};
 }
 
-/// Closed triangle surfaces: what must vanish and what must be two.
+/// Measures of a closed triangle surface: area_vector and irregular_edges must be zero, euler must be two.
 struct SurfaceMeasures {
   Vector3 area_vector = Vector3::Zero();
   double area = 0.0;

@@ -136,7 +136,7 @@ TEST_CASE("refinement cuts every tetrahedron into eight and conforms", "[mesh][r
   CHECK(cubes.find_group("end")->nodes.size() == 9);
 }
 
-TEST_CASE("elements do not get worse with refinement", "[mesh][refine]") {
+TEST_CASE("element quality does not decrease with refinement", "[mesh][refine]") {
   Mesh<Tet4> mesh = two_cubes();
   std::vector<double> worst;
   for (int level = 0; level < 4; ++level) {
@@ -147,7 +147,7 @@ TEST_CASE("elements do not get worse with refinement", "[mesh][refine]") {
   CHECK(worst[3] >= 0.999 * worst[1]);
 }
 
-TEST_CASE("admission sees an element that is inside out at a node only", "[mesh][admission][extreme]") {
+TEST_CASE("admission detects an element that is inverted at one node only", "[mesh][admission][extreme]") {
   Mesh<Tet10> tetrahedra = box_tet10({1, 1, 1}, {1, 1, 1});
   auto& nodes = tetrahedra.elements[0];
   const Vector3 from = tetrahedra.position(nodes[0]), to = tetrahedra.position(nodes[1]);
@@ -158,11 +158,12 @@ TEST_CASE("admission sees an element that is inside out at a node only", "[mesh]
   CHECK(admit<Tet10>(tetrahedra).mesh.element_count() == 5);
 
   Mesh<Hex20> hexahedron = box_hex20({1, 1, 1}, {1, 1, 1});
-  std::swap(hexahedron.elements[0][8], hexahedron.elements[0][10]);  // two middles mixed up, as by another node order
+  std::swap(hexahedron.elements[0][8],
+            hexahedron.elements[0][10]);  // two mid-edge nodes swapped, as with another node order
   refused(SetupErrorKind::inverted_element, [&] { admit<Hex20>(hexahedron); });
 }
 
-TEST_CASE("admission turns elements of every kind round", "[mesh][admission]") {
+TEST_CASE("admission reverses elements of every kind", "[mesh][admission]") {
   check_rotated_round(box_tet10({1, 1, 1}, {1, 1, 1}));
   check_rotated_round(box_hex8({1, 1, 1}, {2, 1, 1}));
   check_rotated_round(box_hex20({1, 1, 1}, {2, 1, 1}));

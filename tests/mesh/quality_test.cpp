@@ -50,7 +50,7 @@ TEST_CASE("Tet4 quality is the textbook mean ratio", "[mesh][quality]") {
   }
 }
 
-TEST_CASE("quality does not see scale, place, turn or node order", "[mesh][quality][extreme][B1][B2]") {
+TEST_CASE("quality does not depend on scale, position, rotation or node order", "[mesh][quality][extreme][B1][B2]") {
   ElementNodes<Tet4> x = regular_tetrahedron();
   x.row(2) << 0.3, -2.0, -0.7;
   const ElementShape reference = element_shape<Tet4>(x);
@@ -88,7 +88,7 @@ TEST_CASE("elements of size zero have no shape", "[mesh][quality][extreme][B3]")
   CHECK(s.longest_edge == 0.0);
 }
 
-TEST_CASE("other elements are judged by their least Jacobian", "[mesh][quality]") {
+TEST_CASE("other elements are rated by their least Jacobian", "[mesh][quality]") {
   SECTION("cube") {
     const ElementNodes<user::Hex8> cube = 0.5 * user::Hex8::reference_nodes();
     const ElementShape s = element_shape<user::Hex8>(cube);
@@ -103,7 +103,7 @@ TEST_CASE("other elements are judged by their least Jacobian", "[mesh][quality]"
     CHECK(s.relative_volume < 0.0);
     CHECK(s.quality == 0.0);
   }
-  SECTION("a straight quadratic tetrahedron is judged like its corners") {
+  SECTION("a straight quadratic tetrahedron has the quality of its corners") {
     ElementNodes<user::Tet10> x;
     const ElementNodes<Tet4> corners = regular_tetrahedron();
     for (int a = 0; a < 10; ++a)
@@ -116,7 +116,7 @@ TEST_CASE("other elements are judged by their least Jacobian", "[mesh][quality]"
   }
 }
 
-TEST_CASE("every symmetric element can be turned round", "[mesh][repair]") {
+TEST_CASE("every symmetric element can be reversed", "[mesh][repair]") {
   const auto check = []<class E>(E) {
     const auto order = mirrored_order<E>();
     REQUIRE(order.has_value());

@@ -32,10 +32,11 @@ TEST_CASE("a free body has six rigid displacements, all without strain", "[mesh]
       }
 }
 
-TEST_CASE("rigid displacements meet the constraints", "[mesh][rigid]") {
+TEST_CASE("rigid displacements satisfy the constraints", "[mesh][rigid]") {
   const Mesh<Tet4> mesh = box_tet4({3, 2, 1}, {2, 2, 1});
   auto constrained = free_nodes(mesh);
-  for (NodeId i : mesh.find_group("z0")->nodes) constrained[static_cast<std::size_t>(i)] = 4;  // z held: three are left
+  for (NodeId i : mesh.find_group("z0")->nodes)
+    constrained[static_cast<std::size_t>(i)] = 4;  // z constrained: three are left
   MatrixX modes = rigid_displacements(mesh, constrained);
   REQUIRE(modes.cols() == 3);
   for (NodeId i : mesh.find_group("z0")->nodes) CHECK(modes.row(3 * i + 2).cwiseAbs().maxCoeff() <= 1e-14);

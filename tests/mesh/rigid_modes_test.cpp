@@ -53,7 +53,8 @@ TEST_CASE("all constraint patterns of one tetrahedron", "[mesh][rigid_modes][ext
   for (int free = 0; free <= 6; ++free) CHECK(seen[static_cast<std::size_t>(free)] > 0);
 }
 
-TEST_CASE("all subsets of fixed nodes of a cube, at any scale and place", "[mesh][rigid_modes][extreme][B1][B2][B8]") {
+TEST_CASE("all subsets of fixed nodes of a cube, at any scale and position",
+          "[mesh][rigid_modes][extreme][B1][B2][B8]") {
   for (double scale : {1e-6, 1.0, 1e3})
     for (double shift : {0.0, 1e6}) {
       const Mesh<Tet4> mesh = transformed(box_tet4({1, 1, 1}, {1, 1, 1}), scale, Vector3(1, 0.3, -1) * shift * scale);
@@ -88,20 +89,20 @@ TEST_CASE("free motions are named", "[mesh][rigid_modes][extreme][B8]") {
     CHECK(modes_of(mesh, {7, 7, 0, 0}) == Names{"rotation about the axis (1, 0, 0) through (0.5, 0, 0)"});
     CHECK(modes_of(mesh, {0, 7, 0, 7}) == Names{"rotation about the axis (0.707, 0, -0.707) through (0.5, 0, 0.5)"});
   }
-  SECTION("a roller plane z = 0 lets the body slide and turn in it") {
+  SECTION("a roller plane z = 0 leaves sliding and rotation in the plane free") {
     CHECK(modes_of(mesh, {4, 4, 4, 0}) ==
           Names{"translation x", "translation y", "rotation about the axis (0, 0, 1) through (0.333, 0.333, 0)"});
   }
   SECTION("a rail along x") {
     CHECK(modes_of(mesh, {6, 6, 6, 6}) == Names{"translation x"});
   }
-  SECTION("held") {
+  SECTION("constrained") {
     CHECK(modes_of(mesh, {7, 6, 4, 0}).empty());  // 3 + 2 + 1
     CHECK(modes_of(mesh, {7, 7, 7, 7}).empty());
   }
-  SECTION("a slanted slide") {
-    // x and y of node 0 and 3 are tied down except for their common slide: none is axis aligned, so give each node one
-    // component.
+  SECTION("an inclined slide direction") {
+    // x and y of node 0 and 3 are constrained except for a common translation, which is not axis aligned, so give each
+    // node one component.
     Mesh<Tet4> rotated = mesh;
     const Matrix3 turn = Eigen::AngleAxisd(0.5, Vector3(1, 1, 0).normalized()).toRotationMatrix();
     for (Vector3& x : rotated.positions) x = turn * x;
@@ -112,7 +113,7 @@ TEST_CASE("free motions are named", "[mesh][rigid_modes][extreme][B8]") {
   }
 }
 
-TEST_CASE("a screw motion is called one", "[mesh][rigid_modes]") {
+TEST_CASE("a screw motion is named as a screw", "[mesh][rigid_modes]") {
   // Node 1 at (1, 0, 0) may move along (0, 1, -1) only in a screw about x: built by hand from (w, t).
   const Vector6 motion{{1, 0, 0, 0.5, 0, 0}};
   const auto names = detail::name_rigid_motions({motion}, Vector3::Zero(), 1.0);
@@ -131,18 +132,18 @@ TEST_CASE("many equal constraints do not hide a single different one", "[mesh][r
   CHECK(modes_of(mesh, mask).size() == 3);
   mask[0] = 7;
   CHECK(modes_of(mesh, mask) == std::vector<std::string>{"rotation about the axis (1, 0, 0) through (0.5, 0, 0)"});
-  mask[13] = 5;  // one cell away in y, held in z
+  mask[13] = 5;  // one cell away in y, constrained in z
   CHECK(modes_of(mesh, mask).empty());
 }
 
-TEST_CASE("a short lever still holds a large body", "[mesh][rigid_modes][extreme][B8]") {
+TEST_CASE("a short lever arm still constrains a large body", "[mesh][rigid_modes][extreme][B8]") {
   const Mesh<Tet4> mesh = box_tet4({0.0, 1e-4, 1.0}, {0.0, 1e-4, 1.0}, {0.0, 1e-4, 1.0});
   Mask mask(27, 0);
   mask[0] = mask[1] = mask[3] = 7;  // three nodes 1e-4 apart
   CHECK(modes_of(mesh, mask).empty());
 }
 
-TEST_CASE("every component is judged on its own", "[mesh][rigid_modes][extreme][B7]") {
+TEST_CASE("every component is checked separately", "[mesh][rigid_modes][extreme][B7]") {
   const Mesh<Tet4> one = box_tet4({1, 1, 1}, {1, 1, 1});
   Mesh<Tet4> both = side_by_side(one, transformed(one, 0.01, Vector3(3, 0, 0)));
   both.positions.push_back({9, 9, 9});  // an orphan belongs to no component
@@ -167,7 +168,7 @@ TEST_CASE("every component is judged on its own", "[mesh][rigid_modes][extreme][
              contains("1 more component"));
 }
 
-TEST_CASE("axes are named in a frame elsewhere", "[mesh][rigid_modes]") {
+TEST_CASE("axes are named in another frame", "[mesh][rigid_modes]") {
   const Mesh<Tet4> mesh = corner_tetrahedron();
   const auto axis = [&](const Mask& mask, const Vector3& origin) {
     const auto all = free_rigid_modes(mesh, mask, origin);
@@ -177,7 +178,7 @@ TEST_CASE("axes are named in a frame elsewhere", "[mesh][rigid_modes]") {
   };
   CHECK(axis({7, 7, 0, 0}, {3, -2, 0}) == "rotation about the axis (1, 0, 0) through (3.5, -2, 0)");
   CHECK(axis({7, 7, 0, 0}, {-0.5, 0, 0}) == "rotation about the axis (1, 0, 0) through (0, 0, 0)");
-  // Far from zero there are enough digits to find the axis in the body.
+  // Far from zero the coordinates have enough digits to locate the axis in the body.
   CHECK(axis({7, 7, 0, 0}, {1234.25, 0, -1e6}) == "rotation about the axis (1, 0, 0) through (1234.75, 0, -1000000)");
   const auto p = refused(SetupErrorKind::unconstrained, [&] {
     require_constrained(mesh, Mask{7, 7, 0, 0}, Vector3(3, -2, 0));
@@ -186,7 +187,7 @@ TEST_CASE("axes are named in a frame elsewhere", "[mesh][rigid_modes]") {
   CHECK(p.ids_of == SetupIds::nodes);
 }
 
-TEST_CASE("lengths that differ are refused", "[mesh][rigid_modes]") {
+TEST_CASE("different lengths are refused", "[mesh][rigid_modes]") {
   refused(SetupErrorKind::bad_argument, [] { free_rigid_modes(corner_tetrahedron(), Mask(3)); });
 }
 

@@ -14,7 +14,7 @@ TEST_CASE("the boundary of one element is its faces, outward", "[mesh][surface]"
   CHECK(nodes_of(faces) == std::vector<NodeId>{0, 1, 2, 3});
 }
 
-TEST_CASE("an inner face is no boundary, and faces come in the order of their elements", "[mesh][surface]") {
+TEST_CASE("an inner face is not boundary, and faces are in the order of their elements", "[mesh][surface]") {
   Mesh<Tet4> pair = corner_tetrahedron();
   pair.positions.push_back({1, 1, 1});
   pair.elements.push_back({1, 2, 3, 4});
@@ -25,7 +25,7 @@ TEST_CASE("an inner face is no boundary, and faces come in the order of their el
   for (const auto& face : faces) CHECK(!std::ranges::equal(face.key(), std::array<NodeId, 3>{1, 2, 3}));
 }
 
-TEST_CASE("a cavity is boundary too", "[mesh][surface]") {
+TEST_CASE("the wall of a cavity is boundary too", "[mesh][surface]") {
   Mesh<Tet4> hollow = box_tet4({1, 1, 1}, {3, 3, 3});
   std::erase_if(hollow.elements, [&](const auto& element) {
     Vector3 centre = Vector3::Zero();
@@ -64,7 +64,7 @@ TEST_CASE("bodies that touch in an edge or a point have a closed boundary", "[me
   SECTION("a common corner") {
     const auto a = admit<Tet4>(side_by_side(block, transformed(block, 1.0, Vector3(1, 1, 1))), weld);
     CHECK(a.mesh.node_count() == 15);
-    CHECK(a.admitted.component_count == 1);  // they share a node, though it transmits no moment
+    CHECK(a.admitted.component_count == 1);  // they share a node, although it transmits no moment
     CHECK(measure_boundary(a.mesh).area_vector.norm() < 1e-14);
   }
 }

@@ -34,7 +34,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-TEST_CASE("sets of points contain what geometry says", "[mesh][where]") {
+TEST_CASE("sets of points contain the points that their geometry defines", "[mesh][where]") {
   testing::Random random(11);
   const Vector3 low(-0.4, -0.2, 0.1), high(0.3, 0.6, 0.5), centre(0.1, -0.1, 0.2), normal(1.0, -2.0, 0.5);
   const auto box = where::box(low, high), sphere = where::sphere(centre, 0.5);
@@ -65,7 +65,7 @@ TEST_CASE("sets of points contain what geometry says", "[mesh][where]") {
   CHECK(box.name() == "the box from (-0.4, -0.2, 0.1) to (0.3, 0.6, 0.5)");
 }
 
-TEST_CASE("sets that cannot be are refused", "[mesh][where]") {
+TEST_CASE("impossible sets are refused", "[mesh][where]") {
   using K = SetupErrorKind;
   CHECK(kind_of([] { where::box({0, 0, 1}, {1, 1, 0}); }) == K::bad_argument);
   CHECK(kind_of([] { where::box({0, none, 0}, {1, 1, 1}); }) == K::bad_argument);
@@ -81,7 +81,7 @@ TEST_CASE("sets that cannot be are refused", "[mesh][where]") {
   CHECK(kind_of([] { where::inside({}); }) == K::bad_argument);
 }
 
-TEST_CASE("a plane finds the nodes that lie on it, at any scale, place and rounding", "[mesh][where]") {
+TEST_CASE("a plane selects the nodes on it at any scale, position and rounding", "[mesh][where]") {
   for (double scale : {1e-6, 1.0, 1e3})
     for (double shift : {0.0, 1e3}) {
       const Vector3 by = scale * shift * Vector3(1, -0.7, 0.3);
@@ -105,7 +105,7 @@ TEST_CASE("a face is selected when all its nodes are, and only on the boundary",
     CHECK(faces_of(mesh, where::box({-1, -1, -1}, {2, 2, 2})).size() == 6 * of_a_side);
     CHECK(faces_of(mesh, where::inside([](const Vector3& x) { return x.z() > 0.9; })).size() == of_a_side);
     const auto p = refused(SetupErrorKind::empty_group, [&] { faces_of(mesh, where::sphere({0.5, 0.5, 0.5}, 0.3)); });
-    CHECK_THAT(p.what, contains("the sphere of radius 0.3 round (0.5, 0.5, 0.5) holds no boundary face"));
+    CHECK_THAT(p.what, contains("the sphere of radius 0.3 around (0.5, 0.5, 0.5) contains no boundary face"));
   };
   check(box_tet4({1, 1, 1}, {4, 4, 4}), 32);
   check(box_tet10({1, 1, 1}, {4, 4, 4}), 32);
@@ -118,9 +118,9 @@ TEST_CASE("a set that selects nothing is refused with the extent of the mesh", "
   const auto p = refused(SetupErrorKind::empty_group, [&] {
     resolve_nodes(mesh, boundary, where::sphere({10, 0, 0}, 1));
   });
-  CHECK_THAT(p.what, contains("the sphere of radius 1 round (10, 0, 0) holds no node"));
+  CHECK_THAT(p.what, contains("the sphere of radius 1 around (10, 0, 0) contains no node"));
   CHECK(p.hint == "The mesh extends from (0, 0, 0) to (0.1, 0.2, 0.3) [m]");
-  // A mesh that was moved to a frame of its own is described where it was.
+  // A mesh that was moved to its own frame is described at its original position.
   const Selection moved = mapped(where::sphere({10, 0, 0}, 1), {}, {1, 2, 3});
   CHECK(refused(SetupErrorKind::empty_group, [&] { resolve_nodes(mesh, boundary, moved); }).hint ==
         "The mesh extends from (1, 2, 3) to (1.1, 2.2, 3.3) [m]");
@@ -144,7 +144,8 @@ TEST_CASE("a scene is mapped with all its sets of points", "[mesh][where]") {
   CHECK(given.group_names().empty());
 }
 
-TEST_CASE("elements by their centres: a set and its complement share them out", "[mesh][where]") {
+TEST_CASE("elements are selected by their centres: each is in exactly one of a set and its complement",
+          "[mesh][where]") {
   const Mesh<Tet4> mesh = box_tet4({1, 1, 1}, {5, 5, 5});
   const auto sphere = where::sphere({0.5, 0.5, 0.5}, 0.4);
   const auto in = elements_within(mesh, sphere), out = elements_within(mesh, !sphere);

@@ -95,7 +95,7 @@ TEST_CASE("a set that selects nothing is refused where the mesh was given", "[mo
                              Scene().fix(bottom).render(far)}) {
     const SetupProblem p = refused(scene);
     CHECK(p.kind == SetupErrorKind::empty_group);
-    CHECK_THAT(p.what, test::contains("the sphere of radius 0.01 round (0, 0, 0)"));
+    CHECK_THAT(p.what, test::contains("the sphere of radius 0.01 around (0, 0, 0)"));
     CHECK(p.hint == "The mesh extends from (3, -7, 0.2) to (3.06, -6.94, 0.23) [m]");
   }
 }

@@ -11,7 +11,7 @@
 
 #include <numbers>
 
-/// What every element must do, written once. Each element is compiled in a file of its own.
+/// Tests common to all elements. Each element is compiled in a separate file.
 namespace test {
 
 template <Element E>
@@ -66,7 +66,8 @@ Mesh<E> shaken(Mesh<E> mesh, double amount, bool straight) {
   return mesh;
 }
 
-/// An affine field on a mesh whose every node is moved, outside too. Edges are curved unless `straight`.
+/// An affine field on a mesh in which all nodes are moved, those on the boundary too. Edges are curved unless
+/// `straight`.
 template <Element E>
 void check_affine_patch(bool straight) {
   testing::Random random(47);
@@ -98,7 +99,7 @@ double force_inside(const Mesh<E>& mesh) {
   return largest(f) / most;
 }
 
-/// The tractions of a constant stress on all sides of a box whose inside is distorted; six dofs are held.
+/// The tractions of a constant stress on all sides of a box with distorted interior; six dofs are constrained.
 template <Element E>
 void check_traction_patch(bool straight) {
   const Vector3 size(0.1, 0.08, 0.06);

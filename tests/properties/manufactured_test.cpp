@@ -1,4 +1,4 @@
-// A manufactured solution on even and distorted meshes: orders of convergence of displacement and energy, every
+// A manufactured solution on uniform and distorted meshes: orders of convergence of displacement and energy, every
 // element.
 #include "../../benchmarks/accuracy/manufactured.hpp"
 #include "../../benchmarks/accuracy/solver.cpp"

@@ -1,4 +1,4 @@
-// Relations between the answers of changed problems: nobody needs to know the right one.
+// Metamorphic tests: relations between the solutions of modified problems; no reference solution is needed.
 #include <palpate/linear/condition.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array direct{PolicyName::sparse_cholesky, PolicyName::condensed_inverse};
 
-/// Conditions whose meaning does not depend on a frame: everything at x = 0 held, a load with a given direction.
+/// Conditions that do not depend on a frame: everything at x = 0 constrained, a load with a given direction.
 Scene hanging(const Vector3& gravity) {
   return brick_scene().gravity(gravity).point_load("z1", 0.02 * gravity);
 }
@@ -33,14 +33,14 @@ Mesh<Tet4> moved(Mesh<Tet4> mesh, const Matrix3& linear, const Vector3& shift) {
   return mesh;
 }
 
-/// Every node's vector turned, mirrored or scaled.
+/// Every node's vector rotated, mirrored or scaled.
 VectorX mapped(const VectorX& u, const Matrix3& linear) {
   VectorX v(u.size());
   for (Index i = 0; i < u.size() / 3; ++i) v.segment<3>(3 * i) = linear * u.segment<3>(3 * i);
   return v;
 }
 
-/// Compliance among all vertices, after asking for it.
+/// Compliance between all vertices, requested first.
 MatrixX all_compliance(AnyModel& model) {
   const auto vertices = all_vertices(model.contact_surface().vertex_count());
   CHECK(model.require_columns(vertices).ok());
@@ -61,7 +61,7 @@ double difference(const MatrixX& a, const MatrixX& b) {
 
 const Vector3 g(1.0, -2.0, -9.81);
 
-/// The brick with coordinates that survive a large translation without rounding.
+/// The brick with coordinates that stay exact under a large translation.
 Mesh<Tet4> rounded_brick() {
   Mesh<Tet4> mesh = brick();
   for (Vector3& x : mesh.positions) x = (x * 0x1p24).array().round() * 0x1p-24;
@@ -71,7 +71,7 @@ Mesh<Tet4> rounded_brick() {
 }  // namespace
 
 TEST_CASE("M1: translation", "[property][M1][extreme][B2]") {
-  for (double far : {0x1p7, 0x1p17}) {  // a thousand and a million sizes
+  for (double far : {0x1p7, 0x1p17}) {  // a thousand and a million times the size
     const Vector3 shift = far * Vector3(1.0, -0.5, 0.25);
     const Mesh<Tet4> here = rounded_brick(), there = moved(here, Matrix3::Identity(), shift);
     CHECK(difference(dense_stiffness(there), dense_stiffness(here)) <= 1e-12);
@@ -81,7 +81,7 @@ TEST_CASE("M1: translation", "[property][M1][extreme][B2]") {
       CHECK(difference(all_compliance(*b), all_compliance(*a)) <= 1e-12);
     }
   }
-  SECTION("coordinates that are rounded on the way lose what they lose, not more") {
+  SECTION("rounded coordinates cause no more than their own rounding error") {
     const Mesh<Tet4> there = moved(brick(), Matrix3::Identity(), Vector3(100.1, -33.3, 77.7));
     const double rounding = 4 * 130.0 * 2.2e-16 / 0.02;  // of an edge of 2 cm
     CHECK(difference(dense_stiffness(there), dense_stiffness(brick())) <= 10 * rounding);
@@ -216,13 +216,13 @@ TEST_CASE("M8: mirror image", "[property][M8][extreme][B4]") {
     CHECK(difference(all_compliance(*b), mapped(all_compliance(*a), mirror)) <= 1e-12);
     CHECK(b->report().has(SetupFlag::repaired));
     CHECK(difference(dense_stiffness(b->mesh()), mapped(dense_stiffness(brick()), mirror)) <= 1e-13);
-    const Vector3 up(0, 0, 1);  // the repaired surface still looks outward
+    const Vector3 up(0, 0, 1);  // the repaired surface still points outward
     for (int t = 0; t < static_cast<int>(b->contact_surface().triangles().size()); ++t)
       CHECK(b->contact_surface().normal(t).dot(up) > 0.0);
   }
 }
 
-TEST_CASE("M9: two bodies in one mesh do not know of each other", "[property][M9][extreme][B7]") {
+TEST_CASE("M9: two bodies in one mesh do not influence each other", "[property][M9][extreme][B7]") {
   const Mesh<Tet4> one = brick();
   Mesh<Tet4> two = one;
   const auto n = static_cast<NodeId>(one.node_count());
@@ -254,7 +254,7 @@ TEST_CASE("M9: two bodies in one mesh do not know of each other", "[property][M9
   }
 }
 
-TEST_CASE("M11: condensed as full", "[property][M11]") {
+TEST_CASE("M11: condensed equals full", "[property][M11]") {
   const Mesh<Tet4> sphere = sphere_tet4(0.05, 3);
   std::vector<NodeId> south;
   for (NodeId i = 0; i < sphere.node_count(); ++i)
@@ -267,7 +267,7 @@ TEST_CASE("M11: condensed as full", "[property][M11]") {
   CHECK(difference(all_compliance(*condensed), all_compliance(*full)) <= 1e-11);
 }
 
-TEST_CASE("M12: float within the error that the probe announces", "[property][M12][extreme][E7]") {
+TEST_CASE("M12: float stays within the error reported by the probe", "[property][M12][extreme][E7]") {
   for (double nu : {0.3, 0.45, 0.49}) {
     const LinearElastic m{5e3, nu, 1060.0};
     const auto d = make_model(PolicyName::condensed_inverse, brick(), hanging(g), m);

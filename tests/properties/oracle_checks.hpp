@@ -15,7 +15,7 @@ using solve_case::json;
 
 inline constexpr double oracle_tolerance = 1e-6;  // of the largest value: the reference is printed with 7 digits
 
-/// What a test says that finds no folder with further reference results and so checks nothing.
+/// Message of a test that finds no folder with further reference results and therefore checks nothing.
 inline const std::string no_further_results =
     "nothing was checked: PALPATE_ORACLE_DIR names no folder with reference results: '" PALPATE_ORACLE_DIR "'";
 
@@ -52,7 +52,7 @@ double difference(const Table& reference, std::size_t from, const VectorX& value
   return worst / largest;
 }
 
-/// Compares what there is: every load case has reactions and scalars, some have displacements.
+/// Compares the available results: every load case has reactions and scalars, some have displacements.
 template <Element E>
 void check_solution(const std::string& folder, const solve_case::NumberedMesh<E>& mesh, const json& load_case,
                     const solve_case::Solution& s) {
@@ -83,8 +83,8 @@ void check_load_case(const std::string& folder, const solve_case::NumberedMesh<E
   check_solution(folder, mesh, load_case, solve_case::solve<E>(mesh.mesh, load_case));
 }
 
-/// Calls check(mesh, load_case) for the load cases of a folder with this kind of analysis and returns how many these
-/// are; none when its elements have another name.
+/// Calls check(mesh, load_case) for the load cases of a folder with this kind of analysis and returns their number; 0
+/// if its elements have another name.
 template <Element E, class Check>
 int each_load_case(const std::string& folder, const std::string& element, std::string_view analysis, Check check) {
   const auto file = solve_case::read_case_files(folder + "/case.json").front();

@@ -47,7 +47,7 @@ TEST_CASE("Equilibrium at large strain agrees with all further reference results
   CHECK(checked != 0);
 }
 
-TEST_CASE("A load case at large strain that says something unknown is refused", "[oracle][large_strain]") {
+TEST_CASE("A load case at large strain with unknown content is refused", "[oracle][large_strain]") {
   const std::string folder = PALPATE_TEST_DATA "/oracle/G_hyperelastic_cube/hex8";
   const auto file = solve_case::read_case_files(folder + "/case.json").front();
   const auto mesh = io::read_mesh<Hex8>(file.mesh_v22);

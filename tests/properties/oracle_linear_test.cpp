@@ -32,7 +32,7 @@ TEST_CASE("Linear statics agrees with all further reference results", "[oracle]"
   CHECK(checked != 0);
 }
 
-TEST_CASE("A load case that says something unknown is refused", "[oracle]") {
+TEST_CASE("A load case with unknown content is refused", "[oracle]") {
   const auto file = solve_case::read_case_files(PALPATE_TEST_DATA "/oracle/A_two_cubes/tet4/case.json").front();
   const json good = file.load_cases.front();
   const auto with = [&](const char* pointer, const json& value) {

@@ -62,7 +62,7 @@ TEST_CASE("Natural frequencies agree with all further reference results", "[orac
   CHECK(checked != 0);
 }
 
-TEST_CASE("A modal load case that says something unknown is refused", "[oracle][modal]") {
+TEST_CASE("A modal load case with unknown content is refused", "[oracle][modal]") {
   const auto file = solve_case::read_case_files(PALPATE_TEST_DATA "/oracle/I_modal/cantilever_tet4/case.json").front();
   const auto mesh = io::read_mesh<Tet4>(file.mesh_v22);
   const auto refusal = [&](const char* pointer, const json& value) {

@@ -85,7 +85,7 @@ TEST_CASE("an affine field is reproduced on a distorted mesh, here and far away"
 }
 
 TEST_CASE("an affine field under its tractions", "[property][patch]") {
-  // Free everywhere but for six dofs: the tractions are those of a constant stress.
+  // All dofs but six are free: the tractions are those of a constant stress.
   const Mesh<Tet4> mesh = jittered(box_tet4({0.1, 0.08, 0.06}, {3, 3, 3}), 0.004, {0.1, 0.08, 0.06});
   Matrix3 h;  // upper triangular: the six dofs below do not move
   h << 0.01, 0.004, -0.003, 0.0, -0.02, 0.005, 0.0, 0.0, 0.015;

@@ -14,9 +14,9 @@
 #error "palpate refuses -ffast-math: it removes the NaN checks that guard the device. Build without it."
 #endif
 
-// A header x.hpp declares; x.ipp beside it defines what is no template. Header-only (palpate::palpate), x.hpp includes
-// x.ipp at its end and every definition is inline. The target palpate::compiled defines PALPATE_COMPILED: its library
-// holds the definitions, and no other program compiles them.
+// A header x.hpp declares; x.ipp next to it defines everything that is not a template. In header-only use
+// (palpate::palpate), x.hpp includes x.ipp at its end and every definition is inline. The target palpate::compiled
+// defines PALPATE_COMPILED: its library contains the definitions, and programs that link to it do not compile them.
 #if defined(PALPATE_COMPILED)
 #define PALPATE_HEADER_ONLY 0
 #define PALPATE_INLINE
@@ -27,9 +27,10 @@
 #define PALPATE_ABI_COMPILED
 #endif
 
-// Layout of fixed-size Eigen members depends on compiler flags (-mavx512f changes their alignment), what a refused
-// set-up does on -fno-exceptions, and where definitions are on the target. All three are part of the namespace, so
-// translation units that differ fail to link instead of corrupting memory or missing an exception. See docs/linking.md.
+// The layout of fixed-size Eigen members depends on compiler flags (-mavx512f changes their alignment), the behaviour
+// of a refused set-up depends on -fno-exceptions, and the place of the definitions depends on the CMake target. All
+// three are part of the namespace, so translation units that differ fail to link instead of corrupting memory or
+// missing an exception. See docs/linking.md.
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
 #define PALPATE_HAS_EXCEPTIONS 1
 #define PALPATE_ABI_PASTE(align, compiled) v0_align##align##compiled
@@ -45,7 +46,7 @@
 #define PALPATE_COLD
 #endif
 
-// For kernels on numbers that fill a vector register: a call would pass them in a way that depends on compiler flags.
+// For kernels on values that fill a vector register: how a call passes them depends on compiler flags.
 #if defined(__GNUC__) || defined(__clang__)
 #define PALPATE_ALWAYS_INLINE [[gnu::always_inline]] inline
 #elif defined(_MSC_VER)
@@ -54,7 +55,8 @@
 #define PALPATE_ALWAYS_INLINE inline
 #endif
 
-// Parameters carry the namespace into the name of a user's function, results and variables do not: the tag does that.
+// Parameter types put the namespace into the mangled name of a user's function; return types and variables do not. The
+// tag adds it there.
 #if defined(__GNUC__) || defined(__clang__)
 #define PALPATE_ABI_TAG __attribute__((abi_tag))
 #else

@@ -1,4 +1,4 @@
-// All that depends on the operating system or the processor, and the only header that asks which one it is.
+// All code that depends on the operating system or the processor. No other header checks which one it is.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -24,8 +24,8 @@
 #include <share.h>
 #include <sys/stat.h>
 
-// <windows.h> brings macros named min, max, near, far and small into every program that includes it. What is needed of
-// it is declared here, with its own types, so that it may be included before or after.
+// <windows.h> defines macros named min, max, near, far and small in every program that includes it. The functions
+// needed are declared here instead, with the types of <windows.h>, so that it may be included before or after.
 struct _SECURITY_ATTRIBUTES;
 union _LARGE_INTEGER;
 extern "C" {
@@ -51,13 +51,13 @@ __declspec(dllimport) unsigned long __stdcall SetThreadAffinityMask(void*, unsig
 #define PALPATE_HAS_MXCSR 1
 #endif
 
-/// Every function of a system that lacks the thing does nothing and says so. Errors are the system's own numbers, 0 for
-/// none.
+/// A function that the system does not support does nothing and returns not_supported. Errors are the system's error
+/// codes, 0 for success.
 namespace palpate { inline namespace PALPATE_ABI { namespace platform {
 
 inline constexpr int not_supported = -1;
 
-/// What the system says about an error of this header's functions.
+/// The system's message for an error code of this header's functions.
 inline std::string error_text(int error) {
   return error == not_supported ? std::string("not supported on this system") : std::system_category().message(error);
 }
@@ -76,8 +76,8 @@ inline std::int64_t clock_ns(clockid_t clock) noexcept {
 inline std::int64_t wall_ns() noexcept {
   return detail::clock_ns(CLOCK_MONOTONIC);
 }
-/// Processor time of this thread [ns]: does not count what other programs do on a busy machine. A system call: 0.2 to
-/// 1 us. Where there is none that fine, steady time.
+/// Processor time of this thread [ns]: does not include time used by other programs on a busy machine. A system call:
+/// 0.2 to 1 us. On systems without such a fine clock: steady time.
 inline std::int64_t compute_ns() noexcept {
   return detail::clock_ns(CLOCK_THREAD_CPUTIME_ID);
 }
@@ -97,20 +97,20 @@ inline int pin_this_thread(int cpu) noexcept {
   if (cpu < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(cpu), &set);
   return pthread_setaffinity_np(pthread_self(), sizeof set, &set);
 }
-/// The scheduling that ask_for_realtime_scheduling asks for.
+/// The scheduling that ask_for_realtime_scheduling requests.
 inline constexpr const char* realtime_scheduling = "SCHED_FIFO 50";
 inline int ask_for_realtime_scheduling() noexcept {
   sched_param priority{};
   priority.sched_priority = 50;
   return pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
 }
-/// Keeps the pages mapped now in memory. Not MCL_FUTURE: with a small limit on locked memory it makes later allocations
-/// anywhere in the program fail.
+/// Locks the currently mapped pages in memory. Does not use MCL_FUTURE: with a small limit on locked memory, it would
+/// make later allocations anywhere in the program fail.
 inline int lock_memory() noexcept {
   return mlockall(MCL_CURRENT) == 0 ? 0 : errno;
 }
 
-/// Asks for huge pages, for fewer page faults; only a hint.
+/// Requests huge pages, for fewer page faults; only a hint.
 inline void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) noexcept {
 #if defined(MADV_HUGEPAGE)
   ::madvise(memory, bytes, MADV_HUGEPAGE);
@@ -134,8 +134,8 @@ inline void ask_for_exact_sleeps() noexcept {}
 #if defined(_WIN32)
 
 namespace detail {
-/// Sleep on Windows wakes with the system's timer, every 15.6 ms. A high-resolution timer (Windows 10 from 1803 on)
-/// keeps a period of 1 ms.
+/// Sleep on Windows wakes up only at ticks of the system timer, every 15.6 ms. A high-resolution timer (Windows 10 from
+/// 1803 on) keeps a period of 1 ms.
 class WaitableTimer {
  public:
   WaitableTimer() noexcept {
@@ -149,7 +149,7 @@ class WaitableTimer {
   WaitableTimer(const WaitableTimer&) = delete;
   WaitableTimer& operator=(const WaitableTimer&) = delete;
 
-  /// False when there is no timer.
+  /// False if there is no timer.
   bool wait(std::int64_t ns) const noexcept {
     const std::int64_t hundreds = -(ns + 99) / 100;  // negative: from now
     if (handle_ == nullptr) return false;
@@ -198,10 +198,10 @@ inline int ask_for_realtime_scheduling() noexcept {
 #endif
 #endif
 
-/// Opens a file for writing that must not exist; null and errno otherwise.
+/// Opens a new file for writing; the file must not exist yet. On failure returns null and sets errno.
 inline std::FILE* create_new_file(const std::string& path) noexcept {
 #if defined(_WIN32)
-  // Older C libraries of Windows do not know fopen's "x".
+  // Older C libraries of Windows do not support fopen's "x".
   int file = -1;
   if (_sopen_s(&file, path.c_str(), _O_CREAT | _O_EXCL | _O_WRONLY | _O_BINARY, _SH_DENYNO, _S_IREAD | _S_IWRITE) != 0)
     return nullptr;
@@ -213,8 +213,8 @@ inline std::FILE* create_new_file(const std::string& path) noexcept {
 #endif
 }
 
-/// The processor's word that says how it treats denormals, and the same word with denormals flushed to zero; 0 on
-/// processors not known here.
+/// The processor's control register for denormals, and the bits that flush denormals to zero; 0 on unsupported
+/// processors.
 #if defined(PALPATE_HAS_MXCSR)
 inline std::uint64_t float_mode() noexcept {
   return _mm_getcsr();

@@ -1,4 +1,4 @@
-// What the tick needs from the processor: denormals flushed to zero inside a scope.
+// Processor setting for the tick: denormals are flushed to zero inside a scope.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -6,9 +6,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Flushes denormals to zero (FTZ and DAZ) while it lives and restores the thread's mode afterwards. A body coming to
-/// rest decays into denormals, which cost 20 to 130 times a normal multiplication. Does nothing on processors it does
-/// not know.
+/// Flushes denormals to zero (FTZ and DAZ) during its lifetime and restores the thread's mode afterwards. The state of
+/// a body that comes to rest decays into denormals, with which a multiplication takes 20 to 130 times longer. Does
+/// nothing on unsupported processors.
 class FlushDenormals {
  public:
   FlushDenormals() noexcept : saved_(platform::float_mode()) {

@@ -12,21 +12,21 @@ PALPATE_INLINE Matrix3 rotation_by(const Vector3& v) noexcept {
   Matrix3 r = Matrix3::Identity();
   if (!(angle > 0.0)) return r;
   const Vector3 a = v / angle;
-  const double s = std::sin(angle), half = std::sin(0.5 * angle), turn = 2.0 * half * half;  // 1 - cos
-  r(0, 0) -= turn * (a[1] * a[1] + a[2] * a[2]);
-  r(1, 1) -= turn * (a[2] * a[2] + a[0] * a[0]);
-  r(2, 2) -= turn * (a[0] * a[0] + a[1] * a[1]);
-  r(1, 0) = turn * a[0] * a[1] + s * a[2];
-  r(0, 1) = turn * a[0] * a[1] - s * a[2];
-  r(0, 2) = turn * a[0] * a[2] + s * a[1];
-  r(2, 0) = turn * a[0] * a[2] - s * a[1];
-  r(2, 1) = turn * a[1] * a[2] + s * a[0];
-  r(1, 2) = turn * a[1] * a[2] - s * a[0];
+  const double s = std::sin(angle), half = std::sin(0.5 * angle), one_minus_cos = 2.0 * half * half;
+  r(0, 0) -= one_minus_cos * (a[1] * a[1] + a[2] * a[2]);
+  r(1, 1) -= one_minus_cos * (a[2] * a[2] + a[0] * a[0]);
+  r(2, 2) -= one_minus_cos * (a[0] * a[0] + a[1] * a[1]);
+  r(1, 0) = one_minus_cos * a[0] * a[1] + s * a[2];
+  r(0, 1) = one_minus_cos * a[0] * a[1] - s * a[2];
+  r(0, 2) = one_minus_cos * a[0] * a[2] + s * a[1];
+  r(2, 0) = one_minus_cos * a[0] * a[2] - s * a[1];
+  r(2, 1) = one_minus_cos * a[1] * a[2] + s * a[0];
+  r(1, 2) = one_minus_cos * a[1] * a[2] - s * a[0];
   return r;
 }
 
 PALPATE_INLINE Quaternion<double> quaternion_of(const Matrix3& rotation) noexcept {
-  // The quaternion whose largest component comes from the diagonal (Shepperd 1978): no cancellation at any angle.
+  // The largest component is computed from the diagonal (Shepperd 1978): no cancellation at any angle.
   const Matrix3& r = rotation;
   const double trace = r(0, 0) + r(1, 1) + r(2, 2);
   double w;

@@ -11,7 +11,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A rotation as four numbers, real part first; of unit length where not said otherwise.
+/// A rotation as four numbers, real part first; of unit length unless stated otherwise.
 template <class S>
 struct Quaternion {
   S w, x, y, z;
@@ -71,26 +71,27 @@ PALPATE_ALWAYS_INLINE Tensor3<S> rotational_stiffness(const Tensor3<S>& a) noexc
   return plus_identity(S(-0.5f) * (a + transpose(a)), trace(a));
 }
 
-/// Product of the gaps to the other eigenvalues, over the third power of the largest, above which the closed form keeps
-/// its digits.
+/// Product of the gaps to the other eigenvalues, divided by the cube of the largest eigenvalue, above which the closed
+/// form is accurate.
 template <class S>
 inline constexpr scalar_of<S> eigenvalues_apart = sizeof(scalar_of<S>) == 8 ? scalar_of<S>(0.01) : scalar_of<S>(0.05);
 
 /// Largest root of det(K - t I) = t^4 - 2 |F|^2 t^2 - 8 J t + |F|^4 - 4 |cof F|^2, by Newton's method from above, where
-/// it comes down without a turn. |F| is between 1 and 3.
+/// it decreases monotonically. |F| is between 1 and 3.
 template <class S>
 PALPATE_ALWAYS_INLINE S largest_eigenvalue(const Tensor3<S>& f) noexcept {
   using std::sqrt;
   const Tensor3<S> c = cofactor(f);
   const S first = contract(f, f), second = contract(c, c), j = determinant(f, c);
   const S quadratic = S(2) * first, linear = S(8) * j, constant = first * first - S(4) * second;
-  // (s1 + s2 + s3)^2 <= |F|^2 + 2 sqrt 3 |cof F|, equal for equal stretches and where two of them vanish
+  // (s1 + s2 + s3)^2 <= |F|^2 + 2 sqrt 3 |cof F|, with equality for equal stretches and if two of them are zero
   S t = sqrt(first + S(static_cast<scalar_of<S>>(3.4641016151377546)) * sqrt(second));
   const S tolerance = S(8 * std::numeric_limits<scalar_of<S>>::epsilon()), flat = S(eigenvalues_apart<S> / 10);
   for (int k = 0; k < 30; ++k) {
     const S value = ((t * t - quadratic) * t - linear) * t + constant;
     const S slope = (S(4) * t * t - S(2) * quadratic) * t - linear;
-    // near a double root both are rounding: it stays where it is and is found out by its neighbours
+    // near a double root both are rounding errors: t is not changed, and closest_quaternion detects the small
+    // eigenvalue gaps
     const S step = select((slope > flat * t * t * t) & (value > S(0)), value / slope, S(0));
     t = t - step;
     if (all(step <= tolerance)) break;
@@ -128,8 +129,8 @@ PALPATE_ALWAYS_INLINE Quaternion<S> adjugate_column(const Davenport<S>& k, const
   return q;
 }
 
-/// Eigenvector of K for its largest eigenvalue, simple or not: Jacobi's rotations (Golub and Van Loan, 8.5), which
-/// have orthogonal vectors always. About a microsecond; for states in which the closest rotation is not one but many.
+/// Eigenvector of K for its largest eigenvalue, simple or not: Jacobi's rotations (Golub and Van Loan, 8.5), whose
+/// vectors are always orthogonal. About a microsecond; for states in which the closest rotation is not unique.
 template <class S>
 PALPATE_COLD Quaternion<S> jacobi_eigenvector(const Davenport<S>& k) noexcept {
   S a[4][4] = {{k.ww, k.wx, k.wy, k.wz}, {k.wx, k.xx, k.xy, k.xz}, {k.wy, k.xy, k.yy, k.yz}, {k.wz, k.xz, k.yz, k.zz}};
@@ -172,7 +173,7 @@ PALPATE_COLD Quaternion<S> jacobi_eigenvector(const Davenport<S>& k) noexcept {
   return normalized(Quaternion<S>{v[0][largest], v[1][largest], v[2][largest], v[3][largest]});
 }
 
-/// Replaces q where `where` says so.
+/// Replaces q in the lanes selected by `where`.
 template <class S>
 PALPATE_COLD void jacobi_lanes(const Tensor3<S>& f, const auto& where, Quaternion<S>& q) noexcept {
   if constexpr (std::is_floating_point_v<S>) {
@@ -203,12 +204,12 @@ PALPATE_ALWAYS_INLINE Quaternion<S> refined(const Quaternion<S>& q, const Tensor
 
 }  // namespace detail
 
-/// The rotation R (det = +1) that is closest to F, which is the one of F = R U where J > 0; for an inverted F the one
-/// that turns back the direction of least stretch; where several are closest (rank one or zero, two smallest stretches
-/// equal and opposite) one of them. Right to rounding over (s2 + s3) / s1 with s3 < 0 when inverted, and R^T R = I to
-/// rounding always. Any scale of F but NaN and infinity. Works in lanes; no allocation.
-/// Davenport's matrix and its characteristic polynomial as in QUEST (Shuster and Oh 1981), its eigenvector by the
-/// adjugate, one step of Newton's method after it; near a multiple eigenvalue Jacobi's method.
+/// The rotation R (det = +1) closest to F. For J > 0 it is the rotation of F = R U; for an inverted F the one that
+/// reverses the direction of least stretch; if several are closest (rank one or zero, two smallest stretches equal and
+/// opposite), one of them. The error is rounding divided by (s2 + s3) / s1, with s3 < 0 if inverted; R^T R = I up to
+/// rounding in all cases. F may have any scale, but no NaN or infinity. Works with lanes; no allocation. Davenport's
+/// matrix and its characteristic polynomial as in QUEST (Shuster and Oh 1981), its eigenvector from the adjugate,
+/// followed by one step of Newton's method; near a multiple eigenvalue Jacobi's method.
 template <class S>
 PALPATE_ALWAYS_INLINE Quaternion<S> closest_quaternion(const Tensor3<S>& f) noexcept {
   using Scalar = scalar_of<S>;

@@ -1,4 +1,4 @@
-// The set-up error lane: one exception type with a kind, ids, a value, a threshold and a hint.
+// Errors of set-up: one exception type with a kind, ids, a value, a threshold and a hint.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -80,36 +80,36 @@ constexpr std::string_view to_string(SetupErrorKind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
-/// What the ids of a problem refer to: nodes or elements of the mesh as given, or something that the sentence names
+/// What the ids of a problem refer to: nodes or elements of the mesh as given, or other things that the message names
 /// (regions, dofs, vertices).
 enum class SetupIds { others, nodes, elements };
 
-/// What went wrong at set-up. `ids` holds the first few ids (zero based); `count` how many there are in all. Ids of
-/// nodes and elements belong there and not in the sentence, because `raise` translates them to the mesh as given.
+/// What went wrong at set-up. `ids` contains the first few ids (zero based), `count` the total number. Ids of nodes and
+/// elements belong there and not in the message text, because `raise` translates them to ids of the mesh as given.
 struct SetupProblem {
   SetupErrorKind kind = SetupErrorKind::bad_argument;
   std::string what;               ///< one sentence with the measured value
   std::string hint;               ///< what to change
   std::vector<std::int64_t> ids;  ///< at most `max_ids`
-  std::int64_t count = 0;         ///< all offenders, listed or not
+  std::int64_t count = 0;         ///< all affected, listed or not
   double value = 0.0;             ///< the measured value
   double threshold = 0.0;         ///< the bound it broke
   SetupIds ids_of = SetupIds::others;
 
   static constexpr std::size_t max_ids = 16;
 
-  /// Keeps the first `max_ids` of `all` and their number.
+  /// Stores the first `max_ids` of `all` and the total number.
   void set_ids(std::span<const std::int64_t> all, SetupIds of = SetupIds::others);
 };
 
-/// A number for a message: nine significant digits, enough to tell 0.4999999 from 0.5.
+/// A number for a message: nine significant digits, enough to distinguish 0.4999999 from 0.5.
 std::string number(double value);
 
 /// One line: kind, sentence, first ids, hint.
 std::string describe(const SetupProblem& p);
 
-/// Thrown by every set-up function that refuses its input. Objects under construction leave nothing behind; existing
-/// ones are unchanged.
+/// Thrown by every set-up function that refuses its input. Strong guarantee: existing objects are unchanged, and
+/// objects under construction release everything.
 class SetupError : public std::runtime_error {
  public:
   explicit SetupError(SetupProblem problem) : std::runtime_error(describe(problem)), problem_(std::move(problem)) {}
@@ -120,12 +120,12 @@ class SetupError : public std::runtime_error {
   SetupProblem problem_;
 };
 
-/// Called instead of throwing when exceptions are disabled. It must not return: it ends the process, or the thread.
-/// When it does return, and by default, the problem is printed and the process aborted. Jumping out of it with longjmp
-/// skips destructors, which C++ leaves undefined.
+/// Called instead of throwing if exceptions are disabled. It must not return: it ends the process or the thread. If it
+/// returns, and by default, the problem is printed and the process aborted. Leaving it with longjmp skips destructors,
+/// which is undefined behaviour in C++.
 using SetupFailureHandler = void (*)(const SetupProblem&);
 
-/// Assign to replace it, before the first set-up and not while another thread is in one.
+/// Assign to replace it, before the first set-up and not while another thread runs one.
 SetupFailureHandler& setup_failure_handler();
 
 /// Maps nodes and elements of an admitted mesh to their ids in the mesh as given. An empty list is the identity.
@@ -134,7 +134,7 @@ struct OriginalIds {
 };
 
 /// During its lifetime `raise` translates ids of nodes and elements in this thread: for set-up after admission. The
-/// innermost scope applies. Refers to `ids`.
+/// innermost scope applies. Keeps a reference to `ids`.
 class ScopedIdTranslation {
  public:
   explicit ScopedIdTranslation(const OriginalIds& ids) noexcept;
@@ -153,7 +153,7 @@ class ScopedIdTranslation {
 
 [[noreturn]] PALPATE_COLD void raise(SetupErrorKind kind, std::string what, std::string hint = {});
 
-/// Refuses because of one node or element; the sentence does not contain its id.
+/// Refuses because of one node or element; the message text does not contain its id.
 [[noreturn]] PALPATE_COLD void raise_at(SetupIds of, std::int64_t id, SetupErrorKind kind, std::string what,
                                         std::string hint = {});
 

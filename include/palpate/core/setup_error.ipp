@@ -36,7 +36,7 @@ inline const char* id_label(const SetupProblem& p) noexcept {
   return "ids";
 }
 
-/// The innermost translation of this thread; null when there is none.
+/// The innermost translation of this thread; null if there is none.
 inline const OriginalIds*& active_ids() noexcept {
   static thread_local const OriginalIds* ids = nullptr;
   return ids;

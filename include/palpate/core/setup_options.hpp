@@ -1,4 +1,4 @@
-// What the caller may decide about set-up: progress, cancelling, memory.
+// Options of set-up: progress, cancelling, memory limit.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -8,25 +8,26 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Where set-up stands.
+/// Progress of a set-up.
 struct Progress {
   std::string_view
       stage;              ///< "admission", "assembly", "factorisation", "condensation", "compliance", "checks", "cache"
   double fraction = 0.0;  ///< of this stage, 0 ... 1
 };
 
-/// Called now and then during set-up, from the thread that sets up; returning false cancels (SetupError cancelled).
+/// Called occasionally during set-up, from the thread that runs it; returning false cancels (SetupError cancelled).
 using ProgressCallback = std::function<bool(const Progress&)>;
 
 /// Limits of a set-up.
 struct SetupLimits {
-  ProgressCallback progress;                                     ///< empty: silent
-  std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< [bytes] a set-up may allocate at once for matrices
+  ProgressCallback progress;                                     ///< empty: no reports
+  std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< [bytes] largest amount a set-up may allocate in
+                                                                 ///< one step for matrices
 
-  /// Reports progress; throws SetupError(cancelled) when the callback says stop.
+  /// Reports progress; throws SetupError(cancelled) if the callback returns false.
   void advance(std::string_view stage, double fraction) const;
 
-  /// Throws SetupError(too_large) when `bytes` more than the limit are about to be allocated for `what`.
+  /// Throws SetupError(too_large) if the `bytes` to be allocated for `what` exceed the limit.
   void require_memory(double bytes, const char* what) const;
 };
 

@@ -1,4 +1,4 @@
-// The tick error lane: a word of flags that accompanies every force.
+// Errors of the tick: a word of flags that accompanies every force.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -11,22 +11,22 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 enum class StatusFlag : std::uint32_t {
-  non_finite_input = 1u << 0,      ///< the device gave NaN, infinity or an impossible rotation
+  non_finite_input = 1u << 0,      ///< the device returned NaN, infinity or an invalid rotation
   saturated = 1u << 1,             ///< force clamped to the limit, direction kept
   slew_limited = 1u << 2,          ///< change of force per tick limited
-  stale = 1u << 3,                 ///< input older than allowed: force fades to zero
+  stale = 1u << 3,                 ///< input older than allowed: force is faded to zero
   deadline_missed = 1u << 4,       ///< the tick came later than its period allows
   inverted = 1u << 5,              ///< an element is inverted (non-linear models)
   solver_not_converged = 1u << 6,  ///< contact or linear solver stopped at its iteration limit
   energy_injected = 1u << 7,       ///< the energy tank is nearly empty: forces are scaled down
-  degraded_model = 1u << 8,        ///< something was dropped to stay in bounds (contact capacity, late compliance)
+  degraded_model = 1u << 8,        ///< something was omitted to stay within bounds (contact capacity, late compliance)
   disconnected = 1u << 9,          ///< the device reports invalid data
-  reacquired = 1u << 10,           ///< the tool jumped: contact was started anew
+  reacquired = 1u << 10,           ///< the tool jumped: contact was restarted
   ramping = 1u << 11,              ///< start-up ramp is scaling the force
   non_finite_force = 1u << 12,     ///< a computed force was not finite and was replaced by zero
-  step_refused = 1u << 13,         ///< a time step that is not positive, or above the stable limit: nothing was done
-  energy_grew = 1u << 14,          ///< a motion has energy that nothing put in: it is held at its last good state
-  slow_tissue = 1u << 15,          ///< steps of a moving tissue take longer than they last: it moves in slow motion
+  step_refused = 1u << 13,         ///< the time step is not positive or above the stability limit: no step was made
+  energy_grew = 1u << 14,          ///< a motion gained energy without a source: it is kept at its last good state
+  slow_tissue = 1u << 15,  ///< computing a tissue step takes longer than its time step: the tissue moves in slow motion
 };
 
 /// Number of flags that exist.
@@ -65,7 +65,7 @@ constexpr std::string_view status_flag_name(int bit) {
 /// Prints the names of all flags that are set, for example "Saturated Ramping", or "ok". Not for the tick.
 std::ostream& operator<<(std::ostream& out, Status status);
 
-/// How often each flag was raised; one add per set flag and tick.
+/// How often each flag was raised; one addition per set flag and tick.
 class StatusCounters {
  public:
   void count(Status status) noexcept;

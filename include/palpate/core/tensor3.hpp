@@ -1,4 +1,4 @@
-// Vectors and 3 x 3 tensors of one number type or of lanes (core/detail/lanes.hpp), for the kernels of material laws.
+// Vectors and 3 x 3 tensors of one number type or of lanes (core/detail/lanes.hpp), for material kernels.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -6,14 +6,14 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Three numbers: a direction.
+/// Three numbers: a vector.
 template <class S>
 struct Triple {
   S x, y, z;
 };
 
 /// A 3 x 3 tensor: nine numbers of type S (double, float or Lanes), column by column: entry (i, j) is e[i + 3 j]. All
-/// operations are written out, so that a compiler keeps the entries in registers.
+/// operations are written out, so that the compiler keeps the entries in registers.
 template <class S>
 struct Tensor3 {
   S e[9];
@@ -91,7 +91,7 @@ PALPATE_ALWAYS_INLINE constexpr Tensor3<S> transpose_product(const Tensor3<S>& a
   return transpose(a) * b;
 }
 
-/// The cofactors, dJ/dF where J = det F: J F^-T, but finite for every F.
+/// The cofactors dJ/dF with J = det F: equal to J F^-T, but finite for every F.
 template <class S>
 PALPATE_ALWAYS_INLINE constexpr Tensor3<S> cofactor(const Tensor3<S>& f) noexcept {
   return {{f.e[4] * f.e[8] - f.e[7] * f.e[5], f.e[6] * f.e[5] - f.e[3] * f.e[8], f.e[3] * f.e[7] - f.e[6] * f.e[4],
@@ -109,7 +109,7 @@ PALPATE_ALWAYS_INLINE constexpr S determinant(const Tensor3<S>& f) noexcept {
          f.e[2] * (f.e[3] * f.e[7] - f.e[6] * f.e[4]);
 }
 
-/// From and to Eigen.
+/// Conversion from and to Eigen.
 template <class S>
 Tensor3<S> tensor3(const Eigen::Matrix<S, 3, 3>& m) noexcept {
   Tensor3<S> t;

@@ -23,7 +23,7 @@ concept FixedMatrix = requires {
   requires std::same_as<typename std::remove_cvref_t<M>::Scalar, double>;
 };
 
-/// As FixedMatrix, or an Eigen expression of that shape: one that is read where it lies, without a copy.
+/// As FixedMatrix, or an Eigen expression of that shape, which is read in place without a copy.
 template <class M, int R, int C>
 concept FixedExpression = requires {
   requires std::derived_from<std::remove_cvref_t<M>, Eigen::MatrixBase<std::remove_cvref_t<M>>>;

@@ -3,7 +3,7 @@
 
 #include <palpate/core/config.hpp>
 
-/// The library computes in m, N, Pa, kg and s. Where a source gives something else, say so: `5.4 * units::kPa`.
+/// The library computes in m, N, Pa, kg and s. Convert values in other units explicitly: `5.4 * units::kPa`.
 namespace palpate { inline namespace PALPATE_ABI { namespace units {
 
 inline constexpr double kPa = 1e3, MPa = 1e6, GPa = 1e9;                 ///< [Pa]

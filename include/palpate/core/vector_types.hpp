@@ -7,7 +7,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Counts and offsets. 64 bit: (3 x surface nodes)^2 overflows 32 bits from 15 447 nodes on.
+/// Counts and offsets. 64 bits, because (3 x surface nodes)^2 overflows 32 bits from 15 447 nodes on.
 using Index = std::int64_t;
 /// A node of a mesh, as stored in connectivity.
 using NodeId = std::int32_t;

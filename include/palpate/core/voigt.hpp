@@ -27,8 +27,8 @@ inline Vector6 strain_vector(const Matrix3& e) {
   return Vector6{{e(0, 0), e(1, 1), e(2, 2), 2.0 * e(0, 1), 2.0 * e(0, 2), 2.0 * e(1, 2)}};
 }
 
-/// The 6 x 6 matrix T that turns a stress: stress_vector(R s R^T) = T stress_vector(s). Strains turn by its inverse
-/// transpose, an elasticity matrix by T D T^T. `r` is a rotation.
+/// The 6 x 6 matrix T that rotates a stress: stress_vector(R s R^T) = T stress_vector(s). Strains are rotated by its
+/// inverse transpose, an elasticity matrix by T D T^T. `r` is a rotation.
 inline Matrix6 stress_rotation(const Matrix3& r) {
   Matrix6 t;
   for (int k = 0; k < 6; ++k) {

@@ -1,4 +1,4 @@
-// Doubles as text and back, with a decimal point whatever the locale of the process.
+// Conversion of doubles to text and back, with a decimal point in every locale.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -9,11 +9,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
-/// Sets `value` to the double that the whole of `token` spells. invalid_argument when it is no number (hexadecimal and
-/// decimal commas are none), result_out_of_range when no double is near it. "nan" and "inf" may be accepted.
+/// Sets `value` to the double that the whole of `token` represents. Returns invalid_argument if it is not a number
+/// (hexadecimal numbers and decimal commas are not accepted), result_out_of_range if it is outside the range of a
+/// double. "nan" and "inf" may be accepted.
 std::errc parse_decimal(std::string_view token, double& value);
 
-/// A text that reads back as exactly `value`; the shortest one where the standard library can.
+/// A text that reads back as exactly `value`; the shortest one if the standard library supports it.
 std::string to_decimal(double value);
 
 }}}  // namespace palpate::PALPATE_ABI::io

@@ -1,4 +1,4 @@
-// Definitions of file.hpp. <filesystem> and <fstream> would double what a reader costs the compiler.
+// Definitions of file.hpp. <filesystem> and <fstream> would double the compile time of a reader.
 #pragma once
 
 #include <palpate/io/detail/message.hpp>
@@ -12,7 +12,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 namespace detail {
 
-/// The kind bits of a file, 0 when there is none of that name.
+/// The file-type bits of a file, 0 if there is no file of that name.
 inline unsigned file_kind(const std::string& path) {
   struct stat found {};
   return ::stat(path.c_str(), &found) == 0 ? static_cast<unsigned>(found.st_mode) & static_cast<unsigned>(S_IFMT) : 0U;

@@ -1,4 +1,4 @@
-// What a mesh file says, before anybody asks which element type is wanted.
+// The content of a mesh file, independent of the element type requested.
 #pragma once
 
 #include <palpate/io/detail/cell_shape.hpp>
@@ -22,15 +22,15 @@ struct TagName {
 /// A cell of the file. Its nodes are `facts(shape).nodes` entries of FileMesh::cell_nodes from `first_node` on.
 struct FileCell {
   Index tag;    ///< its id in the file
-  Index place;  ///< where it stands, for place_text
+  Index place;  ///< its place in the file, for place_text
   std::size_t first_node;
   std::uint32_t tag_set;  ///< entry of FileMesh::tag_sets
   CellShape shape;
   std::uint8_t file;  ///< entry of FileMesh::files
 };
 
-/// A parsed file, whatever its format. Nodes count from zero, those of a cell come in VTK's order. A tag puts a cell
-/// into the group of its dimension and tag; the lowest tag of a solid cell is its region.
+/// A parsed file of any format. Nodes count from zero; those of a cell are in VTK's order. A tag puts a cell into the
+/// group of its dimension and tag; the lowest tag of a solid cell is its region.
 struct FileMesh {
   explicit FileMesh(std::string name);
 
@@ -38,13 +38,13 @@ struct FileMesh {
   std::vector<Vector3> positions;
   std::vector<Index> node_tags;  ///< ids in the file
   std::vector<TagName> names;
-  std::vector<std::vector<int>> tag_sets{{}};  ///< entry 0 is "none"
+  std::vector<std::vector<int>> tag_sets{{}};  ///< entry 0 is the empty set
   std::vector<FileCell> cells;
   std::vector<NodeId> cell_nodes;
-  bool repeats_cells = false;                   ///< a cell stands once for every group it is in, one below the other
-  int last_region = static_cast<int>(max_int);  ///< tags above it make groups but no regions
+  bool repeats_cells = false;                   ///< a cell is listed once per group it is in, in consecutive lines
+  int last_region = static_cast<int>(max_int);  ///< tags above it define groups but no regions
 
-  /// Adds a cell whose nodes were read in the order of the file into the end of cell_nodes.
+  /// Adds a cell whose nodes are at the end of cell_nodes, in the order of the file.
   void add_cell(Index tag, Index place, CellShape shape, std::uint32_t tag_set, NodeOrder order, std::uint8_t file = 0);
 };
 
@@ -54,7 +54,7 @@ struct MeshNumbering {
   std::vector<Index> element_tags;
 };
 
-/// How many groups a mesh file may have; more of them are taken for numbers that mean something else.
+/// Largest number of groups in a mesh file; with more, the tags are assumed to have another meaning.
 inline constexpr std::size_t max_groups = 10000;
 
 /// The command that fills a closed surface with tetrahedra.

@@ -1,4 +1,4 @@
-// Gmsh meshes: read_mesh reads them like all others.
+// Gmsh meshes: read_mesh reads them like all other formats.
 #pragma once
 
 #include <palpate/io/read_mesh.hpp>

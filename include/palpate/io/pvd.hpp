@@ -1,4 +1,4 @@
-// A list of files at points in time, for ParaView.
+// A time series of files for ParaView.
 #pragma once
 
 #include <palpate/io/vtu.hpp>
@@ -12,17 +12,17 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 /// every call.
 class PvdSeries {
  public:
-  /// Begins the series, replacing a file of that name. Throws bad_file when it cannot be written.
+  /// Begins the series, replacing a file of that name. Throws bad_file if it cannot be written.
   explicit PvdSeries(const std::string& path);
 
-  /// Adds a file at a time [s]. `file` is written relative to the folder of the series, so the two can be moved
-  /// together. Throws non_finite for the time and bad_file when writing fails. Constant cost.
+  /// Adds a file at a time [s]. `file` is written relative to the folder of the series, so that the two can be moved
+  /// together. Throws non_finite for a time that is not finite, and bad_file if writing fails. O(1).
   void add(double time, const std::string& file);
 
   Index size() const noexcept { return size_; }  ///< number of files added
 
  private:
-  /// Writes `text` over the closing tags, then these again.
+  /// Overwrites the closing tags with `text`, then writes them again.
   void put(const std::string& text);
 
   struct Close {

@@ -37,13 +37,13 @@ PALPATE_COLD inline MeshFormat format_of_ending(const std::string& name) {
   return MeshFormat::unknown;
 }
 
-/// Refuses a file that holds a surface, with the command that meshes it.
+/// Refuses a file that contains a surface, with the command that meshes it.
 [[noreturn]] PALPATE_COLD inline void refuse_surface(const std::string& name) {
   std::string hint = joined({"Fill it: tetgen -pq ", name, ", then read the .ele file it writes"});
   if (has_ending(name, ".stl") || has_ending(name, ".ply")) hint = fill_command(name);
   if (has_ending(name, ".obj") || has_ending(name, ".gltf"))
     hint = joined({"First: meshio convert ", name, " surface.stl. ", fill_command("surface.stl")});
-  if (has_ending(name, ".edge")) hint = "Read the .ele file beside it";
+  if (has_ending(name, ".edge")) hint = "Read the .ele file of the same mesh";
   refuse(SetupErrorKind::unsupported, {name, ":1: expected solid elements, found a surface"}, hint);
 }
 
@@ -55,11 +55,11 @@ PALPATE_COLD inline MeshFormat format_of_ending(const std::string& name) {
             {"meshio and gmsh convert others: meshio convert ", name, " converted.msh"});
 }
 
-/// Stands for the files that a text on its own cannot include.
+/// Include function for a text that is not a file: refuses every included file.
 struct RefuseInclude {
   std::string name;
   [[noreturn]] std::string operator()(const std::string& other) const {
-    refuse(SetupErrorKind::unsupported, {name, ": *INCLUDE ", other, " in a text that is no file"});
+    refuse(SetupErrorKind::unsupported, {name, ": *INCLUDE ", other, " is not possible in a text without a file"});
   }
 };
 

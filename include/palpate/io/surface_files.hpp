@@ -6,25 +6,25 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
-/// The boundary of a mesh as triangles, outward by the right-hand rule: faces with more than three nodes are cut up,
-/// mid-edge nodes included.
+/// The boundary of a mesh as triangles, outward by the right-hand rule: faces with more than three nodes are split into
+/// triangles, mid-edge nodes included.
 struct TriangleSurface {
   std::vector<Vector3> positions;
   std::vector<std::array<NodeId, 3>> triangles;
 };
 
-/// Refuses a displacement of `size` numbers that is neither empty nor one of `nodes` nodes.
+/// Refuses a displacement of `size` numbers that is neither empty nor has 3 numbers for each of `nodes` nodes.
 void check_displacement(Index size, Index nodes);
 
 /// Adds the triangles of a face to the end of `triangles`: `face` lists its nodes.
 void add_triangles(const FaceLayout& layout, const NodeId* face, std::vector<std::array<NodeId, 3>>& triangles);
 
-/// Renumbers the nodes of triangles 0, 1, ... and returns what they were, rising.
+/// Renumbers the nodes of triangles 0, 1, ... and returns their original ids, ascending.
 std::vector<NodeId> compress_nodes(std::vector<std::array<NodeId, 3>>& triangles);
 
 /// The surface of a mesh, moved by `displacement` (3 numbers per node of the mesh, or empty) [m]. Only nodes of the
-/// surface come along, in the order of the mesh. Throws bad_argument for a displacement of another length and what
-/// extract_boundary throws.
+/// surface are included, in the order of the mesh. Throws bad_argument for a displacement of wrong length, and the
+/// errors of extract_boundary.
 template <Element E, MeshOf<E> M>
 TriangleSurface triangle_surface(const M& mesh, const VectorX& displacement = {}) {
   constexpr const ElementLayout& element = element_layout<E>;
@@ -50,13 +50,13 @@ void write_obj(const std::string& path, const TriangleSurface& surface);
 /// Writes a surface as a binary STL file: little-endian floats, so coordinates [m] keep seven digits. Throws bad_file.
 void write_stl(const std::string& path, const TriangleSurface& surface);
 
-/// Writes the surface of a mesh as a Wavefront OBJ file. Throws bad_file and what triangle_surface throws.
+/// Writes the surface of a mesh as a Wavefront OBJ file. Throws bad_file and the errors of triangle_surface.
 template <Element E>
 void write_obj(const std::string& path, const Mesh<E>& mesh, const VectorX& displacement = {}) {
   write_obj(path, triangle_surface<E>(mesh, displacement));
 }
 
-/// Writes the surface of a mesh as a binary STL file. Throws bad_file and what triangle_surface throws.
+/// Writes the surface of a mesh as a binary STL file. Throws bad_file and the errors of triangle_surface.
 template <Element E>
 void write_stl(const std::string& path, const Mesh<E>& mesh, const VectorX& displacement = {}) {
   write_stl(path, triangle_surface<E>(mesh, displacement));

@@ -69,7 +69,7 @@ inline std::array<double, 3> unit_normal(const double* a, const double* b, const
 }  // namespace detail
 
 PALPATE_INLINE void write_stl(const std::string& path, const TriangleSurface& surface) {
-  std::string text(80, '\0');  // a head that must not begin with "solid"
+  std::string text(80, '\0');  // a header that must not begin with "solid"
   detail::put_bytes(text, static_cast<std::uint32_t>(surface.triangles.size()), 4);
   for (const auto& t : surface.triangles) {
     const auto corner = [&](std::size_t a) { return surface.positions[static_cast<std::size_t>(t[a])].data(); };

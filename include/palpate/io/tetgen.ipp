@@ -14,7 +14,7 @@ namespace detail {
 
 inline constexpr TextSyntax syntax{'#', false};
 
-/// A file of the mesh under way.
+/// State while the files of a mesh are read.
 struct State {
   explicit State(const std::string& name) : mesh(joined({name, ".node"})) {
     mesh.files.push_back(joined({name, ".ele"}));
@@ -26,7 +26,7 @@ struct State {
   TagSets sets;
 };
 
-/// Refuses lines behind the last one announced, and a last one that is cut.
+/// Refuses lines after the announced number of lines, and a truncated last line.
 PALPATE_COLD inline void need_end(TextReader& in, std::string_view what, Index count) {
   if (in.next_line())
     in.refuse(SetupErrorKind::bad_file, {"the end of the file after ", count, " ", what}, in_quotes(in.line()));
@@ -49,7 +49,7 @@ inline void read_nodes(TextReader& in, State& state) {
   state.base = std::max<Index>(numbers.base(), 0);
 }
 
-/// Reads the attributes of a tetrahedron: the first is its region, a whole number.
+/// Reads the attributes of a tetrahedron: the first is its region, an integer.
 inline int read_region(TextReader& in, Index attributes) {
   int region = 0;
   for (Index i = 0; i < attributes; ++i) {

@@ -7,15 +7,15 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::veg {
 
-/// Fetches the text of an included file; throws SetupError when it cannot.
+/// Returns the text of an included file; throws SetupError if it cannot be read.
 using Include = std::function<std::string(const std::string& name)>;
 
-/// Reads a file; `include` fetches those it names. Every set is a group with its elements; the set of every *REGION is
-/// a region; elements in none form the region "body". Errors: bad_file, index_out_of_range, non_finite, unsupported,
-/// with file and line. Linear in the size of the texts but for the number of regions.
+/// Reads a file; `include` provides the files it includes. Every set is a group with its elements; the set of every
+/// *REGION is a region; elements without a region form the region "body". Errors: bad_file, index_out_of_range,
+/// non_finite, unsupported, with file and line. Linear in the size of the texts, apart from the number of regions.
 FileMesh parse(std::string_view text, const std::string& name, Include include);
 
-/// Reads a file and those it includes, which lie in its folder.
+/// Reads a file and those it includes, which must be in its folder.
 FileMesh read(const std::string& path);
 
 }}}  // namespace palpate::PALPATE_ABI::io::veg

@@ -24,7 +24,8 @@ class Parser {
 
   void need_keyword(std::string_view keyword);
 
-  /// Counts are not compared with the size of this file: the lines may come from another one. Nothing is reserved.
+  /// Counts are not compared with the size of this file, because lines may be in an included file. No memory is
+  /// reserved.
   static constexpr std::size_t any_size = std::size_t{1} << 40;
 
   void read_vertices();
@@ -35,7 +36,8 @@ class Parser {
 
   std::string read_name(std::string_view what);
 
-  /// The constants are read to see that they are numbers, and left to the code that makes the model.
+  /// The constants are checked to be numbers and otherwise ignored; materials are set by the code that constructs the
+  /// model.
   void read_material();
 
   /// The ids of the elements, on any number of lines up to the next keyword.
@@ -44,11 +46,11 @@ class Parser {
   /// `set, material`. A later region overrides an earlier one.
   void read_region();
 
-  /// Gives every element the tag of the last region whose set holds it. Each set is walked once, however many regions
-  /// name it.
+  /// Gives every element the tag of the last region whose set contains it. Each set is processed once, even if several
+  /// regions use it.
   void put_regions(std::vector<std::vector<int>>& tags) const;
 
-  /// Region r gets tag r + 1, set s a tag above those; both have the name of the set.
+  /// Region r gets tag r + 1, set s a larger tag; both have the name of the set.
   void add_tags();
 
   using NameMap = std::map<std::string, std::size_t>;
@@ -64,7 +66,7 @@ class Parser {
   Index base_ = 0;  ///< the id of the first vertex
   RowNumbers elements_;
   NameMap materials_, set_of_name_;
-  std::vector<Set> sets_;             ///< in the order of the file; the first is that of all elements
+  std::vector<Set> sets_;             ///< in the order of the file; the first contains all elements
   std::vector<std::size_t> regions_;  ///< the set of every region
 };
 
@@ -156,7 +158,7 @@ inline void Parser::read_set() {
   std::vector<Index>& set = add_set(name).elements;
   const Index base = std::max<Index>(elements_.base(), 0), count = elements_.count();
   while (lines_.next_line()) {
-    if (in().line().front() == '*') return lines_.hold();
+    if (in().line().front() == '*') return lines_.stay();
     while (!in().rest().empty()) set.push_back(in().integer("an element id", base, base + count - 1) - base);
   }
 }

@@ -48,7 +48,8 @@ class LegacyParser {
   FileMesh mesh_;
   double version_ = 0.0;
   bool has_points_ = false, has_cells_ = false, has_types_ = false;
-  std::vector<Index> offsets_, places_;  ///< per cell: its nodes in FileMesh::cell_nodes, and where it stands
+  std::vector<Index> offsets_,
+      places_;  ///< per cell: start of its nodes in FileMesh::cell_nodes, and its place in the file
   std::vector<const CellType*> types_;
 };
 

@@ -8,8 +8,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
-/// A field to write: `values` holds the components of node or element 0, then of 1, and so on. How many components
-/// there are follows from the length: 1 is a scalar, 3 a vector such as a displacement.
+/// A field to write: `values` contains the components of node or element 0, then of 1, and so on. The number of
+/// components follows from the length: 1 is a scalar, 3 a vector such as a displacement.
 struct VtuField {
   std::string name;
   VectorX values;
@@ -23,15 +23,15 @@ struct VtuFields {
 
 namespace vtk {
 
-/// `text` with the characters that XML keeps for itself spelled out.
+/// `text` with the reserved characters of XML escaped.
 std::string escape(std::string_view text);
 
 }  // namespace vtk
 
-/// Writes a mesh and fields on it as a VTU file (raw appended data, 64-bit lengths). Positions are those at rest [m];
-/// ParaView's "Warp By Vector" adds a displacement. The region numbers come along as the element field "region". NaN
-/// and infinity are written as they are. Throws bad_file when the file cannot be written and bad_argument when a field
-/// has the wrong length; then no file is begun. Needs memory for one copy of the file.
+/// Writes a mesh and fields on it as a VTU file (raw appended data, 64-bit lengths). Positions are the rest positions
+/// [m]; ParaView's "Warp By Vector" adds a displacement. The region numbers are written as the element field "region".
+/// NaN and infinity are written unchanged. Throws bad_file if the file cannot be written, and bad_argument if a field
+/// has the wrong length; then no file is created. Needs memory for one copy of the file.
 void write_vtu(const std::string& path, const MeshRef& mesh, const VtuFields& fields = {});
 
 /// The same for any mesh; its arrays are copied first.
@@ -42,7 +42,7 @@ void write_vtu(const std::string& path, const M& mesh, const VtuFields& fields =
   write_vtu(path, mesh_ref<E>(copy), fields);
 }
 
-/// The same for a Mesh, which knows its element; nothing is copied.
+/// The same for a Mesh, whose type gives the element; its arrays are not copied.
 template <Element E>
 void write_vtu(const std::string& path, const Mesh<E>& mesh, const VtuFields& fields = {}) {
   static_assert(facts(solid_shape<E>()).nodes == E::nodes);

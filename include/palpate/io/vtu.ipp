@@ -31,12 +31,12 @@ PALPATE_INLINE std::string escape(std::string_view text) {
 
 namespace detail {
 
-/// A VTU file in the making: an XML head and raw blocks, to which the head refers by offset.
+/// A VTU file under construction: an XML header and raw blocks, to which the header refers by offset.
 struct VtuText {
   /// Adds a <DataArray> and its block: the length in bytes as UInt64, then the numbers as they are in memory.
   void array(std::string_view type, std::string_view name, Index components, const void* values, std::size_t bytes);
 
-  /// Adds the fields of `count` nodes or elements; refuses a length that is no multiple of it.
+  /// Adds the fields of `count` nodes or elements; refuses a length that is not a multiple of it.
   void fields(const std::vector<VtuField>& all, Index count);
 
   void cells(const MeshRef& mesh);

@@ -11,7 +11,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 namespace detail {
 
-/// Puts the parts of an MSH 2.2 file together.
+/// Composes an MSH 2.2 file.
 class MshText {
  public:
   explicit MshText(const MeshRef& mesh) : mesh_(mesh), solid_(solid_shape(mesh.element)) {}
@@ -45,7 +45,7 @@ inline std::string MshText::text() {
                  "$EndElements\n"});
 }
 
-/// A first region "body" needs no name: it is what readers call elements without a tag, and tag 0 comes first.
+/// A first region "body" needs no name: readers give this name to elements without a tag, and tag 0 is the lowest.
 inline bool MshText::is_nameless(int r) const {
   if (r != 0 || mesh_.region_names[0] != "body") return false;
   for (const Group& group : mesh_.groups)
@@ -88,7 +88,7 @@ inline void MshText::add_row(CellShape shape, int tag, const NodeId* nodes) {
   elements_ += '\n';
 }
 
-/// Faces of the groups, and as points those of their nodes that no face or element of the group has.
+/// Writes the faces of the groups, and as points those of their nodes that are in no face or element of the group.
 inline void MshText::add_points_and_faces() {
   std::vector<std::size_t> seen(static_cast<std::size_t>(mesh_.node_count), 0);
   for (std::size_t g = 0; g < mesh_.groups.size(); ++g) {
@@ -104,7 +104,7 @@ inline void MshText::add_points_and_faces() {
   }
 }
 
-/// Every element with its region, then once more for every further group it is in.
+/// Writes every element with its region, then once more for every further group it is in.
 inline void MshText::add_solids() {
   std::vector<std::vector<int>> extra(static_cast<std::size_t>(mesh_.element_count));
   for (std::size_t g = 0; g < mesh_.groups.size(); ++g)
@@ -120,7 +120,7 @@ inline void MshText::add_solids() {
   }
 }
 
-/// order[k] is the element's node at the place of Gmsh's node k.
+/// order[k] is the element's node at the position of Gmsh's node k.
 inline std::vector<int> MshText::gmsh_order() const {
   const std::vector<int> from_vtk = vtk_order(mesh_.element);
   const NodeOrder order = gmsh::type_of(solid_).order;

@@ -1,4 +1,4 @@
-// The door of the library: a mesh is refused, repaired or let in, and what was found is reported.
+// Entry check of the library: a mesh is refused, repaired or accepted, and all defects found are reported.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -19,7 +19,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A mesh that passed. Maps lead from the mesh as given to this one; -1 means dropped, welded nodes share an id.
+/// A mesh that passed admission. The maps give, for every id of the mesh as given, the id in this mesh; -1 means
+/// dropped, welded nodes share an id.
 template <Element E>
 struct Admitted {
   Mesh<E> mesh;
@@ -44,22 +45,23 @@ struct Candidate {
   ShapeOfElement shape_of;
   std::vector<NodeId>& node_map;
   std::vector<Index>& element_map;
-  MeshDiagnosis& admitted;  ///< of the mesh as given; then of what was made of it
+  MeshDiagnosis& admitted;  ///< of the mesh as given; later of the repaired mesh
 };
 
-/// Refuses what the policy does not accept of `d`.
+/// Refuses the defects in `d` that the policy does not accept.
 void enforce(const MeshDiagnosis& d, const AdmissionPolicy& policy);
 
-/// Checks the groups, makes all repairs the policy allows and refuses what is left.
+/// Checks the groups, makes all repairs that the policy allows and refuses the remaining defects.
 void repair_and_enforce(Candidate& candidate, const AdmissionPolicy& policy);
 
 }  // namespace detail
 
-/// An owning, sound copy of any mesh, or SetupError (kind, first ids of the mesh as given, count, worst value, bound,
-/// hint). Nothing is repaired, accepted or dropped without being in `diagnosis`. Of a view only the groups in
-/// `group_names` can be copied, as views do not list theirs; names it does not have are skipped. An owning mesh keeps
-/// all its groups when none is named. Groups follow the repairs; their faces lose those that fell together or lost a
-/// node. O(n log n); the mesh is diagnosed again if it was repaired.
+/// An owning, valid copy of any mesh. Throws SetupError (kind, first ids of the mesh as given, count, worst value,
+/// bound, hint) for a mesh that the policy refuses. Every repaired, accepted or dropped item is listed in `diagnosis`.
+/// From a view only the groups in `group_names` can be copied, because views do not list their groups; unknown names
+/// are skipped. From an owning mesh all groups are copied if no name is given. Groups are updated with the repairs;
+/// group faces that became equal or lost a node are dropped. O(n log n), allocates; the mesh is diagnosed again if it
+/// was repaired.
 template <Element E, MeshOf<E> M>
 Admitted<E> admit(const M& view, const AdmissionPolicy& policy = {}, const std::vector<std::string>& group_names = {}) {
   detail::require_usable(policy);

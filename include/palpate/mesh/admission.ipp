@@ -11,12 +11,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// The inverse map; empty when nothing was renumbered.
+/// The inverse map; empty if nothing was renumbered.
 template <class Id>
 std::vector<std::int64_t> inverse_of(const std::vector<Id>& map) {
   std::vector<std::int64_t> origin;
   bool renumbered = false;
-  for (std::size_t i = map.size(); i-- > 0;) {  // backwards: the lowest of several welded nodes wins
+  for (std::size_t i = map.size(); i-- > 0;) {  // backwards, so that the lowest of several welded nodes is kept
     renumbered = renumbered || static_cast<std::int64_t>(map[i]) != static_cast<std::int64_t>(i);
     if (map[i] < 0) continue;
     const auto to = static_cast<std::size_t>(map[i]);
@@ -34,11 +34,11 @@ PALPATE_INLINE void enforce(const MeshDiagnosis& d, const AdmissionPolicy& polic
     raise(make_problem(rule, finding));
   }
   if (d.empty())
-    raise(SetupErrorKind::empty_mesh, std::to_string(d.node_count) + " nodes and " + std::to_string(d.element_count) +
-                                          " elements are left to compute with");
+    raise(SetupErrorKind::empty_mesh,
+          std::to_string(d.node_count) + " nodes and " + std::to_string(d.element_count) + " elements are left");
 }
 
-/// Ids of the groups that were copied.
+/// Checks the ids in the groups that were copied.
 inline void require_valid_groups(const MeshRef& mesh) {
   const auto outside = [](Index id, Index count) { return id < 0 || id >= count; };
   for (const Group& g : mesh.groups) {
@@ -79,7 +79,7 @@ inline int orientation_of(const Candidate& work, Index e, const MeshThresholds& 
   return orientation(work.shape_of(flat(work.mesh.positions), work.mesh.nodes_of(e)), thresholds);
 }
 
-/// Drops flat and repeated elements, as the policy says. Returns whether there were any.
+/// Drops flat and repeated elements if the policy requires it. Returns whether there were any.
 inline bool drop_elements(Candidate& work, const AdmissionPolicy& policy) {
   if (policy.duplicate_elements != Admission::repair && policy.degenerate != Admission::repair) return false;
   const std::vector<Index> first = first_equal_elements(work.mesh.ref());
@@ -96,7 +96,7 @@ inline bool drop_elements(Candidate& work, const AdmissionPolicy& policy) {
   return true;
 }
 
-/// Turns inverted elements round. Returns whether there were any.
+/// Reverses the orientation of inverted elements. Returns whether there were any.
 inline bool reverse_inverted(Candidate& work, const MeshThresholds& thresholds) {
   std::vector<Index> inverted;
   for (Index e = 0; e < work.mesh.element_count; ++e)
@@ -105,7 +105,7 @@ inline bool reverse_inverted(Candidate& work, const MeshThresholds& thresholds) 
   return !inverted.empty();
 }
 
-/// Drops nodes that no element uses (any more). Returns whether there were any.
+/// Drops nodes that no element uses, also those left over by other repairs. Returns whether there were any.
 inline bool drop_orphans(Candidate& work) {
   const std::vector<char> used = used_nodes(work.mesh.ref());
   std::vector<NodeId> map(used.size(), -1);
@@ -117,8 +117,8 @@ inline bool drop_orphans(Candidate& work) {
   return true;
 }
 
-/// All repairs the policy allows, in the order in which one may make work for the next. Returns whether anything was
-/// changed.
+/// Makes all repairs that the policy allows, ordered so that each also handles the results of the previous ones.
+/// Returns whether anything was changed.
 inline bool repair(Candidate& work, const AdmissionPolicy& policy) {
   bool changed = false;
   if (policy.duplicate_nodes == Admission::repair) changed = weld(work, policy.thresholds) || changed;

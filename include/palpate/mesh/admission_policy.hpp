@@ -1,4 +1,4 @@
-// What happens to a defective mesh: the decisions a caller can take, and how a refusal is worded.
+// What to do with a defective mesh: the decisions of the caller, and the messages of refusals.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -9,7 +9,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What to do about a defect: refuse the mesh, mend it, or take it as it is. All three report it in the diagnosis.
+/// What to do about a defect: refuse the mesh, repair it, or accept it as it is. All three report it in the diagnosis.
 enum class Admission { refuse, repair, accept };
 
 /// One decision per defect. Unusable indices, positions that are not finite, empty meshes and slivers below
@@ -20,7 +20,7 @@ struct AdmissionPolicy {
   Admission poor_quality = Admission::accept;
   Admission duplicate_nodes = Admission::refuse;     ///< repair: welded into the lowest of them
   Admission duplicate_elements = Admission::refuse;  ///< repair: all but the first dropped
-  Admission orphans = Admission::repair;  ///< repair: node dropped. Accepted, it gives the stiffness a zero row
+  Admission orphans = Admission::repair;  ///< repair: node dropped. If accepted, it gives a zero row in the stiffness
   Admission disconnected = Admission::accept;
   Admission units = Admission::accept;
   MeshThresholds thresholds;
@@ -28,7 +28,7 @@ struct AdmissionPolicy {
 
 namespace detail {
 
-/// A row of the table below: which finding, which decision, how to say it.
+/// A row of the table below: finding, decision and message.
 struct AdmissionRule {
   SetupErrorKind kind;
   Finding MeshDiagnosis::*finding;
@@ -43,19 +43,19 @@ inline constexpr std::array<AdmissionRule, 11> admission_rules{{
     {SetupErrorKind::index_out_of_range, &MeshDiagnosis::index_out_of_range, nullptr, false, false,
      "elements name a node or region that does not exist", "Ids count from zero; a file may count from one"},
     {SetupErrorKind::non_finite, &MeshDiagnosis::non_finite, nullptr, true, false,
-     "positions are not finite or beyond 1e100", "Look at what wrote these positions"},
+     "positions are not finite or beyond 1e100", "Check the program that wrote these positions"},
     {SetupErrorKind::duplicate_node, &MeshDiagnosis::duplicate_nodes, &AdmissionPolicy::duplicate_nodes, true, true,
-     "nodes lie on another one (distance / local edge)", "Weld them: duplicate_nodes = Admission::repair"},
+     "nodes coincide with another one (distance / local edge)", "Weld them: duplicate_nodes = Admission::repair"},
     {SetupErrorKind::duplicate_element, &MeshDiagnosis::duplicate_elements, &AdmissionPolicy::duplicate_elements, false,
      true, "elements repeat another one", "Drop them: duplicate_elements = Admission::repair"},
     {SetupErrorKind::degenerate_element, &MeshDiagnosis::degenerate, &AdmissionPolicy::degenerate, false, true,
      "elements are flat (volume / longest edge^3)", "Drop them: degenerate = Admission::repair"},
     {SetupErrorKind::inverted_element, &MeshDiagnosis::inverted, &AdmissionPolicy::inverted, false, true,
-     "elements are inverted (volume / longest edge^3)", "Turn them round: inverted = Admission::repair"},
+     "elements are inverted (volume / longest edge^3)", "Reverse them: inverted = Admission::repair"},
     {SetupErrorKind::poor_quality, &MeshDiagnosis::slivers, nullptr, false, false, "elements are slivers (mean ratio)",
-     "Mesh anew, or lower thresholds.quality_floor and expect inaccurate forces"},
+     "Remesh, or lower thresholds.quality_floor and expect inaccurate forces"},
     {SetupErrorKind::poor_quality, &MeshDiagnosis::poor_quality, &AdmissionPolicy::poor_quality, false, false,
-     "elements are of poor quality (mean ratio)", "Mesh anew, or poor_quality = Admission::accept"},
+     "elements are of poor quality (mean ratio)", "Remesh, or poor_quality = Admission::accept"},
     {SetupErrorKind::orphan_node, &MeshDiagnosis::orphans, &AdmissionPolicy::orphans, true, true,
      "nodes belong to no element", "Drop them: orphans = Admission::repair"},
     {SetupErrorKind::disconnected, &MeshDiagnosis::disconnected, &AdmissionPolicy::disconnected, true, false,
@@ -64,11 +64,11 @@ inline constexpr std::array<AdmissionRule, 11> admission_rules{{
      "mesh is larger than two metres across (diagonal [m])", "Positions are metres; scale millimetres by 0.001"},
 }};
 
-/// A finding as a refusal.
+/// Converts a finding to a refusal.
 PALPATE_COLD SetupProblem make_problem(const AdmissionRule& rule, const Finding& finding);
 
-/// Refuses a policy that asks for a repair nobody can make, or whose bounds are no numbers: NaN would let everything
-/// pass.
+/// Refuses a policy that requests a repair that does not exist, or with a NaN or negative bound: with NaN every check
+/// would pass.
 void require_usable(const AdmissionPolicy& policy);
 
 }  // namespace detail

@@ -13,14 +13,14 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Refuses an owning mesh whose region array does not fit its elements.
+/// Refuses an owning mesh whose region array does not match the number of elements.
 void require_region_array(std::size_t regions, std::size_t elements);
 
 /// A diagnosis with these counts. Throws count_too_large.
 MeshDiagnosis begin_diagnosis(Index node_count, Index element_count);
 
-/// Node ids and regions of a view that hides its arrays, as wide as it gives them; an element is listed once, with its
-/// first bad number.
+/// Checks node ids and regions of a view without public arrays, in the view's integer types; an element is listed once,
+/// with its first bad number.
 template <Element E, MeshOf<E> M>
 void check_indices(const M& mesh, MeshDiagnosis& d) {
   const auto regions = static_cast<Index>(mesh.region_count());
@@ -39,7 +39,7 @@ void check_indices(const M& mesh, MeshDiagnosis& d) {
 /// The same for the arrays of a mesh.
 void check_indices(const MeshRef& mesh, MeshDiagnosis& d);
 
-/// All that comes after the indices.
+/// All checks after those of the indices.
 void diagnose_rest(const MeshRef& mesh, ShapeOfElement shape_of, const MeshThresholds& thresholds, MeshDiagnosis& d);
 
 /// -1 inverted, 0 flat, 1 sound.
@@ -47,13 +47,13 @@ int orientation(const ElementShape& shape, const MeshThresholds& thresholds) noe
 
 }  // namespace detail
 
-/// Measures a mesh without changing it. Indices and positions are checked first; if one is unusable the rest is left
-/// out (`MeshDiagnosis::complete`). Throws bad_argument for an owning mesh whose `regions` has the wrong length,
-/// count_too_large beyond 2^31 - 1 nodes. O(n log n) in nodes and elements, allocates; a million tetrahedra take about
-/// half a second.
+/// Measures a mesh without changing it. Indices and positions are checked first; if one is unusable, the other checks
+/// are skipped (`MeshDiagnosis::complete`). Throws bad_argument for an owning mesh whose `regions` has the wrong
+/// length, count_too_large beyond 2^31 - 1 nodes. O(n log n) in nodes and elements, allocates; a million tetrahedra
+/// take about half a second.
 template <Element E, MeshOf<E> M>
 MeshDiagnosis diagnose(const M& mesh, const MeshThresholds& thresholds = {}) {
-  if constexpr (requires { mesh.regions.size() + mesh.elements.size(); })  // views hide their arrays and are trusted
+  if constexpr (requires { mesh.regions.size() + mesh.elements.size(); })  // views have no public arrays to check
     detail::require_region_array(mesh.regions.size(), mesh.elements.size());
   MeshDiagnosis d = detail::begin_diagnosis(static_cast<Index>(mesh.node_count()),  //
                                             static_cast<Index>(mesh.element_count()));

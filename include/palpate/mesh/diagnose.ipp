@@ -20,7 +20,7 @@ PALPATE_INLINE int orientation(const ElementShape& shape, const MeshThresholds& 
   return shape.relative_volume < 0.0 ? -1 : 1;
 }
 
-/// Puts one element in its categories. Inverted and flat elements are no slivers besides.
+/// Adds one element to its categories. Inverted and flat elements are not also counted as slivers.
 inline void classify(Index e, const ElementShape& shape, const MeshThresholds& thresholds, MeshDiagnosis& d) {
   d.volume += shape.volume;
   d.min_quality = std::min(d.min_quality, shape.quality);

@@ -1,4 +1,4 @@
-// What is wrong with a mesh: everything found at once, nothing changed, nothing thrown.
+// All defects of a mesh in one result; the mesh is not changed and nothing is thrown.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -11,13 +11,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Bounds of the mesh checks. All are ratios, so that micrometres and kilometres are judged alike, except the one that
-/// guesses units.
+/// Bounds of the mesh checks. All are ratios, independent of the size of the mesh, except the one that detects wrong
+/// units.
 struct MeshThresholds {
   double degenerate = 1e-12;  ///< relative volume (mesh/quality.hpp) up to which an element is flat; rounding is added
   double poor_quality = 0.1;  ///< mean ratio below which an element is reported: aspect ratio of about ten
   double quality_floor = 1e-5;  ///< mean ratio below which an element is a sliver: height about 1e-8 of its edges
-  double coincidence = 1e-6;    ///< distance / local edge up to which two nodes are one
+  double coincidence = 1e-6;    ///< distance / local edge up to which two nodes coincide
   double millimetres = 2.0;     ///< [m] diagonal of the bounding box above which the mesh is likely in millimetres
 };
 
@@ -27,7 +27,7 @@ struct Finding {
   std::vector<std::int64_t> ids;  ///< at most SetupProblem::max_ids
   std::vector<double> values;     ///< of `ids`
   double worst = 0.0;             ///< least value of all, listed or not
-  double threshold = 0.0;         ///< the bound the worst one broke
+  double threshold = 0.0;         ///< the bound that the worst one violated
 
   explicit operator bool() const noexcept { return count > 0; }
 
@@ -38,7 +38,7 @@ struct Finding {
 struct MeshDiagnosis {
   Index node_count = 0;
   Index element_count = 0;
-  /// False when an index or a position is unusable or the mesh is empty: only the two findings below are filled then.
+  /// False if an index or a position is unusable or the mesh is empty: then only the two findings below are filled.
   bool complete = false;
   Finding index_out_of_range;  ///< elements; value: the node id or region
   Finding non_finite;          ///< nodes; NaN, infinite, or beyond 1e100, where squares overflow
@@ -47,8 +47,8 @@ struct MeshDiagnosis {
   Finding degenerate;          ///< elements; value: relative volume
   Finding poor_quality;        ///< elements, slivers included; value: quality
   Finding slivers;             ///< elements below the quality floor; value: quality
-  Finding duplicate_nodes;     ///< nodes, the lowest of each place not counted; value: distance / local edge
-  Finding duplicate_elements;  ///< elements, the first of each set not counted; value: the first one
+  Finding duplicate_nodes;     ///< nodes, without the lowest one at each position; value: distance / local edge
+  Finding duplicate_elements;  ///< elements, without the first one of each set; value: the first one
   Finding orphans;             ///< nodes that no element uses
   Finding disconnected;        ///< first node of every component, if there are several; value: its number of nodes
   Finding units;               ///< count 1 if the mesh looks like millimetres; worst: diagonal of the bounding box [m]

@@ -22,10 +22,10 @@ enum class BoxSplit { five_mirrored, six };
 
 namespace detail {
 
-/// Appends a tetrahedron, with its last two nodes swapped if it would be inverted.
+/// Appends a tetrahedron, with its last two nodes swapped if it would be inverted otherwise.
 void add_oriented(Mesh<Tet4>& mesh, NodeId a, NodeId b, NodeId c, NodeId d);
 
-/// Node numbers of a grid of boxes: x runs fastest.
+/// Node numbers of a grid of boxes: x varies fastest.
 struct BoxGrid {
   std::array<NodeId, 3> cells;
 
@@ -54,7 +54,7 @@ void add_box_groups(Mesh<E>& mesh, const BoxGrid& grid) {
                          [&](NodeId node) { return grid.place(node)[axis] == (side == 0 ? 0 : grid.cells[axis]); });
 }
 
-/// Number of cells along an axis. Refuses coordinates that do not rise.
+/// Number of cells along an axis. Refuses coordinates that are not ascending.
 NodeId count_cells(const std::vector<double>& x);
 
 /// `cells` + 1 equidistant coordinates.
@@ -62,10 +62,10 @@ std::vector<double> even_coordinates(double origin, double size, int cells);
 
 }  // namespace detail
 
-/// Box with nodes at every combination of the given coordinates [m], which must rise; node numbers run fastest along x.
-/// Groups "x0", "x1", "y0", "y1", "z0", "z1" hold the nodes and outward faces of its sides, region "body" all elements.
-/// Elements are positively oriented. Refuses bad coordinates as bad_argument, more than 2^31 nodes or elements as
-/// count_too_large.
+/// Box with nodes at every combination of the given coordinates [m], which must be ascending; node numbers vary fastest
+/// along x. Groups "x0", "x1", "y0", "y1", "z0", "z1" contain the nodes and outward faces of its sides, region "body"
+/// all elements. Elements are positively oriented. Refuses bad coordinates as bad_argument, more than 2^31 nodes or
+/// elements as count_too_large.
 Mesh<Tet4> box_tet4(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z,
                     BoxSplit split = BoxSplit::five_mirrored);
 

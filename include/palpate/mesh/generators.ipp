@@ -28,8 +28,8 @@ PALPATE_INLINE NodeId BoxGrid::corner(std::array<NodeId, 3> cell, unsigned corne
   return node(cell);
 }
 
-/// A core between the four corners whose grid indices sum to an even number: neighbours then agree on the diagonal of
-/// their face.
+/// The core connects the four corners whose grid indices have an even sum, so that neighbours use the same diagonal on
+/// their common face.
 inline void split_in_five(Mesh<Tet4>& mesh, const BoxGrid& grid, std::array<NodeId, 3> cell) {
   const unsigned odd = static_cast<unsigned>(cell[0] + cell[1] + cell[2]) & 1u;
   const auto at = [&](unsigned corner) { return grid.corner(cell, corner); };
@@ -41,7 +41,7 @@ inline void split_in_five(Mesh<Tet4>& mesh, const BoxGrid& grid, std::array<Node
   add_oriented(mesh, at(first), at(first ^ 3u), at(first ^ 5u), at(first ^ 6u));
 }
 
-/// One tetrahedron per order in which the axes can be walked from the first corner to the last.
+/// One tetrahedron per order of the axes on a path along edges from the first corner to the last.
 inline void split_in_six(Mesh<Tet4>& mesh, const BoxGrid& grid, std::array<NodeId, 3> cell) {
   for (unsigned a : {1u, 2u, 4u})
     for (unsigned b : {1u, 2u, 4u})

@@ -14,8 +14,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Box of hexahedra with nodes at every combination of the given coordinates [m], which must rise. Nodes, groups,
-/// region and refusals as in box_tet4.
+/// Box of hexahedra with nodes at every combination of the given coordinates [m], which must be ascending. Nodes,
+/// groups, region and refusals as in box_tet4.
 Mesh<Hex8> box_hex8(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z);
 
 /// Box of `size` [m] from `origin`, in equal cells.

@@ -83,8 +83,8 @@ class SphereBuilder {
     add_oriented(mesh_, nodes[0], nodes[1], nodes[2], nodes[3]);
   }
 
-  /// The node with these weights of the corners, made on first use. Its key leaves out zero weights, so that neighbours
-  /// share it.
+  /// The node with these weights of the corners, created on first use. Its key omits zero weights, so that neighbouring
+  /// tetrahedra share it.
   NodeId node(const std::array<int, 4>& corners, const std::array<int, 4>& weights) {
     std::array<int, 8> key{};
     std::size_t used = 0;
@@ -130,7 +130,7 @@ inline std::vector<std::array<NodeId, 3>> disk_triangles(int rings) {
 }
 
 /// Three tetrahedra in the prism over a triangle. Every side is cut from its lower node number at the bottom to the
-/// higher one at the top, hence neighbours agree.
+/// higher one at the top, so that neighbours conform.
 inline void split_prism(Mesh<Tet4>& mesh, std::array<NodeId, 3> triangle, NodeId bottom, NodeId top) {
   std::ranges::sort(triangle);
   const auto [a, b, c] = triangle;

@@ -10,19 +10,19 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Name of the group every mesh has without saying so: its whole boundary.
+/// Name of the implicit group of every mesh: its whole boundary.
 inline constexpr std::string_view surface_group = "surface";
 
 /// The groups of a mesh, found by name. Adding a name twice merges the two.
 class GroupTable {
  public:
-  /// nullptr when there is no such group. Linear in the number of groups.
+  /// nullptr if there is no such group. Linear in the number of groups.
   const Group* find(std::string_view name) const noexcept;
 
   /// The group of that name, created empty if new.
   Group& get_or_add(std::string_view name, int dimension);
 
-  /// The groups of these names, all groups when there are no names; names it does not have are skipped.
+  /// The groups with these names, or all groups if `names` is empty; unknown names are skipped.
   GroupTable chosen(const std::vector<std::string>& names) const;
 
   /// Sorts and deduplicates the node lists; call once after filling.

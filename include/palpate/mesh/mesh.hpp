@@ -14,7 +14,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A mesh of elements E that owns its arrays. A plain aggregate of public arrays: fill it, then hand it to `admit()` or
+/// A mesh of elements E that owns its arrays. A plain aggregate of public arrays: fill it, then pass it to `admit()` or
 /// to a model.
 template <Element E>
 struct Mesh {
@@ -26,7 +26,7 @@ struct Mesh {
   std::vector<int> regions;            ///< region of each element; empty means all 0
   std::vector<std::string> region_names{"body"};
   GroupTable groups;
-  std::vector<Vector3> fibres{};  ///< unit vector along the fibres of each element; empty where there are none
+  std::vector<Vector3> fibres{};  ///< unit vector along the fibres of each element; empty if there are none
 
   Index node_count() const noexcept { return static_cast<Index>(positions.size()); }
   Index element_count() const noexcept { return static_cast<Index>(elements.size()); }
@@ -95,8 +95,8 @@ Mesh<E> copy_view(const M& view, const std::vector<std::string>& group_names) {
 
 }  // namespace detail
 
-/// Owning copy of any mesh with as many nodes per element, with the groups named in `group_names`; with all groups when
-/// none is named and the mesh lists them.
+/// Owning copy of any mesh with the same number of nodes per element, with the groups named in `group_names`, or with
+/// all groups if no name is given and the mesh lists them.
 template <Element E, MeshOf<E> M>
 Mesh<E> copy_mesh(const M& view, const std::vector<std::string>& group_names = {}) {
   if constexpr (detail::is_mesh<M>) {

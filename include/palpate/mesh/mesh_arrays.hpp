@@ -1,4 +1,4 @@
-// A mesh over arrays that somebody else owns.
+// A mesh view of arrays owned by the caller.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -21,15 +21,16 @@ namespace palpate { inline namespace PALPATE_ABI {
 template <class Range>
 concept Outlives = std::is_lvalue_reference_v<Range> || std::ranges::borrowed_range<std::remove_cvref_t<Range>>;
 
-/// Reads a simulator's own arrays as a mesh, without a copy: `positions` holds x y z per node, `connectivity` E::nodes
-/// ids per element (zero based), `regions` one number per element or nothing. Groups are added with `group()`. The
-/// arrays must outlive the view; temporaries are rejected at compile time. Any floating and any integral type will do.
+/// A view of a simulator's arrays as a mesh, without a copy: `positions` contains x y z per node, `connectivity`
+/// E::nodes ids per element (zero based), `regions` one number per element or nothing. Groups are added with `group()`.
+/// The arrays must outlive the view; temporaries are rejected at compile time. Any floating-point and any integral type
+/// is allowed.
 template <Element E, std::floating_point Real, std::integral Integer>
 class MeshArrays {
  public:
   static constexpr int nodes_per_element = E::nodes;
 
-  /// Any contiguous ranges that outlive the view: lvalues, or spans of them. Throws bad_argument when a length is no
+  /// Any contiguous ranges that outlive the view: lvalues, or spans of them. Throws bad_argument if a length is not a
   /// multiple of 3 or E::nodes, or `regions` has the wrong length; index_out_of_range for a region number that is
   /// negative or larger than the number of elements.
   template <class Positions, class Connectivity, class Regions = std::span<const int>>
@@ -51,7 +52,7 @@ class MeshArrays {
     return *this;
   }
   /// Direction of the fibres in every element, x y z each: any contiguous range that outlives the view. Throws
-  /// bad_argument when its length is another.
+  /// bad_argument if its length is wrong.
   template <class Fibres>
   requires(Outlives<Fibres>) MeshArrays& fibres(Fibres&& directions) {
     const std::span<const Real> given(directions);

@@ -1,4 +1,4 @@
-// Meshes without the type of their element: what plain code reads and makes.
+// Meshes without their element type as a template parameter, for code that is not a template.
 #pragma once
 
 #include <palpate/mesh/detail/element_layout.hpp>
@@ -6,7 +6,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A mesh that somebody else owns, as pointers: it must outlive this. Cheap to copy.
+/// Pointers to a mesh with another owner, which must outlive this object. Cheap to copy.
 struct MeshRef {
   ElementLayout element;
   Index node_count = 0, element_count = 0;
@@ -21,10 +21,10 @@ struct MeshRef {
   int region(Index e) const noexcept { return regions == nullptr ? 0 : regions[e]; }
 };
 
-/// A mesh that owns its arrays, as Mesh does, for code that makes meshes of any element.
+/// A mesh that owns its arrays, as Mesh does, for code that creates meshes of any element type.
 struct PlainMesh {
   std::vector<Vector3> positions;    ///< [m]
-  std::vector<NodeId> connectivity;  ///< node ids, one element behind the other
+  std::vector<NodeId> connectivity;  ///< node ids, element by element
   std::vector<int> regions;          ///< of every element
   std::vector<std::string> region_names;
   GroupTable groups;
@@ -37,7 +37,7 @@ inline const double* flat(const std::vector<Vector3>& positions) noexcept {
   return positions.empty() ? nullptr : positions.front().data();
 }
 
-/// A mesh of as many nodes per element, seen as one of elements E.
+/// A mesh with the same number of nodes per element, viewed as one of elements E.
 template <Element E, Element Given>
 MeshRef mesh_ref_as(const Mesh<Given>& mesh) noexcept {
   static_assert(E::nodes == Given::nodes);
@@ -54,13 +54,13 @@ MeshRef mesh_ref_as(const Mesh<Given>& mesh) noexcept {
 
 }  // namespace detail
 
-/// A mesh as plain code sees it. Nothing is copied.
+/// A reference to a mesh for code that is not a template. Nothing is copied.
 template <Element E>
 MeshRef mesh_ref(const Mesh<E>& mesh) noexcept {
   return detail::mesh_ref_as<E>(mesh);
 }
 
-/// The same for a mesh without a type.
+/// The same for a PlainMesh.
 template <Element E>
 MeshRef mesh_ref(const PlainMesh& mesh) noexcept {
   return {element_layout<E>,
@@ -73,7 +73,7 @@ MeshRef mesh_ref(const PlainMesh& mesh) noexcept {
           mesh.groups.all()};
 }
 
-/// The mesh of elements E made of those arrays. All are moved but the connectivity, which is copied.
+/// Converts the arrays to a mesh of elements E. All are moved except the connectivity, which is copied.
 template <Element E>
 Mesh<E> to_mesh(PlainMesh&& plain) {
   Mesh<E> mesh;
@@ -105,10 +105,10 @@ PlainMesh plain_copy(const M& mesh) {
 
 namespace detail {
 
-/// A mesh of any type as a MeshRef, with the copy that a view of another kind than Mesh needs.
+/// A mesh of any type as a MeshRef, with a copy of the arrays if the mesh is not a Mesh.
 struct PlainView {
   PlainView() = default;
-  PlainView(PlainView&&) = default;  // moved arrays stay where `mesh` points
+  PlainView(PlainView&&) = default;  // moving the arrays does not change the addresses in `mesh`
 
   PlainMesh copy;
   MeshRef mesh;

@@ -75,12 +75,12 @@ void promote_group(Group& group, const Mesh<E>& mesh, const EdgeMiddles& middles
 
 }  // namespace detail
 
-/// The same body in quadratic elements: Tet4 to Tet10, Hex8 to Hex20. Nodes keep their ids, middles follow; regions,
-/// fibres and groups come along. A group gains the middles of the edges of its faces and elements; a group of lines
-/// (dimension 1) those between two of its nodes; a group of nodes alone keeps exactly its nodes, because an edge
-/// between two of them need not belong to it (an edge through the body between two surface nodes would be held or
-/// loaded too). Edges stay straight: move the middles of a curved surface onto it if you know it. Throws unsupported
-/// for a group's face that no element has, count_too_large beyond 2^31 nodes. O(elements log elements).
+/// The same body in quadratic elements: Tet4 to Tet10, Hex8 to Hex20. Nodes keep their ids, mid-edge nodes follow;
+/// regions, fibres and groups are transferred. A group gains the mid-edge nodes of its faces and elements; a group of
+/// lines (dimension 1) those between two of its nodes; a group that contains only nodes is unchanged, because an edge
+/// between two of them need not belong to it (an edge through the body between two surface nodes would be constrained
+/// or loaded too). Edges stay straight: if the curved surface is known, move the mid-edge nodes onto it. Throws
+/// unsupported for a group's face that no element has, count_too_large beyond 2^31 nodes. O(elements log elements).
 template <QuadraticElement To>
 Mesh<To> promote(const Mesh<typename To::Linear>& linear) {
   const auto middles = detail::EdgeMiddles::of<To>(linear);

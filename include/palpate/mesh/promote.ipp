@@ -16,7 +16,7 @@ PALPATE_INLINE void promote_face(std::vector<NodeId>& face, const EdgeMiddles& m
   for (std::size_t i = 0; i < corners; ++i) {
     const auto middle = middles.find(face[i], face[(i + 1) % corners]);
     if (!middle)
-      raise(SetupErrorKind::unsupported, "group '" + group + "' has a face that is no face of an element",
+      raise(SetupErrorKind::unsupported, "group '" + group + "' has a face that is not a face of an element",
             "Remove it before promotion");
     face.push_back(*middle);
   }

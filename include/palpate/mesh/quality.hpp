@@ -1,4 +1,4 @@
-// How an element is shaped: orientation, flatness and quality, free of scale and of position.
+// Shape of an element: orientation, flatness and quality, independent of scale and position.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -13,12 +13,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Shape of one element. `relative_volume` and `quality` do not change when the mesh is moved, turned or scaled.
+/// Shape of one element. `relative_volume` and `quality` do not change if the mesh is translated, rotated or scaled.
 struct ElementShape {
   double volume = 0.0;           ///< signed, by the element's quadrature rule [m^3]
   double longest_edge = 0.0;     ///< largest distance between two of its nodes [m]
   double relative_volume = 0.0;  ///< least det J x reference volume / longest_edge^3; regular tetrahedron: sqrt(2) / 12
-  double resolution = 0.0;       ///< the part of relative_volume that rounding of the coordinates alone can make
+  double resolution = 0.0;       ///< largest relative_volume that rounding of the coordinates alone can cause
   double quality = 0.0;          ///< mean ratio: 1 regular, 0 flat or inverted
 };
 
@@ -28,11 +28,11 @@ namespace detail {
 template <Element E>
 inline constexpr bool constant_jacobian = E::order == 1 && E::faces.size() == 4;
 
-/// Takes the Jacobian J of a sample point into the least relative volume and quality; of a mesh scaled to a longest
-/// edge of one. `tetrahedron` says which ideal element J is measured against: the regular tetrahedron, else the cube.
+/// Updates the least relative volume and quality with the Jacobian J of a sample point, for an element scaled to a
+/// longest edge of one. The ideal element is the regular tetrahedron if `tetrahedron` is true, else the cube.
 void sample_shape(const Matrix3& J, double reference_volume, bool tetrahedron, ElementShape& shape) noexcept;
 
-/// Between nodes a and b.
+/// Squared distance between nodes a and b.
 template <Element E>
 double squared_distance(const ElementNodes<E>& nodes, int a, int b) noexcept {
   const double x = nodes(a, 0) - nodes(b, 0), y = nodes(a, 1) - nodes(b, 1), z = nodes(a, 2) - nodes(b, 2);
@@ -74,9 +74,9 @@ double shortest_edge(const Mesh<E>& mesh) noexcept {
 
 /// Shape of the element with these node coordinates [m], one per row. The quality is the mean ratio 3 det(A)^(2/3) /
 /// |A|^2 of the map A from the ideal element, for Tet4 equal to 12 (3V)^(2/3) / (sum of the six squared edges).
-/// Elements with a varying Jacobian are sampled at their quadrature points and nodes, the least value counts. Works on
-/// edge vectors, so that the distance to the origin costs no digits beyond those the coordinates have lost already. An
-/// element of size zero has all fields zero. O(1), no allocation.
+/// Elements with a varying Jacobian are sampled at their quadrature points and nodes, and the least value is used.
+/// Computed from edge vectors, so that a large distance to the origin causes no further loss of digits. An element of
+/// size zero has all fields zero. O(1), no allocation.
 template <Element E>
 ElementShape element_shape(const ElementNodes<E>& nodes) noexcept {
   ElementShape shape;
@@ -112,7 +112,7 @@ ElementShape element_shape(const ElementNodes<E>& nodes) noexcept {
 
 namespace detail {
 
-/// Shape of an element by its nodes' ids, for code that works on meshes of any element; `positions` holds x y z of
+/// Shape of an element from its node ids, for code that works on meshes of any element type; `positions` holds x y z of
 /// every node of the mesh.
 using ShapeOfElement = ElementShape (*)(const double* positions, const NodeId* nodes) noexcept;
 

@@ -7,9 +7,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Every tetrahedron cut into eight of an eighth of its volume. Nodes keep their ids, element e becomes 8 e ... 8 e +
-/// 7; regions, fibres and groups come along as in `promote`. Neighbours conform: only the interior of an element
-/// depends on which diagonal was cut. Throws as promote does, and count_too_large beyond 2^31 elements.
+/// Cuts every tetrahedron into eight, each with an eighth of its volume. Nodes keep their ids, element e becomes 8 e
+/// ... 8 e + 7; regions, fibres and groups are transferred as in `promote`. Neighbours conform: the choice of the
+/// diagonal affects only the interior of an element. Throws as promote does, and count_too_large beyond 2^31 elements.
 Mesh<Tet4> refine(const Mesh<Tet4>& coarse);
 
 }}  // namespace palpate

@@ -20,7 +20,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 /// shortest diagonal, which keeps the elements from getting worse with every refinement (Bey 1995 cuts a fixed one).
 inline std::array<std::array<int, 4>, 8> eight_tetrahedra(const ElementNodes<Tet10>& x) {
   constexpr std::array<std::array<int, 2>, 3> diagonals{{{4, 9}, {5, 7}, {6, 8}}};
-  // Round every diagonal, right-handed about its direction: the octahedron's other four corners.
+  // For every diagonal, the octahedron's other four corners around it, right-handed about its direction.
   constexpr std::array<std::array<int, 4>, 3> around{{{6, 7, 8, 5}, {8, 9, 6, 4}, {5, 9, 7, 4}}};
   std::size_t shortest = 0;
   const auto square = [&](std::size_t i) {
@@ -39,7 +39,7 @@ inline std::array<std::array<int, 4>, 8> eight_tetrahedra(const ElementNodes<Tet
   return parts;
 }
 
-/// Replaces every face by the triangles of its quadratic twin, and every element by the eight that came of it.
+/// Replaces every quadratic face by its triangles, and every element by the eight elements that replace it.
 inline void refine_group(Group& group) {
   std::vector<std::vector<NodeId>> faces;
   for (const auto& face : group.faces)

@@ -1,4 +1,4 @@
-// What holds, loads and touches a body: selections and conditions, no element, no mesh.
+// The supports, loads and touchable parts of a body: selections and conditions, independent of element and mesh.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -19,18 +19,18 @@ namespace palpate { inline namespace PALPATE_ABI {
 using Selection = std::variant<std::string, std::vector<NodeId>, where::PointSet>;
 
 /// The same selection in an admitted mesh: listed node ids go through `map`, those mapped to -1 are dropped; a set of
-/// points is seen from `origin`, where the frame of the admitted mesh lies in that of the mesh as given [m]. Throws
-/// index_out_of_range.
+/// points is moved to the frame of the admitted mesh, whose origin is `origin` in the frame of the mesh as given [m].
+/// Throws index_out_of_range.
 Selection mapped(const Selection& selection, const std::vector<NodeId>& map, const Vector3& origin);
 
-/// Selects all elements where a region is asked for.
+/// Selects all elements where a region name is expected.
 inline const std::string everywhere{};
 
 /// Displacement per component [m]; an empty component stays free.
 using Components = std::array<std::optional<double>, 3>;
 
-/// The conditions of a scene. Knows groups by name only; selections are resolved, and unknown or empty ones refused,
-/// when a model is made. Every call throws SetupError(non_finite) on NaN or infinity.
+/// The conditions of a scene. Stores groups by name only; selections are resolved, and unknown or empty ones refused,
+/// when a model is constructed. Every call throws SetupError(non_finite) on NaN or infinity.
 class Scene {
  public:
   struct Prescribed {
@@ -65,15 +65,16 @@ class Scene {
   Scene& operator=(Scene&&) noexcept;
   ~Scene();
 
-  /// Holds all three components of every node at zero (essential condition).
+  /// Constrains all three displacement components of every node to zero (essential condition).
   Scene& fix(Selection where) { return prescribe(std::move(where), {0.0, 0.0, 0.0}); }
 
   /// Prescribes the displacement [m] of the given components (essential condition). Two different values for one
-  /// component are refused when the model is made.
+  /// component are refused when the model is constructed.
   Scene& prescribe(Selection where, Components values);
   /// Force per reference area [Pa] on the faces of a group (natural condition, eqs. 3.26, 3.42).
   Scene& traction(Selection where, const Vector3& value);
-  /// Pressure [Pa] on boundary faces; positive pushes onto the surface. Dead load: it keeps the reference normal.
+  /// Pressure [Pa] on boundary faces; a positive value pushes onto the surface. Dead load: its direction stays that of
+  /// the reference normal.
   Scene& pressure(Selection where, double value);
   /// Total force [N], shared equally by the nodes of the group.
   Scene& point_load(Selection where, const Vector3& force);
@@ -84,16 +85,16 @@ class Scene {
   /// Stress-free strain epsilon_0 (Voigt order of core/voigt.hpp, engineering shear) of a region, or `everywhere`:
   /// swelling, contraction, thermal expansion (eqs. 3.1, 3.28).
   Scene& initial_strain(std::string region, const Vector6& strain);
-  /// Free growth of a region, or `everywhere`: every length wants to become 1 + elongation times what it was, the same
-  /// in all directions; negative shrinks. Adds to other initial strains there. Swelling by a volume fraction v is an
-  /// elongation of v / 3 (small strain).
+  /// Stress-free growth of a region, or `everywhere`: without constraints every length would become 1 + elongation
+  /// times its reference length, equally in all directions; a negative value shrinks. Adds to other initial strains
+  /// there. Swelling by a volume fraction v is an elongation of v / 3 (small strain).
   Scene& expand(std::string region, double elongation);
   /// Thermal expansion of a region, or `everywhere`: coefficient [1/K] times rise of temperature [K].
   Scene& thermal_strain(std::string region, double coefficient, double rise);
-  /// What a tool may touch: the dofs of these nodes are kept, all others are condensed away. Of a set of points only
-  /// boundary faces all of whose nodes it contains.
+  /// The part a tool may touch: the dofs of these nodes are kept, all others are condensed away. A set of points
+  /// selects only boundary faces all of whose nodes it contains.
   Scene& touch(Selection where);
-  /// Nodes somebody looks at: their displacement is recovered at visual rate.
+  /// Nodes to be displayed: their displacement is recovered at visual rate.
   Scene& render(Selection where);
 
   const std::vector<Prescribed>& prescribed() const noexcept { return prescribed_; }
@@ -109,10 +110,10 @@ class Scene {
   /// The same scene for an admitted mesh, see `mapped` of a Selection.
   Scene mapped(const std::vector<NodeId>& map, const Vector3& origin) const;
 
-  /// What acts on a body but gravity, in words: "2 pressures, prescribed displacements"; empty when nothing does.
+  /// Text that lists all loads except gravity: "2 pressures, prescribed displacements"; empty if there are none.
   std::string loads_in_words() const;
 
-  /// Names of all groups the scene speaks of.
+  /// Names of all groups that the scene uses.
   std::vector<std::string> group_names() const;
 
  private:
@@ -129,7 +130,7 @@ class Scene {
   Vector3 gravity_ = Vector3::Zero();
 };
 
-/// All that acts on a body, in words, with gravity [m/s^2]: "gravity of 9.81 m/s^2, 2 pressures".
+/// Text that lists all loads, with gravity [m/s^2]: "gravity of 9.81 m/s^2, 2 pressures".
 std::string loads_in_words(const Vector3& gravity, const std::string& others);
 
 }}  // namespace palpate

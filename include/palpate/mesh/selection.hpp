@@ -14,28 +14,30 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Text for messages.
+/// Name of a selection for messages.
 std::string selection_name(const Selection& s);
 
-/// How far outside of a set of points nodes of a mesh still belong to it [m]: a millionth of the diagonal of the mesh's
-/// box, so that a node on the boundary does not depend on rounding or on the digits of a file.
+/// Distance outside of a set of points up to which nodes of a mesh still belong to it [m]: a millionth of the diagonal
+/// of the mesh's bounding box, so that the selection of a node on the boundary does not depend on rounding or on the
+/// digits of a file.
 double point_margin(const MeshRef& mesh);
 
-/// The nodes in a set of points, inside the body and on its surface, ascending; none is no error. O(nodes).
+/// The nodes in a set of points, inside the body and on its surface, ascending; an empty result is not an error.
+/// O(nodes).
 std::vector<NodeId> nodes_within(const MeshRef& mesh, const where::PointSet& points);
 
-/// The elements whose centre, the mean of their nodes, is in a set of points, ascending; none is no error. Any set and
-/// its complement share out all elements. O(elements).
+/// The elements whose centre, the mean of their nodes, is in a set of points, ascending; an empty result is not an
+/// error. Every element is in exactly one of a set and its complement. O(elements).
 std::vector<Index> elements_within(const MeshRef& mesh, const where::PointSet& points);
 
-/// The nodes of a selection, sorted and unique. Throws unknown_group, empty_group or index_out_of_range.
-/// A group called "surface" that the mesh does not define is its whole boundary; a region's name selects the region's
-/// nodes. Of a set of points the nodes within `point_margin` of it.
+/// The nodes of a selection, sorted and unique. Throws unknown_group, empty_group or index_out_of_range. A group called
+/// "surface" that the mesh does not define is its whole boundary; a region's name selects the region's nodes. A set of
+/// points selects the nodes within `point_margin` of it.
 std::vector<NodeId> resolve_nodes(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
                                   const Selection& selection);
 
-/// The boundary faces of a selection, outward whatever the order in the mesh file. A group that lists faces means
-/// exactly those; any other selection means every boundary face all of whose nodes it holds. Throws empty_group, or
+/// The boundary faces of a selection, outward for any order in the mesh file. A group that lists faces selects exactly
+/// those; any other selection selects every boundary face all of whose nodes it contains. Throws empty_group, or
 /// unsupported for a face inside the body.
 std::vector<BoundaryFace> resolve_faces(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
                                         const Selection& selection);

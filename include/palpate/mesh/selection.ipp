@@ -81,7 +81,7 @@ inline Box box_of(const MeshRef& mesh) noexcept {
   return box;
 }
 
-/// For the refusal of a set of points that selects nothing: where the mesh is, in the frame of the set.
+/// Hint for the refusal of a set of points that selects nothing: the extent of the mesh in the frame of the set.
 inline std::string extent_hint(const MeshRef& mesh, const Selection& selection) {
   const auto* points = std::get_if<where::PointSet>(&selection);
   if (points == nullptr) return {};
@@ -128,7 +128,7 @@ PALPATE_INLINE std::vector<NodeId> resolve_nodes(const MeshRef& mesh, const std:
   std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   if (nodes.empty())
-    raise(SetupErrorKind::empty_group, selection_name(selection) + " holds no node",
+    raise(SetupErrorKind::empty_group, selection_name(selection) + " contains no node",
           detail::extent_hint(mesh, selection));
   if (nodes.front() < 0 || nodes.back() >= mesh.node_count)
     raise(SetupErrorKind::index_out_of_range,
@@ -152,7 +152,7 @@ PALPATE_INLINE std::vector<BoundaryFace> resolve_faces(const MeshRef& mesh, cons
   }
   faces = detail::sort_unique(faces, mesh.element.face.nodes, mesh.node_count);
   if (faces.empty())
-    raise(SetupErrorKind::empty_group, selection_name(selection) + " holds no boundary face",
+    raise(SetupErrorKind::empty_group, selection_name(selection) + " contains no boundary face",
           detail::extent_hint(mesh, selection));
   return faces;
 }

@@ -13,7 +13,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Most nodes a face of an element can have: quadrilaterals of degree 3 have 16.
+/// Largest number of nodes of an element face: quadrilaterals of degree 3 have 16.
 inline constexpr int max_face_nodes = 16;
 
 /// A face of the boundary: its nodes, outward by the right-hand rule, and the element it belongs to.
@@ -29,7 +29,7 @@ struct BoundaryFace {
   }
 };
 
-/// A face of an element with the name all elements give it.
+/// A face of an element with a key that is the same for all elements that share it.
 template <Element E>
 struct KeyedFace {
   FaceIds<E> key;  ///< sorted nodes
@@ -39,11 +39,11 @@ struct KeyedFace {
 
 namespace detail {
 
-/// All faces of all elements, equal keys side by side and ordered by element.
+/// All faces of all elements, equal keys adjacent and ordered by element.
 struct SortedFaces {
   int width = 0;             ///< numbers per key
   int per_element = 0;       ///< faces
-  std::vector<NodeId> keys;  ///< sorted nodes of every face, element by element; -1 behind those of a small face
+  std::vector<NodeId> keys;  ///< sorted nodes of every face, element by element; small faces are padded with -1
   std::vector<Index> order;  ///< places in `keys`
 
   Index count() const noexcept { return static_cast<Index>(order.size()); }
@@ -61,7 +61,7 @@ std::vector<BoundaryFace> sort_unique(const std::vector<BoundaryFace>& faces, in
 
 }  // namespace detail
 
-/// All faces of all elements, equal keys side by side and ordered by element. O(faces), allocates.
+/// All faces of all elements, equal keys adjacent and ordered by element. O(faces), allocates.
 template <Element E, MeshOf<E> M>
 std::vector<KeyedFace<E>> sorted_faces(const M& mesh) {
   const detail::SortedFaces sorted = detail::sorted_faces(detail::plain_view<E>(mesh).mesh);
@@ -76,8 +76,8 @@ std::vector<KeyedFace<E>> sorted_faces(const M& mesh) {
 }
 
 /// All faces that belong to exactly one element, ordered by element. Node order is that of the element, hence outward
-/// when the element is positively oriented. A face shared by three or more elements is refused as non_manifold.
-/// O(faces), allocates.
+/// if the element is positively oriented. A face shared by three or more elements is refused as non_manifold. O(faces),
+/// allocates.
 std::vector<BoundaryFace> extract_boundary(const MeshRef& mesh);
 
 /// The same for any mesh.

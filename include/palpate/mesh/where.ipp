@@ -37,7 +37,7 @@ struct PointSet::Definition {
 
 PALPATE_INLINE PointSet::PointSet(Contains contains, std::string name)
     : definition_(std::make_shared<const Definition>(Definition{std::move(contains), std::move(name)})) {
-  if (!definition_->contains) raise(SetupErrorKind::bad_argument, "a set of points without a function that decides");
+  if (!definition_->contains) raise(SetupErrorKind::bad_argument, "a set of points without a predicate function");
 }
 
 PALPATE_INLINE bool PointSet::contains(const Vector3& point, double margin) const {
@@ -79,7 +79,7 @@ PALPATE_INLINE PointSet box(const Vector3& low, const Vector3& high) {
   for (int k = 0; k < 3; ++k)
     if (!(low[k] <= high[k]))
       raise(SetupErrorKind::bad_argument,
-            "a box from " + detail::point_text(low) + " to " + detail::point_text(high) + " holds no point",
+            "a box from " + detail::point_text(low) + " to " + detail::point_text(high) + " contains no point",
             "Give the lowest corner first");
   return {[low, high](const Vector3& x, double margin) {
             for (int k = 0; k < 3; ++k)
@@ -109,7 +109,7 @@ PALPATE_INLINE PointSet sphere(const Vector3& centre, double radius) {
   detail::require_finite_set(centre, "the centre of a sphere");
   detail::require_radius(radius);
   return {[centre, radius](const Vector3& x, double margin) { return (x - centre).norm() <= radius + margin; },
-          "the sphere of radius " + number(radius) + " round " + detail::point_text(centre)};
+          "the sphere of radius " + number(radius) + " around " + detail::point_text(centre)};
 }
 
 PALPATE_INLINE PointSet capsule(const Vector3& from, const Vector3& to, double radius) {
@@ -126,7 +126,7 @@ PALPATE_INLINE PointSet capsule(const Vector3& from, const Vector3& to, double r
 }
 
 PALPATE_INLINE PointSet inside(std::function<bool(const Vector3&)> predicate) {
-  if (!predicate) raise(SetupErrorKind::bad_argument, "a set of points without a function that decides");
+  if (!predicate) raise(SetupErrorKind::bad_argument, "a set of points without a predicate function");
   return {[predicate = std::move(predicate)](const Vector3& x, double) { return predicate(x); },
           "the points of a predicate"};
 }

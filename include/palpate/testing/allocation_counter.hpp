@@ -1,5 +1,5 @@
-// Counts the heap calls of a thread, to show that a tick makes none, and lets one fail, to show what a set-up does then.
-// Eigen calls malloc, so counting operator new is not enough: malloc and its relatives themselves are replaced.
+// Counts the heap calls of a thread, to verify that a tick makes none, and makes one fail, to test how a set-up handles
+// it. Eigen calls malloc, so counting operator new is not enough: malloc and its relatives themselves are replaced.
 //
 // In exactly one source file of a test program, and nowhere in a library:
 //   #define PALPATE_COUNT_ALLOCATIONS
@@ -23,8 +23,8 @@ struct HeapCalls {
   std::uint64_t failed = 0;  ///< allocations that were made to fail
 };
 
-/// What is to fail in this thread: the allocation with this number, counted as HeapCalls does; with `and_later` all
-/// after it, too.
+/// The allocation of this thread that is to fail, by its number as counted by HeapCalls; with `and_later` all later
+/// ones, too.
 struct HeapFailure {
   std::uint64_t number = 0;
   bool armed = false, and_later = false;
@@ -34,7 +34,7 @@ namespace detail {
 inline constinit thread_local HeapCalls heap_calls{};
 inline constinit thread_local HeapFailure heap_failure{};
 
-/// Counts an allocation; false when it is one that is to fail.
+/// Counts an allocation; false if it is to fail.
 inline bool heap_allows() noexcept {
   const std::uint64_t number = heap_calls.allocations++;
   const volatile HeapFailure& f = heap_failure;
@@ -43,7 +43,7 @@ inline bool heap_allows() noexcept {
   return false;
 }
 
-/// Read as volatile: compilers know malloc and conclude that a call of it cannot change a variable of ours.
+/// Read as volatile: compilers know malloc and assume that calling it cannot change this variable.
 inline HeapCalls heap_calls_now() noexcept {
   const volatile HeapCalls& now = heap_calls;
   return {now.allocations, now.frees, now.failed};
@@ -53,7 +53,7 @@ inline HeapCalls heap_calls_now() noexcept {
 /// True when the counter is built into this program.
 inline bool allocations_are_counted() noexcept {
   const std::uint64_t before = detail::heap_calls_now().allocations;
-  void* volatile memory = std::malloc(1);  // volatile: or the compiler leaves malloc and free out
+  void* volatile memory = std::malloc(1);  // volatile, or the compiler removes malloc and free
   std::free(memory);
   return detail::heap_calls_now().allocations > before;
 }
@@ -64,7 +64,7 @@ class AllocationScope {
  public:
   std::uint64_t allocations() const noexcept { return detail::heap_calls_now().allocations - start_.allocations; }
   std::uint64_t frees() const noexcept { return detail::heap_calls_now().frees - start_.frees; }
-  /// Blocks taken and not given back; below zero when blocks from before were.
+  /// Blocks allocated and not freed; negative if older blocks were freed.
   std::int64_t live() const noexcept {
     const HeapCalls now = detail::heap_calls_now();
     return static_cast<std::int64_t>(now.allocations - start_.allocations) -
@@ -75,9 +75,8 @@ class AllocationScope {
   HeapCalls start_ = detail::heap_calls_now();
 };
 
-/// Lets the n-th allocation of this thread from now on fail (n counts from zero), and all later ones if so wanted, until
-/// it goes out of scope:
-///   { FailingHeap failing(n); try { set_up(); } catch (const std::bad_alloc&) {} }
+/// Makes the n-th allocation of this thread from now on fail (n counts from zero), with `and_later` all later ones too,
+/// until it goes out of scope: { FailingHeap failing(n); try { set_up(); } catch (const std::bad_alloc&) {} }
 class FailingHeap {
  public:
   explicit FailingHeap(std::uint64_t n, bool and_later = false) noexcept {

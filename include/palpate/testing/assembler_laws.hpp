@@ -22,7 +22,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// All columns of an operator, by `apply`. For small ones.
+/// The dense matrix of an operator, computed column by column with `apply`. For small operators.
 template <class Op>
 MatrixX dense_matrix(const Op& op) {
   const Index n = op.size();
@@ -50,7 +50,8 @@ VectorX affine_displacement(const Mesh<E>& mesh, const Vector3& shift, const Mat
   return u;
 }
 
-/// "symmetric", "diagonal blocks agree" with the columns, "apply overwrites" what y held, and "apply is linear".
+/// "symmetric", "diagonal blocks agree" with the columns, "apply overwrites" the previous content of y, and "apply is
+/// linear".
 template <StiffnessOperator K>
 Violations operator_laws(const K& k, const MatrixX& dense) {
   Violations v;
@@ -75,8 +76,8 @@ Violations operator_laws(const K& k, const MatrixX& dense) {
   return v;
 }
 
-/// "translation costs nothing" and "rotation costs nothing": K times a rigid motion vanishes against |K| times its
-/// size.
+/// "translation costs nothing" and "rotation costs nothing": K times a rigid motion is negligible compared with |K|
+/// times its size.
 template <Element E, StiffnessOperator K>
 Violations rigid_motion_laws(const Mesh<E>& mesh, const K& k, double scale) {
   Violations v;
@@ -101,8 +102,8 @@ Violations rigid_motion_laws(const Mesh<E>& mesh, const K& k, double scale) {
 Violations zero_mode_laws(const MatrixX& dense, Index rigid_motions);
 
 /// "affine patch": for u = a + A x with a far from zero, the nodal forces of a uniform body are those of the stress on
-/// its boundary, nothing inside; and "affine energy": u K u = sum of V e : D e, for any materials. The forces come from
-/// face integrals, the volumes from the mass rule: neither uses the stiffness.
+/// its boundary, and zero inside; and "affine energy": u K u = sum of V e : D e, for any materials. The forces come
+/// from face integrals, the volumes from the mass rule: neither uses the stiffness.
 template <Element E, StiffnessOperator K>
 Violations affine_patch_laws(const Body<E>& body, const K& k, double scale) {
   Violations v;

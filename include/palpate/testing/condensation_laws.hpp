@@ -17,7 +17,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// The inverse of a small operator by dense Cholesky, column by column: the answer that condensing must not change.
+/// The inverse of a small operator by dense Cholesky, column by column: the reference for condensed solutions.
 template <SpdOperator Op>
 MatrixX full_inverse(const Op& op) {
   const Index n = op.size();
@@ -88,8 +88,8 @@ Violations compliance_laws(const MatrixX& inverse, S& system, std::span<const In
   return v;
 }
 
-/// Laws of a static system with the dofs `kept` (in its order) of the operator it was made from. O(n^3): for small
-/// ones.
+/// Laws of a static system with the dofs `kept` (in its order) of the operator it was constructed from. O(n^3): for
+/// small systems.
 template <SpdOperator Op, StaticSystem S>
 Violations condensation_laws(const Op& op, S& system, std::span<const Index> kept, double tolerance = 1e-11) {
   Violations v;

@@ -17,9 +17,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// How to look behind a device. `rendered` tells what its motors get [N]; an adapter of an SDK asks the SDK, or a fake
-/// of it. `break_reads(device, true)` makes reads invalid, `false` mends them; empty: that law is not tested.
-/// `tolerance` is relative; a device that stores floats needs 1e-6.
+/// Access to the internals of a device for the tests. `rendered` returns the force that its motors receive [N]; an
+/// adapter of an SDK queries the SDK, or a fake of it. `break_reads(device, true)` makes reads invalid, `false`
+/// restores them; if it is empty, that law is not tested. `tolerance` is relative; a device that stores floats needs
+/// 1e-6.
 template <class Device>
 struct DeviceProbe {
   std::function<Vector3(const Device&)> rendered;
@@ -28,7 +29,7 @@ struct DeviceProbe {
   double tolerance = 1e-12;
 };
 
-/// Uses last_force() and, where there is one, unplug(bool).
+/// Uses last_force() and, if they exist, last_torque() and unplug(bool).
 template <class Device>
 DeviceProbe<Device> default_probe() {
   DeviceProbe<Device> probe;
@@ -63,7 +64,7 @@ class DeviceLaws {
  private:
   Status write(const Vector3& force) { return device_.write(gated(force)); }
   /// With half of the peak torque.
-  Status turn(const Vector3& force) {
+  Status write_with_torque(const Vector3& force) {
     return device_.write(gated(force, Vector3(0.0, 0.0, 0.5 * limits_.peak_torque)));
   }
   Vector3 rendered() const { return probe_.rendered(device_); }
@@ -80,10 +81,10 @@ class DeviceLaws {
     expect_at_least(violations_, "limits are sane", limits_.peak_torque, 0.0, "peak torque");
     expect_at_most(violations_, "limits are sane", limits_.peak_torque, 1e4, "peak torque");
     if (limits_.peak_torque > 0.0)
-      expect_above(violations_, "limits are sane", limits_.rotational_stiffness, 0.0, "turning stiffness");
+      expect_above(violations_, "limits are sane", limits_.rotational_stiffness, 0.0, "rotational stiffness");
   }
 
-  /// A device without motors for torque renders none, whatever it is told.
+  /// A device without motors for torque renders no torque, whatever is written to it.
   void limits_torque() {
     const double peak = limits_.peak_torque;
     for (const Vector3& direction : {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(1, 2, -3)})
@@ -100,7 +101,7 @@ class DeviceLaws {
         if (size <= 1.0) continue;
         expect_at_least(violations_, "saturates at the peak", given.norm(), peak * (1.0 - probe_.tolerance), detail);
         expect_at_least(violations_, "keeps the direction", unit.dot(given.normalized()), 1.0 - 1e-12, detail);
-        expect_true(violations_, "says that it saturates", status.has(StatusFlag::saturated), detail);
+        expect_true(violations_, "reports saturation", status.has(StatusFlag::saturated), detail);
       }
   }
 
@@ -119,23 +120,23 @@ class DeviceLaws {
         if (size <= 1.0) continue;
         expect_at_least(violations_, "saturates at the peak", given.norm(), peak * (1.0 - probe_.tolerance), detail);
         expect_at_least(violations_, "keeps the direction", unit.dot(given.normalized()), 1.0 - 1e-12, detail);
-        expect_true(violations_, "says that it saturates", status.has(StatusFlag::saturated), detail);
+        expect_true(violations_, "reports saturation", status.has(StatusFlag::saturated), detail);
       }
   }
 
   void zero_after_invalid_read() {
     const Vector3 force = Vector3(0.0, 0.0, 0.5 * limits_.peak_force);
-    turn(force);
+    write_with_torque(force);
     probe_.break_reads(device_, true);
     const ToolState state = device_.read();
-    expect_true(violations_, "says that a read failed", !state.valid);
-    const Status status = turn(force);
+    expect_true(violations_, "reports a failed read", !state.valid);
+    const Status status = write_with_torque(force);
     expect_at_most(violations_, "zero after an invalid read", anything(), 0.0);
-    expect_true(violations_, "says that it is disconnected", status.has(StatusFlag::disconnected));
+    expect_true(violations_, "reports disconnection", status.has(StatusFlag::disconnected));
     probe_.break_reads(device_, false);
-    const bool mended = device_.read().valid;
+    const bool restored = device_.read().valid;
     write(force);
-    expect_true(violations_, "renders again when reads are valid", mended && rendered().norm() > 0.0);
+    expect_true(violations_, "renders again when reads are valid", restored && rendered().norm() > 0.0);
   }
 
   void survives(int reads) {
@@ -153,7 +154,7 @@ class DeviceLaws {
     expect_at_most(violations_, "never above the peak", rendered().norm(), limits_.peak_force, "after many reads");
   }
 
-  /// Finite; velocity finite or not given at all; orientation a unit quaternion.
+  /// Finite; velocity finite or NaN in all components (not provided); orientation a unit quaternion.
   static bool is_sound(const ToolState& s) {
     const bool no_velocity = std::isnan(s.velocity[0]) && std::isnan(s.velocity[1]) && std::isnan(s.velocity[2]);
     double square = 0.0;
@@ -164,10 +165,10 @@ class DeviceLaws {
 
   void zero_after_stop() {
     const Vector3 force = Vector3(0.0, 0.5 * limits_.peak_force, 0.0);
-    turn(force);
+    write_with_torque(force);
     device_.stop();
-    expect_at_most(violations_, "zero after stop", anything(), 0.0, "at once");
-    turn(force);
+    expect_at_most(violations_, "zero after stop", anything(), 0.0, "immediately");
+    write_with_torque(force);
     expect_at_most(violations_, "zero after stop", anything(), 0.0, "although written to");
     device_.stop();
     expect_at_most(violations_, "zero after stop", anything(), 0.0, "stopped twice");
@@ -181,12 +182,12 @@ class DeviceLaws {
 
 }  // namespace detail
 
-/// Starts the device, tries the laws, stops it. It must not be connected to anybody's hand: forces up to the peak are
-/// written. Laws: "limits are sane", "never above the peak", "renders what it can", "saturates at the peak", "keeps the
-/// direction", "says that it saturates", "says that a read failed", "zero after an invalid read", "says that it is
-/// disconnected", "renders again when reads are valid", "valid states are finite", "time does not run backwards", "zero
-/// after stop"; where the probe tells the torque, "torque within its peak", and those of force for torque. The concept
-/// checks that nothing throws, and that a device takes forces of a gate only, which are finite.
+/// Starts the device, tests the laws, stops it. Nobody may hold the device: forces up to the peak are written. Laws:
+/// "limits are sane", "never above the peak", "renders what it can", "saturates at the peak", "keeps the direction",
+/// "reports saturation", "reports a failed read", "zero after an invalid read", "reports disconnection", "renders again
+/// when reads are valid", "valid states are finite", "time does not run backwards", "zero after stop"; if the probe
+/// returns the torque, "torque within its peak", and the laws of force for torque. The concept checks that nothing
+/// throws, and that a device accepts only forces from a gate, which are finite.
 template <HapticDevice Device>
 Violations device_laws(Device& device, const DeviceProbe<Device>& probe = default_probe<Device>(), int reads = 10'000) {
   return detail::DeviceLaws<Device>(device, probe).run(reads);

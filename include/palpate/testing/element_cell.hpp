@@ -1,4 +1,4 @@
-// Which reference domain an element lives on, found from its nodes and faces.
+// The reference domain of an element, deduced from its nodes and faces.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -22,7 +22,7 @@ bool face_nodes_in_range() {
   return true;
 }
 
-/// Local numbers of the corners in ascending order: nodes on three faces or more (mid-edge nodes lie on two).
+/// Local numbers of the corners in ascending order: nodes on three faces or more (mid-edge nodes are on two).
 template <Element E>
 std::vector<int> corners_of() {
   std::vector<int> corners;
@@ -34,7 +34,8 @@ std::vector<int> corners_of() {
   return corners;
 }
 
-/// The cell with these corners: Dim + 1 make a simplex, 2^Dim a box along the axes; anything else is nothing.
+/// The cell with these corners: Dim + 1 corners form a simplex, 2^Dim an axis-aligned box; std::nullopt for anything
+/// else.
 template <int Dim>
 std::optional<ReferenceCell<Dim>> cell_with_corners(const std::vector<Point<Dim>>& corners) {
   if (corners.size() == static_cast<std::size_t>(Dim + 1)) {
@@ -64,7 +65,7 @@ std::optional<ReferenceCell<3>> cell_of() {
   return cell_with_corners<3>(corners);
 }
 
-/// Reference cell of a surface element. A corner is a node that sees all others within less than a half turn.
+/// Reference cell of a surface element. A corner is a node from which all others are within an angle of less than pi.
 template <FaceElement F>
 std::optional<ReferenceCell<2>> cell_of() {
   const Eigen::Matrix<double, F::nodes, 2> x = F::reference_nodes();

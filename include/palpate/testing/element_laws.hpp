@@ -23,9 +23,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// Laws of the triangles of a face: "triangles name nodes of the face", "triangles are turned as the face is",
-/// "triangles cover the face" (their areas sum to its own), "every node is a vertex of a triangle, and lies on no
-/// other".
+/// Laws of the triangles of a face: "triangles name nodes of the face", "triangles have the orientation of the face",
+/// "triangles cover the face" (their areas sum to its own), "every node is a vertex of a triangle, and is in no other".
 template <TriangulatedFace F>
 Violations triangulation_laws(double area) {
   Violations v;
@@ -41,19 +40,19 @@ Violations triangulation_laws(double area) {
     if (!in_range) return v;
     const std::array<Vector2, 3> p{x.row(t[0]).transpose(), x.row(t[1]).transpose(), x.row(t[2]).transpose()};
     const double own = area_of(p[0], p[1], p[2]);
-    expect_above(v, "triangles are turned as the face is", own, 0.0);
+    expect_above(v, "triangles have the orientation of the face", own, 0.0);
     sum += own;
     for (int a : t) used[static_cast<std::size_t>(a)] = true;
     for (int a = 0; a < F::nodes; ++a) {
       if (std::ranges::find(t, a) != t.end()) continue;
       const Vector2 q = x.row(a).transpose();
       const double inside = std::min({area_of(q, p[1], p[2]), area_of(p[0], q, p[2]), area_of(p[0], p[1], q)});
-      expect_true(v, "every node is a vertex of a triangle, and lies on no other", inside < -1e-9 * own,
+      expect_true(v, "every node is a vertex of a triangle, and is in no other", inside < -1e-9 * own,
                   "node " + std::to_string(a));
     }
   }
   expect_at_most(v, "triangles cover the face", std::abs(sum - area), 1e-12 * area);
-  expect_true(v, "every node is a vertex of a triangle, and lies on no other",
+  expect_true(v, "every node is a vertex of a triangle, and is in no other",
               std::ranges::find(used, false) == used.end());
   return v;
 }
@@ -72,7 +71,7 @@ Violations face_element_laws() {
   linear.report(v);
 
   const auto cell = cell_of<F>();
-  expect_true(v, "reference cell", cell.has_value(), "the corners make no triangle and no box");
+  expect_true(v, "reference cell", cell.has_value(), "the corners form neither a triangle nor a box");
   if (!cell) return v;
   append(v, quadrature_laws<typename F::Quadrature>(*cell), "Quadrature");
   if constexpr (TriangulatedFace<F>) append(v, triangulation_laws<F>(cell->volume()), "triangles");
@@ -146,7 +145,7 @@ Violations element_laws() {
   if (!face_nodes_in_range<E>()) return v;
   append(v, face_laws<E>());
   const auto cell = cell_of<E>();
-  expect_true(v, "reference cell", cell.has_value(), "nodes on three faces make no tetrahedron and no box");
+  expect_true(v, "reference cell", cell.has_value(), "nodes on three faces form neither a tetrahedron nor a box");
   if (!cell) return v;
   append(v, volume_laws<E>(*cell));
   append(v, numbering_laws<E>(cell->domain));

@@ -73,7 +73,8 @@ double trace_error(std::size_t f) {
   return worst;
 }
 
-/// The laws of face f but for the sums over all faces: its area vector and the flux of the position through it.
+/// The laws of face f. Also returns its contributions to the sums over all faces: its area vector and the flux of the
+/// position through it.
 template <FaceElement F, Element E>
 Violations one_face_laws(std::size_t f, Vector3& area, double& flux) {
   constexpr double bound = 1e-12;

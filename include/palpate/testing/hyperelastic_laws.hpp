@@ -18,13 +18,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// What a law for large strain says of itself beyond its concept.
+/// Properties that a hyperelastic material claims beyond its concept.
 struct HyperelasticClaims {
   bool isotropic = true;
-  bool barrier = false;  ///< the energy grows without bound as an element is pressed flat
+  bool barrier = false;  ///< the energy grows without bound as an element is compressed to zero volume
 };
 
-/// F = I + entries in [-size, size] at which the law holds, with J >= 0.3.
+/// Random F = I + entries in [-size, size] in the domain of the material, with J >= 0.3.
 template <HyperelasticMaterial M>
 Tensor3<double> random_deformation(const M& material, Random& random, double size = 0.4) {
   for (int tries = 0;; ++tries) {
@@ -37,14 +37,14 @@ Tensor3<double> random_deformation(const M& material, Random& random, double siz
 namespace detail {
 
 double norm(const Tensor3<double>& t);
-/// f'(0) by the rule of fourth order over -2h, -h, h, 2h.
+/// f'(0) by the fourth-order central difference with points -2h, -h, h, 2h.
 template <class F>
 auto derivative(F f) {
   constexpr double h = 1e-3;
   return (1.0 / (12.0 * h)) * (8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h)));
 }
 Tensor3<double> stepped(Tensor3<double> f, int entry, double by);
-/// A deformation of numbers or lanes as doubles.
+/// Converts a deformation of numbers or lanes to doubles.
 template <class S>
 Tensor3<double> lane(const Tensor3<S>& t, int i) {
   Tensor3<double> d{};
@@ -125,7 +125,7 @@ Violations rotation_laws(const M& m, double modulus, bool isotropic) {
   return v;
 }
 
-/// `law`: the stress in S equals that in double at the same F, to 32 roundings of what an error of F makes.
+/// `law`: the stress in S equals that in double at the same F, to 32 times the effect of a rounding error in F.
 template <class S, HyperelasticMaterial M>
 Violations precision_law(const M& m, double modulus, const char* law) {
   using Scalar = scalar_of<S>;
@@ -155,8 +155,8 @@ Violations precision_law(const M& m, double modulus, const char* law) {
   return v;
 }
 
-/// Outside of its domain a law says so: "refuses what is not finite"; a law that survives inversion "holds everywhere"
-/// and its stress "is finite everywhere" in every number type; any other "refuses J <= 0".
+/// Outside of its domain a material reports it: "refuses what is not finite"; a material that allows inversion "holds
+/// everywhere" and its stress "is finite everywhere" in every number type; any other "refuses J <= 0".
 template <HyperelasticMaterial M>
 Violations domain_laws(const M& m) {
   Violations v;
@@ -166,7 +166,7 @@ Violations domain_laws(const M& m) {
     expect_true(v, "holds at moderate strain", m.admits(f), detail::name_of(k));
     for (double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})
       expect_true(v, "refuses what is not finite", !m.admits(detail::stepped(f, k % 9, bad)), detail::name_of(k));
-    Tensor3<double> flat = f;  // rank two and one, and turned inside out by one column
+    Tensor3<double> flat = f;  // rank two and one, and inverted by one column
     for (int i = 0; i < 3; ++i) flat(i, 2) = f(i, 0) + f(i, 1);
     const Tensor3<double> line = outer(column(f, 0), column(f, 1)), mirrored = f * Tensor3<double>::diagonal(1, 1, -1);
     for (const Tensor3<double>& x : {0.0 * f, -1e-8 * f, -1.0 * f, -1.5 * f, flat, line, mirrored}) {
@@ -192,9 +192,9 @@ Violations domain_laws(const M& m) {
   return v;
 }
 
-/// Pressed flat along one direction, the other two held: a law that survives inversion "pushes back" all the way from
-/// rest to 95 % inside out; with the claim of a barrier "energy grows without bound", at least doubling from 1 % to
-/// 1e-12 of the length.
+/// Compressed along one direction with the other two constrained: a material that allows inversion "pushes back" over
+/// the whole path from rest to 95 % inversion; with the claim of a barrier "energy grows without bound", at least
+/// doubling from 1 % to 1e-12 of the length.
 template <HyperelasticMaterial M>
 Violations collapse_laws(const M& m, bool barrier) {
   Violations v;
@@ -213,8 +213,8 @@ Violations collapse_laws(const M& m, bool barrier) {
   return v;
 }
 
-/// All laws of one admissible material for large strain. Bounds are relative to its moduli: the unit of stress does not
-/// matter.
+/// All laws of one admissible material for large strain. Bounds are relative to its moduli, so they do not depend on
+/// the unit of stress.
 template <HyperelasticMaterial M>
 Violations hyperelastic_material_laws(const M& material, HyperelasticClaims claims = {}) {
   Violations v;

@@ -16,7 +16,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// What a linear material says of itself beyond its concept.
+/// Properties that a linear material claims beyond its concept.
 struct LinearMaterialClaims {
   bool isotropic = false;
 };
@@ -31,13 +31,14 @@ Matrix6 kelvin_form(const Matrix6& d);
 /// "rotation invariance": stress(R e R^T) = R stress(e) R^T for random rotations and strains.
 Violations isotropy_laws(const Matrix6& d);
 
-/// "stress is the derivative of the energy" 1/2 e^T D e, by central differences (exact for a quadratic but for
-/// rounding), and "energy is positive", at random strains.
+/// "stress is the derivative of the energy" 1/2 e^T D e, by central differences (exact for a quadratic function except
+/// for rounding), and "energy is positive", at random strains.
 Violations energy_laws(const Matrix6& d);
 
 /// Laws of one admissible linear material: "check accepts", "finite", "symmetric", "positive definite" (the smallest
 /// eigenvalue of the tensor is above rounding, 16 epsilon times the largest), the energy laws, and with the claim
-/// isotropic "rotation invariance". Independent of the unit of stress. Rest is stress free by linearity: no law.
+/// isotropic "rotation invariance". Independent of the unit of stress. The rest state is stress free by linearity, so
+/// there is no law for it.
 template <LinearMaterial M>
 Violations linear_material_laws(const M& material, LinearMaterialClaims claims = {}) {
   Violations v;
@@ -57,8 +58,7 @@ Violations linear_material_laws(const M& material, LinearMaterialClaims claims =
   return v;
 }
 
-/// "check accepts" every admissible material; "check refuses" every inadmissible one, and "refusal says why" with a
-/// sentence.
+/// "check accepts" every admissible material; "check refuses" every inadmissible one, and "refusal has a message".
 template <Material M>
 Violations admission_laws(const std::vector<M>& admissible, const std::vector<M>& inadmissible) {
   Violations v;
@@ -70,7 +70,7 @@ Violations admission_laws(const std::vector<M>& admissible, const std::vector<M>
   for (std::size_t i = 0; i < inadmissible.size(); ++i) {
     const auto problem = inadmissible[i].check();
     expect_true(v, "check refuses", problem.has_value(), "number " + std::to_string(i));
-    if (problem) expect_true(v, "refusal says why", !problem->what.empty(), "number " + std::to_string(i));
+    if (problem) expect_true(v, "refusal has a message", !problem->what.empty(), "number " + std::to_string(i));
   }
   return v;
 }

@@ -22,7 +22,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-// Broken laws are counted and one offender is named, so that a bad mesh of a million elements gives a short list.
+// Violations of a law are counted and one of them is described, so that a bad mesh of a million elements gives a short
+// list.
 
 std::string element_name(Index e);
 
@@ -50,8 +51,8 @@ Violations connectivity_laws(const M& mesh) {
   return v;
 }
 
-/// "positions finite", "no orphan nodes" (a node of no element; models may drop it, but somebody should know). Indices
-/// must be in range.
+/// "positions finite", "no orphan nodes" (nodes that no element uses; models may drop them, but it is reported).
+/// Indices must be in range.
 template <Element E, MeshOf<E> M>
 Violations node_laws(const M& mesh) {
   Violations v;
@@ -70,8 +71,8 @@ Violations node_laws(const M& mesh) {
   return v;
 }
 
-/// Coordinates of an element's nodes relative to its first one, divided by its size: free of scale and of distance to
-/// the origin.
+/// Coordinates of an element's nodes relative to its first one, divided by its size: independent of scale and of
+/// distance to the origin.
 template <Element E, MeshOf<E> M>
 ElementNodes<E> normalised_nodes(const M& mesh, Index e) {
   ElementNodes<E> x = element_nodes<E>(mesh, e);
@@ -167,8 +168,8 @@ Violations surface_laws(const M& mesh) {
   return v;
 }
 
-/// All laws of a mesh of elements E. Laws that need valid indices or finite positions are skipped when those are
-/// broken.
+/// All laws of a mesh of elements E. Laws that need valid indices or finite positions are skipped if these are
+/// violated.
 template <Element E, MeshOf<E> M>
 Violations mesh_laws(const M& mesh) {
   Violations v = connectivity_laws<E>(mesh);

@@ -6,7 +6,7 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// A gate that passes every finite force up to 1e9 N and torque up to 1e9 N m unchanged, after a first tick of zero.
-/// Never for a device in a hand.
+/// Never use it with a device that a person holds.
 inline ForceGate open_gate() {
   ForceLimits limits;
   limits.peak_force = limits.peak_torque = limits.slew_rate = limits.stale_after = 1e9;

@@ -40,7 +40,7 @@ double monomial_error(const ReferenceCell<Q::dimension>& cell, const Exponents<Q
 
 /// Laws of a rule on a cell: "finite", "points inside", "weights sum to the volume", "exact to its degree" (every
 /// monomial of total degree, on tensor domains of degree per coordinate), "degree is not understated" (some monomial
-/// one degree higher is missed).
+/// one degree higher is not exact).
 template <Quadrature Q>
 Violations quadrature_laws(const ReferenceCell<Q::dimension>& cell) {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -52,7 +52,7 @@ Violations quadrature_laws(const ReferenceCell<Q::dimension>& cell) {
     expect_at_most(v, "points inside", outside_by<Q::dimension>(cell.domain, cell.to_standard(point_of(p.xi))),
                    8 * epsilon);
   }
-  if (violates(v, "finite")) return v;  // no bound would mean anything
+  if (violates(v, "finite")) return v;  // bounds are meaningless for NaN
   const double bound = 8 * epsilon * std::max(magnitude, reference_volume(cell.domain));
   expect_at_most(v, "weights sum to the volume", std::abs(weight_sum<Q>() - cell.volume()), bound * cell.scale());
 

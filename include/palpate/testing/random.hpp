@@ -8,8 +8,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// SplitMix64 (Steele, Lea and Flood 2014). The distributions of <random> differ between standard libraries; this does
-/// not.
+/// SplitMix64 (Steele, Lea and Flood 2014). The distributions of <random> differ between standard libraries; this
+/// generator does not.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

@@ -1,4 +1,4 @@
-// Reference domains: their volumes, exact integrals of monomials, and an exact integration to compare rules with.
+// Reference domains: their volumes, exact integrals of monomials, and an exact integration as reference for rules.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -51,7 +51,8 @@ int total_degree(const std::array<int, Dim>& p) {
   return sum;
 }
 
-/// The degree that counts on a domain: the total one on simplices, the largest per coordinate on tensor domains.
+/// The degree of a monomial that is relevant on a domain: the total one on simplices, the largest per coordinate on
+/// tensor domains.
 template <std::size_t Dim>
 int degree_on(Domain domain, const std::array<int, Dim>& p) {
   return is_simplex(domain) ? total_degree(p) : *std::ranges::max_element(p);
@@ -110,7 +111,7 @@ struct ReferenceCell {
   double volume() const { return reference_volume(domain) * scale(); }
 };
 
-/// How far a point of the standard domain lies outside of it; zero or negative inside.
+/// Distance of a point outside of the standard domain; zero or negative inside.
 template <int Dim>
 double outside_by(Domain domain, const Point<Dim>& x) {
   if (!is_simplex(domain)) return x.cwiseAbs().maxCoeff() - 1.0;

@@ -14,20 +14,20 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// Interior points of an element: its centroid and random convex combinations of its nodes, always the same.
+/// Interior points of an element: its centroid and random convex combinations of its nodes, the same in every run.
 template <int Nodes, int Dim>
 std::vector<Point<Dim>> sample_points(const Eigen::Matrix<double, Nodes, Dim>& nodes) {
   Random random(20050615);
   std::vector<Point<Dim>> points{nodes.colwise().mean().transpose()};
   for (int k = 0; k < 24; ++k) {
-    // The cubes of uniform numbers scatter the points; equal weights would gather them at the centroid.
+    // Cubes of uniform numbers as weights spread the points; plain uniform weights would cluster them at the centroid.
     const Eigen::Matrix<double, Nodes, 1> w = random.vector<Nodes>(0.01, 1.0).array().cube();
     points.push_back(nodes.transpose() * w / w.sum());
   }
   return points;
 }
 
-/// Derivatives of the shape functions by a five-point stencil, exact to degree 4 but for rounding.
+/// Derivatives of the shape functions by a five-point stencil, exact to degree 4 except for rounding.
 template <class S, int Dim>
 Eigen::Matrix<double, S::nodes, Dim> numerical_gradient(const Point<Dim>& xi) {
   constexpr double h = 1.0 / 256.0;

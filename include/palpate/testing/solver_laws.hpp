@@ -16,13 +16,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// What a solver promises beyond its concept.
+/// Properties that a solver claims beyond its concept.
 struct SolverClaims {
   double tolerance = 1e-12;  ///< |b - K x| at most this times |K| |x| + |b|
   bool direct = true;        ///< no iterations, always converges
 };
 
-/// The largest of |K t| / |t| over a few vectors: |K|_2 within a small factor.
+/// The largest of |K t| / |t| over a few vectors: an estimate of |K|_2 within a small factor.
 template <SpdOperator Op>
 double norm_estimate(const Op& op) {
   Random random(1929);
@@ -46,14 +46,14 @@ double residual(const Op& op, const VectorX& b, const VectorX& x) {
   return (b - r).norm();
 }
 
-/// "report is truthful" about what was returned: a residual that is stated is the one found, convergence is claimed
-/// only with a finite answer that satisfies the equations, and a direct solver makes no iterations.
+/// "report is truthful": a reported residual equals the measured one, convergence is reported only for a finite
+/// solution that satisfies the equations, and a direct solver reports no iterations.
 Violations report_laws(const SolveReport& report, double relative_residual, bool small, const SolverClaims& claims,
                        const std::string& name);
 
 /// Laws of a prepared solver of the system `op`: "size"; for several loads "solves" (backward error within the claim),
-/// "finite", "same answer twice" to the last bit whatever x held before, "load is left alone", "report is truthful";
-/// "zero load gives zero" exactly; and "symmetric" (f . K^-1 g = g . K^-1 f).
+/// "finite", "same answer twice" to the last bit for any previous content of x, "load is left alone", "report is
+/// truthful"; "zero load gives zero" exactly; and "symmetric" (f . K^-1 g = g . K^-1 f).
 template <SpdOperator Op, LinearSolver S>
 Violations solver_laws(const Op& op, S& solver, SolverClaims claims = {}) {
   Violations v;
@@ -91,8 +91,8 @@ Violations solver_laws(const Op& op, S& solver, SolverClaims claims = {}) {
   return v;
 }
 
-/// "accurate": the answer to K t is t within the relative `bound`, for a few known t. Stronger than a small residual;
-/// the bound depends on the condition of K.
+/// "accurate": the solution for the load K t is t within the relative `bound`, for a few known t. Stronger than a small
+/// residual; the bound depends on the condition of K.
 template <SpdOperator Op, LinearSolver S>
 Violations accuracy_laws(const Op& op, S& solver, double bound) {
   Violations v;

@@ -1,4 +1,4 @@
-// Does a device with this servo come to rest?
+// Checks whether a device with a given servo comes to rest.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
@@ -16,8 +16,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// A wall at z = 0 without history, behind an open gate: force stiffness * depth, per axis z. What a servo is compared
-/// with.
+/// A wall at z = 0 without state, with an open gate: force stiffness * depth along z. The reference for comparisons
+/// with a servo.
 struct VirtualWall {
   double stiffness = 500.0;  ///< [N/m]
   bool one_sided = true;     ///< false: pulls as well, so that the loop is linear
@@ -27,7 +27,7 @@ struct VirtualWall {
   std::span<const GatedForce> tick(std::span<const ToolState> tools) noexcept;
 };
 
-/// A wall, or whatever else computes a force, with an energy tank behind it.
+/// A wall, or any other force computation, followed by an energy tank.
 template <class Source>
 struct Tanked {
   Source source;
@@ -60,7 +60,7 @@ const GatedForce& tick(SimulatedDevice& device, S& servo) noexcept {
   return force;
 }
 
-/// Way between the extremes of the exact z position during `seconds` [m]; infinity when it leaves +-1 m.
+/// Distance between the extremes of the exact z position during `seconds` [m]; infinity if it leaves +-1 m.
 template <Servo S>
 double travel(SimulatedDevice& device, S& servo, double seconds) noexcept {
   double low = infinity, high = -infinity;
@@ -74,8 +74,8 @@ double travel(SimulatedDevice& device, S& servo, double seconds) noexcept {
   return high - low;
 }
 
-/// The largest value in [low, high] for which `holds` is true, if it is true below and false above it: by bisection of
-/// the logarithm, to the relative `tolerance`. `low` when it is never true, `high` when it always is.
+/// The largest value in [low, high] for which `holds` is true, assuming it is true below and false above that value: by
+/// bisection of the logarithm, to the relative `tolerance`. `low` if it is never true, `high` if it is always true.
 template <class Holds>
 double largest_that(Holds holds, double low, double high, double tolerance = 0.005) {
   if (!holds(low)) return low;
@@ -88,8 +88,8 @@ double largest_that(Holds holds, double low, double high, double tolerance = 0.0
 }
 
 /// Largest stiffness [N/m] at which a linear loop (no friction, no encoder steps) does not grow: (b + B) / (T/2 + d)
-/// for a device damping b, a virtual damping B, a period T and a delay d, when b T / m is small (Hulin et al., IEEE
-/// T-CST 2013; Colgate and Schenkel 1997 for d = 0).
+/// for a device damping b, a virtual damping B, a period T and a delay d, if b T / m is small (Hulin et al., IEEE T-CST
+/// 2013; Colgate and Schenkel 1997 for d = 0).
 double stiffness_limit(double damping, double period, double delay);
 
 }}}  // namespace palpate::testing

@@ -1,4 +1,4 @@
-// The laws of concepts/tissue_model.hpp. Its hooks are the compiler's to check.
+// The laws of concepts/tissue_model.hpp. Its hooks are checked by the compiler.
 #pragma once
 
 #include <palpate/concepts/tissue_model.hpp>
@@ -17,12 +17,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// How far a tissue may be from its laws.
+/// Allowed deviations of a tissue from its laws.
 struct TissueClaims {
   double tolerance = 1e-10;  ///< relative to the largest compliance; 1e-4 suits a compliance stored in float
 };
 
-/// The compliance among some vertices whose columns are available, 3 rows and columns per vertex [m/N].
+/// The compliance between some vertices whose columns are available, 3 rows and columns per vertex [m/N].
 template <TissueModel T>
 MatrixX compliance_matrix(const T& tissue, std::span<const int> vertices) {
   const Index n = static_cast<Index>(vertices.size());
@@ -34,8 +34,8 @@ MatrixX compliance_matrix(const T& tissue, std::span<const int> vertices) {
   return c;
 }
 
-/// "bound really bounds": no vertex of the whole surface moves farther per unit force than the bound of the loaded one
-/// (by the largest singular value of the 3 x 3 block).
+/// "bound really bounds": no vertex of the whole surface moves farther per unit force than the bound of the loaded
+/// vertex (measured by the largest singular value of the 3 x 3 block).
 template <TissueModel T>
 Violations bound_laws(const T& tissue, std::span<const int> vertices) {
   Violations v;
@@ -69,9 +69,9 @@ Violations scale_laws(const T& tissue, std::span<const int> vertices) {
   return v;
 }
 
-/// Laws among the given vertices, whose columns must fit at once: "columns available", "finite", "reciprocity"
-/// (C(i, j) = C(j, i)^T, Betti), "positive semidefinite" and "a vertex gives way" where it is not held, the bound, the
-/// floor, and "same columns again". At least one of the vertices must be able to move.
+/// Laws for the given vertices, whose columns must all be available simultaneously: "columns available", "finite",
+/// "reciprocity" (C(i, j) = C(j, i)^T, Betti), "positive semidefinite" and "a loaded vertex moves" where it is not
+/// constrained, the bound, the floor, and "same columns again". At least one of the vertices must be able to move.
 template <TissueModel T>
 Violations tissue_laws(T& tissue, std::span<const int> vertices, TissueClaims claims = {}) {
   Violations v;
@@ -89,8 +89,9 @@ Violations tissue_laws(T& tissue, std::span<const int> vertices, TissueClaims cl
     const VectorX own = c.diagonal().segment<3>(3 * static_cast<Index>(i));
     const MatrixX column = c.middleCols<3>(3 * static_cast<Index>(i));
     if (!column.isZero(0.0))
-      expect_at_least(v, "a vertex gives way", own.minCoeff(), 0.0, "vertex " + std::to_string(i));
-    if (!column.isZero(0.0)) expect_above(v, "a vertex gives way", own.maxCoeff(), 0.0, "vertex " + std::to_string(i));
+      expect_at_least(v, "a loaded vertex moves", own.minCoeff(), 0.0, "vertex " + std::to_string(i));
+    if (!column.isZero(0.0))
+      expect_above(v, "a loaded vertex moves", own.maxCoeff(), 0.0, "vertex " + std::to_string(i));
   }
   append(v, bound_laws(tissue, vertices));
   append(v, scale_laws(tissue, vertices));

@@ -1,4 +1,5 @@
-// What a law suite returns: a list of broken laws. No test framework is needed; with one, check that the list is empty.
+// The result of a law suite: a list of violated laws. No test framework is needed; with one, check that the list is
+// empty.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -12,7 +13,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// One broken law: its name, where it broke, the value found and the bound it had to keep.
+/// One violated law: its name, where it was violated, the measured value and the bound.
 struct Violation {
   std::string law;
   std::string detail;
@@ -20,7 +21,7 @@ struct Violation {
   double bound = 0.0;
 };
 
-/// All broken laws of one subject; empty when it keeps them all.
+/// All violated laws of one subject; empty if all laws are satisfied.
 using Violations = std::vector<Violation>;
 
 /// Reports unless value <= bound. NaN is a violation.
@@ -32,25 +33,25 @@ void expect_at_least(Violations& v, std::string_view law, double value, double b
 /// Reports unless value > bound. NaN is a violation.
 void expect_above(Violations& v, std::string_view law, double value, double bound, std::string detail = {});
 
-/// Reports unless it holds.
+/// Reports unless the condition is true.
 void expect_true(Violations& v, std::string_view law, bool holds, std::string detail = {});
 
-/// Adds the violations of a part; `part` is put before their details.
+/// Adds the violations of a part; `part` is prepended to their details.
 void append(Violations& all, Violations more, const std::string& part = {});
 
-/// True when the law of that name is among the broken ones.
+/// True if the law with that name is violated.
 bool violates(const Violations& violations, std::string_view law);
 
-/// One line per violation; empty when there is none.
+/// One line per violation; empty if there are none.
 std::string describe(const Violations& violations);
 
-/// Looks at many values that must all stay at or below one bound, and reports the worst of them and how many broke it.
+/// Checks many values against one upper bound, and reports the worst of them and how many exceeded it.
 class Worst {
  public:
   Worst(std::string law, double bound) : law_(std::move(law)), bound_(bound) {}
 
-  /// `detail` is called for its text only when the value is the worst so far and above the bound. NaN is the worst of
-  /// all.
+  /// `detail` is called for its text only if the value is the worst so far and above the bound. NaN counts as the worst
+  /// value.
   template <class Detail>
   void observe(double value, Detail detail) {
     if (value <= bound_) return;

@@ -10,14 +10,14 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Writes under a name nobody else uses, `<path>.tmp-<16 hexadecimal digits>`, and renames at the end, which replaces
-/// an older file at once: who opens `path` finds the old file or the new one, and of several writers the last one
-/// stays. The destructor removes what was not renamed. Nothing is forced to the disk: after a power failure the file
-/// may be damaged, which its reader must find out. Nothing throws but memory.
+/// Writes under a unique name, `<path>.tmp-<16 hexadecimal digits>`, and renames at the end, which replaces an older
+/// file atomically: a reader of `path` finds either the old file or the new one, and of several writers the last one
+/// wins. The destructor removes a file that was not renamed. The data is not flushed to disk: after a power failure the
+/// file may be damaged, and its reader must detect that. Throws only std::bad_alloc.
 class AtomicFile {
  public:
-  /// Opens; `stream()` is null and `error()` says why when that failed. Files of this pattern that a killed process
-  /// left behind are removed when they are older than an hour.
+  /// Opens the temporary file. On failure `stream()` is null and `error()` gives the reason. Files of this name pattern
+  /// that a killed process left behind are removed if they are older than an hour.
   explicit AtomicFile(std::string path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -26,7 +26,7 @@ class AtomicFile {
   std::FILE* stream() const noexcept { return file_.get(); }
   const std::string& error() const noexcept { return error_; }
 
-  /// Closes and renames; false when the disk was full or the name could not be taken.
+  /// Closes and renames; false if the disk was full or the rename failed.
   bool commit();
 
  private:
@@ -35,7 +35,7 @@ class AtomicFile {
 
   void discard() noexcept;
 
-  /// Differs between threads, processes and calls; if not, opening says so.
+  /// Differs between threads, processes and calls; in case of a collision, opening fails with EEXIST.
   static std::string unique_digits();
 
   bool is_leftover(const std::filesystem::path& file) const;

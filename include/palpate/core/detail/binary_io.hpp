@@ -1,4 +1,4 @@
-// Arrays to and from a binary file, in bulk and hashed on the way.
+// Bulk transfer of arrays to and from a binary file, with a hash of the transferred bytes.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -14,7 +14,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(std::numeric_limits<double>::is_iec559 && std::numeric_limits<float>::is_iec559,
-              "binary files hold IEEE 754 numbers");
+              "binary files contain IEEE 754 numbers");
 
 namespace detail {
 
@@ -23,12 +23,12 @@ struct FileClose {
 };
 using File = std::unique_ptr<std::FILE, FileClose>;
 
-/// What the operating system said last, in words.
+/// The operating system's message for an errno value.
 std::string system_message(int error);
 
 }  // namespace detail
 
-/// Writes values as they lie in memory. After the first failure nothing more is written.
+/// Writes values in their memory representation. After the first failure nothing more is written.
 class BinaryWriter {
  public:
   explicit BinaryWriter(std::FILE* file) : file_(file) {}
@@ -65,12 +65,12 @@ class BinaryWriter {
 enum class ReadFailure : std::uint8_t {
   none,
   ended,    ///< the file is too short
-  damaged,  ///< a count is not the one that must stand there
+  damaged,  ///< a count differs from the expected one
   unfit,    ///< the numbers belong to another structure
 };
 
-/// Reads what a BinaryWriter wrote into arrays whose sizes the caller knows: nothing is ever allocated because a file
-/// says so. After the first failure nothing more is read; what was read counts only when the digest is right.
+/// Reads the output of a BinaryWriter into arrays whose sizes the caller knows: no allocation size is ever taken from a
+/// file. After the first failure nothing more is read; the values read are valid only if the digest matches.
 class BinaryReader {
  public:
   explicit BinaryReader(std::FILE* file) : file_(file) {}
@@ -79,7 +79,7 @@ class BinaryReader {
   bool value(T& v) noexcept {
     return bytes(&v, sizeof v);
   }
-  /// Reads a value that must be this one; it is the failure `otherwise` if not.
+  /// Reads a value that must equal `wanted`; if it does not, sets the failure `otherwise`.
   template <HashableBytes T>
   bool expect(const T& wanted, ReadFailure otherwise) noexcept {
     T found{};
@@ -87,7 +87,7 @@ class BinaryReader {
     if (std::memcmp(&found, &wanted, sizeof wanted) != 0) failure_ = otherwise;
     return good();
   }
-  /// Fills an array that must be as long in the file.
+  /// Fills an array; its length in the file must be the same.
   template <HashableBytes T>
   bool array(std::span<T> values) noexcept {
     return expect(static_cast<std::uint64_t>(values.size()), ReadFailure::damaged) &&

@@ -11,7 +11,8 @@ PALPATE_INLINE std::string system_message(int error) {
   return error == 0 ? std::string("an unknown error") : std::generic_category().message(error);
 }
 
-/// Bytes hashed and passed on at once: they stay in the cache between the two. Part of the file format.
+/// Bytes per step of hashing and file access, small enough to stay in the cache between the two. Part of the file
+/// format.
 inline constexpr std::size_t binary_chunk = std::size_t{1} << 18;
 
 }}}  // namespace palpate::detail

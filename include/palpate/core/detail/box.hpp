@@ -21,7 +21,8 @@ struct Box {
     const double x = off(p, 0), y = off(p, 1), z = off(p, 2);
     return x * x + (y * y + z * z);
   }
-  /// Whether the way from a point enters the box, widened by `margin`, before the share `until` of it is gone.
+  /// Whether the straight path from a point enters the box, enlarged by `margin`, within the fraction `until` of the
+  /// path.
   bool is_crossed(const Vector3& from, const Vector3& path, double margin, double until) const noexcept {
     double enter = 0.0, leave = until;
     for (int k = 0; k < 3; ++k) {
@@ -45,7 +46,7 @@ struct Box {
   }
   double off(const Vector3& p, int k) const noexcept {
     const double side = std::max(low[k] - p[k], p[k] - high[k]);
-    return side < 0.0 ? 0.0 : side;  // NaN stays NaN: it is near nothing
+    return side < 0.0 ? 0.0 : side;  // NaN stays NaN, so that no comparison finds it near
   }
 };
 

@@ -10,7 +10,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE std::uint64_t ContentHash::digest() const noexcept {
   std::uint64_t hash = 0;
   for (const std::uint64_t lane : lanes_) hash = mixed(hash, lane);
-  hash ^= hash >> 29;  // each line is a bijection: all bits come to depend on all
+  hash ^= hash >> 29;  // each line is a bijection; together they make every output bit depend on every input bit
   hash *= second_prime;
   return hash ^ (hash >> 32);
 }

@@ -1,4 +1,4 @@
-// Between rows of a table, one per node, and lanes, one per element.
+// Transfers between rows of a table (one per node) and lanes (one per element).
 #pragma once
 
 #include <palpate/core/detail/lanes.hpp>
@@ -43,15 +43,15 @@ PALPATE_ALWAYS_INLINE void set_part(Lanes<S, N>& lanes, int first, const LaneVec
 
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(PALPATE_LANES_BY_LOOPS)
 
-/// Transposes 4 x 4 blocks in vectors of W numbers, W a multiple of four that fits a register of the processor. Element
-/// 4 b + j of a chunk has its row in group b of the j-th vector: shuffles then stay within groups but for the last.
+/// Transposes 4 x 4 blocks in vectors of W numbers, W a multiple of four that fits a processor register. The row of
+/// element 4 b + j of a chunk is in group b of the j-th vector, so that all shuffles but the last stay within groups.
 template <class S, int W>
 struct RowTranspose {
   using Vector = LaneVector<S, W>;
   using Quad = LaneVector<S, 4>;
   using Pattern = int[4];
 
-  /// (a, b) picked by `pattern` in every group of four: 0 ... 3 from a, 4 ... 7 from b.
+  /// Entries of (a, b) selected by P0 ... P3 in every group of four: 0 ... 3 from a, 4 ... 7 from b.
   template <int P0, int P1, int P2, int P3, std::size_t... I>
   PALPATE_ALWAYS_INLINE static Vector pick(const Vector& a, const Vector& b, std::index_sequence<I...>) noexcept {
     return __builtin_shufflevector(a, b, place<P0, P1, P2, P3>(static_cast<int>(I))...);
@@ -66,8 +66,8 @@ struct RowTranspose {
     return i / 4 * 4 + (p[i % 4] < 4 ? p[i % 4] : p[i % 4] - 4 + W);
   }
 
-  /// Rows j, j + 4, j + 8, ... of the chunk, one after the other. Joined in registers: a wide load of what was just
-  /// stored in parts would wait for the stores.
+  /// Rows j, j + 4, j + 8, ... of the chunk, in sequence. Joined in registers, because a wide load of data just stored
+  /// in parts would stall until the stores complete.
   template <int M, class Id>
   PALPATE_ALWAYS_INLINE static LaneVector<S, M> rows_from(const S* rows, const Id* row) noexcept {
     if constexpr (M == 4) {
@@ -123,7 +123,7 @@ struct RowTranspose {
   }
 };
 
-/// Numbers of type S in a register, at most N; under four where the processor has none that holds a row.
+/// Numbers of type S per register, at most N; less than four if no register of the processor can store a row.
 template <class S, int N>
 inline constexpr int transposed_at_once = std::min<int>(N, static_cast<int>(EIGEN_MAX_STATIC_ALIGN_BYTES / sizeof(S)));
 
@@ -159,8 +159,8 @@ PALPATE_ALWAYS_INLINE Triple<Lanes<S, N>> load_rows(const S* rows, const Id* row
   }
 }
 
-/// Adds x, y, z of every lane to its row; the fourth number of a row stays. Lanes that name one row add one after the
-/// other, in an order that is the same in every call.
+/// Adds x, y, z of every lane to its row; the fourth number of a row is unchanged. Lanes that refer to the same row add
+/// one after the other, in the same order in every call.
 template <class S, int N, class Id>
 PALPATE_ALWAYS_INLINE void add_rows(S* rows, const Id* row, const Triple<Lanes<S, N>>& t) noexcept {
   constexpr int W = detail::transposed_at_once<S, N>;

@@ -1,4 +1,4 @@
-// The vectors under core/detail/lanes.hpp: the compiler's own where it has them, arrays elsewhere.
+// The vectors that core/detail/lanes.hpp uses: compiler vector extensions where available, arrays elsewhere.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -27,7 +27,7 @@ PALPATE_ALWAYS_INLINE void select_lanes(const I& mask, const V& yes, const V& no
 
 #else
 
-/// The operators of the compiler's vectors that core/detail/lanes.hpp uses, one number after the other.
+/// The operators of compiler vectors that core/detail/lanes.hpp uses, as loops over the numbers.
 template <class T, int N>
 struct LaneVector {
   using Integer = LaneVector<std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>, N>;

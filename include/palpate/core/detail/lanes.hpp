@@ -1,4 +1,4 @@
-// Several numbers handled at once: the same kernel for one element or for a group of them.
+// Several numbers processed in parallel: the same kernel works for one element or for a group of elements.
 #pragma once
 
 #include <palpate/core/detail/lane_vector.hpp>
@@ -9,7 +9,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What a comparison of lanes gives: yes or no in each.
+/// Result of a comparison of lanes: true or false per lane.
 template <class S, int N>
 struct LaneMask {
   detail::LaneVector<std::conditional_t<sizeof(S) == 8, std::int64_t, std::int32_t>, N> v;  ///< -1 or 0
@@ -20,9 +20,10 @@ struct LaneMask {
   PALPATE_ALWAYS_INLINE friend LaneMask operator!(const LaneMask& a) noexcept { return {~a.v}; }
 };
 
-/// N numbers of type S with the operators of one. Vector instructions where the compiler has vectors of its own (GCC,
+/// N numbers of type S with the operators of one. Vector instructions where the compiler has vector extensions (GCC,
 /// Clang), loops elsewhere. Size and alignment (both N * sizeof(S)) do not depend on compiler flags; how a call passes
-/// it does, so everything here is inlined or takes references. exp, log, pow, ... call std lane by lane.
+/// the object does, so everything here is inlined or takes references. exp, log, pow, ... call the std function lane by
+/// lane.
 template <class S, int N>
 struct Lanes {
   static_assert(std::is_floating_point_v<S> && N > 1 && (N & (N - 1)) == 0);
@@ -36,7 +37,7 @@ struct Lanes {
   /// The same number in all lanes. Implicit, so that a kernel reads as it does with one number.
   PALPATE_ALWAYS_INLINE Lanes(S x) noexcept : v(x - detail::LaneVector<S, N>{}) {}
 
-  /// Reads N numbers that follow each other; any alignment.
+  /// Reads N consecutive numbers; any alignment.
   PALPATE_ALWAYS_INLINE static Lanes load(const S* from) noexcept {
     Lanes r;
     std::memcpy(&r.v, from, sizeof(r.v));
@@ -62,11 +63,11 @@ struct Lanes {
   PALPATE_ALWAYS_INLINE friend Mask operator>=(const Lanes& a, const Lanes& b) noexcept { return {b.v <= a.v}; }
   // clang-format on
 
-  /// As std::min and std::max: the first when the second is not less (greater), also when one is NaN.
+  /// As std::min and std::max: returns the first argument unless the second is less (greater), also if one is NaN.
   PALPATE_ALWAYS_INLINE friend Lanes min(const Lanes& a, const Lanes& b) noexcept { return select(b < a, b, a); }
   PALPATE_ALWAYS_INLINE friend Lanes max(const Lanes& a, const Lanes& b) noexcept { return select(a < b, b, a); }
   PALPATE_ALWAYS_INLINE friend Lanes abs(const Lanes& a) noexcept { return select(a < Lanes(S(0)), -a, a); }
-  /// yes where the mask says so, no elsewhere.
+  /// `yes` where the mask is true, `no` elsewhere.
   PALPATE_ALWAYS_INLINE friend Lanes select(const Mask& mask, const Lanes& yes, const Lanes& no) noexcept {
     Lanes r;
     detail::select_lanes(mask.v, yes.v, no.v, r.v);
@@ -104,7 +105,7 @@ struct ScalarOf<Lanes<S, N>> {
 template <class S>
 using scalar_of = typename ScalarOf<S>::Type;
 
-/// The same three questions for one number.
+/// select, any and all for one number; any and all for lanes.
 // clang-format off
 template <class S>
 requires std::is_floating_point_v<S>

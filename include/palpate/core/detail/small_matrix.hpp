@@ -17,8 +17,8 @@ concept Small = std::same_as<M, Matrix3> || std::same_as<M, Vector6> || std::sam
 template <class T, class M>
 concept TransposeOf = std::same_as<T, Eigen::Transpose<M>> || std::same_as<T, Eigen::Transpose<const M>>;
 
-/// Product of 3 x 3 matrices whose entry (i, j) lies at data[i * Row + j * Column]: strides 1, 3 for a Matrix3, 3, 1
-/// for its transpose.
+/// Product of 3 x 3 matrices whose entry (i, j) is data[i * Row + j * Column]: strides 1, 3 for a Matrix3, 3, 1 for its
+/// transpose.
 template <int RowA, int ColumnA, int RowB, int ColumnB>
 Matrix3 product(const double* a, const double* b) noexcept {
   Matrix3 r;
@@ -31,7 +31,7 @@ Matrix3 product(const double* a, const double* b) noexcept {
 
 }  // namespace detail
 
-// Overload resolution prefers these operators for exactly these types. All other operands give Eigen's expressions.
+// Overload resolution prefers these operators for exactly these types. All other operands use Eigen's expressions.
 // Vector3 is written out component by component: g++ then keeps the components in registers.
 
 template <std::same_as<Vector3> V>
@@ -160,7 +160,7 @@ inline Matrix3 inverse(const Matrix3& m) noexcept {
   return r;
 }
 
-/// The three entries of a node in a vector with three per node.
+/// The three entries of a node in a vector with three entries per node.
 inline Vector3 node_vector(const VectorX& all, Index node) noexcept {
   return {all[3 * node], all[3 * node + 1], all[3 * node + 2]};
 }

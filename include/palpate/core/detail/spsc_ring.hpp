@@ -9,7 +9,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Bounded first-in first-out queue, one thread pushes and one pops. Neither waits, locks or allocates.
+/// Bounded first-in first-out queue: one thread pushes and one pops. Neither waits, locks or allocates.
 template <class T, std::size_t Capacity>
 class SpscRing {
  public:
@@ -29,7 +29,7 @@ class SpscRing {
     head_.store(head + 1, std::memory_order_release);
     return true;
   }
-  /// For the thread that pops.
+  /// To be called by the popping thread only.
   bool empty() const noexcept { return head_.load(std::memory_order_relaxed) == tail_.load(std::memory_order_acquire); }
 
  private:

@@ -1,4 +1,4 @@
-// The rotation of a deformation, from the one it had a moment ago.
+// The rotation of a deformation, starting from its previous rotation.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -10,7 +10,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// q turned by the half angles (x, y, z), and made of unit length again without a root: for half angles up to 1/2.
+/// q rotated by the half angles (x, y, z) and normalised without a square root: for half angles up to 1/2.
 template <class S>
 PALPATE_ALWAYS_INLINE Quaternion<S> rotated_by(const Quaternion<S>& q, const S& x, const S& y, const S& z) noexcept {
   const Quaternion<S> p{q.w - q.x * x - q.y * y - q.z * z, q.x + q.w * x + q.y * z - q.z * y,
@@ -21,16 +21,17 @@ PALPATE_ALWAYS_INLINE Quaternion<S> rotated_by(const Quaternion<S>& q, const S& 
   return {scale * p.w, scale * p.x, scale * p.y, scale * p.z};
 }
 
-/// Square of the half angle below which one more of Newton's steps changes nothing but rounding: near a rotation that
-/// makes R^T F symmetric the error that is left is the square of the last angle times the strain.
+/// Square of the half angle below which another Newton step changes only rounding: near a rotation that makes R^T F
+/// symmetric, the remaining error is the square of the last angle times the strain.
 template <class S>
 inline constexpr S last_turn = sizeof(S) == 8 ? S(1e-15) : S(2.5e-7);
 
 }  // namespace detail
 
-/// closest_rotation(F) from a unit quaternion near to it, which is moved there: Newton's method on R : F, a third of
-/// the cost when one or two steps do. R : F = q^T K q has no local maximum but the largest, so tr(S) I - S positive
-/// definite, S = sym(R^T F), proves the answer; without proof after four steps the rotation is found anew.
+/// closest_rotation(F) by Newton's method on R : F, starting from a unit quaternion near the result, which is updated.
+/// A third of the cost of closest_rotation if one or two steps suffice. R : F = q^T K q has no local maximum but the
+/// largest, so tr(S) I - S positive definite, S = sym(R^T F), proves the answer. If this is not proven within four
+/// steps, closest_quaternion computes the rotation from scratch.
 template <class S>
 PALPATE_ALWAYS_INLINE Tensor3<S> tracked_rotation(const Tensor3<S>& f, Quaternion<S>& q) noexcept {
   using Scalar = scalar_of<S>;
@@ -40,7 +41,7 @@ PALPATE_ALWAYS_INLINE Tensor3<S> tracked_rotation(const Tensor3<S>& f, Quaternio
     const S j = determinant(g, c), size = trace(g), half = S(0.5f) / j;
     const Triple<S> t = c * detail::twice_axial(a);
     const S x = half * t.x, y = half * t.y, z = half * t.z, turn = x * x + y * y + z * z;
-    // positive definite, and far enough from not being so; false for what is not a number
+    // positive definite with a safety margin; false for NaN
     const auto sure =
         (size > S(0)) & (trace(c) > S(0)) & (j > S(Scalar(1e-3)) * size * size * size) & (turn < S(0.25f));
     if (!all(sure)) break;

@@ -1,4 +1,4 @@
-// Cell shapes that mesh files hold, and where their nodes sit.
+// Cell shapes in mesh files, and the positions of their nodes.
 #pragma once
 
 #include <palpate/mesh/detail/element_layout.hpp>
@@ -11,7 +11,7 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// A shape with its number of nodes. The order of nodes inside this folder is VTK's (The VTK User's Guide, "VTK File
-/// Formats", figures of the linear and quadratic cells); every format has a NodeOrder that leads to it.
+/// Formats", figures of the linear and quadratic cells); every format has a NodeOrder that maps to it.
 enum class CellShape : std::uint8_t {
   point,
   line2,
@@ -38,7 +38,7 @@ enum class CellShape : std::uint8_t {
   pyramid14,
 };
 
-/// What is true of a shape in every file.
+/// The properties of a shape, the same in every format.
 struct ShapeFacts {
   int dimension;
   int nodes;
@@ -76,7 +76,8 @@ constexpr const ShapeFacts& facts(CellShape shape) noexcept {
   return shape_facts[static_cast<std::size_t>(shape)];
 }
 
-/// The shape of an element: known by its nodes and faces, so an element needs no entry anywhere to be read.
+/// The shape of an element, deduced from its numbers of nodes and faces, so that user-defined elements can be read
+/// without registration.
 constexpr CellShape solid_shape(const ElementLayout& element) noexcept {
   if (element.face_count == 4) return element.nodes == 4 ? CellShape::tetrahedron4 : CellShape::tetrahedron10;
   return element.nodes == 8 ? CellShape::hexahedron8 : CellShape::hexahedron20;
@@ -96,7 +97,7 @@ constexpr CellShape face_shape(CellShape solid) noexcept {
   }
 }
 
-/// The shape of element E; refuses one that no file holds when it is compiled.
+/// The shape of element E; a shape that no file format supports is a compile error.
 template <Element E>
 constexpr CellShape solid_shape() {
   constexpr std::size_t faces = E::faces.size();
@@ -107,7 +108,7 @@ constexpr CellShape solid_shape() {
   return shape;
 }
 
-/// order[k] is the place in the file's node list of VTK's node k; empty when the two agree.
+/// order[k] is the position of VTK's node k in the file's node list; empty if the two orders agree.
 using NodeOrder = std::span<const std::uint8_t>;
 
 }}}  // namespace palpate::PALPATE_ABI::io

@@ -1,4 +1,4 @@
-// A Gmsh file as a whole: which format it is and which sections it holds.
+// Reads whole Gmsh files: their format and sections.
 #pragma once
 
 #include <palpate/io/file_mesh.hpp>
@@ -6,7 +6,7 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh {
 
 /// Reads a whole file. Errors: bad_file, index_out_of_range, count_too_large, non_finite, unsupported, each with file
-/// and line (in binary data: byte). Linear in the size of the text, n log n when node ids are not 1 ... n; counts are
+/// and line (in binary data: byte). Linear in the size of the text, O(n log n) if node ids are not 1 ... n; counts are
 /// compared with the size of the text before anything is allocated.
 FileMesh parse(std::string_view text, const std::string& name);
 

@@ -9,12 +9,12 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh {
 
 namespace detail {
 
-/// The command that turns any mesh Gmsh can open into one that is read here.
+/// The command that converts any mesh Gmsh can open to a format that is read here.
 PALPATE_COLD inline std::string convert_command(const std::string& name) {
   return joined({"Convert it: gmsh ", name, " -save -format msh41 -o converted.msh"});
 }
 
-/// Reads what follows the version of a binary file: the integer 1, which tells the byte order.
+/// Reads what follows the version of a binary file: the integer 1, which shows the byte order.
 PALPATE_COLD inline void read_byte_order(TextReader& in, Format& format) {
   const std::string_view raw = in.take(4, "the integer 1");
   format.swap = from_bytes<std::int32_t>(raw, false) != 1;
@@ -22,7 +22,7 @@ PALPATE_COLD inline void read_byte_order(TextReader& in, Format& format) {
     in.refuse(SetupErrorKind::bad_file, "the integer 1", in_quotes(raw));
 }
 
-/// Reads $MeshFormat; MSH 1 has none and its $NOD stays the current line. Refuses MSH 3 and 4.0 as unsupported, with
+/// Reads $MeshFormat; MSH 1 has none, and its $NOD remains the current line. Refuses MSH 3 and 4.0 as unsupported, with
 /// the command that converts them.
 PALPATE_COLD inline Format read_format(TextReader& in) {
   in.need_line("$MeshFormat or $NOD");
@@ -59,20 +59,20 @@ PALPATE_COLD inline void read_physical_names(TextReader& in, State& state) {
   }
 }
 
-/// Refuses a section that came before, or that comes at the wrong place; else notes that it is there.
+/// Refuses a section that is repeated or at the wrong place; otherwise sets `seen`.
 PALPATE_COLD inline void check_order(const TextReader& in, bool& seen, bool in_place, std::string_view order) {
   if (seen) in.refuse(SetupErrorKind::bad_file, "every section once", {in_quotes(in.line()), " again"});
   if (!in_place) in.refuse(SetupErrorKind::bad_file, order, in_quotes(in.line()));
   seen = true;
 }
 
-/// Moves to the last line of a section that nobody needs.
+/// Moves to the last line of a section that is not used.
 inline void skip_section(TextReader& in, const State& state, const std::string& end) {
   if (state.format.is_binary) in.skip_to(end);
   while (in.line() != end) in.need_line(end);
 }
 
-/// Reads the section whose first line is the current one; skips those nobody needs.
+/// Reads the section whose first line is the current one; skips sections that are not used.
 inline void read_section(TextReader& in, State& state) {
   const std::string_view section = in.line();
   const bool is1 = state.format.major == 1;

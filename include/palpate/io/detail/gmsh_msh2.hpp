@@ -8,7 +8,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh::msh2 {
 /// $Nodes (in MSH 1 $NOD): the count, then the nodes.
 void read_nodes(TextReader& in, State& state);
 
-/// $Elements (in MSH 1 $ELM). An element of several physical groups comes several times.
+/// $Elements (in MSH 1 $ELM). An element in several physical groups is listed several times.
 void read_elements(TextReader& in, State& state);
 
 }}}  // namespace palpate::PALPATE_ABI::io::gmsh::msh2

@@ -21,7 +21,7 @@ PALPATE_INLINE void read_nodes(TextReader& in, State& state) {
 
 namespace detail {
 
-/// Reads `count` tags of an element and returns the physical tag, the first of them; 0 when there is none.
+/// Reads `count` tags of an element and returns the physical tag, the first of them; 0 if there is none.
 inline int read_tags(const Numbers& in, Index count) {
   const int physical = count > 0 ? read_physical(in) : 0;
   for (Index i = 1; i < count; ++i) in.integer("a tag", -max_int, max_int);

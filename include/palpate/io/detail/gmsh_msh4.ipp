@@ -9,8 +9,8 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh::msh4 {
 namespace detail {
 
 /// An entity: `tag box nphys phys... [nbound bound...]`; the box has 3 numbers for a point and 6 for the others. Gmsh
-/// writes boxes that overflow for empty entities, so they are not looked at. Elements belong to groups only by way of
-/// their entity.
+/// writes boxes that overflow for empty entities, so they are ignored. Elements belong to groups only through their
+/// entity.
 PALPATE_COLD inline void read_entity(const Numbers& in, int dimension, State& state) {
   in.begin("an entity");
   const Index tag = in.integer("an entity tag", -max_int, max_int);
@@ -46,14 +46,14 @@ PALPATE_COLD inline SectionHeader read_header(const Numbers& in, std::string_vie
   return {blocks, things};
 }
 
-/// Refuses blocks that together do not hold what the header of the section said.
+/// Refuses blocks whose total differs from the count in the header of the section.
 PALPATE_COLD inline void check_total(const TextReader& in, std::string_view what, Index expected, std::size_t found) {
   if (static_cast<Index>(found) != expected)
     in.refuse(SetupErrorKind::bad_file, {expected, " ", what}, {found, " in the blocks"});
 }
 
-/// A block of nodes: `dimension entity parametric count`, then `count` ids, then `count` positions with `dimension`
-/// parameters behind each if parametric.
+/// A block of nodes: `dimension entity parametric count`, then `count` ids, then `count` positions each followed by
+/// `dimension` parameters if parametric.
 inline void read_node_block(const Numbers& in, FileMesh& mesh) {
   in.begin("a block of nodes");
   const Index dimension = in.integer("a dimension", 0, 3);
@@ -84,8 +84,8 @@ PALPATE_COLD inline std::uint32_t physical_set(const TextReader& in, const State
   return it->second;
 }
 
-/// Counts the groups of `count` elements more. A few bytes can put every element into thousands of groups; what that
-/// takes must stay in proportion to the file.
+/// Adds `count` elements to the count of group memberships. A few bytes can put every element into thousands of groups;
+/// the memory for that must stay proportional to the size of the file.
 inline void add_memberships(const TextReader& in, State& state, std::uint32_t set, Index count) {
   const auto limit = static_cast<Index>(in.size());
   state.memberships += count * static_cast<Index>(state.mesh.tag_sets[set].size());

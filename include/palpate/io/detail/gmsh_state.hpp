@@ -1,4 +1,4 @@
-// A Gmsh file under way, and small parts that all formats of Gmsh share.
+// State while a Gmsh file is read, and small functions that all Gmsh formats share.
 #pragma once
 
 #include <palpate/io/detail/gmsh_types.hpp>
@@ -12,10 +12,10 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh {
 struct Format {
   int major = 4;
   bool is_binary = false;
-  bool swap = false;  ///< binary numbers of the other byte order
+  bool swap = false;  ///< binary numbers have the opposite byte order
 };
 
-/// A file under way.
+/// State while a file is read.
 struct State {
   explicit State(const std::string& name) : mesh(name) {}
   Format format;
@@ -23,19 +23,19 @@ struct State {
   bool has_names = false, has_entities = false, has_nodes = false, has_elements = false;
   TagSets sets;
   PairMap entities;       ///< MSH 4: (dimension, entity tag) -> set of physical tags
-  Index memberships = 0;  ///< MSH 4: of elements in groups
+  Index memberships = 0;  ///< MSH 4: pairs of an element and a group
 };
 
 /// Reads an element type number; refuses one that is not in `types`.
 const Type& read_type(const Numbers& in);
 
-/// Reads a physical tag. A minus sign only says that Gmsh turned the orientation round.
+/// Reads a physical tag. A minus sign only marks reversed orientation and is dropped.
 int read_physical(const Numbers& in);
 
 /// Requires the line `mark`.
 void need_mark(TextReader& in, std::string_view mark);
 
-/// Reads a line that holds a count and nothing else.
+/// Reads a line that contains only a count.
 Index read_count(TextReader& in, std::string_view what, Index bytes_each);
 
 }}}  // namespace palpate::PALPATE_ABI::io::gmsh

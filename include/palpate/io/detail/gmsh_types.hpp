@@ -12,7 +12,7 @@ struct Type {
   NodeOrder order{};
 };
 
-/// Every type a file may hold.
+/// All types that a file may contain.
 inline constexpr std::array types{
     Type{15, CellShape::point},
     Type{1, CellShape::line2},

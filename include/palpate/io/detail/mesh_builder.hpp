@@ -1,4 +1,4 @@
-// Turns what a file says into a mesh of one element type.
+// Converts a parsed file to a mesh of one element type.
 #pragma once
 
 #include <palpate/io/detail/cell_shape.hpp>
@@ -7,7 +7,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
-/// The mesh of a parsed file with elements of that layout, whose solid_shape must be right; `numbering`, if given,
+/// The mesh of a parsed file with elements of that layout, for which solid_shape must be valid; `numbering`, if given,
 /// receives the ids of the file.
 PlainMesh build_plain_mesh(FileMesh file, const ElementLayout& element, double scale, MeshNumbering* numbering);
 

@@ -13,7 +13,8 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 namespace detail {
 
-/// Drops faces that came before, in whatever order of nodes; all have as many nodes. Keeps the order of the others.
+/// Drops faces that repeat an earlier face, in any node order; all faces must have the same number of nodes. Keeps the
+/// order of the others.
 inline void drop_repeated_faces(std::vector<std::vector<NodeId>>& faces) {
   if (faces.empty()) return;
   const std::size_t each = faces[0].size();
@@ -25,7 +26,7 @@ inline void drop_repeated_faces(std::vector<std::vector<NodeId>>& faces) {
       for (std::size_t k = nodes.size() - 1, left = a; left > 0 && nodes[k] < nodes[k - 1]; --k, --left)
         std::swap(nodes[k], nodes[k - 1]);
     }
-  // By the last two nodes first, then keeping that order by those before them.
+  // Stable sort by pairs of nodes, the last pair first.
   std::vector<Ranked> order(faces.size()), sorted;
   for (std::size_t i = 0; i < faces.size(); ++i) order[i].key = static_cast<Index>(i);
   for (std::size_t pair = (each + 1) / 2; pair-- > 0;) {
@@ -50,7 +51,7 @@ inline void drop_repeated_faces(std::vector<std::vector<NodeId>>& faces) {
   faces.resize(kept);
 }
 
-/// Turns a parsed file into a mesh of elements of one layout.
+/// Converts a parsed file to a mesh of elements of one layout.
 class MeshBuilder {
  public:
   MeshBuilder(const FileMesh& file, const ElementLayout& element)
@@ -108,7 +109,7 @@ inline PlainMesh MeshBuilder::build(double scale) {
   return std::move(mesh_);
 }
 
-/// Refuses solids of another shape, before their faces are.
+/// Refuses solids of another shape, so that the message does not refer to their faces.
 inline void MeshBuilder::check_solid_shapes() const {
   for (const FileCell& cell : file_.cells)
     if (facts(cell.shape).dimension == 3 && cell.shape != solid_)
@@ -156,7 +157,7 @@ PALPATE_COLD inline std::uint32_t MeshBuilder::group_index(const std::string& na
   return static_cast<std::uint32_t>(&group - mesh_.groups.all().data());
 }
 
-/// Adds a solid, or recognises the one before it where the format repeats a cell for every group it is in.
+/// Adds a solid, or detects that it repeats the previous one, if the format lists a cell once per group.
 inline void MeshBuilder::add_solid(const FileCell& cell) {
   const std::size_t count = order_.size(), end = mesh_.connectivity.size();
   const NodeId* file_nodes = nodes(cell);
@@ -208,7 +209,8 @@ inline void MeshBuilder::scale_positions(double scale) {
     }
 }
 
-/// Regions so far are tags; they become 0, 1, ... by rising tag. Volumes of one name are one region.
+/// Replaces the tags in `regions` by 0, 1, ... in ascending order of the tags. Volumes with the same name are one
+/// region.
 inline void MeshBuilder::name_regions() {
   PairMap region_of;
   int last = 0;
@@ -231,11 +233,11 @@ inline void MeshBuilder::name_regions() {
   }
 }
 
-/// A group is a set: a node, face or element that several tags of one name hold counts once.
+/// A group is a set: a node, face or element with several tags of one name is listed once.
 inline void MeshBuilder::tidy_groups() {
   for (Group& group : mesh_.groups.all()) {
     sort_unique(group.nodes);
-    // Elements come in rising order.
+    // Elements are in ascending order.
     group.elements.erase(std::unique(group.elements.begin(), group.elements.end()), group.elements.end());
     drop_repeated_faces(group.faces);
   }

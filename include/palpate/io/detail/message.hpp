@@ -1,5 +1,5 @@
-// Texts put together from pieces: a refusal is one call that makes no string where it stands, so that it costs the
-// compiler and the caller little.
+// Texts composed of pieces: a refusal is one call that constructs no string at the call site, which keeps compile time
+// and code size small.
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
@@ -12,7 +12,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
-/// A piece of a text: a text, a whole number or a real one. It refers to the text.
+/// A piece of a message: a text, an integer or a real number. A text is referenced, not copied.
 class Piece {
  public:
   enum class Kind { text, quoted, integer, real };
@@ -36,7 +36,7 @@ class Piece {
   Kind kind_;
 };
 
-/// Pieces one behind the other; to be passed on, not kept.
+/// A sequence of pieces; only for arguments, not to be stored.
 class Pieces {
  public:
   constexpr Pieces() noexcept : single_(0) {}

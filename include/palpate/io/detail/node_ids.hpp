@@ -6,16 +6,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
-/// Free when the ids are 1 ... n in order, else a binary search.
+/// O(1) if the ids are 1 ... n in order, else a binary search.
 class NodeIds {
  public:
   /// Refuses an id that occurs twice. O(n log n) unless the ids are 1 ... n.
   NodeIds(const std::vector<Index>& tags, const TextReader& in);
 
-  /// The largest id that can be there.
+  /// The largest possible id.
   Index last() const noexcept { return in_order_ ? count_ : max_tag; }
 
-  /// The node of that id; refuses one that the file does not hold as index_out_of_range.
+  /// The node with that id; refuses an id that is not in the file as index_out_of_range.
   NodeId find(Index tag, const TextReader& in) const {
     if (in_order_ && tag >= 1 && tag <= count_) return static_cast<NodeId>(tag - 1);
     return search(tag, in);

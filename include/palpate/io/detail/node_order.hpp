@@ -12,9 +12,9 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io {
 inline constexpr std::array<std::uint8_t, 10> gmsh_tetrahedron10{0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 inline constexpr std::array<std::uint8_t, 20> gmsh_hexahedron20{0,  1, 2,  3,  4,  5,  6,  7,  8,  11,
                                                                 13, 9, 16, 18, 19, 17, 10, 12, 14, 15};
-/// TetGen 1.5 with -o2: edges 23, 03, 01, 12, 13, 02 (seen in its output).
+/// TetGen 1.5 with -o2: edges 23, 03, 01, 12, 13, 02 (observed in its output).
 inline constexpr std::array<std::uint8_t, 10> tetgen_tetrahedron10{0, 1, 2, 3, 6, 7, 9, 5, 8, 4};
-/// VTK's voxel and pixel count their corners like binary numbers.
+/// VTK's voxel and pixel number their corners in binary order (x varies fastest).
 inline constexpr std::array<std::uint8_t, 8> voxel_hexahedron8{0, 1, 3, 2, 4, 5, 7, 6};
 inline constexpr std::array<std::uint8_t, 4> pixel_quadrangle4{0, 1, 3, 2};
 
@@ -26,15 +26,15 @@ inline constexpr std::array<std::array<int, 2>, 6> tetrahedron_edges{{{0, 1}, {1
 inline constexpr std::array<std::array<int, 2>, 12> hexahedron_edges{
     {{0, 1}, {1, 2}, {2, 3}, {0, 3}, {4, 5}, {5, 6}, {6, 7}, {4, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
 
-/// The reference nodes of an element, x y z each, on the unit tetrahedron (0, e1, e2, e3) or the unit cube: a
-/// tetrahedron by the map that takes its first four nodes there, a hexahedron by that of its bounding box.
+/// The reference nodes of an element, x y z each, on the unit tetrahedron (0, e1, e2, e3) or the unit cube: mapped for
+/// a tetrahedron by its first four nodes, for a hexahedron by its bounding box.
 void nodes_on_unit_domain(const ElementLayout& element, double* xyz);
 
-/// order[a] is VTK's node at the place of the element's node a. It follows from the reference nodes, so elements keep
-/// whatever order they like. Refuses an element whose nodes are no corners and mid-edges as bad_argument.
+/// order[a] is VTK's node at the position of the element's node a. It is computed from the reference nodes, so that
+/// elements may use any order. Refuses as bad_argument an element whose nodes are not all corners or mid-edge nodes.
 std::vector<int> element_order(const ElementLayout& element);
 
-/// order[k] is the element's node at the place of VTK's node k, for writers.
+/// order[k] is the element's node at the position of VTK's node k, for writers.
 std::vector<int> vtk_order(const ElementLayout& element);
 
 /// The same for element E, nodes in rows.

@@ -25,7 +25,7 @@ inline double dot_product(const Point& a, const Point& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Where VTK's corner k sits on the domain of nodes_on_unit_domain.
+/// Position of VTK's corner k on the domain of nodes_on_unit_domain.
 inline Point vtk_corner(bool is_tetrahedron, int k) {
   if (is_tetrahedron) return {k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0, k == 3 ? 1.0 : 0.0};
   const auto& x = hexahedron_corners[static_cast<std::size_t>(k)];

@@ -1,14 +1,14 @@
-// Numbered lines of nodes and cells as TetGen writes them and VegaFEM took them over.
+// Numbered lines of nodes and cells, as in the files of TetGen and VegaFEM.
 #pragma once
 
 #include <palpate/io/file_mesh.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
-/// The first id of a file with numbered lines; all further ids follow it one by one.
+/// Checks the ids of a file with numbered lines: each is one larger than the previous.
 class RowNumbers {
  public:
-  /// Reads the id of the next line. Refuses a first one other than 0 or 1, and gaps.
+  /// Reads the id of the next line. Refuses a first id other than 0 or 1, and gaps.
   Index read(TextReader& in, std::string_view what);
   Index base() const noexcept { return base_; }  ///< 0 or 1; -1 before the first line
   Index count() const noexcept { return count_; }
@@ -25,7 +25,7 @@ struct NodeHeader {
   static NodeHeader read(TextReader& in, std::size_t bytes_left);
 };
 
-/// A node: `id x y z attributes... [marker]`. Returns the marker, 0 when there is none.
+/// A node: `id x y z attributes... [marker]`. Returns the marker, 0 if there is none.
 int read_node_row(TextReader& in, const NodeHeader& header, RowNumbers& numbers, FileMesh& mesh);
 
 /// Reads `nodes` node ids counted from `base` into FileMesh::cell_nodes.

@@ -1,4 +1,4 @@
-// The same records read from text or from binary data, so that a format with both has one parser.
+// Reads the same records from text or from binary data, so that a format with both variants needs only one parser.
 #pragma once
 
 #include <palpate/io/detail/text_reader.hpp>
@@ -8,7 +8,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
-/// The raw bytes of a T, turned round if `swap`.
+/// Converts raw bytes to a T, with the byte order reversed if `swap`.
 template <class T>
 T from_bytes(std::string_view raw, bool swap) {
   std::array<char, sizeof(T)> bytes{};
@@ -16,11 +16,11 @@ T from_bytes(std::string_view raw, bool swap) {
   return std::bit_cast<T>(bytes);
 }
 
-/// A binary number of `bits` bits and how it is written.
+/// Format of a binary number of `bits` bits.
 struct BinaryLayout {
   int bits;
   bool is_signed;
-  bool swap;  ///< the other byte order than that of this machine
+  bool swap;  ///< byte order opposite to that of this machine
 };
 
 /// A binary integer between `low` and `high`. Unsigned numbers beyond 2^63 are refused like negative ones.
@@ -30,10 +30,10 @@ Index binary_integer(TextReader& in, const BinaryLayout& layout, std::string_vie
 /// A finite binary number of 32 or 64 bits.
 double binary_real(TextReader& in, const BinaryLayout& layout, std::string_view what);
 
-/// Records of numbers: a line each in text; in binary data an `int` takes 4 bytes, what is long 8, a real 8.
+/// Records of numbers: one line each in text; in binary data an integer takes 4 bytes, a long_integer 8, a real 8.
 class Numbers {
  public:
-  /// Binary numbers are read with their bytes turned round if `swap`.
+  /// Binary numbers are read with reversed byte order if `swap`.
   explicit Numbers(TextReader& reader, bool is_binary = false, bool swap = false)
       : in(reader), is_binary_(is_binary), swap_(swap) {}
 
@@ -58,11 +58,11 @@ class Numbers {
   double real(std::string_view what) const {
     return is_binary_ ? binary_real(in, {64, true, swap_}, what) : in.real(what);
   }
-  /// A count of things that take `text` bytes or more as text and `binary` bytes or more as binary data.
+  /// A count of items that take at least `text` bytes as text and at least `binary` bytes as binary data.
   Index count(std::string_view what, Index text, Index binary) const;
   /// Three coordinates.
   Vector3 point() const;
-  /// Reals that nobody looks at.
+  /// Skips reals that are not used.
   void skip_reals(int count, std::string_view what) const;
 
  private:

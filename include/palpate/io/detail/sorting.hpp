@@ -1,4 +1,4 @@
-// Sorting that several readers share, so that it is compiled once.
+// Sorting shared by several readers, so that it is compiled once.
 #pragma once
 
 #include <palpate/core/types.hpp>
@@ -7,7 +7,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
-/// A thing and what it is sorted by.
+/// An id and its sort key.
 struct Ranked {
   Index key, id;
 };
@@ -15,7 +15,7 @@ struct Ranked {
 /// Sorts by key, then by id.
 void sort_ranked(std::vector<Ranked>& all);
 
-/// Sorts numbers and drops those that occur again.
+/// Sorts numbers and removes duplicates.
 void sort_unique(std::vector<int>& numbers);
 
 }}}  // namespace palpate::PALPATE_ABI::io

@@ -1,4 +1,4 @@
-// Numbers the sets of tags that the cells of a file have.
+// Assigns numbers to the sets of tags that occur in a file.
 #pragma once
 
 #include <palpate/io/file_mesh.hpp>
@@ -7,17 +7,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
-/// Numbers found by two others. One type for all uses in this folder, so that it is compiled once.
+/// Map from a pair of numbers to a number. One type for all uses in this folder, so that it is compiled once.
 using PairMap = std::map<std::pair<Index, Index>, std::uint32_t>;
 
-/// Finds entries of FileMesh::tag_sets. Fast when the same single tag is asked for again and again, else
-/// O(tags log n).
+/// Finds entries of FileMesh::tag_sets. O(1) if the same single tag is requested repeatedly, else O(tags log n).
 class TagSets {
  public:
-  /// The entry of `mesh.tag_sets` that holds `tags` in this order; added when there is none.
+  /// The entry of `mesh.tag_sets` with `tags` in this order; added if there is none.
   std::uint32_t find_or_add(FileMesh& mesh, std::span<const int> tags);
 
-  /// The same for one tag; 0 is none.
+  /// The same for one tag; 0 means no tag.
   std::uint32_t find_or_add(FileMesh& mesh, int tag) {
     if (tag == 0) return 0;
     if (tag != last_tag_) {
@@ -28,8 +27,8 @@ class TagSets {
   }
 
  private:
-  PairMap next_;                          ///< (a beginning of a list of tags, tag) -> the beginning longer by it
-  std::vector<std::uint32_t> set_of_{0};  ///< of each beginning; 0 when no cell has just those tags
+  PairMap next_;                          ///< (prefix of a tag list, tag) -> the prefix extended by that tag
+  std::vector<std::uint32_t> set_of_{0};  ///< tag set of each prefix; 0 if no cell has exactly those tags
   int last_tag_ = 0;
   std::uint32_t last_set_ = 0;
 };

@@ -1,5 +1,4 @@
-// Reads numbers and words from a text line by line, and raw bytes between lines, and says exactly where something is
-// wrong.
+// Reads numbers and words from a text line by line, and raw bytes between lines; errors report the exact place.
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
@@ -8,18 +7,18 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
-/// `file:12` for place 12, `file:byte 345` for place -345: lines mean nothing once binary data has begun.
+/// `file:12` for place 12, `file:byte 345` for place -345: line numbers have no meaning after binary data has begun.
 std::string place_text(const std::string& file, Index place);
 
-/// What else separates words, and what ends a line early.
+/// Optional separators and comments of a format.
 struct TextSyntax {
   char comment = '\0';  ///< the rest of a line from here on is ignored
-  bool commas = false;  ///< a comma is a blank
+  bool commas = false;  ///< a comma separates words like a blank
 };
 
-/// Walks over a text that must outlive it. Blank lines, tabs, CRLF, a UTF-8 byte order mark and a missing last newline
-/// are accepted. Every refusal is a SetupError that reads `name:line: expected ..., found ...`. Nothing is allocated
-/// unless something is wrong.
+/// Reads a text that must outlive the reader. Blank lines, tabs, CRLF, a UTF-8 byte order mark and a missing last
+/// newline are accepted. Every refusal is a SetupError that reads `name:line: expected ..., found ...`. Allocates only
+/// for error messages.
 class TextReader {
  public:
   TextReader(std::string_view text, std::string name, TextSyntax syntax = {});
@@ -30,22 +29,23 @@ class TextReader {
   /// Moves to the next line that is not blank; false at the end of the text.
   bool next_line();
 
-  /// Moves to the next line that is not blank and refuses when there is none.
+  /// Moves to the next line that is not blank; refuses if there is none.
   void need_line(std::string_view expected);
 
-  /// Moves on to the next line that is not blank when nothing is left of this one.
+  /// Moves to the next line that is not blank if the current one has no more words.
   void need_more(std::string_view expected);
 
-  /// The `bytes` bytes behind the current line as they are. From here on messages count bytes, not lines.
+  /// The `bytes` raw bytes after the current line. From here on messages report bytes, not lines.
   std::string_view take(std::size_t bytes, std::string_view what);
 
-  /// Moves behind the next line that begins with `mark`, whatever comes before it. Refuses when there is none.
+  /// Moves to the end of the next line that begins with `mark`, skipping everything before it. Refuses if there is
+  /// none.
   void skip_to(const std::string& mark);
 
-  /// Refuses a text whose last line does not end: where a format has no mark for its end, the last number may be cut.
+  /// Refuses a text whose last line has no line end: if a format has no end mark, the last number may be truncated.
   void need_last_line_end() const;
 
-  std::size_t size() const noexcept { return text_.size(); }  ///< bytes in all
+  std::size_t size() const noexcept { return text_.size(); }  ///< total bytes
   std::size_t bytes_left() const noexcept { return next_ < text_.size() ? text_.size() - next_ : 0; }
 
   /// The current line, or minus the current byte when binary data has begun; see place_text.
@@ -55,7 +55,7 @@ class TextReader {
   }
 
   std::string_view line() const noexcept { return line_; }        ///< the current line, trimmed
-  std::string_view rest() const noexcept { return trim(rest_); }  ///< what is left of it
+  std::string_view rest() const noexcept { return trim(rest_); }  ///< the unread rest of it
   Index line_number() const noexcept { return line_number_; }     ///< counted from 1
   const std::string& name() const noexcept { return name_; }
 
@@ -65,22 +65,22 @@ class TextReader {
   /// The next word as an integer between `low` and `high`; anything beyond them is refused as `kind`.
   Index integer(std::string_view what, Index low, Index high, SetupErrorKind kind = SetupErrorKind::index_out_of_range);
 
-  /// A count of things that take at least `bytes_each` bytes of the lines below: no larger than the rest of the text
-  /// can hold.
+  /// A count of items that take at least `bytes_each` bytes of the following lines: at most as many as fit in the rest
+  /// of the text.
   Index count(std::string_view what, Index bytes_each);
 
   /// The next word as a finite decimal number. Refuses NaN, infinity and overflow as non_finite, hexadecimal and
   /// decimal commas as bad_file.
   double real(std::string_view what);
 
-  /// Refuses when the current line holds another word.
+  /// Refuses if the current line contains another word.
   void end_line(std::string_view what);
 
   /// Throws `name:line: expected ..., found ...`.
   [[noreturn]] void refuse(SetupErrorKind kind, const Pieces& expected, const Pieces& found,
                            const Pieces& hint = {}) const;
 
-  /// Refuses a number that is not between `low` and `high`; `found` as it stands in the file.
+  /// Refuses a number that is not between `low` and `high`; `found` as written in the file.
   [[noreturn]] void refuse_range(SetupErrorKind kind, std::string_view what, Index low, Index high,
                                  const Pieces& found) const;
 

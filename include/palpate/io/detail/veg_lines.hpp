@@ -1,4 +1,4 @@
-// The lines of a VegaFEM file with those of the files it includes.
+// The lines of a VegaFEM file and of the files it includes.
 #pragma once
 
 #include <palpate/io/detail/text_reader.hpp>
@@ -11,8 +11,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::veg {
 
-/// Walks over a file and, at every `*INCLUDE other`, over that file first. At most 8 files deep and 64 in all, so that
-/// files which include themselves come to an end.
+/// Reads a file line by line; at every `*INCLUDE other` the lines of that file come first. At most 8 nested files and
+/// 64 in total, so that recursive includes terminate.
 class Lines {
  public:
   using Include = std::function<std::string(const std::string& name)>;
@@ -24,8 +24,8 @@ class Lines {
 
   void need_line(std::string_view expected);
 
-  /// Has next_line() stay on the current line once.
-  void hold() noexcept { held_ = true; }
+  /// The next call of next_line() stays on the current line.
+  void stay() noexcept { stays_ = true; }
 
   TextReader& in() noexcept { return open_.back().reader; }    ///< the reader of the current line
   std::uint8_t file() const noexcept { return file_.back(); }  ///< its entry in `names`
@@ -46,7 +46,7 @@ class Lines {
   Include include_;
   std::list<File> open_;
   std::vector<std::uint8_t> file_;
-  bool held_ = false;
+  bool stays_ = false;
 };
 
 }}}  // namespace palpate::PALPATE_ABI::io::veg

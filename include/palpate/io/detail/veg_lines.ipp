@@ -13,7 +13,7 @@ PALPATE_COLD PALPATE_INLINE Lines::Lines(std::string_view text, const std::strin
 }
 
 PALPATE_INLINE bool Lines::next_line() {
-  if (held_) return !(held_ = false);
+  if (stays_) return !(stays_ = false);
   for (;;) {
     while (!in().next_line()) {
       in().need_last_line_end();

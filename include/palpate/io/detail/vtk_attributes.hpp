@@ -1,4 +1,4 @@
-// The data behind the grid of a legacy VTK file: the regions are kept, the rest is passed over.
+// The data after the grid of a legacy VTK file: the regions are kept, the rest is skipped.
 #pragma once
 
 #include <palpate/io/detail/vtk_numbers.hpp>
@@ -6,7 +6,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
 
-/// Cell arrays that are taken for region numbers, in this order; the second is what Gmsh writes.
+/// Cell arrays that are used as region numbers, in this order of preference; the second is what Gmsh writes.
 inline constexpr std::array<std::string_view, 6> region_arrays{"region",   "CellEntityIds", "gmsh:physical",
                                                                "material", "MaterialIds",   "Material"};
 
@@ -18,15 +18,15 @@ class AttributeReader {
   /// Reads the rest of the line `CELL_DATA count` or `POINT_DATA count`.
   void begin(bool of_cells, Index expected);
 
-  /// Reads the part of which `keyword` is the first word.
+  /// Reads the part that begins with the word `keyword`.
   void read(std::string_view keyword);
 
-  std::vector<int> regions;  ///< of each cell; empty when the file names none
+  std::vector<int> regions;  ///< of each cell; empty if the file has none
 
  private:
   void skip_metadata();
 
-  /// Reads an array if it holds the regions, else skips it.
+  /// Reads an array if it contains the regions, else skips it.
   void read_array(std::string_view name, const NumberType& type, Index components, Index tuples);
 
   /// `FIELD name arrays`, then `name components tuples type` and the numbers of each.

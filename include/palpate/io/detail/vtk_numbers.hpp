@@ -5,7 +5,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
 
-/// A type of numbers in a file. Binary ones are big-endian; `bits` of them take whole bytes together.
+/// A type of numbers in a file. Binary ones are big-endian; numbers of type `bit` are packed into bytes.
 struct NumberType {
   enum Kind { integer, unsigned_integer, real };
   std::string_view name;
@@ -13,7 +13,7 @@ struct NumberType {
   int bits;
 };
 
-/// vtkIdType stands for 4 bytes in files.
+/// vtkIdType has 4 bytes in files.
 inline constexpr std::array number_types{
     NumberType{"bit", NumberType::unsigned_integer, 1},
     NumberType{"unsigned_char", NumberType::unsigned_integer, 8},
@@ -32,13 +32,13 @@ inline constexpr std::array number_types{
     NumberType{"double", NumberType::real, 64},
 };
 
-/// ASCII letters in small, whatever the locale.
+/// ASCII letters in lower case, independent of the locale.
 std::string lower(std::string_view text);
 
-/// Whether two words are the same but for small and capital letters.
+/// Whether two words are equal, ignoring case.
 bool same_word(std::string_view a, std::string_view b) noexcept;
 
-/// Reads numbers that follow each other on any number of lines, or as big-endian binary data.
+/// Reads consecutive numbers on any number of lines, or as big-endian binary data.
 class NumberStream {
  public:
   explicit NumberStream(TextReader& in) : in_(in) {}
@@ -54,10 +54,10 @@ class NumberStream {
   /// The next number of a real type, finite.
   double real(const NumberType& type, std::string_view what);
 
-  /// A count of things of `numbers` numbers each, no more than the rest of the file can hold.
+  /// A count of items of `numbers` numbers each, at most as many as fit in the rest of the file.
   Index count(std::string_view what, Index numbers);
 
-  /// Passes over `count` numbers nobody needs.
+  /// Skips `count` numbers.
   void skip(const NumberType& type, Index count);
 
   /// Refuses more words on the line where the numbers ended.

@@ -14,8 +14,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Adds the group of all boundary faces that `choose` accepts, with their nodes. `choose` takes a face, or a node: a
-/// face then needs all its nodes accepted.
+/// Adds the group of all boundary faces that `choose` accepts, with their nodes. `choose` takes a face or a node; if it
+/// takes a node, a face is added if all its nodes are accepted.
 template <Element E, class Choose>
 void add_boundary_group(Mesh<E>& mesh, const std::vector<BoundaryFace>& boundary, std::string_view name,
                         Choose choose) {

@@ -11,8 +11,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The parts of a mesh that share no node. Numbered from zero by their lowest node; -1 marks a node that no element
-/// uses.
+/// The parts of a mesh that share no node, numbered from zero in the order of their lowest node; -1 marks a node that
+/// no element uses.
 struct MeshComponents {
   std::vector<NodeId> of_node;  ///< component of each node
   Index count = 0;

@@ -10,7 +10,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Root of a node's tree; halves the path on the way.
+/// Root of a node's tree, with path halving.
 inline NodeId find_root(std::vector<NodeId>& parent, NodeId node) noexcept {
   const auto at = [&](NodeId i) -> NodeId& { return parent[static_cast<std::size_t>(i)]; };
   while (at(node) != node) node = at(node) = at(at(node));
@@ -30,7 +30,7 @@ PALPATE_INLINE MeshComponents connected_components(const MeshRef& mesh) {
     for (int a = 0; a < mesh.element.nodes; ++a) {
       used[static_cast<std::size_t>(nodes[a])] = 1;
       const NodeId other = detail::find_root(parent, nodes[a]);
-      // The lower id becomes the root, hence components are numbered by their lowest node below.
+      // The lower id becomes the root, so that components are numbered by their lowest node below.
       parent[static_cast<std::size_t>(std::max(root, other))] = std::min(root, other);
       root = std::min(root, other);
     }

@@ -11,12 +11,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Local length at each node [m]: the least longest edge of the elements around it, not counting elements of size zero.
-/// Zero where there is none. O(elements).
+/// Local length at each node [m]: of the elements around it, the smallest value of their longest edges, ignoring
+/// elements of size zero. Zero if there is none. O(elements).
 std::vector<double> node_sizes(const MeshRef& mesh);
 
-/// Which nodes coincide: `representative[i]` is the lowest node at the place of node i, `distance[i]` how far away that
-/// one is, relative to the local length.
+/// Which nodes coincide: `representative[i]` is the lowest node at the position of node i, `distance[i]` its distance
+/// from node i relative to the local length.
 struct CoincidentNodes {
   std::vector<NodeId> representative;
   std::vector<double> distance;
@@ -24,18 +24,18 @@ struct CoincidentNodes {
 
 namespace detail {
 
-/// One per node that some element uses, else zero.
+/// For every node: 1 if an element uses it, else 0.
 std::vector<char> used_nodes(const MeshRef& mesh);
 
 }  // namespace detail
 
-/// Nodes closer than `tolerance` x local length (`node_sizes`). Nodes that no element uses are left alone.
-/// Sorts by one coordinate and compares neighbours: O(n log n) unless a large part of the mesh lies in one plane across
-/// that direction.
+/// Nodes closer than `tolerance` x local length (`node_sizes`). Nodes that no element uses are ignored. Sorts by one
+/// coordinate and compares neighbours: O(n log n) unless a large part of the mesh is in one plane perpendicular to that
+/// direction.
 CoincidentNodes coincident_nodes(const MeshRef& mesh, double tolerance);
 
-/// For every element the lowest element with the same set of nodes, itself when it is the first. Indices must be in
-/// range. O(elements).
+/// For every element the lowest element with the same set of nodes; the element itself if it is the first. Indices must
+/// be in range. O(elements).
 std::vector<Index> first_equal_elements(const MeshRef& mesh);
 
 /// The same for any mesh.

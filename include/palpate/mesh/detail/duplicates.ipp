@@ -28,8 +28,8 @@ inline double longest_edge_of(const MeshRef& mesh, Index e) noexcept {
   return std::sqrt(square);
 }
 
-/// Nodes in the order of their projection on a direction that no regular grid is aligned with. Coincident nodes are
-/// neighbours there.
+/// Nodes sorted by their projection on a direction that no regular grid is aligned with. Coincident nodes are close to
+/// each other in this order.
 class CoincidenceSearch {
  public:
   CoincidenceSearch(const MeshRef& mesh, std::vector<double> sizes, double tolerance)
@@ -50,7 +50,7 @@ class CoincidenceSearch {
 
   NodeId node_at(std::size_t rank) const { return order_[rank]; }
 
-  /// The node of this rank and all later ones that coincide with it and are not in `skip`.
+  /// Collects the node of this rank and all later ones that coincide with it and are not marked in `skip`.
   void gather(std::size_t rank, const std::vector<char>& skip, std::vector<NodeId>& group) const {
     const NodeId first = order_[rank];
     const double end = height(first) + reaches_[static_cast<std::size_t>(first)];
@@ -62,8 +62,8 @@ class CoincidenceSearch {
     }
   }
 
-  /// Distance of two nodes over the smaller of their local lengths; infinite for different nodes of an element of size
-  /// zero.
+  /// Distance of two nodes divided by the smaller of their local lengths; infinite for distinct nodes of an element of
+  /// size zero.
   double relative_distance(NodeId i, NodeId j) const {
     const double distance = (position(i) - position(j)).norm();
     return distance > 0.0 ? distance / std::min(size(i), size(j)) : 0.0;
@@ -82,7 +82,7 @@ class CoincidenceSearch {
   std::vector<double> sizes_;
   double tolerance_;
   std::vector<double> heights_;
-  std::vector<double> reaches_;  ///< how far along the projection a node's equals may be, rounding included
+  std::vector<double> reaches_;  ///< largest distance along the projection of coincident nodes, rounding included
   std::vector<NodeId> order_;
 };
 

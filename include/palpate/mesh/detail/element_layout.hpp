@@ -1,33 +1,32 @@
-// An element type as plain numbers, for code that works on meshes of any element.
+// An element type described by plain numbers, for code that works on meshes of any element type.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A kind of face of an element. Its triangles are those of TriangulatedFace; there are none when tools cannot touch
-/// it.
+/// A kind of face of an element. Its triangles are those of TriangulatedFace; there are none if tools cannot touch it.
 struct FaceLayout {
-  int nodes = 0;  ///< 0 when the element has no such faces
+  int nodes = 0;  ///< 0 if the element has no such faces
   int triangle_count = 0;
   const std::array<int, 3>* triangles = nullptr;
 };
 
-/// What a mesh has to know of its element type. `element_layout<E>` makes one; it refers to constants only and may be
-/// copied freely.
+/// The properties of an element type that mesh code needs. `element_layout<E>` is the one of E; it refers to constants
+/// only and may be copied freely.
 struct ElementLayout {
   int nodes = 0;                                        ///< of an element
   int order = 0;                                        ///< polynomial degree reproduced exactly
   int face_count = 0;                                   ///< of an element
-  FaceLayout face, small_face;                          ///< small_face.nodes is 0 where all faces are alike
+  FaceLayout face, small_face;                          ///< small_face.nodes is 0 if all faces are of one kind
   const int* faces = nullptr;                           ///< face.nodes local nodes per face, outward; see Element
   void (*reference_nodes)(double*) noexcept = nullptr;  ///< writes x y z of every node
 
-  /// The kind of a face of that many nodes.
+  /// The kind of a face with that many nodes.
   constexpr const FaceLayout& face_of(std::size_t count) const noexcept {
     return static_cast<int>(count) == small_face.nodes ? small_face : face;
   }
-  /// Whether a face may have that many nodes.
+  /// Whether the element has faces with that many nodes.
   constexpr bool is_face_size(std::size_t count) const noexcept {
     return count > 0 && static_cast<int>(count) == face_of(count).nodes;
   }
@@ -42,7 +41,7 @@ struct ElementLayout {
 
 namespace detail {
 
-/// E::faces, one list behind the other.
+/// E::faces, concatenated.
 template <Element E>
 inline constexpr auto flat_faces = [] {
   std::array<int, E::faces.size() * static_cast<std::size_t>(E::Face::nodes)> flat{};

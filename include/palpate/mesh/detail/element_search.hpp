@@ -1,4 +1,4 @@
-// Which element a point lies in, and where in it.
+// Finds the element that contains a point, and the reference coordinates of the point in it.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -28,8 +28,8 @@ Vector3 reference_centre() noexcept {
   return sum / static_cast<double>(E::nodes);
 }
 
-/// Reference coordinates of the point p [m] in the element with nodes x, or beyond it, by Newton's method. Nothing when
-/// there are none to be found: a point far off a curved element.
+/// Reference coordinates of the point p [m] with respect to the element with nodes x, also for points outside the
+/// element, by Newton's method. std::nullopt if it does not converge, as for a point far away from a curved element.
 template <Element E>
 std::optional<Vector3> reference_coordinates(const ElementNodes<E>& x, const Vector3& p) noexcept {
   const Vector3 origin(x(0, 0), x(0, 1), x(0, 2)), target = p - origin;
@@ -60,7 +60,7 @@ std::optional<Vector3> reference_coordinates(const ElementNodes<E>& x, const Vec
   return miss_at(xi).norm() <= 1e-9 * size ? std::optional<Vector3>(xi) : std::nullopt;
 }
 
-/// How far reference coordinates lie beyond the faces of the reference element; negative inside.
+/// Signed distance of reference coordinates outside the faces of the reference element; negative inside.
 template <Element E>
 double beyond_faces(const Vector3& xi) noexcept {
   static const auto planes = [] {
@@ -87,11 +87,11 @@ struct ElementPoint {
   Vector3 xi = Vector3::Zero();
 };
 
-/// Finds points in a mesh by a grid over the boxes of its elements. Refers to the mesh.
+/// Finds points in a mesh with a grid over the bounding boxes of its elements. Keeps a reference to the mesh.
 template <Element E>
 class ElementSearch {
  public:
-  /// O(elements), allocates about 8 bytes per element and cell it touches.
+  /// O(elements), allocates about 8 bytes per pair of an element and a cell that its box touches.
   explicit ElementSearch(const Mesh<E>& mesh) : mesh_(&mesh) {
     Box box;
     for (const Vector3& x : mesh.positions) box.include(x);
@@ -110,10 +110,10 @@ class ElementSearch {
     each_cell([&](std::size_t c, Index e) { element_[static_cast<std::size_t>(next[c]++)] = e; });
   }
 
-  /// The element that holds p [m], its border included; the first of several. No allocation. Cost: Newton's method for
-  /// the elements around one cell of the grid, one step each for straight-sided tetrahedra. A cell has the
-  /// mean volume of an element, so these are a few tens in an even mesh, and O(elements) at worst, where sizes differ
-  /// so much that most elements lie in one cell.
+  /// The element that contains p [m], its boundary included; the first of several. No allocation. Cost: Newton's method
+  /// for the elements around one cell of the grid, one step each for straight-sided tetrahedra. A cell has the mean
+  /// volume of an element, so these are a few tens in a uniform mesh, and O(elements) in the worst case, if sizes
+  /// differ so much that most elements are in one cell.
   std::optional<ElementPoint> find(const Vector3& p) const noexcept {
     const Cell at = cell_of(p);
     for (std::size_t i = 0; i < 3; ++i)
@@ -138,8 +138,8 @@ class ElementSearch {
   std::size_t number(const Cell& c) const noexcept {
     return static_cast<std::size_t>(c[0] + cells_[0] * (c[1] + cells_[1] * c[2]));
   }
-  /// Calls visit(cell, element) for all cells that the box of an element touches, a little enlarged: curved sides and
-  /// points on a border.
+  /// Calls visit(cell, element) for all cells that the box of an element touches. The box is slightly enlarged for
+  /// curved sides and for points on a boundary.
   template <class Visit>
   void each_cell(Visit&& visit) const {
     for (Index e = 0; e < mesh_->element_count(); ++e) {

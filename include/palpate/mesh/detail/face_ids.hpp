@@ -10,7 +10,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Up to N node ids, compared like a word.
+/// Up to N node ids, compared lexicographically.
 template <std::size_t N>
 class ShortIds {
  public:
@@ -33,12 +33,12 @@ class ShortIds {
   std::size_t size_ = 0;
 };
 
-/// Node ids of a face of E; an array when all faces have the same number.
+/// Node ids of a face of E; an array if all faces have the same number of nodes.
 template <Element E>
 using FaceIds = std::conditional_t<HasSmallFace<E>, ShortIds<static_cast<std::size_t>(E::Face::nodes)>,
                                    std::array<NodeId, static_cast<std::size_t>(E::Face::nodes)>>;
 
-/// Room for a face of that many nodes.
+/// Storage for a face with that many nodes.
 template <Element E>
 FaceIds<E> make_face_ids([[maybe_unused]] std::size_t nodes) {
   if constexpr (HasSmallFace<E>)

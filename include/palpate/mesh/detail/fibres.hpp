@@ -1,4 +1,4 @@
-// Fibre directions that can be used.
+// Checks of fibre directions.
 #pragma once
 
 #include <palpate/concepts/mesh.hpp>
@@ -10,21 +10,22 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// How far from one the length of a fibre direction may be: files print six digits or fewer. Laws use it normalised.
+/// Allowed deviation of the length of a fibre direction from one: files print six digits or fewer. Materials normalise
+/// it.
 inline constexpr double fibre_length_tolerance = 1e-5;
 
 namespace detail {
 
-/// Refuses a number of fibres other than that of elements.
+/// Refuses a number of fibres that differs from the number of elements.
 void require_fibre_count(std::size_t fibres, Index element_count);
-/// Refuses fibres that are no unit vectors.
+/// Refuses fibres that are not unit vectors.
 void require_unit_vectors(std::span<const Vector3> fibres);
 
 }  // namespace detail
 
-/// Refuses fibre directions that are no unit vectors (zero and NaN among them) as bad_argument, with the ids of their
-/// elements and the length that is farthest off; a number of fibres other than that of elements likewise. O(elements),
-/// nothing for a mesh without fibres.
+/// Refuses as bad_argument fibre directions that are not unit vectors (zero and NaN included), with the ids of their
+/// elements and the worst length, and a number of fibres that differs from the number of elements. O(elements); no cost
+/// for a mesh without fibres.
 template <MeshView M>
 void require_unit_fibres(const M& mesh) {
   if constexpr (FibreMesh<M>) {

@@ -28,9 +28,9 @@ PALPATE_INLINE void require_unit_vectors(std::span<const Vector3> fibres) {
   if (bad.empty()) return;
   SetupProblem p;
   p.kind = SetupErrorKind::bad_argument;
-  p.what = std::to_string(bad.size()) + " elements have a fibre direction that is no unit vector, worst length " +
+  p.what = std::to_string(bad.size()) + " elements have a fibre direction that is not a unit vector, worst length " +
            number(worst);
-  p.hint = "Give every element a unit vector, or no element any";
+  p.hint = "Give a unit vector for every element, or for none";
   p.set_ids(bad, SetupIds::elements);
   p.value = worst;
   p.threshold = fibre_length_tolerance;

@@ -1,4 +1,4 @@
-// Sets of nodes put in order, so that equal ones are neighbours.
+// Sorts sets of nodes, so that equal sets are adjacent.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -8,8 +8,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The order of keys of `width` numbers each, compared like words, equal ones by their place in `keys`. The first
-/// number of each must be 0 ... node_count - 1. O(keys) for sets of nodes of a mesh; allocates.
+/// The order of keys of `width` numbers each, compared lexicographically; equal keys are ordered by their place in
+/// `keys`. The first number of each must be 0 ... node_count - 1. O(keys) for sets of nodes of a mesh; allocates.
 std::vector<Index> key_order(const std::vector<NodeId>& keys, int width, Index node_count);
 
 }}  // namespace palpate

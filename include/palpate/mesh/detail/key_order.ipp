@@ -10,13 +10,13 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// What tells most keys with the same first number apart, close to each other in memory.
+/// The numbers that distinguish most keys with the same first number, stored compactly.
 struct ShortKey {
   NodeId second = 0, third = 0;
   Index place = 0;
 };
 
-/// Keys of one first number, in order.
+/// Comparison of keys with the same first number.
 class LessKey {
  public:
   LessKey(const NodeId* keys, int width) : keys_(keys), width_(width) {}
@@ -38,7 +38,7 @@ class LessKey {
 }  // namespace detail
 
 PALPATE_INLINE std::vector<Index> key_order(const std::vector<NodeId>& keys, int width, Index node_count) {
-  // By first number first: what is left to sort are the few keys around a node.
+  // Counting sort by the first number; then only the few keys around each node remain to be sorted.
   const auto count = static_cast<Index>(keys.size()) / width;
   std::vector<Index> start(static_cast<std::size_t>(node_count) + 1, 0);
   const NodeId* key = keys.data();

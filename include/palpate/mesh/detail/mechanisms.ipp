@@ -29,8 +29,8 @@ inline void subtract(Row& from, double factor, const Row& row) noexcept {
   for (std::size_t i = 0; i < from.size(); ++i) from[i] -= factor * row[i];
 }
 
-/// Orthonormal basis of the span of rows, by Gram-Schmidt with pivoting; what is left of a row below `tolerance` counts
-/// as zero. O(rank x rows x columns).
+/// Orthonormal basis of the span of rows, by Gram-Schmidt with pivoting; a remainder of a row below `tolerance` is
+/// treated as zero. O(rank x rows x columns).
 inline std::vector<Row> row_space(std::vector<Row> rows, double tolerance) {
   std::vector<Row> basis;
   while (!rows.empty()) {
@@ -48,7 +48,7 @@ inline std::vector<Row> row_space(std::vector<Row> rows, double tolerance) {
   return basis;
 }
 
-/// Rigid parts, the joints among them, and which of them are held.
+/// Rigid parts, the joints between them, and which parts are constrained.
 class JointedParts {
  public:
   JointedParts(const MeshRef& mesh, const MeshParts& parts, std::span<const std::uint8_t> constrained,
@@ -74,7 +74,7 @@ class JointedParts {
   }
 
   std::optional<Mechanism> find() {
-    hold_one_by_one();
+    propagate_constraints();
     std::vector<char> seen(parts_.size(), 0);
     for (std::size_t p = 0; p < parts_.size(); ++p)
       if (!parts_[p].is_constrained && seen[p] == 0)
@@ -86,16 +86,16 @@ class JointedParts {
   struct Part {
     Index element_count = 0;
     std::vector<NodeId> nodes;
-    RigidMotions motions;  ///< left by the constraints and by held parts
+    RigidMotions motions;  ///< left free by the constraints and by constrained parts
     RigidFrame frame;
     bool is_constrained = false;
-    std::size_t first = 0;  ///< unknown of its cluster
+    std::size_t first = 0;  ///< its first unknown in its cluster
   };
   static constexpr std::size_t most_motions = 900;
   static constexpr double tolerance = 1e-6;
 
-  /// A part that constraints and held parts hold holds its neighbours in turn.
-  void hold_one_by_one() {
+  /// A part that is fully constrained, by constraints or by other constrained parts, constrains its neighbours in turn.
+  void propagate_constraints() {
     std::vector<std::size_t> pending(parts_.size()), next;
     std::iota(pending.begin(), pending.end(), std::size_t{0});
     for (; !pending.empty(); pending = std::exchange(next, {})) {
@@ -106,11 +106,11 @@ class JointedParts {
         if (part.is_constrained) continue;
         part.frame = RigidFrame(positions_, part.nodes, constrained_);
         part.motions = free_motions(positions_, part.nodes, constrained_, part.frame);
-        if (part.motions.empty()) hold(part, next);
+        if (part.motions.empty()) constrain(part, next);
       }
     }
   }
-  void hold(Part& part, std::vector<std::size_t>& neighbours) {
+  void constrain(Part& part, std::vector<std::size_t>& neighbours) {
     part.is_constrained = true;
     for (const NodeId i : part.nodes) {
       constrained_[static_cast<std::size_t>(i)] = 7;
@@ -123,7 +123,7 @@ class JointedParts {
     return users_[static_cast<std::size_t>(i)].size() > 1 && constrained_[static_cast<std::size_t>(i)] != 7;
   }
 
-  /// Parts that are not held and hang together, with `first`.
+  /// The unconstrained parts that are connected to `first`, directly or through others.
   std::vector<std::size_t> cluster_of(std::size_t first, std::vector<char>& seen) const {
     std::vector<std::size_t> cluster{first};
     seen[first] = 1;
@@ -136,8 +136,8 @@ class JointedParts {
     return cluster;
   }
 
-  /// Motions of the cluster that keep its joints together: none, or those of its first part that moves. Unknowns are
-  /// the amounts of every part's own motions.
+  /// Motions of the cluster that keep its joints together: nothing, or the motions of its first part that can move. The
+  /// unknowns are the amplitudes of every part's free motions.
   std::optional<Mechanism> find_in(const std::vector<std::size_t>& cluster) {
     std::size_t unknowns = 0;
     for (const std::size_t p : cluster) {
@@ -155,7 +155,7 @@ class JointedParts {
     return std::nullopt;
   }
 
-  /// At every joint the displacements of two parts are equal.
+  /// Equations of the joints: at every joint the displacements of two parts are equal.
   std::vector<Row> joint_rows(const std::vector<std::size_t>& cluster, std::size_t unknowns) const {
     std::vector<Row> rows;
     for (const std::size_t p : cluster)
@@ -179,10 +179,10 @@ class JointedParts {
       for (int c = 0; c < 6; ++c) row[part.first + k] += factor * at[c] * part.motions[k][c];
   }
 
-  /// What the complement of the joints' row space leaves of a part's motions.
+  /// A part's motions in the complement of the joints' row space.
   static RigidMotions motions_left(const Part& part, const std::vector<Row>& basis) {
     const std::size_t n = part.motions.size();
-    std::vector<Row> projector(n, Row(n, 0.0));  // on the motions that are left, seen by this part
+    std::vector<Row> projector(n, Row(n, 0.0));  // on the remaining motions, restricted to this part
     for (std::size_t i = 0; i < n; ++i) {
       projector[i][i] = 1.0;
       for (const Row& b : basis)
@@ -207,7 +207,8 @@ class JointedParts {
 
   Vector3 origin_;
   std::vector<Vector3> positions_;
-  std::vector<std::uint8_t> constrained_;  ///< per node: components that are given, or held by a part that is
+  std::vector<std::uint8_t>
+      constrained_;  ///< per node: displacement components that are prescribed or fixed by a constrained part
   std::vector<Part> parts_;
   std::vector<std::vector<std::size_t>> users_;  ///< parts of every node, ascending
 };
@@ -252,7 +253,8 @@ PALPATE_INLINE void require_no_mechanism(const MeshRef& mesh, std::span<const st
            std::to_string(found->joints.size()) + (found->joints.size() == 1 ? " node" : " nodes") + ", and has " +
            std::to_string(count) + (count == 1 ? " free rigid motion:" : " free rigid motions:");
   for (std::size_t i = 0; i < count; ++i) p.what += (i == 0 ? " " : ", ") + found->modes[i];
-  p.hint = "Join it to its neighbours by faces of elements, hold it, or remove it; the ids are the nodes of the joint";
+  p.hint =
+      "Join it to its neighbours by faces of elements, constrain it, or remove it; the ids are the nodes of the joint";
   p.set_ids(std::vector<std::int64_t>(found->joints.begin(), found->joints.end()), SetupIds::nodes);
   p.value = static_cast<double>(count);
   raise(std::move(p));

@@ -1,4 +1,4 @@
-// Changes to an owning mesh that keep its groups and regions in step.
+// Changes to an owning mesh that also update its groups and regions.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -12,8 +12,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The arrays of an owning mesh of any element, to be changed. Its elements can become fewer: whoever owns
-/// `connectivity` shortens it afterwards.
+/// Mutable references to the arrays of an owning mesh of any element type. The number of elements can decrease: the
+/// owner of `connectivity` shortens it afterwards.
 struct MeshEdit {
   ElementLayout element;
   NodeId* connectivity = nullptr;  ///< element.nodes ids per element
@@ -31,7 +31,7 @@ struct MeshEdit {
   }
 };
 
-/// The arrays of a mesh, to be changed.
+/// Mutable references to the arrays of a mesh.
 template <Element E>
 MeshEdit mesh_edit(Mesh<E>& mesh) noexcept {
   return {element_layout<E>,    mesh.elements.empty() ? nullptr : mesh.elements.front().data(),
@@ -40,16 +40,16 @@ MeshEdit mesh_edit(Mesh<E>& mesh) noexcept {
           mesh.region_names,    mesh.groups};
 }
 
-/// Gives node i the id `map[i]`, or drops it when that is -1; several nodes may share an id, the first gives the
-/// position. The ids that occur must be 0, 1, 2 ... without a gap, and no element may use a dropped node. O(nodes +
-/// elements + groups).
+/// Gives node i the id `map[i]`, or drops it if that is -1; several nodes may share an id, then the first gives the
+/// position. The new ids must be 0, 1, 2 ... without a gap, and no element may use a dropped node. O(nodes + elements +
+/// groups).
 void renumber_nodes(MeshEdit& mesh, const std::vector<NodeId>& map);
 
-/// Gives element e the id `map[e]`, or drops it when that is -1. The map must keep the order. O(elements + groups).
+/// Gives element e the id `map[e]`, or drops it if that is -1. The map must keep the order. O(elements + groups).
 void renumber_elements(MeshEdit& mesh, const std::vector<Index>& map);
 
-/// Order of the nodes in which an element is its own mirror image (first two reference axes swapped): turns the sign of
-/// its Jacobian. Nothing when the reference element is not symmetric in these axes.
+/// Node order of the mirrored element (first two reference axes swapped), which reverses the sign of its Jacobian.
+/// std::nullopt if the reference element is not symmetric in these axes.
 std::optional<std::vector<int>> mirrored_order(const ElementLayout& element);
 
 /// Reorders the nodes of the given elements into their mirror image. Tet4: swaps its second and third node. Refuses an

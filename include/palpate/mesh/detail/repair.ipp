@@ -14,8 +14,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Renumbers a group's nodes and faces. A face that lost a node, has two nodes fallen together, or repeats an earlier
-/// face is dropped.
+/// Renumbers a group's nodes and faces. A face that lost a node, has two equal nodes, or repeats an earlier face is
+/// dropped.
 inline void renumber_group(Group& group, const std::vector<NodeId>& map) {
   std::vector<NodeId> nodes;
   for (NodeId i : group.nodes)
@@ -91,8 +91,8 @@ PALPATE_INLINE std::optional<std::vector<int>> mirrored_order(const ElementLayou
 PALPATE_INLINE void reorient(MeshEdit& mesh, const std::vector<Index>& elements) {
   const auto order = mirrored_order(mesh.element);
   if (!order)
-    raise(SetupErrorKind::unsupported, "elements of this type cannot be turned round",
-          "Mend the mesh where it was made");
+    raise(SetupErrorKind::unsupported, "elements of this type cannot be reversed",
+          "Repair the mesh in the program that created it");
   for (Index e : elements) {
     NodeId* nodes = mesh.nodes_of(e);
     const std::vector<NodeId> old(nodes, nodes + mesh.element.nodes);

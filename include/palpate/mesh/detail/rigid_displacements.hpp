@@ -15,10 +15,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A basis of the rigid motions that the constraints leave to each component of a mesh: 3 nodes x modes, u = t + w x p
-/// with p the offset from the component's centre over its size; zero on the other components. Six columns for a free
-/// body in one piece, none for one that is held. Bit a of `constrained[i]` says that component a of node i is
-/// prescribed. Throws bad_argument when the lengths differ. O(20 nodes + nodes x modes), allocates.
+/// A basis of the rigid motions that the constraints leave free in each component of a mesh: 3 nodes x modes, u = t + w
+/// x p with p the offset from the component's centre divided by its size; zero on the other components. Six columns for
+/// a free body in one piece, none for a constrained one. Bit a of `constrained[i]` is set if component a of node i is
+/// prescribed. Throws bad_argument if the lengths differ. O(20 nodes + nodes x modes), allocates.
 template <Element E>
 MatrixX rigid_displacements(const Mesh<E>& mesh, std::span<const std::uint8_t> constrained) {
   if (constrained.size() != mesh.positions.size())

@@ -1,4 +1,4 @@
-// Rigid motions in words.
+// Names of rigid motions.
 #pragma once
 
 #include <palpate/core/config.hpp>

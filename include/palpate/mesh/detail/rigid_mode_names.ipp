@@ -11,8 +11,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Three numbers with three digits, and more where they are large against `scale`: a point far from zero is accurate to
-/// a hundredth of `scale`. Rounding errors print as 0.
+/// Three numbers with three digits, or more if they are large compared with `scale`: a point far from zero is accurate
+/// to a hundredth of `scale`. Rounding errors print as 0.
 inline std::string short_triple(const Vector3& v, double scale) {
   std::string text = "(";
   for (int i = 0; i < 3; ++i) {
@@ -25,7 +25,7 @@ inline std::string short_triple(const Vector3& v, double scale) {
   return text + ')';
 }
 
-/// Reduced row echelon form in place; entries below 1e-7 are zero. Rows that span coordinate axes come out as these
+/// Reduced row echelon form in place; entries below 1e-7 are zero. Rows that span coordinate axes are reduced to these
 /// axes.
 inline void reduce_rows(RigidMotions& rows) {
   std::size_t top = 0;
@@ -49,7 +49,7 @@ inline std::string name_translation(const Vector3& t) {
   return "translation along " + short_triple(d, 1.0);
 }
 
-/// Name of u = t + w x (x - centre) / size. It is a rotation when w and t are at right angles, else a screw.
+/// Name of u = t + w x (x - centre) / size. It is a rotation if w and t are perpendicular, else a screw motion.
 inline std::string name_rotation(const Vector3& w, const Vector3& t, const Vector3& centre, double size) {
   const double square = w.squaredNorm();
   const Vector3 through = centre + size * cross(w, t) / square;
@@ -75,7 +75,7 @@ PALPATE_INLINE std::vector<std::string> name_rigid_motions(const RigidMotions& m
     const Vector3 w = rotation_of(row);
     Vector3 t = shift_of(row);
     if (w.norm() <= 1e-7) continue;
-    const Vector3 along = slide * w;  // a free translation along the axis takes the advance out of a screw
+    const Vector3 along = slide * w;  // with a free translation along the axis, a screw reduces to a rotation
     if (along.norm() > 1e-6 * w.norm()) t -= w.dot(t) / w.dot(along) * along;
     rotations.push_back(name_rotation(w, t, centre, size));
   }

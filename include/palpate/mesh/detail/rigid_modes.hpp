@@ -1,4 +1,4 @@
-// Which rigid motions the constraints leave free, by component and by name.
+// The rigid motions that the constraints leave free, per component and with names.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -29,9 +29,9 @@ namespace detail {
 /// Nodes of each component, by counting sort. Nodes of component -1 are left out.
 std::vector<std::vector<NodeId>> nodes_by_component(std::span<const NodeId> component);
 
-/// Centre and size by which positions are scaled before ranks are decided.
+/// Centre and size with which positions are scaled before ranks are determined.
 struct RigidFrame {
-  Vector3 centre = Vector3::Zero();  ///< mean of the constrained nodes, or of all nodes when none is
+  Vector3 centre = Vector3::Zero();  ///< mean of the constrained nodes, or of all nodes if there are none
   double size = 1.0;                 ///< diagonal of the component's bounding box
   double resolution = 0.0;           ///< rounding of the coordinates / size
 
@@ -40,37 +40,37 @@ struct RigidFrame {
              std::span<const std::uint8_t> constrained);
 };
 
-/// Row of the constraint "component `axis` of the displacement at p is given" for the rigid motion u = t + w x p,
+/// Row of the constraint "component `axis` of the displacement at p is prescribed" for the rigid motion u = t + w x p,
 /// unknowns (w, t).
 Vector6 constraint_row(const Vector3& p, int axis);
 
-/// What is left of a vector outside the span of an orthonormal basis.
+/// The part of a vector that is orthogonal to the span of an orthonormal basis.
 Vector6 remainder(const std::vector<Vector6>& basis, Vector6 v);
 
-/// Orthonormal basis of the rigid motions (w, t) that no constraint sees. Gram-Schmidt with pivoting over the
-/// rows: unlike the eigenvalues of the Gram matrix it squares nothing, and a thousand equal constraints weigh no more
-/// than one. O(6 rows).
+/// Orthonormal basis of the rigid motions (w, t) that no constraint prevents. Gram-Schmidt with pivoting over the rows:
+/// unlike the eigenvalues of the Gram matrix, it does not square the condition number, and a thousand equal constraints
+/// have the same weight as one. O(6 rows).
 RigidMotions free_motions(std::span<const Vector3> positions, std::span<const NodeId> nodes,
                           std::span<const std::uint8_t> constrained, const RigidFrame& frame);
 
 }  // namespace detail
 
-/// What each component can still do, in the order of the components: none of six (held) to six of six (free body).
-/// `component[i]` is the component of node i, -1 to leave it out (mesh/detail/components.hpp); bit a of `constrained[i]` says
-/// that displacement component a of node i is prescribed. Positions are scaled by the component's size; a lever arm
-/// below one millionth of it counts as none. `origin` is where the frame of the positions lies in the one in which axes
-/// are named [m]. Throws bad_argument when the lengths differ. O(20 nodes), allocates.
+/// The free rigid motions of each component, in the order of the components: from none (constrained) to six (free
+/// body). `component[i]` is the component of node i, -1 to leave it out (mesh/detail/components.hpp); bit a of
+/// `constrained[i]` is set if displacement component a of node i is prescribed. Positions are scaled by the component's
+/// size; a lever arm below one millionth of it is treated as zero. `origin` is the origin of the positions' frame in
+/// the frame in which axes are named [m]. Throws bad_argument if the lengths differ. O(20 nodes), allocates.
 std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vector3> positions, std::span<const NodeId> component,
                                              std::span<const std::uint8_t> constrained,
                                              const Vector3& origin = Vector3::Zero());
 
-/// Refuses as `unconstrained` when a component can still move as a rigid body: statics then has no unique answer, and a
-/// factorisation may report success all the same. ids: first nodes of the first such component, count: its nodes,
-/// value: its free modes.
+/// Refuses as `unconstrained` if a component can still move as a rigid body: the static problem then has no unique
+/// solution, but a factorisation may still report success. ids: first nodes of the first such component, count: its
+/// nodes, value: its free modes.
 void require_constrained(std::span<const Vector3> positions, std::span<const NodeId> component,
                          std::span<const std::uint8_t> constrained, const Vector3& origin = Vector3::Zero());
 
-/// The first of these for a mesh; the second, which needs more of it, is in mesh/detail/mechanisms.hpp.
+/// free_rigid_modes for a mesh. require_constrained for a mesh also checks mechanisms: see mesh/detail/mechanisms.hpp.
 template <Element E>
 std::vector<FreeRigidModes> free_rigid_modes(const Mesh<E>& mesh, std::span<const std::uint8_t> constrained,
                                              const Vector3& origin = Vector3::Zero()) {

@@ -23,7 +23,7 @@ PALPATE_INLINE std::vector<std::vector<NodeId>> nodes_by_component(std::span<con
 PALPATE_INLINE RigidFrame::RigidFrame(std::span<const Vector3> positions, std::span<const NodeId> nodes,
                                       std::span<const std::uint8_t> constrained) {
   const auto at = [&](NodeId node) -> const Vector3& { return positions[static_cast<std::size_t>(node)]; };
-  const Vector3 origin = at(nodes.front());  // offsets keep their digits far from zero
+  const Vector3 origin = at(nodes.front());  // offsets do not lose digits far from zero
   Box box;
   Vector3 all = Vector3::Zero(), supported = Vector3::Zero();
   Index supported_count = 0;
@@ -89,7 +89,7 @@ PALPATE_INLINE RigidMotions free_motions(std::span<const Vector3> positions, std
     basis.push_back(normalized(best));
   }
   const auto seen = static_cast<std::ptrdiff_t>(basis.size());
-  while (basis.size() < 6) {  // complete the basis with what is left of the unit vectors
+  while (basis.size() < 6) {  // complete the basis with the remainders of the unit vectors
     Vector6 best = Vector6::Zero();
     for (int i = 0; i < 6; ++i) {
       Vector6 unit = Vector6::Zero();
@@ -141,7 +141,7 @@ PALPATE_INLINE void require_constrained(std::span<const Vector3> positions, std:
   for (std::size_t i = 0; i < first.modes.size(); ++i) p.what += (i == 0 ? " " : ", ") + first.modes[i];
   if (loose > 1)
     p.what += "; " + std::to_string(loose - 1) + " more " + (loose == 2 ? "component" : "components") + " can move";
-  p.hint = "Prescribe more components of the displacement; a static body needs six that hold it";
+  p.hint = "Prescribe more components of the displacement; a static body needs six independent ones";
   p.ids.assign(first.first_nodes.begin(), first.first_nodes.end());
   p.ids_of = SetupIds::nodes;
   p.count = first.node_count;
