@@ -39,7 +39,7 @@ macro(complain text)
   string(APPEND errors "  ${text}\n")
 endmacro()
 
-# Sets room, floor and wing of a header named like palpate/core/types.hpp.
+# Sets room, floor and wing of a header with a name like palpate/core/types.hpp.
 macro(look_up header)
   string(REGEX REPLACE "^palpate/([^/]+).*" "\\1" room ${header})
   if(DEFINED room_${room})
@@ -51,7 +51,7 @@ macro(look_up header)
   endif()
 endmacro()
 
-# Definitions (x.ipp) keep the same rules; that x.hpp includes x.ipp at its end is no cycle.
+# Definitions (x.ipp) follow the same rules; the include of x.ipp at the end of x.hpp is not a cycle.
 file(GLOB_RECURSE headers RELATIVE ${HEADERS} ${HEADERS}/palpate/*.hpp ${HEADERS}/palpate/*.ipp ${HEADERS}/palpate/*.tpp)
 foreach(header IN LISTS headers)
   look_up(${header})
@@ -67,7 +67,7 @@ foreach(header IN LISTS headers)
   file(STRINGS ${HEADERS}/${header} lines REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")
   foreach(line IN LISTS lines)
     string(REGEX REPLACE "^[^<\"]*[<\"]([^>\"]*)[>\"].*" "\\1" target "${line}")
-    if(NOT target MATCHES "^palpate/")  # a neighbour by relative path, or somebody else's header
+    if(NOT target MATCHES "^palpate/")  # a neighbour by relative path, or a header of another library
       get_filename_component(folder ${HEADERS}/${header} DIRECTORY)
       get_filename_component(path "${target}" ABSOLUTE BASE_DIR ${folder})
       file(RELATIVE_PATH target ${HEADERS} ${path})
@@ -85,7 +85,7 @@ foreach(header IN LISTS headers)
     elseif(from_room MATCHES "^(palpate|own_types).hpp$" OR (from_room STREQUAL "fwd.hpp" AND NOT wing STREQUAL "roof"))
       # the umbrella headers may include anything
     elseif(wing STREQUAL "roof")
-      complain("${header} includes ${target}: nobody includes the umbrella headers")
+      complain("${header} includes ${target}: the umbrella headers must not be included")
     elseif("${from_wing};${wing}" MATCHES "^(physics;contact|contact;physics)$")
       complain("${header} (${from_wing} wing) includes ${target} (${wing} wing): the wings meet only in model/ and above")
     elseif(floor GREATER from_floor)
@@ -94,7 +94,7 @@ foreach(header IN LISTS headers)
   endforeach()
 endforeach()
 
-# Take away every header whose includes are all gone, again and again: what stays is on a cycle or leads into one.
+# Repeatedly remove every header whose includes have all been removed: the remaining ones are on a cycle or lead to one.
 set(left ${headers})
 set(before -1)
 list(LENGTH left count)
@@ -118,7 +118,7 @@ if(left)
   complain("include cycle among: ${left}")
 endif()
 
-# docs/architecture.md says the same.
+# docs/architecture.md must contain the same table.
 set(page ${CMAKE_CURRENT_LIST_DIR}/../docs/architecture.md)
 if(EXISTS ${page})
   file(READ ${page} page)
