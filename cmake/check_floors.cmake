@@ -1,6 +1,6 @@
 # Checks the house rules of include/palpate: an include goes to a lower floor, or stays on its floor in its own wing;
 # the physics wing and the contact wing never include each other; no include cycles. docs/architecture.md has the table.
-#   cmake [-DHEADERS=<folder that holds palpate/>] -P cmake/check_floors.cmake
+#   cmake [-DHEADERS=<folder that contains palpate/>] -P cmake/check_floors.cmake
 cmake_minimum_required(VERSION 3.21)
 
 # room                 floor wing
@@ -138,6 +138,6 @@ endif()
 
 list(LENGTH headers count)
 if(errors)
-  message(FATAL_ERROR "floors: broken house rules\n${errors}")
+  message(FATAL_ERROR "floors: rules violated\n${errors}")
 endif()
-message(STATUS "floors: ${count} headers keep the house rules")
+message(STATUS "floors: ${count} headers follow the rules")
