@@ -8,9 +8,9 @@
 //   1. With Cuttable<...> as solver the model can be cut. A session can touch it like any other model.
 //   2. A BladeTool renders the cutting force: toughness times the length of edge that is in the tissue. The surface
 //      swept by the edge is sent to the tissue as cut orders, one cut spacing at a time.
-//   3. `tissue.work()` executes cuts: here every sixteenth tick in this thread, so that every run is the same; in your
-//      program a BackgroundWorker does it in a background thread. A cut changes a few rows and needs no new inverse;
-//      the report contains the time until the tick used it.
+//   3. `tissue.process_cuts()` executes cuts: here every sixteenth tick in this thread, so that every run is the same;
+//      in your program a BackgroundWorker does it in a background thread. A cut changes a few rows and needs no new
+//      inverse; the report contains the time until the tick used it.
 //   4. Unsupported parts become detached fragments; the rest can still be touched and cut. No solve is ever singular.
 //
 // Writes DIR/report.html and DIR/cut.pvd (for ParaView). The exit code is 1 when the wound did not gape, a force was
@@ -71,9 +71,9 @@ std::vector<Vector2> push_blade(Organ& tissue, HapticServo& servo, const Vector3
     state.time = 1e-3 * i;
     force.emplace_back(1e3 * path * i / ticks, servo.tick(state).force().norm());
     if (!(force.back()[1] <= ForceLimits{}.peak_force * (1.0 + 1e-9))) return {};
-    if (i % 16 == 15) tissue.work();
+    if (i % 16 == 15) tissue.process_cuts();
   }
-  while (tissue.work()) {  // no order is pending: the error is measured, interior nodes are updated
+  while (tissue.process_cuts()) {  // no order is pending: the error is measured, interior nodes are updated
   }
   return force;
 }
@@ -102,7 +102,7 @@ double cut_apart(Organ& tissue, Index elements, Record& record) {
       for (Index e = 0; e < elements; ++e) all.remove.push_back(e);
       tissue.cut(all);
     }
-    tissue.work();
+    tissue.process_cuts();
     const auto mass = masses(tissue);
     supported = mass[0];
     lost = std::max(lost, std::abs(mass[0] + mass[1] + mass[2] - whole) / whole);
