@@ -1,5 +1,7 @@
 # Checks the house rules of include/palpate: an include goes to a lower floor, or stays on its floor in its own wing;
-# the physics wing and the contact wing never include each other; no include cycles. docs/architecture.md has the table.
+# the physics wing and the contact wing never include each other; static and moving models never include each other; no
+# include cycles; examples and README include no internal header (detail/). docs/architecture.md has the table and the
+# graph of includes, which are checked too.
 #   cmake [-DHEADERS=<folder that contains palpate/>] -P cmake/check_floors.cmake
 cmake_minimum_required(VERSION 3.21)
 
@@ -80,6 +82,10 @@ foreach(header IN LISTS headers)
     endif()
 
     look_up(${target})
+    set(uses_${from_room}_${room} TRUE)
+    if("${header};${target}" MATCHES "^palpate/model/(static/.*;palpate/model/moving|moving/.*;palpate/model/static)/")
+      complain("${header} includes ${target}: static and moving models share model/ and model/detail/ only")
+    endif()
     if(floor STREQUAL "")
       complain("${header} includes ${target}: '${room}' has no floor")
     elseif(from_room MATCHES "^(palpate|own_types).hpp$" OR (from_room STREQUAL "fwd.hpp" AND NOT wing STREQUAL "roof"))
@@ -118,14 +124,28 @@ if(left)
   complain("include cycle among: ${left}")
 endif()
 
-# docs/architecture.md must contain the same table.
+# Examples and README use public headers only.
+file(GLOB_RECURSE programs ${HEADERS}/../examples/*.cpp ${HEADERS}/../examples/*.hpp ${HEADERS}/../README.md)
+foreach(program IN LISTS programs)
+  file(STRINGS ${program} lines REGEX "#[ \t]*include[ \t]*<palpate/[^>]*detail/")
+  foreach(line IN LISTS lines)
+    complain("${program}: ${line}: headers in detail/ are internal")
+  endforeach()
+endforeach()
+
+# docs/architecture.md has every floor in its table, and its graph ("a --> b & c": a includes b and c) shows what is
+# included: every arrow is an include, and every include between folders is an arrow or a chain of arrows.
 set(page ${CMAKE_CURRENT_LIST_DIR}/../docs/architecture.md)
 if(EXISTS ${page})
+  file(STRINGS ${page} arrows REGEX "^  [a-z]+ --> ")
   file(READ ${page} page)
+  set(rooms "")
   get_cmake_property(variables VARIABLES)
   foreach(variable IN LISTS variables)
     if(variable MATCHES "^room_([a-z]+)$")
       set(room ${CMAKE_MATCH_1})
+      list(APPEND rooms ${room})
+      set(reached_${room} "")
       list(GET ${variable} 0 floor)
       list(GET ${variable} 1 wing)
       string(FIND "${page}" "| ${floor} | `${room}` | ${wing} |" found)
@@ -133,6 +153,32 @@ if(EXISTS ${page})
         complain("docs/architecture.md has no row `| ${floor} | `${room}` | ${wing} | ...`")
       endif()
     endif()
+  endforeach()
+
+  foreach(arrow IN LISTS arrows)
+    string(REGEX MATCHALL "[a-z]+" ends "${arrow}")
+    list(POP_FRONT ends from)
+    foreach(to IN LISTS ends)
+      list(APPEND reached_${from} ${to})
+      if(NOT uses_${from}_${to})
+        complain("docs/architecture.md draws ${from} --> ${to}, which no header includes")
+      endif()
+    endforeach()
+  endforeach()
+  foreach(step RANGE 8)  # longer than any chain of floors
+    foreach(room IN LISTS rooms)
+      foreach(other IN LISTS reached_${room})
+        list(APPEND reached_${room} ${reached_${other}})
+      endforeach()
+      list(REMOVE_DUPLICATES reached_${room})
+    endforeach()
+  endforeach()
+  foreach(from IN LISTS rooms)
+    foreach(to IN LISTS rooms)
+      if(uses_${from}_${to} AND NOT from STREQUAL to AND NOT to IN_LIST reached_${from})
+        complain("docs/architecture.md draws no arrow or chain from ${from} to ${to}, which it includes")
+      endif()
+    endforeach()
   endforeach()
 endif()
 

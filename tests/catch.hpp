@@ -1,7 +1,7 @@
 #pragma once
 
-/// One include for Catch2 v2.13 and v3. Compare numbers with Catch::Matchers::WithinAbs / WithinRel: Approx is spelled
-/// differently in the two. Compare texts with test::contains for the same reason.
+/// One include for Catch2 v2.13 and v3. Compare numbers with Catch::Matchers::WithinAbs / WithinRel: Approx differs
+/// between the two. Compare texts with test::contains for the same reason.
 #if __has_include(<catch2/catch_test_macros.hpp>)
 #include <catch2/catch_template_test_macros.hpp>
 #include <catch2/catch_test_macros.hpp>
@@ -15,7 +15,7 @@
 
 namespace test {
 
-/// Matcher: the text holds `part`.
+/// Matcher: the text contains `part`.
 inline auto contains(const std::string& part) {
 #if __has_include(<catch2/catch_test_macros.hpp>)
   return Catch::Matchers::ContainsSubstring(part);

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Coverage of the whole library by all tests: lines and branches, file by file and in total. About half an hour.
+# Coverage of the whole library by all tests: lines and branches, per file and in total. Takes about half an hour.
 #   sh tests/coverage.sh [folder to build in]     CLANG chooses the compiler
-# Templates count once: a line is covered when any instantiation has run it.
+# A template counts once: a line is covered when any instantiation has run it.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 out=${1:-$root/build/coverage-library}
@@ -23,7 +23,7 @@ set --
 for program in "$out"/tests/test_*; do
   if [ -f "$program" ] && [ -x "$program" ]; then set -- "$@" -object "$program"; fi
 done
-shift  # the first program stands without -object
+shift  # the first program has no -object before it
 "llvm-cov$suffix" report "$@" "-instr-profile=$out/all.profdata" --show-branch-summary --show-region-summary=false \
   "-ignore-filename-regex=^$root/tests|^/usr|palpate/testing/" >"$out/library.txt"
 cat "$out/library.txt"

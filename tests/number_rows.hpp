@@ -1,4 +1,4 @@
-// Tables of numbers in text files.
+// Reads tables of numbers from text files.
 #pragma once
 
 #include <palpate/core/types.hpp>
@@ -11,7 +11,7 @@
 
 namespace test {
 
-/// Rows of numbers with commas between them, below so many lines of header; empty when there is no such file.
+/// Rows of comma-separated numbers after `header_lines` lines; empty when the file does not exist.
 inline std::vector<std::vector<double>> read_rows(const std::string& path, int header_lines) {
   std::ifstream file(path);
   std::vector<std::vector<double>> rows;
@@ -26,7 +26,7 @@ inline std::vector<std::vector<double>> read_rows(const std::string& path, int h
   return rows;
 }
 
-/// The same as a matrix, without a header.
+/// The rows of a file without header, as a matrix.
 inline palpate::MatrixX read_matrix(const std::string& path) {
   const auto rows = read_rows(path, 0);
   palpate::MatrixX m(rows.size(), rows.empty() ? 0 : rows.front().size());

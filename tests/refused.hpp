@@ -1,4 +1,4 @@
-// What is refused, and how.
+// Checks that a call is refused, and with which problem.
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
@@ -9,18 +9,18 @@
 
 namespace test {
 
-/// The problem with which `what` is refused.
+/// Calls `what`, which must throw a SetupError, and returns its problem.
 inline palpate::SetupProblem refusal(const std::function<void()>& what) {
   try {
     what();
   } catch (const palpate::SetupError& error) {
     return error.problem();
   }
-  FAIL_CHECK("accepted, and must not be");
+  FAIL_CHECK("accepted, but must be refused");
   return {};
 }
 
-/// The kind as a word, "accepted" when nothing is refused.
+/// Calls `what` and returns the kind of its SetupError as text, "accepted" when it throws none.
 inline std::string refusal_kind(const std::function<void()>& what) {
   try {
     what();

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Sanitizers over the tests that matter for safety: address and undefined behaviour, threads, real time. Says what is left
-# out where a compiler has none.
+# Runs the tests that matter for safety under sanitizers: address and undefined behaviour, threads, real time. Reports
+# the checks that are left out because the compiler lacks the sanitizer.
 #   sh tests/sanitize.sh [folder to build in] [check ...]     CXX chooses the compiler, EIGEN the folder of Eigen
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -29,7 +29,7 @@ check() {
   else failed=1; echo "NOT CLEAN: $name, see $out/$name.log"; fi
 }
 
-# Catch2's own code is left as it is: minutes saved.
+# Catch2's own code is compiled without sanitizers: saves minutes.
 main=${CATCH_MAIN:-$out/main.o}
 [ -e "$main" ] || "$cxx" -std=c++20 -O0 -c "$root/tests/main.cpp" -o "$main"
 

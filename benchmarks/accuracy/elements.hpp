@@ -1,4 +1,4 @@
-// The elements that are compared: one list.
+// The list of elements that are compared.
 #pragma once
 
 #include "meshes.hpp"
@@ -13,7 +13,7 @@ namespace accuracy {
 template <Element... E>
 struct ElementList {};
 
-/// A further element is one more name here.
+/// To compare another element, add its name here.
 using Elements = ElementList<Tet4, Smoothed<Tet4>, Tet10, Hex8, MeanDilatation<Hex8>, Hex20>;
 
 /// Calls visit(std::type_identity<E>) for every element of the list.
@@ -40,7 +40,7 @@ Solved solve(const Body<E>& body, const Scene& scene, const VectorX& more_load =
   return std::get<Solved (*)(const Body<E>&, const Scene&, const VectorX&)>(solvers().of)(body, scene, more_load);
 }
 
-/// The name of an element as it stands in a program, without namespaces.
+/// The name of an element as written in a program, without namespaces.
 template <Element E>
 std::string element_name() {
 #ifdef _MSC_VER
@@ -61,8 +61,8 @@ std::string element_name() {
   return name;
 }
 
-/// Cells along an edge of a mesh for elements of first order; those of second order get half of them, and about the
-/// same nodes.
+/// Number of cells along an edge of a mesh, given that for first-order elements. Second-order elements use half as many
+/// cells, which gives about the same number of nodes.
 template <Element E>
 int cells(int for_linear) {
   return std::max(1, for_linear / E::order);

@@ -1,4 +1,4 @@
-// A hollow sphere under inner pressure: Lame's solution.
+// A hollow sphere under internal pressure: Lame's solution.
 #pragma once
 
 #include "meshes.hpp"
@@ -6,7 +6,7 @@
 
 namespace accuracy {
 
-/// Inner radius a, outer radius b [m], pressure p inside [Pa].
+/// Inner radius a, outer radius b [m], internal pressure p [Pa].
 struct LameSphere {
   double a = 1.0, b = 2.0, p = 1.0;
   LinearElastic material{.youngs_modulus = 1000.0, .poisson_ratio = 0.3};

@@ -11,7 +11,7 @@ namespace accuracy {
 /// Target of the benchmark (NAFEMS, The Standard NAFEMS Benchmarks, 1990): sigma_yy at D = (2, 0, 0.6) m [Pa].
 inline constexpr double le10_target = -5.38e6;
 
-/// Symmetry planes, the rim held in its plane, its middle line also across; 1 MPa on top.
+/// Symmetry planes; the rim is constrained in x and y, its midline also in z; 1 MPa on top.
 inline Scene le10_scene() {
   return Scene()
       .prescribe("x0", {0.0, std::nullopt, std::nullopt})
@@ -23,7 +23,7 @@ inline Scene le10_scene() {
 
 inline constexpr LinearElastic le10_steel{.youngs_modulus = 210e9, .poisson_ratio = 0.3};
 
-/// Recovered sigma_yy at D [Pa] of a solved plate.
+/// Recovered sigma_yy at D [Pa] for a displacement of the plate.
 template <Element E>
 double le10_stress(const Body<E>& body, const VectorX& displacement) {
   return patch_recovery(body, displacement).at(nearest_node(body.mesh, {2.0, 0.0, 0.6}))[voigt::yy];

@@ -1,4 +1,4 @@
-// Near incompressibility: what plain elements lose, and treated ones keep.
+// Near incompressibility: accuracy of plain elements, which lock, and of elements with a treatment of locking.
 #include "elements.hpp"
 #include "parts.hpp"
 
@@ -7,11 +7,11 @@ namespace accuracy {
 namespace {
 
 struct Measured {
-  double value = 0.0, seconds = 0.0;  ///< seconds of assembly and factorisation
+  double value = 0.0, seconds = 0.0;  ///< seconds: time of assembly and factorisation
   Index nodes = 0;
 };
 
-/// A beam 4 x 1 x 1, clamped at x = 0, E = 1, sheared by 1e-3 over its end: mean deflection.
+/// A beam 4 x 1 x 1, clamped at x = 0, E = 1, with a shear traction of 1e-3 at its end: mean deflection.
 template <Element E>
 Measured deflect(int across, double nu) {
   const Scene scene = Scene().fix("x0").traction("x1", {0.0, 0.0, -1e-3});
@@ -20,7 +20,7 @@ Measured deflect(int across, double nu) {
   return {mean_displacement(body, scene, solved, 1e-3), solved.seconds, body.mesh.node_count()};
 }
 
-/// A unit cube bonded below and above, pressed together by 0.01: the force for E = 1. `quarter` takes a quarter of it,
+/// A unit cube bonded at bottom and top and compressed by 0.01: the force for E = 1. `quarter` solves a quarter of it,
 /// with two planes of symmetry.
 template <Element E>
 Measured press(int n, double nu, bool quarter = false) {
@@ -54,11 +54,11 @@ std::vector<double> sweep(int n, const std::array<double, 5>& exact, Table& tabl
   return errors;
 }
 
-/// What must come out: treated and second-order elements stay right, plain linear ones do not at 0.4999.
+/// Expected result: treated and second-order elements stay accurate; plain linear elements do not at 0.4999.
 template <Element E>
 void judge(const std::vector<double>& errors, double allowed, Checks& checks) {
   if constexpr (E::order == 1 && requires { requires E::locking_poisson_ratio < 0.49; }) {
-    checks.expect(std::abs(errors.back()) > 0.5, element_name<E>() + " does not lock any more: is it another element?");
+    checks.expect(std::abs(errors.back()) > 0.5, element_name<E>() + " no longer locks: has the element changed?");
   } else {
     for (const double e : errors) checks.expect(std::abs(e) < allowed, element_name<E>() + ": locks");
   }
@@ -81,14 +81,14 @@ void bend(Checks& checks) {
 void compress(Checks& checks) {
   std::array<double, 5> exact{};
   double doubt = 0.0;
-  for (std::size_t i = 0; i < ratios.size(); ++i) {  // the error of the treated brick halves with h
+  for (std::size_t i = 0; i < ratios.size(); ++i) {  // the error of the treated brick is proportional to h
     using Treated = MeanDilatation<Hex8>;
     const double coarse = press<Treated>(16, ratios[i], true).value, fine = press<Treated>(32, ratios[i], true).value;
     exact[i] = 2.0 * fine - coarse;
     doubt = std::max(doubt, std::abs(fine / exact[i] - 1.0));
   }
   std::printf(
-      "### Bonded block\n\nA cube held below, its top moved down and held sideways. Error of the force [%%] "
+      "### Bonded block\n\nA cube fixed at the bottom, its top moved down and fixed laterally. Error of the force [%%] "
       "against MeanDilatation<Hex8> on 16^3 and 32^3 cells, extrapolated (the last step is %.2g %%): %.5f, %.5f, "
       "%.5f, %.5f, %.5f for E = 1 and 1 %% of compression.\n\n",
       100.0 * doubt, exact[0], exact[1], exact[2], exact[3], exact[4]);

@@ -1,5 +1,5 @@
-// How right the answers are, per element: other codes, a manufactured solution, benchmark problems, locking. Prints
-// tables in Markdown, and returns 1 when something is not as it must be.
+// Accuracy per element: comparison with other codes, a manufactured solution, benchmark problems, locking. Prints
+// tables in Markdown, and returns 1 when a check fails.
 //   bench_accuracy [--oracle <folder>] [--out <folder for convergence.svg>] [--only
 //   oracle|manufactured|problems|locking]
 #include "parts.hpp"
@@ -26,7 +26,7 @@ Arguments read_arguments(int argc, char** argv) {
     else if (word == "--only")
       a.only = argv[i + 1];
     else
-      throw std::runtime_error("what is '" + word + "'?");
+      throw std::runtime_error("unknown option '" + word + "'");
   }
   return a;
 }

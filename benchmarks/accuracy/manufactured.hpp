@@ -1,4 +1,4 @@
-// A manufactured solution: a trigonometric displacement and the body force that belongs to it.
+// A manufactured solution: a trigonometric displacement and the corresponding body force.
 #pragma once
 
 #include "meshes.hpp"
@@ -10,7 +10,7 @@
 
 namespace accuracy {
 
-/// u_c = a_c cos(k_c . x + phi_c): it vanishes nowhere in particular, so boundary values are prescribed too.
+/// u_c = a_c cos(k_c . x + phi_c). It is not zero on the boundary, so boundary values are prescribed too.
 struct Manufactured {
   LinearElastic material{.youngs_modulus = 1.0, .poisson_ratio = 0.3};
   Vector3 amplitude{1.0, -0.5, 0.7}, phase{0.3, 1.1, -0.4};
@@ -34,7 +34,7 @@ struct Manufactured {
   }
 };
 
-/// A rule of higher degree than the element's own, for loads and errors.
+/// A quadrature rule of higher degree than that of the element, for loads and errors.
 template <Element E>
 using FineRule = std::conditional_t<E::faces.size() == 4, TetrahedronRule<5>, HexahedronRule<4>>;
 
@@ -80,7 +80,7 @@ Errors errors_of(const Body<E>& body, const VectorX& u, const Manufactured& fiel
   return {std::sqrt(missed / whole), std::sqrt(missed_energy / energy)};
 }
 
-/// Solves on a mesh with exact values on the whole boundary; `solve` is solve_static or a like of it.
+/// Solves on a mesh with exact values on the whole boundary; `solve` is solve_static or has the same interface.
 template <Element E, class Solve>
 Errors manufactured_errors(Mesh<E> mesh, const Manufactured& field, Solve solve) {
   Scene scene;
@@ -92,15 +92,15 @@ Errors manufactured_errors(Mesh<E> mesh, const Manufactured& field, Solve solve)
   return errors_of(body, solve(body, scene, consistent_load(body.mesh, field)).displacement, field);
 }
 
-/// A unit cube of n^3 cells, its inner corners moved by up to a tenth of a cell if `distorted`.
+/// A unit cube of n^3 cells, with inner corners moved by up to a tenth of a cell if `distorted`.
 template <Element E>
 Mesh<E> refined_cube(int n, bool distorted) {
   Mesh<E> mesh = box_of<E>({1, 1, 1}, {n, n, n});
   return distorted ? jittered(std::move(mesh), 0.1 / n) : mesh;
 }
 
-/// Orders a priori: of the displacement in L2 and of the energy. Serendipity elements that are no parallelepipeds hold
-/// only the linear fields (Arnold, Boffi and Falk 2002), so Hex20 may fall to first order on distorted meshes.
+/// A priori orders of the displacement in L2 and of the energy. Serendipity elements that are not parallelepipeds
+/// reproduce only linear fields (Arnold, Boffi and Falk 2002), so Hex20 may drop to first order on distorted meshes.
 template <Element E>
 std::pair<double, double> theoretical_orders(bool distorted) {
   const int order = distorted && E::nodes == 20 ? 1 : E::order;

@@ -1,4 +1,4 @@
-// Bodies of any element: boxes, and boxes bent into other shapes. Elements with curved edges follow the shape.
+// Meshes of any element: boxes, and boxes mapped to other shapes. Elements with curved edges follow the shape.
 #pragma once
 
 #include <palpate/element/mean_dilatation.hpp>
@@ -15,7 +15,7 @@ namespace accuracy {
 
 using namespace palpate;
 
-/// The same arrays read as an element with the same nodes.
+/// The same mesh as one of another element with the same nodes.
 template <Element To, Element From>
 Mesh<To> read_as(Mesh<From> mesh) {
   static_assert(To::nodes == From::nodes && To::faces == From::faces);
@@ -28,7 +28,7 @@ Mesh<To> read_as(Mesh<From> mesh) {
   return same;
 }
 
-/// A box [0, size] in equal cells, six tetrahedra in each where there are tetrahedra; groups "x0" ... "z1".
+/// A box [0, size] of equal cells, each split into six tetrahedra for tetrahedral elements; groups "x0" ... "z1".
 template <Element E>
 Mesh<E> box_of(const Vector3& size, std::array<int, 3> cells) {
   if constexpr (E::nodes == 4)
@@ -41,7 +41,7 @@ Mesh<E> box_of(const Vector3& size, std::array<int, 3> cells) {
     return read_as<E>(box_hex20(size, cells));
 }
 
-/// The unit cube of a grid bent into another shape: node x goes to map(x).
+/// A grid of the unit cube mapped to another shape: node x is moved to map(x).
 template <Element E, class Map>
 Mesh<E> mapped_box(std::array<int, 3> cells, Map map) {
   Mesh<E> mesh = box_of<E>({1, 1, 1}, cells);
@@ -49,7 +49,7 @@ Mesh<E> mapped_box(std::array<int, 3> cells, Map map) {
   return mesh;
 }
 
-/// Moves the corners inside by up to `amount` per axis; edges of quadratic elements stay straight.
+/// Moves interior corners by up to `amount` per axis; edges of quadratic elements stay straight.
 template <Element E>
 Mesh<E> jittered(Mesh<E> mesh, double amount, std::uint64_t seed = 1729) {
   testing::Random random(seed);
@@ -81,7 +81,7 @@ Mesh<E> joined(const std::vector<Mesh<E>>& parts, double size) {
           {{std::llround(x[0] / size * 1e8), std::llround(x[1] / size * 1e8), std::llround(x[2] / size * 1e8)},
            next++});
   std::ranges::sort(keys);
-  std::vector<NodeId> first(keys.size());  // the lowest number at the same place
+  std::vector<NodeId> first(keys.size());  // the lowest index at the same position
   for (std::size_t i = 0; i < keys.size(); ++i)
     first[static_cast<std::size_t>(keys[i].second)] = i > 0 && keys[i].first == keys[i - 1].first
                                                           ? first[static_cast<std::size_t>(keys[i - 1].second)]
@@ -106,7 +106,7 @@ Mesh<E> joined(const std::vector<Mesh<E>>& parts, double size) {
   return whole;
 }
 
-/// An eighth of a hollow sphere, x, y, z >= 0: three blocks of n x n cells a side, `layers` through the wall. Groups
+/// An eighth of a hollow sphere, x, y, z >= 0: three blocks of n x n cells per side, `layers` through the wall. Groups
 /// "x0", "y0", "z0" on the planes, "inner", "outer".
 template <Element E>
 Mesh<E> sphere_octant(double inner, double outer, int n, int layers) {
@@ -135,7 +135,7 @@ Mesh<E> sphere_octant(double inner, double outer, int n, int layers) {
 }
 
 /// Cook's membrane: 48 long, 44 high at the left and 16 at the right, 5 thick; n x n cells, nz through the thickness.
-/// Held "x0", loaded "x1", faces "z0", "z1" [any unit of length].
+/// Fixed at "x0", loaded at "x1", faces "z0", "z1" [any unit of length].
 template <Element E>
 Mesh<E> cook_membrane(int n, int nz, double thickness = 5.0) {
   return mapped_box<E>({n, n, nz}, [&](const Vector3& s) -> Vector3 {
@@ -144,11 +144,12 @@ Mesh<E> cook_membrane(int n, int nz, double thickness = 5.0) {
 }
 
 /// NAFEMS LE10, a quarter of an elliptic plate: inner ellipse (2, 1) m, outer one (3.25, 2.75) m, 0.6 m thick. Groups
-/// "x0" at x = 0, "x1" at y = 0, "y0" inside, "y1" outside (the rim), "z1" on top, and "rim_midline". Cells: around,
-/// outwards, through the thickness (an even number).
+/// "x0" at x = 0, "x1" at y = 0, "y0" on the inner ellipse, "y1" on the outer (the rim), "z1" on top, and
+/// "rim_midline". Cells: circumferential, radial, through the thickness (an even number).
 template <Element E>
 Mesh<E> elliptic_plate(std::array<int, 3> cells) {
-  // The angle runs from the y axis to the x axis, which keeps the elements positive: (angle, outwards, up).
+  // The angle runs from the y axis to the x axis, so that (angle, outwards, up) is right-handed and volumes are
+  // positive.
   const auto at = [](const Vector3& s) -> Vector3 {
     const double angle = 0.5 * std::numbers::pi * (1.0 - s[0]);
     const double c = s[0] == 1.0 ? 1.0 : std::cos(angle), n = s[0] == 1.0 ? 0.0 : std::sin(angle);

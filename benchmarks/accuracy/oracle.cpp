@@ -1,4 +1,4 @@
-// Linear static cases of other codes, read from files: the same mesh, the same element, the same answer.
+// Linear static cases of other codes, read from files: the same mesh and element must give the same displacement.
 #include "elements.hpp"
 #include "parts.hpp"
 
@@ -52,9 +52,9 @@ std::map<Index, Vector3> read_displacements(const fs::path& path) {
   return rows;
 }
 
-/// Holds nodes of no element, which a mesh file may have.
+/// Fixes nodes that belong to no element, which a mesh file may contain.
 template <Element E>
-void hold_lone_nodes(const Mesh<E>& mesh, Scene& scene) {
+void fix_lone_nodes(const Mesh<E>& mesh, Scene& scene) {
   std::vector<bool> used(static_cast<std::size_t>(mesh.node_count()), false);
   for (const auto& element : mesh.elements)
     for (const NodeId i : element) used[static_cast<std::size_t>(i)] = true;
@@ -69,14 +69,14 @@ Body<E> read_body(const Mesh<E>& mesh, const json& load_case, const Scene& scene
   return body;
 }
 
-/// Largest difference over the largest displacement.
+/// Largest difference of a displacement component, relative to the largest component.
 template <Element E>
 double difference(const Mesh<E>& mesh, const json& load_case, const std::map<Index, Vector3>& reference,
                   const std::vector<Index>& tags) {
   solve_case::check_analysis(load_case, solve_case::statics);
   Scene scene = solve_case::read_scene(load_case, mesh);
   const Body<E> body = read_body(mesh, load_case, scene);
-  hold_lone_nodes(mesh, scene);
+  fix_lone_nodes(mesh, scene);
   const VectorX u = solve(body, scene).displacement;
   double worst = 0.0, largest = 0.0;
   for (std::size_t i = 0; i < tags.size(); ++i) {
@@ -104,7 +104,7 @@ void compare_folder(const fs::path& root, const fs::path& folder, const solve_ca
     const auto other = disagreement.find(name + ' ' + which);
     table.add({name, which, element_name<E>(), std::to_string(mesh.node_count()), text(error, "%.1e"),
                other == disagreement.end() ? "-" : other->second});
-    checks.expect(error <= 1e-6, name + ' ' + which + ": more than 1e-6 from the reference");
+    checks.expect(error <= 1e-6, name + ' ' + which + ": differs by more than 1e-6 from the reference");
   }
 }
 
@@ -112,8 +112,8 @@ void compare_folder(const fs::path& root, const fs::path& folder, const solve_ca
 
 void compare_with_oracle(const std::string& folder, Checks& checks) {
   std::printf(
-      "## Against other codes\n\nLargest difference of displacement over the largest one, to CalculiX (which "
-      "prints seven digits), and the difference of the second code (GetFEM) to it.\n\n");
+      "## Against other codes\n\nLargest difference of displacement to CalculiX (which prints seven digits), relative "
+      "to the largest displacement; in the last column the same for a second code (GetFEM).\n\n");
   Table table({"case", "load case", "element", "nodes", "ours", "second code"});
   const auto disagreement = read_disagreement(fs::path(folder) / "index.csv");
   std::vector<fs::path> folders;
@@ -141,7 +141,7 @@ void compare_with_oracle(const std::string& folder, Checks& checks) {
 #else
 
 void accuracy::compare_with_oracle(const std::string&, Checks&) {
-  std::printf("## Against other codes\n\nLeft out: nlohmann-json was not there at compile time.\n\n");
+  std::printf("## Against other codes\n\nLeft out: nlohmann-json was not found at compile time.\n\n");
 }
 
 #endif

@@ -1,4 +1,4 @@
-// Convergence plots: error over the number of cells, both logarithmic, as SVG.
+// Convergence plots as SVG: error over the number of cells, both logarithmic.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace accuracy {
 
-/// One panel with curves and lines of whole order. Coordinates in pixels of the picture.
+/// One panel with curves and reference lines of integer order. Coordinates in pixels of the picture.
 class OrderPlot {
  public:
   OrderPlot(double left, std::string title) : left_(left), title_(std::move(title)) {}

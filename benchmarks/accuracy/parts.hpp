@@ -1,4 +1,4 @@
-// The parts of the program.
+// The comparisons of the program.
 #pragma once
 
 #include "report.hpp"
@@ -7,7 +7,7 @@
 
 namespace accuracy {
 
-/// Oracle cases: our displacement against that of other codes.
+/// Oracle cases: displacement compared with that of other codes.
 void compare_with_oracle(const std::string& folder, Checks& checks);
 /// A smooth manufactured solution: errors and orders on refined meshes, even and distorted. Writes `picture` (SVG).
 void manufactured_solution(const std::string& picture, Checks& checks);

@@ -16,7 +16,7 @@ std::string count(Index n) {
   return std::to_string(n);
 }
 
-/// Energy norm of the stress missed.
+/// Energy norm of the true stress error.
 template <Element E>
 double true_error(const Body<E>& body, const VectorX& u, const LameSphere& sphere) {
   const Matrix6 compliance = body.elasticity.front().inverse();
@@ -62,9 +62,9 @@ void solve_sphere(double nu, Table& table, Checks& checks) {
 
 void sphere(Checks& checks) {
   std::printf(
-      "## Hollow sphere under inner pressure (Lame)\n\nAn eighth, a = 1, b = 2, n cells a side of three blocks and n "
-      "through the wall. Worst nodal errors: displacement over u(a), recovered stress over p; then the error in "
-      "the energy norm, true and estimated (Zienkiewicz and Zhu), in %%.\n\n");
+      "## Hollow sphere under internal pressure (Lame)\n\nAn eighth, a = 1, b = 2, three blocks with n cells per side, "
+      "n through the wall. Largest nodal errors: displacement relative to u(a), recovered stress relative to p; then "
+      "the error in the energy norm, true and estimated (Zienkiewicz and Zhu), in %%.\n\n");
   Table table(
       {"element", "nu", "n", "nodes", "displacement [%]", "stress [%]", "energy [%]", "estimated [%]", "effectivity"});
   for (const double nu : {0.3, 0.499})
@@ -72,7 +72,7 @@ void sphere(Checks& checks) {
   table.print();
 }
 
-/// 1 x 0.2 x 0.2 m, E = 1 MPa, nu = 0.3, 4 N across its end.
+/// 1 x 0.2 x 0.2 m, E = 1 MPa, nu = 0.3, transverse force of 4 N at its end.
 template <Element E>
 void solve_cantilever(Table& table, Checks& checks) {
   constexpr double converged = 0.0101745, size = 0.2, force = 4.0;
@@ -83,18 +83,18 @@ void solve_cantilever(Table& table, Checks& checks) {
     const double tip = mean_displacement(body, scene, solve(body, scene), force);
     table.add({element_name<E>(), times(5 * n, n, n), count(body.mesh.node_count()), text(tip, "%.8f"),
                percent(tip / converged - 1.0)});
-    // Values of two other codes, which agree to seven digits.
+    // Results of two other codes, which agree to seven digits.
     const auto agrees = [&](double reference) {
       checks.expect(std::abs(tip / reference - 1.0) < 1e-6,
-                    element_name<E>() + ": not the reference value of this mesh");
+                    element_name<E>() + ": differs from the reference value of this mesh");
     };
     if (std::same_as<E, Hex8> && n == 2) agrees(0.00882890013);
     if (std::same_as<E, Hex8> && n == 4) agrees(0.00976842);
-    if constexpr (HasSmoothedStrain<E>) {  // no minimum of the energy: it may come from either side
+    if constexpr (HasSmoothedStrain<E>) {  // not a minimum of the energy: it may converge from either side
       checks.expect(std::abs(tip - converged) < std::abs(last - converged), element_name<E>() + ": does not converge");
     } else {
       checks.expect(tip > last, element_name<E>() + ": the deflection does not grow with refinement");
-      checks.expect(tip < 1.002 * converged, element_name<E>() + ": softer than the body");
+      checks.expect(tip < 1.002 * converged, element_name<E>() + ": deflection above the converged value");
     }
     last = tip;
   }
@@ -103,13 +103,13 @@ void solve_cantilever(Table& table, Checks& checks) {
 void cantilever(Checks& checks) {
   std::printf(
       "## Cantilever\n\n1 x 0.2 x 0.2 m, clamped, nu = 0.3. Mean deflection of the loaded end, converged in three "
-      "dimensions to 0.0101745 m (beam theory, which lets the clamped end contract, says 0.01031).\n\n");
+      "dimensions to 0.0101745 m (beam theory, in which the clamped end may contract, gives 0.01031).\n\n");
   Table table({"element", "cells", "nodes", "deflection [m]", "error [%]"});
   each_element([&]<class E>(std::type_identity<E>) { solve_cantilever<E>(table, checks); });
   table.print();
 }
 
-/// Plane strain: both faces held across.
+/// Plane strain: both faces are constrained in z.
 template <Element E>
 void solve_cook(double nu, double converged, Table& table, Checks& checks) {
   const Scene scene = Scene()
@@ -126,18 +126,18 @@ void solve_cook(double nu, double converged, Table& table, Checks& checks) {
                text(tip, "%.4f"), percent(error)});
     const auto agrees = [&](double reference) {
       checks.expect(std::abs(tip / reference - 1.0) < 2e-4,
-                    element_name<E>() + ": not the reference value of this mesh");
+                    element_name<E>() + ": differs from the reference value of this mesh");
     };
     if (std::same_as<E, Hex8> && n == 8) agrees(nu < 0.4 ? 8.134 : nu < 0.4995 ? 2.701 : 2.225);
   }
   if constexpr (E::order == 2 || HasMeanDilatation<E>)
     checks.expect(std::abs(error) < 0.05,
-                  element_name<E>() + ", nu " + text(nu) + ": more than 5 % off on Cook's membrane");
+                  element_name<E>() + ", nu " + text(nu) + ": error above 5 % on Cook's membrane");
 }
 
 void cook(Checks& checks) {
   std::printf(
-      "## Cook's membrane, plane strain\n\nMean displacement of the loaded edge over the converged 8.974, 7.727, "
+      "## Cook's membrane, plane strain\n\nMean displacement of the loaded edge; converged values: 8.974, 7.727, "
       "7.718.\n\n");
   Table table({"element", "nu", "cells", "nodes", "displacement", "error [%]"});
   constexpr std::array ratios{1.0 / 3.0, 0.499, 0.4999}, converged{8.974, 7.727, 7.718};
@@ -164,7 +164,8 @@ void solve_le10(Table& table, Checks& checks) {
 void le10(Checks& checks) {
   std::printf(
       "## NAFEMS LE10\n\nsigma_yy at D, by patch recovery; the target is -5.38 MPa. The line support is singular: "
-      "fine meshes end near -5.42. Other codes: Hex20 -5.470 and -5.483 on such meshes, Tet10 -5.48 ... -5.40.\n\n");
+      "fine meshes converge to about -5.42. Other codes: Hex20 -5.470 and -5.483 on such meshes, Tet10 -5.48 "
+      "... -5.40.\n\n");
   Table table({"element", "cells", "nodes", "sigma_yy [MPa]", "error [%]", "estimated error, energy norm [%]"});
   each_element([&]<class E>(std::type_identity<E>) { solve_le10<E>(table, checks); });
   table.print();

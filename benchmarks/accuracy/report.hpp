@@ -1,4 +1,4 @@
-// Tables in Markdown, and what they must show.
+// Tables in Markdown, and the checks of their values.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@ class Table {
 
   void print() const {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      for (const std::string& cell : rows_[i])  // Markdown would take <Hex8> for a tag
+      for (const std::string& cell : rows_[i])  // Markdown would parse <Hex8> as a tag
         std::printf(cell.find('<') == cell.npos ? "| %s " : "| `%s` ", cell.c_str());
       std::printf("|\n");
       for (std::size_t c = 0; i == 0 && c < rows_[0].size(); ++c) std::printf("|---");
@@ -43,7 +43,7 @@ inline std::string times(int a, int b, int c) {
   return std::to_string(a) + " x " + std::to_string(b) + " x " + std::to_string(c);
 }
 
-/// Counts what is not as it must be, and says it at once.
+/// Counts checks and failed checks, and prints failures immediately.
 class Checks {
  public:
   void expect(bool right, const std::string& what) {

@@ -1,4 +1,4 @@
-// A body solved without a haptic model around it.
+// Static solution of a body without a haptic model.
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
@@ -13,7 +13,7 @@ namespace accuracy {
 
 using namespace palpate;
 
-/// One material per region, the last for all further ones; no initial strain.
+/// One material per region; the last is used for all further regions. No initial strain.
 template <Element E>
 Body<E> body_of(Mesh<E> mesh, std::vector<LinearElastic> materials) {
   materials.resize(mesh.region_names.size(), LinearElastic(materials.back()));
@@ -23,15 +23,16 @@ Body<E> body_of(Mesh<E> mesh, std::vector<LinearElastic> materials) {
 /// Displacement and forces of a static state, 3 per node.
 struct Solved {
   VectorX displacement;  ///< [m]
-  VectorX reactions;     ///< of what holds the body, zero on free dofs [N]
-  double seconds = 0.0;  ///< assembly and factorisation
+  VectorX reactions;     ///< of the supports, zero on free dofs [N]
+  double seconds = 0.0;  ///< time of assembly and factorisation
 };
 
-/// K_ff^-1 of a load on all dofs, zero on prescribed ones, by SparseCholesky (solver.cpp: compiled once).
+/// K_ff^-1 applied to the free part of `load`; the result has all dofs, zero on prescribed ones. By SparseCholesky
+/// (solver.cpp: compiled once).
 VectorX solve_free(const BlockMatrix& k, const EssentialConditions& conditions, const std::vector<Vector3>& positions,
                    const VectorX& load, double& seconds);
 
-/// Solves a scene; `more_load` [N] comes on top of its loads.
+/// Solves a scene; `more_load` [N] is added to its loads.
 template <Element E>
 Solved solve_static(const Body<E>& body, const Scene& scene, const VectorX& more_load = {}) {
   const auto boundary = extract_boundary<E>(body.mesh);
@@ -57,7 +58,7 @@ Solved solve_static(const Body<E>& body, const Scene& scene, const VectorX& more
   return s;
 }
 
-/// Mean over a loaded group of the displacement along a dead traction's direction: twice the energy over the force.
+/// Mean displacement of a loaded group in the direction of a dead traction: twice the energy over the force.
 template <Element E>
 double mean_displacement(const Body<E>& body, const Scene& scene, const Solved& solved, double total_force) {
   return applied_load(body, extract_boundary<E>(body.mesh), scene).dot(solved.displacement) / total_force;

@@ -1,6 +1,6 @@
-// Which structure finds the triangles near a tool fastest, and follows a surface that deforms? The thesis names an
-// octree, a balanced binary tree and bounding volumes (6.2) and decides between them by thought; here by measurement.
-// Every answer is compared with a look at all triangles.
+// Time to build, to update for a deformed surface and to find the triangles near a tool, for three structures: octree,
+// balanced binary tree and bounding volumes. The thesis (6.2) chooses between them by reasoning; here they are
+// measured. Results of every structure are compared with an exhaustive search.
 //   bench_collision
 #include "structures.hpp"
 
@@ -14,10 +14,10 @@
 namespace collision {
 namespace {
 
-constexpr double pi = 3.141592653589793, radius = 0.05;  // [m] of the organ
+constexpr double pi = 3.141592653589793, radius = 0.05;  // radius of the organ [m]
 int wrong = 0;
 
-/// A sphere with bumps, of 2 n (2 n - 2) ... triangles; `wave` moves the bumps.
+/// A sphere with bumps, of 2 n (2 n - 2) triangles; `wave` is the phase of the bumps.
 Surface organ(int n, double wave) {
   Surface s;
   const auto at = [&](double u, double v) {
@@ -99,7 +99,7 @@ int main() {
   for (const int n : {12, 36, 112}) {
     const Surface rest = organ(n, 0.0), deformed = organ(n, 0.7);
     testing::Random random(7);
-    std::vector<Vector3> tools;  // on the deformed surface or up to 8 mm off it
+    std::vector<Vector3> tools;  // on the deformed surface or up to 8 mm away from it
     for (int k = 0; k < 2000; ++k) {
       const auto v = static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(rest.positions.size()) - 0.01));
       tools.push_back(deformed.positions[v] * (1.0 + random.uniform(0.0, 0.16)));
@@ -108,6 +108,6 @@ int main() {
     measure<BinaryTree>(rest, deformed, tools, 6e-3);
     measure<BoundingVolumes>(rest, deformed, tools, 6e-3);
   }
-  if (wrong > 0) std::printf("WRONG: %d answers differ from a look at all triangles\n", wrong);
+  if (wrong > 0) std::printf("WRONG: %d results differ from an exhaustive search\n", wrong);
   return wrong == 0 ? 0 : 1;
 }

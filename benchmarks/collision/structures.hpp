@@ -1,4 +1,4 @@
-// The three structures the thesis names for finding what a tool may touch (6.2), behind one interface.
+// The three search structures for triangles near a tool named in the thesis (6.2), with a common interface.
 #pragma once
 
 #include <palpate/contact/detail/bvh.hpp>
@@ -27,7 +27,7 @@ struct Surface {
   }
 };
 
-/// Bounding volumes: the library's own.
+/// Bounding volumes: the implementation of the library.
 class BoundingVolumes {
  public:
   static constexpr const char* name = "bounding volumes";
@@ -42,8 +42,8 @@ class BoundingVolumes {
   Bvh bvh_;
 };
 
-/// A balanced binary tree of triangles: split at the median of their centres, which it searches by a slab as wide as
-/// the largest triangle is about its centre.
+/// A balanced binary tree of triangles, split at the median of their centres. A query is enlarged by the largest
+/// distance of a triangle's vertex from its centre.
 class BinaryTree {
  public:
   static constexpr const char* name = "balanced binary tree";
@@ -97,7 +97,8 @@ class BinaryTree {
   double largest_ = 0.0;
 };
 
-/// An octree: cells that hold up to eight triangles, each in every cell its box meets, split while that divides them.
+/// An octree: cells of up to eight triangles. Each triangle is stored in every cell that its box intersects. Cells are
+/// split to a maximum depth.
 class Octree {
  public:
   static constexpr const char* name = "octree";
@@ -125,7 +126,7 @@ class Octree {
     split(0, 0);
   }
   void split(std::size_t i, int depth) {
-    // Deeper, cells are smaller than the triangles in them: the surface of a cube holds 6 * 4^depth cells.
+    // Beyond this depth cells are smaller than the triangles in them: the surface of a cube has 6 * 4^depth cells.
     const int most = 1 + static_cast<int>(0.5 * std::log2(static_cast<double>(boxes_.size()) / 6.0));
     if (cells_[i].items.size() <= 8 || depth >= most) return;
     const Box box = cells_[i].box;

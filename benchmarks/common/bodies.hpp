@@ -1,4 +1,4 @@
-// The bodies that are measured: the standard block, and two of irregular shape.
+// The bodies that are measured: the standard block, and bodies of irregular shape.
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
@@ -19,7 +19,7 @@ using namespace palpate;
 
 inline constexpr LinearElastic tissue{.youngs_modulus = 10e3, .poisson_ratio = 0.45, .density = 1000.0};
 
-/// Ids of all nodes for which wanted(position) holds.
+/// Ids of all nodes for which wanted(position) is true.
 template <class Wanted>
 std::vector<NodeId> nodes_where(const Mesh<Tet4>& mesh, Wanted wanted) {
   std::vector<NodeId> nodes;
@@ -28,7 +28,7 @@ std::vector<NodeId> nodes_where(const Mesh<Tet4>& mesh, Wanted wanted) {
   return nodes;
 }
 
-/// A mesh, where it is held and where it may be touched.
+/// A mesh with its constrained and its touchable nodes.
 struct Constrained {
   Mesh<Tet4> mesh;
   std::vector<NodeId> constrained, touched;
@@ -45,8 +45,8 @@ struct Constrained {
   }
 };
 
-/// Cube of 0.1 m in n x n x n cells of six tetrahedra, held at the bottom. In the middle of the top an odd number of
-/// nodes in both directions may be touched: 7 x 7 at n = 16, 11 x 11 at n = 24.
+/// Cube of 0.1 m in n x n x n cells of six tetrahedra, constrained at the bottom. Touchable is a square patch in the
+/// middle of the top with an odd number of nodes per side: 7 x 7 at n = 16, 11 x 11 at n = 24.
 inline Constrained standard_block(int n) {
   Constrained b{box_tet4(Vector3(0.1, 0.1, 0.1), {n, n, n}, BoxSplit::six), {}, {}};
   const double half = 0.1 / n * (n < 16 ? 2 : n < 24 ? 3 : n < 32 ? 5 : 7) + 1e-6;
@@ -57,7 +57,7 @@ inline Constrained standard_block(int n) {
   return b;
 }
 
-/// The elements for which wanted(centre) holds, and the nodes they need.
+/// The elements for which wanted(centre) is true, with their nodes.
 template <class Wanted>
 Mesh<Tet4> part_of(const Mesh<Tet4>& mesh, Wanted wanted) {
   Mesh<Tet4> part;
@@ -79,8 +79,8 @@ Mesh<Tet4> part_of(const Mesh<Tet4>& mesh, Wanted wanted) {
   return part;
 }
 
-/// A body like an organ: a sphere of `layers` layers, elements about `edge` long, with a cavity in it and its nodes
-/// moved at random. Held below; the 300 nodes of its surface that are nearest to the top may be touched.
+/// A body like an organ: a sphere of `layers` layers, with element edges of about `edge` [m], a cavity inside and nodes
+/// displaced at random. Constrained at the bottom; the 300 surface nodes nearest to the top are touchable.
 inline Constrained organ_like(int layers, double edge) {
   const double radius = layers * edge;
   const Vector3 cavity = radius * Vector3(0.3, 0.1, -0.1);
@@ -100,10 +100,10 @@ inline Constrained organ_like(int layers, double edge) {
   return b;
 }
 
-/// Equations of a held body, and what the solver may know of them.
+/// Equations of a constrained body, and the layout of their dofs for the solver.
 struct System {
   SparseMatrix lower;
-  DofLayout layout;          ///< nothing kept
+  DofLayout layout;          ///< without kept dofs
   std::vector<Index> patch;  ///< free dofs of the touched nodes
 
   explicit System(const Constrained& constrained) {
@@ -128,7 +128,7 @@ struct System {
   }
 };
 
-/// Numbers between -1 and 1, the same in every run.
+/// Random numbers between -1 and 1, the same in every run.
 inline MatrixX random_matrix(Index rows, Index columns) {
   testing::Random random(11);
   return MatrixX::NullaryExpr(rows, columns, [&] { return random.uniform(-1.0, 1.0); });

@@ -1,4 +1,4 @@
-// Tables that programs write into documents.
+// Writes tables into documents.
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
@@ -14,14 +14,15 @@ inline std::string contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Puts `text` into a document between <!-- marker --> and <!-- end -->. Throws bad_argument where these are not.
+/// Replaces the text of a document between <!-- marker --> and <!-- end --> by `text`. Throws bad_argument when the
+/// document lacks these lines.
 inline void put_in_document(const std::string& document, const std::string& marker, const std::string& text) {
   std::string all = contents(document);
   const std::string begin = "<!-- " + marker + " -->\n", end = "<!-- end -->";
   const std::size_t from = all.find(begin), to = from == all.npos ? from : all.find(end, from);
   if (to == all.npos)
     palpate::raise(palpate::SetupErrorKind::bad_argument, document + " has no place for '" + marker + "'",
-                   "Give it lines <!-- " + marker + " --> and " + end);
+                   "Add the lines <!-- " + marker + " --> and " + end);
   all.replace(from + begin.size(), to - from - begin.size(), text);
   std::ofstream(document) << all;
 }

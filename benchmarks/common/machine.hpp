@@ -1,4 +1,5 @@
-// What the machine can do, measured in the same process and with the same flags as what is compared with it.
+// Bandwidth and arithmetic rate of the machine, measured in the same process and with the same flags as the code
+// compared with them.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +10,8 @@
 
 namespace bench {
 
-/// Eight sums at once: fewer wait for the adder, not for memory. `count` is a multiple of 64.
+/// Sum of `count` numbers, a multiple of 64, in eight independent partial sums: with fewer, the latency of the adder
+/// limits the rate, not memory.
 inline double sum_of(const double* p, Eigen::Index count) {
   using Lane = Eigen::Array<double, 8, 1>;
   std::array<Lane, 8> sums;
@@ -21,7 +23,7 @@ inline double sum_of(const double* p, Eigen::Index count) {
   return sums[0].sum();
 }
 
-/// Rate at which that many bytes are read over and over [B/s].
+/// Rate at which a buffer of `bytes` is read repeatedly [B/s].
 inline double read_bandwidth(double bytes, Repeat repeat = {}) {
   const Eigen::Index count = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(bytes / 512.0)) * 64;
   const Eigen::VectorXd data = Eigen::VectorXd::Ones(count);
@@ -36,7 +38,7 @@ inline double read_bandwidth(double bytes, Repeat repeat = {}) {
   return 8.0 * static_cast<double>(count) * times / seconds;
 }
 
-/// Eigen's product of two 512 x 512 matrices [FLOP/s].
+/// Rate of Eigen's product of two 512 x 512 matrices [FLOP/s].
 template <class Scalar = double>
 double gemm_rate() {
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
@@ -48,7 +50,7 @@ double gemm_rate() {
   return 2.0 * static_cast<double>(n * n * n) / seconds;
 }
 
-/// Copying 64 MB [B/s], read and written.
+/// Rate of copying 64 MB [B/s], bytes read plus bytes written.
 inline double memcpy_bandwidth() {
   const std::vector<char> from(std::size_t{64} << 20, 1);
   std::vector<char> to(from.size());

@@ -1,11 +1,11 @@
-// Text for HTML and SVG.
+// Escapes text for HTML and SVG.
 #pragma once
 
 #include <string>
 
 namespace bench {
 
-/// For text between tags and in titles.
+/// `text` with <, > and & escaped, for use between tags and in titles.
 inline std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);

@@ -1,4 +1,4 @@
-// One line of the table of targets, and the file that several programs add their lines to.
+// One row of the table of targets, and the file to which several programs append their rows.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +12,13 @@
 
 namespace bench {
 
-/// What a ratio has to be. Without a bound a row is information.
+/// Required range of a ratio. A row without a bound is for information only.
 struct Bound {
   enum Sense { none, at_most, at_least } sense = none;
   double value = 0.0;
 
   bool holds(double ratio) const noexcept {
-    return sense == none || (sense == at_most ? ratio <= value : ratio >= value);  // false for not-a-number
+    return sense == none || (sense == at_most ? ratio <= value : ratio >= value);  // false for NaN
   }
 };
 inline Bound at_most(double value) {
@@ -28,13 +28,13 @@ inline Bound at_least(double value) {
   return {Bound::at_least, value};
 }
 
-/// Figure and baseline are given with their units; the ratio is theirs, whichever way round the target has it.
+/// Figure and baseline are text with units; `ratio` is figure / baseline or its inverse, as the target defines it.
 struct Row {
-  std::string target;  ///< letter, or a word for what has none
+  std::string target;  ///< letter of the target, or a word for a row without target
   std::string what, figure, baseline;
   double ratio = std::numeric_limits<double>::quiet_NaN();
   Bound bound;
-  std::string error;  ///< not empty: the measured thing gave a wrong answer
+  std::string error;  ///< not empty: the measured code gave a wrong result
 };
 
 /// `value` rounded to three significant digits (or `significant`), and a unit.
@@ -61,7 +61,7 @@ inline std::string megabytes(double bytes) {
   return with_unit(1e-6 * bytes, "MB");
 }
 
-/// Adds rows to a file of comma-separated values, and shows them as they come.
+/// Appends rows to a file of comma-separated values, and prints them immediately.
 class RowFile {
  public:
   RowFile(const std::string& path, std::string build) : build_(std::move(build)) {
@@ -82,7 +82,7 @@ class RowFile {
     write({.target = target, .what = what, .figure = "", .baseline = "", .bound = {}, .error = ""}, "",
           "not measured: " + why);
   }
-  /// True when something gave a wrong answer.
+  /// True when a row reported a wrong result.
   bool failed() const noexcept { return failed_; }
 
  private:

@@ -1,4 +1,4 @@
-// Processor time, its medians, and the memory a piece of work takes.
+// Processor time, medians of it, and memory use of a function.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,8 @@ namespace bench {
 
 inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Processor time of the whole process [s]: a baseline that quietly uses a second thread gains nothing by it.
+/// Processor time of the whole process [s]: all threads count, so a baseline that uses a second thread has no
+/// advantage.
 inline double process_seconds() noexcept {
 #if defined(CLOCK_PROCESS_CPUTIME_ID)
   timespec t{};
@@ -39,7 +40,7 @@ double seconds_of(Work&& work) {
   return process_seconds() - start;
 }
 
-/// Value that a share `fraction` of all values does not exceed.
+/// The value that a share `fraction` of all values does not exceed; NaN when empty.
 inline double percentile(std::vector<double> values, double fraction) {
   if (values.empty()) return unknown;
   const auto at = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
@@ -47,13 +48,13 @@ inline double percentile(std::vector<double> values, double fraction) {
   return values[static_cast<std::size_t>(at)];
 }
 
-/// How often something is repeated: until that much time is spent, within these bounds.
+/// Number of repetitions: until `seconds` are spent, but at least `least` and at most `most`.
 struct Repeat {
   double seconds = 1.5;
   int least = 3, most = 15;
 };
 
-/// Median time of work() [s]. Work of under a millisecond is timed in batches of eight.
+/// Median processor time of work() [s]. Work shorter than a millisecond is timed in batches of eight.
 template <class Work>
 double median_seconds(Work&& work, Repeat repeat = {}) {
   const double first = seconds_of(work);
@@ -70,7 +71,7 @@ double median_seconds(Work&& work, Repeat repeat = {}) {
   return percentile(std::move(times), 0.5);
 }
 
-/// Medians of two pieces of work done in turns, so that a slow phase of the machine hits both.
+/// Median times [s] of two functions called alternately, so that a slow phase of the machine affects both.
 template <class First, class Second>
 std::pair<double, double> medians_in_turns(First&& first, Second&& second, Repeat repeat = {}) {
   std::vector<double> one, other;
@@ -83,7 +84,7 @@ std::pair<double, double> medians_in_turns(First&& first, Second&& second, Repea
   return {percentile(std::move(one), 0.5), percentile(std::move(other), 0.5)};
 }
 
-/// A line of /proc/self/status [bytes]; not a number where there is none.
+/// Value of a line of /proc/self/status [bytes]; NaN when it does not exist.
 inline double process_bytes(const char* key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -91,13 +92,13 @@ inline double process_bytes(const char* key) {
   return unknown;
 }
 
-/// Largest growth of the resident memory during work() [bytes]; not a number where the system does not say.
+/// Largest growth of the resident memory during work() [bytes]; NaN where the system does not report it.
 template <class Work>
 double peak_growth(Work&& work) {
 #if defined(__GLIBC__)
   malloc_trim(0);
 #endif
-  std::ofstream("/proc/self/clear_refs") << "5";  // forget the peak so far
+  std::ofstream("/proc/self/clear_refs") << "5";  // resets the recorded peak
   const double before = process_bytes("VmRSS");
   work();
   return process_bytes("VmHWM") - before;

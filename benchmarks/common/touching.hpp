@@ -1,4 +1,4 @@
-// A sphere that moves over a body, with a given number of contacts.
+// A sphere that slides over a body, with a given number of contacts.
 #pragma once
 
 #include <palpate/core/platform.hpp>
@@ -12,10 +12,10 @@
 
 namespace bench {
 
-inline constexpr double cell = 1e-3;  ///< size of the elements of bodies that are touched [m]
+inline constexpr double cell = 1e-3;  ///< element size of the bodies that are touched [m]
 
-/// Block of 1 mm cells; 17 x 17 nodes in the middle of its top may be touched, the same in every block. `across` is
-/// even and at least 16.
+/// Block of 1 mm cells, across x across x deep. Touchable are 17 x 17 nodes in the middle of its top, the same in every
+/// block. `across` is even and at least 16.
 inline Constrained touch_block(int across, int deep) {
   const Vector3 size(cell * across, cell * across, cell * deep);
   Constrained b{box_tet4(size, {across, across, deep}, BoxSplit::six), {}, {}};
@@ -25,15 +25,15 @@ inline Constrained touch_block(int across, int deep) {
       b.mesh, [](const Vector3& p) { return p.z() > -1e-6 * cell && p.head<2>().cwiseAbs().maxCoeff() < 8.1 * cell; });
   return b;
 }
-/// An organ-like body of 1 mm elements, its top in the origin.
+/// An organ-like body of 1 mm elements, with its top at the origin.
 inline Constrained touch_organ(int layers) {
   Constrained b = organ_like(layers, cell);
   for (Vector3& p : b.mesh.positions) p.z() -= layers * cell;
   return b;
 }
 
-/// A model, a servo with its defaults, and a hand that moves on a small circle about the origin: 20 um per tick. It is
-/// a device, too.
+/// A model, a servo with default options, and a simulated hand that moves on a small circle about the origin, 20 um per
+/// tick. It is also a haptic device.
 class Touching {
  public:
   using Model = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
@@ -41,7 +41,7 @@ class Touching {
   explicit Touching(const Constrained& body)
       : model_(body.mesh, body.scene(), tissue), servo_(model_, SphereTool{radius}) {}
 
-  /// Goes down until that many contacts press, on average over the circle.
+  /// Lowers the tool until the average number of pressing contacts over the circle is `contacts`.
   void press_until(int contacts) {
     for (depth_ = 5e-6; depth_ < radius; depth_ += 5e-6) {
       int sum = 0;
@@ -59,19 +59,19 @@ class Touching {
   }
   int pressing() const noexcept { return static_cast<int>(servo_.contacts().size()); }
 
-  /// Holds still, applies the forces to the whole body and measures how far the pressed points then are from the
-  /// sphere, per depth. This goes through none of the stored compliance. Median of five places: now and then one
-  /// contact of a rough surface takes long to settle.
+  /// Keeps the tool fixed, applies the forces to the whole body and measures the distance of the pressed points from
+  /// the sphere, relative to the depth. Does not use the stored compliance. Median of five positions: occasionally a
+  /// contact on a rough surface takes long to settle.
   double gap_error() {
     std::vector<double> gaps;
-    for (int i = 0; i < 5; ++i) gaps.push_back(gap_constrained());
+    for (int i = 0; i < 5; ++i) gaps.push_back(settled_gap());
     return percentile(std::move(gaps), 0.5);
   }
 
   const SetupReport& report() const noexcept { return model_.report(); }
   auto& servo() noexcept { return servo_; }
 
-  // A device.
+  // Interface of a haptic device.
   ToolState read() noexcept {
     const double angle = 2.0 * std::numbers::pi * (count_ % ticks_around) / ticks_around;
     ToolState state;
@@ -85,7 +85,7 @@ class Touching {
   void stop() noexcept {}
 
  private:
-  double gap_constrained() {
+  double settled_gap() {
     ToolState state = read();
     for (int i = 0; i < 50; ++i, state.time += 1e-3) servo_.tick({&state, 1});
     VectorX u(3 * model_.mesh().node_count());
@@ -115,7 +115,7 @@ class Touching {
 struct TickTimes {
   double p50 = 0.0, p99 = 0.0;
 };
-/// Hot ticks, eight between two readings of the clock: reading it costs as much as a tick.
+/// Times of ticks with warm caches, eight ticks between two readings of the clock: a reading costs as much as a tick.
 inline TickTimes hot_ticks(Touching& body, int batches = 2500) {
   for (int i = 0; i < 200; ++i) body.tick();
   std::vector<double> times;

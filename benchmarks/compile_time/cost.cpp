@@ -43,7 +43,7 @@ long count_lines(const std::string& path) {
   return std::count(std::istreambuf_iterator<char>(file), {}, '\n');
 }
 
-/// Of `size`: a line of names, then one that begins with the size of the text.
+/// Parses the output of `size`: a header line, then a line that begins with the size of the text section.
 long text_size(const std::string& path) {
   std::ifstream file(path);
   std::string names;
@@ -57,7 +57,7 @@ long text_size(const std::string& path) {
 
 Cost run(const Command& command, const std::string& output) {
   const pid_t child = fork();
-  if (child < 0) throw std::runtime_error("no process to be had");
+  if (child < 0) throw std::runtime_error("cannot create a process");
   if (child == 0) become(command, output);
   int status = 0;
   rusage usage{};

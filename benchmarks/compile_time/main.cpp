@@ -1,4 +1,4 @@
-// What palpate costs to compile, beside a small program with plain Eigen that is compiled in the same run: medians.
+// Compile cost of palpate, relative to a small program with plain Eigen that is compiled in the same run: medians.
 //   bench_compile_time [--out FOLDER] [--runs N] [--flags "..."] [--no-library]
 // Writes compile-time.csv and compile-time.md.
 #include "cost.hpp"
@@ -31,7 +31,7 @@ Options read_options(int argc, char** argv) {
     } else if (i + 1 < argc && name == "--runs") {
       o.runs = std::max(1, std::atoi(argv[++i]));
     } else {
-      throw std::runtime_error("what is '" + name + "'?");
+      throw std::runtime_error("unknown option '" + name + "'");
     }
   }
   return o;
@@ -70,7 +70,7 @@ Command compiler(const Options& o, bool compiled) {
   return command;
 }
 
-/// All rows in turn, again and again: what else the machine does meanwhile falls on all alike.
+/// Compiles all rows in turn, `runs` times, so that other load on the machine affects all rows equally.
 void measure(const Options& o, std::vector<Row>& rows, const std::string& prefix) {
   for (int k = 0; k < o.runs; ++k)
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -86,7 +86,7 @@ void measure(const Options& o, std::vector<Row>& rows, const std::string& prefix
   }
 }
 
-/// The library as a whole: sums, and the largest memory.
+/// The whole library: sums of its sources, and the largest memory.
 Row whole(const std::vector<Row>& units) {
   Row all{"building palpate::compiled, all " + std::to_string(units.size()) + " sources", ""};
   for (const Row& u : units) {

@@ -1,7 +1,8 @@
-// What a cut costs until it is felt, beside making everything anew; every figure is checked against a new system.
+// Time of a cut until it is rendered, compared with computing everything again; every figure is checked against a new
+// system.
 //   bench_cut [--build <name of the flags>] [--csv <file to add rows to>] [--trace <file for forces>] [--organ]
 //   [--long]
-// --organ: only what is cut in real time.
+// --organ: only the cuts in real time.
 #include <palpate/cut/detail/swept_faces.hpp>
 #include <palpate/cut/detail/cut_view.hpp>
 #include <palpate/element/tet4.hpp>
@@ -21,7 +22,7 @@ namespace {
 
 using namespace palpate;
 
-/// The standard block, held below and touched above: 3 n (n + 1)^2 dofs.
+/// The standard block, fixed at the bottom and touched on top: 3 n (n + 1)^2 dofs.
 struct Block {
   Mesh<Tet4> mesh;
   Scene scene = Scene().fix("z0").touch("z1").gravity({0.0, 0.0, -9.81});
@@ -31,7 +32,7 @@ struct Block {
   CutSurface<Tet4> surface;
   CutSystem<Tet4> system;
 
-  /// The nodes above a height are kept beside the touchable ones: a cuttable region.
+  /// Nodes above the height `kept_above` [m] are kept in addition to the touchable ones: a cuttable region.
   explicit Block(int n, double kept_above = 1.0)
       : mesh(box_tet4({0.1, 0.1, 0.1}, {n, n, n}, BoxSplit::six)),
         boundary(extract_boundary<Tet4>(mesh)),
@@ -49,7 +50,7 @@ struct Block {
     return nodes;
   }
 
-  /// The elements nearest to a point.
+  /// Removes the elements nearest to a point.
   CutOrder burn(const Vector3& where, int count) const {
     std::vector<std::pair<double, Index>> by_distance;
     for (Index e = 0; e < mesh.element_count(); ++e)
@@ -59,7 +60,7 @@ struct Block {
     for (int k = 0; k < count; ++k) order.remove.push_back(by_distance[static_cast<std::size_t>(k)].second);
     return order;
   }
-  /// A slit from above.
+  /// A slit from the top.
   CutOrder slit(double length, double depth) const {
     const BladeSweep sweep{{0.0501, 0.05 - 0.5 * length, 0.1 - depth},
                            {0.0501, 0.05 + 0.5 * length, 0.1 - depth},
@@ -78,7 +79,7 @@ std::vector<Vector3> positions_of(const CutTopology<Tet4>& t, const CutSurface<T
 }
 
 struct Cost {
-  double felt = 0.0, fold = 0.0, rebuilt = 0.0, error = 0.0, read = 0.0, read_folded = 0.0;
+  double rendered = 0.0, fold = 0.0, rebuilt = 0.0, error = 0.0, read = 0.0, read_folded = 0.0;
   Index rank = 0, added = 0;
 };
 
@@ -98,7 +99,7 @@ double largest_difference(const CutSystem<Tet4>& a, const CutSystem<Tet4>& b, co
 }
 
 Cost measure(const Block& b, const CutOrder& order, int repeats) {
-  std::vector<double> felt, folds;
+  std::vector<double> rendered, folds;
   Cost cost;
   for (int i = 0; i < repeats; ++i) {
     CutTopology<Tet4> topology = b.topology;
@@ -111,7 +112,7 @@ Cost measure(const Block& b, const CutOrder& order, int repeats) {
                                           ContactParameters{}, 1);
     };
     TopologyChange<Tet4> change;
-    felt.push_back(bench::seconds_of([&] {
+    rendered.push_back(bench::seconds_of([&] {
       change = topology.apply(order);
       surface.update(topology, change);
       const auto step = system.update(topology, change);
@@ -138,38 +139,38 @@ Cost measure(const Block& b, const CutOrder& order, int repeats) {
     cost.read_folded = read(folded);
     if (!std::isfinite(sum)) cost.error = infinity;
   }
-  cost.felt = bench::percentile(felt, 0.5);
+  cost.rendered = bench::percentile(rendered, 0.5);
   cost.fold = bench::percentile(folds, 0.5);
   return cost;
 }
 
 void report(bench::RowFile& rows, const std::string& what, const Cost& c, double limit) {
-  const std::string error = c.error <= 1e-10 ? "" : "off by " + bench::with_unit(c.error, "");
+  const std::string error = c.error <= 1e-10 ? "" : "relative error " + bench::with_unit(c.error, "");
   const std::string size = what + " (rank " + std::to_string(c.rank) + ", " + std::to_string(c.added) + " dofs added)";
   rows.add({.target = "q",
-            .what = "cut felt: " + size,
-            .figure = bench::milliseconds(c.felt),
+            .what = "cut until rendered: " + size,
+            .figure = bench::milliseconds(c.rendered),
             .baseline = limit > 0.0 ? bench::milliseconds(limit) : "",
-            .ratio = limit > 0.0 ? c.felt / limit : bench::unknown,
+            .ratio = limit > 0.0 ? c.rendered / limit : bench::unknown,
             .bound = limit > 0.0 ? bench::at_most(1.0) : bench::Bound{},
             .error = error});
   rows.add({.target = "q",
             .what = "new factor and compliance over update: " + what,
-            .figure = bench::milliseconds(c.felt),
+            .figure = bench::milliseconds(c.rendered),
             .baseline = bench::milliseconds(c.rebuilt),
-            .ratio = c.rebuilt / c.felt,
+            .ratio = c.rebuilt / c.rendered,
             .bound = limit > 0.0 ? bench::at_least(10.0) : bench::Bound{},
             .error = error});
   rows.add({.target = "q",
-            .what = "folding in, and a 3 x 3 block before and after: " + what,
+            .what = "folding into the base, and reading a 3 x 3 block before and after: " + what,
             .figure = bench::milliseconds(c.fold),
             .baseline = bench::with_unit(1e9 * c.read, "ns") + ", " + bench::with_unit(1e9 * c.read_folded, "ns"),
             .bound = {},
             .error = error});
 }
 
-/// Factorisation alone by Eigen, no compliance.
-void eigen_refactor(bench::RowFile& rows, const Block& b, int n, double felt) {
+/// Only the factorisation by Eigen, without compliance.
+void eigen_refactor(bench::RowFile& rows, const Block& b, int n, double rendered) {
   const Body<Tet4> body = make_body(b.mesh, LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45});
   const EssentialConditions conditions = resolve_essential(b.mesh, b.boundary, b.scene);
   const SparseMatrix lower = free_matrix(assemble_stiffness<Tet4>(body, {}), conditions);
@@ -179,9 +180,9 @@ void eigen_refactor(bench::RowFile& rows, const Block& b, int n, double felt) {
   const double wrong = (llt.solve(load) - x).cwiseAbs().maxCoeff();
   rows.add({.target = "q",
             .what = "Eigen's factorisation alone over an update of 10 tets, n = " + std::to_string(n),
-            .figure = bench::milliseconds(felt),
+            .figure = bench::milliseconds(rendered),
             .baseline = bench::milliseconds(seconds),
-            .ratio = seconds / felt,
+            .ratio = seconds / rendered,
             .bound = {},
             .error = wrong < 1e-6 ? "" : "Eigen's solve is wrong"});
 }
@@ -194,7 +195,7 @@ void measure_block(bench::RowFile& rows, int n, double limit, bool with_eigen) {
   for (const int count : {1, 10, 50}) {
     const Cost inside = measure(b, b.burn({0.05, 0.05, 0.06}, count), repeats);
     report(rows, std::to_string(count) + " tets inside" + at, inside, count <= 10 ? limit : 0.0);
-    if (count == 10) ten = inside.felt;
+    if (count == 10) ten = inside.rendered;
     report(rows, std::to_string(count) + " tets at the surface" + at,
            measure(b, b.burn({0.05, 0.05, 0.1}, count), repeats), count <= 10 ? limit : 0.0);
   }

@@ -20,7 +20,8 @@ using namespace palpate;
 using Tissue = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
 using Clock = std::chrono::steady_clock;
 
-const Vector3 middle(-0.0285, -0.0298, 0.0405), outward(0.076, -0.408, 0.910);  // of the touchable patch
+// Middle and normal of the touchable patch.
+const Vector3 middle(-0.0285, -0.0298, 0.0405), outward(0.076, -0.408, 0.910);
 constexpr double smallest_tool = 4e-3;
 
 /// Processor time of this thread [s].
@@ -30,8 +31,8 @@ double thread_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// It lies on its underside, as in example 01, and sags under its weight.
-Scene lying(const Mesh<Tet4>& mesh) {
+/// The organ rests on its underside, as in example 01, and sags under its weight.
+Scene organ_scene(const Mesh<Tet4>& mesh) {
   std::vector<NodeId> below;
   for (const auto& face : extract_boundary<Tet4>(mesh)) {
     const Vector3 a = mesh.position(face.nodes[0]), b = mesh.position(face.nodes[1]), c = mesh.position(face.nodes[2]);
@@ -39,7 +40,7 @@ Scene lying(const Mesh<Tet4>& mesh) {
   }
   return Scene().fix("ligament").fix(below).touch("front").gravity({0.0, 0.0, -9.81});
 }
-/// Where the surface is now, next to the middle of the patch [m].
+/// The present position of the surface next to the middle of the patch [m].
 Vector3 on_surface(const Tissue& tissue) {
   Vector3 best = Vector3::Constant(infinity);
   for (const Vector3& x : tissue.contact_surface().positions()) {
@@ -49,7 +50,7 @@ Vector3 on_surface(const Tissue& tissue) {
   return best;
 }
 
-/// Nodes near the line of the cut: their compliance is kept ready.
+/// Nodes near the line of the cut, whose compliance is computed at set-up.
 std::vector<NodeId> along_the_cut(const Mesh<Tet4>& mesh) {
   std::vector<NodeId> nodes;
   for (NodeId node = 0; node < mesh.node_count(); ++node) {
@@ -61,19 +62,19 @@ std::vector<NodeId> along_the_cut(const Mesh<Tet4>& mesh) {
 }
 
 struct Session {
-  // [s]: of processor, of processor until folded in, of processor when nothing was ordered; from order to a tick; of
-  // the clock
-  std::vector<double> ticks, cuts, checks, felt, late;
+  // [s] Processor time of ticks, of cuts until folded in, of checks between cuts; wall time from order to tick;
+  // lateness of ticks.
+  std::vector<double> ticks, cuts, checks, rendered, late;
   std::uint64_t orders = 0;
   CutReport report;
   double worst_slew = 0.0, longest = 0.0, largest_step = 0.0;
   bool fine = true;
 };
 
-/// One session; `order(tissue, k)` gives the k-th cut.
+/// Runs one session; `order(tissue, k)` requests the k-th cut.
 Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& order, std::FILE* trace,
             const char* name) {
-  Tissue tissue(mesh, lying(mesh), {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}, {},
+  Tissue tissue(mesh, organ_scene(mesh), {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}, {},
                 {.cuttable = Selection(along_the_cut(mesh))});
   HapticServo servo(tissue, SphereTool{.radius = smallest_tool});
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
@@ -83,7 +84,7 @@ Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& ord
     std::uint64_t done = 0;
     while (!stop.load()) {
       const double start = thread_seconds();
-      const bool worked = tissue.work();
+      const bool worked = tissue.process_cuts();
       const double seconds = thread_seconds() - start;
       if (const std::uint64_t cuts = tissue.cut_report().cuts; cuts != done) {
         done = cuts;
@@ -108,7 +109,7 @@ Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& ord
       order(tissue, static_cast<int>(s.orders++));
       if (ordered < 0.0) ordered = now;
     }
-    ToolState state;  // beside the cut, pressed in, going to and fro
+    ToolState state;  // next to the cut, pressed in, oscillating along it
     state.position = top + (smallest_tool - std::min(4e-3, 1e-5 * i)) * outward.normalized() + 5e-3 * across;
     state.position[0] += 4e-3 * std::sin(6.0 * now);
     state.time = now;
@@ -117,10 +118,10 @@ Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& ord
     s.ticks.push_back(thread_seconds() - before);
     if (tissue.compliance_revision() != revision) {
       revision = tissue.compliance_revision();
-      if (ordered >= 0.0) s.felt.push_back(now - ordered);
+      if (ordered >= 0.0) s.rendered.push_back(now - ordered);
       ordered = -1.0;
     }
-    if (!f.status.has(StatusFlag::degraded_model)) ordered = -1.0;  // it changed nothing
+    if (!f.status.has(StatusFlag::degraded_model)) ordered = -1.0;  // the order changed nothing
     s.fine = s.fine && f.force().allFinite() && !f.status.has(StatusFlag::non_finite_force);
     s.worst_slew = std::max(s.worst_slew, (f.force() - last).norm() / (limits.slew_rate * limits.period));
     s.largest_step = std::max(s.largest_step, (f.force() - last).norm());
@@ -145,7 +146,7 @@ void report(bench::RowFile& rows, const std::string& what, const Session& s) {
   const double frame = 1.0 / 60.0;
   rows.add({.target = "q",
             .what = "organ at 60 Hz, " + what + ": worst frame with a cut, of " + std::to_string(s.cuts.size()) + " (" +
-                    std::to_string(s.report.kept) + " dofs kept), median and worst check between cuts behind it",
+                    std::to_string(s.report.kept) + " dofs kept), then median, and worst check between cuts",
             .figure = bench::milliseconds(share(s.cuts, 1.0)) + ", " + bench::milliseconds(share(s.cuts, 0.5)) + ", " +
                       bench::milliseconds(share(s.checks, 1.0)),
             .baseline = bench::milliseconds(frame),
@@ -153,7 +154,7 @@ void report(bench::RowFile& rows, const std::string& what, const Session& s) {
             .bound = bench::at_most(1.0),
             .error = error});
   rows.add({.target = "q",
-            .what = "organ at 60 Hz, " + what + ": worst tick, 99 % and median behind it",
+            .what = "organ at 60 Hz, " + what + ": worst tick, then 99 % and median",
             .figure = bench::microseconds(share(s.ticks, 1.0)) + ", " + bench::microseconds(share(s.ticks, 0.99)) +
                       ", " + bench::microseconds(share(s.ticks, 0.5)),
             .baseline = "1000 us",
@@ -162,12 +163,12 @@ void report(bench::RowFile& rows, const std::string& what, const Session& s) {
             .error = error});
   rows.add({.target = "q",
             .what = "organ at 60 Hz, " + what +
-                    ": by the clock, from order to the tick that feels it, worst and median; "
+                    ": wall time from order to the tick that renders it, worst and median; "
                     "the latest tick of the loop",
-            .figure = bench::milliseconds(share(s.felt, 1.0)) + ", " + bench::milliseconds(share(s.felt, 0.5)) + ", " +
-                      bench::milliseconds(share(s.late, 1.0)),
+            .figure = bench::milliseconds(share(s.rendered, 1.0)) + ", " + bench::milliseconds(share(s.rendered, 0.5)) +
+                      ", " + bench::milliseconds(share(s.late, 1.0)),
             .baseline = bench::milliseconds(frame),
-            .ratio = share(s.felt, 1.0) / frame,
+            .ratio = share(s.rendered, 1.0) / frame,
             .bound = bench::at_most(1.0),
             .error = error});
   rows.add({.target = "q",
@@ -191,7 +192,7 @@ void measure_organ(bench::RowFile& rows, const std::string& trace) {
     tissue.cut(BladeSweep{from - 8e-3 * outward, from + 0.01 * outward, to - 8e-3 * outward, to + 0.01 * outward});
   };
   report(rows, "a slit", run(mesh, slit, file, "slit"));
-  std::vector<std::pair<double, Index>> nearest;  // to a line under the surface, in the order it is gone along
+  std::vector<std::pair<double, Index>> nearest;  // elements near a line under the surface, sorted along the line
   for (Index e = 0; e < mesh.element_count(); ++e) {
     const Vector3 x = element_nodes<Tet4>(mesh, e).colwise().mean().transpose() - middle;
     if (std::abs(x[0]) < 0.022 && (x - x[0] * Vector3::UnitX() + 3e-3 * outward).norm() < 6e-3)

@@ -1,4 +1,4 @@
-// The parts of the program.
+// The measurements of the program.
 #pragma once
 
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
@@ -36,11 +36,11 @@ ExplicitMotion<BatchedTetrahedra<NeoHookean, S>, Scheme> motion_of(const Hyperel
           element_frequency_bound(body.rest), options};
 }
 
-/// Force per element: batches against a plain loop over elements.
+/// Force per element: batches compared with a plain loop over elements.
 void measure_force(bench::RowFile& rows, int n);
-/// A whole second of a body of n cells a side.
+/// One second of motion of a body with n cells per side.
 void measure_real_time(bench::RowFile& rows, int n);
-/// What a free block keeps over a million steps.
+/// Drift of the conserved quantities of a free block over a million steps.
 void measure_drift(bench::RowFile& rows);
 /// Blocks with all nodes displaced at random.
 void measure_scrambles(bench::RowFile& rows, int runs);

@@ -1,4 +1,4 @@
-// The internal force, per element.
+// Time of the internal force per element.
 #include <Eigen/Geometry>
 
 #include "explicit.hpp"
@@ -6,7 +6,8 @@
 namespace explicit_path {
 namespace {
 
-/// What one writes without batches: element after element, scalar, with Eigen; gradients at rest stored.
+/// A straightforward implementation without batches: element by element, scalar, with Eigen; gradients at rest are
+/// stored.
 class PlainLoop {
  public:
   explicit PlainLoop(const Mesh<Tet4>& mesh) : mesh_(mesh) {
@@ -55,7 +56,7 @@ void measure(bench::RowFile& rows, const HyperelasticBody<Tet4, NeoHookean>& bod
   std::snprintf(text, sizeof text, ", largest error %.1e", error);
   const std::string what =
       std::string("neo-Hookean force, ") + scalar + ", " + std::to_string(body.rest.mesh.element_count()) + " tets";
-  const std::string wrong = error <= (sizeof(S) == 8 ? 1e-13 : 2e-6) ? "" : "not the force of the plain loop";
+  const std::string wrong = error <= (sizeof(S) == 8 ? 1e-13 : 2e-6) ? "" : "differs from the force of the plain loop";
   rows.add({.target = "m",
             .what = what,
             .figure = nanoseconds(ours / elements) + text,

@@ -1,5 +1,5 @@
-// Explicit dynamics at large strain: force per element, steps in real time, drift over a million steps, and scrambled
-// blocks: two hundred of each kind, with --long ten thousand.
+// Explicit dynamics at large strain: force per element, steps in real time, drift over a million steps, and blocks
+// with randomly displaced nodes: two hundred of each kind, ten thousand with --long.
 //   bench_explicit [--build <name of the flags>] [--csv <file to add rows to>] [--long]
 #include "explicit.hpp"
 

@@ -1,4 +1,4 @@
-// Whole motions.
+// Complete motions: real-time ratio, drift and randomly displaced blocks.
 #include <Eigen/Geometry>
 
 #include "explicit.hpp"
@@ -35,7 +35,7 @@ std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0
   return text;
 }
 
-/// Seconds of processor time per simulated second, the motion and its end.
+/// Processor time per simulated second, and the final displacement. Chooses `dt` when it is 0.
 template <class S>
 std::pair<double, VectorX> run(const HyperelasticBody<Tet4, NeoHookean>& body, double simulated, double& dt) {
   ExplicitOptions options;
@@ -68,16 +68,17 @@ void measure_real_time(bench::RowFile& rows, int n) {
   const auto add = [&](const std::vector<double>& times, const char* scalar, const std::string& more) {
     const double time = bench::percentile(times, 0.5);
     rows.add({.target = "m",
-              .what = std::string("a second of a swaying block, ") + scalar + ", " +
-                      std::to_string(body.rest.mesh.element_count()) + " tets, watch and limit included",
+              .what = std::string("one second of an oscillating block, ") + scalar + ", " +
+                      std::to_string(body.rest.mesh.element_count()) +
+                      " tets, including the energy check and the limit",
               .figure = bench::milliseconds(time) + more,
               .baseline = "1000 ms; dt " + bench::milliseconds(dt),
               .ratio = 1.0 / time,
               .bound = bench::at_least(1.0),
-              .error = std::isfinite(time) && error < 1e-2 ? "" : "stopped, or float and double part"});
+              .error = std::isfinite(time) && error < 1e-2 ? "" : "stopped, or float and double differ"});
   };
   add(in_double, "double", "");
-  add(in_float, "float", text_of(", %.1e from double after it", error));
+  add(in_float, "float", text_of(", final relative difference to double %.1e", error));
 }
 
 void measure_drift(bench::RowFile& rows) {
@@ -106,16 +107,16 @@ void measure_drift(bench::RowFile& rows) {
                angular = (after.angular - before.angular).norm() / before.angular.norm();
   rows.add({.target = "m",
             .what = "a free block over 1 000 000 steps: momentum, angular momentum",
-            .figure = text_of("%.1e, %.1e off", linear, angular),
+            .figure = text_of("relative errors %.1e, %.1e", linear, angular),
             .baseline = "",
             .bound = {},
-            .error = status.ok() && linear < 1e-10 && angular < 1e-8 ? "" : "not kept, or a step was refused"});
+            .error = status.ok() && linear < 1e-10 && angular < 1e-8 ? "" : "not conserved, or a step was refused"});
   rows.add({.target = "m",
-            .what = "its energy: largest swing, drift of the mean from the first tenth to the last",
+            .what = "its energy: largest fluctuation, drift of the mean from the first tenth to the last",
             .figure = text_of("%.1e, %.1e", swing, last / first - 1.0),
             .baseline = "",
             .bound = {},
-            .error = swing < 0.02 && std::abs(last / first - 1.0) < 1e-3 ? "" : "not kept"});
+            .error = swing < 0.02 && std::abs(last / first - 1.0) < 1e-3 ? "" : "not conserved"});
 }
 
 void measure_scrambles(bench::RowFile& rows, int runs) {
@@ -129,7 +130,7 @@ void measure_scrambles(bench::RowFile& rows, int runs) {
   testing::Random random(23);
   const double still = 1e-14;  // [J]
   for (const double amount : {0.02, 0.05}) {
-    int inverted = 0, at_rest = 0, home = 0, stopped = 0, unseen = 0;
+    int inverted = 0, at_rest = 0, in_rest_shape = 0, stopped = 0, undetected = 0;
     for (int run = 0; run < runs; ++run) {
       VectorX u = VectorX::Zero(dofs);
       for (Index dof : motion.state().free) u[dof] = random.uniform(-amount, amount);
@@ -139,25 +140,28 @@ void measure_scrambles(bench::RowFile& rows, int runs) {
       Status status;
       for (int i = 0; i < 6000 && (i < 100 || motion.kinetic_energy() > still); ++i)
         status |= motion.step(0.5 * motion.limit());
-      const bool constrained = status.has(StatusFlag::energy_grew) || status.has(StatusFlag::step_refused);
+      const bool was_stopped = status.has(StatusFlag::energy_grew) || status.has(StatusFlag::step_refused);
       const bool rests = motion.state().displacement.allFinite() && motion.kinetic_energy() <= still &&
                          motion.deformation().inverted == 0;
-      stopped += constrained ? 1 : 0;
+      stopped += was_stopped ? 1 : 0;
       at_rest += rests ? 1 : 0;
-      unseen += !rests && !constrained ? 1 : 0;
-      home += motion.state().displacement.norm() < 1e-3 ? 1 : 0;
+      undetected += !rests && !was_stopped ? 1 : 0;
+      in_rest_shape += motion.state().displacement.norm() < 1e-3 ? 1 : 0;
     }
     const double share = 1.0 / runs;
-    const bool small = amount < 0.45 * 0.05;  // of a cell: then there is no other shape to rest in
+    const bool small = amount < 0.45 * 0.05;  // relative to a cell: then the rest shape is the only equilibrium
     std::string wrong;
-    if (inverted * 8 < runs) wrong = "too few were inside out to begin with";
-    if (home < (small ? runs : runs / 2)) wrong = "not at home in the end: " + std::to_string(runs - home);
-    if (stopped > (small ? 0 : runs / 50)) wrong = "stopped by the watch: " + std::to_string(stopped);
-    if (unseen > 0) wrong = "neither at rest and upright nor stopped: " + std::to_string(unseen);
+    if (inverted * 8 < runs) wrong = "too few had inverted elements at the start";
+    if (in_rest_shape < (small ? runs : runs / 2))
+      wrong = "not in the rest shape at the end: " + std::to_string(runs - in_rest_shape);
+    if (stopped > (small ? 0 : runs / 50)) wrong = "stopped by the energy check: " + std::to_string(stopped);
+    if (undetected > 0) wrong = "neither at rest without inversion nor stopped: " + std::to_string(undetected);
     rows.add({.target = "m",
-              .what = std::to_string(runs) + " blocks scrambled by " + bench::with_unit(1e3 * amount, "mm") +
-                      " (cells of 50 mm): inside out at the start, at rest and upright in the end, at home, stopped",
-              .figure = text_of("%.4f, %.4f, %.4f", inverted * share, at_rest * share, home * share) +
+              .what = std::to_string(runs) + " blocks with nodes displaced at random by up to " +
+                      bench::with_unit(1e3 * amount, "mm") +
+                      " (cells of 50 mm): inverted at the start, at rest without inversion at the end, in the rest "
+                      "shape, stopped",
+              .figure = text_of("%.4f, %.4f, %.4f", inverted * share, at_rest * share, in_rest_shape * share) +
                         text_of(", %.4f", stopped * share),
               .baseline = "",
               .ratio = at_rest * share,

@@ -1,4 +1,5 @@
-// Faults injected into a session with a tissue that moves at its own rate: what the hand feels of them.
+// Faults injected into a session with a tissue that is simulated at a lower rate, and their effect on the rendered
+// force.
 #pragma once
 
 #include <palpate/haptic/haptic_servo.hpp>
@@ -13,7 +14,7 @@ namespace faults {
 using namespace palpate;
 
 inline constexpr double sphere = 0.012, tick = 1e-3, duration = 6.0;
-inline constexpr double stale_after = 0.5005;  // off the grid of ticks, so that rounding decides nothing
+inline constexpr double stale_after = 0.5005;  // not a multiple of the tick, so that rounding has no effect
 inline const Vector3 pad_size(0.06, 0.06, 0.03);
 
 using Pad = HapticFEModel<Tet4, NeoHookean, Implicit<Newton<SparseCholesky>>>;
@@ -23,30 +24,30 @@ inline Pad make_pad(double step) {
              {.step = step});
 }
 
-/// Once every second, half a second after its beginning.
+/// A fault that occurs once every second, half a second after the start of the second.
 struct Fault {
-  double tissue_stall = 0.0;  ///< [s] the tissue's next step comes that much later
-  double device_stall = 0.0;  ///< [s] no ticks for so long
-  bool bad_input = false;     ///< one pose that is no number, one device that cannot be read
+  double tissue_stall = 0.0;  ///< [s] delay of the tissue's next step
+  double device_stall = 0.0;  ///< [s] duration without ticks
+  bool bad_input = false;     ///< one pose that is NaN, one state that the device cannot read
 
-  /// Whether forces fade on its account: where the hand moves meanwhile, it may then get back more than it put in.
+  /// Whether the fault makes forces fade. If the hand moves during a fade, it may receive more energy than it supplied.
   bool fades() const { return tissue_stall > stale_after || device_stall > ForceLimits{}.stale_after || bad_input; }
 };
 
 struct Outcome {
   double peak = 0.0;       ///< [N] longest force rendered
-  double step = 0.0;       ///< [N] largest change of the rendered force between ticks, but for zeroing on bad input
-  double raw_step = 0.0;   ///< [N] the same before the gate
-  double given = 0.0;      ///< [J] most that the session had given in all, less what the device's own damping took
-  double taken = 0.0;      ///< [J] what that was in the end, the tool free again, taken from the hand
+  double step = 0.0;       ///< [N] largest change of the rendered force between ticks, except zeroing on bad input
+  double raw_step = 0.0;   ///< [N] the same for the force before the gate
+  double given = 0.0;      ///< [J] largest total energy given to the hand, less the dissipation of the device's damping
+  double taken = 0.0;      ///< [J] total energy taken from the hand at the end, when the tool is free again
   double tank = infinity;  ///< [J] lowest level of the energy tank
   int ticks = 0, not_finite = 0;
   int stale = 0, missed = 0, disconnected = 0, bad = 0;                  ///< ticks with these flags
   int stale_due = 0, missed_due = 0, disconnected_due = 0, bad_due = 0;  ///< ticks that must have them
-  double last_force = 0.0;  ///< [N] a second after the last fault, at the same depth as without faults
+  double last_force = 0.0;  ///< [N] force one second after the last fault, at the same depth as without faults
 };
 
-/// 8 mm deep, breathing by 1.5 mm at 2 Hz; out of the tissue in the last second.
+/// Depth of the tool [m]: 8 mm with an oscillation of 1.5 mm at 2 Hz; out of the tissue in the last second.
 inline double depth_at(double t) {
   if (t > duration - 1.0) return -0.002;
   const double in = std::min(1.0, t / 0.4), out = std::clamp((duration - 1.0 - t) / 0.3, 0.0, 1.0);
@@ -62,7 +63,7 @@ inline ServoOptions session_options() {
   return o;
 }
 
-/// Time is simulated, so that the outcome is the same on every machine; threads are tested beside it.
+/// Runs a session in simulated time, so that the outcome is the same on every machine; threads are tested separately.
 inline Outcome run(const Fault& fault, double tissue_step) {
   Pad tissue = make_pad(tissue_step);
   const ServoOptions options = session_options();
@@ -127,7 +128,7 @@ inline Outcome run(const Fault& fault, double tissue_step) {
     out.missed += force.status.has(StatusFlag::deadline_missed);
     out.disconnected += force.status.has(StatusFlag::disconnected);
     out.bad += force.status.has(StatusFlag::non_finite_input);
-    // What must be flagged, from the documentation: no news for longer than both limits; a gap longer than the gate's.
+    // Flags required by the documentation: no update for longer than both limits; a gap longer than the gate's limit.
     const double dt = t - last_tick;
     out.stale_due += t - news > stale_after + limits.stale_after + 1e-9 || dt > limits.stale_after + 1e-9;
     out.missed_due += dt > 1.5 * tick;

@@ -1,4 +1,4 @@
-// What stalls and bad input of a session with moving tissue do to the hand: a table, checked as it is made.
+// Effect of stalls and bad input on the rendered force in a session with moving tissue: a table whose rows are checked.
 //   bench_faults
 #include "faults.hpp"
 
@@ -36,13 +36,14 @@ int main() {
     if (c.name == cases[0].name) steady = o.last_force;
     const bool counted = o.stale == o.stale_due && o.missed == o.missed_due && o.disconnected == o.disconnected_due &&
                          o.bad == o.bad_due;
-    const bool energy_bounded =
+    const bool within_limits =
         o.not_finite == 0 && o.peak <= limits.peak_force && o.step <= limits.slew_rate * tick * (1.0 + 1e-9);
     const bool bounded = o.given <= energy.allowance + energy.refill * duration && (c.fault.fades() || o.taken >= 0.0);
-    if (!counted || !energy_bounded || !bounded || std::abs(o.last_force - steady) > 0.05 * steady) {
+    if (!counted || !within_limits || !bounded || std::abs(o.last_force - steady) > 0.05 * steady) {
       ++wrong;
-      std::printf("WRONG: counted %d, calm %d, bounded %d, force a second later %g instead of %g N\n", counted,
-                  energy_bounded, bounded, o.last_force, steady);
+      std::printf(
+          "WRONG: flags %d, force limits %d, energy %d (1: as required), force one second later %g instead of %g N\n",
+          counted, within_limits, bounded, o.last_force, steady);
     }
   }
   return wrong == 0 ? 0 : 1;

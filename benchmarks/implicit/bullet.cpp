@@ -1,4 +1,4 @@
-// Bullet's deformable bodies on the standard block: a baseline, and nothing else.
+// Bullet's deformable bodies on the standard block, as a baseline.
 #include "implicit.hpp"
 
 #ifdef PALPATE_BENCH_BULLET
@@ -28,7 +28,7 @@ class BulletBlock {
     world_.getWorldInfo().m_gravity = gravity;
     world_.setImplicit(true);
     world_.setLineSearch(false);
-    world_.setUseProjection(true);  // with its other way of holding nodes, version 3.24 does not move at all
+    world_.setUseProjection(true);  // with its other method of fixing nodes, the body in version 3.24 does not move
     const Mesh<Tet4>& mesh = pressing.body.rest.mesh;
     std::vector<btVector3> x;
     for (const Vector3& p : mesh.positions) x.emplace_back(btScalar(p.x()), btScalar(p.y()), btScalar(p.z()));
@@ -97,7 +97,7 @@ void measure_bullet(bench::RowFile& rows, int n) {
   }
   const double us = bench::percentile(own, 0.5), them = bench::percentile(other, 0.5);
   char text[80];
-  std::snprintf(text, sizeof text, ", at most %.0f %% apart in %.1f s", 100.0 * apart / deepest, together);
+  std::snprintf(text, sizeof text, ", largest difference %.0f %% in %.1f s", 100.0 * apart / deepest, together);
   rows.add({.target = "n",
             .what = "step of 1 ms of a block under its weight against Bullet, " +
                     std::to_string(pressing.body.rest.mesh.element_count()) + " tets",
@@ -105,7 +105,7 @@ void measure_bullet(bench::RowFile& rows, int n) {
             .baseline = bench::milliseconds(them) + text,
             .ratio = them / us,
             .bound = {},
-            .error = apart <= 0.25 * deepest ? "" : "the two move differently"});
+            .error = apart <= 0.25 * deepest ? "" : "the two motions differ"});
 }
 
 #else

@@ -1,4 +1,4 @@
-// The largest block that moves in real time at 1 kHz, by material and integrator, and how right its motion is.
+// The largest block that moves in real time at 1 kHz, by material and integrator, and the error of its motion.
 #include "implicit.hpp"
 
 #include <palpate/assembly/averaged_tetrahedra.hpp>
@@ -20,8 +20,8 @@ namespace {
 constexpr double tick = 1e-3;
 constexpr int reference_cells = 6, reference_ticks = 100;
 
-/// A block that starts to sink under its weight: one call moves it on by a millisecond.
-struct Sinking {
+/// A block released under its weight: each call of `move` advances it by a millisecond and returns false on failure.
+struct ReleasedBlock {
   std::function<bool()> move;
   std::function<const VectorX&()> displacement;
 };
@@ -29,7 +29,7 @@ struct Sinking {
 template <class M>
 M material_of() {
   const auto& t = bench::tissue;
-  if constexpr (std::is_same_v<M, Law>)
+  if constexpr (std::is_same_v<M, Corotated>)
     return {t};
   else if constexpr (std::is_same_v<M, MooneyRivlin>)  // the same stiffness at small strain
     return {.c10 = 0.4 * t.shear_modulus(),
@@ -50,7 +50,7 @@ Scene scene_of(int n) {
 }
 
 template <class Force, class Scheme, class M>
-Sinking explicit_motion(int n) {
+ReleasedBlock explicit_motion(int n) {
   const auto body = body_of<M>(n);
   const auto conditions = resolve_essential(body.rest.mesh, extract_boundary<Tet4>(body.rest.mesh), scene_of(n));
   const VectorX mass = lumped_mass(body.rest);
@@ -69,7 +69,7 @@ Sinking explicit_motion(int n) {
           [motion]() -> const VectorX& { return motion->state().displacement; }};
 }
 template <class M>
-Sinking newton_motion(int n, TimeScheme scheme, int iterations, double step = tick) {
+ReleasedBlock newton_motion(int n, TimeScheme scheme, int iterations, double step = tick) {
   auto motion = std::make_shared<ImplicitDynamics>(
       make_deformable_body(body_of<M>(n), scene_of(n)),
       DynamicsParameters{.scheme = scheme, .newton = {.maximum_iterations = iterations, .tolerance = 1e-9}});
@@ -81,28 +81,28 @@ Sinking newton_motion(int n, TimeScheme scheme, int iterations, double step = ti
           [motion]() -> const VectorX& { return motion->displacement(); }};
 }
 template <class S>
-Sinking corotated_motion(int n, TimeScheme scheme) {
+ReleasedBlock corotated_motion(int n, TimeScheme scheme) {
   CorotatedMotionOptions options;
   options.scheme = scheme;
   options.solve.tolerance = 3e-3;
-  auto motion = std::make_shared<CorotatedMotion<LinearElastic, S>>(body_of<Law>(n), scene_of(n), options);
+  auto motion = std::make_shared<CorotatedMotion<LinearElastic, S>>(body_of<Corotated>(n), scene_of(n), options);
   return {[motion] { return motion->step(tick).taken; },
           [motion]() -> const VectorX& { return motion->displacement(); }};
 }
 
-using Maker = std::function<Sinking(int)>;
+using Maker = std::function<ReleasedBlock(int)>;
 
-/// Where Newmark's rule with a twentieth of a millisecond takes the block of 6 cells.
+/// Reference displacement of the block of 6 cells: Newmark's rule with steps of a twentieth of a millisecond.
 template <class M>
 VectorX solved() {
-  Sinking fine = newton_motion<M>(reference_cells, TimeScheme::newmark(), 20, tick / 20.0);
+  ReleasedBlock fine = newton_motion<M>(reference_cells, TimeScheme::newmark(), 20, tick / 20.0);
   for (int k = 0; k < reference_ticks; ++k)
     if (!fine.move()) throw std::runtime_error("the reference motion stopped");
   return fine.displacement();
 }
 
-/// Median time of a millisecond [s]; unknown when it stops.
-double median_tick(Sinking motion) {
+/// Median processor time of a simulated millisecond [s]; unknown when the motion stops.
+double median_tick(ReleasedBlock motion) {
   std::vector<double> times;
   for (int k = 0; k < 60; ++k) {
     bool good = true;
@@ -112,35 +112,35 @@ double median_tick(Sinking motion) {
   return bench::percentile(times, 0.5);
 }
 
-/// `allowed`: what the scheme loses at this step; implicit Euler damps the sway of a block that sinks by its weight.
+/// `allowed`: error of the scheme at this step; implicit Euler damps the oscillation of a block under its weight.
 void measure(bench::RowFile& rows, const char* what, const Maker& make, const VectorX& exact, double allowed) {
-  double constrained = bench::unknown;
+  double largest_time = bench::unknown;
   int largest = 0;
   for (const int n : {3, 4, 5, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 28, 32}) {
     const double time = median_tick(make(n));
     if (!(time <= tick)) break;
     largest = n;
-    constrained = time;
+    largest_time = time;
   }
-  Sinking same = make(reference_cells);
+  ReleasedBlock same = make(reference_cells);
   bool good = largest > 0;
   for (int k = 0; k < reference_ticks; ++k) good = same.move() && good;
   const double error = (same.displacement() - exact).norm() / exact.norm();
   char text[120];
-  std::snprintf(text, sizeof text, "%d tets (n = %d), %.3f ms; %.1e off after 0.1 s", 6 * largest * largest * largest,
-                largest, 1e3 * constrained, error);
+  std::snprintf(text, sizeof text, "%d tets (n = %d), %.3f ms; error %.1e after 0.1 s", 6 * largest * largest * largest,
+                largest, 1e3 * largest_time, error);
   rows.add({.target = "n",
-            .what = std::string("largest block held at 1 kHz on one core: ") + what,
+            .what = std::string("largest block simulated at 1 kHz on one core: ") + what,
             .figure = text,
-            .baseline = "error: against Newmark at 0.05 ms, n = 6",
+            .baseline = "error: relative to Newmark at 0.05 ms, n = 6",
             .bound = {},
-            .error = good && error <= allowed ? "" : "stopped, or not that motion"});
+            .error = good && error <= allowed ? "" : "stopped, or not the reference motion"});
 }
 
 }  // namespace
 
 void measure_largest(bench::RowFile& rows) {
-  const VectorX neo = solved<NeoHookean>(), turning = solved<Law>();
+  const VectorX neo = solved<NeoHookean>(), corotated = solved<Corotated>();
   measure(rows, "neo-Hookean, central difference, float",
           explicit_motion<BatchedTetrahedra<NeoHookean, float>, CentralDifference, NeoHookean>, neo, 0.02);
   measure(rows, "neo-Hookean, central difference, double",
@@ -160,17 +160,17 @@ void measure_largest(bench::RowFile& rows) {
           explicit_motion<BatchedTetrahedra<MooneyRivlin>, CentralDifference, MooneyRivlin>, solved<MooneyRivlin>(),
           0.02);
   measure(rows, "co-rotated, central difference, double",
-          explicit_motion<BatchedTetrahedra<Law>, CentralDifference, Law>, turning, 0.02);
+          explicit_motion<BatchedTetrahedra<Corotated>, CentralDifference, Corotated>, corotated, 0.02);
   const auto euler = TimeScheme::implicit_euler(), newmark = TimeScheme::newmark();
   measure(
       rows, "co-rotated, implicit Euler, conjugate gradients, float",
-      [=](int n) { return corotated_motion<float>(n, euler); }, turning, 0.6);
+      [=](int n) { return corotated_motion<float>(n, euler); }, corotated, 0.6);
   measure(
       rows, "co-rotated, Newmark, conjugate gradients, float",
-      [=](int n) { return corotated_motion<float>(n, newmark); }, turning, 0.05);
+      [=](int n) { return corotated_motion<float>(n, newmark); }, corotated, 0.05);
   measure(
       rows, "co-rotated, Newmark, conjugate gradients, double",
-      [=](int n) { return corotated_motion<double>(n, newmark); }, turning, 0.05);
+      [=](int n) { return corotated_motion<double>(n, newmark); }, corotated, 0.05);
 }
 
 }  // namespace implicit_path

@@ -1,5 +1,6 @@
-// Implicit steps: time of co-rotated ones against plain Eigen and Bullet, the error of every short cut, the largest block
-// at 1 kHz, and what long motions keep; with --long over a million steps, and ten thousand scrambled blocks.
+// Implicit steps: time of co-rotated steps compared with plain Eigen and Bullet, the error of every short cut, the
+// largest block at 1 kHz, and the drift of long motions; with --long over a million steps, and ten thousand blocks with
+// randomly displaced nodes.
 //   bench_implicit [--build <name of the flags>] [--csv <file to add rows to>] [--quick] [--long]
 #include "drift.hpp"
 #include "implicit.hpp"

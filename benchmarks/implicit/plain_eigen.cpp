@@ -59,27 +59,27 @@ PlainEigenStep::PlainEigenStep(const Pressing& pressing, double tolerance) : tol
   for (Index i = 0; i < a_.rows(); ++i) diagonal_.push_back(place(i, i));
 }
 
-void PlainEigenStep::turn(Element& e) const {
+void PlainEigenStep::rotate(Element& e) const {
   Matrix3 f = Matrix3::Identity();
   for (int a = 0; a < 4; ++a) f += u_.segment<3>(3 * Index{e.nodes[static_cast<std::size_t>(a)]}) * e.gradient.row(a);
   for (int k = 0; k < 20; ++k) {
-    const Matrix3 r = e.turn.matrix();
+    const Matrix3 r = e.rotation.matrix();
     const Vector3 omega = (r.col(0).cross(f.col(0)) + r.col(1).cross(f.col(1)) + r.col(2).cross(f.col(2))) /
                           (std::abs(r.col(0).dot(f.col(0)) + r.col(1).dot(f.col(1)) + r.col(2).dot(f.col(2))) + 1e-9);
     const double angle = omega.norm();
     if (angle < 1e-6) break;
-    e.turn = Eigen::Quaterniond(Eigen::AngleAxisd(angle, omega / angle)) * e.turn;
-    e.turn.normalize();
+    e.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(angle, omega / angle)) * e.rotation;
+    e.rotation.normalize();
   }
 }
 
 void PlainEigenStep::add(Element& e, const VectorX& predicted, VectorX& residual) {
-  const Matrix3 r = e.turn.matrix();
+  const Matrix3 r = e.rotation.matrix();
   Matrix12 rotated;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j)
       rotated.block<3, 3>(3 * i, 3 * j).noalias() = r * e.stiffness.block<3, 3>(3 * i, 3 * j) * r.transpose();
-  // force = R K (R^T x - x0) = turned (x - R x0): of linear tetrahedra only the deformation counts
+  // force = R K (R^T x - x0) = rotated (x - R x0): for linear tetrahedra it depends only on the deformation gradient
   Matrix3 d = Matrix3::Identity();
   for (int a = 0; a < 4; ++a)
     d += predicted.segment<3>(3 * Index{e.nodes[static_cast<std::size_t>(a)]}) * e.gradient.row(a);
@@ -93,16 +93,16 @@ void PlainEigenStep::add(Element& e, const VectorX& predicted, VectorX& residual
     if (const Index at = e.place[static_cast<std::size_t>(k)]; at >= 0) values[at] += rotated.data()[k];
 }
 
-void PlainEigenStep::step(double h, const VectorX& constrained) {
+void PlainEigenStep::step(double h, const VectorX& prescribed) {
   VectorX predicted = u_ + h * v_;
   for (Index dof = 0; dof < predicted.size(); ++dof)
-    if (conditions_.is_constrained(dof)) predicted[dof] = constrained[dof];
+    if (conditions_.is_constrained(dof)) predicted[dof] = prescribed[dof];
   const VectorX before = u_;
   u_ = predicted;
   std::fill_n(a_.valuePtr(), a_.nonZeros(), 0.0);
   VectorX residual = load_;
   for (Element& e : elements_) {
-    turn(e);
+    rotate(e);
     add(e, predicted, residual);
   }
   for (Index i = 0; i < a_.rows(); ++i)

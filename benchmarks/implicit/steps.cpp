@@ -1,4 +1,4 @@
-// Steps of a pressed block: their time, and how far they are from steps solved to the end.
+// Steps of a pressed block: their time, and their error relative to fully converged steps.
 #include "implicit.hpp"
 
 #include <palpate/assembly/large_strain.hpp>
@@ -8,16 +8,16 @@
 namespace implicit_path {
 namespace {
 
-/// One step of any motion from given velocities.
-struct Judge {
+/// Compares steps of a motion with fully converged steps from the same state.
+struct Comparison {
   const Pressing& pressing;
   double h;
-  LargeStrain<Tet4, Law> force;
+  LargeStrain<Tet4, Corotated> force;
   ImplicitDynamics solved;
   CorotatedMotion<LinearElastic, double> norm;  // for products with M + h^2 K
-  double increment = 0.0, contact = 0.0;        // worst errors so far
+  double increment = 0.0, contact = 0.0;        // largest errors so far
 
-  Judge(const Pressing& p, double step)
+  Comparison(const Pressing& p, double step)
       : pressing(p),
         h(step),
         force(p.body),
@@ -34,10 +34,10 @@ struct Judge {
     force.force(u, f);
     return pressing.force_on_patch(f);
   }
-  /// From (u0, v0) a step to held(time) ended in (u, v): how far from where it should have?
-  void look(const VectorX& u0, const VectorX& v0, double time, const VectorX& u, const VectorX& v) {
+  /// Adds the errors of a step from (u0, v0) to (u, v), with the prescribed displacement at `time`.
+  void add(const VectorX& u0, const VectorX& v0, double time, const VectorX& u, const VectorX& v) {
     solved.set_state(u0, v0);
-    solved.set_prescribed(pressing.constrained_at(time));
+    solved.set_prescribed(pressing.prescribed_at(time));
     if (!solved.step(h).newton.converged) throw std::runtime_error("the reference step did not converge");
     norm.set_state(u0, v0);
     norm.prepare_response(h);
@@ -55,28 +55,29 @@ struct Measured {
 
   std::string text() const {
     char t[120];
-    std::snprintf(t, sizeof t, ", %.1f iterations, increment %.1e, force %.1e off", iterations, increment, contact);
+    std::snprintf(t, sizeof t, ", %.1f iterations, error of increment %.1e, of force %.1e", iterations, increment,
+                  contact);
     return bench::milliseconds(time) + t;
   }
 };
 
-constexpr int steps = 240, look_every = 30;
+constexpr int steps = 240, compare_every = 30;
 
-/// `step(held)` moves on; the times of all steps are kept, every 30th is judged.
+/// `step(prescribed)` advances the motion; all steps are timed, every 30th is compared.
 template <class Motion, class Step>
 Measured run(const Pressing& pressing, double h, Motion& motion, Step&& step, std::vector<double>* times = nullptr) {
-  Judge judge(pressing, h);
+  Comparison comparison(pressing, h);
   Measured m;
   std::vector<double> own;
   for (int k = 1; k <= steps; ++k) {
-    const VectorX constrained = pressing.constrained_at(k * h), u = motion.displacement(), v = motion.velocity();
-    own.push_back(bench::seconds_of([&] { m.iterations += static_cast<double>(step(constrained)); }));
-    if (k % look_every == 0) judge.look(u, v, k * h, motion.displacement(), motion.velocity());
+    const VectorX prescribed = pressing.prescribed_at(k * h), u = motion.displacement(), v = motion.velocity();
+    own.push_back(bench::seconds_of([&] { m.iterations += static_cast<double>(step(prescribed)); }));
+    if (k % compare_every == 0) comparison.add(u, v, k * h, motion.displacement(), motion.velocity());
   }
   m.time = bench::percentile(own, 0.5);
   m.iterations /= steps;
-  m.increment = judge.increment;
-  m.contact = judge.contact;
+  m.increment = comparison.increment;
+  m.contact = comparison.contact;
   if (times != nullptr) *times = std::move(own);
   return m;
 }
@@ -84,22 +85,22 @@ Measured run(const Pressing& pressing, double h, Motion& motion, Step&& step, st
 template <class S, class Preconditioner = BlockJacobi>
 Measured run_ours(const Pressing& pressing, double h, const CorotatedMotionOptions& options) {
   CorotatedMotion<LinearElastic, S, Preconditioner> motion(pressing.body, pressing.scene, options);
-  return run(pressing, h, motion, [&](const VectorX& constrained) {
-    motion.set_prescribed(constrained);
+  return run(pressing, h, motion, [&](const VectorX& prescribed) {
+    motion.set_prescribed(prescribed);
     return motion.step(h).solve.iterations;
   });
 }
 Measured run_plain(const Pressing& pressing, double h, double tolerance) {
   PlainEigenStep motion(pressing, tolerance);
-  return run(pressing, h, motion, [&](const VectorX& constrained) {
+  return run(pressing, h, motion, [&](const VectorX& prescribed) {
     const long before = motion.iterations();
-    motion.step(h, constrained);
+    motion.step(h, prescribed);
     return motion.iterations() - before;
   });
 }
 
-/// What a haptic step asks for: one percent.
-CorotatedMotionOptions usual() {
+/// Options of a typical haptic step: an error of one percent.
+CorotatedMotionOptions typical_options() {
   CorotatedMotionOptions options;
   options.solve.tolerance = 3e-3;
   return options;
@@ -112,12 +113,12 @@ std::string block_of(const Pressing& p) {
 }
 
 void add_short_cut(bench::RowFile& rows, const Pressing& pressing, const char* what, const Measured& m,
-                   const Measured& usual_one) {
+                   const Measured& typical) {
   rows.add({.target = "o",
             .what = std::string("implicit step of ") + block_of(pressing) + ": " + what,
             .figure = m.text(),
-            .baseline = bench::milliseconds(usual_one.time),
-            .ratio = m.time / usual_one.time,
+            .baseline = bench::milliseconds(typical.time),
+            .ratio = m.time / typical.time,
             .bound = {},
             .error = std::isfinite(m.increment) ? "" : "not finite"});
 }
@@ -127,7 +128,7 @@ void add_short_cut(bench::RowFile& rows, const Pressing& pressing, const char* w
 void measure_steps(bench::RowFile& rows, int n, double budget) {
   const Pressing pressing(n);
   const double h = 1e-3;
-  const Measured ours = run_ours<float>(pressing, h, usual());
+  const Measured ours = run_ours<float>(pressing, h, typical_options());
   rows.add({.target = "n",
             .what = "implicit co-rotated step of 1 ms, float, " + block_of(pressing),
             .figure = ours.text(),
@@ -136,7 +137,7 @@ void measure_steps(bench::RowFile& rows, int n, double budget) {
             .bound = bench::at_least(1.0),
             .error = converged(ours)});
   const Measured plain = run_plain(pressing, h, 1e-2);
-  const Measured again = run_ours<float>(pressing, h, usual());  // on both sides of the baseline
+  const Measured again = run_ours<float>(pressing, h, typical_options());  // measured before and after the baseline
   const double time = 0.5 * (ours.time + again.time);
   rows.add({.target = "n",
             .what = "the same against plain Eigen, assembled, conjugate gradients to 1e-2",
@@ -145,11 +146,11 @@ void measure_steps(bench::RowFile& rows, int n, double budget) {
             .ratio = plain.time / time,
             .bound = bench::at_least(5.6),
             .error = converged(plain)});
-  CorotatedMotionOptions o = usual();
+  CorotatedMotionOptions o = typical_options();
   add_short_cut(rows, pressing, "double", run_ours<double>(pressing, h, o), ours);
   o.check = false;
   add_short_cut(rows, pressing, "without the check", run_ours<float>(pressing, h, o), ours);
-  o = usual();
+  o = typical_options();
   o.solve = {1, 0.0};
   add_short_cut(rows, pressing, "one iteration", run_ours<float>(pressing, h, o), ours);
   o.solve = {2, 0.0};
@@ -158,9 +159,10 @@ void measure_steps(bench::RowFile& rows, int n, double budget) {
   add_short_cut(rows, pressing, "four iterations", run_ours<float>(pressing, h, o), ours);
   o.solve = {200, 1e-7};
   add_short_cut(rows, pressing, "solved to 1e-7", run_ours<float>(pressing, h, o), ours);
-  o = usual();
+  o = typical_options();
   o.precondition_every = 1000000;
-  add_short_cut(rows, pressing, "preconditioner of the first step kept", run_ours<float>(pressing, h, o), ours);
+  add_short_cut(rows, pressing, "preconditioner of the first step for all steps", run_ours<float>(pressing, h, o),
+                ours);
   o.precondition_every = 1;
   add_short_cut(rows, pressing, "preconditioner renewed in every step", run_ours<float>(pressing, h, o), ours);
 }
@@ -168,16 +170,16 @@ void measure_steps(bench::RowFile& rows, int n, double budget) {
 void measure_preconditioners(bench::RowFile& rows, int n) {
   const Pressing pressing(n);
   for (const double h : {1e-3, 4e-3, 16e-3}) {
-    const Measured jacobi = run_ours<float>(pressing, h, usual());
-    const Measured rotated = run_ours<float, CorotatedFactor>(pressing, h, usual());
-    CorotatedMotionOptions two = usual();
+    const Measured jacobi = run_ours<float>(pressing, h, typical_options());
+    const Measured rotated = run_ours<float, CorotatedFactor>(pressing, h, typical_options());
+    CorotatedMotionOptions two = typical_options();
     two.solve = {2, 0.0};
     const Measured fixed = run_ours<float, CorotatedFactor>(pressing, h, two);
-    const Measured renewed = run_ours<float, RenewedFactor>(pressing, h, usual());
+    const Measured renewed = run_ours<float, RenewedFactor>(pressing, h, typical_options());
     const std::string what = "step of " + bench::milliseconds(h) + ", " + block_of(pressing);
-    for (const auto& [name, m] : {std::pair{"the factor that turns", rotated},
+    for (const auto& [name, m] : {std::pair{"co-rotated factor", rotated},
                                   {"the same, two iterations", fixed},
-                                  {"a factor that a thread renews (processor time of both)", renewed}})
+                                  {"a factor renewed in a background thread (processor time of both)", renewed}})
       rows.add({.target = "o",
                 .what = what + ", " + name,
                 .figure = m.text(),

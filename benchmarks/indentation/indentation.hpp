@@ -1,4 +1,4 @@
-// What the two parts of the program share: graded boxes of tissue and a rigidly held sphere.
+// Shared by the two parts of the program: graded boxes of tissue and a sphere rigidly coupled to the device.
 #pragma once
 
 #include <palpate/haptic/haptic_servo.hpp>
@@ -18,7 +18,7 @@ inline constexpr double youngs_modulus = 10e3;  ///< [Pa]
 /// fails. Defined in layer.hpp, compiled in a file per element.
 template <palpate::Element E>
 bool force_converges(const char* element);
-/// Part 2: slides over a flat block at constant depth and looks at the ripple. False when the acceptance fails.
+/// Part 2: slides over a flat block at constant depth and measures the ripple. False when the acceptance fails.
 bool sliding_is_smooth();
 
 /// Distances from 0 to exactly `total`: steps of about `h` up to `fine`, then each `growth` times the one before.
@@ -39,7 +39,7 @@ inline std::vector<double> graded(double h, double fine, double total, double gr
   return x;
 }
 
-/// Heights of a block fine at its top.
+/// Node heights of a block that is fine at its top.
 inline std::vector<double> graded_down(double h, double fine, double height, double growth) {
   std::vector<double> z = graded(h, fine, height, growth);
   for (double& v : z) v = height - v;
@@ -47,7 +47,7 @@ inline std::vector<double> graded_down(double h, double fine, double height, dou
   return z;
 }
 
-/// Nodes of the top side for which near(position) holds.
+/// Nodes of the top side for which near(position) is true.
 template <palpate::Element E, class Near>
 std::vector<palpate::NodeId> top_nodes(const palpate::Mesh<E>& mesh, Near near) {
   std::vector<palpate::NodeId> nodes;
@@ -56,7 +56,7 @@ std::vector<palpate::NodeId> top_nodes(const palpate::Mesh<E>& mesh, Near near) 
   return nodes;
 }
 
-/// A tissue and a sphere that follows the device exactly; the gate's limits are out of reach.
+/// A tissue and a sphere that follows the device exactly; the limits of the gate are too high to act.
 template <palpate::Element E>
 struct Session {
   using Model = palpate::HapticFEModel<E, palpate::LinearElastic>;
@@ -70,7 +70,7 @@ struct Session {
       : model(mesh, scene, palpate::LinearElastic{.youngs_modulus = youngs_modulus, .poisson_ratio = poisson_ratio}),
         servo(model, palpate::SphereTool{sphere_radius}, options()) {}
 
-  /// One tick with the sphere's centre here; the contact force before the gate.
+  /// One tick with the centre of the sphere at `centre`. Returns the contact force before the gate.
   palpate::Vector3 tick(const palpate::Vector3& centre) {
     state.time += 1e-3;
     state.position = centre;

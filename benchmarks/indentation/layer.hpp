@@ -1,4 +1,4 @@
-// A sphere pressed into an elastic layer bonded to a rigid base, without friction, against the exact solution.
+// A sphere pressed into an elastic layer bonded to a rigid base, without friction, compared with the exact solution.
 #pragma once
 
 #include <cmath>
@@ -12,13 +12,14 @@ namespace indentation {
 
 using namespace palpate;
 
-/// Force at equal depth over that on a half-space, from the integral equation of the layer (60 Gauss points).
+/// Ratio of the force to that on a half-space at equal depth, from the integral equation of the layer (60 Gauss
+/// points).
 struct Truth {
   double poisson_ratio;
   double chi;  ///< sqrt(R d) / H
   double force_over_hertz;
 };
-/// The last two are those of an incompressible layer.
+/// The last two are values of an incompressible layer.
 inline constexpr std::array<Truth, 6> truths{{{0.30, 0.188, 1.2007},
                                               {0.30, 0.357, 1.4500},
                                               {0.45, 0.186, 1.2436},
@@ -58,7 +59,7 @@ std::unique_ptr<Session<E>> make_layer(const Truth& truth, double h) {
   const Mesh<E> mesh = layer_mesh<E>(h, std::max(8.0 * a, 3.0 * height), height);
   Scene scene;
   scene.fix("z0").prescribe("x0", {0.0, std::nullopt, std::nullopt}).prescribe("y0", {std::nullopt, 0.0, std::nullopt});
-  // The sphere touches up to 1.12 a. Fewer touchable nodes around that leave room for those that matter.
+  // The contact radius is up to 1.12 a. Few touchable nodes beyond it leave room for those in contact.
   scene.touch(top_nodes(mesh, [&](const Vector3& p) { return std::hypot(p.x(), p.y()) < 1.3 * a + h; }));
   return std::make_unique<Session<E>>(mesh, scene, truth.poisson_ratio);
 }
@@ -97,7 +98,7 @@ inline void print(const Row& row, const Truth& truth, const Row& before) {
   std::fflush(stdout);
 }
 
-/// An element that says it locks is measured there, not judged.
+/// An element that reports that it locks at this Poisson's ratio is measured, but not checked.
 template <Element E>
 constexpr bool may_lock(double poisson_ratio) {
   if constexpr (SaysWhenItLocks<E>)
@@ -107,7 +108,7 @@ constexpr bool may_lock(double poisson_ratio) {
 }
 
 /// Nodes every h = a/2, a/3, a/4, a/6. Accepted: a/3 to a/6 changes the force by less than 5 %, and a/6 is within 5 %
-/// of the truth.
+/// of the exact solution.
 template <Element E>
 bool converges(const Truth& truth) {
   std::printf("\nnu = %.4g, chi = %.3f, H = %.2f mm\n", truth.poisson_ratio, truth.chi, 1e3 * a / truth.chi);
@@ -124,7 +125,7 @@ bool converges(const Truth& truth) {
   std::printf("  halving h from a/3: %+.2f %%, finest error %+.2f %%, allowed 5 %%: %s\n", 100.0 * change,
               100.0 * error,
               good                               ? "pass"
-              : may_lock<E>(truth.poisson_ratio) ? "locks, as it says"
+              : may_lock<E>(truth.poisson_ratio) ? "locks, as documented"
                                                  : "FAIL");
   return good || may_lock<E>(truth.poisson_ratio);
 }

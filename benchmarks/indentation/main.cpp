@@ -1,4 +1,4 @@
-// How right and how smooth the force of the tick is, for every element. Exits with 1 when it is not.
+// Accuracy and smoothness of the rendered force, for every element. Exits with 1 when a check fails.
 #include <palpate/element/mean_dilatation.hpp>
 #include <palpate/element/smoothed.hpp>
 

@@ -17,11 +17,11 @@ constexpr int ticks = 1000;
 struct Ripple {
   double mean = 0.0, rms = 0.0, range = 0.0, jump = 0.0, lateral = 0.0, pressing = 0.0, seconds = 0.0;
   Index dofs = 0;
-  bool dropped = false;  ///< some points far from the sphere were left out for lack of room
-  bool clean = true;     ///< no other complaint
+  bool dropped = false;  ///< some points far from the sphere were dropped because of the capacity limit
+  bool clean = true;     ///< no other status flag
 };
 
-/// From 0 to `width`, even around the middle to `half_fine` on both sides.
+/// Coordinates from 0 to `width`, equally spaced up to `half_fine` on both sides of the middle.
 std::vector<double> across(double h, double half_fine) {
   const std::vector<double> half = graded(h, half_fine, 0.5 * width, 1.4);
   std::vector<double> x;
@@ -39,7 +39,7 @@ std::unique_ptr<Session<Tet4>> make_block(double h) {
   return std::make_unique<Session<Tet4>>(mesh, scene, poisson_ratio);
 }
 
-/// 10 mm in one second, at a slant to the mesh, after a press in place.
+/// Slides 10 mm in one second, oblique to the mesh, after pressing in at the start.
 Ripple slide(double h) {
   const auto session = make_block(h);
   const Vector3 start(0.5 * width - 5e-3, 0.5 * width - 1.1e-3, height + sphere_radius);

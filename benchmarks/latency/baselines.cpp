@@ -1,4 +1,4 @@
-// What this machine can do, measured in the same run as everything else.
+// Bandwidth and arithmetic rate of this machine, measured in the same run as everything else.
 #include <Eigen/Core>
 #include <cstring>
 #include <memory>
@@ -23,7 +23,7 @@ void memcpy_bandwidth(benchmark::State& state) {
 }
 BENCHMARK(memcpy_bandwidth)->Name("machine/memcpy_64MB")->Unit(benchmark::kMillisecond);
 
-/// Eight sums at once: fewer wait for the adder, not for memory.
+/// Eight independent partial sums: with fewer, the latency of the adder limits the rate, not memory.
 double sum_of(const double* p, Index count) {
   using Lane = Eigen::Array<double, 8, 1>;
   using Map = Eigen::Map<const Lane>;
@@ -74,7 +74,7 @@ void gemm(benchmark::State& state) {
 BENCHMARK_TEMPLATE(gemm, double)->Name("machine/gemm_512_double")->Unit(benchmark::kMillisecond);
 BENCHMARK_TEMPLATE(gemm, float)->Name("machine/gemm_512_float")->Unit(benchmark::kMillisecond);
 
-/// The control: a call that does nothing, timed as a tick is. What it shows is the clock's.
+/// Control: an empty call, timed like a tick. Its time is the cost of the clock.
 void empty_tick(benchmark::State& state) {
   palpate::ToolState tool;
   latency::sample_ticks(state, [&] { benchmark::DoNotOptimize(tool); });

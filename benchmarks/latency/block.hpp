@@ -1,4 +1,4 @@
-// The blocks that are touched: the same touchable patch on bodies of different size.
+// Blocks with the same touchable patch and different numbers of elements.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Sphere against triangles: the hierarchy, and brute force beside it.
+// Sphere against triangles: the hierarchy, compared with brute force.
 #include <map>
 #include <memory>
 #include <palpate/contact/contact_surface.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace palpate;
 
-/// A wavy sheet, 0.1 m a side, of 2 n^2 triangles, and 256 spheres that touch it.
+/// A wavy sheet of 0.1 m per side with 2 n^2 triangles, and 256 spheres that touch it.
 struct Sheet {
   std::vector<Vector3> positions, moved;
   std::vector<Triangle> triangles;
@@ -97,7 +97,7 @@ void closest(benchmark::State& state) {
   over_spheres(state, s, [&](const Vector3& p) { return s.surface.closest(p).distance; });
   for (const Vector3& p : s.centres)
     if (std::abs(std::abs(s.surface.closest(p).distance) - s.brute_distance(p)) > 1e-15)
-      return state.SkipWithError("the closest triangle is not closest");
+      return state.SkipWithError("the closest triangle is wrong");
 }
 void refit(benchmark::State& state) {
   const Sheet& s = sheet(state);

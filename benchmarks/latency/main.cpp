@@ -1,4 +1,5 @@
-// Latency of the tick and of its parts, beside what the machine can do. Every benchmark checks its own answer.
+// Latency of the tick and of its parts, with the rates of the machine for comparison. Every benchmark checks its
+// result.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Core>
@@ -10,7 +11,7 @@ int main(int argc, char** argv) {
   benchmark::AddCustomContext("compiler", __VERSION__);
 #endif
 #if !defined(NDEBUG)
-  benchmark::AddCustomContext("assertions", "ON: times mean nothing");
+  benchmark::AddCustomContext("assertions", "ON: times are not meaningful");
 #endif
   benchmark::AddCustomContext("SIMD", Eigen::SimdInstructionSetsInUse());
   benchmark::AddCustomContext("vector register", std::to_string(EIGEN_MAX_STATIC_ALIGN_BYTES) + " bytes");

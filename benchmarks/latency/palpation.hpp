@@ -1,4 +1,4 @@
-// A sphere that moves over a block with a given number of contacts.
+// A sphere that slides over a block with a given number of contacts.
 #pragma once
 
 #include <palpate/haptic/haptic_servo.hpp>
@@ -11,7 +11,8 @@
 
 namespace latency {
 
-/// A model, a servo with its defaults, and a hand on a small circle: 20 um per tick, off the nodes and edges.
+/// A model, a servo with default options, and a simulated hand that moves on a small circle, 20 um per tick, away from
+/// nodes and edges.
 template <class Policy>
 class Palpation {
  public:
@@ -24,7 +25,7 @@ class Palpation {
 
   Model& model() noexcept { return model_; }
 
-  /// Goes down until that many contacts press, on average over the circle.
+  /// Lowers the tool until the average number of pressing contacts over the circle is `contacts`.
   void press_until(int contacts) {
     for (depth_ = 5e-6; depth_ < radius; depth_ += 5e-6) {
       int sum = 0;
@@ -35,7 +36,7 @@ class Palpation {
       if (sum >= (contacts - 0.25) * ticks_around) return;
     }
   }
-  /// The same path from the same start for every policy.
+  /// Moves to a depth; path and start are the same for every policy.
   void press_to(double depth) {
     depth_ = depth;
     for (int i = 0; i < ticks_around; ++i) tick();
@@ -55,8 +56,8 @@ class Palpation {
   palpate::Vector3 contact_force() const noexcept { return servo_.contact_force(); }
   int pressing() const noexcept { return static_cast<int>(servo_.contacts().size()); }
 
-  /// Holds still, applies the forces to the whole body and measures how far the pressed points then are from the
-  /// sphere, per depth. This goes through none of the stored compliance.
+  /// Keeps the tool fixed, applies the forces to the whole body and measures the distance of the pressed points from
+  /// the sphere, relative to the depth. Does not use the stored compliance.
   double gap_error() {
     for (int i = 0; i < 50; ++i) hold();
     palpate::VectorX u(3 * model_.mesh().node_count());
@@ -73,7 +74,7 @@ class Palpation {
     return worst / depth_;
   }
 
-  /// Sizes beside the times.
+  /// Adds the sizes of the problem to the reported counters.
   void describe(benchmark::State& state) const {
     const palpate::SetupReport& r = model_.report();
     state.counters["tets"] = static_cast<double>(r.elements);

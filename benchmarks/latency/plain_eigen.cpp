@@ -1,4 +1,4 @@
-// What a program without this library would do in a tick, on the same block: a solve, or a product with an inverse.
+// A tick without this library, on the same block: a solve, or a product with an inverse.
 #include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/linear/dense_inverse.hpp>
 #include <Eigen/IterativeLinearSolvers>
@@ -20,15 +20,15 @@ struct Problem {
   MatrixX inverse;
   Eigen::MatrixXf inverse_float;
   std::vector<palpate::Index> kept;
-  palpate::Index loaded;  // kept dof x of the loaded node
+  palpate::Index loaded;  // index of the kept x dof of the loaded node
   VectorX load, kept_load;
 
   Problem() {
     Palpation<palpate::Condensed<palpate::SelectiveInverse>> s(blocks[1]);
     const auto& model = s.model();
-    palpate::Scene constrained;
-    constrained.fix("z0");
-    const auto conditions = palpate::resolve_essential(model.mesh(), model.boundary(), constrained);
+    palpate::Scene scene;
+    scene.fix("z0");
+    const auto conditions = palpate::resolve_essential(model.mesh(), model.boundary(), scene);
     k = palpate::free_matrix(palpate::assemble_stiffness<palpate::Tet4>(model.body(), {}), conditions);
     for (palpate::NodeId node : model.touchable_nodes())
       for (int c = 0; c < 3; ++c)
@@ -121,7 +121,7 @@ void three_float(benchmark::State& state) {
 }
 BENCHMARK(three_float)->Name("eigen/inverse_three_columns_float")->Unit(benchmark::kMicrosecond);
 
-/// The library's own: looks for the loaded entries, reads their columns.
+/// The implementation of the library: finds the loaded entries and reads their columns.
 template <class Scalar>
 void selective(benchmark::State& state) {
   const Problem& p = problem();

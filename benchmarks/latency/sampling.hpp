@@ -1,4 +1,4 @@
-// How a tick is timed: processor time of the thread, in batches, because reading that clock costs as much as a tick.
+// Timing of a tick: processor time of the thread, in batches, because reading that clock costs as much as a tick.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -15,7 +15,7 @@ inline double thread_seconds() noexcept {
   return 1e-9 * static_cast<double>(palpate::platform::compute_ns());
 }
 
-/// Durations and their percentiles. Room is made beforehand: recording does not allocate.
+/// Durations and their percentiles. Memory is reserved in advance: recording does not allocate.
 class Samples {
  public:
   explicit Samples(std::size_t most) { seconds_.reserve(most); }
@@ -37,8 +37,8 @@ constexpr int batches = 2500;       ///< per benchmark
 constexpr int ticks_per_batch = 8;  ///< between two readings of the clock
 constexpr int single_ticks = 4000;  ///< timed one by one
 
-/// Times tick(): p50 and p99 over batches (each the mean of its ticks), and the tail of single ticks less the median
-/// cost of the clock. For benchmarks registered with ->UseManualTime()->Iterations(batches).
+/// Times tick(): p50 and p99 over batches (each the mean of its ticks), and the percentiles of single ticks minus
+/// the median cost of the clock. For benchmarks registered with ->UseManualTime()->Iterations(batches).
 template <class Tick>
 void sample_ticks(benchmark::State& state, Tick&& tick) {
   for (int i = 0; i < 200; ++i) tick();

@@ -1,4 +1,4 @@
-// The tick as a device meets it: woken from sleep, caches emptied by whatever else runs.
+// The tick under the conditions of a device: after sleep, with caches emptied by other processes.
 #include <chrono>
 #include <thread>
 
@@ -17,8 +17,8 @@ void flush_caches() {
   benchmark::DoNotOptimize(memory.data());
 }
 
-/// Sleeps a millisecond before every tick, and empties the caches before that if asked to. The cost of a clock read
-/// under the same conditions shows in the empty row.
+/// Sleeps a millisecond before every tick, and empties the caches before that if `flush`. The empty row shows the cost
+/// of reading the clock under the same conditions.
 template <class Tick>
 void run(benchmark::State& state, bool flush, Tick tick) {
   const double clock = palpate::detail::measured_clock_cost();
@@ -46,7 +46,7 @@ void tick(benchmark::State& state, bool flush) {
   s.press_until(10);
   run(state, flush, [&] { benchmark::DoNotOptimize(s.tick()); });
   s.describe(state);
-  if (!(s.gap_error() < 1e-5)) state.SkipWithError("the pressed points do not lie on the sphere");
+  if (!(s.gap_error() < 1e-5)) state.SkipWithError("the pressed points are not on the sphere");
 }
 
 void as_single(benchmark::internal::Benchmark* b) {

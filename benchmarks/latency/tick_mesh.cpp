@@ -1,4 +1,4 @@
-// The tick by size of the body and by number of contacts. Patch, contact points and weights are the same everywhere.
+// The tick over the size of the body and the number of contacts. Patch, contact points and weights are always the same.
 #include "palpation.hpp"
 
 namespace {
@@ -11,7 +11,7 @@ void run(benchmark::State& state, Session& s, int contacts) {
   sample_ticks(state, [&] { benchmark::DoNotOptimize(s.tick()); });
   s.describe(state);
   const double error = s.gap_error();
-  if (!(error < 1e-5)) state.SkipWithError("the pressed points do not lie on the sphere");
+  if (!(error < 1e-5)) state.SkipWithError("the pressed points are not on the sphere");
   state.counters["gap_err"] = error;
 }
 
@@ -22,7 +22,7 @@ void by_mesh(benchmark::State& state) {
 }
 BENCHMARK(by_mesh)->Name("tick/block")->DenseRange(0, static_cast<int>(blocks.size()) - 1)->Apply(as_ticks);
 
-/// Ten contacts on one body, of which more and more may be touched.
+/// Ten contacts on one body with touchable patches of different size.
 void by_kept(benchmark::State& state) {
   Session s({blocks[1].beside, blocks[1].below, static_cast<int>(state.range(0))});
   run(state, s, 10);

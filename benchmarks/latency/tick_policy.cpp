@@ -1,4 +1,4 @@
-// The tick, the set-up and the price of a new contact by solver policy.
+// The tick, the set-up and the cost of a new contact, per solver policy.
 #include <palpate/linear/dense_cholesky.hpp>
 #include <memory>
 
@@ -12,7 +12,7 @@ using palpate::Condensed;
 constexpr Block block = blocks[1];
 constexpr double depth = 0.9e-3;
 
-/// Force after a fixed path, from the policy every other one is compared with.
+/// Contact force after a fixed path by the reference policy, with which all others are compared.
 const palpate::Vector3& reference_force() {
   static const palpate::Vector3 force = [] {
     Palpation<Condensed<palpate::SelectiveInverse>> s(block);
@@ -22,8 +22,8 @@ const palpate::Vector3& reference_force() {
   return force;
 }
 
-/// Relative, against the reference. Lazy policies know no column at set-up, so their compliance floor is another (1
-/// nm/N).
+/// Allowed relative error of the force. Lazy policies compute no column at set-up, so their compliance floor differs
+/// (1 nm/N).
 template <class Policy>
 constexpr double allowed_error = std::same_as<typename palpate::SolverTraits<Policy>::Scalar, float> ? 1e-5
                                  : palpate::SolverTraits<Policy>::eager                              ? 1e-8
@@ -37,12 +37,12 @@ void tick(benchmark::State& state) {
   sample_ticks(state, [&] { benchmark::DoNotOptimize(s.tick()); });
   s.describe(state);
   state.counters["force_err"] = error;
-  if (!(error <= allowed_error<Policy>)) state.SkipWithError("the force is not that of the other policies");
-  if (!(s.gap_error() < 1e-4)) state.SkipWithError("the pressed points miss the sphere");
+  if (!(error <= allowed_error<Policy>)) state.SkipWithError("the force differs from that of the reference policy");
+  if (!(s.gap_error() < 1e-4)) state.SkipWithError("the pressed points are not on the sphere");
 }
 
-/// Lazy policies solve three times for a vertex touched for the first time; here with room for eight vertices, so that
-/// every request is a new one.
+/// Lazy policies solve three times for a vertex touched for the first time. The storage is limited to eight vertices,
+/// so that every request is a new one.
 template <class Policy>
 void new_column(benchmark::State& state) {
   palpate::SetupOptions few_slots;

@@ -1,9 +1,8 @@
-// Only what the scene requires, measured: what it costs to keep more of a body than is touched. Smoothed<Tet4>,
-// LinearElastic, Condensed<SelectiveInverse> on the organ, from the ten nodes nearest to the sphere to the whole
-// surface.
-//   bench_required [--out FOLDER] [--docs FILE]                  the table, also into a document
-//   bench_required --put FILE --marker WORD --docs FILE          another table into a document
-// Returns 1 when the force depends on what else is kept, which it must not.
+// Cost of keeping more dofs of a body than are touched. Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse> on
+// the organ, from the ten nodes nearest to the sphere to the whole surface.
+//   bench_required [--out FOLDER] [--docs FILE]                  the table; --docs also writes it into a document
+//   bench_required --put FILE --marker WORD --docs FILE          writes another table into a document
+// Returns 1 when the force depends on the other kept dofs, which it must not.
 #include <palpate/mesh/selection.hpp>
 
 #include <cstdio>
@@ -23,7 +22,7 @@ std::unique_ptr<Contender> make_condensed(const Bench& bench, const std::string&
   return std::make_unique<LinearContender<Smoothed<Tet4>, Condensed<SelectiveInverse>>>(bench, "given", touched);
 }
 
-/// A group of the boundary nodes nearest to the sphere and the faces between them. Its name.
+/// Adds a group of the boundary nodes nearest to a point and the faces between them. Returns its name.
 std::string add_nearest(Mesh<Tet4>& mesh, const Vector3& point, std::size_t count) {
   const auto boundary = extract_boundary<Tet4>(mesh);
   std::vector<NodeId> nodes = nodes_of(boundary);
@@ -73,7 +72,7 @@ Required measure_touched(const Bench& bench, const std::string& group) {
   return r;
 }
 
-/// required.csv and required.md in `out`. False when the force depends on what else is kept.
+/// Writes required.csv and required.md to `out`. False when the force depends on the other kept dofs.
 bool measure(Bench& bench, const std::string& out) {
   std::vector<std::string> groups;
   for (const std::size_t count :
@@ -99,7 +98,7 @@ bool measure(Bench& bench, const std::string& out) {
     page << line;
     std::printf("%s", line);
   }
-  if (!same) std::printf("WRONG: the force depends on what else is kept\n");
+  if (!same) std::printf("WRONG: the force depends on the other kept dofs\n");
   return same;
 }
 

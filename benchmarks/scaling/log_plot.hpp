@@ -12,7 +12,7 @@ namespace scaling {
 
 using Point = std::array<double, 2>;
 
-/// y = factor x^exponent, by least squares on the logarithms of the points from `from` on.
+/// y = factor x^exponent, by least squares on the logarithms of the points with x >= `from`.
 struct PowerLaw {
   double factor = 0.0, exponent = 0.0;
   double at(double x) const { return factor * std::pow(x, exponent); }
@@ -39,7 +39,8 @@ class LogPlot {
   LogPlot(double left, std::string title, std::string unit)
       : left_(left), title_(std::move(title)), unit_(std::move(unit)) {}
 
-  /// Points with a line through them; `fitted` adds the power law from `from` on, dashed, and its exponent to the name.
+  /// Adds points joined by a line. `fitted`: adds the power law for x >= `from` as a dashed line, and its exponent to
+  /// the name.
   void add(std::string name, std::string colour, std::vector<Point> points, double from, bool fitted) {
     curves_.push_back({std::move(name), std::move(colour), std::move(points), from, fitted});
   }
@@ -108,11 +109,11 @@ class LogPlot {
     }
     s += "<polyline points='" + path + "' fill='none' stroke='" + c.colour + "' stroke-width='1.5'/>\n";
     std::string name = c.name;
-    const PowerLaw material = fit(c.points, c.from);
-    if (c.fitted && material.factor > 0.0) {
+    const PowerLaw power_law = fit(c.points, c.from);
+    if (c.fitted && power_law.factor > 0.0) {
       const double a = c.from, b = c.points.back()[0];
-      s += line({x(a), y(material.at(a))}, {x(b), y(material.at(b))}, "stroke='#222' stroke-dasharray='4 4'");
-      name += ": tets^" + number(std::round(100.0 * material.exponent) / 100.0 + 0.0);
+      s += line({x(a), y(power_law.at(a))}, {x(b), y(power_law.at(b))}, "stroke='#222' stroke-dasharray='4 4'");
+      name += ": tets^" + number(std::round(100.0 * power_law.exponent) / 100.0 + 0.0);
     }
     s += "<rect x='" + number(left_ + 40) + "' y='" + number(key - 8) + "' width='10' height='10' fill='" + c.colour +
          "'/>\n" + text(left_ + 56, key + 1, name);

@@ -1,5 +1,5 @@
-// Set-up time, peak memory and tick over the size of the body: a block of 1 mm cells that grows, and an organ-like body
-// of 1 mm elements. The touchable patch, the sphere and its ten contacts stay the same.
+// Set-up time, peak memory and tick over the size of the body: blocks of 1 mm cells, and organ-like bodies of 1 mm
+// elements. The touchable patch, the sphere and its ten contacts are always the same.
 //   bench_scaling [--build <name>] [--csv <file to add rows to>] [--out <folder for scaling.svg and scaling.csv>]
 //                 [--up-to <tetrahedra>]
 #include "../common/row.hpp"
@@ -22,7 +22,7 @@ struct Sample {
   double error = 0.0;
 };
 
-/// Small bodies are set up several times.
+/// Measures one body. Small bodies are set up several times.
 Sample measure(const std::string& name, const bench::Constrained& constrained) {
   Sample s{.body = name, .tick = {}};
   std::unique_ptr<bench::Touching> body;
@@ -60,7 +60,7 @@ std::vector<Sample> measure_all(double up_to) {
   return samples;
 }
 
-constexpr double fitted_from = 9e3;  ///< [tets] smaller ones are all patch
+constexpr double fitted_from = 9e3;  ///< [tets] smaller blocks consist mostly of the patch
 
 std::vector<Point> points(const std::vector<Sample>& samples, const char* body, auto value) {
   std::vector<Point> p;
@@ -109,10 +109,10 @@ void write_samples(const std::vector<Sample>& samples, const std::string& path) 
 void add_exponents(bench::RowFile& rows, const std::vector<Sample>& samples) {
   for (const char* body : {"block", "organ"}) {
     const auto add = [&](const char* what, auto value) {
-      const PowerLaw material = fit(points(samples, body, value), fitted_from);
+      const PowerLaw power_law = fit(points(samples, body, value), fitted_from);
       rows.add({.target = "scaling",
-                .what = std::string(what) + " of the " + body + " ~ tets^e, e fitted from 9,000 tets on",
-                .figure = bench::with_unit(material.exponent, ""),
+                .what = std::string(what) + " of the " + body + " ~ tets^e, e fitted above 9,000 tets",
+                .figure = bench::with_unit(power_law.exponent, ""),
                 .baseline = "",
                 .bound = {},
                 .error = ""});
@@ -123,7 +123,7 @@ void add_exponents(bench::RowFile& rows, const std::vector<Sample>& samples) {
   }
 }
 
-/// The same tick whatever the size; and a million tetrahedra, when there are so many.
+/// Adds the targets: a tick independent of size, and a million tetrahedra when that size is measured.
 void add_targets(bench::RowFile& rows, const std::vector<Sample>& samples) {
   double least = infinity, most = 0.0, largest = 0.0, error = 0.0;
   for (const Sample& s : samples) {
@@ -139,7 +139,7 @@ void add_targets(bench::RowFile& rows, const std::vector<Sample>& samples) {
             .baseline = bench::microseconds(least),
             .ratio = most / least,
             .bound = bench::at_most(1.2),
-            .error = error < 1e-5 ? "" : "the pressed points do not lie on the sphere"});
+            .error = error < 1e-5 ? "" : "the pressed points are not on the sphere"});
   bool found = false;
   for (const Sample& s : samples) {
     if (s.tets < 9e5) continue;

@@ -1,4 +1,4 @@
-// Assembly of the standard block against triplets and setFromTriplets, in nanoseconds per tetrahedron.
+// Assembly of the standard block compared with triplets and setFromTriplets, in nanoseconds per tetrahedron.
 #include "../common/bodies.hpp"
 #include "setup.hpp"
 
@@ -7,7 +7,7 @@ namespace {
 
 using namespace palpate;
 
-/// What one does without this library: 144 triplets per element.
+/// The standard approach without this library: 144 triplets per element.
 SparseMatrix from_triplets(const Body<Tet4>& body) {
   std::vector<Eigen::Triplet<double, Index>> entries;
   entries.reserve(144 * body.mesh.elements.size());

@@ -1,4 +1,4 @@
-// CHOLMOD's supernodal factorisation as a baseline; nothing when it was not found.
+// CHOLMOD's supernodal factorisation as a baseline; empty when CHOLMOD was not found.
 #include "cholmod.hpp"
 
 #include "../common/timing.hpp"
@@ -8,7 +8,7 @@
 
 #include <stdexcept>
 
-#if defined(__ELF__)  // of whichever libraries CHOLMOD brings; null when they have no such function
+#if defined(__ELF__)  // functions of the libraries that CHOLMOD links; null when they do not exist
 extern "C" {
 void openblas_set_num_threads(int) __attribute__((weak));
 void omp_set_max_active_levels(int) __attribute__((weak));
@@ -26,10 +26,10 @@ struct Cholmod::Implementation {
 
 namespace {
 
-/// Says which BLAS it found, and sees to it that one thread does all the work.
+/// Limits BLAS and OpenMP to one thread. Returns the name of the BLAS.
 const char* use_one_thread() noexcept {
 #if defined(__ELF__)
-  // CHOLMOD asks for four threads whatever their number is set to, and no level at all is what stops it.
+  // CHOLMOD requests four threads regardless of the configured number; only zero active levels prevent that.
   if (omp_set_max_active_levels != nullptr) omp_set_max_active_levels(0);
   if (openblas_set_num_threads != nullptr) {
     openblas_set_num_threads(1);

@@ -1,4 +1,4 @@
-// CHOLMOD's supernodal factorisation as a baseline, where it is installed. The library itself never uses it.
+// CHOLMOD's supernodal factorisation as a baseline, where it is installed. The library itself does not use it.
 #pragma once
 
 #include <palpate/assembly/detail/free_stiffness.hpp>
@@ -11,10 +11,10 @@ namespace bench {
 class Cholmod {
  public:
   static bool available() noexcept;
-  /// What its dense operations come from.
+  /// Name of the BLAS used for its dense operations.
   static const char* blas() noexcept;
 
-  /// Analyses the matrix whose lower half is given. It must outlive this.
+  /// Analyses the symmetric matrix with this lower triangle. `lower` must outlive this object.
   explicit Cholmod(const palpate::SparseMatrix& lower);
   ~Cholmod();
 

@@ -1,4 +1,4 @@
-// Analysis and numeric factorisation against CHOLMOD and Eigen's SimplicialLDLT, and against the speed of gemm.
+// Analysis and numeric factorisation compared with CHOLMOD, with Eigen's SimplicialLDLT, and with the rate of gemm.
 #include "../common/bodies.hpp"
 #include "cholmod.hpp"
 #include "setup.hpp"
@@ -17,7 +17,7 @@ namespace {
 using namespace palpate;
 using bench::Cholmod;
 
-/// What was measured on one matrix; medians [s].
+/// Figures of one matrix; times are medians [s].
 struct Times {
   double analysis = 0.0, numeric = 0.0, cholmod = bench::unknown, cholmod_analysis = bench::unknown;
   double flops = 0.0, cholmod_flops = bench::unknown;
@@ -39,7 +39,7 @@ Times factorise(const bench::System& system) {
   if (Cholmod::available()) {
     Cholmod cholmod(system.lower);
     t.cholmod_analysis = cholmod.analysis_seconds();
-    cholmod.factorise();  // the first one allocates
+    cholmod.factorise();  // the first call allocates
     std::tie(t.numeric, t.cholmod) = bench::medians_in_turns(ours, [&] { cholmod.factorise(); });
     t.cholmod_flops = cholmod.flops();
     t.error = error_over(system.residual(cholmod.solve(b), b), 1e-10, "CHOLMOD's residual");
@@ -71,7 +71,7 @@ void add_cholmod_row(Session& session, const Times& t, const std::string& where,
                     .error = ""});
 }
 
-/// Analysis and numeric part together, for both. Once: it takes seconds.
+/// Analysis and numeric factorisation together, for both solvers. Runs once, as it takes seconds.
 void add_simplicial_row(Session& session, const bench::System& system, const Times& t, int n) {
   std::optional<Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>> ldlt;
   const double theirs = bench::seconds_of([&] { ldlt.emplace(system.lower); });

@@ -1,4 +1,4 @@
-// Set-up, stage by stage, on the standard block and on irregular bodies, beside what others need for the same.
+// Set-up, stage by stage, on the standard block and on irregular bodies, compared with other implementations.
 //   bench_setup [--build <name of the flags>] [--csv <file to add rows to>] [--organ <organ.msh>] [--long]
 #include "cholmod.hpp"
 #include "setup.hpp"
@@ -18,7 +18,7 @@ void measure_machine(Session& session) {
   inform("compiler", __VERSION__);
 #endif
 #if !defined(NDEBUG)
-  inform("assertions", "ON: times mean nothing");
+  inform("assertions", "ON: times are not meaningful");
 #endif
   inform("SIMD", std::string(Eigen::SimdInstructionSetsInUse()) + ", " +
                      std::to_string(8 * EIGEN_MAX_STATIC_ALIGN_BYTES) + " bit");

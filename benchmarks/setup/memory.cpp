@@ -1,4 +1,4 @@
-// Memory predicted by the analysis against the growth of the resident memory, and the refusal over a limit.
+// Memory predicted by the analysis compared with the growth of the resident memory, and the refusal above a limit.
 #include "../common/bodies.hpp"
 #include "setup.hpp"
 
@@ -8,8 +8,8 @@ namespace {
 using namespace palpate;
 
 void compare(Session& session, const std::string& what, double predicted, double measured) {
-  if (std::isnan(measured)) return session.rows.skip("g", what, "this system does not tell the memory of a process");
-  // Either way round: predicting too much is as wrong as predicting too little.
+  if (std::isnan(measured)) return session.rows.skip("g", what, "this system does not report the memory of a process");
+  // The larger of both ratios: predicting too much is as wrong as predicting too little.
   session.rows.add({.target = "g",
                     .what = what,
                     .figure = bench::megabytes(predicted),
@@ -19,7 +19,7 @@ void compare(Session& session, const std::string& what, double predicted, double
                     .error = ""});
 }
 
-/// 1 when a limit just below the prediction is refused as too large, and one just above is not.
+/// 1 when a limit just below the prediction is refused as too large, and one just above is accepted.
 double refusal(const bench::System& system, const CholeskyAnalysis& analysis) {
   SetupLimits limits;
   limits.memory = static_cast<std::size_t>(1.01 * analysis.peak_bytes());

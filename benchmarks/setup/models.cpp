@@ -1,4 +1,4 @@
-// Whole models, from mesh to the first tick: beside the figures of 1999 and 2004, and on an organ.
+// Whole models, from mesh to the first tick: compared with figures of 1999 and 2004, and on an organ.
 #include "../common/bodies.hpp"
 #include "setup.hpp"
 
@@ -24,7 +24,7 @@ Measured set_up(const Mesh<Tet4>& mesh, const Scene& scene) {
   return m;
 }
 
-/// The stored compliance of a vertex against a solve for all dofs.
+/// Error of the stored compliance of a vertex relative to a solve for all dofs; empty when small.
 std::string compliance_error(Model& model) {
   const int v = static_cast<int>(model.touchable_nodes().size() / 2);
   VectorX u(3 * model.mesh().node_count());
@@ -32,10 +32,10 @@ std::string compliance_error(Model& model) {
   model.displacement_with({&force, 1}, u);
   const Vector3 solved = u.segment<3>(3 * Index{model.touchable_nodes()[static_cast<std::size_t>(v)]});
   const Vector3 stored = model.compliance(v, v) * force.force.in_model_axes();
-  return error_over((solved - stored).norm() / solved.norm(), 1e-10, "stored compliance is not a solve:");
+  return error_over((solved - stored).norm() / solved.norm(), 1e-10, "stored compliance differs from a solve:");
 }
 
-/// A block of that many cells, held below. `all`: its whole free surface may be touched, otherwise its top.
+/// A block of `cells`, fixed at the bottom. `all`: its whole free surface is touchable, otherwise only its top.
 void measure_seed(Session& session, std::array<int, 3> cells, bool all, double past_seconds, const char* past,
                   double target) {
   const Mesh<Tet4> mesh = box_tet4(Vector3(0.1, 0.1, 0.05), cells, BoxSplit::six);

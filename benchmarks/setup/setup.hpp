@@ -1,4 +1,4 @@
-// The parts of the program: each measures one stage of set-up, checks its result and adds its rows.
+// The measurements of the program: each measures one stage of set-up, checks its result and adds its rows.
 #pragma once
 
 #include "../common/machine.hpp"
@@ -8,7 +8,7 @@ namespace setup {
 
 struct Session {
   bench::RowFile& rows;
-  bool long_run;  ///< larger bodies too
+  bool long_run;  ///< also measure larger bodies
 };
 
 void measure_machine(Session& session);
@@ -20,7 +20,7 @@ void measure_condensation(Session& session);
 void measure_memory(Session& session);
 void measure_models(Session& session, const char* organ_file);
 
-/// Empty when `value` is small enough; what to say otherwise.
+/// Empty when `value` is at most `allowed`; an error text otherwise.
 inline std::string error_over(double value, double allowed, const char* what) {
   return value <= allowed ? std::string()
                           : std::string(what) + " " + bench::with_unit(value / allowed, "times allowed");

@@ -1,4 +1,4 @@
-// Solves with a finished factor: one right-hand side against reading the factor twice, blocks of them in GFLOP/s.
+// Solves with an existing factor: one right-hand side compared with reading the factor twice, blocks in GFLOP/s.
 #include "../common/bodies.hpp"
 #include "setup.hpp"
 
@@ -12,7 +12,7 @@ void measure_single(Session& session, const bench::System& system, SparseCholesk
   const VectorX b = bench::random_matrix(system.lower.rows(), 1);
   VectorX x(b.size());
   std::vector<double> times, bandwidths;
-  for (int round = 0; round < 5; ++round) {  // in turns, each long enough to have its own data in cache
+  for (int round = 0; round < 5; ++round) {  // alternately, each long enough to have its data in cache
     times.push_back(bench::median_seconds([&] { solver.solve_into(b, x); }, {.seconds = 0.2, .least = 3, .most = 9}));
     bandwidths.push_back(bench::read_bandwidth(factor, {.seconds = 0.2, .least = 3, .most = 9}));
   }

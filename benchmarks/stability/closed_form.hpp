@@ -1,4 +1,4 @@
-// The linear tetrahedron by cross products in any precision. It shares no formula with the library.
+// The linear tetrahedron by cross products in any precision, independent of the library's formulas.
 #pragma once
 
 #include "statics.hpp"
@@ -37,7 +37,7 @@ void add_stiffness(const StaticProblem& problem, const std::vector<Index>& free_
   }
 }
 
-/// Number of every free dof, -1 where it is held, and how many there are.
+/// Index of every free dof, -1 where constrained, and the number of free dofs.
 inline std::pair<std::vector<Index>, Index> free_dofs(const StaticProblem& problem) {
   std::vector<Index> index(3 * problem.mesh.positions.size(), 0);
   for (NodeId node : problem.constrained)
@@ -57,7 +57,7 @@ inline VectorX load_of(const StaticProblem& problem, const std::vector<Index>& f
   return load;
 }
 
-/// 3 per node, zero where held.
+/// Values of free dofs on all dofs: 3 per node, zero where constrained.
 inline VectorX spread(const VectorX& free, const std::vector<Index>& free_index) {
   VectorX all = VectorX::Zero(static_cast<Index>(free_index.size()));
   for (std::size_t dof = 0; dof < free_index.size(); ++dof)

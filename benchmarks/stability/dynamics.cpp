@@ -1,4 +1,4 @@
-// The sweep over dynamics.
+// The sweep over schemes, time steps and materials of dynamics.
 #include "dynamics_schemes.hpp"
 
 #include <palpate/assembly/detail/free_stiffness.hpp>
@@ -24,7 +24,7 @@ DynamicProblem block(int cells, int steps, double young, double nu) {
   return p;
 }
 
-/// 2 / omega_max of the block at rest, by a dense eigenproblem.
+/// Stable time step 2 / omega_max [s] of the block at rest, by a dense eigenvalue problem.
 double stable_step(const DynamicProblem& p) {
   const DeformableBody body = make_deformable_body(neo_hookean(p), p.scene);
   BlockMatrix k = make_stiffness(body.pattern, {});
@@ -65,7 +65,7 @@ DynamicMap measure_dynamics(int cells, int steps, const std::string& folder) {
           const Moved moved = scheme.move(problem, dt);
           std::array<char, 300> tip{};
           std::snprintf(tip.data(), tip.size(),
-                        "%s, nu %g, E %.0e Pa, dt %.2g s (2/omega %.2g s): %s, energy off by %.2g; %s",
+                        "%s, nu %g, E %.0e Pa, dt %.2g s (2/omega %.2g s): %s, energy error %.2g; %s",
                         scheme.name.c_str(), nu, problem.young, dt, limit, name(moved.verdict), moved.energy_error,
                         moved.why.c_str());
           csv << (scheme.ours ? "palpate" : "other") << ",\"" << scheme.name << "\"," << nu << ',' << problem.young

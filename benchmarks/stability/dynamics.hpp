@@ -1,4 +1,4 @@
-// Map of dynamics: which steps a motion takes, over their length, stiffness, scheme and Poisson's ratio.
+// Map of dynamics: verdict of a motion, over time step, stiffness, scheme and Poisson's ratio.
 #pragma once
 
 #include "grid.hpp"
@@ -11,7 +11,7 @@ namespace maps {
 
 using namespace palpate;
 
-/// A block that is held below and starts to fall sideways: small strain where it is stiff, crushed where it is soft.
+/// A block fixed at the bottom under lateral gravity: small strain when it is stiff, crushed when it is soft.
 struct DynamicProblem {
   Mesh<Tet4> mesh;
   double young = 0.0, nu = 0.0, density = 1000.0;
@@ -19,29 +19,30 @@ struct DynamicProblem {
   int steps = 100;
 };
 
-/// What a motion did.
+/// Result of a motion.
 struct Moved {
   Verdict verdict = Verdict::ok;
-  double energy_error = 0.0;  ///< largest excess or want of energy, of the work done by then
+  double energy_error = 0.0;  ///< largest error of the energy balance, relative to the largest work of the loads
   int steps = 0;
-  std::string why;
+  std::string why;  ///< remark of the step that determines the verdict
 };
 
-/// Judges a motion by its energy, with forces and masses of its own: loads are constant, so kinetic and stored energy
-/// may never exceed their work. Ten times as much is a motion that blew up: far above what a stable one swings to.
+/// Checks the energy of a motion, with separately computed forces and masses. Loads are constant, so kinetic plus
+/// stored energy must not exceed their work. A motion with ten times that energy is unstable: stable motions stay far
+/// below.
 class EnergyWatch {
  public:
   EnergyWatch(DeformableBody body) : body_(std::move(body)) {}
   const DeformableBody& body() const noexcept { return body_; }
 
-  /// False when the motion has blown up.
+  /// False when the motion is unstable.
   bool holds(const VectorX& u, const VectorX& v) {
     if (!u.allFinite() || !v.allFinite()) return false;
     double kinetic = 0.0;
     for (Index dof : body_.conditions.free_dofs) kinetic += 0.5 * body_.lumped[dof / 3] * v[dof] * v[dof];
     const double energy = kinetic + body_.elastic->energy(u), work = body_.load.dot(u);
     most_work_ = std::max(most_work_, std::abs(work));
-    if (!(most_work_ > 0.0)) return true;  // nothing has moved by as much as a denormal number
+    if (!(most_work_ > 0.0)) return true;  // no measurable displacement yet
     error_ = std::max(error_, std::abs(energy - work) / most_work_);
     return energy <= 10.0 * most_work_;
   }
@@ -58,24 +59,24 @@ struct Scheme {
   Moved (*move)(const DynamicProblem&, double dt) = nullptr;
 };
 std::vector<Scheme> our_schemes();
-/// Without limit, line search and watch, on the library's forces.
+/// Textbook schemes with the library's forces, without step limit, line search and energy check.
 std::vector<Scheme> plain_schemes();
 
-/// Verdict of steps that say for each whether it was taken and whether something is to be said; stops where one is
-/// refused.
+/// Verdict of a motion. `step(remark)` returns whether the step was taken, and sets `remark` when it reports a problem.
+/// Stops when a step is refused.
 template <class Step>
 Moved run(const DynamicProblem& problem, EnergyWatch watch, Step step) {
   Moved moved;
   bool flagged = false, blown_up = false;
   for (; moved.steps < problem.steps && !blown_up; ++moved.steps) {
-    std::string said;
-    if (!step(said)) {
+    std::string remark;
+    if (!step(remark)) {
       moved.verdict = Verdict::refused;
-      moved.why = said;
+      moved.why = remark;
       return moved;
     }
-    if (!said.empty() && !flagged) moved.why = said + ", step " + std::to_string(moved.steps + 1);
-    flagged = flagged || !said.empty();
+    if (!remark.empty() && !flagged) moved.why = remark + ", step " + std::to_string(moved.steps + 1);
+    flagged = flagged || !remark.empty();
     blown_up = !step.holds(watch);
   }
   moved.energy_error = watch.error();
@@ -87,7 +88,7 @@ struct DynamicMap {
   std::vector<Grid> ours, others;
   Score score;
 };
-/// Writes dynamics.csv and prints what is wrong.
+/// Writes dynamics.csv and prints every cell that is WRONG.
 DynamicMap measure_dynamics(int cells, int steps, const std::string& folder);
 
 }  // namespace maps

@@ -1,4 +1,4 @@
-// Co-rotated steps of the library: one linearisation per step, no factor.
+// Co-rotated steps of the library: one linearisation per step, no factorisation.
 #include "dynamics_schemes.hpp"
 
 #include <palpate/model/moving/detail/corotated_motion.hpp>

@@ -15,10 +15,10 @@ struct ExplicitStep {
   ExplicitMotion<BatchedTetrahedra<NeoHookean>, SchemeOf>& motion;
   double dt;
 
-  bool operator()(std::string& said) {
+  bool operator()(std::string& remark) {
     const Status status = motion.step(dt);
     for (int bit = 0; bit < status_flag_count; ++bit)
-      if ((status.bits() >> bit & 1u) != 0) said += (said.empty() ? "" : " ") + std::string(status_flag_name(bit));
+      if ((status.bits() >> bit & 1u) != 0) remark += (remark.empty() ? "" : " ") + std::string(status_flag_name(bit));
     return !status.has(StatusFlag::step_refused);
   }
   bool holds(EnergyWatch& watch) const { return watch.holds(motion.state().displacement, motion.state().velocity); }

@@ -1,4 +1,4 @@
-// The same schemes as written down in a textbook: no limit, no line search, no watch, Eigen's info() asked.
+// The same schemes as in a textbook: no step limit, no line search, no energy check; only Eigen's info() is checked.
 #include "dynamics_schemes.hpp"
 
 #include <palpate/assembly/detail/free_stiffness.hpp>
@@ -21,7 +21,7 @@ struct State {
   bool holds(EnergyWatch& watch) const { return watch.holds(u, v); }
 };
 
-/// Velocity first, then place; with half a step of velocity at the start it is the central difference.
+/// Updates velocity, then position; with half a velocity step at the start it is the central difference scheme.
 struct ExplicitEuler : State {
   ExplicitEuler(DeformableBody given, double step, double share_of_first)
       : State(std::move(given), step), first(share_of_first) {}
@@ -37,14 +37,14 @@ struct ExplicitEuler : State {
   }
 };
 
-/// One linearisation per step (Baraff and Witkin 1998), or of Newmark's rule.
+/// One linearisation per step, of implicit Euler (Baraff and Witkin 1998) or of Newmark's rule.
 struct OneSolve : State {
   OneSolve(DeformableBody given, double step, const TimeScheme& scheme)
       : State(std::move(given), step), rule(scheme, u.size()), k(make_stiffness(body.pattern, {})) {}
   ImplicitStep rule;
   BlockMatrix k;
 
-  bool operator()(std::string& said) {
+  bool operator()(std::string& remark) {
     rule.set_length(dt);
     rule.coast(u, v, a);
     body.elastic->force(u, f);
@@ -61,7 +61,7 @@ struct OneSolve : State {
     const SparseMatrix lower = free_matrix(k, body.conditions);
     const Eigen::SimplicialLDLT<SparseMatrix> factor(lower);
     if (factor.info() != Eigen::Success) {
-      said = "info() is not Success";
+      remark = "info() is not Success";
       return false;
     }
     VectorX step(u.size());

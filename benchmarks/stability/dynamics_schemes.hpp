@@ -1,4 +1,4 @@
-// Schemes that are compiled apart, and the bodies they move.
+// Schemes that are compiled in separate files, and the bodies they move.
 #pragma once
 
 #include "dynamics.hpp"
@@ -18,23 +18,23 @@ inline HyperelasticBody<Tet4, Corotational<LinearElastic>> corotational(const Dy
       p.mesh, std::vector<Corotational<LinearElastic>>{{{p.young, p.nu, p.density}}});
 }
 
-/// Steps that are reported on; `converged` finds that in the report.
+/// Steps of a motion that returns a report; `converged` extracts the convergence from the report.
 template <class Motion, class Converged>
 struct ReportedSteps {
   Motion& motion;
   double dt;
   Converged converged;
 
-  bool operator()(std::string& said) {
+  bool operator()(std::string& remark) {
     const auto report = motion.step(dt);
     if (!report.taken)
-      said = "step not taken";
+      remark = "step not taken";
     else if (!converged(report))
-      said = "not converged";
+      remark = "not converged";
     else if (!report.energy_bounded)
-      said = "energy grew";
+      remark = "energy grew";
     else if (report.deformation.inverted > 0)
-      said = "inverted";
+      remark = "inverted";
     return report.taken;
   }
   bool holds(EnergyWatch& watch) const { return watch.holds(motion.displacement(), motion.velocity()); }

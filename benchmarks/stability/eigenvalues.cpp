@@ -1,4 +1,4 @@
-// The sampled loop of handle, zero-order hold and delay line as a matrix.
+// The sampled loop of handle, zero-order hold and delay line as a state matrix.
 #include "stability.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -6,7 +6,7 @@
 namespace stability {
 namespace {
 
-/// exp(a), by halving the argument until the series converges fast.
+/// exp(a) by scaling and squaring: the argument is halved until the series converges fast.
 Matrix3 exponential(Matrix3 a) {
   int halvings = 0;
   for (; a.cwiseAbs().maxCoeff() > 1e-2; ++halvings) a *= 0.5;
@@ -16,10 +16,10 @@ Matrix3 exponential(Matrix3 a) {
   return sum;
 }
 
-/// State: position, velocity, and the forces that are still under way, oldest first.
+/// Spectral radius of the loop. State: position, velocity, and the delayed forces, oldest first.
 double spectral_radius(const SimulatedOptions& o, int delay, double stiffness) {
   const double m = o.mass + o.hand.mass;
-  Matrix3 flow = Matrix3::Zero();  // of position, velocity and a held force
+  Matrix3 flow = Matrix3::Zero();  // of position, velocity and a constant force
   flow << 0.0, 1.0, 0.0, -o.hand.stiffness / m, -(o.damping + o.hand.damping) / m, 1.0 / m, 0.0, 0.0, 0.0;
   const Matrix3 over = exponential(flow / o.rate);
   MatrixX loop = MatrixX::Zero(2 + delay, 2 + delay);

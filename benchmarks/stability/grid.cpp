@@ -15,14 +15,14 @@ namespace {
 
 constexpr double side = 15, above = 22, right = 14;
 
-/// Room for the longest of some labels.
+/// Width [px] of the longest of some labels.
 double room(const std::vector<std::string>& labels) {
   std::size_t longest = 0;
   for (const std::string& label : labels) longest = std::max(longest, label.size());
   return 8.0 + 6.2 * static_cast<double>(longest);
 }
 double left_of(const Grid& g) {
-  return std::max(room(g.rows), 54.0);  // and for the axis' name
+  return std::max(room(g.rows), 54.0);  // at least the width of the axis name
 }
 double below_of(const Grid& g) {
   return 16.0 + room(g.columns);
@@ -49,7 +49,7 @@ void draw(std::ostream& out, double x, double y, const Square& s) {
   out << "</g>";
 }
 
-/// Part of a line that lies in the panel, one segment at a time.
+/// Draws the part of a line inside the panel, one segment at a time.
 void draw_line(std::ostream& out, const Grid& g, double x0, double y0) {
   const double columns = static_cast<double>(g.columns.size()), rows = static_cast<double>(g.rows.size());
   for (std::size_t i = 0; i + 1 < g.line.size(); ++i) {

@@ -1,4 +1,4 @@
-// Panels of cells as SVG. Colours are classes, so that the page gives them for light and for dark.
+// Panels of cells as SVG. Colours are CSS classes, so that the page defines them for the light and the dark theme.
 #pragma once
 
 #include "verdict.hpp"
@@ -11,7 +11,7 @@ namespace maps {
 struct Square {
   Verdict verdict = Verdict::ok;
   int shade = 0;    ///< 0 pale to 7 strong
-  std::string tip;  ///< shown by the browser
+  std::string tip;  ///< tooltip in the browser
 };
 
 /// A panel: squares row by row, the first row at the bottom.
@@ -19,16 +19,16 @@ struct Grid {
   std::string title;
   std::vector<std::string> columns, rows;
   std::vector<Square> squares;
-  std::vector<std::array<double, 2>> line{};  ///< in columns and rows, 0 at the middle of the first
+  std::vector<std::array<double, 2>> line{};  ///< in columns and rows; 0 is the middle of the first
 };
 
-/// Panels side by side, as many per row as asked for, with names of both axes.
+/// Panels next to each other, at most `per_row` per row, with names of both axes.
 std::string svg_of(const std::vector<Grid>& grids, int per_row, const std::string& x_name, const std::string& y_name);
 
-/// 0 for an error below 1e-14, then one more for every two powers of ten, 7 from 1e-2 on.
+/// Shade 0 for an error below 1e-14, then one more for every two powers of ten, 7 from 1e-2 on.
 int shade_of_error(double error);
 
-/// A power of ten, in halves, to label axes: 1e-2, 3e-2, 1e-1.
+/// Axis label of a power of ten, with the exponent in halves: 1e-2, 3e-2, 1e-1.
 std::string power_of_ten(int halves);
 
 }  // namespace maps

@@ -1,5 +1,5 @@
-// Z-width: how stiff a wall may be before a device buzzes, for devices, grips, rates and delays, simulated. Every
-// figure that has a formula is checked against it.
+// Z-width: the largest wall stiffness without sustained oscillation, for simulated devices, grips, rates and delays.
+// Every figure that has a formula is checked against it.
 #include <palpate/core/setup_error.hpp>
 #include "stability.hpp"
 
@@ -28,12 +28,12 @@ void measure(Cell& c) {
     const double formula = testing::stiffness_limit(b, period, c.delay * period);
     expect(std::abs(c.linear - formula) <= 0.02 * formula, c, "limit without a hand", c.linear, formula);
   }
-  c.energy_bounded = largest_calm(c, false);
-  c.late = largest_calm(c, true);
-  c.power = motor_power(c, 4.0 * c.energy_bounded, false);
-  c.power_tank = motor_power(c, 4.0 * c.energy_bounded, true);
-  // Softer walls than 20 N/m are pressed in by 1 N until they end.
-  if (c.exact > 20.0) expect(c.energy_bounded >= 0.9 * c.linear, c, "limit with friction", c.energy_bounded, c.linear);
+  c.stable = largest_stable(c, false);
+  c.late = largest_stable(c, true);
+  c.power = motor_power(c, 4.0 * c.stable, false);
+  c.power_tank = motor_power(c, 4.0 * c.stable, true);
+  // Below 20 N/m a force of 1 N presses the tool beyond the extent of the wall.
+  if (c.exact > 20.0) expect(c.stable >= 0.9 * c.linear, c, "limit with friction", c.stable, c.linear);
 }
 
 std::vector<Cell> measure_all() {
@@ -44,15 +44,15 @@ std::vector<Cell> measure_all() {
                 device.name, o.mass, o.damping, o.friction, 1e6 * o.encoder_step, o.limits.stiffness);
     std::printf("passive up to 2b/T = %.4g N/m at 1 kHz and 2f/step = %.4g N/m\n", 2e3 * o.damping,
                 2.0 * o.friction / o.encoder_step);
-    std::printf("%-8s %6s %6s | %9s %9s | %9s %9s | motors at 4x calm, and with tank [mW]\n", "hand", "rate", "delay",
-                "linear", "exact", "calm", "late");
+    std::printf("%-8s %6s %6s | %9s %9s | %9s %9s | motors at 4x stable, and with tank [mW]\n", "hand", "rate", "delay",
+                "linear", "exact", "stable", "late");
     for (const NamedHand& hand : hands())
       for (double rate : rates)
         for (int delay : delays) {
           Cell c{.device = &device, .hand = &hand, .rate = rate, .delay = delay};
           measure(c);
           std::printf("%-8s %6.0f %6d | %9.4g %9.4g | %9.3g %9.3g | %9.3g %9.3g\n", hand.name, rate, delay, c.linear,
-                      c.exact, c.energy_bounded, c.late, 1e3 * c.power, 1e3 * c.power_tank);
+                      c.exact, c.stable, c.late, 1e3 * c.power, 1e3 * c.power_tank);
           std::fflush(stdout);
           cells.push_back(c);
         }
@@ -60,7 +60,7 @@ std::vector<Cell> measure_all() {
   return cells;
 }
 
-/// At the stiffness the device is rated for the tank must do nothing at 1 kHz, in every hand.
+/// At the rated stiffness of the device, the energy tank must not reduce forces at 1 kHz, for every hand.
 void check_rated() {
   for (const NamedDevice& device : devices())
     for (const NamedHand& hand : hands()) {
@@ -72,7 +72,7 @@ void check_rated() {
       testing::Tanked<testing::VirtualWall> wall{.source = {.stiffness = rated},
                                                  .tank = EnergyTank(EnergyLimits::from(o.limits))};
       double least = infinity;
-      for (int i = 0; i < 20000; ++i) {  // pressed harder and softer, 0 to 2 N
+      for (int i = 0; i < 20000; ++i) {  // pressed with a force that varies from 0 to 2 N
         handle.push(Vector3(0.0, 0.0, -1.0 + std::cos(6e-3 * i)));
         testing::tick(handle, wall);
         least = std::min(least, wall.tank.gain());
@@ -90,13 +90,13 @@ void measure_tissues() {
   for (double e : {30e3, 100e3, 300e3, 1e6}) {
     const TissueRow row = measure_tissue(e, o);
     std::printf(
-        "E %6.0f kPa: tissue alone %7.4g N/m; largest stable coupling %9.4g N/m, then felt %7.4g N/m "
+        "E %6.0f kPa: tissue alone %7.4g N/m; largest stable coupling %9.4g N/m, rendered %7.4g N/m "
         "(limit of a wall %.4g)\n",
-        1e-3 * e, row.soft, row.coupling, row.felt, limit);
+        1e-3 * e, row.soft, row.coupling, row.rendered, limit);
     if (row.soft < 0.9 * limit)  // soft enough for any coupling
-      expect(row.felt >= 0.99 * row.soft, c, "stiffness felt of a soft tissue", row.felt, row.soft);
+      expect(row.rendered >= 0.99 * row.soft, c, "rendered stiffness of a soft tissue", row.rendered, row.soft);
     else
-      expect(std::abs(row.felt - limit) <= 0.1 * limit, c, "stiffness felt at the limit", row.felt, limit);
+      expect(std::abs(row.rendered - limit) <= 0.1 * limit, c, "rendered stiffness at the limit", row.rendered, limit);
   }
 }
 
@@ -110,10 +110,11 @@ void summarise(const std::vector<Cell>& cells) {
     if (c.rate > 999.0) {
       bare.push_back(1e3 * c.power);
       tanked.push_back(1e3 * c.power_tank);
-      late.push_back(c.late / c.energy_bounded);
+      late.push_back(c.late / c.stable);
     }
   std::printf(
-      "\nmedians at 1 kHz: motors at 4x calm %.3g mW, with a tank %.3g mW; late reads leave %.2f of the stiffness\n",
+      "\nmedians at 1 kHz: motors at 4x the stable stiffness %.3g mW, with a tank %.3g mW; late reads reduce it to "
+      "%.2f\n",
       median(bare), median(tanked), median(late));
 }
 
@@ -122,10 +123,10 @@ void write_csv(const std::vector<Cell>& cells, const std::string& path) {
   out << "device,hand,rate_hz,delay_ticks,linear,exact,calm,late,motors_4x_w,motors_4x_tank_w\n";
   for (const Cell& c : cells)
     out << c.device->name << ',' << c.hand->name << ',' << c.rate << ',' << c.delay << ',' << c.linear << ',' << c.exact
-        << ',' << c.energy_bounded << ',' << c.late << ',' << c.power << ',' << c.power_tank << '\n';
+        << ',' << c.stable << ',' << c.late << ',' << c.power << ',' << c.power_tank << '\n';
 }
 
-/// Of every device and grip: which stiffness is passive, which is calm without being so, and where it buzzes.
+/// A panel per device and grip: stiffness that is passive, that is stable without being passive, and that oscillates.
 std::vector<maps::Grid> grids_of(const std::vector<Cell>& cells) {
   std::vector<maps::Grid> grids;
   std::vector<std::string> rows;
@@ -152,14 +153,14 @@ std::vector<maps::Grid> grids_of(const std::vector<Cell>& cells) {
     for (std::size_t r = 0; r < rows.size(); ++r)
       for (std::size_t c = 0; c < columns; ++c) {
         const Cell& cell = cells[first + c];
-        const bool energy_bounded = stiffness[r] <= cell.energy_bounded;
-        const char* const what = stiffness[r] <= passive[c] && energy_bounded ? "passive"
-                                 : energy_bounded                             ? "calm"
-                                                                              : "buzzes";
-        grid.squares.push_back({energy_bounded ? maps::Verdict::ok : maps::Verdict::flagged,
-                                stiffness[r] <= passive[c] && energy_bounded ? 1
-                                : energy_bounded                             ? 4
-                                                                             : 6,
+        const bool is_stable = stiffness[r] <= cell.stable;
+        const char* const what = stiffness[r] <= passive[c] && is_stable ? "passive"
+                                 : is_stable                             ? "stable"
+                                                                         : "oscillates";
+        grid.squares.push_back({is_stable ? maps::Verdict::ok : maps::Verdict::flagged,
+                                stiffness[r] <= passive[c] && is_stable ? 1
+                                : is_stable                             ? 4
+                                                                        : 6,
                                 grid.title + ", " + grid.columns[c] + ", " + rows[r] + " N/m: " + what});
       }
     grids.push_back(std::move(grid));
@@ -177,7 +178,7 @@ int measure_haptics(const std::string& folder, std::vector<maps::Grid>& grids) {
   check_rated();
   measure_tissues();
   grids = grids_of(cells);
-  std::printf("\n%d figures disagree with their formula; written: %s/stability.svg, stability.csv\n", failures,
+  std::printf("\n%d figures differ from their formula; written: %s/stability.svg, stability.csv\n", failures,
               folder.c_str());
   return failures;
 }

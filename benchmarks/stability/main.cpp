@@ -1,7 +1,7 @@
-// Where answers hold: maps of statics, dynamics and haptics, each cell ok, flagged, refused or WRONG, on one page.
+// Range of valid results: maps of statics, dynamics and haptics on one page, with cells ok, flagged, refused or WRONG.
 //   bench_stability [--out <folder>] [--only statics|dynamics|haptics] [--full]
 // Writes statics.csv, dynamics.csv, stability.csv, stability.svg, stability.html and summary.txt. Returns 1 when a cell
-// of the library is WRONG, or a figure of the haptic map disagrees with its formula.
+// of the library is WRONG, or a figure of the haptic map differs from its formula.
 #include "../common/row.hpp"
 #include "page.hpp"
 #include "stability.hpp"
@@ -13,7 +13,8 @@
 
 namespace {
 
-/// One line per solver or scheme; the sums of ours go to summary.txt, for the scoreboard of reliability.
+/// Prints one line per solver or scheme. The sums of the library's own are written to summary.txt, for the reliability
+/// scoreboard.
 void print(std::ostream& summary, const char* map, const maps::Score& score) {
   if (score.ours.empty()) return;
   maps::Counts ours, others;
@@ -50,14 +51,14 @@ int main(int argc, char** argv) try {
   print(summary, "statics", page.statics.score);
   print(summary, "dynamics", page.dynamics.score);
   if (!page.haptics.empty()) {
-    int cells = 0, energy_bounded = 0;
+    int cells = 0, stable = 0;
     for (const maps::Grid& grid : page.haptics)
       for (const maps::Square& s : grid.squares) {
         ++cells;
-        energy_bounded += s.verdict == maps::Verdict::ok ? 1 : 0;
+        stable += s.verdict == maps::Verdict::ok ? 1 : 0;
       }
-    summary << "haptics: " << cells << " cells of " << page.haptics.size() << " devices and grips, " << energy_bounded
-            << " calm, " << cells - energy_bounded << " buzz, " << failures << " figures off their formula\n";
+    summary << "haptics: " << cells << " cells of " << page.haptics.size() << " devices and grips, " << stable
+            << " stable, " << cells - stable << " oscillate, " << failures << " figures off their formula\n";
   }
   const int wrong = page.statics.score.wrong() + page.dynamics.score.wrong();
   std::printf("palpate: %d cells WRONG, %d figures off their formula\n", wrong, failures);

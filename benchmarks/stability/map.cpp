@@ -1,4 +1,4 @@
-// The map as a picture: a panel per device and hand, rate over delay, darker is stiffer.
+// The map as a picture: a panel per device and hand, rate over delay; darker cells are stiffer.
 #include <palpate/core/setup_error.hpp>
 #include "stability.hpp"
 
@@ -25,7 +25,7 @@ std::string short_number(double v) {
   return b.data();
 }
 
-/// Pale rose for 10 N/m to dark blue for 100 kN/m, straight in red, green and blue.
+/// Colour from pale rose (10 N/m) to dark blue (100 kN/m), interpolated linearly in RGB over the logarithm.
 std::string colour(double stiffness) {
   const double t = std::clamp((std::log10(std::max(stiffness, 1.0)) - 1.0) / 4.0, 0.0, 1.0);
   std::array<char, 32> b{};
@@ -42,19 +42,18 @@ void write_map(const std::vector<Cell>& cells, const std::string& path) {
   std::ofstream out(path);
   out << "<svg xmlns='http://www.w3.org/2000/svg' font-family='sans-serif' width='" << width << "' height='" << height
       << "' viewBox='0 0 " << width << ' ' << height << "'>\n<rect width='100%' height='100%' fill='white'/>\n"
-      << text(10, 22, "Largest wall stiffness [N/m] that a simulated device renders calmly", 15)
+      << text(10, 22, "Largest wall stiffness [N/m] that a simulated device renders without oscillation", 15)
       << text(10, 40, "rate of the loop over delay in ticks; dashed: below the stiffness the device is rated for", 11);
   for (const Cell& c : cells) {
     const double px = left + panel_w * static_cast<double>(c.hand - hands().data());
     const double py = top + panel_h * static_cast<double>(c.device - devices().data());
     const auto row = static_cast<double>(std::find(rates.begin(), rates.end(), c.rate) - rates.begin());
     const double x = px + w * c.delay, y = py + h * row;
-    const bool dark = c.energy_bounded > 1e3;
+    const bool dark = c.stable > 1e3;
     out << "<rect x='" << x << "' y='" << y << "' width='" << w - 2 << "' height='" << h - 2 << "' fill='"
-        << colour(c.energy_bounded) << "'"
-        << (c.energy_bounded < c.device->options.limits.stiffness ? " stroke='#333' stroke-dasharray='3 3'" : "")
-        << "/>\n"
-        << text(x + 8, y + 16, short_number(c.energy_bounded), 11, dark ? "fill='white'" : "fill='#222'");
+        << colour(c.stable) << "'"
+        << (c.stable < c.device->options.limits.stiffness ? " stroke='#333' stroke-dasharray='3 3'" : "") << "/>\n"
+        << text(x + 8, y + 16, short_number(c.stable), 11, dark ? "fill='white'" : "fill='#222'");
     if (c.delay == 0 && c.hand == hands().data())
       out << text(left - 52, y + 16, std::to_string(static_cast<int>(c.rate)) + " Hz", 11);
     if (row == 0.0) out << text(x + 24, py - 4, std::to_string(c.delay), 10);

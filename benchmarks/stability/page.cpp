@@ -46,13 +46,13 @@ std::string keys() {
          key("<rect x='1' y='1' width='13' height='13' class='s2'/>",
              "within its bound; colour: error, pale 1e-14, amber from 1e-4") +
          key("<rect x='1' y='1' width='13' height='13' class='s5'/><path d='M7.5 4L11.5 11L3.5 11Z' class='flag'/>",
-             "flagged: answered, and said how far to trust it") +
+             "flagged: a result with a warning and an error estimate") +
          key("<rect x='1' y='1' width='13' height='13' class='refused'/><path d='M4 11L11 4' class='slash'/>",
              "refused") +
          key("<rect x='1' y='1' width='13' height='13' class='wrong'/><path d='M4 4L11 11M4 11L11 4' class='cross'/>",
-             "WRONG: off its bound, and silent") +
+             "WRONG: outside its bound without a warning") +
          key("<rect x='1' y='1' width='13' height='13' class='unjudged'/>",
-             "the reference itself has lost its digits") +
+             "unjudged: the reference is too inaccurate") +
          "</p>\n";
 }
 
@@ -72,7 +72,7 @@ void write_score(std::ostream& out, const Score& score) {
   out << "</table>\n";
 }
 
-/// The score of a map, its panels, and those of others.
+/// Writes the score of a map, the panels of palpate and those of others.
 template <class Map>
 void write_panels(std::ostream& out, const Map& map, const char* others, const char* x_name, const char* y_name) {
   write_score(out, map.score);
@@ -89,28 +89,29 @@ void write_page(const Page& page, const std::string& path) {
   const std::time_t now = std::time(nullptr);
   std::strftime(date.data(), date.size(), "%Y-%m-%d", std::gmtime(&now));
   out << "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'>"
-      << "<title>palpate: where answers hold</title><style>" << style << "</style>\n<h1>Where answers hold</h1>\n<p>"
-      << date.data() << ", " << compiler << ". Point at a cell for its figures.</p>\n"
+      << "<title>palpate: range of valid results</title><style>" << style
+      << "</style>\n<h1>Range of valid results</h1>\n<p>" << date.data() << ", " << compiler
+      << ". Point at a cell for its figures.</p>\n"
       << keys();
   if (!page.statics.ours.empty()) {
-    out << "<h2>Statics</h2>\n<p>A cube of linear tetrahedra, soft where it is held and up to 1e9 times as hard where "
-           "it is pulled, one layer of elements pressed flat. Error of displacement and contact compliance against "
-           "a dense Cholesky in long double of a stiffness made in long double; bound 1e-5, in float 1e-3. A flag "
-           "counts if the error is at "
-           "most 100 times what the report estimates.</p>\n";
-    write_panels(out, page.statics, "the same equations, info() asked and nothing else", "Poisson's ratio", "contrast");
-    out << "<h3>Input without an answer</h3>\n" << svg_of(page.statics.defects, 1, "", "");
+    out << "<h2>Statics</h2>\n<p>A cube of linear tetrahedra, soft where it is fixed and up to 1e9 times as stiff "
+           "where it is loaded, with one layer of flattened elements. Error of displacement and contact compliance "
+           "relative to a dense Cholesky factorisation in long double of a stiffness computed in long double; bound "
+           "1e-5, in float 1e-3. A flag counts if the error is at most 100 times the estimate of the report.</p>\n";
+    write_panels(out, page.statics, "the same equations, only info() is checked", "Poisson's ratio", "contrast");
+    out << "<h3>Input without a solution</h3>\n" << svg_of(page.statics.defects, 1, "", "");
   }
   if (!page.dynamics.ours.empty()) {
-    out << "<h2>Dynamics</h2>\n<p>A block that is held below starts to fall sideways. WRONG: ten times the energy that "
-           "the load has put in, or no number, and no word. Colour: how far the energy is from the work. Line: "
-           "2/omega_max at rest, from a dense eigenproblem.</p>\n";
-    write_panels(out, page.dynamics, "the same forces, no limit, no line search, no watch", "step [s]", "E [Pa]");
+    out << "<h2>Dynamics</h2>\n<p>A block fixed at the bottom under lateral gravity. WRONG: ten times the work of the "
+           "load, or NaN, without a warning. Colour: error of energy relative to the work. Line: 2/omega_max at "
+           "rest, from a dense eigenvalue problem.</p>\n";
+    write_panels(out, page.dynamics, "the same forces, no step limit, no line search, no energy check", "step [s]",
+                 "E [Pa]");
   }
   if (!page.haptics.empty())
-    out << "<h2>Haptics</h2>\n<p>A wall rendered by simulated devices in simulated hands: pale passive, strong calm "
-           "though not "
-           "passive, triangle it buzzes. Columns: rate and ticks of delay. Line: b/(T/2 + delay).</p>\n"
+    out << "<h2>Haptics</h2>\n<p>A wall rendered by simulated devices in simulated hands. Pale: passive; strong: "
+           "stable but not passive; triangle: oscillates. Columns: rate and ticks of delay. Line: b/(T/2 + "
+           "delay).</p>\n"
         << svg_of(page.haptics, 3, "rate, delay", "wall [N/m]");
 }
 

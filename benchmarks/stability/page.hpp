@@ -12,7 +12,8 @@ struct Page {
   std::vector<Grid> haptics;
 };
 
-/// One file of HTML with its pictures in it, for light and dark. Maps that were not measured are left out.
+/// Writes one HTML file with embedded pictures, for the light and the dark theme. Maps that were not measured are left
+/// out.
 void write_page(const Page& page, const std::string& path);
 
 }  // namespace maps

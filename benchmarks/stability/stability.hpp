@@ -1,4 +1,5 @@
-// The largest stiffness that a simulated device renders calmly: what is varied, and how it is found.
+// The largest stiffness that a simulated device renders without oscillation: parameters that are varied, and its
+// search.
 #pragma once
 
 #include <palpate/haptic/energy_tank.hpp>
@@ -37,9 +38,9 @@ inline const std::array<NamedHand, hand_count>& hands() {
 }
 inline constexpr std::array<double, 4> rates{1000.0, 500.0, 300.0, 60.0};
 inline constexpr std::array<int, 3> delays{0, 1, 2};  ///< ticks
-inline constexpr double highest = 1e6;                ///< [N/m] up to which is searched
+inline constexpr double highest = 1e6;                ///< [N/m] upper end of the search
 
-/// One place of the map.
+/// One cell of the map.
 struct Cell {
   const NamedDevice* device;
   const NamedHand* hand;
@@ -47,9 +48,9 @@ struct Cell {
   int delay;
   double linear = 0.0;      ///< [N/m] largest stable stiffness without friction and encoder steps
   double exact = 0.0;       ///< the same from the eigenvalues of the sampled loop
-  double energy_bounded = 0.0;  ///< with both, and the peak force
-  double late = 0.0;        ///< with jitter and stalls
-  double power = 0.0;       ///< [W] of the motors at four times `calm`
+  double stable = 0.0;      ///< [N/m] largest stable stiffness with both, and with the peak force
+  double late = 0.0;        ///< [N/m] the same with jitter and stalls
+  double power = 0.0;       ///< [W] of the motors at four times `stable`
   double power_tank = 0.0;  ///< the same with an energy tank
 
   SimulatedOptions options() const {
@@ -61,12 +62,12 @@ struct Cell {
   }
 };
 
-/// What a handle does that is pushed into a wall with 1 N, after the first motion has died.
+/// Motion of a handle pushed into a wall with 1 N, after the initial transient.
 struct InWall {
   double travel = 0.0;  ///< [m] in the last half second
-  double power = 0.0;   ///< [W] of the motors, in that time
+  double power = 0.0;   ///< [W] of the motors, in the last half second
 };
-/// `late`: every read up to half a period late, and five periods now and then.
+/// `late`: every read is up to half a period late, and every 0.31 s one is five periods late.
 template <class MakeServo>
 InWall in_wall(const Cell& cell, MakeServo make_servo, bool late) {
   SimulatedOptions o = cell.options();
@@ -86,15 +87,16 @@ InWall in_wall(const Cell& cell, MakeServo make_servo, bool late) {
   return {travel, (device.energy().motors - before) / window};
 }
 
-/// Two encoder steps are no motion that a hand feels: friction holds the handle, or it turns to and fro on an edge.
-inline double largest_calm(const Cell& cell, bool late) {
+/// Largest wall stiffness without oscillation [N/m]. A travel of two encoder steps counts as rest: friction stops the
+/// handle, or it alternates at the edge of an encoder step.
+inline double largest_stable(const Cell& cell, bool late) {
   const double still = 2.0 * cell.device->options.encoder_step;
-  const auto energy_bounded = [&](double stiffness) {
+  const auto is_stable = [&](double stiffness) {
     return in_wall(
                cell, [=] { return testing::VirtualWall{.stiffness = stiffness}; }, late)
                .travel <= still;
   };
-  return testing::largest_that(energy_bounded, 0.5 * cell.exact, highest, 0.02);
+  return testing::largest_that(is_stable, 0.5 * cell.exact, highest, 0.02);
 }
 
 inline double motor_power(const Cell& cell, double stiffness, bool tanked) {
@@ -111,12 +113,13 @@ inline double motor_power(const Cell& cell, double stiffness, bool tanked) {
       .power;
 }
 
-/// Without friction and encoder steps, around a wall that pulls as well: does a small motion grow?
+/// Largest stiffness [N/m] for which a small motion does not grow, without friction and encoder steps, at a two-sided
+/// wall.
 inline double largest_linear(const Cell& cell, double guess) {
   SimulatedOptions o = cell.options();
   o.friction = o.encoder_step = 0.0;
   o.limits.peak_force = 1e9;
-  // Long enough that a stiffness 1 % from the limit shows: some hundred periods of decay of the handle.
+  // Long enough to detect a stiffness 1 % above the limit: several hundred decay times of the handle.
   const double decay = 2.0 * (o.mass + o.hand.mass) / (o.damping + o.hand.damping);
   const double window = std::max(10.0 / o.rate, decay);
   const auto stable = [&](double stiffness) {
@@ -132,21 +135,21 @@ inline double largest_linear(const Cell& cell, double guess) {
   return testing::largest_that(stable, 0.5 * guess, 2.0 * guess, 1e-3);
 }
 
-/// The same limit from the eigenvalues of handle, hold and delay line, by none of the simulator's code.
+/// The same limit from the eigenvalues of handle, zero-order hold and delay line, independent of the simulator's code.
 double limit_by_eigenvalues(const SimulatedOptions& device, int delay_ticks);
 
-/// What a tissue of finite elements does at that device.
+/// Stiffness of a finite element tissue rendered by a device.
 struct TissueRow {
   double youngs_modulus = 0.0;  ///< [Pa]
-  double coupling = 0.0;        ///< [N/m] largest stable; `highest` when all are
-  double felt = 0.0;            ///< [N/m] coupling and tissue in series, at that coupling, measured
+  double coupling = 0.0;        ///< [N/m] largest stable coupling; `highest` when all are stable
+  double rendered = 0.0;        ///< [N/m] coupling and tissue in series, measured at that coupling
   double soft = 0.0;            ///< [N/m] the tissue alone
 };
 TissueRow measure_tissue(double youngs_modulus, const SimulatedOptions& device);
 
 void write_map(const std::vector<Cell>& cells, const std::string& path);
 
-/// Writes stability.csv and stability.svg; returns how many figures disagree with their formula.
+/// Writes stability.csv and stability.svg; returns the number of figures that differ from their formula.
 int measure_haptics(const std::string& folder, std::vector<maps::Grid>& grids);
 
 }  // namespace stability

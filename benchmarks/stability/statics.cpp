@@ -1,4 +1,4 @@
-// The sweep over statics.
+// The sweep over materials, element qualities and solvers of statics.
 #include "statics.hpp"
 
 #include <cstdio>
@@ -29,8 +29,8 @@ const std::vector<Named> ratios{{"-0.9", -0.9},
                                 {"0.5(1-1e-10)", 0.5 * (1.0 - 1e-10)}};
 const std::vector<Named> qualities{{"regular", 1.0}, {"flat 1e-1", 1e-1}, {"flat 1e-3", 1e-3}, {"flat 1e-6", 1e-6}};
 
-/// Cube of 0.1 m, soft where it is held and `contrast` times as hard where it is pulled. One layer of cells across
-/// both is pressed flat, to `height` of its own.
+/// Cube of 0.1 m, soft where it is fixed and `contrast` times as stiff where it is loaded. One layer of cells across
+/// both materials is flattened to `height` of its original height.
 StaticProblem block(int cells, double nu, double contrast, double height) {
   std::vector<double> even, layered;
   for (int i = 0; i <= cells; ++i) {
@@ -83,7 +83,7 @@ class Sweep {
   std::ofstream csv_;
 };
 
-/// All solvers on one problem.
+/// Runs all solvers on one problem.
 void solve_all(const StaticProblem& problem, const std::vector<StaticSolver>& solvers, StaticCell cell,
                const std::function<void(std::size_t, const StaticCell&)>& take) {
   const Truth truth(problem);
@@ -96,7 +96,7 @@ void solve_all(const StaticProblem& problem, const std::vector<StaticSolver>& so
   }
 }
 
-/// Problems without an answer: whatever is answered is wrong.
+/// Problems without a solution: every result is wrong.
 struct Defect {
   std::string name;
   std::function<void(StaticProblem&)> make;
@@ -113,9 +113,9 @@ std::vector<Defect> defects() {
           {"nu -1", poisson(-1.0)},
           {"E negative", [](StaticProblem& p) { p.materials[0].youngs_modulus *= -1.0; }},
           {"E infinite", [](StaticProblem& p) { p.materials[1].youngs_modulus = infinity; }},
-          {"nothing held", [](StaticProblem& p) { p.constrained.clear(); }},
-          {"one node held", [](StaticProblem& p) { p.constrained.resize(1); }},
-          {"two nodes held", [](StaticProblem& p) { p.constrained.resize(2); }},
+          {"no node fixed", [](StaticProblem& p) { p.constrained.clear(); }},
+          {"one node fixed", [](StaticProblem& p) { p.constrained.resize(1); }},
+          {"two nodes fixed", [](StaticProblem& p) { p.constrained.resize(2); }},
           {"element inverted", [](StaticProblem& p) { std::swap(p.mesh.elements[7][0], p.mesh.elements[7][1]); }},
           {"element flat",
            [](StaticProblem& p) {
@@ -129,7 +129,7 @@ std::vector<Defect> defects() {
              p.mesh.positions[static_cast<std::size_t>(e[3])] = p.mesh.position(e[0]);
            }},
           {"position NaN", [nan](StaticProblem& p) { p.mesh.positions[30][1] = nan; }},
-          {"a loose part", [](StaticProblem& p) {
+          {"a disconnected part", [](StaticProblem& p) {
              const auto first = static_cast<NodeId>(p.mesh.node_count());
              for (const Vector3& x : {Vector3(1, 0, 0), Vector3(1.1, 0, 0), Vector3(1, 0.1, 0), Vector3(1, 0, 0.1)})
                p.mesh.positions.push_back(x);
@@ -138,9 +138,9 @@ std::vector<Defect> defects() {
            }}};
 }
 
-/// The reference has no answer to these; rounding may make it think it had.
+/// Without the reference, which cannot detect all of these problems because of rounding.
 void measure_defects(int cells, const std::vector<StaticSolver>& solvers, Sweep& sweep, StaticMap& map) {
-  Grid grid{.title = "Input without an answer", .columns = {}, .rows = {}, .squares = {}};
+  Grid grid{.title = "Input without a solution", .columns = {}, .rows = {}, .squares = {}};
   const std::vector<Defect> all = defects();
   for (const Defect& d : all) grid.columns.push_back(d.name);
   for (const StaticSolver& s : solvers) {

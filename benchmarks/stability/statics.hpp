@@ -1,4 +1,4 @@
-// Map of statics: which answers hold, over Poisson's ratio, contrast, element quality and solver.
+// Map of statics: verdict of a solution, over Poisson's ratio, contrast, element quality and solver.
 #pragma once
 
 #include "grid.hpp"
@@ -14,42 +14,43 @@ namespace maps {
 
 using namespace palpate;
 
-/// A block that is held at one end and pulled at the other, in two materials. Whoever solves it gets this and no more.
+/// A block of two materials, fixed at one end and loaded at the other. The only input of a solver.
 struct StaticProblem {
   Mesh<Tet4> mesh;
   std::vector<LinearElastic> materials;  ///< by region
   std::vector<NodeId> constrained, pulled, touched;
-  Vector3 force = Vector3(1.0, 0.5, -2.0);  ///< [N] in all, shared equally by `pulled`
+  Vector3 force = Vector3(1.0, 0.5, -2.0);  ///< [N] total, distributed equally over `pulled`
 };
 
-/// What a solver says.
+/// Result of a solver.
 struct Answer {
   bool refused = false, flagged = false;
-  double estimate = 0.0;  ///< of its own error, where it flags
-  double quality = 1.0;   ///< of the worst element
+  double estimate = 0.0;  ///< its error estimate, when it flags the result
+  double quality = 1.0;   ///< quality of the worst element
   std::string why;
   VectorX displacement;  ///< 3 per node [m]
-  MatrixX compliance;    ///< of the touched nodes, 3 per node [m/N]; empty where it has none
+  MatrixX compliance;    ///< of the touched nodes, 3 per node [m/N]; empty when not computed
 };
 
 struct StaticSolver {
   std::string name;
   bool ours = true;
-  double bound = 1e-5;  ///< relative error that a silent answer may have
+  double bound = 1e-5;  ///< largest allowed relative error of a result without a flag
   Answer (*solve)(const StaticProblem&) = nullptr;
 };
 /// Five policies of HapticFEModel, with admission, checks and report.
 std::vector<StaticSolver> our_solvers();
-/// Eigen's solvers on the same equations, asked for info() and nothing else.
+/// Eigen's solvers on the same equations; only info() is checked.
 std::vector<StaticSolver> plain_solvers();
 
-/// Error of an answer against long double: the larger one of displacement (2-norm) and compliance (largest entry).
+/// Error of a result relative to a long double solution: the larger of displacement (2-norm) and compliance (largest
+/// entry).
 class Truth {
  public:
   explicit Truth(const StaticProblem& problem);
-  /// False where even the matrix of the reference is not positive definite: there is no right answer.
+  /// False when the matrix of the reference is not positive definite: there is no solution.
   bool exists() const noexcept { return exists_; }
-  /// Relative error that the reference itself may have: ten times that of a solve with a known answer.
+  /// Relative error of the reference: ten times that of a solve with a known solution.
   double uncertainty() const noexcept { return 10.0 * probe_; }
   double error(const Answer& answer) const;
 
@@ -73,7 +74,7 @@ struct StaticMap {
   std::vector<Grid> ours, others, defects;
   Score score;
 };
-/// `cells` per edge of the block. Writes statics.csv and prints what is wrong.
+/// `cells` per edge of the block. Writes statics.csv and prints every cell that is WRONG.
 StaticMap measure_statics(int cells, const std::string& folder);
 
 }  // namespace maps

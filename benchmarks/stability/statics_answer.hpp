@@ -1,4 +1,4 @@
-// A static problem given to a HapticFEModel, as a user would.
+// Solves a static problem with a HapticFEModel, as a user would.
 #pragma once
 
 #include "statics.hpp"
@@ -34,7 +34,7 @@ Answer answer_of(const StaticProblem& problem) {
     }
     const Index dofs = 3 * static_cast<Index>(vertices.size());
     answer.compliance = MatrixX::Zero(dofs, dofs);
-    const auto touched = [&](int v) {  // vertices come in the order of the surface
+    const auto touched = [&](int v) {  // vertices have the order of the surface
       const auto at = std::ranges::find(problem.touched, model.touchable_nodes()[static_cast<std::size_t>(v)]);
       return 3 * static_cast<Index>(at - problem.touched.begin());
     };

@@ -1,4 +1,4 @@
-// What everybody does: assemble, hand to Eigen, ask info(). No other check.
+// The common approach: assemble, solve with Eigen, check info(). No other check.
 #include "closed_form.hpp"
 
 #include <Eigen/IterativeLinearSolvers>
@@ -11,7 +11,7 @@ namespace {
 template <class Scalar>
 using Matrix = Eigen::SparseMatrix<Scalar>;
 
-/// In double, whatever the solver's scalar.
+/// The stiffness, assembled in double for every scalar of the solver.
 template <class Scalar>
 Matrix<Scalar> assembled(const StaticProblem& problem, const std::vector<Index>& index, Index count) {
   std::vector<Eigen::Triplet<double>> entries;

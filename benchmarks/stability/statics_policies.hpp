@@ -1,4 +1,4 @@
-// Policies that are compiled apart.
+// Policies that are compiled in separate files.
 #pragma once
 
 #include "statics_answer.hpp"

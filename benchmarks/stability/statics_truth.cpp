@@ -1,4 +1,4 @@
-// Truth: dense Cholesky in long double of a stiffness made in long double.
+// Reference solution: dense Cholesky in long double of a stiffness computed in long double.
 #include "closed_form.hpp"
 
 #include <Eigen/Cholesky>
@@ -10,7 +10,7 @@ using Real = long double;
 using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
-/// Error of a solve with a known answer.
+/// Relative error of a solve with a known solution.
 double probe(const Matrix& k, const Eigen::LLT<Matrix>& factor) {
   Vector known(k.rows());
   for (Index i = 0; i < known.size(); ++i) known[i] = std::sin(Real(1) + Real(7) * static_cast<Real>(i));
@@ -57,7 +57,7 @@ Verdict judge(const StaticSolver& solver, const Answer& answer, const Truth& tru
   if (answer.refused) return Verdict::refused;
   if (!truth.exists()) return Verdict::wrong;
   error = truth.error(answer);
-  // A flag that gives an estimate must be right about it within a factor of 100.
+  // The error of a flagged result must not exceed 100 times its estimate.
   const double allowed = answer.flagged ? std::max(solver.bound, 100.0 * answer.estimate) : solver.bound;
   if (std::abs(error - allowed) <= truth.uncertainty()) return Verdict::unjudged;
   if (!(error <= allowed)) return Verdict::wrong;

@@ -1,4 +1,4 @@
-// A block of finite elements at a simulated device, through the whole servo.
+// A block of finite elements rendered by a simulated device, through the whole servo.
 #include "../common/touching.hpp"
 #include "stability.hpp"
 
@@ -23,7 +23,7 @@ ServoOptions options_with(double coupling, const SimulatedOptions& device) {
   return options;
 }
 
-/// Force over depth at a device held where the force is `pressed`: a difference of 2 um [N/m].
+/// Stiffness dF/d(depth) [N/m] at the depth where the force is `pressed`, by a central difference over 2 um.
 double handle_stiffness(Block& block, double coupling, const SimulatedOptions& device) {
   HapticServo servo(block, SphereTool{sphere}, options_with(coupling, device));
   ToolState state;
@@ -45,7 +45,7 @@ bool is_stable(Block& block, double coupling, SimulatedOptions o) {
   SimulatedDevice device(o);
   device.start();
   HapticServo servo(block, SphereTool{sphere}, options_with(coupling, o));
-  while (device.time() < 1.0) {  // gently: what falls on the block bounces off it
+  while (device.time() < 1.0) {  // the force increases slowly: a sudden contact would bounce
     device.push(Vector3(0.0, 0.0, -pressed * device.time()));
     testing::tick(device, servo);
   }
@@ -53,7 +53,7 @@ bool is_stable(Block& block, double coupling, SimulatedOptions o) {
   const double early = testing::travel(device, servo, 1.0);
   testing::travel(device, servo, 8.0);
   const double late = testing::travel(device, servo, 1.0);
-  return late < 1e-7 || late <= 0.9 * early;  // a limit cycle keeps its size
+  return late < 1e-7 || late <= 0.9 * early;  // a limit cycle has constant amplitude
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ TissueRow measure_tissue(double youngs_modulus, const SimulatedOptions& device) 
   TissueRow row;
   row.youngs_modulus = youngs_modulus;
   row.coupling = testing::largest_that([&](double k) { return is_stable(block, k, linear); }, 10.0, highest, 0.02);
-  row.felt = handle_stiffness(block, row.coupling, device);
+  row.rendered = handle_stiffness(block, row.coupling, device);
   row.soft = handle_stiffness(block, infinity, device);
   return row;
 }

@@ -1,4 +1,4 @@
-// What became of a cell of a map, and how many of each kind there are.
+// Verdict of a cell of a map, and counts of verdicts.
 #pragma once
 
 #include <array>
@@ -8,13 +8,13 @@
 
 namespace maps {
 
-/// The one forbidden outcome is `wrong`: an answer outside its bound, or a motion that blew up, without a word.
+/// The only forbidden outcome is `wrong`: a result outside its bound, or an unstable motion, without a warning.
 enum class Verdict {
-  ok,        ///< within the bound, and nothing to say
-  flagged,   ///< answered, with a flag that says how far to trust it
-  refused,   ///< not answered, with a kind of error
-  wrong,     ///< outside the bound and silent
-  unjudged,  ///< nobody knows the right answer: the reference itself has lost its digits
+  ok,        ///< within the bound, without a flag
+  flagged,   ///< a result with a flag and an error estimate
+  refused,   ///< no result, but an error kind
+  wrong,     ///< outside the bound without a flag
+  unjudged,  ///< not decidable: the reference is too inaccurate
 };
 inline constexpr int verdict_count = 5;
 inline constexpr std::array<const char*, verdict_count> verdict_names{"ok", "flagged", "refused", "WRONG", "unjudged"};
@@ -34,7 +34,7 @@ struct Counts {
   }
 };
 
-/// By name of the solver or scheme; ours apart from those we compare with.
+/// Counts by name of the solver or scheme: those of palpate (ours), and those compared with (others).
 struct Score {
   std::map<std::string, Counts> ours, others;
   int wrong() const {

@@ -1,4 +1,4 @@
-// Prints the rows that the other programs wrote as one table, the builds of one row below each other.
+// Prints the rows written by the other programs as one table, with the builds of a row below each other.
 //   bench_table <rows.csv> <table.csv> <table.md>
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@ namespace {
 using Fields = std::array<std::string, 8>;  // target, what, build, figure, baseline, ratio, wanted, verdict
 const Fields titles{"target", "what", "build", "figure", "baseline", "ratio", "wanted", "met"};
 
-/// "a","b",... without quotes inside.
+/// Parses a line "a","b",... whose fields contain no quotes.
 Fields parse(const std::string& line) {
   Fields fields;
   std::istringstream in(line);
@@ -33,7 +33,7 @@ std::string letter_rank(const Fields& row) {
   return row[0] == "machine" ? "0" : it != before.end() ? "2" + row[0] : "1" + row[0];
 }
 
-/// Letters in order; within one, in the order in which a row first came, its builds together.
+/// Sorted by letter; within a letter in order of first appearance, with the builds of a row together.
 std::vector<Fields> sorted(const std::vector<Fields>& rows) {
   std::vector<std::pair<std::string, Fields>> keyed;
   std::vector<std::string> seen;
@@ -60,7 +60,7 @@ void write_csv(const std::vector<Fields>& rows, const std::string& path) {
   for (const Fields& row : rows) write(row);
 }
 
-/// Markdown whose columns also line up as they are.
+/// A Markdown table with columns aligned in the source text.
 std::string markdown(const std::vector<Fields>& rows) {
   std::array<std::size_t, 8> width{};
   for (std::size_t i = 0; i < width.size(); ++i) {

@@ -1,4 +1,5 @@
-// Heap calls and mutexes of a tick. malloc and pthread_mutex_lock of this program are replaced by ones that count.
+// Heap calls and mutex locks of a tick. malloc and pthread_mutex_lock of this program are replaced by counting
+// versions.
 #define PALPATE_COUNT_ALLOCATIONS
 #include <palpate/testing/allocation_counter.hpp>
 

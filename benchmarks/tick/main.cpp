@@ -1,5 +1,5 @@
-// The haptic tick of ten contacts on a patch of 289 nodes: hot, paced and cold, at 10 kHz, its heap calls and locks,
-// and the selective product it is made of.
+// The haptic tick of ten contacts on a patch of 289 nodes: with warm and cold caches, at 10 kHz, its heap calls and
+// locks, and the selective product, its main part.
 //   bench_tick [--build <name of the flags>] [--csv <file to add rows to>]
 #include "tick.hpp"
 

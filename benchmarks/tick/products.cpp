@@ -1,4 +1,4 @@
-// The selective product: displacement of all kept dofs from a few loaded nodes, against reading the matrix.
+// The selective product: displacement of all kept dofs from a few loaded nodes, compared with reading the matrix.
 #include "tick.hpp"
 
 #include "../common/machine.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 using namespace palpate;
 
-/// A well conditioned matrix; its values do not matter for the time.
+/// A well-conditioned symmetric positive definite matrix; its values do not affect the time.
 MatrixX some_spd_matrix(Index size) {
   MatrixX m = bench::random_matrix(size, size);
   m = (m + m.transpose()).eval();
@@ -18,8 +18,8 @@ MatrixX some_spd_matrix(Index size) {
   return m;
 }
 
-/// Every call loads other nodes, so that the whole matrix passes by: it is read at the speed of the memory it fits
-/// into.
+/// Every call loads other nodes, so that the whole matrix is read in turn: at the speed of the smallest memory level
+/// that holds it.
 template <class Scalar>
 void measure(bench::RowFile& rows, const MatrixX& stiffness, Index loaded_nodes, const char* scalar) {
   DenseInverse<Scalar> inverse(stiffness, {});

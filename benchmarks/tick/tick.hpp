@@ -1,4 +1,4 @@
-// The parts of the program.
+// The measurements of the program.
 #pragma once
 
 #include "../common/row.hpp"

@@ -1,4 +1,4 @@
-// How long a tick takes: one after the other, woken from sleep with empty caches, and in a loop of 10 kHz.
+// Duration of a tick: in direct succession, after sleep with empty caches, and in a loop of 10 kHz.
 #include "tick.hpp"
 
 #include <palpate/haptic/run_haptic_loop.hpp>
@@ -12,10 +12,10 @@ namespace {
 using palpate::platform::compute_ns;
 
 std::string wrong_if(bool wrong) {
-  return wrong ? "the pressed points do not lie on the sphere" : "";
+  return wrong ? "the pressed points are not on the sphere" : "";
 }
 
-/// Times of work() [s], each after writing 64 MB and a millisecond of sleep; the cost of the clock is in them.
+/// Times of work() [s], each after writing 64 MB and sleeping for a millisecond; they include the cost of the clock.
 template <class Work>
 std::vector<double> cold_times(Work&& work) {
   std::vector<char> memory(std::size_t{64} << 20, 1);
@@ -57,7 +57,7 @@ void measure_cold(bench::RowFile& rows, bench::Touching& body) {
             .error = wrong_if(!(body.gap_error() < 1e-5))});
 }
 
-/// The body as a device that wants ten thousand ticks per second.
+/// The body as a device that requests ten thousand ticks per second.
 struct At10Khz {
   bench::Touching& body;
 

@@ -1,11 +1,11 @@
-// The reference without its short cut.
+// The reference without approximation.
 #pragma once
 
 #include "reference.hpp"
 
 namespace tradeoff {
 
-/// As make_reference, with large strain solved on the fine mesh itself: a quarter of an hour instead of a minute.
+/// Like make_reference, but solves large strain on the fine mesh itself: takes 15 minutes instead of one.
 Reference make_direct_reference(const PressScene& scene, double edge);
 
 }  // namespace tradeoff

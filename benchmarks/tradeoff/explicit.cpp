@@ -1,4 +1,4 @@
-// Neo-Hookean tissue in explicit steps; the spheres push by a penalty, as there is no servo for it.
+// Neo-Hookean tissue in explicit steps; the spheres act by penalty forces, as there is no servo for explicit motion.
 #include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/detail/element_frequency.hpp>
@@ -17,19 +17,20 @@ class ExplicitContender : public Contender {
  public:
   ExplicitContender(const Bench& bench, const std::string& mesh)
       : bench_(bench),
-        body_(make_hyperelastic_body(bench.mesh(mesh), large_strain_laws<NeoHookean>(bench.scene.materials))),
+        body_(make_hyperelastic_body(bench.mesh(mesh), large_strain_materials<NeoHookean>(bench.scene.materials))),
         conditions_(
             resolve_essential(body_.rest.mesh, extract_boundary<Tet4>(body_.rest.mesh), bench.scene.scene(near_group))),
         mass_(lumped_mass(body_.rest)),
-        motion_(make(drag)),
+        motion_(make(rest_damping)),
         nodes_(body_.rest.mesh.find_group(near_group)->nodes),
         forces_(bench.scene.spheres.size()),
         now_(forces_) {
-    // A millisecond in equal steps of at most 0.7 of the limit: pressed elements allow less than elements at rest.
+    // Equal steps per millisecond of at most 0.7 of the limit: compressed elements have a smaller limit than elements
+    // at rest.
     steps_ = static_cast<int>(std::ceil(1e-3 / (0.7 * motion_.limit())));
   }
 
-  /// The spheres go evenly through a tick: a jump in its first step would be a blow.
+  /// The spheres move uniformly during a tick: a jump in its first step would be an impact.
   std::span<const Vector3> tick(std::span<const Vector3> centres) override {
     if (before_.empty()) before_.assign(centres.begin(), centres.end());
     std::ranges::fill(forces_, Vector3::Zero());
@@ -71,7 +72,7 @@ class ExplicitContender : public Contender {
   std::string remark() override {
     std::string text = std::to_string(steps_) + " steps per tick";
     for (const StatusFlag flag : {StatusFlag::energy_grew, StatusFlag::step_refused, StatusFlag::inverted})
-      if (status_.has(flag)) text += flag == StatusFlag::inverted ? ", inverted" : ", STOPPED by its own watch";
+      if (status_.has(flag)) text += flag == StatusFlag::inverted ? ", inverted" : ", STOPPED by the energy check";
     return text;
   }
 
@@ -82,8 +83,8 @@ class ExplicitContender : public Contender {
     return ExplicitMotion<Forces, Scheme>(Forces(body_), mass_, conditions_.free_dofs,
                                           element_frequency_bound(body_.rest), options);
   }
-  /// Half of the stiffness that a step could bear pushes every node out of the spheres: by where it will be after the
-  /// step, as the load of a step acts at its end. Forces that lag behind would feed a motion.
+  /// Pushes every node out of the spheres by a penalty with half of the largest stable stiffness of a step. Uses the
+  /// predicted position after the step, as the load of a step acts at its end. Delayed forces would add energy.
   void push(std::span<const Vector3> centres, double dt) {
     motion_.load().setZero();
     for (const NodeId node : nodes_)
@@ -105,7 +106,8 @@ class ExplicitContender : public Contender {
   VectorX mass_;
   ExplicitMotion<Forces, Scheme> motion_;
   std::vector<NodeId> nodes_;
-  std::vector<Vector3> forces_, now_, before_;  // of the spheres; where they are in a step, where they were last
+  // Forces on the spheres; their centres in the present step and in the previous tick.
+  std::vector<Vector3> forces_, now_, before_;
   int steps_ = 1;
   Status status_;
 };

@@ -1,4 +1,4 @@
-// Linear compositions felt through a servo.
+// Linear compositions rendered by a servo.
 #pragma once
 
 #include <palpate/element/smoothed.hpp>
@@ -11,11 +11,11 @@
 
 namespace tradeoff {
 
-/// A servo whose spheres are where the device is, without coupling: the force is the tissue's alone.
+/// A servo without virtual coupling: the spheres are at the device position, and the force is that of the tissue only.
 template <TissueModel Tissue>
-class Felt {
+class RenderedTissue {
  public:
-  Felt(Tissue& tissue, const PressScene& scene)
+  RenderedTissue(Tissue& tissue, const PressScene& scene)
       : servo_(tissue, std::vector<SphereTool>(scene.spheres.size(), SphereTool{scene.radius}), uncoupled()),
         states_(scene.spheres.size()),
         forces_(scene.spheres.size()) {}
@@ -32,7 +32,7 @@ class Felt {
   }
   auto& servo() noexcept { return servo_; }
   std::span<const VertexForce> vertex_forces() { return servo_.read_snapshot().vertex_forces(); }
-  /// What the gate or the contact found to say.
+  /// Status flags of all ticks as text, without those of the gate.
   std::string remark() const {
     std::string text;
     for (int bit = 0; bit < status_flag_count; ++bit) {
@@ -58,7 +58,7 @@ class Felt {
   long count_ = 0;
 };
 
-/// The mesh for element E.
+/// The mesh converted for element E.
 template <Element E>
 auto mesh_for(const Mesh<Tet4>& mesh) {
   if constexpr (std::same_as<E, Tet10>)
@@ -67,7 +67,7 @@ auto mesh_for(const Mesh<Tet4>& mesh) {
     return mesh;
 }
 
-/// The part of u, 3 per admitted node, that belongs to the mesh as given.
+/// The part of u, 3 per admitted node, for the nodes of the given mesh.
 inline VectorX of_given_nodes(const VectorX& u, const std::vector<NodeId>& map, Index count) {
   VectorX given = VectorX::Zero(3 * count);
   for (Index i = 0; i < count; ++i)
@@ -76,9 +76,9 @@ inline VectorX of_given_nodes(const VectorX& u, const std::vector<NodeId>& map, 
   return given;
 }
 
-/// How far the points that press are from the sphere when their forces act on the whole body (u, 3 per admitted node),
-/// of the small depth. It goes through none of the stored compliance. Contacts that carry next to nothing may still be
-/// on their way.
+/// Largest distance of the pressed points from the sphere when their forces act on the whole body (u, 3 per admitted
+/// node), relative to the small depth. Does not use the stored compliance. Contacts with less than 1 % of the largest
+/// force are ignored: they may still be settling.
 template <class Model, class Servo>
 double distance_from_spheres(const Model& model, const Servo& servo, const VectorX& u, const PressScene& scene) {
   double worst = 0.0, largest = 0.0;
@@ -96,7 +96,7 @@ double distance_from_spheres(const Model& model, const Servo& servo, const Vecto
   return largest > 0.0 ? worst / scene.small : infinity;
 }
 
-/// HapticFEModel<E, LinearElastic, Policy>, felt itself or through what `Over` makes of it.
+/// HapticFEModel<E, LinearElastic, Policy>, rendered directly or through an adapter `Over`.
 template <class E, class Policy, class Over = HapticFEModel<E, LinearElastic, Policy>&>
 class LinearContender : public Contender {
  public:
@@ -106,31 +106,31 @@ class LinearContender : public Contender {
                   const SetupOptions& options = {})
       : LinearContender(bench, mesh, kept, options, [](Model& model) -> Model& { return model; }) {}
 
-  std::span<const Vector3> tick(std::span<const Vector3> centres) override { return felt_.tick(centres); }
+  std::span<const Vector3> tick(std::span<const Vector3> centres) override { return rendered_.tick(centres); }
   VectorX displacement() override {
-    model_.displacement_with(felt_.vertex_forces(), u_);
+    model_.displacement_with(rendered_.vertex_forces(), u_);
     return of_given_nodes(u_, model_.node_map(), bench_.scene.mesh.node_count());
   }
-  double own_error() override { return distance_from_spheres(model_, felt_.servo(), u_, bench_.scene); }
+  double own_error() override { return distance_from_spheres(model_, rendered_.servo(), u_, bench_.scene); }
   Index nodes() const override { return model_.mesh().node_count(); }
   Index kept_dofs() const override { return model_.report().kept_dofs; }
-  std::string remark() override { return felt_.remark(); }
+  std::string remark() override { return rendered_.remark(); }
 
  protected:
-  /// `over` makes what is felt of the model.
+  /// `over` constructs the rendered tissue from the model.
   template <class Make>
   LinearContender(const Bench& bench, const std::string& mesh, const std::string& kept, const SetupOptions& options,
                   Make over)
       : bench_(bench),
         model_(mesh_for<E>(bench.mesh(mesh)), bench.scene.scene(kept), bench.scene.materials, options),
         tissue_(over(model_)),
-        felt_(tissue_, bench.scene),
+        rendered_(tissue_, bench.scene),
         u_(3 * model_.mesh().node_count()) {}
 
   const Bench& bench_;
   Model model_;
   Over tissue_;
-  Felt<std::remove_reference_t<Over>> felt_;
+  RenderedTissue<std::remove_reference_t<Over>> rendered_;
   VectorX u_;
 };
 
@@ -138,7 +138,7 @@ inline const char* kept_name(const std::string& group) {
   return group == near_group ? "near the tool" : group == wide_group ? "touchable group" : "whole surface";
 }
 
-/// An entry for one composition; `element` and `policy` are how C++ has them.
+/// An entry for one composition; `element` and `policy` are their C++ names.
 template <class E, class Policy>
 Entry linear_entry(const Bench& bench, const std::string& element, const std::string& policy, const std::string& mesh,
                    const std::string& kept,

@@ -1,4 +1,4 @@
-// Spheres in linear tissue, solved to the end: for references.
+// Fully converged contact of spheres with linear tissue, for references.
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
@@ -17,13 +17,13 @@
 
 namespace tradeoff {
 
-/// Force, displacement of the nodes of the mesh as given.
+/// Forces on the spheres [N], displacement of the nodes of the given mesh [m].
 struct Pressed {
   std::vector<Vector3> force;
   VectorX displacement;
 };
 
-/// Throws not_converged where supports do not hold what the spheres push.
+/// Throws not_converged when the support forces do not balance the forces of the spheres.
 inline void require_balance(const Pressed& pressed, Vector3 support, double depth) {
   double largest = 0.0;
   for (const Vector3& f : pressed.force) {
@@ -31,12 +31,13 @@ inline void require_balance(const Pressed& pressed, Vector3 support, double dept
     largest = std::max(largest, f.norm());
   }
   if (!(support.norm() < 1e-4 * largest))
-    raise(SetupErrorKind::not_converged, "the reference is no equilibrium at a depth of " + number(depth) +
-                                             " m: supports are off by " + number(support.norm() / largest));
+    raise(SetupErrorKind::not_converged, "the reference is not in equilibrium at a depth of " + number(depth) +
+                                             " m: relative error of support forces " +
+                                             number(support.norm() / largest));
 }
 
-/// Linear tissue and rigid spheres: nodes are kept out of them by forces along the normals, exactly, on the compliance
-/// of the nodes that press. One factorisation.
+/// Linear tissue and rigid spheres: forces along the normals keep nodes outside the spheres, exactly, with the
+/// compliance of the pressed nodes. One factorisation.
 template <class E>
 class LinearPress {
  public:
@@ -65,7 +66,8 @@ class LinearPress {
     Pressed pressed{std::vector<Vector3>(centres.size()), {}};
     double change = infinity;
     for (int round = 0; change > 1e-5; ++round) {
-      if (round == 300) raise(SetupErrorKind::not_converged, "the linear reference finds no contact forces");
+      if (round == 300)
+        raise(SetupErrorKind::not_converged, "the contact forces of the linear reference do not converge");
       const std::vector<Vector3> before = pressed.force;
       push(centres, pressed.force);
       change = 0.0;
@@ -96,7 +98,7 @@ class LinearPress {
     solver_.solve_into(load_, answer_);
     conditions_.scatter(answer_, u);
   }
-  /// Displacements of the touchable nodes per force on one of them.
+  /// Displacements of the touchable nodes per unit force on one of them [m/N].
   const Eigen::Matrix<double, Eigen::Dynamic, 3>& column(std::size_t i) {
     auto& c = columns_[i];
     if (c.rows() > 0) return c;
@@ -114,7 +116,7 @@ class LinearPress {
       if (!force_[i].isZero(0.0)) u += column(i).template middleRows<3>(3 * static_cast<Index>(node)) * force_[i];
     return u;
   }
-  /// One linearisation of the distances at where the nodes are, solved by projected Gauss-Seidel.
+  /// One linearisation of the distances at the present node positions, solved by projected Gauss-Seidel.
   void push(const std::vector<Vector3>& centres, std::vector<Vector3>& on_spheres) {
     std::vector<Row> rows;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {

@@ -1,9 +1,9 @@
 // Speed against accuracy: compositions of element, mesh, material, kinematics, solver, condensation and scalar, and
-// what else is in use, pressed by the same spheres and held against the same reference. Every row checks its own
-// answer.
+// methods in use elsewhere, pressed by the same spheres and compared with the same reference. Every row checks its own
+// result.
 //   bench_tradeoff [MESH --fix GROUP --touch GROUP] [--scene palpate|retract|grasp] [--budget-us N] [--out FOLDER]
 //                  [--youngs PA] [--poisson NU] [--only WORD] [--full]
-//                  [--docs FILE]      also into a document, between <!-- tradeoff SCENE --> and <!-- end -->
+//                  [--docs FILE]      also writes into a document, between <!-- tradeoff SCENE --> and <!-- end -->
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -32,7 +32,7 @@ SceneOptions scene_options(int argc, char** argv) {
   return o;
 }
 
-/// The mesh refined everywhere, with the groups that scenes speak of; as given where that would be too many elements.
+/// The mesh refined everywhere, with the groups used by scenes; the given mesh when that would be too many elements.
 Mesh<Tet4> refined(const Mesh<Tet4>& mesh, bool full) {
   return mesh.element_count() <= (full ? 100000 : 20000) ? refine(mesh) : mesh;
 }
@@ -49,21 +49,22 @@ void print(const Row& r) {
 int main(int argc, char** argv) try {
   const std::string out = bench::option(argc, argv, "--out", "."), only = bench::option(argc, argv, "--only", "");
   const double budget = 1e-6 * std::stod(bench::option(argc, argv, "--budget-us", "50"));
-  if (!(budget > 0.0)) raise(SetupErrorKind::bad_argument, "a budget of nothing", "Give microseconds: --budget-us 50");
+  if (!(budget > 0.0))
+    raise(SetupErrorKind::bad_argument, "the budget is not positive", "Give microseconds: --budget-us 50");
   std::filesystem::create_directories(out);
   const bool full = bench::has_option(argc, argv, "--full");
   const std::int64_t start = platform::wall_ns();
   const PressScene scene = make_scene(scene_options(argc, argv));
   Bench bench{.scene = scene,
               .reference = full ? make_direct_reference(scene, 0.15) : make_reference(scene, 0.15),
-              // curves are measured by pressing along the normal: they know nothing of lifting and pinching a lobe
+              // curves are measured by pressing along the normal: not valid for lifting and pinching a lobe
               .stiffening = scene.name == "palpate" ? measure_stiffening(scene) : Stiffening{},
               .near = refine_near(scene, 0.2 * scene.radius),
               .all = refined(scene.mesh, full),
               .full = full};
   std::printf(
       "scene %s: spheres of radius %.3g mm, depths %.3g and %.3g mm\n"
-      "reference: %ld nodes, %.3g s; force %.4g and %.4g N; the next coarser mesh is %.2g %% and %.2g %% off\n\n",
+      "reference: %ld nodes, %.3g s; force %.4g and %.4g N; error of the next coarser mesh %.2g %% and %.2g %%\n\n",
       scene.name.c_str(), 1e3 * scene.radius, 1e3 * scene.small, 1e3 * scene.large,
       static_cast<long>(bench.reference.nodes), bench.reference.seconds, bench.reference.force(0, scene.small).norm(),
       bench.reference.force(0, scene.large).norm(), 100.0 * bench.reference.mesh_error_small,
@@ -76,7 +77,7 @@ int main(int argc, char** argv) try {
   std::vector<Row> rows;
   for (const Entry& entry : entries) {
     const Description& d = entry.description;
-    if (d.mesh == "refined" && bench.all.element_count() == bench.scene.mesh.element_count()) continue;  // too large
+    if (d.mesh == "refined" && bench.all.element_count() == bench.scene.mesh.element_count()) continue;  // not refined
     if (!only.empty() && (d.family + " " + d.name()).find(only) == std::string::npos) continue;
     rows.push_back(measure(bench, entry));
     print(rows.back());

@@ -1,4 +1,4 @@
-// How a contender is driven and judged.
+// Runs and evaluates a contender.
 #include <algorithm>
 #include <numbers>
 
@@ -9,8 +9,8 @@
 namespace tradeoff {
 namespace {
 
-/// Depth over time: to the small depth, a rest, to the large depth, a rest; then between the two, to and fro, one and a
-/// half times, at most 1.65 times as fast.
+/// Depth over time: to the small depth, a rest, to the large depth, a rest; then one and a half oscillations between
+/// the two, at most 1.65 times as fast.
 struct Motion {
   double small, large, speed;
   static constexpr double rest = 0.15;
@@ -32,16 +32,16 @@ struct Motion {
 };
 
 double force_error(const Bench& bench, const std::vector<Vector3>& force, double depth) {
-  double off = 0.0, size = 0.0;
+  double difference = 0.0, size = 0.0;
   for (std::size_t b = 0; b < force.size(); ++b) {
     const Vector3 right = bench.reference.force(b, depth);
-    off += (force[b] - right).squaredNorm();
+    difference += (force[b] - right).squaredNorm();
     size += right.squaredNorm();
   }
-  return std::sqrt(off / size);
+  return std::sqrt(difference / size);
 }
 
-/// Volume that the spheres press in, were the surface flat.
+/// Volume that the spheres displace [m^3], for a flat surface.
 double pressed_volume(const PressScene& scene, double depth) {
   const double d = std::min(depth, scene.radius);
   return static_cast<double>(scene.spheres.size()) * std::numbers::pi * d * d * (scene.radius - d / 3.0);
@@ -50,13 +50,13 @@ double pressed_volume(const PressScene& scene, double depth) {
 struct HoldErrors {
   double moved, volume;
 };
-HoldErrors judge_hold(const Bench& bench, const VectorX& u, const VectorX& right, double volume, double depth) {
+HoldErrors errors_of_hold(const Bench& bench, const VectorX& u, const VectorX& right, double volume, double depth) {
   const auto boundary = boundary_triangles(bench.scene.mesh);
   return {(u - right).norm() / right.norm(),
           std::abs(volume_of(bench.scene.mesh, boundary, u) - volume) / pressed_volume(bench.scene, depth)};
 }
 
-void judge(const Bench& bench, Contender& contender, Row& row) {
+void evaluate(const Bench& bench, Contender& contender, Row& row) {
   const PressScene& scene = bench.scene;
   const Motion motion{scene.small, scene.large, scene.speed};
   Session session(bench, contender);
@@ -73,7 +73,7 @@ void judge(const Bench& bench, Contender& contender, Row& row) {
       unsettled = (rest == Session::Rest::lost ? "LOST THE TISSUE at " : "DID NOT COME TO REST at ") +
                   number(1e3 * depth) + " mm";
     force = force_error(bench, session.force(), depth);
-    const HoldErrors errors = judge_hold(bench, contender.displacement(), right, volume, depth);
+    const HoldErrors errors = errors_of_hold(bench, contender.displacement(), right, volume, depth);
     moved = errors.moved;
     change = errors.volume;
     row.own_error = std::max(row.own_error, contender.own_error());
@@ -88,7 +88,7 @@ void judge(const Bench& bench, Contender& contender, Row& row) {
 
   double largest = 0.0;
   for (std::size_t b = 0; b < scene.spheres.size(); ++b) largest = std::max(largest, r.force(b, scene.large).norm());
-  row.felt = std::sqrt(session.squared_error / session.judged) / largest;
+  row.felt = std::sqrt(session.squared_error / session.samples) / largest;
   row.p50 = bench::percentile(session.ticks, 0.5);
   row.p99 = bench::percentile(session.ticks, 0.99);
   row.worst = std::ranges::max(session.ticks);
@@ -96,9 +96,9 @@ void judge(const Bench& bench, Contender& contender, Row& row) {
   if (!session.updates.empty()) {
     row.update_p99 = bench::percentile(session.updates, 0.99);
     row.update_period = contender.update_period();
-    if (const double usual = bench::percentile(session.updates, 0.5); usual > row.update_period)
-      row.remark += (row.remark.empty() ? "" : "; ") +
-                    ("slow motion: " + three_digits(1e3 * usual) + " ms for " + three_digits(1e3 * row.update_period));
+    if (const double median = bench::percentile(session.updates, 0.5); median > row.update_period)
+      row.remark += (row.remark.empty() ? "" : "; ") + ("slower than real time: " + three_digits(1e3 * median) +
+                                                        " ms for " + three_digits(1e3 * row.update_period));
   }
   const bool finite = session.finite && std::isfinite(row.felt) && std::isfinite(row.force_small) &&
                       std::isfinite(row.force_large) && std::isfinite(row.moved_small) &&
@@ -108,7 +108,7 @@ void judge(const Bench& bench, Contender& contender, Row& row) {
   else if (!unsettled.empty())
     row.verdict = unsettled;
   else if (!(row.own_error <= row.allowed))
-    row.verdict = "OFF ITS OWN FORMULA by " + three_digits(row.own_error);
+    row.verdict = "OWN CHECK FAILED: " + three_digits(row.own_error);
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ std::string Description::name() const {
 }
 
 std::vector<std::string> meshes_for_node_contact(const Bench& bench) {
-  constexpr int enough = 6;  // nodes, within a radius of where a sphere touches first
+  constexpr int enough = 6;  // nodes within a radius of the first contact point of a sphere
   const Mesh<Tet4>& mesh = bench.scene.mesh;
   for (const Sphere& sphere : bench.scene.spheres)
     if (std::ranges::count_if(mesh.find_group(near_group)->nodes, [&](NodeId node) {
@@ -139,7 +139,7 @@ Row measure(const Bench& bench, const Entry& entry) {
     row.bytes = bench::peak_growth([&] { row.setup = bench::seconds_of([&] { contender = entry.make(); }); });
     row.nodes = contender->nodes();
     row.kept_dofs = contender->kept_dofs();
-    judge(bench, *contender, row);
+    evaluate(bench, *contender, row);
   } catch (const SetupError& refused) {
     row.verdict = std::string("REFUSED: ") + refused.what();
     row.p99 = row.felt = row.force_small = row.force_large = bench::unknown;

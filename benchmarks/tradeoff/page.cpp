@@ -1,4 +1,4 @@
-// The table as a file, as a page with pictures, and as advice.
+// The table as a file, as a page with pictures, and as a recommendation.
 #include "page.hpp"
 
 #include <cmath>
@@ -103,13 +103,13 @@ std::string advice(const std::vector<Row>& rows, double budget) {
     const auto best = trade_off_of(rows, error, true).most_accurate_within(budget);
     if (!best) continue;
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.name() == best->name; });
-    text += "// force " + std::string(title) + ": " + percent(best->error) + " % off, p99 " +
+    text += "// force " + std::string(title) + ": " + percent(best->error) + " % error, p99 " +
             three_digits(1e6 * best->latency) + " us, set-up " + three_digits(1e3 * best->setup_seconds) + " ms" +
-            (row->own_core ? ", a core of its own" : "") + "\n//   mesh " + row->mesh +
+            (row->own_core ? ", a separate core" : "") + "\n//   mesh " + row->mesh +
             (row->kept.empty() ? "" : ", touch " + row->kept) + (row->work.empty() ? "" : ", " + row->work) +
             (row->remark.empty() ? "" : "; " + row->remark) + "\n" + row->paste + "\n";
   }
-  return text.empty() ? "// nothing measured keeps a budget of " + three_digits(1e6 * budget) + " us\n" : text;
+  return text.empty() ? "// no measured composition keeps a budget of " + three_digits(1e6 * budget) + " us\n" : text;
 }
 
 void write_picture(const Bench& bench, const std::vector<Row>& rows, double budget, const std::string& path) {
@@ -130,12 +130,12 @@ void write_page(const Bench& bench, const std::vector<Row>& rows, double budget,
          "svg{width:100%;height:auto}</style>\n<h1>Speed against accuracy: "
       << s.name << "</h1>\n<p>" << s.spheres.size() << " sphere" << (s.spheres.size() > 1 ? "s" : "") << " of "
       << three_digits(2e3 * s.radius) << " mm, pressed in " << three_digits(1e3 * s.small) << " and "
-      << three_digits(1e3 * s.large) << " mm and then to and fro. Reference: neo-Hookean, quadratic tetrahedra, "
+      << three_digits(1e3 * s.large) << " mm and then in an oscillation. Reference: neo-Hookean, quadratic tetrahedra, "
       << r.nodes << " nodes, " << figure(r.force(0, s.small).norm(), "%.4g") << " and "
       << figure(r.force(0, s.large).norm(), "%.4g") << " N; the mesh with edges twice as long is "
       << percent(r.mesh_error_small) << " and " << percent(r.mesh_error_large)
-      << " % off. Point at a mark for the whole composition; squares are baselines, marks with a red rim failed their "
-         "own check, the line joins what nothing beats.</p>\n";
+      << " % in error. Point at a mark for the whole composition; squares are baselines, marks with a red rim failed "
+         "their own check, the line is the Pareto front.</p>\n";
   for (const auto& [family, what] : {std::pair{"condensed", "linear, condensed"},
                                      {"uncondensed", "linear, not condensed"},
                                      {"moving", "moving tissue under a servo"},
@@ -149,12 +149,10 @@ void write_page(const Bench& bench, const std::vector<Row>& rows, double budget,
   }
   out << "<h2>Within " << three_digits(1e6 * budget) << " us</h2><pre>" << escaped(advice(rows, budget)) << "</pre>\n";
   write_table(out, rows);
-  out << "<p>Times are processor times of one thread. felt: root mean square of what the device renders a thousand "
-         "times "
-         "a second while the spheres move, late ticks and updates included, of the largest force. moved: displacement "
-         "of "
-         "all nodes of the mesh as given. volume: of the volume that the spheres press in. energy: what a body that is "
-         "let go gains without damping. own check: how far the row is from its own formula.</p></html>\n";
+  out << "<p>Times are processor times of one thread. felt: root mean square force error at 1 kHz while the spheres "
+         "move, late ticks and updates included, relative to the largest force. moved: displacement error of all nodes "
+         "of the given mesh. volume: error relative to the volume displaced by the spheres. energy: gain of a released "
+         "body without damping. own check: residual of the method's own equations.</p></html>\n";
 }
 
 }  // namespace tradeoff

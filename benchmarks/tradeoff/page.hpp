@@ -1,4 +1,4 @@
-// What page and documents share.
+// Shared by the page and the documents.
 #pragma once
 
 #include <palpate/model/static/trade_off.hpp>
@@ -22,20 +22,20 @@ inline constexpr std::array<Measure, 3> measures{{{"felt at 1 kHz, in motion", &
 inline bool is_good(const Row& row) {
   return row.verdict.empty();
 }
-/// Three significant digits; empty for what is not a number.
+/// Text with three significant digits; empty for NaN and infinity.
 std::string three_digits(double value);
 std::string percent(double value);
 const char* colour_of(const std::string& family);
 
-/// Of the rows that are as they must be; baselines too, unless only what can be composed is wanted.
+/// The trade-off of the rows that passed their own check; with baselines unless `compositions_only`.
 TradeOff trade_off_of(const std::vector<Row>& rows, double Row::*error, bool compositions_only);
 
-/// Error over latency as SVG, by itself or in a page. `floor`: how far the reference itself is in doubt.
+/// Error over latency as SVG, as a file or in a page. `floor`: relative error of the reference.
 void write_plot(std::ostream& out, const std::vector<Row>& rows, double Row::*error, double budget, double floor);
 
-/// What nothing beats in one of the measures, the baselines, and the advice, as Markdown.
+/// The Pareto fronts of all measures, the baselines, and the advice, as Markdown.
 std::string summary(const Bench& bench, const std::vector<Row>& rows, double budget);
-/// The plot of what is felt, as SVG.
+/// The plot of the force error in motion, as SVG.
 void write_picture(const Bench& bench, const std::vector<Row>& rows, double budget, const std::string& path);
 
 }  // namespace tradeoff

@@ -1,4 +1,4 @@
-// Nodes that move by themselves and are moved out of the spheres; the force is what that takes.
+// Nodes that move as particles and are pushed out of the spheres; the contact force follows from that displacement.
 #pragma once
 
 #include <palpate/assembly/mass_matrix.hpp>
@@ -10,7 +10,7 @@
 
 namespace tradeoff {
 
-/// Nodes with mass that are held, or kept out of spheres.
+/// Nodes with mass that are constrained, or kept outside the spheres.
 struct Particles {
   std::vector<Vector3> rest, place, before, velocity, force;
   std::vector<double> inverse_mass;
@@ -30,8 +30,8 @@ struct Particles {
     for (const NodeId node : mesh.find_group(constrained_group)->nodes)
       inverse_mass[static_cast<std::size_t>(node)] = 0.0;
   }
-  /// Moves nodes out of the spheres; adds what that takes in a step of dt to the forces on the spheres.
-  void leave(std::span<const Vector3> centres, double dt, std::vector<Vector3>& forces) {
+  /// Moves nodes out of the spheres; adds the force of that displacement in a step of dt to the forces on the spheres.
+  void push_out(std::span<const Vector3> centres, double dt, std::vector<Vector3>& forces) {
     for (const NodeId node : touchable)
       for (std::size_t b = 0; b < centres.size(); ++b) {
         const auto i = static_cast<std::size_t>(node);
@@ -43,8 +43,8 @@ struct Particles {
         forces[b] -= path / (inverse_mass[i] * dt * dt);
       }
   }
-  void coast(double dt) {
-    const double kept = std::max(0.0, 1.0 - drag_ * dt);
+  void predict(double dt) {
+    const double kept = std::max(0.0, 1.0 - damping_ * dt);
     for (std::size_t i = 0; i < place.size(); ++i) {
       before[i] = place[i];
       if (inverse_mass[i] == 0.0) continue;
@@ -66,17 +66,17 @@ struct Particles {
     for (std::size_t i = 0; i < place.size(); ++i) u.segment<3>(3 * static_cast<Index>(i)) = place[i] - rest[i];
     return u;
   }
-  double drag_ = drag;
+  double damping_ = rest_damping;
 };
 
-/// The rest of a contender whose `Body` has particles, step(dt, centres, forces), energy() and held_force().
+/// Contender for a `Body` with the members particles, step(dt, centres, forces), energy() and constrained_force().
 template <class Body>
 class ParticleContender : public Contender {
  public:
   ParticleContender(const Bench& bench, Body body, int steps)
       : bench_(bench), body_(std::move(body)), steps_(steps), forces_(bench.scene.spheres.size()), now_(forces_) {}
 
-  /// The spheres go evenly through a tick: a jump in its first step would be a blow, the harder the shorter the step.
+  /// The spheres move uniformly during a tick: a jump in its first step would be an impact, stronger for shorter steps.
   std::span<const Vector3> tick(std::span<const Vector3> centres) override {
     if (before_.empty()) before_.assign(centres.begin(), centres.end());
     std::ranges::fill(forces_, Vector3::Zero());
@@ -91,7 +91,7 @@ class ParticleContender : public Contender {
   }
   bool has_inertia() const override { return true; }
   VectorX displacement() override { return body_.particles.displacement().head(3 * bench_.scene.mesh.node_count()); }
-  /// How far the forces on held nodes are from what the spheres push.
+  /// Relative difference between the forces on constrained nodes and on the spheres.
   double own_error() override {
     Vector3 sum = body_.constrained_force();
     double size = 0.0;
@@ -103,7 +103,7 @@ class ParticleContender : public Contender {
   }
   double energy_drift() override {
     Body free = body_;
-    free.particles.drag_ = 0.0;
+    free.particles.damping_ = 0.0;
     std::ranges::fill(free.particles.velocity, Vector3::Zero());
     const double before = free.energy();
     std::vector<Vector3> none;
@@ -117,7 +117,8 @@ class ParticleContender : public Contender {
   const Bench& bench_;
   Body body_;
   int steps_;
-  std::vector<Vector3> forces_, now_, before_;  // of the spheres; where they are in a step, where they were last
+  // Forces on the spheres; their centres in the present step and in the previous tick.
+  std::vector<Vector3> forces_, now_, before_;
 };
 
 }  // namespace tradeoff

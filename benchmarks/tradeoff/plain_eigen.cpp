@@ -1,5 +1,5 @@
-// What one writes with Eigen alone: linear tetrahedra on the mesh as given, solved anew in every tick; and the same at
-// its own slow rate, with forces interpolated for the device.
+// A straightforward implementation with Eigen: linear tetrahedra on the given mesh, solved in every tick; and the same
+// at a lower rate, with forces interpolated for the device.
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/detail/free_stiffness.hpp>
 
@@ -15,8 +15,8 @@ namespace {
 using Ldlt = Eigen::SimplicialLDLT<SparseMatrix>;
 using Gradients = Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper>;
 
-/// Nodes are kept out of the spheres along the normals of the last tick: a solve for each of them, and a small problem
-/// with projected Gauss-Seidel.
+/// Nodes are kept outside the spheres along the normals of the last tick: one solve per node, and a small contact
+/// problem by projected Gauss-Seidel.
 template <class Solver>
 class EveryTick : public Contender {
  public:
@@ -27,7 +27,7 @@ class EveryTick : public Contender {
     stiffness_ = lower.selfadjointView<Eigen::Lower>();
     if constexpr (std::same_as<Solver, Gradients>) solver_.setTolerance(1e-4);
     solver_.compute(stiffness_);
-    if (solver_.info() != Eigen::Success) raise(SetupErrorKind::not_positive_definite, "Eigen's solver gave up");
+    if (solver_.info() != Eigen::Success) raise(SetupErrorKind::not_positive_definite, "Eigen's solver failed");
     for (const NodeId node : mesh.find_group(near_group)->nodes)
       if (!conditions_.is_constrained(3 * Index{node})) nodes_.push_back(node);
     columns_.assign(nodes_.size(), VectorX::Zero(stiffness_.rows()));
@@ -68,7 +68,7 @@ class EveryTick : public Contender {
     conditions_.scatter(u_, u);
     return u.head(3 * bench_.scene.mesh.node_count());
   }
-  /// K u against the forces of the spheres.
+  /// Difference of K u and the forces of the spheres, relative to these forces.
   double own_error() override {
     VectorX left = stiffness_ * u_;
     double size = 0.0;
@@ -94,7 +94,8 @@ class EveryTick : public Contender {
     double gap;
   };
 
-  /// Nodes in or near a sphere as they lie now; gap [m] is that without any force, along the present normal.
+  /// Finds nodes in or near a sphere at their present positions; gap [m] is the gap without forces, along the present
+  /// normal.
   void find_rows(std::span<const Vector3> centres) {
     rows_.clear();
     for (std::size_t k = 0; k < nodes_.size(); ++k)
@@ -119,8 +120,8 @@ class EveryTick : public Contender {
   VectorX u_;
 };
 
-/// A slow model in a thread of its own, and for the device the way from its last force but one to its last (Fagerholt
-/// 2005, chapter 1): smooth, and late by an update.
+/// A slow model in a background thread; the device renders an interpolation between its last two forces (Fagerholt
+/// 2005, chapter 1): smooth, but delayed by an update.
 class Interpolated : public Contender {
  public:
   Interpolated(std::unique_ptr<Contender> slow, double period, std::size_t spheres)

@@ -1,4 +1,4 @@
-// The picture of error over latency.
+// The plot of error over latency.
 #include <cmath>
 #include <ostream>
 
@@ -8,16 +8,16 @@
 namespace tradeoff {
 namespace {
 
-/// Everything a reader may want to know of a row while the pointer is on it.
+/// Tooltip of a row with all its figures.
 std::string hover(const Row& r) {
   return bench::escaped(r.name() + "\nset-up " + three_digits(1e3 * r.setup) + " ms, " + three_digits(1e-6 * r.bytes) +
                         " MB\ntick p50 " + three_digits(1e6 * r.p50) + " us, p99 " + three_digits(1e6 * r.p99) +
-                        " us, worst " + three_digits(1e6 * r.worst) + " us\nforce off " + percent(r.force_small) +
+                        " us, worst " + three_digits(1e6 * r.worst) + " us\nforce error " + percent(r.force_small) +
                         " % (small), " + percent(r.force_large) + " % (large), felt " + percent(r.felt) + " %" +
                         (r.verdict.empty() ? "" : "\n" + r.verdict) + (r.remark.empty() ? "" : "\n" + r.remark));
 }
 
-/// What tells the rows of a front apart at a glance.
+/// Short label that distinguishes the rows of a front.
 std::string label(const Row& r) {
   std::string text = r.element;
   if (r.mesh != "as given") text += ", " + r.mesh;
@@ -30,13 +30,13 @@ void text(std::ostream& out, double x, double y, const std::string& what, const 
   out << "<text x='" << x << "' y='" << y << "' font-size='11' " << style << '>' << what << "</text>\n";
 }
 
-/// Labels beside points, none over another or over a mark, with a line to the point where it is not near.
+/// Labels next to points, without overlap with other labels or marks, with a line to points that are not adjacent.
 class Labels {
  public:
   Labels(double left, double right, double top, double bottom)
       : left_(left), right_(right), top_(top), bottom_(bottom) {}
 
-  /// Keeps labels off a mark.
+  /// Reserves the area of a mark.
   void avoid(double x, double y) { taken_.push_back({x - 5.0, y - 5.0, x + 5.0, y + 5.0}); }
   void write(std::ostream& out, double x, double y, const std::string& what) {
     const double width = 5.6 * static_cast<double>(what.size());
@@ -69,7 +69,7 @@ class Labels {
   std::vector<Box> taken_;
 };
 
-/// Error over latency, both logarithmic, with the front of what nothing beats.
+/// Error over latency, both logarithmic, with the Pareto front.
 class Plot {
  public:
   Plot(const std::vector<Row>& rows, double Row::*error) : rows_(rows), error_(error) {
@@ -80,7 +80,7 @@ class Plot {
       low_y_ = std::min(low_y_, std::log10(r.*error));
       high_y_ = std::max(high_y_, std::log10(std::min(r.*error, 10.0)));
     }
-    low_x_ = std::floor(std::max(low_x_, -6.5) - 0.1);  // a row that does nothing in its ticks need not be far off
+    low_x_ = std::floor(std::max(low_x_, -6.5) - 0.1);  // limits the axis for rows whose ticks take almost no time
     high_x_ = std::ceil(high_x_ + 0.1);
     low_y_ = std::floor(2.0 * low_y_ - 0.1) / 2.0;
     high_y_ = std::ceil(2.0 * high_y_ + 0.1) / 2.0;
@@ -94,7 +94,7 @@ class Plot {
     text(out, x(budget) + 4, top + 12, "budget", "fill='#c33'");
     if (floor > 0.0 && std::log10(floor) > low_y_) {
       line(out, left, y(floor), right, y(floor), "stroke='#999' stroke-dasharray='2 3'");
-      text(out, left + 4, y(floor) - 4, "doubt of the reference", "fill='#777'");
+      text(out, left + 4, y(floor) - 4, "error of the reference", "fill='#777'");
     }
     out << "<polyline fill='none' stroke='#222' stroke-width='1.2' points='";
     double last = top;
@@ -129,7 +129,7 @@ class Plot {
   static void line(std::ostream& out, double x1, double y1, double x2, double y2, const char* style) {
     out << "<line x1='" << x1 << "' y1='" << y1 << "' x2='" << x2 << "' y2='" << y2 << "' " << style << "/>\n";
   }
-  /// 1, 2, 5, 10, ... between two powers of ten.
+  /// The values 1, 2, 5, 10, ... between two powers of ten.
   static std::vector<double> round_values(double low, double high) {
     std::vector<double> values;
     for (double e = std::floor(low); e <= high; e += 1.0)

@@ -1,4 +1,4 @@
-// What games take where springs are too soft in volume: constraints on positions.
+// Position-based constraints, used in games where springs do not preserve volume.
 #include <palpate/assembly/detail/constant_geometry.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
@@ -11,9 +11,9 @@ namespace tradeoff {
 namespace {
 
 /// XPBD (Macklin, Mueller and Chentanez 2016) in small steps of one sweep each (Macklin et al. 2019), with the two
-/// constraints of stable neo-Hookean tetrahedra (Macklin and Mueller 2021), an element at a time: sqrt(tr F^T F),
-/// compliance 1/(mu V), and det F - 1 - mu/lambda, compliance 1/(lambda V); lambda is Lame's plus mu, so that E and nu
-/// are those at small strain.
+/// constraints of stable neo-Hookean tetrahedra (Macklin and Mueller 2021), element by element: sqrt(tr F^T F) with
+/// compliance 1/(mu V), and det F - 1 - mu/lambda with compliance 1/(lambda V); lambda is Lame's plus mu, so that E and
+/// nu are the constants at small strain.
 struct PositionBased {
   struct Element {
     std::array<std::size_t, 4> nodes;
@@ -24,10 +24,10 @@ struct PositionBased {
   std::vector<Element> elements;
 
   PositionBased(const Bench& bench, const Mesh<Tet4>& mesh) : particles(bench, mesh) {
-    const auto laws = materials_by_region(mesh, bench.scene.materials);
+    const auto materials = materials_by_region(mesh, bench.scene.materials);
     for (Index e = 0; e < mesh.element_count(); ++e) {
       const auto g = constant_geometry<Tet4>(mesh, e);
-      const LinearElastic& material = laws[static_cast<std::size_t>(mesh.region(e))];
+      const LinearElastic& material = materials[static_cast<std::size_t>(mesh.region(e))];
       Element element{
           {}, g.gradient, g.volume, material.shear_modulus(), material.lame_lambda() + material.shear_modulus()};
       for (int a = 0; a < 4; ++a)
@@ -47,7 +47,7 @@ struct PositionBased {
     c.col(2) = f.col(0).cross(f.col(1));
     return c;
   }
-  /// Both constraints at once: one after the other they would push an element at rest to and fro.
+  /// Solves both constraints simultaneously: solved in sequence they would make an element at rest oscillate.
   void solve(const Element& e, double dt) {
     const Matrix3 f = deformation(e), c = cofactor(f);
     const double length = f.norm(), volume = f.col(0).dot(c.col(0));
@@ -68,12 +68,12 @@ struct PositionBased {
     }
   }
   void step(double dt, std::span<const Vector3> centres, std::vector<Vector3>& forces) {
-    particles.coast(dt);
+    particles.predict(dt);
     for (const Element& e : elements) solve(e, dt);
-    particles.leave(centres, dt, forces);
+    particles.push_out(centres, dt, forces);
     particles.find_velocity(dt);
   }
-  /// mu/2 tr F^T F + lambda/2 (J - 1 - mu/lambda)^2, less that of rest.
+  /// mu/2 tr F^T F + lambda/2 (J - 1 - mu/lambda)^2, minus the energy at rest.
   double energy() const {
     double sum = 0.0;
     for (const Element& e : elements) {
@@ -83,7 +83,7 @@ struct PositionBased {
     }
     return sum;
   }
-  /// By the derivative of the energy, which the multipliers meet where a step has converged.
+  /// Computed from the derivative of the energy, which equals the multipliers when a step has converged.
   Vector3 constrained_force() const {
     Vector3 sum = Vector3::Zero();
     for (const Element& e : elements) {

@@ -1,4 +1,4 @@
-// Spheres pressed into a body, as a stiff potential: for references, which need no tick.
+// Spheres pressed into a body, as a stiff potential, for references without a time limit.
 #pragma once
 
 #include <palpate/model/moving/equilibrium.hpp>
@@ -9,10 +9,10 @@ namespace tradeoff {
 
 using namespace palpate;
 
-/// The forces of a body, and of spheres that push its nodes out: k/2 depth^2 for every node inside a sphere.
+/// The forces of a body and of spheres that push its nodes out: energy k/2 depth^2 for every node inside a sphere.
 class PressedForces : public ElasticForces {
  public:
-  /// `nodes` may be pressed; `stiffness` [N/m] of each.
+  /// `nodes` can be pressed; `stiffness` is the contact stiffness of a node [N/m].
   PressedForces(std::unique_ptr<ElasticForces> body, std::vector<NodeId> nodes, std::vector<Vector3> positions,
                 double radius, double stiffness)
       : body_(std::move(body)),
@@ -22,9 +22,9 @@ class PressedForces : public ElasticForces {
         stiffness_(stiffness) {}
 
   void place(std::vector<Vector3> centres) { centres_ = std::move(centres); }
-  /// Makes the spheres softer than they are, for a while.
+  /// Scales the contact stiffness by `share` until the next call.
   void soften(double share) noexcept { share_ = share; }
-  /// Of the body on every sphere [N].
+  /// Force of the body on every sphere [N].
   std::vector<Vector3> forces_on_spheres(const VectorX& u) const {
     std::vector<Vector3> forces(centres_.size(), Vector3::Zero());
     for_each_pressed(u, [&](std::size_t sphere, NodeId, double depth, const Vector3& out) {
@@ -32,7 +32,7 @@ class PressedForces : public ElasticForces {
     });
     return forces;
   }
-  /// How deep a node is in a sphere [m].
+  /// Largest depth of a node in a sphere [m].
   double largest_depth(const VectorX& u) const {
     double largest = 0.0;
     for_each_pressed(u, [&](std::size_t, NodeId, double depth, const Vector3&) { largest = std::max(largest, depth); });
@@ -54,7 +54,7 @@ class PressedForces : public ElasticForces {
     });
     return report;
   }
-  /// Without the part that turns with the node, which is not positive and small where depths are.
+  /// Without the term of the rotating normal, which is not positive definite, and small for small depths.
   void tangent(const VectorX& u, BlockMatrix& k) const noexcept override {
     body_->tangent(u, k);
     for_each_pressed(u, [&](std::size_t, NodeId node, double, const Vector3& out) {
@@ -80,17 +80,17 @@ class PressedForces : public ElasticForces {
   double radius_, stiffness_, share_ = 1.0;
 };
 
-/// Bodies in equilibrium with spheres in them.
+/// A body in equilibrium with spheres pressed into it.
 class PressedEquilibrium {
  public:
   PressedEquilibrium(DeformableBody body, std::vector<NodeId> nodes, double radius, double stiffness)
       : body_(press(std::move(body), std::move(nodes), radius, stiffness, pressed_)) {}
 
-  /// Goes on from where the body is. Throws not_converged.
+  /// Finds the equilibrium for new centres, starting from the present state. Throws not_converged.
   void move_to(std::vector<Vector3> centres) {
     pressed_->place(std::move(centres));
     EquilibriumReport report;
-    for (const double share : {0.05, 1.0}) {  // a soft one finds out first which nodes it presses
+    for (const double share : {0.05, 1.0}) {  // soft contact first determines the pressed nodes
       pressed_->soften(share);
       report = body_.step(
           0.0, {.newton = {.maximum_iterations = 60, .tolerance = share < 1.0 ? 1e-3 : 1e-6}, .smallest_step = 0.5});
@@ -101,7 +101,7 @@ class PressedEquilibrium {
   const VectorX& displacement() const noexcept { return body_.displacement(); }
   std::vector<Vector3> forces_on_spheres() const { return pressed_->forces_on_spheres(body_.displacement()); }
   double largest_depth() const { return pressed_->largest_depth(body_.displacement()); }
-  /// Of all supports [N]: what the spheres push, they hold.
+  /// Total force of the supports [N]; balances the forces of the spheres.
   Vector3 support() const {
     VectorX f(displacement().size());
     pressed_->body().force(displacement(), f);

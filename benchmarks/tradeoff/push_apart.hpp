@@ -9,11 +9,12 @@
 namespace tradeoff {
 
 struct Sweeps {
-  int sweeps = 0;          ///< at most
-  double tolerance = 0.0;  ///< last change, of the largest force
+  int sweeps = 0;          ///< largest number of sweeps
+  double tolerance = 0.0;  ///< of the last change, relative to the largest force
 };
 
-/// lambda >= 0, gap + W lambda >= 0, one of them zero, by projected Gauss-Seidel from the lambda given.
+/// lambda >= 0, gap + W lambda >= 0, one of them zero (complementarity), by projected Gauss-Seidel starting from
+/// `lambda`.
 inline void push_apart(const palpate::MatrixX& w, const palpate::VectorX& gap, palpate::VectorX& lambda,
                        const Sweeps& until) {
   for (int sweep = 0; sweep < until.sweeps && gap.size() > 0; ++sweep) {

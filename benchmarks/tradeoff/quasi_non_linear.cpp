@@ -14,7 +14,7 @@ StiffeningCurve curve(const Stiffening& measured) {
   return StiffeningCurve(points);
 }
 
-/// Curves were measured elsewhere on the same organ; displacements for pictures follow the scale of the force.
+/// The curves were measured at another point of the same organ; displacements are scaled like the force.
 class CotinContender : public LinearContender<Smoothed<Tet4>, Condensed<SelectiveInverse>, QuasiNonLinear<Model>> {
  public:
   CotinContender(const Bench& bench, const std::string& mesh)
@@ -23,8 +23,8 @@ class CotinContender : public LinearContender<Smoothed<Tet4>, Condensed<Selectiv
         }) {}
 
   VectorX displacement() override {
-    // T u(T f), as scale() says
-    std::vector<VertexForce> forces(felt_.vertex_forces().begin(), felt_.vertex_forces().end());
+    // T u(T f), T: see scale()
+    std::vector<VertexForce> forces(rendered_.vertex_forces().begin(), rendered_.vertex_forces().end());
     for (VertexForce& f : forces) f.force = ModelVector(tissue_.scale() * f.force.in_model_axes());
     model_.displacement_with(forces, u_);
     for (Index i = 0; i < u_.size() / 3; ++i) u_.segment<3>(3 * i) = (tissue_.scale() * u_.segment<3>(3 * i)).eval();
@@ -35,7 +35,7 @@ class CotinContender : public LinearContender<Smoothed<Tet4>, Condensed<Selectiv
 }  // namespace
 
 void add_quasi_non_linear(const Bench& bench, std::vector<Entry>& entries) {
-  if (bench.stiffening.depth.empty()) return;  // measured for one sphere
+  if (bench.stiffening.depth.empty()) return;  // the curve is measured for one sphere
   for (const std::string mesh : {"given", "near"}) {
     Entry entry;
     Description& d = entry.description;

@@ -14,12 +14,13 @@ namespace tradeoff {
 namespace {
 
 RegionMaterials<NeoHookean> large_strain(const RegionMaterials<LinearElastic>& materials) {
-  RegionMaterials<NeoHookean> laws;
-  for (const auto& [region, m] : materials) laws.push_back({region, {m.youngs_modulus, m.poisson_ratio, m.density}});
-  return laws;
+  RegionMaterials<NeoHookean> converted;
+  for (const auto& [region, m] : materials)
+    converted.push_back({region, {m.youngs_modulus, m.poisson_ratio, m.density}});
+  return converted;
 }
 
-/// Of a node [N/m]: a sphere sinks in by some thousandths of the small depth.
+/// Contact stiffness of a node [N/m]: a sphere penetrates by some thousandths of the small depth.
 double contact_stiffness(const PressScene& scene) {
   double softest = infinity;
   for (const auto& region : scene.materials) softest = std::min(softest, region.second.youngs_modulus);
@@ -33,7 +34,7 @@ std::vector<double> depths(const PressScene& scene) {
   return d;
 }
 
-/// Newton's method to the end at every depth.
+/// Fully converged equilibria at every depth, by Newton's method.
 std::vector<Pressed> press(const PressScene& scene, DeformableBody body, const std::vector<NodeId>& nodes) {
   PressedEquilibrium equilibrium(std::move(body), nodes, scene.radius, contact_stiffness(scene));
   std::vector<Pressed> all;
@@ -43,7 +44,7 @@ std::vector<Pressed> press(const PressScene& scene, DeformableBody body, const s
     require_balance(all.back(), equilibrium.support(), depth);
     if (!(equilibrium.largest_depth() < 2e-2 * scene.small))
       raise(SetupErrorKind::not_converged,
-            "the sphere of the reference sinks in by " + number(equilibrium.largest_depth()) + " m");
+            "the sphere of the reference penetrates by " + number(equilibrium.largest_depth()) + " m");
   }
   return all;
 }
@@ -79,7 +80,7 @@ Reference reference_of(const PressScene& scene, const std::vector<Pressed>& all)
   return r;
 }
 
-/// What large strain changes on a mesh where it is cheap, put on what the fine mesh says of small strain.
+/// The small strain solution of the fine mesh, corrected by the effect of large strain on a coarser mesh.
 std::vector<Pressed> corrected(const PressScene& scene, std::vector<Pressed> fine) {
   const Mesh<Tet4> cheap = refine_near(scene, 0.3 * scene.radius);
   const auto curved = press_large_strain(scene, cheap), straight = press_linear(scene, cheap);
@@ -94,7 +95,7 @@ std::vector<Pressed> corrected(const PressScene& scene, std::vector<Pressed> fin
   return fine;
 }
 
-double apart(const Reference& a, const Reference& b, double depth) {
+double relative_difference(const Reference& a, const Reference& b, double depth) {
   return (a.force(0, depth) - b.force(0, depth)).norm() / a.force(0, depth).norm();
 }
 
@@ -106,7 +107,8 @@ Reference make(const PressScene& scene, double edge, bool direct) {
     const std::vector<Pressed> fine = press_linear(scene, mesh);
     r = reference_of(scene, fine);
     coarse = reference_of(scene, press_linear(scene, half));
-    const double small = apart(r, coarse, scene.small), large = apart(r, coarse, scene.large);
+    const double small = relative_difference(r, coarse, scene.small),
+                 large = relative_difference(r, coarse, scene.large);
     r = reference_of(scene, direct ? press_large_strain(scene, mesh) : corrected(scene, fine));
     r.mesh_error_small = small;
     r.mesh_error_large = large;
@@ -124,7 +126,7 @@ Vector3 Reference::force(std::size_t sphere, double depth) const {
   while (i + 1 < curve.size() && curve[i].depth < depth) ++i;
   const Point &a = curve[i - 1], &b = curve[i];
   if (a.depth == 0.0) return std::pow(depth / b.depth, 1.5) * b.force[sphere];
-  // F / d^1.5 is nearly straight in d, and that is interpolated
+  // interpolates F / d^1.5, which is nearly linear in d
   const double t = (depth - a.depth) / (b.depth - a.depth);
   return std::pow(depth, 1.5) *
          ((1.0 - t) * std::pow(a.depth, -1.5) * a.force[sphere] + t * std::pow(b.depth, -1.5) * b.force[sphere]);
@@ -138,7 +140,7 @@ Reference make_direct_reference(const PressScene& scene, double edge) {
 }
 
 Stiffening measure_stiffening(const PressScene& scene) {
-  // Somewhere else on the touchable surface: a curve that was measured where it is used would prove nothing.
+  // At another point of the touchable surface: a curve measured where it is used would not be a test.
   const std::vector<NodeId>& wide = scene.mesh.find_group(wide_group)->nodes;
   PressScene other = scene;
   const Vector3 from = scene.spheres.front().point, wanted = from + 2.0 * scene.radius * Vector3::UnitX();

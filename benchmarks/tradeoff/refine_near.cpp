@@ -1,4 +1,4 @@
-// Shorter edges where spheres press.
+// Refines a mesh near the spheres.
 #include <queue>
 #include <set>
 #include <unordered_map>
@@ -8,7 +8,7 @@
 namespace tradeoff {
 namespace {
 
-/// Tetrahedra that are cut in two at an edge, with all others round it, so that neighbours stay conforming.
+/// Bisects tetrahedra at an edge, together with all others around it, so that the mesh stays conforming.
 class Bisection {
  public:
   explicit Bisection(const Mesh<Tet4>& mesh) : mesh_(mesh) {
@@ -16,7 +16,7 @@ class Bisection {
     for (std::size_t e = 0; e < mesh_.elements.size(); ++e) enter(e);
   }
 
-  /// Cuts edges longer than wanted(middle), the longest first.
+  /// Bisects edges longer than wanted(middle), the longest first.
   template <class Wanted>
   void refine(Wanted wanted) {
     using Item = std::pair<double, Edge>;
@@ -29,14 +29,14 @@ class Bisection {
       const Edge wish = queue.top().second;
       queue.pop();
       while (around_.contains(wish)) {
-        Edge edge = wish;  // towards the longest edge of all elements round it (Rivara's propagation path)
+        Edge edge = wish;  // follows the longest edge of all elements around it (Rivara's propagation path)
         for (Edge longer = longest_round(edge); longer != edge; longer = longest_round(edge)) edge = longer;
         for (const Edge& fresh : cut(edge)) push(fresh);
       }
     }
   }
 
-  /// Groups of faces are cut along.
+  /// The refined mesh, with the groups of faces of `coarse` refined too.
   Mesh<Tet4> take(const Mesh<Tet4>& coarse) {
     mesh_.groups = {};
     for (const Group& g : coarse.groups.all()) {
@@ -107,7 +107,7 @@ class Bisection {
     return {fresh.begin(), fresh.end()};
   }
   void cut_face(const std::array<NodeId, 3>& face, Group& group) const {
-    // Several edges of a face may have been cut: the one that was cut first has the smallest middle.
+    // Several edges of a face may have been bisected: the first one has the middle node with the smallest id.
     NodeId first = -1;
     std::size_t at = 0;
     for (std::size_t i = 0; i < 3; ++i)

@@ -15,7 +15,7 @@ ContactSurface surface_of(const Mesh<Tet4>& mesh) {
   return {mesh.positions, std::move(triangles)};
 }
 
-/// The sphere that comes along `towards` and touches at `point`, as far out as it just touches the whole surface.
+/// A sphere that moves along `towards` to `point`, at the position where it first touches the surface.
 Sphere sphere_at(const ContactSurface& surface, const Vector3& point, const Vector3& towards, double radius) {
   Sphere sphere{.touching = Vector3::Zero(), .towards = towards.normalized(), .point = point};
   double in = 0.0, out = 3.0 * radius;
@@ -27,7 +27,7 @@ Sphere sphere_at(const ContactSurface& surface, const Vector3& point, const Vect
   return sphere;
 }
 
-/// Mean outward normal of the triangles round a point, by area.
+/// Mean outward normal of the triangles around a point, weighted by area.
 Vector3 outward_at(const Mesh<Tet4>& mesh, const std::vector<std::array<NodeId, 3>>& triangles, const Vector3& point,
                    double within) {
   Vector3 sum = Vector3::Zero();
@@ -58,7 +58,7 @@ void add_faces(Mesh<Tet4>& mesh, const std::string& name, const std::vector<Boun
   mesh.groups.tidy();
 }
 
-/// The tip of the thin lobe and a point of the surface `inward` of it, on its upper (+1) or lower (-1) side.
+/// A point of the surface `inward` [m] of the tip of the thin lobe, on its upper (+1) or lower (-1) side.
 Vector3 lobe_point(const Mesh<Tet4>& mesh, const std::vector<NodeId>& surface, const ContactSurface& contact,
                    double inward, double side) {
   const NodeId tip = *std::ranges::max_element(surface, {}, [&](NodeId i) { return mesh.position(i).x(); });
@@ -81,7 +81,7 @@ std::vector<Sphere> make_spheres(const PressScene& scene, const std::string& kin
   return {sphere_along_normal(mesh, point, scene.radius)};
 }
 
-/// The faces that a sphere may come to, and their groups.
+/// Adds the groups of faces that a sphere may touch.
 void add_touchable(PressScene& scene, const std::vector<BoundaryFace>& boundary,
                    const std::vector<BoundaryFace>& wide) {
   std::vector<BoundaryFace> near;
@@ -122,7 +122,7 @@ double volume_of(const Mesh<Tet4>& mesh, const std::vector<std::array<NodeId, 3>
 PressScene make_scene(const SceneOptions& options) {
   const bool organ = options.mesh.empty();
   if (!organ && options.kind != "palpate")
-    raise(SetupErrorKind::bad_argument, "the scene '" + options.kind + "' knows the organ of palpate only",
+    raise(SetupErrorKind::bad_argument, "the scene '" + options.kind + "' supports only the organ of palpate",
           "Give no mesh, or --scene palpate");
   PressScene scene;
   scene.name = options.kind;
@@ -132,7 +132,7 @@ PressScene make_scene(const SceneOptions& options) {
   if (constrained.empty() || touched.empty()) {
     std::string known;
     for (const Group& g : scene.mesh.groups.all()) known += " '" + g.name + "'";
-    raise(SetupErrorKind::bad_argument, "what is held and what may be touched?",
+    raise(SetupErrorKind::bad_argument, "the constrained and touchable groups are not given",
           "Give --fix <group> --touch <group>; the mesh has" + (known.empty() ? " none" : known));
   }
   const auto wide =
@@ -151,7 +151,8 @@ PressScene make_scene(const SceneOptions& options) {
     if (organ && region == "lesion" && options.kind == "palpate") material.youngs_modulus *= 10.0;
     scene.materials.push_back({region, material});
   }
-  // A sphere that facets of this mesh can still resolve (docs/contact.md), pressed by four fifths of its radius.
+  // The smallest sphere that the facets of this mesh resolve (docs/contact.md), pressed in by four fifths of its
+  // radius.
   scene.radius = 2.4 * mean_edge(scene.mesh, wide);
   if (organ) scene.radius = 0.010;
   scene.small = 0.1 * scene.radius;
@@ -171,7 +172,7 @@ PressScene make_scene(const SceneOptions& options) {
     add_faces(scene.mesh, constrained_group, constrained_faces);
   add_touchable(scene, boundary, wide);
   scene.mesh.groups.get_or_add(std::string(surface_group), 2);
-  scene.mesh.groups.all().pop_back();  // found by its name alone
+  scene.mesh.groups.all().pop_back();  // its name stays defined without a group
   return scene;
 }
 

@@ -1,4 +1,4 @@
-// A contender on simulated time.
+// Runs a contender in simulated time.
 #pragma once
 
 #include <palpate/core/platform.hpp>
@@ -13,8 +13,8 @@ namespace tradeoff {
 
 inline constexpr double period = 1e-3;  ///< of ticks [s]
 
-/// A device that asks a thousand times a second, on simulated time: a tick that takes longer than a millisecond leaves
-/// the device with the last force meanwhile, and updates come when their thread would have them done.
+/// A device with a rate of 1 kHz in simulated time. During a tick longer than a millisecond the device renders the last
+/// force. Updates are published when a background thread would have completed them.
 class Session {
  public:
   Session(const Bench& bench, Contender& contender)
@@ -22,51 +22,51 @@ class Session {
     force_.assign(bench.scene.spheres.size(), Vector3::Zero());
   }
 
-  std::vector<double> ticks, updates;  ///< durations in motion [s]
-  double squared_error = 0.0;          ///< sum over milliseconds of motion
-  int judged = 0;
+  std::vector<double> ticks, updates;  ///< durations, in motion only [s]
+  double squared_error = 0.0;          ///< sum over all milliseconds of motion [N^2]
+  int samples = 0;
   bool finite = true;
 
   const std::vector<Vector3>& force() const noexcept { return force_; }
 
-  /// A millisecond of the device with the spheres at a depth.
-  void advance(double depth, bool judge) {
+  /// Advances the device by a millisecond with the spheres at a depth.
+  void advance(double depth, bool record) {
     const double period_of_update = contender_.update_period();
     if (period_of_update > 0.0 && time_ >= next_update_) {
       const double spent = timed([&] { contender_.update(); });
-      if (judge) updates.push_back(spent);
-      // What is published now would have been done by now, had it begun one duration earlier.
+      if (record) updates.push_back(spent);
+      // An update published now stands for one that began one duration earlier and is complete now.
       next_update_ = std::max(next_update_ + period_of_update, time_ + spent);
     }
     if (time_ >= next_tick_) {
       const std::vector<Vector3> centres = bench_.scene.centres(depth);
       std::span<const Vector3> answer;
       const double spent = timed([&] { answer = contender_.tick(centres); });
-      if (judge) ticks.push_back(spent);
-      next_tick_ = judge ? time_ + spent : time_;  // at rest nobody waits
+      if (record) ticks.push_back(spent);
+      next_tick_ = record ? time_ + spent : time_;  // in holds the duration is ignored
       pending_.assign(answer.begin(), answer.end());
       for (const Vector3& f : pending_) finite = finite && f.allFinite();
     }
-    if (!pending_.empty() && next_tick_ <= time_ + period) {  // done within this millisecond
+    if (!pending_.empty() && next_tick_ <= time_ + period) {  // completed within this millisecond
       force_ = pending_;
       pending_.clear();
     }
-    if (judge) {
+    if (record) {
       for (std::size_t b = 0; b < force_.size(); ++b)
         squared_error += (force_[b] - bench_.reference.force(b, depth)).squaredNorm();
-      judged += static_cast<int>(force_.size());
+      samples += static_cast<int>(force_.size());
     }
     time_ += period;
   }
   enum class Rest { reached, moving, lost };
-  /// Rests until the force does for two windows, at most `most` milliseconds and seconds of work. Tissue that has left
-  /// the sphere is still on its way, and lost after ten windows.
+  /// Holds until the force is constant for two windows, at most `most` milliseconds and `seconds` of processor time.
+  /// Tissue without contact counts as moving, and as lost after ten windows.
   Rest settle(double depth, int most, double seconds) {
     const double start = bench::process_seconds();
     std::vector<Vector3> before = force_;
     int still = 0, away = 0;
     for (int i = 1; i <= most && bench::process_seconds() - start < seconds; ++i) {
-      // Slow updates and ticks are not waited for: each counts for the time it stands for.
+      // Does not wait for slow updates and ticks: each counts as its nominal period.
       next_tick_ = std::min(next_tick_, time_);
       const double u = contender_.update_period();
       next_update_ = std::min(next_update_, time_ + (u > 0.0 ? u : period));
@@ -87,7 +87,7 @@ class Session {
   }
 
  private:
-  /// Milliseconds over which a force at rest must stand still.
+  /// Number of milliseconds over which a force at rest must be constant.
   int window() const noexcept {
     const double three_updates = 3.0 * contender_.update_period() / period;
     return std::max(contender_.has_inertia() ? 40 : 4, static_cast<int>(std::ceil(three_updates)));

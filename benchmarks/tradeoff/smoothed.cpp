@@ -1,4 +1,4 @@
-// Tetrahedra without locking.
+// Smoothed linear tetrahedra, which do not lock.
 #include "linear.hpp"
 
 namespace tradeoff {

@@ -1,4 +1,4 @@
-// Moving tissue felt through a servo.
+// Moving tissue rendered by a servo.
 #pragma once
 
 #include <palpate/model/moving/implicit.hpp>
@@ -8,46 +8,46 @@
 
 namespace tradeoff {
 
-template <class Law>
-RegionMaterials<Law> large_strain_laws(const RegionMaterials<LinearElastic>& materials) {
-  RegionMaterials<Law> laws;
+template <class Material>
+RegionMaterials<Material> large_strain_materials(const RegionMaterials<LinearElastic>& materials) {
+  RegionMaterials<Material> converted;
   for (const auto& [region, m] : materials)
-    if constexpr (requires(Law material) { material.base; })
-      laws.push_back({region, Law{m}});
+    if constexpr (requires(Material material) { material.base; })
+      converted.push_back({region, Material{m}});
     else
-      laws.push_back({region, Law{m.youngs_modulus, m.poisson_ratio, m.density}});
-  return laws;
+      converted.push_back({region, Material{m.youngs_modulus, m.poisson_ratio, m.density}});
+  return converted;
 }
 
-/// A model that moves. `Law` is the material, `E` the element.
-template <class E, class Law, class Solver>
+/// A moving model. `Material` is the material, `E` the element.
+template <class E, class Material, class Solver>
 class SoftContender : public Contender {
  public:
-  using Tissue = HapticFEModel<E, Law, Solver>;
+  using Tissue = HapticFEModel<E, Material, Solver>;
   using Parameters = typename Tissue::Parameters;
 
   SoftContender(const Bench& bench, const std::string& mesh, const Parameters& parameters)
       : bench_(bench),
         parameters_(parameters),
         mesh_(mesh_for<E>(bench.mesh(mesh))),
-        laws_(large_strain_laws<Law>(bench.scene.materials)),
-        tissue_(mesh_, bench.scene.scene(near_group), laws_, {}, parameters),
-        felt_(tissue_, bench.scene) {}
+        materials_(large_strain_materials<Material>(bench.scene.materials)),
+        tissue_(mesh_, bench.scene.scene(near_group), materials_, {}, parameters),
+        rendered_(tissue_, bench.scene) {}
 
-  std::span<const Vector3> tick(std::span<const Vector3> centres) override { return felt_.tick(centres); }
+  std::span<const Vector3> tick(std::span<const Vector3> centres) override { return rendered_.tick(centres); }
   double update_period() const override { return parameters_.step; }
   void update() override { tissue_.advance(); }
   bool has_inertia() const override { return true; }
   VectorX displacement() override { return tissue_.motion().displacement().head(3 * bench_.scene.mesh.node_count()); }
-  /// How far the supports, by the exact law, are from holding what the spheres push, of the contact force.
+  /// Imbalance of support forces, by the exact material, and forces of the spheres, relative to the contact force.
   double own_error() override {
     const DeformableBody& body = exact();
     VectorX left(body.elastic->size()), contact = VectorX::Zero(left.size());
     body.elastic->force(tissue_.motion().displacement(), left);
-    for (const VertexForce& f : felt_.vertex_forces())
+    for (const VertexForce& f : rendered_.vertex_forces())
       contact.segment<3>(3 * Index{tissue_.touchable_nodes()[static_cast<std::size_t>(f.vertex)]}) +=
           f.force.in_model_axes();
-    Vector3 sum = Vector3::Zero();  // the supports against the spheres
+    Vector3 sum = Vector3::Zero();  // support forces plus forces of the spheres
     for (Index dof = 0; dof < left.size(); ++dof)
       if (body.conditions.is_constrained(dof)) sum[dof % 3] += left[dof];
     for (Index i = 0; i < contact.size() / 3; ++i) sum += contact.segment<3>(3 * i);
@@ -57,7 +57,7 @@ class SoftContender : public Contender {
     Parameters free = parameters_;
     free.mass_damping = 0.0;
     free.settle = false;
-    const auto motion = SolverTraits<Solver>::make_motion(make_hyperelastic_body(mesh_, laws_),
+    const auto motion = SolverTraits<Solver>::make_motion(make_hyperelastic_body(mesh_, materials_),
                                                           bench_.scene.scene(near_group), free, SetupLimits{})
                             .motion;
     const VectorX start = tissue_.motion().displacement();
@@ -72,28 +72,28 @@ class SoftContender : public Contender {
   }
   Index nodes() const override { return mesh_.node_count(); }
   Index kept_dofs() const override { return 3 * static_cast<Index>(tissue_.touchable_nodes().size()); }
-  std::string remark() override { return felt_.remark(); }
+  std::string remark() override { return rendered_.remark(); }
 
  private:
   const DeformableBody& exact() {
     if (!exact_.elastic)
-      exact_ = make_constrained_body(make_hyperelastic_body(mesh_, laws_), bench_.scene.scene(near_group));
+      exact_ = make_constrained_body(make_hyperelastic_body(mesh_, materials_), bench_.scene.scene(near_group));
     return exact_;
   }
   const Bench& bench_;
   Parameters parameters_;
   Mesh<E> mesh_;
-  RegionMaterials<Law> laws_;
+  RegionMaterials<Material> materials_;
   Tissue tissue_;
-  Felt<Tissue> felt_;
+  RenderedTissue<Tissue> rendered_;
   DeformableBody exact_;
 };
 
-/// An entry of a moving model; `paste` is C++ for it.
-template <class E, class Law, class Solver>
+/// An entry of a moving model; `paste` is its C++ code.
+template <class E, class Material, class Solver>
 Entry soft_entry(const Bench& bench, const std::string& element, const std::string& material, const std::string& solver,
                  const std::string& mesh, const std::string& scalar, const std::string& work,
-                 const typename HapticFEModel<E, Law, Solver>::Parameters& parameters, const std::string& paste) {
+                 const typename HapticFEModel<E, Material, Solver>::Parameters& parameters, const std::string& paste) {
   Entry entry{{.family = "moving",
                .element = element,
                .mesh = mesh_name(mesh),
@@ -106,7 +106,7 @@ Entry soft_entry(const Bench& bench, const std::string& element, const std::stri
                .allowed = 0.05,
                .own_core = true}};
   entry.make = [&bench, mesh, parameters] {
-    return std::make_unique<SoftContender<E, Law, Solver>>(bench, mesh, parameters);
+    return std::make_unique<SoftContender<E, Material, Solver>>(bench, mesh, parameters);
   };
   return entry;
 }

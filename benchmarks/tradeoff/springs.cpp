@@ -1,4 +1,4 @@
-// What games and many simulators take: a spring along every edge.
+// Mass-spring systems, used in games and many simulators.
 #include <palpate/assembly/detail/constant_geometry.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
@@ -9,8 +9,8 @@
 namespace tradeoff {
 namespace {
 
-/// A spring along every edge, E sum of volumes round it / length^2 stiff (Van Gelder, Approximate simulation of elastic
-/// membranes by triangulated spring meshes, 1998, in its form for tetrahedra). Semi-implicit Euler.
+/// A spring along every edge of stiffness E * (sum of adjacent volumes) / length^2 (Van Gelder, Approximate simulation
+/// of elastic membranes by triangulated spring meshes, 1998, in its form for tetrahedra). Semi-implicit Euler.
 struct MassSpring {
   struct Spring {
     NodeId a, b;
@@ -20,11 +20,11 @@ struct MassSpring {
   std::vector<Spring> springs;
 
   MassSpring(const Bench& bench, const Mesh<Tet4>& mesh, double factor = 1.0) : particles(bench, mesh) {
-    const auto laws = materials_by_region(mesh, bench.scene.materials);
+    const auto materials = materials_by_region(mesh, bench.scene.materials);
     std::map<std::pair<NodeId, NodeId>, double> stiffness;
     for (Index e = 0; e < mesh.element_count(); ++e) {
       const double volume = constant_geometry<Tet4>(mesh, e).volume,
-                   modulus = laws[static_cast<std::size_t>(mesh.region(e))].youngs_modulus;
+                   modulus = materials[static_cast<std::size_t>(mesh.region(e))].youngs_modulus;
       for (int i = 0; i < 4; ++i)
         for (int j = i + 1; j < 4; ++j)
           stiffness[std::minmax(mesh.element_node(e, i), mesh.element_node(e, j))] += modulus * volume;
@@ -34,7 +34,7 @@ struct MassSpring {
       springs.push_back({edge.first, edge.second, length, factor * sum / (length * length)});
     }
   }
-  /// Steps that a millisecond needs: Gershgorin's bound of the highest frequency.
+  /// Steps per millisecond required for stability, by Gershgorin's bound of the highest frequency.
   int steps() const {
     std::vector<double> sum(particles.rest.size(), 0.0);
     for (const Spring& s : springs)
@@ -56,8 +56,8 @@ struct MassSpring {
   }
   void step(double dt, std::span<const Vector3> centres, std::vector<Vector3>& forces) {
     pull();
-    particles.coast(dt);
-    particles.leave(centres, dt, forces);
+    particles.predict(dt);
+    particles.push_out(centres, dt, forces);
     particles.find_velocity(dt);
   }
   double energy() const {
@@ -84,12 +84,12 @@ std::unique_ptr<Contender> make_springs(const Bench& bench, const Mesh<Tet4>& me
   const int steps = body.steps();
   return std::make_unique<ParticleContender<MassSpring>>(bench, std::move(body), steps);
 }
-/// At their best: on the force at the small depth of this very scene.
+/// Springs with stiffness tuned to the reference force at the small depth of this scene: their best case.
 std::unique_ptr<Contender> make_tuned_springs(const Bench& bench, const Mesh<Tet4>& mesh) {
   const PressScene& scene = bench.scene;
   const double wanted = bench.reference.force(0, scene.small).norm();
   double factor = 1.0;
-  for (int round = 0; round < 3; ++round) {  // forces of springs are not quite proportional to the factor
+  for (int round = 0; round < 3; ++round) {  // spring forces are not exactly proportional to the factor
     const auto trial = make_springs(bench, mesh, factor);
     double force = 0.0;
     for (int i = 0; i < 600; ++i)

@@ -1,4 +1,4 @@
-// What documents say of a run.
+// Summary of a run for documents.
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -31,8 +31,8 @@ std::string summary(const Bench& bench, const std::vector<Row>& rows, double bud
       << " --docs`: " << rows.size() << " rows; spheres of " << three_digits(2e3 * s.radius) << " mm at "
       << three_digits(1e3 * s.small) << " and " << three_digits(1e3 * s.large) << " mm; reference of " << ref.nodes
       << " nodes, " << three_digits(ref.force(0, s.small).norm()) << " and "
-      << three_digits(ref.force(0, s.large).norm()) << " N, in doubt by " << three_digits(100.0 * ref.mesh_error_small)
-      << " and " << three_digits(100.0 * ref.mesh_error_large)
+      << three_digits(ref.force(0, s.large).norm()) << " N, relative error "
+      << three_digits(100.0 * ref.mesh_error_small) << " and " << three_digits(100.0 * ref.mesh_error_large)
       << " %.\n\n![Force error felt over the p99 of a tick](tradeoff-" << s.name << ".svg)\n\n```cpp\n"
       << advice(rows, budget) << "```\n\n"
       << "| composition | mesh | set-up [ms] | tick p99, worst [us] | update p99 [ms] | force small [%] | large [%] "

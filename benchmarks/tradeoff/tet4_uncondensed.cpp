@@ -6,7 +6,7 @@
 namespace tradeoff {
 namespace {
 
-/// Ticks a thousand times a second of real time: what works ahead of the tool has the time it would have.
+/// Ticks at 1 kHz in real time, so that columns computed in a background thread have a realistic amount of time.
 class Paced : public LinearContender<Tet4, SparseCholesky> {
  public:
   using LinearContender::LinearContender;

@@ -1,5 +1,5 @@
-// Tissue that is cut while it is touched, to be had beside palpate.hpp: HapticFEModel on Cuttable<...>, its drawn surface,
-// and the thread that cuts.
+// Include next to palpate.hpp for tissue that is cut while it is touched: HapticFEModel on Cuttable<...>, its visual
+// surface, and the thread that applies the cuts.
 #pragma once
 
 #include <palpate/cut/cuttable.hpp>

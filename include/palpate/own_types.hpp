@@ -1,5 +1,5 @@
-// For palpate::compiled and elements, materials, solvers or meshes of one's own: definitions of the templates that take
-// them. Include it once more beside palpate.hpp, in any order. Header-only it adds nothing.
+// For palpate::compiled with user-defined elements, materials, solvers or meshes: definitions of the templates that
+// take them. Include it in addition to palpate.hpp, in any order. In header-only use it adds nothing.
 #pragma once
 
 #include <palpate/model/haptic_fe_model.tpp>

@@ -1,7 +1,8 @@
-// What a haptic session needs: meshes, scenes, materials, models, contact, the session, servo and loop. Everything else
-// has headers of its own: recording and simulated devices (device/), drawn surfaces (model/rendering/visual_surface.hpp), writers
-// (io/vtu.hpp, io/pvd.hpp, io/surface_files.hpp, io/write_msh.hpp), refinement (mesh/refine.hpp), the energy tank
-// (haptic/energy_tank.hpp), compositions compared (model/static/trade_off.hpp), results (post/), cutting (cut/).
+// Everything a haptic session needs: meshes, scenes, materials, models, contact, session, servo and loop. Other
+// features have their own headers: recording and simulated devices (device/), rendered surfaces
+// (model/rendering/visual_surface.hpp), writers (io/vtu.hpp, io/pvd.hpp, io/surface_files.hpp, io/write_msh.hpp),
+// refinement (mesh/refine.hpp), the energy tank (haptic/energy_tank.hpp), comparison of model compositions
+// (model/static/trade_off.hpp), results (post/), cutting (cut/).
 #pragma once
 
 #include <palpate/contact/tissue_group.hpp>

@@ -1,5 +1,5 @@
-// Large strain and motion, to be had beside palpate.hpp: laws, statics, implicit and explicit motion, and tissue that moves
-// while it is touched.
+// Large strain and motion, in addition to palpate.hpp: materials, statics, implicit and explicit dynamics, and tissue
+// that moves while it is touched.
 #pragma once
 
 #include <palpate/assembly/averaged_tetrahedra.hpp>

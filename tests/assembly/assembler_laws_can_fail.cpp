@@ -1,4 +1,4 @@
-// A deliberate break for every law of the stiffness of a body.
+// One deliberate error for every check of the stiffness law suite.
 #include <palpate/testing/assembler_laws.hpp>
 
 #include "assembly/bodies.hpp"
@@ -14,7 +14,7 @@ namespace {
 struct Given {
   MatrixX k;
   std::vector<Matrix3> blocks;
-  double leftover = 0.0;  ///< part of y that is kept
+  double leftover = 0.0;  ///< part of the old y that is kept
   explicit Given(MatrixX matrix) : k(std::move(matrix)) {
     for (Index i = 0; i < k.rows() / 3; ++i) blocks.push_back(k.block<3, 3>(3 * i, 3 * i));
   }
@@ -34,14 +34,14 @@ const MatrixX right = testing::dense_matrix(assemble_stiffness<Tet4>(sphere, {})
 
 }  // namespace
 
-TEST_CASE("the laws accept the same matrix given by hand", "[testing][assembly]") {
+TEST_CASE("the law suite accepts the same matrix as a user-defined operator", "[testing][assembly]") {
   CHECK(testing::describe(stiffness_laws(sphere, Given(right))) == "");
   Body<Tet4> soft = sphere;
   for (Matrix6& d : soft.elasticity) d *= 1e-300;
   CHECK(testing::describe(stiffness_laws(soft, Given(1e-300 * right))) == "");
 }
 
-TEST_CASE("stiffness laws can fail", "[testing][assembly]") {
+TEST_CASE("every check of the stiffness law suite can fail", "[testing][assembly]") {
   Given k(right);
   SECTION("symmetric") {
     k.k(0, 5) += 1e-9 * right.maxCoeff();
@@ -58,7 +58,7 @@ TEST_CASE("stiffness laws can fail", "[testing][assembly]") {
     k.leftover = 0.5;
     CHECK(violates(stiffness_laws(sphere, k), "apply overwrites"));
   }
-  SECTION("a spring to the ground: the zero modes are gone") {
+  SECTION("a spring to the ground removes the zero modes") {
     k.k(0, 0) += 1e-6 * right.maxCoeff();
     k.blocks[0] = k.k.topLeftCorner<3, 3>();
     const auto v = stiffness_laws(sphere, k);
@@ -77,14 +77,14 @@ TEST_CASE("stiffness laws can fail", "[testing][assembly]") {
     CHECK(violates(v, "rotation costs nothing"));
     CHECK_FALSE(violates(v, "translation costs nothing"));
   }
-  SECTION("13 times too stiff: only the patch test sees it") {
+  SECTION("13 times too stiff: only the patch test detects it") {
     const auto v = stiffness_laws(sphere, Given(13.0639 * right));
     CHECK(violates(v, "affine patch"));
     CHECK(violates(v, "affine energy"));
     CHECK_FALSE(violates(v, "exact zero modes"));
     CHECK_FALSE(violates(v, "rotation costs nothing"));
   }
-  SECTION("the sign") {
+  SECTION("wrong sign") {
     CHECK(violates(stiffness_laws(sphere, Given(-right)), "no negative mode"));
   }
   SECTION("size and finiteness") {

@@ -1,4 +1,4 @@
-// The force of several tetrahedra at once is that of the plain loop.
+// The batched force of tetrahedra equals that of the plain loop.
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
@@ -21,7 +21,7 @@ M material(double stiffness = 1.0) {
     return {.youngs_modulus = 3e3 * stiffness, .poisson_ratio = 0.4, .density = 1000.0};
 }
 
-/// A block of `cells`, its inner nodes moved, with its upper half another region.
+/// A block of `cells` with displaced inner nodes; its upper half is a second region.
 template <class M>
 HyperelasticBody<Tet4, M> block(std::array<int, 3> cells) {
   Mesh<Tet4> mesh = jittered(box_tet4(Vector3(0.1, 0.08, 0.06), cells, BoxSplit::six), 0.002, Vector3(0.1, 0.08, 0.06));
@@ -38,7 +38,7 @@ VectorX random_displacement(Index dofs, double amount, std::uint64_t seed = 5) {
   return u;
 }
 
-/// Largest difference of two forces, in units of the largest.
+/// Largest difference of two forces, relative to the largest entry.
 double difference(const VectorX& f, const VectorX& exact) {
   return (f - exact).cwiseAbs().maxCoeff() / exact.cwiseAbs().maxCoeff();
 }
@@ -106,7 +106,7 @@ TEST_CASE("batches do not depend on the numbering of the mesh", "[assembly][batc
   CHECK(difference(back, fa) <= 1e-13);
 }
 
-TEST_CASE("blocks may be computed in any order, and give the same bits", "[assembly][batched]") {
+TEST_CASE("blocks can be computed in any order with the same result to the last bit", "[assembly][batched]") {
   const auto body = block<NeoHookean>({12, 10, 8});
   const VectorX u = random_displacement(3 * body.rest.mesh.node_count(), 0.001);
   BatchedTetrahedra<NeoHookean> batched(body);
@@ -122,12 +122,12 @@ TEST_CASE("blocks may be computed in any order, and give the same bits", "[assem
   CHECK(batched.report().smallest_volume_ratio == a.smallest_volume_ratio);
 }
 
-TEST_CASE("turned over, flat and not finite: batches say so", "[assembly][batched]") {
+TEST_CASE("batches report inverted, flat and non-finite elements", "[assembly][batched]") {
   const auto body = block<NeoHookean>({3, 3, 3});
   const auto strict = block<StVenantKirchhoff>({3, 3, 3});
   const Index dofs = 3 * body.rest.mesh.node_count();
   const VectorX wild = random_displacement(dofs, 0.05);
-  compare<double>(body, wild, 1e-13);  // some are inside out
+  compare<double>(body, wild, 1e-13);  // some elements are inverted
   compare<float>(body, wild, 2e-5);
 
   VectorX f(dofs), flat = VectorX::Zero(dofs);
@@ -150,7 +150,7 @@ TEST_CASE("turned over, flat and not finite: batches say so", "[assembly][batche
   }
 }
 
-TEST_CASE("single precision keeps the strain of a body far from where it was", "[assembly][batched]") {
+TEST_CASE("single precision keeps the strain of a body that has moved far", "[assembly][batched]") {
   const auto body = block<NeoHookean>({5, 4, 3});
   VectorX u = random_displacement(3 * body.rest.mesh.node_count(), 0.001);
   for (Index i = 0; i < u.size(); i += 3) u.segment<3>(i) += Vector3(10.0, -20.0, 5.0);
@@ -162,7 +162,7 @@ TEST_CASE("single precision keeps the strain of a body far from where it was", "
   CHECK(difference(f, exact) <= 2e-5);
 }
 
-TEST_CASE("meshes and laws that cannot be are refused", "[assembly][batched]") {
+TEST_CASE("invalid meshes and materials are refused (batched)", "[assembly][batched]") {
   auto body = block<NeoHookean>({2, 2, 2});
   body.materials[1].poisson_ratio = 0.5;
   CHECK_REFUSED(SetupErrorKind::bad_poisson_ratio, BatchedTetrahedra<NeoHookean>{body});

@@ -21,7 +21,7 @@ inline const LinearElastic liver{5e3, 0.45, 1060.0};
 /// The material of the reference matrices of the two cubes.
 inline const LinearElastic reference_material{1000.0, 0.3, 1.0};
 
-/// One material per region, the last for all further ones; no initial strain.
+/// One material per region, the last one for all remaining regions; no initial strain.
 template <Element E>
 Body<E> body_of(Mesh<E> mesh, std::vector<LinearElastic> materials) {
   materials.resize(mesh.region_names.size(), LinearElastic(materials.back()));

@@ -29,7 +29,7 @@ Vector3 total_moment(const VectorX& f, const Body<Tet4>& body = cubes) {
 
 }  // namespace
 
-TEST_CASE("free dofs and prescribed ones", "[assembly][conditions]") {
+TEST_CASE("free and prescribed dofs", "[assembly][conditions]") {
   Scene scene;
   scene.fix("fixed").prescribe("end", {0.1, std::nullopt, std::nullopt});
   const EssentialConditions c = conditions_of(cubes.mesh, scene);
@@ -61,7 +61,7 @@ TEST_CASE("two values for one component are refused, one value twice is not", "[
   CHECK(p.ids_of == SetupIds::nodes);
 }
 
-TEST_CASE("what the mesh does not have is refused", "[assembly][conditions]") {
+TEST_CASE("conditions on missing groups, nodes and faces are refused", "[assembly][conditions]") {
   Scene scene;
   SECTION("unknown group") {
     scene.fix("liver");
@@ -102,7 +102,7 @@ TEST_CASE("what the mesh does not have is refused", "[assembly][conditions]") {
   }
 }
 
-TEST_CASE("loads have the sums they should have", "[assembly][loads]") {
+TEST_CASE("loads have the right sums", "[assembly][loads]") {
   SECTION("traction") {
     const VectorX f = load_of(Scene().traction("end", {10, -2, 3}));
     CHECK(largest(total(f) - Vector3(10, -2, 3)) <= 1e-13);
@@ -112,7 +112,7 @@ TEST_CASE("loads have the sums they should have", "[assembly][loads]") {
     CHECK(largest(total(load_of(Scene().pressure("end", 7.0))) - Vector3(-7, 0, 0)) <= 1e-13);
     CHECK(largest(total(load_of(Scene().pressure("fixed", 7.0))) - Vector3(7, 0, 0)) <= 1e-13);
   }
-  SECTION("pressure on the whole surface has no sum and no moment") {
+  SECTION("pressure on the whole surface has zero sum and zero moment") {
     const Body<Tet4> sphere = body_of(sphere_tet4(1.0, 2), {liver});
     const VectorX f = load_of(Scene().pressure("surface", 1.0), sphere);
     CHECK(largest(total(f)) <= 1e-14);
@@ -120,7 +120,7 @@ TEST_CASE("loads have the sums they should have", "[assembly][loads]") {
     CHECK(largest(f) > 0.01);
     CHECK(largest(total(load_of(Scene().pressure("surface", 1.0)))) <= 1e-14);  // a group the mesh does not list
   }
-  SECTION("a point load is shared") {
+  SECTION("a point load is divided among the nodes") {
     const VectorX f = load_of(Scene().point_load("end", {4, 8, -12}));
     for (Index i = 8; i < 12; ++i) CHECK(f.segment<3>(3 * i) == Vector3(1, 2, -3));
   }
@@ -129,7 +129,7 @@ TEST_CASE("loads have the sums they should have", "[assembly][loads]") {
     CHECK(largest(total(load_of(Scene().body_load("cube_b", {0, 0, 3}))) - Vector3(0, 0, 3)) <= 1e-13);
     CHECK(load_of(Scene().body_load("cube_b", {0, 0, 3})).head(12).isZero(0.0));
   }
-  SECTION("loads add up") {
+  SECTION("loads are added") {
     Scene both, one, other;
     one.traction("end", {1, 2, 3}).point_load("load_point", {0, 0, 1});
     other.traction("end", {1, 2, 3});
@@ -138,7 +138,7 @@ TEST_CASE("loads have the sums they should have", "[assembly][loads]") {
   }
 }
 
-TEST_CASE("nodal masses add up to density times volume", "[assembly][mass]") {
+TEST_CASE("nodal masses sum to density times volume", "[assembly][mass]") {
   CHECK_THAT(nodal_mass(cubes).sum(), Catch::Matchers::WithinRel(2.0, 1e-13));
   const Body<Tet4> two = body_of(two_cubes(), {liver, reference_material});
   CHECK_THAT(nodal_mass(two).sum(), Catch::Matchers::WithinRel(1061.0, 1e-13));
@@ -166,7 +166,7 @@ TEST_CASE("initial strain: sums, regions, energy", "[assembly][strain]") {
   CHECK_THAT(strain_energy(body, VectorX::Zero(36)), Catch::Matchers::WithinRel(5.0 * stored, 1e-12));
 }
 
-TEST_CASE("a material per region", "[assembly][material]") {
+TEST_CASE("one material per region", "[assembly][material]") {
   const Mesh<Tet4> mesh = two_cubes();
   using Materials = RegionMaterials<LinearElastic>;
   const auto young = [&](const Materials& m) {

@@ -1,4 +1,4 @@
-// Turning tetrahedra without a matrix: the force, energy and stiffness of the law, element by element.
+// Co-rotated tetrahedra without a matrix: force, energy and stiffness equal those of the material, element by element.
 #include <palpate/assembly/detail/corotated_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
 
@@ -13,7 +13,7 @@ namespace {
 
 using Law = Corotational<LinearElastic>;
 
-/// A block in two regions, its inner nodes moved.
+/// A block in two regions, with displaced inner nodes.
 HyperelasticBody<Tet4, Law> rotational_block(std::array<int, 3> cells) {
   Mesh<Tet4> mesh = jittered(box_tet4(Vector3(0.1, 0.08, 0.06), cells, BoxSplit::six), 0.002, Vector3(0.1, 0.08, 0.06));
   mesh.region_names = {"below", "above"};
@@ -28,7 +28,7 @@ VectorX wild(Index dofs, double amount) {
   for (double& x : u) x = random.uniform(-amount, amount);
   return u;
 }
-/// Turned about the origin, then moved and deformed.
+/// Rotated about the origin, then displaced and deformed.
 VectorX rotated(const Mesh<Tet4>& mesh, const Matrix3& r, const VectorX& u) {
   VectorX t(u.size());
   for (Index i = 0; i < mesh.node_count(); ++i)
@@ -39,7 +39,7 @@ double apart(const VectorX& a, const VectorX& b) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
 
-/// sum over elements of V grad N_a . A . grad N_b x_b with the law's tangent at held rotation.
+/// sum over elements of V grad N_a . A . grad N_b x_b with the material's tangent at fixed rotation.
 VectorX plain_product(const HyperelasticBody<Tet4, Law>& body, const VectorX& u, const VectorX& x) {
   VectorX y = VectorX::Zero(x.size());
   const Mesh<Tet4>& mesh = body.rest.mesh;
@@ -78,7 +78,7 @@ void compare(const HyperelasticBody<Tet4, Law>& body, const VectorX& u, double t
 
 }  // namespace
 
-TEST_CASE("turning batches give force, energy and product of the law", "[assembly][corotated]") {
+TEST_CASE("co-rotated batches give force, energy and product of the material", "[assembly][corotated]") {
   const Matrix3 rotation = Eigen::AngleAxisd(2.5, Vector3(1, 2, -1).normalized()).toRotationMatrix();
   for (const std::array<int, 3> cells : {std::array{1, 1, 1}, {2, 1, 3}, {5, 4, 3}, {9, 8, 7}}) {
     const auto body = rotational_block(cells);
@@ -91,7 +91,7 @@ TEST_CASE("turning batches give force, energy and product of the law", "[assembl
   }
 }
 
-TEST_CASE("turning batches follow a motion, elements inside out among it", "[assembly][corotated][E5]") {
+TEST_CASE("co-rotated batches follow a motion with inverted elements", "[assembly][corotated][E5]") {
   const auto body = rotational_block({3, 3, 3});
   const LargeStrain<Tet4, Law> plain(body);
   CorotatedTetrahedra<LinearElastic, double> batched(body);
@@ -109,7 +109,7 @@ TEST_CASE("turning batches follow a motion, elements inside out among it", "[ass
   CHECK(worst <= 1e-10 * exact.cwiseAbs().maxCoeff());
 }
 
-TEST_CASE("a body that turns as a whole has no force, at all angles and exactly 180 degrees",
+TEST_CASE("a rigid rotation causes no force, at all angles including exactly 180 degrees",
           "[assembly][corotated][E4]") {
   const auto body = rotational_block({4, 3, 2});
   const Mesh<Tet4>& mesh = body.rest.mesh;
@@ -134,7 +134,7 @@ TEST_CASE("a body that turns as a whole has no force, at all angles and exactly 
   CHECK(worst_single <= 1e-4 * unit);
 }
 
-TEST_CASE("the blocks on the diagonal are those of the product", "[assembly][corotated]") {
+TEST_CASE("the diagonal blocks equal those of the product", "[assembly][corotated]") {
   const auto body = rotational_block({2, 2, 2});
   CorotatedTetrahedra<LinearElastic, double> batched(body);
   const Index dofs = batched.size();
@@ -154,7 +154,7 @@ TEST_CASE("the blocks on the diagonal are those of the product", "[assembly][cor
   CHECK(worst <= 1e-12 * straight.maxCoeff());
 }
 
-TEST_CASE("the product is symmetric and never negative, whatever the state", "[assembly][corotated][E5]") {
+TEST_CASE("the product is symmetric and positive semidefinite in every state", "[assembly][corotated][E5]") {
   const auto body = rotational_block({3, 2, 2});
   CorotatedTetrahedra<LinearElastic, double> batched(body);
   const Index dofs = batched.size();
@@ -174,7 +174,7 @@ TEST_CASE("the product is symmetric and never negative, whatever the state", "[a
   }
 }
 
-TEST_CASE("what is not finite is said, and forgotten with the next state", "[assembly][corotated]") {
+TEST_CASE("non-finite states are reported, without effect on the next state", "[assembly][corotated]") {
   const auto body = rotational_block({3, 2, 2});
   CorotatedTetrahedra<LinearElastic, float> batched(body);
   VectorX u = wild(batched.size(), 0.001), f(u.size()), again(u.size());
@@ -189,7 +189,7 @@ TEST_CASE("what is not finite is said, and forgotten with the next state", "[ass
   }
 }
 
-TEST_CASE("turning batches refuse meshes and laws that cannot be", "[assembly][corotated]") {
+TEST_CASE("co-rotated batches refuse invalid meshes and materials", "[assembly][corotated]") {
   auto body = rotational_block({2, 2, 2});
   body.materials[1].base.poisson_ratio = 0.5;
   CHECK_REFUSED(SetupErrorKind::bad_poisson_ratio, CorotatedTetrahedra<>{body});

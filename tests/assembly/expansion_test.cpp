@@ -11,7 +11,7 @@ using namespace test;
 
 namespace {
 
-/// Displacement under the initial strains of a scene that holds the body.
+/// Displacement under the initial strains of a scene that constrains the body.
 template <Element E>
 VectorX solve(Body<E>& body, const Scene& scene) {
   const EssentialConditions conditions = conditions_of(body.mesh, scene);
@@ -25,7 +25,7 @@ VectorX solve(Body<E>& body, const Scene& scene) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a body that is just held expands without stress", "[assembly][expansion]", Tet4, Tet10, Hex8,
+TEMPLATE_TEST_CASE("a statically determinate body expands without stress", "[assembly][expansion]", Tet4, Tet10, Hex8,
                    Hex20) {
   using E = TestType;
   const auto mesh = [] {
@@ -34,7 +34,7 @@ TEMPLATE_TEST_CASE("a body that is just held expands without stress", "[assembly
     if constexpr (E::nodes == 10) return box_tet10({0.3, 0.2, 0.1}, {3, 2, 1});
     if constexpr (E::nodes == 20) return box_hex20({0.3, 0.2, 0.1}, {3, 2, 1});
   }();
-  Scene scene;  // planes of symmetry through the origin: they do not resist growth about it
+  Scene scene;  // planes of symmetry through the origin do not resist growth about it
   scene.prescribe("x0", {0.0, std::nullopt, std::nullopt});
   scene.prescribe("y0", {std::nullopt, 0.0, std::nullopt});
   scene.prescribe("z0", {std::nullopt, std::nullopt, 0.0});
@@ -50,13 +50,13 @@ TEMPLATE_TEST_CASE("a body that is just held expands without stress", "[assembly
   scene.expand("body", 0.02);
   check(make_body(mesh, liver), 0.02);
   check(make_body(mesh, muscle), 0.02);
-  scene.thermal_strain(everywhere, 2e-4, -150.0);  // adds up: 0.02 - 0.03
+  scene.thermal_strain(everywhere, 2e-4, -150.0);  // sum: 0.02 - 0.03
   check(make_body(mesh, liver), -0.01);
 }
 
-TEST_CASE("one region grows, the other is strained by it", "[assembly][expansion]") {
-  // Two cubes clamped in x at both ends, on rollers elsewhere: a bar with one half growing by e against E. The lateral
-  // growth is free on average only by rollers in y and z, so nu = 0 makes the closed form exact: sigma = -E e / 2.
+TEST_CASE("growth of one region strains the other", "[assembly][expansion]") {
+  // Two cubes clamped in x at both ends, on rollers elsewhere: a bar in which one half grows by e against E. Rollers
+  // in y and z leave the lateral growth free only on average, so nu = 0 makes the closed form exact: sigma = -E e / 2.
   Mesh<Hex8> mesh = box_hex8({2, 1, 1}, {2, 1, 1});
   mesh.regions = {0, 1};
   mesh.region_names = {"left", "right"};
@@ -70,10 +70,10 @@ TEST_CASE("one region grows, the other is strained by it", "[assembly][expansion
   const StressColumns stress = stress_field(body, u).elements;
   for (Index e : {0, 1}) CHECK_THAT(stress(voigt::xx, e), Catch::Matchers::WithinRel(-5.0, 1e-12));
   CHECK_THAT(stress(voigt::yy, 0), Catch::Matchers::WithinAbs(0.0, 1e-12));
-  CHECK_THAT(stress(voigt::yy, 1), Catch::Matchers::WithinRel(-10.0, 1e-12));  // fully held there
+  CHECK_THAT(stress(voigt::yy, 1), Catch::Matchers::WithinRel(-10.0, 1e-12));  // fully constrained there
 }
 
-TEST_CASE("expansions without meaning are refused", "[mesh][expansion]") {
+TEST_CASE("invalid expansions are refused", "[mesh][expansion]") {
   Scene scene;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_REFUSED(SetupErrorKind::non_finite, scene.expand(everywhere, nan));

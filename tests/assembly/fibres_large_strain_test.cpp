@@ -1,4 +1,4 @@
-// Fibres of the mesh at large strain: every element pulls along its own.
+// Fibre directions of the mesh at large strain: every element has its own.
 #include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
@@ -42,8 +42,8 @@ VectorX stirred(Index dofs, double amount) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a body turned with its fibres answers with turned forces", "[assembly][large_strain][fibres]", Tet4,
-                   Hex8) {
+TEMPLATE_TEST_CASE("rotating body and fibres rotates the forces (large strain)", "[assembly][large_strain][fibres]",
+                   Tet4, Hex8) {
   const Mesh<TestType> mesh = block_of_fibres<TestType>(false);
   testing::Random random(5);
   const Matrix3 r = testing::random_rotation(random);
@@ -64,8 +64,7 @@ TEMPLATE_TEST_CASE("a body turned with its fibres answers with turned forces", "
   CHECK(std::abs(body.energy(u) - rotated_body.energy(v)) <= 1e-12 * body.energy(u));
 }
 
-TEST_CASE("with fibres force is the derivative of the energy, and the tangent that of the force",
-          "[assembly][large_strain][fibres]") {
+TEST_CASE("with fibres, force and tangent are derivatives of energy and force", "[assembly][large_strain][fibres]") {
   const auto body = pulled_along(block_of_fibres<Tet4>(false));
   const VectorX u = stirred(body.size(), 5e-3), d = stirred(body.size(), 1.0).cwiseProduct(u.cwiseSign());
   const double h = 1e-7;
@@ -81,7 +80,7 @@ TEST_CASE("with fibres force is the derivative of the energy, and the tangent th
   CHECK((kd - (more - less) / (2.0 * h)).norm() <= 1e-6 * kd.norm());
 }
 
-TEST_CASE("fibres of the mesh count before the law's own, and equal ones give its answer",
+TEST_CASE("mesh fibres override the material's own; equal ones give the same result",
           "[assembly][large_strain][fibres]") {
   Mesh<Tet4> mesh = block_of_fibres<Tet4>(true);
   FibredGel own = fibred_gel;
@@ -100,13 +99,12 @@ TEST_CASE("fibres of the mesh count before the law's own, and equal ones give it
   CHECK(f.cwiseAbs().maxCoeff() <= 1e-14 * g.cwiseAbs().maxCoeff());
 }
 
-TEST_CASE("what cannot have fibres refuses them, and fibres that are none are refused",
-          "[assembly][large_strain][fibres][extreme]") {
+TEST_CASE("unsupported and invalid fibres are refused", "[assembly][large_strain][fibres][extreme]") {
   Mesh<Tet4> mesh = block_of_fibres<Tet4>(false);
   const auto body = make_hyperelastic_body(mesh, std::vector<FibredGel>{fibred_gel});
   CHECK_REFUSED(SetupErrorKind::unsupported, BatchedTetrahedra<FibredGel>{body});
   CHECK_REFUSED(SetupErrorKind::unsupported, AveragedTetrahedra<FibredGel>{body});
-  // a law without a direction does not care
+  // a material without a direction ignores fibres
   CHECK(BatchedTetrahedra<NeoHookean>(make_hyperelastic_body(mesh, std::vector<NeoHookean>{fibred_gel.base})).size() ==
         3 * mesh.node_count());
   mesh.fibres[3] *= 0.5;
@@ -115,7 +113,7 @@ TEST_CASE("what cannot have fibres refuses them, and fibres that are none are re
   CHECK_REFUSED(SetupErrorKind::bad_argument, pulled_along(mesh));
 }
 
-TEST_CASE("materials by number: one per region, each admissible", "[assembly][large_strain][extreme]") {
+TEST_CASE("materials by region number: one per region, each admissible", "[assembly][large_strain][extreme]") {
   Mesh<Tet4> mesh = box_tet4({0.3, 0.2, 0.1}, {2, 2, 2});
   mesh.region_names = {"below", "above"};
   for (Index e = 0; e < mesh.element_count(); ++e) mesh.regions.push_back(static_cast<int>(e % 2));

@@ -1,4 +1,4 @@
-// Bodies with fibres, a direction per element.
+// Bodies with one fibre direction per element.
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/matrix_free.hpp>
 #include <palpate/material/transversely_isotropic.hpp>
@@ -29,7 +29,7 @@ void give_fibres(Mesh<E>& mesh) {
   for (Index e = 0; e < mesh.element_count(); ++e) mesh.fibres.push_back(random_direction(random));
 }
 
-/// The same body without fibres in the mesh: every element a region with its own turned material.
+/// The same body without fibres in the mesh: every element is a region with its own rotated material.
 template <Element E>
 Body<E> by_regions(Mesh<E> mesh) {
   std::vector<TransverselyIsotropic> materials;
@@ -66,8 +66,8 @@ std::vector<std::int64_t> bad_elements(const Mesh<Tet4>& mesh) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a direction per element equals a turned material per region", "[assembly][fibres]", Tet4, Tet10,
-                   Hex8, MeanDilatation<Hex8>) {
+TEMPLATE_TEST_CASE("a fibre direction per element equals a rotated material per region", "[assembly][fibres]", Tet4,
+                   Tet10, Hex8, MeanDilatation<Hex8>) {
   using E = TestType;
   Mesh<E> mesh;
   const auto take = [&](auto box) {
@@ -93,23 +93,23 @@ TEMPLATE_TEST_CASE("a direction per element equals a turned material per region"
   same.initial_strain.assign(same.initial_strain.size(), strain);
   CHECK((initial_strain_load(body) - initial_strain_load(same)).cwiseAbs().maxCoeff() == 0.0);
 
-  Mesh<E> along_x = mesh;  // and it matters
+  Mesh<E> along_x = mesh;  // the direction matters
   along_x.fibres.assign(along_x.fibres.size(), Vector3::UnitX());
   CHECK((forces(make_body(along_x, muscle), u) - f).norm() > 0.05 * f.norm());
-  CHECK(make_body(along_x, muscle).elasticity.size() == 1);  // equal neighbours share
+  CHECK(make_body(along_x, muscle).elasticity.size() == 1);  // equal neighbours share one matrix
   along_x.fibres.clear();
   CHECK(forces(make_body(along_x, muscle), u) == forces(make_body(along_x, muscle), u));
   CHECK(make_body(along_x, muscle).materials.empty());
 }
 
-TEST_CASE("a body with fibres keeps the laws of assembly", "[assembly][fibres][laws]") {
+TEST_CASE("a body with fibres passes the stiffness law suite", "[assembly][fibres][laws]") {
   Mesh<Tet4> mesh = box_tet4({0.3, 0.2, 0.1}, {2, 2, 1});
   give_fibres(mesh);
   const Body<Tet4> body = make_body(mesh, muscle);
   CHECK(testing::describe(testing::stiffness_laws(body, assemble_stiffness<Tet4>(body, {}))) == "");
 }
 
-TEST_CASE("turning body and fibres turns the forces", "[assembly][fibres][metamorphic]") {
+TEST_CASE("rotating body and fibres rotates the forces", "[assembly][fibres][metamorphic]") {
   testing::Random random(103);
   Mesh<Tet4> mesh = jittered(box_tet4({3, 2, 1}, {3, 2, 1}), 0.1, {3, 2, 1});
   give_fibres(mesh);
@@ -130,14 +130,14 @@ TEST_CASE("turning body and fibres turns the forces", "[assembly][fibres][metamo
   }
 }
 
-TEST_CASE("isotropic constants do not care for fibres", "[assembly][fibres]") {
+TEST_CASE("isotropic materials ignore fibres", "[assembly][fibres]") {
   Mesh<Tet4> mesh = two_cubes();
   const auto plain = make_body(mesh, liver);
   give_fibres(mesh);
   const TransverselyIsotropic iso{5e3, 5e3, 0.45, 0.45, liver.shear_modulus(), Vector3::UnitX(), 1060.0};
   const VectorX u = waves(3 * mesh.node_count()), f = forces(plain, u);
   CHECK((forces(make_body(mesh, iso), u) - f).norm() <= 1e-12 * f.norm());
-  CHECK(forces(make_body(mesh, liver), u) == f);  // a material that does not ask
+  CHECK(forces(make_body(mesh, liver), u) == f);  // a material that does not use fibres
   CHECK(make_body(mesh, liver).materials.empty());
 }
 
@@ -151,7 +151,7 @@ TEST_CASE("materials differ between regions and fibres between elements", "[asse
     CHECK(body.elasticity_of(e) == (mesh.region(e) == 0 ? muscle : soft).elasticity(mesh.fibre(e)));
 }
 
-TEST_CASE("fibres come along through admission, promotion and refinement", "[mesh][fibres]") {
+TEST_CASE("admission, promotion and refinement keep the fibres", "[mesh][fibres]") {
   Mesh<Tet4> mesh = box_tet4({3, 2, 1}, {2, 1, 1});
   give_fibres(mesh);
   CHECK(admit<Tet4>(mesh).mesh.fibres == mesh.fibres);
@@ -160,7 +160,7 @@ TEST_CASE("fibres come along through admission, promotion and refinement", "[mes
   REQUIRE(fine.fibres.size() == 8 * mesh.fibres.size());
   for (std::size_t e = 0; e < fine.fibres.size(); ++e) CHECK(fine.fibres[e] == mesh.fibres[e / 8]);
 
-  Mesh<Tet4> damaged = mesh;  // an element twice, one flat, one inverted
+  Mesh<Tet4> damaged = mesh;  // a duplicate element, a flat one, an inverted one
   damaged.elements.insert(damaged.elements.begin() + 3, damaged.elements[1]);
   damaged.fibres.insert(damaged.fibres.begin() + 3, Vector3::UnitZ());
   damaged.elements.insert(damaged.elements.begin() + 5, {0, 1, 2, 2});
@@ -173,7 +173,7 @@ TEST_CASE("fibres come along through admission, promotion and refinement", "[mes
   CHECK(admit<Tet4>(damaged, mend).mesh.fibres == mesh.fibres);
 }
 
-TEST_CASE("fibres of somebody else's arrays", "[mesh][fibres]") {
+TEST_CASE("fibres in user-defined arrays", "[mesh][fibres]") {
   Mesh<Tet4> mesh = two_cubes();
   give_fibres(mesh);
   std::vector<double> positions, fibres;
@@ -190,7 +190,7 @@ TEST_CASE("fibres of somebody else's arrays", "[mesh][fibres]") {
   CHECK_REFUSED(SetupErrorKind::bad_argument, arrays.fibres(fibres));
 }
 
-TEST_CASE("fibres that are no directions are refused by element", "[mesh][fibres][extreme]") {
+TEST_CASE("invalid fibre directions are refused by element", "[mesh][fibres][extreme]") {
   Mesh<Tet4> mesh = two_cubes();
   give_fibres(mesh);
   const double nan = std::numeric_limits<double>::quiet_NaN();

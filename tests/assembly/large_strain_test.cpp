@@ -27,7 +27,7 @@ Mesh<E> crooked_box() {
   if constexpr (E::nodes == 8) mesh = box_hex8({0.3, 0.2, 0.1}, {2, 2, 2});
   if constexpr (E::nodes == 10) mesh = box_tet10({0.3, 0.2, 0.1}, {2, 1, 1});
   if constexpr (E::nodes == 20) mesh = box_hex20({0.3, 0.2, 0.1}, {1, 1, 1});
-  for (Vector3& x : mesh.positions)  // a smooth bend keeps every element the right way round
+  for (Vector3& x : mesh.positions)  // a smooth bend that inverts no element
     x += Vector3(0.1 * x[1] * x[2], 0.2 * x[0] * x[0], 0.3 * x[0] * x[1]);
   return mesh;
 }
@@ -74,7 +74,7 @@ TEMPLATE_TEST_CASE("force and tangent are derivatives of the energy", "[assembly
   CHECK(((ahead - behind) / (2.0 * h) - kd).norm() <= 1e-7 * kd.norm());
 }
 
-TEMPLATE_TEST_CASE("a homogeneous deformation has its closed form", "[assembly][large_strain]", Tet4, Tet10, Hex8,
+TEMPLATE_TEST_CASE("a homogeneous deformation equals the closed form", "[assembly][large_strain]", Tet4, Tet10, Hex8,
                    Hex20) {
   const auto body = elastic<TestType>();
   Matrix3 a;
@@ -95,7 +95,7 @@ TEMPLATE_TEST_CASE("a homogeneous deformation has its closed form", "[assembly][
   CHECK((moment - volume * p).norm() <= 1e-12 * volume * p.norm());
 }
 
-TEMPLATE_TEST_CASE("a rigid motion costs nothing, and turns what is deformed", "[assembly][large_strain]", Tet4, Tet10,
+TEMPLATE_TEST_CASE("a rigid motion needs no energy and rotates the forces", "[assembly][large_strain]", Tet4, Tet10,
                    Hex8, Hex20) {
   const auto body = elastic<TestType>();
   const Index n = body.size();
@@ -128,7 +128,7 @@ TEMPLATE_TEST_CASE("a rigid motion costs nothing, and turns what is deformed", "
   CHECK(moment.norm() <= 1e-13 * size * static_cast<double>(n));
 }
 
-TEMPLATE_TEST_CASE("at rest the tangent is the stiffness of small strain", "[assembly][large_strain]", Tet4, Tet10,
+TEMPLATE_TEST_CASE("at rest the tangent equals the small-strain stiffness", "[assembly][large_strain]", Tet4, Tet10,
                    Hex8, Hex20) {
   const auto body = elastic<TestType>();
   const VectorX d = random_vector(body.size(), 1.0, 4);
@@ -140,7 +140,7 @@ TEMPLATE_TEST_CASE("at rest the tangent is the stiffness of small strain", "[ass
   CHECK((a - b).norm() <= 1e-13 * b.norm());
 }
 
-TEST_CASE("elements inside out are counted, and a law that does not hold there says so",
+TEST_CASE("inverted elements are counted, and inadmissible materials are reported",
           "[assembly][large_strain][extreme][E5]") {
   const auto soft = elastic<Tet4>();
   const auto barred = elastic<Tet4, NeoHookeanLogarithmic>({5e3, 0.4, 1e3});
@@ -168,7 +168,7 @@ TEST_CASE("elements inside out are counted, and a law that does not hold there s
   CHECK(report.worst_element >= 0);
 }
 
-TEST_CASE("a mesh that is inside out at rest is refused", "[assembly][large_strain]") {
+TEST_CASE("a mesh with inverted elements at rest is refused", "[assembly][large_strain]") {
   Mesh<Tet4> mesh = crooked_box<Tet4>();
   std::swap(mesh.elements[3][0], mesh.elements[3][1]);
   const SetupProblem problem =

@@ -1,4 +1,4 @@
-// Volumetric locking: what it does to plain elements, and what takes it away.
+// Volumetric locking of plain elements, and elements that avoid it.
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/matrix_free.hpp>
 #include <palpate/element/smoothed.hpp>
@@ -14,13 +14,14 @@ using namespace test;
 
 namespace {
 
-/// The same arrays read as another element.
+/// The same arrays as a mesh of another element type.
 template <Element To, Element From>
 Mesh<To> as(const Mesh<From>& mesh) {
   return {mesh.positions, mesh.elements, mesh.regions, mesh.region_names, mesh.groups};
 }
 
-/// A beam 4 x 1 x 1 m, clamped at x = 0, E = 1 Pa, sheared by 1e-3 N spread over its end: how far the end sinks.
+/// Tip deflection of a beam 4 x 1 x 1 m, clamped at x = 0, E = 1 Pa, with a shear force of 1e-3 N distributed over its
+/// end.
 template <Element E>
 double tip_deflection(const Mesh<E>& mesh, double nu) {
   const Scene scene = Scene().fix("x0").traction("x1", {0.0, 0.0, -1e-3});
@@ -33,14 +34,14 @@ double tip_deflection(const Mesh<E>& mesh, double nu) {
   const BlockMatrix k = assemble_stiffness<E>(body, {});
   const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower> solver(free_matrix(k, conditions));
   REQUIRE(solver.info() == Eigen::Success);
-  return free.dot(solver.solve(free)) / 1e-3;  // mean over the end, as the load is
+  return free.dot(solver.solve(free)) / 1e-3;  // mean over the end, weighted like the load
 }
 
 using Cured = MeanDilatation<Hex8>;
 
 }  // namespace
 
-TEST_CASE("MeanDilatation keeps the laws of a stiffness", "[assembly][locking]") {
+TEST_CASE("MeanDilatation passes the stiffness law suite", "[assembly][locking]") {
   Mesh<Cured> mesh = as<Cured>(box_hex8({1, 2, 3}, {2, 2, 1}));
   testing::Random random(67);
   for (Vector3& x : mesh.positions) x += random.vector<3>(-0.1, 0.1);
@@ -54,7 +55,7 @@ TEST_CASE("MeanDilatation keeps the laws of a stiffness", "[assembly][locking]")
   }
 }
 
-TEST_CASE("MeanDilatation: one change of volume in an element, and the energy of K", "[assembly][locking]") {
+TEST_CASE("MeanDilatation: one volume change per element, and the energy equals that of K", "[assembly][locking]") {
   testing::Random random(71);
   ElementNodes<Cured> x = Hex8::reference_nodes(), u;
   for (int a = 0; a < 8; ++a) {
@@ -87,7 +88,7 @@ TEST_CASE("MeanDilatation: one change of volume in an element, and the energy of
 
 TEST_CASE("near incompressibility Hex8 locks, MeanDilatation<Hex8> and quadratic elements do not",
           "[assembly][locking]") {
-  // The converged values 0.2636, 0.2584 and 0.2559 are by Taylor-Hood elements on fine meshes, to 0.3 %.
+  // Converged values 0.2636, 0.2584 and 0.2559: Taylor-Hood elements on fine meshes, to 0.3 %.
   const Mesh<Hex8> coarse = box_hex8({4, 1, 1}, {16, 4, 4});
   const auto error = [](double deflection, double exact) { return deflection / exact - 1.0; };
   for (const auto& [nu, exact] : {std::pair{0.3, 0.2636}, std::pair{0.45, 0.2584}, std::pair{0.499, 0.2559}}) {
@@ -115,7 +116,7 @@ TEST_CASE("near incompressibility Tet4 locks, Smoothed<Tet4> does not", "[assemb
     INFO("nu " << nu << ": Tet4 " << plain << ", Smoothed<Tet4> " << cured);
     CHECK(std::abs(cured) < 0.12);
     CHECK(std::abs(cured) < 0.4 * std::abs(plain));
-    CHECK(cured < before);  // stiffer with nu, but ever less so
+    CHECK(cured < before);  // stiffer with nu, at a decreasing rate
     before = cured;
   }
 }

@@ -22,7 +22,7 @@ Mesh<E> box(const Vector3& size, std::array<int, 3> cells) {
   if constexpr (E::nodes == 20) return box_hex20(size, cells);
 }
 
-/// v M v of the motion v(x) at every node.
+/// v M v for the velocity field v(x) at every node.
 template <Element E>
 double twice_kinetic_energy(const Mesh<E>& mesh, const MassMatrix& m, const std::function<Vector3(const Vector3&)>& v) {
   VectorX nodal(m.size()), moved(m.size());
@@ -45,7 +45,7 @@ TEMPLATE_TEST_CASE("total mass and inertia of a block", "[assembly][mass]", Tet4
   const Vector3 along(0.3, -0.4, 1.2);  // norm 1.3
   CHECK_THAT(twice_kinetic_energy(body.mesh, m, [&](const Vector3&) { return along; }), WithinRel(1.69 * mass, 1e-12));
 
-  // Koenig: a turn w about p has the energy of its centre and of its own inertia, m/12 (b^2 + c^2) about each axis.
+  // Koenig: a rotation w about p has the energy of its centre plus that of its own inertia, m/12 (b^2 + c^2) per axis.
   const Vector3 w(2.0, -1.0, 3.0), p(0.1, 0.2, 0.3), centre = origin + 0.5 * size, s = size.cwiseAbs2();
   const Vector3 inertia = mass / 12.0 * Vector3(s[1] + s[2], s[0] + s[2], s[0] + s[1]);
   const double exact = mass * w.cross(centre - p).squaredNorm() + w.cwiseAbs2().dot(inertia);
@@ -58,7 +58,7 @@ TEMPLATE_TEST_CASE("total mass and inertia of a block", "[assembly][mass]", Tet4
   CHECK_THAT(nodal_mass(body).sum(), WithinRel(mass, 1e-12));
 }
 
-TEST_CASE("the mass of two cubes is that of another code", "[assembly][mass][oracle]") {
+TEST_CASE("the mass of two cubes equals that of another code", "[assembly][mass][oracle]") {
   const MatrixX reference = read_matrix(two_cubes_folder + "M_consistent_getfem.csv");
   if (reference.size() == 0) {
     WARN("skipped: no reference in the tree");
@@ -110,7 +110,7 @@ TEMPLATE_TEST_CASE("mass does not depend on the order of nodes and elements", "[
   }
 }
 
-TEST_CASE("the mass of the free dofs is a part of the whole", "[assembly][mass]") {
+TEST_CASE("the mass of the free dofs is part of the full mass matrix", "[assembly][mass]") {
   const Body<Tet10> body = body_of(box<Tet10>({0.3, 0.2, 0.1}, {2, 1, 1}), {liver});
   Scene scene;
   scene.prescribe("x0", {0.0, std::nullopt, 0.0});
@@ -126,7 +126,7 @@ TEST_CASE("the mass of the free dofs is a part of the whole", "[assembly][mass]"
   CHECK((product - expected).norm() <= 1e-14 * expected.norm());
 }
 
-TEST_CASE("no mass of inverted elements or without numbers", "[assembly][mass]") {
+TEST_CASE("inverted elements and non-finite masses are refused", "[assembly][mass]") {
   Body<Tet4> inverted = body_of(two_cubes(), {reference_material});
   std::swap(inverted.mesh.elements[4][0], inverted.mesh.elements[4][1]);
   CHECK_REFUSED(SetupErrorKind::inverted_element, assemble_mass(inverted));

@@ -1,4 +1,4 @@
-// Tetrahedra whose strain is an average over neighbours.
+// Tetrahedra with strain averaged over neighbours.
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/matrix_free.hpp>
 #include <palpate/element/tet4.hpp>
@@ -14,7 +14,7 @@ namespace {
 
 using Averaged = Smoothed<Tet4>;
 
-/// A box of 3 x 2 x 2 distorted cells in two regions, the border between them a plane.
+/// A box of 3 x 2 x 2 distorted cells in two regions with a plane border.
 Mesh<Averaged> box() {
   const Vector3 size(3, 2, 2);
   const Mesh<Tet4> plain = box_tet4(size, {4, 2, 2}, BoxSplit::six);
@@ -30,8 +30,8 @@ Mesh<Averaged> box() {
   return mesh;
 }
 
-/// Two laws that change from element to element, as along fibres.
-void mix_laws(Body<Averaged>& body) {
+/// Two materials that alternate between elements, as along fibres.
+void mix_materials(Body<Averaged>& body) {
   testing::Random random(17);
   body.elasticity = {orthotropic(), 3.0 * orthotropic(), liver.elasticity()};
   for (Index e = 0; e < body.mesh.element_count(); ++e)
@@ -45,18 +45,18 @@ VectorX random_displacement(const Mesh<Averaged>& mesh) {
 
 }  // namespace
 
-TEST_CASE("Smoothed<Tet4> keeps the laws of a stiffness, stored and not", "[assembly][smoothed]") {
+TEST_CASE("Smoothed<Tet4> passes the stiffness law suite, stored and matrix-free", "[assembly][smoothed]") {
   const int materials = GENERATE(1, 2, 3, 4);
   Body<Averaged> body = body_of(box(), {liver, materials == 2 ? LinearElastic{2e5, 0.2, 900.0} : liver});
   if (materials == 3) body.elasticity = {orthotropic(), 3.0 * orthotropic()};
-  if (materials == 4) mix_laws(body);
+  if (materials == 4) mix_materials(body);
   const BlockMatrix stored = assemble_stiffness<Averaged>(body, {});
   const MatrixFreeStiffness<Averaged> free(body, {});
   CHECK(testing::describe(testing::stiffness_laws(body, stored)) == "");
   CHECK(testing::describe(testing::same_stiffness_laws(stored, free)) == "");
 }
 
-TEST_CASE("Smoothed<Tet4>: domains fill the body, and their gradients sum to nothing", "[assembly][smoothed]") {
+TEST_CASE("Smoothed<Tet4>: domains fill the body, and their gradients sum to zero", "[assembly][smoothed]") {
   const Mesh<Averaged> mesh = box();
   const StrainDomains<Averaged> domains(mesh);
   double deviatoric = 0.0, volumetric = 0.0;
@@ -77,11 +77,11 @@ TEST_CASE("Smoothed<Tet4>: domains fill the body, and their gradients sum to not
   CHECK_THAT(volumetric, Catch::Matchers::WithinRel(12.0, 1e-13));
 }
 
-TEST_CASE("Smoothed<Tet4>: energy, forces and stress belong together", "[assembly][smoothed]") {
+TEST_CASE("Smoothed<Tet4>: energy, forces and stress are consistent", "[assembly][smoothed]") {
   Body<Averaged> body = body_of(box(), {liver, {2e5, 0.2, 900.0}});
   const int materials = GENERATE(1, 2, 3);
   if (materials == 2) body.elasticity = {orthotropic(), 3.0 * orthotropic()};
-  if (materials == 3) mix_laws(body);
+  if (materials == 3) mix_materials(body);
   body.initial_strain[0] << 0.01, -0.02, 0.03, 0.04, 0.05, -0.06;
   const VectorX u = 0.1 * random_displacement(body.mesh);
   VectorX force(u.size());
@@ -97,7 +97,7 @@ TEST_CASE("Smoothed<Tet4>: energy, forces and stress belong together", "[assembl
   }
   CHECK_THAT(strain_energy(body, u), Catch::Matchers::WithinRel(0.5 * u.dot(force) - u.dot(load) + at_rest, 1e-12));
 
-  // the stress of every element makes the forces that K makes
+  // the stress of every element gives the same forces as K
   const auto stress = smoothed_state(body, u).stress;
   VectorX made = VectorX::Zero(u.size());
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
@@ -108,7 +108,7 @@ TEST_CASE("Smoothed<Tet4>: energy, forces and stress belong together", "[assembl
   CHECK(largest(made - (force - load)) <= 1e-13 * largest(force));
 }
 
-TEST_CASE("Smoothed<Tet4>: a uniform initial strain is undone by its displacement", "[assembly][smoothed]") {
+TEST_CASE("Smoothed<Tet4>: a uniform initial strain is cancelled by its displacement", "[assembly][smoothed]") {
   Body<Averaged> body = body_of(box(), {liver, {2e5, 0.2, 900.0}});
   Vector6 strain;
   strain << 0.01, -0.02, 0.03, 0.04, 0.05, -0.06;
@@ -125,7 +125,7 @@ TEST_CASE("Smoothed<Tet4>: a uniform initial strain is undone by its displacemen
 }
 
 TEST_CASE("Smoothed<Tet4>: averages stop at the border of a material", "[assembly][smoothed]") {
-  // Pulled along x, two blocks in series: the strain jumps at the border, and both parts are exact.
+  // Two blocks in series pulled along x: the strain jumps at the border, and both parts are exact.
   const Body<Averaged> body = body_of(box(), {{1e4, 0.0, 1.0}, {3e4, 0.0, 1.0}});
   VectorX u = VectorX::Zero(3 * body.mesh.node_count());
   for (Index i = 0; i < body.mesh.node_count(); ++i) {

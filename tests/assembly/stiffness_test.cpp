@@ -35,7 +35,7 @@ Mesh<Tet4> twice(const Mesh<Tet4>& one) {
 
 }  // namespace
 
-TEST_CASE("assembled and matrix-free stiffness keep the laws", "[assembly][laws]") {
+TEST_CASE("assembled and matrix-free stiffness pass the law suite", "[assembly][laws]") {
   SECTION("two cubes") {
     check_laws(body_of(two_cubes(), {reference_material}));
   }
@@ -48,10 +48,10 @@ TEST_CASE("assembled and matrix-free stiffness keep the laws", "[assembly][laws]
   SECTION("distorted box") {
     check_laws(body_of(jittered(box_tet4({1, 2, 3}, {3, 2, 2}), 0.1, {1, 2, 3}), {liver}));
   }
-  SECTION("a micrometre") {
+  SECTION("a size of one micrometre") {
     check_laws(body_of(sphere_tet4(1e-6, 1), {liver}));
   }
-  SECTION("two pieces have twelve rigid motions") {
+  SECTION("two separate bodies have twelve rigid motions") {
     check_laws(body_of(twice(two_cubes()), {liver}), 2);
   }
   SECTION("an orthotropic body") {
@@ -80,7 +80,7 @@ TEST_CASE("assembled and matrix-free stiffness keep the laws", "[assembly][laws]
   }
 }
 
-TEST_CASE("K of the two cubes is that of another code", "[assembly][oracle]") {
+TEST_CASE("K of the two cubes equals that of another code", "[assembly][oracle]") {
   const MatrixX reference = read_matrix(two_cubes_folder + "K_getfem.csv");
   REQUIRE(reference.rows() == 36);
   REQUIRE(reference.cols() == 36);
@@ -89,14 +89,14 @@ TEST_CASE("K of the two cubes is that of another code", "[assembly][oracle]") {
   CHECK(largest(testing::dense_matrix(MatrixFreeStiffness<Tet4>(body, {})) - reference) <= 1e-12 * largest(reference));
 }
 
-TEST_CASE("K of a body is the closed form", "[assembly][closed_form]") {
+TEST_CASE("K of a body equals the closed form", "[assembly][closed_form]") {
   const Body<Tet4> body = body_of(two_cubes(), {liver, {2e5, -0.3, 0.0}});
   const auto exact = closed_form_stiffness<long double>(body.mesh, {liver, {2e5, -0.3, 0.0}});
   const MatrixX k = testing::dense_matrix(assemble_stiffness<Tet4>(body, {}));
   CHECK(largest(k.cast<long double>() - exact) <= 1e-14 * largest(exact));
 }
 
-TEST_CASE("the pattern holds each pair of neighbours once", "[assembly][pattern]") {
+TEST_CASE("the pattern contains each pair of neighbours once", "[assembly][pattern]") {
   const Mesh<Tet4> mesh = two_cubes();
   const BlockPattern pattern = block_pattern(mesh);
   REQUIRE(pattern.rows() == 12);
@@ -157,9 +157,9 @@ TEST_CASE("assembly can be cancelled", "[assembly]") {
   CHECK_REFUSED(SetupErrorKind::cancelled, MatrixFreeStiffness<Tet4>(body, limits));
 }
 
-TEST_CASE("an element that is inside out at an integration point is refused", "[assembly][extreme]") {
+TEST_CASE("an element that is inverted at an integration point is refused", "[assembly][extreme]") {
   Mesh<Hex8> mesh = box_hex8({1, 1, 1}, {2, 2, 2});
-  mesh.positions[13] = Vector3(0.05, 0.05, 0.05);  // the middle node, into a corner
+  mesh.positions[13] = Vector3(0.05, 0.05, 0.05);  // the middle node, moved into a corner
   const auto problem = refusal([&] { assemble_stiffness<Hex8>(body_of(mesh, {liver}), {}); });
   CHECK(problem.kind == SetupErrorKind::inverted_element);
   CHECK(problem.ids == std::vector<std::int64_t>{0});

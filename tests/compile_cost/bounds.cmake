@@ -1,8 +1,9 @@
-# What compiling may cost at most, without a clock. All bounds are here; a change that needs a higher one says why.
+# Upper bounds of the compile cost, by counts and not by time. All bounds are here; a change that raises one must state
+# why.
 #
-# <program>_<mode>_percent    what the preprocessor hands to the compiler, in percent of what it hands over for a sparse
-#                             solve with plain Eigen (benchmarks/compile_time/programs/unit.cpp)
-# <program>_<mode>_functions  functions of palpate and Eigen that the program compiles for itself (-O0: nothing inlined)
+# <program>_<mode>_percent    bytes after the preprocessor, in percent of those of a sparse solve with plain Eigen
+#                             (benchmarks/compile_time/programs/unit.cpp)
+# <program>_<mode>_functions  functions of palpate and Eigen compiled in the program itself (-O0: nothing inlined)
 set(readme_compiled_percent 115)
 set(readme_header_only_percent 180)
 set(readme_compiled_functions 1550)

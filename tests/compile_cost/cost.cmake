@@ -1,4 +1,4 @@
-# Counts what PROGRAM (readme or mesh_only) costs to compile, and compares it with bounds.cmake.
+# Measures the compile cost of PROGRAM (readme or mesh_only) by counts, and compares it with bounds.cmake.
 cmake_minimum_required(VERSION 3.21)
 include(${CMAKE_CURRENT_LIST_DIR}/../linking/compiler.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/bounds.cmake)
@@ -6,19 +6,19 @@ include(${CMAKE_CURRENT_LIST_DIR}/bounds.cmake)
 set(source ${PROGRAMS}/${PROGRAM}.cpp)
 if(PROGRAM STREQUAL "readme")
   set(source ${WORK}/readme.cpp)
-  must_succeed("README.md has no program" ${CMAKE_COMMAND} -DREADME=${README} -DSOURCE=${source}
+  must_succeed("README.md contains no program" ${CMAKE_COMMAND} -DREADME=${README} -DSOURCE=${source}
                -P ${CMAKE_CURRENT_LIST_DIR}/../readme/extract.cmake)
 endif()
 
 # preprocess(<source> <variable for the bytes> <flags...>)
 function(preprocess source bytes)
-  must_succeed("${source} is not preprocessed" ${base} ${search} ${ARGN} -E -P ${source} -o ${WORK}/preprocessed.ii)
+  must_succeed("${source} cannot be preprocessed" ${base} ${search} ${ARGN} -E -P ${source} -o ${WORK}/preprocessed.ii)
   file(SIZE ${WORK}/preprocessed.ii size)
   set(${bytes} ${size} PARENT_SCOPE)
 endfunction()
 
-# hold(<bound> <value>): says both; sets failed when the value is larger.
-macro(hold bound value)
+# check_bound(<bound> <value>): prints both; sets failed when the value is larger.
+macro(check_bound bound value)
   message(STATUS "${bound}: ${value}, at most ${${bound}}")
   if("${${bound}}" STREQUAL "" OR ${value} GREATER "${${bound}}")
     set(failed TRUE)
@@ -32,10 +32,10 @@ preprocess(${source} compiled -DPALPATE_COMPILED)
 message(STATUS "bytes after the preprocessor: unit ${unit}, header-only ${header_only}, compiled ${compiled}")
 foreach(mode header_only compiled)
   math(EXPR percent "100 * ${${mode}} / ${unit}")
-  hold(${PROGRAM}_${mode}_percent ${percent})
+  check_bound(${PROGRAM}_${mode}_percent ${percent})
 endforeach()
 
-# count_functions(<variable> <flags...>): functions of palpate and Eigen that the program compiles for itself.
+# count_functions(<variable> <flags...>): number of functions of palpate and Eigen compiled in the program itself.
 function(count_functions count)
   compile(${source} program.o -w ${ARGN})
   execute_process(COMMAND ${NM} -C --defined-only ${WORK}/program.o RESULT_VARIABLE result OUTPUT_VARIABLE symbols)
@@ -47,11 +47,11 @@ function(count_functions count)
   set(${count} ${functions} PARENT_SCOPE)
 endfunction()
 count_functions(functions -DPALPATE_COMPILED)
-hold(${PROGRAM}_compiled_functions ${functions})
+check_bound(${PROGRAM}_compiled_functions ${functions})
 if(DEFINED ${PROGRAM}_header_only_functions)
   count_functions(functions)
-  hold(${PROGRAM}_header_only_functions ${functions})
+  check_bound(${PROGRAM}_header_only_functions ${functions})
 endif()
 if(failed)
-  message(FATAL_ERROR "it costs more than tests/compile_cost/bounds.cmake allows")
+  message(FATAL_ERROR "the compile cost exceeds a bound of tests/compile_cost/bounds.cmake")
 endif()

@@ -76,7 +76,7 @@ TEST_CASE("a face can be touched if it has triangles", "[concepts][element]") {
   STATIC_REQUIRE_FALSE(TriangulatedFace<Tet4>);
 }
 
-TEST_CASE("Element refuses what is none", "[concepts][element]") {
+TEST_CASE("Element refuses types that are not elements", "[concepts][element]") {
   STATIC_REQUIRE_FALSE(Element<int>);
   STATIC_REQUIRE_FALSE(Element<void>);
   STATIC_REQUIRE_FALSE(Element<NoOrder>);
@@ -103,7 +103,7 @@ TEST_CASE("FaceElement refuses solid elements and solid rules", "[concepts][elem
   STATIC_REQUIRE_FALSE(FaceElement<FaceWithWideGradient>);
 }
 
-TEST_CASE("concepts check syntax only: meaning is what the laws are for", "[concepts][element]") {
+TEST_CASE("concepts check syntax only; the law suites check the meaning", "[concepts][element]") {
   STATIC_REQUIRE(Element<ScaledShape>);
   STATIC_REQUIRE(Element<thesis::PrintedFunction>);
   STATIC_REQUIRE(Element<thesis::PrintedDerivatives>);

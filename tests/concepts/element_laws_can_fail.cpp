@@ -1,4 +1,4 @@
-// A deliberate break for every element law: a law that cannot fail shows nothing.
+// A deliberate break for every element law: a law that cannot fail tests nothing.
 #include <palpate/element/quad4.hpp>
 #include <palpate/element/quad8.hpp>
 #include <palpate/element/tet4.hpp>
@@ -33,7 +33,7 @@ struct ShiftedGradient : Tet4 {
 struct ScaledGradient : Tet4 {
   static Eigen::Matrix<double, 4, 3> gradient(const Vector3& x) noexcept { return 1.000001 * Tet4::gradient(x); }
 };
-struct OtherNodes : Tet4 {  // functions right, nodes moved: a field x is no longer reproduced
+struct OtherNodes : Tet4 {  // right functions, moved nodes: the field x is no longer reproduced
   static Eigen::Matrix<double, 4, 3> reference_nodes() noexcept { return 1.01 * Tet4::reference_nodes(); }
 };
 struct Overstated : Tet4 {
@@ -51,7 +51,7 @@ struct FaceTwice : Tet4 {
 struct FaceOutOfRange : Tet4 {
   static constexpr std::array<std::array<int, 3>, 4> faces{{{1, 3, 2}, {1, 2, 4}, {2, 3, 4}, {1, 4, 3}}};  // from one
 };
-struct OpenTube : user::Hex8 {  // two opposite faces left out: their area vectors cancel
+struct OpenTube : user::Hex8 {  // two opposite faces missing: their area vectors cancel
   static constexpr std::array<std::array<int, 4>, 4> faces{{{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {2, 3, 7, 6}}};
 };
 struct BentFace : user::Hex8 {
@@ -110,7 +110,7 @@ struct RotatedTriangle : Quad4 {
 struct HalfCovered : Quad4 {
   static constexpr std::array<std::array<int, 3>, 1> triangles{{{0, 1, 2}}};
 };
-struct CornersCoverTri6 : Tri6 {  // covers the face, but a neighbour would meet it at the middle nodes
+struct CornersCoverTri6 : Tri6 {  // covers the face, but a neighbour may share only the mid-edge nodes
   static constexpr std::array<std::array<int, 3>, 1> triangles{{{0, 1, 2}}};
 };
 struct CollinearTriangle : Tri3 {
@@ -125,10 +125,10 @@ struct BrokenFace : Tet4 {
 };
 
 template <class E>
-bool breaks(const char* material) {
+bool breaks(const char* law) {
   const auto v = element_laws<E>();
   UNSCOPED_INFO(describe(v));
-  return violates(v, material);
+  return violates(v, law);
 }
 
 }  // namespace
@@ -146,13 +146,12 @@ TEST_CASE("shape function laws can fail", "[testing][element]") {
   CHECK(breaks<LeftHanded>("right-handed numbering"));
 }
 
-TEST_CASE("NaN in the shape functions breaks every law that looks at them", "[testing][element]") {
-  for (const char* material :
-       {"Kronecker delta", "partition of unity", "gradient is the derivative", "linear completeness",
-        "polynomial completeness", "face shape functions are the trace of the element's",
-        "MassQuadrature exact for products"}) {
-    INFO(material);
-    CHECK(breaks<NonFiniteFunctions>(material));
+TEST_CASE("NaN in the shape functions breaks every law that uses them", "[testing][element]") {
+  for (const char* law : {"Kronecker delta", "partition of unity", "gradient is the derivative", "linear completeness",
+                          "polynomial completeness", "face shape functions are the trace of the element's",
+                          "MassQuadrature exact for products"}) {
+    INFO(law);
+    CHECK(breaks<NonFiniteFunctions>(law));
   }
 }
 

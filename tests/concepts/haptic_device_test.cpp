@@ -1,4 +1,4 @@
-// What HapticDevice and Servo accept and what they refuse.
+// Types that the concepts HapticDevice and Servo accept and refuse.
 #include <palpate/concepts/haptic_device.hpp>
 #include <palpate/concepts/servo.hpp>
 #include <palpate/device/mock_device.hpp>
@@ -68,7 +68,7 @@ static_assert(!HapticDevice<LimitsNotConst>);
 static_assert(!HapticDevice<ReadsAPosition>);
 static_assert(!HapticDevice<WriteSaysNothing>);
 static_assert(!HapticDevice<WritesAnyForce>);
-// Only a gate makes a force that is not zero.
+// Only a gate can create a nonzero force.
 static_assert(std::is_default_constructible_v<GatedForce> && !std::is_aggregate_v<GatedForce>);
 static_assert(!std::is_constructible_v<GatedForce, Vector3> && !std::is_constructible_v<GatedForce, Vector3, Vector3>);
 static_assert(!std::is_constructible_v<GatedForce, Vector3, Vector3, Status>);

@@ -1,4 +1,4 @@
-// A deliberate break for every law of materials for large strain.
+// A deliberate break for every law of materials at large strain.
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/testing/hyperelastic_laws.hpp>
@@ -28,7 +28,7 @@ enum class Break {
   small_strain
 };
 
-/// The neo-Hookean law with one thing wrong.
+/// The neo-Hookean material with one defect.
 template <Break wrong, class Law = NeoHookean>
 struct Wrong : Law {
   template <class S>
@@ -79,12 +79,12 @@ testing::Violations broken() {
   return hyperelastic_material_laws(Wrong<wrong, Law>{{5e3, 0.45, 1060.0}});
 }
 
-/// St Venant-Kirchhoff that calls itself fit for inversion.
+/// St Venant-Kirchhoff that wrongly claims to survive inversion.
 struct Boasting : StVenantKirchhoff {
   static constexpr bool survives_inversion = true;
   bool admits(const Tensor3<double>& f) const noexcept { return all_finite(f); }
 };
-/// The law with J in a denominator.
+/// The neo-Hookean material with J in a denominator.
 struct Singular : NeoHookean {
   template <class S>
   Tensor3<S> stress(const Tensor3<S>& f) const noexcept {

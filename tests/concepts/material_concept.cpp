@@ -53,7 +53,7 @@ TEST_CASE("Material and LinearMaterial accept materials", "[concepts][material]"
   STATIC_REQUIRE(LinearMaterial<ByReference>);
 }
 
-TEST_CASE("Material refuses what is none", "[concepts][material]") {
+TEST_CASE("Material refuses types that are not materials", "[concepts][material]") {
   STATIC_REQUIRE_FALSE(Material<int>);
   STATIC_REQUIRE_FALSE(Material<Matrix6>);
   STATIC_REQUIRE_FALSE(Material<NoDensity>);
@@ -68,5 +68,5 @@ TEST_CASE("LinearMaterial refuses wrong shapes and scalars", "[concepts][materia
   STATIC_REQUIRE_FALSE(LinearMaterial<FloatMatrix>);
   STATIC_REQUIRE_FALSE(LinearMaterial<DynamicMatrix>);
   STATIC_REQUIRE_FALSE(LinearMaterial<NotConst>);
-  STATIC_REQUIRE(Material<FiveByFive>);  // it is the matrix that is wrong, not the rest
+  STATIC_REQUIRE(Material<FiveByFive>);  // only the matrix is wrong
 }

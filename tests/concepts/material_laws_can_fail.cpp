@@ -13,7 +13,7 @@ namespace {
 
 const LinearElastic liver{5e3, 0.45, 1060.0};
 
-/// Any matrix as a material.
+/// A material with any given matrix.
 struct Given {
   Matrix6 d = Matrix6::Identity();
   double density = 0.0;
@@ -52,7 +52,7 @@ TEST_CASE("the unit of stress does not matter", "[testing][material]") {
 }
 
 TEST_CASE("linear material laws can fail", "[testing][material]") {
-  SECTION("symmetry, and with it the energy") {
+  SECTION("symmetry, and consequently the energy") {
     const auto v = linear_material_laws(changed(0, 4, 1.0));
     CHECK(violates(v, "symmetric"));
     CHECK(violates(v, "stress is the derivative of the energy"));
@@ -69,7 +69,7 @@ TEST_CASE("linear material laws can fail", "[testing][material]") {
   SECTION("isotropy: mu + 1e-9 in one plane") {
     const auto orthotropic = changed(4, 4, 1e-9 * liver.shear_modulus());
     CHECK(violates(linear_material_laws(orthotropic, {.isotropic = true}), "rotation invariance"));
-    CHECK(linear_material_laws(orthotropic).empty());  // no such claim, no such law
+    CHECK(linear_material_laws(orthotropic).empty());  // not checked unless isotropy is claimed
   }
   SECTION("isotropy: tensor instead of engineering shear") {
     Given m{liver.elasticity()};
@@ -81,7 +81,7 @@ TEST_CASE("linear material laws can fail", "[testing][material]") {
     CHECK(violates(linear_material_laws(changed(2, 2, std::numeric_limits<double>::quiet_NaN())), "finite"));
     CHECK(violates(linear_material_laws(Given{liver.elasticity(), infinity}), "finite"));
   }
-  SECTION("a material that refuses itself") {
+  SECTION("a material with inadmissible parameters") {
     CHECK(violates(linear_material_laws(Given{liver.elasticity(), 0.0, false}), "check accepts"));
     CHECK(violates(linear_material_laws(LinearElastic{5e3, 0.5, 0.0}), "check accepts"));
   }

@@ -45,16 +45,16 @@ struct NoNodesPerElement {
 
 }  // namespace
 
-TEST_CASE("MeshView accepts meshes, owning, viewing and foreign", "[concepts][mesh]") {
+TEST_CASE("MeshView accepts owning, viewing and user-defined meshes", "[concepts][mesh]") {
   STATIC_REQUIRE(MeshView<Mesh<Tet4>>);
   STATIC_REQUIRE(MeshView<MeshArrays<Tet4, double, int>>);
-  STATIC_REQUIRE(MeshView<MeshArrays<Tet4, float, std::uint64_t>>);  // foreign floats are converted by the view
+  STATIC_REQUIRE(MeshView<MeshArrays<Tet4, float, std::uint64_t>>);  // floats are converted by the view
   STATIC_REQUIRE(MeshView<OwnMesh>);
   STATIC_REQUIRE(MeshOf<OwnMesh, Tet4>);
   STATIC_REQUIRE(MeshOf<Mesh<user::Hex8>, user::Hex8>);
 }
 
-TEST_CASE("MeshView refuses what is none", "[concepts][mesh]") {
+TEST_CASE("MeshView refuses types that are not meshes", "[concepts][mesh]") {
   STATIC_REQUIRE_FALSE(MeshView<int>);
   STATIC_REQUIRE_FALSE(MeshView<NoNodesPerElement>);
   STATIC_REQUIRE_FALSE(MeshView<FloatPositions>);

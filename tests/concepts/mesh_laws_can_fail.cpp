@@ -1,4 +1,4 @@
-// Meshes that keep the mesh laws, and a deliberate break for every law.
+// Meshes that satisfy the mesh laws, and a deliberate break for every law.
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>
 #include <palpate/testing/mesh_laws.hpp>
@@ -22,15 +22,15 @@ Mesh<Tet4> cube() {
   return mesh;
 }
 
-bool breaks(const Mesh<Tet4>& mesh, const char* material) {
+bool breaks(const Mesh<Tet4>& mesh, const char* law) {
   const auto v = mesh_laws<Tet4>(mesh);
   UNSCOPED_INFO(describe(v));
-  return violates(v, material);
+  return violates(v, law);
 }
 
 }  // namespace
 
-TEST_CASE("a good mesh keeps the laws at every scale and place", "[testing][mesh][extreme][B1][B2]") {
+TEST_CASE("a valid mesh satisfies the laws at every scale and position", "[testing][mesh][extreme][B1][B2]") {
   CHECK(describe(mesh_laws<Tet4>(cube())) == "");
   for (double scale : {1e-6, 1e-3, 1e3})
     for (double offset : {0.0, 1e3, 1e6}) {
@@ -41,7 +41,7 @@ TEST_CASE("a good mesh keeps the laws at every scale and place", "[testing][mesh
     }
 }
 
-TEST_CASE("views and other elements", "[testing][mesh]") {
+TEST_CASE("mesh laws on views and other elements", "[testing][mesh]") {
   const std::vector<float> xyz{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   const std::vector<std::uint16_t> ids{0, 1, 2, 3};
   const MeshArrays<Tet4, float, std::uint16_t> view(xyz, ids);
@@ -98,8 +98,8 @@ TEST_CASE("node laws can fail", "[testing][mesh]") {
   SECTION("orphan") {
     mesh.positions.emplace_back(0.5, 0.5, 0.5);
     const auto v = mesh_laws<Tet4>(mesh);
-    REQUIRE(v.size() == 1);  // reported, and everything else still looked at
-    CHECK(v[0].material == "no orphan nodes");
+    REQUIRE(v.size() == 1);  // reported, and everything else still checked
+    CHECK(v[0].law == "no orphan nodes");
     CHECK(v[0].detail == "node 8");
   }
   SECTION("not finite") {
@@ -118,15 +118,15 @@ TEST_CASE("geometry laws can fail", "[testing][mesh]") {
     CHECK(breaks(mesh, "neighbours lie on opposite sides"));
     CHECK(breaks(mesh, "surface is closed"));
   }
-  SECTION("all inverted: the surface is closed all the same") {
+  SECTION("all inverted: the surface is still closed") {
     for (auto& e : mesh.elements) std::swap(e[0], e[1]);
     const auto v = mesh_laws<Tet4>(mesh);
     REQUIRE(v.size() == 1);
-    CHECK(v[0].material == "positive orientation");
+    CHECK(v[0].law == "positive orientation");
     CHECK_THAT(v[0].detail, test::contains("6 in all"));
   }
   SECTION("flat element") {
-    mesh.positions[7] = {1, 1, 0};  // onto node 3
+    mesh.positions[7] = {1, 1, 0};  // coincides with node 3
     CHECK(breaks(mesh, "positive orientation"));
   }
   SECTION("slivers are poor, not wrong") {

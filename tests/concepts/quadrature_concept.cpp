@@ -41,7 +41,7 @@ TEST_CASE("Quadrature accepts rules", "[concepts][quadrature]") {
   STATIC_REQUIRE(Quadrature<user::TensorRule<2, 3>>);
 }
 
-TEST_CASE("Quadrature refuses what is none", "[concepts][quadrature]") {
+TEST_CASE("Quadrature refuses types that are not rules", "[concepts][quadrature]") {
   STATIC_REQUIRE_FALSE(Quadrature<int>);
   STATIC_REQUIRE_FALSE(Quadrature<void>);
   STATIC_REQUIRE_FALSE(Quadrature<NoDegree>);

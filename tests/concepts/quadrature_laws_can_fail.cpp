@@ -64,7 +64,7 @@ TEST_CASE("quadrature laws can fail", "[testing][quadrature]") {
   CHECK_FALSE(violates(quadrature_laws<LoneCorner>(Domain::tetrahedron), "points inside"));
 }
 
-TEST_CASE("the degree is the total one on simplices, that per coordinate on tensor domains", "[testing][quadrature]") {
+TEST_CASE("the degree is total on simplices and per coordinate on tensor domains", "[testing][quadrature]") {
   CHECK(quadrature_laws<user::TensorRule<2, 2>>(Domain::quadrilateral).empty());
   CHECK(quadrature_laws<user::TensorRule<3, 3>>(Domain::hexahedron).empty());
   CHECK(violates(quadrature_laws<user::TensorRule<2, 3>>(Domain::tetrahedron), "weights sum to the volume"));
@@ -72,7 +72,7 @@ TEST_CASE("the degree is the total one on simplices, that per coordinate on tens
   CHECK(violates(quadrature_laws<TetrahedronRule<2>>(Domain::triangle), "dimension of the domain"));
 }
 
-TEST_CASE("a rule on a moved cell keeps the laws of that cell only", "[testing][quadrature]") {
+TEST_CASE("a rule satisfies the laws of its own reference cell only", "[testing][quadrature]") {
   testing::ReferenceCell<1> half{Domain::interval, testing::Point<1>(0.0)};
   half.axes(0, 0) = 0.5;
   CHECK(violates(quadrature_laws<GaussLegendre<2>>(half), "weights sum to the volume"));

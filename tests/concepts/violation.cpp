@@ -1,4 +1,4 @@
-// The helpers the law suites are made of.
+// The helpers of the law suites.
 #include <limits>
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/reference_cell.hpp>
@@ -16,7 +16,7 @@ namespace {
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 }
 
-TEST_CASE("bounds are inclusive where they say so, and NaN breaks every one", "[testing]") {
+TEST_CASE("bounds are inclusive where documented, and NaN breaks every bound", "[testing]") {
   Violations v;
   expect_at_most(v, "most", 1.0, 1.0);
   expect_at_least(v, "least", 1.0, 1.0);
@@ -34,7 +34,7 @@ TEST_CASE("bounds are inclusive where they say so, and NaN breaks every one", "[
   CHECK(v.size() == 7);
 }
 
-TEST_CASE("violations read as lines", "[testing]") {
+TEST_CASE("violations are described as lines", "[testing]") {
   Violations part, all;
   CHECK(describe(all) == "");
   expect_at_most(part, "symmetry", 0.5, 0.25, "entry 3");
@@ -45,28 +45,28 @@ TEST_CASE("violations read as lines", "[testing]") {
   CHECK_FALSE(violates(all, "sym"));
 }
 
-TEST_CASE("Worst reports the worst of many once", "[testing]") {
+TEST_CASE("Worst reports the worst of many values once", "[testing]") {
   Worst worst("law", 1.0);
   const auto report = [&worst] {
     Violations v;
     worst.report(v);
     return v;
   };
-  worst.render(1.0, [] { return "fine"; });
+  worst.observe(1.0, [] { return "fine"; });
   CHECK(report().empty());
-  worst.render(2.0, [] { return "a"; });
+  worst.observe(2.0, [] { return "a"; });
   CHECK(describe(report()) == "law (a): 2, bound 1\n");
-  worst.render(5.0, [] { return "b"; });
-  worst.render(3.0, [] { return "c"; });
+  worst.observe(5.0, [] { return "b"; });
+  worst.observe(3.0, [] { return "c"; });
   CHECK(describe(report()) == "law (b, 3 in all): 5, bound 1\n");
-  worst.render(not_a_number, [] { return "d"; });
-  worst.render(7.0, [] { return "e"; });
+  worst.observe(not_a_number, [] { return "d"; });
+  worst.observe(7.0, [] { return "e"; });
   CHECK(report().size() == 1);
   CHECK(report()[0].detail == "d, 5 in all");
   CHECK(std::isnan(report()[0].value));
 }
 
-TEST_CASE("the random numbers are the published ones and never change", "[testing]") {
+TEST_CASE("the random numbers equal the published ones and never change", "[testing]") {
   Random random(1234567);
   CHECK(random.bits() == 6457827717110365317u);
   CHECK(random.bits() == 3203168211198807973u);
@@ -82,7 +82,7 @@ TEST_CASE("the random numbers are the published ones and never change", "[testin
   }
 }
 
-TEST_CASE("monomial integrals by hand", "[testing]") {
+TEST_CASE("monomial integrals equal values computed by hand", "[testing]") {
   CHECK(monomial_integral<1>(Domain::interval, {4}) == 0.4);
   CHECK(monomial_integral<2>(Domain::quadrilateral, {2, 0}) == 4.0 / 3.0);
   CHECK(monomial_integral<3>(Domain::hexahedron, {2, 1, 0}) == 0.0);
@@ -103,7 +103,7 @@ TEMPLATE_TEST_CASE_SIG("the exact integration agrees with the formulas", "[testi
   }
 }
 
-TEST_CASE("a moved cell: volume, inside and outside", "[testing]") {
+TEST_CASE("a transformed cell: volume, inside and outside", "[testing]") {
   ReferenceCell<2> cell{Domain::triangle, {1.0, 2.0}};
   cell.axes << 2, 0, 0, 3;
   CHECK_THAT(cell.volume(), WithinRel(3.0, 1e-15));

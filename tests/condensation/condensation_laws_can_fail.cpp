@@ -1,4 +1,4 @@
-// A deliberate break for every law of condensed systems.
+// One deliberate error for every check of the law suite of condensed systems.
 #include <palpate/condensation/uncondensed.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/testing/condensation_laws.hpp>
@@ -13,7 +13,7 @@ namespace {
 const MatrixX k = with_condition(20, 100.0);
 const std::vector<Index> kept_dofs{1, 4, 5, 9};
 
-/// A right system with one thing wrong.
+/// A correct system with one error.
 class Wrong {
  public:
   enum What {
@@ -66,11 +66,11 @@ testing::Violations laws(Wrong::What what) {
 
 }  // namespace
 
-TEST_CASE("the laws accept the right system", "[testing][condensation]") {
+TEST_CASE("the law suite accepts a correct condensed system", "[testing][condensation]") {
   CHECK(testing::describe(laws(Wrong::nothing)) == "");
 }
 
-TEST_CASE("condensation laws can fail", "[testing][condensation]") {
+TEST_CASE("every check of the condensation law suite can fail", "[testing][condensation]") {
   CHECK(violates(laws(Wrong::loses_condensed), "displacement equals the full solve"));
   CHECK(violates(laws(Wrong::offset), "zero load gives zero"));
   CHECK(violates(laws(Wrong::wrong_column), "compliance equals the full solve"));

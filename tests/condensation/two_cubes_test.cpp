@@ -40,7 +40,7 @@ Problem cubes() {
   return {two_cubes(), reference_material, Scene().fix("fixed"), {8, 9, 10, 11}};
 }
 
-/// A sphere held at its south, with the north kept: nodes inside and elsewhere on the surface are condensed.
+/// A sphere fixed at its south pole, with the north kept: inner and other surface nodes are condensed.
 Problem sphere() {
   const Mesh<Tet4> mesh = sphere_tet4(0.05, 3);
   std::vector<NodeId> south, north;
@@ -70,7 +70,7 @@ double gravity_and_strain_error(const Problem& p) {
 
 }  // namespace
 
-TEST_CASE("two cubes condensed to nodes 9 to 12 as by another code", "[condensation][oracle]") {
+TEST_CASE("two cubes condensed to nodes 9 to 12 equal the result of another code", "[condensation][oracle]") {
   const MatrixX reference = read_matrix(two_cubes_folder + "K_condensed_to_nodes_9_12.csv");
   REQUIRE(reference.rows() == 12);
   const Problem p = cubes();
@@ -106,7 +106,7 @@ TEST_CASE("gravity and initial strain on condensed dofs are not lost", "[condens
   }
 }
 
-TEST_CASE("order, nothing kept, everything kept", "[condensation]") {
+TEST_CASE("condensation: any order, no kept dofs, all dofs kept", "[condensation]") {
   const Problem p = cubes();
   const DenseOperator op(full(p.lower));
   SECTION("any order") {
@@ -114,13 +114,13 @@ TEST_CASE("order, nothing kept, everything kept", "[condensation]") {
     CondensedSystem system = CondensedSystem::with<DenseCholesky>(condense(p.lower, kept, {}), {});
     CHECK(testing::describe(testing::condensation_laws(op, system, kept)) == "");
   }
-  SECTION("nothing") {
+  SECTION("no kept dofs") {
     const std::vector<Index> kept;
     CondensedSystem system = CondensedSystem::with<DenseCholesky>(condense(p.lower, kept, {}), {});
     CHECK(system.kept() == 0);
     CHECK(testing::describe(testing::condensation_laws(op, system, kept)) == "");
   }
-  SECTION("everything") {
+  SECTION("all dofs kept") {
     std::vector<Index> kept(static_cast<std::size_t>(p.lower.rows()));
     std::iota(kept.begin(), kept.end(), Index{0});
     const SchurComplement s = condense(p.lower, kept, {});
@@ -144,9 +144,9 @@ TEST_CASE("condensing can be cancelled and is bounded in memory", "[condensation
   CHECK(problem.threshold == 1000.0);
 }
 
-TEST_CASE("a condensed part that is not held is refused", "[condensation][extreme][B7]") {
+TEST_CASE("a condensed part that is not constrained is refused", "[condensation][extreme][B7]") {
   Problem p = cubes();
-  // Node 8 alone is kept and holds the rest at one point only once the fixed nodes are free as well.
+  // Once the fixed nodes are free as well, the rest is attached to kept node 8 at one point only.
   const EssentialConditions none = conditions_of(p.body.mesh, Scene());
   const SparseMatrix free = free_matrix(assemble_stiffness<Tet4>(p.body, {}), none);
   const std::vector<Index> kept{24, 25, 26};

@@ -1,4 +1,4 @@
-// Presses a sphere of 5 mm radius 2 mm into the pad: the force must push it out, straight up, and be a tissue's.
+// Presses a sphere of 5 mm radius 2 mm into the pad: the force must point straight up and be of a plausible size.
 #include "tissue.hpp"
 
 #include <palpate/haptic/haptic_servo.hpp>
@@ -14,7 +14,7 @@ int main() {
     tool.time = 1e-3 * i;
     tool.position = {0.02, 0.02, 0.026 - 3e-6 * i};  // from 1 mm above to 2 mm into the surface
     force = servo.tick({&tool, 1})[0].force();
-    if (i == 0 && force.norm() != 0.0) return 2;  // touches nothing yet
+    if (i == 0 && force.norm() != 0.0) return 2;  // no contact yet
   }
   std::printf("%.6f %.6f %.6f N, touchable vertices: %lld\n", force[0], force[1], force[2],
               static_cast<long long>(tissue->report().touchable_vertices));

@@ -1,4 +1,4 @@
-// A pad of 40 x 40 x 20 mm on a table, made in one source and touched in another.
+// A pad of 40 x 40 x 20 mm on a table, constructed in one source and touched in another.
 #include "tissue.hpp"
 
 #include <palpate/mesh/generators.hpp>

@@ -1,4 +1,4 @@
-// What both sources of this program share.
+// Shared by both sources of this program.
 #pragma once
 
 #include <palpate/element/tet4.hpp>

@@ -1,4 +1,4 @@
-// A tissue with a known answer: independent springs, all of them on one common spring.
+// A tissue with a known solution: independent springs, all of them on one common spring.
 #pragma once
 
 #include <palpate/concepts/still_tissue.hpp>
@@ -11,8 +11,8 @@ namespace test {
 using namespace palpate;
 
 /// Vertices of a plane grid at z = 0, normal +z. Each moves with `own` [m/N] under its own force and all move with
-/// `common` [m/N] under the sum of all forces, alike in all directions. A sphere of radius R at p then feels from
-/// vertex x the force max(0, R - |p - x|) / own along p - x, if the common displacement is taken off p first.
+/// `common` [m/N] under the sum of all forces, the same in all directions. The force of vertex x on a sphere of radius
+/// R at p is then max(0, R - |p - x|) / own along p - x, after the common displacement has been subtracted from p.
 class AnalyticTissue : public StillTissue {
  public:
   AnalyticTissue(int cells, double size, double own, double common = 0.0) : own_(own), common_(common) {
@@ -82,7 +82,7 @@ class AnalyticTissue : public StillTissue {
 };
 static_assert(TissueModel<AnalyticTissue>);
 
-/// Where every vertex is under forces.
+/// Positions of all vertices under forces.
 template <TissueModel Tissue>
 std::vector<Vector3> deformed_surface(const Tissue& tissue, std::span<const VertexForce> forces) {
   std::vector<Vector3> x = tissue.contact_surface().positions();
@@ -92,8 +92,8 @@ std::vector<Vector3> deformed_surface(const Tissue& tissue, std::span<const Vert
   return x;
 }
 
-/// Smallest gap between a sphere at `proxy` (model frame) and any contact point of the deformed surface; those the
-/// sphere is behind count too.
+/// Smallest gap between a sphere at `proxy` (model frame) and any contact point of the deformed surface, including
+/// points that face away from the sphere.
 template <TissueModel Tissue>
 double smallest_gap(const Tissue& tissue, const ContactSamples& samples, std::span<const VertexForce> forces,
                     const Vector3& proxy, double radius) {

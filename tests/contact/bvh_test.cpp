@@ -76,16 +76,16 @@ void compare(const Bvh& bvh, const Soup& soup, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("nearest and near triangles are those of brute force", "[contact][bvh]") {
+TEST_CASE("nearest and near triangles equal those of brute force", "[contact][bvh]") {
   for (int count : {1, 2, 4, 5, 8, 9, 63, 500, 2000})
     for (bool clustered : {false, true}) {
-      INFO(count << " triangles" << (clustered ? ", most of them in one spot" : ""));
+      INFO(count << " triangles" << (clustered ? ", most of them in one place" : ""));
       const Soup soup(count, 21, clustered);
       compare(Bvh(soup.triangles, soup.positions), soup, 22);
     }
 }
 
-TEST_CASE("after a refit the answers are those of the moved triangles", "[contact][bvh]") {
+TEST_CASE("after a refit the results are those of the moved triangles", "[contact][bvh]") {
   Soup soup(700, 23);
   Bvh bvh(soup.triangles, soup.positions);
   testing::Random random(24);
@@ -101,7 +101,7 @@ TEST_CASE("after a refit the answers are those of the moved triangles", "[contac
   }
 }
 
-TEST_CASE("of equally near triangles the lowest number wins", "[contact][bvh]") {
+TEST_CASE("of equally near triangles the one with the lowest number is chosen", "[contact][bvh]") {
   const Soup once(40, 26);
   Soup soup = once;
   for (int copy = 0; copy < 3; ++copy)
@@ -115,7 +115,7 @@ TEST_CASE("of equally near triangles the lowest number wins", "[contact][bvh]") 
   SUCCEED();
 }
 
-TEST_CASE("many triangles with one centre do not upset the build", "[contact][bvh][extreme]") {
+TEST_CASE("many triangles with the same centre can be built", "[contact][bvh][extreme]") {
   Soup soup(1000, 28);
   for (std::size_t t = 0; t < 1000; ++t)
     for (std::size_t i = 0; i < 3; ++i) soup.positions[3 * t + i] = soup.positions[i];
@@ -131,7 +131,7 @@ TEST_CASE("an empty hierarchy has no nearest triangle and visits none", "[contac
   }
 }
 
-TEST_CASE("senseless query points are survived", "[contact][bvh][extreme][D1]") {
+TEST_CASE("invalid query points are handled", "[contact][bvh][extreme][D1]") {
   const Soup soup(100, 29);
   const Bvh bvh(soup.triangles, soup.positions);
   const double nan_value = std::numeric_limits<double>::quiet_NaN();

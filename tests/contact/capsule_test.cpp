@@ -1,4 +1,4 @@
-// Capsules, their torque, and grasped points against closed forms.
+// Capsules, their torque, and grasped points compared with closed forms.
 #include "contact/tool_session.hpp"
 
 #include <palpate/contact/capsule_tool.hpp>
@@ -25,7 +25,7 @@ struct Wrench {
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
 };
 
-/// Independent springs: every vertex within the capsule pushes from where it is to the axis.
+/// Independent springs: every vertex within the capsule pushes it from its position towards the axis.
 Wrench wrench_of_springs(const AnalyticTissue& tissue, const Vector3& middle, const Vector3& axis, double half,
                          double radius) {
   Wrench w;
@@ -43,7 +43,7 @@ Wrench wrench_of_springs(const AnalyticTissue& tissue, const Vector3& middle, co
 
 }  // namespace
 
-TEST_CASE("a capsule on springs: force and torque of the closed form, however it lies", "[contact][capsule]") {
+TEST_CASE("a capsule on springs: force and torque equal the closed form in any orientation", "[contact][capsule]") {
   testing::Random random(81);
   const double radius = 3e-3, half = 6e-3;
   double worst = 0.0, worst_torque = 0.0;
@@ -62,19 +62,19 @@ TEST_CASE("a capsule on springs: force and torque of the closed form, however it
     most = std::max(most, s.problem.contacts().size());
     CHECK_FALSE(s.status.has(StatusFlag::solver_not_converged));
   }
-  INFO("force off by " << worst << ", torque by " << worst_torque << ", up to " << most << " contacts");
+  INFO("error of force " << worst << ", of torque " << worst_torque << ", up to " << most << " contacts");
   CHECK(worst <= 1e-4);
   CHECK(worst_torque <= 1e-4);
   CHECK(most >= 16);
 }
 
-TEST_CASE("a capsule that turns over springs", "[contact][capsule]") {
+TEST_CASE("a capsule that rotates over springs", "[contact][capsule]") {
   const double radius = 3e-3, half = 6e-3;
   AnalyticTissue tissue(20, 0.03, 2e-2);
   ToolSession s(tissue, {round_tool(radius, {3e-4, 2e-4, 3.1e-3}, 0.0, half)});
   s.move(0, {3e-4, 2e-4, 2.3e-3}, 100);
   double worst = 0.0;
-  for (int k = 1; k <= 500; ++k) {  // half a turn about the vertical, nodding
+  for (int k = 1; k <= 500; ++k) {  // half a rotation about the vertical, with a changing tilt
     const Matrix3 turn = rotation_by(Vector3(0, 0, 0.0063 * k)) * rotation_by(Vector3(0, 0.05 * std::sin(0.05 * k), 0));
     s.tick(0, s.tools[0].target, turn);
     const Wrench exact = wrench_of_springs(tissue, s.tools[0].target, turn * Vector3::UnitX(), half, radius);
@@ -87,29 +87,29 @@ TEST_CASE("a capsule that turns over springs", "[contact][capsule]") {
 }
 
 TEST_CASE("the coupling for rotations is a spring in series", "[contact][capsule][torque]") {
-  // Two vertices under the ends of a long capsule, which dips one end by turning about y.
-  const double radius = 0.02, half = 0.06, a = 0.05, own = 1e-3, coupling = 5e-4, turning = 0.4, depth = 1e-3,
+  // Two vertices under the ends of a long capsule; a rotation about y lowers one end.
+  const double radius = 0.02, half = 0.06, a = 0.05, own = 1e-3, coupling = 5e-4, rotational = 0.4, depth = 1e-3,
                tilt = 2e-3;
   AnalyticTissue tissue(2, 2.0 * a, own);  // at -a, 0, a
   ContactTool tool = round_tool(radius, {0, 0, radius + 1e-3}, coupling, half);
-  tool.rotational_compliance = turning;
+  tool.rotational_compliance = rotational;
   ToolSession s(tissue, {tool});
   s.move(0, {0, 0, radius - depth}, 100);
   CHECK(s.tools[0].torque.norm() <= 1e-9);
   for (int k = 1; k <= 20; ++k) s.tick(0, s.tools[0].target, rotation_by(Vector3(0, 0.05 * k * tilt, 0)));
   s.settle();
-  // Ends go down by depth +- a theta, the middle by depth: three springs of 1/own.
+  // Ends move down by depth +- a theta, the middle by depth: three springs of 1/own.
   const double force = 3.0 * depth / (own + 3.0 * coupling);
   const double stiffness = 2.0 * a * a / own;  // [N m/rad] of the two ends
-  const double torque = -tilt * stiffness / (1.0 + turning * stiffness);
+  const double torque = -tilt * stiffness / (1.0 + rotational * stiffness);
   CHECK_THAT(s.force()[2], WithinRel(force, 2e-3));
   CHECK_THAT(s.tools[0].torque[1], WithinRel(torque, 2e-3));
-  // Rendered: the torque is the turning stiffness times the angle between device and proxy.
+  // Rendered: the torque is the rotational stiffness times the angle between device and proxy.
   const Eigen::AngleAxisd lag(Matrix3(s.tools[0].rotation * s.tools[0].target_rotation.transpose()));
-  CHECK((lag.angle() * lag.axis() - turning * s.tools[0].torque).norm() <= 1e-6 * tilt);
+  CHECK((lag.angle() * lag.axis() - rotational * s.tools[0].torque).norm() <= 1e-6 * tilt);
 }
 
-TEST_CASE("a capsule without length is a sphere, bit by bit", "[contact][capsule]") {
+TEST_CASE("a capsule of zero length is bitwise equal to a sphere", "[contact][capsule]") {
   AnalyticTissue tissue(20, 0.02, 2e-2, 1e-3);
   ToolSession sphere(tissue, {round_tool(4e-3, {0, 0, 4.1e-3}, 1e-3)}),
       capsule(tissue, {round_tool(4e-3, {0, 0, 4.1e-3}, 1e-3, 0.0, {1, 2, 3})});
@@ -122,7 +122,7 @@ TEST_CASE("a capsule without length is a sphere, bit by bit", "[contact][capsule
   CHECK(sphere.force()[2] > 0.0);
 }
 
-TEST_CASE("capsules that cannot be are refused", "[contact][capsule]") {
+TEST_CASE("invalid capsules are refused", "[contact][capsule]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const CapsuleTool& bad : {CapsuleTool(0.0, 0.0), CapsuleTool(nan, 0.0), CapsuleTool(1e-3, -1e-3),
                                  CapsuleTool(1e-3, nan), CapsuleTool(1e-3, 0.017),
@@ -131,35 +131,35 @@ TEST_CASE("capsules that cannot be are refused", "[contact][capsule]") {
   CHECK_NOTHROW(CapsuleTool(1e-3, 0.016, Vector3(0, 0, 5)).require_valid());
 }
 
-TEST_CASE("a grasped point follows both ways: pull, push and drag are one spring", "[contact][grasp]") {
+TEST_CASE("a grasped point is bilateral: pull, push and lateral motion act on one spring", "[contact][grasp]") {
   const double own = 1e-3, common = 5e-4, coupling = 2e-3, soft = own + common + coupling, radius = 4e-3;
   AnalyticTissue tissue(4, 0.2, own, common);
   ToolSession s(tissue, {round_tool(radius, {0, 0, radius + 1e-4}, coupling)});
   s.tick();
   CHECK_FALSE(s.problem.is_holding(0));
-  s.tools[0].grasping = true;  // a tenth of a millimetre away: near enough
+  s.tools[0].grasping = true;  // a gap of a tenth of a millimetre: near enough
   s.tick();
   REQUIRE(s.problem.is_holding(0));
-  const Vector3 held = s.tools[0].target;
+  const Vector3 grasped_at = s.tools[0].target;
   for (const Vector3& by :
        {Vector3(0, 0, 2e-3), Vector3(1e-3, -2e-3, 3e-3), Vector3(0, 0, -1e-3), Vector3(-3e-3, 0, 0)}) {
-    s.move(0, held + by, 40);
+    s.move(0, grasped_at + by, 40);
     CHECK((s.force() + by / soft).norm() <= 1e-5 * by.norm() / soft);
-    CHECK_THAT((s.tools[0].proxy - held - by * (own + common) / soft).norm(), WithinAbs(0.0, 1e-8));
+    CHECK_THAT((s.tools[0].proxy - grasped_at - by * (own + common) / soft).norm(), WithinAbs(0.0, 1e-8));
   }
-  s.move(0, held + Vector3(0, 0, 2e-3), 40);
+  s.move(0, grasped_at + Vector3(0, 0, 2e-3), 40);
   s.tools[0].grasping = false;
   s.tick();
   CHECK_FALSE(s.problem.is_holding(0));
   CHECK(s.force() == Vector3::Zero());
-  s.tools[0].grasping = true;  // nothing there any more
+  s.tools[0].grasping = true;  // no point within reach any more
   s.tick();
   CHECK_FALSE(s.problem.is_holding(0));
-  s.move(0, held, 40);  // jaws that are closed already do not grasp what they come to
+  s.move(0, grasped_at, 40);  // a tool that is already grasping does not grasp points that it reaches later
   CHECK_FALSE(s.problem.is_holding(0));
 }
 
-TEST_CASE("one tool pulls a fold while another presses beside it", "[contact][grasp]") {
+TEST_CASE("one tool pulls a fold while another presses next to it", "[contact][grasp]") {
   const double own = 1e-3, common = 5e-4, radius = 4e-3;
   AnalyticTissue tissue(4, 0.2, own, common);  // vertices at -0.05, 0, 0.05
   ToolSession s(tissue,

@@ -1,4 +1,4 @@
-// Contact that goes on when the surface gets other triangles, as by a cut.
+// Contact continues when the surface gets other triangles, as by a cut.
 #include <palpate/concepts/tissue_adaptor.hpp>
 
 #include "contact/tool_session.hpp"
@@ -17,7 +17,8 @@ class ChangingTissue : public TissueAdaptor<test::AnalyticTissue> {
   const ContactSurface& contact_surface() const noexcept { return surface_; }
   std::uint64_t compliance_revision() const noexcept { return revision_; }
 
-  /// In another order, other vertices first, a vertex more; without the triangles that `leaves` names by their middle.
+  /// Reverses the order of the triangles, rotates their vertices, adds a vertex, and removes the triangles whose centre
+  /// satisfies `leaves`.
   template <class Leaves>
   void change(Leaves&& leaves) {
     std::vector<Vector3> positions = surface_.positions();
@@ -70,7 +71,7 @@ Vector3 dragged(int k) {
 
 }  // namespace
 
-TEST_CASE("with the same triangles in another order a press and its friction go on as before", "[contact][surface]") {
+TEST_CASE("with the same triangles in another order contact and friction continue unchanged", "[contact][surface]") {
   const double friction = GENERATE(0.0, 0.4);
   OverTriangles still(friction), changed(friction);
   double worst = 0.0, longest = 0.0, drag = 0.0;
@@ -83,27 +84,27 @@ TEST_CASE("with the same triangles in another order a press and its friction go 
     drag = std::max(drag, still.tools[0].force.head<2>().norm());
   }
   CHECK(longest > 0.05);
-  // What slips is found row by row, so their order can be seen in it; forgotten friction would be all of the drag.
+  // Sliding friction is solved row by row, so the order of rows affects it slightly; lost friction would be all of it.
   if (friction > 0.0) CHECK(drag > 0.2 * longest);
   CHECK(worst <= (friction > 0.0 ? 0.1 * drag : 1e-7 * longest));
   CHECK(still.status.ok() == changed.status.ok());
 }
 
-TEST_CASE("what lay on triangles that are gone presses no more; the rest goes on", "[contact][surface][F3]") {
+TEST_CASE("contacts on removed triangles lose their force; the others continue", "[contact][surface][F3]") {
   OverTriangles s;
   for (int k = 0; k < 80; ++k) s.tick(dragged(k));
   const Vector3 before = s.tools[0].force;
-  s.change([](const Vector3& x) { return x[0] > 0.02 * 0.2; });  // a part of the dent, and all beside it
+  s.change([](const Vector3& x) { return x[0] > 0.02 * 0.2; });  // a part of the dent, and all on that side of it
   s.tick(dragged(80));
   CHECK(s.tools[0].force.allFinite());
   CHECK(s.tools[0].force.norm() > 0.2 * before.norm());
   s.change([](const Vector3&) { return true; });
   s.tick(dragged(81));
-  CHECK(s.tools[0].force.norm() == 0.0);  // nothing is left to touch
+  CHECK(s.tools[0].force.norm() == 0.0);  // no triangle is left
   CHECK(s.problem.vertex_forces().empty());
 }
 
-TEST_CASE("a held point stays held, and is let go when it is gone", "[contact][surface][grasp]") {
+TEST_CASE("a grasped point stays grasped, and is released when it is removed", "[contact][surface][grasp]") {
   OverTriangles still, changed;
   for (OverTriangles* s : {&still, &changed}) {
     s->tick({0, 0, OverTriangles::radius - 1e-4});

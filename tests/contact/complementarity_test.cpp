@@ -1,4 +1,4 @@
-// The exact contact solver against enumeration of all active sets, and by its own optimality conditions.
+// The exact contact solver compared with the enumeration of all active sets, and by its own optimality conditions.
 #include <palpate/contact/detail/complementarity.hpp>
 #include <palpate/testing/random.hpp>
 
@@ -13,7 +13,7 @@ using namespace palpate;
 
 namespace {
 
-constexpr double relaxation = 1e-6;  // what solve() adds to the diagonal, relative
+constexpr double relaxation = 1e-6;  // relative increase of the diagonal in solve()
 struct Problem : ComplementarityProblem {
   Problem() : ComplementarityProblem(48) {}
   VectorX forces() const { return Eigen::Map<const VectorX>(lambda.data(), rows()); }
@@ -45,8 +45,8 @@ Case random_case(testing::Random& random, int n, double decades) {
   return c;
 }
 
-/// Contacts of a sphere with a half space of softness `own` per point: normals within 60 degrees, coupled by the
-/// sphere's own mobility.
+/// Contacts of a sphere with a half space of compliance `own` per point: normals within 60 degrees, coupled by the
+/// compliance of the sphere's own motion.
 Case sphere_case(testing::Random& random, int n, double own) {
   MatrixX normals(n, 3);
   Case c;
@@ -78,7 +78,7 @@ void load(Problem& problem, const Case& c) {
   start_from(problem, VectorX::Zero(n));
 }
 
-/// The solution for which all conditions hold, by trying all 2^n active sets.
+/// The solution that satisfies all conditions, found by trying all 2^n active sets.
 VectorX enumerate(const Case& c) {
   const int n = static_cast<int>(c.b.size());
   VectorX best = VectorX::Zero(n);
@@ -104,8 +104,8 @@ VectorX enumerate(const Case& c) {
   return best;
 }
 
-/// Largest violation of lambda >= 0, gap >= 0, lambda * gap = 0, all as gaps relative to max |b|; the relaxed diagonal
-/// is allowed for.
+/// Largest violation of lambda >= 0, gap >= 0, lambda * gap = 0, all as gaps relative to max |b|, with the relaxed
+/// diagonal.
 double violation(const Case& c, const Problem& problem) {
   const VectorX lambda = problem.forces();
   MatrixX w = c.w;
@@ -123,7 +123,8 @@ double violation(const Case& c, const Problem& problem) {
 
 }  // namespace
 
-TEST_CASE("up to 8 contacts: the answer of all active sets tried", "[contact][complementarity]") {
+TEST_CASE("up to 8 contacts: the solution equals that of the enumeration of active sets",
+          "[contact][complementarity]") {
   testing::Random random(51);
   double worst = 0.0;
   int unsolved = 0;
@@ -160,7 +161,7 @@ TEST_CASE("up to 48 contacts: complementarity holds", "[contact][complementarity
   CHECK(worst <= 1e-9);
 }
 
-TEST_CASE("more contacts than degrees of freedom, copies among them", "[contact][complementarity][extreme]") {
+TEST_CASE("more contacts than degrees of freedom, including duplicates", "[contact][complementarity][extreme]") {
   testing::Random random(53);
   double worst = 0.0, worst_sum = 0.0;
   int unsolved = 0, most = 0;
@@ -183,7 +184,7 @@ TEST_CASE("more contacts than degrees of freedom, copies among them", "[contact]
   CHECK(worst_sum <= 1e-4);
 }
 
-TEST_CASE("any start leads to the same answer", "[contact][complementarity]") {
+TEST_CASE("any initial value gives the same solution", "[contact][complementarity]") {
   testing::Random random(54);
   int different = 0, unsolved = 0, warm = 0, cold = 0;
   for (int round = 0; round < 200; ++round) {
@@ -228,7 +229,7 @@ TEST_CASE("without penetration there is no force", "[contact][complementarity]")
   CHECK(nothing.solve());
 }
 
-TEST_CASE("one contact is divided out", "[contact][complementarity]") {
+TEST_CASE("one contact: the force is minus gap over compliance", "[contact][complementarity]") {
   Problem problem;
   for (double compliance : {1e-9, 1e-3, 1e3})
     for (double gap : {-1e-9, -1e-3, -1.0}) {
@@ -241,7 +242,7 @@ TEST_CASE("one contact is divided out", "[contact][complementarity]") {
     }
 }
 
-TEST_CASE("pivots are bounded and the result finite whatever the sizes", "[contact][complementarity][extreme]") {
+TEST_CASE("pivots are bounded and the result is finite for any magnitudes", "[contact][complementarity][extreme]") {
   testing::Random random(56);
   int not_finite = 0, negative = 0, too_many = 0;
   for (int round = 0; round < 400; ++round) {
@@ -259,7 +260,7 @@ TEST_CASE("pivots are bounded and the result finite whatever the sizes", "[conta
   CHECK(too_many == 0);
 }
 
-TEST_CASE("rows without compliance get no force and spoil no other", "[contact][complementarity][extreme]") {
+TEST_CASE("rows without compliance get no force and do not affect others", "[contact][complementarity][extreme]") {
   Problem problem;
   problem.resize(3);
   for (int i = 0; i < 3; ++i)
@@ -272,7 +273,7 @@ TEST_CASE("rows without compliance get no force and spoil no other", "[contact][
   CHECK_THAT(problem.lambda[0], Catch::Matchers::WithinAbs(0.5, 1e-6));
 }
 
-TEST_CASE("NaN and infinity end the solve and are not called solved", "[contact][complementarity][extreme][D1]") {
+TEST_CASE("NaN and infinity end the solve and are not reported as solved", "[contact][complementarity][extreme][D1]") {
   testing::Random random(57);
   const double nan_value = std::numeric_limits<double>::quiet_NaN();
   for (double bad : {nan_value, infinity, -infinity})

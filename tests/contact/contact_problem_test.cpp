@@ -1,4 +1,4 @@
-// Spheres on a tissue whose contact force is known in closed form.
+// Spheres on a tissue whose contact force has a closed form.
 #include "contact/tool_session.hpp"
 
 #include <palpate/testing/random.hpp>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double radius = 4e-3;
 
-/// Spacing of contact points for spheres this large: they are at the vertices alone, as the closed form has it.
+/// Spacing of contact points so large that they are at the vertices only, as the closed form assumes.
 constexpr double vertices_only = 1e3 * radius;
 
 std::vector<ContactTool> spheres(const std::vector<Vector3>& start, double coupling_compliance) {
@@ -25,7 +25,7 @@ std::vector<ContactTool> spheres(const std::vector<Vector3>& start, double coupl
   return tools;
 }
 
-/// One or more spheres that are moved in steps, like a servo does.
+/// One or more spheres that are moved in steps, as a servo does.
 struct Session : test::ToolSession {
   Session(AnalyticTissue& t, const std::vector<Vector3>& start, double coupling_compliance,
           double sampled_for = vertices_only, const ContactParameters& parameters = {.capacity = 48})
@@ -55,7 +55,7 @@ TEST_CASE("one contact: force is penetration over tissue plus coupling complianc
     }
 }
 
-TEST_CASE("a touch off the vertex pushes along the line to the sphere", "[contact][problem]") {
+TEST_CASE("a contact beside a vertex pushes along the line to the sphere's centre", "[contact][problem]") {
   AnalyticTissue tissue(4, 0.2, 1e-3);
   const Vector3 direction = Vector3(0.3, -0.2, 1.0).normalized();
   Session s(tissue, {direction * (radius + 1e-4)}, 0.0);
@@ -64,7 +64,7 @@ TEST_CASE("a touch off the vertex pushes along the line to the sphere", "[contac
   CHECK((s.force() - direction * 0.5).norm() <= 1e-5);
 }
 
-TEST_CASE("many contacts: the force of the closed form", "[contact][problem]") {
+TEST_CASE("many contacts: the force equals the closed form", "[contact][problem]") {
   testing::Random random(61);
   for (double common : {0.0, 2e-3})
     for (double coupling : {0.0, 2e-3}) {
@@ -101,7 +101,7 @@ TEST_CASE("a static sphere gives the same force in every tick", "[contact][probl
   CHECK((s.force() - later).norm() <= 1e-9 * later.norm());
 }
 
-TEST_CASE("two spheres: alone when far apart on independent springs", "[contact][problem]") {
+TEST_CASE("two spheres far apart on independent springs do not interact", "[contact][problem]") {
   AnalyticTissue tissue(40, 0.04, 2e-2);
   const Vector3 a(-0.01, 2e-4, radius + 1e-4), b(0.01, -1e-4, radius + 1e-4), down(0, 0, -1.1e-3);
   Session one(tissue, {a}, 1e-3), other(tissue, {b}, 1e-3), both(tissue, {a, b}, 1e-3);
@@ -115,7 +115,7 @@ TEST_CASE("two spheres: alone when far apart on independent springs", "[contact]
   CHECK((both.force(1) - other.force()).norm() <= 1e-9);
 }
 
-TEST_CASE("two spheres on a common spring relieve each other as computed by hand", "[contact][problem]") {
+TEST_CASE("two spheres on a common spring reduce each other's force as computed by hand", "[contact][problem]") {
   const double own = 1e-3, common = 2e-3, coupling = 5e-4, depth = 1e-3;
   AnalyticTissue tissue(4, 0.2, own, common);
   const Vector3 a(-0.05, 0, radius + 1e-4), b(0.05, 0, radius + 1e-4);
@@ -130,7 +130,7 @@ TEST_CASE("two spheres on a common spring relieve each other as computed by hand
   CHECK_THAT(s.force(1)[2], WithinRel(depth / (own + common + coupling), 1e-5));
 }
 
-TEST_CASE("the rendered stiffness never exceeds the coupling, however many contacts", "[contact][problem]") {
+TEST_CASE("the rendered stiffness never exceeds the coupling for any number of contacts", "[contact][problem]") {
   testing::Random random(62);
   for (double own : {1e-10, 1e-6, 1e-3})
     for (int cells : {4, 20, 40}) {
@@ -160,7 +160,7 @@ TEST_CASE("the rendered stiffness never exceeds the coupling, however many conta
     }
 }
 
-TEST_CASE("the sphere sinks into no contact point and is pushed out, not in", "[contact][problem]") {
+TEST_CASE("the sphere penetrates no contact point and is pushed out, not in", "[contact][problem]") {
   testing::Random random(63);
   for (double sampled_for : {radius, vertices_only}) {
     AnalyticTissue tissue(8, 0.02, 1e-2, 1e-3);  // 2.5 mm apart: the lattice matters
@@ -205,8 +205,8 @@ TEST_CASE("forces on the tissue are the forces on the spheres, and balance them"
 
 namespace {
 
-/// Work of the tissue on a rigidly coupled sphere that is pressed in, slid, released and taken back through the air,
-/// over the work of the press. Trapezoid rule.
+/// Work of the tissue on a rigidly coupled sphere that is pressed in, slid, released and moved back through the air,
+/// divided by the work of the press. Trapezoid rule.
 double work_of_loop(const ContactParameters& parameters, double sampled_for, int cells, double step) {
   AnalyticTissue tissue(cells, 0.02, 2e-2);
   Session s(tissue, {Vector3(-1.3e-3, -4e-4, radius + 1e-4)}, 0.0, sampled_for, parameters);
@@ -231,12 +231,12 @@ double work_of_loop(const ContactParameters& parameters, double sampled_for, int
 
 }  // namespace
 
-TEST_CASE("a closed loop under rigid coupling gives no work", "[contact][problem][energy]") {
+TEST_CASE("a closed path under rigid coupling yields no work", "[contact][problem][energy]") {
   for (int cells : {20, 8}) {  // every contact point a vertex; points on edges and faces too
     INFO(cells << " cells");
     const double sampled_for = cells == 20 ? vertices_only : radius;
-    // As a servo has it: linearisation stops when the force changes by a thousandth. What is missing then is the turn
-    // of the normals of one step: a drag, never a push.
+    // As in a servo, linearisation stops when the force changes by a thousandth. The remaining error is the rotation of
+    // the normals in one step: it dissipates and never drives.
     for (double step : {2e-5, 1e-5, 2.5e-6}) {
       const double work = work_of_loop({}, sampled_for, cells, step);
       INFO(cells << " cells, steps of " << 1e6 * step << " um: work of the loop over work of the press " << work);
@@ -270,11 +270,12 @@ TEST_CASE("the work of a press is the stored energy", "[contact][problem][energy
   CHECK_THAT(work, WithinRel(tissue.energy(end, radius), 1e-3));
 }
 
-TEST_CASE("more contacts than fit: flagged, the nearest kept, still finite", "[contact][problem][extreme][D4]") {
+TEST_CASE("more contacts than the capacity: flagged, the nearest kept, force finite",
+          "[contact][problem][extreme][D4]") {
   AnalyticTissue tissue(60, 0.02, 2e-2);  // a third of a millimetre apart
   Session s(tissue, {Vector3(0, 0, radius + 1e-4)}, 2e-3, vertices_only, {.capacity = 8});
   s.move(0, Vector3(0, 0, radius - 1e-3));
-  CHECK(s.status == Status(StatusFlag::degraded_model));                                // solved for those that fit
+  CHECK(s.status == Status(StatusFlag::degraded_model));  // solved for the contacts that fit
   for (const Contact& c : s.problem.contacts())
     CHECK(c.rest.head<2>().norm() < 1e-3);  // below the sphere, not beside it
   CHECK(s.problem.contacts().size() == 8);
@@ -283,7 +284,7 @@ TEST_CASE("more contacts than fit: flagged, the nearest kept, still finite", "[c
   CHECK(s.force().norm() <= 500.0 * 1e-3 * (1.0 + 1e-6));
 }
 
-TEST_CASE("a sphere in the air has exactly no force and no contacts", "[contact][problem]") {
+TEST_CASE("a sphere in the air has exactly zero force and no contacts", "[contact][problem]") {
   AnalyticTissue tissue(20, 0.02, 2e-2);
   Session s(tissue, {Vector3(0, 0, 0.05)}, 2e-3, radius);
   s.move(0, Vector3(3e-3, 0, 0.02), 1e-3);
@@ -291,13 +292,13 @@ TEST_CASE("a sphere in the air has exactly no force and no contacts", "[contact]
   CHECK(s.force() == Vector3::Zero());
   CHECK(s.problem.contacts().empty());
   CHECK(s.tools[0].proxy == s.tools[0].target);
-  s.move(0, Vector3(3e-3, 0, -0.02), 1e-4);  // right through: a linear tissue gives way, whatever the depth
+  s.move(0, Vector3(3e-3, 0, -0.02), 1e-4);  // right through: a linear tissue deforms to any depth
   s.move(0, Vector3(3e-3, 0, 0.05), 1e-4);
   s.settle(3);
   CHECK(s.force() == Vector3::Zero());
 }
 
-TEST_CASE("bad targets leave no trace", "[contact][problem][extreme][D1]") {
+TEST_CASE("invalid targets have no effect on later ticks", "[contact][problem][extreme][D1]") {
   AnalyticTissue tissue(20, 0.02, 2e-2);
   const Vector3 above(2e-4, 1e-4, radius + 1e-4), pressed(2e-4, 1e-4, radius - 8e-4);
   Session reference(tissue, {above}, 2e-3);
@@ -307,7 +308,7 @@ TEST_CASE("bad targets leave no trace", "[contact][problem][extreme][D1]") {
     Session s(tissue, {above}, 2e-3);
     s.move(0, pressed);
     s.tick(0, Vector3(0.0, bad, 0.0));
-    // As a servo does when it starts anew.
+    // As a servo does when contact restarts.
     s.tools[0].target = s.tools[0].proxy = above;
     s.tools[0].force.setZero();
     s.settle(2);

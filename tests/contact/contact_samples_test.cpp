@@ -1,4 +1,4 @@
-// Where contact points lie and what they belong to.
+// Positions of contact points and the triangles they belong to.
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/testing/random.hpp>
@@ -42,7 +42,7 @@ TEST_CASE("short edges are sampled at their vertices only", "[contact][samples]"
   CHECK(samples.count() == 5 * 5 * 5 - 3 * 3 * 3);
 }
 
-TEST_CASE("a right triangle gets the lattice of its longest edge, each edge its own", "[contact][samples]") {
+TEST_CASE("the lattice of a right triangle is that of its longest edge; each edge has its own", "[contact][samples]") {
   const ContactSurface one({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   for (int n : {1, 2, 3, 7}) {
     const int diagonal = static_cast<int>(std::ceil(std::sqrt(2.0) * n - 1e-9));
@@ -52,7 +52,7 @@ TEST_CASE("a right triangle gets the lattice of its longest edge, each edge its 
   }
 }
 
-TEST_CASE("every sample belongs to one triangle, with weights of its plane", "[contact][samples]") {
+TEST_CASE("every sample belongs to one triangle, with barycentric weights", "[contact][samples]") {
   const ContactSurface surface = surface_to_sample(box_tet4(Vector3(1, 1, 0.5), {3, 2, 2}, BoxSplit::five_mirrored));
   const ContactSamples samples(surface, 0.1);
   std::set<std::tuple<long, long, long>> places;

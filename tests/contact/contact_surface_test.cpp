@@ -53,7 +53,7 @@ TEST_CASE("the signed distance of a box is exact everywhere", "[contact][surface
   CHECK(worst_direction <= 1e-12);
 }
 
-TEST_CASE("points straight off corners and edges have the right sign", "[contact][surface]") {
+TEST_CASE("points outside corners and edges have the right sign", "[contact][surface]") {
   const ContactSurface surface = surface_of(box_tet4(Vector3(1, 1, 1), {2, 2, 2}, BoxSplit::six));
   for (double x : {0.0, 1.0})
     for (double y : {0.0, 1.0})
@@ -67,7 +67,7 @@ TEST_CASE("points straight off corners and edges have the right sign", "[contact
         const auto on = surface.closest(corner);
         CHECK(std::abs(on.distance) <= 1e-15);
         CHECK(on.outward.dot(away.normalized()) > 0.5);
-        // Along one axis only: the closest point is the corner or edge, beside faces that look away.
+        // Along one axis only: the closest point is the corner or edge, next to faces that point away.
         for (int axis = 0; axis < 2; ++axis) {
           Vector3 side = Vector3::Zero();
           side[axis] = away[axis] > 0.0 ? 0.1 : -0.1;
@@ -89,7 +89,7 @@ TEST_CASE("on the surface the outward direction is the normal, not rounding", "[
   SUCCEED();
 }
 
-TEST_CASE("ties go to the same triangle every time", "[contact][surface]") {
+TEST_CASE("ties always give the same triangle", "[contact][surface]") {
   const ContactSurface surface = surface_of(box_tet4(Vector3(1, 1, 1), {4, 4, 4}, BoxSplit::five_mirrored));
   const ContactSurface again = surface_of(box_tet4(Vector3(1, 1, 1), {4, 4, 4}, BoxSplit::five_mirrored));
   for (const Vector3& p : {Vector3(0.5, 0.5, 0.5), Vector3(0.5, 0.5, 1.0), Vector3(0.25, 0.25, 1.0), Vector3(0, 0, 0),
@@ -106,7 +106,7 @@ TEST_CASE("ties go to the same triangle every time", "[contact][surface]") {
   }
 }
 
-TEST_CASE("a moved surface answers as a new one in its place", "[contact][surface]") {
+TEST_CASE("a moved surface gives the same results as a new one", "[contact][surface]") {
   Mesh<Tet4> mesh = box_tet4(Vector3(1, 1, 1), {3, 3, 3}, BoxSplit::six);
   ContactSurface moved = surface_of(mesh);
   testing::Random random(32);
@@ -125,7 +125,7 @@ TEST_CASE("a moved surface answers as a new one in its place", "[contact][surfac
   SUCCEED();
 }
 
-TEST_CASE("over an open surface the sign is that of the plane", "[contact][surface]") {
+TEST_CASE("above and below an open surface the sign is that of the plane", "[contact][surface]") {
   const ContactSurface top = surface_of(box_tet4(Vector3(1, 1, 1), {3, 3, 3}, BoxSplit::six), 2);
   REQUIRE(top.triangles().size() == 18);
   testing::Random random(33);

@@ -1,4 +1,4 @@
-// Coulomb friction against closed forms.
+// Coulomb friction compared with closed forms.
 #include "contact/tool_session.hpp"
 
 #include <palpate/core/rigid_motion.hpp>
@@ -18,7 +18,7 @@ using test::ToolSession;
 
 namespace {
 
-constexpr double flat = 10.0;  // [m] a radius beside which millimetres are level
+constexpr double flat = 10.0;  // [m] a radius so large that the sphere is flat over millimetres
 
 ContactParameters rough(double coefficient) {
   ContactParameters p;
@@ -26,19 +26,19 @@ ContactParameters rough(double coefficient) {
   return p;
 }
 
-/// Across z.
+/// Tangential force: across z.
 double drag_of(const Vector3& force) {
   return force.head<2>().norm();
 }
 
 }  // namespace
 
-TEST_CASE("one point sticks like a spring up to mu N, slips at mu N, and sticks again on the way back",
+TEST_CASE("one point sticks like a spring up to mu N, slips at mu N, and sticks again when the motion reverses",
           "[contact][friction]") {
   for (const double own : {1e-4, 5e-3})
     for (const double coupling : {0.0, 2e-3})
       for (const double mu : {0.1, 0.5, 1.2}) {
-        AnalyticTissue tissue(4, 0.2, own);  // 50 mm apart: the sphere reaches one
+        AnalyticTissue tissue(4, 0.2, own);  // 50 mm apart: the sphere touches one
         const double depth = 1e-4, soft = own + coupling, press = depth / soft;
         ToolSession s(tissue, {round_tool(flat, {0, 0, flat + 1e-5}, coupling)}, rough(mu));
         s.move(0, {0, 0, flat - depth}, 50);
@@ -62,9 +62,9 @@ TEST_CASE("one point sticks like a spring up to mu N, slips at mu N, and sticks 
           before = s.force();
         }
         CHECK(worst_stick <= 2e-3);
-        CHECK(worst_slip <= 2e-3);  // 1 % asked for
+        CHECK(worst_slip <= 2e-3);  // 1 % required
         CHECK(sideways <= 2e-3);
-        CHECK(jump <= 0.011);  // a hundredth of the way to slip per tick: no jump where sticking ends
+        CHECK(jump <= 0.011);  // a hundredth of the displacement to slip per tick: no jump at the end of sticking
         const double end = 3.0 * slip_at;
         for (int k = 1; k <= 400; ++k) {
           const double back = 0.01 * k * slip_at;
@@ -77,7 +77,7 @@ TEST_CASE("one point sticks like a spring up to mu N, slips at mu N, and sticks 
       }
 }
 
-TEST_CASE("many points together drag with mu N in any direction", "[contact][friction]") {
+TEST_CASE("the friction force of many points together is mu N in any direction", "[contact][friction]") {
   testing::Random random(71);
   double worst = 0.0, worst_direction = 0.0, roughest = 0.0;
   std::size_t most = 0;
@@ -102,15 +102,15 @@ TEST_CASE("many points together drag with mu N in any direction", "[contact][fri
         most = std::max(most, s.problem.contacts().size());
         CHECK_FALSE(s.status.has(StatusFlag::solver_not_converged));
       }
-  INFO("worst drag over mu N less one " << worst << ", direction " << worst_direction << ", tick to tick " << roughest
-                                        << ", up to " << most << " points");
+  INFO("largest error of friction force over mu N " << worst << ", direction " << worst_direction << ", tick to tick "
+                                                    << roughest << ", up to " << most << " points");
   CHECK(worst <= 0.01);
   CHECK(worst_direction <= 1e-3);
   CHECK(roughest <= 0.05);
   CHECK(most >= 9);
 }
 
-TEST_CASE("a sphere of 4 mm that slides over a bed of points drags smoothly", "[contact][friction]") {
+TEST_CASE("the friction force on a sphere of 4 mm that slides over many points is smooth", "[contact][friction]") {
   AnalyticTissue tissue(40, 0.02, 2e-2, 1e-3);  // half a millimetre apart
   ToolSession s(tissue, {round_tool(4e-3, {-4e-3, 0, 4.1e-3}, 2e-3)}, rough(0.4));
   s.move(0, {-4e-3, 0, 3.4e-3}, 100);
@@ -127,14 +127,14 @@ TEST_CASE("a sphere of 4 mm that slides over a bed of points drags smoothly", "[
     }
     before = s.force();
   }
-  INFO("mean drag over press " << sum / press << ", tick to tick " << roughest);
-  // Of contact normals that spread by 0.3 rad the drag keeps a part; the dent drags too.
+  INFO("mean friction force over press " << sum / press << ", tick to tick " << roughest);
+  // With contact normals that spread by 0.3 rad only a part of the friction is lateral; the dent adds a lateral force.
   CHECK(sum / press >= 0.3);
   CHECK(sum / press <= 0.5);
   CHECK(roughest <= 0.02);
 }
 
-TEST_CASE("friction never gives energy, wherever the hand goes", "[contact][friction][energy]") {
+TEST_CASE("friction never generates energy for any motion of the hand", "[contact][friction][energy]") {
   testing::Random random(72);
   for (const double coupling : {0.0, 2e-3}) {
     AnalyticTissue tissue(6, 0.06, 5e-4, 5e-4);
@@ -156,14 +156,14 @@ TEST_CASE("friction never gives energy, wherever the hand goes", "[contact][fric
     }
     const Vector3 last = s.tools[0].target;
     for (int k = 1; k <= 200; ++k) step(last + (home + Vector3(0, 0, 1e-3) - last) * k / 200);
-    INFO("coupling " << coupling << ": the hand put in " << taken << " J and has lost " << -work);
+    INFO("coupling " << coupling << ": the hand supplied " << taken << " J and lost " << -work);
     CHECK(s.force() == Vector3::Zero());
     CHECK(work <= 0.0);
     CHECK(-work >= 0.05 * taken);
   }
 }
 
-TEST_CASE("a sphere spins against friction: torque about its centre", "[contact][friction][torque]") {
+TEST_CASE("a sphere that spins against friction has a torque about its centre", "[contact][friction][torque]") {
   AnalyticTissue tissue(4, 0.2, 1e-3);
   const double radius = 0.01, depth = 2e-5, mu = 0.5;
   ToolSession s(tissue, {round_tool(radius, {0, 0, radius + 1e-5}, 0.0)}, rough(mu));
@@ -174,12 +174,12 @@ TEST_CASE("a sphere spins against friction: torque about its centre", "[contact]
     turn = rotation_by(Vector3(0, 1e-4 * k, 0));
     s.tick(0, s.tools[0].target, turn);
   }
-  // The point it spins over is dragged along x; the sphere feels mu N against that, at the end of its radius.
+  // The point it spins over is moved along x; the friction force on the sphere is mu N against that, at its radius.
   CHECK_THAT(drag_of(s.force()), WithinRel(mu * press, 0.01));
   CHECK_THAT(s.tools[0].torque[1], WithinRel(-mu * press * radius, 0.02));
 }
 
-TEST_CASE("two tools with friction far apart are two problems", "[contact][friction]") {
+TEST_CASE("two tools with friction far apart do not interact", "[contact][friction]") {
   AnalyticTissue tissue(40, 0.04, 2e-2);
   const auto at = [](double x) { return round_tool(4e-3, {x, 2e-4, 4.1e-3}, 1e-3); };
   ToolSession both(tissue, {at(-0.01), at(0.01)}, rough(0.5)), one(tissue, {at(-0.01)}, rough(0.5)),
@@ -199,7 +199,7 @@ TEST_CASE("two tools with friction far apart are two problems", "[contact][frict
   CHECK((both.force(1) - other.force()).norm() <= 2e-3 * other.force().norm());
 }
 
-TEST_CASE("coefficients of friction that make no sense are refused", "[contact][friction]") {
+TEST_CASE("invalid coefficients of friction are refused", "[contact][friction]") {
   AnalyticTissue tissue(4, 0.02, 1e-3);
   for (const double bad : {-0.1, 4.1, infinity, std::numeric_limits<double>::quiet_NaN()})
     CHECK_THROWS_AS(ToolSession(tissue, {}, rough(bad)), SetupError);

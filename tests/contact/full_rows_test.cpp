@@ -1,4 +1,4 @@
-// More points than rows: what is kept, what friction does, and that nothing is written where no row is.
+// More points than rows: which are kept, the effect of friction, and that nothing is written outside the rows.
 #include "contact/tool_session.hpp"
 
 #include "catch.hpp"
@@ -24,7 +24,7 @@ struct Crowd : ToolSession {
 
 constexpr double spring = 1e-2;  // [m/N]
 
-/// Sum of what the contacts press with, along z.
+/// Sum of the contact forces along z.
 double pressed(const Crowd& s) {
   double sum = 0.0;
   for (const Contact& c : s.problem.contacts()) sum += c.total()[2];
@@ -33,8 +33,8 @@ double pressed(const Crowd& s) {
 
 }  // namespace
 
-TEST_CASE("full rows: a point that gives its row to a grasp gives its force too", "[contact][rows][grasp][extreme]") {
-  // Four columns of four points, 0.4 mm apart; a capsule along them presses two columns, as many points as rows.
+TEST_CASE("full rows: a point that loses its row to a grasp also loses its force", "[contact][rows][grasp][extreme]") {
+  // Four columns of four points, 0.4 mm apart; a capsule along them presses two columns: as many points as rows.
   AnalyticTissue tissue(3, 1.2e-3, spring);
   const double radius = 10e-3, height = radius - 4e-6, away = 0.2e-3;
   ContactTool capsule = round_tool(radius, {-0.4e-3, 0.0, radius + 1e-4}, 0.0, 2e-3, Vector3::UnitY());
@@ -44,15 +44,15 @@ TEST_CASE("full rows: a point that gives its row to a grasp gives its force too"
   s.move(0, {-0.4e-3, 0.0, height}, 20);
   REQUIRE(s.problem.contacts().size() == row_count);
   CHECK(s.status.ok());
-  s.tools[0].grasping = true;  // three rows for the held point, five for the other seven
+  s.tools[0].grasping = true;  // three rows for the grasped point, five for the other seven
   s.tick(0, s.tools[0].target);
   REQUIRE(s.problem.is_holding(0));
   CHECK(s.status.has(StatusFlag::degraded_model));
   CHECK(s.problem.contacts().size() == row_count);
-  s.move(0, {0.4e-3, 0.0, height}, 40);  // over to the two columns that nothing pressed yet
+  s.move(0, {0.4e-3, 0.0, height}, 40);  // to the two columns that have not been pressed yet
   s.tools[0].grasping = false;
   s.settle(2);
-  s.tools[1].active = true;  // another list of points near the tools
+  s.tools[1].active = true;  // rebuilds the list of points near the tools
   s.settle(2);
   const double distance = std::hypot(height, away);
   const double exact = row_count * (radius - distance) / spring * height / distance;
@@ -63,7 +63,8 @@ TEST_CASE("full rows: a point that gives its row to a grasp gives its force too"
   CHECK((s.tools[0].proxy - s.tools[0].target).norm() <= 1e-12);
 }
 
-TEST_CASE("full rows: those that press keep them, and the answer for them is exact", "[contact][rows][extreme][D4]") {
+TEST_CASE("full rows: points that press keep their rows, and the solution for them is exact",
+          "[contact][rows][extreme][D4]") {
   AnalyticTissue tissue(60, 0.02, spring);  // a third of a millimetre apart
   const double radius = 4e-3;
   Crowd s(tissue, {round_tool(radius, {5e-5, 2e-5, radius + 1e-4}, 0.0)});
@@ -74,11 +75,11 @@ TEST_CASE("full rows: those that press keep them, and the answer for them is exa
   for (const Contact& c : s.problem.contacts()) {
     const Vector3 path = s.tools[0].proxy - c.rest;
     CHECK_THAT(c.force, WithinRel((radius - path.norm()) / spring, 1e-6));  // independent springs
-    CHECK(c.rest.head<2>().norm() < 2e-3);  // those met first, below the middle of a sphere that has come straight down
+    CHECK(c.rest.head<2>().norm() < 2e-3);  // the first points touched, below the middle of a sphere that moved down
   }
 }
 
-TEST_CASE("full rows: friction acts on those that press", "[contact][rows][friction][D4]") {
+TEST_CASE("full rows: friction acts on the points that press", "[contact][rows][friction][D4]") {
   AnalyticTissue tissue(60, 0.02, spring);
   const double radius = 4e-3, mu = 0.3;
   ContactParameters rough;
@@ -102,7 +103,7 @@ TEST_CASE("full rows: friction acts on those that press", "[contact][rows][frict
     most = std::max(most, drag / pressing);
   }
   CHECK(s.status == Status(StatusFlag::degraded_model));
-  INFO("drag over press: " << least << " to " << most);
+  INFO("friction force over press: " << least << " to " << most);
   CHECK(least > 0.7 * mu);
   CHECK(most <= mu * (1.0 + 1e-9));
 }

@@ -1,4 +1,4 @@
-// The compliance between contact points and when it is read anew.
+// The compliance between contact points and when it is read again.
 #include <palpate/concepts/still_tissue.hpp>
 #include <palpate/contact/detail/point_compliance.hpp>
 #include <palpate/testing/random.hpp>
@@ -11,7 +11,7 @@ using namespace palpate;
 
 namespace {
 
-/// A strip of triangles between vertices whose compliance is any function of the pair, and counts how often it is read.
+/// A strip of triangles between vertices whose compliance is any function of the pair; counts how often it is read.
 struct CountingTissue : StillTissue {
   ContactSurface surface;
   std::uint64_t revision = 0;
@@ -57,7 +57,7 @@ Matrix3 expected(const CountingTissue& tissue, const ContactSample& p, const Con
 
 }  // namespace
 
-TEST_CASE("compliance between points is J C J^T whatever was asked before", "[contact][point_compliance]") {
+TEST_CASE("compliance between points is J C J^T, independent of earlier requests", "[contact][point_compliance]") {
   CountingTissue tissue;
   const ContactSamples samples(tissue.surface, 0.004);
   const int count = samples.first_of(static_cast<int>(tissue.surface.triangles().size()));
@@ -87,7 +87,7 @@ TEST_CASE("compliance between points is J C J^T whatever was asked before", "[co
   CHECK(worst <= 1e-14);
 }
 
-TEST_CASE("what is known is not read again, until the tissue says so", "[contact][point_compliance]") {
+TEST_CASE("cached compliance is not read again until the tissue's revision changes", "[contact][point_compliance]") {
   CountingTissue tissue;
   const ContactSamples samples(tissue.surface, 0.004);
   PointCompliance compliance(8);

@@ -1,4 +1,4 @@
-// Models and sessions that the servo's tests share.
+// Models and sessions shared by the servo's tests.
 #pragma once
 
 #include "contact/analytic_tissue.hpp"
@@ -17,7 +17,7 @@ inline constexpr double pad_height = 0.02;
 inline constexpr double sphere_radius = 4e-3;
 
 /// A block of 30 x 30 x 20 mm, fixed below; its top, or all of its surface, can be touched. Columns are computed in the
-/// tick unless asked otherwise.
+/// tick by default.
 template <class Model = Pad>
 Model make_pad(const char* touched = "z1", double youngs_modulus = 1e4, std::array<int, 3> cells = {6, 6, 4},
                const SetupOptions& options = {.columns = ColumnFill::synchronous}) {
@@ -27,7 +27,7 @@ Model make_pad(const char* touched = "z1", double youngs_modulus = 1e4, std::arr
                LinearElastic{.youngs_modulus = youngs_modulus, .poisson_ratio = 0.3}, options);
 }
 
-/// The block with all of its surface touchable; made once.
+/// The block with all of its surface touchable; constructed once.
 inline Pad& whole_pad() {
   static Pad pad = make_pad("surface");
   return pad;
@@ -42,7 +42,7 @@ inline ForceLimits open_gate() {
   return limits;
 }
 
-/// A servo, its tools and a clock of 1 kHz.
+/// A servo, its tools and a 1 kHz clock.
 template <class Model>
 struct ServoSession {
   HapticServo servo;
@@ -53,7 +53,7 @@ struct ServoSession {
   explicit ServoSession(Model& model, const ServoOptions& options = {}, std::size_t tools = 1)
       : servo(model, std::vector<SphereTool>(tools, SphereTool{.radius = sphere_radius}), options), states(tools) {}
 
-  /// One tick with the states as they are, a period later.
+  /// One tick with the present states, one period later.
   const GatedForce& tick() {
     for (ToolState& s : states) s.time += period;
     const std::span<const GatedForce> got = servo.tick(states);
@@ -74,14 +74,14 @@ struct ServoSession {
     for (int i = 0; i < ticks; ++i) tick();
     return forces.front();
   }
-  /// From the air straight down until the sphere would be `depth` in the undeformed tissue.
+  /// From the air straight down until the sphere would overlap the undeformed tissue by `depth`.
   const GatedForce& press(double depth, double x = 0.0137, double y = 0.0159) {
     tick(Vector3(x, y, pad_height + sphere_radius + 1e-3));
     return move(Vector3(x, y, pad_height + sphere_radius - depth), 100);
   }
 };
 
-/// Bit by bit the same vector.
+/// Whether two vectors are bitwise equal.
 inline bool same(const Vector3& a, const Vector3& b) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }

@@ -1,4 +1,4 @@
-// Nothing is too thin and no tool too fast: swept detection.
+// Swept contact detection: no part is too thin and no tool too fast.
 #include "contact/analytic_tissue.hpp"
 
 #include <palpate/contact/detail/sweep.hpp>
@@ -79,7 +79,8 @@ std::array<double, 4> rotated_to(const Vector3& axis) {
 
 }  // namespace
 
-TEST_CASE("a sphere meets face, edge and corner of a triangle when the closed form says", "[contact][sweep]") {
+TEST_CASE("first contact of a sphere with face, edge and corner of a triangle equals the closed form",
+          "[contact][sweep]") {
   const std::array<Vector3, 3> corner{Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
   const Vector3 up = Vector3::UnitZ();
   const auto meets = [&](const Vector3& from, const Vector3& path) {
@@ -95,7 +96,7 @@ TEST_CASE("a sphere meets face, edge and corner of a triangle when the closed fo
   CHECK(meets({0.2, 0.2, 0.05}, {0.1, 0, -0.8}) == 0.0);    // touches already, and presses
 }
 
-TEST_CASE("where a sphere is said to meet a triangle it touches, and before it does not", "[contact][sweep]") {
+TEST_CASE("at the reported first contact a sphere touches the triangle, and before it does not", "[contact][sweep]") {
   testing::Random random(91);
   int met = 0;
   double worst = 0.0, sunk = 0.0;
@@ -121,7 +122,7 @@ TEST_CASE("where a sphere is said to meet a triangle it touches, and before it d
   CHECK(sunk <= 1e-9);
 }
 
-TEST_CASE("a tool that teleports never gets through a plate of 0.2 mm", "[contact][sweep][haptic]") {
+TEST_CASE("a tool that teleports never passes through a plate of 0.2 mm", "[contact][sweep][haptic]") {
   for (const double half : {0.0, 8e-3}) {
     ThinPlate plate;
     HapticServo servo(plate, CapsuleTool(2e-3, half), ServoOptions{});
@@ -155,7 +156,7 @@ TEST_CASE("a tool that teleports never gets through a plate of 0.2 mm", "[contac
   }
 }
 
-TEST_CASE("a jump through free space arrives, one at a wall stops at it", "[contact][sweep][haptic]") {
+TEST_CASE("a jump through free space arrives, a jump at a wall stops at the wall", "[contact][sweep][haptic]") {
   ThinPlate plate;
   HapticServo servo(plate, SphereTool{.radius = 2e-3}, ServoOptions{});
   ToolState state;
@@ -169,26 +170,26 @@ TEST_CASE("a jump through free space arrives, one at a wall stops at it", "[cont
   CHECK((servo.proxy() - Vector3(0.01, 0, 0.01)).norm() <= 1e-12);
   go({0.01, 0, -0.03});
   CHECK(servo.proxy()[2] > 0.0);
-  CHECK(servo.contact_force()[2] > 0.0);  // it pulls back to the side it came from
+  CHECK(servo.contact_force()[2] > 0.0);  // the force points to the side it came from
   for (int k = 0; k < 60; ++k) go({0.01, 0, -0.03});
   CHECK_THAT(go({0.01, 0, -0.03}).force().norm(), WithinRel(3.3, 1e-6));
-  go({0.01, 0, 0.03});  // back: the wall lets go at once
+  go({0.01, 0, 0.03});  // back: the wall releases it immediately
   CHECK(servo.contact_force() == Vector3::Zero());
   CHECK((servo.proxy() - Vector3(0.01, 0, 0.03)).norm() <= 1e-12);
-  go({0.2, 0, 0.03});  // round the plate, all free
+  go({0.2, 0, 0.03});  // around the plate, without contact
   go({0.2, 0, -0.03});
   go({0.0, 0, -0.03});
   CHECK((servo.proxy() - Vector3(0.0, 0, -0.03)).norm() <= 1e-12);
   go({0.0, 0, 0.03});
-  CHECK(servo.proxy()[2] < 0.0);  // now it is held on the other side
+  CHECK(servo.proxy()[2] < 0.0);  // now it is stopped on the other side
 }
 
-TEST_CASE("torque goes through the gate, to a device that renders it", "[contact][torque][haptic]") {
+TEST_CASE("torque passes the gate, to a device that renders it", "[contact][torque][haptic]") {
   test::AnalyticTissue tissue(20, 0.03, 2e-3);
   const CapsuleTool tool(3e-3, 8e-3, Vector3::UnitX());
   ServoOptions options;
   options.device.peak_torque = 0.02;
-  CHECK_THROWS_AS(HapticServo(tissue, tool, options), SetupError);  // no turning stiffness
+  CHECK_THROWS_AS(HapticServo(tissue, tool, options), SetupError);  // no rotational stiffness
   options.device.rotational_stiffness = 2.0;
   HapticServo six(tissue, tool, options), three(tissue, tool, ServoOptions{});
   ToolState state;
@@ -207,13 +208,13 @@ TEST_CASE("torque goes through the gate, to a device that renders it", "[contact
   CHECK(limited == 0);
   CHECK(zero == 400);
   CHECK(most > 0.005);
-  CHECK(six.contact_torque()[1] < 0.0);  // it turns back
+  CHECK(six.contact_torque()[1] < 0.0);  // it rotates back
   state.orientation = {std::numeric_limits<double>::quiet_NaN(), 0, 0, 0};
   state.time += 1e-3;
   CHECK(six.tick({&state, 1})[0].status.has(StatusFlag::non_finite_input));
 }
 
-TEST_CASE("buttons grasp", "[contact][grasp][haptic]") {
+TEST_CASE("a tool grasps while a grasp button is pressed", "[contact][grasp][haptic]") {
   test::AnalyticTissue tissue(4, 0.2, 1e-3);
   ServoOptions options;
   options.grasp_buttons = 2;

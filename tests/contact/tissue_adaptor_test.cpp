@@ -1,4 +1,4 @@
-// A tissue around another one hands on every hook, and hooks that do nothing are not called.
+// A tissue that wraps another one forwards every hook, and hooks that do nothing are not called.
 #include <palpate/concepts/tissue_adaptor.hpp>
 
 #include "contact/analytic_tissue.hpp"
@@ -36,12 +36,12 @@ template <class Tissue>
 struct Same : TissueAdaptor<Tissue> {
   using TissueAdaptor<Tissue>::TissueAdaptor;
 };
-/// Brings something in before each tick.
+/// Changes the tissue before each tick.
 struct Announcing : Same<test::AnalyticTissue> {
   using Same::Same;
   Status begin_tick() noexcept { return {}; }
 };
-/// Changes the compliance and one thing that goes with it.
+/// Changes the compliance and only one of the functions that depend on it.
 struct Forgetful : Same<test::AnalyticTissue> {
   using Same::Same;
   Matrix3 compliance(int i, int j) const noexcept { return 2.0 * tissue().compliance(i, j); }
@@ -52,12 +52,12 @@ struct ForgetfulSprings : test::AnalyticTissue {
   using AnalyticTissue::AnalyticTissue;
   Matrix3 compliance(int i, int j) const noexcept { return 2.0 * AnalyticTissue::compliance(i, j); }
 };
-/// A tighter bound goes with the compliance that is inherited.
+/// Inherits the compliance and has a tighter bound for it.
 struct Tighter : Same<test::AnalyticTissue> {
   using Same::Same;
   double compliance_bound(int j) const noexcept { return 0.9 * tissue().compliance_bound(j); }
 };
-/// Scales from a base that has no compliance are nobody's else.
+/// Scales from a base without compliance belong to the class that has the compliance.
 struct Scales {
   std::uint64_t compliance_revision() const noexcept { return 0; }
   double compliance_bound(int) const noexcept { return 1.0; }
@@ -83,7 +83,7 @@ static_assert(std::constructible_from<Same<Still>, Still&> && !std::constructibl
 
 }  // namespace
 
-TEST_CASE("an adaptor hands on every hook, and an adaptor around it, too", "[contact][tissue]") {
+TEST_CASE("an adaptor forwards every hook, also through another adaptor", "[contact][tissue]") {
   Counting springs;
   Same<Counting> inner(springs);
   Same<Same<Counting>> outer(inner);
@@ -113,7 +113,7 @@ TEST_CASE("an adaptor hands on every hook, and an adaptor around it, too", "[con
   CHECK(springs.slow);
 }
 
-TEST_CASE("a tissue that does not move has hooks that nobody calls", "[contact][tissue]") {
+TEST_CASE("the hooks of a tissue that does not move are not called", "[contact][tissue]") {
   test::AnalyticTissue springs(4, 0.04, 1e-3);
   Same<test::AnalyticTissue> same(springs);
   TissueView view(same);

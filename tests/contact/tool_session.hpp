@@ -5,7 +5,7 @@
 
 namespace test {
 
-/// Contact points at the vertices alone, as closed forms have them.
+/// Contact points at the vertices only, as the closed forms assume.
 inline constexpr double at_vertices_only = 1e9;
 
 struct ToolSession {
@@ -20,15 +20,15 @@ struct ToolSession {
       : tissue(t), problem(t.contact_surface(), sampled_for, parameters), tools(start) {}
 
   void tick() { status |= problem.solve(tissue, tools); }
-  /// The device of one tool is elsewhere.
+  /// Moves the device of one tool.
   void tick(std::size_t i, const Vector3& target, const Matrix3& rotation) {
     for (ContactTool& t : tools) {
       t.motion.setZero();
-      t.rotated = 0.0;
+      t.end_path = 0.0;
     }
     ContactTool& t = tools[i];
     t.motion = target - t.target;
-    t.rotated = t.half_length * ((rotation - t.target_rotation) * t.own_axis).norm();
+    t.end_path = t.half_length * ((rotation - t.target_rotation) * t.own_axis).norm();
     t.target = target;
     t.target_rotation = rotation;
     tick();

@@ -1,4 +1,4 @@
-// Closest point on a triangle against brute force, feature by feature.
+// Closest point on a triangle compared with brute force, for each feature.
 #include <palpate/contact/detail/triangle.hpp>
 #include <palpate/testing/random.hpp>
 
@@ -27,7 +27,7 @@ double segment_distance(const Vector3& p, const Vector3& a, const Vector3& b) {
   return (p - a - t * ab).norm();
 }
 
-/// Distance by another way: to the plane if the foot is inside, else to the three edges.
+/// Distance by a different method: to the plane if the foot is inside, otherwise to the three edges.
 double exact_distance(const Vector3& p, const Corners& t) {
   double best = std::min({segment_distance(p, t.a, t.b), segment_distance(p, t.b, t.c), segment_distance(p, t.c, t.a)});
   const Vector3 n = (t.b - t.a).cross(t.c - t.a);
@@ -57,7 +57,7 @@ bool weights_are_fine(const TrianglePoint& q) {
   return std::abs(sum - 1.0) <= 1e-12;
 }
 
-/// The weights that a feature says are zero are zero.
+/// Whether the weights that the feature requires to be zero are zero.
 bool weights_match_feature(const TrianglePoint& q) {
   const auto zero = [&](std::size_t i) { return q.weights[i] == 0.0; };
   switch (q.feature) {
@@ -85,7 +85,7 @@ TrianglePoint closest(const Vector3& p, const Corners& t) {
 
 }  // namespace
 
-TEST_CASE("each region around a triangle gives its feature and its point", "[contact][triangle]") {
+TEST_CASE("each region around a triangle gives its feature and its closest point", "[contact][triangle]") {
   const Corners t{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
   struct Case {
     Vector3 point, answer;
@@ -105,7 +105,7 @@ TEST_CASE("each region around a triangle gives its feature and its point", "[con
     }
 }
 
-TEST_CASE("the closest point is the closest for 200 000 random triangles and points", "[contact][triangle]") {
+TEST_CASE("the closest point is correct for 200 000 random triangles and points", "[contact][triangle]") {
   testing::Random random(11);
   std::array<int, 7> seen{};
   double worst = 0.0, worst_thin = 0.0;

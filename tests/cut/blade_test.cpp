@@ -1,4 +1,4 @@
-// A blade of a servo, on a tissue that is cut.
+// A blade tool of a servo on a tissue that can be cut.
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/device/mock_device.hpp>
 #include <palpate/element/tet4.hpp>
@@ -15,7 +15,7 @@ namespace {
 
 using Cut = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
 
-/// A block of 60 x 40 x 30 mm, fixed below, its top touchable.
+/// A block of 60 x 40 x 30 mm, fixed at the bottom, touchable at the top.
 struct SlicedBlock : Cut {
   SlicedBlock()
       : Cut(box_tet4({0.06, 0.04, 0.03}, {9, 6, 5}, BoxSplit::six), Scene().fix("z0").touch("z1"),
@@ -25,7 +25,7 @@ const BladeTool long_blade{.edge = {0.0, 0.05, 0.0}, .toughness = 40.0};
 
 }  // namespace
 
-TEST_CASE("a blade opens the tissue it is pushed into, and is felt", "[cut][blade][extreme][F3]") {
+TEST_CASE("a blade opens the tissue that it is pushed into, with a rendered force", "[cut][blade][extreme][F3]") {
   SlicedBlock tissue;
   HapticServo servo(tissue, long_blade);
   const ForceLimits& limits = servo.limits();
@@ -44,9 +44,9 @@ TEST_CASE("a blade opens the tissue it is pushed into, and is felt", "[cut][blad
     REQUIRE((f.force() - last).norm() <= limits.slew_rate * limits.period * (1.0 + 1e-9));
     last = f.force();
     most = std::max(most, last.norm());
-    if (i % 16 == 0) tissue.work();
+    if (i % 16 == 0) tissue.process_cuts();
   }
-  tissue.work();
+  tissue.process_cuts();
   tissue.begin_tick();
   CHECK(most > 0.5);
   CHECK(most <= 40.0 * 0.05 + 1e-9);
@@ -70,13 +70,13 @@ TEST_CASE("a blade alone follows a session with another tool", "[cut][blade]") {
     s.time = 1e-3 * i;
     servo.tick(s);
     cutting += servo.read_snapshot().contact_count == 1;
-    if (i % 16 == 0) tissue.work();
+    if (i % 16 == 0) tissue.process_cuts();
   }
   CHECK(tissue.cut_report().cuts > 1);
   CHECK(cutting > 10);
 }
 
-TEST_CASE("one hand touches what the other cuts", "[cut][blade]") {
+TEST_CASE("one tool touches the tissue while another cuts it", "[cut][blade]") {
   SlicedBlock tissue;
   const auto down = [](double x, double z, double seconds) {
     return trajectory::poke({.from = {x, 0.02, 0.036}, .to = {x, 0.02, z}, .approach = seconds, .hold = 9.0});
@@ -84,7 +84,7 @@ TEST_CASE("one hand touches what the other cuts", "[cut][blade]") {
   MockDevice finger(down(0.012, 0.032, 0.1)), scalpel(down(0.0451, 0.018, 0.4));
   HapticSession session(std::tie(finger, scalpel), tissue, {SphereTool{}, long_blade});
   const LoopReport report = session.run({.duration = 0.4, .paced = false});
-  while (tissue.work()) {}
+  while (tissue.process_cuts()) {}
   CHECK(report.devices[0].peak_force > 0.05);
   CHECK(report.devices[1].peak_force > 0.5);
   CHECK(session.servo().blade(0) == nullptr);

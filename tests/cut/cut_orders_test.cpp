@@ -1,4 +1,4 @@
-// Orders of cuts between threads.
+// Cut orders between threads.
 #include <palpate/cut/detail/cut_orders.hpp>
 
 #include "catch.hpp"
@@ -17,7 +17,7 @@ CutOrder removal(Index element) {
 
 }  // namespace
 
-TEST_CASE("all orders are taken as one, once, and are open until they are done", "[cut][orders]") {
+TEST_CASE("all orders are taken as one, only once, and are open until done", "[cut][orders]") {
   CutOrders orders;
   CHECK_FALSE(orders.are_open());
   CHECK(orders.take().count == 0);
@@ -37,14 +37,14 @@ TEST_CASE("all orders are taken as one, once, and are open until they are done",
   CHECK(taken.sweeps.size() == 2);
   CHECK(orders.take().count == 0);
   CHECK(orders.are_open());
-  orders.add(removal(4));  // while the others are worked on
+  orders.add(removal(4));  // while the others are processed
   orders.done(taken);
   CHECK(orders.are_open());
   orders.done(orders.take());
   CHECK_FALSE(orders.are_open());
 }
 
-TEST_CASE("a tick is told when too many strokes wait, and none is lost", "[cut][orders][extreme]") {
+TEST_CASE("a tick is notified when too many sweeps wait, and none is lost", "[cut][orders][extreme]") {
   CutOrders orders;
   unsigned accepted = 0;
   while (accepted < 1000 && orders.try_add(BladeSweep{})) ++accepted;
@@ -58,7 +58,7 @@ TEST_CASE("a tick is told when too many strokes wait, and none is lost", "[cut][
   CHECK(orders.try_add(BladeSweep{}));
 }
 
-TEST_CASE("orders from two threads while a third takes: each arrives once", "[cut][orders]") {
+TEST_CASE("orders from two threads reach a third thread exactly once", "[cut][orders]") {
   constexpr Index each = 2000;
   CutOrders orders;
   std::thread first([&] {

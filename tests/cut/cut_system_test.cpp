@@ -23,7 +23,7 @@ struct CutBlock {
         topology(mesh, resolve_essential(mesh, extract_boundary<E>(mesh), scene).constrained),
         system(topology, physics, kept) {}
 
-  /// Cuts, and folds now and then.
+  /// Cuts, and folds from time to time.
   void cut(const CutOrder& order) {
     const auto change = topology.apply(order);
     system.fold();
@@ -34,8 +34,8 @@ struct CutBlock {
     return !star.empty() && topology.state(star.front()) == ElementState::supported;
   }
 
-  /// Starts from a new factor when rounding has piled up; whether it did.
-  bool renew_if_worn() {
+  /// Starts from a new factor when rounding errors have accumulated; returns whether it did.
+  bool renew_if_inaccurate() {
     if (!(system.measured_error() > 1e-12)) return false;
     std::vector<NodeId> kept;
     for (NodeId node = 0; node < topology.mesh().node_count(); ++node)
@@ -44,7 +44,7 @@ struct CutBlock {
     return true;
   }
 
-  /// Largest difference of compliance and of displacement from a system made anew of what is left, relative.
+  /// Largest relative difference of compliance and displacement from a new system of the remaining body.
   double error() {
     std::vector<NodeId> kept;
     for (NodeId node = 0; node < topology.mesh().node_count(); ++node)
@@ -95,7 +95,7 @@ Scene hanging() {
 
 }  // namespace
 
-TEST_CASE("the compliance after removals and slits is that of a new model", "[cut]") {
+TEST_CASE("the compliance after removals and slits equals that of a new model", "[cut]") {
   const auto mesh = box_tet4({0.1, 0.08, 0.06}, {5, 4, 3});
   CutBlock<Tet4> b(mesh, hanging(), top_of(mesh));
   const auto rest = [&](NodeId node) { return b.topology.mesh().position(node); };
@@ -115,7 +115,7 @@ TEST_CASE("the compliance after removals and slits is that of a new model", "[cu
   CHECK(b.error() < 1e-10);
 }
 
-TEST_CASE("random cuts until nothing is held: right all the way", "[cut][extreme][F1]") {
+TEST_CASE("random cuts until nothing is supported: accurate after every cut", "[cut][extreme][F1]") {
   for (const auto split : {BoxSplit::five_mirrored, BoxSplit::six}) {
     const auto mesh = box_tet4({0.1, 0.1, 0.1}, {3, 3, 3}, split);
     CutBlock<Tet4> b(mesh, hanging(), top_of(mesh));
@@ -132,12 +132,12 @@ TEST_CASE("random cuts until nothing is held: right all the way", "[cut][extreme
           for (int f = 0; f < 4; ++f) order.open.push_back({e, f});
       }
       b.cut(order);
-      if (b.renew_if_worn()) ++renewed;
+      if (b.renew_if_inaccurate()) ++renewed;
       REQUIRE(b.system.displacement().allFinite());
       worst = std::max(worst, b.error());
     }
     INFO(worst << ", renewed " << renewed << " times, with " << b.topology.detached_fragments().size()
-               << " loose pieces");
+               << " detached fragments");
     CHECK(worst < 1e-10);
     CHECK(renewed < 20);
     CHECK(b.topology.detached_fragments().size() > 3);
@@ -151,7 +151,7 @@ TEST_CASE("random cuts until nothing is held: right all the way", "[cut][extreme
   }
 }
 
-TEST_CASE("a factor that was begun before the last cuts takes them in as one", "[cut][extreme][F1]") {
+TEST_CASE("a factor that was started before the last cuts applies them as one", "[cut][extreme][F1]") {
   const auto mesh = box_tet4({0.1, 0.1, 0.1}, {4, 3, 3}, BoxSplit::six);
   testing::Random random(9);
   for (int begun = 0; begun < 12; ++begun) {
@@ -181,7 +181,7 @@ TEST_CASE("a factor that was begun before the last cuts takes them in as one", "
   }
 }
 
-TEST_CASE("a load on the surface moves all nodes as in a new model", "[cut]") {
+TEST_CASE("displacements of all nodes under a surface load equal those of a new model", "[cut]") {
   const auto mesh = box_tet4({0.1, 0.08, 0.06}, {4, 4, 3});
   CutBlock<Tet4> b(mesh, hanging(), top_of(mesh));
   b.cut({{20, 21}, {{60, 0}, {60, 1}, {60, 2}, {60, 3}}});
@@ -197,7 +197,7 @@ TEST_CASE("a load on the surface moves all nodes as in a new model", "[cut]") {
 }
 
 TEST_CASE("a column cut to half its width is twice as soft", "[cut]") {
-  // Bars side by side in tension, nu = 0: the closed form N L / (E A) before and after half of them is cut through.
+  // Parallel bars in tension, nu = 0: the closed form N L / (E A) before and after half of the bars are cut.
   const auto mesh = box_tet4({0.02, 0.02, 0.1}, {2, 2, 6}, BoxSplit::six);
   const Scene scene = Scene().fix("z0").traction("z1", {0.0, 0.0, 10.0});
   CutPhysics<Tet4> physics(make_body(mesh, LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.0, .density = 0.0}),
@@ -206,7 +206,7 @@ TEST_CASE("a column cut to half its width is twice as soft", "[cut]") {
   const NodeId tip = mesh.find_group("z1")->nodes[0];
   CutSystem<Tet4> system(topology, physics, {tip});
   CHECK(std::abs(system.displacement()[3 * Index{tip} + 2] - 10.0 * 0.1 / 1e4) < 1e-12);
-  // Burn away every second column of cells, but for nothing of the load: it carries its own traction off.
+  // Remove every second column of cells. The load per column does not change: a column takes its own traction with it.
   CutOrder order;
   for (Index e = 0; e < mesh.element_count(); ++e)
     if (element_nodes<Tet4>(mesh, e).col(0).mean() > 0.01) order.remove.push_back(e);
@@ -214,7 +214,7 @@ TEST_CASE("a column cut to half its width is twice as soft", "[cut]") {
   CHECK(std::abs(system.displacement()[3 * Index{tip} + 2] - 10.0 * 0.1 / 1e4) < 1e-12);
 }
 
-TEST_CASE("hexahedra are cut by the same rules", "[cut]") {
+TEST_CASE("hexahedra are cut like tetrahedra", "[cut]") {
   const auto mesh = box_hex8({0.1, 0.08, 0.06}, {4, 3, 3});
   CutBlock<Hex8> b(mesh, Scene().fix("z0").gravity({0.0, 0.0, -9.81}), mesh.find_group("z1")->nodes);
   b.cut({{13, 30}, {{20, 0}, {20, 1}, {20, 2}}});

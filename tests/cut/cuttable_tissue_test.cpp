@@ -48,38 +48,38 @@ ToolState at(const Vector3& x, double time) {
 
 }  // namespace
 
-TEST_CASE("a tissue keeps the laws of tissues while it is cut", "[cut]") {
+TEST_CASE("a tissue passes the tissue law suite while it is cut", "[cut]") {
   Tissue tissue(slab(), constrained_below(), soft, {}, {.cuttable = Selection("surface")});
   const auto check = [&] {
     tissue.begin_tick();
     for (const auto& broken : testing::tissue_laws(tissue, used_vertices(tissue, 20)))
-      FAIL_CHECK(broken.material << ' ' << broken.detail);
+      FAIL_CHECK(broken.law << ' ' << broken.detail);
   };
   check();
   const int vertices = tissue.contact_surface().vertex_count();
   tissue.cut(slit_at(0.052, 0.02));
   CHECK(tissue.begin_tick().has(StatusFlag::degraded_model));
-  CHECK(tissue.work());
-  CHECK(tissue.begin_tick().ok());  // felt and folded in; what nobody waits for comes after
+  CHECK(tissue.process_cuts());
+  CHECK(tissue.begin_tick().ok());  // published and folded; deferred checks come later
   CHECK(tissue.cut_report().unchecked == 1);
   int checks = 0;
-  while (tissue.work()) ++checks;
+  while (tissue.process_cuts()) ++checks;
   CHECK(checks == 3);
   CHECK(tissue.cut_report().unchecked == 0);
   CHECK(tissue.begin_tick().ok());
-  CHECK(tissue.contact_surface().vertex_count() > vertices);  // the wound's walls can be touched
+  CHECK(tissue.contact_surface().vertex_count() > vertices);  // the walls of the cut can be touched
   CHECK(tissue.cut_report().error < 1e-10);
   check();
   tissue.cut(CutOrder{{0, 1, 2, 3, 4, 5}, {}});
-  tissue.work();
+  tissue.process_cuts();
   check();
   CHECK_REFUSED(SetupErrorKind::index_out_of_range, tissue.cut(CutOrder{{1000000}, {}}));
 }
 
-TEST_CASE("what is refused when a tissue is made is named as in the mesh as given", "[cut]") {
+TEST_CASE("refusals at construction report ids of the given mesh", "[cut]") {
   using Ids = std::vector<std::int64_t>;
   Mesh<Tet4> mesh = box_tet4({0.04, 0.04, 0.04}, {2, 2, 2});
-  mesh.positions.insert(mesh.positions.begin(), Vector3(0.0, 0.0, 1.0));  // no element uses it: it is dropped
+  mesh.positions.insert(mesh.positions.begin(), Vector3(0.0, 0.0, 1.0));  // used by no element: it is dropped
   for (auto& e : mesh.elements)
     for (NodeId& i : e) ++i;
   mesh.groups = {};
@@ -91,18 +91,18 @@ TEST_CASE("what is refused when a tissue is made is named as in the mesh as give
   CHECK(to_string(twice.kind) == "conflicting_conditions");
   CHECK(twice.ids == Ids{5});
 
-  auto flat = mesh.elements.front();  // dropped, too
+  auto flat = mesh.elements.front();  // dropped as well
   flat[3] = static_cast<NodeId>(mesh.positions.size());
   const auto at = [&](NodeId node) { return mesh.positions[static_cast<std::size_t>(node)]; };
   mesh.positions.push_back(Vector3(0.5 * (at(flat[0]) + at(flat[1]))));
   mesh.elements.insert(mesh.elements.begin(), flat);
   SetupOptions mending;
   mending.admission.degenerate = Admission::repair;
-  const SetupProblem loose = test::refusal([&] { Tissue(mesh, Scene().touch("surface"), soft, mending); });
-  CHECK(to_string(loose.kind) == "unconstrained");
-  REQUIRE(!loose.ids.empty());
-  CHECK(loose.ids.front() == 1);
-  CHECK(loose.count == 40);
+  const SetupProblem refused = test::refusal([&] { Tissue(mesh, Scene().touch("surface"), soft, mending); });
+  CHECK(to_string(refused.kind) == "unconstrained");
+  REQUIRE(!refused.ids.empty());
+  CHECK(refused.ids.front() == 1);
+  CHECK(refused.count == 40);
 }
 
 TEST_CASE("forces on vertices that do not exist are refused", "[cut]") {
@@ -115,8 +115,8 @@ TEST_CASE("forces on vertices that do not exist are refused", "[cut]") {
   CHECK(tissue.displacement({}) == rest);
 }
 
-TEST_CASE("what hangs by a thread is stretched beyond what can be touched: left out and said, not failed", "[cut]") {
-  // A column hangs; its middle is cut down to a few elements, far too soft for what they carry.
+TEST_CASE("overstretched remains of a cut are left out of contact and reported, without failure", "[cut]") {
+  // A hanging column whose middle is cut down to a few elements, far too soft for the weight they carry.
   const auto mesh = box_tet4({0.02, 0.02, 0.3}, {2, 2, 30}, BoxSplit::six);
   Tissue tissue(mesh, Scene().fix("z1").touch("surface").gravity({0.0, 0.0, -9.81}),
                 LinearElastic{.youngs_modulus = 1e3, .poisson_ratio = 0.3, .density = 1000.0});
@@ -130,7 +130,7 @@ TEST_CASE("what hangs by a thread is stretched beyond what can be touched: left 
   tissue.cut(order);
   const int vertices = tissue.contact_surface().vertex_count();
   const std::size_t triangles = tissue.contact_surface().triangles().size();
-  while (tissue.work()) {}
+  while (tissue.process_cuts()) {}
   CHECK(tissue.begin_tick().has(StatusFlag::degraded_model));
   CHECK(!tissue.cut_report().failed);
   CHECK(tissue.contact_surface().vertex_count() >= vertices);
@@ -140,16 +140,17 @@ TEST_CASE("what hangs by a thread is stretched beyond what can be touched: left 
     for (std::size_t i = 0; i < 3; ++i)
       REQUIRE((tissue.contact_surface().position(t[i]) - tissue.contact_surface().position(t[(i + 1) % 3])).norm() <=
               32.0 * SphereTool{}.radius);
-  // The thread is cut: what hung on it comes off, and all is well again.
+  // The remaining elements are cut: the lower part comes off, and the state is normal again.
   CutOrder rest;
   for (Index e = 0; e < mesh.element_count(); ++e)
     if (const double z = element_nodes<Tet4>(mesh, e).col(2).mean(); z > 0.14 && z < 0.15) rest.remove.push_back(e);
   tissue.cut(rest);
-  while (tissue.work()) {}
+  while (tissue.process_cuts()) {}
   CHECK(tissue.begin_tick().ok());
 }
 
-TEST_CASE("a cut under the tool: the force goes on, and changes no faster than the gate allows", "[cut][extreme][F3]") {
+TEST_CASE("a cut under the tool: the force continues, and its rate of change is limited by the gate",
+          "[cut][extreme][F3]") {
   Tissue tissue(slab(), constrained_below(), soft);
   HapticServo servo(tissue, SphereTool{});
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
@@ -172,20 +173,20 @@ TEST_CASE("a cut under the tool: the force goes on, and changes no faster than t
   contact_before = servo.contact_force();
   REQUIRE(before > 0.05);
   tissue.cut(slit_at(0.052, 0.012));
-  CHECK(tick(6e-3).status.has(StatusFlag::degraded_model));  // behind, and says so
+  CHECK(tick(6e-3).status.has(StatusFlag::degraded_model));  // not up to date, and reported
   CHECK(std::abs(servo.contact_force().norm() - contact_before.norm()) < 0.02 * contact_before.norm());
-  tissue.work();
+  tissue.process_cuts();
   const GatedForce after = tick(6e-3);
   CHECK(!after.status.has(StatusFlag::degraded_model));
-  CHECK(servo.contact_force().norm() > 0.2 * contact_before.norm());  // it has not lost the surface
+  CHECK(servo.contact_force().norm() > 0.2 * contact_before.norm());  // contact with the surface is not lost
   CHECK(servo.contact_force().norm() < contact_before.norm());        // a slit body is softer
   for (int i = 0; i < 100; ++i) tick(6e-3);
   CHECK(last.norm() < before);
   CHECK(longest_step <= limits.slew_rate * 1e-3 * (1.0 + 1e-9));
-  // What is felt now is what a session that begins on the cut body feels.
+  // The rendered force equals that of a new session on the cut body.
   Tissue fresh(slab(), constrained_below(), soft);
   fresh.cut(slit_at(0.052, 0.012));
-  fresh.work();
+  fresh.process_cuts();
   fresh.begin_tick();
   HapticServo other(fresh, SphereTool{});
   Vector3 settled = Vector3::Zero();
@@ -196,7 +197,7 @@ TEST_CASE("a cut under the tool: the force goes on, and changes no faster than t
   CHECK((settled - last).norm() < 0.1 * last.norm());
 }
 
-TEST_CASE("made whole again under a tool and under a renderer: nothing refers to what is gone", "[cut][extreme][F3]") {
+TEST_CASE("reset under a tool and a renderer: no reference to deleted data", "[cut][extreme][F3]") {
   Tissue tissue(slab(), constrained_below(), soft);
   HapticServo servo(tissue, SphereTool{});
   VisualSurface surface(tissue);
@@ -210,18 +211,18 @@ TEST_CASE("made whole again under a tool and under a renderer: nothing refers to
     }
   };
   tissue.cut(slit_at(0.052, 0.012));
-  while (tissue.work()) {}
+  while (tissue.process_cuts()) {}
   press(200);
   CHECK(surface.update());
   CHECK(surface.point_count() > points);
   const auto touches_copies = [&] {
     return std::ranges::any_of(servo.contacts(), [&](const ToolContact& c) { return c.vertices[0] >= vertices; });
   };
-  REQUIRE(touches_copies());  // vertices that the cut has made
+  REQUIRE(touches_copies());  // vertices created by the cut
 
   tissue.reset();
   std::vector<float> positions(3 * static_cast<std::size_t>(surface.point_count())), normals(positions.size());
-  CHECK_FALSE(surface.read_surface({}, positions, normals));  // its points are gone
+  CHECK_FALSE(surface.read_surface({}, positions, normals));  // its points no longer exist
   press(200);
   CHECK(tissue.contact_surface().vertex_count() == vertices);
   CHECK_FALSE(touches_copies());
@@ -231,7 +232,7 @@ TEST_CASE("made whole again under a tool and under a renderer: nothing refers to
   CHECK(tissue.cut_report().cuts == 0);
 }
 
-TEST_CASE("cut while touched until nothing is left: every force finite and limited, no mass lost",
+TEST_CASE("cut while touched until nothing is left: all forces finite and limited, no mass lost",
           "[cut][extreme][F1][F3][M15]") {
   const auto mesh = box_tet4({0.05, 0.05, 0.05}, {4, 4, 4});
   Tissue tissue(mesh, constrained_below(), soft);
@@ -258,7 +259,7 @@ TEST_CASE("cut while touched until nothing is left: every force finite and limit
     tissue.cut(order);
     ++cuts;
     for (int i = 0; i < 4; ++i) {
-      if (i == 2) tissue.work();
+      if (i == 2) tissue.process_cuts();
       const ToolState s = at({random.uniform(0.0, 0.05), random.uniform(0.0, 0.05), 0.05}, time += 1e-3);
       const GatedForce f = servo.tick({&s, 1})[0];
       REQUIRE(f.force().allFinite());
@@ -268,26 +269,26 @@ TEST_CASE("cut while touched until nothing is left: every force finite and limit
       REQUIRE(!f.status.has(StatusFlag::non_finite_force));
       last = f.force();
     }
-    double constrained = 0.0, loose = 0.0, removed = 0.0;
+    double supported = 0.0, detached = 0.0, removed = 0.0;
     tissue.read([&](const auto& t, const auto& p) {
       for (Index e = 0; e < t.mesh().element_count(); ++e)
-        (t.state(e) == ElementState::supported  ? constrained
-         : t.state(e) == ElementState::detached ? loose
+        (t.state(e) == ElementState::supported  ? supported
+         : t.state(e) == ElementState::detached ? detached
                                                 : removed) += p.mass(e);
     });
-    REQUIRE(std::abs(constrained + loose + removed - whole) < 1e-12 * whole);
-    left = constrained + loose;
-    if (constrained > 0.0) REQUIRE(!tissue.cut_report().failed);
+    REQUIRE(std::abs(supported + detached + removed - whole) < 1e-12 * whole);
+    left = supported + detached;
+    if (supported > 0.0) REQUIRE(!tissue.cut_report().failed);
   }
   CHECK(tissue.contact_surface().triangles().empty());
   for (int i = 0; i < 200; ++i) {
     const ToolState s = at({0.02, 0.02, 0.03}, time += 1e-3);
     last = servo.tick({&s, 1})[0].force();
   }
-  CHECK(last.norm() == 0.0);  // nothing is there to touch
+  CHECK(last.norm() == 0.0);  // nothing left to touch
 }
 
-TEST_CASE("a thread cuts while another ticks", "[cut][extreme][F3]") {
+TEST_CASE("one thread cuts while another ticks", "[cut][extreme][F3]") {
   Tissue tissue(slab(), constrained_below(), soft);
   HapticServo servo(tissue, SphereTool{});
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
@@ -309,7 +310,7 @@ TEST_CASE("a thread cuts while another ticks", "[cut][extreme][F3]") {
       std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
   }
-  while (tissue.work()) {}
+  while (tissue.process_cuts()) {}
   CHECK(tissue.cut_report().cuts > 2);
   CHECK(tissue.cut_report().error < 1e-10);
 }

@@ -1,4 +1,4 @@
-// Elements that leave a moving body, against a body that never had them, and conservation laws.
+// Removal of elements from a moving body, against a body without these elements, and conservation.
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/detail/element_frequency.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
@@ -20,8 +20,8 @@ using namespace palpate;
 
 namespace {
 
-using Turning = Corotational<LinearElastic>;
-using TurningBody = HyperelasticBody<Tet4, Turning>;
+using CorotatedMaterial = Corotational<LinearElastic>;
+using CorotatedBody = HyperelasticBody<Tet4, CorotatedMaterial>;
 template <class Preconditioner = BlockJacobi>
 using Implicit = CorotatedMotion<LinearElastic, double, Preconditioner>;
 using Explicit = ExplicitMotion<BatchedTetrahedra<NeoHookean>, CentralDifference>;
@@ -32,7 +32,7 @@ const Vector3 gravity(0.0, 0.0, -9.81);
 Mesh<Tet4> bar() {
   return box_tet4({0.12, 0.04, 0.04}, {6, 2, 2}, BoxSplit::six);
 }
-/// Elements of the two middle layers of cells.
+/// The elements of the two middle layers of cells.
 std::vector<char> middle_of(const Mesh<Tet4>& mesh) {
   std::vector<char> gone;
   for (Index e = 0; e < mesh.element_count(); ++e) {
@@ -42,7 +42,7 @@ std::vector<char> middle_of(const Mesh<Tet4>& mesh) {
   }
   return gone;
 }
-/// Without them and the nodes that only they have; new numbers of the nodes that are left.
+/// The mesh without these elements and without nodes that only they use; `number` gets the new ids, -1 if removed.
 Mesh<Tet4> without(const Mesh<Tet4>& mesh, const std::vector<char>& gone, std::vector<NodeId>& number) {
   Mesh<Tet4> rest;
   number.assign(mesh.positions.size(), -1);
@@ -75,7 +75,7 @@ std::vector<Index> all_free(Index nodes) {
   std::iota(dofs.begin(), dofs.end(), Index{0});
   return dofs;
 }
-/// A bar that is drawn out and spins.
+/// Displacement of a bar that is stretched and rotates.
 VectorX drawn_out(const Mesh<Tet4>& mesh) {
   VectorX u(3 * mesh.node_count());
   for (Index i = 0; i < mesh.node_count(); ++i) u.segment<3>(3 * i) = Vector3(0.1 * (mesh.position(i)[0] - 0.06), 0, 0);
@@ -105,14 +105,14 @@ double largest(const VectorX& x) {
   return x.cwiseAbs().maxCoeff();
 }
 
-TurningBody turning(const Mesh<Tet4>& mesh) {
-  return make_hyperelastic_body(mesh, std::vector<Turning>{{{5e3, 0.4, 1000.0}}});
+CorotatedBody corotated(const Mesh<Tet4>& mesh) {
+  return make_hyperelastic_body(mesh, std::vector<CorotatedMaterial>{{{5e3, 0.4, 1000.0}}});
 }
 CorotatedMotionOptions solved(TimeScheme scheme) {
   return {.scheme = scheme, .mass_damping = 0.3, .stiffness_damping = 2e-4, .solve = {3000, 1e-14}};
 }
 
-/// Elements leave a falling, bent body in the middle of its motion; against one that starts there without them.
+/// Removes elements from a falling, bent body during its motion; compares with a body that starts without them.
 template <class Preconditioner>
 double difference_to_fresh(TimeScheme scheme) {
   const auto mesh = bar();
@@ -121,14 +121,14 @@ double difference_to_fresh(TimeScheme scheme) {
   std::vector<NodeId> number;
   const auto rest = without(mesh, gone, number);
   const Scene scene = Scene().gravity(gravity);
-  Implicit<Preconditioner> motion(turning(mesh), scene, solved(scheme));
+  Implicit<Preconditioner> motion(corotated(mesh), scene, solved(scheme));
   motion.set_state(drawn_out(mesh), spinning(mesh));
   for (int k = 0; k < 20; ++k) REQUIRE(motion.step(1e-3).taken);
 
-  Implicit<Preconditioner> fresh(turning(rest), scene, solved(scheme));
+  Implicit<Preconditioner> fresh(corotated(rest), scene, solved(scheme));
   fresh.set_state(pick(motion.displacement(), number), pick(motion.velocity(), number));
-  const CutPhysics<Tet4> physics(turning(mesh).rest, extract_boundary<Tet4>(mesh), scene);
-  motion.remove_elements(is_gone, lumped_mass(turning(mesh).rest, is_gone), physics.load_left(is_gone));
+  const CutPhysics<Tet4> physics(corotated(mesh).rest, extract_boundary<Tet4>(mesh), scene);
+  motion.remove_elements(is_gone, lumped_mass(corotated(mesh).rest, is_gone), physics.load_left(is_gone));
   const VectorX where = motion.displacement();
   double worst = 0.0;
   for (int k = 0; k < 60; ++k) {
@@ -136,7 +136,7 @@ double difference_to_fresh(TimeScheme scheme) {
     REQUIRE(fresh.step(1e-3).taken);
     worst = std::max(worst, largest(pick(motion.displacement(), number) - fresh.displacement()));
   }
-  for (std::size_t i = 0; i < number.size(); ++i)  // nodes without an element rest
+  for (std::size_t i = 0; i < number.size(); ++i)  // nodes without an element do not move
     if (number[i] < 0) {
       const Index at = 3 * static_cast<Index>(i);
       CHECK((motion.displacement() - where).template segment<3>(at).norm() == 0.0);
@@ -147,7 +147,7 @@ double difference_to_fresh(TimeScheme scheme) {
 
 }  // namespace
 
-TEST_CASE("explicit motion goes on without elements as if they had never been", "[model][cut]") {
+TEST_CASE("explicit motion after a removal equals that of a body without the elements", "[model][cut]") {
   const auto mesh = bar();
   const auto gone = middle_of(mesh);
   std::vector<NodeId> number;
@@ -170,7 +170,7 @@ TEST_CASE("explicit motion goes on without elements as if they had never been", 
   CHECK(std::abs(motion.deformation().smallest_volume_ratio - fresh.deformation().smallest_volume_ratio) < 1e-11);
 }
 
-TEST_CASE("a drawn bar flies apart when its middle leaves; both ends keep the momentum", "[model][cut]") {
+TEST_CASE("a stretched bar separates when its middle is removed; both ends conserve momentum", "[model][cut]") {
   const auto mesh = bar();
   const auto gone = middle_of(mesh);
   Explicit motion = explicit_bar(mesh);
@@ -186,7 +186,7 @@ TEST_CASE("a drawn bar flies apart when its middle leaves; both ends keep the mo
   for (int k = 0; k < steps; ++k) motion.step(dt);
   const auto calls = scope.allocations();
   CHECK(calls == 0);
-  // Neither feels the other: each keeps its own momentum, and they part as these say.
+  // Neither end acts on the other: each conserves its own momentum, and they separate accordingly.
   CHECK((momentum(left, motion.state().velocity) - before[0]).norm() <= 1e-12 * before[0].norm());
   CHECK((momentum(right, motion.state().velocity) - before[1]).norm() <= 1e-12 * before[1].norm());
   const Vector3 relative = before[1] / right.sum() - before[0] / left.sum();
@@ -197,7 +197,7 @@ TEST_CASE("a drawn bar flies apart when its middle leaves; both ends keep the mo
   CHECK(std::abs(motion.kinetic_energy() + motion.stored_energy() - energy) <= 0.02 * energy);
 }
 
-TEST_CASE("elements leave an explicit body one by one, down to the last", "[model][cut][extreme][F1]") {
+TEST_CASE("elements are removed from an explicit body one by one, down to the last", "[model][cut][extreme][F1]") {
   const auto mesh = bar();
   std::vector<char> gone(static_cast<std::size_t>(mesh.element_count()), 0);
   Explicit motion = explicit_bar(mesh);
@@ -206,7 +206,7 @@ TEST_CASE("elements leave an explicit body one by one, down to the last", "[mode
   double dt = 0.4 * motion.limit();
   double left = whole;
   for (Index k = 0; k < mesh.element_count(); ++k) {
-    gone[static_cast<std::size_t>((k * 37) % mesh.element_count())] = 1;  // 37 is prime to 144
+    gone[static_cast<std::size_t>((k * 37) % mesh.element_count())] = 1;  // 37 is coprime to 144
     const VectorX mass = mass_of(mesh, gone);
     motion.remove_elements([&](Index e) { return gone[static_cast<std::size_t>(e)] != 0; }, mass);
     left -= whole / static_cast<double>(mesh.element_count());
@@ -225,19 +225,19 @@ TEST_CASE("elements leave an explicit body one by one, down to the last", "[mode
   CHECK_REFUSED(SetupErrorKind::bad_density, motion.remove_elements([](Index) { return true; }, heavier));
 }
 
-TEST_CASE("co-rotated motion goes on without elements as if they had never been", "[model][corotated][cut]") {
+TEST_CASE("co-rotated motion after a removal equals that of a body without the elements", "[model][corotated][cut]") {
   CHECK(difference_to_fresh<BlockJacobi>(TimeScheme::implicit_euler()) <= 1e-10);
   CHECK(difference_to_fresh<BlockJacobi>(TimeScheme::newmark()) <= 1e-10);
-  CHECK(difference_to_fresh<CorotatedFactor>(TimeScheme::implicit_euler()) <= 1e-10);  // with the factor of the whole
+  CHECK(difference_to_fresh<CorotatedFactor>(TimeScheme::implicit_euler()) <= 1e-10);  // factor of the full body
 }
 
-TEST_CASE("pieces of a co-rotated body keep their momentum, in single precision too", "[model][corotated][cut]") {
+TEST_CASE("fragments of a co-rotated body conserve momentum, in single precision too", "[model][corotated][cut]") {
   const auto mesh = bar();
   const auto gone = middle_of(mesh);
   const auto is_gone = [&](Index e) { return gone[static_cast<std::size_t>(e)] != 0; };
-  CorotatedMotion<LinearElastic, float> motion(turning(mesh), Scene(), {.solve = {300, 1e-6}});
+  CorotatedMotion<LinearElastic, float> motion(corotated(mesh), Scene(), {.solve = {300, 1e-6}});
   motion.set_state(drawn_out(mesh), spinning(mesh));
-  const VectorX mass = lumped_mass(turning(mesh).rest, is_gone);
+  const VectorX mass = lumped_mass(corotated(mesh).rest, is_gone);
   motion.remove_elements(is_gone, mass, VectorX::Zero(motion.size()));
   VectorX left = mass;
   for (Index i = 0; i < mass.size(); ++i)
@@ -249,7 +249,7 @@ TEST_CASE("pieces of a co-rotated body keep their momentum, in single precision 
   CHECK_REFUSED(SetupErrorKind::bad_argument, motion.remove_elements(is_gone, mass, VectorX::Zero(3)));
 }
 
-TEST_CASE("a body split by a blade moves on as two: state carried to a new motion", "[model][cut]") {
+TEST_CASE("a body split by a blade moves as two bodies: state transferred to a new motion", "[model][cut]") {
   const auto mesh = bar();
   Explicit whole = explicit_bar(mesh);
   whole.set(drawn_out(mesh), spinning(mesh));
@@ -259,7 +259,7 @@ TEST_CASE("a body split by a blade moves on as two: state carried to a new motio
       lumped_mass(make_hyperelastic_body<Tet4, NeoHookean>(mesh, std::vector<NeoHookean>{rubber}).rest);
   const Vector3 before = momentum(mass, whole.state().velocity);
 
-  CutTopology<Tet4> topology(mesh, std::vector<std::uint8_t>(mesh.positions.size(), 7));  // all of it counts as held
+  CutTopology<Tet4> topology(mesh, std::vector<std::uint8_t>(mesh.positions.size(), 7));  // all supported
   CutOrder order;
   for (Index e = 0; e < mesh.element_count(); ++e)
     for (std::size_t f = 0; f < 4; ++f)

@@ -4,7 +4,7 @@
 
 using namespace palpate;
 
-TEST_CASE("a pool gives out what nobody reads any more, and nothing else", "[cut]") {
+TEST_CASE("a pool reuses only matrices without readers", "[cut]") {
   MatrixPool pool;
   pool.prepare(10, 2);
   auto a = pool.take(10), b = pool.take(10), c = pool.take(10);
@@ -16,7 +16,7 @@ TEST_CASE("a pool gives out what nobody reads any more, and nothing else", "[cut
   const MatrixX* const first = a.get();
   a.reset();
   b.reset();
-  CHECK(pool.take(11).get() == first);  // there is room to grow
+  CHECK(pool.take(11).get() == first);  // there is spare capacity
   a = pool.take(11);
   CHECK(pool.take(11) != read);
   const auto large = pool.take(1000);

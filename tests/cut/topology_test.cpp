@@ -33,25 +33,25 @@ std::vector<ElementFace> swept(const CutTopology<Tet4>& t, const BladeSweep& swe
 }
 
 struct Volumes {
-  double constrained = 0.0, loose = 0.0, removed = 0.0;
+  double supported = 0.0, detached = 0.0, removed = 0.0;
 };
 Volumes volumes(const CutTopology<Tet4>& t) {
   Volumes v;
   for (Index e = 0; e < t.mesh().element_count(); ++e)
-    (t.state(e) == ElementState::supported  ? v.constrained
-     : t.state(e) == ElementState::detached ? v.loose
+    (t.state(e) == ElementState::supported  ? v.supported
+     : t.state(e) == ElementState::detached ? v.detached
                                             : v.removed) += t.volume(e);
   return v;
 }
 
-/// What holds after any cut, seen with tools that know nothing of cutting.
+/// Invariants after any cut, checked with functions that are independent of cutting.
 void check_state(const CutTopology<Tet4>& t) {
   std::vector<NodeId> nodes;
   std::vector<Index> elements;
   for (const ElementState state : {ElementState::supported, ElementState::detached}) {
     const Mesh<Tet4> part = t.extract(state, nodes, elements);
     if (part.elements.empty()) continue;
-    const auto boundary = extract_boundary<Tet4>(part);  // refuses what is no mesh
+    const auto boundary = extract_boundary<Tet4>(part);  // throws for an invalid mesh
     Vector3 area = Vector3::Zero();
     for (const auto& f : boundary) {
       const Vector3 a = part.position(f.nodes[0]);
@@ -68,9 +68,9 @@ void check_state(const CutTopology<Tet4>& t) {
 
 }  // namespace
 
-TEST_CASE("a removed element leaves the body and exposes what was behind it", "[cut]") {
+TEST_CASE("a removed element exposes the faces behind it", "[cut]") {
   auto t = block({4, 4, 4});
-  const double whole = volumes(t).constrained;
+  const double whole = volumes(t).supported;
   Index inner = -1;
   for (Index e = 0; e < t.mesh().element_count(); ++e)
     if (std::ranges::all_of(t.mesh().elements[static_cast<std::size_t>(e)], [&](NodeId node) {
@@ -85,30 +85,30 @@ TEST_CASE("a removed element leaves the body and exposes what was behind it", "[
   REQUIRE(change.elements.size() == 1);
   CHECK(change.elements[0].removed);
   CHECK(t.is_removed(inner));
-  CHECK(std::abs(volumes(t).constrained - (whole - own)) < 1e-18);
-  CHECK(t.apply({{inner}, {}}).empty());  // gone already
+  CHECK(std::abs(volumes(t).supported - (whole - own)) < 1e-18);
+  CHECK(t.apply({{inner}, {}}).empty());  // removed already
   check_state(t);
 }
 
-TEST_CASE("a blade across the body parts it in two; one held, one loose", "[cut]") {
+TEST_CASE("a blade across the body separates it into a supported and a detached part", "[cut]") {
   const auto mesh = box_tet4({0.1, 0.1, 0.1}, {6, 4, 4});
   CutTopology<Tet4> t(mesh, constrained_at(mesh, "x0"));
   const auto change = t.apply({{}, swept(t, plane_x(0.05))});
   REQUIRE(change.fragments.size() == 1);
   CHECK(change.fragments[0].free_modes == 6);
   const Volumes v = volumes(t);
-  CHECK(std::abs(v.constrained + v.loose - 1e-3) < 1e-15);
-  CHECK(std::abs(v.loose - change.fragments[0].volume) < 1e-17);
-  CHECK(std::abs(v.loose - 0.5e-3) < 1e-4);  // as far as faces follow the plane
-  CHECK(swept(t, plane_x(0.05)).empty());    // nothing is left to open
+  CHECK(std::abs(v.supported + v.detached - 1e-3) < 1e-15);
+  CHECK(std::abs(v.detached - change.fragments[0].volume) < 1e-17);
+  CHECK(std::abs(v.detached - 0.5e-3) < 1e-4);  // up to the deviation of faces from the plane
+  CHECK(swept(t, plane_x(0.05)).empty());       // nothing is left to open
   check_state(t);
-  // Group and region follow the piece: x1 went with it, x0 did not.
+  // Groups and regions follow the fragment: x1 is in it, x0 is not.
   std::vector<NodeId> nodes;
   std::vector<Index> elements;
-  const auto constrained = t.extract(ElementState::supported, nodes, elements);
-  CHECK(constrained.find_group("x1")->nodes.empty());
-  CHECK(constrained.find_group("x0")->nodes.size() == mesh.find_group("x0")->nodes.size());
-  CHECK(constrained.find_group("x0")->faces.size() == mesh.find_group("x0")->faces.size());
+  const auto supported = t.extract(ElementState::supported, nodes, elements);
+  CHECK(supported.find_group("x1")->nodes.empty());
+  CHECK(supported.find_group("x0")->nodes.size() == mesh.find_group("x0")->nodes.size());
+  CHECK(supported.find_group("x0")->faces.size() == mesh.find_group("x0")->faces.size());
 }
 
 TEST_CASE("a slit that ends in the body opens up to its tip", "[cut]") {
@@ -120,13 +120,13 @@ TEST_CASE("a slit that ends in the body opens up to its tip", "[cut]") {
   CHECK(change.exposed.size() % 2 == 0);
   for (const NodeCopy& copy : change.copies) {
     CHECK(rest(t, copy.node) == rest(t, copy.parent));
-    CHECK(rest(t, copy.node)[2] > 0.03);  // nothing is split below the tip
+    CHECK(rest(t, copy.node)[2] > 0.03);  // no node below the tip is split
   }
   check_state(t);
 }
 
-TEST_CASE("parts that touch in a node or an edge only are parted", "[cut][extreme][F1]") {
-  // Two cubes on one diagonal of a face: they share an edge. SOFA #955: such neighbours twist about it.
+TEST_CASE("parts that touch only in a node or an edge are separated", "[cut][extreme][F1]") {
+  // Two cubes on a face diagonal share an edge. SOFA #955: such neighbours rotate about it.
   auto t = block({2, 2, 1});
   std::vector<Index> away;
   for (Index e = 0; e < t.mesh().element_count(); ++e) {
@@ -136,11 +136,11 @@ TEST_CASE("parts that touch in a node or an edge only are parted", "[cut][extrem
   }
   const auto change = t.apply({away, {}});
   CHECK(change.copies.size() == 2);  // the edge's two nodes
-  CHECK(change.fragments.empty());   // each stands on its own foot
+  CHECK(change.fragments.empty());   // each is supported on its own
   check_state(t);
 }
 
-TEST_CASE("cutting outside, along nothing, and wrong orders", "[cut][extreme][F2]") {
+TEST_CASE("cuts outside the body, cuts without area, and invalid orders", "[cut][extreme][F2]") {
   auto t = block({3, 3, 3});
   CHECK(swept(t, plane_x(0.5)).empty());
   CHECK(swept(t, {{0.05, 0, 0}, {0.05, 0.1, 0}, {0.05, 0, 0}, {0.05, 0.1, 0}}).empty());  // no area
@@ -151,8 +151,9 @@ TEST_CASE("cutting outside, along nothing, and wrong orders", "[cut][extreme][F2
   CHECK(!t.is_removed(0));
 }
 
-TEST_CASE("a cut through nodes, edges and faces exactly is as good as any", "[cut][extreme][F2]") {
-  // x = 0.05 runs through faces and nodes of a 4-cell block, through centres of a 5-cell one; twice gives the same.
+TEST_CASE("a cut exactly through nodes, edges and faces is valid", "[cut][extreme][F2]") {
+  // x = 0.05 passes through faces and nodes of a 4-cell block, through centres of a 5-cell one; a repetition gives the
+  // same.
   for (const int cells : {4, 5})
     for (const BoxSplit split : {BoxSplit::five_mirrored, BoxSplit::six}) {
       const auto mesh = box_tet4({0.1, 0.1, 0.1}, {cells, cells, cells}, split);
@@ -170,11 +171,11 @@ TEST_CASE("a cut through nodes, edges and faces exactly is as good as any", "[cu
     }
 }
 
-TEST_CASE("cut until the body falls apart: nothing is lost", "[cut][extreme][F1]") {
+TEST_CASE("cut until the body falls apart: no volume is lost", "[cut][extreme][F1]") {
   for (const auto split : {BoxSplit::five_mirrored, BoxSplit::six}) {
     auto t = block({3, 3, 3}, split);
     testing::Random random(11);
-    const double whole = volumes(t).constrained;
+    const double whole = volumes(t).supported;
     while (volumes(t).removed < whole * (1.0 - 1e-9)) {
       CutOrder order;
       for (int k = 0; k < 4; ++k) {
@@ -186,9 +187,9 @@ TEST_CASE("cut until the body falls apart: nothing is lost", "[cut][extreme][F1]
       }
       t.apply(order);
       const Volumes v = volumes(t);
-      REQUIRE(std::abs(v.constrained + v.loose + v.removed - whole) < 1e-12 * whole);
+      REQUIRE(std::abs(v.supported + v.detached + v.removed - whole) < 1e-12 * whole);
       check_state(t);
     }
-    CHECK(volumes(t).constrained == 0.0);  // the last element is gone, and that is a state like any other
+    CHECK(volumes(t).supported == 0.0);  // the last element is gone, which is a valid state
   }
 }

@@ -110,7 +110,7 @@ TEST_CASE("chai3d: states and limits", "[device][chai3d]") {
   CHECK(stylus.limits().peak_torque == 0.0);  // without the option
 }
 
-TEST_CASE("chai3d: keeps the laws of devices", "[device][chai3d][laws]") {
+TEST_CASE("chai3d: satisfies the laws of devices", "[device][chai3d][laws]") {
   for (const bool torque : {false, true}) {
     FakeDevice fake;
     Chai3dOptions options;
@@ -124,7 +124,7 @@ TEST_CASE("chai3d: keeps the laws of devices", "[device][chai3d][laws]") {
   }
 }
 
-TEST_CASE("chai3d: what fails takes the force off", "[device][chai3d][extreme][D6]") {
+TEST_CASE("chai3d: failures set the force to zero", "[device][chai3d][extreme][D6]") {
   FakeDevice fake;
   {
     Stylus stylus(fake);
@@ -154,7 +154,7 @@ TEST_CASE("chai3d: what fails takes the force off", "[device][chai3d][extreme][D
   CHECK(!fake.is_open);
 }
 
-TEST_CASE("chai3d: torque where there are motors", "[device][chai3d]") {
+TEST_CASE("chai3d: torque for devices with torque motors", "[device][chai3d]") {
   FakeDevice fake;
   Chai3dOptions options;
   options.torque = true;
@@ -172,7 +172,8 @@ TEST_CASE("chai3d: torque where there are motors", "[device][chai3d]") {
   CHECK(chai_force(fake) == Vector3::Zero());
 }
 
-TEST_CASE("chai3d: torque without limits of it is refused, limits without torque are none", "[device][chai3d]") {
+TEST_CASE("chai3d: torque without torque limits is refused, torque limits without torque are ignored",
+          "[device][chai3d]") {
   FakeDevice fake;
   Chai3dOptions options;
   options.torque = true;

@@ -1,4 +1,4 @@
-// The law suite for devices passes good devices and catches each kind of bad one.
+// The law suite for devices accepts correct devices and detects each kind of faulty one.
 #include <palpate/core/detail/limit_length.hpp>
 #include <palpate/device/mock_device.hpp>
 #include <palpate/device/replay_device.hpp>
@@ -14,7 +14,7 @@ using palpate::testing::violates;
 
 namespace {
 
-/// A good device of the plainest kind; the bad ones below differ in one thing.
+/// A minimal correct device; the faulty ones below differ in one respect.
 struct Good {
   ToolState read() noexcept {
     ToolState s;
@@ -74,15 +74,15 @@ struct KeepsForceWhenLost : Good {
     return s;
   }
 };
-/// A good device with motors for torque; those below differ in one thing.
-struct Turns : Good {
+/// A correct device with motors for torque; those below differ in one respect.
+struct WithTorque : Good {
   Status write(const GatedForce& given) noexcept {
     torque.setZero();
     Status status = Good::write(given);
-    if (running && readable) turn(given.torque(), status);
+    if (running && readable) render_torque(given.torque(), status);
     return status;
   }
-  void turn(const Vector3& wanted, Status& status) noexcept {
+  void render_torque(const Vector3& wanted, Status& status) noexcept {
     bool shortened = false;
     torque = limit_length(wanted, 0.1, shortened);
     if (shortened) status.set(StatusFlag::saturated);
@@ -100,26 +100,26 @@ struct Turns : Good {
   const Vector3& last_torque() const noexcept { return torque; }
   Vector3 torque = Vector3::Zero();
 };
-struct UnlimitedTorque : Turns {
+struct UnlimitedTorque : WithTorque {
   Status write(const GatedForce& given) noexcept {
-    const Status status = Turns::write(given);
+    const Status status = WithTorque::write(given);
     if (status.has(StatusFlag::saturated)) torque = given.torque();
     return status;
   }
 };
-struct TorqueWithoutLimit : Turns {  // as if no limit were no bound
+struct TorqueWithoutLimit : WithTorque {  // as if a torque limit of zero were unlimited
   DeviceLimits limits() const noexcept { return {}; }
 };
-struct QuietTorque : Turns {
+struct QuietTorque : WithTorque {
   Status write(const GatedForce& given) noexcept {
-    Turns::write(given);
+    WithTorque::write(given);
     return Good::write(given);
   }
 };
-struct TurnsAfterStop : Turns {
+struct TorqueAfterStop : WithTorque {
   void stop() noexcept { Good::stop(); }
 };
-struct NoTurningStiffness : Turns {
+struct NoRotationalStiffness : WithTorque {
   DeviceLimits limits() const noexcept { return {.peak_torque = 0.1}; }
 };
 struct Weak : Good {
@@ -129,7 +129,7 @@ struct Weak : Good {
     return status;
   }
 };
-struct SaysNothing : Good {
+struct ReportsNothing : Good {
   Status write(const GatedForce& given) noexcept {
     Good::write(given);
     return {};
@@ -171,11 +171,11 @@ struct NoWorkspace : Good {
 };
 
 template <class Device>
-bool breaks(const char* material) {
+bool breaks(const char* law) {
   Device device;
   const auto violations = device_laws(device);
   INFO(testing::describe(violations));
-  return violates(violations, material);
+  return violates(violations, law);
 }
 
 template <class Device>
@@ -185,9 +185,9 @@ std::string broken(Device device) {
 
 }  // namespace
 
-TEST_CASE("good devices keep the laws", "[device][laws]") {
+TEST_CASE("correct devices satisfy the laws", "[device][laws]") {
   CHECK(broken(Good{}) == "");
-  CHECK(broken(Turns{}) == "");
+  CHECK(broken(WithTorque{}) == "");
   CHECK(broken(MockDevice(trajectory::poke())) == "");
   CHECK(broken(MockDevice(trajectory::press_drag_release())) == "");
   CHECK(broken(MockDevice([](double t) { return Vector3(std::sin(t), 0.0, 0.0); })) == "");
@@ -199,15 +199,15 @@ TEST_CASE("good devices keep the laws", "[device][laws]") {
   CHECK(broken(MockDevice(trajectory::poke(), options)) == "");
 }
 
-TEST_CASE("a replay keeps the laws", "[device][laws]") {
+TEST_CASE("a replay satisfies the laws", "[device][laws]") {
   std::vector<RecordedTick> ticks(20'000);
   for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].state.time = 1e-3 * static_cast<double>(i);
   CHECK(broken(ReplayDevice(ticks)) == "");
-  ticks.resize(5000);  // over before the law suite is
+  ticks.resize(5000);  // ends before the law suite does
   CHECK(broken(ReplayDevice(ticks)) == "");
 }
 
-TEST_CASE("a recorder keeps the laws of its device", "[device][laws]") {
+TEST_CASE("a recorder satisfies the laws of its device", "[device][laws]") {
   MockDevice stylus(trajectory::poke());
   Recorder recorder(stylus, 100);
   testing::DeviceProbe<Recorder<MockDevice<>>> probe;
@@ -216,7 +216,7 @@ TEST_CASE("a recorder keeps the laws of its device", "[device][laws]") {
   CHECK(testing::describe(device_laws(recorder, probe)) == "");
 }
 
-TEST_CASE("each kind of bad device is caught", "[device][laws][extreme][D6][D7]") {
+TEST_CASE("each kind of faulty device is detected", "[device][laws][extreme][D6][D7]") {
   CHECK(breaks<Unlimited>("never above the peak"));
   CHECK(breaks<ClampsAxes>("keeps the direction"));
   CHECK(breaks<KeepsForceAfterStop>("zero after stop"));
@@ -225,11 +225,11 @@ TEST_CASE("each kind of bad device is caught", "[device][laws][extreme][D6][D7]"
   CHECK(breaks<UnlimitedTorque>("torque within its peak"));
   CHECK(breaks<TorqueWithoutLimit>("torque within its peak"));
   CHECK(breaks<QuietTorque>("says that it saturates"));
-  CHECK(breaks<TurnsAfterStop>("zero after stop"));
-  CHECK(breaks<NoTurningStiffness>("limits are sane"));
+  CHECK(breaks<TorqueAfterStop>("zero after stop"));
+  CHECK(breaks<NoRotationalStiffness>("limits are sane"));
   CHECK(breaks<Weak>("renders what it can"));
-  CHECK(breaks<SaysNothing>("says that it saturates"));
-  CHECK(breaks<SaysNothing>("says that it is disconnected"));
+  CHECK(breaks<ReportsNothing>("says that it saturates"));
+  CHECK(breaks<ReportsNothing>("says that it is disconnected"));
   CHECK(breaks<NanState>("valid states are finite"));
   CHECK(breaks<HalfVelocity>("valid states are finite"));
   CHECK(breaks<NoRotation>("valid states are finite"));

@@ -1,4 +1,4 @@
-// The Force Dimension adapter against a fake of the SDK.
+// The Force Dimension adapter with a fake of the SDK.
 #include "device/fakes/dhdc.hpp"
 
 #include <palpate/device/force_dimension.hpp>
@@ -36,14 +36,14 @@ std::string dhd_refusal(F f) {
 
 }  // namespace
 
-TEST_CASE("force dimension: states are SI as they come", "[device][force_dimension]") {
+TEST_CASE("force dimension: states are passed on in SI units", "[device][force_dimension]") {
   fake_dhd::Scope sdk;
   ForceDimensionDevice device;
   sdk.sdk.position = {0.01, -0.02, 0.03};
   sdk.sdk.velocity = {0.1, 0.2, -0.3};
   sdk.sdk.rotation[0][0] = sdk.sdk.rotation[1][1] = 0.0;
   sdk.sdk.rotation[1][0] = 1.0;
-  sdk.sdk.rotation[0][1] = -1.0;  // a quarter turn about z
+  sdk.sdk.rotation[0][1] = -1.0;  // 90 degrees about z
   sdk.sdk.buttons = 9;
   const ToolState s = device.read();
   CHECK(s.valid);
@@ -53,7 +53,7 @@ TEST_CASE("force dimension: states are SI as they come", "[device][force_dimensi
   CHECK(s.buttons == 9);
 }
 
-TEST_CASE("force dimension: keeps the laws of devices", "[device][force_dimension][laws]") {
+TEST_CASE("force dimension: satisfies the laws of devices", "[device][force_dimension][laws]") {
   for (const bool torque : {false, true}) {
     fake_dhd::Scope sdk;
     ForceDimensionDevice device(torque ? dhd_with_torque() : ForceDimensionOptions());
@@ -65,7 +65,7 @@ TEST_CASE("force dimension: keeps the laws of devices", "[device][force_dimensio
   }
 }
 
-TEST_CASE("force dimension: answers of the SDK", "[device][force_dimension][extreme][D6]") {
+TEST_CASE("force dimension: return values of the SDK", "[device][force_dimension][extreme][D6]") {
   fake_dhd::Scope sdk;
   ForceDimensionDevice device;
   device.start();
@@ -94,7 +94,7 @@ TEST_CASE("force dimension: answers of the SDK", "[device][force_dimension][extr
   CHECK(dhd_force() == Vector3::Zero());
 }
 
-TEST_CASE("force dimension: a force with every write, zero and stopped too", "[device][force_dimension]") {
+TEST_CASE("force dimension: every write sends a force, also a zero and when stopped", "[device][force_dimension]") {
   fake_dhd::Scope sdk;
   {
     ForceDimensionDevice device;
@@ -114,7 +114,7 @@ TEST_CASE("force dimension: a force with every write, zero and stopped too", "[d
   CHECK(sdk.sdk.calls == std::vector<std::string>{"open", "on", "off", "close 4"});
 }
 
-TEST_CASE("force dimension: torque where there are motors, and only finite", "[device][force_dimension]") {
+TEST_CASE("force dimension: torque for devices with torque motors, and only finite", "[device][force_dimension]") {
   fake_dhd::Scope sdk;
   ForceDimensionDevice device(dhd_with_torque());
   device.start();
@@ -131,7 +131,7 @@ TEST_CASE("force dimension: torque where there are motors, and only finite", "[d
   CHECK_THAT(dhd_refusal([&] { ForceDimensionDevice other(unlimited); }), test::contains("peak torque of 0 N m"));
 }
 
-TEST_CASE("force dimension: what the SDK refuses is refused in its words", "[device][force_dimension]") {
+TEST_CASE("force dimension: errors contain the SDK's message", "[device][force_dimension]") {
   fake_dhd::Scope sdk;
   sdk.sdk.open_answer = -1;
   CHECK_THAT(dhd_refusal([] { ForceDimensionDevice device; }), test::contains("no device found"));

@@ -44,7 +44,7 @@ TEST_CASE("a trajectory passes its waypoints, at rest, without overshoot", "[dev
   CHECK(beyond < 1e-15);
 }
 
-TEST_CASE("senseless trajectories and devices are refused", "[device][trajectory]") {
+TEST_CASE("invalid trajectories and devices are refused", "[device][trajectory]") {
   const double nan_value = std::numeric_limits<double>::quiet_NaN();
   const Vector3 x = Vector3::Zero();
   CHECK_THROWS_AS(Trajectory({}), SetupError);
@@ -64,7 +64,7 @@ TEST_CASE("senseless trajectories and devices are refused", "[device][trajectory
   CHECK_THROWS_AS(MockDevice(trajectory::poke(), options), SetupError);
 }
 
-TEST_CASE("poke goes in, holds, comes back, as often as asked", "[device][trajectory]") {
+TEST_CASE("poke moves in, waits, moves back, the given number of times", "[device][trajectory]") {
   const Vector3 from(0, 0, 0.01), to(0, 0, -0.02);
   const Trajectory path =
       trajectory::poke({.from = from, .to = to, .approach = 1, .hold = 2, .retreat = 3, .pause = 4, .times = 2});
@@ -100,7 +100,7 @@ TEST_CASE("simulated time: one period per read, the same in every run", "[device
   }
 }
 
-TEST_CASE("a path without velocity gives none", "[device][mock]") {
+TEST_CASE("a path without velocity gives states without velocity", "[device][mock]") {
   MockDevice device([](double t) { return Vector3(t, 0, 0); });
   const ToolState s = device.read();
   CHECK(s.velocity.array().isNaN().all());
@@ -108,7 +108,7 @@ TEST_CASE("a path without velocity gives none", "[device][mock]") {
   CHECK(device.read().position == Vector3(1e-3, 0, 0));
 }
 
-TEST_CASE("faults come on schedule and go again", "[device][mock][extreme][D1][D2][D5][D6]") {
+TEST_CASE("faults begin and end on schedule", "[device][mock][extreme][D1][D2][D5][D6]") {
   using Kind = DeviceFault::Kind;
   MockOptions options;
   options.faults = {{.kind = Kind::invalid_read, .first = 10, .count = 2},
@@ -136,7 +136,7 @@ TEST_CASE("faults come on schedule and go again", "[device][mock][extreme][D1][D
   CHECK_THAT(s[63].time - s[59].time, WithinAbs(0.004, 1e-12));
 }
 
-TEST_CASE("wall clock: time follows the clock and a stall takes its time", "[device][mock][timing]") {
+TEST_CASE("wall clock: time follows the clock and a stall has its duration", "[device][mock][timing]") {
   MockOptions options;
   options.clock = DeviceClock::wall;
   options.faults = {{.kind = DeviceFault::Kind::stall, .first = 1, .seconds = 0.02}};
@@ -146,7 +146,7 @@ TEST_CASE("wall clock: time follows the clock and a stall takes its time", "[dev
   CHECK(s[2].time >= s[1].time);
 }
 
-TEST_CASE("motors render nothing before start, after stop and while unplugged", "[device][mock][extreme][D6]") {
+TEST_CASE("motors render zero before start, after stop and while unplugged", "[device][mock][extreme][D6]") {
   MockDevice device(trajectory::poke());
   const Vector3 f(0, 0, 1), none = Vector3::Zero();
   device.read();

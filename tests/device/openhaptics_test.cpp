@@ -1,4 +1,4 @@
-// The OpenHaptics adapter against a fake of the SDK.
+// The OpenHaptics adapter with a fake of the SDK.
 #include "device/fakes/hd.hpp"
 
 #include <palpate/device/openhaptics.hpp>
@@ -53,7 +53,7 @@ std::string hd_refusal(F f) {
 
 }  // namespace
 
-TEST_CASE("openhaptics: millimetres, degrees of freedom and buttons at the border", "[device][openhaptics]") {
+TEST_CASE("openhaptics: conversion of millimetres, orientation and buttons", "[device][openhaptics]") {
   fake_hd::Scope sdk;
   OpenHapticsDevice device;
   auto& s = fake_hd::sdk();
@@ -67,14 +67,14 @@ TEST_CASE("openhaptics: millimetres, degrees of freedom and buttons at the borde
   CHECK(state.valid);
   CHECK((state.position - Vector3(0.01, -0.02, 0.03)).norm() < 1e-15);
   CHECK((state.velocity - Vector3(0.1, 0.0, -0.05)).norm() < 1e-15);
-  CHECK_THAT(state.orientation[0], WithinAbs(std::sqrt(0.5), 1e-12));  // a quarter turn about z
+  CHECK_THAT(state.orientation[0], WithinAbs(std::sqrt(0.5), 1e-12));  // 90 degrees about z
   CHECK_THAT(state.orientation[3], WithinAbs(std::sqrt(0.5), 1e-12));
   CHECK(state.buttons == 5);
   CHECK(hd_force() == Vector3(1.0, 2.0, -0.5));
   CHECK(s.torque == std::array<double, 3>{});
 }
 
-TEST_CASE("openhaptics: torque in newton millimetres where there are motors", "[device][openhaptics]") {
+TEST_CASE("openhaptics: torque in newton millimetres for devices with torque motors", "[device][openhaptics]") {
   fake_hd::Scope sdk;
   OpenHapticsDevice device(hd_with_torque());
   device.start();
@@ -90,16 +90,16 @@ TEST_CASE("openhaptics: torque in newton millimetres where there are motors", "[
   CHECK(hd_force() == Vector3::Zero());
 }
 
-TEST_CASE("openhaptics: torque without limits of it is refused", "[device][openhaptics]") {
+TEST_CASE("openhaptics: torque without torque limits is refused", "[device][openhaptics]") {
   fake_hd::Scope sdk;
   OpenHapticsOptions options;
-  options.torque = true;  // the SDK is not asked for limits of torque
+  options.torque = true;  // the SDK has no limits for torque
   CHECK_THAT(hd_refusal([&] { OpenHapticsDevice device(options); }), contains("peak torque of 0 N m"));
   options.limits = DeviceLimits{.peak_torque = 0.1};
-  CHECK_THAT(hd_refusal([&] { OpenHapticsDevice device(options); }), contains("turning stiffness of 0"));
+  CHECK_THAT(hd_refusal([&] { OpenHapticsDevice device(options); }), contains("rotational stiffness of 0"));
 }
 
-TEST_CASE("openhaptics: limits are asked from the SDK", "[device][openhaptics]") {
+TEST_CASE("openhaptics: limits are read from the SDK", "[device][openhaptics]") {
   fake_hd::Scope sdk;
   const DeviceLimits limits = OpenHapticsDevice().limits();
   CHECK(limits.peak_force == 3.3);
@@ -118,17 +118,18 @@ TEST_CASE("openhaptics: limits are asked from the SDK", "[device][openhaptics]")
   CHECK(OpenHapticsDevice(options).limits().peak_force == 1.0);
 }
 
-TEST_CASE("openhaptics: the device that is not there is refused in the SDK's words", "[device][openhaptics]") {
+TEST_CASE("openhaptics: the error for a missing device contains the SDK's message", "[device][openhaptics]") {
   fake_hd::Scope sdk;
   fake_hd::sdk().init_fails = true;
   CHECK_THAT(hd_refusal([] { OpenHapticsDevice device; }), contains("device fault"));
 }
 
-TEST_CASE("openhaptics: keeps the laws of devices", "[device][openhaptics][laws]") {
+TEST_CASE("openhaptics: satisfies the laws of devices", "[device][openhaptics][laws]") {
   const bool torque = GENERATE(false, true);
   fake_hd::Scope sdk;
   OpenHapticsDevice device(torque ? hd_with_torque() : OpenHapticsOptions());
-  // Laws write many times per read: the adapter sends a force only at the end of a frame, so each write has its own.
+  // The laws write many times per read; the adapter sends a force only at the end of a frame, so each write has its
+  // own.
   struct Framed {
     OpenHapticsDevice& inner;
     ToolState read() noexcept {
@@ -152,7 +153,8 @@ TEST_CASE("openhaptics: keeps the laws of devices", "[device][openhaptics][laws]
   CHECK(fake_hd::sdk().misuse == 0);
 }
 
-TEST_CASE("openhaptics: errors about force go on, others take the force off", "[device][openhaptics][extreme][D6]") {
+TEST_CASE("openhaptics: errors about force only set saturated, others set the force to zero",
+          "[device][openhaptics][extreme][D6]") {
   fake_hd::Scope sdk;
   OpenHapticsDevice device;
   device.start();
@@ -177,7 +179,7 @@ TEST_CASE("openhaptics: errors about force go on, others take the force off", "[
   CHECK(device.write(gated(Vector3(0.0, 1.0, 0.0))).has(StatusFlag::disconnected));
 }
 
-TEST_CASE("openhaptics: numbers that are none make the state invalid", "[device][openhaptics][extreme][D1]") {
+TEST_CASE("openhaptics: positions that are not finite make the state invalid", "[device][openhaptics][extreme][D1]") {
   for (double bad : {std::numeric_limits<double>::quiet_NaN(), infinity}) {
     fake_hd::Scope sdk;
     OpenHapticsDevice device;
@@ -213,7 +215,7 @@ TEST_CASE("openhaptics: a write without a frame sends nothing, a read without a 
   CHECK(!fake_hd::sdk().in_frame);
 }
 
-TEST_CASE("openhaptics: the loop begins, reads, sets and ends, in this order, and stops in order",
+TEST_CASE("openhaptics: the loop begins a frame, reads, sets and ends it, in this order, and stops in order",
           "[device][openhaptics]") {
   fake_hd::Scope sdk;
   fake_hd::sdk().position = {0.0, -2.0, 0.0};  // 2 mm deep: 1 N
@@ -236,7 +238,7 @@ TEST_CASE("openhaptics: the loop begins, reads, sets and ends, in this order, an
   CHECK(all.ends_with("begin, read, force, end, stop scheduler, unschedule, disable, disable device, "));
 }
 
-TEST_CASE("openhaptics: a lost device ends the loop without force", "[device][openhaptics][extreme][D6]") {
+TEST_CASE("openhaptics: a lost device ends the loop with zero force", "[device][openhaptics][extreme][D6]") {
   fake_hd::Scope sdk;
   struct Pushes {
     GatedForce force = gated(Vector3(0.0, 2.0, 0.0));
@@ -258,14 +260,14 @@ TEST_CASE("openhaptics: a lost device ends the loop without force", "[device][op
   CHECK(device.last_error() == HD_COMM_ERROR);
 }
 
-TEST_CASE("openhaptics: a frame that fails while it sends ends the loop without force, too",
+TEST_CASE("openhaptics: a frame that fails while sending ends the loop with zero force, too",
           "[device][openhaptics][extreme][D6]") {
   fake_hd::Scope sdk;
   struct FailsBehind {
     GatedForce force = gated(Vector3(0.0, 2.0, 0.0));
     std::atomic<int> ticks{0};
     std::span<const GatedForce> tick(std::span<const ToolState>) noexcept {
-      if (++ticks == 50) fake_hd::fail(HD_COMM_ERROR);  // the read is over: the write finds it
+      if (++ticks == 50) fake_hd::fail(HD_COMM_ERROR);  // after the read: the write reports it
       return {&force, 1};
     }
   } servo;
@@ -274,13 +276,14 @@ TEST_CASE("openhaptics: a frame that fails while it sends ends the loop without 
   loop.start();
   for (int i = 0; loop.alive() && i < 5000; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   CHECK(!loop.alive());
-  CHECK(hd_force() == Vector3::Zero());  // before anything is disabled
+  CHECK(hd_force() == Vector3::Zero());  // before forces are disabled
   CHECK(servo.ticks == 50);
   loop.stop();
   CHECK(fake_hd::sdk().misuse == 0);
 }
 
-TEST_CASE("openhaptics: a loop is stopped before it is started again, and then ticks anew", "[device][openhaptics]") {
+TEST_CASE("openhaptics: a loop must be stopped before it is started again, and then counts its ticks from zero",
+          "[device][openhaptics]") {
   fake_hd::Scope sdk;
   GatedWall wall;
   OpenHapticsDevice device;
@@ -289,7 +292,7 @@ TEST_CASE("openhaptics: a loop is stopped before it is started again, and then t
   CHECK_THAT(hd_refusal([&] { loop.start(); }), contains("stop()"));
   CHECK(loop.alive());
   loop.stop();
-  fake_hd::sdk().calls_back = false;  // ticks of the first time are none of the second
+  fake_hd::sdk().calls_back = false;  // ticks of the first run do not count for the second
   CHECK_THAT(hd_refusal([&] { loop.start(); }), contains("does not call"));
   fake_hd::sdk().calls_back = true;
   loop.start();
@@ -300,7 +303,7 @@ TEST_CASE("openhaptics: a loop is stopped before it is started again, and then t
   CHECK(fake_hd::sdk().misuse == 0);
 }
 
-TEST_CASE("openhaptics: a scheduler that does not call is refused", "[device][openhaptics]") {
+TEST_CASE("openhaptics: a scheduler that does not call the callback is refused", "[device][openhaptics]") {
   fake_hd::Scope sdk;
   fake_hd::sdk().calls_back = false;
   GatedWall wall;

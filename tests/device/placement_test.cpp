@@ -41,7 +41,7 @@ struct StillDevice {
 
 }  // namespace
 
-TEST_CASE("a placement there and back", "[device][placement]") {
+TEST_CASE("a placement and its inverse", "[device][placement]") {
   const Placement p = some_placement();
   testing::Random random(1);
   for (int i = 0; i < 100; ++i) {
@@ -53,18 +53,18 @@ TEST_CASE("a placement there and back", "[device][placement]") {
   CHECK_THAT((p.to_scene(p.device_origin + step) - p.scene_origin).norm(), WithinRel(0.25 * 0.01, 1e-12));
 }
 
-TEST_CASE("a spring in the scene is felt with scale times force_scale of its stiffness", "[device][placement]") {
+TEST_CASE("a spring in the scene is rendered with scale times force_scale times its stiffness", "[device][placement]") {
   const Placement p = some_placement();
   const double k = 700.0;
   const Vector3 rest(1.1, 2.2, 3.3), hand(0.02, 0.01, 0.04), step(1e-3, -2e-3, 5e-4);
-  const auto felt = [&](const Vector3& x) { return p.force_to_device(k * (rest - p.to_scene(x))); };
-  CHECK((felt(hand + step) - felt(hand) + p.handle_stiffness(k) * step).norm() <= 1e-12 * k);
-  // work: force scaled by f, way by 1 / s
+  const auto rendered = [&](const Vector3& x) { return p.force_to_device(k * (rest - p.to_scene(x))); };
+  CHECK((rendered(hand + step) - rendered(hand) + p.handle_stiffness(k) * step).norm() <= 1e-12 * k);
+  // Work: force is scaled by f, displacement by 1 / s.
   const Vector3 force(1, 2, 3), path = p.to_scene(hand + step) - p.to_scene(hand);
   CHECK_THAT(p.force_to_device(force).dot(step), WithinRel(p.force_scale / p.scale * force.dot(path), 1e-12));
 }
 
-TEST_CASE("velocity, orientation and torque follow", "[device][placement]") {
+TEST_CASE("velocity, orientation and torque are transformed", "[device][placement]") {
   const Placement p = some_placement();
   StillDevice device;
   device.state.position = {0.1, 0.0, 0.0};
@@ -86,7 +86,7 @@ TEST_CASE("velocity, orientation and torque follow", "[device][placement]") {
   CHECK((device.torque - 12.0 * (p.rotation.transpose() * Vector3(4, 5, 6))).norm() <= 1e-14);
 }
 
-TEST_CASE("limits as the scene sees them", "[device][placement]") {
+TEST_CASE("device limits in units of the scene", "[device][placement]") {
   const Placement p = some_placement();
   StillDevice device;
   const DeviceLimits scene = PlacedDevice(device, p).limits();
@@ -100,7 +100,7 @@ TEST_CASE("limits as the scene sees them", "[device][placement]") {
   }
 }
 
-TEST_CASE("too stiff a scene is said, with what to change", "[device][placement]") {
+TEST_CASE("a warning for a stiffness too large for the device states what to change", "[device][placement]") {
   Placement p = some_placement();
   const DeviceLimits device;
   CHECK(!p.warning(device, device.stiffness / (p.scale * p.force_scale)));
@@ -108,12 +108,12 @@ TEST_CASE("too stiff a scene is said, with what to change", "[device][placement]
   const auto warning = p.warning(device, stiffness);
   REQUIRE(warning);
   CHECK(warning->find("0.25 times as large") != std::string::npos);
-  p.scale *= 0.25;  // as it says
+  p.scale *= 0.25;  // as the warning states
   CHECK(!p.warning(device, stiffness * (1 - 1e-12)));
   CHECK(p.warning(device, std::numeric_limits<double>::quiet_NaN()));
 }
 
-TEST_CASE("placements that are none are refused", "[device][placement][extreme]") {
+TEST_CASE("invalid placements are refused", "[device][placement][extreme]") {
   StillDevice device;
   const auto refused = [&](auto change) {
     Placement p = some_placement();
@@ -132,7 +132,7 @@ TEST_CASE("placements that are none are refused", "[device][placement][extreme]"
   refused([&](Placement& p) { p.rotation(0, 0) = nan; });
 }
 
-TEST_CASE("a placed device is a device", "[device][placement]") {
+TEST_CASE("a placed device is a HapticDevice", "[device][placement]") {
   STATIC_REQUIRE(HapticDevice<PlacedDevice<StillDevice>>);
   MockDevice stylus(trajectory::poke({.from = {0, 0, 0.1}, .to = {0, 0, 0}}));
   STATIC_REQUIRE(HapticDevice<PlacedDevice<decltype(stylus)>>);

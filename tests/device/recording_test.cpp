@@ -1,4 +1,4 @@
-// Record, write, read, replay: the same bits; and everything that can be wrong with a file.
+// Record, write, read, replay: bitwise equal; and all errors of files.
 #include <cfloat>
 #include <chrono>
 #include <clocale>
@@ -117,7 +117,8 @@ struct DecimalComma : std::numpunct<char> {
   std::string do_grouping() const override { return "\3"; }
 };
 
-/// A locale with decimal commas and grouped thousands while it lives, for C++ streams and, where installed, for C.
+/// Sets a locale with decimal commas and grouped thousands during its lifetime, for C++ streams and, if installed, for
+/// C.
 struct HostileLocale {
   std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
   HostileLocale() { std::setlocale(LC_ALL, "de_DE.UTF-8"); }
@@ -132,7 +133,7 @@ const std::string row = "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n";
 
 }  // namespace
 
-TEST_CASE("recordings read back bit by bit, in any locale", "[device][recording][extreme][C4]") {
+TEST_CASE("recordings read back bitwise equal, in any locale", "[device][recording][extreme][C4]") {
   const auto ticks = random_ticks(5000);
   const TemporaryFile file("bits.csv");
   const bool hostile = GENERATE(false, true);
@@ -146,7 +147,7 @@ TEST_CASE("recordings read back bit by bit, in any locale", "[device][recording]
   CHECK(file.text().starts_with(header));
 }
 
-TEST_CASE("a replay gives the same input and the same forces: equal files", "[device][recording]") {
+TEST_CASE("a replay gives the same input and the same forces: the files are equal", "[device][recording]") {
   using Kind = DeviceFault::Kind;
   MockOptions options;
   options.faults = {{.kind = Kind::invalid_read, .first = 300, .count = 5},
@@ -169,7 +170,7 @@ TEST_CASE("a replay gives the same input and the same forces: equal files", "[de
   CHECK(first.text() == third.text());
 }
 
-TEST_CASE("after its end a replay is invalid and renders nothing", "[device][recording][extreme][D6]") {
+TEST_CASE("after its end a replay is invalid and renders zero", "[device][recording][extreme][D6]") {
   std::vector<RecordedTick> ticks(3);
   ticks[2].state.position = Vector3(1, 2, 3);
   ReplayDevice replay(ticks);
@@ -189,10 +190,10 @@ TEST_CASE("after its end a replay is invalid and renders nothing", "[device][rec
   CHECK_THROWS_AS(ReplayDevice(std::vector<RecordedTick>{}), SetupError);
 }
 
-TEST_CASE("a recorder keeps the newest ticks and says how many it dropped", "[device][recording]") {
+TEST_CASE("a recorder keeps the newest ticks and reports how many it dropped", "[device][recording]") {
   MockDevice stylus(trajectory::poke());
   Recorder recorder(stylus, 10);
-  recorder.write(gated(Vector3(1, 0, 0)));  // before any read: passed on, not recorded
+  recorder.write(gated(Vector3(1, 0, 0)));  // before any read: forwarded, not recorded
   recorder.note(StatusFlag::inverted);
   CHECK(recorder.ticks().empty());
   recorder.start();
@@ -212,14 +213,14 @@ TEST_CASE("a recorder keeps the newest ticks and says how many it dropped", "[de
     CHECK(ticks[static_cast<std::size_t>(i)].status == Status(StatusFlag::degraded_model));
   }
   recorder.read();
-  CHECK(recorder.ticks().back().force == Vector3::Zero());  // nothing written yet
+  CHECK(recorder.ticks().back().force == Vector3::Zero());  // no force written yet
   CHECK_THROWS_AS(Recorder(stylus, 0), SetupError);
 }
 
-TEST_CASE("files that are no recording are refused with file and line",
+TEST_CASE("files that are not recordings are refused with file and line",
           "[device][recording][extreme][C1][C2][C3][C5]") {
   struct Case {
-    std::string content, line, says;
+    std::string content, line, message;
   };
   const std::vector<Case> cases{
       {"", ":1: ", "header"},
@@ -254,12 +255,12 @@ TEST_CASE("files that are no recording are refused with file and line",
     } catch (const SetupError& error) {
       CHECK(error.kind() == SetupErrorKind::bad_file);
       CHECK_THAT(std::string(error.what()), test::contains(file.path + c.line));
-      CHECK_THAT(std::string(error.what()), test::contains(c.says));
+      CHECK_THAT(std::string(error.what()), test::contains(c.message));
     }
   }
 }
 
-TEST_CASE("line ends of any kind and a missing last one are read", "[device][recording][extreme][C5]") {
+TEST_CASE("files with any line ends, also without the last one, are read", "[device][recording][extreme][C5]") {
   const TemporaryFile file("ends.csv");
   std::string crlf;
   for (char c : header + row + row) crlf += c == '\n' ? std::string("\r\n") : std::string(1, c);
@@ -270,7 +271,7 @@ TEST_CASE("line ends of any kind and a missing last one are read", "[device][rec
   }
 }
 
-TEST_CASE("every truncation is refused or reads whole ticks", "[device][recording][extreme][C1]") {
+TEST_CASE("every truncated file is refused or read as complete ticks", "[device][recording][extreme][C1]") {
   const TemporaryFile file("cut.csv");
   const std::string whole = header + row + row;
   for (std::size_t size = 0; size < whole.size(); ++size) {

@@ -1,4 +1,4 @@
-// The simulated device against closed forms: mechanics, electronics, and the two limits of stiffness that theory gives.
+// The simulated device compared with closed forms: mechanics, electronics, and the two theoretical limits of stiffness.
 #include <palpate/testing/device_laws.hpp>
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/stability.hpp>
@@ -13,7 +13,7 @@ using palpate::testing::VirtualWall;
 
 namespace {
 
-/// Neither friction nor encoder steps: the loop is linear.
+/// Without friction and encoder steps the loop is linear.
 SimulatedOptions linear(double mass = 0.1, double damping = 0.3) {
   SimulatedOptions o;
   o.mass = mass;
@@ -35,8 +35,8 @@ void run(SimulatedDevice& device, int ticks) {
 
 }  // namespace
 
-TEST_CASE("a held handle follows the damped oscillator", "[device][simulated]") {
-  for (double damping : {0.0, 0.4, 6.0, 40.0}) {  // without, under-critically, over-critically damped
+TEST_CASE("a handle in a hand follows the damped oscillator", "[device][simulated]") {
+  for (double damping : {0.0, 0.4, 6.0, 40.0}) {  // undamped, underdamped, overdamped
     SimulatedOptions o = linear(0.1, 0.25 * damping);
     o.rate = GENERATE(1000.0, 3.0);
     o.hand = {.mass = 0.2, .damping = 0.75 * damping, .stiffness = 60.0};
@@ -54,7 +54,7 @@ TEST_CASE("a held handle follows the damped oscillator", "[device][simulated]") 
   }
 }
 
-TEST_CASE("Coulomb friction holds, slides and stops as on a table", "[device][simulated]") {
+TEST_CASE("Coulomb friction sticks, slides and stops as in the closed form", "[device][simulated]") {
   SimulatedOptions o = linear(0.1, 0.0);
   o.friction = 0.3;
   SimulatedDevice device(o);
@@ -96,7 +96,7 @@ TEST_CASE("energy is conserved through motors, hand, friction and dampers", "[de
   }
 }
 
-TEST_CASE("what the dampers take is what they take in closed form", "[device][simulated]") {
+TEST_CASE("the dissipation of the dampers equals the closed form", "[device][simulated]") {
   SimulatedOptions o = linear(0.1, 0.3);
   o.hand = {.mass = 0.0, .damping = 0.1, .stiffness = 0.0};
   SimulatedDevice device(o);
@@ -105,10 +105,10 @@ TEST_CASE("what the dampers take is what they take in closed form", "[device][si
   const double before = device.energy().viscous, hand = device.energy().hand;
   run(device, 1000);
   CHECK_THAT(device.energy().viscous - before, WithinRel(-0.3 * 25.0, 1e-4));
-  CHECK_THAT(device.energy().hand - hand, WithinRel(0.3 * 25.0, 1e-4));  // its push less its own damper
+  CHECK_THAT(device.energy().hand - hand, WithinRel(0.3 * 25.0, 1e-4));  // its push minus its own damper
 }
 
-TEST_CASE("a force acts after the delay, to the instant", "[device][simulated]") {
+TEST_CASE("a force acts exactly after the delay", "[device][simulated]") {
   for (double delay : {0.0, 0.4e-3, 1e-3, 2.5e-3, 32e-3}) {
     SimulatedOptions o = linear(0.1, 0.0);
     o.delay = delay;
@@ -123,7 +123,7 @@ TEST_CASE("a force acts after the delay, to the instant", "[device][simulated]")
   }
 }
 
-TEST_CASE("positions are those of the encoder", "[device][simulated]") {
+TEST_CASE("positions are rounded to encoder steps", "[device][simulated]") {
   SimulatedOptions o = linear();
   o.encoder_step = 55e-6;
   SimulatedDevice device(o);
@@ -135,7 +135,7 @@ TEST_CASE("positions are those of the encoder", "[device][simulated]") {
   }
 }
 
-TEST_CASE("jitter and stalls make reads late, never early, and leave the grid alone", "[device][simulated]") {
+TEST_CASE("jitter and stalls make reads late, never early, and do not change the grid", "[device][simulated]") {
   SimulatedOptions o = linear();
   o.jitter = 0.8e-3;
   o.stall = 5.3e-3;
@@ -159,12 +159,12 @@ TEST_CASE("jitter and stalls make reads late, never early, and leave the grid al
   CHECK(latest <= 0.8e-3 + 1e-9);
   CHECK(latest > 0.79e-3);
   CHECK_THAT(mean / on_grid, WithinAbs(0.4e-3, 0.02e-3));
-  // One per 50 ms plus its own length; they cover 5 or 6 reads each.
+  // One per 50 ms plus its own length; each covers 5 or 6 reads.
   CHECK_THAT(stalls, WithinAbs(before / 0.0558, 3.0));
   CHECK_THAT(before, WithinAbs(1e-3 * (20000 + 5.3 * stalls), 0.01 * before));
 }
 
-TEST_CASE("the same device does the same again", "[device][simulated]") {
+TEST_CASE("a device with the same options and seed gives the same samples", "[device][simulated]") {
   SimulatedOptions o;
   o.jitter = 0.5e-3;
   SimulatedDevice a = started(o), b = started(o);
@@ -179,7 +179,7 @@ TEST_CASE("the same device does the same again", "[device][simulated]") {
   CHECK(different > 90);
 }
 
-TEST_CASE("simulated devices keep the laws", "[device][simulated][laws]") {
+TEST_CASE("simulated devices satisfy the laws", "[device][simulated][laws]") {
   for (SimulatedOptions o : {SimulatedOptions::stylus(), SimulatedOptions::precise_stylus(),
                              SimulatedOptions::game_controller(), SimulatedOptions::parallel_arm()}) {
     for (const SimulatedHand& hand : {SimulatedHand::none(), SimulatedHand::firm()}) {
@@ -192,7 +192,7 @@ TEST_CASE("simulated devices keep the laws", "[device][simulated][laws]") {
   }
 }
 
-TEST_CASE("stop and a lost device take the force off, delayed or not", "[device][simulated][extreme][D6]") {
+TEST_CASE("stop and a lost device set the force to zero, with any delay", "[device][simulated][extreme][D6]") {
   SimulatedOptions o = linear();
   o.delay = 2e-3;
   SimulatedDevice device = started(o);
@@ -213,7 +213,7 @@ TEST_CASE("stop and a lost device take the force off, delayed or not", "[device]
   CHECK(device.motor_force() == Vector3::Zero());
 }
 
-TEST_CASE("what is no device is refused", "[device][simulated]") {
+TEST_CASE("invalid simulated devices are refused", "[device][simulated]") {
   const auto refused = [](auto change) {
     SimulatedOptions o;
     change(o);
@@ -245,7 +245,8 @@ TEST_CASE("what is no device is refused", "[device][simulated]") {
   CHECK(!refused([](SimulatedOptions& o) { o.delay = 32e-3; }));
 }
 
-TEST_CASE("a linear loop grows beyond (b + B) / (T/2 + dT), and not below", "[device][simulated][stability]") {
+TEST_CASE("a linear loop is unstable above the stiffness (b + B) / (T/2 + dT) and stable below",
+          "[device][simulated][stability]") {
   struct Case {
     double mass, damping, period, ticks;
   };
@@ -259,7 +260,7 @@ TEST_CASE("a linear loop grows beyond (b + B) / (T/2 + dT), and not below", "[de
     o.rate = 1.0 / c.period;
     o.delay = c.ticks * c.period;
     o.limits.peak_force = 1e9;
-    const auto energy_bounded = [&](double stiffness) {
+    const auto is_stable = [&](double stiffness) {
       SimulatedDevice device = started(o);
       VirtualWall wall{.stiffness = stiffness, .one_sided = false};
       device.push(Vector3(0.0, 0.0, 1e-6));
@@ -270,14 +271,14 @@ TEST_CASE("a linear loop grows beyond (b + B) / (T/2 + dT), and not below", "[de
     };
     const double expected = testing::stiffness_limit(c.damping, c.period, o.delay);
     INFO("m " << c.mass << " b " << c.damping << " T " << c.period << " d " << c.ticks);
-    CHECK_THAT(testing::largest_that(energy_bounded, 0.2 * expected, 5.0 * expected, 1e-3), WithinRel(expected, 0.02));
+    CHECK_THAT(testing::largest_that(is_stable, 0.2 * expected, 5.0 * expected, 1e-3), WithinRel(expected, 0.02));
   }
 }
 
-TEST_CASE("with friction and encoder steps energy comes out beyond 2 f / step, and not below",
+TEST_CASE("with friction and encoder steps energy is generated above the stiffness 2 f / step and not below",
           "[device][simulated][stability]") {
-  // The worst motion there is: within each period across the same edge between two encoder steps, in just after a
-  // sample outside, out just after a sample inside. The hand is stiff and critically damped, so it gets there in time.
+  // The worst motion: in each period across the same edge between two encoder steps, inwards just after a sample
+  // outside, outwards just after a sample inside. The hand is stiff and critically damped, so it arrives in time.
   for (const auto& [friction, encoder_step] : {std::pair(0.26, 55e-6), {0.04, 30e-6}}) {
     const double step = encoder_step;
     SimulatedOptions o = linear(1e-3, 0.0);

@@ -1,4 +1,4 @@
-// The element of examples/06-own-element: two kinds of faces, and everything else an element has.
+// The element of examples/06-own-element: two kinds of faces, and all other requirements of an element.
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/matrix_free.hpp>
 #include <palpate/element/tet4.hpp>
@@ -14,7 +14,7 @@ using own::Hex12;
 
 namespace {
 
-/// Two elements side by side along y, corners moved, edges straight.
+/// Two elements adjacent along y, with displaced corners and straight edges.
 Mesh<Hex12> pair() {
   Mesh<Hex12> mesh;
   for (double x : {0.0, 1.0, 2.0})
@@ -37,7 +37,7 @@ Mesh<Hex12> pair() {
 
 }  // namespace
 
-TEST_CASE("an element with two kinds of faces keeps the laws", "[element][laws]") {
+TEST_CASE("an element with two kinds of faces passes the law suite", "[element][laws]") {
   STATIC_REQUIRE(HasSmallFace<Hex12>);
   STATIC_REQUIRE(!HasSmallFace<Tet4>);
   CHECK(testing::describe(testing::element_laws<Hex12>()) == "");
@@ -63,14 +63,14 @@ TEST_CASE("the boundary of two such elements", "[element][surface]") {
   CHECK_THAT(volume, Catch::Matchers::WithinRel(by_elements, 1e-12));
 }
 
-TEST_CASE("its stiffness keeps the laws, stored and not", "[element][laws]") {
+TEST_CASE("an element with two kinds of faces passes the stiffness law suite", "[element][laws]") {
   const Body<Hex12> body = test::body_of(pair(), {test::liver});
   const BlockMatrix k = assemble_stiffness<Hex12>(body, {});
   CHECK(testing::describe(testing::stiffness_laws(body, k)) == "");
   CHECK(testing::describe(testing::same_stiffness_laws(k, MatrixFreeStiffness<Hex12>(body, {}))) == "");
 }
 
-TEST_CASE("a group of its faces is found whatever their number of nodes", "[element][surface]") {
+TEST_CASE("a group may mix faces with different numbers of nodes", "[element][surface]") {
   Mesh<Hex12> mesh = pair();
   Group& ends = mesh.groups.get_or_add("mixed", 2);
   const auto boundary = extract_boundary<Hex12>(mesh);

@@ -1,4 +1,4 @@
-// The regular reference tetrahedron of the thesis: right when corrected; every misprint breaks a named law.
+// The regular reference tetrahedron of the thesis: correct after correction; every misprint fails a named check.
 #include "element/thesis_tet4.hpp"
 
 #include <palpate/element/tet4.hpp>
@@ -22,12 +22,12 @@ using Laws = std::set<std::string>;
 
 }  // namespace
 
-TEST_CASE("the corrected tetrahedron of the thesis keeps every law", "[element][thesis]") {
+TEST_CASE("the corrected tetrahedron of the thesis passes the law suite", "[element][thesis]") {
   STATIC_REQUIRE(Element<ThesisTet4>);
   CHECK(testing::describe(testing::element_laws<ThesisTet4>()) == "");
 }
 
-TEST_CASE("it is regular: edges sqrt 3, centroid 0, volume sqrt 6 / 4", "[element][thesis]") {
+TEST_CASE("the thesis tetrahedron is regular: edges sqrt 3, centroid 0, volume sqrt 6 / 4", "[element][thesis]") {
   const auto x = ThesisTet4::reference_nodes();
   CHECK(x.colwise().sum().norm() < 1e-15);
   for (int a = 0; a < 4; ++a)
@@ -35,8 +35,8 @@ TEST_CASE("it is regular: edges sqrt 3, centroid 0, volume sqrt 6 / 4", "[elemen
   CHECK(std::abs(testing::weight_sum<ThesisTet4::Quadrature>() - 0.612372435695794524549) < 1e-15);
 }
 
-TEST_CASE("it is the same element as Tet4", "[element][thesis]") {
-  // The affine map between the reference tetrahedra carries the functions over; gradients by its Jacobian.
+TEST_CASE("the thesis tetrahedron is the same element as Tet4", "[element][thesis]") {
+  // The affine map between the reference tetrahedra maps the functions; gradients transform with its Jacobian.
   const Matrix3 j = ThesisTet4::reference_nodes().transpose() * Tet4::gradient(Vector3::Zero());
   for (const auto& unit : testing::sample_points<4, 3>(Tet4::reference_nodes())) {
     const Vector3 regular = ThesisTet4::reference_nodes().transpose() * Tet4::shape(unit);
@@ -45,7 +45,7 @@ TEST_CASE("it is the same element as Tet4", "[element][thesis]") {
   CHECK((ThesisTet4::gradient(Vector3::Zero()) * j - Tet4::gradient(Vector3::Zero())).norm() < 1e-14);
 }
 
-TEST_CASE("every misprint satisfies the concept and breaks a law", "[element][thesis]") {
+TEST_CASE("every misprint satisfies the concept and fails the law suite", "[element][thesis]") {
   STATIC_REQUIRE(Element<PrintedFunction>);
   STATIC_REQUIRE(Element<PrintedDerivatives>);
   STATIC_REQUIRE(Element<PrintedWeight>);
@@ -58,7 +58,7 @@ TEST_CASE("every misprint satisfies the concept and breaks a law", "[element][th
     CHECK(laws.count("zero-sum gradients") == 1);
     CHECK(laws.count("linear completeness") == 1);
     CHECK(laws.count("gradient is the derivative") == 0);
-    // 1 + sqrt2 w / 3 at the node on top, w = 3 sqrt2 / 4, where N1 should be 0 and is 1/2.
+    // 1 + sqrt2 w / 3 at the top node, w = 3 sqrt2 / 4, where N1 should be 0 and is 1/2.
     CHECK(std::abs(PrintedFunction::shape(Vector3(0, 0, 0.75 * sqrt2)).sum() - 1.5) < 1e-15);
   }
   SECTION("derivative table: a rigid translation strains the element") {

@@ -4,19 +4,19 @@
 #include <palpate/element/tri3.hpp>
 #include <palpate/quadrature/tetrahedron.hpp>
 
-/// The thesis' regular reference tetrahedron as an element a user would write: corrected, and as printed.
+/// The thesis' regular reference tetrahedron as a user-defined element: corrected, and as printed.
 namespace thesis {
 
 inline constexpr double sqrt2 = std::numbers::sqrt2, sqrt3 = std::numbers::sqrt3, sqrt6 = 2.4494897427831780982;
 
-/// A rule of the unit tetrahedron carried over to the regular one: edge sqrt 3, centroid 0, volume sqrt 6 / 4.
+/// A rule of the unit tetrahedron mapped to the regular one: edge sqrt 3, centroid 0, volume sqrt 6 / 4.
 template <class Unit>
 struct Regular {
   static constexpr int dimension = 3, degree = Unit::degree;
   static constexpr auto points = [] {
     auto all = Unit::points;
     for (auto& q : all) {
-      const auto [a, b, c] = q.xi;  // weights of nodes 2, 3 and 4; node 1 has the rest
+      const auto [a, b, c] = q.xi;  // weights of nodes 2, 3 and 4; node 1 has the remainder
       q.xi = {1.0 - 1.5 * (a + b) - c, 0.5 * sqrt3 * (a - b), sqrt2 * (c - 0.25)};
       q.weight *= 6.0 * sqrt6 / 4.0;
     }
@@ -59,7 +59,7 @@ struct ThesisTet4 {
   }
 };
 
-/// N1 as printed, with the derivative it has.
+/// N1 as printed, with its exact derivative.
 struct PrintedFunction : ThesisTet4 {
   static Eigen::Vector4d shape(const palpate::Vector3& xi) noexcept {
     Eigen::Vector4d n = ThesisTet4::shape(xi);
@@ -73,7 +73,7 @@ struct PrintedFunction : ThesisTet4 {
   }
 };
 
-/// The right functions with the printed table of derivatives: the first row is the negative of the truth.
+/// The correct functions with the printed table of derivatives: the first row has the wrong sign.
 struct PrintedDerivatives : ThesisTet4 {
   static Eigen::Matrix<double, 4, 3> gradient(const palpate::Vector3& xi) noexcept {
     Eigen::Matrix<double, 4, 3> g = ThesisTet4::gradient(xi);
@@ -91,7 +91,7 @@ struct PrintedWeight : ThesisTet4 {
   using Quadrature = PrintedRule;
 };
 
-/// Nodes in the printed order, faces outward all the same: a negative volume by the numbering of every mesh generator.
+/// Nodes in the printed order with outward faces: a negative volume in the numbering of all mesh generators.
 struct PrintedOrder : ThesisTet4 {
   static constexpr std::array<std::array<int, 3>, 4> faces{{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {0, 2, 3}}};
   static Eigen::Vector4d shape(const palpate::Vector3& xi) noexcept { return swap() * ThesisTet4::shape(xi); }

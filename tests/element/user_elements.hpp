@@ -5,7 +5,7 @@
 #include <palpate/quadrature/tetrahedron.hpp>
 #include <palpate/quadrature/triangle.hpp>
 
-/// Elements as a user would write them: the law suites must work beyond the elements of the library.
+/// User-defined elements: the law suites must also work for elements outside the library.
 namespace user {
 
 using palpate::Vector2;

@@ -1,4 +1,4 @@
-// E: motion at its ends. What is tested where the part lives has its tag there.
+// E: extremes of motion. Extremes tested with the component itself have their tag there.
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/core/realtime.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
@@ -51,7 +51,7 @@ VectorX random_velocity(const ImplicitDynamics& d, double size) {
 
 }  // namespace
 
-TEST_CASE("a body with memory takes any step", "[extreme][E1]") {
+TEST_CASE("a viscoelastic body accepts any time step", "[extreme][E1]") {
   const Viscoelastic<NeoHookean, 1> material{jelly, {{{0.5, 0.1}}}};
   for (const double h : {1e-9, 1e-6, 1e-3, 0.1, 1.0, 100.0}) {
     ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(jelly_mesh(), std::vector{material}),
@@ -67,7 +67,7 @@ TEST_CASE("a body with memory takes any step", "[extreme][E1]") {
   }
 }
 
-TEST_CASE("Newmark keeps the energy of a small strain over 20 000 steps, implicit Euler never gains any",
+TEST_CASE("Newmark conserves the energy at small strain over 20 000 steps, implicit Euler never gains energy",
           "[extreme][E3]") {
   for (const bool newmark : {true, false}) {
     ImplicitDynamics d(
@@ -83,7 +83,7 @@ TEST_CASE("Newmark keeps the energy of a small strain over 20 000 steps, implici
       rise = std::max(rise, now - last);
       last = now;
     }
-    CHECK((sums_of(d).momentum - momentum).norm() <= 2e-9 * momentum.norm());  // residuals of 1e-12 add up
+    CHECK((sums_of(d).momentum - momentum).norm() <= 2e-9 * momentum.norm());  // residuals of 1e-12 accumulate
     if (newmark)
       CHECK_THAT(last, WithinRel(start, 1e-9));
     else
@@ -91,7 +91,7 @@ TEST_CASE("Newmark keeps the energy of a small strain over 20 000 steps, implici
   }
 }
 
-TEST_CASE("a free jelly keeps its momentum, and never gains spin by implicit Euler", "[extreme][E3]") {
+TEST_CASE("a free soft body keeps its momentum, and never gains angular momentum by implicit Euler", "[extreme][E3]") {
   ImplicitDynamics d(jelly_body(Scene()), {.newton = {.tolerance = 1e-11}});
   VectorX v = random_velocity(d, 0.05);
   for (Index i = 0; i < v.size() / 3; ++i)
@@ -111,7 +111,7 @@ TEST_CASE("a free jelly keeps its momentum, and never gains spin by implicit Eul
   CHECK(end.spin.norm() <= start.spin.norm());
 }
 
-TEST_CASE("a sphere that is held leaves a moving tissue alone", "[extreme][E3]") {
+TEST_CASE("a sphere at rest leaves a moving tissue at rest", "[extreme][E3]") {
   Jelly tissue(box_tet4({0.06, 0.06, 0.03}, {4, 4, 2}), Scene().fix("z0").touch("z1"), jelly, {}, {.step = 0.01});
   HapticServo servo(tissue, SphereTool{.radius = 0.012});
   const auto tick = [&](int k) {
@@ -122,17 +122,17 @@ TEST_CASE("a sphere that is held leaves a moving tissue alone", "[extreme][E3]")
     servo.tick({&s, 1});
   };
   for (int k = 0; k < 6000; ++k) tick(k);
-  const VectorX constrained = tissue.motion().displacement();
-  REQUIRE(constrained.norm() > 0.0);
+  const VectorX settled = tissue.motion().displacement();
+  REQUIRE(settled.norm() > 0.0);
   double off = 0.0;
   for (int k = 6000; k < 12000; ++k) {
     tick(k);
-    off = std::max(off, (tissue.motion().displacement() - constrained).norm() / constrained.norm());
+    off = std::max(off, (tissue.motion().displacement() - settled).norm() / settled.norm());
   }
   CHECK(off <= 1e-9);
 }
 
-TEST_CASE("a corotational body that turns, by any angle and many times, has no force", "[extreme][E4]") {
+TEST_CASE("a corotational body rotated by any angle and many times has no force", "[extreme][E4]") {
   const Corotational<LinearElastic> material{{5e3, 0.45, 1000.0}};
   const LargeStrain<Tet4, Corotational<LinearElastic>> body(
       make_hyperelastic_body(jelly_mesh(), std::vector<Corotational<LinearElastic>>{material}));
@@ -140,7 +140,7 @@ TEST_CASE("a corotational body that turns, by any angle and many times, has no f
   VectorX u(body.size()), f(body.size());
   double worst = 0.0;
   for (const Vector3& axis : {Vector3(0, 0, 1), Vector3(1, 1, 0), Vector3(0.3, -0.8, 0.5)})
-    for (int k = 0; k <= 720; ++k) {  // 20 turns, 180 degrees among them
+    for (int k = 0; k <= 720; ++k) {  // 20 rotations, including 180 degrees
       const Matrix3 r = Eigen::AngleAxisd(k * 3.14159265358979323846 / 18.0, axis.normalized()).toRotationMatrix();
       for (Index i = 0; i < body.mesh().node_count(); ++i)
         u.segment<3>(3 * i) = r * body.mesh().position(i) - body.mesh().position(i);
@@ -150,7 +150,7 @@ TEST_CASE("a corotational body that turns, by any angle and many times, has no f
   CHECK(worst <= 1e-10 * 5e3 * h * h);
 }
 
-TEST_CASE("100 jellies with all nodes thrown about come to rest by implicit steps", "[extreme][E5]") {
+TEST_CASE("100 soft bodies with random node displacements come to rest by implicit steps", "[extreme][E5]") {
   ImplicitDynamics d(jelly_body(Scene().fix("z0")), {.mass_damping = 5.0});
   testing::Random random(23);
   int at_rest = 0, inverted = 0;
@@ -169,7 +169,7 @@ TEST_CASE("100 jellies with all nodes thrown about come to rest by implicit step
   CHECK(inverted > 25);
 }
 
-TEST_CASE("a motion whose loads are no numbers stays where it is, and says so", "[extreme][E6]") {
+TEST_CASE("a motion with loads that are not finite keeps its state and reports a step not taken", "[extreme][E6]") {
   ImplicitDynamics d(jelly_body(Scene().fix("z0").gravity({0.0, 0.0, -9.81})), {});
   for (int k = 0; k < 5; ++k) REQUIRE(d.step(0.01).taken);
   const VectorX u = d.displacement(), v = d.velocity(), load = d.body().load;
@@ -179,7 +179,7 @@ TEST_CASE("a motion whose loads are no numbers stays where it is, and says so", 
     CHECK(d.displacement() == u);
     CHECK(d.velocity() == v);
   }
-  d.set_load(VectorX::Constant(u.size(), 1e308));  // a number, but its square is none
+  d.set_load(VectorX::Constant(u.size(), 1e308));  // finite, but its square is not
   const StepReport report = d.step(0.01);
   CHECK((!report.taken || !report.newton.converged));
   REQUIRE(d.displacement().allFinite());
@@ -189,7 +189,7 @@ TEST_CASE("a motion whose loads are no numbers stays where it is, and says so", 
   CHECK(d.step(0.01).taken);
 }
 
-TEST_CASE("energy from nowhere is said, and nothing else is", "[extreme][E6]") {
+TEST_CASE("artificial energy is reported, and nothing else", "[extreme][E6]") {
   const auto run = [](const TimeScheme& scheme, double young, double nu, double h) {
     const NeoHookean material{young, nu, 1000.0};
     ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(box_tet4({0.1, 0.1, 0.1}, {2, 2, 2}, BoxSplit::six),
@@ -197,20 +197,20 @@ TEST_CASE("energy from nowhere is said, and nothing else is", "[extreme][E6]") {
                                             Scene().fix("z0").gravity({9.81, 0.0, 0.0})),
                        {.scheme = scheme});
     double most_work = 0.0, most_energy = 0.0;
-    int said = 0;
+    int reported = 0;
     for (int k = 0; k < 100; ++k) {
       const StepReport report = d.step(h);
       REQUIRE(report.taken);
       most_work = std::max(most_work, std::abs(d.body().load.dot(d.displacement())));
       most_energy = std::max(most_energy, d.kinetic_energy() + d.elastic_energy());
-      if (!report.energy_bounded) ++said;
-      if (said == 0) CHECK(most_energy <= 10.0 * most_work);
+      if (!report.energy_bounded) ++reported;
+      if (reported == 0) CHECK(most_energy <= 10.0 * most_work);
     }
-    return std::pair(said, most_energy / most_work);
+    return std::pair(reported, most_energy / most_work);
   };
-  // Newmark at large strain, steps of a hundred periods.
-  const auto [said, energy] = run(TimeScheme::newmark(), 1e4, 0.4999, 0.0316);
-  CHECK(said > 0);
+  // Newmark at large strain, steps of a hundred periods of the body.
+  const auto [reported, energy] = run(TimeScheme::newmark(), 1e4, 0.4999, 0.0316);
+  CHECK(reported > 0);
   CHECK(energy > 10.0);
   for (double h : {1e-6, 1e-3, 0.03, 1.0})
     for (double young : {1e3, 1e5, 1e8}) {
@@ -220,7 +220,7 @@ TEST_CASE("energy from nowhere is said, and nothing else is", "[extreme][E6]") {
     }
 }
 
-TEST_CASE("a motion that dies away leaves no denormal numbers", "[extreme][E8]") {
+TEST_CASE("a motion that decays leaves no denormal numbers", "[extreme][E8]") {
   Jelly tissue(box_tet4({0.02, 0.02, 0.02}, {1, 1, 1}), Scene().fix("z0").touch("z1"), jelly, {},
                {.step = 0.05, .mass_damping = 50.0});
   const VertexForce push{0, {0.0, 0.0, -1e-3}};

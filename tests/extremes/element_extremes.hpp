@@ -2,11 +2,11 @@
 
 #include "properties/element_cases.hpp"
 
-/// Extremes of material and mesh for any element, judged against fields whose nodal values are known. Each element is
-/// compiled in a file of its own.
+/// Extremes of material and mesh for any element, compared with fields whose nodal values are known. Each element is
+/// compiled in its own file.
 namespace test {
 
-/// What became of a case; an error above the bound must have been announced by the report.
+/// Checks the error of a model; an error above the bound must have been flagged by the report.
 template <class Model>
 void judge_element(const Model& model, double error, double bound) {
   const SetupReport& report = model.report();
@@ -14,8 +14,8 @@ void judge_element(const Model& model, double error, double bound) {
   CHECK(error <= (report.has(SetupFlag::ill_conditioned) ? std::max(bound, 100.0 * report.probe_error) : bound));
 }
 
-/// An affine field held on the boundary: nodal values are known for every material and every shape of straight-sided
-/// elements. Refusals are counted.
+/// An affine field prescribed on the boundary: nodal values are known for every material and every shape of
+/// straight-sided elements. Refusals are counted.
 template <Element E>
 int judge_affine(const Mesh<E>& mesh, const LinearElastic& material, double bound, int& flagged) {
   Matrix3 a;
@@ -37,7 +37,7 @@ int judge_affine(const Mesh<E>& mesh, const LinearElastic& material, double boun
   }
 }
 
-/// A body stretched along x in two materials without lateral contraction: strains jump at the border and are exact.
+/// A body of two materials stretched along x without lateral contraction: strains jump at the interface and are exact.
 template <Element E>
 void check_contrast(double contrast) {
   Mesh<E> mesh = box_of<E>({0.1, 0.05, 0.05}, {4, 2, 2});
@@ -71,7 +71,7 @@ VectorX sagging(const Mesh<E>& mesh, const LinearElastic& material) {
   return StaticModel<E>(mesh, Scene().fix("x0").gravity({0, 0, -10.0}), material).displacement();
 }
 
-/// A2 A3 B1 B2: Poisson ratios up to the last digit below one half, any modulus, size and place.
+/// A2 A3 B1 B2: Poisson ratios up to the last digit below one half, any modulus, size and position.
 template <Element E>
 void check_material_extremes() {
   int flagged = 0;
@@ -93,11 +93,12 @@ void check_material_extremes() {
   for (double young : {5.0, 5e12})
     CHECK(largest(sagging<E>(mesh, {young, 0.3, 1000.0}) * (young / 5e3) - truth) <= 1e-12 * largest(truth));
   Mesh<E> far = mesh;
-  for (Vector3& x : far.positions) x += Vector3(100.0, -50.0, 20.0);  // 1000 times its size: 1e-13 of it is lost
+  for (Vector3& x : far.positions)
+    x += Vector3(100.0, -50.0, 20.0);  // 1000 times its size: 1e-13 of the precision is lost
   CHECK(largest(sagging<E>(far, tissue) - truth) <= 1e-10 * largest(truth));
 }
 
-/// B5: a layer of flat elements is right, flagged or refused, and some of each.
+/// B5: a layer of flat elements is right, flagged or refused; some are flagged and some refused.
 template <Element E>
 void check_slivers() {
   int refused = 0, flagged = 0;
@@ -111,7 +112,7 @@ void check_slivers() {
   CHECK(refused >= 1);
 }
 
-/// B3 B4 B6 B7 B8: what is no body is refused by its name.
+/// B3 B4 B6 B7 B8: invalid bodies are refused with the right error kind.
 template <Element E>
 void check_defects() {
   const Mesh<E> good = box_of<E>({0.1, 0.08, 0.06}, {3, 2, 2});
@@ -144,18 +145,18 @@ void check_defects() {
   refused_as(good, Scene().fix(std::vector<NodeId>{0}), SetupErrorKind::unconstrained);
 }
 
-/// B4 B9: turned round it is the same body; one element; everything held; no force.
+/// B4 B9: inverted elements are repaired to the same body; one element; all nodes fixed; no force.
 template <Element E>
 void check_small_bodies() {
   const LinearElastic tissue{5e3, 0.3, 1000.0};
   const Mesh<E> good = box_of<E>({0.1, 0.08, 0.06}, {3, 2, 2});
   Mesh<E> inverted = good;
   reorient(inverted, {3, 4});
-  SetupOptions mend;
-  mend.admission.inverted = Admission::repair;
-  const StaticModel<E> mended(inverted, Scene().fix("x0").gravity({0, 0, -10.0}), tissue, mend);
-  CHECK(mended.report().has(SetupFlag::repaired));
-  CHECK(largest(mended.displacement() - sagging<E>(good, tissue)) <= 1e-13 * largest(mended.displacement()));
+  SetupOptions repair;
+  repair.admission.inverted = Admission::repair;
+  const StaticModel<E> repaired(inverted, Scene().fix("x0").gravity({0, 0, -10.0}), tissue, repair);
+  CHECK(repaired.report().has(SetupFlag::repaired));
+  CHECK(largest(repaired.displacement() - sagging<E>(good, tissue)) <= 1e-13 * largest(repaired.displacement()));
 
   Mesh<E> one;
   for (int a = 0; a < E::nodes; ++a) {

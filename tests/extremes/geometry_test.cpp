@@ -16,7 +16,7 @@ Mesh<Tet4> with_slivers(double height) {
   return box_tet4({0.0, 0.03, 0.06, 0.1}, {0.0, 0.03, 0.06}, {0.0, 0.02, 0.02 + h});
 }
 
-/// The brick with one node pulled towards the opposite face of one of its elements.
+/// The brick with one node moved towards the opposite face of one of its elements.
 Mesh<Tet4> with_one_sliver(double height) {
   Mesh<Tet4> mesh = two_cubes();
   const NodeId apex = mesh.elements[8][0];  // node 11, a corner of one element only
@@ -119,7 +119,7 @@ TEST_CASE("degenerate elements never become a model", "[extreme][B3]") {
   CHECK(kind(inside_out) == "inverted_element");
 }
 
-TEST_CASE("slivers: one, and a layer of them", "[extreme][B5]") {
+TEST_CASE("one sliver, and a layer of slivers", "[extreme][B5]") {
   for (double height : {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9, 1e-11}) {
     const auto expect = [&](PolicyName policy, const Outcome& o) {
       if (height >= 1e-3 && (policy == PolicyName::sparse_cholesky || policy == PolicyName::condensed_inverse))
@@ -142,7 +142,7 @@ TEST_CASE("slivers are flagged", "[extreme][B5]") {
   }
 }
 
-TEST_CASE("a node that nothing uses does not reach the solver", "[extreme][B6]") {
+TEST_CASE("an orphan node does not reach the solver", "[extreme][B6]") {
   Mesh<Tet4> mesh = brick();
   mesh.positions.emplace_back(0.05, 0.05, 0.05);
   SetupOptions accept;
@@ -154,7 +154,7 @@ TEST_CASE("a node that nothing uses does not reach the solver", "[extreme][B6]")
   }
 }
 
-TEST_CASE("what is not held is refused", "[extreme][B7][B8]") {
+TEST_CASE("bodies without sufficient supports are refused", "[extreme][B7][B8]") {
   for (const Scene& scene : {Scene(), Scene().fix(std::vector<NodeId>{0}), Scene().fix(std::vector<NodeId>{0, 3}),
                              Scene().prescribe("x0", {0.0, std::nullopt, std::nullopt})})
     for (PolicyName policy : extreme_policies) {
@@ -177,7 +177,8 @@ TEST_CASE("two tetrahedra joined at a node or an edge", "[extreme][B7][B8]") {
         check_refused_by_all(mesh(shared), Scene(scene).touch("surface").point_load("surface", {1, 2, 3}));
       }
     }
-    judge_all("a shared face holds", mesh(3), {plain}, Scene().fix(constrained).touch("surface").gravity({1, 2, 3}),
+    judge_all("a shared face is a rigid joint", mesh(3), {plain},
+              Scene().fix(constrained).touch("surface").gravity({1, 2, 3}),
               [](PolicyName, const Outcome& o) { CHECK(o.verdict != Verdict::refused); });
   }
 }
@@ -185,7 +186,7 @@ TEST_CASE("two tetrahedra joined at a node or an edge", "[extreme][B7][B8]") {
 TEST_CASE("two bricks joined by a hinge or a corner", "[extreme][B7][B8]") {
   for (bool edge : {true, false})
     for (bool turn : {false, true}) {
-      INFO((edge ? "hinge" : "corner") << (turn ? ", turned" : ""));
+      INFO((edge ? "hinge" : "corner") << (turn ? ", rotated" : ""));
       const Mesh<Tet4> mesh = turn ? rotated(hinged_bricks(edge)) : hinged_bricks(edge);
       REQUIRE(connected_components<Tet4>(mesh).count == 1);
       REQUIRE(mesh.node_count() == (edge ? 69 : 71));
@@ -196,7 +197,7 @@ TEST_CASE("two bricks joined by a hinge or a corner", "[extreme][B7][B8]") {
     }
 }
 
-TEST_CASE("a surface whose edge four faces share is reported, and safe to touch", "[extreme][B11]") {
+TEST_CASE("a surface with an edge shared by four faces is reported, and can be touched", "[extreme][B11]") {
   const Mesh<Tet4> mesh = hinged_bricks(true);
   std::vector<NodeId> constrained;
   for (NodeId i = 0; i < mesh.node_count(); ++i)
@@ -222,7 +223,7 @@ TEST_CASE("one element", "[extreme][B9]") {
   });
 }
 
-TEST_CASE("everything held", "[extreme][B9]") {
+TEST_CASE("all nodes fixed", "[extreme][B9]") {
   for (PolicyName policy : extreme_policies) {
     INFO(name(policy));
     const auto still =
@@ -243,7 +244,7 @@ TEST_CASE("everything held", "[extreme][B9]") {
   }
 }
 
-TEST_CASE("a touched surface that is held, on a body that is not", "[extreme][B9]") {
+TEST_CASE("a touchable surface that is fixed, on a body that is not", "[extreme][B9]") {
   const Scene scene = Scene().fix("z1").touch("z1").gravity({0, 0, -9.81});
   for (PolicyName policy : extreme_policies) {
     INFO(name(policy));
@@ -269,7 +270,7 @@ TEST_CASE("no force: exactly no displacement", "[extreme][B9]") {
   }
 }
 
-TEST_CASE("a rigid motion of the support moves the body and costs nothing", "[extreme][B9]") {
+TEST_CASE("a rigid motion of the support moves the body without strain", "[extreme][B9]") {
   for (PolicyName policy : extreme_policies) {
     INFO(name(policy));
     const auto model = make_model(policy, brick(), Scene().prescribe("x0", {0.01, -0.02, 0.03}).touch("z1"), plain);
@@ -279,7 +280,8 @@ TEST_CASE("a rigid motion of the support moves the body and costs nothing", "[ex
 }
 
 TEST_CASE("the dense matrix of a large surface is refused before it is allocated", "[extreme][B10]") {
-  // 13 000 touched vertices: 12 GB of compliance. The limit of one gigabyte must speak first, and say the number.
+  // 13 000 touched vertices: 12 GB of compliance. The limit of one gigabyte must be checked first, and reported with
+  // the number.
   const Mesh<Tet4> mesh = box_tet4({0.1, 0.1, 0.001}, {113, 113, 1});
   SetupOptions options;
   options.memory_limit = std::size_t{1} << 30;

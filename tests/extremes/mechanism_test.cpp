@@ -1,4 +1,4 @@
-// Bodies that hang together and can still move: hinges, sphere joints, chains and linkages of blocks.
+// Connected bodies whose parts can still move: hinges, sphere joints, chains and linkages of blocks.
 #include <palpate/mesh/detail/mechanisms.hpp>
 
 #include "extremes/verdict.hpp"
@@ -10,7 +10,7 @@ using namespace test;
 namespace {
 
 const LinearElastic material{5e3, 0.3, 1000.0};
-/// Unit cubes of n^3 cells; nodes at the same place are one. `cube_of` says which cube made an element.
+/// Unit cubes of n^3 cells; nodes at the same place are merged. `cube_of` is the cube of each element.
 struct Blocks {
   Mesh<Tet4> mesh;
   std::vector<std::size_t> cube_of;
@@ -33,7 +33,7 @@ struct Blocks {
       }
     }
   }
-  /// The nodes of one cube for which `wanted` holds.
+  /// The nodes of one cube that satisfy `wanted`.
   template <class Wanted>
   std::vector<NodeId> nodes(std::size_t cube, Wanted wanted) const {
     std::vector<NodeId> all;
@@ -46,11 +46,11 @@ struct Blocks {
   }
 };
 
-/// Cubes, what holds them, and how many motions the first part that moves has; 0 when nothing moves.
+/// Cubes, their supports, and the number of motions of the first part that can move; 0 when none can.
 struct Linkage {
   const char* name;
   std::vector<Vector3> corners;
-  std::vector<std::size_t> fixed;  ///< cubes held at their face z = least
+  std::vector<std::size_t> fixed;  ///< cubes fixed at their lowest face
   int motions;
 };
 
@@ -63,7 +63,7 @@ const std::vector<Linkage> linkages{
     {"four bars", {{0, 0, 0}, {1, 0, 1}, {2, 0, 0}, {1, 0, -1}}, {0}, 1},
     {"a cube on two sphere joints", {{0, 0, 0}, {1, 1, 1}, {2, 2, 0}}, {0, 2}, 1},
 };
-/// Nothing of these moves: hinges that are not parallel, sphere joints off one line.
+/// No part of these can move: hinges that are not parallel, sphere joints that are not collinear.
 const std::vector<Linkage> constrained_linkages{
     {"two hinges across", {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}}, {0, 2}, 0},
     {"three hinges in a corner", {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}}, {0}, 0},
@@ -77,7 +77,7 @@ Scene scene_of(const Blocks& b, const Linkage& l) {
   return scene;
 }
 
-/// The mesh turned, sized and put somewhere.
+/// The mesh rotated, scaled and shifted.
 Mesh<Tet4> placed(Mesh<Tet4> mesh, std::uint64_t seed, double scale) {
   testing::Random random(seed);
   const Matrix3 turn = seed == 0 ? Matrix3(Matrix3::Identity()) : testing::random_rotation(random);
@@ -99,7 +99,7 @@ template <class Visit>
 void for_each_case(const std::vector<Linkage>& all, Visit visit) {
   for (const Linkage& l : all)
     for (const int n : {1, 2, 3}) {
-      if (n % 2 == 1 && std::string(l.name) == "half a hinge") continue;  // no nodes there to share
+      if (n % 2 == 1 && std::string(l.name) == "half a hinge") continue;  // no coincident nodes
       const Blocks b(l.corners, n);
       const std::vector<Scene> scenes = touched_scenes(b, l);
       for (const auto& [seed, scale] : {std::pair{0, 1.0}, {1, 1e-3}, {2, 1e3}}) {
@@ -114,7 +114,7 @@ void for_each_case(const std::vector<Linkage>& all, Visit visit) {
 
 }  // namespace
 
-TEST_CASE("mechanisms are refused before anything is factorised, with part, joint and motion", "[extreme][B7][B8]") {
+TEST_CASE("mechanisms are refused before any factorisation, with part, joint and motion", "[extreme][B7][B8]") {
   std::map<std::string, int> count;
   for_each_case(linkages, [&](const Linkage& l, const Blocks& b, const Mesh<Tet4>& mesh, const Scene& scene) {
     REQUIRE(connected_components<Tet4>(mesh).count == 1);
@@ -141,7 +141,7 @@ TEST_CASE("mechanisms are refused before anything is factorised, with part, join
   CHECK(count.size() == 1);
 }
 
-TEST_CASE("joints that hold are no mechanisms", "[extreme][B7][B8]") {
+TEST_CASE("joints that constrain all motions are not mechanisms", "[extreme][B7][B8]") {
   for_each_case(constrained_linkages, [&](const Linkage&, const Blocks&, const Mesh<Tet4>& mesh, const Scene& scene) {
     for (const PolicyName policy : extreme_policies) {
       INFO(name(policy));
@@ -162,7 +162,7 @@ TEST_CASE("the motion of a mechanism is named in the frame of the mesh as given"
   CHECK(p.count == 3);
 }
 
-TEST_CASE("a chain of many links that hang on each other", "[extreme][B7]") {
+TEST_CASE("a chain of many links", "[extreme][B7]") {
   std::vector<Vector3> corners;
   for (int k = 0; k < 60; ++k) corners.emplace_back(k, 0, k % 2);
   const Blocks chain(corners, 1);
@@ -176,11 +176,11 @@ TEST_CASE("a chain of many links that hang on each other", "[extreme][B7]") {
   CHECK(found());
   hold(59);
   CHECK(found());
-  for (std::size_t cube = 2; cube < 59; cube += 2) hold(cube);  // every other one: the others hang on two hinges
+  for (std::size_t cube = 2; cube < 59; cube += 2) hold(cube);  // every other one: the others have two hinges each
   CHECK_FALSE(found());
 }
 
-TEST_CASE("a chain too long for geometry is refused by the factorisation", "[extreme][B7]") {
+TEST_CASE("a chain too long for the geometric check is refused by the factorisation", "[extreme][B7]") {
   std::vector<Vector3> corners;
   for (int k = 0; k < 170; ++k) corners.emplace_back(k, 0, k % 2);
   const Blocks chain(corners, 1);
@@ -190,7 +190,7 @@ TEST_CASE("a chain too long for geometry is refused by the factorisation", "[ext
       CHECK_REFUSED(SetupErrorKind::not_positive_definite, make_model(policy, mesh, scene, material));
 }
 
-TEST_CASE("supports on a line or in a point leave motions of the whole body", "[extreme][B8]") {
+TEST_CASE("supports on a line or at a point leave motions of the whole body", "[extreme][B8]") {
   for (const auto& [seed, scale] : {std::pair{0, 1.0}, {1, 1e-3}, {2, 1e3}})
     for (const int n : {1, 3}) {
       const Blocks b({{0, 0, 0}}, n);

@@ -1,5 +1,5 @@
-// E10: every allocation of a set-up fails in turn. Nothing leaks, what existed stays, and the set-up can be tried
-// again.
+// E10: each allocation of a set-up fails in turn. Nothing leaks, existing objects stay unchanged, and the set-up can be
+// repeated.
 #include "extremes/verdict.hpp"
 
 #include <palpate/testing/allocation_counter.hpp>
@@ -15,7 +15,7 @@ struct Attempt {
   bool finished = false, out_of_memory = false;
   std::int64_t calls = 0, leaked = 0;
 };
-/// Runs work() with the heap failing at a number, or at that and all later ones; without one: with a heap that holds.
+/// Runs work() with the heap failing at allocation `at`, or at that and all later ones; without `at` nothing fails.
 template <class Work>
 Attempt with_failing_heap(std::optional<std::int64_t> at, bool and_later, Work work) {
   Attempt a;
@@ -39,7 +39,7 @@ Scene small_scene(double pull) {
 
 }  // namespace
 
-TEST_CASE("a set-up in which any one allocation fails, or all from some on, throws bad_alloc and leaks nothing",
+TEST_CASE("a set-up in which one allocation, or all from one on, fails throws bad_alloc and leaks nothing",
           "[extreme][E10]") {
   if (!testing::allocations_are_counted()) return;
   const LinearElastic material{5e3, 0.3, 1000.0};
@@ -49,7 +49,7 @@ TEST_CASE("a set-up in which any one allocation fails, or all from some on, thro
     INFO(name(policy));
     VectorX answer(36);
     const auto set_up = [&] { answer = make_model(policy, mesh, small_scene(0.1), material)->displacement(); };
-    set_up();  // what is made once per program is made now
+    set_up();  // constructs static data now
     const VectorX expected = answer;
     const Attempt whole = with_failing_heap({}, false, set_up);
     REQUIRE(whole.finished);
@@ -59,7 +59,7 @@ TEST_CASE("a set-up in which any one allocation fails, or all from some on, thro
       for (std::int64_t at = 0; at < whole.calls; ++at) {
         answer.setZero();
         const Attempt a = with_failing_heap(at, all_after, set_up);
-        // Some do without: a sort that wanted a buffer. Then the answer is the same.
+        // Some failures are tolerated: a sort without its buffer. Then the result is the same.
         const bool good = a.leaked == 0 && (a.out_of_memory || (a.finished && answer == expected));
         ++tried;
         survived += good ? 1 : 0;
@@ -77,7 +77,7 @@ TEST_CASE("a set-up in which any one allocation fails, or all from some on, thro
   std::printf("figure R10: %lld of %lld\n", static_cast<long long>(survived), static_cast<long long>(tried));
 }
 
-TEST_CASE("a model whose change runs out of memory is as it was", "[extreme][E10]") {
+TEST_CASE("a model is unchanged when a change of conditions runs out of memory", "[extreme][E10]") {
   if (!testing::allocations_are_counted()) return;
   for (PolicyName policy : extreme_policies) {
     INFO(name(policy));

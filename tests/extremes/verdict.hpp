@@ -9,7 +9,7 @@ inline constexpr std::array extreme_policies{PolicyName::sparse_cholesky, Policy
                                              PolicyName::condensed_inverse, PolicyName::condensed_float,
                                              PolicyName::condensed_conjugate_gradient};
 
-/// What a model made of an extreme. The one forbidden outcome is wrong and silent.
+/// Outcome of a model with extreme input. The only forbidden outcome is a wrong result without a flag.
 enum class Verdict { right, flagged, refused, wrong };
 
 inline const char* name(Verdict v) {
@@ -20,12 +20,12 @@ inline const char* name(Verdict v) {
 struct Outcome {
   Verdict verdict = Verdict::refused;
   double error = 0.0;  ///< of displacement and contact compliance, relative, against long double
-  double probe = 0.0;  ///< what the model says itself
-  std::string why;     ///< of a refusal
+  double probe = 0.0;  ///< probe error in the model's report
+  std::string why;     ///< message of a refusal
 };
 
-/// Without the flag IllConditioned the answer must keep five digits; with it, the error must be within two digits of
-/// the probe error in the report.
+/// Without the flag IllConditioned the result must be accurate to five digits; with it, the error must be within two
+/// digits of the probe error in the report.
 inline constexpr double silent_error = 1e-5;
 
 inline Outcome judge(PolicyName policy, const Mesh<Tet4>& mesh, const std::vector<LinearElastic>& materials,

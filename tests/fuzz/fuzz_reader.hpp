@@ -1,5 +1,4 @@
-// What every fuzz target does with a text: read it, and stop the program when something else than a refusal or a sound
-// mesh comes out.
+// Shared by all fuzz targets: reads a text, and aborts the program unless the result is a SetupError or a valid mesh.
 #pragma once
 
 #include <palpate/element/tet4.hpp>
@@ -14,7 +13,7 @@ inline void require(bool is_sound) {
   if (!is_sound) std::abort();
 }
 
-/// What no reader may let through.
+/// Aborts unless positions are finite and all ids are in range.
 inline void require_sound(const palpate::Mesh<palpate::Tet4>& mesh) {
   const auto n = mesh.node_count(), m = mesh.element_count();
   require(n > 0 && m > 0 && mesh.regions.size() == mesh.elements.size());
@@ -32,7 +31,7 @@ inline void require_sound(const palpate::Mesh<palpate::Tet4>& mesh) {
   }
 }
 
-/// Calls `parse`, which returns a FileMesh, and builds the mesh.
+/// Calls `parse`, which returns a FileMesh, builds the mesh and checks it.
 template <class Parse>
 int run(Parse&& parse) {
   palpate::Mesh<palpate::Tet4> mesh;
@@ -48,7 +47,7 @@ int run(Parse&& parse) {
   return 0;
 }
 
-/// Cuts a text at the next byte 0x1F: several files in one input.
+/// Removes the part up to the next byte 0x1F from `text` and returns it: several files in one input.
 inline std::string_view cut(std::string_view& text) {
   const std::size_t end = text.find('\x1f');
   const std::string_view first = text.substr(0, end);

@@ -2,7 +2,7 @@
 
 #include <palpate/io/read_mesh.hpp>
 
-/// Any format, as the text says.
+/// Any format, detected from the text.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return fuzz::run([&] { return palpate::io::parse_file(fuzz::text_of(data, size), "mesh"); });
 }

@@ -2,7 +2,7 @@
 
 #include <palpate/io/tetgen.hpp>
 
-/// The .node, .ele and .face files, with the byte 0x1F between them.
+/// The .node, .ele and .face files, separated by the byte 0x1F.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string_view rest = fuzz::text_of(data, size);
   const std::string_view node = fuzz::cut(rest), ele = fuzz::cut(rest);

@@ -2,7 +2,7 @@
 
 #include <palpate/io/veg.hpp>
 
-/// The .veg file and, with the byte 0x1F before it, what every *INCLUDE brings in.
+/// The .veg file and, after the byte 0x1F, the text that every *INCLUDE inserts.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string_view rest = fuzz::text_of(data, size);
   const std::string_view veg = fuzz::cut(rest);

@@ -1,4 +1,4 @@
-// What the force gate must do, said a second time in plain numbers from its documentation.
+// A second implementation of the force gate, in plain numbers, written from its documentation.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace gate {
 struct Limits {
   double peak, slew, ramp, stale, fade, period, torque, continuous, heating;
 };
-enum : std::uint32_t {  // StatusFlag, as published
+enum : std::uint32_t {  // values of StatusFlag, as documented
   saturated = 1u << 1,
   slew_limited = 1u << 2,
   stale = 1u << 3,
@@ -24,16 +24,16 @@ using Force = std::array<double, 3>;
 struct Answer {
   Force force{}, torque{};
   std::uint32_t status = 0;
-  std::uint32_t unsure = 0;  ///< flags that rounding decides
+  std::uint32_t unsure = 0;  ///< flags that depend on rounding
 };
 
-/// Long double throughout the lengths: nothing overflows there.
+/// Lengths are long double: they cannot overflow.
 inline long double length(const Force& f) {
   long double sum = 0;
   for (double x : f) sum += static_cast<long double>(x) * x;
   return std::sqrt(sum);
 }
-/// Whether the length of a vector comes out without rounding: it lies on an axis, and is a coarse number.
+/// Whether the length of a vector is computed without rounding: it is parallel to an axis and has few significant bits.
 inline bool is_exact(const Force& f) {
   int components = 0;
   for (double x : f) {
@@ -42,8 +42,8 @@ inline bool is_exact(const Force& f) {
   }
   return components <= 1;
 }
-/// Whether rounding decides if `f` is longer than `most`: it is as long but for rounding, and something was rounded on
-/// the way.
+/// Whether rounding decides if `f` is longer than `most`: the lengths are equal up to rounding, and a previous step was
+/// rounded.
 inline bool is_unsure(const Force& f, long double most, bool rounded) {
   return (rounded || !is_exact(f)) && std::abs(length(f) - most) <= 1e-12L * most;
 }
@@ -52,7 +52,7 @@ class Model {
  public:
   explicit Model(const Limits& limits) : l_(limits) {}
 
-  Answer apply(const Force& wanted, const Force& turning, double now, double stamp, bool valid, bool restart) {
+  Answer apply(const Force& wanted, const Force& wanted_torque, double now, double stamp, bool valid, bool restart) {
     Answer a;
     double elapsed = now - now_before_;
     if (std::isfinite(now)) now_before_ = now;
@@ -67,7 +67,7 @@ class Model {
 
     bool finite = true;
     for (double x : wanted) finite = finite && std::isfinite(x);
-    for (double x : turning) finite = finite && std::isfinite(x);
+    for (double x : wanted_torque) finite = finite && std::isfinite(x);
     if (!finite) a.status |= non_finite_force;
     if (!valid) a.status |= disconnected;
     if (!finite || !valid) {
@@ -80,18 +80,18 @@ class Model {
     const double gain = gain_now(overdue, step, a);
     approach(force_, shortened(wanted, peak_now(), gain, a), l_.slew * step, a);
     if (l_.torque != 0.0)
-      approach(torque_, shortened(turning, l_.torque, gain, a), l_.slew * step / l_.peak * l_.torque, a);
+      approach(torque_, shortened(wanted_torque, l_.torque, gain, a), l_.slew * step / l_.peak * l_.torque, a);
     a.force = force_;
     a.torque = torque_;
     return a;
   }
-  /// What the gate gave: where it differs by rounding, so may what follows.
+  /// Takes the gate's output: once it differs by rounding, later results may differ too.
   void compare(const Force& force, const Force& torque) { rounded_ = force != force_ || torque != torque_; }
-  /// Motors stay as hot as they are.
+  /// Resets everything but the motor temperature.
   void reset() {
-    const double thermal_strain = heat_;
+    const double heat = heat_;
     *this = Model(l_);
-    heat_ = thermal_strain;
+    heat_ = heat;
   }
 
  private:

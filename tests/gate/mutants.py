@@ -4,13 +4,13 @@ changed header and expects it to fail.
 
   python3 tests/gate/mutants.py [--compiler clang++] [--eigen /usr/include/eigen3] [--header palpate/haptic/force_gate.ipp]
 
-A mutant that survives is an error unless EQUIVALENT names it and says why it changes nothing. Needs nothing but Python
-and a compiler; some minutes.
+A mutant that survives is an error unless EQUIVALENT lists it with the reason why it changes nothing. Needs only Python
+and a compiler; takes some minutes.
 """
 import argparse, pathlib, re, subprocess, sys, tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SWAPS = [  # (pattern, replacements); operators stand between blanks in this code
+SWAPS = [  # (pattern, replacements); operators have blanks around them in this code
     (r" < ", [" <= ", " > "]), (r" <= ", [" < ", " > "]), (r" > ", [" >= ", " < "]), (r" >= ", [" > ", " < "]),
     (r" == ", [" != "]), (r" != ", [" == "]), (r" && ", [" || "]), (r" \|\| ", [" && "]),
     (r" \+ ", [" - "]), (r" - ", [" + "]), (r" \* ", [" / "]), (r" / ", [" * "]),
@@ -20,7 +20,7 @@ SWAPS = [  # (pattern, replacements); operators stand between blanks in this cod
     (r"StatusFlag::(\w+)", ["FLAG"]),
     (r" \? ([^:]+) : ([^;,)]+)", ["FIRST", "SECOND"]),
 ]
-# file line text (stripped), mutated text -> why nothing changes
+# (line of the file, mutated line), both stripped -> why nothing changes
 EQUIVALENT = {
     ("bool shortened = false;", "bool shortened = true;"): "limit_length sets it in every case",
 }
@@ -48,7 +48,7 @@ def mutants(text):
                         news = [r]
                     for new in news:
                         yield number, line[:m.start()] + new + line[m.end():]
-        s = code.strip()  # a whole statement that does something is left out
+        s = code.strip()  # mutant: a whole statement with a side effect is removed
         if s.endswith(";") and re.match(r"^(if \(.*\) )?[\w.]+(_|\.\w+\(.*\)| =)", s) and not s.startswith(("return", "const ", "double ", "static ")):
             yield number, line[: len(line) - len(line.lstrip())] + ";"
 
@@ -57,7 +57,7 @@ def main():
     p = argparse.ArgumentParser()
     p.add_argument("--compiler", default="clang++")
     p.add_argument("--eigen", default="/usr/include/eigen3")
-    gate = "palpate/haptic/force_gate"  # its definitions, where they are apart from the declarations
+    gate = "palpate/haptic/force_gate"  # the file with its definitions, where they are separate from the declarations
     p.add_argument("--header", default=gate + (".ipp" if (ROOT / f"include/{gate}.ipp").exists() else ".hpp"))
     p.add_argument("--lines", default="1-1000000", help="only these, as 50-60")
     a = p.parse_args()
@@ -70,7 +70,7 @@ def main():
         target.parent.mkdir(parents=True)
         common = ["-std=c++20", "-O1", "-isystem", a.eigen]
         includes = [f"-I{folder}", f"-I{ROOT / 'include'}"]
-        warm = folder / "warm.hpp"  # what does not change is compiled once
+        warm = folder / "warm.hpp"  # headers that no mutant changes are compiled once
         warm.write_text("#include <palpate/concepts/haptic_device.hpp>\n#include <palpate/core/setup_error.hpp>\n"
                         "#include <algorithm>\n#include <cmath>\n#include <cstdio>\n")
         subprocess.run([a.compiler, *common, *includes, "-x", "c++-header", str(warm), "-o", str(folder / "warm.hpp.pch")], check=True)
@@ -90,7 +90,7 @@ def main():
                 return False
 
         if passes(original) is not True:
-            sys.exit("the gate as it is does not pass")
+            sys.exit("the unchanged gate does not pass")
         seen = set()
         first, last = (int(n) for n in a.lines.split("-"))
         for number, new in mutants(original):

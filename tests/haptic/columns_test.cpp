@@ -1,4 +1,4 @@
-// Whole surfaces touched without a stored compliance: columns computed in the tick, or by a thread beside it.
+// Whole surfaces touched without a stored compliance: columns computed in the tick, or in a background thread.
 #include "contact/servo_session.hpp"
 
 #include "catch.hpp"
@@ -21,7 +21,7 @@ Sparse make_model(ColumnFill fill, int slots = 256) {
   return test::make_pad<Sparse>("surface", 1e4, {6, 6, 4}, options);
 }
 
-/// Ticks at one place until no column is missing; false when that does not happen within some seconds.
+/// Ticks at one place until no column is missing; false if that does not happen within some seconds.
 bool settle(ServoSession<Sparse>& session) {
   int complete = 0;
   for (int i = 0; i < 20'000 && complete < 20; ++i) {
@@ -33,7 +33,8 @@ bool settle(ServoSession<Sparse>& session) {
 
 }  // namespace
 
-TEST_CASE("columns computed by a thread end at the force of columns computed in the tick", "[haptic][columns]") {
+TEST_CASE("columns computed in a thread give the same final force as columns computed in the tick",
+          "[haptic][columns]") {
   Sparse asynchronous = make_model(ColumnFill::asynchronous), synchronous = make_model(ColumnFill::synchronous);
   ServoSession session(asynchronous), reference(synchronous);
   for (double x : {0.009, 0.0137, 0.021}) {
@@ -46,7 +47,7 @@ TEST_CASE("columns computed by a thread end at the force of columns computed in 
   }
 }
 
-TEST_CASE("columns computed by a thread are those computed in the tick, bit for bit", "[haptic][columns][M13]") {
+TEST_CASE("columns computed in a thread are bitwise equal to those computed in the tick", "[haptic][columns][M13]") {
   Sparse asynchronous = make_model(ColumnFill::asynchronous), synchronous = make_model(ColumnFill::synchronous);
   const int count = static_cast<int>(synchronous.contact_surface().vertex_count());
   REQUIRE(count > 100);
@@ -66,7 +67,7 @@ TEST_CASE("columns computed by a thread are those computed in the tick, bit for 
   }
 }
 
-TEST_CASE("by default a thread computes the columns that would make a tick late", "[haptic][columns]") {
+TEST_CASE("by default columns that would delay a tick are computed in a thread", "[haptic][columns]") {
   const auto asynchronous = []<class Policy>(Policy, std::array<int, 3> cells,
                                              ColumnFill fill = SetupOptions{}.columns) {
     SetupOptions options;
@@ -99,7 +100,7 @@ TEST_CASE("by default a tick of a whole surface does not wait for its columns", 
   CHECK((f - g).norm() <= 1e-3 * g.norm());
 }
 
-TEST_CASE("a column that is not there yet is flagged, and the force stays finite and soft",
+TEST_CASE("a column that is not available yet is flagged, and the force stays finite and soft",
           "[haptic][columns][extreme]") {
   Sparse asynchronous = make_model(ColumnFill::asynchronous), synchronous = make_model(ColumnFill::synchronous);
   ServoSession session(asynchronous), reference(synchronous);
@@ -112,10 +113,10 @@ TEST_CASE("a column that is not there yet is flagged, and the force stays finite
   const double f = session.servo.contact_force().norm(), g = reference.servo.contact_force().norm();
   CHECK(std::isfinite(f));
   CHECK(f <= 5.0 * g);
-  if (!flagged) CHECK(std::abs(f - g) <= 1e-2 * g);  // the thread was faster
+  if (!flagged) CHECK(std::abs(f - g) <= 1e-2 * g);  // the thread finished before the tick
 }
 
-TEST_CASE("with less room than vertices near the sphere the tick says so and goes on", "[haptic][columns][extreme]") {
+TEST_CASE("with fewer slots than vertices near the sphere the force stays finite", "[haptic][columns][extreme]") {
   Sparse asynchronous = make_model(ColumnFill::asynchronous, 4);
   ServoSession session(asynchronous);
   session.press(2e-3);
@@ -126,7 +127,7 @@ TEST_CASE("with less room than vertices near the sphere the tick says so and goe
   }
 }
 
-TEST_CASE("a model may end while columns are in work, and may be moved", "[haptic][columns]") {
+TEST_CASE("a model may be destroyed while columns are being computed, and may be moved", "[haptic][columns]") {
   for (int round = 0; round < 10; ++round) {
     Sparse first = make_model(ColumnFill::asynchronous);
     std::vector<int> all(static_cast<std::size_t>(first.contact_surface().vertex_count()));

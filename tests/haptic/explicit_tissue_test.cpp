@@ -1,4 +1,4 @@
-// Tissue that moves by explicit steps under a servo: the steady forces of implicit steps, and no allocation.
+// Tissue that moves by explicit steps under a servo: the same steady forces as implicit steps, and no allocation.
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
@@ -27,11 +27,11 @@ constexpr double tip_radius = 0.012;
 Mesh<Tet4> cushion() {
   return box_tet4({0.06, 0.06, 0.03}, {5, 5, 3});
 }
-Scene held_cushion() {
+Scene cushion_scene() {
   return Scene().fix("z0").touch("z1").gravity({0.0, 0.0, -9.81});
 }
 
-/// Normal force [N], and what the last ticks said.
+/// Normal force [N], and the status of the last ticks.
 std::pair<double, Status> force_of_hold(MovingTissue& tissue) {
   const auto [force, status] = test::press_and_hold(tissue, {0.03, 0.03, 0.03}, tip_radius, 2000);
   return {force[2], status};
@@ -39,12 +39,12 @@ std::pair<double, Status> force_of_hold(MovingTissue& tissue) {
 
 }  // namespace
 
-TEST_CASE("explicit steps come to the steady force of implicit ones, whatever the step", "[haptic][explicit]") {
-  NewtonTissue solved(cushion(), held_cushion(), gel);
+TEST_CASE("explicit steps reach the steady force of implicit ones for any step", "[haptic][explicit]") {
+  NewtonTissue solved(cushion(), cushion_scene(), gel);
   const double wanted = force_of_hold(solved).first;
   CHECK(wanted > 0.3);
   for (const double step : {1e-3, 3e-3}) {
-    ExplicitTissue<NeoHookean> tissue(cushion(), held_cushion(), gel, {}, {.step = step, .mass_damping = 40.0});
+    ExplicitTissue<NeoHookean> tissue(cushion(), cushion_scene(), gel, {}, {.step = step, .mass_damping = 40.0});
     const auto [force, status] = force_of_hold(tissue);
     INFO("step " << step << ", status " << status);
     CHECK_THAT(force, WithinRel(wanted, 5e-3));
@@ -52,9 +52,9 @@ TEST_CASE("explicit steps come to the steady force of implicit ones, whatever th
   }
 }
 
-TEST_CASE("explicit tissue keeps the laws of tissues, settles under its weight and does not allocate",
+TEST_CASE("explicit tissue satisfies the laws of tissues, settles under its weight and does not allocate",
           "[haptic][explicit]") {
-  ExplicitTissue<NeoHookean> tissue(cushion(), held_cushion(), gel);
+  ExplicitTissue<NeoHookean> tissue(cushion(), cushion_scene(), gel);
   CHECK(testing::describe(testing::tissue_laws(tissue, std::array{0, 14, 21, 35}, {1e-3})) == "");
   const VectorX start = tissue.displacement();
   CHECK(start.minCoeff() < -1e-4);
@@ -79,20 +79,19 @@ TEST_CASE("explicit tissue keeps the laws of tissues, settles under its weight a
   CHECK((tissue.displacement() - start).norm() <= 1e-3 * start.norm());
 }
 
-TEST_CASE("explicit steps at small strain feel as Newton's method does", "[haptic][explicit]") {
+TEST_CASE("explicit steps at small strain give the same force as Newton's method", "[haptic][explicit]") {
   const LinearElastic linear{5e3, 0.4, 1000.0};
-  HapticFEModel<Tet4, LinearElastic, Implicit<Newton<SparseCholesky>>> solved(cushion(), held_cushion(), linear);
-  ExplicitTissue<LinearElastic> tissue(cushion(), held_cushion(), linear, {}, {.mass_damping = 40.0});
+  HapticFEModel<Tet4, LinearElastic, Implicit<Newton<SparseCholesky>>> solved(cushion(), cushion_scene(), linear);
+  ExplicitTissue<LinearElastic> tissue(cushion(), cushion_scene(), linear, {}, {.mass_damping = 40.0});
   CHECK_THAT(force_of_hold(tissue).first, WithinRel(force_of_hold(solved).first, 5e-3));
 }
 
-TEST_CASE("explicit steps that would take too many stable ones are refused", "[haptic][explicit]") {
-  const SetupProblem p = test::refusal([] {
-    ExplicitTissue<NeoHookean>(cushion(), held_cushion(), gel, {}, {.step = 1e-2, .maximum_substeps = 3});
-  });
+TEST_CASE("explicit steps that need too many stable substeps are refused", "[haptic][explicit]") {
+  const SetupProblem p = test::refusal(
+      [] { ExplicitTissue<NeoHookean>(cushion(), cushion_scene(), gel, {}, {.step = 1e-2, .maximum_substeps = 3}); });
   CHECK(p.kind == SetupErrorKind::bad_argument);
   CHECK(p.value > 3.0);
   CHECK(p.threshold == 3.0);
   CHECK_REFUSED(SetupErrorKind::bad_argument,
-                ExplicitTissue<NeoHookean>(cushion(), held_cushion(), gel, {}, {.step = 0.0}));
+                ExplicitTissue<NeoHookean>(cushion(), cushion_scene(), gel, {}, {.step = 0.0}));
 }

@@ -39,7 +39,7 @@ TEST_CASE("stalls and bad input: force continuous, energy bounded, counters exac
 
 namespace {
 
-/// Steps of a tissue, some of which hang.
+/// A tissue some of whose steps hang.
 struct HangingTissue : TissueAdaptor<MovingTissue> {
   HangingTissue(MovingTissue& hanging, int each, int ms) : TissueAdaptor(hanging), every(each), milliseconds(ms) {}
 
@@ -57,7 +57,8 @@ struct HangingTissue : TissueAdaptor<MovingTissue> {
 
 }  // namespace
 
-TEST_CASE("a tissue's thread that hangs, a device's that is late, and load beside them", "[haptic][soft][faults]") {
+TEST_CASE("a tissue thread that hangs, a device thread that is late, and load in another thread",
+          "[haptic][soft][faults]") {
   faults::Pad tissue = faults::make_pad(0.01);
   const ServoOptions options = faults::session_options();
   HapticServo servo(tissue, SphereTool{.radius = faults::sphere}, options);

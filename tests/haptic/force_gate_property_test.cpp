@@ -1,4 +1,4 @@
-// The promises of the force gate over millions of random ticks, special values included.
+// The guarantees of the force gate over millions of random ticks, including special values.
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -36,7 +36,7 @@ double special(testing::Random& random) {
   return special_values[random.bits() % std::size(special_values)];
 }
 
-/// A component of a force: mostly of the size of forces, sometimes of any size or special.
+/// A component of a force: mostly of typical size, sometimes of any size or special.
 double component(testing::Random& random) {
   const double dice = random.uniform();
   if (dice < 0.02) return special(random);
@@ -66,18 +66,18 @@ struct Input {
   bool valid, restart;
 };
 
-/// A clock that mostly ticks by a millisecond, sometimes stalls, jumps, stops, runs backwards or is special.
+/// A clock that mostly advances by a millisecond, and sometimes stalls, jumps, stops, runs backwards or is special.
 class Source {
  public:
   explicit Source(std::uint64_t seed) : random_(seed) {}
   Input next() {
     const double dice = random_.uniform();
     time_ += dice < 0.9 ? 1e-3 : dice < 0.95 ? random_.uniform(-0.01, 0.05) : dice < 0.97 ? 0.0 : 1e-3;
-    if (!(random_.uniform() < 0.95)) held_ = random_.uniform() < 0.5 ? special(random_) : stamp_;
+    if (!(random_.uniform() < 0.95)) faulty_stamp_ = random_.uniform() < 0.5 ? special(random_) : stamp_;
     const bool fresh = random_.uniform() < 0.9;
     if (fresh) stamp_ = time_;
     const double now = random_.uniform() < 0.01 ? special(random_) : time_;
-    const double stamp = random_.uniform() < 0.02 ? held_ : stamp_;
+    const double stamp = random_.uniform() < 0.02 ? faulty_stamp_ : stamp_;
     if (random_.uniform() < 0.2) force_ = random_force(random_);
     return {force_, now, stamp, random_.uniform() < 0.99, random_.uniform() < 0.005};
   }
@@ -86,7 +86,7 @@ class Source {
  private:
   testing::Random random_;
   Vector3 force_ = Vector3::Zero();
-  double time_ = 0.0, stamp_ = 0.0, held_ = 0.0;
+  double time_ = 0.0, stamp_ = 0.0, faulty_stamp_ = 0.0;
 };
 
 struct Count {
@@ -134,23 +134,23 @@ void check(const Count& bad, int ticks) {
   CHECK(bad.not_zero == 0);
   CHECK(bad.flags_wrong == 0);
   CHECK(bad.rotated == 0);
-  CHECK(bad.at_work > ticks / 20);  // the test would be empty if the gate were shut all the time
+  CHECK(bad.at_work > ticks / 20);  // otherwise the gate would be closed most of the time
 }
 
 }  // namespace
 
-TEST_CASE("the gate keeps its promises over 2e6 random ticks", "[haptic][gate][extreme][D1][D2][D5][D6][D7][D8]") {
+TEST_CASE("the gate keeps its guarantees over 2e6 random ticks", "[haptic][gate][extreme][D1][D2][D5][D6][D7][D8]") {
   constexpr int ticks = 2'000'000;
   check(run({}, 1, ticks), ticks);
 }
 
-TEST_CASE("the same with denormals flushed", "[haptic][gate][extreme][D1][D7]") {
+TEST_CASE("the gate keeps its guarantees with denormals flushed", "[haptic][gate][extreme][D1][D7]") {
   constexpr int ticks = 500'000;
   const FlushDenormals flush;
   check(run({}, 2, ticks), ticks);
 }
 
-TEST_CASE("the same with 200 random limits", "[haptic][gate][extreme][D7][D8]") {
+TEST_CASE("the gate keeps its guarantees with 200 random limits", "[haptic][gate][extreme][D7][D8]") {
   testing::Random random(3);
   for (int i = 0; i < 200; ++i) {
     ForceLimits limits;
@@ -162,14 +162,14 @@ TEST_CASE("the same with 200 random limits", "[haptic][gate][extreme][D7][D8]") 
     limits.stale_after = limits.period * random.uniform(1.5, 10.0);
     INFO("limits " << i);
     Count bad = run(limits, 100u + static_cast<std::uint64_t>(i), 10'000);
-    bad.at_work = 10'000;  // some of them are always stale with this source
+    bad.at_work = 10'000;  // with some of the limits this source is always stale
     check(bad, 10'000);
   }
 }
 
 TEST_CASE("clamping keeps the direction of 1e6 vectors of every size", "[haptic][gate][extreme][D7]") {
   ForceLimits limits;
-  limits.slew_rate = 1e9;  // only the clamp is left
+  limits.slew_rate = 1e9;  // only the clamp is active
   limits.ramp_time = 1e-9;
   ForceGate gate(limits);
   testing::Random random(4);
@@ -216,7 +216,7 @@ TEST_CASE("ramp and fade are monotone for 1000 constant forces", "[haptic][gate]
       before = size;
     }
     if (broken > 0 || before != 0.0)
-      FAIL("force " << i << ": " << broken << " steps the wrong way, ends at " << before);
+      FAIL("force " << i << ": " << broken << " steps in the wrong direction, ends at " << before);
   }
   SUCCEED();
 }

@@ -1,4 +1,4 @@
-// One behaviour of the force gate at a time. Random input: force_gate_property_test.cpp.
+// Tests of single features of the force gate. Random input: force_gate_property_test.cpp.
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/force_gate.hpp>
 
@@ -15,7 +15,7 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 constexpr double period = 1e-3;
 const Vector3 two_newtons(0.0, 0.0, 2.0);
 
-/// A gate with a clock: valid fresh input every millisecond unless told otherwise.
+/// A gate with a clock: by default valid fresh input every millisecond.
 struct Session {
   ForceGate gate;
   double now = 10.0;
@@ -82,7 +82,7 @@ TEST_CASE("forces within the limits pass unchanged and unflagged", "[haptic][gat
   }
 }
 
-TEST_CASE("too long a force is shortened, direction kept", "[haptic][gate][extreme][D7]") {
+TEST_CASE("a force above the peak is shortened, direction kept", "[haptic][gate][extreme][D7]") {
   Session s;
   for (double size : {3.300001, 10.0, 1e10, 1e300}) {
     const Vector3 direction = Vector3(1, -2, 3).normalized();
@@ -94,7 +94,7 @@ TEST_CASE("too long a force is shortened, direction kept", "[haptic][gate][extre
   }
 }
 
-TEST_CASE("a force that is not finite gives zero at once and a new ramp", "[haptic][gate][extreme][D1]") {
+TEST_CASE("a force that is not finite gives zero immediately and a new ramp", "[haptic][gate][extreme][D1]") {
   for (double bad : {nan_value, infinity, -infinity})
     for (int axis = 0; axis < 3; ++axis) {
       Session s;
@@ -130,7 +130,7 @@ TEST_CASE("invalid input gives zero in the same tick and a ramp on reconnect", "
   CHECK(before == 2.0);
 }
 
-TEST_CASE("input that comes and goes every tick renders nothing", "[haptic][gate][extreme][D6]") {
+TEST_CASE("input that is valid in every other tick renders zero", "[haptic][gate][extreme][D6]") {
   Session s;
   s.warm();
   for (int i = 0; i < 100; ++i) CHECK(s.tick(two_newtons, i % 2 == 1).force() == Vector3::Zero());
@@ -167,13 +167,13 @@ TEST_CASE("stale input fades to exactly zero and recovers by the ramp", "[haptic
     if (i >= 24) CHECK(f.force() == Vector3::Zero());
   }
   s.now += 0.030;
-  const Vector3 first = s.tick(two_newtons).force();  // the stall of a stopped clock ends here
+  const Vector3 first = s.tick(two_newtons).force();  // the stall of the stopped clock ends here
   CHECK(first == Vector3::Zero());
   s.warm();
   CHECK(s.tick(two_newtons).force() == two_newtons);
 }
 
-TEST_CASE("a huge force fades as well", "[haptic][gate][extreme][D5][D7]") {
+TEST_CASE("a huge force fades, too", "[haptic][gate][extreme][D5][D7]") {
   Session s;
   s.warm(Vector3(1e300, 0, 0));
   const double stamp = s.now;
@@ -193,7 +193,7 @@ TEST_CASE("input with a constant delay: fresh below stale_after, faded above", "
   }
 }
 
-TEST_CASE("stamps from the future or of another clock render nothing", "[haptic][gate][extreme][D6]") {
+TEST_CASE("stamps in the future or of another clock render zero", "[haptic][gate][extreme][D6]") {
   for (double offset : {1.0, -1.0, 1e300, -1e300, infinity, -infinity}) {
     ForceGate gate;
     gate.apply(two_newtons, 0.0, 0.0, true, false);
@@ -208,7 +208,7 @@ TEST_CASE("stamps from the future or of another clock render nothing", "[haptic]
   }
 }
 
-TEST_CASE("a stall costs gain for what exceeds stale_after, counts once, and buys no jump",
+TEST_CASE("a stall reduces the gain for the time beyond stale_after, counts once, and allows no jump",
           "[haptic][gate][extreme][D5]") {
   struct Case {
     double stall, gain;
@@ -236,10 +236,10 @@ TEST_CASE("a stall costs gain for what exceeds stale_after, counts once, and buy
   }
 }
 
-TEST_CASE("the change per tick is limited, also when clocks misbehave", "[haptic][gate][extreme][D2][D8]") {
+TEST_CASE("the change per tick is limited, also with faulty clocks", "[haptic][gate][extreme][D2][D8]") {
   Session s;
   s.warm(Vector3(3.3, 0, 0));
-  SECTION("the whole way round takes four ticks") {
+  SECTION("a full reversal takes four ticks") {
     for (int i = 1; i <= 4; ++i) {
       const GatedForce f = s.tick(Vector3(-3.3, 0, 0));
       CHECK_THAT(f.force()[0], WithinAbs(3.3 - 1.65 * i, 1e-9));  // the clock itself rounds to 2e-12
@@ -254,7 +254,7 @@ TEST_CASE("the change per tick is limited, also when clocks misbehave", "[haptic
     const GatedForce f = s.gate.apply(Vector3(-3.3, 0, 0), s.now, s.now, true, false);
     CHECK_THAT(f.force()[0], WithinAbs(3.3 - 0.825, 1e-9));
   }
-  SECTION("a clock that stands still, runs backwards or is no number counts as one period") {
+  SECTION("a clock that stands still, runs backwards or is not finite counts as one period") {
     for (double now : {s.now, s.now - 5.0, nan_value, infinity, -infinity, -1e308}) {
       ForceGate gate = s.gate;
       const Vector3 f = gate.apply(Vector3(-3.3, 0, 0), now, s.now + period, true, false).force();
@@ -264,7 +264,7 @@ TEST_CASE("the change per tick is limited, also when clocks misbehave", "[haptic
   }
 }
 
-TEST_CASE("a clock set back goes on after at most a ramp", "[haptic][gate][extreme][D5]") {
+TEST_CASE("after a clock is set back the force returns within a ramp", "[haptic][gate][extreme][D5]") {
   Session s;
   s.warm();
   s.now = -1000.0;
@@ -272,7 +272,7 @@ TEST_CASE("a clock set back goes on after at most a ramp", "[haptic][gate][extre
   CHECK(s.tick(two_newtons).force() == two_newtons);
 }
 
-TEST_CASE("limits hold exactly: at a limit nothing happens, just beyond it does", "[haptic][gate]") {
+TEST_CASE("limits are exact: no flag at a limit, a flag just beyond it", "[haptic][gate]") {
   ForceLimits limits;  // powers of two: every sum below is exact
   limits.peak_force = 4.0;
   limits.period = 0x1p-10;
@@ -306,7 +306,7 @@ TEST_CASE("limits hold exactly: at a limit nothing happens, just beyond it does"
   CHECK(future(limits.stale_after + bit) == Vector3::Zero());
 }
 
-TEST_CASE("nothing is stale before the first stale_after is over", "[haptic][gate]") {
+TEST_CASE("nothing is stale before the first stale_after has passed", "[haptic][gate]") {
   ForceGate gate;
   for (int i = 0; i < 3; ++i) {
     const GatedForce f = gate.apply(two_newtons, i * period, nan_value, true, false);
@@ -316,7 +316,7 @@ TEST_CASE("nothing is stale before the first stale_after is over", "[haptic][gat
   CHECK(gate.apply(two_newtons, 4 * period, nan_value, true, false).status.has(StatusFlag::stale));
 }
 
-TEST_CASE("an old stamp does not become fresh by bad ones in between", "[haptic][gate][extreme][D5]") {
+TEST_CASE("an old stamp does not become fresh when invalid ones are in between", "[haptic][gate][extreme][D5]") {
   for (double other : {nan_value, infinity, 1e300}) {
     Session s;
     s.warm();
@@ -326,7 +326,7 @@ TEST_CASE("an old stamp does not become fresh by bad ones in between", "[haptic]
   }
 }
 
-TEST_CASE("a stall does not hide behind a clock that is no number", "[haptic][gate][extreme][D5]") {
+TEST_CASE("a stall is detected after a clock reading that is not finite", "[haptic][gate][extreme][D5]") {
   for (double other : {nan_value, infinity, -infinity}) {
     Session s;
     s.warm();
@@ -339,7 +339,7 @@ TEST_CASE("a stall does not hide behind a clock that is no number", "[haptic][ga
   }
 }
 
-TEST_CASE("reset goes back to the start", "[haptic][gate]") {
+TEST_CASE("reset restores the initial state", "[haptic][gate]") {
   Session s;
   s.warm();
   s.gate.reset();
@@ -364,7 +364,7 @@ TEST_CASE("limits follow the device and the rate", "[haptic][gate]") {
   CHECK_THROWS_AS(ForceGate(ForceLimits::from(DeviceLimits{}, 0.0)), SetupError);
 }
 
-TEST_CASE("senseless limits are refused", "[haptic][gate]") {
+TEST_CASE("invalid limits are refused", "[haptic][gate]") {
   constexpr auto bad = SetupErrorKind::bad_argument;
   for (double value : {0.0, -1.0, nan_value, infinity, -infinity, 1e-10, 1e10}) {
     INFO(value);

@@ -1,4 +1,4 @@
-// Devices, tools and a tissue in one object: what it takes from the devices, refuses, starts, stops and tells.
+// Devices, tools and a tissue in one object: values from the devices, refusals, start, stop and reports.
 #include <palpate/device/mock_device.hpp>
 #include <palpate/device/simulated_device.hpp>
 #include <palpate/haptic/haptic_session.hpp>
@@ -31,7 +31,7 @@ LoopOptions simulated(double seconds) {
   return options;
 }
 
-/// Down to `depth` within 50 ms, held after that.
+/// Down to `depth` within 50 ms, constant after that.
 Trajectory press(double x, double depth) {
   const double top = pad_height + sphere_radius;
   return trajectory::poke(
@@ -41,7 +41,7 @@ MockDevice<> pressing(double x, double depth, const DeviceLimits& limits = {}, d
   return MockDevice<>(press(x, depth), {.rate = rate, .limits = limits});
 }
 
-/// A device that counts what is done to it, and can refuse to start.
+/// A device that counts the calls of its functions, and can refuse to start.
 struct Counting : MockDevice<> {
   explicit Counting(double x, bool b = false) : MockDevice<>(press(x, 1e-3)), broken(b) {}
   void start() {
@@ -79,14 +79,13 @@ TEST_CASE("a session takes limits, stiffness and rate from the device", "[haptic
   CHECK(gate.peak_force == 1.7);
   CHECK(gate.continuous_force == 1.1);
   CHECK(gate.period == 1.0 / 500.0);
-  // The coupling gives what the device renders: proxy minus device times stiffness is the force.
+  // The coupling has the stiffness of the device: proxy minus device times stiffness is the force.
   const Vector3 device = press(0.015, 4e-3)(1.0), force = session.servo().contact_force();
   CHECK(force.norm() > 0.1);
   CHECK((800.0 * (session.servo().proxy() - device) - force).norm() < 1e-6 * force.norm());
 }
 
-TEST_CASE("devices with different tools in one session: each within its own limits, on its own stiffness",
-          "[haptic][session]") {
+TEST_CASE("devices with different tools in one session: each has its own limits and stiffness", "[haptic][session]") {
   const DeviceLimits weak{.peak_force = 0.3, .continuous_force = 0.25, .stiffness = 300.0};
   const DeviceLimits strong{
       .peak_force = 8.0, .continuous_force = 4.0, .stiffness = 2000.0, .peak_torque = 0.1, .rotational_stiffness = 1.0};
@@ -100,7 +99,7 @@ TEST_CASE("devices with different tools in one session: each within its own limi
   CHECK(report.devices[0].peak_force == left.peak_force());
   CHECK(report.devices[1].peak_force == right.peak_force());
   CHECK(left.peak_force() <= 0.3 * (1.0 + 1e-12));
-  CHECK(right.peak_force() > 0.6);  // more than the other device could
+  CHECK(right.peak_force() > 0.6);  // more than the limit of the other device
   CHECK(report.devices[0].status[StatusFlag::saturated] > 0);
   CHECK(report.devices[1].status[StatusFlag::saturated] == 0);
   CHECK(report.status[StatusFlag::saturated] == report.devices[0].status[StatusFlag::saturated]);
@@ -115,7 +114,8 @@ TEST_CASE("devices with different tools in one session: each within its own limi
   }
 }
 
-TEST_CASE("a slower device slows a session and softens the coupling of a faster one", "[haptic][session]") {
+TEST_CASE("a slower device reduces the rate of a session and the coupling stiffness of a faster one",
+          "[haptic][session]") {
   MockDevice fast = pressing(0.009, 3e-3), slow = pressing(0.021, 3e-3, {}, 250.0);
   HapticSession session(std::tie(fast, slow), whole_pad(), {sphere, sphere});
   CHECK(session.rate() == 250.0);
@@ -178,7 +178,7 @@ TEST_CASE("a session needs one tool per device, and every device once", "[haptic
   CHECK_REFUSED(bad, HapticSession(left, whole_pad(), SphereTool{.radius = -1.0}));
 }
 
-TEST_CASE("a servo of one's own has per-tool limits too", "[haptic][servo]") {
+TEST_CASE("a servo without a session has per-tool limits, too", "[haptic][servo]") {
   ServoOptions options;
   options.devices = {{.peak_force = 1.0}, {.peak_force = 2.0, .rate = 500.0}};
   const HapticServo servo(whole_pad(), {sphere, CapsuleTool(sphere_radius, 2e-3)}, options);
@@ -191,7 +191,7 @@ TEST_CASE("a servo of one's own has per-tool limits too", "[haptic][servo]") {
   CHECK(problem.ids == std::vector<std::int64_t>{1});
 }
 
-TEST_CASE("start, look, stop, start again; the second run begins as the first did", "[haptic][session][timing]") {
+TEST_CASE("start, read, stop, start again: the second run begins as the first did", "[haptic][session][timing]") {
   Counting stylus(0.015);
   HapticSession session(stylus, whole_pad(), sphere);
   CHECK_FALSE(session.running());
@@ -220,8 +220,8 @@ TEST_CASE("start, look, stop, start again; the second run begins as the first di
   CHECK(static_cast<std::uint64_t>(stylus.notes) == stylus.reads());
 }
 
-TEST_CASE("a run after another gives the bits of the first", "[haptic][session]") {
-  /// Gives the same states from every start on.
+TEST_CASE("a second run is bitwise equal to the first", "[haptic][session]") {
+  /// Returns the same states after every start.
   struct Repeating {
     std::optional<MockDevice<>> inner;
     std::vector<Vector3> forces;
@@ -262,7 +262,7 @@ TEST_CASE("a session with a duration ends by itself; devices stop when it is sto
     CHECK_FALSE(session.running());
     CHECK(stylus.stops == 0);
     CHECK(stylus.last_force() == Vector3::Zero());
-    CHECK_REFUSED(SetupErrorKind::bad_argument, session.start());  // its report waits
+    CHECK_REFUSED(SetupErrorKind::bad_argument, session.start());  // stop() has not been called for its report
     const LoopReport report = session.stop();
     CHECK(report.ticks + report.missed_deadlines == 20);
     CHECK_FALSE(report.cancelled);
@@ -275,11 +275,11 @@ TEST_CASE("a session with a duration ends by itself; devices stop when it is sto
   CHECK(stylus.stops == 3);
 }
 
-TEST_CASE("senseless runs are refused and leave nothing running", "[haptic][session]") {
+TEST_CASE("invalid runs are refused and leave nothing running", "[haptic][session]") {
   Counting stylus(0.015);
   HapticSession session(stylus, whole_pad(), sphere);
   constexpr auto bad = SetupErrorKind::bad_argument;
-  CHECK_REFUSED(bad, session.run({}));  // nothing would end it
+  CHECK_REFUSED(bad, session.run({}));  // it would never end
   for (const double duration : {0.0, -1.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
     CHECK_REFUSED(bad, session.run(simulated(duration)));
     CHECK_REFUSED(bad, session.start(simulated(duration)));
@@ -316,7 +316,7 @@ TEST_CASE("when the second device does not start, the first one is stopped and n
   CHECK(third.stops == 1);
 }
 
-TEST_CASE("a stopped session presses nothing any more", "[haptic][session]") {
+TEST_CASE("a stopped session exerts no force on the tissue", "[haptic][session]") {
   struct Listening : test::AnalyticTissue {
     using AnalyticTissue::AnalyticTissue;
     void end_tick(std::span<const VertexForce> forces) noexcept { pressing = forces.size(); }
@@ -329,13 +329,14 @@ TEST_CASE("a stopped session presses nothing any more", "[haptic][session]") {
   CHECK(tissue.pressing == 0);
 }
 
-TEST_CASE("a hand that feels: simulated devices, unequal, come to rest on the tissue", "[haptic][session]") {
-  const auto held = [](SimulatedOptions options, double x) {
+TEST_CASE("simulated hands: different devices come to rest on the tissue", "[haptic][session]") {
+  const auto in_hand = [](SimulatedOptions options, double x) {
     options.hand = SimulatedHand::firm();
     options.start = Vector3(x, 0.015, pad_height + sphere_radius);
     return options;
   };
-  SimulatedDevice left(held(SimulatedOptions::stylus(), 0.009)), right(held(SimulatedOptions::parallel_arm(), 0.021));
+  SimulatedDevice left(in_hand(SimulatedOptions::stylus(), 0.009)),
+      right(in_hand(SimulatedOptions::parallel_arm(), 0.021));
   left.push({0.0, 0.0, -0.5});
   right.push({0.0, 0.0, -0.8});
   HapticSession session(std::tie(left, right), whole_pad(), {sphere, sphere}, {.limit_energy = true});
@@ -354,7 +355,7 @@ TEST_CASE("read, tick and write of several devices allocate nothing", "[haptic][
     WARN("allocations are not counted in this build");
     return;
   }
-  /// Counts what is allocated from its first write on, all threads together.
+  /// Counts allocations of all threads from its tenth read on.
   struct Watching : MockDevice<> {
     using MockDevice<>::MockDevice;
     ToolState read() noexcept {
@@ -371,7 +372,7 @@ TEST_CASE("read, tick and write of several devices allocate nothing", "[haptic][
   CHECK(left.allocations == 0);
 }
 
-TEST_CASE("snapshots, statuses and reports print; a snapshot is what a displacement takes", "[haptic][session]") {
+TEST_CASE("snapshots, statuses and reports can be printed; a snapshot converts to vertex forces", "[haptic][session]") {
   MockDevice left = pressing(0.009, 2e-3), right = pressing(0.021, 2e-3);
   HapticSession session(std::tie(left, right), whole_pad(), {sphere, sphere});
   const LoopReport report = session.run(simulated(0.5));

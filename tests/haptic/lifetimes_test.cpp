@@ -1,4 +1,4 @@
-// Two models, four threads, and who may end before whom.
+// Two models, four threads, and the order of destruction.
 #include "contact/servo_session.hpp"
 
 #include <palpate/haptic/run_haptic_loop.hpp>
@@ -30,7 +30,7 @@ ToolState circling(int k, double phase) {
   return s;
 }
 
-/// All forces of a session, added up.
+/// The sum of all forces of a session.
 Vector3 ticked(PadServo& servo, double phase) {
   Vector3 sum = Vector3::Zero();
   for (int k = 0; k < session_ticks; ++k) {
@@ -42,7 +42,7 @@ Vector3 ticked(PadServo& servo, double phase) {
 
 }  // namespace
 
-TEST_CASE("two models in two threads, each with a reader, are two models", "[haptic][threads][D9]") {
+TEST_CASE("two models in two threads, each with a reader, are independent", "[haptic][threads][D9]") {
   test::Pad a = test::make_pad(), b = test::make_pad("z1", 3e3);
   PadServo alone_a(a, SphereTool{.radius = test::sphere_radius}), alone_b(b, SphereTool{.radius = test::sphere_radius});
   const Vector3 expected_a = ticked(alone_a, 0.0), expected_b = ticked(alone_b, 1.0);
@@ -51,7 +51,7 @@ TEST_CASE("two models in two threads, each with a reader, are two models", "[hap
   PadServo servo_a(a, SphereTool{.radius = test::sphere_radius}), servo_b(b, SphereTool{.radius = test::sphere_radius});
   std::atomic<bool> done{false};
   std::atomic<int> torn{0};
-  const auto look = [&](PadServo& servo) {  // what a renderer does
+  const auto look = [&](PadServo& servo) {  // as a renderer does
     double last = -1.0;
     while (!done.load()) {
       const auto& snapshot = servo.read_snapshot();
@@ -71,13 +71,13 @@ TEST_CASE("two models in two threads, each with a reader, are two models", "[hap
   reader_a.join();
   reader_b.join();
   CHECK(torn.load() == 0);
-  CHECK(test::same(got_a, expected_a));  // to the bit: nothing is shared
+  CHECK(test::same(got_a, expected_a));  // bitwise equal: nothing is shared
   CHECK(test::same(got_b, expected_b));
 }
 
-TEST_CASE("sessions end before their tissue, and begin anew", "[haptic][threads][D9]") {
-  // The order of declaration is the order of life: model, servo, loop. The loop ends its thread before it returns, so
-  // that what is destroyed afterwards is not ticking.
+TEST_CASE("sessions end before their tissue, and start again", "[haptic][threads][D9]") {
+  // The order of declaration is the order of lifetimes: model, servo, loop. The loop ends its thread before it returns,
+  // so that objects destroyed afterwards are not in use.
   for (int round = 0; round < 3; ++round) {
     std::optional<test::Pad> model(test::make_pad());
     {

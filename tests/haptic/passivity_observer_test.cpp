@@ -1,4 +1,4 @@
-// The passivity observer's books are right, and the energy tank leaves what is passive alone and stops what is not.
+// The passivity observer sums work correctly; the energy tank does not limit passive forces and limits active ones.
 #include "contact/analytic_tissue.hpp"
 
 #include <palpate/core/setup_error.hpp>
@@ -19,13 +19,13 @@ namespace {
 
 const EnergyLimits limits = EnergyLimits::from(DeviceLimits{});
 
-/// A source of force with a tank for the usual device behind it.
+/// A source of force with a tank for the default device after it.
 template <class Source>
 struct Tanked : testing::Tanked<Source> {
   explicit Tanked(const Source& made = {}) : testing::Tanked<Source>{.source = made, .tank = EnergyTank(limits)} {}
 };
 
-/// Pushes out, and not in: each time round it gives a newton times the way.
+/// Pushes on the way out, not on the way in: each cycle generates one newton times the path.
 struct Pump {
   double before = 0.0;
   ForceGate gate = testing::open_gate();
@@ -52,7 +52,7 @@ Vector3 at(S& servo, double z, double time) {
 
 }  // namespace
 
-TEST_CASE("the observer adds up the work of the force that acted in between", "[haptic][energy]") {
+TEST_CASE("the observer sums the work of the force that acted between samples", "[haptic][energy]") {
   for (int delay : {0, 1, 5, 32}) {
     testing::Random random(3);
     PassivityObserver observer(delay);
@@ -71,7 +71,7 @@ TEST_CASE("the observer adds up the work of the force that acted in between", "[
   }
 }
 
-TEST_CASE("a wall at the rated stiffness never empties the tank, whatever moves against it", "[haptic][energy]") {
+TEST_CASE("a wall at the rated stiffness never empties the tank for any motion", "[haptic][energy]") {
   const auto encoder_step = GENERATE(0.0, 55e-6, 1e-3);
   testing::Random random(8);
   for (double stiffness : {500.0, 100.0, 1.0}) {
@@ -89,14 +89,14 @@ TEST_CASE("a wall at the rated stiffness never empties the tank, whatever moves 
   }
 }
 
-TEST_CASE("a wall stiffer than that is caught when it gives", "[haptic][energy]") {
+TEST_CASE("a wall above the rated stiffness is limited when it generates energy", "[haptic][energy]") {
   testing::Random random(8);
   Tanked<testing::VirtualWall> wall({.stiffness = 1500.0});
   for (int i = 0; i < 5000; ++i) at(wall, random.uniform(-2e-3, -1e-3), 1e-3 * i);  // as if shaken without inertia
   CHECK(wall.limited > 1000);
 }
 
-TEST_CASE("slow motion over encoder steps passes to the bit", "[haptic][energy]") {
+TEST_CASE("slow motion over encoder steps passes bitwise unchanged", "[haptic][energy]") {
   Tanked<testing::VirtualWall> wall({.stiffness = 500.0});
   testing::VirtualWall bare{.stiffness = 500.0};
   testing::Random random(12);
@@ -108,7 +108,7 @@ TEST_CASE("slow motion over encoder steps passes to the bit", "[haptic][energy]"
   CHECK(wall.limited == 0);
 }
 
-TEST_CASE("a pump is stopped within the stated energy and comes back only as the tank refills", "[haptic][energy]") {
+TEST_CASE("a pump is stopped within the documented energy and returns only as the tank refills", "[haptic][energy]") {
   Tanked<Pump> pump;
   const double path = 20e-6;  // per tick; so slow that the device's own damping takes next to nothing
   double z = 0.0, most = 0.0;
@@ -120,11 +120,11 @@ TEST_CASE("a pump is stopped within the stated energy and comes back only as the
   }
   CHECK(most <= 1.0 * path);
   CHECK(pump.limited > 10'000);
-  // Without the tank: 200 times round, 1 mm and 1 N each.
+  // Without the tank: 200 cycles of 1 mm and 1 N.
   CHECK(pump.tank.observer().given() < 0.2 * 0.2);
 }
 
-TEST_CASE("the force of an emptying tank goes down without steps", "[haptic][energy]") {
+TEST_CASE("the force decreases without steps while the tank empties", "[haptic][energy]") {
   EnergyTank tank(limits);
   double before = 1.0;
   Status status;
@@ -139,7 +139,7 @@ TEST_CASE("the force of an emptying tank goes down without steps", "[haptic][ene
   CHECK(status == Status(StatusFlag::energy_injected));
 }
 
-TEST_CASE("what a contact put in is not kept once the tool is free", "[haptic][energy]") {
+TEST_CASE("energy put in during a contact is discarded once the tool is free", "[haptic][energy]") {
   EnergyTank tank(limits);
   Status status;
   for (int i = 0; i < 100; ++i) {  // 1 N against 10 mm: 10 mJ in
@@ -155,8 +155,8 @@ TEST_CASE("what a contact put in is not kept once the tool is free", "[haptic][e
   CHECK(status.ok());
 }
 
-TEST_CASE("simulated: what moves the handle is bounded by the tank, in true energy", "[haptic][energy][stability]") {
-  SimulatedOptions o;  // the wall is far too stiff for it
+TEST_CASE("simulated: the energy given to the handle is bounded by the tank", "[haptic][energy][stability]") {
+  SimulatedOptions o;  // the wall is far too stiff for this device
   o.friction = o.encoder_step = 0.0;
   o.damping = limits.damping;
   for (double stiffness : {3e3, 2e4}) {
@@ -173,7 +173,7 @@ TEST_CASE("simulated: what moves the handle is bounded by the tank, in true ener
         else
           testing::tick(device, wall.source);
         const SimulatedEnergy& e = device.energy();
-        const double net = e.motors + e.viscous;  // the tank credits less than the dampers take
+        const double net = e.motors + e.viscous;  // the tank credits less than the dampers dissipate
         given[tanked ? 1 : 0] = std::max(given[tanked ? 1 : 0], net);
         over = std::max(over, net - limits.refill * device.time() - limits.allowance);
       }
@@ -184,7 +184,7 @@ TEST_CASE("simulated: what moves the handle is bounded by the tank, in true ener
   }
 }
 
-TEST_CASE("a stall is accounted for with its real time", "[haptic][energy]") {
+TEST_CASE("a stall is counted with its actual duration", "[haptic][energy]") {
   EnergyTank slow(limits), fast(limits);
   Status status;
   for (EnergyTank* tank : {&slow, &fast}) {
@@ -198,7 +198,7 @@ TEST_CASE("a stall is accounted for with its real time", "[haptic][energy]") {
   CHECK_THAT(slow.level(), WithinAbs(limits.allowance - 5e-4 + 3.125e-6 + limits.refill * 20e-3, 1e-12));
 }
 
-TEST_CASE("special values leave the level within bounds and the gain a gain", "[haptic][energy][extreme][D1]") {
+TEST_CASE("special values keep the level within bounds and the gain valid", "[haptic][energy][extreme][D1]") {
   testing::Random random(5);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double special[] = {0.0, -0.0, nan, infinity, -infinity, 1e308, -1e308, 5e-324, 1e-3, -1e-3, 1.0};
@@ -209,14 +209,14 @@ TEST_CASE("special values leave the level within bounds and the gain a gain", "[
     const Vector3 f(any(), any(), any()), out = tank.limit(f, Vector3(any(), any(), any()), any(), status);
     tank.gave(Vector3(any(), any(), any()));
     if (!(tank.level() >= -limits.allowance && tank.level() <= limits.capacity)) FAIL("level " << tank.level());
-    if (f.allFinite() && !out.allFinite()) FAIL("made " << out.transpose());
+    if (f.allFinite() && !out.allFinite()) FAIL("result " << out.transpose());
     if (!std::isfinite(tank.observer().given())) FAIL("given " << tank.observer().given());
   }
   tank.reset();
   CHECK(tank.level() == limits.allowance);
 }
 
-TEST_CASE("limits of energy that make no sense are refused", "[haptic][energy]") {
+TEST_CASE("invalid energy limits are refused", "[haptic][energy]") {
   const auto refused = [](auto change) {
     EnergyLimits l;
     change(l);
@@ -241,7 +241,7 @@ TEST_CASE("limits of energy that make no sense are refused", "[haptic][energy]")
 
 namespace {
 
-/// An analytic tissue whose compliance is multiplied by `softer`: changed under way it is an engine.
+/// An analytic tissue whose compliance is multiplied by `softer`: if that changes during motion, it generates energy.
 struct Engine : test::AnalyticTissue {
   using AnalyticTissue::AnalyticTissue;
   double softer = 1.0;
@@ -256,7 +256,7 @@ struct Engine : test::AnalyticTissue {
   double compliance_floor() const noexcept { return AnalyticTissue::compliance_floor(); }
 };
 
-/// Presses `cycles` times 3 mm deep and up again, and returns the energy given.
+/// Presses repeatedly 3 mm deep and releases, and returns the energy given.
 template <class Energy>
 double press(Engine& tissue, const Energy& energy, double soft, std::vector<Vector3>* forces, std::uint64_t* limited) {
   HapticServo servo(tissue, SphereTool{.radius = 5e-3}, {}, energy);
@@ -264,7 +264,7 @@ double press(Engine& tissue, const Energy& energy, double soft, std::vector<Vect
   PassivityObserver observer;
   for (int i = 0; i < 4000; ++i) {
     const double phase = 2.0 * 3.14159265358979 * i / 500.0;
-    tissue.become(std::sin(phase) > 0.0 ? soft : 1.0);  // soft on the way in
+    tissue.become(std::sin(phase) > 0.0 ? soft : 1.0);  // soft while pressing in
     state.position = Vector3(0.0, 0.0, 5e-3 - 1.5e-3 + 2e-3 * std::cos(phase));
     state.time = 1e-3 * i;
     const GatedForce& f = servo.tick({&state, 1}).front();
@@ -278,13 +278,14 @@ double press(Engine& tissue, const Energy& energy, double soft, std::vector<Vect
 
 }  // namespace
 
-TEST_CASE("a servo with a tank: the same forces on a passive tissue, a bound on an active one", "[haptic][energy]") {
+TEST_CASE("a servo with a tank: unchanged forces on a passive tissue, bounded energy on an active one",
+          "[haptic][energy]") {
   Engine tissue(20, 0.02, 2e-3);
   std::vector<Vector3> bare, tanked;
   std::uint64_t limited = 0;
   press(tissue, NoEnergyTank{}, 1.0, &bare, nullptr);
   const double passive = press(tissue, EnergyTank(limits), 1.0, &tanked, &limited);
-  CHECK(passive < limits.allowance);  // what sampling gives, and the damping of the device takes
+  CHECK(passive < limits.allowance);  // generated by sampling, dissipated by the damping of the device
   CHECK(limited == 0);
   REQUIRE(bare.size() == tanked.size());
   double most = 0.0;

@@ -1,4 +1,4 @@
-// A sphere pressed into moving tissue and held, both rates simulated.
+// A sphere pressed into moving tissue and kept there; both rates are simulated.
 #pragma once
 
 #include <palpate/haptic/haptic_servo.hpp>
@@ -13,8 +13,8 @@ namespace test {
 
 using namespace palpate;
 
-/// Contact force [N] on a sphere of `radius` [m] that was pressed 4 mm into the surface at `top` and held, and the status
-/// of the last 100 ticks of 1 ms.
+/// Contact force [N] on a sphere of `radius` [m] that was pressed 4 mm into the surface at `top` and kept there, and
+/// the status of the last 100 ticks of 1 ms.
 inline std::pair<Vector3, Status> press_and_hold(MovingTissue& tissue, const Vector3& top, double radius, int ticks) {
   ServoOptions options;
   options.device.peak_force = 20.0;

@@ -22,7 +22,7 @@ using palpate::testing::gated;
 
 namespace {
 
-/// A wall at z = 0 that pushes back with 500 N/m, behind a force gate. Starts anew when the tool jumps.
+/// A wall at z = 0 that pushes back with 500 N/m, behind a force gate. Restarts when the tool jumps.
 class SpringServo {
  public:
   explicit SpringServo(const ForceLimits& limits = {}) : gate_(limits) {}
@@ -106,7 +106,7 @@ TEST_CASE("faults on schedule: finite, limited, counted exactly", "[haptic][loop
   CHECK(report.status[StatusFlag::disconnected] == 57);  // invalid reads, NaN and infinite positions
   CHECK(report.status[StatusFlag::non_finite_input] == 7);
   CHECK(report.status[StatusFlag::reacquired] >= 2);
-  CHECK(report.status[StatusFlag::deadline_missed] == 5);  // four stalls and the end of the frozen time
+  CHECK(report.status[StatusFlag::deadline_missed] == 5);  // four stalls and the end of the frozen input
   CHECK(report.status[StatusFlag::stale] >= 97);
   CHECK(report.peak_force <= 3.3 * (1.0 + 1e-12));
 }
@@ -137,14 +137,14 @@ TEST_CASE("a paced loop keeps its rate", "[haptic][loop][timing]") {
   LoopOptions options;
   options.duration = 0.3;
   const LoopReport report = run_haptic_loop(stylus, servo, options);
-  CHECK(report.ticks + report.missed_deadlines == 300);  // on a busy machine some are missed; none is lost track of
+  CHECK(report.ticks + report.missed_deadlines == 300);  // on a busy machine some are missed; all are counted
   CHECK(report.lateness.total() == report.ticks);
   CHECK(report.lateness.percentile(0.5) <= report.lateness.percentile(0.99));
   CHECK(report.elapsed >= 0.298);
   CHECK(report.compute.percentile(0.5) < 1e-3);
 }
 
-TEST_CASE("a slow servo misses deadlines and the loop says so", "[haptic][loop][timing][extreme][D5]") {
+TEST_CASE("a slow servo misses deadlines and the loop reports them", "[haptic][loop][timing][extreme][D5]") {
   struct Slow {
     SpringServo spring;
     std::span<const GatedForce> tick(std::span<const ToolState> tools) noexcept {
@@ -201,7 +201,8 @@ TEST_CASE("progress is reported from the calling thread at most ten times per se
   for (const LoopProgress& p : seen) CHECK((p.fraction >= 0.0 && p.fraction <= 1.0));
 }
 
-TEST_CASE("progress may end the loop, by its answer or by throwing; the device is stopped", "[haptic][loop]") {
+TEST_CASE("the progress callback may end the loop by returning false or by throwing; the device is stopped",
+          "[haptic][loop]") {
   MockDevice stylus([](double) { return Vector3(0, 0, -0.005); });
   SpringServo servo;
   LoopOptions options;
@@ -235,7 +236,7 @@ TEST_CASE("a device that does not start is stopped and its error passed on", "[h
   CHECK(servo.ticks == 0);
 }
 
-TEST_CASE("a servo without a force renders zero", "[haptic][loop]") {
+TEST_CASE("a servo that returns no force renders zero", "[haptic][loop]") {
   struct Empty {
     std::span<const GatedForce> tick(std::span<const ToolState>) noexcept { return {}; }
   } servo;
@@ -245,7 +246,7 @@ TEST_CASE("a servo without a force renders zero", "[haptic][loop]") {
   CHECK(stylus.peak_force() == 0.0);
 }
 
-TEST_CASE("senseless options are refused before the device starts", "[haptic][loop]") {
+TEST_CASE("invalid options are refused before the device starts", "[haptic][loop]") {
   struct Rated : MockDevice<> {
     Rated() : MockDevice<>(trajectory::poke()) {}
     DeviceLimits limits() const noexcept { return {.rate = rate}; }
@@ -262,7 +263,7 @@ TEST_CASE("senseless options are refused before the device starts", "[haptic][lo
   CHECK(stylus.reads() == 0);
 }
 
-TEST_CASE("a loop that nothing would end is refused, and one without a duration runs until it is told",
+TEST_CASE("a loop that would never end is refused, and one without a duration runs until the callback ends it",
           "[haptic][loop]") {
   MockDevice stylus(trajectory::poke());
   SpringServo servo;
@@ -306,7 +307,7 @@ TEST_CASE("real-time privileges are reported as granted or refused with a reason
   LoopOptions options;
   options.duration = 0.02;
   options.real_time = true;
-  options.cpu = 100'000;  // there is none
+  options.cpu = 100'000;  // no such processor
   const RealtimeGrant grant = run_haptic_loop(stylus, servo, options).real_time;
   CHECK(grant.requested);
   CHECK(grant.cpu == -1);
@@ -351,7 +352,7 @@ TEST_CASE("duration histogram: percentiles within a bin, maximum exact", "[hapti
   CHECK(sum == h.total());
 }
 
-TEST_CASE("every duration falls into the bin that holds it", "[haptic][loop]") {
+TEST_CASE("every duration is counted in the bin that contains it", "[haptic][loop]") {
   for (double seconds = 1.5e-9; seconds < 1e3; seconds *= 1.37) {
     DurationHistogram h;
     h.record(seconds);
@@ -418,7 +419,7 @@ TEST_CASE("the loop allocates nothing between its first and its last tick", "[ha
     WARN("allocations are not counted in this build");
     return;
   }
-  /// Counts in the haptic thread, from tick to tick.
+  /// Counts allocations in the haptic thread, from tick to tick.
   struct Counting {
     SpringServo spring;
     testing::AllocationScope scope;

@@ -1,4 +1,4 @@
-// A blade is a tool as any other: gate, energy, status, snapshot, reset; on springs that remember what was swept.
+// A blade is a tool as any other: gate, energy, status, snapshot, reset; on springs that record the sweeps.
 #include <palpate/device/mock_device.hpp>
 #include <palpate/haptic/haptic_session.hpp>
 #include <palpate/testing/allocation_counter.hpp>
@@ -14,7 +14,7 @@ using namespace palpate;
 
 namespace {
 
-/// The corners of a box on springs, 60 x 60 x 40 mm, its top at z = 0; takes so many orders.
+/// The corners of a box on springs, 60 x 60 x 40 mm, its top at z = 0; accepts up to `most` cut requests.
 struct SweptTissue : StillTissue {
   explicit SweptTissue(std::size_t most = 1000) : room(most) {
     std::vector<Vector3> x;
@@ -54,7 +54,7 @@ struct SweptTissue : StillTissue {
 };
 static_assert(TissueModel<SweptTissue>);
 
-const BladeTool blade{.toughness = 100.0};  // an edge of 10 mm: 1 N all inside
+const BladeTool blade{.toughness = 100.0};  // an edge of 10 mm: 1 N when all of it is inside
 
 ToolState at(double z, int tick, double x = 0.0) {
   ToolState s;
@@ -70,7 +70,7 @@ double height(int tick) {
 
 }  // namespace
 
-TEST_CASE("a blade's force is toughness times edge, and its sweeps lie side by side", "[haptic][blade]") {
+TEST_CASE("a blade's force is toughness times edge length, and its sweeps are contiguous", "[haptic][blade]") {
   SweptTissue tissue;
   const Vector3 origin(0.2, -0.1, 0.3);
   tissue.pose = Eigen::Translation3d(origin) * Eigen::AngleAxisd(0.4, Vector3::UnitZ());
@@ -97,7 +97,7 @@ TEST_CASE("a blade's force is toughness times edge, and its sweeps lie side by s
   }
 }
 
-TEST_CASE("a snapshot shows a blade as a contact that cuts, and prints", "[haptic][blade]") {
+TEST_CASE("a snapshot contains a blade as a cutting contact and can be printed", "[haptic][blade]") {
   SweptTissue tissue;
   ServoOptions options;
   options.contact.capacity = 4;
@@ -143,12 +143,12 @@ TEST_CASE("a blade's gate: ramp, lost reads, NaN, jumps, stale input, peak force
   CHECK(f.force().norm() == 0.0);
   f = hold(-9e-3, 1);
   CHECK(f.status.has(StatusFlag::ramping));
-  CHECK(servo.contact_force().norm() == 0.0);  // it begins anew where it is
+  CHECK(servo.contact_force().norm() == 0.0);  // it restarts where it is
   hold(-0.013, 60);
   CHECK(servo.contact_force().norm() > 1.0);
   f = servo.tick(at(std::numeric_limits<double>::quiet_NaN(), tick++));
   CHECK(f.status.has(StatusFlag::non_finite_input));
-  CHECK(servo.contact_force().norm() > 1.0);  // held
+  CHECK(servo.contact_force().norm() > 1.0);  // last valid pose kept
   f = hold(-0.03, 1);                         // farther than the edge is long
   CHECK(f.status.has(StatusFlag::reacquired));
   CHECK(servo.contact_force().norm() == 0.0);
@@ -159,7 +159,8 @@ TEST_CASE("a blade's gate: ramp, lost reads, NaN, jumps, stale input, peak force
   CHECK(f.force().norm() == 0.0);
 }
 
-TEST_CASE("a blade whose orders wait says so, and orders all of it later", "[haptic][blade]") {
+TEST_CASE("a blade whose cut requests are refused sets degraded_model and requests the whole cut later",
+          "[haptic][blade]") {
   SweptTissue tissue(2);
   HapticServo servo(tissue, blade);
   int degraded = 0;
@@ -172,7 +173,7 @@ TEST_CASE("a blade whose orders wait says so, and orders all of it later", "[hap
   CHECK(tissue.sweeps[2].area() > 5.0 * tissue.sweeps[1].area());
 }
 
-TEST_CASE("a reset blade gives the bits of its first run", "[haptic][blade]") {
+TEST_CASE("a blade after reset gives bitwise the same run", "[haptic][blade]") {
   SweptTissue tissue;
   HapticServo servo(tissue, blade, {}, EnergyTank(EnergyLimits::from(DeviceLimits{})));
   const auto play = [&] {

@@ -1,4 +1,4 @@
-// A haptic session under abuse: catalogue D of the extremes.
+// A haptic session with extreme input: catalogue D of the extremes.
 #include "contact/servo_session.hpp"
 
 #include <palpate/testing/random.hpp>
@@ -18,7 +18,7 @@ namespace {
 using test::sphere_radius;
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
-/// A gate that lets 0.165 N pass per tick, so that its slew limit has something to do.
+/// A gate that lets 0.165 N pass per tick, so that its slew limit is active.
 ServoOptions slow_gate() {
   ServoOptions options;
   ForceLimits limits;
@@ -34,13 +34,13 @@ double special(testing::Random& random) {
   return values[random.bits() % values.size()];
 }
 
-/// What may never happen, counted over a session.
+/// Counts violations of the guarantees over a session.
 struct Watch {
   double peak = 3.3, slew = slow_slew;
   std::int64_t not_finite = 0, above_peak = 0, slewed = 0, at_work = 0;
   Vector3 before = Vector3::Zero();
 
-  /// `cut`: the tick was allowed to drop to zero.
+  /// `cut`: the tick may drop to zero.
   void look(const GatedForce& f) {
     if (!f.force().allFinite() || !f.torque().isZero(0.0)) ++not_finite;
     if (!(f.force().norm() <= peak * (1.0 + 1e-12))) ++above_peak;
@@ -56,7 +56,7 @@ struct Watch {
   }
 };
 
-/// Static force `depth` deep at the usual place, slowly pressed.
+/// Static force at depth `depth` at the default place, slowly pressed.
 Vector3 static_force(Pad& pad, double depth) {
   ServoSession session(pad);
   session.press(depth);
@@ -81,8 +81,8 @@ TEST_CASE("1e6 ticks of special and random values give finite forces within the 
     p += random.vector<3>(-1e-4, 1e-4);
     p = p.cwiseMax(Vector3(5e-3, 5e-3, pad_height + sphere_radius - 1.5e-3))
             .cwiseMin(Vector3(0.025, 0.025, pad_height + sphere_radius));
-    const bool energy_bounded = i / 200 % 5 == 0;  // else the ramp would never open
-    if (energy_bounded || dice < 0.5)
+    const bool normal_input = i / 200 % 5 == 0;  // otherwise the ramp would never open
+    if (normal_input || dice < 0.5)
       s.position = p;
     else if (dice < 0.8)
       s.position[static_cast<Index>(random.bits() % 3)] = special(random);
@@ -92,11 +92,11 @@ TEST_CASE("1e6 ticks of special and random values give finite forces within the 
       s.position = Vector3(special(random), special(random), special(random));
     s.velocity = Vector3(special(random), nan_value, infinity);
     s.orientation = {special(random), special(random), special(random), special(random)};
-    if (energy_bounded || dice < 0.97)
+    if (normal_input || dice < 0.97)
       s.time = 1e-3 * i;
     else
       s.time = special(random);
-    s.valid = energy_bounded || random.uniform() < 0.98;
+    s.valid = normal_input || random.uniform() < 0.98;
     const bool finite = s.position.allFinite() && std::isfinite(s.time);
     const GatedForce f = session.servo.tick(session.states).front();
     watch.look(f);
@@ -114,38 +114,39 @@ TEST_CASE("1e6 ticks of special and random values give finite forces within the 
   const Vector3 after = session.hold(200).force();
   ServoSession fresh(pad, options);
   fresh.press(1e-3);
-  CHECK((fresh.hold(200).force() - after).norm() <= 1e-6 * after.norm());  // no trace of it all
+  CHECK((fresh.hold(200).force() - after).norm() <= 1e-6 * after.norm());  // no effect of the earlier input
 }
 
-TEST_CASE("a pose that is not finite: held, then faded to zero, then ramped", "[haptic][servo][extreme][D1]") {
+TEST_CASE("a pose that is not finite: last force kept, then faded to zero, then ramped",
+          "[haptic][servo][extreme][D1]") {
   Pad pad = test::make_pad();
   for (double bad : {nan_value, infinity, -infinity, 1e308, 1e7})
     for (int axis = 0; axis < 3; ++axis) {
       ServoSession session(pad);
       session.press(1.5e-3);
-      const Vector3 held = session.hold(100).force(), place = session.states[0].position;
+      const Vector3 steady = session.hold(100).force(), place = session.states[0].position;
       Vector3 wrong = place;
       wrong[axis] = bad;
-      double before = held.norm();
+      double before = steady.norm();
       for (int i = 1; i <= 40; ++i) {
         const GatedForce& f = session.tick(wrong);
         CHECK(f.status.has(StatusFlag::non_finite_input));
-        if (i <= 2) CHECK((f.force() - held).norm() <= 1e-6 * held.norm());
+        if (i <= 2) CHECK((f.force() - steady).norm() <= 1e-6 * steady.norm());
         CHECK(f.force().norm() <= before * (1.0 + 1e-6));
         before = f.force().norm();
       }
       CHECK(before == 0.0);
       for (int i = 0; i < 60; ++i) {
         const GatedForce& f = session.tick(place);
-        if (i == 0) CHECK(f.force().norm() <= 0.05 * held.norm());
+        if (i == 0) CHECK(f.force().norm() <= 0.05 * steady.norm());
         CHECK(f.force().norm() >= before - 1e-9);
         before = f.force().norm();
       }
-      CHECK((session.forces[0].force() - held).norm() <= 1e-6 * held.norm());
+      CHECK((session.forces[0].force() - steady).norm() <= 1e-6 * steady.norm());
     }
 }
 
-TEST_CASE("a time stamp that is not finite is no fresh input", "[haptic][servo][extreme][D1]") {
+TEST_CASE("input with a time stamp that is not finite is not fresh", "[haptic][servo][extreme][D1]") {
   Pad pad = test::make_pad();
   ServoSession session(pad);
   session.press(1.5e-3);
@@ -162,7 +163,7 @@ TEST_CASE("a time stamp that is not finite is no fresh input", "[haptic][servo][
   CHECK(session.forces[0].force().norm() > 0.05);
 }
 
-TEST_CASE("a teleport of 1 m: slew kept, flagged, recovered within 50 ms", "[haptic][servo][extreme][D2]") {
+TEST_CASE("a teleport of 1 m: slew limit kept, flagged, recovered within 50 ms", "[haptic][servo][extreme][D2]") {
   Pad pad = test::make_pad("z1", 1e5);
   for (const Vector3& offset : {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(0, 0, 1), Vector3(0.6, 0.0, 0.8)})
     for (int away : {1, 5, 100}) {
@@ -211,19 +212,19 @@ TEST_CASE("a jump into the tissue within two radii ends at the static force", "[
   }
   INFO(lost << " lost, " << elsewhere << " elsewhere, of " << jumps);
   CHECK(lost == 0);
-  CHECK(elsewhere <= 4);  // on edges longer than the radius a deep sphere has more than one place to rest
+  CHECK(elsewhere <= 4);  // on edges longer than the radius a deep sphere has more than one equilibrium
 }
 
 TEST_CASE("a session that starts in the tissue ramps from zero to an outward force", "[haptic][servo][extreme][D3]") {
   struct Start {
     const char* where;
     Vector3 position;
-    Vector3 outward;     // the force must have a share along it; zero: anything
+    Vector3 outward;     // the force must have a component along it; zero: not checked
     double fall = 1e-3;  // relative loss of force allowed in a tick while it ramps
   };
   const Vector3 up = Vector3::UnitZ();
   const std::vector<Start> starts{
-      {"half a sphere deep", Vector3(0.0137, 0.0159, pad_height + 0.5 * sphere_radius), up},
+      {"at a depth of half a radius", Vector3(0.0137, 0.0159, pad_height + 0.5 * sphere_radius), up},
       {"sphere's centre on the surface", Vector3(0.0137, 0.0159, pad_height), up},
       {"deep inside", Vector3(0.0137, 0.0159, pad_height - 5e-3), up},
       {"deep inside, between two nodes", Vector3(0.0125, 0.015, pad_height - 5e-3), up},
@@ -232,7 +233,7 @@ TEST_CASE("a session that starts in the tissue ramps from zero to an outward for
       {"on an edge of a triangle", Vector3(0.0125, 0.015, pad_height), up},
       {"on an edge of the body", Vector3(0.0, 0.0137, pad_height), Vector3(-1, 0, 1)},
       {"on a corner of the body", Vector3(0.03, 0.03, pad_height), Vector3(1, 1, 1),
-       0.08},  // it balances, then slides off: rounding decides how
+       0.08},  // it balances, then slides off in a direction that depends on rounding
       {"inside, at the side", Vector3(0.002, 0.0137, 0.011), -Vector3::UnitX()},
       {"in the very middle", Vector3(0.015, 0.015, 0.01), Vector3::Zero()},
       {"on a fixed face", Vector3(0.0137, 0.0159, 0.0), -up},
@@ -264,7 +265,7 @@ TEST_CASE("a session that starts in the tissue ramps from zero to an outward for
   }
 }
 
-TEST_CASE("a session that starts beside or below a body whose top can be touched feels nothing",
+TEST_CASE("a session that starts beside or below a body with a touchable top renders zero",
           "[haptic][servo][extreme][D3]") {
   Pad pad = test::make_pad();
   double worst = 0.0;
@@ -282,7 +283,7 @@ TEST_CASE("a session that starts beside or below a body whose top can be touched
   CHECK(worst == 0.0);
 }
 
-TEST_CASE("on fixed nodes the force is the coupling's, saturated if that is rigid",
+TEST_CASE("on fixed nodes the force is that of the coupling, saturated if it is rigid",
           "[haptic][servo][extreme][D3][D7]") {
   const Vector3 start(0.0137, 0.0159, -sphere_radius - 1e-4);
   for (double k : {500.0, infinity}) {
@@ -294,7 +295,7 @@ TEST_CASE("on fixed nodes the force is the coupling's, saturated if that is rigi
     session.move(start + Vector3(0, 0, 1.1e-3), 100);
     const GatedForce& f = session.hold(50);
     CHECK(f.force()[2] < 0.0);
-    CHECK(f.force().head<2>().norm() <= 0.3 * f.force().norm());  // the sphere lies between the points
+    CHECK(f.force().head<2>().norm() <= 0.3 * f.force().norm());  // the sphere is between the points
     if (k == 500.0) CHECK(f.force().norm() <= 0.5 * (1.0 + 1e-6));
     if (k == 500.0) CHECK(-f.force()[2] >= 0.3);
     if (k == infinity) CHECK_THAT(f.force().norm(), WithinAbs(3.3, 1e-9));
@@ -314,7 +315,7 @@ TEST_CASE("a model whose touchable nodes are all fixed is a rigid wall", "[hapti
   CHECK(f[2] <= 0.5 * (1.0 + 1e-6));
 }
 
-TEST_CASE("1e5 ticks of random contact sets: slew kept, contacts bounded", "[haptic][servo][extreme][D4][D8]") {
+TEST_CASE("1e5 ticks of random contact sets: slew limit kept, contacts bounded", "[haptic][servo][extreme][D4][D8]") {
   Pad pad = test::make_pad("z1", 1e5);
   ServoOptions options = slow_gate();
   options.contact.sample_spacing = 1.0;
@@ -348,7 +349,7 @@ TEST_CASE("1e5 ticks of random contact sets: slew kept, contacts bounded", "[hap
   CHECK(not_converged <= 750);  // a hundredth of the ticks at up to 0.35 m/s; the others jump by up to 3.5 mm
 }
 
-TEST_CASE("chatter on the edge of a body is passed on within the limits", "[haptic][servo][extreme][D4]") {
+TEST_CASE("chatter on the edge of a body is rendered within the limits", "[haptic][servo][extreme][D4]") {
   ServoSession session(test::whole_pad(), slow_gate());
   testing::Random random(84);
   Watch watch;
@@ -360,7 +361,8 @@ TEST_CASE("chatter on the edge of a body is passed on within the limits", "[hapt
   CHECK(watch.at_work > 2000);
 }
 
-TEST_CASE("a stall is flagged, loses force if it is long, and comes back by the ramp", "[haptic][servo][extreme][D5]") {
+TEST_CASE("a stall is flagged, reduces the force if it is long, and the force returns by the ramp",
+          "[haptic][servo][extreme][D5]") {
   Pad pad = test::make_pad("z1", 1e5);
   for (double stall : {0.002, 0.005, 0.020, 0.200}) {  // between two ticks
     INFO("stall of " << stall << " s");
@@ -386,7 +388,7 @@ TEST_CASE("a stall is flagged, loses force if it is long, and comes back by the 
       session.states[0].time += 0.2;
       session.tick();
       double before = session.forces[0].force().norm();
-      for (int i = 0; i < 5; ++i) {  // 0.165 N per tick down, whatever the stall was
+      for (int i = 0; i < 5; ++i) {  // 0.165 N per tick down, for any stall
         const double now = session.tick().force().norm();
         if (now > before && before > 4.0 * slow_slew) FAIL("the force grows after a stall of 0.2 s");
         before = now;
@@ -407,7 +409,7 @@ TEST_CASE("frozen input fades to zero", "[haptic][servo][extreme][D5][D6]") {
   CHECK(session.hold(60).force().norm() > 0.05);
 }
 
-TEST_CASE("reads that fail at random: zero at once, ramp afterwards", "[haptic][servo][extreme][D6]") {
+TEST_CASE("reads that fail at random: zero immediately, ramp afterwards", "[haptic][servo][extreme][D6]") {
   Pad pad = test::make_pad();
   const Vector3 settled = static_force(pad, 1.5e-3);
   ServoSession session(pad, {}, 2);
@@ -458,7 +460,7 @@ TEST_CASE("a saturated force keeps its direction", "[haptic][servo][extreme][D7]
   CHECK(worst >= 1.0 - 1e-12);
 }
 
-TEST_CASE("a missing compliance column softens nothing into stone", "[haptic][servo][extreme][D4]") {
+TEST_CASE("a missing compliance column does not make the contact rigid", "[haptic][servo][extreme][D4]") {
   SetupOptions few;
   few.columns = ColumnFill::synchronous;
   few.compliance_slots = 2;

@@ -1,4 +1,4 @@
-// A session that is reset starts as a new one does, and lets go of a tissue that moves.
+// A session after reset starts as a new one does, and a moving tissue receives zero forces.
 #include <palpate/haptic/haptic_servo.hpp>
 
 #include "contact/servo_session.hpp"
@@ -12,23 +12,23 @@ using namespace palpate;
 
 namespace {
 
-/// Springs that remember what pressed last.
+/// Springs that store the sum of the last forces.
 struct ListeningTissue : test::AnalyticTissue {
   using AnalyticTissue::AnalyticTissue;
   Status begin_tick() noexcept { return {}; }
   void end_tick(std::span<const VertexForce> forces) noexcept {
     pressing = Vector3::Zero();
     for (const VertexForce& f : forces) pressing += f.force.in_model_axes();
-    ++told;
+    ++calls;
   }
 
   Vector3 pressing = Vector3::Zero();
-  int told = 0;
+  int calls = 0;
 };
 static_assert(TissueModel<ListeningTissue> && AnnouncesChanges<ListeningTissue>);
 static_assert(!AnnouncesChanges<test::AnalyticTissue>);
 
-/// Presses, slides, lifts, jumps, loses its reading and grasps: whatever leaves state behind.
+/// Presses, slides, lifts, jumps, loses its reading and grasps: everything that leaves state behind.
 ToolState wild_state(int tick, int tool) {
   const double t = 1e-3 * tick, phase = 1.7 * tool;
   ToolState state;
@@ -42,7 +42,7 @@ ToolState wild_state(int tick, int tool) {
   return state;
 }
 
-/// All forces and torques of a run, bit by bit.
+/// Bit patterns of all forces and torques of a run.
 std::vector<std::uint64_t> play(HapticServo& servo, int tools) {
   std::vector<std::uint64_t> bits;
   std::vector<ToolState> states(static_cast<std::size_t>(tools));
@@ -72,7 +72,7 @@ void check_replay(HapticServo& servo, int tools) {
 
 }  // namespace
 
-TEST_CASE("a session that was reset gives the bits of its first run", "[haptic][servo]") {
+TEST_CASE("a session after reset gives bitwise the same run", "[haptic][servo]") {
   ServoOptions options;
   options.contact.friction = GENERATE(0.0, 0.4);
   options.grasp_buttons = GENERATE(0u, 1u);
@@ -96,7 +96,7 @@ TEST_CASE("a session that was reset gives the bits of its first run", "[haptic][
   }
 }
 
-TEST_CASE("a reset tells the tissue that nothing presses any more", "[haptic][servo]") {
+TEST_CASE("a reset reports to the tissue that nothing presses any more", "[haptic][servo]") {
   ListeningTissue tissue(10, 0.04, 1e-3);
   HapticServo servo(tissue, SphereTool{.radius = 5e-3});
   ToolState state;
@@ -105,13 +105,13 @@ TEST_CASE("a reset tells the tissue that nothing presses any more", "[haptic][se
     state.position = Vector3(0.0, 0.0, 5.5e-3 - 4e-5 * k);
     servo.tick({&state, 1});
   }
-  CHECK(tissue.told == 50);
+  CHECK(tissue.calls == 50);
   CHECK(tissue.pressing.z() < -1e-3);
   CHECK(!servo.read_snapshot().vertex_forces().empty());
   servo.reset();
   CHECK(servo.read_snapshot().vertex_forces().empty());  // a renderer shows no dent any more
   CHECK(servo.read_snapshot().tool_contacts().empty());
-  CHECK(tissue.told == 51);
+  CHECK(tissue.calls == 51);
   CHECK(tissue.pressing == Vector3::Zero());
   CHECK(servo.contacts().empty());
 }

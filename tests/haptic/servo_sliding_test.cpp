@@ -1,4 +1,4 @@
-// What the hand feels when a sphere slides over a mesh.
+// Force of a sphere that slides over a mesh.
 #include "contact/servo_session.hpp"
 
 #include "catch.hpp"
@@ -62,7 +62,7 @@ TEST_CASE("sliding over edges a third of the radius long is smooth", "[haptic][s
   CHECK(s.jump <= 0.01);
 }
 
-TEST_CASE("a coarse mesh ripples and is too stiff, but does not jump", "[haptic][servo][sliding]") {
+TEST_CASE("the force on a coarse mesh has ripple and is too stiff, but has no jumps", "[haptic][servo][sliding]") {
   const Slide coarse = slide(6, 6e-3, 2e-3), fine = slide(12, 6e-3, 2e-3);
   INFO("coarse: mean " << coarse.mean << " N, ripple " << coarse.ripple << ", jump " << coarse.jump
                        << "; fine: " << fine.mean << " N");
@@ -72,7 +72,8 @@ TEST_CASE("a coarse mesh ripples and is too stiff, but does not jump", "[haptic]
   CHECK(coarse.mean <= 2.0 * fine.mean);
 }
 
-TEST_CASE("halving a mesh of a third of the radius changes the force by less than 5 %", "[haptic][servo][sliding]") {
+TEST_CASE("halving the edge length from a third of the radius changes the force by less than 5 %",
+          "[haptic][servo][sliding]") {
   const Slide coarse = slide(6, 12e-3, 3e-3), fine = slide(12, 12e-3, 3e-3);
   INFO("coarse: mean " << coarse.mean << " N, ripple " << coarse.ripple << "; fine: mean " << fine.mean << " N, ripple "
                        << fine.ripple);

@@ -1,4 +1,4 @@
-// A haptic session on a real model: what the hand should feel.
+// A haptic session on a finite element model: the forces to expect.
 #include "contact/servo_session.hpp"
 
 #include <palpate/device/mock_device.hpp>
@@ -26,7 +26,7 @@ using test::sphere_radius;
 
 }  // namespace
 
-TEST_CASE("press, hold, release: the force rises, stays, and is gone", "[haptic][servo]") {
+TEST_CASE("press, hold, release: the force rises, stays constant, and returns to zero", "[haptic][servo]") {
   Pad pad = test::make_pad();
   ServoSession session(pad);
   session.tick(Vector3(0.0137, 0.0159, pad_height + sphere_radius + 1e-3));
@@ -44,14 +44,14 @@ TEST_CASE("press, hold, release: the force rises, stays, and is gone", "[haptic]
   }
   CHECK(before > 0.05);
   CHECK(session.forces[0].force().head<2>().norm() < 0.5 * before);
-  const Vector3 at_once = session.forces[0].force(), held = session.hold(200).force();
-  CHECK((held - at_once).norm() <= 2e-3 * held.norm());
-  CHECK((session.hold(500).force() - held).norm() <= 1e-9 * held.norm());
+  const Vector3 at_once = session.forces[0].force(), steady = session.hold(200).force();
+  CHECK((steady - at_once).norm() <= 2e-3 * steady.norm());
+  CHECK((session.hold(500).force() - steady).norm() <= 1e-9 * steady.norm());
   session.move(Vector3(0.0137, 0.0159, pad_height + sphere_radius + 1e-4), 100);
   CHECK(test::same(session.hold(3).force(), Vector3::Zero()));
   CHECK(session.servo.read_snapshot().vertex_forces().empty());
   session.press(1.8e-3);
-  CHECK((session.hold(200).force() - held).norm() <= 1e-6 * held.norm());
+  CHECK((session.hold(200).force() - steady).norm() <= 1e-6 * steady.norm());
 }
 
 TEST_CASE("away from the tissue the force is exactly zero", "[haptic][servo]") {
@@ -73,7 +73,7 @@ TEST_CASE("away from the tissue the force is exactly zero", "[haptic][servo]") {
   CHECK(not_zero == 0);
 }
 
-TEST_CASE("a tick renders the force of the pose it was given", "[haptic][servo]") {
+TEST_CASE("a tick renders the force of the pose that it received", "[haptic][servo]") {
   Pad pad = test::make_pad();
   ServoSession session(pad);
   session.press(5e-4);
@@ -107,7 +107,7 @@ TEST_CASE("the force is the coupling spring between device and proxy, and the pr
   }
 }
 
-TEST_CASE("near an edge of a body that can be touched all over no contact point is left out", "[haptic][servo]") {
+TEST_CASE("near an edge of a body with all of its surface touchable no contact point is missed", "[haptic][servo]") {
   Pad& pad = test::whole_pad();
   const ContactSamples samples(pad.contact_surface(), 0.5 * sphere_radius);
   ServoSession session(pad);
@@ -122,7 +122,7 @@ TEST_CASE("near an edge of a body that can be touched all over no contact point 
   }
 }
 
-TEST_CASE("two tools: alone when far apart, felt by each other when near", "[haptic][servo]") {
+TEST_CASE("two tools: independent when far apart, coupled when near", "[haptic][servo]") {
   Scene scene;
   scene.fix("z0").touch("z1");
   Pad slab(box_tet4(Vector3(0.12, 0.02, 0.01), {24, 4, 2}, BoxSplit::six), scene,
@@ -169,7 +169,7 @@ TEST_CASE("tools in swapped order give swapped forces", "[haptic][servo]") {
   for (std::size_t i : {0u, 1u}) CHECK((force[0][i] - force[1][i]).norm() <= 1e-6 * force[0][i].norm());
 }
 
-TEST_CASE("turning model and tools together turns the forces", "[haptic][servo][M2]") {
+TEST_CASE("rotating model and tools together rotates the forces", "[haptic][servo][M2]") {
   Pad pad = test::make_pad(), rotated = test::make_pad();
   testing::Random random(72);
   for (int round = 0; round < 3; ++round) {
@@ -210,7 +210,7 @@ TEST_CASE("compliance in float gives the forces of double to 1e-4", "[haptic][se
   CHECK(worst <= 1e-4 * largest);
 }
 
-TEST_CASE("solvers that make compliance when needed give the same forces", "[haptic][servo]") {
+TEST_CASE("solvers that compute compliance on request give the same forces", "[haptic][servo]") {
   Pad pad = test::make_pad();
   auto sparse = test::make_pad<HapticFEModel<Tet4, LinearElastic, SparseCholesky>>();
   auto dense = test::make_pad<HapticFEModel<Tet4, LinearElastic, Condensed<DenseCholesky>>>();
@@ -245,7 +245,7 @@ TEST_CASE("static ticks of any length give the same static force", "[haptic][ser
   for (const Vector3& f : settled) CHECK(test::same(f, settled[0]));
 }
 
-TEST_CASE("another way to the same place ends at the same force", "[haptic][servo]") {
+TEST_CASE("another path to the same position ends at the same force", "[haptic][servo]") {
   Pad pad = test::make_pad();
   const Vector3 end(0.0137, 0.0159, pad_height + sphere_radius - 1e-3);
   ServoSession straight(pad), around(pad);
@@ -258,7 +258,7 @@ TEST_CASE("another way to the same place ends at the same force", "[haptic][serv
   CHECK((a - b).norm() <= 2e-3 * a.norm());
 }
 
-TEST_CASE("two runs are the same bit by bit", "[haptic][servo]") {
+TEST_CASE("two runs are bitwise equal", "[haptic][servo]") {
   const auto run = [] {
     Pad pad = test::make_pad();
     ServoSession session(pad, {}, 2);
@@ -287,7 +287,7 @@ TEST_CASE("two runs are the same bit by bit", "[haptic][servo]") {
   CHECK(at_work > 1000);
 }
 
-TEST_CASE("a replayed recording gives the recorded forces bit by bit", "[haptic][servo][recording]") {
+TEST_CASE("a replayed recording gives bitwise the recorded forces", "[haptic][servo][recording]") {
   Pad pad = test::make_pad();
   using Kind = DeviceFault::Kind;
   MockOptions mock;
@@ -328,7 +328,7 @@ TEST_CASE("a replayed recording gives the recorded forces bit by bit", "[haptic]
 
 namespace {
 
-/// The forces of contacts in the world, on the vertices that carry them.
+/// The forces of contacts in the world frame, distributed to the vertices of their triangles.
 std::vector<VertexForce> spread(std::span<const ToolContact> contacts, const Eigen::Isometry3d& to_world) {
   std::vector<VertexForce> forces;
   for (const ToolContact& c : contacts)
@@ -340,7 +340,7 @@ std::vector<VertexForce> spread(std::span<const ToolContact> contacts, const Eig
 
 }  // namespace
 
-TEST_CASE("the snapshot holds the forces of the tick", "[haptic][servo]") {
+TEST_CASE("the snapshot contains the forces of the tick", "[haptic][servo]") {
   Pad pad = test::make_pad();
   ServoSession session(pad);
   session.press(1e-3);
@@ -362,7 +362,7 @@ TEST_CASE("the snapshot holds the forces of the tick", "[haptic][servo]") {
   CHECK(u.norm() > 1e-4);
 }
 
-TEST_CASE("contacts of a turned model are in the world, on the vertices that carry them", "[haptic][servo]") {
+TEST_CASE("contacts of a rotated model are in the world frame, on the vertices of their triangles", "[haptic][servo]") {
   Pad pad = test::make_pad();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   testing::Random random(73);
@@ -392,7 +392,7 @@ TEST_CASE("contacts of a turned model are in the world, on the vertices that car
   CHECK((sum + on_vertices).norm() <= 1e-12);
 }
 
-TEST_CASE("reset lifts the tools and starts anew", "[haptic][servo]") {
+TEST_CASE("reset lifts the tools and restarts", "[haptic][servo]") {
   Pad pad = test::make_pad();
   ServoSession session(pad);
   session.press(1e-3);
@@ -421,7 +421,7 @@ TEST_CASE("missing states count as unreadable, surplus ones are ignored", "[hapt
   CHECK(session.servo.tick(many).size() == 2);
 }
 
-TEST_CASE("a servo that makes no sense is refused", "[haptic][servo]") {
+TEST_CASE("a servo with invalid arguments is refused", "[haptic][servo]") {
   Pad pad = test::make_pad();
   const double nan_value = std::numeric_limits<double>::quiet_NaN();
   for (double bad : {0.0, -1e-3, nan_value, infinity})

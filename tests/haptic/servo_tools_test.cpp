@@ -1,4 +1,4 @@
-// Several tools of one servo, points that are held, and what a snapshot tells of both.
+// Several tools of one servo, grasped points, and the data of a snapshot for both.
 #include <palpate/haptic/haptic_servo.hpp>
 
 #include "contact/analytic_tissue.hpp"
@@ -42,14 +42,14 @@ struct Tools {
 
 }  // namespace
 
-TEST_CASE("a tool that lost the surface is found whatever its number, while the other is in the air",
+TEST_CASE("a tool of any number that lost the surface is placed again, while the other is in the air",
           "[haptic][servo][extreme]") {
   for (const std::size_t lost : {0u, 1u}) {
     Tools tools(2);
     tools.states[0].position = Vector3(0.05, 0.0, 0.05);
     tools.states[1].position = Vector3(0.05, 0.0, 0.07);
     tools.tick();
-    tools.move(lost, {0.05, 0.0, -0.05}, 30);  // round the border of the sheet
+    tools.move(lost, {0.05, 0.0, -0.05}, 30);  // around the border of the surface
     tools.move(lost, {0.0, 0.0, -0.05}, 15);
     for (int k = 0; k < 20; ++k) tools.tick();
     INFO("tool " << lost);
@@ -59,7 +59,7 @@ TEST_CASE("a tool that lost the surface is found whatever its number, while the 
   }
 }
 
-TEST_CASE("a snapshot's contacts add up to the contact force, held points too", "[haptic][servo][grasp]") {
+TEST_CASE("the sum of a snapshot's contacts is the contact force, also with grasped points", "[haptic][servo][grasp]") {
   ServoOptions options;
   options.grasp_buttons = 1;
   options.contact.friction = 0.3;
@@ -70,7 +70,7 @@ TEST_CASE("a snapshot's contacts add up to the contact force, held points too", 
   tools.move(0, {-0.008, 0.0, round_radius - 1e-3}, 40);
   tools.move(1, {0.008, 0.001, round_radius - 1e-3}, 40);
   tools.states[0].buttons = 1;
-  const auto look = [&](std::size_t held) {
+  const auto look = [&](std::size_t expected) {
     const auto& snapshot = tools.servo.read_snapshot();
     std::array<Vector3, 2> sum{Vector3::Zero(), Vector3::Zero()};
     std::size_t grasped = 0;
@@ -80,15 +80,15 @@ TEST_CASE("a snapshot's contacts add up to the contact force, held points too", 
       CHECK(std::abs(c.normal.norm() - 1.0) < 1e-12);
       if (c.grasped) ++grasped;
     }
-    CHECK(grasped == held);
+    CHECK(grasped == expected);
     for (std::size_t i : {0u, 1u})
       CHECK((sum[i] - tools.servo.contact_force(i)).norm() <= 1e-9 * tools.servo.contact_force(i).norm());
   };
   look(0);
-  tools.move(0, {-0.007, 0.0006, round_radius - 1e-3}, 20);  // drags
+  tools.move(0, {-0.007, 0.0006, round_radius - 1e-3}, 20);  // lateral motion
   REQUIRE(tools.servo.is_holding(0));
   look(1);
-  tools.move(0, {-0.008, -0.0005, round_radius + 3e-3}, 40);  // pulls: nothing but the held point, towards the surface
+  tools.move(0, {-0.008, -0.0005, round_radius + 3e-3}, 40);  // pulls: only the grasped point, towards the surface
   CHECK(tools.servo.contact_force(0).z() < 0.0);
   look(1);
   tools.move(1, {0.009, 0.001, round_radius - 8e-4}, 20);

@@ -1,4 +1,4 @@
-// Tissue that moves at its own rate under a servo that ticks at another.
+// Tissue that moves at its own rate under a servo with another rate.
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/haptic/background_worker.hpp>
 #include <palpate/material/linear_elastic.hpp>
@@ -42,7 +42,7 @@ ServoOptions device() {
   return o;
 }
 
-/// A sphere over the middle of the pad, `depth` below first touch, at tick k of 1 kHz.
+/// A sphere over the middle of the pad, `depth` below first contact, at tick k of a 1 kHz clock.
 ToolState above(int k, double depth, double aside = 0.0) {
   ToolState s;
   s.time = 1e-3 * k;
@@ -50,7 +50,7 @@ ToolState above(int k, double depth, double aside = 0.0) {
   return s;
 }
 
-/// What a session of ticks with steps in between ended with.
+/// Final state of a session of ticks with tissue steps in between.
 struct Session {
   Vector3 force = Vector3::Zero();  ///< before the gate [N]
   double largest_change = 0.0;      ///< of the force between two ticks after the first 50 [N]
@@ -86,7 +86,7 @@ double ramp(double t) {
 
 }  // namespace
 
-TEST_CASE("the steady force does not depend on the step, and is that of the equilibrium", "[haptic][soft]") {
+TEST_CASE("the steady force does not depend on the step and equals that of the static equilibrium", "[haptic][soft]") {
   std::vector<double> steady;
   for (const double h : {0.02, 0.01, 0.005, 0.001}) {
     Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(h));
@@ -103,11 +103,11 @@ TEST_CASE("the steady force does not depend on the step, and is that of the equi
     REQUIRE(statics.solve().converged);
     CHECK((statics.displacement() - tissue.motion().displacement()).norm() <= 1e-4 * statics.displacement().norm());
   }
-  for (const double f : steady) CHECK_THAT(f, WithinRel(steady.back(), 1e-3));  // 1 % asked for
+  for (const double f : steady) CHECK_THAT(f, WithinRel(steady.back(), 1e-3));  // 1 % required
   CHECK(steady.back() > 0.3);
 }
 
-TEST_CASE("a slight touch feels as linear elasticity does", "[haptic][soft]") {
+TEST_CASE("a slight touch gives the force of linear elasticity", "[haptic][soft]") {
   const auto slight = [](double t) { return std::min(0.0005, 0.01 * t); };
   Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
   const double soft = press(tissue, 600, slight).force[2];
@@ -117,7 +117,7 @@ TEST_CASE("a slight touch feels as linear elasticity does", "[haptic][soft]") {
   CHECK_THAT(soft, WithinRel(servo.contact_force()[2], 0.02));
 }
 
-TEST_CASE("a tissue that is let go comes back, and a stalled one stays elastic", "[haptic][soft]") {
+TEST_CASE("a released tissue returns to rest, and a stalled one stays elastic", "[haptic][soft]") {
   Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
   press(tissue, 500, ramp);
   const double pressed = tissue.motion().displacement().norm();
@@ -127,7 +127,7 @@ TEST_CASE("a tissue that is let go comes back, and a stalled one stays elastic",
   for (int k = 0; k < 50; ++k) tissue.advance();
   HapticServo servo(tissue, SphereTool{.radius = sphere}, device());
   double work = 0.0, depth = -0.001, most = 0.0;
-  for (int k = 0; k < 400; ++k) {  // 0.4 s without a step: in, hold, out
+  for (int k = 0; k < 400; ++k) {  // 0.4 s without a tissue step: in, hold, out
     const double next = k < 100 ? depth + 5e-5 : k < 300 ? depth : depth - 5e-5;
     servo.tick({std::array{above(k, next)}});
     work += servo.contact_force()[2] * (next - depth);
@@ -135,19 +135,20 @@ TEST_CASE("a tissue that is let go comes back, and a stalled one stays elastic",
     most = std::max(most, servo.contact_force()[2]);
   }
   CHECK(most > 0.1);
-  CHECK(work >= -0.02 * most * 0.004);  // the hand gets no energy out of it
+  CHECK(work >= -0.02 * most * 0.004);  // the hand gains no energy
   CHECK(servo.contact_force()[2] == 0.0);
 }
 
-TEST_CASE("gravity is settled before the first touch", "[haptic][soft]") {
-  Soft<NeoHookean> tissue(pad(), pad_scene().gravity({0.0, 0.0, -9.81}), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
+TEST_CASE("the tissue is settled under gravity before the first touch", "[haptic][soft]") {
+  Soft<NeoHookean> tissue(pad(), pad_scene().gravity({0.0, 0.0, -9.81}), NeoHookean{5e3, 0.45, 1000.0}, {},
+                          with_step(0.01));
   const VectorX u = tissue.motion().displacement();
   CHECK(u.norm() > 0.0);
   for (int k = 0; k < 20; ++k) tissue.advance();
   CHECK((tissue.motion().displacement() - u).norm() <= 1e-6 * u.norm());
 }
 
-TEST_CASE("moving tissue keeps the laws of tissues, at rest and turned", "[haptic][soft][laws]") {
+TEST_CASE("moving tissue satisfies the laws of tissues, at rest and rotated", "[haptic][soft][laws]") {
   Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
   CHECK(testing::describe(testing::tissue_laws(tissue, std::array{0, 24, 30, 48}, {1e-9})) == "");
   press(tissue, 500, ramp, 0.01);
@@ -172,7 +173,7 @@ TEST_CASE("neither a tick nor a step of the tissue allocates", "[haptic][soft][a
   CHECK(allocations == 0);
 }
 
-TEST_CASE("thread and ticks exchange without waiting", "[haptic][soft]") {
+TEST_CASE("tissue thread and ticks exchange data without waiting", "[haptic][soft]") {
   Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.005));
   HapticServo servo(tissue, SphereTool{.radius = sphere}, device());
   BackgroundWorker worker(tissue);
@@ -192,7 +193,7 @@ TEST_CASE("thread and ticks exchange without waiting", "[haptic][soft]") {
   CHECK(worker.report().rate <= 1.1);
 }
 
-TEST_CASE("steps and bodies that cannot be are refused", "[haptic][soft]") {
+TEST_CASE("invalid steps and bodies are refused", "[haptic][soft]") {
   const auto kind = [](const Scene& s, double step) {
     try {
       Soft<NeoHookean> tissue(pad(), s, NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(step));
@@ -208,10 +209,10 @@ TEST_CASE("steps and bodies that cannot be are refused", "[haptic][soft]") {
   CHECK(kind(Scene().fix("nowhere").touch("z1"), 0.01) == SetupErrorKind::unknown_group);
 }
 
-TEST_CASE("what a tissue refuses is named as in the mesh as given", "[haptic][soft]") {
+TEST_CASE("errors of a tissue use the node numbers and positions of the given mesh", "[haptic][soft]") {
   Mesh<Tet4> mesh = box_tet4({0.02, 0.02, 0.02}, {2, 2, 2});
   for (Vector3& x : mesh.positions) x += Vector3(3.0, -2.0, 0.0);
-  mesh.positions.insert(mesh.positions.begin(), Vector3(3.0, -2.0, 1.0));  // no element uses it: it is dropped
+  mesh.positions.insert(mesh.positions.begin(), Vector3(3.0, -2.0, 1.0));  // an orphan node, which is dropped
   for (auto& e : mesh.elements)
     for (NodeId& i : e) ++i;
   mesh.groups = {};
@@ -220,9 +221,9 @@ TEST_CASE("what a tissue refuses is named as in the mesh as given", "[haptic][so
   };
   const NeoHookean material{5e3, 0.45, 1000.0};
   const std::vector<NodeId> edge{1, 10, 19}, bottom{1, 2, 3, 4, 5, 6, 7, 8, 9};
-  const SetupProblem loose = refused(Scene().fix(edge).touch("surface"), material);
-  CHECK_THAT(loose.what, test::contains("through (3, -2, 0.01)"));
-  CHECK(loose.ids.front() == 1);
+  const SetupProblem movable = refused(Scene().fix(edge).touch("surface"), material);
+  CHECK_THAT(movable.what, test::contains("through (3, -2, 0.01)"));
+  CHECK(movable.ids.front() == 1);
   const std::vector<NodeId> one{5};
   const SetupProblem twice = refused(Scene().fix(bottom).prescribe(one, {1e-3, 0.0, 0.0}).touch("surface"), material);
   CHECK(to_string(twice.kind) == "conflicting_conditions");
@@ -233,9 +234,10 @@ TEST_CASE("what a tissue refuses is named as in the mesh as given", "[haptic][so
   CHECK(light.ids_of != SetupIds::others);
 }
 
-TEST_CASE("a tissue that nothing touches says that all is well", "[haptic][soft]") {
+TEST_CASE("a tissue without contact reports no status flag", "[haptic][soft]") {
   for (const double g : {0.0, 9.81}) {
-    Soft<NeoHookean> tissue(pad(), pad_scene().gravity({0.0, 0.0, -g}), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
+    Soft<NeoHookean> tissue(pad(), pad_scene().gravity({0.0, 0.0, -g}), NeoHookean{5e3, 0.45, 1000.0}, {},
+                            with_step(0.01));
     for (int k = 0; k < 10; ++k) {
       tissue.advance();
       CHECK(tissue.begin_tick().ok());
@@ -244,7 +246,7 @@ TEST_CASE("a tissue that nothing touches says that all is well", "[haptic][soft]
   }
 }
 
-TEST_CASE("forces that are none are dropped, and said", "[haptic][soft][extreme]") {
+TEST_CASE("forces that are not finite are dropped and flagged", "[haptic][soft][extreme]") {
   Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
   tissue.advance();
   const double none = std::numeric_limits<double>::quiet_NaN();
@@ -278,7 +280,7 @@ TEST_CASE("the compliance is that of the settled body", "[haptic][soft]") {
   }
 }
 
-TEST_CASE("a tissue with memory that is held relaxes to the slow equilibrium, whatever the step",
+TEST_CASE("a viscoelastic tissue under a constant indentation relaxes to the slow equilibrium for any step",
           "[haptic][soft][viscous]") {
   const NeoHookean fast{5e3, 0.45, 1000.0};
   const Viscoelastic<NeoHookean, 1> material{fast, {{{0.6, 0.3}}}};
@@ -299,7 +301,7 @@ TEST_CASE("a tissue with memory that is held relaxes to the slow equilibrium, wh
   }
 }
 
-TEST_CASE("small strain with memory is felt as well", "[haptic][soft][viscous]") {
+TEST_CASE("viscoelastic tissue at small strain relaxes, too", "[haptic][soft][viscous]") {
   const LinearElastic fast{5e3, 0.45, 1000.0};
   const Viscoelastic<LinearElastic, 1> material{fast, {{{0.6, 0.3}}}};
   Soft<Viscoelastic<LinearElastic, 1>> tissue(pad(), pad_scene(), material, {}, with_step(0.01));

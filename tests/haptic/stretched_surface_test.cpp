@@ -1,4 +1,4 @@
-// Edges too long for a tool: because the mesh is coarse, or because loads have stretched it.
+// Edges too long for a tool, because the mesh is coarse or because loads have stretched it.
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
@@ -18,7 +18,8 @@ namespace {
 using Rod = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
 
 const Vector3 rod_size(0.02, 0.02, 0.1);  // hangs from its top, edges of 0.02 m
-const LinearElastic misread_stiffness{.youngs_modulus = 5.0, .poisson_ratio = 0.3, .density = 1060.0};  // 5e3 was meant
+const LinearElastic misread_stiffness{
+    .youngs_modulus = 5.0, .poisson_ratio = 0.3, .density = 1060.0};  // 5e3 was intended
 constexpr double smallest = 4e-3;
 
 Mesh<Tet4> rod_mesh() {
@@ -40,7 +41,7 @@ void check_stretched(const SetupProblem& p, const std::string& loads) {
 
 }  // namespace
 
-TEST_CASE("an edge that loads have stretched is not blamed on the mesh", "[haptic][extreme]") {
+TEST_CASE("the message for an edge stretched by loads names the loads", "[haptic][extreme]") {
   const auto refused = [](Rod& model) {
     return test::refusal([&] { HapticServo(model, SphereTool{.radius = smallest}); });
   };
@@ -65,7 +66,7 @@ TEST_CASE("an edge that loads have stretched is not blamed on the mesh", "[hapti
   }
 }
 
-TEST_CASE("tissue that is cut or moves says so, too", "[haptic][cut][extreme]") {
+TEST_CASE("tissue that can be cut or moves names the loads, too", "[haptic][cut][extreme]") {
   HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>> cut(rod_mesh(), hanging_rod(),
                                                                                 misread_stiffness);
   check_stretched(test::refusal([&] { HapticServo(cut, SphereTool{.radius = smallest}); }), "gravity of 9.81 m/s^2");
@@ -76,7 +77,7 @@ TEST_CASE("tissue that is cut or moves says so, too", "[haptic][cut][extreme]") 
                   "prescribed displacements");
 }
 
-TEST_CASE("a coarse mesh is still to be refined", "[haptic][extreme]") {
+TEST_CASE("the message for a coarse mesh suggests refinement", "[haptic][extreme]") {
   const LinearElastic as_meant{.youngs_modulus = 5e3, .poisson_ratio = 0.3, .density = 1060.0};
   Rod model(rod_mesh(), hanging_rod(), as_meant);
   const SetupProblem p = test::refusal([&] { HapticServo(model, SphereTool{.radius = 2e-4}); });

@@ -1,4 +1,4 @@
-// A tick takes nothing from the heap, whatever happens in it.
+// A tick does not allocate in any situation.
 #include "contact/servo_session.hpp"
 
 #include <palpate/linear/dense_cholesky.hpp>
@@ -21,7 +21,7 @@ struct Seen {
   int pressed = 0;
 };
 
-/// Presses, drags, releases, jumps, and sends NaN and failed reads in between, over and over.
+/// Presses, drags, releases, jumps, and sends NaN and failed reads in between, repeatedly.
 template <class Model>
 Seen abuse(Model& model, int ticks, const ServoOptions& options) {
   HapticServo servo(model, std::vector<SphereTool>(2, SphereTool{.radius = sphere_radius}), options);
@@ -68,7 +68,7 @@ void check(const Seen& seen, int ticks) {
 
 }  // namespace
 
-TEST_CASE("1e6 ticks of all kinds take nothing from the heap", "[haptic][servo][tick][allocation]") {
+TEST_CASE("1e6 ticks of all kinds do not allocate", "[haptic][servo][tick][allocation]") {
   Pad pad = test::make_pad();
   ServoOptions cheap;
   cheap.contact.sample_spacing = 1.0;
@@ -76,11 +76,11 @@ TEST_CASE("1e6 ticks of all kinds take nothing from the heap", "[haptic][servo][
   check(abuse(pad, 10'000, {}), 10'000);
 }
 
-TEST_CASE("nor do ticks that make the compliance they need", "[haptic][servo][tick][allocation]") {
+TEST_CASE("ticks that compute the compliance they need do not allocate", "[haptic][servo][tick][allocation]") {
   constexpr int ticks = 10'000;
   SetupOptions few;
   few.columns = ColumnFill::synchronous;
-  few.compliance_slots = 40;  // of 49 vertices: columns come and go
+  few.compliance_slots = 40;  // of 49 vertices: columns are replaced
   auto sparse = test::make_pad<HapticFEModel<Tet4, LinearElastic, SparseCholesky>>("z1", 1e4, {6, 6, 4}, few);
   check(abuse(sparse, ticks, {}), ticks);
   auto dense = test::make_pad<HapticFEModel<Tet4, LinearElastic, Condensed<DenseCholesky>>>("z1", 1e4, {6, 6, 4}, few);
@@ -89,7 +89,7 @@ TEST_CASE("nor do ticks that make the compliance they need", "[haptic][servo][ti
   check(abuse(iterative, ticks / 2, {}), ticks / 2);
 }
 
-TEST_CASE("nor does the displacement that is drawn", "[haptic][servo][tick][allocation]") {
+TEST_CASE("computing the rendered displacement does not allocate", "[haptic][servo][tick][allocation]") {
   const auto run = [](auto model) {
     test::ServoSession session(model);
     session.press(1e-3);

@@ -1,4 +1,4 @@
-// One writer, one reader: the newest whole value, in order.
+// One writer, one reader: the newest complete value, in order.
 #include <palpate/haptic/detail/triple_buffer.hpp>
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 using namespace palpate;
 
-TEST_CASE("the newest published value is read, once", "[haptic][triple_buffer]") {
+TEST_CASE("the newest published value is read exactly once", "[haptic][triple_buffer]") {
   TripleBuffer<int> buffer;
   CHECK_FALSE(buffer.update());
   CHECK(buffer.front() == 0);
   buffer.back() = 1;
   CHECK_FALSE(buffer.update());  // not published
   buffer.publish();
-  CHECK(buffer.front() == 0);  // not asked for
+  CHECK(buffer.front() == 0);  // update() was not called
   CHECK(buffer.update());
   CHECK(buffer.front() == 1);
   CHECK_FALSE(buffer.update());
@@ -35,7 +35,7 @@ TEST_CASE("the newest published value is read, once", "[haptic][triple_buffer]")
   }
 }
 
-TEST_CASE("two threads: no torn value, none out of order, the last one arrives", "[haptic][triple_buffer]") {
+TEST_CASE("two threads: no torn value, none out of order, the last value is received", "[haptic][triple_buffer]") {
   struct Value {
     std::array<std::uint64_t, 64> words{};
   };
@@ -65,5 +65,5 @@ TEST_CASE("two threads: no torn value, none out of order, the last one arrives",
   CHECK(torn == 0);
   CHECK(backwards == 0);
   CHECK(newest == last);
-  CHECK(seen > 0);  // how many depends on what else the machine does
+  CHECK(seen > 0);  // the number depends on the load of the machine
 }

@@ -1,4 +1,4 @@
-// What a renderer reads, and several tissues under one tool.
+// Data for a renderer, and several tissues under one tool.
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
@@ -54,7 +54,7 @@ Vector3 at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-/// A fine grid over the top of the block, a little above it.
+/// A fine grid over the top of the block, at a distance `above`.
 VisualMesh fine_top(double above) {
   VisualMesh mesh;
   constexpr int n = 40;
@@ -71,7 +71,7 @@ VisualMesh fine_top(double above) {
 
 }  // namespace
 
-TEST_CASE("the surface of the body is drawn where the body is", "[model][visual]") {
+TEST_CASE("the rendered surface coincides with the surface of the body", "[model][visual]") {
   Model model(block(), scene().gravity({0, 0, -9.81}), soft);
   HapticServo servo(model, SphereTool{tool_radius}, stiff());
   VisualSurface surface(model);
@@ -91,7 +91,7 @@ TEST_CASE("the surface of the body is drawn where the body is", "[model][visual]
     lowest = std::min(lowest, at(positions, i).z());
   }
   CHECK(lowest < 0.01 - 0.8e-3);
-  // no point sinks into the sphere
+  // no point penetrates the sphere
   for (std::size_t i = 0; i < 49; ++i) CHECK((at(positions, i) - servo.proxy()).norm() >= tool_radius - 1e-5);
 }
 
@@ -99,16 +99,16 @@ TEST_CASE("a fine surface follows an affine displacement exactly, on the body an
   Matrix3 a;
   a << 0.1, 0.02, 0.0, 0.03, -0.05, 0.01, 0.0, 0.04, 0.08;
   const Mesh<Tet4> mesh = block();
-  Scene held = Scene().touch("z1");
+  Scene supported = Scene().touch("z1");
   for (NodeId i = 0; i < mesh.node_count(); ++i) {
     const Vector3 u = a * mesh.position(i);
-    if (mesh.position(i).z() < 0.01 - 1e-9) held.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
+    if (mesh.position(i).z() < 0.01 - 1e-9) supported.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
   }
   for (NodeId i = 0; i < mesh.node_count(); ++i) {
     const Vector3 u = a * mesh.position(i);
-    if (mesh.position(i).z() >= 0.01 - 1e-9) held.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
+    if (mesh.position(i).z() >= 0.01 - 1e-9) supported.prescribe(std::vector<NodeId>{i}, {u[0], u[1], u[2]});
   }
-  Model model(mesh, held, soft);
+  Model model(mesh, supported, soft);
   for (const double above : {-1e-4, 0.0, 5e-4}) {
     VisualSurface fine(model, fine_top(above));
     CHECK((fine.report().outside > 0) == (above > 0.0));
@@ -121,7 +121,7 @@ TEST_CASE("a fine surface follows an affine displacement exactly, on the body an
   }
 }
 
-TEST_CASE("the surface follows the pose, and the reader's mistakes are harmless", "[model][visual]") {
+TEST_CASE("the surface follows the pose, and arrays of wrong size are refused", "[model][visual]") {
   Model model(block(), scene(), soft);
   VisualSurface surface(model);
   const auto n = static_cast<std::size_t>(3 * surface.point_count());
@@ -139,7 +139,7 @@ TEST_CASE("the surface follows the pose, and the reader's mistakes are harmless"
   CHECK(few[0] == 7.0F);
 }
 
-TEST_CASE("surfaces that are none are refused", "[model][visual][extreme]") {
+TEST_CASE("invalid surfaces are refused", "[model][visual][extreme]") {
   Model model(block(), scene(), soft);
   const auto kind = [&](auto change) {
     VisualMesh mesh = fine_top(0.0);
@@ -157,7 +157,7 @@ TEST_CASE("surfaces that are none are refused", "[model][visual][extreme]") {
   CHECK(kind([](VisualMesh& m) { m.positions[7][0] = infinity; }) == SetupErrorKind::non_finite);
 }
 
-TEST_CASE("a renderer reads while the hand feels", "[model][visual][threads]") {
+TEST_CASE("a renderer reads while the servo ticks", "[model][visual][threads]") {
   Model model(block(), scene(), soft);
   HapticServo servo(model, SphereTool{tool_radius}, stiff());
   VisualSurface surface(model);
@@ -204,7 +204,7 @@ TEST_CASE("contacts of a snapshot carry point, normal and the whole force", "[ha
   CHECK((sum - servo.contact_force()).norm() <= 1e-12 * sum.norm());
 }
 
-TEST_CASE("one model in a group feels as it does alone", "[contact][group]") {
+TEST_CASE("a single model in a group gives the same force as alone", "[contact][group]") {
   Model model(block(), scene(), soft);
   HapticServo alone(model, SphereTool{tool_radius}, stiff());
   const Vector3 truth = press(alone, {0.01, 0.01, 0.01}, 1e-3);
@@ -213,11 +213,11 @@ TEST_CASE("one model in a group feels as it does alone", "[contact][group]") {
   CHECK((press(together, {0.01, 0.01, 0.01}, 1e-3) - truth).norm() <= 1e-10 * truth.norm());
 }
 
-TEST_CASE("two halves of a scene are felt at once, each in its pose", "[contact][group]") {
+TEST_CASE("two models of a group are touched simultaneously, each in its pose", "[contact][group]") {
   Model left(block(), scene(), soft), right(block(), scene(), {3e4, 0.3, 1000.0});
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.rotate(Eigen::AngleAxisd(std::numbers::pi, Vector3::UnitZ()));  // the right one turned about
-  pose.pretranslate(Vector3(0.0405, 0.02, 0.0));                             // half a millimetre beside the left one
+  pose.rotate(Eigen::AngleAxisd(std::numbers::pi, Vector3::UnitZ()));  // the right one rotated by 180 degrees
+  pose.pretranslate(Vector3(0.0405, 0.02, 0.0));                       // 0.5 mm from the left one
   right.set_pose(pose);
   TissueGroup group(left, right);
   CHECK(group.member_count() == 2);
@@ -233,10 +233,10 @@ TEST_CASE("two halves of a scene are felt at once, each in its pose", "[contact]
     for (std::size_t i = 0; i < group.forces_on(member, forces, own); ++i)
       sum[static_cast<std::size_t>(member)] += own[i].force.in_model_axes();
   CHECK(sum[0].z() < 0.0);               // both are pressed,
-  CHECK(sum[1].z() < 2.0 * sum[0].z());  // the harder one more
+  CHECK(sum[1].z() < 2.0 * sum[0].z());  // the stiffer one more
   CHECK((pose.linear() * sum[1] + sum[0] + both).norm() <= 1e-10 * both.norm());
 
-  // far from each other nothing changes, but for what a tick may leave unconverged
+  // far from each other the force is that of one alone, up to the tolerance of a tick
   pose.pretranslate(Vector3(1.0, 0.0, 0.0));
   right.set_pose(pose);
   group.update();

@@ -1,4 +1,4 @@
-// Tetrahedra with averaged volumes: a force that derives from its energy, exact for equal strain, and does not lock.
+// Tetrahedra with averaged volumes: the force derives from the energy, is exact for uniform strain, and does not lock.
 #include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
@@ -23,7 +23,7 @@ VectorX some_displacement(Index dofs, double amount) {
   return u;
 }
 
-/// Deflection of the tip of a beam 4 x 1 x 1 under a small force, at rest.
+/// Static tip deflection of a beam 4 x 1 x 1 under a small force.
 template <class Force>
 double tip_deflection(double nu) {
   const NeoHookean material{.youngs_modulus = 1.0, .poisson_ratio = nu, .density = 1.0};
@@ -92,7 +92,7 @@ TEST_CASE("patch test of averaged volumes, at large strain", "[integrator][avera
 }
 
 TEST_CASE("a beam of averaged volumes bends at nu = 0.49", "[integrator][averaged]") {
-  // three-dimensional value, E = 1, nu = 0.49, a force of 1e-3: 0.2584
+  // three-dimensional reference, E = 1, nu = 0.49, a force of 1e-3: 0.2584
   const double exact = 258.4;
   const double plain = tip_deflection<BatchedTetrahedra<NeoHookean>>(0.49) / exact,
                averaged = tip_deflection<AveragedTetrahedra<NeoHookean>>(0.49) / exact;
@@ -102,7 +102,7 @@ TEST_CASE("a beam of averaged volumes bends at nu = 0.49", "[integrator][average
   CHECK(averaged < 1.0);
 }
 
-TEST_CASE("averaged volumes keep energy and momentum", "[integrator][averaged]") {
+TEST_CASE("averaged volumes conserve energy and momentum", "[integrator][averaged]") {
   const auto body = soft_block(2, {.youngs_modulus = 3e3, .poisson_ratio = 0.49, .density = 1000.0});
   const Mesh<Tet4>& mesh = body.rest.mesh;
   ExplicitMotion<AveragedTetrahedra<NeoHookean>, CentralDifference> motion(

@@ -23,7 +23,7 @@ Vector3 lame_mode(const Vector3& p) {
   return {std::cos(pi * p.x()) * std::sin(pi * p.y()), -std::sin(pi * p.x()) * std::cos(pi * p.y()), 0.0};
 }
 
-/// Time of the n-th upward crossing of zero, linear between samples.
+/// Time of the n-th upward zero crossing, linearly interpolated between samples.
 double crossing(const std::vector<double>& values, double dt, int n) {
   for (std::size_t i = 1; i < values.size(); ++i)
     if (values[i - 1] < 0.0 && values[i] >= 0.0 && n-- == 0)
@@ -33,7 +33,7 @@ double crossing(const std::vector<double>& values, double dt, int n) {
 
 }  // namespace
 
-TEST_CASE("a wave in a bar with dt = dx / c is d'Alembert's to the last digits", "[integrator][oracle]") {
+TEST_CASE("a wave in a bar with dt = dx / c equals d'Alembert's solution to rounding", "[integrator][oracle]") {
   const LinearElastic material{1e6, 0.0, 1000.0};
   const Body<Hex8> body = make_body(box_hex8(Vector3(1.0, 0.1, 0.1), {100, 1, 1}), material);
   const Mesh<Hex8>& mesh = body.mesh;
@@ -64,8 +64,8 @@ TEST_CASE("a wave in a bar with dt = dx / c is d'Alembert's to the last digits",
   CHECK(worst <= 1e-9 * 2e-3);
 }
 
-TEMPLATE_TEST_CASE("a free cube swings in its Lame mode", "[integrator]", Hex8, Tet10) {
-  // omega L sqrt(rho/mu) = pi sqrt(2) at any nu; mu = 1, rho = 1
+TEMPLATE_TEST_CASE("a free cube oscillates in its Lame mode", "[integrator]", Hex8, Tet10) {
+  // omega L sqrt(rho/mu) = pi sqrt(2) for any nu; mu = 1, rho = 1
   const double nu = 0.3;
   const LinearElastic material{2.0 * (1.0 + nu), nu, 1.0};
   const auto frequency = [&](int n) {
@@ -94,7 +94,7 @@ TEMPLATE_TEST_CASE("a free cube swings in its Lame mode", "[integrator]", Hex8, 
   CHECK(fine <= 0.4 * coarse);
 }
 
-TEST_CASE("order of accuracy: two, and one", "[integrator]") {
+TEST_CASE("explicit schemes have order of accuracy two and one", "[integrator]") {
   const Body<Tet4> body = make_body(box_tet4(Vector3(0.1, 0.1, 0.1), {2, 2, 2}), LinearElastic{3e3, 0.3, 1000.0});
   const std::vector<Index> free = above_ground(body.mesh);
   const auto end = [&]<class Scheme>(Scheme, int steps) {
@@ -115,7 +115,7 @@ TEST_CASE("order of accuracy: two, and one", "[integrator]") {
   CHECK(std::abs(order(SemiImplicitEuler{}) - 1.0) <= 0.1);
 }
 
-TEST_CASE("prescribed motion: a bar that is pulled at a constant speed", "[integrator]") {
+TEST_CASE("prescribed motion: a bar stretched at constant speed", "[integrator]") {
   const Body<Hex8> body = make_body(box_hex8(Vector3(1.0, 0.1, 0.1), {20, 1, 1}), LinearElastic{1e6, 0.0, 1000.0});
   const Mesh<Hex8>& mesh = body.mesh;
   ExplicitOptions options;
@@ -128,7 +128,7 @@ TEST_CASE("prescribed motion: a bar that is pulled at a constant speed", "[integ
       if (mesh.position(i).x() > 0.5) motion.target()[3 * i] = speed * (motion.state().time + dt);
     REQUIRE(motion.step(dt).ok());
   }
-  // as slow as this it is static, but for the drag of the damping
+  // slow enough to be static except for the damping force
   const double pulled = speed * motion.state().time;
   for (Index i = 0; i < mesh.node_count(); ++i) {
     const double x = mesh.position(i).x(), t = motion.state().displacement[3 * i];

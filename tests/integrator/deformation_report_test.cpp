@@ -1,4 +1,4 @@
-// What explicit motion and its forces say of the state they are in, and what they refuse.
+// Status flags and reports of explicit motion and its forces, and refused arguments.
 #include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
@@ -21,7 +21,7 @@ DeformationReport report_of(const HyperelasticBody<Tet4, typename Force::Materia
   return force.force(u, f);
 }
 
-/// One node pushed far through the body.
+/// One node displaced far through the body.
 VectorX pushed_through(const Mesh<Tet4>& mesh) {
   VectorX u = VectorX::Zero(3 * mesh.node_count());
   u[3 * Index{mesh.element_node(0, 0)} + 2] = 0.15;
@@ -30,7 +30,7 @@ VectorX pushed_through(const Mesh<Tet4>& mesh) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("the least volume ratio is that of the elements, not of lanes without one", "[integrator][report]",
+TEMPLATE_TEST_CASE("the smallest volume ratio ignores lanes without an element", "[integrator][report]",
                    (BatchedTetrahedra<NeoHookean>), (BatchedTetrahedra<NeoHookean, float>),
                    (AveragedTetrahedra<NeoHookean>), (AveragedTetrahedra<NeoHookean, float>)) {
   for (const int n : {1, 2, 3}) {  // 6, 48 and 162 elements: batches with and without empty lanes
@@ -59,7 +59,8 @@ TEST_CASE("averages stop where the region changes", "[integrator][averaged]") {
     mesh.regions.push_back(element_nodes<Tet4>(mesh, e).col(2).mean() > 0.05 ? 1 : 0);
   const NeoHookean gel{3e3, 0.49, 1e3}, bone{3e6, 0.3, 2e3};
   const auto body = make_hyperelastic_body(mesh, std::vector<NeoHookean>{gel, bone});
-  // The gel is pressed evenly, the bone only follows: each region has one J, and the answer is that of plain elements.
+  // Uniform compression of the gel; the bone only translates: each region has one J, and the result equals plain
+  // elements.
   const VectorX u = velocity_field(mesh, [](const Vector3& p) -> Vector3 {
     return {0.0, 0.0, -0.1 * std::min(p.z(), 0.05)};
   });
@@ -72,7 +73,7 @@ TEST_CASE("averages stop where the region changes", "[integrator][averaged]") {
   CHECK(std::abs(averaged.energy(u) / plain.energy(u) - 1.0) <= 1e-12);
 }
 
-TEST_CASE("a step says when elements are inside out, and when a law does not hold", "[integrator][report]") {
+TEST_CASE("a step reports inverted elements and inadmissible materials", "[integrator][report]") {
   const auto body = soft_block(2);
   const Mesh<Tet4>& mesh = body.rest.mesh;
   auto motion = motion_of<CentralDifference>(body, above_ground(mesh));
@@ -100,7 +101,7 @@ TEST_CASE("a step says when elements are inside out, and when a law does not hol
   CHECK(worse.has(StatusFlag::degraded_model));
 }
 
-TEST_CASE("vectors of another size are refused and change nothing", "[integrator][extremes]") {
+TEST_CASE("vectors of the wrong size are refused without a change", "[integrator][extremes]") {
   const auto body = soft_block(2);
   const Mesh<Tet4>& mesh = body.rest.mesh;
   auto motion = motion_of<CentralDifference>(body, above_ground(mesh));

@@ -1,4 +1,4 @@
-// Explicit motion of a neo-Hookean block: what is conserved, what is refused, and what it survives.
+// Explicit motion of a neo-Hookean block: conservation, refused arguments, extreme states.
 #include <palpate/assembly/detail/linear_forces.hpp>
 #include <palpate/assembly/large_strain.hpp>
 
@@ -14,14 +14,14 @@ Vector3 swirl(const Vector3& p) {
   return Vector3(0.2, -0.1, 0.3) + Vector3(4.0, -3.0, 5.0).cross(r) + 6.0 * Vector3(r.y(), r.z(), -r.x());
 }
 
-/// Whether the fastest mode grows at this step: it changes sign at every step. (A pressed block may also buckle, which
-/// grows without changing sign, at any step.)
+/// True if the fastest mode grows at this step, which changes sign at every step. (A compressed block may also buckle,
+/// which grows without changing sign, at any step.)
 template <class Scheme>
 bool unstable(const HyperelasticBody<Tet4, NeoHookean>& body, const VectorX& shape, const std::vector<Index>& free,
               double dt) {
   BatchedTetrahedra<NeoHookean> force(body);
   const VectorX mass = lumped_mass(body.rest).replicate(1, 3).transpose().reshaped();
-  // the tangent at `shape`, as differences: linear, so that growth is not stopped by stiffening
+  // the tangent at `shape` from differences; linear, so that stiffening does not limit the growth
   VectorX f0(shape.size()), f(shape.size()), moved(shape.size());
   force.force(shape, f0);
   testing::Random random(4);
@@ -63,7 +63,7 @@ double measured_limit(const HyperelasticBody<Tet4, NeoHookean>& body, const Vect
   return low;
 }
 
-/// Pressed to a share of its height, and wider, so that its volume stays.
+/// Compressed to a fraction of its height, and widened so that its volume is constant.
 VectorX pressed(const Mesh<Tet4>& mesh, double ratio) {
   const double wider = 1.0 / std::sqrt(ratio) - 1.0;
   return velocity_field(mesh, [&](const Vector3& p) -> Vector3 {
@@ -73,8 +73,8 @@ VectorX pressed(const Mesh<Tet4>& mesh, double ratio) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("free flight keeps momentum, and swings about its energy", "[integrator]", CentralDifference,
-                   SemiImplicitEuler) {
+TEMPLATE_TEST_CASE("free flight conserves momentum, and its energy oscillates about the mean", "[integrator]",
+                   CentralDifference, SemiImplicitEuler) {
   const auto body = soft_block(2);
   const Mesh<Tet4>& mesh = body.rest.mesh;
   auto motion = motion_of<TestType>(body, all_dofs(mesh));
@@ -95,7 +95,7 @@ TEMPLATE_TEST_CASE("free flight keeps momentum, and swings about its energy", "[
   const Momenta end = momenta(mesh, s);
   CHECK((end.linear - start.linear).norm() <= 1e-12 * start.linear.norm());
   CHECK((end.angular - start.angular).norm() <= 1e-11 * start.angular.norm());
-  const double swing = TestType::order == 2 ? 0.02 : 0.15;  // of the energy, no matter how long
+  const double swing = TestType::order == 2 ? 0.02 : 0.15;  // relative to the energy, for any duration
   CHECK(low >= (1.0 - swing) * energy);
   CHECK(high <= (1.0 + swing) * energy);
   CHECK(late_low >= (1.0 - swing) * energy);
@@ -117,8 +117,8 @@ TEST_CASE("free fall", "[integrator]") {
   }
 }
 
-TEMPLATE_TEST_CASE("the limit is that of the state: within 5 % of where motion becomes unstable",
-                   "[integrator][extreme][E2]", CentralDifference, SemiImplicitEuler) {
+TEMPLATE_TEST_CASE("the limit follows the state: within 5 % of the stability limit", "[integrator][extreme][E2]",
+                   CentralDifference, SemiImplicitEuler) {
   const auto body = soft_block(3);
   const Mesh<Tet4>& mesh = body.rest.mesh;
   const std::vector<Index> free = above_ground(mesh);
@@ -142,7 +142,7 @@ TEMPLATE_TEST_CASE("the limit is that of the state: within 5 % of where motion b
   }
 }
 
-TEST_CASE("the bound of the elements is above, and never far", "[integrator]") {
+TEST_CASE("the element bound is above the limit, and close", "[integrator]") {
   const auto body = soft_block(3);
   auto motion = motion_of<CentralDifference>(body, all_dofs(body.rest.mesh));
   ExplicitOptions options;
@@ -153,7 +153,7 @@ TEST_CASE("the bound of the elements is above, and never far", "[integrator]") {
   CHECK(bounded.limit() >= 0.5 * motion.limit());
 }
 
-TEST_CASE("steps that cannot be are refused and change nothing", "[integrator][extreme][E1]") {
+TEST_CASE("invalid steps are refused without a change", "[integrator][extreme][E1]") {
   const auto body = soft_block(2);
   const Mesh<Tet4>& mesh = body.rest.mesh;
   auto motion = motion_of<CentralDifference>(body, above_ground(mesh));
@@ -183,13 +183,13 @@ TEST_CASE("steps that cannot be are refused and change nothing", "[integrator][e
   CHECK_REFUSED(SetupErrorKind::bad_density, Motion(force, mass, {}));
 }
 
-TEST_CASE("energy from nowhere stops the motion at its last good state", "[integrator][extreme][E6]") {
+TEST_CASE("an unexplained energy growth stops the motion at its last good state", "[integrator][extreme][E6]") {
   const auto body = soft_block(3);
   const Mesh<Tet4>& mesh = body.rest.mesh;
   ExplicitOptions options;
   options.limit_every = 0;
   options.first_iterations = 0;
-  // a bound that is wrong by far: nothing but the energy can tell
+  // a bound that is far too low: only the energy check can detect it
   NeoHookeanMotion<CentralDifference> motion(BatchedTetrahedra<NeoHookean>(body), lumped_mass(body.rest),
                                              above_ground(mesh), 0.01 * element_frequency_bound(body.rest), options);
   const VectorX still = VectorX::Zero(3 * mesh.node_count());
@@ -202,9 +202,9 @@ TEST_CASE("energy from nowhere stops the motion at its last good state", "[integ
   CHECK(status.has(StatusFlag::energy_grew));
   CHECK(motion.state().displacement.allFinite());
   CHECK(motion.kinetic_energy() + motion.stored_energy() <= 100.0 * energy);
-  const VectorX constrained = motion.state().displacement;
+  const VectorX stopped = motion.state().displacement;
   CHECK(motion.step(dt).has(StatusFlag::energy_grew));
-  CHECK(motion.state().displacement == constrained);
+  CHECK(motion.state().displacement == stopped);
   motion.set(still, still);
   CHECK(motion.step(1e-6).ok());
 
@@ -215,12 +215,12 @@ TEST_CASE("energy from nowhere stops the motion at its last good state", "[integ
   CHECK(motion.state().displacement.allFinite());
 }
 
-TEST_CASE("a motion that was stopped goes on, with the limit of the state it is given", "[integrator][extreme][E2]") {
+TEST_CASE("a stopped motion continues after set(), with the limit of the new state", "[integrator][extreme][E2]") {
   const auto body = soft_block(3);
   const Mesh<Tet4>& mesh = body.rest.mesh;
   const VectorX still = VectorX::Zero(3 * mesh.node_count());
   ExplicitOptions options;
-  options.limit_every = 1;  // looks at every state, also those that are no numbers
+  options.limit_every = 1;  // estimates in every state, non-finite ones included
   auto motion = motion_of<CentralDifference>(body, above_ground(mesh), options);
   const double at_rest = motion.limit();
   const VectorX load = motion.load();
@@ -239,7 +239,7 @@ TEST_CASE("a motion that was stopped goes on, with the limit of the state it is 
   CHECK(limit <= 1.05 * motion.estimate_limit(200));
 }
 
-TEST_CASE("the watch over a linear body sees the first steps that are too long", "[integrator][extreme][E6]") {
+TEST_CASE("the energy check of a linear body detects the first steps that are too long", "[integrator][extreme][E6]") {
   const auto body = make_body(box_tet4(Vector3(0.1, 0.1, 0.1), {3, 3, 3}), LinearElastic{3e3, 0.45, 1000.0});
   const Mesh<Tet4>& mesh = body.mesh;
   ExplicitOptions options;
@@ -267,7 +267,7 @@ TEST_CASE("explicit steps do not allocate", "[integrator][allocation]") {
   CHECK(motion.state().time > 0.0);
 }
 
-TEST_CASE("scrambled blocks stay finite and come to rest", "[integrator][extreme][E5]") {
+TEST_CASE("randomly deformed blocks stay finite and come to rest", "[integrator][extreme][E5]") {
   const auto body = soft_block(2);
   const Mesh<Tet4>& mesh = body.rest.mesh;
   ExplicitOptions options;
@@ -277,8 +277,8 @@ TEST_CASE("scrambled blocks stay finite and come to rest", "[integrator][extreme
   const std::vector<Index> free = above_ground(mesh);
   auto motion = motion_of<CentralDifference>(body, free, options);
   testing::Random random(17);
-  // By less than half a cell every block finds home. By a whole cell, with most elements inside out, some find another
-  // shape that is in equilibrium, all elements upright: a corner pushed through.
+  // With displacements below half a cell every block returns to rest. With those of a whole cell, most elements are
+  // inverted and some blocks find another equilibrium without inverted elements: a corner pushed through.
   const double cell = 0.05;
   for (const double amount : {0.45 * cell, cell}) {
     int inverted_at_start = 0, flagged = 0, missed = 0, at_rest = 0, upright = 0, home = 0;
@@ -299,7 +299,7 @@ TEST_CASE("scrambled blocks stay finite and come to rest", "[integrator][extreme
       upright += motion.deformation().inverted == 0 ? 1 : 0;
       home += motion.state().displacement.norm() < 1e-3 ? 1 : 0;
     }
-    INFO("moved by up to " << amount << " m: " << home << " of " << runs << " came home");
+    INFO("moved by up to " << amount << " m: " << home << " of " << runs << " returned to rest");
     CHECK(inverted_at_start > runs / 4);
     CHECK(flagged == 0);
     CHECK(missed == 0);

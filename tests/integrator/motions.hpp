@@ -1,4 +1,4 @@
-// Bodies that are let go.
+// Bodies and initial states for motion tests.
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
@@ -25,7 +25,7 @@ inline HyperelasticBody<Tet4, NeoHookean> soft_block(int n, NeoHookean material 
                                                   std::vector<NeoHookean>{material});
 }
 
-/// All dofs of the nodes for which is_free(position) holds.
+/// All dofs of the nodes for which is_free(position) is true.
 template <Element E, class IsFree>
 std::vector<Index> dofs_where(const Mesh<E>& mesh, IsFree is_free) {
   std::vector<Index> dofs;

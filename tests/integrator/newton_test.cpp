@@ -1,4 +1,4 @@
-// Newton's method on potentials whose minimum is known.
+// Newton's method on potentials with a known minimum.
 #include <palpate/integrator/newton.hpp>
 
 #include <Eigen/Cholesky>
@@ -10,7 +10,7 @@ using namespace palpate;
 
 namespace {
 
-/// Rosenbrock's valley: minimum 0 at (1, 1); Newton's full steps climb out of it.
+/// Rosenbrock's function: minimum 0 at (1, 1); full Newton steps increase it.
 struct Rosenbrock {
   Eigen::Matrix2d second;
   int evaluations = 0;
@@ -53,7 +53,7 @@ struct Barrier {
   double rounding() const noexcept { return 0.0; }
 };
 
-/// No minimum: x.
+/// x: no minimum.
 struct Slope {
   Index size() const noexcept { return 1; }
   double evaluate(const VectorX& x, VectorX& residual) noexcept {
@@ -71,7 +71,7 @@ static_assert(!NewtonProblem<int>);
 
 }  // namespace
 
-TEST_CASE("Newton's method finds a minimum at the end of a valley", "[integrator][newton]") {
+TEST_CASE("Newton's method finds the minimum of Rosenbrock's function", "[integrator][newton]") {
   Rosenbrock problem;
   NewtonMethod newton(2);
   VectorX x = Eigen::Vector2d(-1.2, 1.0);
@@ -87,7 +87,7 @@ TEST_CASE("Newton's method stays inside the domain", "[integrator][newton]") {
   NewtonMethod newton(1);
   VectorX x = VectorX::Constant(1, 10.0);
   const NewtonReport report = newton.solve(problem, x);
-  CHECK(problem.left);  // it was tried, and not taken
+  CHECK(problem.left);  // a step out of the domain was tried and rejected
   CHECK(report.converged);
   CHECK(std::abs(x[0] - 1.0) <= 1e-10);
   x[0] = -1.0;
@@ -95,7 +95,7 @@ TEST_CASE("Newton's method stays inside the domain", "[integrator][newton]") {
   CHECK(x[0] == -1.0);
 }
 
-TEST_CASE("Newton's method converges with the square of the error", "[integrator][newton]") {
+TEST_CASE("Newton's method converges quadratically", "[integrator][newton]") {
   Barrier problem;
   double error = 0.1;
   for (int k = 1; k <= 3; ++k) {
@@ -107,8 +107,7 @@ TEST_CASE("Newton's method converges with the square of the error", "[integrator
   }
 }
 
-TEST_CASE("Newton's method gives up where there is no minimum, and starts over without one step at one",
-          "[integrator][newton]") {
+TEST_CASE("Newton's method stops without a minimum, and makes no step at a minimum", "[integrator][newton]") {
   Slope slope;
   VectorX x = VectorX::Zero(1);
   const NewtonReport report = NewtonMethod(1, {.maximum_iterations = 7}).solve(slope, x);
@@ -121,7 +120,7 @@ TEST_CASE("Newton's method gives up where there is no minimum, and starts over w
   CHECK(at_once.iterations == 0);
 }
 
-TEST_CASE("parameters that mean nothing are refused", "[integrator][newton][extreme]") {
+TEST_CASE("unusable Newton parameters are refused", "[integrator][newton][extreme]") {
   const auto make = [](const NewtonParameters& p) { NewtonMethod newton(2, p); };
   make({.maximum_iterations = 1, .tolerance = 0.0, .maximum_halvings = 0});
   CHECK_REFUSED(SetupErrorKind::bad_argument, make({.maximum_iterations = 0}));

@@ -1,4 +1,4 @@
-// Conjugate gradients with a bound on the work: what the report says is what is left.
+// Conjugate gradients with bounded work: the reported error agrees with the true error.
 #include <palpate/linear/bounded_conjugate_gradient.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/random.hpp>
@@ -39,7 +39,7 @@ double energy_norm(const GivenSpectrum& op, const VectorX& x) {
 
 }  // namespace
 
-TEST_CASE("the energy of the error is below the tolerance, and about what is reported", "[linear][bounded]") {
+TEST_CASE("the energy norm of the error is below the tolerance and close to the reported error", "[linear][bounded]") {
   for (const double condition : {2.0, 10.0, 100.0}) {
     const GivenSpectrum op(60, condition);
     const VectorX b = VectorX::LinSpaced(60, -1.0, 2.0), exact = op.k.llt().solve(b);
@@ -51,13 +51,13 @@ TEST_CASE("the energy of the error is below the tolerance, and about what is rep
       INFO("condition " << condition << ", tolerance " << tolerance << ": " << report.iterations << " iterations, "
                         << report.error << " reported, error " << error);
       CHECK(report.converged);
-      CHECK(error <= 3.0 * tolerance);  // the estimate leaves out what would still come
+      CHECK(error <= 3.0 * tolerance);  // the estimate omits what further iterations would add
       CHECK(report.error <= tolerance);
     }
   }
 }
 
-TEST_CASE("work is bounded, and less work leaves more", "[linear][bounded]") {
+TEST_CASE("the work is bounded, and fewer iterations leave a larger error", "[linear][bounded]") {
   const GivenSpectrum op(60, 1e4);
   const VectorX b = VectorX::Ones(60), exact = op.k.llt().solve(b);
   BoundedConjugateGradient solver(60);
@@ -73,7 +73,7 @@ TEST_CASE("work is bounded, and less work leaves more", "[linear][bounded]") {
   }
 }
 
-TEST_CASE("nothing to solve, nothing finite, and no direction down", "[linear][bounded]") {
+TEST_CASE("zero load, non-finite load and negative curvature", "[linear][bounded]") {
   GivenSpectrum op(12, 10.0);
   BoundedConjugateGradient solver(12);
   VectorX x = VectorX::Ones(12);

@@ -1,4 +1,4 @@
-// What a solver makes of the softest motion.
+// Accuracy of a solver for the softest motion.
 #include <palpate/linear/condition.hpp>
 
 #include "catch.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr Index entries = 10'000, soft = 4711;
 
-/// Ones on the diagonal, and one entry near rounding.
+/// Ones on the diagonal, except for one entry near rounding.
 struct SoftDiagonal {
   Index size() const noexcept { return entries; }
   void apply(const VectorX& x, VectorX& y) const noexcept {
@@ -19,7 +19,7 @@ struct SoftDiagonal {
   }
   void precondition(const VectorX& x, VectorX& y) const noexcept { y = x; }
 };
-/// Solves for it, with a factor of 3 in the soft entry: what rounding may make of a mechanism.
+/// Solves for it, with an error by a factor of 3 in the soft entry, as rounding may cause for a mechanism.
 struct SoftSolver {
   double factor = 3.0;
   Index size() const noexcept { return entries; }
@@ -32,10 +32,10 @@ struct SoftSolver {
 
 }  // namespace
 
-TEST_CASE("a single motion that is lost shows in full, and where it is", "[linear][condition]") {
+TEST_CASE("the probe shows the full loss of a single motion, and its place", "[linear][condition]") {
   const SoftDiagonal op;
   SoftSolver wrong;
-  CHECK(probe_error(op, wrong) < 0.02);  // a random answer has little of it
+  CHECK(probe_error(op, wrong) < 0.02);  // the soft motion is a small part of a random solution
   const SoftestMotion found = probe_softest_motion(op, wrong);
   CHECK_THAT(found.error, WithinRel(2.0 / 3.0, 1e-6));
   CHECK(found.largest == soft);

@@ -28,7 +28,7 @@ bool is_permutation(const detail::NodeVector& order, Index n) {
   return order.size() == n;
 }
 
-/// Rows of every column of the factor, by elimination on a dense pattern.
+/// Row counts of every column of the factor, by elimination on a dense pattern.
 std::vector<Index> dense_counts(const NodeGraph& g, const detail::NodeVector& order) {
   const Index n = order.size();
   detail::NodeVector position(n);
@@ -71,16 +71,16 @@ TEST_CASE("nested dissection orders every node once, kept ones last", "[linear][
   }
 }
 
-TEST_CASE("the dofs of a node move together", "[linear][ordering]") {
+TEST_CASE("the dofs of a node stay together", "[linear][ordering]") {
   const SparseCase c = sphere_case(3);
   const CholeskyAnalysis analysis(c.lower, c.layout);
   const detail::NodeVector& place = analysis.tree().place_of_dof;
   for (std::size_t dof = 1; dof < c.layout.node_of_dof.size(); ++dof)
     if (c.layout.node_of_dof[dof] == c.layout.node_of_dof[dof - 1])
       CHECK(place[static_cast<Index>(dof)] == place[static_cast<Index>(dof) - 1] + 1);
-  // Without being told, they are found from the pattern.
-  const NodeGraph told = node_graph(c.lower, c.layout), found = node_graph(c.lower, {});
-  CHECK(found.nodes() <= told.nodes());
+  // Without a layout, nodes are found from the pattern.
+  const NodeGraph given = node_graph(c.lower, c.layout), found = node_graph(c.lower, {});
+  CHECK(found.nodes() <= given.nodes());
 }
 
 TEST_CASE("a separator separates", "[linear][ordering]") {
@@ -124,7 +124,7 @@ TEST_CASE("a separator separates", "[linear][ordering]") {
   }
 }
 
-TEST_CASE("a vertex cover meets every edge and is smallest", "[linear][ordering]") {
+TEST_CASE("a vertex cover covers every edge and is minimal", "[linear][ordering]") {
   testing::Random random(11);
   for (int trial = 0; trial < 200; ++trial) {
     constexpr Index n = 7;
@@ -153,7 +153,7 @@ TEST_CASE("a vertex cover meets every edge and is smallest", "[linear][ordering]
   }
 }
 
-TEST_CASE("row counts are those of elimination", "[linear][ordering]") {
+TEST_CASE("row counts equal those of dense elimination", "[linear][ordering]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
     const NodeGraph g = node_graph(c.lower, c.layout);
@@ -165,7 +165,7 @@ TEST_CASE("row counts are those of elimination", "[linear][ordering]") {
   }
 }
 
-TEST_CASE("fronts cover the matrix and know their rows", "[linear][ordering]") {
+TEST_CASE("fronts cover the matrix and have the right rows", "[linear][ordering]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
     DofLayout layout = c.layout;
@@ -211,14 +211,14 @@ TEST_CASE("layouts that do not fit are refused", "[linear][ordering]") {
   SECTION("a negative node") {
     layout.node_of_dof.assign(n, -1);
   }
-  SECTION("no place for a node") {
+  SECTION("a node without coordinates") {
     layout.node_of_dof.assign(n, 3);
     layout.positions.assign(3, Vector3::Zero());
   }
-  SECTION("places without nodes") {
+  SECTION("coordinates without nodes") {
     layout.positions.assign(3, Vector3::Zero());
   }
-  SECTION("a place that is not finite") {
+  SECTION("a coordinate that is not finite") {
     layout.node_of_dof.assign(n, 0);
     layout.positions.assign(1, Vector3(0.0, infinity, 0.0));
   }

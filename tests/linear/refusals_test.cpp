@@ -1,4 +1,4 @@
-// Matrices without a trustworthy answer: refused, where the library underneath reports success.
+// Matrices without a trustworthy solution are refused, where Eigen reports success.
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/dense_inverse.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
@@ -12,11 +12,11 @@ using namespace test;
 
 namespace {
 
-/// What Eigen's own factorisations say.
-struct EigenSays {
+/// Status reported by Eigen's own factorisations.
+struct EigenStatus {
   Eigen::ComputationInfo sparse_ldlt, dense_llt, dense_ldlt;
 };
-EigenSays eigen_says(const MatrixX& m) {
+EigenStatus eigen_status(const MatrixX& m) {
   const SparseMatrix lower = lower_half(m);
   return {Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>(lower).info(), Eigen::LLT<MatrixX>(m).info(),
           Eigen::LDLT<MatrixX>(m).info()};
@@ -39,19 +39,19 @@ const MatrixX good = full(sphere_stiffness(2));
 
 }  // namespace
 
-TEST_CASE("NaN is refused, Eigen says Success", "[linear][extreme][C3]") {
+TEST_CASE("NaN is refused, Eigen reports Success", "[linear][extreme][C3]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (Index at : {Index{0}, good.rows() / 2, good.rows() - 1}) {
     MatrixX m = good;
     m(at, at) = nan;
-    const EigenSays says = eigen_says(m);
-    CHECK(says.sparse_ldlt == Eigen::Success);
-    CHECK(says.dense_llt == Eigen::Success);
+    const EigenStatus status = eigen_status(m);
+    CHECK(status.sparse_ldlt == Eigen::Success);
+    CHECK(status.dense_llt == Eigen::Success);
     check_all_refuse(m);
   }
   MatrixX m = good;
   m(20, 3) = m(3, 20) = nan;
-  CHECK(eigen_says(m).sparse_ldlt == Eigen::Success);
+  CHECK(eigen_status(m).sparse_ldlt == Eigen::Success);
   check_all_refuse(m);
 }
 
@@ -64,10 +64,10 @@ TEST_CASE("infinity is refused", "[linear][extreme][C3]") {
   check_all_refuse(m);
 }
 
-TEST_CASE("an indefinite matrix is refused, Eigen's LDLT says Success", "[linear][extreme][A1]") {
+TEST_CASE("an indefinite matrix is refused, Eigen's LDLT reports Success", "[linear][extreme][A1]") {
   const MatrixX m = full(sphere_stiffness(2, {5e3, 0.6, 0.0}));  // Poisson ratio beyond one half
-  CHECK(eigen_says(m).sparse_ldlt == Eigen::Success);
-  CHECK(eigen_says(m).dense_ldlt == Eigen::Success);
+  CHECK(eigen_status(m).sparse_ldlt == Eigen::Success);
+  CHECK(eigen_status(m).dense_ldlt == Eigen::Success);
   check_all_refuse(m);
   const SetupProblem p = refusal([&] { SparseCholesky(lower_half(m), {}); });
   CHECK(p.value < 0.0);
@@ -75,18 +75,18 @@ TEST_CASE("an indefinite matrix is refused, Eigen's LDLT says Success", "[linear
   CHECK(p.ids.size() <= SetupProblem::max_ids);
 }
 
-TEST_CASE("a negative definite matrix is refused, Eigen's LDLT says Success", "[linear][extreme]") {
-  CHECK(eigen_says(-good).sparse_ldlt == Eigen::Success);
+TEST_CASE("a negative definite matrix is refused, Eigen's LDLT reports Success", "[linear][extreme]") {
+  CHECK(eigen_status(-good).sparse_ldlt == Eigen::Success);
   check_all_refuse(-good);
   MatrixX one(2, 2);  // a negative pivot on a negative diagonal
   one << 2, 0, 0, -3;
-  CHECK(eigen_says(one).sparse_ldlt == Eigen::Success);
+  CHECK(eigen_status(one).sparse_ldlt == Eigen::Success);
   check_all_refuse(one);
 }
 
-TEST_CASE("a free body is refused, Eigen's LDLT says Success", "[linear][extreme][B7]") {
+TEST_CASE("a free body is refused, Eigen's LDLT reports Success", "[linear][extreme][B7]") {
   const MatrixX m = free_body();
-  CHECK(eigen_says(m).sparse_ldlt == Eigen::Success);
+  CHECK(eigen_status(m).sparse_ldlt == Eigen::Success);
   check_all_refuse(m);
   check_all_refuse(1e-9 * m);
   check_all_refuse(1e9 * m);
@@ -100,14 +100,14 @@ TEST_CASE("a zero row is refused", "[linear][extreme][B6]") {
   check_all_refuse(MatrixX::Zero(5, 5));
 }
 
-TEST_CASE("a singular matrix of small integers is refused, Eigen's dense LDLT says Success", "[linear][extreme]") {
+TEST_CASE("a singular matrix of small integers is refused, Eigen's dense LDLT reports Success", "[linear][extreme]") {
   MatrixX m(3, 3);
   m << 2, -1, -1, -1, 2, -1, -1, -1, 2;
-  CHECK(eigen_says(m).dense_ldlt == Eigen::Success);
+  CHECK(eigen_status(m).dense_ldlt == Eigen::Success);
   check_all_refuse(m);
 }
 
-TEST_CASE("a barely definite matrix is taken", "[linear][extreme]") {
+TEST_CASE("a barely definite matrix is accepted", "[linear][extreme]") {
   const MatrixX m = with_condition(40, 1e12);
   VectorX x(40);
   SparseCholesky sparse(lower_half(m), {});
@@ -116,14 +116,14 @@ TEST_CASE("a barely definite matrix is taken", "[linear][extreme]") {
   CHECK_NOTHROW(DenseCholesky(m, {}));
 }
 
-TEST_CASE("side by side with Eigen", "[.][table]") {
+TEST_CASE("comparison with Eigen", "[.][table]") {
   MatrixX with_nan = good, with_infinity = good, zero_row = good;
   with_nan(20, 3) = with_nan(3, 20) = std::numeric_limits<double>::quiet_NaN();
   with_infinity(7, 7) = infinity;
   zero_row.row(11).setZero();
   zero_row.col(11).setZero();
   const std::vector<std::pair<const char*, MatrixX>> matrices{
-      {"sphere, held", good},
+      {"sphere, constrained", good},
       {"NaN in one entry", with_nan},
       {"infinity on the diagonal", with_infinity},
       {"Poisson ratio 0.6", full(sphere_stiffness(2, {5e3, 0.6, 0.0}))},
@@ -135,11 +135,11 @@ TEST_CASE("side by side with Eigen", "[.][table]") {
   };
   std::printf("%-26s %-12s %-12s %-22s %s\n", "matrix", "SimplicialLDLT", "dense LDLT", "error of its answer", "ours");
   for (const auto& [name, m] : matrices) {
-    const EigenSays says = eigen_says(m);
+    const EigenStatus status = eigen_status(m);
     const auto word = [](Eigen::ComputationInfo info) { return info == Eigen::Success ? "Success" : "no"; };
     const VectorX ones = VectorX::Ones(m.rows()), b = m * ones;
     const double error = (VectorX(Eigen::LDLT<MatrixX>(m).solve(b)) - ones).norm() / ones.norm();
-    std::string ours = "taken";
+    std::string ours = "accepted";
     try {
       SparseCholesky solver(lower_half(m), {});
       VectorX x(m.rows());
@@ -148,7 +148,7 @@ TEST_CASE("side by side with Eigen", "[.][table]") {
     } catch (const SetupError& e) {
       ours = std::string(e.what()).substr(0, 90);
     }
-    std::printf("%-26s %-12s %-12s %-22.3g %s\n", name, word(says.sparse_ldlt), word(says.dense_ldlt), error,
+    std::printf("%-26s %-12s %-12s %-22.3g %s\n", name, word(status.sparse_ldlt), word(status.dense_ldlt), error,
                 ours.c_str());
   }
 }

@@ -1,4 +1,4 @@
-// Factorising again and again into the same memory.
+// Repeated factorisation into the same memory.
 #include <palpate/linear/repeated_cholesky.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
@@ -15,7 +15,7 @@ double& diagonal(SparseMatrix& lower, Index j) {
 
 }  // namespace
 
-TEST_CASE("a repeated factorisation gives the bits of a single one", "[linear][repeated_cholesky]") {
+TEST_CASE("a repeated factorisation equals a single one to the last bit", "[linear][repeated_cholesky]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
     const CholeskyAnalysis analysis(c.lower, c.layout);
@@ -36,7 +36,7 @@ TEST_CASE("a repeated factorisation gives the bits of a single one", "[linear][r
   }
 }
 
-TEST_CASE("a repeated factorisation says when there is no factor, and goes on with the next matrix",
+TEST_CASE("a repeated factorisation reports a failure and then accepts the next matrix",
           "[linear][repeated_cholesky]") {
   const SparseCase c = sphere_case(3);
   const CholeskyAnalysis analysis(c.lower, c.layout);

@@ -1,4 +1,4 @@
-// A deliberate break for every law of linear solvers.
+// One deliberately wrong solver for every check of the law suite of linear solvers.
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/testing/solver_laws.hpp>
 
@@ -12,7 +12,7 @@ namespace {
 
 const MatrixX k = with_condition(20, 100.0);
 
-/// A right solver with one thing wrong.
+/// A correct solver with one error.
 struct Wrong {
   enum What { nothing, scaled, has_history, touches_load, unsymmetric, offset, not_finite, wrong_size, lies, gives_up };
   What what = nothing;
@@ -45,11 +45,11 @@ testing::Violations laws(Wrong::What what) {
 
 }  // namespace
 
-TEST_CASE("the laws accept the right solver", "[testing][linear]") {
+TEST_CASE("the law suite accepts a correct solver", "[testing][linear]") {
   CHECK(testing::describe(laws(Wrong::nothing)) == "");
 }
 
-TEST_CASE("solver laws can fail", "[testing][linear]") {
+TEST_CASE("every check of the solver law suite can fail", "[testing][linear]") {
   CHECK(violates(laws(Wrong::scaled), "solves"));
   CHECK(violates(laws(Wrong::scaled), "report is truthful"));  // claims convergence, and iterations of a direct solver
   CHECK(violates(laws(Wrong::has_history), "same answer twice"));

@@ -1,4 +1,4 @@
-// Solvers against a dense reference in long double, on matrices that have an answer.
+// Solvers against a dense reference in long double, on well-posed matrices.
 #include <palpate/condensation/uncondensed.hpp>
 #include <palpate/linear/condition.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
@@ -46,15 +46,15 @@ double worst_error(const MatrixX& m, S& solver) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("solvers keep the laws and agree with long double", "[linear][laws]", SparseCholesky, DenseCholesky,
-                   DenseInverse<double>, DenseInverse<float>, DenseConjugateGradient) {
+TEMPLATE_TEST_CASE("solvers pass the law suite and agree with long double", "[linear][laws]", SparseCholesky,
+                   DenseCholesky, DenseInverse<double>, DenseInverse<float>, DenseConjugateGradient) {
   using S = TestType;
   const MatrixX k = full(sphere_stiffness(2));
   S solver = make<S>(k);
   CHECK(testing::describe(testing::solver_laws(op_of(k), solver, claims<S>())) == "");
   const double condition = exact_condition(k);
   CHECK(worst_error(k, solver) <= claims<S>().tolerance * condition);
-  SECTION("whatever the unit") {
+  SECTION("in any unit") {
     for (double unit : {1e-12, 1e12}) {
       S scaled = make<S>(unit * k);
       CHECK(worst_error(unit * k, scaled) <= claims<S>().tolerance * condition);
@@ -96,7 +96,7 @@ TEMPLATE_TEST_CASE("copies solve at the same time with the same answer", "[linea
   for (std::size_t i = 0; i < 3; ++i) CHECK(found[i] == expected[i]);
 }
 
-TEST_CASE("many right-hand sides at once are one at a time", "[linear]") {
+TEST_CASE("a block of right-hand sides equals single solves", "[linear]") {
   const SparseMatrix lower = sphere_stiffness(2);
   SparseCholesky solver(lower, {});
   testing::Random random(31);
@@ -123,7 +123,7 @@ TEST_CASE("a factorisation can be cancelled", "[linear]") {
   CHECK_REFUSED(SetupErrorKind::cancelled, SparseCholesky(sphere_stiffness(1), limits));
 }
 
-TEST_CASE("conjugate gradients say when they do not converge", "[linear][cg]") {
+TEST_CASE("conjugate gradients report when they do not converge", "[linear][cg]") {
   SECTION("too few iterations") {
     const MatrixX k = full(sphere_stiffness(2));
     const DenseOperator op(k);
@@ -186,7 +186,7 @@ TEST_CASE("the condition estimate is within a factor of ten", "[linear][conditio
     const double estimate = m.cwiseAbs().colwise().sum().maxCoeff() * inverse_norm_estimate(solver);
     const double exact = exact_condition(m);
     INFO(condition << ": exact " << exact << ", estimated " << estimate);
-    CHECK(estimate <= 1.01 * exact * (1.0 + 1e-15 * exact));  // a lower bound but for rounding
+    CHECK(estimate <= 1.01 * exact * (1.0 + 1e-15 * exact));  // a lower bound up to rounding
     CHECK(estimate >= 0.1 * exact * (1.0 - 1e-15 * exact));
   }
   const SparseMatrix lower = sphere_stiffness(2);
@@ -198,7 +198,7 @@ TEST_CASE("the condition estimate is within a factor of ten", "[linear][conditio
   CHECK(ratio >= 0.1);
 }
 
-TEST_CASE("the probe error is the error", "[linear][condition]") {
+TEST_CASE("the probe error equals the error", "[linear][condition]") {
   const MatrixX k = full(sphere_stiffness(2));
   DenseCholesky good(k, {});
   CHECK(probe_error(op_of(k), good) <= 1e-12);

@@ -6,14 +6,14 @@
 
 namespace test {
 
-/// A positive definite matrix with what is known about its dofs.
+/// A positive definite matrix with optional information about its dofs.
 struct SparseCase {
   std::string name;
   SparseMatrix lower;
   DofLayout layout;
 };
 
-/// A held sphere with coordinates.
+/// A constrained sphere with coordinates.
 inline SparseCase sphere_case(int refinement) {
   const Body<Tet4> body = body_of(sphere_tet4(0.05, refinement), {liver});
   std::vector<NodeId> below;
@@ -64,7 +64,7 @@ inline std::vector<SparseCase> sparse_cases() {
   cases.push_back(sphere_case(1));
   cases.push_back(sphere_case(4));
   add("sphere without coordinates", sphere_stiffness(4));
-  SparseCase partly = sphere_case(3);  // some nodes with one or two free dofs, the others moved on the diagonal
+  SparseCase partly = sphere_case(3);  // some nodes keep only one or two dofs
   partly.name = "nodes of 1 to 3 dofs";
   MatrixX m = full(partly.lower);
   std::vector<Index> stay;
@@ -80,7 +80,7 @@ inline std::vector<SparseCase> sparse_cases() {
   partly.lower = lower_half(less);
   partly.layout.node_of_dof = nodes;
   cases.push_back(partly);
-  SparseCase line = sphere_case(4);  // all nodes at one place: the coordinates tell nothing
+  SparseCase line = sphere_case(4);  // all nodes at one position: the coordinates give no order
   line.name = "coincident coordinates";
   for (Vector3& x : line.layout.positions) x.setZero();
   cases.push_back(line);

@@ -1,4 +1,4 @@
-// Matrices the direct solver must refuse, with the dofs to blame.
+// Matrices that the direct solver must refuse, with the ids of the bad dofs.
 #include <palpate/linear/sparse_cholesky.hpp>
 
 #include "linear/sparse_cases.hpp"
@@ -42,7 +42,7 @@ TEST_CASE("sparse Cholesky: indefinite and negative matrices are refused", "[lin
   CHECK(p.value < 0.0);
 }
 
-TEST_CASE("sparse Cholesky: a lone bad dof is named", "[linear][sparse_cholesky][extreme]") {
+TEST_CASE("sparse Cholesky: a single bad dof is reported", "[linear][sparse_cholesky][extreme]") {
   MatrixX m = MatrixX::Identity(30, 30);
   m(17, 17) = 0.0;
   const SetupProblem p = problem_of(lower_half(m));
@@ -55,7 +55,7 @@ TEST_CASE("sparse Cholesky: a lone bad dof is named", "[linear][sparse_cholesky]
   CHECK(problem_of(missing).ids == std::vector<std::int64_t>{2});
 }
 
-TEST_CASE("sparse Cholesky: bad dofs are named by their nodes when these are known",
+TEST_CASE("sparse Cholesky: bad dofs are reported by their nodes when these are known",
           "[linear][sparse_cholesky][extreme]") {
   MatrixX m = MatrixX::Identity(30, 30);
   m(17, 17) = m(16, 16) = m(3, 3) = 0.0;
@@ -77,7 +77,7 @@ TEST_CASE("sparse Cholesky: a free body is refused, at any size and in any unit"
     }
 }
 
-TEST_CASE("sparse Cholesky: a barely definite matrix is taken", "[linear][sparse_cholesky][extreme]") {
+TEST_CASE("sparse Cholesky: a barely definite matrix is accepted", "[linear][sparse_cholesky][extreme]") {
   const MatrixX m = with_condition(40, 1e12);
   VectorX x(40);
   SparseCholesky solver(lower_half(m), {});
@@ -85,7 +85,7 @@ TEST_CASE("sparse Cholesky: a barely definite matrix is taken", "[linear][sparse
   CHECK((x - VectorX::Ones(40)).norm() <= 1e-2);
 }
 
-TEST_CASE("sparse Cholesky: a refusal leaves nothing behind", "[linear][sparse_cholesky]") {
+TEST_CASE("sparse Cholesky: a refusal leaves no state behind", "[linear][sparse_cholesky]") {
   const SparseMatrix good = sphere_stiffness(2);
   SparseMatrix bad = good;
   bad.coeffRef(4, 4) = -1.0;

@@ -1,4 +1,4 @@
-// The direct solver against dense references, path by path.
+// The direct solver against dense references, for every code path.
 #include <palpate/linear/sparse_cholesky.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/solver_laws.hpp>
@@ -15,7 +15,7 @@ SparseCholesky factored(const SparseCase& c) {
   return {CholeskyAnalysis(c.lower, c.layout), c.lower, {}};
 }
 
-/// |b - K x| against what rounding allows.
+/// Backward error |b - K x| / (|K| |x| + |b|) in maximum norms.
 double residual(const SparseMatrix& lower, const VectorX& b, const VectorX& x) {
   const MatrixX k = full(lower);
   return largest(b - k * x) / (k.cwiseAbs().rowwise().sum().maxCoeff() * largest(x) + largest(b));
@@ -30,7 +30,7 @@ std::vector<Index> some_dofs(Index n) {
 
 }  // namespace
 
-TEST_CASE("the sparse solver solves to rounding", "[linear][sparse_cholesky]") {
+TEST_CASE("the sparse solver is accurate to rounding", "[linear][sparse_cholesky]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
     SparseCholesky solver = factored(c);
@@ -48,7 +48,7 @@ TEST_CASE("the sparse solver solves to rounding", "[linear][sparse_cholesky]") {
   }
 }
 
-TEST_CASE("the sparse solver keeps the laws of solvers", "[linear][sparse_cholesky][laws]") {
+TEST_CASE("the sparse solver passes the law suite of solvers", "[linear][sparse_cholesky][laws]") {
   const SparseCase c = sphere_case(3);
   const MatrixX k = full(c.lower);
   SparseCholesky solver = factored(c);
@@ -113,7 +113,7 @@ TEST_CASE("kept dofs: the Schur complement is exact", "[linear][sparse_cholesky]
     SparseCholesky(analysis, c.lower, {}).solve_into(b, direct);
     CHECK(residual(c.lower, b, direct) <= 1e-14);
 
-    // The interior factor alone holds the kept dofs.
+    // The interior factor alone constrains the kept dofs to zero.
     interior.solve_into(b, x);
     const VectorX constrained = interior.solve(b);
     CHECK(largest(x - constrained) <= 1e-13 * (largest(x) + 1e-300));
@@ -121,7 +121,7 @@ TEST_CASE("kept dofs: the Schur complement is exact", "[linear][sparse_cholesky]
   }
 }
 
-TEST_CASE("loads and answers on a few dofs follow their elimination path", "[linear][sparse_cholesky][path]") {
+TEST_CASE("solves for a few loaded and wanted dofs equal full solves", "[linear][sparse_cholesky][path]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
     const Index n = c.lower.rows();
@@ -164,7 +164,7 @@ TEST_CASE("loads and answers on a few dofs follow their elimination path", "[lin
   }
 }
 
-TEST_CASE("blocks of right-hand sides are single ones", "[linear][sparse_cholesky]") {
+TEST_CASE("a block of right-hand sides equals single solves (sparse)", "[linear][sparse_cholesky]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
     const Index n = c.lower.rows();
@@ -184,7 +184,7 @@ TEST_CASE("blocks of right-hand sides are single ones", "[linear][sparse_cholesk
   }
 }
 
-TEST_CASE("new values on an analysed pattern", "[linear][sparse_cholesky]") {
+TEST_CASE("new values can be factorised on an analysed pattern", "[linear][sparse_cholesky]") {
   const SparseCase c = sphere_case(3);
   const CholeskyAnalysis analysis(c.lower, c.layout);
   SparseMatrix other = c.lower;
@@ -204,7 +204,7 @@ TEST_CASE("new values on an analysed pattern", "[linear][sparse_cholesky]") {
   CHECK_REFUSED(SetupErrorKind::bad_argument, SparseCholesky(CholeskyAnalysis(), wrong, {}));
 }
 
-TEST_CASE("sparse Cholesky: copies solve at the same time", "[linear][sparse_cholesky][threads]") {
+TEST_CASE("sparse Cholesky: copies solve simultaneously", "[linear][sparse_cholesky][threads]") {
   const SparseCase c = sphere_case(3);
   SparseCholesky original = factored(c);
   std::vector<SparseCholesky> copies(3, original);

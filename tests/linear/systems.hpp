@@ -9,7 +9,7 @@
 
 namespace test {
 
-/// The free part of a held sphere of liver, lower half.
+/// The stiffness of the free dofs of a constrained sphere of liver, lower half.
 inline SparseMatrix sphere_stiffness(int refinement, const LinearElastic& m = liver) {
   const Body<Tet4> body{sphere_tet4(0.05, refinement), {m.elasticity()}, {m.density}, {Vector6::Zero()}};  // unchecked
   std::vector<NodeId> below;
@@ -31,7 +31,7 @@ inline MatrixX full(const SparseMatrix& lower) {
   return MatrixX(MatrixX(lower).selfadjointView<Eigen::Lower>());
 }
 
-/// Its lower half, as the sparse solver takes it.
+/// The lower half of a matrix, in the form the sparse solver takes.
 inline SparseMatrix lower_half(const MatrixX& m) {
   return SparseMatrix(MatrixX(m.triangularView<Eigen::Lower>()).sparseView());
 }

@@ -1,6 +1,6 @@
-# Shared by scripts that call the compiler: compile() and link_program(), in WORK, with COMPILER, FLAGS, INCLUDES and
+# Shared by scripts that call the compiler: compile() and link_program() run in WORK, with COMPILER, FLAGS, INCLUDES and
 # SYSTEM_INCLUDES.
-set(ENV{LC_ALL} C)  # plain quotes in the messages
+set(ENV{LC_ALL} C)  # ASCII quotes in the compiler's messages
 separate_arguments(FLAGS NATIVE_COMMAND "${FLAGS}")
 set(base ${COMPILER} -std=c++20 ${FLAGS} -O0)
 set(search "")

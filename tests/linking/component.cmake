@@ -1,5 +1,5 @@
-# find_package(palpate COMPONENTS compiled) where only headers are installed: it must fail, and say why and what to do; and
-# without the component it must find the headers. Needs GENERATOR, COMPILER, WORK, PREFIX and EIGEN_DIR.
+# find_package(palpate COMPONENTS compiled) where only headers are installed: it must fail with the cause and the
+# remedy; without the component it must find the headers. Needs GENERATOR, COMPILER, WORK, PREFIX and EIGEN_DIR.
 cmake_minimum_required(VERSION 3.21)
 file(REMOVE_RECURSE ${WORK})
 file(COPY ${PREFIX}/include ${PREFIX}/share DESTINATION ${WORK}/installed)
@@ -20,11 +20,11 @@ endmacro()
 configure()
 if(NOT result EQUAL 0)
   message("${text}")
-  message(FATAL_ERROR "without components it is not found")
+  message(FATAL_ERROR "palpate is not found without components")
 endif()
 configure("-Dcomponents=COMPONENTS\\;compiled")
 string(REGEX REPLACE "[ \n]+" " " text "${text}")
 if(result EQUAL 0 OR NOT text MATCHES "installed without the component 'compiled'")
   message("${text}")
-  message(FATAL_ERROR "a component that is not there must be refused, and the message must say so")
+  message(FATAL_ERROR "a missing component must be refused, and the message must name it")
 endif()

@@ -1,13 +1,14 @@
-# Installs palpate from its build folder BUILD, and moves it to PREFIX: nothing installed may know where it was.
+# Installs palpate from its build folder BUILD, and moves it to PREFIX: installed files must not depend on their
+# location.
 cmake_minimum_required(VERSION 3.21)
 file(REMOVE_RECURSE ${PREFIX} ${PREFIX}-first)
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX}-first RESULT_VARIABLE result OUTPUT_QUIET)
 if(NOT result EQUAL 0)
-  message(FATAL_ERROR "installing failed: ${result}")
+  message(FATAL_ERROR "the installation failed: ${result}")
 endif()
 file(RENAME ${PREFIX}-first ${PREFIX})
 
-# All of the headers, and nothing that names a folder of the machine it was built on.
+# All headers must be installed, and no file may contain a path of the build machine.
 file(GLOB_RECURSE headers RELATIVE ${SOURCE}/include ${SOURCE}/include/palpate/*.hpp
      ${SOURCE}/include/palpate/*.ipp)
 foreach(header IN LISTS headers)
@@ -21,7 +22,7 @@ foreach(file IN LISTS files)
   foreach(folder ${SOURCE} ${BUILD} ${PREFIX})
     string(FIND "${text}" "${folder}" found)
     if(NOT found EQUAL -1)
-      message(FATAL_ERROR "${file} names ${folder}")
+      message(FATAL_ERROR "${file} contains the path ${folder}")
     endif()
   endforeach()
 endforeach()

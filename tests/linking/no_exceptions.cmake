@@ -1,11 +1,11 @@
-# A program without exceptions: what works, what reaches its handler, and what happens without one.
+# A program without exceptions: valid set-up works, errors reach its handler, and the program aborts without a handler.
 cmake_minimum_required(VERSION 3.21)
 include(${CMAKE_CURRENT_LIST_DIR}/compiler.cmake)
 compile(${CMAKE_CURRENT_LIST_DIR}/no_exceptions/main.cpp main.o -fno-exceptions -fno-rtti)
 link_program(no_exceptions main.o)
 if(NOT result EQUAL 0)
   message("${text}")
-  message(FATAL_ERROR "it does not link")
+  message(FATAL_ERROR "the program does not link")
 endif()
 
 # expect(<argument> <exit code, or a signal's name> <text that must be printed>)

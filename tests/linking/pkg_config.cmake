@@ -1,4 +1,4 @@
-# The same program without CMake: pkg-config and one line for the compiler. PACKAGE: palpate, or palpate-compiled.
+# tests/consumer without CMake: pkg-config and one compiler command. PACKAGE: palpate, or palpate-compiled.
 cmake_minimum_required(VERSION 3.21)
 find_program(PKG_CONFIG pkg-config)
 if(NOT PKG_CONFIG)
@@ -7,11 +7,11 @@ if(NOT PKG_CONFIG)
 endif()
 execute_process(COMMAND ${PKG_CONFIG} --exists eigen3 RESULT_VARIABLE no_eigen)
 if(no_eigen)
-  message("SKIPPED: pkg-config does not know eigen3")
+  message("SKIPPED: pkg-config does not find eigen3")
   return()
 endif()
 include(${CMAKE_CURRENT_LIST_DIR}/compiler.cmake)
-set(search "")  # pkg-config says where the headers are, and nothing else
+set(search "")  # only pkg-config provides the path of the headers
 
 if(NOT PACKAGE)
   set(PACKAGE palpate)
@@ -27,6 +27,6 @@ foreach(what cflags libs)
   endif()
   separate_arguments(${what} UNIX_COMMAND "${${what}}")
 endforeach()
-must_succeed("it does not compile" ${base} ${cflags} ${CMAKE_CURRENT_LIST_DIR}/../consumer/main.cpp ${TISSUE_OBJECT}
-             ${libs} -o stranger)
-must_succeed("the force is not right" ${WORK}/stranger)
+must_succeed("the consumer does not compile" ${base} ${cflags} ${CMAKE_CURRENT_LIST_DIR}/../consumer/main.cpp
+             ${TISSUE_OBJECT} ${libs} -o stranger)
+must_succeed("the force is wrong" ${WORK}/stranger)

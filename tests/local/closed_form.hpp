@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
-/// The linear tetrahedron by cross products, in any precision: shares no formula with the library.
+/// The linear tetrahedron by cross products, in any precision; independent of the formulas of the library.
 namespace test {
 
 using namespace palpate;
@@ -68,7 +68,7 @@ DenseMatrix<Real> closed_form_stiffness(const Mesh<Tet4>& mesh, const std::vecto
   return k;
 }
 
-/// Some tetrahedron of size one, not flat, positively oriented.
+/// A random tetrahedron of size one, not flat, positively oriented.
 inline ElementNodes<Tet4> random_tetrahedron(testing::Random& random) {
   ElementNodes<Tet4> x, g;
   do {
@@ -77,7 +77,7 @@ inline ElementNodes<Tet4> random_tetrahedron(testing::Random& random) {
   return x;
 }
 
-/// An orthotropic elasticity matrix (not the inverse of anything measured): nine different numbers.
+/// An orthotropic elasticity matrix with nine different numbers (not from measured constants).
 inline Matrix6 orthotropic() {
   Matrix6 d = Matrix6::Zero();
   d.topLeftCorner<3, 3>() << 11, 3, 2, 3, 13, 4, 2, 4, 17;
@@ -91,7 +91,7 @@ double largest(const Eigen::MatrixBase<Derived>& m) {
   return static_cast<double>(m.cwiseAbs().maxCoeff());
 }
 
-/// The reference nodes moved by a random affine map without a mirror: straight sides, any shape.
+/// The reference nodes under a random affine map without reflection: straight sides, any shape.
 template <Element E>
 ElementNodes<E> some_element(testing::Random& random) {
   const ElementNodes<Tet4> image = random_tetrahedron(random);

@@ -35,7 +35,7 @@ double volume_of(const ElementNodes<E>& x) {
   return volume;
 }
 
-/// Sums over the closed surface of an element under unit pressure, to the inside.
+/// Sums over the closed surface of an element under unit inward pressure.
 struct SurfaceSums {
   Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
   double area = 0.0, flux = 0.0;
@@ -78,30 +78,30 @@ TEST_CASE("a third of the area goes to each node of Tri3, outward", "[local][loa
     CHECK_THAT(areas[a], Catch::Matchers::WithinRel(1.0, 1e-14));
     CHECK(largest(vectors.row(a) - Eigen::RowVector3d(0, 0, 1)) < 1e-14);
   }
-  x.row(1).swap(x.row(2));  // the other way round: the area stays, the normal turns
+  x.row(1).swap(x.row(2));  // reversed order: the area is the same, the normal changes sign
   CHECK_THAT(shape_areas<Tri3>(x).sum(), Catch::Matchers::WithinRel(3.0, 1e-14));
   CHECK_THAT(shape_area_vectors<Tri3>(x)(0, 2), Catch::Matchers::WithinRel(-1.0, 1e-14));
 }
 
-TEMPLATE_TEST_CASE("sums of the loads", "[local][loads]", Tet4, Tet10, Hex8, Hex20, user::Hex8, user::Tet10) {
+TEMPLATE_TEST_CASE("sums of element loads", "[local][loads]", Tet4, Tet10, Hex8, Hex20, user::Hex8, user::Tet10) {
   using E = TestType;
   const ElementNodes<E> x = stretched<E>();
   const double volume = volume_of<E>(x);
-  SECTION("a body force adds up to force times volume") {
+  SECTION("a body force sums to force times volume") {
     CHECK_THAT(shape_volumes<E>(x).sum(), Catch::Matchers::WithinRel(volume, 1e-13));
   }
-  SECTION("and has the moment of the centroid") {
+  SECTION("a body force has the moment of a force at the centroid") {
     const Vector3 moment = x.transpose() * shape_volumes<E>(x);  // integral of x; straight sides only
     const Vector3 centroid = x.colwise().mean().transpose();
     CHECK(largest(moment - volume * centroid) <= 1e-12 * volume);
   }
-  SECTION("pressure on the closed surface adds up to nothing, and has no moment") {
+  SECTION("pressure on the closed surface has zero sum and zero moment") {
     const SurfaceSums sums = surface_sums<E>(x);
     CHECK(largest(sums.force) <= 1e-14 * sums.area);
     CHECK(largest(sums.moment) <= 1e-13 * sums.area);
     CHECK_THAT(sums.flux, Catch::Matchers::WithinRel(3 * volume, 1e-12));  // divergence theorem: outward
   }
-  SECTION("an initial strain loads no rigid motion") {
+  SECTION("an initial strain does no work in a rigid motion") {
     Vector6 strain;
     strain << 1e-3, -2e-3, 5e-4, 4e-4, -3e-4, 2e-4;
     const ElementNodes<E> f = initial_strain_load<E>(x, orthotropic(), strain);
@@ -110,7 +110,7 @@ TEMPLATE_TEST_CASE("sums of the loads", "[local][loads]", Tet4, Tet10, Hex8, Hex
     CHECK(largest(f.colwise().sum()) <= 1e-13 * largest(f));
     CHECK(largest(moment) <= 1e-13 * largest(f));
   }
-  SECTION("an initial strain is undone by the displacement that has it") {
+  SECTION("an initial strain is cancelled by the displacement with that strain") {
     Matrix3 h;
     h << 1e-3, 2e-4, -1e-4, 3e-4, -2e-3, 4e-4, 5e-5, -6e-4, 5e-4;
     const Vector6 strain = voigt::strain_vector(0.5 * (h + h.transpose()));
@@ -148,7 +148,7 @@ TEST_CASE("strain of a linear field", "[local]") {
   CHECK(largest(e - by_blocks) <= 1e-12);
 }
 
-TEST_CASE("a uniform traction on quadratic faces: nothing on corners, or less", "[local][loads]") {
+TEST_CASE("a uniform traction on quadratic faces: zero or negative corner loads", "[local][loads]") {
   FaceNodes<Tri6> triangle = FaceNodes<Tri6>::Zero();
   triangle.leftCols<2>() = Tri6::reference_nodes();
   const auto t = shape_areas<Tri6>(triangle);
@@ -161,7 +161,7 @@ TEST_CASE("a uniform traction on quadratic faces: nothing on corners, or less", 
   CHECK(largest(q.tail<4>() - Eigen::Vector4d::Constant(4.0 / 3.0)) <= 1e-15);
 }
 
-TEMPLATE_TEST_CASE("pressure on a closed curved surface adds up to nothing", "[local][loads]", Tet10, Hex20) {
+TEMPLATE_TEST_CASE("pressure on a closed curved surface sums to zero", "[local][loads]", Tet10, Hex20) {
   using E = TestType;
   testing::Random random(31);
   ElementNodes<E> x = stretched<E>();

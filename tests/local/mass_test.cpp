@@ -20,7 +20,7 @@ double volume_of(const ElementNodes<E>& x) {
   return shape_volumes<E>(x).sum();
 }
 
-/// Nodes and middles of edges bent away from a straight element.
+/// A straight element with displaced nodes, so that its edges are curved.
 template <Element E>
 ElementNodes<E> bent(testing::Random& random) {
   ElementNodes<E> x = some_element<E>(random);
@@ -30,7 +30,7 @@ ElementNodes<E> bent(testing::Random& random) {
 
 }  // namespace
 
-TEST_CASE("the mass of Tet4 is V/20 (1 + delta)", "[local][mass]") {
+TEST_CASE("the mass of Tet4 equals V/20 (1 + delta)", "[local][mass]") {
   testing::Random random(41);
   for (int trial = 0; trial < 20; ++trial) {
     const ElementNodes<Tet4> x = random_tetrahedron(random);
@@ -42,7 +42,7 @@ TEST_CASE("the mass of Tet4 is V/20 (1 + delta)", "[local][mass]") {
   }
 }
 
-TEST_CASE("the mass of Tet10 in fractions", "[local][mass]") {
+TEST_CASE("the mass of Tet10 equals the exact fractions", "[local][mass]") {
   // int L^a dV = 6 V a! / (|a| + 3)!: corner with corner 6, another corner 1, mid-edges 16 or 32 ... over 420.
   testing::Random random(43);
   const ElementNodes<Tet10> x = some_element<Tet10>(random);
@@ -77,7 +77,7 @@ TEST_CASE("lumped masses are positive where row sums are not", "[local][mass]") 
     }
   }
   SECTION("Hex20: 7/248 and 2/31") {
-    // By hand: the squared shape functions integrate to 28/135 at a corner, 64/135 at a middle of an edge.
+    // Closed form: the squared shape functions integrate to 28/135 at a corner, 64/135 at an edge midpoint.
     const ElementNodes<Hex20> x = some_element<Hex20>(random);
     const double volume = volume_of<Hex20>(x);
     const auto lumped = lumped_element_mass<Hex20>(x);
@@ -91,7 +91,7 @@ TEST_CASE("lumped masses are positive where row sums are not", "[local][mass]") 
   }
 }
 
-TEMPLATE_TEST_CASE("laws of the mass of an element", "[local][mass]", Tet4, Tet10, Hex8, Hex20) {
+TEMPLATE_TEST_CASE("properties of the element mass", "[local][mass]", Tet4, Tet10, Hex8, Hex20) {
   using E = TestType;
   testing::Random random(53);
   for (int trial = 0; trial < 10; ++trial) {

@@ -1,4 +1,4 @@
-// Elasticity as a deviatoric and a volumetric part.
+// Split of an elasticity matrix into a deviatoric and a volumetric part.
 #include <palpate/local/detail/split_elasticity.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
@@ -10,7 +10,7 @@
 
 using namespace test;
 
-TEST_CASE("an isotropic law splits into shear and bulk modulus", "[local]") {
+TEST_CASE("an isotropic material splits into shear and bulk modulus", "[local]") {
   for (double nu : {-0.9, 0.0, 0.3, 0.49, 0.4999999, 0.5 * (1 - 1e-12)}) {
     const LinearElastic m{5e3, nu, 0.0};
     const SplitElasticity split = split_elasticity(m.elasticity());
@@ -24,7 +24,7 @@ TEST_CASE("an isotropic law splits into shear and bulk modulus", "[local]") {
   CHECK(equivalent_poisson_ratio(LinearElastic{5e3, std::nextafter(0.5, 0.0), 0.0}.elasticity()) <= 0.5);
 }
 
-TEST_CASE("what is left of an anisotropic law is positive, and no larger part can be taken", "[local]") {
+TEST_CASE("the deviatoric part is positive semidefinite, and the volumetric part is the largest possible", "[local]") {
   const Matrix6 d = orthotropic();
   const SplitElasticity split = split_elasticity(d);
   const auto least = [](const Matrix6& m) {
@@ -32,7 +32,7 @@ TEST_CASE("what is left of an anisotropic law is positive, and no larger part ca
   };
   CHECK(least(split.deviatoric) >= -1e-12 * largest(d));
   CHECK(least(d - 1.001 * split.volumetric) < -1e-5 * largest(d));
-  // hydrostatic pressure p makes the volume smaller by p / kappa
+  // a hydrostatic pressure p reduces the volume by p / kappa
   Vector6 pressure = Vector6::Zero();
   pressure.head<3>().setOnes();
   const Vector6 strain = d.inverse() * pressure;

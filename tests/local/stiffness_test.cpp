@@ -25,7 +25,7 @@ Eigen::Matrix<double, 3 * E::nodes, 1> nodal(const ElementNodes<E>& u) {
   return v;
 }
 
-/// 1/2 u K u of the unit tetrahedron under the displacement gradient `h`, over its volume.
+/// 1/2 u K u of the unit tetrahedron under the displacement gradient `h`, divided by its volume.
 double energy_density(const Matrix6& d, const Matrix3& h) {
   const ElementNodes<Tet4> x = Tet4::reference_nodes();
   const auto u = nodal<Tet4>(x * h.transpose());
@@ -34,7 +34,7 @@ double energy_density(const Matrix6& d, const Matrix3& h) {
 
 }  // namespace
 
-TEST_CASE("the stiffness of Tet4 is the closed form", "[local][closed_form]") {
+TEST_CASE("the stiffness of Tet4 equals the closed form", "[local][closed_form]") {
   testing::Random random(3);
   for (int trial = 0; trial < 50; ++trial) {
     const LinearElastic m{random.uniform(1.0, 1e6), random.uniform(-0.9, 0.49), 0.0};
@@ -45,7 +45,7 @@ TEST_CASE("the stiffness of Tet4 is the closed form", "[local][closed_form]") {
   }
 }
 
-TEST_CASE("the corner tetrahedron by hand", "[local][closed_form]") {
+TEST_CASE("the corner tetrahedron equals the closed form", "[local][closed_form]") {
   // lambda = 2, mu = 1: K_11 = V ((lambda + mu) g g^T + mu g.g I) with g = (-1, -1, -1), g.g = 3, V = 1/6.
   Matrix6 d = Matrix6::Zero();
   d.topLeftCorner<3, 3>().setConstant(2.0);
@@ -83,7 +83,7 @@ TEST_CASE("each shear uses its own modulus", "[local][closed_form]") {
     }
 }
 
-TEMPLATE_TEST_CASE("rigid motions cost nothing and nothing else does", "[local][rigid]", Tet4, Tet10, Hex8, Hex20,
+TEMPLATE_TEST_CASE("rigid motions are the only motions without energy", "[local][rigid]", Tet4, Tet10, Hex8, Hex20,
                    user::Hex8, user::Tet10, thesis::ThesisTet4) {
   using E = TestType;
   testing::Random random(5);
@@ -106,23 +106,23 @@ TEMPLATE_TEST_CASE("rigid motions cost nothing and nothing else does", "[local][
   }
 }
 
-TEMPLATE_TEST_CASE("moving and turning an element", "[local][invariance][M1][M2]", Tet4, Tet10, Hex8, Hex20) {
+TEMPLATE_TEST_CASE("translated, rotated and scaled elements", "[local][invariance][M1][M2]", Tet4, Tet10, Hex8, Hex20) {
   using E = TestType;
   testing::Random random(7);
   const ElementNodes<E> x = some_element<E>(random);
   const auto k = element_stiffness<E>(x, liver.elasticity());
-  SECTION("a translation by a power of two changes no bit of the edges, hence none of K") {
+  SECTION("a translation by a power of two changes no bit of the edges or of K") {
     ElementNodes<E> rounded = (x * 0x1p20).array().round() * 0x1p-20;  // coordinates that survive the shift
     const auto here = element_stiffness<E>(rounded, liver.elasticity());
     rounded.rowwise() += Eigen::RowVector3d(1024.0, -2048.0, 4096.0);
     CHECK(element_stiffness<E>(rounded, liver.elasticity()) == here);
   }
-  SECTION("a thousand sizes away") {
+  SECTION("a translation by a thousand element sizes") {
     ElementNodes<E> moved = x;
     moved.rowwise() += Eigen::RowVector3d(1000.1, -1000.2, 999.3);
     CHECK(largest(element_stiffness<E>(moved, liver.elasticity()) - k) <= 1e-11 * largest(k));  // rounded coordinates
   }
-  SECTION("a rotation turns the blocks") {
+  SECTION("a rotation rotates the blocks") {
     const Matrix3 r = testing::random_rotation(random);
     const auto rotated = element_stiffness<E>(x * r.transpose(), liver.elasticity());
     for (int a = 0; a < E::nodes; ++a)
@@ -130,15 +130,16 @@ TEMPLATE_TEST_CASE("moving and turning an element", "[local][invariance][M1][M2]
         CHECK(largest(rotated.template block<3, 3>(3 * a, 3 * b) -
                       r * k.template block<3, 3>(3 * a, 3 * b) * r.transpose()) <= 1e-13 * largest(k));
   }
-  SECTION("twice the size, twice the stiffness, to the last bit") {
+  SECTION("twice the size gives twice the stiffness, to the last bit") {
     CHECK(element_stiffness<E>(2.0 * x, liver.elasticity()) == 2.0 * k);
   }
-  SECTION("a millionth of the size") {
+  SECTION("one millionth of the size") {
     CHECK(largest(element_stiffness<E>(1e-6 * x, liver.elasticity()) * 1e6 - k) <= 1e-13 * largest(k));
   }
 }
 
-TEST_CASE("a one millimetre tetrahedron a kilometre away keeps its sign and its digits", "[local][extreme][B2][M1]") {
+TEST_CASE("a one millimetre tetrahedron one kilometre away keeps orientation and accuracy",
+          "[local][extreme][B2][M1]") {
   const ElementNodes<Tet4> small = 0x1p-10 * Tet4::reference_nodes();
   ElementNodes<Tet4> far = small;
   far.rowwise() += Eigen::RowVector3d(1024.0, 1024.0, 1024.0);
@@ -171,7 +172,7 @@ TEST_CASE("the corrected element of the thesis has the stiffness of Tet4", "[loc
   }
 }
 
-TEST_CASE("what each misprint of the thesis does to the stiffness", "[local][thesis]") {
+TEST_CASE("effect of each misprint of the thesis on the stiffness", "[local][thesis]") {
   testing::Random random(17);
   const ElementNodes<Tet4> x = random_tetrahedron(random);
   const Matrix6 d = liver.elasticity();
@@ -183,22 +184,22 @@ TEST_CASE("what each misprint of the thesis does to the stiffness", "[local][the
     CHECK_THAT(factor, Catch::Matchers::WithinAbs(13.0639, 1e-4));
     CHECK(largest(element_stiffness<thesis::PrintedWeight>(x, d) - factor * k) <= 1e-12 * factor * largest(k));
   }
-  SECTION("the wrong gradients: six zero modes all the same, but a translation strains the element") {
+  SECTION("the wrong gradients: still six zero modes, but a translation strains the element") {
     const ElementStiffness<Tet4> wrong = element_stiffness<thesis::PrintedDerivatives>(x, d);
     CHECK(largest(wrong * nodal<Tet4>(shift)) > 0.1 * largest(wrong));
     ElementNodes<Tet4> moved = x;
     moved.rowwise() += Eigen::RowVector3d(1.0, 1.0, 1.0);
-    // Edge vectors hide the misprint from K: this K does not depend on where the element is.
+    // The use of edge vectors hides the misprint: K does not depend on the position of the element.
     CHECK(largest(element_stiffness<thesis::PrintedDerivatives>(moved, d) - wrong) <= 1e-12 * largest(wrong));
   }
-  SECTION("order 1-2-3-4: a negative volume turns the sign of K") {
+  SECTION("order 1-2-3-4: a negative volume changes the sign of K") {
     CHECK(point_geometry<thesis::PrintedOrder>(x, Vector3::Zero(), 1.0).volume < 0.0);
     CHECK(largest(element_stiffness<thesis::PrintedOrder>(x, d)) > 0.0);
     CHECK(element_stiffness<thesis::PrintedOrder>(x, d).diagonal().maxCoeff() < 0.0);
   }
 }
 
-TEMPLATE_TEST_CASE("with two constants or with a matrix, the stiffness is the same", "[local]", Tet4, Tet10, Hex8,
+TEMPLATE_TEST_CASE("the stiffness from Lame's constants equals that from the matrix", "[local]", Tet4, Tet10, Hex8,
                    Hex20, (WithQuadrature<Tet10, TetrahedronRule<3>>)) {  // with a negative weight
   using E = TestType;
   testing::Random random(29);
@@ -216,12 +217,12 @@ TEMPLATE_TEST_CASE("with two constants or with a matrix, the stiffness is the sa
   }
 }
 
-TEST_CASE("an element turned inside out at one integration point is seen", "[local][extreme]") {
+TEST_CASE("an element inverted at one integration point is detected", "[local][extreme]") {
   ElementNodes<Hex8> x = Hex8::reference_nodes();
   CHECK(is_positively_oriented<Hex8>(x));
-  x.row(6) = Eigen::RowVector3d(-0.6, -0.6, -0.6);  // a corner pushed through the middle
+  x.row(6) = Eigen::RowVector3d(-0.6, -0.6, -0.6);  // a corner moved through the centre
   CHECK_FALSE(is_positively_oriented<Hex8>(x));
   ElementNodes<Tet10> y = Tet10::reference_nodes();
-  y.row(4) = Eigen::RowVector3d(-0.9, 0.0, 0.0);  // a middle node beyond its edge's end
+  y.row(4) = Eigen::RowVector3d(-0.9, 0.0, 0.0);  // a midside node moved beyond the end of its edge
   CHECK_FALSE(is_positively_oriented<Tet10>(y));
 }

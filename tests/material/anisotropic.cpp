@@ -45,7 +45,7 @@ Orthotropic rotated(const Matrix3& r) {
 
 }  // namespace
 
-TEST_CASE("anisotropic materials keep the laws", "[material][laws]") {
+TEST_CASE("anisotropic materials pass the law suite", "[material][laws]") {
   testing::Random random(77);
   CHECK(testing::describe(testing::linear_material_laws(wood())) == "");
   CHECK(testing::describe(testing::linear_material_laws(muscle)) == "");
@@ -56,10 +56,10 @@ TEST_CASE("anisotropic materials keep the laws", "[material][laws]") {
     m.fibre = r.col(0);
     CHECK(testing::describe(testing::linear_material_laws(m)) == "");
   }
-  CHECK(testing::describe(testing::linear_material_laws(wood(), {.isotropic = true})) != "");  // the law can fail
+  CHECK(testing::describe(testing::linear_material_laws(wood(), {.isotropic = true})) != "");  // the check can fail
 }
 
-TEST_CASE("a pull along each axis of an orthotropic block", "[material]") {
+TEST_CASE("tension along each axis of an orthotropic block", "[material]") {
   const Orthotropic m = wood();
   const Matrix6 compliance = m.elasticity().inverse();
   const double e1 = m.youngs_modulus_1, e2 = m.youngs_modulus_2, e3 = m.youngs_modulus_3;
@@ -70,7 +70,7 @@ TEST_CASE("a pull along each axis of an orthotropic block", "[material]") {
   CHECK((compliance - exact).cwiseAbs().maxCoeff() <= 1e-13 * exact.cwiseAbs().maxCoeff());
 }
 
-TEST_CASE("shear rows stand in the order xy xz yz, also when the axes change places", "[material]") {
+TEST_CASE("shear rows are in the order xy xz yz, also with permuted axes", "[material]") {
   // Axes 1 2 3 along y z x: G12 acts in yz, G13 in xy, G23 in xz. A permuted order of rows would mix these.
   Matrix3 cycle;
   cycle << 0, 0, 1, 1, 0, 0, 0, 1, 0;
@@ -82,7 +82,7 @@ TEST_CASE("shear rows stand in the order xy xz yz, also when the axes change pla
   CHECK_THAT(d(voigt::zz, voigt::xx), WithinRel(d0(1, 2), 1e-13));
 }
 
-TEST_CASE("the law turns with its axes: R sigma(R^T e R) R^T", "[material]") {
+TEST_CASE("an orthotropic material rotates with its axes: R sigma(R^T e R) R^T", "[material]") {
   testing::Random random(79);
   for (int k = 0; k < 20; ++k) {
     const Matrix3 r = testing::random_rotation(random), e = testing::random_symmetric(random);
@@ -96,7 +96,7 @@ TEST_CASE("the law turns with its axes: R sigma(R^T e R) R^T", "[material]") {
   }
 }
 
-TEST_CASE("equal constants make them isotropic", "[material]") {
+TEST_CASE("equal constants make anisotropic materials isotropic", "[material]") {
   testing::Random random(83);
   for (double nu : {-0.4, 0.0, 0.3, 0.49}) {
     const LinearElastic iso{5e3, nu, 1000.0};
@@ -109,7 +109,7 @@ TEST_CASE("equal constants make them isotropic", "[material]") {
   }
 }
 
-TEST_CASE("across its fibres a transversely isotropic law is isotropic, and has no sign", "[material]") {
+TEST_CASE("a transversely isotropic material is isotropic across its fibres, independent of their sign", "[material]") {
   const Vector3 fibre = Vector3(1, 2, -3).normalized();
   const Matrix6 d = muscle.elasticity(fibre), scale = Matrix6::Constant(1e-13 * d.cwiseAbs().maxCoeff());
   for (double angle : {0.3, 1.1, 2.5}) {
@@ -150,14 +150,14 @@ TEST_CASE("inadmissible anisotropic materials are refused", "[material][extreme]
     limp.push_back(muscle);
     limp.back().fibre = fibre;
   }
-  for (double nu : {1.0, -1.0, 1.5}) {  // across: |nu| < 1, and less with the fibres
+  for (double nu : {1.0, -1.0, 1.5}) {  // across the fibres: |nu| < 1, and less in combination with the fibres
     limp.push_back(muscle);
     limp.back().poisson_ratio_across = nu;
   }
   CHECK(testing::describe(testing::admission_laws<TransverselyIsotropic>({muscle}, limp)) == "");
 }
 
-TEST_CASE("the bound of positive definiteness is where theory puts it", "[material][extreme][A5]") {
+TEST_CASE("the bound of positive definiteness agrees with theory", "[material][extreme][A5]") {
   Orthotropic m = wood();
   const auto smallest = [&] { return m.check() ? m.check()->value : infinity; };
   for (int sign : {-1, 1}) {

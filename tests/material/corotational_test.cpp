@@ -1,4 +1,4 @@
-// The co-rotated linear law.
+// The co-rotated linear material.
 #include <palpate/material/corotational.hpp>
 #include <palpate/testing/hyperelastic_laws.hpp>
 #include <palpate/testing/material_laws.hpp>
@@ -18,7 +18,7 @@ Corotational<> liver(double nu) {
 
 }  // namespace
 
-TEST_CASE("Corotational keeps the laws", "[material][large][laws]") {
+TEST_CASE("Corotational passes the law suite", "[material][large][laws]") {
   for (double nu : {-0.3, 0.0, 0.3, 0.45, 0.499}) {
     INFO("nu = " << nu);
     CHECK(testing::describe(testing::hyperelastic_material_laws(liver(nu))) == "");
@@ -31,7 +31,7 @@ TEST_CASE("Corotational keeps the laws", "[material][large][laws]") {
             {liver(0.5), {{5e3, 0.3, 0.0}, -1.0}, {{-5e3, 0.3, 0.0}, 1.0}, {{5e3, 0.3, 0.0}, infinity}})) == "");
 }
 
-TEST_CASE("Corotational is the linear law of the stretch", "[material][large]") {
+TEST_CASE("Corotational equals the linear material applied to the stretch", "[material][large]") {
   testing::Random random(31);
   const Corotational<> m = liver(0.4);
   for (int k = 0; k < 16; ++k) {
@@ -55,7 +55,7 @@ TEST_CASE("a rotation by any angle is free of stress", "[material][large][extrem
     CHECK(contract(m.stress(half_turn), m.stress(half_turn)) == 0.0);
 }
 
-TEST_CASE("the semidefinite tangent: exact at rest turned anyhow, never negative", "[material][large]") {
+TEST_CASE("the semidefinite tangent is exact at rest under any rotation, and never negative", "[material][large]") {
   testing::Random random(33);
   const Corotational<> m = liver(0.45);
   bool exact_is_indefinite = false;

@@ -1,4 +1,4 @@
-// Fibres under tension in a law without a direction.
+// Fibres under tension in a material without a direction.
 #include <palpate/material/fibre_reinforced.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_isochoric.hpp>
@@ -25,7 +25,7 @@ Triple<double> triple(const Vector3& v) {
 
 }  // namespace
 
-TEST_CASE("FibreReinforced keeps the laws, and is not isotropic", "[material][large][laws]") {
+TEST_CASE("FibreReinforced passes the law suite, and is not isotropic", "[material][large][laws]") {
   const auto v = testing::hyperelastic_material_laws(fibred, {.isotropic = false});
   CHECK(testing::describe(v) == "");
   CHECK(testing::violates(testing::hyperelastic_material_laws(fibred), "isotropy"));
@@ -35,7 +35,7 @@ TEST_CASE("FibreReinforced keeps the laws, and is not isotropic", "[material][la
   CHECK(fibred.density == 1060.0);
 }
 
-TEST_CASE("a pull along the fibres by the closed form, none when pushed", "[material][large]") {
+TEST_CASE("tension along the fibres equals the closed form; no fibre stress in compression", "[material][large]") {
   const Tensor3<double> rest = Tensor3<double>::identity(), fibres = outer(triple(along), triple(along));
   for (double l : {0.5, 0.9, 1.0, 1.05, 1.3, 1.6}) {
     const Tensor3<double> f = rest + (l - 1.0) * fibres, more = fibred.stress(f) - fibred.base.stress(f);
@@ -46,7 +46,7 @@ TEST_CASE("a pull along the fibres by the closed form, none when pushed", "[mate
   }
 }
 
-TEST_CASE("at the switch the stress is continuous and the stiffness jumps by 4 k1", "[material][large]") {
+TEST_CASE("at zero fibre strain the stress is continuous and the stiffness jumps by 4 k1", "[material][large]") {
   const Tensor3<double> rest = Tensor3<double>::identity(), fibres = outer(triple(along), triple(along));
   const auto at = [&](double strain) { return rest + strain * fibres; };
   const auto fibre_stress = [&](double strain) {
@@ -64,7 +64,7 @@ TEST_CASE("at the switch the stress is continuous and the stiffness jumps by 4 k
   }
 }
 
-TEST_CASE("directions of the mesh, one per lane", "[material][large]") {
+TEST_CASE("fibre directions of the mesh, one per lane", "[material][large]") {
   testing::Random random(41);
   const auto f = testing::random_deformation(fibred, random, 0.2);
   Triple<Lanes<double, 8>> wide;
@@ -91,11 +91,11 @@ TEST_CASE("directions of the mesh, one per lane", "[material][large]") {
   }
 }
 
-TEST_CASE("a pull beyond the exponential is refused and finite", "[material][large][extreme][A5]") {
+TEST_CASE("a stretch beyond the exponent limit is refused and finite", "[material][large][extreme][A5]") {
   const Tensor3<double> f = Tensor3<double>::diagonal(4.0, 4.0, 4.0), far = 1e3 * Tensor3<double>::identity();
   CHECK_FALSE(fibred.admits(f));
   CHECK_FALSE(fibred.admits(far));
-  for (const double exponent : {39.9, 40.1}) {  // of the least stretch that is refused: k2 E^2 = 40
+  for (const double exponent : {39.9, 40.1}) {  // for the smallest stretch that is refused: k2 E^2 = 40
     const double stretch = std::sqrt(1.0 + std::sqrt(exponent / fibred.k2));
     CHECK(fibred.admits(stretch * Tensor3<double>::identity()) == (exponent < Muscle::largest_exponent));
   }

@@ -1,4 +1,4 @@
-// The laws for large strain against tables of closed forms (tests/data/oracle/README.md) and textbook formulas.
+// Large-strain materials against tables of closed forms (tests/data/oracle/README.md) and textbook formulas.
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_isochoric.hpp>
@@ -41,7 +41,7 @@ std::vector<Row> table(const std::string& name) {
   return rows;
 }
 
-/// Energy and stress of the law a row names: E = 1e4, nu as in its name, c10 : c01 = 7 : 3.
+/// Energy and stress of the material named in a row: E = 1e4, nu as in its name, c10 : c01 = 7 : 3.
 struct Answer {
   double energy;
   Tensor p;
@@ -103,7 +103,7 @@ TEST_CASE("simple shear", "[material][large][oracle]") {
   CHECK(rows == 48);
 }
 
-TEST_CASE("random deformations", "[material][large][oracle]") {
+TEST_CASE("large-strain materials at random deformations", "[material][large][oracle]") {
   int rows = 0;
   for (const Row& row : table("closed_form_random_F.csv")) {
     Tensor f, p;
@@ -122,8 +122,8 @@ TEST_CASE("random deformations", "[material][large][oracle]") {
   CHECK(rows == 48);
 }
 
-TEST_CASE("incompressible closed forms", "[material][large]") {
-  // At J = 1 the pressure is free: what a pull along 1 with nothing on side 3 needs is P11 - P33 F33 / F11.
+TEST_CASE("large-strain materials against incompressible closed forms", "[material][large]") {
+  // At J = 1 the pressure is arbitrary: the tension along 1 with a stress-free side 3 is P11 - P33 F33 / F11.
   const auto pull = [](const Tensor& p, const Tensor& f) { return p(0, 0) - p(2, 2) * f(2, 2) / f(0, 0); };
   const double c1 = 1200.0, c2 = 500.0, mu = 2.0 * (c1 + c2), bulk = 3e4;
   const MooneyRivlin m{c1, c2, bulk, 0.0};
@@ -156,7 +156,7 @@ TEST_CASE("incompressible closed forms", "[material][large]") {
   }
 }
 
-TEST_CASE("NeoHookean: uniaxial tension by its own quadratic", "[material][large]") {
+TEST_CASE("NeoHookean: uniaxial tension equals the solution of its quadratic equation", "[material][large]") {
   // Free sides: mu + ((lambda + mu)(l s^2 - 1) - mu) l = 0 for the lateral stretch s.
   for (double nu : {0.0, 0.3, 0.45})
     for (double l : {0.5, 0.8, 1.2, 2.0}) {

@@ -1,4 +1,4 @@
-// The isotropic laws for large strain: what all of them keep, and what each of them is.
+// Isotropic large-strain materials: common properties, and properties of each.
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_isochoric.hpp>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-/// All cases of bad parameters that LinearElastic refuses, for a law with the same ones.
+/// All invalid parameters that LinearElastic refuses, for a material with the same parameters.
 template <class M>
 std::vector<M> inadmissible() {
   return {M{0.0, 0.3, 0.0},          M{-1.0, 0.3, 0.0},      M{no_number, 0.3, 0.0}, M{infinity, 0.3, 0.0},
@@ -40,7 +40,7 @@ void keeps_the_laws(testing::HyperelasticClaims claims, double lowest = -0.9) {
         "");
 }
 
-/// Green-Lagrange energy of the thesis' linear law at a small strain e.
+/// Energy of the thesis' linear material at a small strain e.
 double linear_energy(const Matrix6& d, const Tensor3<double>& h) {
   const Matrix3 m = matrix3(h);
   const Vector6 e = voigt::strain_vector(0.5 * (m + m.transpose()));
@@ -49,7 +49,7 @@ double linear_energy(const Matrix6& d, const Tensor3<double>& h) {
 
 }  // namespace
 
-TEST_CASE("laws for large strain keep the laws", "[material][large][laws]") {
+TEST_CASE("large-strain materials pass the law suite", "[material][large][laws]") {
   SECTION("NeoHookean") {
     keeps_the_laws<NeoHookean>({});
   }
@@ -64,7 +64,7 @@ TEST_CASE("laws for large strain keep the laws", "[material][large][laws]") {
   }
 }
 
-TEST_CASE("MooneyRivlin keeps the laws", "[material][large][laws]") {
+TEST_CASE("MooneyRivlin passes the law suite", "[material][large][laws]") {
   for (const MooneyRivlin& m : {MooneyRivlin{1.2e3, 0.5e3, 3e4, 1060.0}, MooneyRivlin{1.7e3, 0.0, 3e4, 0.0},
                                 MooneyRivlin{0.0, 1.7e3, 3e6, 0.0}, MooneyRivlin{1.0, 1.0, 0.1, 0.0}})
     CHECK(testing::describe(hyperelastic_material_laws(m, {.barrier = true})) == "");
@@ -78,8 +78,8 @@ TEST_CASE("MooneyRivlin keeps the laws", "[material][large][laws]") {
   CHECK_THAT(good.small_strain().lame_lambda(), WithinRel(3e4 - 2.0 / 3.0 * 3.4e3, 1e-12));
 }
 
-TEMPLATE_TEST_CASE("the energy keeps its digits down to strains of 1e-8", "[material][large]", NeoHookean,
-                   StVenantKirchhoff, NeoHookeanIsochoric, NeoHookeanLogarithmic) {
+TEMPLATE_TEST_CASE("the energy is accurate down to strains of 1e-8", "[material][large]", NeoHookean, StVenantKirchhoff,
+                   NeoHookeanIsochoric, NeoHookeanLogarithmic) {
   testing::Random random(12);
   const TestType m{5e3, 0.45, 0.0};
   for (double size : {1e-4, 1e-6, 1e-8}) {
@@ -90,7 +90,7 @@ TEMPLATE_TEST_CASE("the energy keeps its digits down to strains of 1e-8", "[mate
   }
 }
 
-TEST_CASE("MooneyRivlin with c01 = 0 is NeoHookeanIsochoric", "[material][large]") {
+TEST_CASE("MooneyRivlin with c01 = 0 equals NeoHookeanIsochoric", "[material][large]") {
   testing::Random random(13);
   const NeoHookeanIsochoric n{5e3, 0.45, 0.0};
   const LinearElastic e = n.small_strain();
@@ -103,7 +103,7 @@ TEST_CASE("MooneyRivlin with c01 = 0 is NeoHookeanIsochoric", "[material][large]
   }
 }
 
-TEST_CASE("the logarithmic law refuses nu < 0, where pressing it flat would set energy free", "[material][large]") {
+TEST_CASE("the logarithmic material refuses nu < 0, where flattening would release energy", "[material][large]") {
   const NeoHookeanLogarithmic m{5e3, -0.3, 0.0};
   REQUIRE(m.check().has_value());
   CHECK(m.check()->kind == SetupErrorKind::bad_poisson_ratio);
@@ -118,7 +118,7 @@ TEST_CASE("StVenantKirchhoff softens in compression at 1/sqrt 3 of the length", 
   CHECK(slope(0.55) < 0.0);
 }
 
-TEST_CASE("NeoHookean under even pressure has a second rest at F = 0", "[material][large][extreme][E5]") {
+TEST_CASE("NeoHookean under hydrostatic pressure has a second equilibrium at F = 0", "[material][large][extreme][E5]") {
   const NeoHookean m{5e3, 0.45, 0.0};
   const Tensor3<double> zero{};
   CHECK(contract(m.stress(zero), m.stress(zero)) == 0.0);
@@ -131,7 +131,7 @@ TEST_CASE("NeoHookean under even pressure has a second rest at F = 0", "[materia
     const double s = 0.5 * (low + high);
     ((lambda + mu) * s * (1.0 + s + s * s) < mu ? low : high) = s;
   }
-  CHECK(pressed(1.01 * high) < 0.0);  // pushes back outside
+  CHECK(pressed(1.01 * high) < 0.0);  // pushes back above it
   CHECK(pressed(0.99 * low) > 0.0);
   CHECK(high < 0.1);
 }

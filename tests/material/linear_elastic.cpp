@@ -20,7 +20,7 @@ Vector6 strain_under(const LinearElastic& m, const Vector6& stress) {
 
 }  // namespace
 
-TEST_CASE("LinearElastic keeps the laws", "[material][laws]") {
+TEST_CASE("LinearElastic passes the law suite", "[material][laws]") {
   STATIC_REQUIRE(LinearMaterial<LinearElastic>);
   for (double nu : poisson_ratios) {
     INFO("nu = " << nu);
@@ -28,7 +28,7 @@ TEST_CASE("LinearElastic keeps the laws", "[material][laws]") {
   }
 }
 
-TEST_CASE("a bar pulled along one axis: stiffness E, contraction nu", "[material]") {
+TEST_CASE("uniaxial tension: stiffness E, contraction nu", "[material]") {
   for (double nu : poisson_ratios) {
     INFO("nu = " << nu);
     const double tolerance = 1e-14 / (0.5 - nu);
@@ -54,7 +54,7 @@ TEST_CASE("shear: stress = mu gamma", "[material]") {
   }
 }
 
-TEST_CASE("swelling: pressure = bulk modulus times volume strain", "[material]") {
+TEST_CASE("volume change: pressure = bulk modulus times volume strain", "[material]") {
   for (double nu : poisson_ratios) {
     INFO("nu = " << nu);
     const LinearElastic m{soft, nu, 0.0};
@@ -66,7 +66,7 @@ TEST_CASE("swelling: pressure = bulk modulus times volume strain", "[material]")
   }
 }
 
-TEST_CASE("eq. 3.2 entry by entry", "[material][thesis]") {
+TEST_CASE("the elasticity matrix equals eq. 3.2 entry by entry", "[material][thesis]") {
   const double nu = 0.3, factor = soft / ((1.0 + nu) * (1.0 - 2.0 * nu));
   Matrix6 expected = Matrix6::Zero();
   expected.topLeftCorner<3, 3>().setConstant(nu);
@@ -75,7 +75,7 @@ TEST_CASE("eq. 3.2 entry by entry", "[material][thesis]") {
   CHECK((LinearElastic{soft, nu, 0.0}.elasticity() - factor * expected).norm() < 1e-12 * soft);
 }
 
-TEST_CASE("a refusal says what, why and the way out", "[material]") {
+TEST_CASE("a refusal states the problem, the reason and a remedy", "[material]") {
   const auto problem = LinearElastic{soft, 0.5, 1060.0}.check();
   REQUIRE(problem.has_value());
   CHECK(problem->kind == SetupErrorKind::bad_poisson_ratio);

@@ -10,13 +10,13 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// `steps` representable numbers above (or below) x.
+/// The number that is `steps` representable numbers above (or below) x.
 double neighbour(double x, int steps) {
   for (int i = 0; i < std::abs(steps); ++i) x = std::nextafter(x, steps > 0 ? infinity : -infinity);
   return x;
 }
 
-/// Ten thousand Poisson ratios: the borders and their neighbours, special values, the plausible range, all magnitudes,
+/// Ten thousand Poisson ratios: the bounds and their neighbours, special values, the plausible range, all magnitudes,
 /// all bit patterns.
 std::vector<double> ten_thousand_poisson_ratios() {
   std::vector<double> all{not_a_number, -not_a_number, infinity, -infinity, 0.0, -0.0, 0.5, -0.5, -1.0, 1.0};
@@ -40,7 +40,7 @@ std::vector<double> ten_thousand_poisson_ratios() {
   return all;
 }
 
-/// Admissible exactly when inside the open interval, and refused for the right reason.
+/// True if nu is accepted exactly inside the open interval, and refused with the right error otherwise.
 bool verdict_is_right(double nu) {
   const auto problem = LinearElastic{5e3, nu, 1060.0}.check();
   if (nu > -1.0 && nu < 0.5) return !problem;
@@ -63,7 +63,7 @@ TEST_CASE("A1: Poisson ratio is refused outside of (-1, 0.5) and nowhere else", 
   CHECK(admissible < 8000);
 }
 
-TEST_CASE("A1: the borders one by one", "[material][extreme][A1]") {
+TEST_CASE("A1: the bounds one by one", "[material][extreme][A1]") {
   const auto verdict = [](double nu) { return !LinearElastic{5e3, nu, 1060.0}.check().has_value(); };
   CHECK(verdict(std::nextafter(0.5, 0.0)));
   CHECK_FALSE(verdict(0.5));
@@ -74,7 +74,7 @@ TEST_CASE("A1: the borders one by one", "[material][extreme][A1]") {
   CHECK_FALSE(verdict(not_a_number));
   CHECK_FALSE(verdict(infinity));
   CHECK_FALSE(verdict(-infinity));
-  CHECK(verdict(0.0));   // not "not set"
+  CHECK(verdict(0.0));   // zero is a valid value, not "unset"
   CHECK(verdict(-0.5));  // auxetic
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("A3: E from 1 Pa to 1e12 Pa only scales", "[material][extreme][A3]") {
   }
 }
 
-TEST_CASE("A3: scaling by a power of two is exact, down to the tiny and up to the huge", "[material][extreme][A3]") {
+TEST_CASE("A3: scaling by a power of two is exact over the whole range", "[material][extreme][A3]") {
   const Matrix6 unit = LinearElastic{1.0, 0.45, 1000.0}.elasticity();
   for (int k : {-1000, -500, -40, 40, 500, 1000}) {
     const double e = std::ldexp(1.0, k);
@@ -116,7 +116,7 @@ TEST_CASE("A5: stiffness must be positive, density must not be negative, all fin
   CHECK(kind({-1.0, 0.3, 1000.0}) == SetupErrorKind::bad_youngs_modulus);
   CHECK(kind({5e3, 0.3, -1.0}) == SetupErrorKind::bad_density);
   CHECK(kind({huge, 0.49, 1000.0}) == SetupErrorKind::not_positive_definite);
-  CHECK(kind({}) == SetupErrorKind::bad_youngs_modulus);  // nothing filled in
+  CHECK(kind({}) == SetupErrorKind::bad_youngs_modulus);  // default-constructed
 }
 
 TEST_CASE("A5: a random sweep of all three parameters over all bit patterns", "[material][extreme][A5]") {

@@ -1,4 +1,4 @@
-// Presets of tissues and factors of units.
+// Tissue presets and unit factors.
 #include <palpate/material/tissue_presets.hpp>
 
 #include <set>
@@ -7,7 +7,7 @@
 
 using namespace palpate;
 
-TEST_CASE("every preset is a material, has a source and a name of its own", "[material][presets]") {
+TEST_CASE("every preset is a valid material with a source and a unique name", "[material][presets]") {
   std::set<std::string_view> names;
   for (const TissuePreset& preset : tissue_presets) {
     INFO(preset.name);
@@ -28,12 +28,12 @@ TEST_CASE("every preset is a material, has a source and a name of its own", "[ma
   }
 }
 
-TEST_CASE("shear moduli of the sources become Young's moduli", "[material][presets]") {
+TEST_CASE("shear moduli of the sources are converted to Young's moduli", "[material][presets]") {
   CHECK_THAT(tissue_preset("liver").youngs_modulus, Catch::Matchers::WithinRel(2.0 * 1.49 * 1800.0, 1e-12));
   CHECK_THAT(tissue_preset("liver").material().shear_modulus(), Catch::Matchers::WithinRel(1800.0, 1e-12));
 }
 
-TEST_CASE("an unknown preset is refused with the names there are", "[material][presets]") {
+TEST_CASE("an unknown preset is refused with a list of the names", "[material][presets]") {
   try {
     tissue_preset("brain");
     FAIL("accepted");
@@ -43,7 +43,7 @@ TEST_CASE("an unknown preset is refused with the names there are", "[material][p
   }
 }
 
-TEST_CASE("factors of units", "[core][units]") {
+TEST_CASE("unit factors", "[core][units]") {
   CHECK(5.4 * units::kPa == 5400.0);
   CHECK(2.0 * units::mm == 0.002);
   CHECK(1.06 * units::g_per_cm3 == 1060.0);

@@ -31,7 +31,7 @@ Vector6 axial(double along, double across) {
   return (Vector6() << along, across, across, 0, 0, 0).finished();
 }
 
-/// The lateral strain that leaves the sides free over one step: the stress is affine in it.
+/// The lateral strain that leaves the sides stress-free over one step: the stress is affine in it.
 double free_side(const Linear& m, const Linear::SmallStrainHistory& history, double along, double dt) {
   auto first = history, second = history;
   const double a = m.stress(axial(along, 0.0), first, dt)[1], b = m.stress(axial(along, along), second, dt)[1];
@@ -60,7 +60,7 @@ TEST_CASE("relaxation after a sudden strain is exact for any step", "[material][
   }
 }
 
-TEST_CASE("where only the shape relaxes free sides move, with a time of their own",
+TEST_CASE("with deviatoric relaxation free sides move with a different time constant",
           "[material][viscoelastic][oracle]") {
   const Linear m = cube(Relaxation::deviatoric);
   const auto error = [&](int steps) {  // between two rows of the table
@@ -80,10 +80,10 @@ TEST_CASE("where only the shape relaxes free sides move, with a time of their ow
     return worst;
   };
   CHECK(error(20) < 1e-5);
-  CHECK(error(10) / error(20) > 3.5);  // of second order
+  CHECK(error(10) / error(20) > 3.5);  // second order
 }
 
-TEST_CASE("ramp is exact for any step, creep of second order", "[material][viscoelastic][oracle]") {
+TEST_CASE("a ramp is exact for any step, creep is second order", "[material][viscoelastic][oracle]") {
   const auto rows = table("closed_form_ramp_creep_harmonic.csv");
   REQUIRE(rows.size() == 18);
   const Linear m = cube(Relaxation::whole_stress);
@@ -104,7 +104,7 @@ TEST_CASE("ramp is exact for any step, creep of second order", "[material][visco
       now = row[0];
       double size = 0.0;
       for (int k = 0; k < count; ++k) {
-        auto none = history, unit = history;  // 100 Pa: the stress is affine in the strain
+        auto none = history, unit = history;  // solves for 100 Pa: the stress is affine in the strain
         const double a = m.stress(axial(0.0, 0.0), none, dt)[0],
                      b = m.stress(axial(strain, -0.45 * strain), unit, dt)[0];
         size = strain * (100.0 - a) / (b - a);
@@ -118,8 +118,7 @@ TEST_CASE("ramp is exact for any step, creep of second order", "[material][visco
   CHECK(creep_error(20) / creep_error(40) > 3.5);
 }
 
-TEST_CASE("a long step ends at the slow stress, a short one at the fast: no step is too long",
-          "[material][viscoelastic]") {
+TEST_CASE("a long step gives the long-term stress, a short one the instantaneous stress", "[material][viscoelastic]") {
   const Viscoelastic<LinearElastic, 2> m{LinearElastic{1e4, 0.3, 0.0}, {{{0.3, 1e-3}, {0.4, 1e2}}}};
   const Vector6 e = axial(strain, 0.0), fast = m.base.elasticity() * e;
   for (double dt : {0.0, 1e-12, 1.0, 1e6, 1e300}) {
@@ -133,10 +132,10 @@ TEST_CASE("a long step ends at the slow stress, a short one at the fast: no step
   CHECK_THAT(m.tangent_share(1e300), WithinRel(0.3, 1e-14));
 }
 
-TEST_CASE("large strain: relaxation of a held deformation, and turning it leaves it alone",
+TEST_CASE("large strain: relaxation of a constant deformation, unaffected by a rotation",
           "[material][viscoelastic][large]") {
   testing::Random random(51);
-  const NeoHookeanIsochoric base{5e3, 0.45, 1060.0};  // its energy splits into shape and volume
+  const NeoHookeanIsochoric base{5e3, 0.45, 1060.0};  // its energy splits into isochoric and volumetric parts
   const Viscoelastic<NeoHookeanIsochoric, 2> whole{base, {{{0.3, 0.1}, {0.2, 2.0}}}};
   auto shape = whole;
   shape.relaxation = Relaxation::deviatoric;
@@ -167,7 +166,7 @@ TEST_CASE("large strain: relaxation of a held deformation, and turning it leaves
   CHECK(whole.admits(Tensor3<double>::diagonal(1, 1, 0.1)));
 }
 
-TEMPLATE_TEST_CASE("within a step the law has an energy, whatever its base and whatever relaxes",
+TEMPLATE_TEST_CASE("within a step the material has an energy, for every base and kind of relaxation",
                    "[material][viscoelastic][large]", NeoHookean, NeoHookeanIsochoric, MooneyRivlin) {
   testing::Random random(52);
   TestType base;
@@ -203,13 +202,13 @@ TEMPLATE_TEST_CASE("within a step the law has an energy, whatever its base and w
   }
 }
 
-TEST_CASE("a closed path yields no work, not even after a long time", "[material][viscoelastic][large]") {
+TEST_CASE("a closed path releases no energy, not even after a long time", "[material][viscoelastic][large]") {
   testing::Random random(53);
   const Viscoelastic<NeoHookean, 1> m{{5e3, 0.45, 1060.0}, {{{0.6, 0.1}}}, Relaxation::deviatoric};
   for (const double dt : {1e-4, 1e-2, 1e2}) {
     const Tensor3<double> a = testing::random_deformation(m.base, random),
                           b = testing::random_deformation(m.base, random);
-    const auto at = [&](double t) {  // a loop through rest
+    const auto at = [&](double t) {  // a closed path through rest
       const double x = 0.5 * (1.0 - std::cos(6.283185307179586 * t)), y = std::sin(6.283185307179586 * t);
       return Tensor3<double>::identity() + (0.4 * x) * (a - Tensor3<double>::identity()) +
              (0.2 * y) * (b - Tensor3<double>::identity());
@@ -225,11 +224,11 @@ TEST_CASE("a closed path yields no work, not even after a long time", "[material
       last = f;
       stress = p;
     }
-    CHECK(work >= -1e-6 * gross);  // of the trapezoidal rule
+    CHECK(work >= -1e-6 * gross);  // tolerance of the trapezoidal rule
   }
 }
 
-TEST_CASE("at rest it has no stress and no memory; inadmissible series are refused",
+TEST_CASE("at rest stress and history are zero; inadmissible series are refused",
           "[material][viscoelastic][extreme][A5]") {
   const Linear good = cube(Relaxation::whole_stress);
   Linear::SmallStrainHistory history;

@@ -140,7 +140,7 @@ TEST_CASE("a scene is mapped with all its sets of points", "[mesh][where]") {
   CHECK(resolve_nodes(mesh, boundary, scene.pressures()[0].where) == expected);
   CHECK(resolve_nodes(mesh, boundary, scene.point_loads()[0].where) == expected);
   CHECK(resolve_nodes(mesh, boundary, scene.touched()[0]) == expected);
-  CHECK(resolve_nodes(mesh, boundary, scene.seen()[0]) == expected);
+  CHECK(resolve_nodes(mesh, boundary, scene.rendered()[0]) == expected);
   CHECK(given.group_names().empty());
 }
 

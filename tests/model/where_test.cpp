@@ -150,7 +150,7 @@ TEST_CASE("tissue that is cut takes positions for names", "[model][cut][where]")
   CHECK(order.remove == elements_within(distant_slab(), tool));
   CHECK(order.remove.size() > 4);
   placed.cut(order);
-  placed.work();
+  placed.process_cuts();
   placed.read([&](const auto& topology, const auto&) {
     for (const Index e : order.remove) CHECK(topology.is_removed(e));
   });

@@ -5,7 +5,7 @@
 
 using namespace palpate;
 
-/// Twice as soft as the tissue, with the revision and floor that this needs, and its bound or the tissue's.
+/// Twice as soft as the tissue, with its own revision and floor; the good twin also has its own bound.
 struct Softer : TissueAdaptor<TissueGroup> {
   using TissueAdaptor::TissueAdaptor;
   Matrix3 compliance(int i, int j) const noexcept { return 2.0 * tissue().compliance(i, j); }

@@ -1,4 +1,4 @@
-// A force that has passed the gate stays as it is.
+// A force that has passed the gate cannot be changed.
 // expect: operator*=
 #include <palpate/haptic/force_gate.hpp>
 

@@ -1,4 +1,4 @@
-# What compile.cmake left in WORK about SOURCE must be a refusal with the text that SOURCE expects.
+# The messages that compile.cmake stored in WORK for SOURCE must be a refusal with the text that SOURCE expects.
 #   cmake -DSOURCE= -DWORK= -P check.cmake
 cmake_minimum_required(VERSION 3.21)
 
@@ -10,17 +10,17 @@ set(expect "${CMAKE_MATCH_1}")
 get_filename_component(name ${SOURCE} NAME_WE)
 
 file(READ ${WORK}/good.txt good)
-if(NOT good STREQUAL "")  # one that fails may hide errors of the others, so none counts
+if(NOT good STREQUAL "")  # one that fails may hide errors of the others, so all fail
   message("${good}")
   message(FATAL_ERROR "the good twins do not compile")
 endif()
 if(NOT EXISTS ${WORK}/${name}.txt)
-  message(FATAL_ERROR "it compiles, and must not (all messages: ${WORK}/messages.txt)")
+  message(FATAL_ERROR "it compiles but must not (all messages: ${WORK}/messages.txt)")
 endif()
 file(READ ${WORK}/${name}.txt bad)
 string(FIND "${bad}" "${expect}" found)
 if(found EQUAL -1)
   message("${bad}")
-  message(FATAL_ERROR "it is refused, but the messages do not say `${expect}`")
+  message(FATAL_ERROR "it is refused, but the messages do not contain `${expect}`")
 endif()
-message(STATUS "refused as it should be: ${expect}")
+message(STATUS "refused as expected: ${expect}")

@@ -1,5 +1,5 @@
-# Compiles the SOURCES together, as they are and as good twins, and leaves in WORK for check.cmake the first error of each
-# source (<name>.txt), and what is wrong with the good twins (good.txt, empty when they compile).
+# Compiles the SOURCES together, as they are and as good twins, and stores in WORK for check.cmake the first error of
+# each source (<name>.txt), and the errors of the good twins (good.txt, empty when they compile).
 #   cmake -DCOMPILER= -DCOMPILER_ID= -DSOURCES= -DINCLUDES= -DSYSTEM_INCLUDES= -DFLAGS= -DWORK= -P compile.cmake
 cmake_minimum_required(VERSION 3.21)
 set(ENV{LC_ALL} C)  # plain quotes in the messages
@@ -25,7 +25,7 @@ foreach(folder IN LISTS SYSTEM_INCLUDES)
 endforeach()
 list(APPEND command ${FLAGS})
 
-# compile(<source> <names>): the names are those whose errors it may make.
+# compile(<source> <names>): <names>: the sources whose errors it may cause.
 function(compile source)
   execute_process(COMMAND ${command} -DPALPATE_GOOD_TWIN ${source} WORKING_DIRECTORY ${WORK}
                   RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
@@ -37,10 +37,10 @@ function(compile source)
   keep_errors("${text}" ${ARGN})
 endfunction()
 
-# An error with its context (g++ prints it before, clang in notes after) and notes is about the source that is named first
-# in it, or, when it names none, about the same as the one before.
+# An error with its context (g++ prints it before, clang in notes after) and notes is assigned to the source that is
+# named first in it, or, if none is named, to the same source as the previous error.
 function(keep_errors text)
-  string(REGEX REPLACE "[][;]" "_" text "${text}")  # what lists cannot hold
+  string(REGEX REPLACE "[][;]" "_" text "${text}")  # characters that lists cannot contain
   string(REPLACE "\n" ";" lines "${text}")
   set(context "")  # lines since the last error or note
   set(error "")
@@ -87,7 +87,7 @@ foreach(source IN LISTS SOURCES)
   list(APPEND names ${name})
   string(REGEX MATCHALL "#include <[^>\n]*>" these "${text}")
   list(APPEND includes ${these})
-  string(REGEX REPLACE "#include <[^>\n]*>" "" text "${text}")  # the lines keep their numbers
+  string(REGEX REPLACE "#include <[^>\n]*>" "" text "${text}")  # line numbers stay the same
   string(APPEND bodies "namespace ${name} {\n#line 1 \"${name}.cpp\"\n${text}\n}\n")
 endforeach()
 list(REMOVE_DUPLICATES includes)

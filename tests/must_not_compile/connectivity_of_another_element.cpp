@@ -1,5 +1,5 @@
 // expect: MeshOf
-// Connectivity kept from the days when the mesh had eight nodes per element.
+// Connectivity of an old mesh with eight nodes per element.
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh.hpp>
 

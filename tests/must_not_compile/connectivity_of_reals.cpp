@@ -1,5 +1,5 @@
 // expect: integral
-// Node ids read as reals from some file.
+// Node ids read as real numbers from a file.
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>
 

@@ -1,5 +1,5 @@
 // expect: , 10>
-// An element of ten nodes pushed into a mesh of elements of four.
+// An element of ten nodes is appended to a mesh of four-node elements.
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh.hpp>
 

@@ -1,5 +1,5 @@
 // expect: Element
-// 3 x 4 instead of 4 x 3.
+// The gradient is 3 x 4 instead of 4 x 3.
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh.hpp>
 

@@ -1,5 +1,5 @@
 // expect: FibreMaterial
-// A 5 x 5 matrix converts to a 6 x 6 one as far as the language is concerned.
+// A 5 x 5 matrix is convertible to a 6 x 6 one in C++.
 #include <palpate/material/transversely_isotropic.hpp>
 
 using namespace palpate;

@@ -1,5 +1,5 @@
-// expect: a TissueGroup hands on no hook but prefetch
-// The group would not tell its member what presses, and the member would never stiffen.
+// expect: a TissueGroup forwards no hook but prefetch
+// The group would not pass the forces to its member, which would never stiffen.
 #include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/contact/tissue_group.hpp>
 

@@ -1,5 +1,5 @@
 // expect: deleted
-// The positions live on, the connectivity does not.
+// The positions outlive the mesh view, the connectivity does not.
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>
 

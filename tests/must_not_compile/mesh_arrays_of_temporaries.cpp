@@ -1,5 +1,5 @@
 // expect: deleted
-// A view of arrays that die at the end of the line.
+// A view of arrays that are destroyed at the end of the statement.
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>
 

@@ -3,7 +3,7 @@
 
 using namespace palpate;
 
-/// What the hand feels and the tissue, added up.
+/// The sum of the force on the hand and the forces on the tissue.
 Vector3 balance(const ServoSnapshot& snapshot, const Eigen::Isometry3d& to_world) {
   Vector3 sum = snapshot.contact_force(0);
   for (const VertexForce& f : snapshot.vertex_forces())

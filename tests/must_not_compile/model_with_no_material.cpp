@@ -1,5 +1,5 @@
 // expect: palpate: the second argument of HapticFEModel is a material
-// A stiffness, but neither a density nor a check.
+// It has a stiffness, but neither a density nor a check.
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

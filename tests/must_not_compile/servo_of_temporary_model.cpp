@@ -1,5 +1,5 @@
 // expect: deleted
-// The servo refers to its tissue: one that dies at the end of the line is refused.
+// The servo refers to its tissue: one that is destroyed at the end of the statement is refused.
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>

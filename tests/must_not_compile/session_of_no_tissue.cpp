@@ -1,4 +1,4 @@
-// expect: no tissue: it needs contact_surface() const
+// expect: not a tissue: it needs contact_surface() const
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/device/mock_device.hpp>
 #include <palpate/haptic/haptic_session.hpp>

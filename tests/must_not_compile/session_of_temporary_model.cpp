@@ -1,5 +1,5 @@
 // expect: deleted
-// A session refers to its tissue: one that dies at the end of the line is refused.
+// A session refers to its tissue: one that is destroyed at the end of the statement is refused.
 #include <palpate/device/mock_device.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_session.hpp>

@@ -1,5 +1,5 @@
 // expect: this tissue has no hook begin_tick() noexcept
-// A class around a tissue that hands on what it happens to know of: steps and cuts of the tissue would be lost.
+// A class that wraps a tissue and forwards only some hooks: steps and cuts of the tissue would be lost.
 #include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/haptic/haptic_servo.hpp>

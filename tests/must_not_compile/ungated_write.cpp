@@ -1,4 +1,4 @@
-// Nothing reaches a device past the force gate.
+// Every force must pass the force gate before a device.
 // expect: GatedForce
 #include <palpate/device/mock_device.hpp>
 #include <palpate/device/trajectory.hpp>

@@ -1,5 +1,5 @@
 // expect: this tissue needs background_work() and report_slow(bool) noexcept
-// A class around a tissue that forgets its work: the worker would start no thread, and the tissue never move.
+// A class that wraps a tissue without its background work: the worker would start no thread, and the tissue never move.
 #include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/haptic/background_worker.hpp>

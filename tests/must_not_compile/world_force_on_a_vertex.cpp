@@ -1,5 +1,5 @@
 // expect: Vector3
-// Snapshots have contact forces in the world's frame, models take forces in their own axes.
+// Snapshots have contact forces in the world frame, models take forces in their own axes.
 #include <palpate/haptic/servo_snapshot.hpp>
 
 using namespace palpate;

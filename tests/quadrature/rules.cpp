@@ -9,7 +9,7 @@
 using namespace palpate;
 using testing::Domain;
 
-TEMPLATE_TEST_CASE("Gauss-Legendre rules keep the laws", "[quadrature][laws]", GaussLegendre<1>, GaussLegendre<2>,
+TEMPLATE_TEST_CASE("Gauss-Legendre rules pass the law suite", "[quadrature][laws]", GaussLegendre<1>, GaussLegendre<2>,
                    GaussLegendre<3>, GaussLegendre<4>, GaussLegendre<5>) {
   STATIC_REQUIRE(Quadrature<TestType>);
   CHECK(testing::describe(testing::quadrature_laws<TestType>(Domain::interval)) == "");
@@ -17,20 +17,20 @@ TEMPLATE_TEST_CASE("Gauss-Legendre rules keep the laws", "[quadrature][laws]", G
   for (const auto& p : TestType::points) CHECK(p.weight > 0.0);
 }
 
-TEMPLATE_TEST_CASE("triangle rules keep the laws", "[quadrature][laws]", TriangleRule<1>, TriangleRule<2>,
+TEMPLATE_TEST_CASE("triangle rules pass the law suite", "[quadrature][laws]", TriangleRule<1>, TriangleRule<2>,
                    TriangleRule<4>, TriangleRule<5>) {
   STATIC_REQUIRE(Quadrature<TestType>);
   CHECK(testing::describe(testing::quadrature_laws<TestType>(Domain::triangle)) == "");
   for (const auto& p : TestType::points) CHECK(p.weight > 0.0);
 }
 
-TEMPLATE_TEST_CASE("tetrahedron rules keep the laws", "[quadrature][laws]", TetrahedronRule<1>, TetrahedronRule<2>,
+TEMPLATE_TEST_CASE("tetrahedron rules pass the law suite", "[quadrature][laws]", TetrahedronRule<1>, TetrahedronRule<2>,
                    TetrahedronRule<3>, TetrahedronRule<5>) {
   STATIC_REQUIRE(Quadrature<TestType>);
   CHECK(testing::describe(testing::quadrature_laws<TestType>(Domain::tetrahedron)) == "");
 }
 
-TEMPLATE_TEST_CASE("tensor rules keep the laws", "[quadrature][laws]", QuadrilateralRule<1>, QuadrilateralRule<2>,
+TEMPLATE_TEST_CASE("tensor rules pass the law suite", "[quadrature][laws]", QuadrilateralRule<1>, QuadrilateralRule<2>,
                    QuadrilateralRule<3>, QuadrilateralRule<5>, HexahedronRule<1>, HexahedronRule<2>, HexahedronRule<3>,
                    HexahedronRule<4>) {
   STATIC_REQUIRE(Quadrature<TestType>);
@@ -39,7 +39,7 @@ TEMPLATE_TEST_CASE("tensor rules keep the laws", "[quadrature][laws]", Quadrilat
   for (const auto& p : TestType::points) CHECK(p.weight > 0.0);
 }
 
-TEST_CASE("only the tetrahedron rule of degree 3 has a negative weight, and one", "[quadrature]") {
+TEST_CASE("only the tetrahedron rule of degree 3 has a negative weight, exactly one", "[quadrature]") {
   const auto negative = [](const auto& points) {
     return std::ranges::count_if(points, [](const auto& p) { return p.weight < 0.0; });
   };
@@ -63,7 +63,7 @@ TEST_CASE("appendix B in full precision: closed forms of the abscissae and weigh
   same(GaussLegendre<5>::points[4].weight, (322.0 - 13.0 * std::sqrt(70.0)) / 900.0);
 }
 
-TEST_CASE("the printed weights, cut to six digits, miss by 1e-6", "[quadrature][thesis]") {
+TEST_CASE("the printed weights, cut to six digits, are in error by 1e-6", "[quadrature][thesis]") {
   const double printed = 0.555555 + 0.888888 + 0.555555;
   CHECK(std::abs(printed - 2.0) > 1e-6);
   CHECK(std::abs(testing::weight_sum<GaussLegendre<3>>() - 2.0) < 1e-15);

@@ -1,4 +1,4 @@
-# cmake -DREADME= -DSOURCE= -P extract.cmake: writes the first C++ block of README to SOURCE, as it stands.
+# cmake -DREADME= -DSOURCE= -P extract.cmake: writes the first C++ block of README to SOURCE, unchanged.
 cmake_minimum_required(VERSION 3.21)
 
 file(READ ${README} text)
@@ -14,6 +14,6 @@ if(end EQUAL -1)
 endif()
 string(SUBSTRING "${text}" 0 ${end} program)
 if(NOT program MATCHES "int main\\(\\)")
-  message(FATAL_ERROR "the first C++ block of ${README} is no program")
+  message(FATAL_ERROR "the first C++ block of ${README} is not a program")
 endif()
 file(WRITE ${SOURCE} "${program}\n")

@@ -1,4 +1,4 @@
-# cmake -DPROGRAM= -DFOLDER= -P run.cmake: the program of the README must end well and have felt something.
+# cmake -DPROGRAM= -DFOLDER= -P run.cmake: the program of the README must exit with 0 and render a force.
 cmake_minimum_required(VERSION 3.21)
 
 execute_process(COMMAND ${PROGRAM} WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE result
@@ -11,5 +11,5 @@ if(NOT output MATCHES "set-up: [0-9]+ nodes" OR NOT output MATCHES "haptic loop:
   message(FATAL_ERROR "a report is missing")
 endif()
 if(NOT output MATCHES "peak force ([0-9.]+) N" OR NOT CMAKE_MATCH_1 GREATER 0)
-  message(FATAL_ERROR "it felt no force")
+  message(FATAL_ERROR "the program rendered no force")
 endif()

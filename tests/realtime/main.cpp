@@ -1,6 +1,6 @@
-// Ticks under RealtimeSanitizer (clang 20 or newer): whatever allocates, locks or waits in a tick ends the program. Built
-// and run by tests/sanitize.sh; with another compiler it only ticks. Every kind of contact, for a linear model and for
-// two sessions side by side.
+// Ticks under RealtimeSanitizer (clang 20 or newer): a tick that allocates, locks or waits ends the program. Built and
+// run by tests/sanitize.sh; with other compilers nothing is checked. Covers every kind of contact, with linear models
+// in two concurrent sessions.
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators_box.hpp>
@@ -30,7 +30,7 @@ double tick(Session& servo, const std::array<ToolState, 2>& tools) noexcept NONB
   return sum + static_cast<double>(servo.read_snapshot().contact_count);
 }
 
-/// Must be caught: proves that the sanitizer looks.
+/// Must be caught: proves that the sanitizer is active.
 double tick_that_allocates(Session& servo, const std::array<ToolState, 2>& tools) noexcept NONBLOCKING {
   const std::vector<GatedForce> kept(servo.tick(tools).begin(), servo.tick(tools).end());
   return kept.front().force().norm();

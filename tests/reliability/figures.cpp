@@ -20,7 +20,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// The last line that holds `key`, with blanks made single; empty when there is none.
+/// The last line that contains `key`, with repeated blanks reduced to one; empty when there is none.
 std::string line_with(const std::string& text, const std::string& key) {
   std::string found;
   for (const std::string& line : lines_of(text))
@@ -32,8 +32,8 @@ std::string line_with(const std::string& text, const std::string& key) {
   return found;
 }
 
-/// A figure that another command makes: the last line with `key` of what it printed into build/reliability/<id>.txt.
-/// Any line with `bad` is a failure, and shown instead.
+/// A figure measured by another command: the last line with `key` of its output in build/reliability/<id>.txt. Any line
+/// with `bad` is a failure, and is shown instead.
 Figure from_other(const Places& p, const std::string& id, const std::string& what, const std::string& command,
                   const std::string& key, const std::string& bad = {}) {
   std::string file = id + ".txt";
@@ -45,9 +45,9 @@ Figure from_other(const Places& p, const std::string& id, const std::string& wha
   return {id, what, "not run: `" + command + " \\| tee " + path + "`"};
 }
 
-/// Rows of the table of bad files, printed by the test that checks it.
+/// Counts rows of the table of bad files, which the test that checks it prints.
 Figure bad_files(const Places& p, const std::vector<TestResult>& results) {
-  Figure f{"R2", "bad files tried, refused with the right kind, harmless", "not run: test_io is not built"};
+  Figure f{"R2", "bad files tried, refused with the correct kind, harmless", "not run: test_io is not built"};
   if (!std::filesystem::exists(p.tests / "test_io")) return f;
   const std::filesystem::path log = p.reports / "bad_files.txt";
   run(quoted(p.tests / "test_io") + " [table]", log);
@@ -65,12 +65,12 @@ Figure bad_files(const Places& p, const std::vector<TestResult>& results) {
     }
   f.failed = f.failed || !found || tried == 0;
   f.value = std::to_string(tried) + " tried, " + std::to_string(tried - harmless) + " refused, " +
-            std::to_string(harmless) + " only look bad and are read right" +
-            (f.failed ? "; NOT all with the verdict they must have" : "; 0 accepted wrongly");
+            std::to_string(harmless) + " harmless and read correctly" +
+            (f.failed ? "; NOT all with the expected verdict" : "; 0 accepted wrongly");
   return f;
 }
 
-/// Results of the tests with a tag, as "n of m".
+/// Results of the tests with `tag`, as "n of m".
 Figure tests_with(const std::string& id, const std::string& what, const std::vector<TestResult>& results,
                   const std::string& tag, const std::string& after) {
   int all = 0, passed = 0;
@@ -96,7 +96,7 @@ Figure random_ticks(const Places& p, double ticks) {
   return f;
 }
 
-/// Relations M1 to M15 that tests check.
+/// Metamorphic relations M1 to M15 checked by tests.
 Figure relations(const std::vector<TestResult>& results) {
   std::set<std::string> holds, fails;
   for (const TestResult& r : results)
@@ -108,7 +108,7 @@ Figure relations(const std::vector<TestResult>& results) {
   return {"R11", "metamorphic relations M1 to M15 that tests check", value, !fails.empty()};
 }
 
-/// A line `figure R10: ...` that a test prints.
+/// A line such as `figure R10: ...` printed by a test.
 Figure printed_by_tests(const Places& p, const std::string& id, const std::string& what) {
   if (std::filesystem::exists(p.reports))
     for (const auto& entry : std::filesystem::directory_iterator(p.reports)) {
@@ -126,7 +126,7 @@ Figure must_not_compile(const std::vector<TestResult>& results) {
       ++all;
       refused += r.passed ? 1 : 0;
     }
-  Figure f{"R14", "programs that must not compile, and do not", "not run: no build folder"};
+  Figure f{"R14", "programs that must not compile, and are refused", "not run: no build folder"};
   if (all == 0) return f;
   f.value = std::to_string(refused) + " of " + std::to_string(all);
   f.failed = refused < all;
@@ -144,7 +144,7 @@ Figure anomalies(const Places& p) {
 }
 
 Figure maps(const Places& p) {
-  Figure f{"R13", "stability maps, devices in hands among them", "not run: `sh cmake/run stability`"};
+  Figure f{"R13", "stability maps, including hand-held devices", "not run: `sh cmake/run stability`"};
   const std::string text = read_text(p.others / "stability" / "summary.txt");
   if (text.empty()) return f;
   f.value.clear();
@@ -176,7 +176,7 @@ std::vector<Figure> figures_of(const Places& p, const std::vector<TestResult>& r
   std::vector<Figure> all;
   all.push_back(bad_files(p, results));
   all.push_back({"R3", "fuzzed inputs per reader, reports of sanitizers",
-                 "made by hand, see [the fuzzers](../tests/fuzz/README.md)"});
+                 "run manually, see [the fuzzers](../tests/fuzz/README.md)"});
   all.push_back(
       from_other(p, "R4", "coverage of the gate: lines, branches, MC/DC", "sh tests/gate/coverage.sh", "TOTAL"));
   all.push_back(from_other(p, "R4 library", "coverage of the whole library by all tests: lines, branches",
@@ -186,9 +186,9 @@ std::vector<Figure> figures_of(const Places& p, const std::vector<TestResult>& r
   all.push_back(from_other(p, "R6", "sanitizers: the last check", "sh tests/sanitize.sh", "clean:", "NOT C"));
   all.push_back(tests_with("R7", "ticks, displacements and steps that allocate nothing, counted", results, "allocation",
                            " tests pass: 0 allocations"));
-  all.push_back(from_other(p, "R8", "latency of ticks beside an empty thread", "sh cmake/run demo", "tick"));
+  all.push_back(from_other(p, "R8", "latency of ticks compared with an empty thread", "sh cmake/run demo", "tick"));
   all.push_back(random_ticks(p, gate_ticks));
-  all.push_back(printed_by_tests(p, "R10", "allocations of set-ups made to fail one by one, survived"));
+  all.push_back(printed_by_tests(p, "R10", "allocations of set-ups made to fail one at a time, handled"));
   all.push_back(relations(results));
   Figure accuracy =
       from_other(p, "R12", "tables of accuracy, orders of convergence", "sh cmake/run accuracy", "checks,");
@@ -197,7 +197,7 @@ std::vector<Figure> figures_of(const Places& p, const std::vector<TestResult>& r
   all.push_back(std::move(accuracy));
   all.push_back(maps(p));
   all.push_back(must_not_compile(results));
-  all.push_back({"R15", "compilers", "this run: " + compiler() + "; further ones by `CXX=... sh cmake/run extremes`"});
+  all.push_back({"R15", "compilers", "this run: " + compiler() + "; others by `CXX=... sh cmake/run extremes`"});
   all.push_back(anomalies(p));
   return all;
 }

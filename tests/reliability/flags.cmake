@@ -1,11 +1,12 @@
-# E9: one small program under many flags. Flags that remove the checks for NaN are refused by name; it compiles under all
-# others, and prints the same numbers, to the bound that the program itself knows, under those that change numbers most.
+# E9: one small program under many flags. Flags that remove the checks for NaN are refused with a message that names
+# them. The program compiles under all others; under those that change numbers most it prints the same numbers within
+# the tolerance set in the program.
 #   cmake -DCOMPILER= -DINCLUDES= -DSYSTEM_INCLUDES= -DWORK= -P flags.cmake
 cmake_minimum_required(VERSION 3.21)
 include(${CMAKE_CURRENT_LIST_DIR}/../linking/compiler.cmake)
 set(source ${CMAKE_CURRENT_LIST_DIR}/flags/main.cpp)
 
-# build(<flags...>): `result` and `text` say what came of it.
+# build(<flags...>): sets `result` (exit code) and `text` (messages).
 macro(build)
   execute_process(COMMAND ${base} -w ${search} ${ARGN} ${source} -o ${WORK}/flags -pthread RESULT_VARIABLE result OUTPUT_VARIABLE text
                   ERROR_VARIABLE text)
@@ -26,7 +27,7 @@ if(processor MATCHES "^(x86_64|AMD64|amd64)$")
   set(x86 TRUE)
 endif()
 
-# Compiled only: nothing of these reaches a number.
+# Compiled only: these flags do not change numbers.
 set(sets "-fno-rtti" "-fno-exceptions")
 if(x86)
   list(APPEND sets "-march=x86-64-v3" "-march=x86-64-v4")
@@ -40,7 +41,8 @@ foreach(flags IN LISTS sets)
   message(STATUS "${flags}: compiles")
 endforeach()
 
-# Run: no optimisation; all of it, without exceptions; products contracted and vectors as wide as this machine has.
+# Compiled and run: without optimisation; -O2 without exceptions; fused multiply-add and the widest vectors of this
+# machine.
 set(sets "-O0" "-O2 -fno-exceptions -fno-rtti -ffp-contract=off")
 if(x86)
   list(APPEND sets "-O1 -march=native -ffp-contract=fast")
@@ -56,7 +58,7 @@ foreach(flags IN LISTS sets)
   execute_process(COMMAND ${WORK}/flags ${first} RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
   message(STATUS "${flags}: ${text}")
   if(NOT result EQUAL 0)
-    message(FATAL_ERROR "${flags}: other numbers than with the first flags, ${first}")
+    message(FATAL_ERROR "${flags}: the numbers differ from those with the first flags, ${first}")
   endif()
   if(first STREQUAL "")
     separate_arguments(first UNIX_COMMAND "${text}")

@@ -1,9 +1,9 @@
-// Runs the tests of every extreme of the catalogue and writes the scoreboard of reliability.
+// Runs the tests of all extremes of the catalogue and writes the reliability scoreboard.
 //   reliability --tests <folder of test programs> [--build <folder of CMake>] [--reports <folder>] [--source <root>]
 //               [--others <build/>] [--out <reliability.md>] [--ticks <of the gate>] [--jobs <n>] [--read]
 //   reliability --self-test
-// --read takes the reports that are there instead of running programs. Returns 1 when an extreme or a figure failed, or
-// a program ended before its report; absent extremes are listed.
+// --read uses existing reports instead of running programs. Returns 1 when an extreme or a figure failed, or a program
+// ended before its report was complete; absent extremes are listed.
 #include "catalogue.hpp"
 #include "figures.hpp"
 #include "self_test.hpp"
@@ -31,7 +31,7 @@ bool has_option(int argc, char** argv, const std::string& name) {
   return std::any_of(argv, argv + argc, [&](const char* a) { return a == name; });
 }
 
-/// Tags of all ids, of the metamorphic relations and of what the figures want.
+/// Tags of all ids, of the metamorphic relations and of the tests that figures use.
 std::string filter() {
   std::string all = "[allocation]";
   for (const Extreme& e : catalogue) all += ",[" + std::string(e.id) + ']';
@@ -41,7 +41,7 @@ std::string filter() {
 
 struct Ran {
   std::vector<TestResult> results;
-  std::vector<std::string> broken;  ///< programs that ended before their report
+  std::vector<std::string> broken;  ///< programs that ended before their report was complete
 };
 
 void read_report(const std::filesystem::path& xml, const std::string& program, Ran& ran) {
@@ -50,7 +50,7 @@ void read_report(const std::filesystem::path& xml, const std::string& program, R
   if (!ended) ran.broken.push_back(program);
 }
 
-/// Programs in a folder, or their reports.
+/// Test programs in a folder, or their reports.
 std::vector<std::string> programs_in(const std::filesystem::path& folder, bool reports) {
   std::vector<std::string> programs;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -76,7 +76,7 @@ void run_program(const Places& places, const std::string& program) {
   std::fflush(stdout);
 }
 
-/// `jobs` at a time, and those with a clock in them alone.
+/// Runs `jobs` programs at a time, and programs that measure time one by one.
 void run_programs(const Places& places, const std::vector<std::string>& programs, int jobs) {
   std::vector<std::string> timed, others;
   for (const std::string& p : programs)
@@ -126,7 +126,7 @@ std::string today() {
   return text;
 }
 
-/// The page, and whether anything failed.
+/// Writes the page. Returns true when nothing failed.
 bool write(std::ostream& out, const Ran& ran, const std::vector<Figure>& figures) {
   const auto standings = standings_of(ran.results);
   int passed = 0, failed = 0, absent = 0;
@@ -134,7 +134,7 @@ bool write(std::ostream& out, const Ran& ran, const std::vector<Figure>& figures
   out << "# Reliability\n\nWritten by `sh cmake/run extremes` on " << today() << ", " << compiler() << ", "
       << processor() << ". Not edited by hand.\n\n## Extremes\n\nR1: " << passed << " of " << standings.size()
       << " passed, " << failed << " failed, " << absent
-      << " absent. An extreme passes when all its tests do; absent: it has none.\n\n"
+      << " absent. An extreme passes when all its tests pass; it is absent when it has no tests.\n\n"
       << "| id | extreme | tests | |\n|---|---|---|---|\n";
   bool bad = failed > 0;
   for (const Extreme& e : catalogue) {
@@ -146,7 +146,7 @@ bool write(std::ostream& out, const Ran& ran, const std::vector<Figure>& figures
   }
   for (const std::string& program : ran.broken) {
     bad = true;
-    out << "\n**" << program << " ended before its report: what it would have run next is not counted.**\n";
+    out << "\n**" << program << " ended before its report was complete: its remaining tests are not counted.**\n";
   }
   out << "\n## Scoreboard\n\n| | number | |\n|---|---|---|\n";
   for (const Figure& f : figures) {
@@ -157,7 +157,7 @@ bool write(std::ostream& out, const Ran& ran, const std::vector<Figure>& figures
 }
 
 int measure(int argc, char** argv) {
-  // Absolute: ctest takes them from its own folder.
+  // Absolute paths: ctest resolves relative ones in its own folder.
   const auto folder = [&](const char* name, const char* otherwise) {
     const std::string given = option(argc, argv, name, otherwise);
     return given.empty() ? std::filesystem::path() : std::filesystem::absolute(given);
@@ -169,7 +169,7 @@ int measure(int argc, char** argv) {
   const bool only_read = has_option(argc, argv, "--read");
   const Ran ran = run_all(places, only_read, std::max(1, std::atoi(option(argc, argv, "--jobs", "2").c_str())));
   if (ran.results.empty()) {
-    std::fprintf(stderr, "reliability: no reports of tests in %s\n", places.tests.string().c_str());
+    std::fprintf(stderr, "reliability: no test reports in %s\n", places.tests.string().c_str());
     return 1;
   }
   std::vector<Figure> figures;

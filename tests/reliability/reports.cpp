@@ -9,11 +9,11 @@
 namespace reliability {
 namespace {
 
-/// One tag of XML at a time; texts between tags are of no interest, nor are comments.
+/// Reads XML one tag at a time; text between tags and comments are ignored.
 class Tags {
  public:
   explicit Tags(const std::string& xml) : xml_(xml) {}
-  /// The next tag without its brackets; false at the end, and where a tag is cut off.
+  /// The next tag without its brackets; false at the end, and when a tag is truncated.
   bool next(std::string& tag) {
     const std::size_t begin = xml_.find('<', at_);
     if (begin == std::string::npos) return false;
@@ -25,7 +25,7 @@ class Tags {
     }
     std::size_t end = begin;
     for (bool quoted = false; end < xml_.size() && (quoted || xml_[end] != '>'); ++end)
-      quoted = quoted != (xml_[end] == '"');  // Catch2 leaves > in attributes as it is
+      quoted = quoted != (xml_[end] == '"');  // Catch2 does not escape > in attributes
     if (end >= xml_.size()) return false;
     tag = xml_.substr(begin + 1, end - begin - 1);
     at_ = end + 1;
@@ -53,7 +53,7 @@ std::string attribute(const std::string& tag, const std::string& name) {
   return value;
 }
 
-/// "[A1][contact]" is A1 and contact.
+/// "[A1][contact]" gives A1 and contact.
 std::vector<std::string> split_tags(const std::string& text) {
   std::vector<std::string> tags;
   for (std::size_t at = 0; (at = text.find('[', at)) != std::string::npos;) {

@@ -15,7 +15,7 @@ void expect(bool holds, const char* what) {
   std::printf("FAILED: %s\n", what);
 }
 
-/// Catch2 v2.13: a good test, one that fails in a section, and one with two ids.
+/// Catch2 v2.13: a test that passes, one with two ids that fails in a section, and another that passes.
 constexpr const char* planted_v2 = R"(<?xml version="1.0" encoding="UTF-8"?>
 <Catch name="test_x" filters="[A1]">
   <Group name="test_x">
@@ -40,7 +40,7 @@ constexpr const char* planted_v2 = R"(<?xml version="1.0" encoding="UTF-8"?>
   </Group>
 </Catch>
 )";
-/// Catch2 v3, which names its outermost element otherwise.
+/// Catch2 v3, whose outermost element has another name.
 constexpr const char* planted_v3 = R"(<?xml version="1.0" encoding="UTF-8"?>
 <Catch2TestRun name="test_y" rng-seed="1" catch2-version="3.4.0" filters="[B1]">
   <TestCase name="v3 of Smoothed&lt;Tet4>" tags="[B1]" filename="y.cpp" line="1">
@@ -57,7 +57,7 @@ constexpr const char* planted_crash = R"(<Catch name="test_z">
     </TestCase>
     <TestCase name="killed" tags="[B3]" filename="z.cpp" line="2">
       <Section name="half)";
-/// One that Catch2 itself saw die.
+/// A program whose fatal signal Catch2 caught and reported.
 constexpr const char* planted_signal = R"(<Catch name="test_w"><Group name="test_w">
     <TestCase name="segv" tags="[B4]" filename="w.cpp" line="2">
       <FatalErrorCondition filename="w.cpp" line="2">SIGSEGV</FatalErrorCondition>
@@ -84,8 +84,8 @@ int self_test() {
   add(read_catch(planted_signal, "test_w", signal));
   add(read_catch("", "test_none", empty));
   add(read_junit(planted_junit));
-  expect(v2 && v3 && signal, "whole reports have an end");
-  expect(!crash && !empty, "reports that are cut off or missing have none");
+  expect(v2 && v3 && signal, "complete reports are detected as complete");
+  expect(!crash && !empty, "truncated and missing reports are detected as incomplete");
 
   const auto standings = standings_of(all);
   const auto stands = [&](const char* id, int passed, int failed, const char* word) {

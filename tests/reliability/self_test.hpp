@@ -2,7 +2,7 @@
 
 namespace reliability {
 
-/// Planted reports: does a failing extreme show as failing? 0 when all is as it must be.
+/// Checks with synthetic reports that a failing extreme is reported as failing. Returns 0 on success.
 int self_test();
 
 }  // namespace reliability

@@ -1,5 +1,5 @@
-// Every composition in palpate::compiled, as a program uses it that compiles no template of its own: each is made,
-// answers like the first of its element, and has all its members.
+// Every composition in palpate::compiled, used by a program that instantiates no template itself: each is constructed,
+// gives the same displacement as the first composition of its element, and has all its members.
 #include <palpate/palpate.hpp>
 
 #include <palpate/assembly/body.hpp>
@@ -18,23 +18,23 @@ namespace {
 int failures = 0;
 
 Scene scene() {
-  Scene constrained;
-  constrained.fix("z0").touch("z1").render("surface").gravity({1.0, 2.0, -9.81});
-  return constrained;
+  Scene s;
+  s.fix("z0").touch("z1").render("surface").gravity({1.0, 2.0, -9.81});
+  return s;
 }
 
-/// Displacement of a model, after a look at the members that are templates.
+/// Displacement of a model; also checks the members that are templates.
 template <class Model, class Given, class Material>
 VectorX displacement(const Given& mesh, const Material& material) {
   const Model model(mesh, scene(), material);
   const Model by_region(mesh, scene(), RegionMaterials<Material>{{std::string(everywhere), material}});
   if (model.displacement() != by_region.displacement()) {
-    std::printf("%s: one material everywhere is not one per region\n", typeid(Model).name());
+    std::printf("%s: one material everywhere and one per region give different displacements\n", typeid(Model).name());
     ++failures;
   }
   if (model.mesh().node_count() != mesh.node_count() || model.body().mesh.element_count() != mesh.element_count() ||
       model.boundary().empty()) {
-    std::printf("%s: mesh, body or boundary is not that of the mesh given\n", typeid(Model).name());
+    std::printf("%s: mesh, body or boundary differs from the input mesh\n", typeid(Model).name());
     ++failures;
   }
   return model.displacement();
@@ -44,7 +44,7 @@ template <class Model, class Given, class Material>
 void compare(const Given& mesh, const Material& material, const VectorX& expected, double tolerance) {
   const double error = (displacement<Model>(mesh, material) - expected).norm() / expected.norm();
   if (error <= tolerance) return;
-  std::printf("%s: displacement is %g off\n", typeid(Model).name(), error);
+  std::printf("%s: relative error of the displacement %g\n", typeid(Model).name(), error);
   ++failures;
 }
 
@@ -85,6 +85,6 @@ int main() {
   element<Hex8>(box_hex8(size, {3, 2, 2}));
   element<MeanDilatation<Hex8>>(box_hex8(size, {3, 2, 2}));
   element<Hex20>(box_hex20(size, {2, 2, 1}));
-  if (failures == 0) std::printf("all shipped compositions answer\n");
+  if (failures == 0) std::printf("all shipped compositions give the expected displacement\n");
   return failures;
 }

@@ -1,4 +1,4 @@
-// A program that wants a mesh and no more, and includes all of palpate for it.
+// A program that uses only a mesh, but includes all of palpate.
 #include <palpate/palpate.hpp>
 
 #include <iostream>

@@ -1,7 +1,8 @@
 #!/bin/sh
-# What each policy costs where it is used: seconds to compile, bytes of program, instructions of a tick.
+# Cost of each policy in a small program: time to compile [s], size of the program [bytes], instructions per tick.
 #   sh measure.sh <source folder> <folder for programs and tiny.csv>
-# Needs g++ or $CXX and Eigen; instructions need perf, else valgrind, else are left out. $EIGEN_INCLUDE: where Eigen is.
+# Needs g++ or $CXX and Eigen. Instructions are counted by perf, else by valgrind, else left out. $EIGEN_INCLUDE: folder
+# of Eigen.
 set -eu
 source=$1
 out=$2
@@ -31,7 +32,7 @@ measure() {  # <name> <macros ...>: a line of tiny.csv
   name=$1
   shift
   program=$out/$(echo "$name" | tr -c 'A-Za-z0-9\n' _)
-  # `times` of a shell of its own: its second line is what its children took
+  # `times` in a subshell: its second line is the time of its child processes
   seconds=$(
     "$cxx" -std=c++20 -O2 -DNDEBUG "-I$source/include" -isystem "$eigen" "$@" \
       "$source/benchmarks/required/tiny/program.cpp" -o "$program" -pthread 2> "$program.messages" || exit 1
@@ -52,7 +53,7 @@ measure() {  # <name> <macros ...>: a line of tiny.csv
   echo "\"$name\",$seconds,$bytes,$per_tick,$counter,\"$answer\""
 }
 
-# One for every processor at a time: what is counted is processor time. Lines keep their order.
+# One job per processor at a time, as processor time is measured. The order of the lines is kept.
 jobs=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 rows=0
 rm -f "$out"/row_*

@@ -1,5 +1,5 @@
-// A small haptic program, to see what each policy costs: measure.sh compiles it with the macros below and counts.
-//   program <ticks>     presses a sphere into a block, so many ticks, and prints the force
+// A small haptic program to measure the cost of each policy: measure.sh compiles it with the macros below.
+//   program <ticks>     presses a sphere into a block for `ticks` ticks, and prints the force
 #ifdef TINY_UMBRELLA
 #include <palpate/palpate.hpp>
 #else
@@ -44,7 +44,7 @@ int press(Servo& servo, int ticks) {
 int main(int argc, char** argv) {
   const int ticks = argc > 1 ? std::atoi(argv[1]) : 1000;
 #ifdef TINY_PROMOTE
-  const std::array<int, 3> cells{8, 8, 3};  // as many nodes as the others have
+  const std::array<int, 3> cells{8, 8, 3};  // as many nodes as the other meshes
 #else
   const std::array<int, 3> cells{16, 16, 6};
 #endif

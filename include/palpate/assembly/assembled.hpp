@@ -24,7 +24,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(StiffnessOperator<BlockMatrix>);
 
-/// Fills `k` element by element, for elements and laws of any kind. `law(e)` is what element_stiffness takes: a matrix
+/// Fills `k` element by element, for any element and material. `material(e)` is passed to element_stiffness: a matrix
 /// or Lame's constants.
 template <Element E, class MaterialOf>
 void assemble_elements(const Body<E>& body, BlockMatrix& k, const SetupLimits& limits, MaterialOf material) {
@@ -48,15 +48,15 @@ void assemble_elements(const Body<E>& body, BlockMatrix& k, const SetupLimits& l
   }
 }
 
-/// Sum of all element stiffnesses into the block pattern (thesis 3.37, 3.46). Throws inverted_element for a negative
-/// Jacobian and non_finite for an element whose stiffness is not finite. Allocates the pattern, the values and what
-/// assemble_rows needs.
+/// Sums all element stiffnesses into the block pattern (thesis 3.37, 3.46). Throws inverted_element for a negative
+/// Jacobian and non_finite for an element whose stiffness is not finite. Allocates the pattern, the values and the
+/// workspace of assemble_rows.
 template <Element E>
 BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
   const NodeElements around(body.mesh);
   BlockMatrix k = make_stiffness(block_pattern(body.mesh, around), limits);
   const auto constants =
-      body.materials.empty() ? all_isotropic(body.elasticity) : std::nullopt;  // per region, if at all
+      body.materials.empty() ? all_isotropic(body.elasticity) : std::nullopt;  // per region, if all are isotropic
   if (!constants)
     assemble_elements(body, k, limits, [&](Index e) -> const Matrix6& { return body.elasticity_of(e); });
   else if constexpr (ConstantGradient<E>)
@@ -67,7 +67,7 @@ BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
   return k;
 }
 
-/// Stores K as 3 x 3 blocks: about 0.6 kB per Tet4 node row half; needed by every direct solver.
+/// Stores K as 3 x 3 blocks: about 0.6 kB per Tet4 node (lower half); needed by every direct solver.
 struct Assembled {
   template <Element E>
   using Operator = BlockMatrix;

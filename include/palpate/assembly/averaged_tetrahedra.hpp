@@ -1,4 +1,4 @@
-// Tetrahedra that do not lock: the change of volume is averaged over neighbours.
+// Linear tetrahedra without volumetric locking: the change of volume is averaged over neighbours.
 #pragma once
 
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
@@ -23,16 +23,17 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Linear tetrahedra with the average nodal Jacobian of Joldes, Wittek and Miller (2009): J of a node is the mean of
-/// the elements around it by volume, J' of an element the mean of its nodes, and the law sees F' = (J'/J)^(1/3) F.
-/// Theirs uses V P(F') grad N_a as the force, which derives from no energy; here the force is the whole derivative of
+/// Linear tetrahedra with the average nodal Jacobian of Joldes, Wittek and Miller (2009): J of a node is the
+/// volume-weighted mean over its elements, J' of an element is the mean over its nodes, and the material is evaluated
+/// at F' = (J'/J)^(1/3) F. The paper uses V P(F') grad N_a as the force, which does not derive from an energy; here the
+/// force is the complete derivative of
 ///   sum over elements of V W(F'),
-/// so that energy and angular momentum are kept, for one more sweep over the elements: three in all. Averages stop
-/// where the region changes: a node between two has a J in each. Not the element that Smoothed<Tet4> is at small
-/// strain: that one averages the change of volume once, to nodes, and the change of shape over edges as well; here
-/// shape is each element's own. Below J = 0.1 an element counts as 0.1 in the ratio, so that the force stays finite;
-/// elements that are inside out do not come back as surely as those of BatchedTetrahedra. Laws, vectors and allocation
-/// as there.
+/// so that energy and angular momentum are conserved. This costs one more sweep over the elements: three in total.
+/// Averages do not cross region borders: a node between two regions has one J in each. This is not the small-strain
+/// element Smoothed<Tet4>, which averages the change of volume once, to nodes, and also averages the deviatoric strain
+/// over edges; here the deviatoric part stays per element. Below J = 0.1 an element counts as 0.1 in the ratio, so that
+/// the force stays finite; inverted elements recover less reliably than those of BatchedTetrahedra. Materials, vectors
+/// and allocation are as in BatchedTetrahedra.
 template <HyperelasticMaterial M, class S = double, int N = 64 / sizeof(S)>
 class AveragedTetrahedra {
  public:
@@ -58,8 +59,8 @@ class AveragedTetrahedra {
   Index size() const noexcept { return 3 * layout_.node_count(); }
   double probe_length() const noexcept { return probe_length_; }
 
-  /// force = internal force at displacement u [N]. The report is of the elements' own J; a law that needs J > 0 counts
-  /// as not holding where that is not so.
+  /// force = internal force at displacement u [N]. The report is about the elements' own J; a material that needs J >
+  /// 0 is reported as inadmissible where J <= 0.
   DeformationReport force(const VectorX& u, VectorX& f) noexcept {
     const DeformationReport report = average_volumes(u);
     clear(sums_);
@@ -98,7 +99,7 @@ class AveragedTetrahedra {
   using Batch = TetrahedronBatch<S, N>;
   using Gradient = Tensor3<Number>;
 
-  /// What the law says of F', and the volumes behind it.
+  /// Material response at F', and the volume ratios used.
   struct Averaged {
     Number own, mean, ratio, pressure;  ///< J and J', at least 0.1; (J'/J)^(1/3); P : F' / 3 [Pa]
     Gradient stress;
@@ -135,7 +136,7 @@ class AveragedTetrahedra {
     for (int lane = 0; lane < N; ++lane)
       for (int a = 0; a < 4; ++a) sums[batch.row[a][lane] / 4] += value[lane];
   }
-  /// Numbers the averages: one per node and region that has elements there.
+  /// Numbers the averages: one per node and region with elements at that node.
   void place_averages() {
     std::vector<std::pair<NodeId, int>> pairs;
     for (const TetrahedronBlock& block : layout_.blocks)
@@ -178,8 +179,8 @@ class AveragedTetrahedra {
   TetrahedronBatches<S, N> layout_;
   std::vector<M> materials_;                          // by region
   std::vector<S> rows_, sums_;                        // by row: force, four numbers; a number
-  std::vector<std::int32_t> place_;                   // by row: which average
-  VectorX inverse_volume_, volume_ratio_, pressure_;  // by node and region; the volume is that of its elements there
+  std::vector<std::int32_t> place_;                   // by row: index of the average
+  VectorX inverse_volume_, volume_ratio_, pressure_;  // by node and region; volume of its elements in that region
   double probe_length_ = 0.0;
 };
 

@@ -13,7 +13,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Which node pairs share an element: per row (node) the sorted columns <= row, the diagonal last. Computed once per
+/// Node pairs that share an element: per row (node) the sorted columns <= row, the diagonal last. Computed once per
 /// mesh.
 struct BlockPattern {
   std::vector<Index> row_start;  ///< rows + 1 offsets
@@ -21,14 +21,14 @@ struct BlockPattern {
 
   Index rows() const noexcept { return static_cast<Index>(row_start.size()) - 1; }
 
-  /// Position of a block on the diagonal: the last of its row.
+  /// Position of the diagonal block, which is the last of its row.
   Index diagonal(Index row) const noexcept { return row_start[static_cast<std::size_t>(row) + 1] - 1; }
 
   /// Position of block (row, col), col <= row; binary search.
   Index find(NodeId row, NodeId col) const noexcept;
 };
 
-/// Pattern of a mesh with the elements around its nodes. O(elements x nodes_per_element^2), allocates.
+/// Pattern of a mesh, given the elements around its nodes. O(elements x nodes_per_element^2), allocates.
 BlockPattern block_pattern(const MeshRef& mesh, const NodeElements& around);
 template <Element E>
 BlockPattern block_pattern(const Mesh<E>& mesh, const NodeElements& around) {
@@ -58,10 +58,10 @@ class BlockMatrix {
   void set_zero() noexcept { std::ranges::fill(values_, 0.0); }
   /// Adds `factor` times a matrix on the same pattern. No allocation.
   void add(double factor, const BlockMatrix& other) noexcept;
-  /// Takes the values of a matrix on the same pattern. No allocation.
+  /// Copies the values of a matrix on the same pattern. No allocation.
   void copy_values(const BlockMatrix& other) noexcept { std::ranges::copy(other.values_, values_.begin()); }
 
-  /// y = K x; x and y hold size() entries. No allocation; reads every stored block once.
+  /// y = K x; x and y have size() entries. No allocation; reads every stored block once.
   void apply(const VectorX& x, VectorX& y) const noexcept;
 
   /// Adds factor x nodal[i] to the three diagonal entries of every node i: a lumped mass.
@@ -74,7 +74,7 @@ class BlockMatrix {
   std::vector<double> values_;
 };
 
-/// A zero matrix on a pattern, or too_large.
+/// A zero matrix on a pattern. Throws too_large.
 BlockMatrix make_stiffness(BlockPattern pattern, const SetupLimits& limits);
 
 }}  // namespace palpate

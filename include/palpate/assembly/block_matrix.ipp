@@ -11,7 +11,7 @@ PALPATE_INLINE BlockPattern block_pattern(const MeshRef& mesh, const NodeElement
   pattern.row_start.reserve(static_cast<std::size_t>(n) + 1);
   pattern.column.reserve(8 * static_cast<std::size_t>(n));
   pattern.row_start.push_back(0);
-  std::vector<NodeId> seen_by(static_cast<std::size_t>(n), -1);  // the last row that has the column
+  std::vector<NodeId> seen_by(static_cast<std::size_t>(n), -1);  // the last row that contains the column
   for (Index i = 0; i < n; ++i) {
     const auto begin = static_cast<std::ptrdiff_t>(pattern.column.size());
     for (const NodeId e : around.of(i)) {

@@ -1,4 +1,4 @@
-// A mesh with its materials evaluated: what is integrated over.
+// A mesh with the elasticity, density and initial strain of its regions, ready for integration.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -19,16 +19,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// An admitted mesh and, per region, elasticity matrix [Pa], density [kg/m^3] and initial strain. Where fibres run in
-/// another direction from element to element there are more elasticity matrices than regions, and `laws` says which
-/// element has which.
+/// An admitted mesh and, per region, elasticity matrix [Pa], density [kg/m^3] and initial strain. If fibre directions
+/// differ between elements there are more elasticity matrices than regions, and `materials` gives the matrix of each
+/// element.
 template <Element E>
 struct Body {
   Mesh<E> mesh;
   std::vector<Matrix6> elasticity;
   std::vector<double> density;
   std::vector<Vector6> initial_strain;
-  std::vector<std::int32_t> materials{};  ///< place in `elasticity` of every element's law; empty: its region
+  std::vector<std::int32_t> materials{};  ///< per element, index into `elasticity`; empty: the region
 
   std::size_t region_of(Index e) const noexcept { return static_cast<std::size_t>(mesh.region(e)); }
   std::size_t material_of(Index e) const noexcept {
@@ -37,10 +37,10 @@ struct Body {
   const Matrix6& elasticity_of(Index e) const noexcept { return elasticity[material_of(e)]; }
 };
 
-/// Refuses with the id of one element.
+/// Throws with the id of one element.
 [[noreturn]] PALPATE_COLD void raise_element(SetupErrorKind kind, Index e, const char* what);
 
-/// Refuses a material that its own check() refuses, with the region's number and name.
+/// Throws for a material that fails its own check(); the error names the region by number and name.
 template <Material M, MeshView Mesh>
 void require_admissible(const M& material, const Mesh& mesh, int region) {
   auto problem = material.check();
@@ -51,20 +51,20 @@ void require_admissible(const M& material, const Mesh& mesh, int region) {
   raise(std::move(*problem));
 }
 
-/// Refuses materials by region number that are not one per region: missing_material, bad_argument for more; and those
-/// that are not admissible.
+/// Throws unless there is one admissible material per region, by region number: missing_material for too few,
+/// bad_argument for too many, or the problem of a material's check().
 template <Material M, MeshView Mesh>
 void require_material_per_region(const std::vector<M>& by_region, const Mesh& mesh) {
   const auto regions = static_cast<std::size_t>(mesh.region_count());
   if (by_region.size() != regions)
     raise(by_region.size() < regions ? SetupErrorKind::missing_material : SetupErrorKind::bad_argument,
           std::to_string(by_region.size()) + " materials for " + std::to_string(regions) + " regions",
-          "Give one per region, in the order of the mesh");
+          "Give one material per region, in the order of the mesh");
   for (std::size_t r = 0; r < regions; ++r) require_admissible(by_region[r], mesh, static_cast<int>(r));
 }
 
 /// The material of every region of a mesh, in region order. Throws missing_material, unknown_group (a material for a
-/// region that does not exist) or whatever the material's own check() says, with the region's number and name.
+/// region that does not exist) or the problem of a material's check(), with the region's number and name.
 template <Material M, MeshView Mesh>
 std::vector<M> materials_by_region(const Mesh& mesh, const RegionMaterials<M>& materials) {
   std::vector<M> result;
@@ -82,15 +82,15 @@ std::vector<M> materials_by_region(const Mesh& mesh, const RegionMaterials<M>& m
     const auto it = named != materials.end() ? named : any;
     if (it == materials.end())
       raise(SetupErrorKind::missing_material, "region '" + std::string(mesh.region_name(r)) + "' has no material",
-            "Give one per region");
+            "Give one material per region");
     require_admissible(it->second, mesh, r);
     result.push_back(it->second);
   }
   return result;
 }
 
-/// Evaluates the law of every element along its own fibre, elasticity(region, fibre): 292 bytes per element, less where
-/// neighbours in the order of the mesh have the same.
+/// Evaluates the elasticity of every element along its own fibre, elasticity(region, fibre): 292 bytes per element,
+/// less if consecutive elements have the same region and fibre.
 template <Element E, class Elasticity>
 void add_fibre_laws(Body<E>& body, Elasticity elasticity) {
   const Mesh<E>& mesh = body.mesh;
@@ -103,9 +103,9 @@ void add_fibre_laws(Body<E>& body, Elasticity elasticity) {
   }
 }
 
-/// An admitted mesh with one material per region, by region number, without initial strain. Where the mesh has fibres
-/// and the material asks for them, every element gets its own elasticity. Throws as require_material_per_region, and
-/// bad_argument for fibres that are no unit vectors.
+/// An admitted mesh with one material per region, by region number, without initial strain. If the mesh has fibres and
+/// the material uses them, every element gets its own elasticity. Throws as require_material_per_region, and
+/// bad_argument for fibres that are not unit vectors.
 template <Element E, LinearMaterial M>
 Body<E> make_body(Mesh<E> mesh, const std::vector<M>& by_region) {
   require_material_per_region(by_region, mesh);
@@ -123,14 +123,14 @@ Body<E> make_body(Mesh<E> mesh, const std::vector<M>& by_region) {
   return body;
 }
 
-/// The same with materials by name; throws as materials_by_region.
+/// The same with materials by region name; throws as materials_by_region.
 template <Element E, LinearMaterial M>
 Body<E> make_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
   const std::vector<M> by_region = materials_by_region(mesh, materials);
   return make_body(std::move(mesh), by_region);
 }
 
-/// The same with one material everywhere.
+/// The same with one material for all regions.
 template <Element E, LinearMaterial M>
 Body<E> make_body(Mesh<E> mesh, const M& material) {
   return make_body(std::move(mesh), RegionMaterials<M>{{everywhere, material}});

@@ -1,4 +1,4 @@
-// A mesh with materials that hold at any strain.
+// A mesh with materials for any strain.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -17,7 +17,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The law of one element: along the element's own fibres where there are some, else as the law has it.
+/// The material of one element: along the element's own fibres if there are any, otherwise as given.
 template <HyperelasticMaterial M>
 class ElementMaterial {
  public:
@@ -52,19 +52,19 @@ class ElementMaterial {
   Triple<double> along_{};
   bool has_fibre_ = false;
 };
-/// A law for large strain, with memory or without.
+/// A material for large strain, with or without viscoelastic history.
 template <class M>
 concept LargeStrainMaterial = HyperelasticMaterial<M> || ViscousMaterial<M>;
 
-/// An admitted mesh, a law per region, and the body as it is at small strain: what stiffness at rest, mass and dead
-/// loads come from.
+/// An admitted mesh, one material per region, and the body at small strain, which gives the stiffness at rest, the
+/// mass and the dead loads.
 template <Element E, LargeStrainMaterial M>
 struct HyperelasticBody {
   Body<E> rest;
   std::vector<M> materials;  ///< by region
 
-  /// The law of a region; an ElementLaw, with the direction of the element's fibres if the mesh has any, for a law that
-  /// asks for them. Refers to the body.
+  /// The material of element e; an ElementMaterial with the direction of the element's fibres if the mesh has fibres
+  /// and the material uses them. Refers to the body.
   decltype(auto) material_of(Index e) const noexcept {
     if constexpr (FibreHyperelasticMaterial<M>)
       return ElementMaterial<M>(materials[rest.region_of(e)], uses_fibres() ? &rest.mesh.fibre(e) : nullptr);
@@ -74,9 +74,9 @@ struct HyperelasticBody {
   bool uses_fibres() const noexcept { return FibreHyperelasticMaterial<M> && rest.mesh.has_fibres(); }
 };
 
-/// By region number. Where the mesh has fibres and the law asks for them, every element has its own direction, made a
-/// unit vector to the last bit. Throws as require_material_per_region, bad_argument for fibres that are no unit
-/// vectors, and unsupported for a law with memory of a base that asks for fibres.
+/// Materials by region number. If the mesh has fibres and the material uses them, every element has its own direction,
+/// normalised to the last bit. Throws as require_material_per_region, bad_argument for fibres that are not unit
+/// vectors, and unsupported for a viscoelastic material whose base uses fibres.
 template <Element E, LargeStrainMaterial M>
 HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, std::vector<M> by_region) {
   require_material_per_region(by_region, mesh);
@@ -87,8 +87,8 @@ HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, std::vector<M> by_re
   }
   if constexpr (requires(const M& material) { material.base; } && !FibreHyperelasticMaterial<M>)
     if (FibreHyperelasticMaterial<decltype(M::base)> && body.rest.mesh.has_fibres())
-      raise(SetupErrorKind::unsupported, "a law with memory and a fibre direction per element",
-            "Clear the mesh's fibres so that the law's own direction counts");
+      raise(SetupErrorKind::unsupported, "a viscoelastic material with a fibre direction per element",
+            "Clear the mesh's fibres so that the material's own direction is used");
   body.rest.initial_strain.assign(body.materials.size(), Vector6::Zero());
   if constexpr (FibreHyperelasticMaterial<M>) {
     require_unit_fibres(body.rest.mesh);
@@ -101,15 +101,16 @@ HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, std::vector<M> by_re
   return body;
 }
 
-/// For forces that know one direction per region only: refuses a law with fibres on a mesh that has some.
+/// For forces that support one fibre direction per region only: throws for a material with fibres on a mesh with fibre
+/// directions.
 template <Element E, HyperelasticMaterial M>
 void require_no_fibres(const HyperelasticBody<E, M>& body) {
   if (body.uses_fibres())
-    raise(SetupErrorKind::unsupported, "a force in batches with a fibre direction per element",
-          "Use LargeStrain, or clear the mesh's fibres so that the law's own direction counts");
+    raise(SetupErrorKind::unsupported, "a batched force with a fibre direction per element",
+          "Use LargeStrain, or clear the mesh's fibres so that the material's own direction is used");
 }
 
-/// With materials by name; throws as materials_by_region.
+/// With materials by region name; throws as materials_by_region.
 template <Element E, LargeStrainMaterial M>
 HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
   std::vector<M> by_region = materials_by_region(mesh, materials);

@@ -33,17 +33,17 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// Integrates a body over its shape at rest (Belytschko, Liu, Moran, Nonlinear Finite Elements, 4.9): F = I + sum u_a
 /// grad N_a, f_a = sum_q P grad N_a dV. Gradients and volumes are computed once: (3 nodes + 1) x 8 bytes per
-/// integration point, and what a law with memory remembers. Vectors have 3 entries per node, all dofs. No function
-/// allocates; sums go by element, so results do not depend on threads.
+/// integration point, plus the viscoelastic history. Vectors have 3 entries per node, all dofs. Only the constructor
+/// allocates; sums run by element, so results do not depend on threads.
 template <Element E, LargeStrainMaterial M>
 class LargeStrain final : public ElasticForces {
  public:
   static_assert(!HasSmoothedStrain<E> && !HasMeanDilatation<E>,
-                "palpate: Smoothed and MeanDilatation average strains of small deformations; choose Tet10 or Hex20, or "
+                "palpate: Smoothed and MeanDilatation average small strains; choose Tet10 or Hex20, or "
                 "AveragedTetrahedra for explicit motion");
   static constexpr bool has_history = ViscousMaterial<M>;
 
-  /// Throws inverted_element or non_finite for a mesh that is so at rest, too_large.
+  /// Throws inverted_element or non_finite for a mesh that is invalid at rest, too_large.
   explicit LargeStrain(HyperelasticBody<E, M> body, const SetupLimits& limits = {}) : body_(std::move(body)) {
     const Mesh<E>& mesh = body_.rest.mesh;
     limits.require_memory(static_cast<double>(mesh.element_count()) * sizeof(Points), "the gradients at rest");
@@ -67,7 +67,7 @@ class LargeStrain final : public ElasticForces {
   const Mesh<E>& mesh() const noexcept { return body_.rest.mesh; }
   Index size() const noexcept override { return 3 * mesh().node_count(); }
 
-  /// Stored energy [J]; infinite where a law does not hold.
+  /// Stored energy [J]; infinite where a material is not admissible.
   double energy(const VectorX& u) const noexcept override {
     double sum = 0.0;
     for (Index e = 0; e < mesh().element_count(); ++e) {
@@ -82,7 +82,7 @@ class LargeStrain final : public ElasticForces {
     return sum;
   }
 
-  /// Forces with which the body answers a displacement [N], derivative of the energy. A law that does not hold adds
+  /// Internal forces at a displacement [N], derivative of the energy. Points where the material is not admissible add
   /// nothing.
   DeformationReport force(const VectorX& u, VectorX& all) const noexcept override {
     DeformationReport report;
@@ -118,7 +118,7 @@ class LargeStrain final : public ElasticForces {
     }
   }
 
-  /// A small part of the shortest edge [m]: differences of forces then keep half their digits.
+  /// A small fraction of the shortest edge [m], chosen so that differences of forces keep half their digits.
   double probe_length() const noexcept { return probe_length_; }
 
   void begin_step(double dt) noexcept override {
@@ -142,7 +142,7 @@ class LargeStrain final : public ElasticForces {
   std::size_t number_of(Index e, const PointGeometry<E>& g) const noexcept {
     return static_cast<std::size_t>(&g - points_of(e).data());
   }
-  /// The law of a point: with memory, that of the present step.
+  /// The material of a point; with viscoelastic history, that of the current step.
   decltype(auto) material_at(Index e, const PointGeometry<E>& g) const noexcept {
     return history_.material(body_, e, number_of(e, g));
   }

@@ -31,8 +31,8 @@ FaceNodes<F> face_nodes(const Mesh<E>& mesh, const BoundaryFace& face) {
 
 namespace detail {
 
-/// Integrals of shape functions over elements and faces by their nodes' ids, for code that works on bodies of any
-/// element. One number, or x y z, per node; `positions` holds x y z of every node of the mesh.
+/// Integrals of shape functions over elements and faces, given by node ids, for code that is independent of the
+/// element type. One number, or x y z, per node; `positions` stores x y z of every node of the mesh.
 struct ShapeIntegrals {
   void (*volumes)(const double* positions, const NodeId* nodes, double* result) noexcept;
   void (*areas)(const double* positions, const BoundaryFace& face, double* result) noexcept;
@@ -70,7 +70,7 @@ void area_vectors_of(const double* positions, const BoundaryFace& face, double* 
 
 VectorX applied_load(const MeshRef& mesh, const ShapeIntegrals& integrals, const std::vector<BoundaryFace>& boundary,
                      const Scene& scene);
-/// Whether a strain is not zero.
+/// True if any strain is not zero.
 bool any_strain(const std::vector<Vector6>& strains) noexcept;
 VectorX nodal_mass(const MeshRef& mesh, const ShapeIntegrals& integrals, const std::vector<double>& density);
 
@@ -86,14 +86,14 @@ VectorX nodal_mass(const Body<E>& body) {
   return detail::nodal_mass(mesh_ref(body.mesh), detail::shape_integrals<E>, body.density);
 }
 
-/// Tractions, pressures, point loads and body loads of a scene, gravity excepted: 3 nodes entries [N]. Throws
+/// Tractions, pressures, point loads and body loads of a scene, without gravity: 3 entries per node [N]. Throws
 /// unknown_group, empty_group or unsupported (a load on an inner face).
 template <Element E>
 VectorX applied_load(const Body<E>& body, const std::vector<BoundaryFace>& boundary, const Scene& scene) {
   return detail::applied_load(mesh_ref(body.mesh), detail::shape_integrals<E>, boundary, scene);
 }
 
-/// Load f_0 of initial strains per region, those of the body if none are given (3.28, 3.45): 3 nodes entries [N].
+/// Load f_0 of initial strains per region, those of the body if none are given (3.28, 3.45): 3 entries per node [N].
 template <Element E>
 VectorX initial_strain_load(const Body<E>& body, const std::vector<Vector6>& strains) {
   VectorX f = VectorX::Zero(3 * body.mesh.node_count());
@@ -112,15 +112,15 @@ VectorX initial_strain_load(const Body<E>& body) {
   return initial_strain_load(body, body.initial_strain);
 }
 
-/// Initial strain per region of a scene; several on one region add up. Throws unknown_group.
+/// Initial strain per region of a scene; several on one region are added. Throws unknown_group.
 std::vector<Vector6> initial_strains_by_region(const MeshRef& mesh, const Scene& scene);
 template <Element E>
 std::vector<Vector6> initial_strains_by_region(const Mesh<E>& mesh, const Scene& scene) {
   return initial_strains_by_region(mesh_ref(mesh), scene);
 }
 
-/// Stored energy [J]: 1/2 sum_q (epsilon - epsilon_0) : D : (epsilon - epsilon_0) dV for nodal displacements u (3 nodes
-/// entries [m]).
+/// Stored energy [J]: 1/2 sum_q (epsilon - epsilon_0) : D : (epsilon - epsilon_0) dV for nodal displacements u (3
+/// entries per node [m]).
 template <Element E>
 double strain_energy(const Body<E>& body, const VectorX& u) {
   double energy = 0.0;

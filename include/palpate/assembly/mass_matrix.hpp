@@ -1,4 +1,4 @@
-// The mass of a body: consistent, and lumped to the nodes. (Row sums, which gravity needs, are in load_vector.hpp.)
+// The mass of a body: consistent, and lumped at the nodes. (Row sums, for gravity, are in load_vector.hpp.)
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -32,7 +32,7 @@ class MassMatrix {
   double& operator[](Index position) noexcept { return values_[static_cast<std::size_t>(position)]; }
   double operator[](Index position) const noexcept { return values_[static_cast<std::size_t>(position)]; }
 
-  /// y = M x; x and y hold size() entries. No allocation.
+  /// y = M x; x and y have size() entries. No allocation.
   void apply(const VectorX& x, VectorX& y) const noexcept;
 
  private:
@@ -42,7 +42,7 @@ class MassMatrix {
 
 namespace detail {
 
-/// Refuses a mass that cannot be: an inverted element, or numbers that are not finite.
+/// Throws for an invalid mass: an inverted element, or numbers that are not finite.
 void require_mass(double volume, double mass, Index e);
 
 }  // namespace detail
@@ -71,8 +71,8 @@ MassMatrix assemble_mass(const Body<E>& body, const SetupLimits& limits = {}) {
 }
 
 /// Lumped mass [kg], one entry per node, by diagonal scaling (local/mass.hpp): positive wherever the density is, and
-/// the total is exact. Explicit integration divides by it. Elements for which gone(element) have none. Throws
-/// inverted_element or non_finite.
+/// the total is exact. Used as divisor in explicit integration. Elements for which gone(element) is true have no mass.
+/// Throws inverted_element or non_finite.
 template <Element E, class Gone>
 VectorX lumped_mass(const Body<E>& body, Gone&& gone) {
   VectorX mass = VectorX::Zero(body.mesh.node_count());
@@ -91,7 +91,7 @@ VectorX lumped_mass(const Body<E>& body) {
 }
 
 /// Calls visit(row, column, value) for every stored entry of the lower half of the mass of the free dofs, rows
-/// ascending within a column: what free_matrix needs.
+/// ascending within a column; used by free_matrix.
 template <class Visit>
 void for_each_free_entry(const MassMatrix& m, const EssentialConditions& conditions, Visit&& visit) {
   const BlockPattern& pattern = m.pattern();

@@ -17,8 +17,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// K x by gathering each element's displacements, computing its stress and scattering its nodal forces. Keeps gradients
-/// and volumes only.
+/// K x by gathering each element's displacements, computing its stress and scattering its nodal forces. Stores only
+/// gradients and volumes.
 template <Element E>
 class MatrixFreeStiffness {
  public:

@@ -1,4 +1,4 @@
-// What the stiffness of a whole mesh is, stored or not.
+// The stiffness of a whole mesh as an operator, assembled or matrix-free.
 #pragma once
 
 #include <palpate/core/config.hpp>

@@ -1,4 +1,4 @@
-// What answers the questions of statics: the full displacement under any load, and the compliance of the kept dofs.
+// Concept of a prepared static system: displacement under any load, and compliance of the kept dofs.
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>

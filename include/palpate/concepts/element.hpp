@@ -1,4 +1,4 @@
-// What a finite element is: shape functions on a reference domain, as a stateless type.
+// Concepts of finite elements: shape functions on a reference domain, as a stateless type.
 #pragma once
 
 #include <palpate/concepts/quadrature.hpp>
@@ -22,18 +22,19 @@ concept FaceElement = requires(const Eigen::Vector2d& xi) {
   requires F::Quadrature::dimension == 2;
 };
 
-/// A face that tools can touch: `triangles` lists local nodes of linear triangles that cover the face, turned as the face
-/// is, with every node a vertex. Contact collides with these triangles, and reads displacement and spreads force with
-/// their barycentric weights (docs/contact.md). Laws: testing/element_laws.hpp.
+/// A face that tools can touch: `triangles` lists the local nodes of linear triangles that cover the face, with the
+/// same orientation as the face and with every node as a vertex. Contact detection uses these triangles, and
+/// interpolates displacement and distributes force with their barycentric weights (docs/contact.md). Laws:
+/// testing/element_laws.hpp.
 template <class F>
 concept TriangulatedFace = FaceElement<F> &&
     std::same_as<std::remove_cvref_t<decltype(F::triangles)>, std::array<std::array<int, 3>, F::triangles.size()>>;
 
 /// A solid element: `nodes` shape functions of three reference coordinates (thesis 3.3.2).
 /// `shape(xi)` is nodes x 1, `gradient(xi)` nodes x 3 (derivatives by xi), `reference_nodes()` nodes x 3.
-/// `faces` lists the local nodes of every face, outward by the right-hand rule; all faces are of type `Face`, or some
-/// of a type `SmallFace` with fewer nodes: those lists end in -1.
-/// `order` is the polynomial degree reproduced exactly. `Quadrature` is the default rule for stiffness,
+/// `faces` lists the local nodes of every face, outward by the right-hand rule. All faces are of type `Face`, or some
+/// are of a type `SmallFace` with fewer nodes; those lists end in -1.
+/// `order` is the polynomial degree reproduced exactly. `Quadrature` is the default rule for stiffness;
 /// `MassQuadrature` integrates products of two shape functions exactly on straight-sided elements. Laws:
 /// testing/element_laws.hpp.
 template <class E>
@@ -75,7 +76,7 @@ constexpr std::span<const int> local_face(std::size_t f) noexcept {
   return {E::faces[f].data(), count};
 }
 
-/// Whether a face of E may have that many nodes.
+/// Whether a face of E can have `nodes` nodes.
 template <Element E>
 constexpr bool is_face_size(std::size_t nodes) noexcept {
   if constexpr (HasSmallFace<E>)
@@ -83,7 +84,7 @@ constexpr bool is_face_size(std::size_t nodes) noexcept {
   return nodes == static_cast<std::size_t>(E::Face::nodes);
 }
 
-/// Calls visit.template operator()<F>() with F the face element of a face of that many nodes.
+/// Calls visit.template operator()<F>(), where F is the type of a face with `nodes` nodes.
 template <Element E, class Visit>
 constexpr decltype(auto) with_face_element([[maybe_unused]] std::size_t nodes, Visit&& visit) {
   if constexpr (HasSmallFace<E>)
@@ -92,7 +93,7 @@ constexpr decltype(auto) with_face_element([[maybe_unused]] std::size_t nodes, V
   return visit.template operator()<typename E::Face>();
 }
 
-/// Coordinates of one element's nodes, one per row.
+/// Coordinates of the nodes of one element, one node per row.
 template <class E>
 using ElementNodes = Eigen::Matrix<double, E::nodes, 3>;
 

@@ -1,5 +1,5 @@
-// What a haptic device is, and what passes between it and the tick. Plain numbers only: these types cross library
-// borders.
+// Concept of a haptic device, and the types exchanged between device and tick. Plain numbers only: these types cross
+// library boundaries.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -10,12 +10,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What a device says about its tool. SI units, the device's own frame.
+/// State of the tool as the device reports it. SI units, in the device's own frame.
 struct ToolState {
   Vector3 position = Vector3::Zero();                                              ///< [m]
   Vector3 velocity = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());  ///< [m/s]; NaN: not given
   std::array<double, 4> orientation{1.0, 0.0, 0.0, 0.0};                           ///< unit quaternion w x y z
-  double time = 0.0;  ///< [s] when the state was read, monotonic
+  double time = 0.0;  ///< [s] monotonic time at which the state was read
   std::uint32_t buttons = 0;
   bool valid = true;  ///< false: the device could not be read
 };
@@ -23,9 +23,9 @@ struct ToolState {
 class ForceGate;
 struct Placement;
 
-/// What a device is told to render: a force that has passed a force gate. Finite, within the gate's limits and without
-/// jumps, because only ForceGate makes one that is not zero. Others can read and pass it on, but not change force or
-/// torque.
+/// The command to a device: a force that has passed a force gate. It is finite, within the gate's limits and without
+/// jumps, because only ForceGate creates a nonzero one. Other code can read it and pass it on, but cannot change force
+/// or torque.
 class GatedForce {
  public:
   /// Zero.
@@ -44,20 +44,20 @@ class GatedForce {
   Vector3 force_ = Vector3::Zero(), torque_ = Vector3::Zero();
 };
 
-/// What a device can take.
+/// Limits of a device.
 struct DeviceLimits {
   double peak_force = 3.3;                          ///< [N]
   double continuous_force = 0.88;                   ///< [N]
-  double stiffness = 500.0;                         ///< [N/m] the most it renders stably at `rate`
+  double stiffness = 500.0;                         ///< [N/m] largest that it renders stably at `rate`
   Vector3 workspace_low = Vector3::Constant(-0.1);  ///< [m]
   Vector3 workspace_high = Vector3::Constant(0.1);  ///< [m]
   double peak_torque = 0.0;                         ///< [N m]; 0: three actuated degrees of freedom, no torque
-  double rotational_stiffness = 0.0;                   ///< [N m/rad] the most it renders stably; 0 without torque
-  double rate = 1000.0;                             ///< [1/s] what it is meant to be served at, at most
+  double rotational_stiffness = 0.0;                ///< [N m/rad] largest that it renders stably; 0 without torque
+  double rate = 1000.0;                             ///< [1/s] highest intended update rate
 };
 
 /// A device that can be read and written from the haptic thread. `read` and `write` never throw, block, allocate or
-/// lock; `write` takes nothing but a GatedForce, limits it to `limits()` and renders zero after `stop()` or an invalid
+/// lock. `write` accepts only a GatedForce, limits it to `limits()` and renders zero after `stop()` or an invalid
 /// read. Laws: testing/device_laws.hpp.
 template <class D>
 concept HapticDevice = requires(D& device, const D& constant, const GatedForce& force) {

@@ -1,4 +1,4 @@
-// What a linear solver is.
+// Concepts of linear solvers.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -6,7 +6,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What a solve says about itself.
+/// Result of a solve.
 struct SolveReport {
   bool converged = true;
   int iterations = 0;              ///< 0 for direct solvers
@@ -22,8 +22,8 @@ concept SpdOperator = requires(const Op& op, const VectorX& x, VectorX& y) {
   { op.precondition(x, y) } noexcept;
 };
 
-/// A prepared solver: `solve_into` writes x with K x = b. It never allocates once prepared, and is not to be called
-/// from two threads at once (it owns its workspace). Laws: testing/solver_laws.hpp.
+/// A prepared solver: `solve_into` writes x with K x = b. It never allocates once prepared, and must not be called
+/// from two threads simultaneously (it owns its workspace). Laws: testing/solver_laws.hpp.
 template <class S>
 concept LinearSolver = requires(S& solver, const VectorX& b, VectorX& x) {
   { solver.size() } -> std::convertible_to<Index>;

@@ -1,4 +1,4 @@
-// What a material is.
+// Concepts of materials.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -12,12 +12,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The problem with a parameter of a material; `what` names it.
+/// An inadmissible parameter of a material as a SetupProblem; `what` names the parameter.
 SetupProblem parameter_problem(SetupErrorKind kind, const std::string& what, double value, double threshold,
                                const char* hint);
 
-/// An aggregate of named parameters that can say whether they are admissible. `density` is in kg/m^3; `check()` returns
-/// the problem or nothing and is called once per region at set-up.
+/// An aggregate of named parameters that can check whether they are admissible. `density` is in kg/m^3. `check()`
+/// returns the problem, or nothing; it is called once per region at set-up.
 template <class M>
 concept Material = std::copyable<M> && requires(const M& m) {
   { m.density } -> std::convertible_to<double>;
@@ -31,8 +31,8 @@ concept LinearMaterial = Material<M> && requires(const M& m) {
   { m.elasticity() } -> FixedMatrix<6, 6>;
 };
 
-/// A linear material with fibres: `elasticity(fibre)` is its matrix where the fibres run along that unit vector. Used
-/// where the mesh has fibre directions, `elasticity()` where it has none.
+/// A linear material with fibres: `elasticity(fibre)` is its matrix for fibres along that unit vector. It is used where
+/// the mesh has fibre directions; `elasticity()` is used where it has none.
 template <class M>
 concept FibreMaterial = LinearMaterial<M> && requires(const M& m, const Vector3& fibre) {
   { m.elasticity(fibre) } -> FixedMatrix<6, 6>;
@@ -42,11 +42,11 @@ concept FibreMaterial = LinearMaterial<M> && requires(const M& m, const Vector3&
 ///   energy(F) -> S             W [J per m^3 of rest volume], zero at rest
 ///   stress(F) -> Tensor3<S>    P = dW/dF, the first Piola-Kirchhoff stress [Pa]; S is double, float or Lanes of them
 ///   tangent(F) -> Matrix9      dP/dF [Pa], symmetric; row i + 3 j is P_ij, column k + 3 l is F_kl
-///   rest_elasticity()          the 6 x 6 matrix of the same law at small strain [Pa]. Not called `elasticity`: no such
-///                              material may pass as a linear one unnoticed.
-///   admits(F) -> bool          whether the law holds at F. Outside, the other functions may return anything.
-///   survives_inversion         whether it holds at flat F and those turned inside out; else J > 0 is needed.
-/// None allocates or throws. Laws: testing/hyperelastic_laws.hpp.
+///   rest_elasticity()          the 6 x 6 matrix of the same material at small strain [Pa]. Not called `elasticity`, so
+///                              that such a material cannot be used as a linear one by mistake.
+///   admits(F) -> bool          whether the material is valid at F. If not, the other functions may return anything.
+///   survives_inversion         whether it is valid at singular and inverted F (J <= 0); otherwise J > 0 is required.
+/// These functions do not allocate or throw. Laws: testing/hyperelastic_laws.hpp.
 template <class M>
 concept HyperelasticMaterial =
     Material<M> && requires(const M& m, const Tensor3<double>& f, const Tensor3<float>& single,
@@ -63,12 +63,13 @@ concept HyperelasticMaterial =
       { m.admits(f) } -> std::same_as<bool>;
     };
 
-/// A hyperelastic material with fibres: the same functions with the unit vector along the fibres at rest as a last
-/// argument, used where the mesh has fibre directions.
+/// A hyperelastic material with fibres: the same functions with one more argument, the unit vector along the fibres at
+/// rest. Used where the mesh has fibre directions.
 template <class M>
 concept FibreHyperelasticMaterial =
-    HyperelasticMaterial<M> && requires(const M& m, const Tensor3<double>& f, const Triple<double>& fibre,
-                                        const Tensor3<Lanes<float, 16>>& lanes, const Triple<Lanes<float, 16>>& fibres) {
+    HyperelasticMaterial<M> &&
+    requires(const M& m, const Tensor3<double>& f, const Triple<double>& fibre, const Tensor3<Lanes<float, 16>>& lanes,
+             const Triple<Lanes<float, 16>>& fibres) {
       { m.energy(f, fibre) } -> std::same_as<double>;
       { m.stress(f, fibre) } -> std::same_as<Tensor3<double>>;
       { m.stress(lanes, fibres) } -> std::same_as<Tensor3<Lanes<float, 16>>>;

@@ -1,4 +1,4 @@
-// What a mesh is: a read-only view, so that a simulator's own arrays serve without a copy.
+// Concepts of meshes: read-only views, so that the arrays of a simulator can be used without a copy.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -11,7 +11,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// A named part of a mesh. A condition on a group applies to all its `nodes`; loads per area use its `faces`, loads per
-/// volume its `elements`. Any of the three may be empty.
+/// volume its `elements`. Each of the three may be empty.
 struct Group {
   std::string name;
   int dimension = 0;                       ///< 0 points, 1 lines, 2 faces, 3 solid elements
@@ -20,8 +20,8 @@ struct Group {
   std::vector<Index> elements;             ///< ids of its solid elements (dimension 3)
 };
 
-/// A read-only solid mesh of one element type. Positions are metres. `region(e)` numbers the material regions from
-/// zero, `region_name(r)` names them; `find_group` returns nullptr for an unknown name. Nothing is copied by asking.
+/// A read-only solid mesh of one element type. Positions are in metres. `region(e)` numbers the material regions from
+/// zero, `region_name(r)` names them; `find_group` returns nullptr for an unknown name. These calls copy nothing.
 template <class M>
 concept MeshView = requires(const M& m, Index i, int a, std::string_view name) {
   requires M::nodes_per_element > 0;
@@ -35,8 +35,8 @@ concept MeshView = requires(const M& m, Index i, int a, std::string_view name) {
   { m.find_group(name) } -> std::convertible_to<const Group*>;
 };
 
-/// A mesh that may know the direction of the fibres in its elements: `has_fibres()` says whether it does, `fibre(e)` is
-/// then a unit vector in the frame of the positions. Materials without fibres do not ask.
+/// A mesh that may have fibre directions per element: if `has_fibres()`, `fibre(e)` is a unit vector in the frame of
+/// the positions. Materials without fibres do not use it.
 template <class M>
 concept FibreMesh = MeshView<M> && requires(const M& m, Index e) {
   { m.has_fibres() } -> std::convertible_to<bool>;

@@ -1,4 +1,4 @@
-// What a quadrature rule is.
+// Concept of a quadrature rule.
 #pragma once
 
 #include <palpate/core/config.hpp>

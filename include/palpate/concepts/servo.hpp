@@ -1,4 +1,4 @@
-// What the haptic loop needs from whatever computes the force.
+// Concept of the object that computes the forces in a haptic loop.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
@@ -9,9 +9,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Something that turns the states of all tools into the forces on all tools, once per tick. `tick` gets one state per
-/// tool and returns one force per tool in the same order; the span stays valid until the next tick. It never throws,
-/// blocks, allocates or locks. What it returns goes to the device: its last step is a force gate.
+/// Computes the forces on all tools from the states of all tools, once per tick. `tick` receives one state per tool and
+/// returns one force per tool in the same order; the span stays valid until the next tick. It never throws, blocks,
+/// allocates or locks. The result is sent to the device, so the last step of `tick` is a force gate.
 template <class S>
 concept Servo = requires(S& servo, std::span<const ToolState> tools) {
   { servo.tick(tools) } noexcept -> std::same_as<std::span<const GatedForce>>;

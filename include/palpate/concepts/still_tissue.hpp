@@ -1,13 +1,13 @@
-// The hooks of a tissue that does not move by itself.
+// Base class with empty hooks for a tissue that does not move by itself.
 #pragma once
 
 #include <palpate/concepts/tissue_model.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Base of a tissue that does not move, work or get cut by itself: every hook of TissueModel, none does anything. A
-/// class that derives from it hides those it has. Not for a class around another tissue, whose hooks would be lost: that
-/// is a TissueAdaptor.
+/// Base class of a tissue that does not move, compute in the background or get cut: it has every hook of TissueModel,
+/// and none of them does anything. A derived class hides the hooks that it implements. Not for a class that wraps
+/// another tissue, whose hooks would be lost: use TissueAdaptor for that.
 struct StillTissue {
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook begin_tick() noexcept { return {}; }

@@ -1,4 +1,4 @@
-// A tissue around another one.
+// Base class of a tissue that wraps another one.
 #pragma once
 
 #include <palpate/concepts/tissue_model.hpp>
@@ -7,10 +7,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Base of a tissue that changes something of another one. It is that tissue in every function and hook of TissueModel;
-/// a class that derives from it hides what it changes, and calls `tissue()` for the rest. One that hides `compliance`
-/// must define compliance_revision, compliance_bound and compliance_floor, too: without, it is no TissueModel. Refers to
-/// the tissue, which must outlive it.
+/// Base class of a tissue that modifies another one. It forwards every function and hook of TissueModel to that tissue;
+/// a derived class hides the functions that it changes and calls `tissue()` for the rest. A class that hides
+/// `compliance` must also define compliance_revision, compliance_bound and compliance_floor; otherwise it is not a
+/// TissueModel. Refers to the wrapped tissue, which must outlive it.
 template <TissueModel Tissue>
 class TissueAdaptor {
  public:

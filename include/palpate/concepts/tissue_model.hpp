@@ -1,4 +1,4 @@
-// What a haptic session needs of a tissue.
+// Concept of a tissue that a haptic session can touch.
 #pragma once
 
 #include <palpate/concepts/vertex_force.hpp>
@@ -19,13 +19,13 @@ class ContactProblem;
 struct ContactParameters;
 struct BladeSweep;
 
-/// What a hook returns that does nothing: it is never called.
+/// Return type of a hook that does nothing; such a hook is never called.
 struct NoHook {};
 
-/// What a piece of background work was.
+/// Result of one step of background work.
 struct BackgroundStep {
   bool worked = false;  ///< false: there was nothing to do
-  double next = 0.0;    ///< [s] from when this piece was due to when the next is; 0: at once
+  double next = 0.0;    ///< [s] from the due time of this step to that of the next; 0: immediately
 };
 
 namespace detail {
@@ -94,7 +94,7 @@ struct ClassOf<R (C::*)(A...) const> : std::type_identity<C> {};
 template <class R, class C, class... A>
 struct ClassOf<R (C::*)(A...) const noexcept> : std::type_identity<C> {};
 
-/// Whether `Scale`, of a class with a compliance of its own, was inherited by one that changes the compliance.
+/// Whether `Scale` is inherited from a class with its own compliance, by a class that changes the compliance.
 template <class Compliance, class Scale>
 concept OutOfDate = requires {
   typename ClassOf<Compliance>::type;
@@ -113,46 +113,49 @@ concept HasOutOfDateScale = requires { &T::compliance; } &&
 
 }  // namespace detail
 
-/// A tissue that can be touched. Vertices are those of `contact_surface()`, the surface as it rests without tools.
-/// - `require_columns(vertices)` makes the compliance columns of these vertices available; what it could not do is in
-/// the status.
-/// - `to_world()` maps the frame of the surface to the world's.
+/// A tissue that can be touched. Vertices are those of `contact_surface()`, the surface at rest without tools.
+/// - `require_columns(vertices)` makes the compliance columns of these vertices available; the status reports what it
+/// could not do.
+/// - `to_world()` maps the frame of the surface to the world frame.
 /// - `compliance(i, j)` is the 3 x 3 displacement [m/N] of vertex i per force on vertex j, whose column was required: a
 /// matrix, or an Eigen expression that stays valid until the next `require_columns`.
-/// - `compliance_revision()` is another number when a value that `compliance` has given is no longer right; constant for
+/// - `compliance_revision()` changes whenever a value that `compliance` returned is no longer valid; it is constant for
 /// a tissue whose compliance never changes.
-/// - `compliance_bound(j)` is at least the largest displacement [m/N] of any vertex per unit force on j.
-/// - `compliance_floor()` is a tiny compliance that keeps a fixed vertex from dividing by zero.
-/// A class that inherits these four and changes `compliance` must define the other three, too.
+/// - `compliance_bound(j)` is an upper bound of the displacement [m/N] of any vertex per unit force on j.
+/// - `compliance_floor()` is a tiny compliance that prevents division by zero at a fixed vertex.
+/// A class that inherits these four and changes `compliance` must also define the other three.
 ///
-/// Hooks. All must be there, so that none is forgotten; one that returns NoHook is never called. StillTissue has them
-/// all, for a tissue that does not move; TissueAdaptor hands on all those of another tissue.
-/// - `prefetch(vertices)` -> void: which vertices a tool may press soon.
-/// - `begin_tick()` -> Status: before each tick; may bring in what moved since. The status is part of the tick's.
-/// - `end_tick(forces)` -> void: the forces on the vertices after a tick; none when a session is reset.
-/// - `updates()` const -> std::uint64_t: counts what `begin_tick` has brought in. A servo fades its force when that
-/// stands still for too long.
+/// Hooks. A tissue must have all of them, so that none is forgotten; one that returns NoHook is never called.
+/// StillTissue provides all of them for a tissue that does not move; TissueAdaptor forwards all those of another
+/// tissue.
+/// - `prefetch(vertices)` -> void: the vertices that a tool may press soon.
+/// - `begin_tick()` -> Status: before each tick; may apply motion since the last tick. The status is part of the
+/// tick's.
+/// - `end_tick(forces)` -> void: the forces on the vertices after a tick; empty when a session is reset.
+/// - `updates()` const -> std::uint64_t: number of updates applied by `begin_tick`. A servo fades its force if this
+/// number does not change for too long.
 /// - `exchange_contacts(problem)` -> void: after `begin_tick`, for a tissue whose triangles change: moves the session's
-/// contact problem to the new surface, where it goes on.
-/// - `prepare_tools(smallest_radius, parameters)` -> void: once by a session that begins; may throw to refuse it.
-/// - `try_cut(sweep)` -> bool: orders a cut along a BladeSweep in the world's frame; false when too many wait. Only such
-/// a tissue takes a BladeTool.
-/// - `background_work()` -> BackgroundStep: work beside the ticks, done by a BackgroundWorker: steps of a motion, cuts.
-/// May throw.
-/// - `report_slow(slow)` -> void: whether a BackgroundWorker cannot keep up.
+/// contact problem to the new surface, where the contacts continue.
+/// - `prepare_tools(smallest_radius, parameters)` -> void: called once at the start of a session; may throw to refuse
+/// it.
+/// - `try_cut(sweep)` -> bool: requests a cut along a BladeSweep in the world frame; false when too many requests are
+/// pending. Only such a tissue accepts a BladeTool.
+/// - `background_work()` -> BackgroundStep: work in a background thread, called by a BackgroundWorker: time steps,
+/// cuts. May throw.
+/// - `report_slow(slow)` -> void: reports whether a BackgroundWorker cannot keep up.
 /// All but prepare_tools and background_work are noexcept, allocate nothing and take bounded time. Between two calls of
 /// `begin_tick` the surface stays at the same place in memory.
 template <class T>
 concept TissueModel = detail::HasSurface<T> && detail::HasCompliance<T> && detail::HasComplianceScales<T> &&
                       !detail::HasOutOfDateScale<T> && detail::HasHooks<T>;
 
-/// A tissue whose surface or compliance changes between ticks, and which says so before each.
+/// A tissue whose surface or compliance changes between ticks, and which announces this in `begin_tick`.
 template <class T>
 concept AnnouncesChanges = requires(T& tissue) {
   { tissue.begin_tick() } -> std::same_as<Status>;
 };
 
-/// A tissue with work to do beside the ticks.
+/// A tissue with work to do in a background thread.
 template <class T>
 concept HasBackgroundWork = requires(T& tissue) {
   { tissue.background_work() } -> std::same_as<BackgroundStep>;

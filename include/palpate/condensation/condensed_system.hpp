@@ -1,4 +1,4 @@
-// The condensed system with its solver, and the way back to all dofs.
+// The condensed system with its solver, and recovery of all dofs.
 #pragma once
 
 #include <palpate/concepts/condensation.hpp>
@@ -7,7 +7,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What solves a condensed system: made from its matrix, and read back from what it wrote.
+/// A solver for the condensed system: constructed from the matrix, or read from its own stored data.
 template <class S>
 concept DenseSolver = LinearSolver<S> &&
     requires(MatrixX matrix, BinaryReader& in, BinaryWriter& out, const S& solver, const SetupLimits& limits) {
@@ -16,14 +16,14 @@ concept DenseSolver = LinearSolver<S> &&
   { S::read(in, Index{}, limits) } -> std::same_as<S>;
 };
 
-/// A Schur complement with a dense solver for it. Kept dofs are answered by the dense solver alone; `solve_into`
+/// A Schur complement with a dense solver. The dense solver alone gives the displacement of kept dofs; `solve_into`
 /// recovers the condensed ones by back-substitution, at visual rate. Satisfies StaticSystem. Copies share the factors.
 class CondensedSystem {
  public:
   CondensedSystem() = default;
 
-  /// The system solved by `Dense`: DenseCholesky, DenseInverse or DenseConjugateGradient. Throws what making that
-  /// throws.
+  /// Builds the system with solver `Dense`: DenseCholesky, DenseInverse or DenseConjugateGradient. Throws as the
+  /// constructor of `Dense`.
   template <DenseSolver Dense>
   static CondensedSystem with(SchurComplement schur, const SetupLimits& limits) {
     limits.advance("compliance", 0.0);
@@ -33,8 +33,8 @@ class CondensedSystem {
   }
 
   void write(BinaryWriter& out) const;
-  /// What `write` stored of a system with this analysis, solved by `Dense`; usable only when the reader is good. Throws
-  /// too_large.
+  /// Reads what `write` stored of a system with this analysis, solved by `Dense`; valid only when the reader is good.
+  /// Throws too_large.
   template <DenseSolver Dense>
   static CondensedSystem read(BinaryReader& in, CholeskyAnalysis analysis, const SetupLimits& limits) {
     CondensedSystem read = read_interior(in, std::move(analysis), limits);
@@ -45,13 +45,13 @@ class CondensedSystem {
   Index kept() const noexcept { return kept_load_.size(); }
   Index size() const noexcept { return interior_.size(); }
   std::size_t bytes() const noexcept { return interior_.bytes() + dense_.bytes(); }
-  /// What `compliance_column` reads.
+  /// Memory read by `compliance_column` [bytes].
   std::size_t column_bytes() const noexcept { return dense_.bytes(); }
 
   /// x = K^-1 b for a load on any dof, condensed ones included: u_k from f_k + P_f f_c, then u_c = K_cc^-1 (f_c - K_ck
   /// u_k). No allocation.
   SolveReport solve_into(const VectorX& b, VectorX& x) noexcept;
-  /// Responses of the kept dofs to a unit force on kept dof j. No allocation.
+  /// Displacements of the kept dofs under a unit force on kept dof j. No allocation.
   SolveReport compliance_column(Index j, VectorX& column) noexcept;
 
  private:

@@ -1,4 +1,4 @@
-// No condensation: every question goes to a solver over all free dofs.
+// No condensation: every solve uses all free dofs.
 #pragma once
 
 #include <palpate/concepts/condensation.hpp>
@@ -8,22 +8,22 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A solver over all free dofs, asked for the compliance of a few. Each compliance column costs one solve. Satisfies
-/// StaticSystem.
+/// A solver over all free dofs that provides the compliance of a few of them. Each compliance column costs one solve.
+/// Satisfies StaticSystem.
 class Uncondensed {
  public:
   Uncondensed() = default;
-  /// `kept` lists the free dofs whose compliance is asked for. Any LinearSolver that can be copied will do.
+  /// `kept` lists the free dofs whose compliance is needed. Accepts any copyable LinearSolver.
   Uncondensed(AnySolver solver, std::vector<Index> kept);
 
-  /// For solvers that can be stored; nothing is written of others.
+  /// Writes the solver; writes nothing if the solver cannot be stored.
   void write(BinaryWriter& out) const { solver_.write(out); }
 
   Index size() const noexcept { return solver_.size(); }
   Index kept() const noexcept { return static_cast<Index>(kept_.size()); }
   std::size_t bytes() const noexcept { return solver_.bytes(); }
   SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return solver_.solve_into(b, x); }
-  /// Responses of the kept dofs to a unit force on kept dof j. No allocation.
+  /// Displacements of the kept dofs under a unit force on kept dof j. No allocation.
   SolveReport compliance_column(Index j, VectorX& column) noexcept;
 
  private:

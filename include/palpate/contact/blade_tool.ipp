@@ -11,11 +11,11 @@ PALPATE_INLINE void BladeTool::require_valid() const {
   const double length = edge.norm(), sharp = forward.norm();
   for (const double value : {length, sharp, cut_spacing})
     if (!(value > 0.0 && value < infinity))
-      raise(SetupErrorKind::bad_argument, "the edge, forward direction or stroke of a blade is " + number(value),
+      raise(SetupErrorKind::bad_argument, "the edge, forward direction or cut spacing of a blade is " + number(value),
             "Give positive SI values");
   if (!(cross(edge, forward).norm() > 1e-3 * length * sharp))
-    raise(SetupErrorKind::bad_argument, "the edge of a blade lies along its forward direction",
-          "Give an edge across it: what it sweeps is the cut");
+    raise(SetupErrorKind::bad_argument, "the edge of a blade is parallel to its forward direction",
+          "Give an edge at an angle to it: the cut is the area that the edge sweeps");
   if (!(toughness >= 0.0 && toughness < infinity))
     raise(SetupErrorKind::bad_argument, "the toughness is " + number(toughness), "Give zero or more, in J/m^2");
 }

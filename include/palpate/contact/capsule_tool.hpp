@@ -6,9 +6,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A rigid capsule: all points within `radius` of a piece of its axis, from `-half_length` to `half_length` about the
-/// tool's position. The thesis' cylinder, with round ends. Turns with the device's orientation; without length a
-/// sphere.
+/// A rigid capsule: all points within `radius` of a segment of its axis, from `-half_length` to `half_length` about the
+/// tool's position. This is the cylinder of the thesis, with round ends. It rotates with the device; with zero length
+/// it is a sphere.
 struct CapsuleTool {
   double radius = 4e-3;         ///< [m]
   double half_length = 0.0;     ///< [m]
@@ -19,8 +19,8 @@ struct CapsuleTool {
   CapsuleTool(double r, double half, const Vector3& direction = {0.0, 0.0, 1.0})
       : radius(r), half_length(half), axis(direction) {}
 
-  /// Throws bad_argument when the radius is not finite and positive, the axis has no direction, or the capsule is
-  /// longer than 32 radii: more contact points than there is room for would lie under it.
+  /// Throws bad_argument when the radius is not finite and positive, the axis has zero length, or the capsule is longer
+  /// than 32 radii: more contact points than the capacity would be under it.
   void require_valid() const;
 };
 

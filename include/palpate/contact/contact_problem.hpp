@@ -1,4 +1,4 @@
-// Rigid spheres and capsules against a deformable surface, solved exactly in every tick.
+// Contact of rigid spheres and capsules with a deformable surface, solved exactly in every tick.
 #pragma once
 
 #include <palpate/contact/detail/contact_rows.hpp>
@@ -7,48 +7,49 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// All contacts of all tools with one tissue. The surface is held off the sphere at material points: vertices, and a
-/// lattice on edges longer than `sample_spacing` radii. Points fixed in the material meet a sliding sphere one after
-/// the other, each with zero force at first, so the force has no jump at edges. Each tick linearises the distance
-/// between sphere and deformed surface at the last proxy position (Ruspini's proxy on a deforming surface), solves the
-/// Signorini problem on the contact compliance J C J^T exactly, and repeats while the force still changes. Rows of that
-/// problem are the points that pressed last and those the answer would let sink in, added until there are none. The
-/// coupling between proxy and device enters as n_i . n_j / k between contacts of one tool: the device never feels more
-/// than k, however many contacts there are, and the proxy never sinks in. docs/contact.md has the law, its limits and
-/// figures. Work is bounded by `ContactParameters::capacity`, iterations, rounds and candidates.
+/// All contacts of all tools with one tissue. Contact is enforced at material points of the surface: vertices, and a
+/// lattice on edges longer than `sample_spacing` radii. A sliding sphere reaches these points one after the other, each
+/// with zero force at first, so the force has no jump at edges. Each tick linearises the distance between sphere and
+/// deformed surface at the last proxy position (Ruspini's proxy on a deforming surface), solves the Signorini problem
+/// on the contact compliance J C J^T exactly, and repeats while the force still changes. The rows of that problem are
+/// the points that pressed last and those that the solution would let penetrate; rows are added until no point
+/// penetrates. The coupling between proxy and device enters as n_i . n_j / k between contacts of one tool: the
+/// stiffness rendered by the device is never more than k for any number of contacts, and the proxy never penetrates.
+/// docs/contact.md has the equations, limits and figures. Work is bounded by `ContactParameters::capacity`, iterations,
+/// rounds and candidates.
 class ContactProblem {
  public:
-  /// The most that ContactParameters::capacity may be.
+  /// Largest ContactParameters::capacity.
   static constexpr int maximum_capacity = 1024;
 
   /// Places the contact points for spheres of at least `smallest_radius` [m]. Allocates workspaces; for set-up.
-  /// Throws bad_argument unless 0.4 <= sample_spacing <= 1, there is at least one iteration and room for a contact, and
-  /// for an edge of the surface longer than 32 radii (ids: its vertices): the lattice of points ends there, and the
-  /// sphere would fall through.
+  /// Throws bad_argument unless 0.4 <= sample_spacing <= 1, with less than one iteration or a capacity below one
+  /// contact, and for an edge of the surface longer than 32 radii (ids: its vertices): the lattice of points ends
+  /// there, and the sphere would fall through.
   ContactProblem(const ContactSurface& surface, double smallest_radius, const ContactParameters& parameters = {});
 
   /// Finds the forces for the tools' new targets; updates proxy and force of every active tool. At most
   /// `maximum_tools` tools. Any TissueModel is a TissueView. Never allocates.
   Status solve(const TissueView& tissue, std::span<ContactTool> tools) noexcept;
 
-  /// Goes on on the same body's surface after a cut, where vertices keep their numbers and there may be more. Forces,
-  /// friction and grasps stay on the points that are still there, so that the next tick changes them by as much as the
-  /// cut does. `fresh` was made for that surface with the same parameters; its workspaces are exchanged for the old
-  /// ones. No allocation.
+  /// Continues on the surface of the same body after a cut, where vertices keep their numbers and there may be more.
+  /// Forces, friction and grasps stay on the points that still exist, so that the next tick changes them only as much
+  /// as the cut does. `fresh` was constructed for that surface with the same parameters; its workspaces are exchanged
+  /// for the old ones. No allocation.
   void move_to(ContactProblem& fresh, const ContactSurface& surface) noexcept;
 
-  /// Back to the state after construction: the next ticks give the bits that the first ticks gave.
+  /// Back to the state after construction: the next ticks are bitwise equal to the first ticks.
   void reset() noexcept;
 
-  /// How many contacts there is room for.
+  /// Largest number of contacts.
   int capacity() const noexcept { return rows_.capacity(); }
-  /// Rows of the last linearisation: what presses, and what would have sunk in without; some without force.
+  /// Rows of the last linearisation: points that press, and points that would have penetrated; some without force.
   std::span<const Contact> contacts() const noexcept { return rows_.contacts(); }
   /// The forces of the last tick on the vertices.
   std::span<const VertexForce> vertex_forces() const noexcept { return displacement_.forces(); }
   /// Whether a contact point is near a tool's sphere.
   bool is_near(int tool) const noexcept { return candidates_.has_any(tool); }
-  /// Whether a tool holds a point.
+  /// Whether a tool grasps a point.
   bool is_holding(std::size_t tool) const noexcept { return grasps_[tool].sample >= 0; }
 
  private:
@@ -58,9 +59,9 @@ class ContactProblem {
     Candidate* candidate;
   };
   static constexpr int maximum_rounds = 12;   // solutions of the contact problem per tick
-  static constexpr int added_per_round = 16;  // rows, the deepest ones
+  static constexpr int added_per_round = 16;  // rows, those of deepest penetration
   static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
-  static constexpr double violation = 1e-5;   // how far a point may sink in, of the deepest push
+  static constexpr double violation = 1e-5;   // allowed penetration, relative to the deepest push
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static ContactParameters checked(const ContactParameters& p);
@@ -78,12 +79,12 @@ class ContactProblem {
   SurfaceDisplacement displacement_;
   Candidates candidates_;
   ContactRows rows_;
-  std::vector<Candidate*> pressing_;  // in the last linearisation
+  std::vector<Candidate*> pressing_;  // those of the last linearisation
   std::vector<Violated> violated_;
   ProxyMotion proxies_;
   std::array<Grasp, maximum_tools> grasps_{};
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
-  bool arrived_ = true;  // at the answer of the last linearisation
+  bool arrived_ = true;  // proxies are at the solution of the last linearisation
   double feedback_ = 0.0;
   double floor_ = 0.0;
 };

@@ -22,13 +22,13 @@ PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, dou
 PALPATE_INLINE ContactParameters ContactProblem::checked(const ContactParameters& p) {
   if (!(p.sample_spacing >= 0.4 && p.sample_spacing <= 1.0))
     raise(SetupErrorKind::bad_argument, "the sample spacing is " + number(p.sample_spacing) + " radii",
-          "Below 0.4 there is no room for all points under a sphere, above 1 the sphere falls between them");
+          "Below 0.4 the points under a sphere exceed the capacity, above 1 the sphere falls between them");
   if (!(p.friction >= 0.0 && p.friction <= 4.0))
     raise(SetupErrorKind::bad_argument, "the coefficient of friction is " + number(p.friction), "Give 0 to 4");
   if (p.maximum_iterations < 1) raise(SetupErrorKind::bad_argument, "a tick needs at least one linearisation");
   if (p.capacity < 1 || p.capacity > maximum_capacity)
-    raise(SetupErrorKind::bad_argument, "a contact problem has room for " + std::to_string(p.capacity) + " contacts",
-          "Give 1 to " + std::to_string(maximum_capacity) + "; 64 is usual");
+    raise(SetupErrorKind::bad_argument, "the capacity of a contact problem is " + std::to_string(p.capacity),
+          "Give 1 to " + std::to_string(maximum_capacity) + " contacts; 64 is typical");
   return p;
 }
 
@@ -36,7 +36,7 @@ inline bool ContactProblem::is_grasped(const Candidate& c) const noexcept {
   return c.sample == grasps_[at(c.tool)].sample;
 }
 
-/// No more press than had rows: all have room.
+/// Normally all fit: no more points press than there were rows.
 inline void ContactProblem::note_pressing(Candidate& c) noexcept {
   c.row = -1;
   if (c.grasped || !(c.force > 0.0)) return;
@@ -64,9 +64,9 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     status |= solve_linearised(tissue, tools, iteration);
     follow(tools);
     change = proxies_.relative_change(tools);
-    // Each step is smaller than the last by about the same ratio (the curvature of the sphere is left out of the
-    // linearisation), so that the steps still to come sum to this. The first step is the hand's, so that the second
-    // says nothing about the ratio yet.
+    // Each step is smaller than the last by about the same ratio (the linearisation neglects the curvature of the
+    // sphere), so the sum of the remaining steps is a geometric series. The first step is due to the motion of the
+    // device, so the second gives no ratio yet.
     const double expected = iteration == 0                     ? 10.0 * change
                             : iteration > 1 && change < before ? change * change / (before - change)
                                                                : change;
@@ -103,25 +103,25 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   feedback_ = 0.0;
 }
 
-/// Takes hold of the nearest point for every tool that has just begun to grasp, and lets go.
+/// Grasps the nearest point for every tool that has just begun to grasp, and releases points.
 PALPATE_INLINE void ContactProblem::grasp(const TissueView& tissue, Tools tools) noexcept {
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const ContactTool& tool = tools[t];
     Grasp& g = grasps_[t];
     if (!tool.active || !tool.grasping) g = Grasp{};
-    if (!tool.active || !tool.grasping || g.asked) continue;
-    g.asked = true;
+    if (!tool.active || !tool.grasping || g.requested) continue;
+    g.requested = true;
     const Candidate* nearest = nullptr;
     for (Candidate& c : candidates_.items()) {
       if (c.tool != static_cast<int>(t)) continue;
       if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
       if (c.facing && c.gap <= Grasp::reach * tool.radius && (nearest == nullptr || c.gap < nearest->gap)) nearest = &c;
     }
-    if (nearest != nullptr) g.hold(*nearest, tool);
+    if (nearest != nullptr) g.take(*nearest, tool);
   }
 }
 
-/// Tells a tissue that wants to know which vertices lie near the spheres.
+/// Passes the vertices near the spheres to a tissue that prefetches.
 PALPATE_INLINE void ContactProblem::prefetch(const TissueView& tissue) noexcept {
   if (!tissue.prefetches()) return;
   for (const Candidate& c : candidates_.items()) {
@@ -132,7 +132,7 @@ PALPATE_INLINE void ContactProblem::prefetch(const TissueView& tissue) noexcept 
 }
 
 /// One Signorini problem at the present proxies; updates the forces of points, vertices and tools. Rows are added
-/// until no point sinks in.
+/// until no point penetrates.
 PALPATE_INLINE Status ContactProblem::solve_linearised(const TissueView& tissue, Tools tools, int iteration) noexcept {
   Status status;
   gather_pressing(tools);
@@ -151,7 +151,7 @@ PALPATE_INLINE Status ContactProblem::solve_linearised(const TissueView& tissue,
   int built = 0;
   for (;; built = rows_.count()) {
     if (built > 0 || rows_.count() == 0)
-      if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);  // solved for those that fit
+      if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);  // solved for the rows that fit
     if (rows_.count() == built) {
       if (built == 0) rows_.apply(tools, displacement_, candidates_);
       break;
@@ -172,7 +172,7 @@ PALPATE_INLINE Status ContactProblem::solve_linearised(const TissueView& tissue,
   return status;
 }
 
-/// Lists the candidates that press and puts them where sphere and surface are now.
+/// Lists the candidates that press and updates their geometry for the present positions of sphere and surface.
 PALPATE_INLINE void ContactProblem::gather_pressing(Tools tools) noexcept {
   pressing_count_ = 0;
   if (candidates_.is_new()) {
@@ -187,8 +187,8 @@ PALPATE_INLINE void ContactProblem::gather_pressing(Tools tools) noexcept {
   }
 }
 
-/// The normals of a linearisation come of the forces of the one before, which come of its normals. `feedback_` is how
-/// much of a change of normals comes back; a step of Newton's method on that scalar leads on to where they settle.
+/// The normals of a linearisation depend on the forces of the one before, which depend on its normals. `feedback_` is
+/// the ratio of successive changes of the normals; a Newton step on that scalar extrapolates to the fixed point.
 PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
   double back = 0.0, changed = 0.0;
   for (int i = 0; i < pressing_count_ && iteration >= 2; ++i) {
@@ -207,8 +207,8 @@ PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
   }
 }
 
-/// Makes rows of the points that would sink in deepest with the present forces; false when there is no room, as all
-/// rows press: those that pressed first keep theirs. `built` is zero when rows had to go.
+/// Adds rows for the points that would penetrate deepest with the present forces; false when there is no room because
+/// all rows press: those that pressed first keep theirs. `built` is zero when idle rows were dropped.
 PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools tools, int& built) noexcept {
   violated_count_ = 0;
   proxies_.look_ahead(tools, floor_);

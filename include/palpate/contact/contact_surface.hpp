@@ -1,4 +1,4 @@
-// The touchable surface as the contact wing sees it.
+// The touchable surface as the contact code uses it.
 #pragma once
 
 #include <palpate/contact/detail/bvh.hpp>
@@ -8,7 +8,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Vertices and outward triangles of the touchable surface where it rests under its loads, no tool touching.
+/// Vertices and outward triangles of the touchable surface, at rest under its loads and without tools.
 class ContactSurface {
  public:
   ContactSurface() = default;
@@ -30,14 +30,14 @@ class ContactSurface {
   }
   /// Changes whenever the resting surface moves.
   std::uint64_t revision() const noexcept { return revision_; }
-  /// Edges where more than two triangles meet: there a tool finds no neighbour across, and none is guessed.
+  /// Number of edges with more than two triangles: a triangle has no neighbour across such an edge.
   int crowded_edges() const noexcept { return crowded_edges_; }
   int vertex_count() const noexcept { return static_cast<int>(positions_.size()); }
 
-  /// The surface without loads, so that a refusal can tell what loads have done to it.
+  /// The surface without loads, so that an error message can state how far the loads have deformed it.
   struct Unloaded {
-    std::vector<Vector3> positions;  ///< of the vertices; empty when nobody told
-    std::string loads;               ///< in words: "gravity of 9.81 m/s^2"
+    std::vector<Vector3> positions;  ///< of the vertices; empty if not set
+    std::string loads;               ///< as text: "gravity of 9.81 m/s^2"
   };
   void set_unloaded(Unloaded unloaded) { unloaded_ = std::move(unloaded); }
   void set_loads(std::string loads) noexcept { unloaded_.loads = std::move(loads); }
@@ -47,8 +47,8 @@ class ContactSurface {
   void move_to(std::span<const Vector3> positions) noexcept;
 
   /// The closest point of the resting surface: triangle, point, and signed distance (negative inside) by the
-  /// angle-weighted pseudo-normal of the feature it lies on (Baerentzen and Aanaes 2005). Beside the rim of an open
-  /// surface nothing is inside.
+  /// angle-weighted pseudo-normal of the closest feature (Baerentzen and Aanaes 2005). Where the closest feature is on
+  /// the rim of an open surface, the distance is positive.
   struct Closest {
     int triangle = -1;
     Vector3 point = Vector3::Zero();

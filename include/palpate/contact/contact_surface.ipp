@@ -112,7 +112,7 @@ PALPATE_INLINE ContactSurface::Closest ContactSurface::closest(const Vector3& p)
   const double length = offset.norm();
   const bool outside = offset.dot(normal) >= 0.0 || is_rim(result.triangle, on.feature);
   result.distance = outside ? length : -length;
-  // Nearer than the rounding of positions the offset points anywhere.
+  // At a distance below the rounding of positions the direction of the offset is undefined.
   const bool on_surface = length <= 1e-12 * (bvh_.bounds().high - bvh_.bounds().low).norm();
   result.outward = on_surface ? normal : Vector3(offset / result.distance);
   return result;

@@ -1,4 +1,4 @@
-// Friction of the contacts of a tick, when their normal forces are known.
+// Coulomb friction of the contacts of a tick, for known normal forces.
 #pragma once
 
 #include <palpate/core/types.hpp>
@@ -7,24 +7,24 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Coulomb's law over one tick: contact i drags with t_i across its normal, |t_i| <= mu lambda_i, so that it does not
-/// slip, or against the slip with all of mu lambda_i. Slips are s_i = d_i + sum_j W_ij (lambda_j n_j + t_j), where d_i
-/// is the slip without forces since the point last clung. With lambda fixed the t_i minimise a convex energy over
-/// discs; found by block descent with projection (Duriez et al. 2006 after Moreau and Alart): smooth in all that moves,
-/// no switch between sticking and sliding, no regularised velocity. It starts from the drags of the tick before, so
-/// that a few sweeps do; O(rows^2) each. No allocation after construction.
+/// Coulomb's law over one tick: the friction force of contact i is a tangential t_i, |t_i| <= mu lambda_i, such that it
+/// does not slip, or has the full size mu lambda_i against the slip. Slips are s_i = d_i + sum_j W_ij (lambda_j n_j +
+/// t_j), where d_i is the slip without forces since the point last stuck. With lambda fixed the t_i minimise a convex
+/// energy over discs; found by block descent with projection (Duriez et al. 2006 after Moreau and Alart): continuous in
+/// all inputs, no switch between sticking and sliding, no regularised velocity. It starts from the friction forces of
+/// the last tick, so that a few sweeps suffice; O(rows^2) each. No allocation after construction.
 class CoulombFriction {
  public:
   static constexpr int maximum_sweeps = 12;
-  static constexpr double tolerance = 1e-4;  ///< change of t in a sweep, of the largest mu lambda
+  static constexpr double tolerance = 1e-4;  ///< change of t in a sweep, relative to the largest mu lambda
 
   /// One contact of the problem.
   struct Row {
     Vector3 normal = Vector3::Zero();
     double pressing = 0.0;            ///< lambda [N]
     Vector3 drift = Vector3::Zero();  ///< d [m]
-    Vector3 friction_force = Vector3::Zero();  ///< t [N], on the tool: start and answer
-    bool sticks = false;                       ///< false: no friction, it has touched only now
+    Vector3 friction_force = Vector3::Zero();  ///< t [N], on the tool: initial value and solution
+    bool sticks = false;                       ///< false: no friction, it came into contact in this tick
   };
 
   /// For up to `capacity` contacts. Allocates unless the coefficient is zero; for set-up.
@@ -37,11 +37,11 @@ class CoulombFriction {
 
   /// W_ij: displacement of tool over tissue at i per force at j [m/N], for j <= i; W_ji is its transpose.
   void set(int i, int j, const Matrix3& w) noexcept;
-  /// Finds all drags for the pressing that the rows have.
+  /// Finds all friction forces for the present `pressing` of the rows.
   void solve(int count) noexcept;
-  /// Takes over how hard the contacts press; drags beyond what that allows are shortened.
+  /// Sets the normal forces; friction forces above mu lambda are shortened.
   void press(int count, const double* lambda) noexcept;
-  /// What the drags move at contact i, tool over tissue, after press [m].
+  /// Displacement due to the friction forces at contact i, tool over tissue, after press [m].
   Vector3 moved(int i) const noexcept;
 
  private:

@@ -65,27 +65,27 @@ PALPATE_INLINE Vector3 CoulombFriction::moved(int i) const noexcept {
   return {moved_[at(3 * i)], moved_[at(3 * i + 1)], moved_[at(3 * i + 2)]};
 }
 
-/// A drag as its contact allows: across the normal, at most mu lambda.
+/// A friction force projected on the friction disc of its contact: tangential, at most mu lambda.
 PALPATE_INLINE Vector3 CoulombFriction::within(const Row& r, const Vector3& friction_force) const noexcept {
   const Vector3 across = friction_force - r.normal.dot(friction_force) * r.normal;
   const double most = coefficient_ * std::max(0.0, r.pressing), length = across.norm();
   return length <= most ? across : Vector3(across * (most / length));
 }
-/// Adds what a force at j moves.
+/// Adds the displacement due to a force at j.
 PALPATE_INLINE void CoulombFriction::push(double* sum, int count, int j, const Vector3& force) const noexcept {
   const double *x = column(3 * j), *y = column(3 * j + 1), *z = column(3 * j + 2);
   const double fx = force[0], fy = force[1], fz = force[2];
   for (int i = 0; i < 3 * count; ++i) sum[i] += fx * x[i] + fy * y[i] + fz * z[i];
 }
 
-/// A unit vector at right angles to a unit vector.
+/// A unit vector perpendicular to a unit vector.
 inline Vector3 unit_across(const Vector3& n) noexcept {
   const double xy = std::sqrt(n[0] * n[0] + n[1] * n[1]);
   if (xy > 1e-12) return {-n[1] / xy, n[0] / xy, 0.0};
   return {1.0, 0.0, 0.0};
 }
 
-/// The larger eigenvalue of w across the normal.
+/// The larger eigenvalue of w in the tangent plane.
 PALPATE_INLINE double CoulombFriction::stiffest(const Matrix3& w, const Vector3& normal) noexcept {
   const Vector3 a = unit_across(normal), b = cross(normal, a), wa = w * a, wb = w * b;
   const double aa = a.dot(wa), bb = b.dot(wb), ab = 0.5 * (a.dot(wb) + b.dot(wa));

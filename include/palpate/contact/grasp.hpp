@@ -1,20 +1,20 @@
-// A point of the surface that a tool holds.
+// A point of the surface grasped by a tool.
 #pragma once
 
 #include <palpate/contact/detail/candidates.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A point of the surface held by a tool, as three rows that pull as well as push. No row of its own is left to it.
+/// A point of the surface grasped by a tool, as three bilateral rows. The point has no unilateral row in addition.
 struct Grasp {
-  static constexpr double reach = 0.1;  ///< gap, in radii, of a point that can be held
+  static constexpr double reach = 0.1;  ///< largest gap, in radii, of a point that can be grasped
 
-  bool asked = false;
-  int sample = -1;  ///< -1: nothing was there to be held
+  bool requested = false;  ///< since the tool began to grasp
+  int sample = -1;  ///< -1: no point was near enough
   std::array<Candidate, 3> rows{};
 
-  /// Holds this point where it is on the tool now.
-  void hold(const Candidate& point, const ContactTool& tool) noexcept;
+  /// Grasps this point at its present place on the tool.
+  void take(const Candidate& point, const ContactTool& tool) noexcept;
 };
 
 }}  // namespace palpate

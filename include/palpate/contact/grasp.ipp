@@ -5,7 +5,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE void Grasp::hold(const Candidate& point, const ContactTool& tool) noexcept {
+PALPATE_INLINE void Grasp::take(const Candidate& point, const ContactTool& tool) noexcept {
   sample = point.sample;
   for (int k = 0; k < 3; ++k) {
     Candidate& c = rows[static_cast<std::size_t>(k)] = point;

@@ -10,7 +10,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Whether no hook but prefetch does anything.
+/// Whether all hooks except prefetch do nothing.
 template <class T>
 concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> forces, ContactProblem& problem,
                                     const ContactParameters& parameters, const BladeSweep& sweep) {
@@ -25,12 +25,11 @@ concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> for
 }  // namespace detail
 
 /// Tissues of any types that do not move by themselves, and have no hook but prefetch, as one TissueModel in the
-/// world's frame: a sphere that touches two organs is one contact problem, with one force and one gate. Vertices are
-/// those of the members one after the other. Refers to the members, which must outlive it; the organs do not touch each
-/// other.
+/// world frame: a sphere that touches two organs is one contact problem, with one force and one gate. Vertices are
+/// those of the members in sequence. Refers to the members, which must outlive it; the organs do not touch each other.
 class TissueGroup : public StillTissue {
  public:
-  /// Throws bad_argument when there is none. Allocates.
+  /// Throws bad_argument when there are no members. Allocates.
   template <class... T>
   requires(sizeof...(T) > 0) explicit TissueGroup(T&... members) { (add(checked(members)), ...), build(); }
   /// The same for a number of members known at run time.
@@ -40,12 +39,12 @@ class TissueGroup : public StillTissue {
     build();
   }
 
-  /// Takes over loads and poses that members were given since. No allocation; not while a tick runs.
+  /// Applies loads and poses that the members received since the last update. No allocation; not while a tick runs.
   void update() noexcept;
 
   int member_count() const noexcept { return static_cast<int>(members_.size()); }
-  /// Those of the group's forces that act on one member, in its own numbers and frame, as `displacement_with` wants
-  /// them. Writes as many as fit and returns how many. No allocation.
+  /// Those of the group's forces that act on one member, in its own numbers and frame, as `displacement_with` takes
+  /// them. Writes as many as fit and returns their number. No allocation.
   std::size_t forces_on(int member, std::span<const VertexForce> forces, std::span<VertexForce> own) const noexcept;
 
   // TissueModel
@@ -70,17 +69,17 @@ class TissueGroup : public StillTissue {
   static TissueView checked(T& tissue) {
     static_assert(
         !AnnouncesChanges<T>,
-        "palpate: a tissue that moves by itself cannot be in a TissueGroup; give it a HapticServo of its own");
+        "palpate: a tissue that moves by itself cannot be in a TissueGroup; use a separate HapticServo for it");
     const TissueView view(tissue);
     if constexpr (TissueModel<T> && !AnnouncesChanges<T>)
-      static_assert(
-          detail::HooksOnlyPrefetch<T>,
-          "palpate: a TissueGroup hands on no hook but prefetch; give a tissue with others a HapticServo of its own");
+      static_assert(detail::HooksOnlyPrefetch<T>,
+                    "palpate: a TissueGroup forwards no hook but prefetch; use a separate HapticServo for a tissue "
+                    "with other hooks");
     return view;
   }
   void add(const TissueView& tissue);
   void build();
-  /// Of all members, in the world's frame; empty when one of them does not tell.
+  /// Of all members, in the world frame; empty if it is not set for one of them.
   ContactSurface::Unloaded unloaded() const;
   const Member& member_of(int vertex) const noexcept;
   std::span<const int> part_of(const Member& m, std::span<const int> vertices) noexcept;

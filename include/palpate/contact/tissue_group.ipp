@@ -18,10 +18,10 @@ PALPATE_INLINE void TissueGroup::add(const TissueView& tissue) {
   members_.push_back({tissue, first, surface.vertex_count()});
   for (const Vector3& x : surface.positions()) moved_.push_back(tissue.to_world() * x);
   for (const Triangle& t : surface.triangles()) triangles_.push_back({t[0] + first, t[1] + first, t[2] + first});
-  floor_ = std::min(floor_, tissue.compliance_floor());  // tiny beside the hardest of them, too
+  floor_ = std::min(floor_, tissue.compliance_floor());  // so that it is tiny compared with the stiffest member, too
 }
 PALPATE_INLINE void TissueGroup::build() {
-  if (members_.empty()) raise(SetupErrorKind::bad_argument, "a group of no tissues");
+  if (members_.empty()) raise(SetupErrorKind::bad_argument, "a TissueGroup has no members");
   surface_ = ContactSurface(moved_, std::move(triangles_));
   surface_.set_unloaded(unloaded());
   own_.resize(moved_.size());
@@ -79,7 +79,7 @@ PALPATE_INLINE double TissueGroup::compliance_bound(int j) const noexcept {
   return m.tissue.compliance_bound(j - m.first);
 }
 PALPATE_INLINE std::uint64_t TissueGroup::compliance_revision() const noexcept {
-  std::uint64_t revision = updates_;  // of poses; numbers of members are spread, so that changes do not cancel
+  std::uint64_t revision = updates_;  // counts poses; hashed with the members' revisions so that changes do not cancel
   for (const Member& m : members_) revision = revision * 0x9e3779b97f4a7c15u + m.tissue.compliance_revision();
   return revision;
 }
@@ -89,7 +89,7 @@ PALPATE_INLINE const TissueGroup::Member& TissueGroup::member_of(int vertex) con
   while (!members_[k].has(vertex)) ++k;
   return members_[k];
 }
-/// The member's own numbers of those vertices that are its.
+/// Those of the vertices that belong to the member, in its own numbers.
 PALPATE_INLINE std::span<const int> TissueGroup::part_of(const Member& m, std::span<const int> vertices) noexcept {
   std::size_t count = 0;
   for (const int v : vertices)

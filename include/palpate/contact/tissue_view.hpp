@@ -1,4 +1,4 @@
-// A tissue of any type, as code that is no template sees it.
+// A type-erased reference to a tissue.
 #pragma once
 
 #include <palpate/concepts/detail/explain_tissue.hpp>
@@ -10,8 +10,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// The functions of a tissue. What a tick asks for in a loop, a function gives in one call, so that the loop is
-/// compiled with the tissue; null: a hook that does nothing.
+/// Function table of a tissue. Results that a tick needs in a loop are computed by one function, so that the loop is
+/// compiled with the tissue type; null: a hook that does nothing.
 struct TissueFunctions {
   const ContactSurface& (*contact_surface)(const void*) noexcept;
   const Eigen::Isometry3d& (*to_world)(const void*) noexcept;
@@ -34,7 +34,7 @@ struct TissueFunctions {
 template <class T>
 struct TissueCalls {
   using Block = std::remove_cvref_t<decltype(std::declval<const T&>().compliance(0, 0))>;
-  /// Numbers in memory are read where they lie; other expressions are evaluated once.
+  /// Blocks with direct memory access are read in place; other expressions are evaluated once.
   using Read = std::conditional_t<(int{Block::Flags} & Eigen::DirectAccessBit) != 0, const Block&, const Matrix3>;
 
   static const T& of(const void* tissue) noexcept { return *static_cast<const T*>(tissue); }
@@ -65,7 +65,7 @@ struct TissueCalls {
         }
       }
   }
-  /// By Eigen's own product: it writes in pieces as large as those that the caller reads.
+  /// With Eigen's product: it writes in packets as large as those that the caller reads.
   static void displacement(const void* t, int vertex, std::span<const VertexForce> forces, Vector3& out) noexcept {
     Vector3 u(0.0, 0.0, 0.0);
     for (const VertexForce& f : forces) {
@@ -107,10 +107,10 @@ struct TissueCalls {
 
 }  // namespace detail
 
-/// Any TissueModel by reference: where it is, and a table of its functions. Two pointers wide and a third for the
-/// surface, which is asked for once: `look` again when the tissue may have another one. The tissue must outlive it.
-/// Functions are those of TissueModel, and cost a call through a pointer; hooks that do nothing cost no call. Does not
-/// compile for another type: the message says what it lacks.
+/// A reference to any TissueModel: a pointer to it, a pointer to the table of its functions, and a third pointer to its
+/// surface, which is requested once: call `look` again when the tissue may have another surface. The tissue must
+/// outlive it. The functions are those of TissueModel and cost a call through a pointer; hooks that do nothing cost no
+/// call. Does not compile for another type: the message states what it lacks.
 class TissueView {
  public:
   template <class T>
@@ -120,7 +120,7 @@ class TissueView {
     look();
   }
 
-  /// Takes in where the surface is now.
+  /// Updates the pointer to the surface.
   void look() noexcept { surface_ = &functions_->contact_surface(tissue_); }
   const ContactSurface& contact_surface() const noexcept { return *surface_; }
   const Eigen::Isometry3d& to_world() const noexcept { return functions_->to_world(tissue_); }
@@ -151,7 +151,7 @@ class TissueView {
   }
   /// Whether the tissue moves by itself.
   bool announces_changes() const noexcept { return functions_->begin_tick != nullptr; }
-  /// `begin_tick` and, for a session with this contact problem, `exchange_contacts`; then looks.
+  /// `begin_tick` and, for a session with this contact problem, `exchange_contacts`; then `look`.
   Status begin_tick(ContactProblem& problem) noexcept {
     const Status status = announces_changes() ? functions_->begin_tick(tissue_) : Status{};
     if (functions_->exchange_contacts != nullptr) functions_->exchange_contacts(tissue_, problem);
@@ -163,7 +163,7 @@ class TissueView {
   }
   bool has_updates() const noexcept { return functions_->updates != nullptr; }
   std::uint64_t updates() const noexcept { return has_updates() ? functions_->updates(tissue_) : 0; }
-  /// For the tools of a session that begins. Throws what the tissue throws.
+  /// For the tools of a session that begins. Throws what the tissue's hook throws.
   void prepare_tools(double smallest_radius, const ContactParameters& parameters) {
     if (functions_->prepare_tools == nullptr) return;
     functions_->prepare_tools(tissue_, smallest_radius, parameters);
@@ -171,7 +171,7 @@ class TissueView {
   }
 
   bool can_be_cut() const noexcept { return functions_->try_cut != nullptr; }
-  /// Orders a cut along what a blade swept, world frame; false when the tissue takes none, or none now.
+  /// Requests a cut along the surface swept by a blade, world frame; false when the tissue cannot be cut, or not now.
   bool try_cut(const BladeSweep& sweep) const noexcept { return can_be_cut() && functions_->try_cut(tissue_, sweep); }
 
  private:

@@ -1,4 +1,4 @@
-// What a model that is cut may choose, and what it reports of its cuts.
+// Parameters and reports of a model that can be cut.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -9,28 +9,28 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What a model on Cuttable<...> may choose.
+/// Parameters of a model on Cuttable<...>.
 struct CutParameters {
-  /// Group, region, nodes or set of points whose compliance is kept ready beside that of the touchable ones: cuts there
-  /// need no solve.
+  /// Group, region, nodes or set of points whose compliance is stored in addition to that of the touchable ones: cuts
+  /// there need no solve.
   std::optional<Selection> cuttable{};
-  Index most_added = 900;          ///< dofs that cuts may add before a new factor is made, in a thread of its own
-  double tolerated_error = 1e-10;  ///< measured, relative; beyond it a new factor is made at once
+  Index most_added = 900;          ///< dofs that cuts may add before a new factor is made in a background thread
+  double tolerated_error = 1e-10;  ///< relative, as measured; beyond it a new factor is made immediately
 };
 
-/// What cutting has cost.
+/// Statistics and cost of the cuts.
 struct CutReport {
-  std::uint64_t cuts = 0;      ///< that changed something
-  std::uint64_t changes = 0;   ///< of the body's topology: cuts, and being made whole again
+  std::uint64_t cuts = 0;      ///< number of cuts that changed something
+  std::uint64_t changes = 0;   ///< of the body's topology: cuts and resets
   std::uint64_t renewals = 0;  ///< new factors
   Index rank = 0;              ///< rows that the last cut changed
   Index kept = 0;              ///< dofs with a compliance
   double smallest = 1.0;       ///< CutStep::smallest of the last cut
   double error = 0.0;          ///< of the compliance, as last measured, relative
-  int unchecked = 0;           ///< cuts since that
-  double latency = 0.0;        ///< of the last cut: from taking the order to handing the surface to the tick
-  double fold_seconds = 0.0;   ///< of the last cut: until nothing was left to add up in the tick
-  bool failed = false;         ///< what is left cannot be computed; the last good state is felt, degraded_model
+  int unchecked = 0;           ///< cuts since that measurement
+  double latency = 0.0;        ///< of the last cut, from taking the order to passing the surface to the tick [s]
+  double fold_seconds = 0.0;   ///< of the last cut, until the tick had no correction left to add [s]
+  bool failed = false;         ///< remaining body cannot be computed; the last good state is rendered, degraded_model
 };
 
 }}  // namespace palpate

@@ -9,7 +9,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The static solver `Inner`, whose compliance follows cuts exactly.
+/// The static solver `Inner`, with a compliance that follows cuts exactly.
 template <class Inner>
 struct Cuttable {
   static_assert(std::same_as<Inner, Condensed<SelectiveInverse>>,
@@ -19,18 +19,18 @@ struct Cuttable {
 /// Linear static tissue that can be cut; see CuttableTissue.
 template <class E, class M, class Inner>
 class HapticFEModel<E, M, Cuttable<Inner>> : public CuttableTissue<E> {
-  static_assert(sizeof(Cuttable<Inner>) > 0);  // what Cuttable has to say of Inner is said first
+  static_assert(sizeof(Cuttable<Inner>) > 0);  // instantiates Cuttable first, so that its error about Inner comes first
   static_assert(!HasSmoothedStrain<E>,
-                "palpate: a cut changes the averages of a smoothed element far around it: choose Tet4 or Tet10");
-  static_assert(LinearMaterial<M>, "palpate: tissue that is cut is of a LinearMaterial, for example LinearElastic");
+                "palpate: a cut changes the averages of smoothed elements far from it: choose Tet4 or Tet10");
+  static_assert(LinearMaterial<M>, "palpate: tissue that is cut needs a LinearMaterial, for example LinearElastic");
 
  public:
   using ElementType = E;
   using MaterialType = M;
   using Parameters = CutParameters;
 
-  /// One material everywhere. Throws what admission, assembly and factorisation throw; unconstrained when a part is not
-  /// held, unsupported for a cache file.
+  /// One material for the whole body. Throws as admission, assembly and factorisation; unconstrained when a part is not
+  /// constrained, unsupported for a cache file.
   template <MeshOf<E> Given>
   HapticFEModel(const Given& mesh, const Scene& scene, const M& material, const SetupOptions& options = {},
                 const Parameters& parameters = {})

@@ -1,4 +1,4 @@
-// Linear tissue that can be touched while it is cut, without its material and solver.
+// Linear tissue that can be touched while it is cut; independent of material and solver.
 #pragma once
 
 #include <palpate/concepts/tissue_model.hpp>
@@ -23,21 +23,21 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A linear body of elements E under cuts. Base of HapticFEModel on Cuttable<...>. `cut` orders a cut; `work` applies
-/// the orders, in a thread of the caller's choice (BackgroundWorker); a tick begins with the newest state and never
-/// waits. Right after a cut the compliance is the old one with a correction of low rank, added up in
-/// the tick; then the correction is folded in. While an order is open ticks say degraded_model. Numbers of vertices
-/// never change, so contact forces go on across a cut; the force gate limits how fast they may change.
+/// A linear body of elements E under cuts. Base of HapticFEModel on Cuttable<...>. `cut` orders a cut; `process_cuts`
+/// applies the orders, in a thread of the caller's choice (BackgroundWorker); a tick begins with the newest state and
+/// never waits. Directly after a cut the compliance is the old one plus a low-rank correction that the tick adds; then
+/// the correction is folded in. While an order is open, ticks report degraded_model. Vertex numbers never change, so
+/// contact forces continue across a cut; the force gate limits their rate of change.
 ///
-/// Threads: `begin_tick` and the functions of TissueModel belong to the thread that ticks, `try_cut` too; all others may
-/// be called from any thread and wait for each other, not for the tick. set_pose and reset must not
-/// run beside a tick. Neither copied nor moved. Satisfies TissueModel; one session at a time.
+/// Threads: `begin_tick`, the functions of TissueModel and `try_cut` belong to the thread that ticks; all others may be
+/// called from any thread and wait for each other, not for the tick. set_pose and reset must not run during a tick.
+/// Neither copied nor moved. Satisfies TissueModel; one session at a time.
 template <Element E>
 class CuttableTissue : public ModelBase {
  public:
   // Any thread
 
-  /// Orders a cut. Throws index_out_of_range at once for ids outside.
+  /// Orders a cut. Immediately throws index_out_of_range for invalid ids.
   void cut(CutOrder order) {
     const auto outside = [&](Index e) { return e < 0 || e >= elements_; };
     for (const Index e : order.remove) require_element(!outside(e), e);
@@ -45,7 +45,7 @@ class CuttableTissue : public ModelBase {
       require_element(!outside(f.element) && f.face >= 0 && f.face < static_cast<int>(E::faces.size()), f.element);
     orders_.add(std::move(order));
   }
-  /// Orders a cut along what a blade sweeps, in the world's frame, through the body as it is deformed by its loads.
+  /// Orders a cut along the sheet swept by a blade, in the world's frame, through the body deformed by its loads.
   void cut(const BladeSweep& sweep) { orders_.add(sweep); }
 
   /// Applies all orders as one cut, publishes the new compliance, then folds the update in. Without orders, runs one of
@@ -59,7 +59,7 @@ class CuttableTissue : public ModelBase {
     if (taken.count > 0) orders_.done(taken);
     return worked;
   }
-  /// The same for BackgroundWorker: looks for orders every 0.2 ms.
+  /// The same for BackgroundWorker: checks for orders every 0.2 ms.
   BackgroundStep background_work() {
     const bool worked = process_cuts();
     return {worked, worked ? 0.0 : 2e-4};
@@ -68,22 +68,22 @@ class CuttableTissue : public ModelBase {
     const std::scoped_lock lock(changes_);
     return process_->report();
   }
-  /// Visits topology and physics while nothing is cut.
+  /// Visits topology and physics; no cut is applied meanwhile.
   template <class Visit>
   void read(Visit&& visit) const {
     const std::scoped_lock lock(changes_);
     visit(process_->topology(), process_->physics());
   }
 
-  /// Displacement of all nodes, those that cuts made included, with forces on vertices (of the present surface or an
-  /// earlier one), 3 per node [m]. Nodes of loose pieces rest where they were when they came off. Throws
+  /// Displacement of all nodes, including those created by cuts, with forces on vertices (of the current surface or an
+  /// earlier one), 3 per node [m]. Nodes of detached fragments keep their displacement at detachment. Throws
   /// index_out_of_range for a vertex that does not exist, non_finite for a force that is not finite. O(kept x forces)
   /// and two substitutions.
   VectorX displacement(std::span<const VertexForce> forces = {}) {
     const std::scoped_lock lock(changes_);
     return process_->displacement_with(forces);
   }
-  /// The same into u, which is resized. Allocates. Not converged, and u stays, where `displacement` would throw.
+  /// The same into u, which is resized. Allocates. Not converged, with u unchanged, where `displacement` would throw.
   SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept {
     try {
       u = displacement(forces);
@@ -93,7 +93,8 @@ class CuttableTissue : public ModelBase {
     }
   }
 
-  /// Replaces loads and prescribed values. Throws as LinearTissue::set_conditions. Makes a new factor. Strong guarantee.
+  /// Replaces loads and prescribed values. Throws as LinearTissue::set_conditions. Makes a new factor. Strong
+  /// guarantee.
   void set_conditions(const Scene& scene) {
     const std::scoped_lock lock(changes_);
     const ScopedIdTranslation translation(original_ids());
@@ -114,7 +115,7 @@ class CuttableTissue : public ModelBase {
     load_by(gravity, pose());
     keep_gravity(gravity);
   }
-  /// Where the organ lies in the world; rotates gravity with it, which makes a new factor. Not beside a tick. Throws
+  /// Pose of the organ in the world; rotates gravity with it, which makes a new factor. Not during a tick. Throws
   /// bad_argument unless it is a rigid motion. Strong guarantee.
   void set_pose(const Eigen::Isometry3d& pose) {
     require_rigid(pose);
@@ -122,8 +123,8 @@ class CuttableTissue : public ModelBase {
     if (!gravity().isZero(0.0)) load_by(gravity(), pose);
     place(pose);
   }
-  /// Whole again, with scene and pose of construction; orders that wait are dropped, and vertices that cuts have made
-  /// are gone. Makes a new factor. Not beside a tick. Strong guarantee.
+  /// Restores the uncut body with scene and pose of construction; drops waiting orders and the vertices that cuts have
+  /// created. Makes a new factor. Not during a tick. Strong guarantee.
   void reset() {
     const std::scoped_lock lock(changes_);
     std::string others = scene().loads_in_words();
@@ -138,18 +139,18 @@ class CuttableTissue : public ModelBase {
   /// The admitted mesh before any cut, in the frame of `origin()`.
   const Mesh<E>& mesh() const noexcept { return body().mesh; }
   const Body<E>& body() const noexcept { return detail::element_body<E>(elastic_body()).body(); }
-  /// Its faces that belong to one element only.
+  /// The boundary faces of that mesh, which belong to one element only.
   const std::vector<BoundaryFace>& boundary() const noexcept {
     return detail::element_body<E>(elastic_body()).boundary();
   }
 
   // The thread that ticks
 
-  /// Orders a cut from a tick; false when too many are waiting. Never waits.
+  /// Orders a cut from a tick; returns false when too many are waiting. Never waits.
   bool try_cut(const BladeSweep& sweep) noexcept { return orders_.try_add(sweep); }
   Status begin_tick() noexcept {
     const bool behind = orders_.are_open() || failed_.load(std::memory_order_acquire);
-    if (views_.update() && contact().cut != revision_) {  // folding changes nothing that a session remembers
+    if (views_.update() && contact().cut != revision_) {  // folding changes nothing that a session stores
       renewed_ = true;
       revision_ = contact().cut;
     }
@@ -157,12 +158,12 @@ class CuttableTissue : public ModelBase {
     if (behind || contact().left_out) status.set(StatusFlag::degraded_model);
     return status;
   }
-  /// Puts a session's contact on a new surface, where it goes on.
+  /// Moves a session's contact to a new surface.
   void exchange_contacts(ContactProblem& problem) noexcept {
     if (std::exchange(renewed_, false)) problem.move_to(contact().problem, contact().surface);
   }
-  /// Makes the contact surface for the tools of a session that begins: not while another ticks. Throws bad_argument
-  /// when a tool is too small for the mesh. Strong guarantee.
+  /// Makes the contact surface for the tools of a session that begins; not while another session ticks. Throws
+  /// bad_argument when a tool is too small for the mesh. Strong guarantee.
   void prepare_tools(double smallest_radius, const ContactParameters& contact) {
     const std::scoped_lock lock(changes_);
     process_->set_tools(smallest_radius, contact, loads_in_words(gravity(), other_loads()));
@@ -180,17 +181,17 @@ class CuttableTissue : public ModelBase {
   NoHook end_tick(std::span<const VertexForce>) noexcept { return {}; }
   NoHook updates() const noexcept { return {}; }
   NoHook report_slow(bool) noexcept { return {}; }
-  /// Dofs whose correction a tick adds up at present.
+  /// Number of rows of the correction that a tick currently adds.
   Index open_rank() const noexcept { return view().step->rank(); }
 
  protected:
   explicit CuttableTissue(const SetupOptions& options) : ModelBase(options) {
     if (!options.cache_file.empty())
       raise(SetupErrorKind::unsupported, "a cache file for tissue that is cut",
-            "Leave cache_file empty; what is kept in it does not know of cuts");
+            "Leave cache_file empty; a cache file does not store cuts");
   }
 
-  /// All of the set-up that comes after admission. Throws what prepare_cut and CutProcess throw.
+  /// The set-up after admission. Throws as prepare_cut and CutProcess.
   void set_up(const Scene& scene, AdmittedBody admitted, const CutParameters& parameters) {
     triangles_ = admit(scene, std::move(admitted)).triangles;
     const ScopedIdTranslation translation(original_ids());
@@ -199,12 +200,12 @@ class CuttableTissue : public ModelBase {
     loaded_ = this->scene();
     std::optional<Selection> cuttable;
     if (parameters.cuttable) cuttable = palpate::mapped(*parameters.cuttable, node_map(), origin());
-    process_ = std::make_unique<CutProcess<E>>(
-        prepare_cut(body(), boundary(), this->scene(), cuttable, original_ids()), parameters, limits(),
-        [this](CutView&& made) {
-          views_.back() = std::move(made);  // frees what no tick can see any more
-          views_.publish();
-        });
+    process_ = std::make_unique<CutProcess<E>>(prepare_cut(body(), boundary(), this->scene(), cuttable, original_ids()),
+                                               parameters, limits(), [this](CutView&& made) {
+                                                 views_.back() =
+                                                     std::move(made);  // frees views that no tick can access any more
+                                                 views_.publish();
+                                               });
     views_.update();
     setup_report().kept_dofs = process_->report().kept;
     setup_report().free_dofs = elastic_body().conditions(this->scene()).free_count();
@@ -216,7 +217,8 @@ class CuttableTissue : public ModelBase {
  private:
   static void require_element(bool holds, Index e) {
     if (!holds)
-      raise(SetupErrorKind::index_out_of_range, "a cut names element " + std::to_string(e) + " or a face it has not");
+      raise(SetupErrorKind::index_out_of_range,
+            "a cut refers to element " + std::to_string(e) + " or to a face that it does not have");
   }
   void load_by(const Vector3& gravity, const Eigen::Isometry3d& pose) {
     const ScopedIdTranslation translation(original_ids());
@@ -227,13 +229,13 @@ class CuttableTissue : public ModelBase {
   CutContact& contact() const noexcept { return *view().contact; }
 
   std::vector<Triangle> triangles_;  // touchable before any cut
-  Scene loaded_;                     // as set last; its gravity is not read
+  Scene loaded_;                     // the last scene set; its gravity is not used
   Index elements_ = 0;
   mutable std::mutex changes_;
   CutOrders orders_;
   std::atomic<bool> failed_{false};
   TripleBuffer<CutView> views_;
-  std::uint64_t revision_ = 0;  // seen last by a tick
+  std::uint64_t revision_ = 0;  // the last one seen by a tick
   bool renewed_ = false;
   std::unique_ptr<CutProcess<E>> process_;
 };

@@ -1,5 +1,5 @@
-// Any device of CHAI3D 3. Needs no header of it: the types come as template arguments. Tested against a fake of our
-// own, never on hardware: run testing/device_laws.hpp on yours, with nobody at the handle.
+// Any device of CHAI3D 3. Needs no header of CHAI3D: its types are template arguments. Tested against a fake written
+// for this project, never on hardware: run testing/device_laws.hpp on your device, with no hand on the handle.
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
@@ -11,21 +11,22 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 struct Chai3dOptions {
-  std::optional<DeviceLimits> limits;  ///< instead of CHAI3D's table, which holds peak force, stiffness and radius only
-  bool torque = false;                 ///< the device has motors for torque, and limits say what they can take
+  std::optional<DeviceLimits> limits;  ///< instead of CHAI3D's table, which has only peak force, stiffness and radius
+  bool torque = false;                 ///< the device has motors for torque, and `limits` has their limits
 };
 
-/// A cGenericHapticDevice as a HapticDevice, for loops of your own (HapticSession), in CHAI3D's frame: x to the user,
-/// y to the right, z up. SI units. Refers to the device:
+/// A cGenericHapticDevice as a HapticDevice, for loops of the application (HapticSession), in CHAI3D's frame: x to the
+/// user, y to the right, z up. SI units. Refers to the device:
 ///   Chai3dDevice<chai3d::cGenericHapticDevice, chai3d::cVector3d, chai3d::cMatrix3d> stylus(*device_pointer);
 /// The limits are those of CHAI3D's specification of the device, which CHAI3D itself does not enforce. Its header calls
-/// the force continuous, but the numbers are the makers' peaks (3.3 N for an Omni); a quarter is taken as continuous.
+/// the force continuous, but the numbers are the makers' peaks (3.3 N for an Omni); the continuous force is set to a
+/// quarter of it.
 template <class Device, class Vector, class Matrix>
 class Chai3dDevice {
  public:
-  /// Opens the device. Throws SetupError(unsupported) when that fails, (bad_argument) when its specification holds no
-  /// positive force, stiffness and workspace (the device without hardware) and no limits are given, or none for a
-  /// torque that is asked for.
+  /// Opens the device. Throws SetupError(unsupported) when that fails, (bad_argument) when its specification has no
+  /// positive force, stiffness and workspace (the device without hardware) and no limits are given, or when torque is
+  /// requested without limits for it.
   explicit Chai3dDevice(Device& device, const Chai3dOptions& options = {})
       : device_(&device),
         options_(options),
@@ -81,7 +82,7 @@ class Chai3dDevice {
     running_ = false;
   }
 
-  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] last rendered
+  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] rendered last
   const Vector3& last_torque() const noexcept { return rendered_.torque(); }  ///< [N m] the same
 
  private:
@@ -94,7 +95,7 @@ class Chai3dDevice {
     const double force = info.m_maxLinearForce, stiffness = info.m_maxLinearStiffness, radius = info.m_workspaceRadius;
     for (double value : {force, stiffness, radius})
       if (!(std::isfinite(value) && value > 0.0))
-        raise(SetupErrorKind::bad_argument, "CHAI3D's specification of the device holds " + number(value),
+        raise(SetupErrorKind::bad_argument, "CHAI3D's specification of the device contains " + number(value),
               "Give Chai3dOptions::limits");
     return {.peak_force = force,
             .continuous_force = 0.25 * force,

@@ -1,5 +1,5 @@
-// Force Dimension (DHD 3): omega, delta, sigma, lambda. Include <dhdc.h> before this header. Tested against a fake of
-// our own, never on hardware: run testing/device_laws.hpp on yours, with nobody at the handle.
+// Force Dimension (DHD 3): omega, delta, sigma, lambda. Include <dhdc.h> before this header. Tested against a fake
+// written for this project, never on hardware: run testing/device_laws.hpp on your device, with no hand on the handle.
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
@@ -9,23 +9,23 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 struct ForceDimensionOptions {
-  /// The SDK does not tell them: take them from the data sheet. The default forces are a quarter of an omega.3's (12
-  /// N).
+  /// The SDK does not provide them: take them from the data sheet. The default forces are a quarter of those of an
+  /// omega.3 (12 N).
   DeviceLimits limits{.peak_force = 3.0,
                       .continuous_force = 3.0,
                       .stiffness = 1000.0,
                       .workspace_low = Vector3::Constant(-0.06),
                       .workspace_high = Vector3::Constant(0.06)};
-  bool torque = false;  ///< the device has motors for torque, and `limits` say what they can take
+  bool torque = false;  ///< the device has motors for torque, and `limits` has their limits
 };
 
-/// A device of DHD as a HapticDevice, for loops of your own (HapticSession), in the device's frame. DHD speaks SI. A
-/// force goes out with every write, a zero too: the SDK computes gravity compensation when it is told a force. The
-/// SDK's own limit is set to the peak force as a second guard; its brakes and its time guard stay as they are.
+/// A device of DHD as a HapticDevice, for loops of the application (HapticSession), in the device's frame. DHD uses SI
+/// units. Every write sends a force, also a zero: the SDK computes gravity compensation when it receives a force. The
+/// SDK's own limit is set to the peak force as a second guard; its brakes and its time guard stay unchanged.
 class ForceDimensionDevice {
  public:
-  /// Opens the first device that is free. Throws SetupError(unsupported) with the SDK's words when there is none,
-  /// (bad_argument) for torque without limits of it.
+  /// Opens the first device that is free. Throws SetupError(unsupported) with the SDK's message when no device is free,
+  /// (bad_argument) for torque without limits for it.
   explicit ForceDimensionDevice(const ForceDimensionOptions& options = {})
       : options_(options), rendered_(with_torque(options.limits, options.torque)) {
     const int id = dhdOpen();
@@ -69,7 +69,7 @@ class ForceDimensionDevice {
   }
 
   DeviceLimits limits() const noexcept { return rendered_.limits(); }
-  /// Throws SetupError(unsupported) with the SDK's words when it lets no force through.
+  /// Throws SetupError(unsupported) with the SDK's message when forces cannot be enabled.
   void start() {
     if (dhdSetMaxForce(rendered_.limits().peak_force, id_) < 0) refuse("set the largest force");
     if (dhdEnableForce(1, id_) < 0) refuse("enable forces");
@@ -84,7 +84,7 @@ class ForceDimensionDevice {
     dhdEnableForce(0, id_);
   }
 
-  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] last rendered
+  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] rendered last
   const Vector3& last_torque() const noexcept { return rendered_.torque(); }  ///< [N m] the same
 
  private:

@@ -1,4 +1,5 @@
-// A device without hardware: it moves along a given trajectory, can fail on schedule, and remembers what it was told.
+// A device without hardware: it moves along a given trajectory, can fail on schedule, and records what was written to
+// it.
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
@@ -11,15 +12,15 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Something that goes wrong with reads number `first` ... `first + count - 1`, counted from 0.
+/// A fault of the reads number `first` ... `first + count - 1`, counted from 0.
 struct DeviceFault {
   enum class Kind {
     invalid_read,       ///< valid = false
     nan_position,       ///< one coordinate is NaN, valid stays true
     infinite_position,  ///< one coordinate is infinite, valid stays true
-    teleport,           ///< the position is `offset` away
-    stall,              ///< each read comes `seconds` later than it should
-    frozen,             ///< the last state is repeated, time stamp and all
+    teleport,           ///< the position is shifted by `offset`
+    stall,              ///< each read is `seconds` late
+    frozen,             ///< the last state is repeated, including its time stamp
   };
   Kind kind = Kind::invalid_read;
   std::uint64_t first = 0;
@@ -29,26 +30,26 @@ struct DeviceFault {
 };
 
 enum class DeviceClock {
-  simulated,  ///< every read is one period later: the same in every run, however fast
-  wall,       ///< the steady clock, from construction on; a stall sleeps
+  simulated,  ///< each read advances one period: the same in every run, at any speed
+  wall,       ///< the steady clock since construction; a stall sleeps
 };
 
 struct MockOptions {
-  double rate = 1000.0;  ///< [1/s] reads per simulated second; that of the limits too
+  double rate = 1000.0;  ///< [1/s] reads per simulated second; also the rate in the limits
   DeviceClock clock = DeviceClock::simulated;
   DeviceLimits limits{};
   std::vector<DeviceFault> faults{};
 };
 
 /// A HapticDevice that follows `Path`: any callable Vector3(double t) that does not throw, kept by value. If it has
-/// velocity(t), states carry velocity; else it is NaN (not given). Reads allocate nothing unless the path does.
+/// velocity(t), states contain velocity; otherwise it is NaN (not given). Reads allocate nothing unless the path does.
 template <class Path = Trajectory>
 class MockDevice {
  public:
   explicit MockDevice(Path path, MockOptions options = {})
       : path_(std::move(path)), options_(std::move(options)), rendered_(options_.limits) {
     if (!(options_.rate > 0.0 && std::isfinite(options_.rate)))
-      raise(SetupErrorKind::bad_argument, "a mock device's rate of " + number(options_.rate) + " Hz", "Give 1000");
+      raise(SetupErrorKind::bad_argument, "the rate of a mock device is " + number(options_.rate) + " Hz", "Give 1000");
     options_.limits.rate = options_.rate;
   }
 
@@ -75,9 +76,9 @@ class MockDevice {
 
   /// While unplugged, reads are invalid. Call from the thread that reads.
   void unplug(bool unplugged = true) noexcept { unplugged_ = unplugged; }
-  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] what is rendered now
+  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] rendered now
   const Vector3& last_torque() const noexcept { return rendered_.torque(); }  ///< [N m] the same
-  double peak_force() const noexcept { return rendered_.peak(); }             ///< [N] the most that was rendered
+  double peak_force() const noexcept { return rendered_.peak(); }             ///< [N] largest force rendered so far
   std::uint64_t reads() const noexcept { return reads_; }
 
  private:

@@ -1,12 +1,12 @@
 // OpenHaptics (HDAPI 3): Touch, Phantom Omni, Desktop, Premium. Include <HD/hd.h> before this header, or define
-// PALPATE_INCLUDE_OPENHAPTICS to have it included with what it needs. Link libHD. Tested against a fake of our own,
-// never on hardware: run testing/device_laws.hpp on yours, with nobody at the handle.
+// PALPATE_INCLUDE_OPENHAPTICS to have it included with what it needs. Link libHD. Tested against a fake written for
+// this project, never on hardware: run testing/device_laws.hpp on your device, with no hand on the handle.
 #pragma once
 
 #ifdef PALPATE_INCLUDE_OPENHAPTICS
 #include <cstddef>  // HD_DEFAULT_DEVICE is NULL
 #if defined(__linux__) && !defined(linux)
-#define linux 1  // what the SDK asks for, and strict C++ does not define
+#define linux 1  // needed by the SDK, not defined in strict C++
 #define PALPATE_DEFINED_LINUX
 #endif
 #include <HD/hd.h>
@@ -32,25 +32,25 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 struct OpenHapticsOptions {
-  const char* name = nullptr;          ///< as in the vendor's set-up tool; none: the default device
+  const char* name = nullptr;          ///< name in the vendor's set-up tool; null: the default device
   bool torque = false;                 ///< the device has motors for torque; needs `limits`
-  std::optional<DeviceLimits> limits;  ///< instead of what the SDK says, which is nothing about torque
+  std::optional<DeviceLimits> limits;  ///< instead of those of the SDK, which has none for torque
 };
 
-/// A device of HDAPI as a HapticDevice, in the device's frame: x to the right, y up, z to the user. The SDK's
-/// millimetres and newton millimetres end here. `read` begins the SDK's frame and `write` ends it, which sends the
-/// force: call both from the SDK's callback only, as OpenHapticsLoop does, so that a force leaves in the frame that
-/// brought its position. The SDK's errors are looked at twice per frame. The five about force (motors warm, too much
-/// force, impulse or speed) are `saturated`; any other makes the read invalid or the write `disconnected`, without
+/// A device of HDAPI as a HapticDevice, in the device's frame: x to the right, y up, z to the user. Millimetres and
+/// newton millimetres of the SDK are converted here. `read` begins the SDK's frame and `write` ends it, which sends the
+/// force: call both from the SDK's callback only, as OpenHapticsLoop does, so that a force is sent in the frame in
+/// which its position was read. The SDK's errors are checked twice per frame. The five about force (motors warm, too
+/// much force, impulse or speed) set `saturated`; any other makes the read invalid or the write `disconnected`, without
 /// force.
 class OpenHapticsDevice {
  public:
-  /// Opens the device and asks for its limits. Throws SetupError(unsupported) with the SDK's words when that fails,
-  /// (bad_argument) when a limit it says is no number or not positive, and for torque without limits of it.
+  /// Opens the device and reads its limits. Throws SetupError(unsupported) with the SDK's message when that fails,
+  /// (bad_argument) when a limit of the SDK is not finite or not positive, and for torque without limits for it.
   explicit OpenHapticsDevice(const OpenHapticsOptions& options = {})
       : options_(options), handle_(open(options.name)), rendered_(DeviceLimits{}) {
     try {
-      rendered_ = RenderLimits(with_torque(options_.limits ? *options_.limits : asked_limits(), options_.torque));
+      rendered_ = RenderLimits(with_torque(options_.limits ? *options_.limits : sdk_limits(), options_.torque));
     } catch (...) {
       hdDisableDevice(handle_);
       throw;
@@ -64,7 +64,7 @@ class OpenHapticsDevice {
   OpenHapticsDevice& operator=(const OpenHapticsDevice&) = delete;
 
   ToolState read() noexcept {
-    if (in_frame_) write(GatedForce{});  // the last one was never written
+    if (in_frame_) write(GatedForce{});  // the last frame was never written
     hdBeginFrame(handle_);
     in_frame_ = true;
     ToolState state = state_of_frame();
@@ -87,7 +87,7 @@ class OpenHapticsDevice {
 
   DeviceLimits limits() const noexcept { return rendered_.limits(); }
 
-  /// Lets forces through. Throws SetupError(unsupported) when the SDK does not.
+  /// Enables forces. Throws SetupError(unsupported) when the SDK does not.
   void start() {
     hdMakeCurrentDevice(handle_);
     hdEnable(HD_FORCE_OUTPUT);
@@ -95,7 +95,7 @@ class OpenHapticsDevice {
     running_ = true;
     rendered_.start();
   }
-  /// Takes forces off. For the thread of the callback, or when that has ended.
+  /// Disables forces. For the thread of the callback, or after that has ended.
   void stop() noexcept {
     if (in_frame_) write(GatedForce{});
     if (running_) {
@@ -106,7 +106,7 @@ class OpenHapticsDevice {
     rendered_.stop();
   }
 
-  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] last rendered
+  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] rendered last
   const Vector3& last_torque() const noexcept { return rendered_.torque(); }  ///< [N m] the same
   HHD handle() const noexcept { return handle_; }
   /// The newest error that was not about force, HD_SUCCESS when there was none. For any thread.
@@ -128,30 +128,30 @@ class OpenHapticsDevice {
     return handle;
   }
 
-  static double asked(HDenum parameter, double scale, const char* what) {
-    std::array<HDdouble, 16> values{};  // room for the largest that may be asked, should a driver write too much
+  static double read_limit(HDenum parameter, double scale, const char* what) {
+    std::array<HDdouble, 16> values{};  // room for the largest parameter, in case a driver writes too much
     hdGetDoublev(parameter, values.data());
     const HDdouble value = values[0];
-    require_no_error(std::string("tell its ") + what);
+    require_no_error(std::string("report its ") + what);
     if (!(std::isfinite(value) && value > 0.0))
-      raise(SetupErrorKind::bad_argument, std::string("the SDK says that its ") + what + " is " + number(value),
+      raise(SetupErrorKind::bad_argument, std::string("OpenHaptics reports that its ") + what + " is " + number(value),
             "Give OpenHapticsOptions::limits");
     return scale * value;
   }
-  DeviceLimits asked_limits() const {
+  DeviceLimits sdk_limits() const {
     hdMakeCurrentDevice(handle_);
     DeviceLimits limits;
-    limits.peak_force = asked(HD_NOMINAL_MAX_FORCE, 1.0, "largest force");
+    limits.peak_force = read_limit(HD_NOMINAL_MAX_FORCE, 1.0, "largest force");
     limits.continuous_force =
-        std::min(asked(HD_NOMINAL_MAX_CONTINUOUS_FORCE, 1.0, "continuous force"), limits.peak_force);
-    limits.stiffness = asked(HD_NOMINAL_MAX_STIFFNESS, 1e3, "largest stiffness");  // N/mm
+        std::min(read_limit(HD_NOMINAL_MAX_CONTINUOUS_FORCE, 1.0, "continuous force"), limits.peak_force);
+    limits.stiffness = read_limit(HD_NOMINAL_MAX_STIFFNESS, 1e3, "largest stiffness");  // N/mm
     std::array<HDdouble, 6> box{};
     hdGetDoublev(HD_USABLE_WORKSPACE_DIMENSIONS, box.data());
-    require_no_error("tell its workspace");
+    require_no_error("report its workspace");
     limits.workspace_low = 1e-3 * Vector3(box[0], box[1], box[2]);
     limits.workspace_high = 1e-3 * Vector3(box[3], box[4], box[5]);
     if (!((limits.workspace_high - limits.workspace_low).minCoeff() > 0.0))
-      raise(SetupErrorKind::bad_argument, "the SDK says that its workspace is empty",
+      raise(SetupErrorKind::bad_argument, "OpenHaptics reports that its workspace is empty",
             "Give OpenHapticsOptions::limits");
     return limits;
   }
@@ -190,7 +190,7 @@ class OpenHapticsDevice {
     return code == HD_WARM_MOTORS || code == HD_EXCEEDED_MAX_FORCE || code == HD_EXCEEDED_MAX_FORCE_IMPULSE ||
            code == HD_EXCEEDED_MAX_VELOCITY || code == HD_FORCE_ERROR;
   }
-  /// Empties the stack of errors, as far as a tick has time for.
+  /// Empties the stack of errors, up to a bound.
   Status take_errors() noexcept {
     Status status;
     for (int i = 0; i < 16; ++i) {
@@ -217,8 +217,8 @@ class OpenHapticsDevice {
 static_assert(HapticDevice<OpenHapticsDevice>);
 
 /// Runs a servo in the SDK's own thread: one callback of the highest priority that reads, ticks and writes. Ends by
-/// itself, with no force, when the device is lost. Refers to device and servo; take both down after it. One loop per
-/// process at a time: scheduler, rate and stack of errors are the process's.
+/// itself, with zero force, when the device is lost. Refers to device and servo, which must outlive it. One loop per
+/// process at a time: scheduler, rate and stack of errors belong to the process.
 template <Servo S>
 class OpenHapticsLoop {
  public:
@@ -227,12 +227,12 @@ class OpenHapticsLoop {
   OpenHapticsLoop(const OpenHapticsLoop&) = delete;
   OpenHapticsLoop& operator=(const OpenHapticsLoop&) = delete;
 
-  /// Starts the device, then the callback and the scheduler at `rate` [1/s] (500 and 1000 are usual), and waits for the
-  /// first tick. Throws SetupError(unsupported) when there is none within a second: after the scheduler has started the
-  /// stack of errors is the callback's, and nobody else asks it; (bad_argument) after a start without a stop.
+  /// Starts the device, then the callback and the scheduler at `rate` [1/s] (500 and 1000 are typical), and waits for
+  /// the first tick. Throws SetupError(unsupported) when no tick follows within a second: after the scheduler has
+  /// started, only the callback reads the stack of errors; (bad_argument) after a start without a stop.
   void start(unsigned rate = 1000) {
     if (scheduled_)
-      raise(SetupErrorKind::bad_argument, "this loop of OpenHaptics has been started already", "Call stop() first");
+      raise(SetupErrorKind::bad_argument, "this OpenHaptics loop was started already", "Call stop() first");
     device_.start();
     ticks_ = 0;
     last_status_ = Status();
@@ -244,8 +244,8 @@ class OpenHapticsLoop {
       hdStartScheduler();
       for (int i = 0; ticks() == 0 && i < 1000; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       if (ticks() == 0)
-        raise(SetupErrorKind::unsupported, "the scheduler of OpenHaptics does not call",
-              "Is another program using the device, or is " + std::to_string(rate) + " Hz not a rate of it?");
+        raise(SetupErrorKind::unsupported, "the OpenHaptics scheduler does not call the callback",
+              "Is another program using the device, or is " + std::to_string(rate) + " Hz not one of its rates?");
     } catch (...) {
       stop();
       throw;
@@ -274,7 +274,7 @@ class OpenHapticsLoop {
     last_status_.store(status, std::memory_order_relaxed);
     ticks_.fetch_add(1, std::memory_order_relaxed);
     if (state.valid && !status.has(StatusFlag::disconnected)) return HD_CALLBACK_CONTINUE;
-    if (state.valid) {  // this frame has sent its force although it failed: one more takes that off
+    if (state.valid) {  // this frame has sent its force although it failed: one more frame removes it
       device_.read();
       device_.write(GatedForce{});
     }

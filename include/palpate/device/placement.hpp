@@ -1,4 +1,4 @@
-// Where a device works in a scene, and how motion and force are scaled between the two.
+// Position of a device in a scene, and scaling of motion and force between the two.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
@@ -12,22 +12,22 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Scene position = scene_origin + scale rotation (device position - device_origin). A force of the scene reaches the
-/// hand as force_scale rotation^T force. With scale s and force scale f a hand feels a stiffness s f times that of the
-/// tissue, and does f / s times the work it would do there.
+/// Scene position = scene_origin + scale rotation (device position - device_origin). A force of the scene is rendered
+/// as force_scale rotation^T force. With scale s and force scale f the rendered stiffness is s f times that of the
+/// tissue, and the work of the hand is f / s times the work in the scene.
 struct Placement {
-  Vector3 device_origin = Vector3::Zero();  ///< [m] this point of the device's space ...
-  Vector3 scene_origin = Vector3::Zero();   ///< [m] ... lies here in the scene
-  Matrix3 rotation = Matrix3::Identity();   ///< turns device axes into scene axes
+  Vector3 device_origin = Vector3::Zero();  ///< [m] this point of the device's space
+  Vector3 scene_origin = Vector3::Zero();   ///< [m] is at this point of the scene
+  Matrix3 rotation = Matrix3::Identity();   ///< from device axes to scene axes
   double scale = 1.0;                       ///< scene metres per device metre; below 1 for small organs
   double force_scale = 1.0;                 ///< device newtons per scene newton
 
-  /// Throws bad_argument unless origins are finite, both scales positive and `rotation` is one.
+  /// Throws bad_argument unless origins are finite, both scales positive and `rotation` is a rotation matrix.
   void require_valid() const;
 
   Vector3 to_scene(const Vector3& device) const noexcept;
   Vector3 to_device(const Vector3& scene) const noexcept;
-  /// What the hand feels of a stiffness in the scene [N/m].
+  /// Rendered stiffness for a stiffness in the scene [N/m].
   double handle_stiffness(double scene_stiffness) const noexcept { return scale * force_scale * scene_stiffness; }
 
   /// The state of a tool in the scene: position, velocity and orientation.
@@ -38,16 +38,16 @@ struct Placement {
   /// Force and torque of the scene in the device's axes and scale.
   GatedForce to_device(const GatedForce& scene) const noexcept;
 
-  /// A device's limits as the scene sees them: a servo that keeps within these keeps within the device's.
+  /// A device's limits in units of the scene: a servo within these limits is within the device's limits.
   DeviceLimits limits_in_scene(const DeviceLimits& device) const noexcept;
 
-  /// A sentence for the user when a stiffness of the scene [N/m], such as the servo's coupling, is more than the device
-  /// renders stably; nothing when it is not. NaN counts as too much.
+  /// A message for the user when a stiffness of the scene [N/m], such as the servo's coupling, is more than the device
+  /// renders stably; otherwise nothing. NaN counts as too much.
   std::optional<std::string> warning(const DeviceLimits& device, double scene_stiffness) const;
 };
 
-/// A device placed in a scene; a HapticDevice that speaks the scene's coordinates. Its limits are those of the scene
-/// side, so that a HapticSession with it bounds what the hand feels. Refers to the device.
+/// A device placed in a scene: a HapticDevice in the scene's coordinates. Its limits are those of the scene side, so
+/// that a HapticSession with it limits what the device renders. Refers to the device.
 template <HapticDevice Device>
 class PlacedDevice {
  public:
@@ -61,7 +61,7 @@ class PlacedDevice {
   DeviceLimits limits() const noexcept { return placement_.limits_in_scene(std::as_const(*device_).limits()); }
   void start() { device_->start(); }
   void stop() noexcept { device_->stop(); }
-  /// Passed on to devices that keep a log (Recorder).
+  /// Forwards the status to a device that keeps a log (Recorder).
   void note(Status status) noexcept requires requires(Device& d) { d.note(status); }
   { device_->note(status); }
 

@@ -18,7 +18,7 @@ PALPATE_INLINE void Placement::require_valid() const {
           "the placement scales motion by " + number(scale) + " and force by " + number(force_scale),
           "Both must be finite and positive");
   if (!is_rotation(rotation))
-    raise(SetupErrorKind::bad_argument, "the rotation of the placement is none",
+    raise(SetupErrorKind::bad_argument, "the rotation of the placement is not a rotation matrix",
           "Give three orthogonal unit columns, right-handed");
 }
 
@@ -60,7 +60,7 @@ PALPATE_INLINE DeviceLimits Placement::limits_in_scene(const DeviceLimits& devic
   scene.stiffness = device.stiffness / (scale * force_scale);
   const Vector3 middle = 0.5 * (device.workspace_low + device.workspace_high);
   const Vector3 reach = 0.5 * (device.workspace_high - device.workspace_low);
-  Vector3 half;  // of the box around the turned workspace
+  Vector3 half;  // of the box around the rotated workspace
   for (int i = 0; i < 3; ++i)
     half[i] = scale * (std::abs(rotation(i, 0)) * reach[0] + std::abs(rotation(i, 1)) * reach[1] +
                        std::abs(rotation(i, 2)) * reach[2]);
@@ -72,8 +72,8 @@ PALPATE_INLINE DeviceLimits Placement::limits_in_scene(const DeviceLimits& devic
 PALPATE_INLINE std::optional<std::string> Placement::warning(const DeviceLimits& device, double scene_stiffness) const {
   const double rendered = handle_stiffness(scene_stiffness);
   if (rendered <= device.stiffness) return std::nullopt;
-  return "the hand would feel " + number(rendered) + " N/m (" + number(scene_stiffness) + " N/m times scale " +
-         number(scale) + " times force_scale " + number(force_scale) + "), the device renders " +
+  return "the rendered stiffness would be " + number(rendered) + " N/m (" + number(scene_stiffness) +
+         " N/m times scale " + number(scale) + " times force_scale " + number(force_scale) + "), the device renders " +
          number(device.stiffness) + " N/m stably: make scale or force_scale " + number(device.stiffness / rendered) +
          " times as large, or set coupling_stiffness to " + number(device.stiffness / (scale * force_scale)) + " N/m";
 }

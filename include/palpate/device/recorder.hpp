@@ -1,4 +1,4 @@
-// Records what passes between a device and the tick, and writes it to a file that ReplayDevice plays.
+// Records the data exchanged between a device and the tick, and writes it to a file that ReplayDevice plays.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
@@ -27,25 +27,26 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// One read and the write that followed it.
 struct RecordedTick {
   ToolState state;
-  Vector3 force = Vector3::Zero();  ///< [N] as given to write
-  Status status;                    ///< of the tick, where the loop noted it, and of the write
+  Vector3 force = Vector3::Zero();  ///< [N] as passed to write
+  Status status;                    ///< of the tick, if the loop noted it, and of the write
 };
 
 /// First line of a recording. SI units; valid is 0 or 1; buttons and status are bit masks.
 inline constexpr std::string_view recording_header = "time,x,y,z,vx,vy,vz,qw,qx,qy,qz,buttons,valid,fx,fy,fz,status";
 
-/// Writes a recording as CSV: every number reads back bit by bit (a NaN as a NaN), whatever the locale. Throws
+/// Writes a recording as CSV: every number reads back bitwise equal (a NaN as a NaN), in any locale. Throws
 /// SetupError(bad_file) when the file cannot be written.
 void write_recording(const std::string& path, std::span<const RecordedTick> ticks);
 
-/// A HapticDevice that passes everything on to another one and keeps the last `capacity` ticks. The memory is taken and
-/// touched at construction; a tick copies 150 bytes into it. The device must outlive the recorder.
+/// A HapticDevice that forwards all calls to another one and keeps the last `capacity` ticks. The memory is allocated
+/// and touched at construction; a tick copies 150 bytes into it. The device must outlive the recorder.
 template <HapticDevice Device>
 class Recorder {
  public:
   /// Throws SetupError(bad_argument) when capacity is zero.
   Recorder(Device& device, std::size_t capacity) : device_(device), ring_(capacity) {
-    if (capacity == 0) raise(SetupErrorKind::bad_argument, "a recorder for 0 ticks", "Give rate times seconds");
+    if (capacity == 0)
+      raise(SetupErrorKind::bad_argument, "a recorder has a capacity of 0 ticks", "Give rate times seconds");
   }
 
   ToolState read() noexcept {
@@ -62,7 +63,7 @@ class Recorder {
     tick.status |= status;
     return status;
   }
-  /// Adds the status of the tick to its record; HapticSession does it where a device has this function.
+  /// Adds the status of the tick to its record; HapticSession calls it if a device has this function.
   void note(Status status) noexcept {
     if (count_ > 0) newest().status |= status;
   }

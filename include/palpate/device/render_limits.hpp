@@ -1,4 +1,4 @@
-// The last lines of every device's write: what goes to its motors.
+// Limits of the force that a device sends to its motors; the last stage of every device's write.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
@@ -8,12 +8,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The limits of a device that is told to render torque, or none: without, it has no peak torque and no turning
-/// stiffness. Throws SetupError(bad_argument) when it is, and one of the two is not positive and finite.
+/// The limits of a device that renders torque, or does not: without `torque`, peak torque and rotational stiffness are
+/// set to zero. Throws SetupError(bad_argument) with `torque` unless both are positive and finite.
 DeviceLimits with_torque(DeviceLimits limits, bool torque);
 
-/// What a device renders of what it is told: force and torque within their peaks; none while stopped and while the last
-/// read was invalid. No allocation, no throw after construction.
+/// Limits a commanded force to what a device renders: force and torque within their peaks; zero while stopped and while
+/// the last read was invalid. No allocation, no throw after construction.
 class RenderLimits {
  public:
   /// Throws SetupError(bad_argument) unless the peak force is positive and finite, and the peak torque finite and not
@@ -23,13 +23,13 @@ class RenderLimits {
   void start() noexcept { running_ = true; }
   void stop() noexcept;
   void read_was(bool valid) noexcept;
-  /// Longer than its peak: shortened, `saturated`; a peak torque of zero leaves none. Where one of the two is not finite
-  /// (a placement may scale it beyond the range of a double), both are zero, `non_finite_force`.
+  /// A force or torque above its peak is shortened, `saturated`; a peak torque of zero gives none. If one of the two is
+  /// not finite (a placement may scale it beyond the range of a double), both are zero, `non_finite_force`.
   Status render(const GatedForce& wanted) noexcept;
   const DeviceLimits& limits() const noexcept { return limits_; }
-  const Vector3& force() const noexcept { return force_; }    ///< [N] what is rendered now
+  const Vector3& force() const noexcept { return force_; }    ///< [N] rendered now
   const Vector3& torque() const noexcept { return torque_; }  ///< [N m] the same
-  double peak() const noexcept { return peak_; }              ///< [N] the most that was rendered so far
+  double peak() const noexcept { return peak_; }              ///< [N] largest force rendered so far
 
  private:
   void silence() noexcept;

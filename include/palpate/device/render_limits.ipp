@@ -16,7 +16,7 @@ PALPATE_INLINE DeviceLimits with_torque(DeviceLimits limits, bool torque) {
     if (torque && !(value > 0.0 && std::isfinite(value)))
       raise(SetupErrorKind::bad_argument,
             "a device that renders torque has a peak torque of " + number(limits.peak_torque) +
-                " N m and a turning stiffness of " + number(limits.rotational_stiffness) + " N m/rad",
+                " N m and a rotational stiffness of " + number(limits.rotational_stiffness) + " N m/rad",
             "Give both in the option `limits`, from the data sheet");
   return limits;
 }

@@ -1,4 +1,4 @@
-// A device that plays a recording: the same input, bit by bit, in every run.
+// A device that plays a recording: bitwise the same input in every run.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
@@ -15,14 +15,14 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Reads what write_recording wrote. Throws SetupError(bad_file) naming file and line.
+/// Reads a file written by write_recording. Throws SetupError(bad_file) naming file and line.
 std::vector<RecordedTick> read_recording(const std::string& path);
 
-/// A HapticDevice that gives the states of a recording one by one, time stamps included, and the last one as invalid
-/// when the recording is over. Forces are rendered by motors that are not there; see last_force() and recorded().
+/// A HapticDevice that returns the states of a recording one by one, including time stamps, and the last one as invalid
+/// after the end of the recording. Forces are rendered by no motors; see last_force() and recorded().
 class ReplayDevice {
  public:
-  /// Throws SetupError(bad_argument) when there is nothing to play.
+  /// Throws SetupError(bad_argument) when the recording is empty.
   explicit ReplayDevice(std::vector<RecordedTick> ticks, const DeviceLimits& limits = {});
   /// Plays a file; throws as read_recording.
   explicit ReplayDevice(const std::string& path, const DeviceLimits& limits = {})
@@ -37,9 +37,9 @@ class ReplayDevice {
   void rewind() noexcept { next_ = 0; }
   bool finished() const noexcept { return next_ == ticks_.size(); }  ///< every state was read
   std::span<const RecordedTick> recorded() const noexcept { return ticks_; }
-  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] what is rendered now
+  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] rendered now
   const Vector3& last_torque() const noexcept { return rendered_.torque(); }  ///< [N m] the same
-  double peak_force() const noexcept { return rendered_.peak(); }             ///< [N] the most that was rendered
+  double peak_force() const noexcept { return rendered_.peak(); }             ///< [N] largest force rendered so far
 
  private:
   std::vector<RecordedTick> ticks_;

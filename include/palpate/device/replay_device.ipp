@@ -15,7 +15,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Reads recordings; refuses with `path:line: expected ..., found ...`.
+/// Reads recordings; errors are `path:line: expected ..., found ...`.
 class RecordingReader {
  public:
   RecordingReader(std::string_view text, std::string path) : text_(text), path_(std::move(path)) {}
@@ -130,7 +130,7 @@ PALPATE_INLINE std::vector<RecordedTick> read_recording(const std::string& path)
 
 PALPATE_INLINE ReplayDevice::ReplayDevice(std::vector<RecordedTick> ticks, const DeviceLimits& limits)
     : ticks_(std::move(ticks)), rendered_(limits) {
-  if (ticks_.empty()) raise(SetupErrorKind::bad_argument, "a recording without ticks");
+  if (ticks_.empty()) raise(SetupErrorKind::bad_argument, "a recording has no ticks");
 }
 
 PALPATE_INLINE ToolState ReplayDevice::read() noexcept {

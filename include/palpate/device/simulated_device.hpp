@@ -1,4 +1,4 @@
-// A device that is not there: its mechanics, its electronics and the hand that holds it, simulated.
+// A simulated device: its mechanics, its electronics and the hand that holds it.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
@@ -12,21 +12,21 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A device to simulate. Masses and limits are those of real devices; nobody publishes the viscous damping of a device,
-/// so that of the presets is a guess, and what follows from it (the largest stable stiffness) is a comparison, not a
-/// promise. Where friction or mass are not published either, the preset says so.
+/// A device to simulate. Masses and limits are those of real devices; the viscous damping of devices is not published,
+/// so that of the presets is a guess, and results that depend on it (the largest stable stiffness) are comparisons, not
+/// guarantees. Where friction or mass are not published either, the preset's comment states it.
 struct SimulatedOptions {
-  double rate = 1000.0;         ///< [1/s] nominal rate of reads; that of the limits too
-  double mass = 0.045;          ///< [kg] felt at the handle
+  double rate = 1000.0;         ///< [1/s] nominal rate of reads; also the rate in the limits
+  double mass = 0.045;          ///< [kg] apparent mass at the handle
   double damping = 0.1;         ///< [N s/m] viscous
   double friction = 0.26;       ///< [N] Coulomb, of the whole device; 0 makes the mechanics exact
-  double encoder_step = 55e-6;  ///< [m] positions are rounded to it; 0: not
+  double encoder_step = 55e-6;  ///< [m] positions are rounded to it; 0: no rounding
   double delay = 0.0;           ///< [s] from a sample to its force: reading, computing, transport; up to 32 periods
-  double jitter = 0.0;          ///< [s] a read is up to this late, evenly distributed; below a period
-  double stall = 0.0;           ///< [s] now and then a read is this late; the reads it covers do not happen
+  double jitter = 0.0;          ///< [s] largest delay of a read, uniformly distributed; below a period
+  double stall = 0.0;           ///< [s] a read is late by this from time to time; the reads it covers are skipped
   double stall_interval = 0.0;  ///< [s] between stalls; 0: none
   SimulatedHand hand = SimulatedHand::none();
-  Vector3 start = Vector3::Zero();  ///< [m] where the handle rests at first
+  Vector3 start = Vector3::Zero();  ///< [m] initial position of the handle
   std::uint64_t seed = 1;           ///< of the jitter
   DeviceLimits limits{};
 
@@ -40,26 +40,25 @@ struct SimulatedOptions {
   static SimulatedOptions parallel_arm();
 };
 
-/// A HapticDevice with mechanics (simulated_mechanics.hpp), for trying a tissue without hardware: does it stay calm at
-/// this stiffness, rate and delay, in this hand and in none? Every read goes on to the next sample; the force written
-/// after it acts `delay` after that sample and is held until the next one does (zero-order hold). States carry no
-/// velocity, as those of a device with encoders. The same in every run. A read costs about 2 us with friction, 0.2 us
-/// without.
+/// A HapticDevice with mechanics (simulated_mechanics.hpp), to test a tissue without hardware: is it stable at this
+/// stiffness, rate and delay, with this hand and with none? Every read advances to the next sample; the force written
+/// after it acts `delay` after that sample, until the next one does (zero-order hold). States contain no velocity, like
+/// those of a device with encoders. The same in every run. A read costs about 2 us with friction, 0.2 us without.
 class SimulatedDevice {
  public:
-  /// Throws SetupError(bad_argument) for values that make no device.
+  /// Throws SetupError(bad_argument) for invalid values.
   explicit SimulatedDevice(const SimulatedOptions& options = {});
 
   ToolState read() noexcept;
-  /// Torque has no motors.
+  /// Torque is not rendered: there are no motors for it.
   Status write(const GatedForce& force) noexcept;
   DeviceLimits limits() const noexcept;
   void start() noexcept { rendered_.start(); }
   void stop() noexcept;
 
-  /// While unplugged, reads are invalid and the motors without force; the hand goes on.
+  /// While unplugged, reads are invalid and the motor force is zero; the motion of the hand continues.
   void unplug(bool unplugged = true) noexcept { unplugged_ = unplugged; }
-  /// What the hand does from now on: a force [N] beside its spring, and where its spring pulls to [m].
+  /// Action of the hand from now on: a force [N] in addition to its spring, and the position its spring pulls to [m].
   void push(const Vector3& force) noexcept { mechanics_.push(force); }
   void move_hand(const Vector3& position) noexcept { mechanics_.move_hand(position); }
 
@@ -67,7 +66,7 @@ class SimulatedDevice {
   const Vector3& velocity() const noexcept { return mechanics_.velocity(); }  ///< [m/s] exact
   const SimulatedEnergy& energy() const noexcept { return mechanics_.energy(); }
   const Vector3& last_force() const noexcept { return rendered_.force(); }  ///< [N] last written, limited
-  const Vector3& motor_force() const noexcept { return acting_; }           ///< [N] what pushes now, after the delay
+  const Vector3& motor_force() const noexcept { return acting_; }           ///< [N] acting now, after the delay
   double time() const noexcept { return now_; }                             ///< [s] of the last sample
   std::uint64_t reads() const noexcept { return reads_; }
   const SimulatedOptions& options() const noexcept { return options_; }
@@ -79,14 +78,14 @@ class SimulatedDevice {
   };
   static void require(bool holds, const char* what, double value, const char* hint);
 
-  /// Samples lie on a grid of periods, each late by its jitter; a stall covers grid points, which are left out.
+  /// Samples are on a grid of periods, each late by its jitter; a stall covers grid points, which are skipped.
   double next_sample() noexcept;
   /// In [0, 1). Steele, Lea and Flood 2014 (SplitMix64).
   double uniform() noexcept;
 
   void advance_to(double t) noexcept;
   void take_next() noexcept;
-  /// Reads of 32 periods fit; a caller that writes more than once per read replaces its last force.
+  /// Room for the writes of 32 periods; a caller that writes more than once per read replaces its last force.
   void schedule(const Pending& p) noexcept;
   void silence() noexcept;
   Vector3 measured(const Vector3& x) const noexcept;

@@ -8,8 +8,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A path through timed waypoints. Between two it takes the minimum-jerk profile: smooth, at rest in every waypoint,
-/// on the straight line. Before the first and after the last waypoint it stands still.
+/// A path through timed waypoints. Between two waypoints it has the minimum-jerk profile: smooth, on the straight line,
+/// with zero velocity at every waypoint. Before the first and after the last waypoint it stands still.
 class Trajectory {
  public:
   struct Waypoint {
@@ -45,13 +45,13 @@ struct Poke {
   double approach = 1.0, hold = 0.5, retreat = 1.0, pause = 0.5;
   int times = 1;
 };
-/// Goes from `from` to `to`, holds, goes back, pauses; `times` times.
+/// Moves from `from` to `to`, waits, moves back, pauses; `times` times.
 Trajectory poke(const Poke& p = {});
 
 struct PressDragRelease {
-  Vector3 above = Vector3(-0.01, 0.0, 0.02);     ///< where it starts
-  Vector3 pressed = Vector3(-0.01, 0.0, -0.01);  ///< where it is pressed in
-  Vector3 dragged = Vector3(0.01, 0.0, -0.01);   ///< where it is dragged to, and released as far as it was pressed
+  Vector3 above = Vector3(-0.01, 0.0, 0.02);     ///< start
+  Vector3 pressed = Vector3(-0.01, 0.0, -0.01);  ///< end of pressing
+  Vector3 dragged = Vector3(0.01, 0.0, -0.01);   ///< end of dragging; released by the distance it was pressed
   double press = 1.0, drag = 2.0, release = 1.0;
 };
 /// Presses, drags along a line, releases.

@@ -12,13 +12,13 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE Trajectory::Trajectory(std::vector<Waypoint> waypoints) : waypoints_(std::move(waypoints)) {
-  if (waypoints_.empty()) raise(SetupErrorKind::bad_argument, "a trajectory without waypoints");
+  if (waypoints_.empty()) raise(SetupErrorKind::bad_argument, "a trajectory has no waypoints");
   for (std::size_t i = 0; i < waypoints_.size(); ++i) {
     const Waypoint& w = waypoints_[i];
     if (!std::isfinite(w.time) || !w.position.allFinite() || (i > 0 && !(w.time > waypoints_[i - 1].time)))
       raise(SetupErrorKind::bad_argument,
             "waypoint " + std::to_string(i) + " of a trajectory is not finite or not later: " + number(w.time) + " s",
-            "Give finite waypoints in the order of time");
+            "Give finite waypoints in order of increasing time");
   }
 }
 

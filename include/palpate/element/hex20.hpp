@@ -14,8 +14,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Quadratic serendipity hexahedron on [-1, 1]^3: the corners of Hex8, then the middles of its `edges` in the order of
-/// VTK and CalculiX: round the bottom, round the top, upwards (Gmsh has an order of its own). Its edges may be curved.
+/// Quadratic serendipity hexahedron on [-1, 1]^3: the corners of Hex8, then the midpoints of its `edges` in the order
+/// of VTK and CalculiX: bottom, top, then the vertical edges (Gmsh uses a different order). Its edges may be curved.
 /// Fully integrated, 3 x 3 x 3 points.
 struct Hex20 {
   static constexpr int nodes = 20;

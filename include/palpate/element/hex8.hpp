@@ -13,7 +13,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Trilinear hexahedron on [-1, 1]^3: bottom (w = -1) counter-clockwise seen from above, then top; 2 x 2 x 2 points.
-/// The plain, fully integrated brick: it locks near incompressibility, and results above `locking_poisson_ratio` are
+/// The standard, fully integrated brick. It locks near incompressibility, and results above `locking_poisson_ratio` are
 /// flagged.
 struct Hex8 {
   static constexpr int nodes = 8;

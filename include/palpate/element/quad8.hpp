@@ -11,7 +11,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Quadratic serendipity quadrilateral on [-1, 1]^2: the corners of Quad4, then the middles of its edges.
+/// Quadratic serendipity quadrilateral on [-1, 1]^2: the corners of Quad4, then the midpoints of its edges.
 struct Quad8 {
   static constexpr int nodes = 8;
   static constexpr std::array<std::array<int, 2>, 4> edges{{{0, 1}, {1, 2}, {2, 3}, {3, 0}}};  ///< of nodes 4 to 7

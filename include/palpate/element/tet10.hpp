@@ -14,10 +14,10 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Quadratic tetrahedron on the unit tetrahedron, L = (1 - u - v - w, u, v, w): corners L (2 L - 1), then 4 L_i L_j on
-/// the `edges`, in the order of VTK and CalculiX (Gmsh swaps the last two). Usable to a Poisson ratio of 0.499.
-/// Its edges may be curved. Four points integrate the stiffness, exactly where they are straight; where they are not,
-/// constant strain is met to the curvature only, and near incompressibility that counts (2 % of the
-/// displacement at 0.499 on a coarsely meshed thick sphere): there use `WithQuadrature<Tet10, TetrahedronRule<5>>`.
+/// the `edges`, in the order of VTK and CalculiX (Gmsh swaps the last two). Usable to a Poisson ratio of 0.499. Its
+/// edges may be curved. Four points integrate the stiffness, exactly if the edges are straight. With curved edges a
+/// constant strain is represented only up to an error from the curvature, which matters near incompressibility (2 % of
+/// the displacement at 0.499 on a coarsely meshed thick sphere): use `WithQuadrature<Tet10, TetrahedronRule<5>>` there.
 struct Tet10 {
   static constexpr int nodes = 10;
   static constexpr int order = 2;

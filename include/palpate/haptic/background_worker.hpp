@@ -1,4 +1,4 @@
-// The thread beside the tick: steps of moving tissue, cuts and what follows them.
+// The background thread of a tissue: time steps of moving tissue, cuts and the updates that follow them.
 #pragma once
 
 #include <palpate/concepts/tissue_model.hpp>
@@ -9,21 +9,21 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What a worker has done so far.
+/// Statistics of a worker since its start.
 struct WorkerReport {
-  std::uint64_t pieces = 0;    ///< of work: steps, cuts
-  std::uint64_t late = 0;      ///< pieces that took longer than the time to the next
+  std::uint64_t pieces = 0;    ///< pieces of work: steps, cuts
+  std::uint64_t late = 0;      ///< pieces that took longer than the interval to the next
   double worst_seconds = 0.0;  ///< of one piece
   double mean_seconds = 0.0;
-  /// Time of the tissue over that of the clock: 1 keeps up; below, tools feel a tissue that moves in slow motion. Steady
-  /// forces stay right. 1 for work that has no pace of its own.
+  /// Simulated time over wall time: 1 keeps up; below 1 the tissue moves in slow motion. Static forces stay right. 1
+  /// for work without a prescribed pace.
   double rate = 1.0;
 };
 
-/// Does the background work of a tissue (HasBackgroundWork) in a thread of its own, from construction to `stop` or
-/// destruction. Where a piece takes longer than the time to the next, the next follows at once, and lost time is not
-/// made up for; `report_slow` of the tissue is then called, and ticks report slow_tissue. There is no thread for a tissue
-/// without background work. Refers to the tissue, which must outlive it.
+/// Does the background work of a tissue (HasBackgroundWork) in its own thread, from construction to `stop` or
+/// destruction. If a piece takes longer than the interval to the next, the next follows immediately, and lost time is
+/// not made up; `report_slow` of the tissue is then called, and ticks report slow_tissue. For a tissue without
+/// background work there is no thread. Refers to the tissue, which must outlive it.
 class BackgroundWorker {
  public:
   template <class Tissue>
@@ -32,9 +32,9 @@ class BackgroundWorker {
   BackgroundWorker(const BackgroundWorker&) = delete;
   BackgroundWorker& operator=(const BackgroundWorker&) = delete;
 
-  /// Ends after the piece in work.
+  /// Ends the thread after the piece of work in progress.
   void stop();
-  /// So far. Any thread; waits for no piece of work.
+  /// Statistics so far. For any thread; does not wait for a piece of work.
   WorkerReport report() const;
 
  private:
@@ -48,7 +48,7 @@ class BackgroundWorker {
   static Functions functions_of() noexcept {
     static_assert(detail::HasWorkHooks<Tissue>,
                   "palpate: this tissue needs background_work() and report_slow(bool) noexcept; derive it from "
-                  "TissueAdaptor, which hands on those of another tissue, or from StillTissue");
+                  "TissueAdaptor, which forwards those of another tissue, or from StillTissue");
     Functions f;
     if constexpr (HasBackgroundWork<Tissue>)
       f.work = [](void* t) { return static_cast<Tissue*>(t)->background_work(); };

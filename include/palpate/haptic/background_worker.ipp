@@ -29,7 +29,8 @@ class PaceWatch {
   static constexpr double kept = 0.9;     ///< of the pace
 
   explicit PaceWatch(std::int64_t now) noexcept : since_(now) {}
-  /// After a piece that stands for `tissue_seconds`. True when a window is over: then `is_slow` is new.
+  /// Call after a piece of work of `tissue_seconds` simulated time. True at the end of a window: `is_slow` is then
+  /// updated.
   bool note(double tissue_seconds, std::int64_t now) noexcept {
     passed_ += tissue_seconds;
     const double wall = 1e-9 * static_cast<double>(now - since_);

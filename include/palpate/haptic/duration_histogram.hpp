@@ -1,4 +1,4 @@
-// Latencies counted in bins.
+// Histogram of latencies.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -17,7 +17,8 @@ class DurationHistogram {
   /// Negative durations and NaN count as zero.
   void record(double seconds) noexcept;
 
-  /// [s] that a share `p` in (0, 1] of all durations does not exceed: the upper end of its bin, never more than max();
+  /// The duration [s] that a fraction `p` in (0, 1] of all durations does not exceed: the upper end of its bin, never
+  /// more than max();
   /// zero when nothing was recorded.
   double percentile(double p) const noexcept;
   double max() const noexcept { return max_; }  ///< [s] exact
@@ -27,7 +28,7 @@ class DurationHistogram {
   static double low(int bin) noexcept;
 
  private:
-  /// 0 ... 63 ns one by one, then 64 bins per doubling.
+  /// One bin per ns from 0 to 63 ns, then 64 bins per doubling.
   static int bin_of(std::uint64_t ns) noexcept;
 
   std::array<std::uint64_t, bins> counts_{};

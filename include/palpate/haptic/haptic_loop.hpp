@@ -1,4 +1,4 @@
-// The thread that serves devices at a steady rate.
+// The thread that serves devices at a constant rate.
 #pragma once
 
 #include <palpate/haptic/detail/loop_device.hpp>
@@ -9,30 +9,30 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// [s] median of two clock readings in a row.
+/// Median difference of two consecutive clock readings [s].
 double measured_clock_cost() noexcept;
 
-/// The rate of a loop over devices [1/s]: the slowest one's.
+/// The rate of a loop over devices [1/s]: that of the slowest device.
 double rate_of(const std::vector<LoopDevice>& devices) noexcept;
 
-/// Starts devices and, in a thread of its own, each period reads all, ticks the servo once and writes all. State and
+/// Starts devices and, in its own thread, in each period reads all, ticks the servo once and writes all. State and
 /// force number i are those of device i. Refers to devices and servo.
 class HapticLoop {
  public:
   /// Throws bad_argument without a device, for one given twice (ids: its numbers), and for a rate outside 0.1 to 1e5.
   HapticLoop(std::vector<LoopDevice> devices, const LoopServo& servo, double rate);
-  /// Ends it as `stop` does.
+  /// Stops as `stop` does.
   ~HapticLoop();
 
-  /// Throws bad_argument for a senseless duration or when it was started and not stopped.
+  /// Throws bad_argument for an invalid duration, or when it was started and not stopped.
   void require_startable(const LoopOptions& options) const;
-  /// Throws that, and what a device throws that cannot start; then that device and all before it are stopped, and
-  /// nothing runs.
+  /// Throws as require_startable, and what a device throws that cannot start; then that device and all before it are
+  /// stopped, and no thread runs.
   void start(const LoopOptions& options);
-  /// Ends and joins the thread, stops all devices, last one first. An empty report when nothing was started.
+  /// Ends and joins the thread, stops all devices, last one first. The report is empty when nothing was started.
   LoopReport stop();
-  /// Starts, calls the progress callback until it is over, stops; stops too when the callback throws. Throws as start,
-  /// and bad_argument for a loop that nothing would end: neither a duration nor a progress callback.
+  /// Starts, calls the progress callback until the loop ends, stops; also stops when the callback throws. Throws as
+  /// start, and bad_argument for a loop that would never end: neither a duration nor a progress callback.
   LoopReport run(const LoopOptions& options);
 
   // Any thread

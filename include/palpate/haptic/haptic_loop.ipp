@@ -32,7 +32,7 @@ PALPATE_INLINE double rate_of(const std::vector<LoopDevice>& devices) noexcept {
   return slowest;
 }
 
-/// Devices of which the first few are started; they are stopped at the latest with it.
+/// Devices of which the first few are started; the destructor stops them at the latest.
 class StartedDevices {
  public:
   explicit StartedDevices(std::vector<LoopDevice> devices) noexcept : devices_(std::move(devices)) {}
@@ -48,7 +48,7 @@ class StartedDevices {
       }
     } guard{this};
     for (const LoopDevice& d : devices_) {
-      ++started_;  // one that throws halfway is stopped, too
+      ++started_;  // one that throws in start is stopped, too
       d.start(d.device);
     }
     guard.devices = nullptr;
@@ -63,7 +63,7 @@ class StartedDevices {
   std::size_t started_ = 0;
 };
 
-/// Devices, what the threads share, and the body of the haptic thread.
+/// Devices, shared state of the threads, and the body of the haptic thread.
 struct HapticLoop::State {
   State(std::vector<LoopDevice> list, const LoopServo& s, double r)
       : devices(std::move(list)), servo(s), rate(r), states(devices.all().size()) {}
@@ -104,7 +104,7 @@ PALPATE_INLINE void HapticLoop::State::run() {
       run_paced(start);
     else
       run_unpaced();
-    silence();  // stop() comes when the other thread gets to it
+    silence();  // the other thread may call stop() much later
     report.elapsed = 1e-9 * static_cast<double>(platform::wall_ns() - start);
   }
   const std::lock_guard lock(mutex);
@@ -122,8 +122,8 @@ PALPATE_INLINE void HapticLoop::State::run_unpaced() noexcept {
   for (std::int64_t k = 0; k < end && !cancelled(); ++k) tick(static_cast<double>(k) / rate);
 }
 
-/// Deadlines are absolute, so errors of sleeping do not add up. After a late tick the missed periods are left out:
-/// catching up would send a burst of ticks with hardly any time between them.
+/// Deadlines are absolute, so errors of sleeping do not accumulate. After a late tick the missed periods are skipped:
+/// catching up would cause a burst of ticks with hardly any time between them.
 PALPATE_INLINE void HapticLoop::State::run_paced(std::int64_t start) noexcept {
   const double period = 1e9 / rate;
   const std::int64_t end = periods();
@@ -179,14 +179,14 @@ PALPATE_INLINE LoopReport HapticLoop::State::fresh_report() const {
 }
 
 PALPATE_INLINE void HapticLoop::State::end_thread() noexcept {
-  cancel = true;  // no effect on a loop that is over
+  cancel = true;  // no effect on a loop that has ended
   if (thread.joinable()) thread.join();
   devices.stop();
   started = false;
 }
 
 PALPATE_INLINE HapticLoop::HapticLoop(std::vector<LoopDevice> devices, const LoopServo& servo, double rate) {
-  if (devices.empty()) raise(SetupErrorKind::bad_argument, "a haptic loop without a device");
+  if (devices.empty()) raise(SetupErrorKind::bad_argument, "a haptic loop has no device");
   for (std::size_t i = 0; i < devices.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       if (devices[i].device != devices[j].device) continue;
@@ -196,8 +196,8 @@ PALPATE_INLINE HapticLoop::HapticLoop(std::vector<LoopDevice> devices, const Loo
       raise(std::move(twice));
     }
   if (!(rate >= 0.1 && rate <= 1e5))
-    raise(SetupErrorKind::bad_argument, "a loop rate of " + number(rate) + " Hz",
-          "It is that of the slowest device's limits(); 0.1 to 1e5 will do, 1000 is usual");
+    raise(SetupErrorKind::bad_argument, "the rate of a haptic loop is " + number(rate) + " Hz",
+          "It is the rate in the slowest device's limits(); it must be 0.1 to 1e5, 1000 is typical");
   state_ = std::make_unique<State>(std::move(devices), servo, rate);
 }
 
@@ -207,9 +207,10 @@ PALPATE_INLINE HapticLoop::~HapticLoop() {
 
 PALPATE_INLINE void HapticLoop::require_startable(const LoopOptions& options) const {
   if (!(options.duration > 0.0 && (options.duration <= 1e8 || options.duration == infinity)))
-    raise(SetupErrorKind::bad_argument, "a loop duration of " + number(options.duration) + " s",
-          "Give seconds, up to 1e8, or none");
-  if (state_->started) raise(SetupErrorKind::bad_argument, "started already, and not stopped", "Call stop() first");
+    raise(SetupErrorKind::bad_argument, "the duration of a haptic loop is " + number(options.duration) + " s",
+          "Give a positive number of seconds, up to 1e8, or none");
+  if (state_->started)
+    raise(SetupErrorKind::bad_argument, "the haptic loop was started already, and not stopped", "Call stop() first");
 }
 
 PALPATE_INLINE void HapticLoop::start(const LoopOptions& options) {
@@ -244,8 +245,8 @@ PALPATE_INLINE LoopReport HapticLoop::stop() {
 
 PALPATE_INLINE LoopReport HapticLoop::run(const LoopOptions& options) {
   if (options.duration == infinity && !options.progress)
-    raise(SetupErrorKind::bad_argument, "nothing would end this loop",
-          "Give LoopOptions a duration, or a progress callback that returns false when it is enough; or start a "
+    raise(SetupErrorKind::bad_argument, "the haptic loop would never end",
+          "Give LoopOptions a duration, or a progress callback that returns false to end the loop; or start a "
           "HapticSession and stop it");
   start(options);
   State& s = *state_;

@@ -13,19 +13,19 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Contact state of one session, and a force gate per tool. `tick` computes the force in the tick that brought the pose
-/// and passes it through the gate: no way to the device goes round it. Refers to the tissue, which must outlive it;
-/// neither copied nor moved. An EnergyTank given as last argument limits what each tool may be given. One class for
-/// tissues of all types: it knows its own by reference (TissueView). With a HapticDevice, HapticSession is simpler.
+/// Contact state of one session, and a force gate per tool. `tick` computes the force in the tick that received the
+/// pose and passes it through the gate; no other path leads to the device. Refers to the tissue, which must outlive it;
+/// neither copied nor moved. An EnergyTank given as last argument limits the energy given to each tool. One class for
+/// tissues of all types: it refers to its tissue through TissueView. With a HapticDevice, HapticSession is simpler.
 class HapticServo {
  public:
   static constexpr std::size_t max_tools = maximum_tools;
   using Snapshot = ServoSnapshot;
   using Energy = std::optional<EnergyTank>;
 
-  /// Throws bad_argument for an invalid tool, coupling or limits, or when nothing of the tissue can be touched;
+  /// Throws bad_argument for an invalid tool, coupling or limits, or when the tissue has no touchable surface;
   /// unsupported (ids: the tool) for a BladeTool and a tissue that cannot be cut.
-  /// Allocates all a tick needs.
+  /// Allocates everything that a tick needs.
   template <class T>
   requires(!std::same_as<std::remove_cv_t<T>, TissueView>)
       HapticServo(T& tissue, const ToolList& tools, const ServoOptions& options = {}, const Energy& energy = {})
@@ -40,41 +40,41 @@ class HapticServo {
 
   /// One tick: a force for every tool, in order; the span is valid until the next tick. States beyond the number of
   /// tools are ignored, missing ones count as unreadable. Never throws, allocates, locks or waits; bounded by contact
-  /// capacity, iterations and, when a list of points near the tools is made anew, the points in their reach.
+  /// capacity, iterations and, when a list of points near the tools is rebuilt, the points in their reach.
   std::span<const GatedForce> tick(std::span<const ToolState> states) noexcept;
   /// The same for a session with one tool: its force, valid until the next tick.
   const GatedForce& tick(const ToolState& state) noexcept { return tick({&state, 1}).front(); }
 
-  /// Back to the state after construction, apart from the heat of the motors: the same states give the same bits again,
-  /// on a tissue that is itself as it was. Tells the tissue and the reader of snapshots that nothing presses. For the
-  /// tick's own thread.
+  /// Back to the state after construction, except the heat of the motors: the same states give bitwise equal results
+  /// again, if the tissue has been reset too. Reports to the tissue and the reader of snapshots that nothing presses.
+  /// For the tick's own thread.
   void reset() noexcept;
-  /// Tells the tissue that nothing presses any more, after the last tick; contacts and snapshot stay. For the tick's
-  /// own thread.
+  /// Reports to the tissue that nothing presses any more, after the last tick; contacts and snapshot stay. For the
+  /// tick's own thread.
   void release() noexcept { tissue_.end_tick({}); }
 
-  /// Contacts of all tools, as ServoOptions::contact has it; more are left out (degraded_model).
+  /// Largest number of contacts of all tools, from ServoOptions::contact; more are ignored (degraded_model).
   int contact_capacity() const noexcept { return problem_.capacity(); }
-  /// How many of those the last tick needed: what presses, and what would have sunk in without.
+  /// Number of contact rows of the last tick: points that press, and points that would have penetrated.
   int contact_rows() const noexcept { return static_cast<int>(problem_.contacts().size()); }
-  /// What pressed, was held or cut in the last tick, world frame; valid until the next. For the tick's own thread.
+  /// Pressing contacts, grasped points and cutting blades of the last tick, world frame; valid until the next. For the
+  /// tick's own thread.
   std::span<const ToolContact> contacts() const noexcept { return newest_->tool_contacts(); }
-  /// Where the sphere rests on the surface, or the middle of a blade's edge, world frame [m]. For the tick's own thread.
+  /// Position of the tool on the surface, or the middle of a blade's edge, world frame [m]. For the tick's own thread.
   Vector3 proxy(std::size_t tool = 0) const noexcept;
-  /// Contact force, or that of a blade, before the gate, world frame [N]. For the tick's own thread.
+  /// Contact force, or cutting force of a blade, before the gate, world frame [N]. For the tick's own thread.
   Vector3 contact_force(std::size_t tool = 0) const noexcept;
   /// Contact torque about the proxy before the gate, world frame [N m]. For the tick's own thread.
   Vector3 contact_torque(std::size_t tool = 0) const noexcept;
-  /// Axis of a capsule where it rests on the surface, or that of a blade's edge, world frame. For the tick's own
-  /// thread.
+  /// Axis of a capsule on the surface, or of a blade's edge, world frame. For the tick's own thread.
   Vector3 proxy_axis(std::size_t tool = 0) const noexcept;
-  /// Whether a tool holds a point of the surface. For the tick's own thread.
+  /// Whether a tool grasps a point of the surface. For the tick's own thread.
   bool is_holding(std::size_t tool = 0) const noexcept { return problem_.is_holding(tool); }
-  /// What a blade has cut; null for another tool. For the tick's own thread.
+  /// State of a blade; null for another tool. For the tick's own thread.
   const BladeCut* blade(std::size_t tool = 0) const noexcept { return blades_[tool] ? &blades_[tool]->cut() : nullptr; }
-  /// What a tool's gate lets through.
+  /// Limits of a tool's gate.
   const ForceLimits& limits(std::size_t tool = 0) const noexcept { return gates_[tool].limits(); }
-  /// What limits a tool's energy; null when nothing does. For the tick's own thread.
+  /// Energy tank of a tool; null without one. For the tick's own thread.
   const EnergyTank* energy(std::size_t tool = 0) const noexcept {
     return energies_.empty() ? nullptr : &energies_[tool];
   }
@@ -102,7 +102,7 @@ class HapticServo {
   std::vector<ContactTool> contact_tools_;
   ContactProblem problem_;
   std::vector<ToolInput> inputs_;
-  std::vector<std::optional<ServoBlade>> blades_;  // of the tools that are one
+  std::vector<std::optional<ServoBlade>> blades_;  // only for tools that are blades
   std::vector<ForceGate> gates_;
   std::vector<EnergyTank> energies_;  // one per tool, or none at all
   std::vector<GatedForce> forces_;
@@ -110,7 +110,7 @@ class HapticServo {
   std::uint64_t updates_ = 0;
   bool started_ = false;
   TripleBuffer<Snapshot> snapshots_;
-  const Snapshot* newest_ = &snapshots_.back();  // published last; nobody writes it before the next is
+  const Snapshot* newest_ = &snapshots_.back();  // published last; not written before the next is published
   std::size_t ticks_ = 0;
 };
 

@@ -22,7 +22,7 @@ inline double smallest_radius(const std::vector<ContactTool>& tools) noexcept {
 inline bool has_sphere(const std::vector<ContactTool>& tools) noexcept {
   return smallest_radius(tools) < no_sphere;
 }
-/// The surface of a tissue that is ready for these tools.
+/// The surface of a tissue after it was prepared for these tools.
 inline const ContactSurface& surface_for(TissueView& tissue, const std::vector<ContactTool>& tools,
                                          const ContactParameters& contact) {
   if (has_sphere(tools)) tissue.prepare_tools(smallest_radius(tools), contact);
@@ -49,7 +49,7 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
       forces_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after) {
   if (tissue_.contact_surface().triangles().empty())
-    raise(SetupErrorKind::bad_argument, "nothing of this tissue can be touched",
+    raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
           "Name a surface group with Scene::touch");
   if (!(options.stale_tissue_after > 0.0))
     raise(SetupErrorKind::bad_argument, "stale_tissue_after is " + number(options.stale_tissue_after),
@@ -58,8 +58,8 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
   for (std::size_t i = 0; i < tools.size(); ++i) {
     if (const auto* blade = std::get_if<BladeTool>(&tools[i])) add_blade(*blade, i, options);
     gates_.emplace_back(options.limits(i));
-    const bool turns = !blades_[i] && (contact_tools_[i].half_length > 0.0 || gates_[i].limits().peak_torque > 0.0);
-    inputs_.emplace_back(static_cast<int>(i), turns, options.grasp_buttons);
+    const bool rotates = !blades_[i] && (contact_tools_[i].half_length > 0.0 || gates_[i].limits().peak_torque > 0.0);
+    inputs_.emplace_back(static_cast<int>(i), rotates, options.grasp_buttons);
   }
   Snapshot empty(options.contact.capacity);
   empty.tool_count = tools.size();
@@ -71,7 +71,7 @@ PALPATE_INLINE void HapticServo::add_blade(const BladeTool& blade, std::size_t t
     SetupProblem problem;
     problem.kind = SetupErrorKind::unsupported;
     problem.what = "this tissue cannot be cut: it has no try_cut(BladeSweep)";
-    problem.hint = "Make it a CuttableTissue, or touch it with a SphereTool or CapsuleTool";
+    problem.hint = "Use a CuttableTissue, or touch it with a SphereTool or CapsuleTool";
     const auto id = static_cast<std::int64_t>(tool);
     problem.set_ids({&id, 1});
     raise(std::move(problem));
@@ -121,7 +121,7 @@ PALPATE_INLINE Vector3 HapticServo::proxy_axis(std::size_t tool) const noexcept 
   return rotation_of(tissue_.to_world()) * contact_tools_[tool].axis();
 }
 
-/// Notes when a tissue that moves by itself was last heard of.
+/// Notes when a tissue that moves by itself was last updated.
 PALPATE_INLINE void HapticServo::note_updates() noexcept {
   if (!tissue_.has_updates()) return;
   const std::uint64_t updates = tissue_.updates();
@@ -137,7 +137,7 @@ PALPATE_INLINE void HapticServo::take(std::size_t i, const ToolState& state) noe
   if (!energies_.empty()) energies_[i].rotated(gates_[i].last_torque().dot(inputs_[i].rotation()));
 }
 
-/// A blade starts again where it moved farther in a tick than its edge is long.
+/// A blade restarts if it moved farther in a tick than the length of its edge.
 PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, const ToolState& state) noexcept {
   ToolInput& input = inputs_[i];
   input.take_freely(state, tissue_.to_world(), blade.cut().tool().edge.norm());
@@ -147,12 +147,12 @@ PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, co
     blade.lift();
 }
 
-/// A sphere whose centre is in the body without any contact has lost the surface: it is put back in the next tick, with
-/// the ramp.
+/// A sphere whose centre is inside the body without any contact has lost the surface: it is placed on it again in the
+/// next tick, with the ramp.
 PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
   const ContactTool& tool = contact_tools_[i];
   if (!tool.active || !detail::is_zero(tool.force)) return;
-  // Far from all contact points nothing changes fast: one look in a while is enough, for one tool after the other.
+  // Far from all contact points nothing changes fast: one check in 16 ticks is enough, staggered over the tools.
   if (!problem_.is_near(static_cast<int>(i)) && (ticks_ + i) % 16 != 0) return;
   bool inside = false;
   for (const double s : {0.0, -tool.half_length, tool.half_length}) {
@@ -163,7 +163,7 @@ PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
   if (inside) inputs_[i].lose();
 }
 
-/// The force of contact through energy tank, which is told of what is limited further, and gate.
+/// Passes the contact force through the energy tank and the gate; the tank then receives the gate's output.
 PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   const ContactTool& tool = contact_tools_[i];
   const ToolInput& input = inputs_[i];
@@ -172,7 +172,7 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   Vector3 force(0.0, 0.0, 0.0), torque(0.0, 0.0, 0.0);
   if (blades_[i]) force = blades_[i]->force();
   if (tool.active) force = rotation_of(pose) * tool.force;
-  if (tool.active && input.turns()) torque = rotation_of(pose) * tool.torque;
+  if (tool.active && input.rotates()) torque = rotation_of(pose) * tool.torque;
   Status limited = blades_[i] ? blades_[i]->status() : Status{};
   if (energy != nullptr) {
     if (!input.readable() || input.restarted()) energy->forget();

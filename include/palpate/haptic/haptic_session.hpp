@@ -1,4 +1,4 @@
-// Devices, tools and a tissue: everything between a hand and a model in one object.
+// Devices, tools and a tissue in one object: everything between a hand and a model.
 #pragma once
 
 #include <palpate/haptic/detail/loop_device.hpp>
@@ -17,17 +17,17 @@ class HapticLoop;
 }
 
 /// One or more devices with a tool each, one tissue, one servo and one loop. Force limits, coupling stiffness and rate
-/// are what each device's limits() say; the loop and the servo have one rate. State number i, read from device i, moves
-/// tool i, and force number i is written to it; a status is noted (note(Status), where a device has it) by the device
-/// of its tool. Every start begins as a new session does; the heat of motors alone is remembered.
+/// are those of each device's limits(); the loop and the servo have one rate. State number i, read from device i, moves
+/// tool i, and force number i is written to device i; devices with a function note(Status) receive the status of their
+/// tool. Every start begins as a new session does, except that the heat of the motors is kept.
 ///
 /// Refers to devices and tissue, which must outlive it; neither copied nor moved. Threads: start, run, stop and the
 /// destructor belong to one thread; running and progress to any; snapshot to one reader. For an SDK that owns the
-/// servo's thread, HapticServo::tick in its callback.
+/// servo thread, call HapticServo::tick in its callback.
 class HapticSession {
  public:
-  /// Throws bad_argument for what HapticServo refuses, for options beyond what a device says (SessionOptions), when
-  /// there is not one tool per device, and for a device given twice. Allocates all a tick needs.
+  /// Throws bad_argument for what HapticServo refuses, for options beyond a device's limits (SessionOptions), when
+  /// there is not one tool per device, and for a device given twice. Allocates everything that a tick needs.
   template <HapticDevice D, class T>
   HapticSession(D& device, T& tissue, const ToolList& tool, const SessionOptions& options = {})
       : HapticSession(std::vector<detail::LoopDevice>{detail::loop_device(device)}, TissueView(tissue), tool, options) {
@@ -47,21 +47,20 @@ class HapticSession {
   /// Stops.
   ~HapticSession();
 
-  /// Starts, calls the progress callback from this thread, stops, and reports. Throws bad_argument when nothing would
-  /// end it, neither `duration` nor `progress`, and else as start does; what the callback throws comes through,
-  /// stopped.
+  /// Starts, calls the progress callback from this thread, stops, and reports. Throws bad_argument when it would never
+  /// end (neither `duration` nor `progress`), and otherwise as start does. Stops and rethrows when the callback throws.
   LoopReport run(const LoopOptions& options);
 
   /// Starts the devices in order, then the haptic thread, and returns; ticks until stop(), or for `duration`. Throws
-  /// bad_argument when it was started and not stopped, for a senseless duration, and for a progress callback, which no
-  /// thread would call: ask progress(). What a device throws that cannot start comes through: that device and those
-  /// before it are stopped, and nothing runs.
+  /// bad_argument when it was started and not stopped, for an invalid duration, and for a progress callback, which no
+  /// thread would call: use progress(). When a device throws in start, that device and those before it are stopped, no
+  /// thread runs, and the exception is passed on.
   void start(const LoopOptions& options = {});
-  /// Ends the haptic thread after its tick, stops the devices, tells the tissue that nothing presses, and reports. The
-  /// snapshot stays that of the last tick. An empty report when nothing was started.
+  /// Ends the haptic thread after its tick, stops the devices, reports to the tissue that nothing presses, and returns
+  /// the report. The snapshot stays that of the last tick. The report is empty when nothing was started.
   LoopReport stop();
 
-  /// Whether the haptic thread ticks: false again once its duration is over, though devices are stopped by stop() only.
+  /// Whether the haptic thread ticks: false after its duration has ended, although only stop() stops the devices.
   bool running() const noexcept;
   LoopProgress progress() const noexcept;
   /// Newest snapshot; never waits. Valid until the next call.

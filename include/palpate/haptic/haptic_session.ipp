@@ -51,8 +51,8 @@ PALPATE_INLINE LoopReport HapticSession::run(const LoopOptions& options) {
 
 PALPATE_INLINE void HapticSession::start(const LoopOptions& options) {
   if (options.progress)
-    raise(SetupErrorKind::bad_argument, "HapticSession::start has no thread to call a progress callback from",
-          "Ask progress() whenever you like, or call run()");
+    raise(SetupErrorKind::bad_argument, "HapticSession::start has no thread that could call a progress callback",
+          "Call progress() at any time, or use run()");
   loop_->require_startable(options);
   servo_.reset();
   loop_->start(options);

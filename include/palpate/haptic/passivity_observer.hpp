@@ -1,4 +1,4 @@
-// How much energy a session has given to the hand.
+// Measures the energy that a session has given to the hand.
 #pragma once
 
 #include <palpate/core/types.hpp>
@@ -7,9 +7,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Passivity observer (Hannaford and Ryu, IEEE T-RA 18(1), 2002): the work of the forces on the tool as the samples
-/// show it, f(n-1) . (x(n) - x(n-1)), with the force that acted in between. Steps that are not finite, or would
-/// make the sum infinite, count for nothing.
+/// Passivity observer (Hannaford and Ryu, IEEE T-RA 18(1), 2002): the work of the forces on the tool from sampled
+/// positions, f(n-1) . (x(n) - x(n-1)), with the force that acted in between. Steps that are not finite, or would
+/// make the sum infinite, are ignored.
 class PassivityObserver {
  public:
   /// `delay` in whole ticks, 0 to 32.
@@ -17,18 +17,18 @@ class PassivityObserver {
 
   /// One interval between two samples.
   struct Step {
-    double work = 0.0;  ///< [J] given to the tool
-    double squared_path = 0.0;  ///< [m^2] square of the way
-    double time = 0.0;  ///< [s] > 0, or 0 when stamps do not tell
+    double work = 0.0;          ///< [J] given to the tool
+    double squared_path = 0.0;  ///< [m^2] square of the displacement
+    double time = 0.0;          ///< [s] > 0, or 0 when the time stamps give no duration
   };
 
-  /// Takes in a new sample.
+  /// Processes a new sample.
   Step moved(const Vector3& position, double time) noexcept;
-  /// Takes in work of another kind: of a torque.
+  /// Adds other work, that of a torque.
   void moved_by(double work) noexcept;
-  /// The force that was rendered upon that sample.
+  /// Records the force that was rendered in response to that sample.
   void gave(const Vector3& force) noexcept;
-  /// The way to the next sample does not count: the device was lost, or the tool jumped.
+  /// The displacement to the next sample is ignored: the device was lost, or the tool jumped.
   void forget() noexcept { known_ = false; }
 
   /// [J] given to the tool since construction; below zero: taken from it. Always finite.

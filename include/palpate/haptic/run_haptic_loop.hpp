@@ -1,4 +1,4 @@
-// Runs devices and a servo of one's own at a steady rate and reports honestly how it went.
+// Runs devices and a user-defined servo at a constant rate and reports measured times and missed deadlines.
 #pragma once
 
 #include <palpate/concepts/servo.hpp>
@@ -14,20 +14,20 @@ LoopReport run_loop(std::vector<LoopDevice> devices, const LoopServo& servo, con
 
 }  // namespace detail
 
-/// For a servo of one's own; HapticSession makes one that fits the device. Starts the device and, in a thread of its
-/// own with denormals flushed, each period of the device's rate reads it, ticks the servo with that one state and
-/// writes the force; then stops the device, whatever happens. Returns when `duration` is over or the progress callback
-/// said so; one of the two must be given. A tick takes no lock and allocates nothing of its own. Forces are written as
-/// the servo gives them: the force gate is the servo's last step. If the device has note(Status) (a Recorder), it is
-/// given each tick's status. Throws SetupError(bad_argument) on senseless options, and what device.start() and the
-/// callback throw.
+/// For a user-defined servo; HapticSession constructs one that fits the device. Starts the device and, in its own
+/// thread with denormals flushed, in each period of the device's rate reads it, ticks the servo with that one state and
+/// writes the force; then stops the device in all cases. Returns when `duration` has passed or the progress callback
+/// returned false; one of the two must be given. A tick takes no lock and allocates nothing itself. Forces are
+/// written as the servo returns them: the force gate is the servo's last step. If the device has note(Status) (a
+/// Recorder), it receives each tick's status. Throws SetupError(bad_argument) for invalid options, and what
+/// device.start() and the callback throw.
 template <HapticDevice Device, Servo S>
 LoopReport run_haptic_loop(Device& device, S& servo, const LoopOptions& options) {
   return detail::run_loop({detail::loop_device(device)}, detail::loop_servo(servo), options);
 }
-/// The same for several devices, std::tie(left, right), at the rate of the slowest: all are read, one tick, all are
-/// written. State and force number i are those of device i. They start in order; when one throws, it and those before
-/// it are stopped.
+/// The same for several devices, std::tie(left, right), at the rate of the slowest: each tick reads all, ticks the
+/// servo once and writes all. State and force number i are those of device i. They start in order; when one throws, it
+/// and those before it are stopped.
 template <HapticDevice... Device, Servo S>
 LoopReport run_haptic_loop(const std::tuple<Device&...>& devices, S& servo, const LoopOptions& options) {
   return detail::run_loop(detail::loop_devices(devices), detail::loop_servo(servo), options);

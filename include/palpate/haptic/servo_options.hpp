@@ -1,4 +1,4 @@
-// What a servo may choose, and the tools it makes of that.
+// Options of a servo, and its contact tools.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
@@ -11,19 +11,19 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What a servo may choose. Limits come from the devices that render; HapticSession asks them itself.
+/// Options of a servo. The limits are those of the devices that render; HapticSession reads them from its devices.
 struct ServoOptions {
-  DeviceLimits device{};                       ///< of the device that renders, where `devices` is empty
-  std::vector<DeviceLimits> devices{};         ///< one per tool, where they differ
-  std::optional<double> rate{};                ///< [1/s] of ticks; default the slowest device's
-  std::optional<double> coupling_stiffness{};  ///< [N/m] between proxy and device; default each device's, less in
-                                               ///< proportion at a lower rate; infinity for verification
-  std::optional<double> rotational_stiffness{};  ///< [N m/rad] the same for rotations; default each device's, or rigid
-                                                 ///< for a device that renders no torque
-  std::optional<ForceLimits> force_limits{};   ///< of every tool; default ForceLimits::from(its device, rate)
-  ContactParameters contact{};                 ///< friction too
-  double stale_tissue_after = 0.5;             ///< [s] without news of a tissue that moves by itself until forces fade
-  std::uint32_t grasp_buttons = 0;             ///< while one of these is pressed, the tool holds the point it touched
+  DeviceLimits device{};                         ///< of the device that renders, if `devices` is empty
+  std::vector<DeviceLimits> devices{};           ///< one per tool, if they differ
+  std::optional<double> rate{};                  ///< [1/s] of ticks; default: that of the slowest device
+  std::optional<double> coupling_stiffness{};    ///< [N/m] between proxy and device; default: that of each device,
+                                                 ///< reduced in proportion at a lower rate; infinity for verification
+  std::optional<double> rotational_stiffness{};  ///< [N m/rad] the same for rotations; default: that of each device, or
+                                                 ///< rigid for a device that renders no torque
+  std::optional<ForceLimits> force_limits{};     ///< of every tool; default ForceLimits::from(its device, rate)
+  ContactParameters contact{};                   ///< includes friction
+  double stale_tissue_after = 0.5;  ///< [s] without update of a tissue that moves by itself until forces fade
+  std::uint32_t grasp_buttons = 0;  ///< while one of these is pressed, the tool grasps the point it touched
 
   const DeviceLimits& device_of(std::size_t tool) const noexcept { return devices.empty() ? device : devices[tool]; }
   /// [1/s]
@@ -34,19 +34,21 @@ struct ServoOptions {
 
 namespace detail {
 
-/// What a stiffness that `device` renders stably at its own rate becomes at this one: less in proportion where it is
-/// slower, since a held wall of stiffness K needs a damping of K T/2 (Colgate and Schenkel 1997).
+/// The stiffness that a device renders stably at `rate`, for one that it renders stably at its own rate: reduced in
+/// proportion at a lower rate, since a sampled wall of stiffness K needs a damping of K T/2 (Colgate and Schenkel
+/// 1997).
 double stable_at(double rate, const DeviceLimits& device, double stiffness) noexcept;
 
-/// Of the coupling between a tool's proxy and its device [N/m]. Throws bad_argument (ids: the tool) unless positive.
+/// Stiffness of the coupling between a tool's proxy and its device [N/m]. Throws bad_argument (ids: the tool) unless
+/// positive.
 double coupling_stiffness_of(std::size_t tool, const ServoOptions& options);
 
-/// Radius of a tool without a sphere [m]: never the smallest, and never in contact.
+/// Radius of a tool without a sphere [m]: so large that it is never the smallest radius; never in contact.
 inline constexpr double no_sphere = 1e6;
 
 }  // namespace detail
 
-/// The tools of a servo as contact knows them; blades as tools that are never active. Throws bad_argument for an
+/// The tools of a servo in the contact problem; blades as tools that are never active. Throws bad_argument for an
 /// invalid tool, coupling or number of tools, or when there are `devices`, but not one per tool (ids: the tool).
 std::vector<ContactTool> make_contact_tools(const ToolList& tools, const ServoOptions& options);
 

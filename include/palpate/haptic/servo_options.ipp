@@ -47,17 +47,18 @@ inline ContactTool make_contact_tool(const CapsuleTool& tool, std::size_t i, con
   const DeviceLimits& device = options.device_of(i);
   const double rate = options.tick_rate(), stiffness = coupling_stiffness_of(i, options);
   const bool renders_torque = device.rotational_stiffness > 0.0 || options.limits(i).peak_torque > 0.0;
-  const double turning = options.rotational_stiffness.value_or(
+  const double rotational = options.rotational_stiffness.value_or(
       renders_torque ? stable_at(rate, device, device.rotational_stiffness) : infinity);
-  if (!(turning > 0.0))
-    refuse_stiffness(i, "turning", turning, "A device that renders torque needs one, in N m/rad; infinity is allowed");
+  if (!(rotational > 0.0))
+    refuse_stiffness(i, "rotational", rotational,
+                     "A device that renders torque needs a positive one, in N m/rad; infinity is allowed");
   tool.require_valid();
   ContactTool made;
   made.radius = tool.radius;
   made.half_length = tool.half_length;
   if (tool.half_length > 0.0) made.own_axis = tool.axis.normalized();
   made.compliance = 1.0 / stiffness;
-  made.rotational_compliance = 1.0 / turning;
+  made.rotational_compliance = 1.0 / rotational;
   return made;
 }
 
@@ -69,9 +70,9 @@ PALPATE_INLINE std::vector<ContactTool> make_contact_tools(const ToolList& tools
           "a servo has one to " + std::to_string(maximum_tools) + " tools, not " + std::to_string(tools.size()));
   if (!options.devices.empty() && options.devices.size() != tools.size())
     raise(SetupErrorKind::bad_argument,
-          "limits of " + std::to_string(options.devices.size()) + " devices for " + std::to_string(tools.size()) +
-              " tools",
-          "Give ServoOptions::devices one per tool, or none and `device` for all");
+          "ServoOptions has limits of " + std::to_string(options.devices.size()) + " devices for " +
+              std::to_string(tools.size()) + " tools",
+          "Give ServoOptions::devices one entry per tool, or none and `device` for all");
   std::vector<ContactTool> made;
   for (std::size_t i = 0; i < tools.size(); ++i) {
     if (const auto* sphere = std::get_if<SphereTool>(&tools[i]))

@@ -27,7 +27,7 @@ PALPATE_INLINE void ServoSnapshot::note(std::span<const Contact> all, std::span<
   for (std::size_t i = 0; i + 2 < all.size(); ++i) {
     if (!all[i].grasped) continue;
     const Vector3 total = all[i].total() + all[i + 1].total() + all[i + 2].total();
-    note_held(all[i], pose * all[i].point, rotation_of(pose) * total);
+    note_grasped(all[i], pose * all[i].point, rotation_of(pose) * total);
     i += 2;
   }
 }
@@ -59,8 +59,9 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const ServoSnapshot& 
   return out;
 }
 
-/// The three rows of a held point as the one force that they are.
-PALPATE_INLINE void ServoSnapshot::note_held(const Contact& row, const Vector3& point, const Vector3& total) noexcept {
+/// Combines the three rows of a grasped point into one force.
+PALPATE_INLINE void ServoSnapshot::note_grasped(const Contact& row, const Vector3& point,
+                                                const Vector3& total) noexcept {
   const double force = total.norm();
   if (!(force > 0.0)) return;
   ToolContact& grasp = contacts[contact_count++];

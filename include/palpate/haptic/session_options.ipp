@@ -11,7 +11,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Refuses what is more than a device allows. NaN is.
+/// Refuses values above a device's limit, and NaN.
 class WithinDevice {
  public:
   explicit WithinDevice(std::size_t number) noexcept : number_(static_cast<std::int64_t>(number)) {}
@@ -19,8 +19,8 @@ class WithinDevice {
   void require(double value, double most, const char* what, const char* unit, const char* hint) const {
     if (value <= most * (1.0 + 1e-9)) return;
     SetupProblem problem;
-    problem.what = std::string("a ") + what + " of " + number(value) + ' ' + unit + " is beyond what device " +
-                   std::to_string(number_) + " says in its limits(), " + number(most) + ' ' + unit;
+    problem.what = std::string("a ") + what + " of " + number(value) + ' ' + unit + " exceeds the limit of device " +
+                   std::to_string(number_) + ", " + number(most) + ' ' + unit;
     problem.hint = hint;
     problem.value = value;
     problem.threshold = most;
@@ -28,7 +28,7 @@ class WithinDevice {
     raise(std::move(problem));
   }
   void require(const ForceLimits& forces, const DeviceLimits& device) const {
-    const char* const hint = "Start from ForceLimits::from(device.limits()), and lower what you need lower";
+    const char* const hint = "Start from ForceLimits::from(device.limits()), and reduce values as needed";
     require(forces.peak_force, device.peak_force, "peak force", "N", hint);
     require(forces.continuous_force, device.continuous_force, "continuous force", "N", hint);
     require(forces.peak_torque, device.peak_torque, "peak torque", "N m", hint);
@@ -67,10 +67,10 @@ PALPATE_INLINE ServoOptions servo_options(const std::vector<DeviceLimits>& devic
     within.require(rate, device.rate, "rate", "Hz", "Leave it out, or serve the device more slowly");
     if (options.coupling_stiffness)
       within.require(*options.coupling_stiffness, detail::stable_at(rate, device, device.stiffness),
-                     "coupling stiffness", "N/m", "Leave it out; a stiffer one is a HapticServo's, for verification");
+                     "coupling stiffness", "N/m", "Leave it out; HapticServo accepts a stiffer one, for verification");
     if (options.rotational_stiffness && device.peak_torque > 0.0)
       within.require(*options.rotational_stiffness, detail::stable_at(rate, device, device.rotational_stiffness),
-                     "turning stiffness", "N m/rad", "Leave it out");
+                     "rotational stiffness", "N m/rad", "Leave it out");
     if (options.force_limits) within.require(*options.force_limits, device);
   }
   if (options.force_limits) detail::require_period(*options.force_limits, rate);

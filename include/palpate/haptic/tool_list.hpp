@@ -11,7 +11,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A tool of any kind. A blade is for a tissue that can be cut.
+/// A tool of any kind. A blade needs a tissue that can be cut.
 using Tool = std::variant<SphereTool, CapsuleTool, BladeTool>;
 
 template <class T>

@@ -1,4 +1,4 @@
-// Explicit integration of order two.
+// Second-order explicit integration.
 #pragma once
 
 #include <palpate/concepts/integrator.hpp>
@@ -8,18 +8,20 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Held dofs stay out of what all dofs do: their inverse mass is zero, and so is their velocity meanwhile.
+/// Sets the velocity of constrained dofs to zero. With their inverse mass of zero they are then unaffected by updates
+/// of all dofs.
 void clear_constrained_velocity(MotionState& s) noexcept;
-/// They go to their targets at constant speed.
+/// Moves constrained dofs towards their targets at constant speed; show_constrained reports that speed as velocity.
 void move_constrained(MotionState& s, double dt) noexcept;
 void show_constrained(MotionState& s) noexcept;
 
 }  // namespace detail
 
-/// Central differences (Belytschko, Liu, Moran, Nonlinear Finite Elements, 6.2), as half a kick, a drift, half a kick:
-/// u and v belong to the same time, the step may change, and with a constant step the displacements are those of
+/// Central differences (Belytschko, Liu, Moran, Nonlinear Finite Elements, 6.2), as half a velocity update, a position
+/// update, half a velocity update: u and v belong to the same time, the step may change, and with a constant step the
+/// displacements satisfy
 ///   u_n+1 = [dt^2 (R - F) / m + 2 u_n - (1 - alpha dt/2) u_n-1] / (1 + alpha dt/2).
-/// Order 2; symplectic without damping: energy does not drift, momentum is exact. Stable up to 2 / omega_max, whatever
+/// Order 2; symplectic without damping: energy does not drift, momentum is exact. Stable up to 2 / omega_max for any
 /// alpha.
 struct CentralDifference {
   static constexpr int order = 2;

@@ -1,4 +1,4 @@
-// A body in explicit motion: steps within the stable limit, and a watch over its energy.
+// Explicit motion of a body: steps within the stable limit, with a check of the energy.
 #pragma once
 
 #include <palpate/concepts/integrator.hpp>
@@ -19,37 +19,38 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 struct ExplicitOptions {
-  double damping = 0.0;       ///< alpha of the mass-proportional damping [1/s]
-  double margin = 0.07;       ///< the stable limit is taken this much smaller than estimated
-  int first_iterations = 40;  ///< of the estimate at set-up
-  int limit_every = 16;       ///< steps between two iterations of the estimate, each of which costs one force; 0: never
-                              ///< but by estimate_limit()
-  int energy_every = 16;  ///< steps between two looks at the stored energy; the kinetic is seen every step. 0: never
-  double energy_growth = 1.5;  ///< how many times the energy that explains itself may be there before motion stops
+  double damping = 0.0;        ///< alpha of the mass-proportional damping [1/s]
+  double margin = 0.07;        ///< relative safety margin below the estimated stable limit
+  int first_iterations = 40;   ///< of the limit estimate, at set-up
+  int limit_every = 16;        ///< steps between two iterations of the estimate, each of which costs one force; 0: only
+                               ///< by estimate_limit()
+  int energy_every = 16;       ///< steps between checks of the stored energy (kinetic energy: every step). 0: never
+  double energy_growth = 1.5;  ///< factor by which the energy may exceed its known sources before motion stops
 };
 
 /// Integrates M u'' + alpha M u' + f(u) = R with a lumped mass. step() neither allocates nor throws and flushes
-/// denormals. What it will not do it refuses, with a flag and without a change:
-///   step_refused   dt is not positive, no number, or above limit(); load() or target() has not one entry per dof
-///   energy_grew    kinetic and stored energy exceed what was there at the start and what loads and held dofs have put
-///                  in since, or are not finite; the body is back in its last good state, and stays until restart()
-/// A step that is taken says of the state it ends in:
-///   inverted         elements are inside out (deformation() says how many, and which is worst)
-///   degraded_model   a law was asked where it does not hold, and what it adds there means nothing
-/// A stable motion near the limit swings above its energy by up to 1 / (1 - dt / limit); the watch allows for that.
-/// Cost per step: one force, 1/limit_every forces, 1/energy_every energies, and about 20 numbers per dof.
+/// denormals. A refused step sets a flag and changes nothing:
+///   step_refused   dt is not positive, NaN, or above limit(); load() or target() does not have one entry per dof
+///   energy_grew    kinetic and stored energy exceed the energy at the start plus the work done since by loads and
+///                  constrained dofs, or are not finite; the body returns to its last good state, and stays there until
+///                  restart()
+/// A step that is taken reports the state at its end:
+///   inverted         elements are inverted (deformation() gives their number and the worst one)
+///   degraded_model   a material was evaluated where it is not admissible, and its stress there is meaningless
+/// The energy of a stable motion near the limit oscillates up to 1 / (1 - dt / limit) times its value; the check allows
+/// for that. Cost per step: one force, 1/limit_every forces, 1/energy_every energies, and about 20 numbers per dof.
 template <ForceOperator Force, ExplicitScheme Scheme>
 class ExplicitMotion {
   static_assert(
       !requires { requires Force::has_history; },
-      "palpate: explicit steps do not move what a material remembers; use ImplicitDynamics");
+      "palpate: explicit steps do not advance a viscoelastic history; use ImplicitDynamics");
 
  public:
-  /// `nodal_mass` [kg] per node; `free_dofs` ascending, all others are held where they are (set target() to move them);
-  /// `frequency_bound` an upper bound of omega^2 at rest [1/s^2] (element_frequency_bound), which limits the step until
-  /// the estimate has StepLimit::settled iterations; infinite when there is none, and the estimate then needs as many
-  /// as `first_iterations`. Throws bad_argument for sizes that do not fit and options out of range, bad_density for a
-  /// mass that is not positive.
+  /// `nodal_mass` [kg] per node; `free_dofs` ascending, all others are constrained at their position (set target() to
+  /// move them); `frequency_bound` an upper bound of omega^2 at rest [1/s^2] (element_frequency_bound), which limits
+  /// the step until the estimate has StepLimit::settled iterations. Infinite without a bound; then the estimate needs
+  /// at least that many `first_iterations`. Throws bad_argument for sizes that do not fit and options out of range,
+  /// bad_density for a mass that is not positive.
   ExplicitMotion(Force force, const VectorX& nodal_mass, const std::vector<Index>& free_dofs,
                  double frequency_bound = infinity, const ExplicitOptions& options = {})
       : force_(std::move(force)), options_(options), limit_(force_.size(), frequency_bound, options.margin) {
@@ -75,21 +76,21 @@ class ExplicitMotion {
 
   const MotionState& state() const noexcept { return state_; }
   Force& force() noexcept { return force_; }
-  /// How far the present state is from inside out.
+  /// Volume ratios in the current state: smallest ratio, number of inverted elements, worst element.
   const DeformationReport& deformation() const noexcept { return state_.deformation; }
-  /// External forces [N], constant until changed. Keep the size.
+  /// External forces [N], constant until changed. Do not resize.
   VectorX& load() noexcept { return state_.load; }
-  /// Where held dofs are at the end of the next step [m]; they go there at constant speed. Keep the size.
+  /// Positions of constrained dofs at the end of the next step [m]; they move there at constant speed. Do not resize.
   VectorX& target() noexcept { return state_.target; }
 
-  /// A state to return to.
+  /// A saved state for return_to().
   struct Checkpoint {
     VectorX displacement, velocity, force;
     DeformationReport deformation;
     double time = 0.0, work = 0.0, gross = 0.0;
     std::int64_t steps = 0;
   };
-  /// Notes the present state. Allocates when `at` has another size.
+  /// Saves the current state. Allocates when `at` has another size.
   void save(Checkpoint& at) const noexcept {
     at.displacement = state_.displacement;
     at.velocity = state_.velocity;
@@ -100,7 +101,7 @@ class ExplicitMotion {
     at.gross = gross_;
     at.steps = steps_;
   }
-  /// Returns to a state of this motion, to take other steps from there. A stopped motion stays stopped.
+  /// Returns to a saved state of this motion, to take other steps from there. A stopped motion stays stopped.
   void return_to(const Checkpoint& at) noexcept {
     state_.displacement = at.displacement;
     state_.velocity = at.velocity;
@@ -112,8 +113,8 @@ class ExplicitMotion {
     steps_ = at.steps;
   }
 
-  /// Sets displacement and velocity (of the same time), and restarts. Throws bad_argument, without a change, for
-  /// vectors that have not one entry per dof.
+  /// Sets displacement and velocity (at the same time), and restarts. Throws bad_argument, without a change, for
+  /// vectors that do not have one entry per dof.
   void set(const VectorX& displacement, const VectorX& velocity) {
     for (const VectorX* v : {&displacement, &velocity}) require_entries(*v, force_.size());
     state_.displacement = displacement;
@@ -121,18 +122,18 @@ class ExplicitMotion {
     state_.target = displacement;
     restart();
   }
-  /// Forgets work done so far, estimates the limit anew, which takes some 20 to 40 forces, unless limit_every is 0, and
-  /// lets a stopped motion go on.
+  /// Resets the work, estimates the limit again (some 20 to 40 forces, none if limit_every is 0), and lets a stopped
+  /// motion continue.
   void restart() noexcept {
     begin();
     if (options_.limit_every > 0) estimate_limit(std::max(options_.first_iterations, StepLimit::settled));
   }
 
-  /// Elements for which gone(element) leave where they are, for good, with their mass; `nodal_mass` is what is left
-  /// (lumped_mass(body, gone)). Velocities of what is left stay, and nodes without mass stop where they are. load()
-  /// remains the caller's: where there is gravity, less of it. The limit is estimated anew as by restart() and may be
-  /// shorter: a light node on a stiff element; at rest no shorter than what the elements' bound says. Work counts from
-  /// here; a stopped motion stays stopped. Throws bad_argument or bad_density, without a change.
+  /// Permanently removes the elements for which gone(element) is true, with their mass; `nodal_mass` is the remaining
+  /// mass (lumped_mass(body, gone)). Remaining nodes keep their velocity, and nodes without mass stop at their
+  /// position. load() is not adapted: with gravity, the caller reduces it. The limit is estimated again as by restart()
+  /// and may be shorter (a light node on a stiff element), at rest not shorter than the bound of the elements. Work is
+  /// counted from here; a stopped motion stays stopped. Throws bad_argument or bad_density, without a change.
   template <class Gone>
   requires requires(Force& f, Gone gone) { f.remove_if(gone); }
   void remove_elements(Gone&& gone, const VectorX& nodal_mass) {
@@ -150,9 +151,9 @@ class ExplicitMotion {
     stopped_ = stopped;
   }
 
-  /// Largest step that is accepted [s], from the state of at most limit_every steps ago.
+  /// Largest step that is accepted [s], estimated at most limit_every steps ago.
   double limit() const noexcept { return limit_.step(); }
-  /// Estimates the limit anew, from the present state; one force per iteration.
+  /// Estimates the limit again in the current state; one force per iteration.
   double estimate_limit(int iterations) noexcept {
     const FlushDenormals flush;
     limit_.iterate(force_, state_, iterations);
@@ -192,14 +193,14 @@ class ExplicitMotion {
     return StatusFlag::energy_grew;
   }
 
-  /// Of the free dofs [J].
+  /// Kinetic energy of the free dofs [J].
   double kinetic_energy() const noexcept {
     double sum = state_.mass.dot(state_.velocity.cwiseAbs2());
     for (Index dof : state_.constrained) sum -= state_.mass[dof] * state_.velocity[dof] * state_.velocity[dof];
     return 0.5 * sum;
   }
   double stored_energy() noexcept { return force_.energy(state_.displacement); }
-  /// Done by loads and held dofs since the last restart [J].
+  /// Work of loads and constrained dofs since the last restart [J].
   double work() const noexcept { return work_; }
 
  private:
@@ -232,7 +233,7 @@ class ExplicitMotion {
             "Give a bound of omega^2, or " + std::to_string(StepLimit::settled) + " first_iterations or more");
   }
 
-  /// Work and energy count from the present state.
+  /// Starts counting work and energy at the current state.
   void begin() noexcept {
     state_.deformation = force_.force(state_.displacement, state_.force);
     work_ = gross_ = 0.0;
@@ -242,7 +243,7 @@ class ExplicitMotion {
     keep();
   }
 
-  /// No node may have got heavier, or lighter than nothing.
+  /// Throws if a node has become heavier, or has a negative mass.
   void require_mass_left(const VectorX& mass) const {
     if (3 * mass.size() != force_.size())
       raise(SetupErrorKind::bad_argument,
@@ -286,8 +287,8 @@ class ExplicitMotion {
     keep();
     return true;
   }
-  /// Energy of a motion by the length that differences of forces can still see; a linear force is as exact as it is
-  /// small.
+  /// Rounding error of the energy: that of a motion by probe_length(), the smallest length that force differences
+  /// resolve. Zero for a linear force, whose error is proportional to the displacement.
   double rounding() const noexcept {
     if constexpr (requires { force_.is_linear(); })
       if (force_.is_linear()) return 0.0;

@@ -11,10 +11,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 struct NewtonParameters {
   int maximum_iterations = 40;
-  double tolerance = 1e-10;   ///< of the residual against the problem's scale; 0: as far as rounding lets it
+  double tolerance = 1e-10;   ///< of the residual relative to the problem's scale; 0: down to the rounding error
   int maximum_halvings = 12;  ///< of one step
 
-  /// Throws bad_argument for parameters with which nothing could be solved.
+  /// Throws bad_argument for unusable parameters.
   void require_usable() const;
 };
 
@@ -25,16 +25,16 @@ struct NewtonReport {
   double relative_residual = infinity;
 };
 
-/// Newton's method with Armijo's rule on the potential (Nocedal and Wright, Numerical Optimization, 3.1); near the
-/// minimum, where the potential has no digits left to compare, on the residual. Owns its workspaces: solving does not
-/// allocate.
+/// Newton's method with Armijo's rule on the potential (Nocedal and Wright, Numerical Optimization, 3.1). Near the
+/// minimum, where differences of the potential are lost to rounding, the rule uses the residual. Owns its workspaces:
+/// solving does not allocate.
 class NewtonMethod {
  public:
   NewtonMethod() = default;
   /// Throws as NewtonParameters::require_usable. Allocates four vectors.
   explicit NewtonMethod(Index size, const NewtonParameters& parameters = {});
 
-  /// Improves x until the residual is small. x is always inside the domain if it was at the start.
+  /// Improves x until the residual is small. If x starts inside the domain it never leaves it.
   template <NewtonProblem P>
   NewtonReport solve(P& problem, VectorX& x) noexcept {
     NewtonReport report;

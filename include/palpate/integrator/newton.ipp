@@ -13,7 +13,8 @@ PALPATE_INLINE void NewtonParameters::require_usable() const {
     raise(SetupErrorKind::bad_argument, std::string("Newton's ") + name + " is " + value, hint);
   };
   if (maximum_iterations < 1) refuse("maximum_iterations", std::to_string(maximum_iterations), "Give at least 1");
-  if (!(tolerance >= 0.0 && tolerance < 1.0)) refuse("tolerance", number(tolerance), "Give 0 or a little more");
+  if (!(tolerance >= 0.0 && tolerance < 1.0))
+    refuse("tolerance", number(tolerance), "Give 0 or a small positive number below 1");
   if (maximum_halvings < 0) refuse("maximum_halvings", std::to_string(maximum_halvings), "Give 0 or more");
 }
 

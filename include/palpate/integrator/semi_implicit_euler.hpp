@@ -1,4 +1,4 @@
-// Explicit integration of order one: the velocity first, then the place.
+// First-order explicit integration: velocity first, then position.
 #pragma once
 
 #include <palpate/concepts/integrator.hpp>
@@ -8,8 +8,8 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Semi-implicit Euler, as in Bro-Nielsen's models: v_n+1 = (v_n + dt (R - F(u_n)) / m) / (1 + alpha dt), u_n+1 = u_n +
-/// dt v_n+1. Order 1, symplectic; its displacements are those of central differences that start half a step off. Stable
-/// up to 2 / omega_max.
+/// dt v_n+1. Order 1, symplectic; its displacements are those of central differences with the start shifted by half a
+/// step. Stable up to 2 / omega_max.
 struct SemiImplicitEuler {
   static constexpr int order = 1;
 

@@ -44,7 +44,7 @@ inline VectorX random_answer(Index n) {
   return answer;
 }
 
-/// |x - truth| / |truth| of a solve whose answer is known; infinity when it is not finite.
+/// |x - truth| / |truth| of a solve whose exact solution is known; infinity when x is not finite.
 inline double error_of_solve(const OperatorView& op, SolverView solver, const VectorX& truth) {
   VectorX b(truth.size()), x(truth.size());
   op.apply(truth, b);

@@ -12,9 +12,10 @@ struct ConjugateGradientParameters {
   int maximum_iterations = 0;  ///< 0: three times the size, at least 100
 };
 
-/// Preconditioned conjugate gradients. Needs products with K only; nothing is inverted and there is no time step (the
-/// thesis says otherwise in 3.6.2, see docs/thesis.md). The recursive residual drifts, so convergence is decided by the
-/// recomputed one, with restarts until it no longer improves. Workspaces are owned: `solve_into` does not allocate.
+/// Preconditioned conjugate gradients. Needs only products with K; nothing is inverted and there is no time step (the
+/// thesis, 3.6.2, states otherwise, see docs/thesis.md). The recursive residual drifts, so convergence is decided by
+/// the recomputed residual, with restarts until it no longer improves. Owns its workspaces: `solve_into` does not
+/// allocate.
 class ConjugateGradientSolver {
  public:
   ConjugateGradientSolver() = default;
@@ -22,7 +23,7 @@ class ConjugateGradientSolver {
 
   std::size_t bytes() const noexcept { return static_cast<std::size_t>(4 * r_.size()) * sizeof(double); }
 
-  /// x = K^-1 b from a zero start. Cost: one product and one preconditioning per iteration, at most
+  /// x = K^-1 b, starting from zero. Cost: one product and one preconditioning per iteration, at most
   /// `maximum_iterations`.
   SolveReport solve_into(const OperatorView& op, const VectorX& b, VectorX& x) noexcept;
 

@@ -15,17 +15,17 @@ namespace detail {
 class BigArray;
 }
 
-/// L L^T of a dense SPD matrix with checked pivots. `solve_into` does not allocate: n^2 multiply-adds. Copies share the
-/// factor and own their workspace.
+/// L L^T of a dense SPD matrix with checked pivots. `solve_into` costs n^2 multiply-adds and does not allocate. Copies
+/// share the factor; each owns its workspace.
 class DenseCholesky {
  public:
   DenseCholesky() = default;
 
-  /// Factorises the matrix (lower half read). Throws not_positive_definite.
+  /// Factorises the matrix (reads the lower half). Throws not_positive_definite.
   DenseCholesky(const MatrixX& matrix, const SetupLimits& limits);
 
   void write(BinaryWriter& out) const;
-  /// What `write` stored of a system of this size; usable only when the reader is good. Throws too_large.
+  /// Reads what `write` stored for a system of this size; valid only when the reader is good. Throws too_large.
   static DenseCholesky read(BinaryReader& in, Index size, const SetupLimits& limits);
 
   Index size() const noexcept { return size_; }
@@ -34,7 +34,7 @@ class DenseCholesky {
 
  private:
   static constexpr double pivot_threshold = 1e-15;
-  static constexpr Index padding = 64;  // zeros behind the factor, for kernels that read past its end
+  static constexpr Index padding = 64;  // zeros after the factor, for kernels that read past its end
 
   static std::shared_ptr<detail::BigArray> allocate(Index size);
   void adopt(std::shared_ptr<const detail::BigArray> factor, Index size);

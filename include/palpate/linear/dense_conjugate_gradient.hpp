@@ -12,7 +12,7 @@ class BinaryReader;
 class BinaryWriter;
 struct SetupLimits;
 
-/// A dense SPD matrix with its diagonal as preconditioner. Satisfies SpdOperator. Copies share the matrix.
+/// A dense SPD matrix, preconditioned by its diagonal. Satisfies SpdOperator. Copies share the matrix.
 class DenseOperator {
  public:
   DenseOperator() = default;
@@ -34,7 +34,7 @@ class DenseConjugateGradient {
   DenseConjugateGradient() = default;
   DenseConjugateGradient(MatrixX matrix, const SetupLimits&) : op_(std::move(matrix)), solver_(op_.size()) {}
   void write(BinaryWriter& out) const;
-  /// What `write` stored of a system of this size; usable only when the reader is good. Throws too_large.
+  /// Reads what `write` stored for a system of this size; valid only when the reader is good. Throws too_large.
   static DenseConjugateGradient read(BinaryReader& in, Index size, const SetupLimits& limits);
 
   Index size() const noexcept { return op_.size(); }

@@ -11,19 +11,19 @@ namespace palpate { inline namespace PALPATE_ABI {
 class BinaryReader;
 class BinaryWriter;
 
-/// The inverse of a dense SPD matrix, built in double and stored as Scalar, double or float. `solve_into` multiplies
-/// with the columns of non-zero loads only: n multiply-adds per loaded dof. Copies share the matrix.
+/// The inverse of a dense SPD matrix, computed in double and stored as Scalar, double or float. `solve_into`
+/// multiplies only with the columns of non-zero loads: n multiply-adds per loaded dof. Copies share the matrix.
 template <std::floating_point Scalar>
 class DenseInverse {
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 
  public:
   DenseInverse() = default;
-  /// Inverts in place (lower half read). Throws not_positive_definite.
+  /// Inverts in place (reads the lower half). Throws not_positive_definite.
   DenseInverse(MatrixX matrix, const SetupLimits& limits);
 
   void write(BinaryWriter& out) const;
-  /// What `write` stored of a system of this size; usable only when the reader is good. Throws too_large.
+  /// Reads what `write` stored for a system of this size; valid only when the reader is good. Throws too_large.
   static DenseInverse read(BinaryReader& in, Index size, const SetupLimits& limits);
 
   Index size() const noexcept { return inverse_ ? inverse_->rows() : 0; }

@@ -11,8 +11,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// x += columns of an n x n matrix times their loads. A plain loop, which compilers vectorise with the change of
-/// precision in it; Eigen's casts of mixed width are scalar.
+/// x += columns of an n x n matrix times their loads. A plain loop: compilers vectorise it together with the
+/// conversion of precision, whereas Eigen's casts between scalar types of different width are not vectorised.
 template <int N, class Scalar>
 void add_loaded_columns(const Scalar* matrix, Index n, const Index* columns, const double* b, double* x) noexcept {
   const Scalar* column[N];
@@ -56,7 +56,7 @@ DenseInverse<Scalar> DenseInverse<Scalar>::read(BinaryReader& in, Index size, co
 
 template <std::floating_point Scalar>
 SolveReport DenseInverse<Scalar>::solve_into(const VectorX& b, VectorX& x) noexcept {
-  constexpr int most = 8;  // columns in one pass: x goes through the registers once for all of them
+  constexpr int most = 8;  // columns in one pass: x is loaded and stored once for all of them
   const Scalar* const matrix = inverse_ ? inverse_->data() : nullptr;
   const Index n = size();
   std::fill_n(x.data(), x.size(), 0.0);

@@ -1,4 +1,4 @@
-// Direct solver for a matrix whose values change and whose pattern stays.
+// Direct solver for a matrix whose values change and whose pattern is constant.
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
@@ -6,18 +6,18 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// K = L L^T again and again on one analysis, into the same memory: what an iteration or a time step needs. Neither
-/// factorising nor solving allocates or throws. Not to be used from two threads at once; neither copied nor moved.
+/// Factorises K = L L^T repeatedly on one analysis, into the same memory, for iterations and time steps. Neither
+/// factorising nor solving allocates or throws. Not thread safe; neither copied nor moved.
 class RepeatedCholesky {
  public:
-  /// Allocates what the analysis predicted. Throws too_large.
+  /// Allocates the memory that the analysis predicted. Throws too_large.
   explicit RepeatedCholesky(CholeskyAnalysis analysis, const SetupLimits& limits = {});
   ~RepeatedCholesky();
   RepeatedCholesky(const RepeatedCholesky&) = delete;
   RepeatedCholesky& operator=(const RepeatedCholesky&) = delete;
 
-  /// False, and no factor, when a pivot fails: the matrix is not positive definite, or not finite. It must have the
-  /// pattern that was analysed.
+  /// Returns false, without a factor, when a pivot fails: the matrix is not positive definite, or not finite. The
+  /// matrix must have the analysed pattern.
   bool factorise(const SparseLower& lower) noexcept;
   /// True when the last matrix was factorised.
   bool ready() const noexcept { return ready_; }
@@ -26,7 +26,7 @@ class RepeatedCholesky {
   const CholeskyAnalysis& analysis() const noexcept { return analysis_; }
   std::size_t bytes() const noexcept;
 
-  /// x = K^-1 b; b and x may be the same vector. Not converged, and x unchanged, without a factor.
+  /// x = K^-1 b; b and x may be the same vector. Without a factor: not converged, x unchanged.
   SolveReport solve_into(const VectorX& b, VectorX& x) noexcept;
 
  private:

@@ -19,7 +19,7 @@ struct RepeatedCholesky::Factor {
     std::fill_n(values.data() + values.size() - padding, padding, 0.0);
   }
 
-  static constexpr Index padding = 64;  // zeros behind the factor, for kernels that read past its end
+  static constexpr Index padding = 64;  // zeros after the factor, for kernels that read past its end
   detail::BigArray values;
   detail::FrontFactorisation factorisation;
   detail::FrontSweeps sweeps;

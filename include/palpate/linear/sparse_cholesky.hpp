@@ -13,66 +13,66 @@ namespace palpate { inline namespace PALPATE_ABI {
 class BinaryReader;
 class BinaryWriter;
 
-/// K = L L^T of a sparse SPD matrix, checked pivot by pivot. Factorisation allocates what the analysis predicted;
-/// `solve_into` reads every entry of L twice and allocates nothing. Copies share the factor and own their workspace, so
-/// two threads solve at once with a copy each.
+/// K = L L^T of a sparse SPD matrix, with every pivot checked. Factorisation allocates what the analysis predicted;
+/// `solve_into` reads every entry of L twice and does not allocate. Copies share the factor; each owns its workspace,
+/// so two threads can solve simultaneously with a copy each.
 ///
-/// An *interior* factor stops before the kept dofs of its analysis, whose Schur complement it hands out instead. Solve
+/// An *interior* factor stops before the kept dofs of its analysis and returns their Schur complement instead. Solve
 /// with it in three steps: `eliminate_into` condenses a load onto the kept dofs, the caller solves there, and
-/// `recover_into` finds the others.
+/// `recover_into` computes the other dofs.
 class SparseCholesky {
  public:
   using Matrix = SparseLower;
-  /// Smallest pivot allowed, relative to its own diagonal entry. What rounding leaves of the zero pivots of a free body
-  /// starts at 1e-15 and grows with the mesh; a held beam 3000 times as long as thick still has 1e-12.
+  /// Smallest pivot allowed, relative to its own diagonal entry. Rounding turns the zero pivots of a free body into
+  /// values that start at 1e-15 and grow with the mesh; a supported beam 3000 times as long as thick still has 1e-12.
   static constexpr double pivot_threshold = 1e-13;
 
   SparseCholesky() = default;
 
-  /// Analyses and factorises the matrix whose lower half is given. Throws not_positive_definite, too_large or
+  /// Analyses and factorises the matrix, given by its lower half. Throws not_positive_definite, too_large or
   /// cancelled.
   SparseCholesky(const Matrix& lower, const SetupLimits& limits);
 
-  /// Factorises new values on an analysed pattern. Throws as above, and bad_argument for another pattern.
+  /// Factorises new values on an analysed pattern. Throws as above, and bad_argument for a different pattern.
   SparseCholesky(CholeskyAnalysis analysis, const Matrix& lower, const SetupLimits& limits);
 
   /// Factorises all but the kept dofs and writes their exact Schur complement K_kk - K_ki K_ii^-1 K_ik, symmetric to
-  /// the last bit, in the order they were given in [kept x kept]. Costs one factorisation. Throws as above.
+  /// the last bit, in the given order of the kept dofs [kept x kept]. Costs one factorisation. Throws as above.
   static SparseCholesky interior(CholeskyAnalysis analysis, const Matrix& lower, MatrixX& schur,
                                  const SetupLimits& limits);
 
-  /// Stores the numbers of the factor; its structure is found again by analysis, so that nothing in a file is an index.
+  /// Writes the numbers of the factor. The structure is recomputed by analysis, so a file contains no indices.
   void write(BinaryWriter& out) const;
-  /// What `write` stored of a complete factor (or of an interior one) of a matrix with this analysis. Usable only when
-  /// the reader is good. Throws too_large.
+  /// Reads what `write` stored of a complete (or interior) factor of a matrix with this analysis. Valid only when the
+  /// reader is good. Throws too_large.
   static SparseCholesky read(BinaryReader& in, CholeskyAnalysis analysis, bool interior, const SetupLimits& limits);
 
   Index size() const noexcept;
-  /// Kept dofs that were not eliminated; 0 for a complete factor.
+  /// Number of kept dofs that were not eliminated; 0 for a complete factor.
   Index kept() const noexcept;
   const CholeskyAnalysis& analysis() const noexcept;
   Index factor_nonzeros() const noexcept;
   std::size_t bytes() const noexcept;
 
-  /// x = K^-1 b; b and x may be the same vector. On an interior factor the kept dofs are held at zero.
+  /// x = K^-1 b; b and x may be the same vector. An interior factor sets the kept dofs to zero.
   SolveReport solve_into(const VectorX& b, VectorX& x) noexcept;
 
-  /// Several right-hand sides at once. Allocates a workspace; for set-up.
+  /// Solves for several right-hand sides. Allocates a workspace; for set-up.
   MatrixX solve(const MatrixX& b) const;
 
-  /// Interior factor: kept_load = b_k - K_ki K_ii^-1 b_i, and remembers b_i for `recover_into`. No allocation when
-  /// kept_load has its size.
+  /// Interior factor: kept_load = b_k - K_ki K_ii^-1 b_i; stores b_i for `recover_into`. No allocation when kept_load
+  /// has its size.
   void eliminate_into(const VectorX& b, VectorX& kept_load) noexcept;
-  /// Interior factor: x from the kept part of the answer and the load last eliminated. No allocation when x has its
-  /// size.
+  /// Interior factor: x from the kept part of the solution and the load of the last `eliminate_into`. No allocation
+  /// when x has its size.
   void recover_into(const VectorX& kept_answer, VectorX& x) noexcept;
 
-  /// Interior factor: unit loads on `dofs`, none of them kept, half the way through. Walks only the fronts above them.
-  /// Allocates a workspace.
+  /// Interior factor: forward substitution of unit loads on `dofs`, none of them kept. Visits only the fronts above
+  /// them. Allocates a workspace.
   ReducedUnits reduce_units(std::span<const Index> dofs) const;
 
-  /// Entries `wanted` of K^-1 b, b zero but for `loads` on the dofs `loaded`. Walks up from the loaded dofs and down to
-  /// the wanted ones only, and equals `solve_into` to the last bit. No allocation.
+  /// Entries `wanted` of K^-1 b, where b is zero except for `loads` on the dofs `loaded`. Visits only the fronts above
+  /// the loaded and the wanted dofs; equals `solve_into` to the last bit. No allocation.
   void solve_path_into(std::span<const Index> loaded, std::span<const double> loads, std::span<const Index> wanted,
                        std::span<double> answer) noexcept;
   /// `eliminate_into` for a load on a few dofs.

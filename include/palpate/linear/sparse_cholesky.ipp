@@ -16,9 +16,9 @@ struct SparseCholesky::Factor {
   CholeskyAnalysis analysis;
   detail::BigArray values;
   Index fronts = 0;  // eliminated
-  Index kept = 0;    // dofs that were not
+  Index kept = 0;    // dofs that were not eliminated
 
-  static constexpr Index padding = 64;  // zeros behind the factor, for kernels that read past its end
+  static constexpr Index padding = 64;  // zeros after the factor, for kernels that read past its end
 
   const detail::FrontTree& tree() const noexcept { return analysis.tree(); }
   Index stored() const noexcept { return values.size() - padding; }
@@ -39,7 +39,7 @@ PALPATE_INLINE SparseCholesky SparseCholesky::interior(CholeskyAnalysis analysis
 PALPATE_INLINE SparseCholesky::SparseCholesky(CholeskyAnalysis analysis, const Matrix& lower, MatrixX* schur,
                                               const SetupLimits& limits) {
   if (!lower.isCompressed() || !analysis.fits(lower))
-    raise(SetupErrorKind::bad_argument, "the matrix does not have the pattern that was analysed",
+    raise(SetupErrorKind::bad_argument, "the matrix does not have the analysed pattern",
           "Compress the matrix and analyse it again");
   limits.advance("factorisation", 0.0);
   limits.require_memory(schur != nullptr ? analysis.interior_peak_bytes() : analysis.peak_bytes(), "the sparse factor");
@@ -52,7 +52,7 @@ PALPATE_INLINE SparseCholesky::SparseCholesky(CholeskyAnalysis analysis, const M
   limits.advance("factorisation", 1.0);
 }
 
-/// A factor without numbers; its last front left out when interior and something is kept.
+/// Allocates a factor without values; omits the last front when `interior` and there are kept dofs.
 PALPATE_INLINE std::shared_ptr<SparseCholesky::Factor> SparseCholesky::allocate(const CholeskyAnalysis& analysis,
                                                                                 bool interior) {
   const detail::FrontTree& tree = analysis.tree();

@@ -8,7 +8,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Shape function gradients in space at one quadrature point, and the volume the point stands for.
+/// Spatial gradients of the shape functions at one quadrature point, and the volume that the point represents.
 template <Element E>
 struct PointGeometry {
   Eigen::Matrix<double, E::nodes, 3> gradient;  ///< dN_a / dx_j [1/m]

@@ -1,4 +1,4 @@
-// All integration points of an element, and strain, stress and force in them.
+// All integration points of an element, with strain, stress and force at them.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -14,8 +14,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A point of the element's rule. With a mean change of volume (element/mean_dilatation.hpp) also the mean over the
-/// element of the gradients, which gives it.
+/// A point of the element's rule. For elements with mean dilatation (element/mean_dilatation.hpp) also the mean over
+/// the element of the gradients, from which the change of volume is computed.
 template <Element E>
 struct IntegrationPoint : PointGeometry<E> {};
 
@@ -41,7 +41,7 @@ Eigen::Matrix<double, E::nodes, 3> mean_gradient(const ElementNodes<E>& x) noexc
   return sum;
 }
 
-/// The point with these reference coordinates and this weight.
+/// The integration point with these reference coordinates and this weight.
 template <Element E>
 IntegrationPoint<E> integration_point(const ElementNodes<E>& x, const Vector3& xi, double weight) noexcept {
   if constexpr (HasMeanDilatation<E>)
@@ -65,7 +65,7 @@ IntegrationPoints<E> integration_points(const ElementNodes<E>& x) noexcept {
   return points;
 }
 
-/// Strain under the nodal displacements u [m], one per row.
+/// Strain under the nodal displacements u [m], one node per row.
 template <Element E>
 Vector6 strain_at(const IntegrationPoint<E>& point, const ElementNodes<E>& u) noexcept {
   Vector6 e = strain(u, point.gradient);
@@ -78,7 +78,7 @@ Vector6 strain_at(const IntegrationPoint<E>& point, const ElementNodes<E>& u) no
   return e;
 }
 
-/// Nodal forces [N] of a stress [Pa] in a point, one per row: B^T sigma dV.
+/// Nodal forces [N] of a stress [Pa] at a point, one node per row: B^T sigma dV.
 template <Element E>
 ElementNodes<E> force_of_stress(const IntegrationPoint<E>& point, const Vector6& stress) noexcept {
   Matrix3 tensor = voigt::stress_tensor(stress);

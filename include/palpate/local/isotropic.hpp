@@ -1,4 +1,4 @@
-// Isotropic laws need two constants, and less work per element.
+// Isotropic materials: two constants, and less work per element.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -16,7 +16,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The two constants of an isotropic law [Pa].
+/// The two constants of an isotropic material [Pa].
 struct LameConstants {
   double lambda = 0.0, mu = 0.0;
 };
@@ -36,7 +36,7 @@ inline std::optional<LameConstants> lame_constants(const Matrix6& d) noexcept {
   return std::nullopt;
 }
 
-/// Lame's constants of all laws, if all are isotropic.
+/// Lame's constants of all materials, if all are isotropic.
 inline std::optional<std::vector<LameConstants>> all_isotropic(const std::vector<Matrix6>& elasticity) {
   std::vector<LameConstants> constants;
   for (const Matrix6& d : elasticity) {
@@ -57,9 +57,10 @@ inline void add_isotropic_block(const LameConstants& c, const Vector3& a, const 
   }
 }
 
-/// K_e of an isotropic law [N/m]: with M_ai,bj = sum_q dN_a/dx_i dN_b/dx_j dV, one product of a 3 nodes x points matrix
-/// with its transpose, K_ai,bj = lambda M_ai,bj + mu M_aj,bi + mu delta_ij sum_k M_ak,bk. The same as with the matrix D
-/// but for rounding; with a mean change of volume its part is bulk modulus x volume x mean gradients.
+/// K_e of an isotropic material [N/m]: with M_ai,bj = sum_q dN_a/dx_i dN_b/dx_j dV, one product of a 3 nodes x points
+/// matrix with its transpose, K_ai,bj = lambda M_ai,bj + mu M_aj,bi + mu delta_ij sum_k M_ak,bk. Equal to the result
+/// with the matrix D up to rounding. With mean dilatation the volumetric part is bulk modulus x volume x mean
+/// gradients.
 template <Element E>
 ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const LameConstants& c) noexcept {
   constexpr int points = static_cast<int>(E::Quadrature::points.size());
@@ -82,14 +83,14 @@ ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const LameConsta
     for (int a = b; a < E::nodes; ++a) {
       double block[3][3];
       for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)  // to the last bit symmetric where a is b
+        for (int j = 0; j < 3; ++j)  // symmetric to the last bit where a equals b
           block[i][j] = a == b && i < j ? m.coeff(3 * a + j, 3 * b + i) : m.coeff(3 * a + i, 3 * b + j);
       const double trace = c.mu * (block[0][0] + block[1][1] + block[2][2]);
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
           double value = c.mu * block[j][i];
           if (i == j) value += trace;
-          if constexpr (HasMeanDilatation<E>)  // the volumetric part of B^T D B with the mean instead
+          if constexpr (HasMeanDilatation<E>)  // the volumetric part of B^T D B with the mean gradients
             value +=
                 bulk * (at[0].dilatation.coeff(a, i) * at[0].dilatation.coeff(b, j)) - 2.0 / 3.0 * c.mu * block[i][j];
           else

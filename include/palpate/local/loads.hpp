@@ -11,7 +11,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Integral of every shape function over the element [m^3]: times a body force it is the load f_l (3.44), times density
+/// Integral of every shape function over the element [m^3]. Times a body force it is the load f_l (3.44), times density
 /// the row-sum mass.
 template <Element E>
 Eigen::Matrix<double, E::nodes, 1> shape_volumes(const ElementNodes<E>& x) noexcept {
@@ -26,12 +26,12 @@ Eigen::Matrix<double, E::nodes, 1> shape_volumes(const ElementNodes<E>& x) noexc
   return v;
 }
 
-/// Coordinates of a face's nodes, one per row.
+/// Coordinates of the nodes of a face, one node per row.
 template <FaceElement F>
 using FaceNodes = Eigen::Matrix<double, F::nodes, 3>;
 
-/// Outward area vector per area of the reference face, for the reference gradients of one point. Its norm is the
-/// measure of eq. 3.40.
+/// Outward area vector per area of the reference face, from the reference gradients of one point. Its norm is the
+/// surface measure of eq. 3.40.
 template <FaceElement F>
 Vector3 area_vector(const FaceNodes<F>& x, const Eigen::Matrix<double, F::nodes, 2>& reference) noexcept {
   double s[3] = {}, t[3] = {};
@@ -44,8 +44,8 @@ Vector3 area_vector(const FaceNodes<F>& x, const Eigen::Matrix<double, F::nodes,
   return {s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]};
 }
 
-/// Integral of shape function times outward area vector over a face [m^2], one row per node: times minus the pressure
-/// it is the load of a pressure.
+/// Integral of shape function times outward area vector over a face [m^2], one row per node. Times minus the pressure
+/// it is the load of the pressure.
 template <FaceElement F>
 FaceNodes<F> shape_area_vectors(const FaceNodes<F>& x) noexcept {
   FaceNodes<F> result;
@@ -61,7 +61,7 @@ FaceNodes<F> shape_area_vectors(const FaceNodes<F>& x) noexcept {
   return result;
 }
 
-/// Integral of every shape function over a face [m^2]: times a traction it is the load f_b (3.42).
+/// Integral of every shape function over a face [m^2]. Times a traction it is the load f_b (3.42).
 template <FaceElement F>
 Eigen::Matrix<double, F::nodes, 1> shape_areas(const FaceNodes<F>& x) noexcept {
   Eigen::Matrix<double, F::nodes, 1> result;

@@ -8,12 +8,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// One number per pair of nodes: the three components of a node do not mix.
+/// One number per pair of nodes: the three components of a node are not coupled.
 template <Element E>
 using ElementMass = Eigen::Matrix<double, E::nodes, E::nodes>;
 
-/// Consistent mass over density: sum_q N N^T dV [m^3] (thesis 3.48) with the element's mass rule, exact on straight
-/// edges. `x` holds the nodes [m], one per row. Tet4: V/20 (1 + delta_ab).
+/// Consistent mass over density: sum_q N N^T dV [m^3] (thesis 3.48) with the element's mass rule, exact for straight
+/// edges. `x`: coordinates of the nodes [m], one node per row. Tet4: V/20 (1 + delta_ab).
 template <Element E>
 ElementMass<E> element_mass(const ElementNodes<E>& x) noexcept {
   ElementMass<E> m = ElementMass<E>::Zero();
@@ -28,8 +28,8 @@ ElementMass<E> element_mass(const ElementNodes<E>& x) noexcept {
 }
 
 /// Lumped mass over density [m^3]: the diagonal of the consistent mass, scaled to the element's volume (Hinton, Rock
-/// and Zienkiewicz 1976). Positive for every element that is not inverted, where row sums are not: the corners of Tet10
-/// and Hex20 would get negative mass.
+/// and Zienkiewicz 1976). Positive for every element that is not inverted. Row sums are not: they would give negative
+/// mass to the corners of Tet10 and Hex20.
 template <Element E>
 Eigen::Matrix<double, E::nodes, 1> lumped_element_mass(const ElementNodes<E>& x) noexcept {
   const ElementMass<E> m = element_mass<E>(x);  // its sum is the volume: shape functions sum to 1

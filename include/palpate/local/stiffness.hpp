@@ -12,8 +12,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 template <Element E>
 using ElementStiffness = Eigen::Matrix<double, 3 * E::nodes, 3 * E::nodes>;
 
-/// K_e = sum_q B^T D B dV [N/m] (thesis 3.41) with the element's own rule. `x` holds the nodes [m], `d` the elasticity
-/// matrix [Pa].
+/// K_e = sum_q B^T D B dV [N/m] (thesis 3.41) with the element's own rule. `x`: coordinates of the nodes [m], one node
+/// per row; `d`: elasticity matrix [Pa].
 template <Element E>
 ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const Matrix6& d) noexcept {
   ElementStiffness<E> k = ElementStiffness<E>::Zero();

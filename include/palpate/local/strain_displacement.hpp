@@ -7,7 +7,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Strain, or stress, per displacement of one node: a column for each component.
+/// Strain, or stress, per displacement of one node: one column per component.
 using StrainBlock = Eigen::Matrix<double, 6, 3>;
 
 /// The 6 x 3 block B_a of the strain-displacement matrix for a node with spatial gradient g [1/m] (thesis 3.16, 3.20):
@@ -21,7 +21,7 @@ inline StrainBlock strain_displacement(const Vector3& g) noexcept {
                                        {0, g[2], g[1]}});  // yz
 }
 
-/// volume * D B: the stress that the displacement of a node makes.
+/// volume * D B: stress per displacement of a node, times volume.
 inline StrainBlock stress_block(double volume, const Matrix6& d, const StrainBlock& b) noexcept {
   StrainBlock s;
   for (int j = 0; j < 3; ++j) {
@@ -33,7 +33,7 @@ inline StrainBlock stress_block(double volume, const Matrix6& d, const StrainBlo
   return s;
 }
 
-/// B^T S: the forces on a node of the stresses S.
+/// B^T S: nodal forces of the stresses S.
 inline Matrix3 force_block(const StrainBlock& b, const StrainBlock& s) noexcept {
   Matrix3 f;
   for (int j = 0; j < 3; ++j)

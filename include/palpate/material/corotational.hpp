@@ -1,4 +1,4 @@
-// A linear isotropic law in the frame that turns with the element.
+// A linear isotropic material in a frame that rotates with the element.
 #pragma once
 
 #include <palpate/concepts/material.hpp>
@@ -18,7 +18,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Energy density and stress by the closest rotation R and D = F - R; constants in the number type of the lanes.
+/// Energy density and stress from the closest rotation R and D = F - R; constants in the number type of the lanes.
 template <class S>
 PALPATE_ALWAYS_INLINE S corotated_energy(const Lame<S>& c, const Tensor3<S>& r, const Tensor3<S>& d) noexcept {
   const S swelling = contract(r, d);
@@ -32,9 +32,9 @@ PALPATE_ALWAYS_INLINE Tensor3<S> corotated_stress(const Lame<S>& c, const Tensor
 }  // namespace detail
 
 /// W = mu |F - R|^2 + lambda/2 tr(R^T F - I)^2 with the rotation R closest to F (core/rotation.hpp): Hooke's law for
-/// large rotations, not for large strains. Finite for every F and inverted elements are pushed back; where the closest
-/// rotation is not unique (an element pressed to a line, or so far inside out that two stretches cancel) the stress
-/// jumps. Isotropic bases only: with others the stress needs the derivative of R, and the tangent its second one.
+/// large rotations, not for large strains. Finite for every F; inverted elements are pushed back. Where the closest
+/// rotation is not unique (an element pressed to a line, or inverted so far that two stretches cancel) the stress
+/// jumps. Isotropic bases only: for others the stress needs the derivative of R, and the tangent the second derivative.
 /// Cost of stress: one closest rotation, see docs/materials.md.
 template <class Base = LinearElastic>
 requires LinearMaterial<Base> && requires(const Base& b) {
@@ -43,13 +43,13 @@ requires LinearMaterial<Base> && requires(const Base& b) {
 }
 struct Corotational {
   Base base{};
-  double density = base.density;  ///< rho at rest [kg/m^3]; that of the base unless given
+  double density = base.density;  ///< rho at rest [kg/m^3]; by default that of the base
 
   static constexpr bool survives_inversion = true;
 
   Matrix6 rest_elasticity() const noexcept { return base.elasticity(); }
 
-  /// As the base, and a density.
+  /// Checks as the base, and the density.
   std::optional<SetupProblem> check() const {
     Base with_density = base;
     with_density.density = density;
@@ -68,8 +68,8 @@ struct Corotational {
     return detail::corotated_stress(detail::lame<S>(base), r, f - r);
   }
 
-  /// Exact, with dR/dF. Indefinite under pressure, where mu (si + sj - 2) + lambda (s1 + s2 + s3 - 3) < 0. dR/dF is
-  /// infinite where two stretches cancel; close to that their sum is taken for larger by 1e-6.
+  /// Exact, with dR/dF. Indefinite under compression, where mu (si + sj - 2) + lambda (s1 + s2 + s3 - 3) < 0. dR/dF is
+  /// infinite where two stretches cancel; near that point their sum is bounded below by 1e-6.
   Matrix9 tangent(const Tensor3<double>& f) const noexcept {
     const double lambda = base.lame_lambda(), mu = base.shear_modulus();
     const Tensor3<double> r = closest_rotation(f);
@@ -79,8 +79,8 @@ struct Corotational {
     return t;
   }
 
-  /// dP/dF with R held fixed, R D R^T of every corotational code: positive semidefinite at every F, right at rest and
-  /// for any rotation; 2 mu sym(R^T dF) in the turned frame.
+  /// dP/dF at fixed R, the R D R^T of standard corotational codes: positive semidefinite at every F, exact at rest and
+  /// for any rotation; 2 mu sym(R^T dF) in the rotated frame.
   Matrix9 semidefinite_tangent(const Tensor3<double>& f) const noexcept {
     const double lambda = base.lame_lambda(), mu = base.shear_modulus();
     const Tensor3<double> r = closest_rotation(f);

@@ -1,4 +1,4 @@
-// Fibres that resist being pulled, in a law without a direction.
+// Fibres that resist tension, added to a material without a direction.
 #pragma once
 
 #include <palpate/concepts/material.hpp>
@@ -16,20 +16,20 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// W = base + k1 / (2 k2) (exp(k2 E^2) - 1) where E = |F a|^2 - 1 > 0, a the unit vector along the fibres at rest
-/// (Holzapfel, Gasser and Ogden 2000, one family, without dispersion). The whole stretch counts, not its part at
-/// constant volume, which in compressible tissue lets pulled fibres swell it. Fibres that are not pulled do nothing:
-/// energy and stress are continuous at |F a| = 1, the stiffness jumps by 4 k1 there, and rest_elasticity is that of the
-/// base. Where the mesh has fibre directions these count, elsewhere `fibre`. Admissible: base admissible, k1 >= 0, k2 >
-/// 0, `fibre` a unit vector to within 1e-5. F is refused where the base refuses it or k2 E^2 exceeds 40, which is 2e17
-/// times the stiffness of small pulls; beyond, the exponent stays there, so that the stress is finite in float as well.
-/// Cost of stress: base, one exponential per number.
+/// (Holzapfel, Gasser and Ogden 2000, one family, without dispersion). E uses the full stretch, not its isochoric part,
+/// with which stretched fibres would swell compressible tissue. Fibres that are not stretched have no effect: energy
+/// and stress are continuous at |F a| = 1, the stiffness jumps by 4 k1 there, and rest_elasticity is that of the base.
+/// Fibre directions of the mesh are used if there are any, otherwise `fibre`. Admissible: base admissible, k1 >= 0, k2
+/// > 0, `fibre` a unit vector to within 1e-5. F is refused where the base refuses it or k2 E^2 exceeds 40, which is
+/// 2e17 times the stiffness at small stretch; beyond, the exponent is limited to that value, so that the stress is
+/// finite in float as well. Cost of stress: that of the base and one exponential per number.
 template <HyperelasticMaterial Base>
 struct FibreReinforced {
   Base base{};
-  double k1 = 0.0;                   ///< stiffness of the fibres [Pa]: a quarter of the modulus they add when pulled
-  double k2 = 1.0;                   ///< how fast they stiffen [-]
+  double k1 = 0.0;                   ///< stiffness of the fibres [Pa]: a quarter of the modulus added in tension
+  double k2 = 1.0;                   ///< rate of stiffening [-]
   Vector3 fibre = Vector3::UnitX();  ///< unit vector
-  double density = base.density;     ///< rho at rest [kg/m^3]; that of the base unless given
+  double density = base.density;     ///< rho at rest [kg/m^3]; by default that of the base
 
   static constexpr bool survives_inversion = Base::survives_inversion;
   static constexpr double largest_exponent = 40.0;
@@ -66,7 +66,7 @@ struct FibreReinforced {
     return base.admits(f) && k2 * e * e <= largest_exponent;
   }
 
-  // The same with the material's own direction.
+  // The same with the material's own fibre direction.
   template <class S>
   PALPATE_ALWAYS_INLINE S energy(const Tensor3<S>& f) const noexcept {
     return energy(f, own<S>());
@@ -104,7 +104,7 @@ struct FibreReinforced {
   PALPATE_ALWAYS_INLINE Triple<S> own() const noexcept {
     return {S(constant<S>(fibre[0])), S(constant<S>(fibre[1])), S(constant<S>(fibre[2]))};
   }
-  /// E where the fibre is pulled, else 0.
+  /// E where the fibre is stretched, else 0.
   template <class S>
   PALPATE_ALWAYS_INLINE static S pull(const Triple<S>& pulled) noexcept {
     using std::max;

@@ -10,9 +10,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Isotropic Hooke's law, small strain: sigma = D (epsilon - epsilon_0).
-/// Admissible: youngs_modulus > 0, -1 < poisson_ratio < 0.5, density >= 0, all finite; anything else is refused, never
-/// replaced.
+/// Isotropic Hooke's law, small strain: sigma = D (epsilon - epsilon_0). Admissible: youngs_modulus > 0, -1 <
+/// poisson_ratio < 0.5, density >= 0, all finite. Other values are refused, never replaced.
 struct LinearElastic {
   double youngs_modulus = 0.0;  ///< E [Pa]
   double poisson_ratio = 0.0;   ///< nu [-]
@@ -26,7 +25,7 @@ struct LinearElastic {
   /// The matrix D [Pa] of eq. 3.2, 6 x 6, engineering shear.
   Matrix6 elasticity() const noexcept;
 
-  /// The problem with these parameters, or nothing.
+  /// The problem with these parameters, or nullopt if they are admissible.
   std::optional<SetupProblem> check() const;
 };
 

@@ -21,14 +21,14 @@ PALPATE_INLINE Matrix6 LinearElastic::elasticity() const noexcept {
 }
 
 PALPATE_INLINE std::optional<SetupProblem> LinearElastic::check() const {
-  // Written so that NaN fails every comparison. 1 - 2 nu and 1 + nu are what the law divides by: they must not vanish
+  // Written so that NaN fails every comparison. The formulas divide by 1 - 2 nu and 1 + nu, which must not be zero
   // either.
   if (!(std::isfinite(youngs_modulus) && youngs_modulus > 0.0))
     return parameter_problem(SetupErrorKind::bad_youngs_modulus, "youngs_modulus", youngs_modulus, 0.0,
                              "It must be finite and positive, in Pa");
   if (!(poisson_ratio > -1.0 && poisson_ratio < 0.5))
     return parameter_problem(SetupErrorKind::bad_poisson_ratio, "poisson_ratio", poisson_ratio,
-                             poisson_ratio < 0 ? -1.0 : 0.5, "It must lie strictly between -1 and 0.5");
+                             poisson_ratio < 0 ? -1.0 : 0.5, "It must be strictly between -1 and 0.5");
   if (!(std::isfinite(density) && density >= 0.0))
     return parameter_problem(SetupErrorKind::bad_density, "density", density, 0.0,
                              "It must be finite and not negative, in kg/m^3");

@@ -1,4 +1,4 @@
-// Rubber-like laws with shape and volume apart.
+// Rubber-like material with separate isochoric and volumetric energy.
 #pragma once
 
 #include <palpate/concepts/material.hpp>
@@ -17,8 +17,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// W = c10 (J^(-2/3) |F|^2 - 3) + c01 (J^(-4/3) |cof F|^2 - 3) + K/2 (J - 1)^2 (Mooney 1940, Rivlin 1948, shape and
-/// volume apart as in Abaqus and CalculiX, whose D1 is 2 / K). At small strain mu = 2 (c10 + c01).
+/// W = c10 (J^(-2/3) |F|^2 - 3) + c01 (J^(-4/3) |cof F|^2 - 3) + K/2 (J - 1)^2 (Mooney 1940, Rivlin 1948; isochoric and
+/// volumetric parts separate as in Abaqus and CalculiX, whose D1 is 2 / K). At small strain mu = 2 (c10 + c01).
 /// Admissible: c10, c01 >= 0, not both zero, K > 0. J <= 0 is refused. Cost of stress: one cube root, one division.
 struct MooneyRivlin {
   double c10 = 0.0;           ///< [Pa]
@@ -29,7 +29,7 @@ struct MooneyRivlin {
   static constexpr bool survives_inversion = false;
 
   double shear_modulus() const noexcept { return 2.0 * (c10 + c01); }
-  /// The same law at small strain.
+  /// The same material at small strain.
   LinearElastic small_strain() const noexcept;
   Matrix6 rest_elasticity() const noexcept { return small_strain().elasticity(); }
 

@@ -1,4 +1,4 @@
-// The neo-Hookean law without inverse: the one for 1 kHz.
+// Neo-Hookean material without divisions by J, for 1 kHz.
 #pragma once
 
 #include <palpate/concepts/material.hpp>
@@ -16,12 +16,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// W = mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2 with Lame's constants of small strain: the volume term
-/// carries lambda + mu, because the one in J - 1 takes mu away again. A polynomial: finite for every F, and a flat or
-/// inverted element is pushed back. One state it does not leave by itself: at F = 0 exactly, all nodes of an element on
-/// one point, the stress is zero.
-/// Cost of stress: about 60 additions and multiplications, no division but in the constants; hold the material in a
-/// local variable outside of a loop and the compiler forms these once.
+/// W = mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2 with Lame's constants of small strain. The volume term
+/// has lambda + mu because the term -mu (J - 1) reduces the bulk stiffness by mu. A polynomial: finite for every F, and
+/// a flat or inverted element is pushed back. Exception: at F = 0 exactly, with all nodes of an element at one point,
+/// the stress is zero. Cost of stress: about 60 additions and multiplications, no division except in the constants;
+/// keep the material in a local variable outside of a loop, so that the compiler computes the constants once.
 struct NeoHookean {
   double youngs_modulus = 0.0;  ///< E at small strain [Pa]
   double poisson_ratio = 0.0;   ///< nu at small strain [-]
@@ -29,17 +28,17 @@ struct NeoHookean {
 
   static constexpr bool survives_inversion = true;
 
-  /// The same law at small strain.
+  /// The same material at small strain.
   LinearElastic small_strain() const noexcept { return {youngs_modulus, poisson_ratio, density}; }
   Matrix6 rest_elasticity() const noexcept { return small_strain().elasticity(); }
-  /// As LinearElastic.
+  /// Checks as LinearElastic.
   std::optional<SetupProblem> check() const { return small_strain().check(); }
 
   template <class S>
   PALPATE_ALWAYS_INLINE S energy(const Tensor3<S>& f) const noexcept {
     const Tensor3<S> h = detail::from_rest(f), c = cofactor(h);
     const S second = trace(c) + determinant(h, c), j = trace(h) + second;
-    // mu/2 (|F|^2 - 3) - mu (J - 1) with what cancels left out
+    // mu/2 (|F|^2 - 3) - mu (J - 1) without the terms that cancel
     const auto [lambda, mu] = detail::lame<S>(small_strain());
     return mu * (S(0.5f) * contract(h, h) - second) + S(0.5f) * (lambda + mu) * j * j;
   }

@@ -1,4 +1,4 @@
-// The neo-Hookean law with shape and volume apart.
+// Neo-Hookean material with separate isochoric and volumetric energy.
 #pragma once
 
 #include <palpate/concepts/material.hpp>
@@ -18,7 +18,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// W = mu/2 (J^(-2/3) |F|^2 - 3) + K/2 (J - 1)^2, the neo-Hookean law of Abaqus and CalculiX with C10 = mu / 2 and
+/// W = mu/2 (J^(-2/3) |F|^2 - 3) + K/2 (J - 1)^2, the neo-Hookean material of Abaqus and CalculiX with C10 = mu / 2 and
 /// D1 = 2 / K, where mu and K = lambda + 2/3 mu are those of small strain. J <= 0 is refused.
 /// Cost of stress: one cube root, one division per number.
 struct NeoHookeanIsochoric {
@@ -28,10 +28,10 @@ struct NeoHookeanIsochoric {
 
   static constexpr bool survives_inversion = false;
 
-  /// The same law at small strain.
+  /// The same material at small strain.
   LinearElastic small_strain() const noexcept { return {youngs_modulus, poisson_ratio, density}; }
   Matrix6 rest_elasticity() const noexcept { return small_strain().elasticity(); }
-  /// As LinearElastic.
+  /// Checks as LinearElastic.
   std::optional<SetupProblem> check() const { return small_strain().check(); }
 
   template <class S>

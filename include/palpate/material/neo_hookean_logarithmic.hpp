@@ -1,4 +1,4 @@
-// The neo-Hookean law with logarithms of the volume.
+// Neo-Hookean material with the logarithm of the volume ratio.
 #pragma once
 
 #include <palpate/concepts/material.hpp>
@@ -17,10 +17,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// W = mu/2 (|F|^2 - 3) - mu ln J + lambda/2 (ln J)^2 with Lame's constants of small strain as they are (Bonet and Wood
-/// 1997). The energy grows without bound as an element is pressed flat, slowly, if lambda >= 0; J <= 0 and nu < 0 are
-/// refused. Far pulled apart its pressure falls again: beyond J = e it is not convex in J. Cost of stress: one
-/// logarithm and one division per number.
+/// W = mu/2 (|F|^2 - 3) - mu ln J + lambda/2 (ln J)^2 with Lame's constants of small strain (Bonet and Wood 1997). If
+/// lambda >= 0 the energy grows slowly without bound as an element is flattened; J <= 0 and nu < 0 are refused. At
+/// large expansion the pressure decreases again: beyond J = e it is not convex in J. Cost of stress: one logarithm and
+/// one division per number.
 struct NeoHookeanLogarithmic {
   double youngs_modulus = 0.0;  ///< E at small strain [Pa]
   double poisson_ratio = 0.0;   ///< nu at small strain [-]
@@ -28,10 +28,10 @@ struct NeoHookeanLogarithmic {
 
   static constexpr bool survives_inversion = false;
 
-  /// The same law at small strain.
+  /// The same material at small strain.
   LinearElastic small_strain() const noexcept { return {youngs_modulus, poisson_ratio, density}; }
   Matrix6 rest_elasticity() const noexcept { return small_strain().elasticity(); }
-  /// As LinearElastic, and nu >= 0.
+  /// Checks as LinearElastic, and nu >= 0.
   std::optional<SetupProblem> check() const;
 
   template <class S>

@@ -12,7 +12,7 @@ PALPATE_INLINE std::optional<SetupProblem> NeoHookeanLogarithmic::check() const 
   problem.emplace();
   problem->kind = SetupErrorKind::bad_poisson_ratio;
   problem->what = "poisson_ratio is " + number(poisson_ratio);
-  problem->hint = "The logarithmic law needs nu >= 0: otherwise pressing it flat sets energy free without bound";
+  problem->hint = "The logarithmic material needs nu >= 0: otherwise flattening it releases unbounded energy";
   problem->value = poisson_ratio;
   return problem;
 }

@@ -10,8 +10,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Hooke's law with nine constants along the material's own axes 1 2 3. A pull along i contracts j by nu_ij sigma_i /
-/// E_i, and nu_ji / E_j = nu_ij / E_i (Lekhnitskii 1963; Jones 1999, eq. 2.25). Admissible: all E and G positive, the
+/// Hooke's law with nine constants along the material axes 1 2 3. Tension along i contracts j by nu_ij sigma_i / E_i,
+/// and nu_ji / E_j = nu_ij / E_i (Lekhnitskii 1963; Jones 1999, eq. 2.25). Admissible: all E and G positive, the
 /// compliance positive definite (its smallest eigenvalue, scaled to a unit diagonal, at least 1e-12), axes a rotation.
 struct Orthotropic {
   double youngs_modulus_1 = 0.0, youngs_modulus_2 = 0.0, youngs_modulus_3 = 0.0;  ///< E_i [Pa]
@@ -25,13 +25,13 @@ struct Orthotropic {
   /// The elasticity matrix [Pa] in the mesh's frame, 6 x 6, engineering shear.
   Matrix6 elasticity() const noexcept;
 
-  /// The problem with these parameters, or nothing.
+  /// The problem with these parameters, or nullopt if they are admissible.
   std::optional<SetupProblem> check() const;
 
  private:
   Vector3 moduli() const noexcept;
 
-  /// S_ij sqrt(E_i E_j): one on the diagonal, -nu_ij sqrt(E_j / E_i) beside it.
+  /// S_ij sqrt(E_i E_j): one on the diagonal, -nu_ij sqrt(E_j / E_i) elsewhere.
   Matrix3 scaled_compliance() const noexcept;
 };
 

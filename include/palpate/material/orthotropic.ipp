@@ -50,7 +50,7 @@ inline double smallest_eigenvalue(const Matrix3& symmetric) {
 
 PALPATE_INLINE Matrix6 Orthotropic::elasticity() const noexcept {
   const Vector3 e = moduli();
-  const Matrix3 inverted = inverse(scaled_compliance());  // of a unit diagonal: no digits lost to units or contrast
+  const Matrix3 inverted = inverse(scaled_compliance());  // with a unit diagonal: no digits lost to units or contrast
   Matrix6 d = Matrix6::Zero();
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) d(i, j) = std::sqrt(e[i]) * inverted(i, j) * std::sqrt(e[j]);
@@ -91,7 +91,7 @@ PALPATE_INLINE std::optional<SetupProblem> Orthotropic::check() const {
     return parameter_problem(SetupErrorKind::not_positive_definite,
                              "the smallest eigenvalue of the compliance, scaled to a unit diagonal,", smallest,
                              positive_definite_threshold,
-                             "The Poisson ratios are too large for these moduli; mind that nu_ij goes with E_i");
+                             "The Poisson ratios are too large for these moduli; note that nu_ij belongs to E_i");
   return std::nullopt;
 }
 

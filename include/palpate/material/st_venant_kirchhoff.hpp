@@ -14,9 +14,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// W = lambda/2 tr(E)^2 + mu E : E with E = (F^T F - I)/2. For large rotations and small to moderate strains. Under
-/// pressure it softens (a bar held sideways has its largest force at 58 % of its length) and inside out it is at rest
-/// again: it refuses J <= 0. With free sides no bar can be stretched so far that nu (stretch^2 - 1) reaches 1.
+/// W = lambda/2 tr(E)^2 + mu E : E with E = (F^T F - I)/2. For large rotations and small to moderate strains. It
+/// softens in compression (a laterally constrained bar has its largest force at 58 % of its length), and an inverted
+/// element can be at rest again: J <= 0 is refused. With free sides a bar cannot be stretched so far that nu (stretch^2
+/// - 1) reaches 1.
 struct StVenantKirchhoff {
   double youngs_modulus = 0.0;  ///< E at small strain [Pa]
   double poisson_ratio = 0.0;   ///< nu at small strain [-]
@@ -24,10 +25,10 @@ struct StVenantKirchhoff {
 
   static constexpr bool survives_inversion = false;
 
-  /// The same law at small strain.
+  /// The same material at small strain.
   LinearElastic small_strain() const noexcept { return {youngs_modulus, poisson_ratio, density}; }
   Matrix6 rest_elasticity() const noexcept { return small_strain().elasticity(); }
-  /// As LinearElastic.
+  /// Checks as LinearElastic.
   std::optional<SetupProblem> check() const { return small_strain().check(); }
 
   template <class S>

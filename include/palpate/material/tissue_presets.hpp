@@ -1,4 +1,4 @@
-// Elastic constants of tissues from the literature, to start from.
+// Elastic constants of tissues from the literature, as start values.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -10,17 +10,17 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What one source measured of one tissue, for small strain. A start value, not the truth: sources differ by a factor
-/// of three and more with perfusion, preconditioning, rate and method (in skin by a factor of thousands; indentation
-/// tends to give less than tension, McKee et al. 2011, doi 10.1089/ten.teb.2010.0520). Where the source gives a shear
-/// modulus, youngs_modulus is 2 (1 + nu) times it, with nu = 0.49 assumed.
+/// Constants of one tissue from one source, for small strain. Start values only: sources differ by a factor of three
+/// and more with perfusion, preconditioning, rate and method (in skin by a factor of thousands; indentation tends to
+/// give less than tension, McKee et al. 2011, doi 10.1089/ten.teb.2010.0520). If the source gives a shear modulus,
+/// youngs_modulus is 2 (1 + nu) times it, with nu = 0.49 assumed.
 struct TissuePreset {
   std::string_view name;
   double youngs_modulus;  ///< [Pa]
   double deviation;       ///< standard deviation of youngs_modulus between samples [Pa]; 0: not given
   double density;         ///< [kg/m^3]
   std::string_view density_from;
-  std::string_view measured;  ///< how, and in what
+  std::string_view measured;  ///< method and specimen
   std::string_view source;
 
   /// Nearly incompressible: choose an element that does not lock, such as Smoothed<Tet4>.
@@ -30,7 +30,7 @@ struct TissuePreset {
 };
 
 namespace detail {
-inline constexpr double from_shear = 2.0 * 1.49 * units::kPa;  // E of a shear modulus in kPa, nu = 0.49
+inline constexpr double from_shear = 2.0 * 1.49 * units::kPa;  // E from a shear modulus in kPa, nu = 0.49
 inline constexpr std::string_view table = "doi 10.1088/1361-6560/ab5010, table 1";
 }  // namespace detail
 
@@ -50,7 +50,7 @@ inline constexpr std::array<TissuePreset, 8> tissue_presets{{
      "aspiration in vivo, seven volunteers", "study with a light aspiration device on the breast"},
 }};
 
-/// The preset of that name. Throws bad_argument with all names.
+/// The preset with that name. Throws bad_argument, which lists all names.
 const TissuePreset& tissue_preset(std::string_view name);
 
 }}  // namespace palpate

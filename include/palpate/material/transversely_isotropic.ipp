@@ -9,8 +9,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// A rotation whose first column is the direction of `along`. The second is perpendicular to it and to the coordinate
-/// axis that it is farthest from.
+/// A rotation whose first column is the direction of `along`. The second column is perpendicular to it and to the
+/// coordinate axis that forms the largest angle with it.
 inline Matrix3 axes_along(const Vector3& along) noexcept {
   int far = 0;
   for (int i = 1; i < 3; ++i)

@@ -1,4 +1,4 @@
-// Relaxation: a law whose stress fades after a strain, by a Prony series.
+// Stress relaxation by a Prony series.
 #pragma once
 
 #include <palpate/concepts/material.hpp>
@@ -17,9 +17,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// One term of a Prony series: `share` of the stress fades with this time.
+/// One term of a Prony series: `share` of the stress relaxes with this time.
 struct PronyTerm {
-  double share = 0.0;            ///< g_i [-], of the stress right after a fast strain
+  double share = 0.0;            ///< g_i [-], relative to the stress right after a sudden strain
   double relaxation_time = 0.0;  ///< tau_i [s]
 };
 
@@ -30,10 +30,10 @@ double mean_decay(double x) noexcept;
 
 }  // namespace detail
 
-/// What fades: the whole stress, or the part that changes the shape.
+/// The part of the stress that relaxes: all of it, or the deviatoric part.
 enum class Relaxation { whole_stress, deviatoric };
 
-/// What an integration point remembers: plain numbers, zero at rest. `Stress` is Vector6 at small strain and
+/// Viscoelastic history of an integration point: plain numbers, zero at rest. `Stress` is Vector6 at small strain and
 /// Tensor3<double>, second Piola-Kirchhoff, at large strain.
 template <class Stress, int Terms>
 struct StressHistory {
@@ -47,42 +47,42 @@ struct StressHistory {
   }
 };
 
-/// What a series does over a step dt: S = share S0' + sum (decay_i h_i - gain_i S0), h_i' = decay_i h_i + gain_i (S0' -
-/// S0), S0 the stress of the base at the start and S0' at the end.
+/// Coefficients of a series over a step dt: S = share S0' + sum (decay_i h_i - gain_i S0), h_i' = decay_i h_i + gain_i
+/// (S0' - S0), where S0 is the stress of the base at the start and S0' at the end.
 template <int Terms>
 struct PronyStep {
   double share = 1.0;  ///< dS / dS0' [-]
   std::array<double, Terms> decay{}, gain{};
 };
 
-/// A material with memory: the stress right after a fast strain is that of the base, and in time a share g_i of it
-/// fades as exp(-t / tau_i). Over a step dt, with S0 the stress of the base (Simo 1987; Simo and Hughes 1998, 10.3):
+/// A viscoelastic material: the stress right after a sudden strain is that of the base, and a share g_i of it relaxes
+/// as exp(-t / tau_i). Over a step dt, with S0 the stress of the base (Simo 1987; Simo and Hughes 1998, 10.3):
 ///   h_i' = exp(-dt / tau_i) h_i + g_i (1 - exp(-dt / tau_i)) tau_i / dt (S0' - S0),
 ///   S = (1 - sum g_i) S0' + sum h_i',
-/// exact where S0 is linear in time over the step and stable for every dt >= 0; dt = 0 is a sudden strain, an infinite
-/// one leaves nothing that fades. Parameters of the base are the fast ones; slow ones are 1 - sum g_i times these.
-/// Admissible: base admissible, g_i >= 0, their sum below 1, tau_i > 0. At large strain S is P turned back by F^-1,
-/// which needs J > 0 for every base. What is left when only the shape relaxes is the stress of a change of volume
-/// alone, that of the base at J^(1/3) I: so that what is left after a long time still comes of an energy, and no closed
-/// path yields any. For a base whose energy splits into shape and volume that is its pressure, untouched.
+/// exact if S0 is linear in time over the step and stable for every dt >= 0. dt = 0 is a sudden strain, an infinite dt
+/// gives full relaxation. Parameters of the base are the instantaneous ones; the long-term ones are 1 - sum g_i times
+/// these. Admissible: base admissible, g_i >= 0, their sum below 1, tau_i > 0. At large strain S is F^-1 P, which needs
+/// J > 0 for every base. With deviatoric relaxation the part that does not relax is the stress of a pure change of
+/// volume, that of the base at J^(1/3) I. So the long-term stress still derives from an energy, and no closed path
+/// releases any. For a base whose energy splits into isochoric and volumetric parts it is the pressure, unchanged.
 template <Material Base, int Terms>
 struct Viscoelastic {
   Base base{};
   std::array<PronyTerm, Terms> terms{};
   Relaxation relaxation = Relaxation::whole_stress;
-  double density = base.density;  ///< rho at rest [kg/m^3]; that of the base unless given
+  double density = base.density;  ///< rho at rest [kg/m^3]; by default that of the base
 
   using SmallStrainHistory = StressHistory<Vector6, Terms>;
   using LargeStrainHistory = StressHistory<Tensor3<double>, Terms>;
 
-  /// What is left of the stress after a long time [-].
+  /// Share of the stress that remains after a long time [-].
   double long_term_share() const noexcept {
     double left = 1.0;
     for (const PronyTerm& t : terms) left -= t.share;
     return left;
   }
-  /// d stress / d stress of the base over a step [-]: what the tangent of the base is multiplied by (its part of shape,
-  /// if only that relaxes).
+  /// d stress / d stress of the base over a step [-]: factor for the tangent of the base (for its deviatoric part only,
+  /// with deviatoric relaxation).
   double tangent_share(double dt) const noexcept { return over(dt).share; }
   PronyStep<Terms> over(double dt) const noexcept {
     PronyStep<Terms> step;
@@ -95,7 +95,7 @@ struct Viscoelastic {
     }
     return step;
   }
-  /// Stress [Pa] at the end of a step dt [s] that ends at this small strain (Voigt order); moves the history on.
+  /// Stress [Pa] at the end of a step dt [s] that ends at this small strain (Voigt order); advances the history.
   Vector6 stress(const Vector6& strain, SmallStrainHistory& history,
                  double dt) const noexcept requires LinearMaterial<Base> {
     Vector6 fading = base.elasticity() * strain, kept = Vector6::Zero();
@@ -106,7 +106,7 @@ struct Viscoelastic {
     return kept + advance(fading, history, over(dt));
   }
 
-  /// First Piola-Kirchhoff stress [Pa] at the end of a step dt [s] that ends at F; moves the history on.
+  /// First Piola-Kirchhoff stress [Pa] at the end of a step dt [s] that ends at F; advances the history.
   Tensor3<double> stress(const Tensor3<double>& f, LargeStrainHistory& history,
                          double dt) const noexcept requires HyperelasticMaterial<Base> {
     const Tensor3<double> p = material_of_step(over(dt), driving_stress(history, over(dt))).stress(f);
@@ -114,21 +114,21 @@ struct Viscoelastic {
     return p;
   }
 
-  // The same in parts, for bodies: within a step the law is hyperelastic.
+  // The same in separate functions, for bodies: within a step the material is hyperelastic.
 
-  /// The part of S [Pa] that what happened before the step leaves at its end.
+  /// The part of S [Pa] at the end of the step that comes from the history before the step.
   static Tensor3<double> driving_stress(const LargeStrainHistory& history, const PronyStep<Terms>& step) noexcept {
     Tensor3<double> sum{};
     for (std::size_t i = 0; i < step.decay.size(); ++i)
       sum = sum + (step.decay[i] * history.fading[i] - step.gain[i] * history.elastic);
     return sum;
   }
-  /// Refers to this material.
+  /// The hyperelastic material of the step. Refers to this material.
   ViscousStep<Base> material_of_step(
       const PronyStep<Terms>& step, const Tensor3<double>& driving) const noexcept requires HyperelasticMaterial<Base> {
     return {base, step.share, relaxation == Relaxation::deviatoric ? 1.0 - step.share : 0.0, driving};
   }
-  /// Moves the history on over a step that ends at F.
+  /// Advances the history over a step that ends at F.
   void update_history(const Tensor3<double>& f, LargeStrainHistory& history,
                       const PronyStep<Terms>& step) const noexcept requires HyperelasticMaterial<Base> {
     Tensor3<double> p = base.stress(f);
@@ -136,7 +136,7 @@ struct Viscoelastic {
     const Tensor3<double> c = cofactor(f);
     advance((1.0 / determinant(f, c)) * (transpose(c) * p), history, step);
   }
-  /// Of the fast answer at small strain [Pa].
+  /// Instantaneous elasticity at small strain [Pa].
   Matrix6 rest_elasticity() const noexcept requires HyperelasticMaterial<Base> { return base.rest_elasticity(); }
 
   bool admits(const Tensor3<double>& f) const noexcept requires HyperelasticMaterial<Base> {
@@ -173,12 +173,12 @@ struct Viscoelastic {
 
   static SetupProblem problem(const std::string& name, double value, double threshold) {
     return parameter_problem(SetupErrorKind::bad_argument, "the " + name, value, threshold,
-                             "Shares lie between 0 and 1 and sum to less than 1; times are positive, in s");
+                             "Shares are between 0 and 1 and sum to less than 1; times are positive, in s");
   }
 };
 
 // clang-format off
-/// A large-strain material with memory.
+/// A large-strain viscoelastic material.
 template <class M>
 concept ViscousMaterial =
     Material<M> && requires(const M& m, const Tensor3<double>& f, typename M::LargeStrainHistory& history) {

@@ -1,4 +1,5 @@
-// A fake of what palpate calls of DHD: names and signatures as documented, behaviour our own.
+// A fake of the functions of DHD that palpate calls: names and signatures as documented, behaviour written for the
+// tests.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// A fake of what palpate calls of HDAPI: names and signatures as documented, numbers and behaviour our own.
+// A fake of the functions of HDAPI that palpate calls: names and signatures as documented, numbers and behaviour
+// written for the tests.
 #pragma once
 
 #include <array>
@@ -69,7 +70,7 @@ struct Sdk {
   std::array<double, 3> frame_force{}, frame_torque{};  ///< set in this frame
   std::array<double, 3> force{}, torque{};              ///< sent to the motors
   bool output = false, in_frame = false, broken = false, init_fails = false, calls_back = true;
-  int misuse = 0;  ///< frames begun twice, ended without begin, asked or set outside
+  int misuse = 0;  ///< frames begun twice, ended without begin; values read or set outside a frame
   HDSchedulerCallback callback = nullptr;
   void* callback_data = nullptr;
   unsigned long rate = 0;
@@ -85,7 +86,7 @@ inline Sdk*& current() {
 inline Sdk& sdk() {
   return *current();
 }
-/// A fresh SDK for a test.
+/// A new SDK state for a test.
 struct Scope {
   Sdk sdk;
   Scope() { current() = &sdk; }
@@ -183,7 +184,7 @@ inline void hdStartScheduler() {
   if (!s.calls_back) return;
   s.stop_thread = false;
   s.thread = std::thread([&s] {
-    while (!s.scheduler_runs) std::this_thread::yield();  // s.thread is there
+    while (!s.scheduler_runs) std::this_thread::yield();  // s.thread is assigned
     while (!s.stop_thread && s.callback(s.callback_data) == HD_CALLBACK_CONTINUE)
       std::this_thread::sleep_for(std::chrono::microseconds(200));
   });

@@ -1,4 +1,4 @@
-// A palpate type on both ways across the border of a source: as a result and as a parameter.
+// A palpate type that crosses translation units in both directions: as a result and as a parameter.
 #pragma once
 
 #include <palpate/mesh/scene.hpp>

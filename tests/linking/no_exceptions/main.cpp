@@ -1,7 +1,7 @@
-// The whole library without exceptions and RTTI. The first argument chooses: `valid` makes a tissue and touches it,
-// which must work; `invalid` makes one with a Poisson ratio of 0.5, `inverted` one with an element inside out, which
-// must end in the handler (exit code 7); `default` the same without a handler of ours, `returns` with one that returns:
-// both print and abort.
+// The whole library without exceptions and RTTI. The first argument selects the case: `valid` constructs a tissue and
+// touches it, which must work; `invalid` constructs one with a Poisson ratio of 0.5, `inverted` one with an inverted
+// element: both must call the handler (exit code 7). `default` is `invalid` with the default handler, `returns` with a
+// handler that returns: both print and abort.
 #include <palpate/palpate.hpp>
 
 #include <cstdio>
@@ -29,7 +29,7 @@ void show_and_exit(const palpate::SetupProblem& problem) {
   std::_Exit(7);
 }
 
-/// A sphere of 5 mm pressed 2 mm into a pad of this Poisson ratio; the force [N], straight up.
+/// The vertical force [N] on a sphere of 5 mm radius pressed 2 mm into a pad of this Poisson ratio.
 double press(double poisson_ratio, bool invert) {
   auto mesh = palpate::box_tet4({0.04, 0.04, 0.02}, {4, 4, 2});
   if (invert) std::swap(mesh.elements[3][0], mesh.elements[3][1]);

@@ -1,5 +1,5 @@
-// Statics, a factor, a contact force through the gate: a few numbers, printed or compared with those given. Returns 1
-// when one differs by more than rounding, or the gate lets through what it must not.
+// Statics, a factorisation, a contact force through the gate: a few numbers, printed, and compared with the arguments.
+// Returns 1 when one differs by more than rounding, or when the gate outputs a force that it must not.
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/core/realtime.hpp>
@@ -16,7 +16,7 @@ using namespace palpate;
 
 namespace {
 
-/// Largest displacement and energy of a block that is pulled aside.
+/// Largest displacement and energy of a block that is fixed at one side and loaded.
 std::array<double, 2> statics() {
   const auto mesh = box_tet4({0.1, 0.08, 0.06}, {4, 3, 3});
   const auto body = make_body(mesh, std::vector<LinearElastic>{{5e3, 0.45, 1000.0}});
@@ -32,7 +32,7 @@ std::array<double, 2> statics() {
   return {u.cwiseAbs().maxCoeff(), 0.5 * load.dot(u)};
 }
 
-/// Length of the last of a thousand rendered forces; nothing when the gate lets through what it must not.
+/// Length of the last of a thousand rendered forces; -1 when the gate outputs a force that it must not.
 double rendered() {
   const ForceLimits limits;
   ForceGate gate(limits);

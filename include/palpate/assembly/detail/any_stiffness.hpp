@@ -1,4 +1,4 @@
-// The stiffness of a mesh of any type, stored or not.
+// Type-erased stiffness of a mesh, stored or matrix-free.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -21,11 +21,11 @@ class StiffnessView {
         diagonal_blocks_([](const void* p) { return static_cast<const K*>(p)->diagonal_blocks(); }) {}
   StiffnessView(const StiffnessView&) = default;
 
-  /// Dofs, constrained ones included.
+  /// Number of dofs, including constrained ones.
   Index size() const noexcept { return size_; }
   /// y = K x [N]. No allocation.
   void apply(const VectorX& x, VectorX& y) const noexcept { apply_(k_, x, y); }
-  /// The 3 x 3 block of every node.
+  /// The 3 x 3 diagonal block of every node.
   std::vector<Matrix3> diagonal_blocks() const { return diagonal_blocks_(k_); }
 
  private:
@@ -35,7 +35,7 @@ class StiffnessView {
   std::vector<Matrix3> (*diagonal_blocks_)(const void*);
 };
 
-/// Owns any StiffnessOperator. Moved, not copied; what it owns stays at its place.
+/// Owns any StiffnessOperator. Movable, not copyable; the address of the owned operator is stable.
 class AnyStiffness {
  public:
   AnyStiffness() = default;
@@ -47,7 +47,7 @@ class AnyStiffness {
   std::vector<Matrix3> diagonal_blocks() const { return owned_->view.diagonal_blocks(); }
   std::size_t bytes() const noexcept { return owned_->bytes; }
   StiffnessView view() const noexcept { return owned_->view; }
-  /// The matrix when it is stored, or null.
+  /// The stored matrix; null without one.
   const BlockMatrix* matrix() const noexcept { return owned_->matrix; }
 
  private:

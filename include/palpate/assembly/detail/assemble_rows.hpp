@@ -1,4 +1,4 @@
-// The stiffness of elements with constant gradients, assembled row by row.
+// Row-by-row assembly of the stiffness of elements with constant gradients.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -17,7 +17,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Spatial gradients of all elements, times the root of the volume: what K_ab is a sum of products of.
+/// Spatial gradients of all elements times the square root of the volume; K_ab is a sum of products of these.
 template <ConstantGradient E>
 class ScaledGradients {
  public:
@@ -39,7 +39,7 @@ class ScaledGradients {
   std::vector<Gradients> values_;
 };
 
-/// Fills `k` with the stiffness of isotropic elements. Every block is finished while its row is in cache; no element
+/// Fills `k` with the stiffness of isotropic elements. Every block is completed while its row is in cache; no element
 /// matrix is formed. About E::nodes^2 / 2 blocks of 25 multiplications per element; allocates the gradients.
 template <ConstantGradient E>
 void assemble_rows(const Mesh<E>& mesh, const NodeElements& around, const std::vector<LameConstants>& region,
@@ -48,7 +48,7 @@ void assemble_rows(const Mesh<E>& mesh, const NodeElements& around, const std::v
                         "the gradients of all elements");
   const ScaledGradients<E> gradients(mesh);
   const BlockPattern& pattern = k.pattern();
-  std::vector<Index> place(static_cast<std::size_t>(pattern.rows()), -1);  // of a column in the present row
+  std::vector<Index> place(static_cast<std::size_t>(pattern.rows()), -1);  // position of a column in the current row
   for (Index i = 0; i < pattern.rows(); ++i) {
     if (i % 8192 == 0) limits.advance("assembly", static_cast<double>(i) / static_cast<double>(pattern.rows()));
     for (Index p = pattern.row_start[static_cast<std::size_t>(i)];

@@ -1,4 +1,4 @@
-// Internal force of tetrahedra at any strain, several elements at once: the force of explicit integration.
+// Internal force of tetrahedra at any strain, several elements simultaneously; used for explicit integration.
 #pragma once
 
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
@@ -23,10 +23,10 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Total Lagrangian force of linear tetrahedra (Miller, Joldes, Lance, Wittek 2007): F from gradients at rest, f_a = V
-/// P grad N_a, Lanes<S, N> of elements at once. Elements lie in blocks of 512 that are added up in the cache first,
-/// then by node: the sum has one order, whatever the number of threads and whoever computes which block. Vectors are
-/// double, all dofs, in the order of the mesh; S = float computes in single precision from differences of displacement
-/// within a block. No allocation after construction.
+/// P grad N_a, Lanes<S, N> of elements simultaneously. Elements are grouped in blocks of 512 that are summed in the
+/// cache first, then by node: the order of summation is fixed, independent of the number of threads and of which thread
+/// computes which block. Vectors are double, all dofs, in the order of the mesh; S = float computes in single precision
+/// from displacement differences within a block. No allocation after construction.
 template <HyperelasticMaterial M, class S = double, int N = 64 / sizeof(S)>
 class BatchedTetrahedra {
  public:
@@ -44,16 +44,17 @@ class BatchedTetrahedra {
   Index size() const noexcept { return 3 * layout_.node_count(); }
   Index block_count() const noexcept { return static_cast<Index>(layout_.blocks.size()); }
 
-  /// force = internal force at displacement u [N]. A law that does not hold adds whatever it gives; the report says so:
-  /// det F <= 0 where the law needs more, or not finite. (Narrower bounds of a law are seen by LargeStrain only.)
+  /// force = internal force at displacement u [N]. Where the material is not admissible its stress is added as
+  /// computed and the report states it: det F <= 0 for a material that needs det F > 0, or a non-finite value. (Only
+  /// LargeStrain checks narrower bounds of a material.)
   DeformationReport force(const VectorX& u, VectorX& f) noexcept {
     for (Index b = 0; b < block_count(); ++b) compute_block(b, u);
     add_up(0, layout_.node_count(), f);
     return report();
   }
 
-  /// Elements for which gone(element) leave, for good: no force, no energy, not in the report. O(elements), no
-  /// allocation. Pieces that come apart share blocks: S = float then loses digits as they fly off.
+  /// Permanently removes the elements for which gone(element) is true: no force, no energy, not in the report.
+  /// O(elements), no allocation. Separated fragments may share blocks: S = float loses digits as they move apart.
   template <class Gone>
   void remove_if(Gone&& gone) {
     layout_.remove_if(gone, [](std::size_t, int) {});
@@ -72,7 +73,7 @@ class BatchedTetrahedra {
     return sum;
   }
 
-  /// A small part of the shortest edge [m]: differences of forces then keep half their digits.
+  /// A small fraction of the shortest edge [m], chosen so that differences of forces keep half their digits.
   double probe_length() const noexcept { return probe_length_; }
 
   /// The three parts of force(), for several threads: every block once, in any order; then every node; then the report.
@@ -98,7 +99,7 @@ class BatchedTetrahedra {
 
   TetrahedronBatches<S, N> layout_;
   std::vector<M> materials_;             // by region
-  std::vector<S> rows_;                  // force on every row, four numbers
+  std::vector<S> rows_;                  // force on every row, four numbers per row
   std::vector<DeformationReport> reports_;  // by block
   double probe_length_ = 0.0;
 };

@@ -1,4 +1,4 @@
-// Gradients and volume of elements where they are constant.
+// Gradients and volume of elements with constant gradients.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -12,12 +12,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Elements with one integration point: their gradients are constant (Tet4).
+/// Elements with one integration point, so constant gradients (Tet4).
 template <class E>
 concept ConstantGradient = Element<E> && E::Quadrature::points.size() == 1;
 
-/// Geometry of element e [1/m, m^3]. Throws inverted_element for a negative volume, non_finite for one that is zero or
-/// no number.
+/// Geometry of element e [1/m, m^3]. Throws inverted_element for a negative volume, non_finite for a volume that is
+/// zero or NaN.
 template <ConstantGradient E>
 PointGeometry<E> constant_geometry(const Mesh<E>& mesh, Index e) {
   constexpr auto point = E::Quadrature::points[0];

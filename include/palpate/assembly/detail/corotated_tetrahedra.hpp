@@ -1,4 +1,4 @@
-// Force and stiffness of linear tetrahedra in frames that turn with the elements, without a matrix.
+// Matrix-free force and stiffness of linear tetrahedra in frames that rotate with the elements.
 #pragma once
 
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
@@ -27,11 +27,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The body of `Corotational` at a displacement, several elements at once: energy, force, and products with its
-/// stiffness at held rotations, R K R^T of Mueller and Gross (2004), which is positive semidefinite whatever the state.
-/// An element is the linear one with turned gradients, so a product costs what it costs at small strain. Rotations are
-/// followed from state to state. Blocks, sums and vectors as in BatchedTetrahedra; S = float computes products and
-/// forces in single precision. No allocation after construction.
+/// A `Corotational` body at a displacement, several elements simultaneously: energy, force, and products with its
+/// stiffness at fixed rotations, R K R^T of Mueller and Gross (2004), which is positive semidefinite in every state. An
+/// element is the linear one with rotated gradients, so a product costs as much as at small strain. Each rotation is
+/// computed from that of the previous state. Blocks, sums and vectors as in BatchedTetrahedra; S = float computes
+/// products and forces in single precision. No allocation after construction.
 template <class Base = LinearElastic, class S = double, int N = 64 / sizeof(S)>
 class CorotatedTetrahedra {
  public:
@@ -48,7 +48,8 @@ class CorotatedTetrahedra {
   }
 
   Index size() const noexcept { return 3 * layout_.node_count(); }
-  /// Elements for which gone(element) leave, for good, as in BatchedTetrahedra. O(elements), no allocation.
+  /// Permanently removes the elements for which gone(element) is true, as in BatchedTetrahedra. O(elements), no
+  /// allocation.
   template <class Gone>
   void remove_if(Gone&& gone) {
     layout_.remove_if(gone, [this](std::size_t batch, int lane) {
@@ -57,11 +58,11 @@ class CorotatedTetrahedra {
     });
   }
 
-  /// Rotations are found from those at rest next time, not from the last ones.
+  /// The next rotations are computed from those at rest, not from the last ones.
   void forget_rotations() noexcept {
     for (RotatedBatch& rotated : rotated_) rotated.rotation = {Lane(S(1)), Lane(S(0)), Lane(S(0)), Lane(S(0))};
   }
-  /// Takes the rotations at u; f = internal force there [N], energy [J]. Finite where the square of F is, in S.
+  /// Computes the rotations at u; f = internal force there [N], energy [J]. Finite if |F|^2 is finite in S.
   DeformationReport linearise(const VectorX& u, VectorX& f, double& energy) noexcept {
     energy = 0.0;
     for (std::size_t b = 0; b < layout_.blocks.size(); ++b) energy += linearise_block(b, u);
@@ -69,13 +70,13 @@ class CorotatedTetrahedra {
     return detail::report_of(reports_);
   }
 
-  /// y = R K R^T x with the rotations taken last.
+  /// y = R K R^T x with the rotations of the last linearise().
   void apply(const VectorX& x, VectorX& y) const noexcept {
     for (const TetrahedronBlock& block : layout_.blocks) apply_block(block, x);
     layout_.add_up(rows_.data(), 0, layout_.node_count(), y);
   }
 
-  /// Blocks of R K R^T on the diagonal [N/m], symmetric: xx, yy, zz of every node, and xy, xz, yz.
+  /// Diagonal blocks of R K R^T [N/m], symmetric: xx, yy, zz of every node, and xy, xz, yz.
   void diagonal_blocks(VectorX& straight, VectorX& mixed) const noexcept {
     add_diagonals(
         [](const Vector& g, const Lane& isotropic, const Lane& more) {
@@ -151,7 +152,7 @@ class CorotatedTetrahedra {
     }
   }
 
-  /// Sums part(g, mu V |grad|^2, (lambda + mu)) of every element and node, g its turned gradient times sqrt(V).
+  /// Sums part(g, mu V |grad|^2, (lambda + mu)) over every element and node; g is its rotated gradient times sqrt(V).
   template <class Part>
   void add_diagonals(Part part, VectorX& to) const noexcept {
     for (const TetrahedronBlock& block : layout_.blocks) {
@@ -172,7 +173,7 @@ class CorotatedTetrahedra {
   TetrahedronBatches<S, N> layout_;
   std::vector<detail::Lame<Lane>> materials_;  // by region
   std::vector<RotatedBatch> rotated_;
-  mutable std::vector<S> rows_;          // force on every row, four numbers: a workspace
+  mutable std::vector<S> rows_;             // force on every row, four numbers per row: a workspace
   std::vector<DeformationReport> reports_;  // by block
 };
 

@@ -1,4 +1,4 @@
-// The elasticity of the domains over which a strain is averaged.
+// The elasticity of the domains over which a smoothed strain is averaged.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -14,15 +14,15 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The part of the elasticity [Pa] that acts in each domain of a body. Where the law changes from element to element
-/// (along fibres), the mean over the domain by volume: 288 bytes per domain.
+/// The part of the elasticity [Pa] that acts in each domain of a body. If the elasticity differs between elements
+/// (along fibres), the volume-weighted mean over the domain: 288 bytes per domain.
 class DomainElasticity {
  public:
   DomainElasticity() = default;
 
   template <HasSmoothedStrain E>
   DomainElasticity(const Body<E>& body, const StrainDomains<E>& domains) : by_domain_(!body.materials.empty()) {
-    std::vector<Matrix6> materials;  // both parts of each
+    std::vector<Matrix6> materials;  // both parts of each matrix
     for (const Matrix6& d : body.elasticity) {
       const SplitElasticity split = split_elasticity(d);
       materials.push_back(split.deviatoric);
@@ -46,7 +46,7 @@ class DomainElasticity {
   }
 
   std::size_t bytes() const noexcept { return elasticity_.size() * sizeof(Matrix6); }
-  /// Of domain number d.
+  /// Elasticity of domain number d.
   const Matrix6& operator()(Index d, const StrainDomain& domain) const noexcept;
 
  private:

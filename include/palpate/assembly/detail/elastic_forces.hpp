@@ -1,4 +1,4 @@
-// What statics and dynamics need of an elastic body, whatever its elements and laws are.
+// Interface of an elastic body for statics and dynamics, independent of its elements and materials.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -8,30 +8,31 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Energy, force and tangent of a body at a displacement u, all dofs, 3 per node [m]. Called once per iteration or step
-/// for the whole body, so a virtual call costs nothing, and what is built on it is compiled once for all elements and
-/// laws. With memory (begin_step, end_step) the energy is that of the step: its derivative is the force.
+/// Energy, force and tangent of a body at a displacement u, all dofs, 3 per node [m]. Called once per iteration or
+/// step for the whole body, so the cost of a virtual call is negligible, and code that uses it is compiled once for all
+/// elements and materials. With a viscoelastic history (begin_step, end_step) the energy is that of the step: its
+/// derivative is the force.
 class ElasticForces {
  public:
   virtual ~ElasticForces() = default;
 
   virtual Index size() const noexcept = 0;  ///< dofs
-  /// Stored energy [J]; infinite where a law does not hold.
+  /// Stored energy [J]; infinite where a material is not admissible.
   virtual double energy(const VectorX& u) const noexcept = 0;
-  /// Forces with which the body answers [N], derivative of the energy.
+  /// Internal forces [N], derivative of the energy.
   virtual DeformationReport force(const VectorX& u, VectorX& f) const noexcept = 0;
   /// Derivative of the internal force, into a matrix on the pattern of the mesh. Not always positive definite.
   virtual void tangent(const VectorX& u, BlockMatrix& k) const noexcept = 0;
-  /// Whether forces are as small as displacements are. Where they come of a deformation gradient, 1 and a little, they
-  /// carry its rounding also at rest.
+  /// True if the error of the forces is proportional to the displacement. Forces from a deformation gradient, close to
+  /// I, have the rounding error of I even at rest.
   virtual bool is_linear() const noexcept { return false; }
 
-  // Bodies with memory; others have nothing to do here.
-  /// From now on energy, force and tangent are those at the end of a step of dt >= 0 [s] from where the last step
-  /// ended; infinite: when nothing fades any more. May be called again, with another dt. At first: a step of 0 from
+  // Viscoelastic bodies; the default does nothing.
+  /// From now on energy, force and tangent are those at the end of a step of dt >= 0 [s] that starts where the last
+  /// step ended; infinite dt: full relaxation. May be called again with a different dt. Initially: a step of 0 from
   /// rest.
   virtual void begin_step(double) noexcept {}
-  /// The step that was begun ends at u: what is remembered moves on. The next call is begin_step.
+  /// Ends the current step at u and advances the history. The next call is begin_step.
   virtual void end_step(const VectorX&) noexcept {}
 };
 

@@ -1,4 +1,4 @@
-// Elements in blocks that lie together, so that what one block reads and writes stays in the first level of the cache.
+// Blocks of neighbouring elements: the data that one block reads and writes stay in the first-level cache.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -20,15 +20,15 @@ struct ElementBlock {
 
 namespace detail {
 
-/// Halves along the longest side of the box of the centres until a part has at most `most` elements. Cuts are at
-/// multiples of `group`.
+/// Bisects along the longest side of the bounding box of the centres until a part has at most `most` elements. Cuts
+/// are at multiples of `group`.
 void bisect_elements(std::span<NodeId> elements, const std::vector<Vector3>& centre, Index most, Index group,
                      int region, std::vector<ElementBlock>& blocks);
 
 }  // namespace detail
 
-/// Cuts a mesh into blocks of at most `most` elements, all but the last of a region a multiple of `group`. The same
-/// mesh gives the same blocks. O(elements log elements).
+/// Divides a mesh into blocks of at most `most` elements, all but the last of a region a multiple of `group`.
+/// Deterministic for a given mesh. O(elements log elements).
 template <Element E>
 std::vector<ElementBlock> element_blocks(const Mesh<E>& mesh, Index most, Index group) {
   std::vector<Vector3> centre;

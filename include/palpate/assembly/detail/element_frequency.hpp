@@ -1,4 +1,4 @@
-// A bound of the highest frequency of a body, from its elements.
+// Upper bound of the highest frequency of a body, from its elements.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -18,9 +18,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Upper bound of omega^2 [1/s^2] of a body at rest with lumped mass (lumped_mass): that of its worst element alone
-/// (Irons and Treharne 1971). Up to twice the true one in good meshes, more where there are slivers. Held or not. 10 us
-/// per Tet4. Throws inverted_element or non_finite, bad_density where there is no mass.
+/// Upper bound of omega^2 [1/s^2] of a body at rest with lumped mass (lumped_mass): the largest value of any single
+/// element (Irons and Treharne 1971). Up to twice the true value in good meshes, more with slivers. Valid with and
+/// without supports. 10 us per Tet4. Throws inverted_element or non_finite, bad_density where there is no mass.
 template <Element E>
 double element_frequency_bound(const Body<E>& body) {
   using Matrix = Eigen::Matrix<double, 3 * E::nodes, 3 * E::nodes>;

@@ -40,7 +40,7 @@ PALPATE_INLINE EssentialConditions resolve_essential(const MeshRef& mesh, const 
           raise_at(SetupIds::nodes, node, SetupErrorKind::conflicting_conditions,
                    std::string("component ") + "xyz"[i] + " of a node is prescribed as " + number(c.prescribed[dof]) +
                        " and as " + number(*value),
-                   "Give each component one value");
+                   "Prescribe one value per component");
         bits = static_cast<std::uint8_t>(bits | (1u << i));
         c.prescribed[dof] = *value;
       }

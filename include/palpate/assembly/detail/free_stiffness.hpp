@@ -1,4 +1,4 @@
-// The stiffness seen by the free dofs.
+// The stiffness restricted to the free dofs.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -19,8 +19,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
 /// K restricted to the free dofs, as an operator with a block Jacobi preconditioner. Refers to `stiffness` and
-/// `conditions`, which must outlive it. Satisfies SpdOperator; owns two workspaces, so it is not to be used from two
-/// threads at once.
+/// `conditions`, which must outlive it. Satisfies SpdOperator; owns two workspaces, so it must not be used from two
+/// threads simultaneously.
 class FreeStiffness {
  public:
   FreeStiffness() = default;
@@ -61,8 +61,8 @@ void for_each_free_entry(const BlockMatrix& k, const EssentialConditions& condit
     }
 }
 
-/// Lower half of the free dofs' part of a matrix (BlockMatrix, MassMatrix) as a compressed sparse one. O(entries),
-/// allocates it.
+/// Lower half of the free part of a matrix (BlockMatrix, MassMatrix) as a compressed sparse matrix. O(entries),
+/// allocates the result.
 template <class Matrix>
 SparseMatrix free_matrix(const Matrix& k, const EssentialConditions& conditions) {
   const Index n = conditions.free_count();

@@ -1,4 +1,4 @@
-// The free part of a matrix whose values change.
+// The free part of a matrix with changing values.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -13,8 +13,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Lower half of K_ff on a pattern made once; new values are copied without allocation or search. 8 bytes per entry
-/// beside the matrix.
+/// Lower half of K_ff on a pattern that is built once; new values are copied without allocation or search. 8 bytes per
+/// entry in addition to the matrix.
 class FreeValues {
  public:
   FreeValues() = default;
@@ -22,12 +22,13 @@ class FreeValues {
 
   const SparseMatrix& lower() const noexcept { return lower_; }
 
-  /// Takes the values of a matrix on the same pattern with the same conditions.
+  /// Copies the values of a matrix on the same pattern with the same conditions.
   void update(const BlockMatrix& k, const EssentialConditions& conditions) noexcept;
-  /// The diagonal comes first in a column of the lower half.
+  /// Adds to the diagonal, which is the first entry of each column of the lower half.
   void add_to_diagonal(double value) noexcept;
-  /// What must be added to the diagonal to make the matrix diagonally dominant, so positive semidefinite (Gershgorin
-  /// 1931); 0 when it is. NaN for a matrix that is not finite. `sums` is room for a number per row.
+  /// Smallest value that, added to the diagonal, makes the matrix diagonally dominant, so positive semidefinite
+  /// (Gershgorin 1931); 0 when it is already. NaN for a matrix that is not finite. `sums` is workspace, one number per
+  /// row.
   double gershgorin_shift(VectorX& sums) const noexcept;
 
  private:

@@ -1,4 +1,4 @@
-// Small strain as an elastic body like any other.
+// Small strain as an ElasticForces body.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -11,7 +11,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// f = K u with a constant stiffness. Right for small displacements only; nothing is ever inside out.
+/// f = K u with a constant stiffness. Valid for small displacements only; never reports inverted elements.
 class LinearForces final : public ElasticForces {
  public:
   explicit LinearForces(BlockMatrix stiffness) : stiffness_(std::move(stiffness)), force_(stiffness_.size()) {}
@@ -20,7 +20,7 @@ class LinearForces final : public ElasticForces {
   double energy(const VectorX& u) const noexcept override;
   DeformationReport force(const VectorX& u, VectorX& f) const noexcept override;
   void tangent(const VectorX&, BlockMatrix& k) const noexcept override { k.copy_values(stiffness_); }
-  /// Any length would do.
+  /// Any length is suitable, because the force is linear.
   double probe_length() const noexcept { return 1.0; }
   bool is_linear() const noexcept override { return true; }
 

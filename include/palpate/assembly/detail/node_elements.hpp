@@ -1,4 +1,4 @@
-// Which elements meet in a node.
+// Elements around each node.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -10,7 +10,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Elements around every node, ascending. O(elements), allocates 4 bytes per element and node of it.
+/// Elements around every node, ascending. O(elements), allocates 4 bytes per node of every element.
 class NodeElements {
  public:
   /// Throws count_too_large beyond 2^31 elements.

@@ -1,4 +1,4 @@
-// What the integration points of a body remember.
+// Viscoelastic history of the integration points of a body.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -13,7 +13,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Nothing: the law of a point is that of its region, and no step costs anything.
+/// No history: the material of a point is that of its region, and steps cost nothing.
 struct NoHistory {
   template <class Body>
   void start(const Body&, const SetupLimits&) noexcept {}
@@ -23,15 +23,16 @@ struct NoHistory {
   }
 };
 
-/// The history of a Prony series: (2 + terms) x 72 bytes per point. No function but `start` allocates.
+/// The history of a Prony series: (2 + terms) x 72 bytes per point. Only `start` allocates.
 template <ViscousMaterial M, std::size_t Points>
 class PronyPoints {
  public:
-  /// At rest, with a sudden step begun.
+  /// Initialises the history at rest and begins a step of length 0.
   template <class Body>
   void start(const Body& body, const SetupLimits& limits) {
     const auto count = static_cast<std::size_t>(body.rest.mesh.element_count());
-    limits.require_memory(static_cast<double>(count) * Points * sizeof(Point), "what the points remember");
+    limits.require_memory(static_cast<double>(count) * Points * sizeof(Point),
+                          "the viscoelastic history of the integration points");
     points_.resize(count);
     steps_.resize(body.materials.size());
     begin_step(body, 0.0);

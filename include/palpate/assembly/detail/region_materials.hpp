@@ -9,7 +9,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// One material per region, by name; the name `everywhere` stands for all regions not named.
+/// One material per region, by name; the name `everywhere` applies to all regions that are not named.
 template <Material M>
 using RegionMaterials = std::vector<std::pair<std::string, M>>;
 

@@ -21,7 +21,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Pattern of nodes that share a domain: those of elements around a common node. O(nodes x neighbours^2), allocates.
+/// Pattern of nodes that share a domain: nodes of elements with a common node. O(nodes x neighbours^2), allocates.
 template <HasSmoothedStrain E>
 BlockPattern smoothed_pattern(const Mesh<E>& mesh, const NodeElements& around) {
   BlockPattern pattern;
@@ -44,7 +44,7 @@ BlockPattern smoothed_pattern(const Mesh<E>& mesh, const NodeElements& around) {
   return pattern;
 }
 
-/// Calls add(a, b, block) for the lower half of the stiffness of a domain, a and b places among its nodes.
+/// Calls add(a, b, block) for the lower half of the stiffness of a domain; a and b index its nodes.
 template <class Add>
 void for_each_domain_block(const StrainDomain& domain, const Matrix6& d, Add&& add) {
   if (const auto isotropic = lame_constants(d)) {
@@ -63,7 +63,7 @@ void for_each_domain_block(const StrainDomain& domain, const Matrix6& d, Add&& a
   }
 }
 
-/// Sum over domains of V B^T D B into the pattern, for elements with smoothed strain. Throws what StrainDomains throws.
+/// Assembles the sum over domains of V B^T D B, for elements with smoothed strain. Throws as StrainDomains.
 template <HasSmoothedStrain E>
 BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
   const NodeElements around(body.mesh);
@@ -80,7 +80,7 @@ BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
   return k;
 }
 
-/// K x domain by domain, without a matrix: keeps the domains. Satisfies StiffnessOperator.
+/// K x domain by domain, without a matrix: stores the domains. Satisfies StiffnessOperator.
 template <HasSmoothedStrain E>
 class SmoothedStiffness {
  public:

@@ -12,8 +12,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Calls visit(domain, stress, strain) for every domain of a body: the elastic strain under displacements u [m],
-/// initial strains per region taken off, and the part of the stress [Pa] it makes.
+/// Calls visit(domain, stress, strain) for every domain of a body: the elastic strain under displacements u [m], which
+/// is the strain minus the initial strain of the region, and the part of the stress [Pa] that belongs to it.
 template <HasSmoothedStrain E, class Visit>
 void for_each_domain_stress(const Body<E>& body, const std::vector<Vector6>& initial, const VectorX& u, Visit&& visit) {
   const StrainDomains<E> domains(body.mesh);
@@ -25,7 +25,7 @@ void for_each_domain_stress(const Body<E>& body, const std::vector<Vector6>& ini
   }
 }
 
-/// Load f_0 of initial strains per region, for elements with smoothed strain: 3 nodes entries [N].
+/// Load f_0 of initial strains per region, for elements with smoothed strain: 3 entries per node [N].
 template <HasSmoothedStrain E>
 VectorX initial_strain_load(const Body<E>& body, const std::vector<Vector6>& strains) {
   const VectorX none = VectorX::Zero(3 * body.mesh.node_count());
@@ -36,7 +36,7 @@ VectorX initial_strain_load(const Body<E>& body, const std::vector<Vector6>& str
   return f;
 }
 
-/// Stored energy [J] for nodal displacements u (3 nodes entries [m]).
+/// Stored energy [J] for nodal displacements u (3 entries per node [m]).
 template <HasSmoothedStrain E>
 double strain_energy(const Body<E>& body, const VectorX& u) {
   double energy = 0.0;
@@ -48,7 +48,7 @@ double strain_energy(const Body<E>& body, const VectorX& u) {
 }
 
 /// Strain, and stress [Pa], of every element, one per column: means over its edges and nodes. With this stress an
-/// element makes the nodal forces B^T sigma V that it makes in K.
+/// element contributes the same nodal forces B^T sigma V as in K.
 struct SmoothedState {
   Eigen::Matrix<double, 6, Eigen::Dynamic> strain, stress;
 };

@@ -1,4 +1,4 @@
-// What a smoothed strain is averaged over.
+// Domains over which a smoothed strain is averaged.
 #pragma once
 
 #include <palpate/assembly/detail/constant_geometry.hpp>
@@ -17,11 +17,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Which part of the elasticity acts on the strain of a domain.
+/// The part of the elasticity that acts on the strain of a domain.
 enum class StrainPart : std::uint8_t { deviatoric, volumetric };
 
-/// The elements of one region around an edge, a sixth of each, or around a node, a quarter of each. The mean of their
-/// strains is sum B_a u_a with the mean gradients.
+/// The elements of one region around an edge (one sixth of each), or around a node (one quarter of each). Their mean
+/// strain is sum B_a u_a with the mean gradients.
 struct StrainDomain {
   std::span<const NodeId> nodes;       ///< ascending
   std::span<const Vector3> gradients;  ///< per node, mean over the domain [1/m]
@@ -36,7 +36,7 @@ struct StrainDomain {
   void add_force(const Vector6& stress, VectorX& f) const noexcept;
 };
 
-/// All domains of a mesh: for every edge a deviatoric one, for every node a volumetric one, per region. About 2 kB per
+/// All domains of a mesh, per region: a deviatoric one for every edge, a volumetric one for every node. About 2 kB per
 /// node.
 template <HasSmoothedStrain E>
 class StrainDomains {
@@ -77,7 +77,7 @@ class StrainDomains {
   }
 
  private:
-  /// An element as a part of the domain of an edge from the present node to `other`, or of the node itself (-1).
+  /// The share of an element in the domain of the edge from the current node to `other`, or of the node itself (-1).
   struct Share {
     NodeId other;
     int region;
@@ -89,14 +89,14 @@ class StrainDomains {
   static std::vector<PointGeometry<E>> element_geometry(const Mesh<E>& mesh, const SetupLimits& limits) {
     limits.require_memory(static_cast<double>(mesh.element_count()) * sizeof(PointGeometry<E>) +
                               2000.0 * static_cast<double>(mesh.node_count()),
-                          "the averages of the strain");
+                          "the smoothed strain domains");
     std::vector<PointGeometry<E>> geometry;
     geometry.reserve(static_cast<std::size_t>(mesh.element_count()));
     for (Index e = 0; e < mesh.element_count(); ++e) geometry.push_back(constant_geometry(mesh, e));
     return geometry;
   }
 
-  /// The shares of all domains that belong to a node: its own, and those of its edges to nodes of higher id.
+  /// Collects the shares of all domains that belong to a node: its own, and those of its edges to nodes of higher id.
   void collect_shares(const Mesh<E>& mesh, const NodeElements& around, Index i) {
     shares_.clear();
     for (const NodeId e : around.of(i)) {
@@ -131,7 +131,7 @@ class StrainDomains {
     element_start_.push_back(element_.size());
   }
 
-  /// Appends elements and nodes of a domain, and notes where every node is.
+  /// Appends elements and nodes of a domain, and records the position of every node.
   void number_nodes(const Mesh<E>& mesh, std::span<const Share> shares) {
     for (const Share& s : shares) {
       element_.push_back(s.element);
@@ -153,8 +153,8 @@ class StrainDomains {
   std::vector<double> volume_;
   std::vector<int> region_;
   std::vector<StrainPart> part_;
-  std::vector<PointGeometry<E>> geometry_;  // while they are made
-  std::vector<std::size_t> place_;          // of a node in node_
+  std::vector<PointGeometry<E>> geometry_;  // during construction only
+  std::vector<std::size_t> place_;          // position of a node in node_
   std::vector<Share> shares_;
 };
 

@@ -1,4 +1,4 @@
-// Tetrahedra in groups of lanes, laid out for a force that is computed every tick.
+// Memory layout of tetrahedra in batches of lanes, for a force that is computed every tick.
 #pragma once
 
 #include <palpate/assembly/detail/constant_geometry.hpp>
@@ -29,7 +29,7 @@ template <class S, int N>
 struct TetrahedronBatch {
   Triple<Lanes<S, N>> gradient[3];  ///< of nodes 1, 2, 3 [1/m]; that of node 0 is minus their sum
   Lanes<S, N> volume;               ///< at rest [m^3]
-  std::uint16_t row[4][N];          ///< 4 times the place of every node among those of the block
+  std::uint16_t row[4][N];          ///< 4 times the index of every node among those of the block
 
   /// u_a - u_0 for a = 1, 2, 3, from rows of four numbers.
   PALPATE_ALWAYS_INLINE void differences(const S* u, Triple<Lanes<S, N>> (&d)[3]) const noexcept {
@@ -62,15 +62,15 @@ struct TetrahedronBatch {
   }
 };
 
-/// A part of the mesh whose nodal values fit the first level of the cache.
+/// A part of the mesh whose nodal values fit into the first-level cache.
 struct TetrahedronBlock {
   Index first_batch = 0, batch_count = 0;
   Index first_row = 0, row_count = 0;  ///< its nodes, in TetrahedronBatches::nodes
   int region = 0;
 };
 
-/// All batches of a mesh, and where its nodes are in the blocks. 88 bytes per element in double, 48 in float; about two
-/// rows per node.
+/// All batches of a mesh and the positions of its nodes in the blocks. 88 bytes per element in double, 48 in float;
+/// about two rows per node.
 template <class S, int N>
 struct TetrahedronBatches {
   static constexpr Index elements_per_block = 512;
@@ -84,7 +84,7 @@ struct TetrahedronBatches {
   std::vector<std::int32_t> copies;  ///< rows by node, ascending
 
   TetrahedronBatches() = default;
-  /// Throws inverted_element or non_finite, with the element.
+  /// Throws inverted_element or non_finite, with the element's id.
   explicit TetrahedronBatches(const Mesh<Tet4>& mesh) {
     for (const ElementBlock& block : element_blocks(mesh, elements_per_block, N)) add_block(mesh, block);
     first_copy.assign(static_cast<std::size_t>(mesh.node_count()) + 1, 0);
@@ -98,8 +98,8 @@ struct TetrahedronBatches {
 
   Index node_count() const noexcept { return static_cast<Index>(first_copy.size()) - 1; }
 
-  /// Elements for which gone(element) leave: their lanes become lanes without an element. visit(batch, lane) for every
-  /// one that was there. O(elements), no allocation.
+  /// Removes the elements for which gone(element) is true: their lanes become empty. Calls visit(batch, lane) for each
+  /// removed element. O(elements), no allocation.
   template <class Gone, class Visit>
   void remove_if(Gone&& gone, Visit&& visit) {
     for (std::size_t b = 0; b < batches.size(); ++b)
@@ -116,8 +116,8 @@ struct TetrahedronBatches {
     for (Lanes<S, N>* x : {&v.x, &v.y, &v.z}) x->set(lane, S(0));
   }
 
-  /// Displacements of a block's nodes less that of the first: single precision then keeps digits of strain, not of
-  /// place.
+  /// Displacements of a block's nodes minus that of its first node: single precision then keeps the digits of strain
+  /// instead of those of position.
   void load_displacements(const TetrahedronBlock& block, const VectorX& u, S* local) const noexcept {
     const NodeId* const of_row = nodes.data() + block.first_row;
     const double* const from = u.data();
@@ -146,7 +146,7 @@ struct TetrahedronBatches {
     std::fill(first, first + 4 * block.row_count, S(0));
     return first;
   }
-  /// f = for every node of a range, the sum of its rows of four numbers.
+  /// Sets f, for every node of a range, to the sum of its rows of four numbers.
   void add_up(const S* rows, Index first_node, Index last_node, VectorX& f) const noexcept {
     for (Index i = first_node; i < last_node; ++i) {
       double sum[3] = {0.0, 0.0, 0.0};
@@ -168,7 +168,7 @@ struct TetrahedronBatches {
     for (Index b = 0; b < groups; ++b) {
       TetrahedronBatch<S, N>& batch = batches.emplace_back(TetrahedronBatch<S, N>{});
       elements.emplace_back().fill(-1);
-      // lanes far from each other in the block: few add to the same node one after the other
+      // lanes are far apart in the block, so that few consecutive lanes add to the same node
       for (Index lane = 0; lane < N; ++lane)
         if (const Index at = lane * groups + b; at < count) {
           const NodeId e = block.elements[static_cast<std::size_t>(at)];
@@ -200,8 +200,8 @@ struct TetrahedronBatches {
   }
 };
 
-/// The batches of a body, after its laws were asked whether they hold. Throws inverted_element, non_finite, unsupported
-/// for a law with fibres on a mesh that has some, too_large, or what the law of a region says in its check().
+/// The batches of a body, after check() of its materials. Throws inverted_element, non_finite, unsupported for a
+/// material with fibres on a mesh with fibre directions, too_large, or the problem of a material's check().
 template <class S, int N, HyperelasticMaterial M>
 TetrahedronBatches<S, N> make_batches(const HyperelasticBody<Tet4, M>& body, double bytes_per_element,
                                       const SetupLimits& limits) {

@@ -1,4 +1,4 @@
-// Small strain with memory.
+// Linear viscoelasticity at small strain.
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
@@ -24,16 +24,16 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// A body at small strain with the Prony series of its regions.
 template <Element E>
 struct ViscousBody {
-  Body<E> fast;                               ///< as it answers right after a sudden strain
+  Body<E> fast;                               ///< the instantaneous body, right after a sudden strain
   std::vector<std::vector<PronyTerm>> terms;  ///< by region
   std::vector<Relaxation> relaxation;         ///< by region
 };
 
 namespace detail {
 
-/// Elasticity of every law of a body [Pa] where region r counts `share(r)` of what fades and `kept` of what does not.
-/// Throws unsupported where only the shape relaxes and the pressure depends on the shape (an anisotropic law): what is
-/// left then is no elasticity.
+/// Elasticity of every material of a body [Pa], where region r counts `share(r)` of the relaxing part and `kept` of
+/// the constant part. Throws unsupported for deviatoric relaxation where the pressure depends on the deviatoric strain
+/// (anisotropic material): the constant part is then not an elasticity.
 template <Element E, class Share>
 std::vector<Matrix6> shares_of_elasticity(const ViscousBody<E>& body, double kept, Share share) {
   const Body<E>& fast = body.fast;
@@ -52,20 +52,20 @@ std::vector<Matrix6> shares_of_elasticity(const ViscousBody<E>& body, double kep
         for (int j = 0; j < 3; ++j) lasting(i, j) = bulk;
       }
       if (!(pressure.norm() <= 1e-9 * bulk))
-        raise(SetupErrorKind::unsupported, "relaxation of the shape alone in an anisotropic material",
-              "Let the whole stress relax");
+        raise(SetupErrorKind::unsupported, "deviatoric relaxation of an anisotropic material",
+              "Choose Relaxation::whole_stress");
     }
     shares.push_back(share(region[material]) * (d - lasting) + kept * lasting);
   }
   return shares;
 }
 
-/// Every relaxation time once.
+/// All relaxation times, each once.
 std::vector<double> distinct_times(const std::vector<std::vector<PronyTerm>>& by_region);
 
 }  // namespace detail
 
-/// An admitted mesh with viscoelastic materials by name; throws as materials_by_region.
+/// An admitted mesh with viscoelastic materials by region name; throws as materials_by_region.
 template <Element E, LinearMaterial Base, int Terms>
 ViscousBody<E> make_body(Mesh<E> mesh, const RegionMaterials<Viscoelastic<Base, Terms>>& materials) {
   ViscousBody<E> body;
@@ -79,21 +79,21 @@ ViscousBody<E> make_body(Mesh<E> mesh, const RegionMaterials<Viscoelastic<Base, 
   body.fast = make_body(std::move(mesh), bases);
   return body;
 }
-/// The same with one material everywhere.
+/// The same with one material for all regions.
 template <Element E, LinearMaterial Base, int Terms>
 ViscousBody<E> make_body(Mesh<E> mesh, const Viscoelastic<Base, Terms>& material) {
   return make_body(std::move(mesh), RegionMaterials<Viscoelastic<Base, Terms>>{{everywhere, material}});
 }
 
-/// f = K_0 u + sum_i K_i w_i, where K_i is the stiffness of what fades with tau_i and w_i' + w_i / tau_i = u': stress
-/// is linear in strain and strain in u, so that a displacement per relaxation time remembers all that the points of all
-/// elements would. Over a step f = K u + past, with K constant while dt is: a step costs what one without memory does
-/// and a product per relaxation time. One BlockMatrix each.
+/// f = K_0 u + sum_i K_i w_i, where K_i is the stiffness of the part that relaxes with tau_i and w_i' + w_i / tau_i =
+/// u'. Stress is linear in strain and strain in u, so one displacement vector per relaxation time stores the history of
+/// all points of all elements. Over a step f = K u + past, where K is constant while dt is constant: a step costs as
+/// much as an elastic one plus one product per relaxation time. One BlockMatrix per relaxation time.
 class ViscousForces final : public ElasticForces {
  public:
   static constexpr bool has_history = true;
 
-  /// Throws as assemble_stiffness, and unsupported for relaxation of the shape alone in an anisotropic material.
+  /// Throws as assemble_stiffness, and unsupported for deviatoric relaxation of an anisotropic material.
   template <Element E>
   explicit ViscousForces(ViscousBody<E> body, const SetupLimits& limits = {})
       : times_(detail::distinct_times(body.terms)) {

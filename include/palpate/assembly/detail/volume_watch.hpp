@@ -1,4 +1,4 @@
-// What a force in batches sees of its elements.
+// Volume ratios of the elements of a batched force.
 #pragma once
 
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
@@ -11,29 +11,29 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// The report of two parts of a body.
+/// Adds the report of one part of a body to that of another.
 void add_report(const DeformationReport& part, DeformationReport& all) noexcept;
 
-/// The report of all parts.
+/// The combined report of all parts.
 DeformationReport report_of(const std::vector<DeformationReport>& parts) noexcept;
 
-/// Least J of a block, in which batch, how many are positive, and whether one is not finite, per lane.
+/// Per lane: smallest J of a block, its batch, the number of positive J, and whether one is not finite.
 template <class S, int N>
 class VolumeWatch {
  public:
-  /// The next batch: its J, and its volumes at rest, zero in lanes without an element, which do not count.
+  /// Adds a batch: its J, and its volumes at rest. Lanes without an element have volume zero and do not count.
   PALPATE_ALWAYS_INLINE void observe(const Lanes<S, N>& j, const Lanes<S, N>& volume) noexcept {
     const Lanes<S, N> none(std::numeric_limits<S>::infinity()), zero(S(0)), one(S(1));
     const Lanes<S, N> seen = select(volume > zero, j, none);
     const auto ahead = seen < smallest_;
     smallest_ = select(ahead, seen, smallest_);
     batch_ = select(ahead, Lanes<S, N>(at_), batch_);
-    broken_ += j - j;  // zero, or NaN from then on
+    broken_ += j - j;  // zero; NaN once a J was not finite
     upright_ += select(seen > zero, one, zero);
     at_ += S(1);
   }
 
-  /// Of a block all of whose batches were seen.
+  /// The report of a block, after observe() of all its batches.
   DeformationReport summary(const TetrahedronBatches<S, N>& layout, const TetrahedronBlock& block,
                             bool survives_inversion) const noexcept {
     DeformationReport report;

@@ -6,8 +6,8 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// K split into kept and condensed dofs. With P_f = -K_kc K_cc^-1 the condensed system is P_u u_k = f_k + P_f f_c,
-/// where P_u = K_kk - K_kc K_cc^-1 K_ck. The thesis drops P_f f_c; here loads on condensed dofs count. The kept dofs
-/// are eliminated last, so that P_u is the last front of one factorisation and nothing else is computed or stored.
+/// where P_u = K_kk - K_kc K_cc^-1 K_ck. The thesis drops P_f f_c; here loads on condensed dofs are included. The kept
+/// dofs are eliminated last, so P_u is the last front of one factorisation and nothing else is computed or stored.
 struct SchurComplement {
   MatrixX stiffness;        ///< P_u, kept x kept [N/m]
   SparseCholesky interior;  ///< condenses loads and recovers condensed dofs
@@ -16,7 +16,7 @@ struct SchurComplement {
 /// Condenses the matrix whose lower half is given onto `layout.kept` (in that order). Cost: one factorisation. Throws
 /// not_positive_definite, too_large or cancelled.
 SchurComplement condense(const SparseLower& lower, const DofLayout& layout, const SetupLimits& limits);
-/// The same, nothing known of nodes and positions.
+/// The same without nodes and positions.
 SchurComplement condense(const SparseLower& lower, std::vector<Index> kept, const SetupLimits& limits);
 
 }}  // namespace palpate

@@ -1,26 +1,26 @@
-// How cutting feels.
+// Cutting resistance of a blade.
 #pragma once
 
 #include <palpate/contact/blade_tool.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The edge as a slider with a threshold: it holds until the coupling pulls with toughness times the length of the edge
-/// in the tissue, and then goes on under just that force. So the work it takes is toughness times the area cut, to the
-/// last digit, and no motion of the hand gains energy (Griffith's balance for a sharp cut, as Mahvash and Hayward 2001
-/// use it for haptics). The flanks do not rub and do not push the tissue aside. World frame.
+/// The edge as a slider with a threshold: it stays in place until the coupling pulls with toughness times the length of
+/// the edge in the tissue, and then advances under exactly that force. The work done is therefore toughness times the
+/// area cut, up to rounding, and no motion of the hand gains energy (Griffith's balance for a sharp cut, as used for
+/// haptics by Mahvash and Hayward 2001). The flanks have no friction and do not push the tissue aside. World frame.
 class BladeCut {
  public:
-  /// Throws bad_argument for an invalid blade, or a stiffness [N/m] of the coupling between hand and edge that is not
-  /// finite and positive.
+  /// Throws bad_argument for an invalid blade, or for a stiffness [N/m] of the coupling between hand and edge that is
+  /// not finite and positive.
   BladeCut(const BladeTool& tool, double stiffness);
 
-  /// Moves the edge with the hand at `hand` [m]; `width` of the edge is in tissue [m]. Returns the force on the hand
-  /// [N]. Where this blade has been before, it goes free.
+  /// Moves the edge with the hand at `hand` [m]; `width` is the length of the edge in tissue [m]. Returns the force on
+  /// the hand [N]. There is no resistance where this blade has cut before.
   Vector3 advance(const Vector3& hand, double width) noexcept;
-  /// The next advance starts again where the hand is.
+  /// The next advance starts at the position of the hand.
   void lift() noexcept { known_ = false; }
-  /// As constructed.
+  /// Back to the state after construction.
   void reset() noexcept;
 
   /// With a unit forward direction.
@@ -28,7 +28,7 @@ class BladeCut {
   /// Middle of the edge [m].
   const Vector3& edge() const noexcept { return edge_; }
   double area() const noexcept { return area_; }  ///< cut against resistance [m^2]
-  double work() const noexcept { return work_; }  ///< that this took [J]
+  double work() const noexcept { return work_; }  ///< work done by cutting [J]
 
  private:
   BladeTool tool_;

@@ -12,7 +12,7 @@ PALPATE_INLINE BladeCut::BladeCut(const BladeTool& tool, double stiffness) : too
   tool.require_valid();
   if (!(stiffness > 0.0 && stiffness < infinity))
     raise(SetupErrorKind::bad_argument, "the coupling stiffness of a blade is " + number(stiffness),
-          "Give a finite one, in N/m: the edge holds while the coupling stretches");
+          "Give a finite one, in N/m: the edge stays in place while the coupling stretches");
   tool_.forward.normalize();
 }
 
@@ -34,14 +34,14 @@ PALPATE_INLINE Vector3 BladeCut::advance(const Vector3& hand, double width) noex
   const double pull = (hand - edge_).dot(forward), depth = edge_.dot(forward);
   const Vector3 along = hand - edge_ - pull * forward;
   if ((edge_ - line_ - (edge_ - line_).dot(forward) * forward).norm() > 0.5 * tool_.edge.norm())
-    deepest_ = -infinity;  // beside the slit
+    deepest_ = -infinity;  // outside the slit
   edge_ += along;
   const double threshold = tool_.toughness * width;
   if (pull <= 0.0 || threshold == 0.0) {
     edge_ = hand;
   } else {
     const double free = std::clamp(deepest_ - depth, 0.0, pull);
-    const double hold = threshold / stiffness_, path = std::max(0.0, pull - free - hold);
+    const double stretch = threshold / stiffness_, path = std::max(0.0, pull - free - stretch);
     edge_ += (free + path) * forward;
     work_ += threshold * path;
     area_ += width * path;

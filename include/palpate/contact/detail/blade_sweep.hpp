@@ -1,4 +1,4 @@
-// What the edge of a blade sweeps.
+// The surface swept by the edge of a blade.
 #pragma once
 
 #include <palpate/contact/detail/bvh.hpp>
@@ -7,16 +7,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What the edge of a blade sweeps between two places: the quadrilateral from edge (a0, b0) to edge (a1, b1) [m], as
-/// two triangles. The frame is that of the positions it is asked about.
+/// The surface swept by the edge of a blade between two positions: the quadrilateral from edge (a0, b0) to edge (a1,
+/// b1) [m], as two triangles. The frame is that of the points passed to its functions.
 struct BladeSweep {
   Vector3 a0 = Vector3::Zero(), b0 = Vector3::Zero(), a1 = Vector3::Zero(), b1 = Vector3::Zero();
 
   /// [m^2]
   double area() const noexcept;
   Box box() const noexcept;
-  /// Whether the way from p to q crosses it. A point on the sheet counts as on its front side, and a way through the
-  /// sheet's edge as a crossing: what lies on two sides of a closed sheet is never left connected.
+  /// Whether the segment from p to q crosses it. A point on the surface counts as on its front side, and a segment
+  /// through its boundary as a crossing: points on the two sides of a closed surface are never left connected.
   bool crosses(const Vector3& p, const Vector3& q) const noexcept;
 
  private:

@@ -30,8 +30,8 @@ class Bvh {
     descend([&](const Box& box) { return box.squared_distance(centre) <= limit; }, visit);
   }
 
-  /// Calls visit(triangle) for the triangles of leaves that the way from a point crosses within `margin`. It returns
-  /// the share of the way beyond which nothing matters any more.
+  /// Calls visit(triangle) for the triangles of leaves whose boxes the path from a point crosses within `margin`. It
+  /// returns the fraction of the path beyond which triangles need not be visited any more.
   template <class Visit>
   void visit_along(const Vector3& from, const Vector3& path, double margin, Visit&& visit) const noexcept {
     double until = 1.0;
@@ -73,7 +73,7 @@ class Bvh {
   const Box& bounds() const noexcept { return nodes_.front().box; }
 
  private:
-  // Median splits halve the count, so depth is at most log2(2^31); two entries per level may wait on the stack.
+  // Median splits halve the count, so depth is at most log2(2^31); two entries per level may be on the stack.
   static constexpr int max_depth = 64;
   struct Node {
     Box box;
@@ -81,7 +81,7 @@ class Bvh {
     int count = 0;  // 0 for inner nodes
   };
 
-  /// Calls visit(triangle) for those of leaves under boxes with reaches(box), left before right.
+  /// Calls visit(triangle) for the triangles of leaves below boxes for which reaches(box) holds, left before right.
   template <class Reaches, class Visit>
   void descend(Reaches&& reaches, Visit&& visit) const noexcept {
     std::array<int, max_depth> stack;

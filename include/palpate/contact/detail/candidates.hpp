@@ -1,4 +1,4 @@
-// The contact points near the spheres, remembered from tick to tick.
+// The contact points near the spheres, kept from tick to tick.
 #pragma once
 
 #include <palpate/contact/contact.hpp>
@@ -6,34 +6,34 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What a row was linearised with and what came of it, of the last linearisation and the one before.
+/// Normals of a row in the last linearisation and the one before: those used, and those that resulted.
 struct NormalHistory {
   Vector3 used = Vector3::Zero(), used_before = Vector3::Zero(), made_before = Vector3::Zero();
-  int known = 0;  ///< how many linearisations in a row, at most 2
+  int known = 0;  ///< number of consecutive linearisations, at most 2
 };
 
-/// A contact point near the sphere of one tool, as it was when last looked at.
+/// A contact point near the sphere of one tool, as of its last evaluation.
 struct Candidate {
   int sample = 0;
   int triangle = 0;
   int tool = 0;
   int row = -1;                      ///< of the contact problem, -1 when it has none
-  int slot = -1;                     ///< where its compliance was remembered last
+  int slot = -1;                     ///< slot of its compliance in the last use
   bool facing = true;                ///< the sphere is on the outer side
   double gap = 0.0;                  ///< [m]
-  double seen = 0.0;                 ///< travel of sphere and surface until then [m]
+  double seen = 0.0;                 ///< travel of sphere and surface at the last evaluation [m]
   double force = 0.0;                ///< of the last solution [N]
   Vector3 point = Vector3::Zero();   ///< on the deformed surface [m]
   Vector3 normal = Vector3::Zero();  ///< unit, from the point to the sphere's centre
-  double along = 0.0;                ///< where on a capsule's axis that centre lies [m]
+  double along = 0.0;                ///< coordinate of that centre on a capsule's axis [m]
   NormalHistory history;
 
   Vector3 friction = Vector3::Zero();  ///< of the last solution, on the tool [N]
-  Vector3 anchor = Vector3::Zero();    ///< where the point clung to the tool after the last tick, tool's own frame [m]
-  std::uint64_t stuck_tick = 0;        ///< the tick after which it did
-  bool grasped = false;                ///< no point near a sphere, but one that is held
+  Vector3 anchor = Vector3::Zero();    ///< stick anchor on the tool after the last tick, tool's own frame [m]
+  std::uint64_t stuck_tick = 0;        ///< the tick after which it stuck
+  bool grasped = false;                ///< a grasped point, not one found near a sphere
 
-  /// Forgets what it carried.
+  /// Removes its force, friction and history.
   void lift() noexcept {
     force = 0.0;
     stuck_tick = 0;
@@ -41,18 +41,19 @@ struct Candidate {
   }
 };
 
-/// All contact points that a sphere can reach within a tick, and some more, so that the list holds for a while: the way
-/// of sphere and surface since then is summed up and the list made anew when the margin is used up (as neighbour lists
-/// in molecular dynamics, Verlet 1967). A point is evaluated again only when that way could have closed its gap. The
-/// search on the resting surface reaches as far as the surface has moved (SurfaceDisplacement::reach); a round over all
-/// vertices, a few per tick, finds what moved farther. No allocation; work bounded by `maximum` and, when the
-/// list is made anew, by the samples of all triangles in reach: each is looked at.
+/// All contact points that a sphere can reach within a tick, and some more, so that the list stays valid for a while:
+/// the path of sphere and surface since then is accumulated, and the list is rebuilt when the margin is used up (as
+/// neighbour lists in molecular dynamics, Verlet 1967). A point is evaluated again only when that path could have
+/// closed its gap. The search on the resting surface reaches as far as the surface has moved
+/// (SurfaceDisplacement::reach); a scan over all vertices, a few per tick, finds what moved farther. No allocation;
+/// work bounded by `maximum` and, when the list is rebuilt, by the samples of all triangles in reach: each is
+/// evaluated.
 class Candidates {
  public:
   /// Places the samples `spacing` [m] apart; `capacity` is that of the contact problem. Allocates; for set-up.
   Candidates(const ContactSurface& surface, double spacing, int capacity);
 
-  /// Of points in the list.
+  /// Largest number of points in the list.
   int maximum() const noexcept { return static_cast<int>(items_.size()); }
   const ContactSamples& samples() const noexcept { return samples_; }
   std::span<Candidate> items() noexcept { return {items_.data(), static_cast<std::size_t>(count_)}; }
@@ -60,34 +61,34 @@ class Candidates {
   void forget() noexcept { valid_ = false; }
   /// Back to the state after construction.
   void reset() noexcept;
-  /// Whether the last update made another list: candidates are elsewhere in memory.
+  /// Whether the last update rebuilt the list: candidates have moved in memory.
   bool is_new() const noexcept { return is_new_; }
-  /// Whether the last list has no place for a force of the one before: its tool was lifted. The surface then springs
-  /// back by an unknown amount, and the next update makes another list.
+  /// Whether a force of the previous list is missing in the last list because its tool was lifted. The surface then
+  /// springs back by an unknown amount, and the next update rebuilds the list.
   bool has_lost_forces() const noexcept { return lost_forces_; }
 
-  /// Goes on on the same body's surface after a cut: vertices have the same numbers, triangles and points need not.
-  /// What lay on triangles that are gone does not press any more. `fresh` was made for that surface and gets the old
-  /// samples. No allocation.
+  /// Continues on the surface of the same body after a cut: vertices keep their numbers, triangles and points need not.
+  /// Points on triangles that no longer exist lose their force. `fresh` was constructed for that surface and receives
+  /// the old samples. No allocation.
   void move_to(Candidates& fresh, const ContactSurface& surface) noexcept;
-  /// Puts a candidate on the sample that lies where its own of another surface lay; false when there is none.
+  /// Moves a candidate to the sample nearest to its sample of another surface; false when no sample is near.
   bool move(Candidate& c, const ContactSamples& before, const ContactSurface& surface) const noexcept;
 
-  /// Takes in what happened since the last tick: tools put elsewhere, lifted or set down, a moved resting surface.
+  /// Applies changes since the last tick: tools moved elsewhere, lifted or set down, a moved resting surface.
   void begin_tick(const ContactSurface& surface, std::span<const ContactTool> tools) noexcept;
-  /// The sphere of a tool is here now.
+  /// Updates the position of the sphere of a tool.
   void move_sphere(std::size_t t, const ContactTool& tool) noexcept;
-  /// No point of the surface has moved farther than this.
+  /// Adds a displacement of the surface; `distance` is an upper bound for every point of it [m].
   void move_surface(double distance) noexcept { surface_travel_ += distance; }
 
-  /// Makes the list anew unless it still holds for another linearisation. degraded_model when there is no room for all
-  /// that a sphere may reach.
+  /// Rebuilds the list unless it stays valid for another linearisation. degraded_model when there is no room for all
+  /// points that a sphere may reach.
   Status update(const TissueView& tissue, std::span<const ContactTool> tools,
                 SurfaceDisplacement& displacement) noexcept;
 
-  /// Whether sphere or surface may have moved since a candidate was looked at.
+  /// Whether sphere or surface may have moved since a candidate was evaluated.
   bool is_stale(const Candidate& c) const noexcept { return travel(static_cast<std::size_t>(c.tool)) != c.seen; }
-  /// At least the gap of a candidate now.
+  /// Lower bound of the present gap of a candidate.
   double least_gap(const Candidate& c) const noexcept {
     return c.gap - (travel(static_cast<std::size_t>(c.tool)) - c.seen);
   }
@@ -95,14 +96,14 @@ class Candidates {
   /// Evaluates a candidate at the present deformation and proxy.
   void evaluate(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
                 Candidate& c) noexcept;
-  /// Sets where a candidate's point is.
+  /// Sets the position of a candidate's point and updates its gap and normal.
   inline void place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept;
 
-  /// Looks at the next few vertices of the round.
+  /// Checks the next few vertices of the scan.
   void look_round(const TissueView& tissue, std::span<const ContactTool> tools,
                   SurfaceDisplacement& displacement) noexcept;
 
-  /// Resting place of a sample [m].
+  /// Position of a sample on the resting surface [m].
   inline Vector3 rest(const ContactSurface& surface, int s) const noexcept;
 
  private:
@@ -129,7 +130,7 @@ class Candidates {
   std::array<double, maximum_tools> range_{}, built_{}, travel_{};  // range: gaps up to which the list was complete
   double surface_travel_ = 0.0;
   double reach_ = 0.0, far_ = 0.0, far_last_round_ = 0.0;
-  int next_ = 0;  // vertex of the round
+  int next_ = 0;  // next vertex of the scan
 };
 
 }}  // namespace palpate

@@ -36,7 +36,8 @@ PALPATE_INLINE void Candidates::reset() noexcept {
   next_ = 0;
 }
 
-/// Points this near may be reached while the linearisation settles; leaving one out lets the sphere fall through it.
+/// Points within this distance may be reached while the linearisation converges; if one were missing, the sphere could
+/// fall through it.
 inline double Candidates::needed(const ContactTool& tool) noexcept {
   return tool.longest_step() + 0.5 * tool.path_length();
 }
@@ -195,7 +196,7 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
   valid_ = !lost_forces_;
 }
 
-/// Begins a new list with what presses, and goes on pressing however far the sphere is still from where it goes.
+/// Begins a new list with the points that press: they keep their forces however far the sphere still is from its goal.
 PALPATE_INLINE void Candidates::keep_loaded(const TissueView& tissue, std::span<const ContactTool> tools,
                                             SurfaceDisplacement& displacement) noexcept {
   lost_forces_ = false;
@@ -218,8 +219,8 @@ PALPATE_INLINE bool Candidates::is_loaded(int tool, int sample) const noexcept {
                      [=](const Candidate& c) { return c.sample == sample && c.tool == tool; });
 }
 
-/// Takes a sample into the list if it is near; when the list is full, it holds as far as the nearest one left out.
-/// What presses stays.
+/// Adds a sample to the list if it is near. When the list is full, it is complete only up to the nearest sample left
+/// out. Points that press stay.
 PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const ContactTool& tool, int t, int triangle,
                                          int sample, SurfaceDisplacement& displacement) noexcept {
   Candidate c;
@@ -240,8 +241,9 @@ PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const Contact
   if (farthest.gap > c.gap) farthest = c;
 }
 
-/// Whether the sphere lies on the outer side of a triangle that the point belongs to, as it rests or as it is deformed:
-/// in a steep dent only the latter holds. What the sphere sees through a thin part from behind fails both.
+/// Whether the sphere is on the outer side of a triangle that contains the point, either at rest or deformed: in a
+/// steep dent only the latter is true. For a point that the sphere reaches through a thin part from behind, both are
+/// false.
 PALPATE_INLINE bool Candidates::faces_sphere(const TissueView& tissue, SurfaceDisplacement& displacement,
                                              const Candidate& c) const noexcept {
   const ContactSurface& surface = tissue.contact_surface();

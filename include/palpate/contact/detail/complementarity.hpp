@@ -10,35 +10,35 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// Solves lambda >= 0, g = b + W lambda >= 0, lambda . g = 0 for a symmetric positive (semi)definite W of at most
 /// `capacity` rows, exactly. First by block principal pivoting (Kostreva 1978; Judice and Pires 1994): whole sets of
-/// rows change side while that helps, which from a good start is one or two solves. Where it does not, by a primal
-/// active set (Lawson and Hanson 1974, ch. 23), one row at a time: lambda stays >= 0 and the energy falls in every
-/// step, so that it ends, and wherever it is cut off the forces are ones that a smaller push would have made. The
+/// rows change side as long as that helps; from a good start this takes one or two solves. If that does not converge,
+/// by a primal active set (Lawson and Hanson 1974, ch. 23), one row per step: lambda stays >= 0 and the energy
+/// decreases in every step, so it terminates, and if it is stopped early the forces are those of a smaller push. The
 /// factor is updated when a row joins (O(m^2)) and recomputed from the row that leaves. No allocation after
 /// construction; work bounded by `maximum_pivots`.
 class ComplementarityProblem {
  public:
-  /// More points than dofs make W singular. With this much more on the diagonal (relative) the problem is strictly
-  /// convex: its answer is unique and gaps are off by a millionth of the indentation.
+  /// More points than dofs make W singular. With this relative increase of the diagonal the problem is strictly convex:
+  /// its solution is unique, and gaps are in error by a millionth of the indentation.
   static constexpr double relaxation = 1e-6;
 
   std::vector<double> b;       ///< gap without contact force [m], of the first `rows()`
-  std::vector<double> lambda;  ///< contact force [N], the answer; start: any sign pattern, positive rows start active
-  int pivots = 0;              ///< how many sets were tried
-  std::vector<int> bilateral;  ///< rows that hold both ways: g = 0, and lambda has any sign
+  std::vector<double> lambda;  ///< contact force [N], solution; start: any sign pattern, positive rows start active
+  int pivots = 0;              ///< number of sets tried
+  std::vector<int> bilateral;  ///< bilateral rows: g = 0, and lambda has any sign
 
-  /// Allocates for that many rows, at least one; for set-up.
+  /// Allocates for `capacity` rows, at least one; for set-up.
   explicit ComplementarityProblem(int capacity);
 
   int maximum_pivots() const noexcept { return 4 * capacity_; }
   int rows() const noexcept { return rows_; }
-  /// Keeps the values of rows that stay.
+  /// Values of rows that stay are kept.
   void resize(int rows) noexcept { rows_ = rows; }
   /// Compliance [m/N].
   double& w(int i, int j) noexcept { return w_[place(i, j)]; }
   double w(int i, int j) const noexcept { return w_[place(i, j)]; }
 
-  /// False when the pivot limit was reached; lambda is then >= 0 and of less energy than no force, but some gaps are
-  /// still negative. False with no force when W or b is not finite.
+  /// False when the pivot limit was reached: lambda is then >= 0 and its energy is below that of zero force, but some
+  /// gaps are still negative. Also false, with zero force, when W or b is not finite.
   bool solve() noexcept;
 
  private:

@@ -51,12 +51,12 @@ inline void ComplementarityProblem::remove(int p) noexcept {
   --order_count_;
   factored_ = std::min(factored_, p);
 }
-/// 0 for a pivot of row i that is lost to rounding.
+/// 0 if the pivot of row i is lost to rounding.
 inline double ComplementarityProblem::inverse_root(double pivot, int i) const noexcept {
   return pivot > 1e-13 * w(i, i) ? 1.0 / std::sqrt(pivot) : 0.0;
 }
 
-/// Block principal pivoting while the number of wrong rows falls.
+/// Block principal pivoting as long as the number of wrong rows decreases.
 PALPATE_INLINE bool ComplementarityProblem::pivot_blocks() noexcept {
   order_count_ = factored_ = 0;
   for (int i = 0; i < rows_; ++i) {
@@ -112,8 +112,8 @@ PALPATE_INLINE bool ComplementarityProblem::descend() noexcept {
   }
 }
 
-/// Goes from lambda towards the answer of the active rows; true if all of the way, else to where the first forces
-/// vanish, and those rows leave.
+/// Moves lambda towards the solution for the active rows; true if the full step was taken. Otherwise it stops where the
+/// first forces vanish, and those rows leave the active set.
 PALPATE_INLINE bool ComplementarityProblem::step() noexcept {
   solve_active();
   double length = 1.0;
@@ -148,8 +148,8 @@ PALPATE_INLINE void ComplementarityProblem::update_gaps() noexcept {
   }
 }
 
-/// answer_ from W_aa answer = -b_a, in the order of order_. A pivot lost to rounding drops its row (the point is a
-/// copy of another).
+/// Solves W_aa answer = -b_a for answer_, in the order of order_. A pivot lost to rounding drops its row (the point
+/// coincides with another).
 PALPATE_INLINE void ComplementarityProblem::solve_active() noexcept {
   const int m = order_count_;
   if (factored_ == 0) factor_all();
@@ -169,7 +169,7 @@ PALPATE_INLINE void ComplementarityProblem::solve_active() noexcept {
   }
 }
 
-/// The whole Cholesky factor, column by column; the diagonal holds its inverse.
+/// The whole Cholesky factor, column by column; the diagonal stores its inverse.
 PALPATE_INLINE void ComplementarityProblem::factor_all() noexcept {
   const int m = factored_ = order_count_;
   for (int q = 0; q < m; ++q) {
@@ -190,7 +190,7 @@ PALPATE_INLINE void ComplementarityProblem::factor_all() noexcept {
   }
 }
 
-/// Row p of it from the rows before.
+/// Row p of the factor from the rows before.
 PALPATE_INLINE void ComplementarityProblem::factor_row(int p) noexcept {
   const int i = order_[at(p)];
   double* const row = row_.data();

@@ -25,7 +25,7 @@ inline bool ContactRows::sticks(const Candidate& c) const noexcept {
   return c.stuck_tick != 0 && c.stuck_tick + 1 == tick_;
 }
 
-/// Where the tool touches a row's point.
+/// Contact point on the tool for the point of a row.
 inline void ContactRows::reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept {
   if (c.grasped) {
     row.arm = tool.rotation * c.anchor;
@@ -45,14 +45,15 @@ inline Matrix3 ContactRows::between(const TissueView& tissue, const ContactSampl
   return p >= q ? compliance_(tissue, samples, p, q) : Matrix3(compliance_(tissue, samples, q, p).transpose());
 }
 
-/// How far the couplings give way to the drags where a tool touches; the rest of CoulombFriction::moved is tissue.
-inline Vector3 ContactRows::sprung(const ContactTool& tool, const Contact& row) noexcept {
+/// Displacement of the coupling due to friction forces, at the contact point; the rest of CoulombFriction::moved is the
+/// tissue's.
+inline Vector3 ContactRows::coupling_displacement(const ContactTool& tool, const Contact& row) noexcept {
   return tool.friction_displacement + cross(tool.friction_rotation, row.arm);
 }
 
-/// Displacement of two points per force on the other along its row's normal, m and n; their compliance is c, 3 x 3.
-/// Returns the part of it along the own normal. Written out so that it stays in registers: half of the work of a tick
-/// with many contacts is here.
+/// Displacement of two points, each per force on the other along the normal of its row, m and n; their compliance is c,
+/// 3 x 3. Returns its component along the own normal. Written out so that it stays in registers: half of the work of a
+/// tick with many contacts is done here.
 inline double ContactRows::set_responses(const double* c, const double* m, const double* n, double* of_n,
                                          double* of_m) noexcept {
   const double x = c[0] * n[0] + c[3] * n[1] + c[6] * n[2];
@@ -70,7 +71,7 @@ inline void ContactRows::build_row(const TissueView& tissue, const ContactSample
                                    int i) noexcept {
   const Contact& ci = rows_[at(i)];
   const int p = candidate_[at(i)]->slot;
-  const bool turns = tool.rotational_compliance > 0.0;
+  const bool rotates = tool.rotational_compliance > 0.0;
   const double* const m = ci.normal.data();
   double *column = &problem_.w(0, i), *row = &problem_.w(i, 0);
   Vector3 *on_j = &response(i, 0), *on_i = &response(0, i);
@@ -81,7 +82,7 @@ inline void ContactRows::build_row(const TissueView& tissue, const ContactSample
     double w = p >= q ? set_responses(compliance_(tissue, samples, p, q).data(), m, n, on_j->data(), on_i->data())
                       : set_responses(compliance_(tissue, samples, q, p).data(), n, m, on_i->data(), on_j->data());
     if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
-    if (turns && ci.tool == cj.tool)
+    if (rotates && ci.tool == cj.tool)
       w += tool.rotational_compliance * cross(ci.arm, ci.normal).dot(cross(cj.arm, cj.normal));
     column[j] = *row = w;
   }
@@ -163,7 +164,7 @@ PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const ContactSa
   floor_ = floor;
   problem_.resize(count_);
   for (int i = first; i < count_; ++i) {
-    problem_.lambda[at(i)] = 1.0;  // it presses, or would sink in
+    problem_.lambda[at(i)] = 1.0;  // it presses, or would penetrate
     Contact& ci = rows_[at(i)];
     const ContactTool& tool = tools[at(ci.tool)];
     problem_.bilateral[at(i)] = ci.grasped;
@@ -213,14 +214,14 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
     tool.force.setZero();
     tool.torque.setZero();
   }
-  if (friction_.acts()) note_drags(tools);
+  if (friction_.acts()) store_friction(tools);
   double largest = 0.0;
   for (int i = 0; i < count_; ++i) {
     Contact& row = rows_[at(i)];
     row.force = problem_.lambda[at(i)];
     if (friction_.acts()) row.friction = friction_.row(i).friction_force;
     Vector3 point = moved_point(i);
-    if (friction_.acts()) point -= friction_.moved(i) - sprung(tools[at(row.tool)], row);
+    if (friction_.acts()) point -= friction_.moved(i) - coupling_displacement(tools[at(row.tool)], row);
     largest = std::max(largest, (point - row.point).squaredNorm());
     row.point = point;
     if (row.force == 0.0) continue;
@@ -258,7 +259,7 @@ PALPATE_INLINE void ContactRows::stick(std::span<const ContactTool> tools) noexc
   }
 }
 
-/// Row i of what friction needs to know.
+/// Row i of the input of CoulombFriction.
 PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const ContactSamples& samples,
                                                 const ContactTool& tool, int i) noexcept {
   const Candidate& c = *candidate_[at(i)];
@@ -280,7 +281,7 @@ PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const 
   }
 }
 
-PALPATE_INLINE void ContactRows::note_drags(std::span<ContactTool> tools) const noexcept {
+PALPATE_INLINE void ContactRows::store_friction(std::span<ContactTool> tools) const noexcept {
   for (ContactTool& tool : tools) {
     tool.friction_displacement.setZero();
     tool.friction_rotation.setZero();

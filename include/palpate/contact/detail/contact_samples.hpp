@@ -5,22 +5,22 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A material point of the contact surface: three vertices and the weights by which it reads their displacement and
-/// spreads its force.
+/// A material point of the contact surface: three vertices, and the weights that interpolate their displacement and
+/// distribute its force.
 struct ContactSample {
   Triangle vertices{};
   std::array<double, 3> weights{};
 };
 
 /// Points spread over all triangles so that no two neighbours are further apart than `spacing`, as far as
-/// `maximum_subdivision` allows: all vertices, and a barycentric lattice on edges and faces that are longer. Fixed in
-/// the material, so that a sphere sliding over them meets a smooth sequence of constraints. Every sample belongs to one
-/// triangle.
+/// `maximum_subdivision` allows: all vertices, and a barycentric lattice on longer edges and faces. They are fixed in
+/// the material, so that a sphere sliding over them encounters a smooth sequence of constraints. Every sample belongs
+/// to one triangle.
 class ContactSamples {
  public:
   ContactSamples() = default;
 
-  /// Parts of an edge: they bound the lattice on very coarse triangles, and with it what a tick may have to look at.
+  /// Largest number of parts of an edge: limits the lattice on very coarse triangles, and with it the work of a tick.
   static constexpr int maximum_subdivision = 32;
 
   /// Allocates; for set-up.
@@ -33,8 +33,8 @@ class ContactSamples {
   }
   int count() const noexcept { return static_cast<int>(samples_.size()); }
   const ContactSample& operator[](int sample) const noexcept { return samples_[static_cast<std::size_t>(sample)]; }
-  /// The sample nearest to one of another surface whose vertices have the same numbers here, -1 when its triangles are
-  /// gone. Looks at the triangles around a vertex; no allocation.
+  /// The sample nearest to a sample of another surface whose vertices have the same numbers; -1 when its triangles no
+  /// longer exist. Checks the triangles around a vertex; no allocation.
   int nearest(const ContactSurface& surface, const ContactSample& wanted) const noexcept;
   /// Number of the first sample of a triangle; those of triangle t end where those of t + 1 begin.
   int first_of(int t) const noexcept { return first_[static_cast<std::size_t>(t)]; }
@@ -46,8 +46,9 @@ class ContactSamples {
   std::vector<int> first_;  // per triangle, one past the end last
 };
 
-/// Throws SetupError(bad_argument) when the longest edge is longer than the lattice covers at one radius between points
-/// (ids: its vertices). Says so when the edge is that long only because the scene's loads have stretched it.
+/// Throws SetupError(bad_argument) when the longest edge is longer than a lattice with a spacing of one radius can
+/// cover (ids: its vertices). The message states whether the edge is that long only because the scene's loads stretch
+/// it.
 void require_dense_points(const ContactSurface& surface, double radius);
 
 }}  // namespace palpate

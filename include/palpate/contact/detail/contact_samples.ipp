@@ -12,7 +12,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Sum of the differences of weights.
+/// Sum of the absolute differences of the weights.
 inline double difference(const ContactSample& a, const ContactSample& b) noexcept {
   double sum = 2.0;
   for (std::size_t i = 0; i < 3; ++i)
@@ -26,7 +26,7 @@ inline int subdivision(double length, double spacing) {
       std::clamp(std::ceil(length / spacing), 1.0, static_cast<double>(ContactSamples::maximum_subdivision)));
 }
 
-/// Whether no triangle before t, and no edge of it before the i-th, is this edge.
+/// Whether this edge occurs in no triangle before t, and not in t before its i-th edge.
 inline bool is_new_edge(const ContactSurface& surface, int t, std::size_t i) noexcept {
   const Triangle& own = surface.triangle(t);
   const int a = own[i], b = own[(i + 1) % 3];
@@ -41,7 +41,7 @@ inline bool is_new_edge(const ContactSurface& surface, int t, std::size_t i) noe
   return true;
 }
 
-/// Length of an edge without loads; infinity when that is not known.
+/// Length of an edge without loads; infinity if not known.
 inline double unloaded_length(const ContactSurface& surface, std::int64_t a, std::int64_t b) {
   const std::vector<Vector3>& x = surface.unloaded().positions;
   if (x.size() != surface.positions().size()) return infinity;
@@ -83,9 +83,9 @@ PALPATE_INLINE void ContactSamples::add_edge(const ContactSurface& surface, int 
 
 PALPATE_INLINE int ContactSamples::nearest(const ContactSurface& surface, const ContactSample& wanted) const noexcept {
   int best = -1;
-  // A body that was cut and is whole again has fewer vertices.
+  // A cut body that is restored has fewer vertices.
   if (wanted.vertices[0] >= surface.vertex_count()) return best;
-  double least = 1.0;  // half of the weight on other vertices is another place
+  double least = 1.0;  // with half of the weight on other vertices it is a different place
   for (const int t : surface.triangles_at(wanted.vertices[0]))
     for (int s = first_of(t); s < first_of(t + 1); ++s)
       if (const double off = detail::difference((*this)[s], wanted); off < least) least = off, best = s;
@@ -115,12 +115,11 @@ PALPATE_INLINE void require_dense_points(const ContactSurface& surface, double r
                    ") stretch an edge of the touchable surface from " + number(unloaded) + " m to " +
                    number(problem.value) + " m" + bound;
     problem.hint =
-        "Loads should not deform the body that much: look at stiffness (Pa), density (kg/m^3), the unit of length of "
-        "the "
-        "mesh (m) and what holds the body";
+        "Loads should not deform the body that much: check stiffness (Pa), density (kg/m^3), the unit of length of the "
+        "mesh (m) and the supports of the body";
   } else {
     problem.what = "an edge of the touchable surface is " + number(problem.value) + " m long" + bound;
-    problem.hint = "Refine the mesh where tools touch, or take a larger tool";
+    problem.hint = "Refine the mesh where tools touch, or use a larger tool";
   }
   raise(std::move(problem));
 }

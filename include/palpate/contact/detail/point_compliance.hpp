@@ -1,4 +1,4 @@
-// The compliance between contact points, remembered from linearisation to linearisation and from tick to tick.
+// The compliance between contact points, cached over linearisations and ticks.
 #pragma once
 
 #include <palpate/contact/tissue_view.hpp>
@@ -6,23 +6,23 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// J_p C J_q^T [m/N], the displacement of point p per force on point q, 3 x 3, for up to `capacity` points at a time.
-/// Contact points are fixed in the material: as long as they press, only directions change, and this does not. A point
-/// keeps its slot until another needs it.
+/// Contact points are fixed in the material: while they press, only directions change, and these blocks do not. A point
+/// keeps its slot until another point needs it.
 class PointCompliance {
  public:
   /// Allocates; for set-up.
   explicit PointCompliance(int capacity);
 
-  /// Forgets everything when the tissue's compliance is another than in the last tick.
+  /// Clears the cache when the tissue's compliance has changed since the last tick.
   void begin_tick(std::uint64_t revision) noexcept;
-  /// Points have other numbers from here on.
+  /// Clears the cache: points are renumbered.
   void forget() noexcept;
-  /// Back to the state after construction. Which of two points has the lower slot decides how sums are rounded.
+  /// Back to the state after construction. The order of the slots affects the rounding of sums.
   void reset() noexcept;
-  /// From here on points asked for are in use and keep their slots; those before need not.
+  /// From here on requested points are in use and keep their slots; slots of earlier points may be reused.
   void begin_rows() noexcept { ++rows_; }
 
-  /// The slot of a point; `hint` is where it was. At most `capacity` different points between two `begin_rows`.
+  /// The slot of a point; `hint` is its last slot. At most `capacity` different points between two `begin_rows`.
   int slot_of(int sample, int hint) noexcept;
 
   /// The compliance between the points in two slots, p >= q.
@@ -41,7 +41,7 @@ class PointCompliance {
   int take(int sample) noexcept;
 
   std::vector<Matrix3> block_;        // of pairs of slots, lower triangle by rows
-  std::vector<std::uint64_t> known_;  // versions of the two points whose block it is
+  std::vector<std::uint64_t> known_;  // versions of the two points that the block belongs to
   std::vector<int> sample_;
   std::vector<std::uint64_t> version_, used_;
   std::uint64_t versions_ = 0, rows_ = 0, revision_ = 0;

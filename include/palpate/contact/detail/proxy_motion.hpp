@@ -1,4 +1,4 @@
-// Where proxies go in a tick.
+// Motion of the proxies within a tick.
 #pragma once
 
 #include <palpate/contact/contact.hpp>
@@ -8,33 +8,33 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Moves the proxies of all tools: along with their devices, then from linearisation to linearisation to where the
-/// answer has them. Says how far the next step goes and how much forces changed in the last. No allocation.
+/// Moves the proxies of all tools: first with their devices, then from linearisation to linearisation to the positions
+/// of the solution. Reports how far the next step goes and how much the forces changed in the last. No allocation.
 class ProxyMotion {
  public:
   using Tools = std::span<ContactTool>;
-  /// How far the present force lets a proxy go.
+  /// Displacement of a proxy to its goal under the present force.
   struct Ahead {
     Vector3 path = Vector3::Zero(),
-            axis = Vector3::Zero();  ///< of the proxy; of the end of a capsule's axis of length 1
-    double farthest = 0.0;           ///< way of any of its points, at most [m]
+            axis = Vector3::Zero();  ///< of the proxy [m]; change of a capsule's unit axis
+    double farthest = 0.0;           ///< upper bound of the displacement of any of its points [m]
   };
 
-  /// Takes the proxies along with their devices, across the contact force: from there the first linearisation is nearly
-  /// right for a sphere that slides.
+  /// Moves the proxies with their devices, perpendicular to the contact force: this makes the first linearisation
+  /// nearly exact for a sphere that slides.
   static void slide(Tools tools) noexcept;
-  /// Remembers the forces that a linearisation begins with.
+  /// Stores the forces at the start of a linearisation.
   void begin(Tools tools) noexcept;
-  /// `floor`: the least compliance of a contact [m/N], as TissueModel has it.
+  /// N], as TissueModel has it./N], as TissueModel has it.
   void look_ahead(Tools tools, double floor) noexcept;
   const Ahead& ahead(std::size_t tool) const noexcept { return ahead_[tool]; }
-  /// Moves the proxies to where the answer has them, as far as one linearisation may go; true when all are there.
+  /// Moves the proxies to the positions of the solution, as far as one linearisation may go; true when all arrive.
   bool follow(Tools tools, double floor) noexcept;
-  /// Of the tools' forces and torques since `begin`.
+  /// Relative change of the tools' forces and torques since `begin`.
   double relative_change(Tools tools) const noexcept;
 
  private:
-  static void turn(ContactTool& tool, double part) noexcept;
+  static void rotate(ContactTool& tool, double part) noexcept;
 
   std::array<Vector3, maximum_tools> start_force_{}, start_torque_{};
   std::array<Ahead, maximum_tools> ahead_{};

@@ -8,7 +8,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE void ProxyMotion::turn(ContactTool& tool, double part) noexcept {
+PALPATE_INLINE void ProxyMotion::rotate(ContactTool& tool, double part) noexcept {
   const Matrix3 goal = tool.goal_rotation();
   if (part == 1.0) {
     tool.rotation = goal;
@@ -53,7 +53,7 @@ PALPATE_INLINE bool ProxyMotion::follow(Tools tools, double floor) noexcept {
     const double length = ahead_[t].farthest, longest = tool.longest_step();
     const double part = length <= longest ? 1.0 : longest / length;
     tool.proxy += part * ahead_[t].path;
-    turn(tool, part);
+    rotate(tool, part);
     arrived = arrived && length <= longest;
   }
   return arrived;

@@ -1,4 +1,4 @@
-// Where the vertices of the contact surface are under the forces of the tools.
+// Displacement of the vertices of the contact surface under the forces of the tools.
 #pragma once
 
 #include <palpate/contact/tissue_view.hpp>
@@ -7,8 +7,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Forces on vertices, and the displacement of any vertex under them, computed when asked for and remembered until the
-/// forces change.
+/// Forces on vertices, and the displacement of any vertex under them, computed on request and cached until the forces
+/// change.
 class SurfaceDisplacement {
  public:
   /// Allocates for a surface and for `capacity` loaded vertices; for set-up.
@@ -16,15 +16,16 @@ class SurfaceDisplacement {
 
   std::span<const VertexForce> forces() const noexcept { return {forces_.data(), static_cast<std::size_t>(count_)}; }
 
-  /// Forgets remembered displacements when the tissue's compliance is another than in the last tick.
+  /// Clears cached displacements when the tissue's compliance has changed since the last tick.
   void begin_tick(std::uint64_t revision) noexcept;
-  /// Goes on on a surface with the same numbers of vertices, and more, that `fresh` was made for. No allocation.
+  /// Continues on a surface with the same vertex numbers and possibly more, for which `fresh` was constructed. No
+  /// allocation.
   void move_to(SurfaceDisplacement& fresh) noexcept;
   void clear() noexcept {
     count_ = 0;
     ++generation_;
   }
-  /// Adds a force on a vertex, which `slot` remembers between calls (start: -1).
+  /// Adds a force on a vertex; `slot` stores its entry between calls (initially -1).
   void add(int vertex, const Vector3& force, int& slot) noexcept;
 
   /// Displacement of a vertex under the forces [m].
@@ -36,12 +37,12 @@ class SurfaceDisplacement {
     }
     return displacement_[i];
   }
-  /// Where it is [m].
+  /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
 
-  /// How far the forces move the surface near them [m]: the lesser of a bound that holds everywhere and of twice what
-  /// the loaded vertices move. The latter is no bound for a part that swings about another; `Candidates` looks for
-  /// such.
+  /// Displacement of the surface near the forces [m]: the smaller of a bound that is valid everywhere and twice the
+  /// largest displacement of the loaded vertices. The latter is no bound for a part that rotates about another;
+  /// `Candidates` searches for such parts.
   double reach(const TissueView& tissue) noexcept;
 
  private:

@@ -35,7 +35,7 @@ PALPATE_INLINE double sphere_meets_triangle(const Vector3& from, const Vector3& 
   const double height = normal.dot(from - corner[0]), falls = -normal.dot(path);
   if (!(falls > 0.0) || !(height >= 0.0)) return infinity;
   const double t = std::max(0.0, (height - radius) / falls);
-  if (!(t <= 1.0)) return infinity;  // edges and corners lie in its plane, and are met no sooner
+  if (!(t <= 1.0)) return infinity;  // edges and corners are in its plane, and are not reached earlier
   const Vector3 centre = from + t * path;
   const Vector3 foot = centre - normal.dot(centre - corner[0]) * normal;
   bool inside = true;

@@ -1,4 +1,4 @@
-// Where a tool is put that has no contact yet: set down beside the surface, or stopped on its way by it.
+// Placement of a tool that has no contact yet: next to the surface, or stopped by it on its path.
 #pragma once
 
 #include <palpate/contact/contact.hpp>
@@ -6,11 +6,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Puts the proxy where the tool does not touch the resting surface: at the position if it is free there, else next to
-/// the closest point; a capsule is moved by what its deepest sphere needs, a few times. Forces are zero. No allocation.
+/// Places the proxy where the tool does not touch the resting surface: at the position if it is free there, otherwise
+/// next to the closest point; a capsule is moved by the displacement that its deepest sphere needs, a few times. Forces
+/// are zero. No allocation.
 void place_beside(ContactTool& tool, const ContactSurface& surface, const Vector3& position) noexcept;
 
-/// Moves the proxy from `from` towards the position, and turns it, until the tool first meets the resting surface from
+/// Moves and rotates the proxy from `from` towards the position until the tool first touches the resting surface from
 /// outside. Forces are zero. No allocation.
 void sweep(ContactTool& tool, const ContactSurface& surface, const Vector3& from, const Vector3& position) noexcept;
 

@@ -12,8 +12,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Centres of the spheres that stand for a capsule where single points are looked at: the ends, and between them no
-/// farther apart than a radius. Calls look(place on the axis from the middle [m]) for each.
+/// Centres of the spheres that represent a capsule in queries of single points: the ends, and between them at most a
+/// radius apart. Calls look(coordinate on the axis from the middle [m]) for each.
 template <class Look>
 void for_each_sphere(const ContactTool& tool, Look&& look) {
   if (tool.half_length == 0.0) {
@@ -51,7 +51,7 @@ PALPATE_INLINE void sweep(ContactTool& tool, const ContactSurface& surface, cons
                           const Vector3& position) noexcept {
   const Vector3 path = position - from, axis = tool.axis(), turn = tool.target_rotation * tool.own_axis - axis;
   double part = 1.0;
-  detail::for_each_sphere(tool, [&](double s) {  // a little smaller: what touches already and moves away meets nothing
+  detail::for_each_sphere(tool, [&](double s) {  // smaller, so that a touching sphere that moves away has no hit
     part = std::min(part, first_touch(surface, from + s * axis, path + s * turn, (1.0 - 1e-6) * tool.radius));
   });
   tool.proxy = from + part * path;

@@ -58,7 +58,7 @@ PALPATE_INLINE TrianglePoint closest_point(const Vector3& p, const Vector3& a, c
     const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
     return {{0.0, 1.0 - w, w}, TriangleFeature::edge12};
   }
-  // Of a triangle without area only rounding is left of these, and with fused multiply-adds not even that cancels.
+  // For a triangle of zero area these contain only rounding errors, which fused multiply-adds do not even cancel.
   const double area = va + vb + vc;  // |ab x ac|^2
   if (!(area > 1e-14 * ab.squaredNorm() * ac.squaredNorm() && va >= 0.0 && vb >= 0.0 && vc >= 0.0))
     return closest_on_edges(p, {a, b, c});

@@ -44,7 +44,7 @@ PALPATE_INLINE void BorderedUpdate::require(bool holds, double value) {
   if (holds) return;
   SetupProblem p;
   p.kind = SetupErrorKind::not_positive_definite;
-  p.what = "after this cut something is not held";
+  p.what = "after this cut a part of the body is not constrained";
   p.value = value;
   p.threshold = 1e-13;
   raise(std::move(p));

@@ -1,4 +1,4 @@
-// The factor that cuts are taken off from.
+// The factor from which cuts are subtracted.
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
@@ -28,31 +28,31 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Stiffness of the held part of a topology, factorised with some nodes kept, and the compliance among these.
+/// Stiffness of the supported part of a topology, factorised with some nodes kept, and the compliance among these.
 template <Element E>
 class CutBase {
  public:
-  /// `kept_nodes` that are not held, and their prescribed components, are left out. Throws what assembly, factorisation
-  /// and loads throw. Costs a factorisation, the inverse of the kept part and two substitutions.
+  /// `kept_nodes` that are not in the supported part are left out, and so are prescribed components. Throws as
+  /// assembly, factorisation and loads. Costs a factorisation, the inverse of the kept part and two substitutions.
   CutBase(const CutTopology<E>& topology, const CutPhysics<E>& physics, const std::vector<NodeId>& kept_nodes,
           const SetupLimits& limits = {}) {
     std::vector<NodeId> node_map;
     std::vector<Index> element_map;
-    Body<E> constrained{topology.extract(ElementState::supported, node_map, element_map),
-                        physics.body.elasticity,
-                        physics.body.density,
-                        physics.body.initial_strain,
-                        {}};
+    Body<E> supported{topology.extract(ElementState::supported, node_map, element_map),
+                      physics.body.elasticity,
+                      physics.body.density,
+                      physics.body.initial_strain,
+                      {}};
     if (!physics.body.materials.empty())
       for (const Index e : element_map)
-        constrained.materials.push_back(physics.body.materials[static_cast<std::size_t>(e)]);
+        supported.materials.push_back(physics.body.materials[static_cast<std::size_t>(e)]);
     const EssentialConditions conditions =
-        constrained_conditions(topology, physics, node_map, constrained.mesh.node_count());
+        constrained_conditions(topology, physics, node_map, supported.mesh.node_count());
     place_.assign(3 * node_map.size(), -1);
     for (std::size_t i = 0; i < place_.size(); ++i)
       if (const NodeId node = node_map[i / 3]; node >= 0)
         place_[i] = conditions.free_index[static_cast<std::size_t>(3 * Index{node}) + i % 3];
-    DofLayout layout{{}, constrained.mesh.positions, {}};
+    DofLayout layout{{}, supported.mesh.positions, {}};
     for (const NodeId node : kept_nodes)
       for (int c = 0; c < 3; ++c)
         if (place_of(node, c) >= 0) {
@@ -63,7 +63,7 @@ class CutBase {
     size_ = conditions.free_count();
     VectorX load = VectorX::Zero(size_);
     if (size_ > 0) {
-      const BlockMatrix k = assemble_stiffness<E>(constrained, limits);
+      const BlockMatrix k = assemble_stiffness<E>(supported, limits);
       SchurComplement schur = condense(free_matrix(k, conditions), layout, limits);
       if (schur.stiffness.rows() > 0)
         SpdInverse::invert(schur.stiffness, 1e-15, "the condensed stiffness is not positive definite");
@@ -82,15 +82,15 @@ class CutBase {
   const std::shared_ptr<const MatrixX>& compliance() const noexcept { return compliance_; }
   SparseCholesky& interior() noexcept { return interior_; }
   const SparseCholesky& interior() const noexcept { return interior_; }
-  /// Number of a dof in the factor, -1 when it is prescribed, not held, or younger than the factor.
+  /// Index of a dof in the factor; -1 when it is prescribed, not supported, or newer than the factor.
   Index place_of(NodeId node, int component) const noexcept {
     const auto i = static_cast<std::size_t>(3 * Index{node} + component);
     return i < place_.size() ? place_[i] : -1;
   }
-  /// Under the scene's loads before any later cut, 3 per node [m].
+  /// Displacement under the scene's loads before any later cut, 3 per node [m].
   const VectorX& displacement() const noexcept { return displacement_; }
 
-  /// x = K^-1 b. No allocation but on first use.
+  /// x = K^-1 b. Allocates on first use only.
   void solve(const VectorX& b, VectorX& x) {
     kept_load_.resize(static_cast<Index>(kept_.size()));
     x.resize(size_);

@@ -1,4 +1,4 @@
-// Cuts that wait to be done.
+// A queue of cuts that are not applied yet.
 #pragma once
 
 #include <palpate/contact/detail/blade_sweep.hpp>
@@ -12,22 +12,22 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Orders from any thread, and sweeps of a blade from the one that ticks, which never waits. `take` hands out all there
-/// are; they count as open until they are done.
+/// Orders from any thread, and blade sweeps from the thread that ticks, which never waits. `take` returns all waiting
+/// orders; they count as open until `done`.
 class CutOrders {
  public:
   struct Taken {
-    CutOrder order;                  ///< all of them as one
+    CutOrder order;                  ///< all orders combined
     std::vector<BladeSweep> sweeps;  ///< in the world's frame
     unsigned count = 0;
   };
 
   void add(CutOrder order);
   void add(const BladeSweep& sweep);
-  /// From the thread that ticks; false when 256 are waiting. Neither waits nor allocates.
+  /// From the thread that ticks; false when 256 sweeps are waiting. Neither waits nor allocates.
   bool try_add(const BladeSweep& sweep) noexcept;
 
-  /// One thread at a time.
+  /// Called by one thread at a time.
   Taken take();
   void done(const Taken& taken) noexcept { open_.fetch_sub(taken.count, std::memory_order_release); }
   bool are_open() const noexcept { return open_.load(std::memory_order_acquire) != 0; }

@@ -1,4 +1,4 @@
-// What the elements of a body that is cut are made of and carry.
+// Material and loads of the elements of a body that is cut.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -24,17 +24,17 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Material and loads by element: what an element carries leaves with it. Point loads stay with the node they were put
-/// on.
+/// Material and loads by element: a removed element takes its loads with it. Point loads stay with the node to which
+/// they were applied.
 template <Element E>
 requires(!HasSmoothedStrain<E>) struct CutPhysics {
-  Body<E> body;                       ///< its mesh holds the nodes and elements as they were given
+  Body<E> body;                       ///< its mesh has the nodes and elements as given
   VectorX nodal_load;                 ///< point loads, 3 per given node [N]
   VectorX prescribed;                 ///< displacements, 3 per given node [m]
   std::vector<ElementNodes<E>> load;  ///< on the nodes of every element, one row per node [N]
 
   /// Loads of a scene: gravity in the frame of the mesh, body loads, tractions, pressures, initial strains. Throws as
-  /// the conditions of a scene do. O(elements).
+  /// the conditions of a scene. O(elements).
   CutPhysics(Body<E> given, const std::vector<BoundaryFace>& boundary, const Scene& scene)
       : body(std::move(given)), load(body.mesh.elements.size(), ElementNodes<E>::Zero()) {
     body.initial_strain = initial_strains_by_region(body.mesh, scene);
@@ -49,11 +49,11 @@ requires(!HasSmoothedStrain<E>) struct CutPhysics {
     add_face_loads(boundary, scene);
   }
 
-  /// [N/m], for nodes where they rest.
+  /// Element stiffness [N/m] at the rest positions of the nodes.
   ElementStiffness<E> stiffness(Index e) const {
     return element_stiffness<E>(nodes_of_element(e), body.elasticity_of(e));
   }
-  /// [kg]
+  /// Mass of an element [kg].
   double mass(Index e) const { return body.density[body.region_of(e)] * shape_volumes<E>(nodes_of_element(e)).sum(); }
   /// The load of one element as a column, x y z per node.
   Eigen::Matrix<double, 3 * E::nodes, 1> load_of(Index e) const {
@@ -63,7 +63,7 @@ requires(!HasSmoothedStrain<E>) struct CutPhysics {
     return f;
   }
 
-  /// Of what is left when elements for which gone(element) have left: 3 per given node [N].
+  /// Load of the remaining elements when those with gone(element) are removed: 3 per given node [N].
   template <class Gone>
   VectorX load_left(Gone&& gone) const {
     VectorX sum = nodal_load;

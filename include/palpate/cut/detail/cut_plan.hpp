@@ -1,4 +1,4 @@
-// Which dofs a cut changes, and what of their stiffness.
+// The dofs that a cut changes, and the change of their stiffness.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -20,13 +20,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The small problem of one cut. Refers to what it is made of.
+/// The small linear problem of one cut. Refers to the arguments of its constructor.
 template <Element E>
 class CutPlan {
  public:
   using Pin = typename ElementChanges<E>::Pin;
 
-  /// `displacement` of all nodes before the cut, three per node.
+  /// `displacement`: of all nodes before the cut, three per node.
   CutPlan(const CutTopology<E>& topology, const TopologyChange<E>& of, const CutPhysics<E>& physics,
           const CutBase<E>& base, const KeptDofs& kept, const VectorX& displacement)
       : change(&of), physics_(&physics), kept_(&kept) {
@@ -42,7 +42,7 @@ class CutPlan {
         if ((3 * Index{node} >= displacement.size()) == is_fresh) place_node(node, is_fresh, topology, base);
   }
 
-  /// What changes of the stiffness, over changed dofs and then fresh ones.
+  /// Assembles the change of the stiffness over the changed dofs, followed by the fresh ones.
   MatrixX assemble() const {
     const auto size = static_cast<Index>(changed.size() + fresh.size());
     MatrixX all = MatrixX::Zero(size, size);
@@ -73,13 +73,13 @@ class CutPlan {
   }
 
   const TopologyChange<E>* change;
-  std::vector<Pin> pins;          ///< springs for what this cut leaves unheld
+  std::vector<Pin> pins;          ///< springs for parts that this cut leaves unsupported
   std::vector<NodeDof> promoted;  ///< changed dofs that were not kept
-  std::vector<NodeDof> fresh;     ///< new ones
-  std::vector<Index> changed;     ///< places of all changed dofs that are old, promoted ones counted behind the kept
+  std::vector<NodeDof> fresh;     ///< new dofs
+  std::vector<Index> changed;     ///< places of changed dofs that exist already; promoted ones follow the kept ones
 
  private:
-  /// All nodes of one element of each piece, and nodes without elements.
+  /// Pins all nodes of one element of each fragment, and nodes without elements.
   void add_pins(const CutTopology<E>& topology, const VectorX& displacement) {
     const auto pin = [&](NodeId node, double stiffness) {
       const NodeId known = 3 * Index{node} < displacement.size() ? node : parent_of(node);
@@ -105,7 +105,7 @@ class CutPlan {
         }
   }
   NodeId parent_of(NodeId node) const { return std::ranges::find(change->copies, node, &NodeCopy::node)->parent; }
-  /// Numbers the dofs of a node that is changed or new.
+  /// Numbers the dofs of a changed or new node.
   void place_node(NodeId node, bool is_fresh, const CutTopology<E>& topology, const CutBase<E>& base) {
     std::array<Index, 3> own{-1, -1, -1};
     bool added = false;
@@ -125,7 +125,7 @@ class CutPlan {
 
   const CutPhysics<E>* physics_;
   const KeptDofs* kept_;
-  std::map<NodeId, std::array<Index, 3>> places_;  // of nodes that get some
+  std::map<NodeId, std::array<Index, 3>> places_;  // of nodes with promoted or fresh dofs
 };
 
 }}  // namespace palpate

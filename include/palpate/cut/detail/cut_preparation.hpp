@@ -1,4 +1,4 @@
-// From a mesh as given to a body that can be cut.
+// Prepares a given mesh for cutting.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -23,7 +23,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A body in a frame of its own, and what of it can be touched and will be cut.
+/// A body in a local frame, with its touchable faces and the nodes to be cut.
 template <Element E>
 struct CutPreparation {
   CutPhysics<E> physics;
@@ -34,7 +34,7 @@ struct CutPreparation {
 
 namespace detail {
 
-/// A node that the topology has copied has the original id of its source.
+/// Extends the original ids: a node copied by the topology has the original id of its source.
 template <Element E>
 void add_copied_nodes(const CutTopology<E>& topology, Index admitted_nodes, OriginalIds& ids) {
   const auto count = static_cast<NodeId>(topology.mesh().node_count());
@@ -48,16 +48,16 @@ void add_copied_nodes(const CutTopology<E>& topology, Index admitted_nodes, Orig
 [[noreturn]] inline void refuse_detached(const Fragment& fragment) {
   SetupProblem p;
   p.kind = SetupErrorKind::unconstrained;
-  p.what = "a part of " + std::to_string(fragment.elements.size()) + " elements is not held";
-  p.hint = "Parts that hang together by nodes or edges only are separate here; hold each";
+  p.what = "a part of " + std::to_string(fragment.elements.size()) + " elements is not constrained";
+  p.hint = "Parts that are connected only by nodes or edges count as separate; constrain each part";
   p.set_ids(fragment.elements, SetupIds::elements);
   raise(std::move(p));
 }
 
 }  // namespace detail
 
-/// Of an admitted body with its boundary and a scene in its frame; `cuttable` likewise. Adds copied nodes to `ids`.
-/// Throws what the scene's selections throw; unconstrained when a part is not held.
+/// Prepares an admitted body with its boundary and a scene, both in the body's frame, as `cuttable` is. Adds copied
+/// nodes to `ids`. Throws as the scene's selections; unconstrained when a part is not constrained.
 template <Element E>
 CutPreparation<E> prepare_cut(const Body<E>& body, const std::vector<BoundaryFace>& boundary, const Scene& scene,
                               const std::optional<Selection>& cuttable, OriginalIds& ids) {

@@ -33,7 +33,7 @@ class CutProcess {
  public:
   using Publish = std::function<void(CutView&&)>;
 
-  /// Throws what factorisation throws.
+  /// Throws as factorisation.
   CutProcess(CutPreparation<E> prepared, const CutParameters& parameters, const SetupLimits& limits, Publish publish)
       : physics_(std::make_unique<CutPhysics<E>>(std::move(prepared.physics))),
         topology_(std::move(prepared.topology)),
@@ -73,7 +73,7 @@ class CutProcess {
     return true;
   }
 
-  /// Loads and prescribed values from now on; a new factor. Strong guarantee.
+  /// Replaces loads and prescribed values; a new factor. Strong guarantee.
   void set_loads(const std::vector<BoundaryFace>& boundary, const Scene& scene) {
     auto physics = std::make_unique<CutPhysics<E>>(physics_->body, boundary, scene);
     CutSystem<E> fresh(topology_, *physics, kept_nodes(), limits_);
@@ -170,7 +170,7 @@ class CutProcess {
     return all;
   }
 
-  /// Updates the compliance and publishes it. Makes a new factor where the update is not positive definite to working
+  /// Updates the compliance and publishes it. Makes a new factor if the update is not positive definite to working
   /// precision.
   void take_in(const TopologyChange<E>& change) {
     try {
@@ -229,7 +229,7 @@ class CutProcess {
     if (!renewal_ || !renewal_->is_done()) return false;
     try {
       if (auto made = renewal_->take(topology_)) take_over(std::move(*made));
-    } catch (const SetupError&) {  // the old one goes on
+    } catch (const SetupError&) {  // keep the old factor
     }
     renewal_.reset();
     return true;
@@ -300,7 +300,7 @@ class CutProcess {
   CutSurface<E> touchable_;
   CutTopology<E> whole_topology_;
   CutSurface<E> whole_surface_;
-  std::vector<NodeId> cuttable_;  // sorted, of the given mesh
+  std::vector<NodeId> cuttable_;  // sorted, node ids of the given mesh
   SetupLimits limits_;
   CutParameters parameters_;
   Tools tools_;
@@ -311,8 +311,8 @@ class CutProcess {
   std::vector<double> bound_;            // of the last view
   std::array<bool, checks> due_{};
   std::size_t last_check_ = 0;
-  std::uint64_t cut_ = 0;                     // made last
-  std::unique_ptr<CutRenewal<E>> renewal_;  // last: its thread refers to the physics
+  std::uint64_t cut_ = 0;                   // number of the last cut
+  std::unique_ptr<CutRenewal<E>> renewal_;  // declared last: its thread refers to the physics
 };
 
 }}  // namespace palpate

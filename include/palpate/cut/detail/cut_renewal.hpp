@@ -1,4 +1,4 @@
-// A new factor of a body that goes on being cut.
+// A new factor of a body while cutting continues.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -17,8 +17,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Makes a system of a topology as it is now, in a thread of its own. Cuts may go on meanwhile: `take` adds all that
-/// came since as one. The destructor waits for what is in work. `physics` must outlive it.
+/// Builds a system of the current topology in a background thread. Cuts may continue meanwhile: `take` adds all later
+/// cuts as one. The destructor waits for the thread. `physics` must outlive it.
 template <Element E>
 class CutRenewal {
  public:
@@ -33,7 +33,7 @@ class CutRenewal {
   CutRenewal& operator=(const CutRenewal&) = delete;
 
   bool is_done() const noexcept { return done_.load(std::memory_order_acquire); }
-  /// When it is done: the system with the cuts since, folded; nothing when it could not be made. Throws as
+  /// Call when it is done: returns the system with the later cuts, folded, or null if it could not be built. Throws as
   /// CutSystem::update.
   std::unique_ptr<CutSystem<E>> take(const CutTopology<E>& now) {
     if (!made_) return nullptr;
@@ -46,7 +46,7 @@ class CutRenewal {
   void make(const CutPhysics<E>& physics, const std::vector<NodeId>& kept, const SetupLimits& limits) noexcept {
     try {
       made_ = std::make_unique<CutSystem<E>>(then_, physics, kept, limits);
-    } catch (...) {  // out of memory, cancelled: the old system goes on
+    } catch (...) {  // out of memory or cancelled: keep the old system
       made_.reset();
     }
     done_.store(true, std::memory_order_release);
@@ -55,7 +55,7 @@ class CutRenewal {
   CutTopology<E> then_;
   std::unique_ptr<CutSystem<E>> made_;
   std::atomic<bool> done_{false};
-  std::thread thread_;  // last: it uses all the others
+  std::thread thread_;  // declared last: it uses all other members
 };
 
 }}  // namespace palpate

@@ -19,14 +19,14 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Faces a tool may touch, by the elements they belong to, and the vertices of their nodes. Vertices keep their
-/// numbers: new ones are appended, and those of what is gone stay where they were, on no triangle. What a cut exposes
-/// can be touched from then on.
+/// Faces that a tool may touch, by element, and the vertices of their nodes. Vertices keep their numbers: new ones are
+/// appended, and those of removed parts stay at their position, without a triangle. Faces exposed by a cut are
+/// touchable from then on.
 template <Element E>
 class CutSurface {
  public:
   CutSurface() = default;
-  /// Resolves what a scene lets tools touch. Throws as resolve_faces does.
+  /// Resolves the touchable faces of a scene. Throws as resolve_faces.
   CutSurface(const CutTopology<E>& topology, const std::vector<BoundaryFace>& boundary, const Scene& scene) {
     const Mesh<E>& mesh = topology.mesh();
     for (const Selection& selection : scene.touched())
@@ -39,7 +39,7 @@ class CutSurface {
     update(topology, {});
   }
 
-  /// Takes in a cut: faces that came to light, nodes that were split, and what is gone. O(touchable faces).
+  /// Applies a cut: adds exposed faces and split nodes, drops removed faces. O(touchable faces).
   void update(const CutTopology<E>& topology, const TopologyChange<E>& change) {
     faces_.insert(faces_.end(), change.exposed.begin(), change.exposed.end());
     std::erase_if(faces_, [&](const ElementFace& f) { return topology.state(f.element) != ElementState::supported; });
@@ -60,7 +60,7 @@ class CutSurface {
   const std::vector<Triangle>& triangles() const noexcept { return triangles_; }
   /// Node of every vertex.
   const std::vector<NodeId>& nodes() const noexcept { return nodes_; }
-  /// Whether a vertex is still on a triangle.
+  /// True if a vertex is still on a triangle.
   bool is_used(std::size_t vertex) const noexcept { return used_[vertex] != 0; }
   const std::vector<ElementFace>& faces() const noexcept { return faces_; }
 

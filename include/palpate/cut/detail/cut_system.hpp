@@ -1,4 +1,4 @@
-// The compliance and the rest shape of a body while it is cut.
+// The compliance and the displacement of a body while it is cut.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -30,11 +30,11 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// A linear body under cuts. The compliance among kept dofs is updated exactly (bordered_update.hpp), by the rows that
-/// a cut changes; the factor stays. Nodes that a cut touches become kept: their columns come from the factor, the same
-/// cuts taken off. A cut among kept nodes needs no solve at all.
+/// a cut changes; the factor is not changed. Nodes touched by a cut become kept: their columns come from the factor,
+/// corrected for the earlier cuts. A cut among kept nodes needs no solve.
 ///
-/// What a cut leaves unheld keeps its place in the matrices and hangs on springs, which the rest does not feel, so
-/// there is no singular system: dofs of loose pieces have answers, but these mean nothing.
+/// Parts that a cut leaves unsupported keep their place in the matrices and are attached to springs, without effect on
+/// the rest. So no system is singular: dofs of detached fragments have displacements, but these are meaningless.
 template <Element E>
 class CutSystem {
  public:
@@ -48,14 +48,14 @@ class CutSystem {
     std::iota(source_.begin(), source_.end(), NodeId{0});
     displacement_ = base_.displacement();
     none_ = static_cast<Index>(base_.kept().size());
-    constexpr int spare = 3;  // one to write, and what a tick and the buffer between may hold
+    constexpr int spare = 3;  // one to write, and those used by the tick and by the buffer in between
     limits.require_memory(MatrixPool::bytes(none_, spare), "storage for the compliances of cuts");
     pool_.prepare(none_, spare);
   }
 
-  /// Takes in a cut: the step to be read from now on, until `fold`. Strong guarantee. Throws not_positive_definite when
-  /// rounding has eaten what is left (make a new system of the topology), bad_argument when the last step was not
-  /// folded. Cost: solves for changed nodes that were not kept, and O(kept x changed).
+  /// Applies a cut and returns the step that is read from now on, until `fold`. Strong guarantee. Throws
+  /// not_positive_definite when rounding leaves no accurate result (make a new system of the topology), bad_argument
+  /// when the last step was not folded. Cost: solves for changed nodes that were not kept, and O(kept x changed).
   std::shared_ptr<const CutStep> update(const CutTopology<E>& topology, const TopologyChange<E>& change) {
     if (step_) raise(SetupErrorKind::bad_argument, "the last cut is not folded in");
     const CutPlan<E> plan(topology, change, *physics_, base_, dofs_, displacement_);
@@ -69,12 +69,12 @@ class CutSystem {
     return step;
   }
 
-  /// Makes the last step part of the compliance. O(kept^2 x changed).
+  /// Adds the last step to the compliance. O(kept^2 x changed).
   void fold() {
     if (!step_) return;
     const auto folded = pool_.take(step_->all);
     const Index old = step_->old, rest = step_->all - old, panel = 64;
-    // A panel of the lower half, and its mirror image while it is in the cache.
+    // A panel of the lower half, mirrored while it is in the cache.
     for (Index j = 0; j < old; j += panel) {
       const Index width = std::min(panel, old - j), height = old - j;
       auto below = folded->block(j, j, height, width);
@@ -93,7 +93,7 @@ class CutSystem {
     step_.reset();
   }
   bool is_folded() const noexcept { return step_ == nullptr; }
-  /// Without any step; what a tick reads after `fold`. Folded systems only.
+  /// A step without changes, for ticks after `fold`. Folded systems only.
   std::shared_ptr<const CutStep> folded_step() const {
     auto step = std::make_shared<CutStep>();
     step->compliance = compliance_;
@@ -101,16 +101,17 @@ class CutSystem {
     return step;
   }
 
-  /// Number of a dof in the compliance, -1 when it is prescribed or not kept.
+  /// Index of a dof in the compliance, -1 when it is prescribed or not kept.
   Index place(NodeId node, int component) const noexcept { return dofs_.place(node, component); }
   Index kept() const noexcept { return dofs_.size(); }
-  /// Dofs that became kept since the factorisation.
+  /// Number of dofs that became kept since the factorisation.
   Index added() const noexcept { return kept() - none_; }
-  /// Under the scene's loads, 3 per node [m]: exact at kept nodes of the held part, elsewhere after `recover`.
+  /// Displacement under the scene's loads, 3 per node [m]: exact at kept nodes of the supported part, elsewhere after
+  /// `recover`.
   const VectorX& displacement() const noexcept { return displacement_; }
   const CutBase<E>& base() const noexcept { return base_; }
 
-  /// Brings all nodes to where they are under the scene's loads. Two substitutions.
+  /// Computes the displacement of all nodes under the scene's loads. Two substitutions.
   void recover() { recover_into({}, displacement_, displacement_); }
 
   /// Displacement with forces on kept nodes, 3 per node [m]. Folds first. O(kept x forces) and two substitutions.
@@ -128,8 +129,8 @@ class CutSystem {
     return u;
   }
 
-  /// How wrong the folded compliance is, measured: a load on all kept dofs, and how far the displacement that follows
-  /// is from what the factor makes of it and of the forces of the cuts, relative. One solve.
+  /// Measured relative error of the folded compliance: applies a load to all kept dofs and compares the displacement
+  /// with that of the factor under this load plus the forces of the cuts. One solve.
   double measured_error() {
     fold();
     const Index n = kept();
@@ -158,8 +159,8 @@ class CutSystem {
   }
   Index base_place(Index i) const noexcept { return base_.place_of(dofs_[i].node, dofs_[i].component); }
 
-  /// Columns of the present inverse for the promoted dofs, over kept and promoted rows. `units` keeps what later ones
-  /// need of these.
+  /// Columns of the current inverse for the promoted dofs, over kept and promoted rows. `units` stores the data that
+  /// later promoted dofs need.
   MatrixX columns_of(const CutPlan<E>& plan, ReducedUnits& units) const {
     const Index n = kept(), m = static_cast<Index>(plan.promoted.size());
     MatrixX x = MatrixX::Zero(n + m, m);
@@ -176,11 +177,11 @@ class CutSystem {
     for (const auto& [first, before] : promoted_)
       x.middleRows(first, before.size()) = before.products(units) + before.kept_load.transpose() * onto;
     x.bottomRows(m) = units.products(units) + units.kept_load.transpose() * onto;
-    take_off_cuts(x);
+    apply_changes(x);
     return x;
   }
-  /// From columns of the factor's inverse to columns of the present one: x + C r, r = - (what changed) x.
-  void take_off_cuts(MatrixX& x) const {
+  /// Converts columns of the factor's inverse to columns of the current one: x + C r, r = - (stiffness change) x.
+  void apply_changes(MatrixX& x) const {
     if (changes_.empty()) return;
     const Index n = kept(), m = x.cols();
     MatrixX r = MatrixX::Zero(n, m);
@@ -197,7 +198,7 @@ class CutSystem {
     x.bottomRows(m) = (0.5 * (x.bottomRows(m) + x.bottomRows(m).transpose())).eval();
   }
 
-  /// Assembles what changed over changed and fresh dofs, solves, and writes the step.
+  /// Assembles the change over changed and fresh dofs, solves, and writes the step.
   void solve_small(const CutPlan<E>& plan, const MatrixX& columns, CutStep& step) const {
     const Index n = kept(), m = columns.cols(), old = n + m, fresh = static_cast<Index>(plan.fresh.size());
     const Index s = static_cast<Index>(plan.changed.size());
@@ -231,7 +232,7 @@ class CutSystem {
     step.y = y.leftCols(n);
   }
 
-  /// Nothing throws from here on but a lack of memory.
+  /// From here on only a lack of memory can throw.
   void accept(const CutTopology<E>& topology, const CutPlan<E>& plan, const CutStep& step) {
     const Index nodes = topology.mesh().node_count(), before = displacement_.size() / 3;
     displacement_.conservativeResize(3 * nodes);
@@ -247,8 +248,8 @@ class CutSystem {
     for (const auto& pin : plan.pins) changes_.add(pin);
     move(step);
   }
-  /// Where kept nodes are now: from the rest of the factor, by the forces that all cuts since let loose. Not from where
-  /// they were before this cut, so that nothing piles up.
+  /// Displacement of kept nodes: from the rest state of the factor and the forces that all cuts since have released. It
+  /// does not start from the state before this cut, so errors do not accumulate.
   void move(const CutStep& step) {
     VectorX force = VectorX::Zero(kept());
     changes_.add_forces([&](NodeId node) { return rest_of(node); },
@@ -271,12 +272,13 @@ class CutSystem {
       dofs_.at(displacement_, i) = rest_of(d.node)[d.component] + u[i];
     }
   }
-  /// Displacement of the node that a node is a copy of, as the factor knows it.
+  /// Displacement, in the factor, of the node from which a node was copied.
   Vector3 rest_of(NodeId node) const noexcept {
     return base_.displacement().template segment<3>(3 * Index{source_[static_cast<std::size_t>(node)]});
   }
 
-  /// All nodes of the factor from what kept nodes do; `forces` that are not in the factor's rest, on nodes.
+  /// All nodes of the factor from the displacement of kept nodes; `forces` on nodes are added to the loads of the
+  /// factor.
   void recover_into(const std::vector<std::pair<NodeId, Vector3>>& forces, const VectorX& known, VectorX& u) {
     if (base_.size() == 0) return;
     VectorX load = VectorX::Zero(base_.size()), answer(base_.size());
@@ -306,9 +308,9 @@ class CutSystem {
   std::shared_ptr<const CutStep> step_;
   MatrixPool pool_;
   KeptDofs dofs_;
-  std::vector<NodeId> source_;                            // per node the one of the factor that it is a copy of
-  Index none_ = 0;                                        // kept by the factor
-  std::vector<std::pair<Index, ReducedUnits>> promoted_;  // by the place of the first
+  std::vector<NodeId> source_;                            // per node, the node of the factor from which it was copied
+  Index none_ = 0;                                        // number of dofs kept by the factor
+  std::vector<std::pair<Index, ReducedUnits>> promoted_;  // by the index of the first dof
   VectorX displacement_;
   ElementChanges<E> changes_;
 };

@@ -1,4 +1,4 @@
-// A mesh that is cut: elements leave, faces open, parts come off.
+// A mesh under cuts: elements are removed, faces open, fragments come off.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -22,25 +22,25 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Where an element is.
+/// State of an element.
 enum class ElementState : std::uint8_t { supported, detached, removed };
 
-/// A mesh under a sequence of cuts. Ids of nodes and elements never change: nodes that a cut makes are appended, and
-/// what goes stays as a number. Elements never change their shape, so no cut makes a sliver.
+/// A mesh under a sequence of cuts. Ids of nodes and elements never change: nodes created by a cut are appended, and
+/// removed elements keep their id. Elements never change their shape, so no cut makes a sliver.
 ///
-/// After every cut the elements around a node hang together by faces that contain it; where they do not, the node is
-/// split, one copy per part (as in Serby et al. 2001 and Lindblad and Turkiyyah 2007, here for all cuts alike). So no
-/// two parts hang together by a node or an edge only, and there are no hinges: parts joined by a face are joined
-/// rigidly, and a piece can move as a whole or not at all. What a cut leaves unheld is therefore known by counting, not
-/// by a failing solve.
+/// After every cut the elements around a node are connected by faces that contain it; otherwise the node is split, one
+/// copy per part (as in Serby et al. 2001 and Lindblad and Turkiyyah 2007, here for all kinds of cuts). So no two parts
+/// are connected only by a node or an edge, and there are no hinges: parts joined by a face are joined rigidly, and a
+/// fragment can move as a whole or not at all. Unsupported parts are therefore found by counting, not by a failing
+/// solve.
 template <Element E>
 class CutTopology {
  public:
   static constexpr std::size_t faces = E::faces.size();
   using Connectivity = typename Mesh<E>::Connectivity;
 
-  /// `constrained` has bit c set where component c of a node is prescribed; copies inherit it. Nodes at which parts of
-  /// the given mesh touch are split here. Throws non_manifold. O(elements log elements).
+  /// `constrained` has bit c set if component c of a node is prescribed; copies inherit it. Splits nodes at which parts
+  /// of the given mesh touch. Throws non_manifold. O(elements log elements).
   CutTopology(Mesh<E> mesh, std::vector<std::uint8_t> constrained)
       : mesh_(std::move(mesh)), constrained_(std::move(constrained)) {
     if (constrained_.size() != mesh_.positions.size())
@@ -58,7 +58,7 @@ class CutTopology {
     detach(split);
   }
 
-  /// Does as ordered. Throws index_out_of_range before anything is changed. O(elements) for the pieces, little else.
+  /// Applies an order. Throws index_out_of_range before any change. O(elements) to find fragments, little else.
   TopologyChange<E> apply(const CutOrder& order) {
     require_valid(order);
     TopologyChange<E> change;
@@ -77,29 +77,29 @@ class CutTopology {
     return change;
   }
 
-  /// The mesh with all ids, those of removed elements included. Their nodes are as they were before.
+  /// The mesh with all ids, including removed elements, which keep their nodes.
   const Mesh<E>& mesh() const noexcept { return mesh_; }
   ElementState state(Index e) const noexcept { return state_[at(e)]; }
   bool is_removed(Index e) const noexcept { return state(e) == ElementState::removed; }
   const std::vector<std::uint8_t>& constrained() const noexcept { return constrained_; }
-  /// The node of the given mesh that a node is a copy of; itself if it is none.
+  /// The node of the given mesh from which a node was copied; itself if it is not a copy.
   NodeId origin_of(NodeId node) const noexcept { return parent_[at(node)]; }
-  /// The node that a node was split from; itself if from none.
+  /// The node from which a node was split; itself if it was not split.
   NodeId copied_from(NodeId node) const noexcept { return copied_from_[at(node)]; }
-  /// Elements around a node, removed ones excepted.
+  /// Elements around a node, without removed ones.
   const std::vector<Index>& elements_at(NodeId node) const noexcept { return star_[at(node)]; }
-  /// Element behind a face, -1 when there is none or the face is open.
+  /// Neighbour element across a face, -1 on the surface and at an open face.
   Index neighbour(Index e, std::size_t face) const noexcept { return neighbour_[at(e)][face]; }
   /// Nodes of a face, outward.
   FaceIds<E> face_nodes(const ElementFace& f) const {
     return face_ids<E>(mesh_, f.element, static_cast<std::size_t>(f.face));
   }
-  /// [m^3] by the element's quadrature.
+  /// Volume [m^3] by the element's quadrature.
   double volume(Index e) const { return element_shape<E>(element_nodes<E>(mesh_, e)).volume; }
   const std::vector<Fragment>& detached_fragments() const noexcept { return detached_; }
 
-  /// What is left of one state, with groups and regions, as a mesh of its own. `node_map` gets the new id of every
-  /// node, -1 where it has none; `element_map` the id here of every element there.
+  /// The part in one state as a separate mesh, with groups and regions. `node_map` gets the new id of every node, -1 if
+  /// it is not included; `element_map` the id in this topology of every element of the part.
   Mesh<E> extract(ElementState wanted, std::vector<NodeId>& node_map, std::vector<Index>& element_map) const {
     Mesh<E> part;
     element_map.clear();
@@ -139,14 +139,14 @@ class CutTopology {
     if (bad.empty()) return;
     SetupProblem p;
     p.kind = SetupErrorKind::index_out_of_range;
-    p.what = "a cut names elements or faces that do not exist";
+    p.what = "a cut refers to elements or faces that do not exist";
     p.hint = "Elements are 0 ... " + std::to_string(mesh_.element_count() - 1);
     p.set_ids(bad, SetupIds::elements);
     raise(std::move(p));
   }
 
   void find_neighbours() {
-    extract_boundary<E>(mesh_);  // refuses faces of three elements
+    extract_boundary<E>(mesh_);  // throws for faces of three elements
     neighbour_.assign(at(mesh_.element_count()), {});
     for (auto& n : neighbour_) n.fill(-1);
     const std::vector<KeyedFace<E>> all = sorted_faces<E>(mesh_);
@@ -162,7 +162,7 @@ class CutTopology {
     for (Index e = 0; e < mesh_.element_count(); ++e)
       for (const NodeId node : mesh_.elements[at(e)]) star_[at(node)].push_back(e);
   }
-  /// The face of an element behind which another lies, -1 if none.
+  /// The face of element e towards `other`, -1 if they share no face.
   int face_towards(Index e, Index other) const noexcept {
     for (std::size_t f = 0; f < faces; ++f)
       if (neighbour_[at(e)][f] == other) return static_cast<int>(f);
@@ -198,8 +198,8 @@ class CutTopology {
     for (const NodeId node : face_nodes(f)) affected.push_back(node);
   }
 
-  /// Splits a node whose elements do not hang together by faces at it. The part with most elements keeps it; of equal
-  /// ones that with the lowest element.
+  /// Splits a node whose elements are not connected by faces at it. The part with the most elements keeps the node; of
+  /// equal ones the one with the lowest element.
   void split_star(NodeId node, TopologyChange<E>& change) {
     const auto parts = star_parts(*this, node);
     if (parts.size() < 2) return;
@@ -224,7 +224,7 @@ class CutTopology {
     found->after = mesh_.elements[at(e)];
   }
 
-  /// Open faces whose two sides still share all nodes are no surface yet; now some may be.
+  /// Exposes open faces whose two sides no longer share all nodes; until then they are not part of the surface.
   void expose_welded(TopologyChange<E>& change) {
     std::erase_if(welded_, [&](const std::array<ElementFace, 2>& sides) {
       const bool gone0 = is_removed(sides[0].element), gone1 = is_removed(sides[1].element);
@@ -240,7 +240,7 @@ class CutTopology {
     });
   }
 
-  /// Finds the pieces that nothing holds any more.
+  /// Finds and detaches the fragments without support.
   void detach(TopologyChange<E>& change) {
     for (Fragment& fragment : unsupported_fragments(*this)) {
       for (const Index e : fragment.elements) state_[at(e)] = ElementState::detached;
@@ -249,7 +249,7 @@ class CutTopology {
     }
   }
 
-  /// Remembers the faces of groups by their elements, which they follow.
+  /// Stores the faces of groups by element, because they move with it.
   void list_group_faces() {
     const std::vector<KeyedFace<E>> all = sorted_faces<E>(mesh_);
     for (const Group& g : mesh_.groups.all()) {
@@ -295,7 +295,8 @@ class CutTopology {
   std::vector<std::vector<ElementFace>> group_faces_;
 };
 
-/// All cuts between two states of one topology as a single one, for what was held then. O(elements).
+/// All cuts between two states of one topology as a single change, for the part that was supported in `then`.
+/// O(elements).
 template <Element E>
 TopologyChange<E> difference(const CutTopology<E>& then, const CutTopology<E>& now) {
   TopologyChange<E> change;

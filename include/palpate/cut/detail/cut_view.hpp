@@ -1,4 +1,4 @@
-// What a tick needs of a body that is cut, in one piece.
+// The data of a body under cuts that a tick needs, in one object.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -20,13 +20,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Surface and contact problem after a cut, and where its vertices are in the compliance: the same while the cut is
-/// folded in. Made by the thread that cuts, driven by the one that ticks. Triangles that hang from so little that they
-/// are stretched beyond what contact points can cover are left out; ticks then say degraded_model.
+/// Surface and contact problem after a cut, and the places of its vertices in the compliance; unchanged while the cut
+/// is folded in. Made by the thread that cuts, used by the one that ticks. Triangles on weak remains that are stretched
+/// beyond what contact points can cover are left out; ticks then report degraded_model.
 struct CutContact {
-  bool left_out = false;  ///< whether a triangle is
+  bool left_out = false;  ///< true if a triangle is left out
   ContactSurface surface;
-  std::vector<std::array<Index, 3>> place;  ///< per vertex its dofs in the compliance, -1: held, or gone
+  std::vector<std::array<Index, 3>> place;  ///< per vertex its dofs in the compliance, -1: constrained or removed
   ContactProblem problem;
   std::uint64_t cut = 0;  ///< number of the cut
 
@@ -46,7 +46,7 @@ struct CutContact {
   ContactSurface covered(std::vector<Vector3> positions, std::vector<Triangle> triangles, double longest);
 };
 
-/// What a tick reads between two changes. Views of one cut have the same contact and, up to rounding, the same
+/// The data that a tick reads between two changes. Views of one cut have the same contact and, up to rounding, the same
 /// compliance.
 struct CutView {
   std::shared_ptr<CutContact> contact;
@@ -54,13 +54,13 @@ struct CutView {
   std::vector<double> bound{};  ///< per vertex [m/N]
   double floor = 1e-9;          ///< [m/N]
 
-  /// Displacement of vertex i per force on j [m/N].
+  /// Displacement of vertex i per force on vertex j [m/N].
   Matrix3 compliance(int i, int j) const noexcept;
 
-  /// Bounds from those before the step: what it adds is at most the longest z times y of the vertex. Vertices with
-  /// columns of their own are summed up.
+  /// Bounds from those before the step, which adds at most the product of the longest z and the y of the vertex. For
+  /// vertices with explicit columns the bound is computed exactly.
   void bound_by(const std::vector<double>& before);
-  /// The bounds of the step that was folded in since.
+  /// Takes over the bounds of the step that has been folded in since.
   void bound_as(const std::vector<double>& before);
   /// Bounds from the compliance itself. O(vertices^2).
   void bound_exactly();
@@ -68,7 +68,7 @@ struct CutView {
  private:
   const std::array<Index, 3>& place(int vertex) const noexcept;
   double squares(const MatrixX& columns, const std::array<Index, 3>& at) const noexcept;
-  /// Largest Frobenius norm of the blocks that vertex j has with others; `row`: scratch, one entry per dof.
+  /// Largest Frobenius norm of the blocks of vertex j with all others; `row`: workspace, one entry per dof.
   double exact_bound(std::size_t j, VectorX& row) const noexcept;
   void set_floor() noexcept;
 };

@@ -1,4 +1,4 @@
-// The drawn surface of a model that is cut.
+// The visual surface of a model that is cut.
 #pragma once
 
 #include <palpate/cut/cuttable_tissue.hpp>
@@ -16,10 +16,9 @@ class HapticFEModel;
 template <class Inner>
 struct Cuttable;
 
-/// Positions, normals and triangles of a body that is cut, detached pieces included: the faces that the scene lets be
-/// seen, or all, and all that cuts expose. Cuts change points and triangles; `update` brings the changes in. Between two
-/// calls of it points and triangles stay. Refers to the model; one
-/// reader at a time.
+/// Positions, normals and triangles of a body that is cut, including detached fragments: the rendered faces of the
+/// scene (default: all) and all faces exposed by cuts. Cuts change points and triangles; `update` applies these
+/// changes, and between two calls of it points and triangles are constant. Refers to the model; one reader at a time.
 template <class E, class M, class Inner>
 class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
  public:
@@ -35,7 +34,7 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
     update();
   }
 
-  /// Brings in the cuts since the last call: true when points and triangles are others now. O(elements) then.
+  /// Applies the cuts since the last call; true when points and triangles have changed. O(elements) in that case.
   bool update() {
     const std::uint64_t cuts = model_->cut_report().changes;
     if (known_ && cuts == cuts_) return false;
@@ -48,14 +47,14 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
   Index point_count() const noexcept { return static_cast<Index>(nodes_.size()); }
   const std::vector<std::array<int, 3>>& triangles() const noexcept { return triangles_; }
 
-  /// As VisualSurface of other models; allocates. Also false when the model was reset since the last `update`, and for
-  /// forces on vertices that do not exist any more.
+  /// As VisualSurface of other models; allocates. Also returns false when the model was reset since the last `update`,
+  /// and for forces on vertices that no longer exist.
   bool read_surface(std::span<const VertexForce> forces, std::span<float> positions,
                     std::span<float> normals) noexcept {
     const std::size_t size = 3 * nodes_.size();
     if (positions.size() != size || normals.size() != size) return false;
     if (!model_->displacement_with(forces, displacement_).converged) return false;
-    if (displacement_.size() < 3 * node_count_) return false;  // reset since `update`
+    if (displacement_.size() < 3 * node_count_) return false;  // the model was reset since `update`
     const Eigen::Isometry3d pose = model_->to_world();
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       moved_[i] = pose * (rest_[i] + node_vector(displacement_, nodes_[i]));
@@ -66,7 +65,7 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
  private:
   using Flags = std::array<bool, E::faces.size()>;
 
-  /// Notes a face of the body as given that the scene does not let be seen.
+  /// Marks a face of the uncut body that the scene does not render.
   void hide_unseen(const CutTopology<E>& topology, const BoundaryFace& face) {
     if (rendered_.empty()) return;
     if (std::ranges::all_of(face.nodes, [&](NodeId i) { return std::ranges::binary_search(rendered_, i); })) return;
@@ -116,7 +115,7 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
   std::vector<std::array<int, 3>> triangles_;
   std::vector<Vector3> rest_, moved_, normals_;
   VectorX displacement_;
-  Index node_count_ = 0;  // of the topology that the points are from
+  Index node_count_ = 0;  // of the topology from which the points were collected
   std::uint64_t cuts_ = 0;
   bool known_ = false;
 };

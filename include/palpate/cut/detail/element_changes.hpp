@@ -1,4 +1,4 @@
-// What cuts have changed of a stiffness since it was factorised, element by element.
+// The changes of a stiffness by cuts since it was factorised, element by element.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -15,9 +15,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Difference between a stiffness now and when it was factorised: minus the elements that changed, plus those of them
-/// that are still there on the nodes they have now, plus springs on what nothing holds. Dofs are looked up by
-/// `place(node, component)`, -1 for those that are prescribed.
+/// Difference between the current stiffness and the factorised one: minus the changed elements, plus those of them that
+/// still exist, on their current nodes, plus springs on unsupported parts. Dofs are looked up by `place(node,
+/// component)`, -1 for prescribed ones.
 template <Element E>
 class ElementChanges {
  public:
@@ -31,8 +31,8 @@ class ElementChanges {
     ElementStiffness<E> stiffness;
     Values load;
   };
-  /// A spring to where the node was when it was no longer held: the piece stays in the system and hangs on these, and
-  /// nothing else feels them.
+  /// A spring to the position of a node at the moment it lost its support. It keeps the fragment's dofs in the system
+  /// and has no effect on other parts.
   struct Pin {
     NodeId node = 0;
     double stiffness = 0.0;          ///< [N/m]
@@ -50,7 +50,7 @@ class ElementChanges {
   }
   void add(const Pin& pin) { pins_.push_back(pin); }
 
-  /// Places of all dofs that changed, sorted.
+  /// Places of all changed dofs, sorted.
   template <class Place>
   std::vector<Index> places(Place&& place) const {
     std::vector<Index> all;
@@ -79,8 +79,8 @@ class ElementChanges {
         if (const Index p = place(pin.node, k); p >= 0) y.row(p) -= pin.stiffness * x.row(p);
   }
 
-  /// The load that makes the body as it was factorised move like the one that is left: adds the forces of what changed
-  /// under `u(node)` to `load(node, force)`.
+  /// Adds to `load(node, force)` the forces of the changes at displacements `u(node)`. Under this load the factorised
+  /// body moves like the remaining one.
   template <class Displacement, class Load>
   void add_forces(Displacement&& u, Load&& load) const {
     for (const auto& entry : changed_) {

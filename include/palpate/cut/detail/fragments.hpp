@@ -1,4 +1,4 @@
-// Which elements hang together, and which of the pieces are held.
+// Connected fragments of elements, and their support.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -18,8 +18,8 @@ template <Element E>
 class CutTopology;
 enum class ElementState : std::uint8_t;
 
-/// The elements around a node in parts that hang together by faces containing it, the largest first, of equal ones that
-/// with the lowest element. O(k^2) for k elements.
+/// The elements around a node, in parts that are connected by faces containing it; the largest part first, of equal
+/// ones the one with the lowest element. O(k^2) for k elements.
 template <Element E>
 std::vector<std::vector<Index>> star_parts(const CutTopology<E>& topology, NodeId node) {
   const std::vector<Index>& star = topology.elements_at(node);
@@ -48,11 +48,11 @@ std::vector<std::vector<Index>> star_parts(const CutTopology<E>& topology, NodeI
   return parts;
 }
 
-/// How many rigid motions the constraints leave to a set of nodes, all in one rigid piece.
+/// Number of rigid motions that the constraints leave to a set of nodes of one rigid part.
 int free_mode_count(std::span<const Vector3> positions, std::span<const NodeId> nodes,
                     std::span<const std::uint8_t> constrained);
 
-/// The elements for which `belongs(element)` in pieces that hang together by faces, all rigid motions free.
+/// The elements for which `belongs(element)` is true, in fragments connected by faces, with all rigid motions free.
 /// O(elements).
 template <Element E, class Belongs>
 std::vector<Fragment> connected_fragments(const CutTopology<E>& topology, Belongs&& belongs) {
@@ -77,7 +77,7 @@ std::vector<Fragment> connected_fragments(const CutTopology<E>& topology, Belong
   return fragments;
 }
 
-/// The pieces of held elements that can move as a whole. O(elements).
+/// The fragments of supported elements that can move as a whole. O(elements).
 template <Element E>
 std::vector<Fragment> unsupported_fragments(const CutTopology<E>& topology) {
   std::vector<Fragment> unheld;

@@ -1,4 +1,4 @@
-// Which dofs have a compliance.
+// The dofs whose compliance is stored.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -15,15 +15,15 @@ struct NodeDof {
   int component = 0;
 };
 
-/// Dofs that are kept, numbered in the order in which they were added.
+/// Kept dofs, numbered in the order in which they were added.
 class KeptDofs {
  public:
   Index size() const noexcept { return static_cast<Index>(dofs_.size()); }
   const NodeDof& operator[](Index i) const noexcept { return dofs_[static_cast<std::size_t>(i)]; }
-  /// Number of a dof, -1 when it is not kept.
+  /// Index of a dof, -1 when it is not kept.
   Index place(NodeId node, int component) const noexcept;
   void add(const NodeDof& dof);
-  /// Its entry in a vector with three per node.
+  /// The entry of kept dof i in a vector with three values per node.
   double& at(VectorX& u, Index i) const noexcept { return u[3 * Index{(*this)[i].node} + (*this)[i].component]; }
   double at(const VectorX& u, Index i) const noexcept { return u[3 * Index{(*this)[i].node} + (*this)[i].component]; }
 

@@ -1,4 +1,4 @@
-// Storage for matrices that are made again with every cut.
+// Storage for matrices that are recomputed with every cut.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -9,16 +9,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Square matrices that nobody reads any more are used again, with room to grow: the pages of a new one cost as much as
-/// what is written on them. Not for several threads; who reads a matrix in another thread must hand its pointer back to
-/// the one that takes.
+/// Reuses square matrices that no reader refers to any more, with spare capacity: touching the pages of a new matrix
+/// costs as much as writing its entries. Not thread safe; a reader in another thread must return its pointer to the
+/// thread that calls `take`.
 class MatrixPool {
  public:
-  /// What `count` matrices take.
+  /// Memory of `count` matrices [bytes].
   static double bytes(Index size, int count) noexcept;
-  /// Makes `count` matrices ready, their pages touched.
+  /// Allocates `count` matrices and touches their pages.
   void prepare(Index size, int count);
-  /// At least size x size; what is in it is left over. Allocates when all are in use or too small.
+  /// A matrix of at least size x size with arbitrary content. Allocates when all are in use or too small.
   std::shared_ptr<MatrixX> take(Index size);
 
  private:

@@ -1,4 +1,4 @@
-// A motion that goes on after nodes were split: on the mesh as it is then.
+// Continues a motion on the new mesh after nodes were split.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -12,10 +12,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The part of a cut topology that is in one state, as a mesh of its own, and how vectors of an earlier mesh come onto
-/// it. Opened faces change how many nodes there are, so a motion is made anew on `mesh()`, in any thread; `carried`
-/// brings the newest displacement and velocity over when it is taken in. A split node's copies start with its own, and
-/// the mass of a node is that of its elements: momentum and energies are those before the cut.
+/// The part of a cut topology that is in one state, as a separate mesh, and the transfer of vectors from an earlier
+/// mesh to it. Opened faces change the number of nodes, so a new motion is made on `mesh()`, in any thread; `carried`
+/// transfers the newest displacement and velocity when the motion is replaced. Copies of a split node start with its
+/// values, and the mass of a node is that of its elements: momentum and energies are those before the cut.
 template <Element E>
 class MotionOfPart {
  public:
@@ -33,16 +33,17 @@ class MotionOfPart {
   }
 
   const Mesh<E>& mesh() const noexcept { return mesh_; }
-  /// Number of the topology's element that element e of the mesh is.
+  /// The topology's id of element e of the mesh.
   Index element(Index e) const noexcept { return element_map_[static_cast<std::size_t>(e)]; }
-  /// Number in the mesh of a node of the topology, -1 when it is not in it.
+  /// Id in the mesh of a node of the topology, -1 when it is not in the mesh.
   NodeId node(NodeId of_topology) const noexcept { return node_map_[static_cast<std::size_t>(of_topology)]; }
 
-  /// Three values per node of the topology, as it is or as it was before any of its cuts, on the nodes of the mesh.
+  /// Transfers three values per node of the topology, in its current state or before any of its cuts, to the mesh
+  /// nodes.
   VectorX carried(const VectorX& values) const {
     VectorX to(3 * mesh_.node_count());
     for (std::size_t i = 0; i < source_.size(); ++i) {
-      std::size_t k = 0;  // the youngest ancestor that had a number then
+      std::size_t k = 0;  // the newest ancestor that existed then
       while (3 * Index{source_[i][k]} >= values.size()) ++k;
       to.template segment<3>(3 * static_cast<Index>(i)) = values.template segment<3>(3 * Index{source_[i][k]});
     }
@@ -53,7 +54,7 @@ class MotionOfPart {
   std::vector<NodeId> node_map_;
   std::vector<Index> element_map_;
   Mesh<E> mesh_;
-  std::vector<std::vector<NodeId>> source_;  // per node: itself, what it was split from, and so on
+  std::vector<std::vector<NodeId>> source_;  // per node: itself, the node it was split from, and so on
 };
 
 }}  // namespace palpate

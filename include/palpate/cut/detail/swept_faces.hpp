@@ -1,4 +1,4 @@
-// Which faces a blade opens.
+// The faces that a blade opens.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -13,10 +13,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The faces between elements whose centres lie on two sides of the sheet, joined by a way through it: the elements'
-/// own faces nearest to the cut. The mesh keeps its elements and their quality, and the slit follows the sheet within
-/// half an element. `position(node)` is where a node is now. The same sweep gives the same faces; one of no area, or
-/// one beside the body, none. O(elements).
+/// The faces between elements whose centres are on opposite sides of the sheet, if the line between the centres crosses
+/// it: the element faces nearest to the cut. The mesh keeps its elements and their quality, and the slit follows the
+/// sheet within half an element. `position(node)` is the current position of a node. The same sweep gives the same
+/// faces; a sweep without area, or one outside the body, gives none. O(elements).
 template <Element E, class Position>
 std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const BladeSweep& sweep, Position&& position) {
   std::vector<ElementFace> open;

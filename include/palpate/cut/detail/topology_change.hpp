@@ -1,4 +1,4 @@
-// What a cut asks for, and what it did to a mesh.
+// The order of a cut, and its result on a mesh.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -10,14 +10,14 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A face of an element by its place in E::faces.
+/// A face of an element by its index in E::faces.
 struct ElementFace {
   Index element = 0;
   int face = 0;
 };
 
-/// Elements to remove (burning, drilling) and faces to open between elements (a blade). What is gone already, and a
-/// face that nothing lies behind, is passed over.
+/// Elements to remove (burning, drilling) and faces to open between elements (a blade). Elements already removed, and
+/// faces without a neighbour, are ignored.
 struct CutOrder {
   std::vector<Index> remove;
   std::vector<ElementFace> open;
@@ -25,7 +25,7 @@ struct CutOrder {
   bool empty() const noexcept { return remove.empty() && open.empty(); }
 };
 
-/// An element that a cut took away, or moved to copies of its nodes.
+/// An element that a cut removed, or moved to copies of its nodes.
 template <Element E>
 struct ChangedElement {
   Index element = 0;
@@ -33,28 +33,29 @@ struct ChangedElement {
   bool removed = false;
 };
 
-/// A node that a cut made: it lies where its parent lies.
+/// A node created by a cut, at the position of its parent.
 struct NodeCopy {
   NodeId node = 0, parent = 0;
 };
 
-/// A part of the body that nothing holds any more: a body of its own, for the caller to move or to show.
+/// A part of the body without support: a separate body, for the caller to move or to draw.
 struct Fragment {
   std::vector<Index> elements;
   std::vector<NodeId> nodes;  ///< sorted
   double volume = 0.0;        ///< [m^3]
-  int free_modes = 6;         ///< rigid motions that the constraints left on it allow
+  int free_modes = 6;         ///< rigid motions left by its constraints
 };
 
-/// All that a cut did. Changes of elements that were loose already are listed apart: no static answer depends on them.
+/// The full result of a cut. Changes of elements that were detached before are listed separately: no static solution
+/// depends on them.
 template <Element E>
 struct TopologyChange {
-  std::vector<ChangedElement<E>> elements;        ///< of the held body, by ascending number
-  std::vector<ChangedElement<E>> detached_elements;  ///< of pieces that were loose before
+  std::vector<ChangedElement<E>> elements;           ///< of the supported body, by ascending id
+  std::vector<ChangedElement<E>> detached_elements;  ///< of fragments detached before
   std::vector<NodeCopy> copies;                   ///< with ascending ids
-  std::vector<NodeId> bare_nodes;                 ///< of the held body, that no element uses any more
-  std::vector<ElementFace> exposed;               ///< faces that lie on the surface since
-  std::vector<Fragment> fragments;                ///< that came off
+  std::vector<NodeId> bare_nodes;                 ///< of the supported body, used by no element any more
+  std::vector<ElementFace> exposed;               ///< faces that are now on the surface
+  std::vector<Fragment> fragments;                ///< detached by this cut
 
   bool empty() const noexcept { return elements.empty() && detached_elements.empty(); }
 };

@@ -1,4 +1,4 @@
-// What adapters share in making a state of what an SDK says.
+// Common helpers of device adapters that convert the data of an SDK into a ToolState.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
@@ -19,7 +19,7 @@ class SteadyStamp {
   std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
 };
 
-/// The orientation of a state from a rotation matrix; a matrix that is none leaves it as it is.
+/// Sets the orientation of a state from a rotation matrix; an invalid matrix leaves it unchanged.
 inline void orient(ToolState& state, const Matrix3& rotation) noexcept {
   if (!((rotation.transpose() * rotation - Matrix3::Identity()).norm() < 1e-3)) return;
   const Quaternion<double> q = quaternion_of(rotation);

@@ -8,7 +8,7 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The matrix with these rows. Eigen's comma initialiser and blocks would add a second to the compile time of every
-/// program that includes an element. Written without a loop, so that the compiler propagates constant entries.
+/// program that includes an element. No loop, so that the compiler propagates constant entries.
 template <int Rows, int Columns>
 Eigen::Matrix<double, Rows, Columns> matrix_of_rows(const double (&rows)[Rows][Columns]) noexcept {
   Eigen::Matrix<double, Rows, Columns> m;

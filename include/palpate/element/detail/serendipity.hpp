@@ -10,11 +10,12 @@ namespace palpate { inline namespace PALPATE_ABI { namespace serendipity {
 template <int Nodes, int Dimension>
 using Table = Eigen::Matrix<double, Nodes, Dimension>;
 
-/// Factor of a shape function along one axis for a node at s (-1, 0 or 1): (1 + s x) / 2, or 1 - x^2 in the middle.
+/// Factor of a shape function along one axis for a node at s (-1, 0 or 1): (1 + s x) / 2 for s = -1 or 1, 1 - x^2 for s
+/// = 0.
 double factor(double s, double x) noexcept;
 double factor_derivative(double s, double x) noexcept;
 
-/// Whether node a is a corner: no coordinate is 0.
+/// True if node a is a corner: no coordinate is 0.
 template <int Nodes, int Dimension>
 bool is_corner(const Table<Nodes, Dimension>& s, int a) noexcept {
   for (int i = 0; i < Dimension; ++i)
@@ -22,7 +23,7 @@ bool is_corner(const Table<Nodes, Dimension>& s, int a) noexcept {
   return true;
 }
 
-/// The further factor of a corner a: sum s_i x_i - (Dimension - 1).
+/// Additional factor of a corner a: sum s_i x_i - (Dimension - 1).
 template <int Nodes, int Dimension>
 double corner_factor(const Table<Nodes, Dimension>& s, int a, const Table<Dimension, 1>& xi) noexcept {
   double sum = 0.0;
@@ -30,7 +31,7 @@ double corner_factor(const Table<Nodes, Dimension>& s, int a, const Table<Dimens
   return sum - (Dimension - 1);
 }
 
-/// Functions of nodes at `s` (rows of -1, 0, 1; at most one 0): the product of factors, at corners times
+/// Shape functions of nodes at `s` (rows of -1, 0, 1; at most one 0): the product of the factors, for corners times
 /// (sum s_i x_i - (Dimension - 1)) (Zienkiewicz and Taylor, The Finite Element Method, serendipity family).
 template <int Nodes, int Dimension>
 Table<Nodes, 1> shape(const Table<Nodes, Dimension>& s, const Table<Dimension, 1>& xi) noexcept {
@@ -43,7 +44,7 @@ Table<Nodes, 1> shape(const Table<Nodes, Dimension>& s, const Table<Dimension, 1
   return n;
 }
 
-/// Their derivatives by the reference coordinates.
+/// Their derivatives with respect to the reference coordinates.
 template <int Nodes, int Dimension>
 Table<Nodes, Dimension> gradient(const Table<Nodes, Dimension>& s, const Table<Dimension, 1>& xi) noexcept {
   Table<Nodes, Dimension> g;
@@ -62,7 +63,7 @@ Table<Nodes, Dimension> gradient(const Table<Nodes, Dimension>& s, const Table<D
   return g;
 }
 
-/// Corners, then the middles of `edges`.
+/// The corners, followed by the midpoints of `edges`.
 template <int Nodes, int Dimension, std::size_t Edges>
 Table<Nodes, Dimension> with_middles(const Table<Nodes - static_cast<int>(Edges), Dimension>& corners,
                                      const std::array<std::array<int, 2>, Edges>& edges) noexcept {

@@ -1,4 +1,4 @@
-// Devices and servos of any type, as code that is no template sees them.
+// Type-erased references to devices and servos.
 #pragma once
 
 #include <palpate/concepts/servo.hpp>
@@ -8,18 +8,18 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// A device by reference, with its functions.
+/// A reference to a device, with its functions.
 struct LoopDevice {
   void* device;
   ToolState (*read)(void*) noexcept;
   Status (*write)(void*, const GatedForce&) noexcept;
-  void (*note)(void*, Status) noexcept;  // null: it takes no notes
+  void (*note)(void*, Status) noexcept;  // null: the device has no such function
   void (*start)(void*);
   void (*stop)(void*) noexcept;
   DeviceLimits (*limits)(const void*) noexcept;
 };
 
-/// A servo by reference.
+/// A reference to a servo.
 struct LoopServo {
   void* servo;
   std::span<const GatedForce> (*tick)(void*, std::span<const ToolState>) noexcept;

@@ -7,19 +7,19 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What was asked of the operating system and what it gave. Memory stays locked after the loop: unlocking could undo a
-/// lock of the caller's own.
+/// What was requested from the operating system and what it granted. Memory stays locked after the loop: unlocking
+/// could undo a lock of the caller.
 struct RealtimeGrant {
   bool requested = false;
   bool fifo = false;           ///< SCHED_FIFO, priority 50; on Windows time-critical priority
   bool memory_locked = false;  ///< the pages mapped at the start
-  int cpu = -1;                ///< pinned to this one
+  int cpu = -1;                ///< the processor to which the thread is pinned
   std::string refusals;        ///< one sentence per refusal, with the system's reason
 };
 
 namespace detail {
 
-/// Asks for what the options say, for this thread. What is refused is in the grant.
+/// Requests for this thread what the options specify. Refusals are in the grant.
 RealtimeGrant request_realtime(const LoopOptions& options);
 
 }  // namespace detail

@@ -7,22 +7,23 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Follows a hand with a blade and orders cuts along what the edge sweeps. All on the tick: no throw, no allocation,
-/// bounded.
+/// Follows a hand with a blade and requests cuts along the surface swept by the edge. Everything runs in the tick: no
+/// throw, no allocation, bounded.
 class ServoBlade {
  public:
   /// Throws bad_argument as BladeCut does.
   ServoBlade(const BladeTool& tool, double stiffness) : cut_(tool, stiffness) {}
 
-  /// Moves with the hand, world frame [m]; `restart`: it starts again there, as if in the air. Orders a cut along what
-  /// was swept once that is a stroke.
+  /// Moves with the hand, world frame [m]; `restart`: it starts there again, as if outside the tissue. Requests a cut
+  /// along the swept surface once the path since the last request reaches the cut spacing.
   void follow(const Vector3& hand, bool restart, const TissueView& tissue) noexcept;
+  /// The position of the hand is lost: no force.
   /// The hand is lost: no force.
   void lift() noexcept;
   void reset() noexcept;
 
   const Vector3& force() const noexcept { return force_; }  ///< on the hand, world frame [N]
-  Status status() const noexcept { return status_; }        ///< degraded_model: the tissue took no more orders
+  Status status() const noexcept { return status_; }        ///< degraded_model: the tissue accepted no more requests
   const BladeCut& cut() const noexcept { return cut_; }
 
  private:

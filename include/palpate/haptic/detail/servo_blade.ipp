@@ -38,7 +38,7 @@ PALPATE_INLINE double ServoBlade::width_inside(const TissueView& tissue) const n
   return edge.norm() * inside / samples;
 }
 
-/// Orders the cut along what was swept since the last order; false when the tissue cannot take it yet.
+/// Requests a cut along the surface swept since the last request; false when the tissue cannot accept it yet.
 PALPATE_INLINE bool ServoBlade::order_cut(const TissueView& tissue) noexcept {
   const BladeTool& tool = cut_.tool();
   const Vector3 path = cut_.edge() - ordered_;

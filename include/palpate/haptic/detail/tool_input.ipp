@@ -49,7 +49,7 @@ PALPATE_INLINE bool ToolInput::accept(const ToolState& state, const Eigen::Isome
     taken.orientation = {q[0], q[1], q[2], q[3]};
   }
   if (!is_sound(taken.position, taken.orientation, state.time)) {
-    // The last good pose is held; its old time stamp makes the gate fade the force.
+    // The last valid pose is kept; its old time stamp makes the gate fade the force.
     status_.set(StatusFlag::non_finite_input);
     readable_ = known_;
     return false;

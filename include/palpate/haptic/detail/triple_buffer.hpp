@@ -9,14 +9,14 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Single writer, single reader, lock-free, never waits: the writer fills `back()` and publishes, the reader gets the
-/// newest complete value. Both sides own one slot, the third changes hands atomically.
+/// newest complete value. Both sides own one slot, the third is exchanged atomically.
 template <class T>
 class TripleBuffer {
  public:
-  /// Puts this into all slots; before the two threads begin.
+  /// Copies `value` into all slots; before the two threads begin.
   void fill(const T& value) { slots_.fill(value); }
 
-  /// Slot of the writer; keeps whatever was written two or three publications ago.
+  /// Slot of the writer; contains what was written two or three publications ago.
   T& back() noexcept { return slots_[back_]; }
   /// Makes the writer's slot the newest value.
   void publish() noexcept { back_ = middle_.exchange(back_ | fresh, std::memory_order_acq_rel) & index_mask; }

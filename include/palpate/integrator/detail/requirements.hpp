@@ -1,4 +1,4 @@
-// What motions require of what they are given, and make of it.
+// Checks and conversions of the arguments of motions.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -6,13 +6,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Throws bad_argument for Rayleigh's coefficients that would add energy, or are none.
+/// Throws bad_argument for Rayleigh coefficients that are negative (they would add energy) or not finite.
 void require_damping(double mass_damping, double stiffness_damping);
 
-/// Throws bad_argument for a vector that has not one entry per dof.
+/// Throws bad_argument for a vector that does not have one entry per dof.
 void require_entries(const VectorX& v, Index dofs);
 
-/// Nodal masses as one per dof, three equal ones per node.
+/// Converts nodal masses to one mass per dof, three equal ones per node.
 VectorX mass_of_dofs(const VectorX& nodal_mass);
 
 }}  // namespace palpate

@@ -11,13 +11,13 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE void require_damping(double mass_damping, double stiffness_damping) {
   for (const double d : {mass_damping, stiffness_damping})
     if (!(d >= 0.0 && d < infinity))
-      raise(SetupErrorKind::bad_argument, "a damping of " + number(d), "Give 0 or a positive number");
+      raise(SetupErrorKind::bad_argument, "the damping coefficient is " + number(d), "Give 0 or a positive number");
 }
 
 PALPATE_INLINE void require_entries(const VectorX& v, Index dofs) {
   if (v.size() != dofs)
     raise(SetupErrorKind::bad_argument, std::to_string(v.size()) + " entries for " + std::to_string(dofs) + " dofs",
-          "Give three per node");
+          "Give three entries per node");
 }
 
 PALPATE_INLINE VectorX mass_of_dofs(const VectorX& nodal_mass) {

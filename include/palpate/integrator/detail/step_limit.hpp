@@ -1,4 +1,4 @@
-// The largest stable step of explicit integration, in the state the body is in.
+// The largest stable step of explicit integration in the current state of the body.
 #pragma once
 
 #include <palpate/concepts/integrator.hpp>
@@ -10,23 +10,25 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Power iteration on M^-1 K, K times a vector being a difference of two forces. Held dofs do not move. The vector is
-/// kept, so that a few iterations per call follow a body that stiffens as it is pressed. The estimate comes from below:
-/// after 20 iterations from a random start it is up to 5 % short, after 40 up to 3 %; the margin covers that.
+/// Power iteration on M^-1 K, where K times a vector is a difference of two forces. Constrained dofs do not move. The
+/// vector is kept between calls, so that a few iterations per call follow a body that stiffens under load. The estimate
+/// is from below: after 20 iterations from a random start it is up to 5 % too low, after 40 up to 3 %; the margin
+/// covers that.
 class StepLimit {
  public:
-  /// Iterations from a random start after which the estimate is trusted.
+  /// Iterations from a random start after which the estimate is used alone.
   static constexpr int settled = 20;
 
   /// `bound` is an upper bound of omega^2 [1/s^2] at rest, such as that of the worst element, or infinite. Until the
-  /// estimate has settled the larger of the two counts; from then on the estimate alone, because a deformed body may be
-  /// stiffer than the bound says.
+  /// estimate has settled the larger of the two is used; after that the estimate alone, because a deformed body may be
+  /// stiffer than the bound.
   StepLimit(Index dofs, double bound, double margin = 0.07);
-  /// From a random start, for a body that has become another. A bound from the elements holds for any part of them.
+  /// Restarts from a random vector, for a body that has changed. A bound from the elements is valid for any part of
+  /// them.
   void restart() noexcept;
 
-  /// Iterates; `state.force` must belong to `state.displacement`. One force per iteration; no allocation. A force that
-  /// is not finite makes the limit zero.
+  /// Iterates; `state.force` must belong to `state.displacement`. One force per iteration; no allocation. A non-finite
+  /// force sets the limit to zero.
   template <ForceOperator F>
   void iterate(F& force, const MotionState& state, int iterations) noexcept {
     for (int i = 0; i < iterations; ++i) once(force, state);
@@ -38,14 +40,14 @@ class StepLimit {
   double step() const noexcept;
 
  private:
-  /// Between -1 and 1, without pattern (the finaliser of SplitMix64).
+  /// A pseudo-random number between -1 and 1 (the finaliser of SplitMix64).
   static double start_value(std::uint64_t i) noexcept;
 
   template <ForceOperator F>
   void once(F& force, const MotionState& s) noexcept {
-    double largest = 0.0, norm = 0.0;  // in the norm of the mass, in which M^-1 K is symmetric
+    double largest = 0.0, norm = 0.0;  // in the mass norm, in which M^-1 K is symmetric
     for (Index dof : s.free) largest = std::max(largest, std::abs(vector_[dof]));
-    if (!(largest > 0.0)) return;  // nothing is free, or nothing is stiff
+    if (!(largest > 0.0)) return;  // no free dof, or no stiffness
     const double scale = force.probe_length() / largest;
     moved_ = s.displacement;
     for (Index dof : s.free) {
@@ -69,7 +71,7 @@ class StepLimit {
 
   VectorX vector_, moved_, force_;
   double bound_, margin_, square_ = 0.0;
-  std::int64_t iterations_ = 0;  // since the last start
+  std::int64_t iterations_ = 0;  // since the last restart
 };
 
 }}  // namespace palpate

@@ -17,7 +17,7 @@ PALPATE_INLINE void StepLimit::restart() noexcept {
 }
 
 PALPATE_INLINE double StepLimit::largest_square() const noexcept {
-  return iterations_ < settled && square_ < bound_ ? bound_ : square_;  // NaN stays
+  return iterations_ < settled && square_ < bound_ ? bound_ : square_;  // NaN is preserved
 }
 
 PALPATE_INLINE double StepLimit::step() const noexcept {

@@ -1,4 +1,4 @@
-// Operators and solvers of any type as values.
+// Type-erased operators and solvers with value semantics.
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
@@ -11,7 +11,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 class BinaryWriter;
 
-/// A solver that finds few entries of the answer to few loads faster than all of it.
+/// A solver that can compute a few entries of the solution for a few loads faster than the whole solution.
 template <class S>
 concept PathSolver = requires(S& s, std::span<const Index> dofs, std::span<const double> loads,
                               std::span<double> answer) {
@@ -19,7 +19,7 @@ concept PathSolver = requires(S& s, std::span<const Index> dofs, std::span<const
   noexcept;
 };
 
-/// Owns any SpdOperator that can be copied; copies own a copy. One indirect call per product.
+/// Owns any copyable SpdOperator; copying copies the operator. One indirect call per product.
 class AnyOperator {
  public:
   AnyOperator() = default;
@@ -57,7 +57,7 @@ class AnyOperator {
   std::unique_ptr<Base> op_;
 };
 
-/// Owns any LinearSolver that can be copied and says its `bytes`; copies own a copy. One indirect call per solve.
+/// Owns any copyable LinearSolver that reports its `bytes`; copying copies the solver. One indirect call per solve.
 /// Satisfies LinearSolver.
 class AnySolver {
  public:
@@ -74,12 +74,13 @@ class AnySolver {
   Index size() const noexcept { return solver_ ? solver_->size() : 0; }
   std::size_t bytes() const noexcept { return solver_ ? solver_->bytes() : 0; }
   SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return solver_->solve_into(b, x); }
-  /// Entries `wanted` of the answer to `loads` on few dofs; false, and nothing done, when the solver is no PathSolver.
+  /// Entries `wanted` of the solution for `loads` on a few dofs. Returns false and does nothing when the solver is no
+  /// PathSolver.
   bool solve_path_into(std::span<const Index> loaded, std::span<const double> loads, std::span<const Index> wanted,
                        std::span<double> answer) noexcept {
     return solver_->solve_path_into(loaded, loads, wanted, answer);
   }
-  /// False, and nothing written, when the solver cannot be stored.
+  /// Returns false and writes nothing when the solver cannot be stored.
   bool write(BinaryWriter& out) const { return solver_ && solver_->write(out); }
 
  private:

@@ -1,4 +1,4 @@
-// Large blocks of doubles that are not filled before they are used.
+// Large uninitialised blocks of doubles.
 #pragma once
 
 #include <palpate/core/types.hpp>
@@ -13,8 +13,8 @@ struct AlignedDelete {
   void operator()(double* p) const noexcept { ::operator delete (p, std::align_val_t{alignment}); }
 };
 
-/// Uninitialised doubles, aligned for any packet. On Linux large ones ask for huge pages, for fewer page faults while a
-/// factorisation fills them.
+/// Uninitialised doubles, aligned for any packet. On Linux, large arrays request huge pages, so that a factorisation
+/// causes fewer page faults while it fills them.
 class BigArray {
  public:
   BigArray() = default;

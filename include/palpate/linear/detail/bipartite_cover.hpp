@@ -5,18 +5,18 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Edges between `left` and `right` nodes, each numbered from 0; the smallest set of nodes that meets every edge.
+/// Edges between `left` and `right` nodes, each numbered from 0; the smallest set of nodes that covers every edge.
 class BipartiteCover {
  public:
-  /// Forgets the graph but not its memory.
+  /// Clears the graph; keeps the capacity of its arrays.
   void clear() noexcept {
     start_.clear();
     start_.push_back(0);
     to_.clear();
   }
-  /// Adds an edge of the left node that is being described.
+  /// Adds an edge of the current left node.
   void add_edge(NodeId right) { to_.push_back(right); }
-  /// Ends the description of a left node.
+  /// Ends the edges of the current left node.
   void end_left() { start_.push_back(to_.size()); }
 
   /// Finds the cover; O(edges sqrt(nodes)).
@@ -25,7 +25,7 @@ class BipartiteCover {
     right_mate_.assign(right_count, -1);
     match_greedily();
     while (grade()) augment_all();
-    // The last grading reached, from the unmatched left nodes along alternating paths, exactly Koenig's set.
+    // Koenig's set: the nodes reached by the last search, from the unmatched left nodes along alternating paths.
     right_reached_.assign(right_count, 0);
     for (Index l = 0; l < lefts(); ++l)
       if (level_[l] >= 0)
@@ -50,7 +50,7 @@ class BipartiteCover {
     right_mate_[r] = l;
   }
 
-  /// Breadth first from the unmatched left nodes; true when an unmatched right node is reached.
+  /// Breadth-first search from the unmatched left nodes; true when it reaches an unmatched right node.
   bool grade() {
     level_.assign(lefts(), -1);
     queue_.clear();
@@ -81,7 +81,7 @@ class BipartiteCover {
       if (left_mate_[l] < 0) augment(static_cast<NodeId>(l));
   }
 
-  /// Depth first along rising levels, with a stack of our own: paths can be long.
+  /// Depth-first search along increasing levels. Uses an explicit stack because paths can be long.
   void augment(NodeId root) {
     path_.clear();
     path_.push_back(root);

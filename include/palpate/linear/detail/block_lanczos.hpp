@@ -15,19 +15,20 @@ struct LanczosPairs {
 
 /// Block Lanczos on A = (K - sigma M)^-1 M, which is symmetric in the scalar product of M, with full
 /// reorthogonalisation (Grimes, Lewis and Simon 1994) and restarts that keep the best Ritz vectors (thick restart, Wu
-/// and Simon 2000). The block is wider than the number of pairs wanted, so that an eigenvalue of any multiplicity is
-/// found as often as it occurs. The start is random with a fixed seed: the same problem gives the same answer.
+/// and Simon 2000). The block is wider than the number of wanted pairs, so that multiple eigenvalues are found with
+/// their full multiplicity. The start is random with a fixed seed: the same problem gives the same result.
 class BlockLanczos {
  public:
-  /// `factor` of K - sigma M, positive definite; `mass` the lower half of M, positive definite. Eigenvectors in the
+  /// `factor`: K - sigma M, positive definite. `mass`: the lower half of M, positive definite. Eigenvectors in the
   /// span of `known` are left out. Both references must outlive this.
   BlockLanczos(const SparseCholesky& factor, const SparseLower& mass, const MatrixX& known, Index wanted);
 
-  /// Bytes it will allocate, but for small matrices.
+  /// Bytes it will allocate, small matrices not counted.
   static double bytes(Index size, Index known, Index wanted) noexcept;
 
-  /// Runs until every wanted pair has |A x - theta x|_M <= tolerance * theta, or `most` block steps are done. Each
-  /// costs a solve with as many right-hand sides as the block is wide, and products of it with the basis.
+  /// Runs until every wanted pair has |A x - theta x|_M <= tolerance * theta, or `most` block steps are done. A step
+  /// costs one solve with as many right-hand sides as the block has columns, and the products of the block with the
+  /// basis.
   LanczosPairs run(double tolerance, int most, const SetupLimits& limits);
 
  private:
@@ -47,7 +48,7 @@ class BlockLanczos {
   const SparseLower& mass_;
   Index wanted_, block_;
   MatrixX basis_;      // known vectors, then expanded ones, then the newest block
-  MatrixX projected_;  // basis^T M A basis, without the known
+  MatrixX projected_;  // basis^T M A basis, without the known vectors
   MatrixX ritz_;
   VectorX values_;
   Index known_ = 0, expanded_ = 0, size_ = 0;

@@ -63,7 +63,7 @@ PALPATE_INLINE LanczosPairs BlockLanczos::run(double tolerance, int most, const 
   for (int step = 0; step < most && !pairs.converged; ++step) {
     limits.advance("natural frequencies", static_cast<double>(step) / static_cast<double>(most));
     if (size_ + block_ > basis_.cols() && basis_.cols() < basis_.rows()) restart();
-    if (size_ == expanded_) append(factor_.solve(random_block()));  // the subspace is invariant, and too small
+    if (size_ == expanded_) append(factor_.solve(random_block()));  // the subspace is invariant, but too small
     const MatrixX coupling = expand();
     pairs = ritz_pairs(coupling);
     pairs.converged = pairs.theta.size() == wanted_ && pairs.residual <= tolerance;
@@ -78,7 +78,7 @@ PALPATE_INLINE LanczosPairs BlockLanczos::run(double tolerance, int most, const 
 
 PALPATE_INLINE MatrixX BlockLanczos::random_block() {
   MatrixX x(basis_.rows(), block_);
-  for (Index i = 0; i < x.size(); ++i) {  // Knuth's linear congruence; its high bits are good enough here
+  for (Index i = 0; i < x.size(); ++i) {  // Knuth's linear congruential generator; its high bits are good enough here
     random_ = 6364136223846793005u * random_ + 1442695040888963407u;
     x.data()[i] = static_cast<double>(random_ >> 11) * 0x1p-52 - 1.0;
   }
@@ -98,7 +98,7 @@ PALPATE_INLINE MatrixX BlockLanczos::basis_columns(Index first, Index count) con
   return columns;
 }
 
-/// The scalar products of some basis vectors with the columns of x.
+/// Scalar products of `count` basis vectors, from `first` on, with the columns of x.
 PALPATE_INLINE MatrixX BlockLanczos::basis_products(Index first, Index count, const MatrixX& x) const {
   const Index n = basis_.rows();
   MatrixX h(count, x.cols());
@@ -108,7 +108,7 @@ PALPATE_INLINE MatrixX BlockLanczos::basis_products(Index first, Index count, co
   return h;
 }
 
-/// Adds the columns to the basis, M-orthonormal; what lies in its span already is left out.
+/// Adds the columns to the basis, M-orthonormalised; drops columns that are already in its span.
 PALPATE_INLINE void BlockLanczos::append(MatrixX w) {
   const Index n = w.rows(), columns = w.cols();
   const MatrixX mw = mass_times(w);
@@ -121,7 +121,7 @@ PALPATE_INLINE void BlockLanczos::append(MatrixX w) {
     append_column(w.data() + j * n, mv.data(), before[static_cast<std::size_t>(j)]);
 }
 
-/// Takes what lies in the basis out of v, and adds the rest to it unless that is next to nothing of `before`.
+/// Orthogonalises v against the basis and appends the remainder, unless it is negligible relative to `before`.
 PALPATE_INLINE void BlockLanczos::append_column(double* v, double* mass_v, double before) {
   const Index n = basis_.rows();
   std::vector<double> part(static_cast<std::size_t>(size_));
@@ -137,7 +137,7 @@ PALPATE_INLINE void BlockLanczos::append_column(double* v, double* mass_v, doubl
   ++size_;
 }
 
-/// Applies A to the newest block. Returns Q^T M A X, of the block before X with the block after it.
+/// Applies A to the newest block X. Returns Q^T M A X, the coupling of X with the next block.
 PALPATE_INLINE MatrixX BlockLanczos::expand() {
   const Index first = expanded_, width = size_ - first;
   const MatrixX w = factor_.solve(mass_times(basis_columns(first, width)));
@@ -152,7 +152,7 @@ PALPATE_INLINE MatrixX BlockLanczos::expand() {
   return basis_products(expanded_, size_ - expanded_, mw);
 }
 
-/// The best pairs of the subspace, and how far A takes them out of it.
+/// The best Ritz pairs of the subspace, and their residuals.
 PALPATE_INLINE LanczosPairs BlockLanczos::ritz_pairs(const MatrixX& coupling) {
   const Index m = expanded_ - known_, count = std::min(wanted_, m), width = coupling.cols();
   ritz_.resize(m, m);
@@ -160,7 +160,7 @@ PALPATE_INLINE LanczosPairs BlockLanczos::ritz_pairs(const MatrixX& coupling) {
     for (Index i = 0; i < m; ++i) {
       ritz_(i, j) = 0.5 * (projected_(i, j) + projected_(j, i));
       if (!std::isfinite(ritz_(i, j)))
-        raise(SetupErrorKind::non_finite, "the eigenvalue iteration met numbers that are not finite");
+        raise(SetupErrorKind::non_finite, "the eigenvalue iteration produced non-finite numbers");
     }
   detail::symmetric_eigen(ritz_, values_);
   LanczosPairs pairs;
@@ -178,7 +178,7 @@ PALPATE_INLINE LanczosPairs BlockLanczos::ritz_pairs(const MatrixX& coupling) {
   return pairs;
 }
 
-/// The Ritz vectors of the largest `count` values, which rise.
+/// The Ritz vectors of the `count` largest values, in ascending order.
 PALPATE_INLINE MatrixX BlockLanczos::ritz_vectors(Index count) const {
   const Index n = basis_.rows(), m = ritz_.rows();
   MatrixX vectors(n, count);
@@ -188,7 +188,7 @@ PALPATE_INLINE MatrixX BlockLanczos::ritz_vectors(Index count) const {
   return vectors;
 }
 
-/// Keeps the best Ritz vectors and the block that has not been expanded.
+/// Keeps the best Ritz vectors and the newest block, which is not expanded yet.
 PALPATE_INLINE void BlockLanczos::restart() {
   const Index m = expanded_ - known_, keep = std::min(m, 2 * block_), next = size_ - expanded_;
   const MatrixX kept = ritz_vectors(keep), after = basis_columns(expanded_, next);

@@ -1,4 +1,4 @@
-// The part of a sparse Cholesky factorisation that depends on the pattern of the matrix only.
+// The part of a sparse Cholesky factorisation that depends only on the pattern of the matrix.
 #pragma once
 
 #include <palpate/core/setup_options.hpp>
@@ -12,40 +12,40 @@ namespace detail {
 struct FrontTree;
 }
 
-/// Elimination order, fronts and memory of a factorisation, for any values on one pattern. Copies share everything.
+/// Elimination order, fronts and memory of a factorisation, for any values on one pattern. Copies share all data.
 class CholeskyAnalysis {
  public:
   CholeskyAnalysis() = default;
 
   /// Analyses the pattern of the lower half of a matrix. O(nonzeros + nodes log nodes), a few per cent of the
-  /// factorisation. Throws bad_argument when the layout does not fit, or cancelled.
+  /// factorisation. Throws bad_argument when the layout does not fit the matrix, or cancelled.
   explicit CholeskyAnalysis(const SparseLower& lower, const DofLayout& layout = {}, const SetupLimits& limits = {});
 
   Index size() const noexcept;
   /// Dofs eliminated last, as given in the layout.
   const std::vector<Index>& kept() const noexcept;
-  /// Per dof the node it belongs to, as given in the layout; may be empty.
+  /// The node of each dof, as given in the layout; may be empty.
   const std::vector<Index>& node_of_dof() const noexcept;
   Index front_count() const noexcept;
-  /// Stored entries of L, zeros from merging included.
+  /// Stored entries of L, including zeros from merged fronts.
   double nonzeros() const noexcept;
   /// Multiplications and additions of a factorisation: sum of squares of the column lengths of L.
   double flops() const noexcept;
-  /// What a finished factor holds [bytes].
+  /// Memory of a finished factor [bytes].
   double factor_bytes() const noexcept;
-  /// Largest memory held during a factorisation, the factor included [bytes].
+  /// Peak memory of a factorisation, including the factor [bytes].
   double peak_bytes() const noexcept;
-  /// The same when the last front is handed out as a Schur complement, that included [bytes].
+  /// Peak memory when the last front is returned as a Schur complement, including that [bytes].
   double interior_peak_bytes() const noexcept;
   /// True when the matrix has the pattern that was analysed.
   bool fits(const SparseLower& lower) const noexcept;
 
-  /// Hash of the elimination order and of where everything lies in a factor: a stored factor belongs to an analysis
-  /// that has the same. The order follows from positions in floating point, so another build may find another one.
+  /// Hash of the elimination order and of the memory layout of a factor: a stored factor belongs to an analysis with
+  /// the same hash. The order depends on floating-point positions, so it may differ between builds.
   std::uint64_t order_hash() const noexcept;
 
   const detail::FrontTree& tree() const noexcept;
-  /// Doubles that a factorisation needs to pack operands; zero rows at the end included.
+  /// Doubles that a factorisation needs to pack operands, including zero rows at the end.
   Index pack_size() const noexcept;
 
  private:

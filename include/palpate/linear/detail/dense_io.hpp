@@ -1,4 +1,4 @@
-// Square matrices to and from a binary file.
+// Reads and writes square matrices in a binary file.
 #pragma once
 
 #include <palpate/core/detail/binary_io.hpp>
@@ -7,7 +7,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// All entries, columns first; null counts as empty.
+/// Writes all entries by columns; a null pointer is written as an empty matrix.
 template <class Matrix>
 void write_dense(BinaryWriter& out, const Matrix* matrix) {
   using Scalar = typename Matrix::Scalar;
@@ -15,7 +15,7 @@ void write_dense(BinaryWriter& out, const Matrix* matrix) {
   out.array(std::span<const Scalar>(matrix->data(), static_cast<std::size_t>(matrix->size())));
 }
 
-/// A matrix that must be size x size in the file. Throws too_large before it allocates.
+/// Reads a matrix that must be size x size in the file. Throws too_large before it allocates.
 template <class Scalar>
 Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> read_dense(BinaryReader& in, Index size,
                                                                  const SetupLimits& limits) {

@@ -5,12 +5,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// How a column-major array is read as an operand; of a symmetric one the lower half.
+/// How a column-major array is read as an operand; `symmetric` reads only the lower half.
 enum class Read : unsigned char { plain, transposed, symmetric };
 
 struct Operand {
   const double* data;
-  Index stride;  ///< distance of columns in memory
+  Index stride;  ///< distance between columns in memory
   Read read = Read::plain;
 };
 
@@ -21,17 +21,17 @@ struct Target {
   bool lower = false;
 };
 
-/// c = c + factor a b, with `depth` the columns of a. The operands must not overlap c. Allocates its packed copies.
+/// c = c + factor a b, where a has `depth` columns. The operands must not overlap c. Allocates its packed copies.
 void add_product(const Target& c, double factor, const Operand& a, const Operand& b, Index depth);
 
 /// a b and a^T b.
 MatrixX product(const MatrixX& a, const MatrixX& b);
 MatrixX transposed_product(const MatrixX& a, const MatrixX& b);
 
-/// y = y - a x and y = a^T x of a stored column by column. No allocation.
+/// y = y - a x and y = a^T x, a stored by columns. No allocation.
 void subtract_product(const double* a, Index rows, Index columns, const double* x, double* y) noexcept;
 void transposed_product(const double* a, Index rows, Index columns, const double* x, double* y) noexcept;
-/// y = a x of a symmetric matrix, lower half read once. No allocation.
+/// y = a x for a symmetric matrix; reads the lower half once. No allocation.
 void symmetric_product(const MatrixX& a, const double* x, double* y) noexcept;
 
 }}}  // namespace palpate::detail

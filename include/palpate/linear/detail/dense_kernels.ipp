@@ -10,7 +10,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Entry (i, s), or of the transposed operand entry (s, i).
+/// Entry (i, s); for a transposed operand, entry (s, i).
 inline double entry(const Operand& m, Index i, Index s) noexcept {
   const bool swap = m.read == Read::transposed || (m.read == Read::symmetric && i < s);
   return swap ? m.data[s + i * m.stride] : m.data[i + s * m.stride];
@@ -21,8 +21,8 @@ inline Operand transposed(const Operand& m) noexcept {
   return {m.data, m.stride, m.read == Read::plain ? Read::transposed : Read::plain};
 }
 
-/// Rows `first` ... of `steps` columns from `step` on, times a factor, in strips of `Height` rows, zeros behind the
-/// last row.
+/// Packs rows `first` ... of `steps` columns from `step` on, times a factor, in strips of `Height` rows, with zeros
+/// after the last row.
 template <int Height>
 inline void pack_operand(const Operand& m, double factor, Index first, Index count, Index step, Index steps,
                          double* to) noexcept {
@@ -40,7 +40,7 @@ inline void pack_operand(const Operand& m, double factor, Index first, Index cou
   }
 }
 
-/// One tile at (i, j) of c minus left times right; at an edge of c by way of a copy.
+/// Subtracts left times right from one tile of c at (i, j); at an edge of c through a temporary copy.
 inline void subtract_tile_within(const Target& c, Index i, Index j, Index steps, const double* left,
                                  const double* right) noexcept {
   const Steps a{left, tile_rows}, b{right, tile_columns};
@@ -132,7 +132,7 @@ PALPATE_INLINE void transposed_product(const double* a, Index rows, Index column
   for (; j < columns; ++j) multiply_few<1>(a + j * rows, rows, x, y + j);
 }
 
-/// The part of `Columns` columns from j on, and of the same rows.
+/// Contribution of `Columns` columns from j on, and of the rows with the same indices.
 template <int Columns>
 inline void add_symmetric_columns(const double* a, Index n, Index j, const double* x, double* y) noexcept {
   const double* const from = a + j * n;

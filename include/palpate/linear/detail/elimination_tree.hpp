@@ -1,4 +1,4 @@
-// The elimination tree of a graph, and how many rows each column of its factor has.
+// The elimination tree of a graph and the row count of each column of its factor.
 #pragma once
 
 #include <palpate/linear/detail/node_graph.hpp>
@@ -8,12 +8,12 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 /// Nodes in a postorder of the elimination tree, so that every subtree is contiguous.
 struct EliminationTree {
   NodeVector order;     ///< node at every position
-  NodeVector position;  ///< its inverse
+  NodeVector position;  ///< inverse of `order`
   NodeVector parent;    ///< per position, a later position or -1
-  OffsetVector rows;    ///< per position the dofs of its column of the factor, its own included
+  OffsetVector rows;    ///< per position the dofs in its column of the factor, including its own
 };
 
-/// The tree of an elimination order. Kept nodes, at its end, stay where they are.
+/// The elimination tree for an order. Kept nodes, which are at the end of the order, stay there.
 EliminationTree elimination_tree(const NodeGraph& g, const NodeVector& order);
 
 }}}  // namespace palpate::detail

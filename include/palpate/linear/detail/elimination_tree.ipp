@@ -22,7 +22,7 @@ inline NodeVector elimination_parents(const NodeGraph& g, const NodeVector& orde
   return parent;
 }
 
-/// Children before parents, siblings as they come. `first[k]` is the place of k in the result.
+/// Postorder: children before parents, siblings in their given order. The result holds the new place of each node.
 inline NodeVector postorder_places(const NodeVector& parent) {
   const auto n = static_cast<NodeId>(parent.size());
   NodeVector size(n, 1), place(n, -1);
@@ -94,9 +94,8 @@ PALPATE_INLINE EliminationTree elimination_tree(const NodeGraph& g, const NodeVe
   for (NodeId i = 0; i < static_cast<NodeId>(n); ++i) t.position[order[i]] = i;
   NodeVector parent = elimination_parents(g, order, t.position);
   const Index inner = n - std::count(g.kept.begin(), g.kept.end(), char{1});
-  for (Index i = inner; i < n; ++i)
-    parent[i] = i + 1 < n ? static_cast<NodeId>(i + 1) : -1;  // one chain: a dense front
-  const NodeVector cut = [&] {  // kept nodes as roots, so that a postorder leaves them at the end
+  for (Index i = inner; i < n; ++i) parent[i] = i + 1 < n ? static_cast<NodeId>(i + 1) : -1;  // a chain: a dense front
+  const NodeVector cut = [&] {  // kept nodes become roots, so that a postorder leaves them at the end
     NodeVector p = parent;
     for (Index i = 0; i < n; ++i)
       if (p[i] >= inner) p[i] = -1;

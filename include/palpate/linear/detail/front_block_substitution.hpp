@@ -1,16 +1,16 @@
-// Forward and backward substitution of several right-hand sides at once with the columns of one front.
+// Forward and backward substitution with the columns of one front, several right-hand sides simultaneously.
 #pragma once
 
 #include <palpate/linear/detail/front_substitution.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// `Packets` packets of right-hand sides, interleaved: x holds one row of them per row of the front.
+/// `Packets` packets of right-hand sides, interleaved: x stores one row of packets per row of the front.
 template <int Packets>
 struct FrontBlock {
   static constexpr Index width = Packets * packet_size;
 
-  /// x of the pivots becomes L11^-1 x; the rows below, zero before, become -L21 times that.
+  /// x of the pivots becomes L11^-1 x; the rows below, zero on entry, become -L21 times that.
   static void forward(const double* l, const LowerPanels& shape, double* x) noexcept {
     for (Index p = 0; p < shape.panels(); ++p) {
       const double* const panel = l + shape.offset(p);
@@ -66,14 +66,14 @@ struct FrontBlock {
     }
   }
 
-  /// Rows begin ... end of x minus those rows of `columns` columns times y.
+  /// Subtracts rows begin ... end of `columns` columns times y from the same rows of x.
   static void update_rows(const double* panel, Index stride, Index columns, Index begin, Index end, const double* y,
                           double* x) noexcept {
     for (Index i = begin; i < end; i += tile_columns)
       subtract_tile_here<Packets, tile_columns, Into::full>(columns, {y, width}, {panel + i, stride}, 1, x + i * width,
                                                             width, end - i);
   }
-  /// Rows of x, one per column, minus the transposed columns times `rows` rows of y.
+  /// Subtracts the transposed columns times `rows` rows of y from the rows of x, one row per column.
   static void gather_rows(const double* l, Index stride, Index columns, Index rows, const double* y,
                           double* x) noexcept {
     if (columns == tile_columns)

@@ -1,4 +1,4 @@
-// Blocks of right-hand sides through the fronts of a multifrontal factor.
+// Forward and backward sweeps of blocks of right-hand sides over the fronts of a multifrontal factor.
 #pragma once
 
 #include <palpate/linear/detail/front_tree.hpp>
@@ -8,11 +8,11 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 /// Workspace of a block of right-hand sides, interleaved: `width()` values per row, a few packets of them.
 class FrontBlockSweeps {
  public:
-  /// For up to `columns` right-hand sides at once, three packets at most.
+  /// For up to `columns` right-hand sides at a time; the width is at most three packets.
   FrontBlockSweeps(const FrontTree& tree, const double* factor, Index columns);
 
   Index width() const noexcept { return width_; }
-  /// Values of one place in the elimination order.
+  /// The values at one place of the elimination order.
   double* row(Index place) noexcept { return values_.data() + place * width_; }
   void clear(Index first, Index count) noexcept;
   void forward(const Front& f) noexcept;
@@ -24,11 +24,11 @@ class FrontBlockSweeps {
   const FrontTree& tree_;
   const double* factor_;
   Index width_;
-  Substitution forward_, backward_;  // of this width
+  Substitution forward_, backward_;  // for this width
   VectorX values_, local_;
 };
 
-/// x = K^-1 b for all columns. The front after the first `fronts` ones is held at zero.
+/// x = K^-1 b for all columns. The dofs of the front after the first `fronts` ones stay zero.
 void solve_block(const FrontTree& tree, const double* factor, Index fronts, const MatrixX& b, MatrixX& x);
 
 }}}  // namespace palpate::detail

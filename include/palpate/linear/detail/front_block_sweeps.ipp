@@ -8,12 +8,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Packets that hold so many right-hand sides, at most three.
+/// Number of packets for `columns` right-hand sides, at most three.
 inline Index block_packets(Index columns) noexcept {
   return columns <= packet_size ? 1 : columns <= 2 * packet_size ? 2 : 3;
 }
 
-/// Copies whole packets; returns the end of what was written. Stretches are too short for memmove to pay.
+/// Copies whole packets; returns the end of the output. The runs are too short for memmove to be faster.
 inline double* copy_packets(const double* from, Index count, double* to) noexcept {
   for (Index i = 0; i < count; i += packet_size) store(to + i, load(from + i));
   return to + count;
@@ -66,7 +66,7 @@ PALPATE_INLINE void FrontBlockSweeps::backward(const Front& f) noexcept {
   copy_packets(x, f.pivots * width_, row(f.first));
 }
 
-/// Columns begin ... begin + count of b into x, count at most the width.
+/// Solves for columns begin ... begin + count of b, where count is at most the width.
 inline void solve_columns(FrontBlockSweeps& sweeps, const FrontTree& tree, Index fronts, const MatrixX& b, MatrixX& x,
                           Index begin, Index count) noexcept {
   const Index n = b.rows();
@@ -88,7 +88,7 @@ PALPATE_INLINE void solve_block(const FrontTree& tree, const double* factor, Ind
                                 MatrixX& x) {
   for (Index begin = 0; begin < b.cols();) {
     FrontBlockSweeps sweeps(tree, factor, b.cols() - begin);
-    const Index enough = sweeps.width() - packet_size;  // a narrower block does for fewer
+    const Index enough = sweeps.width() - packet_size;  // fewer columns than this fit a narrower block
     for (; b.cols() - begin > enough; begin += sweeps.width())
       solve_columns(sweeps, tree, fronts, b, x, begin, std::min(sweeps.width(), b.cols() - begin));
   }

@@ -1,4 +1,4 @@
-// The numbers of a multifrontal factorisation (Duff and Reid 1983; Liu 1992).
+// The numerical phase of a multifrontal factorisation (Duff and Reid 1983; Liu 1992).
 #pragma once
 
 #include <palpate/linear/detail/big_array.hpp>
@@ -10,7 +10,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Eliminates front after front into `factor`. May be used again for other values on the same pattern.
+/// Eliminates one front after the other into `factor`. Can be reused for other values on the same pattern.
 class FrontFactorisation {
  public:
   FrontFactorisation(const CholeskyAnalysis& analysis, double* factor)
@@ -28,7 +28,7 @@ class FrontFactorisation {
     matched_.reserve(static_cast<std::size_t>(most));
   }
 
-  /// Takes the values of a matrix with the analysed pattern, which must stay until they are eliminated.
+  /// Refers to the values of a matrix with the analysed pattern; they must stay valid until elimination is done.
   void take(const SparseLower& lower) noexcept {
     values_ = lower.valuePtr();
     for (Index j = 0; j < lower.cols(); ++j)
@@ -50,7 +50,7 @@ class FrontFactorisation {
     check_pivots(pivots_, diagonal_, tree_.place_of_dof, node_of_dof_, checked, threshold);
   }
 
-  /// Eliminates all fronts; false when a pivot fails. No allocation.
+  /// Eliminates all fronts; returns false when a pivot fails. No allocation.
   bool try_eliminate(double threshold) noexcept {
     for (Index f = 0; f < tree_.fronts.size(); ++f) {
       const Front& front = tree_.fronts[f];
@@ -61,8 +61,8 @@ class FrontFactorisation {
     return true;
   }
 
-  /// The last front before its elimination: the Schur complement of the kept dofs in the order given. Nothing can be
-  /// eliminated any more.
+  /// Returns the last front before its elimination: the Schur complement of the kept dofs in the given order. No front
+  /// can be eliminated afterwards.
   MatrixX schur(const std::vector<Index>& kept) {
     const auto k = static_cast<Index>(kept.size());
     if (k == 0) return {};
@@ -93,7 +93,7 @@ class FrontFactorisation {
         front, [&](Index j) { return update + update_column(front, j); }, front.pivots, front.size());
   }
 
-  /// Fills the pivot columns of a front, before their elimination: entries of the matrix and updates of the children.
+  /// Fills the pivot columns of a front before elimination with entries of the matrix and updates of the children.
   void assemble(const Front& front, double* columns) {
     const LowerPanels shape = front.panels();
     std::fill(columns, columns + shape.size(), 0.0);
@@ -124,8 +124,8 @@ class FrontFactorisation {
       for (Index i = 0; i < tree_.runs[r].count; ++i) local_[tree_.runs[r].first + i] = next++;
   }
 
-  /// Adds the columns of the children's updates that belong to columns begin ... end of the front. `column` gives the
-  /// address of row 0 of a column.
+  /// Adds those columns of the children's updates that belong to columns begin ... end of the front. `column` returns
+  /// the address of row 0 of a column.
   template <class Column>
   void add_children(const Front& front, Column&& column, Index begin, Index end) {
     for (NodeId c = front.first_child; c >= 0; c = tree_.fronts[c].next_sibling)
@@ -154,7 +154,7 @@ class FrontFactorisation {
     }
   }
 
-  /// Rows of the child as stretches of rows of the front.
+  /// Matches the rows of the child to runs of rows of the front.
   void match_runs(const Front& child) {
     matched_.clear();
     Index from = 0;

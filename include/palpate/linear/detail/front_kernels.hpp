@@ -1,4 +1,4 @@
-// Dense Cholesky of the pivot columns of a front, and the symmetric update of the rest.
+// Dense Cholesky of the pivot columns of a front, and the symmetric update of the other rows.
 #pragma once
 
 #include <palpate/linear/detail/lower_panels.hpp>
@@ -8,13 +8,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Receives every pivot before its root is taken; returns what to scale its column with.
+/// Receives every pivot before its square root is taken; returns the factor by which to scale its column.
 struct PivotSink {
   double* pivots;          ///< per place in the elimination order
   const double* diagonal;  ///< of the matrix, per place
   double threshold;
 
-  /// A pivot that fails leaves its dof out: the column becomes zero, and the rest can still be looked at.
+  /// A failed pivot drops its dof: its column becomes zero, so that the remaining pivots can still be checked.
   double accept(Index place, double pivot) const noexcept {
     pivots[place] = pivot;
     const bool good = std::isfinite(pivot) && pivot > 0.0 && pivot > threshold * diagonal[place];
@@ -22,8 +22,9 @@ struct PivotSink {
   }
 };
 
-/// Lower part of c (rows x columns, column major) minus or set to minus A A^T, A given by columns. Rows are a multiple
-/// of LowerPanels::alignment; entries above the diagonal are overwritten with anything.
+/// Lower part of c (rows x columns, column major): subtracts A A^T or sets c to -A A^T; A is given by columns. The
+/// number of rows is a multiple of LowerPanels::alignment; entries above the diagonal are overwritten with arbitrary
+/// values.
 template <Into Mode>
 inline void subtract_square(double* c, Index stride, Index rows, Index columns, Steps a, Index steps) noexcept {
   for (Index j = 0; j < columns; j += tile_columns) {
@@ -44,7 +45,7 @@ inline void pack(const double* from, Index stride, Index rows, Index steps, doub
     }
 }
 
-/// subtract_square for a whole lower triangle, one panel after the other.
+/// subtract_square for a whole lower triangle, panel by panel.
 template <Into Mode>
 inline void subtract_small(double* c, const LowerPanels& shape, Steps a, Index steps) noexcept {
   for (Index p = 0; p < shape.panels(); ++p)
@@ -52,8 +53,8 @@ inline void subtract_small(double* c, const LowerPanels& shape, Steps a, Index s
                           {a.data + shape.panel_begin(p), a.step}, steps);
 }
 
-/// The same through packed copies, for operands that do not fit into the cache or straddle too many pages. `packed`
-/// holds 2 * (height + tile_rows) * steps doubles.
+/// The same through packed copies, for operands that do not fit into the cache or span too many pages. `packed` holds
+/// 2 * (height + tile_rows) * steps doubles.
 template <Into Mode>
 inline void subtract_packed(double* c, const LowerPanels& shape, Steps a, Index steps, double* packed) noexcept {
   constexpr Index block = (LowerPanels::width * 5 / 3) / tile_rows * tile_rows;  // rows that stay in the cache
@@ -74,7 +75,7 @@ inline void subtract_packed(double* c, const LowerPanels& shape, Steps a, Index 
   }
 }
 
-/// Lower triangle minus A A^T, A of `steps` columns.
+/// Subtracts A A^T from a lower triangle; A has `steps` columns.
 template <Into Mode>
 inline void subtract_lower(double* c, const LowerPanels& shape, Steps a, Index steps, double* packed) noexcept {
   constexpr Index few_rows = 320, few_steps = 24;
@@ -86,7 +87,7 @@ inline void subtract_lower(double* c, const LowerPanels& shape, Steps a, Index s
 
 inline constexpr Index column_block = 8;
 
-/// Cholesky of the top of `Width` columns in place, in a copy.
+/// Cholesky of the top of `Width` columns, computed in a local copy.
 template <int Width>
 inline void factor_corner(const double* a, Index stride, Index place, const PivotSink& sink, double (&l)[Width][Width],
                           double (&scale)[Width]) noexcept {
@@ -102,7 +103,7 @@ inline void factor_corner(const double* a, Index stride, Index place, const Pivo
   }
 }
 
-/// Factorises `Width` columns, at most column_block: the corner, then all rows below it.
+/// Factorises `Width` columns, at most column_block: first the corner, then all rows below it.
 template <int Width>
 inline void factor_columns(double* a, Index stride, Index rows, Index place, const PivotSink& sink) noexcept {
   double l[Width][Width], scale[Width];
@@ -128,7 +129,8 @@ inline void factor_few(double* a, Index stride, Index rows, Index columns, Index
   if constexpr (Width > 1) factor_few<Width - 1>(a, stride, rows, columns, place, sink);
 }
 
-/// Factorises a trapezoid (rows x columns, column major) by halves, so that nearly all work is in subtract_square.
+/// Factorises a trapezoid (rows x columns, column major) by recursive halving, so that nearly all work is in
+/// subtract_square.
 inline void factor_trapezoid(double* a, Index stride, Index rows, Index columns, Index place,
                              const PivotSink& sink) noexcept {
   if (columns > column_block) {
@@ -142,8 +144,8 @@ inline void factor_trapezoid(double* a, Index stride, Index rows, Index columns,
   factor_few<column_block>(a, stride, rows, columns, place, sink);
 }
 
-/// Factorises the pivot columns of a front and writes minus L21 L21^T to the lower triangle `update` of its `rows`
-/// others. `packed` is workspace.
+/// Factorises the pivot columns of a front and writes -L21 L21^T to the lower triangle `update` of its `rows` other
+/// rows. `packed` is workspace.
 inline void factor_front(double* front, Index pivots, Index rows, double* update, Index place, const PivotSink& sink,
                          double* packed) noexcept {
   const LowerPanels shape = LowerPanels::of(pivots + rows, pivots), rest = LowerPanels::of(rows, rows);

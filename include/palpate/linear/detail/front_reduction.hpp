@@ -1,4 +1,4 @@
-// Unit loads on a few dofs, taken half the way through a multifrontal factor.
+// Unit loads on a few dofs after the forward substitution of a multifrontal factor.
 #pragma once
 
 #include <palpate/core/types.hpp>
@@ -8,9 +8,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// L^-1 e of unit loads e on some dofs of an interior factor, where it is not zero, and what they condense to on the
-/// kept dofs. Entries of the inverse follow without going back: with F the condensed loads and C the compliance of the
-/// kept dofs, G_ij = y_i . y_j + f_i . C f_j, and C f_j on the kept dofs.
+/// The non-zero rows of L^-1 e for unit loads e on some dofs of an interior factor, and the loads to which they
+/// condense on the kept dofs. These give entries of the inverse without a backward substitution: with F the condensed
+/// loads and C the compliance of the kept dofs, G_ij = y_i . y_j + f_i . C f_j.
 struct ReducedUnits {
   std::vector<Index> places;  ///< of the rows, in the elimination order, ascending
   MatrixX values;             ///< places x loads
@@ -25,8 +25,8 @@ namespace detail {
 
 struct FrontTree;
 
-/// Unit loads on `dofs`, none of them kept, through the first `fronts` fronts; `kept` are the dofs of the front after
-/// them. Only fronts above the dofs are walked. Allocates.
+/// Forward substitution of unit loads on `dofs`, none of them kept, through the first `fronts` fronts; `kept` are the
+/// dofs of the front after them. Visits only the fronts above the dofs. Allocates.
 ReducedUnits reduce_units(const FrontTree& tree, const double* factor, Index fronts, std::span<const Index> dofs,
                           std::span<const Index> kept);
 

@@ -12,7 +12,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Some rows of a matrix, in the order given.
+/// Some rows of a matrix, in the given order.
 inline MatrixX rows_of(const MatrixX& m, const std::vector<Index>& rows) {
   const auto count = static_cast<Index>(rows.size());
   MatrixX taken(count, m.cols());
@@ -22,7 +22,7 @@ inline MatrixX rows_of(const MatrixX& m, const std::vector<Index>& rows) {
   return taken;
 }
 
-/// Fronts above some dofs, children first, among the first `fronts` ones.
+/// The fronts above some dofs, among the first `fronts` ones, children first.
 inline std::vector<Index> fronts_above(const FrontTree& tree, Index fronts, std::span<const Index> dofs) {
   std::vector<Index> above;
   for (const Index dof : dofs)

@@ -6,7 +6,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// v -= A y for `Width` columns of A; rows from `first`, the rest of an aligned block one by one.
+/// v -= A y for `Width` columns of A, rows from `first` on; rows before the next aligned block are done one by one.
 template <int Width>
 inline void subtract_columns(const double* a, Index stride, Index first, Index rows, const double (&y)[Width],
                              double* v) noexcept {
@@ -25,7 +25,7 @@ inline void subtract_columns(const double* a, Index stride, Index first, Index r
   }
 }
 
-/// y -= A^T v, as above.
+/// y -= A^T v, with rows as above.
 template <int Width>
 inline void subtract_dots(const double* a, Index stride, Index first, Index rows, const double* v,
                           double (&y)[Width]) noexcept {
@@ -41,7 +41,7 @@ inline void subtract_dots(const double* a, Index stride, Index first, Index rows
   for (int j = 0; j < Width; ++j) y[j] -= Eigen::internal::predux(sum[j]);
 }
 
-/// Solves with `Width` columns whose corner is at row `top`, and takes their part from all rows below.
+/// Solves with `Width` columns whose corner is at row `top`, and subtracts their contribution from all rows below.
 template <int Width>
 inline void forward_columns(const double* a, Index stride, Index top, double* v) noexcept {
   const double* const corner = a + top;
@@ -66,7 +66,7 @@ inline void backward_columns(const double* a, Index stride, Index top, double* v
   }
 }
 
-/// Calls `visit(width)` with the number of columns, 1 to 7, as a constant.
+/// Calls `visit(width)` with the number of columns, 1 to 7, as a compile-time constant.
 template <class Visit>
 inline void with_width(Index width, Visit&& visit) noexcept {
   switch (width) {
@@ -89,8 +89,8 @@ inline void with_width(Index width, Visit&& visit) noexcept {
   }
 }
 
-/// One right-hand side: v holds the pivots' loads and zeros for the rows below, padded to the height; out come L11^-1
-/// of the former and minus L21 times that. Reads L once.
+/// One right-hand side. In: v holds the loads of the pivots and zeros for the rows below, padded to the height. Out:
+/// L11^-1 times the loads, and -L21 times that. Reads L once.
 inline void forward_front(const double* l, const LowerPanels& shape, double* v) noexcept {
   for (Index p = 0; p < shape.panels(); ++p) {
     const double* const panel = l + shape.offset(p);
@@ -101,7 +101,7 @@ inline void forward_front(const double* l, const LowerPanels& shape, double* v) 
                [&](auto width) { forward_columns<decltype(width)::value>(panel + whole * stride, stride, whole, at); });
   }
 }
-/// The reverse: v holds the pivots' values and the answers in the rows below; out comes L11^-T (v - L21^T v below).
+/// Backward. In: v holds the values of the pivots and the solution in the rows below. Out: L11^-T (v - L21^T v below).
 inline void backward_front(const double* l, const LowerPanels& shape, double* v) noexcept {
   for (Index p = shape.panels() - 1; p >= 0; --p) {
     const double* const panel = l + shape.offset(p);

@@ -1,4 +1,4 @@
-// Solves with a multifrontal factor: forward and backward over all fronts or over a few.
+// Solves with a multifrontal factor: forward and backward substitution over all fronts or over a few.
 #pragma once
 
 #include <palpate/linear/detail/indexed_vector.hpp>
@@ -10,13 +10,13 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 struct Front;
 struct FrontTree;
 
-/// Workspace of one solve at a time. Refers to the tree and the factor, which must outlive it.
+/// Workspace of one solve. Refers to the tree and the factor, which must outlive it.
 class FrontSweeps {
  public:
   FrontSweeps() = default;
   FrontSweeps(const FrontTree& tree, const double* factor, Index fronts);
 
-  /// By place in the elimination order.
+  /// Values in elimination order.
   VectorX& values() noexcept { return values_; }
   void scatter(const double* by_dof) noexcept;
   void gather(double* by_dof) const noexcept;
@@ -24,9 +24,9 @@ class FrontSweeps {
   void forward_all() noexcept;
   void backward_all() noexcept;
 
-  /// Loads on a few dofs, which may be listed twice; only the fronts above them are touched.
+  /// Forward substitution for loads on a few dofs, which may be listed twice; visits only the fronts above them.
   void forward_path(std::span<const Index> loaded, std::span<const double> loads) noexcept;
-  /// Answers on a few dofs; once after each forward_path.
+  /// Backward substitution for the solution on a few dofs; call once after each forward_path.
   void backward_path(std::span<const Index> wanted, std::span<double> answer) noexcept;
 
  private:
@@ -39,7 +39,7 @@ class FrontSweeps {
   const double* factor_ = nullptr;
   Index fronts_ = 0;
   VectorX values_, local_;
-  IndexedVector<std::uint64_t> loaded_, wanted_;  // per front the last epoch in which it was
+  IndexedVector<std::uint64_t> loaded_, wanted_;  // per front, the last epoch in which it was visited
   NodeVector path_;
   std::uint64_t epoch_ = 0;
 };

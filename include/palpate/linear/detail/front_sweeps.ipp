@@ -59,7 +59,7 @@ PALPATE_INLINE void FrontSweeps::backward_path(std::span<const Index> wanted, st
   for (std::size_t i = 0; i < wanted.size(); ++i) answer[i] = values[tree_->place_of_dof[wanted[i]]];
 }
 
-/// The fronts of some dofs and all above them, ascending.
+/// Collects the fronts of some dofs and all fronts above them, ascending.
 PALPATE_INLINE Index FrontSweeps::collect(std::span<const Index> dofs, IndexedVector<std::uint64_t>& marks) noexcept {
   Index count = 0;
   for (Index dof : dofs)

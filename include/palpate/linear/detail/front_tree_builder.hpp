@@ -6,7 +6,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// The fronts of some supernodes, and where the entries of a matrix go in them.
+/// Builds the fronts of the supernodes and places the entries of a matrix in them.
 FrontTree build_front_tree(const NodeGraph& g, const Supernodes& s, const SparseLower& lower);
 
 }}}  // namespace palpate::detail

@@ -56,7 +56,7 @@ class FrontTreeBuilder {
     }
   }
 
-  /// Rows of a front: those of its children and of its own columns of the matrix, without its pivots.
+  /// Rows of each front: those of its children and of its own matrix columns, without its pivots.
   void rows() {
     const Index count = tree_.fronts.size();
     NodeVector seen(g_.nodes(), -1), rows;
@@ -93,7 +93,7 @@ class FrontTreeBuilder {
     front.run_end = tree_.runs.size();
   }
 
-  /// Every stretch of entries of one column that belong to one node.
+  /// Visits every run of entries of one column that belong to one node.
   template <class Visit>
   void visit_entries(Visit&& visit) const {
     const Index* start = lower_.outerIndexPtr();
@@ -124,8 +124,8 @@ class FrontTreeBuilder {
     });
   }
 
-  /// Updates live in one workspace as two stacks that grow towards each other: those of odd and of even depth, so that
-  /// a front's own never lies on top of its children's, which leave before it.
+  /// Updates are stored in one workspace as two stacks that grow towards each other, one for odd and one for even
+  /// depth. So the update of a front never overlaps those of its children, which are freed before.
   void place_updates() {
     const Index count = tree_.fronts.size();
     IndexedVector<char> odd(count, 0);

@@ -1,4 +1,4 @@
-// A std::vector indexed by Index, and the sizes of graphs in it.
+// A std::vector indexed by Index, and index types for graphs.
 #pragma once
 
 #include <palpate/core/types.hpp>
@@ -7,7 +7,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// std::vector whose subscript is signed, so that offsets and counts need no casts.
+/// std::vector with a signed subscript, so that offsets and counts need no casts.
 template <class T>
 class IndexedVector {
  public:
@@ -41,7 +41,7 @@ class IndexedVector {
 using NodeVector = IndexedVector<NodeId>;
 using OffsetVector = IndexedVector<Index>;
 
-/// Turns counts, stored one place to the right, into offsets.
+/// Converts counts, stored one place to the right, into offsets.
 inline void accumulate_offsets(OffsetVector& start) noexcept {
   for (Index i = 1; i < start.size(); ++i) start[i] += start[i - 1];
 }

@@ -1,4 +1,4 @@
-// Minimum degree on a few dozen nodes, with bit sets.
+// Minimum degree ordering of a few dozen nodes, with bit sets.
 #pragma once
 
 #include <palpate/linear/detail/node_graph.hpp>
@@ -8,16 +8,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Orders the small parts that nested dissection leaves. Nodes outside that a part touches count in the degrees, as
-/// far as they fit into the bit sets. O(nodes x neighbours) operations on bit sets.
+/// Orders the small parts left by nested dissection. Neighbours outside the part count in the degrees, as far as they
+/// fit into the bit sets. O(nodes x neighbours) operations on bit sets.
 class LeafOrder {
  public:
   static constexpr Index max_nodes = 128;
 
   explicit LeafOrder(const NodeGraph& graph) : graph_(graph), bit_(graph.nodes(), -1) {}
 
-  /// Puts `count` nodes, at most max_nodes, into elimination order. `outside(v)` tells the nodes eliminated later
-  /// from those already gone, which are left out.
+  /// Puts `count` nodes, at most max_nodes, into elimination order. `outside(v)` is true for nodes eliminated later;
+  /// nodes already eliminated are ignored.
   template <class Outside>
   void order(NodeId* nodes, Index count, Outside&& outside) {
     describe(nodes, count, outside);

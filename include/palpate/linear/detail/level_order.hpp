@@ -1,12 +1,12 @@
-// Orders of the nodes of a graph that has no coordinates: by distance from its ends.
+// Orders of the nodes of a graph without coordinates, by distance from its end nodes.
 #pragma once
 
 #include <palpate/linear/detail/part_lists.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Sorts a part along three "axes" found by breadth-first search: from one end to the other, from a node far from both,
-/// and by the difference of the distances from the ends. O(edges) a part.
+/// Sorts a part along three "axes" found by breadth-first search: from one end to the other, from a node far from both
+/// ends, and by the difference of the distances from the ends. O(edges) per part.
 class LevelOrder {
  public:
   explicit LevelOrder(PartLists& lists) : lists_(lists), near_(lists.graph->nodes()), far_(lists.graph->nodes()) {}
@@ -27,7 +27,7 @@ class LevelOrder {
   }
 
  private:
-  /// Lists the part breadth first from `root` and returns the last node; other components follow, each farther away.
+  /// Lists the part breadth first from `root` and returns the last node; other components follow at greater distances.
   NodeId search(const Part& part, NodeId root, NodeVector& distance, NodeVector& listed) {
     const NodeGraph& g = *lists_.graph;
     nodes_.clear();

@@ -5,8 +5,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The nodes of a graph in the order of their elimination, kept ones last. Uses the coordinates where there are any.
-/// O(edges log nodes).
+/// The nodes of a graph in elimination order, kept ones last. Uses coordinates if there are any. O(edges log nodes).
 detail::NodeVector nested_dissection(const NodeGraph& graph);
 
 }}  // namespace palpate

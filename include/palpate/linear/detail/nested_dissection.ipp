@@ -13,7 +13,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Halves parts until they are small.
+/// Bisects parts until they are small.
 class NestedDissection {
  public:
   static constexpr Index leaf_nodes = 64;
@@ -32,7 +32,7 @@ class NestedDissection {
   }
 
  private:
-  /// Lists the nodes that are not kept, along the axes where there are coordinates.
+  /// Lists the nodes that are not kept, sorted along the axes if there are coordinates.
   static PartLists& prepare(const NodeGraph& graph, PartLists& lists) {
     lists.graph = &graph;
     lists.place.assign(graph.nodes(), NodePlace());
@@ -93,7 +93,7 @@ class NestedDissection {
   PartLists lists_;
   SeparatorFinder finder_;
   LeafOrder leaf_;
-  std::vector<LevelOrder> levels_;  // none when there are coordinates
+  std::vector<LevelOrder> levels_;  // empty when there are coordinates
   NodeVector order_, buffer_;
   NodeId labels_ = 0;
 };

@@ -1,4 +1,4 @@
-// Which nodes of a sparse symmetric matrix are coupled; a node is a group of dofs that are eliminated together.
+// Coupling graph of the nodes of a sparse symmetric matrix; a node is a group of dofs that are eliminated together.
 #pragma once
 
 #include <palpate/linear/detail/indexed_vector.hpp>
@@ -10,20 +10,20 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// Lower half of a symmetric matrix, compressed. Entries above the diagonal are ignored.
 using SparseLower = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
-/// What is known about a matrix besides its entries; all of it may be left empty.
+/// Optional information about the dofs of a matrix; every field may be empty.
 struct DofLayout {
-  std::vector<Index> node_of_dof;  ///< per dof the node it belongs to; empty: found from equal rows
+  std::vector<Index> node_of_dof;  ///< per dof its node; empty: found from equal rows
   std::vector<Vector3> positions;  ///< per node id its coordinates [m]; empty: ordered by the graph alone
-  std::vector<Index> kept;         ///< dofs to eliminate last; their Schur complement comes out in this order
+  std::vector<Index> kept;         ///< dofs to eliminate last; the Schur complement has this order
 };
 
-/// Undirected graph of nodes without loops. Nodes hold one dof or more, all kept or none.
+/// Undirected graph of nodes without loops. Every node has at least one dof; all dofs of a node are kept, or none.
 struct NodeGraph {
   detail::OffsetVector start;        ///< nodes + 1 offsets into neighbour
   detail::NodeVector neighbour;      ///< both directions of every edge
   detail::OffsetVector dof_start;    ///< nodes + 1 offsets into dof
   detail::IndexedVector<Index> dof;  ///< dofs of every node, ascending
-  detail::NodeVector node_of_dof;    ///< inverse of the former
+  detail::NodeVector node_of_dof;    ///< inverse of `dof`
   detail::IndexedVector<char> kept;  ///< per node
   std::vector<Vector3> positions;    ///< per node, or empty
 
@@ -31,7 +31,7 @@ struct NodeGraph {
   Index weight(Index node) const noexcept { return dof_start[node + 1] - dof_start[node]; }
 };
 
-/// The graph of a matrix. O(nonzeros), allocates. Throws bad_argument when the layout does not fit the matrix.
+/// Builds the graph of a matrix. O(nonzeros), allocates. Throws bad_argument when the layout does not fit the matrix.
 NodeGraph node_graph(const SparseLower& lower, const DofLayout& layout);
 
 }}  // namespace palpate

@@ -11,8 +11,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Gives consecutive dofs with the same neighbours, each other included, the same node: the dofs of a mesh node when
-/// nobody says so. O(nonzeros).
+/// Assigns consecutive dofs with the same neighbours, including each other, to the same node. This recovers the dofs
+/// of a mesh node when no layout is given. O(nonzeros).
 inline std::vector<Index> nodes_from_equal_rows(const SparseLower& lower) {
   const Index n = lower.rows();
   const Index* start = lower.outerIndexPtr();
@@ -22,7 +22,7 @@ inline std::vector<Index> nodes_from_equal_rows(const SparseLower& lower) {
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     return z ^ (z >> 27);
   };
-  IndexedVector<std::uint64_t> hash(n, 0);  // of the whole row; a sum, so in any order
+  IndexedVector<std::uint64_t> hash(n, 0);  // of the whole row; a sum, so independent of the order
   for (Index j = 0; j < n; ++j) {
     hash[j] += mix(j);
     for (Index p = start[j]; p < start[j + 1]; ++p)
@@ -40,7 +40,7 @@ inline std::vector<Index> nodes_from_equal_rows(const SparseLower& lower) {
   return node;
 }
 
-/// Numbers the nodes in the order of their first dof; the kept dofs of a node make a node of their own.
+/// Numbers the nodes in the order of their first dof; the kept dofs of a node form a node of their own.
 inline void collect_nodes(NodeGraph& g, const DofLayout& layout, const std::vector<Index>& node_of_dof) {
   const Index n = static_cast<Index>(node_of_dof.size());
   IndexedVector<char> kept(n, 0);
@@ -67,7 +67,7 @@ inline void collect_nodes(NodeGraph& g, const DofLayout& layout, const std::vect
   for (Index dof = 0; dof < n; ++dof) g.dof[fill[g.node_of_dof[dof]]++] = dof;
 }
 
-/// Every pair of coupled nodes once.
+/// Visits every pair of coupled nodes once.
 template <class Visit>
 void visit_edges(const NodeGraph& g, const SparseLower& lower, Visit&& visit) {
   const Index* start = lower.outerIndexPtr();
@@ -100,8 +100,8 @@ inline void check_layout(const SparseLower& lower, const DofLayout& layout) {
   fine = fine && (kept.empty() || (kept.front() >= 0 && kept.back() < lower.rows()));
   for (const Vector3& x : layout.positions) fine = fine && all_finite(x);
   if (!fine)
-    raise(SetupErrorKind::bad_argument, "the layout of the dofs does not fit the matrix",
-          "Give a square matrix, one node per dof, finite coordinates for every node, and every kept dof once");
+    raise(SetupErrorKind::bad_argument, "the dof layout does not fit the matrix",
+          "Give a square matrix, one node per dof, finite coordinates for every node, and each kept dof once");
 }
 
 }  // namespace detail
@@ -120,7 +120,7 @@ PALPATE_INLINE NodeGraph node_graph(const SparseLower& lower, const DofLayout& l
     ++g.start[a + 1];
     ++g.start[b + 1];
   });
-  // A pair met from both sides (dofs of two nodes interleaved) would stand twice; that does no harm.
+  // A pair found from both sides (interleaved dofs of two nodes) is stored twice, which is harmless.
   detail::accumulate_offsets(g.start);
   g.neighbour.resize(g.start[count]);
   detail::OffsetVector fill = g.start;

@@ -1,11 +1,11 @@
-// Operators and solvers of any type behind one pointer and a few functions.
+// Type-erased references to operators and solvers.
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Refers to any SpdOperator, which must outlive it: what an iterative solver takes. One indirect call per product.
+/// Refers to any SpdOperator, which must outlive it; argument of the iterative solvers. One indirect call per product.
 class OperatorView {
  public:
   template <SpdOperator Op>

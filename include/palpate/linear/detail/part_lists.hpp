@@ -1,4 +1,4 @@
-// Parts of a graph on their way through nested dissection.
+// Parts of a graph during nested dissection.
 #pragma once
 
 #include <palpate/linear/detail/node_graph.hpp>
@@ -17,10 +17,10 @@ struct Part {
 inline constexpr int dissection_axes = 3;
 enum Side : unsigned char { side_first, side_second, side_separator };
 
-/// Where a node is: its place in the lists of its part, and that part.
+/// Position of a node: its rank in the lists of its part, and the label of the part.
 struct NodePlace {
   std::array<NodeId, dissection_axes> rank{};  ///< per axis, from the beginning of the part
-  NodeId label = -1;                           ///< of the part; negative once ordered
+  NodeId label = -1;                           ///< of the part; negative once the node is ordered
 };
 
 /// Nodes of all parts, sorted along each axis within their part.
@@ -28,11 +28,11 @@ struct PartLists {
   const NodeGraph* graph = nullptr;
   IndexedVector<NodePlace> place;                  ///< per node
   std::array<NodeVector, dissection_axes> sorted;  ///< per axis
-  IndexedVector<Side> side;                        ///< per node, of the last cut
+  IndexedVector<Side> side;                        ///< per node, from the last cut
 };
 
-/// Cost of a separator between two sides, given the three sizes and the nodes in all: size first, balance second. In
-/// three dimensions halves of 0.4 and 0.6 cost about as much as a separator larger by some per cent.
+/// Cost of a separator: its size first, then the balance of the two sides. In three dimensions halves of 0.4 and 0.6
+/// cost about as much as a separator that is some per cent larger.
 inline double separator_cost(double separator, double bias) noexcept {
   return (separator + 0.5) * (1.0 + 7.0 * bias * bias);
 }

@@ -1,4 +1,4 @@
-// The refusal of a matrix that is not positive definite.
+// Refuses a matrix that is not positive definite.
 #pragma once
 
 #include <palpate/linear/detail/indexed_vector.hpp>
@@ -11,9 +11,9 @@ inline bool pivot_is_good(double pivot, double diagonal, double threshold) noexc
   return std::isfinite(pivot) && pivot > 0.0 && pivot > threshold * diagonal;
 }
 
-/// Throws not_positive_definite when a pivot is not finite, not positive or not more than `threshold` of its own
-/// diagonal entry. `pivots` and `diagonal` go by place in the elimination order; the ids are nodes where
-/// `node_of_dof` has them, dofs where it is empty.
+/// Throws not_positive_definite when a pivot is not finite, not positive or not larger than `threshold` times its own
+/// diagonal entry. `pivots` and `diagonal` are in elimination order; the reported ids are nodes, or dofs when
+/// `node_of_dof` is empty.
 void check_pivots(const VectorX& pivots, const VectorX& diagonal, const NodeVector& place_of_dof,
                   const std::vector<Index>& node_of_dof, Index checked, double threshold);
 

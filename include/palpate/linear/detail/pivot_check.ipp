@@ -29,7 +29,7 @@ PALPATE_INLINE void check_pivots(const VectorX& pivots, const VectorX& diagonal,
   p.kind = SetupErrorKind::not_positive_definite;
   p.what = "the stiffness matrix is not positive definite: " + std::to_string(count) + " pivots fail" +
            (node_of_dof.empty() ? "; the ids are dofs" : ", at " + std::to_string(bad.size()) + " nodes");
-  p.hint = "Look there for a body that is not held, an inverted element or a Poisson ratio at its limit";
+  p.hint = "Check there for a body that is not constrained, an inverted element or a Poisson ratio at its limit";
   p.value = worst;
   p.threshold = threshold;
   p.set_ids(bad, node_of_dof.empty() ? SetupIds::others : SetupIds::nodes);

@@ -1,4 +1,4 @@
-// A small set of nodes that cuts a part of a graph in two balanced halves.
+// Finds a small set of nodes that separates a part of a graph into two balanced halves.
 #pragma once
 
 #include <palpate/linear/detail/bipartite_cover.hpp>
@@ -6,14 +6,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Cuts a part after one of its sorted lists: looks at every position of every list at once, then replaces the layer of
-/// nodes at the best ones by a minimum vertex cover of the edges cut. O(edges) and the matching.
+/// Cuts a part at a position of one of its sorted lists. Scans every position of every list in one sweep, then
+/// replaces the layer of nodes at the best positions by a minimum vertex cover of the cut edges. O(edges) plus the
+/// matching.
 class SeparatorFinder {
  public:
   explicit SeparatorFinder(PartLists& lists)
       : lists_(lists), refinement_(lists), reach_(lists.graph->nodes()), number_(lists.graph->nodes(), -1) {}
 
-  /// Fills `side` for the part and returns the number of nodes on the first side, on the second and between.
+  /// Fills `side` for the part and returns the number of nodes on the first side, on the second side and in the
+  /// separator.
   std::array<Index, 3> cut(const Part& part) {
     sweep(part);
     std::array<Cut, dissection_axes> cuts = promising(part);
@@ -38,11 +40,11 @@ class SeparatorFinder {
     double score = infinity;
   };
   using Ranks = std::array<NodeId, dissection_axes>;
-  static constexpr double worth_a_look = 1.5;  // a cover is hardly ever thinner than its layer by more
+  static constexpr double worth_a_look = 1.5;  // a cover is hardly ever smaller than its layer by a larger factor
   static constexpr Index worth_refining = 1500;
   static constexpr double largest_bias = 0.2;  // cuts from 0.3 : 0.7 to 0.7 : 0.3
 
-  /// For every axis and every cut position, the nodes before the cut with a neighbour behind it, and the reverse.
+  /// For every axis and cut position, counts the nodes before the cut with a neighbour behind it, and the reverse.
   void sweep(const Part& part) {
     const NodeGraph& g = *lists_.graph;
     for (std::size_t axis = 0; axis < dissection_axes; ++axis) {
@@ -71,7 +73,7 @@ class SeparatorFinder {
     }
   }
 
-  /// The best position along every axis, by the layer on the thinner side.
+  /// The best position along every axis, scored by the thinner of the two layers.
   std::array<Cut, dissection_axes> promising(const Part& part) const noexcept {
     const Index n = part.size();
     std::array<Cut, dissection_axes> cuts;
@@ -89,7 +91,8 @@ class SeparatorFinder {
     return cuts;
   }
 
-  /// Smallest set of nodes that meets every edge across a cut; returns what is left on either side, and its size.
+  /// Smallest set of nodes that covers every edge across a cut; returns the remaining size of either side and the size
+  /// of the set.
   std::array<Index, 3> cover(const Part& part, const Cut& c) {
     describe_edges(part, c);
     cover_.solve(right_.size());
@@ -101,7 +104,7 @@ class SeparatorFinder {
     return sizes;
   }
 
-  /// Puts every node on the side where the cover found last leaves it.
+  /// Marks the side of every node, according to the last cover.
   void mark(const Part& part, const Cut& c) {
     const NodeVector& sorted = lists_.sorted[static_cast<std::size_t>(c.axis)];
     for (Index i = part.begin; i < part.end; ++i)
@@ -112,7 +115,7 @@ class SeparatorFinder {
       if (cover_.right_in_cover(i)) lists_.side[right_[i]] = side_separator;
   }
 
-  /// Hands the edges across the cut to the matching.
+  /// Passes the edges across the cut to the matching.
   void describe_edges(const Part& part, const Cut& c) {
     const NodeGraph& g = *lists_.graph;
     const auto axis = static_cast<std::size_t>(c.axis);
@@ -139,7 +142,7 @@ class SeparatorFinder {
 
   PartLists& lists_;
   SeparatorRefinement refinement_;
-  IndexedVector<Ranks> reach_;  // per node the greatest rank among itself and its neighbours
+  IndexedVector<Ranks> reach_;  // per node, the greatest rank among itself and its neighbours
   std::array<NodeVector, dissection_axes> before_, behind_;
   BipartiteCover cover_;
   NodeVector left_, right_, number_;

@@ -5,8 +5,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Moves nodes out of a separator to either side, which draws their neighbours on the other side into it, best gain
-/// first and through some losses; keeps the best state seen. O(separator x neighbours x log) a pass.
+/// Moves nodes from a separator to either side, which draws their neighbours on the other side into it. Takes the best
+/// gain first, accepts some losses, and keeps the best state. O(separator x neighbours x log) per pass.
 class SeparatorRefinement {
  public:
   explicit SeparatorRefinement(PartLists& lists) : lists_(lists), moved_(lists.graph->nodes(), 0) {}
@@ -34,7 +34,7 @@ class SeparatorRefinement {
   static Side other(Side s) noexcept { return s == side_first ? side_second : side_first; }
   double score() const noexcept { return separator_score(sizes_, part_.size()); }
 
-  /// Nodes that leave the separator minus those drawn in, when v goes to a side.
+  /// Change of the separator when v moves to a side: nodes that leave it minus nodes drawn in.
   NodeId gain(NodeId v, Side to) const noexcept {
     const NodeGraph& g = *lists_.graph;
     NodeId drawn = 0;
@@ -57,7 +57,7 @@ class SeparatorRefinement {
     ++sizes_[to];
     lists_.side[v] = to;
   }
-  /// Moves v, draws its neighbours in, and offers what has changed its gain.
+  /// Moves v, draws its neighbours in, and queues the nodes whose gain has changed.
   void move(NodeId v, Side to) {
     const NodeGraph& g = *lists_.graph;
     moved_[v] = pass_;
@@ -89,7 +89,7 @@ class SeparatorRefinement {
       const Candidate c = heap_.back();
       heap_.pop_back();
       if (lists_.side[c.node] != side_separator || moved_[c.node] == pass_ || gain(c.node, c.to) != c.gain) continue;
-      if (5 * (sizes_[other(c.to)] + c.gain - 1) < part_.size()) continue;  // too lopsided
+      if (5 * (sizes_[other(c.to)] + c.gain - 1) < part_.size()) continue;  // too unbalanced
       move(c.node, c.to);
       ++idle;
       if (score() >= best) continue;

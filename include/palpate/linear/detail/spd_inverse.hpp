@@ -5,13 +5,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Replaces the lower half of an SPD matrix by that of its inverse, in halves: with S the Schur complement of A_11,
-/// B_22 = S^-1, B_21 = -B_22 T, B_11 = A_11^-1 + T^T B_22 T, T = A_21 A_11^-1. About n^3 multiplications and additions
-/// in all, almost all of them in matrix products, and a quarter of the matrix as workspace.
+/// Replaces the lower half of an SPD matrix by that of its inverse, recursively in halves: with S the Schur complement
+/// of A_11, B_22 = S^-1, B_21 = -B_22 T, B_11 = A_11^-1 + T^T B_22 T, T = A_21 A_11^-1. About n^3 multiplications and
+/// additions in total, almost all in matrix products; the workspace is a quarter of the matrix.
 class SpdInverse {
  public:
-  /// Refuses a pivot that is not finite, not positive or below `threshold` of its own diagonal entry, as
-  /// not_positive_definite with `what`. The upper half is not read; afterwards the matrix is symmetric to the last bit.
+  /// Throws not_positive_definite with `what` for a pivot that is not finite, not positive or below `threshold` times
+  /// its own diagonal entry. The upper half is not read; afterwards the matrix is symmetric to the last bit.
   static void invert(MatrixX& matrix, double threshold, const char* what);
 
  private:
@@ -26,7 +26,7 @@ class SpdInverse {
   Index n_;
   VectorX diagonal_;
   double threshold_;
-  double worst_ = 1.0;  // smallest pivot so far, of its diagonal entry; NaN ends it
+  double worst_ = 1.0;  // smallest pivot so far, relative to its diagonal entry; NaN ends the inversion
 };
 
 }}  // namespace palpate

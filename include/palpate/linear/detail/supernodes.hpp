@@ -5,7 +5,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Supernodes in the order of their elimination, children before parents.
+/// Supernodes in elimination order, children before parents.
 struct Supernodes {
   NodeVector order;           ///< node at every position, supernode after supernode
   OffsetVector start;         ///< supernodes + 1 offsets into order
@@ -13,7 +13,7 @@ struct Supernodes {
   OffsetVector pivots, rows;  ///< dofs eliminated, and coupled rows below them
 };
 
-/// Finds supernodes and merges a child into its parent where a model of the time says that this is faster.
+/// Finds supernodes and merges a child into its parent where a time model predicts that this is faster.
 Supernodes find_supernodes(const NodeGraph& g, const EliminationTree& t);
 
 }}}  // namespace palpate::detail

@@ -8,15 +8,15 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Modelled time of a front in floating-point operations: a front has a fixed cost, its entries are moved, and then it
-/// is factorised. Merging small fronts trades operations on zeros for the first two.
+/// Modelled time of a front in floating-point operations: a fixed cost, the cost of moving its entries, and the
+/// factorisation. Merging small fronts adds operations on zeros and saves part of the first two.
 inline double front_cost(double pivots, double rows) noexcept {
   constexpr double per_front = 60000.0, per_entry = 16.0;
   const double m = pivots + rows;
   return per_front + per_entry * (pivots * m + 0.5 * rows * rows) + pivots * (m * (m - pivots) + pivots * pivots / 3.0);
 }
 
-/// Finds supernodes and merges a child into its parent where the model says that this is faster.
+/// Finds supernodes and merges a child into its parent where the time model predicts that this is faster.
 class SupernodeBuilder {
  public:
   SupernodeBuilder(const NodeGraph& g, const EliminationTree& t) : g_(g), t_(t) {
@@ -28,7 +28,7 @@ class SupernodeBuilder {
     choose_child_order();
     Supernodes out;
     out.start.push_back(0);
-    // Parents before children, last child first, turned round: a postorder without recursion.
+    // Parents before children, last child first, then reversed: a postorder without recursion.
     NodeVector stack, reversed;
     for (NodeId s = 0; s < static_cast<NodeId>(parent_.size()); ++s)
       if (parent_[s] == -1) stack.push_back(s);
@@ -51,7 +51,8 @@ class SupernodeBuilder {
  private:
   static constexpr NodeId absorbed = -2;
 
-  /// Chains of columns whose rows only lose the column before, and the kept nodes as one.
+  /// Finds chains of columns where each has the rows of the one before except its own; the kept nodes form one
+  /// supernode.
   void find() {
     const Index n = t_.order.size();
     NodeVector super(n, -1);
@@ -73,7 +74,7 @@ class SupernodeBuilder {
     link(super);
   }
 
-  /// The tree of the supernodes.
+  /// Builds the tree of the supernodes.
   void link(const NodeVector& super) {
     const Index count = pivots_.size();
     for (NodeVector* v : {&first_child_, &next_sibling_, &parent_, &next_}) v->assign(count, -1);
@@ -93,7 +94,7 @@ class SupernodeBuilder {
     first_child_[parent] = child;
   }
 
-  /// Few zeros in what is large, so that solves stay as fast as the factorisation.
+  /// Allows only few zeros in large fronts, so that solves stay as fast as the factorisation.
   bool worth_merging(NodeId child, NodeId parent) const noexcept {
     const auto kc = static_cast<double>(pivots_[child]), rc = static_cast<double>(rows_[child]);
     const auto kp = static_cast<double>(pivots_[parent]), rp = static_cast<double>(rows_[parent]);
@@ -130,7 +131,7 @@ class SupernodeBuilder {
     }
   }
 
-  /// Children whose subtree needs most memory beyond what it leaves behind come first (Liu 1986).
+  /// Orders children by peak memory minus the memory that remains after them, largest first (Liu 1986).
   void choose_child_order() {
     OffsetVector peak(parent_.size(), 0), left(parent_.size(), 0);
     NodeVector children;
@@ -141,14 +142,14 @@ class SupernodeBuilder {
       std::stable_sort(children.begin(), children.end(),
                        [&](NodeId a, NodeId b) { return peak[a] - left[a] < peak[b] - left[b]; });
       first_child_[s] = -1;
-      for (NodeId c : children) adopt(s, c);  // each goes before the ones so far
+      for (NodeId c : children) adopt(s, c);  // each goes before the previous ones
       left[s] = LowerPanels::of(rows_[s], rows_[s]).size();
-      Index constrained = 0;
+      Index stored = 0;
       for (NodeId c = first_child_[s]; c >= 0; c = next_sibling_[c]) {
-        peak[s] = std::max(peak[s], constrained + peak[c]);
-        constrained += left[c];
+        peak[s] = std::max(peak[s], stored + peak[c]);
+        stored += left[c];
       }
-      peak[s] = std::max(peak[s], constrained + left[s]);
+      peak[s] = std::max(peak[s], stored + left[s]);
     }
   }
 

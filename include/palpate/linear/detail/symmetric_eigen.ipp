@@ -10,7 +10,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// One column-major matrix on its way to its eigenvectors, with the diagonal d and what lies beside it, e.
+/// One column-major matrix that is overwritten by its eigenvectors, with the diagonal d and the subdiagonal e.
 class SymmetricEigen {
  public:
   SymmetricEigen(MatrixX& matrix, VectorX& values)
@@ -28,7 +28,7 @@ class SymmetricEigen {
   double& at(Index i, Index j) noexcept { return v_[i + j * n_]; }
   double* column(Index j) noexcept { return v_ + j * n_; }
 
-  /// Brings row i to tridiagonal form; its entries left of the diagonal stand in d.
+  /// Reduces row i to tridiagonal form; its entries left of the diagonal are in d.
   void reflect(Index i) noexcept {
     double scale = 0.0, h = 0.0;
     for (Index k = 0; k < i; ++k) scale += std::abs(d_[k]);
@@ -74,7 +74,7 @@ class SymmetricEigen {
     }
   }
 
-  /// The product of all reflections.
+  /// Forms the product of all reflections.
   void accumulate() noexcept {
     for (Index i = 0; i + 1 < n_; ++i) {
       at(n_ - 1, i) = at(i, i);

@@ -1,14 +1,14 @@
-// The innermost loop of the direct solver: a small block of a matrix product held in registers.
+// The innermost loop of the direct solver: a small block of a matrix product kept in registers.
 #pragma once
 
 #include <palpate/core/types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// A few doubles in one register, as many as the flags of the compiler allow.
+/// The doubles of one register; their number depends on the compiler flags.
 using Packet = Eigen::internal::packet_traits<double>::type;
 inline constexpr int packet_size = Eigen::internal::packet_traits<double>::size;
-/// Tile shape: three packets by as many columns as leave registers for the operands.
+/// Tile shape: three packets times as many columns as leave registers for the operands.
 inline constexpr int tile_packets = 3;
 inline constexpr int tile_rows = tile_packets * packet_size;
 inline constexpr int tile_columns = packet_size == 8 ? 8 : 4;
@@ -39,14 +39,14 @@ inline Packet multiply_add(const Packet& a, const Packet& b, const Packet& c) no
 /// How a tile changes its target.
 enum class Into { empty, full };
 
-/// A matrix seen step by step: step s starts at data + s * step.
+/// A matrix read in steps: step s starts at data + s * step.
 struct Steps {
   const double* data;
   Index step;
 };
 
-/// c = c - A B (Into::full) or -A B (Into::empty), where step s of A is a column of `V` packets and step s of B a row
-/// of which entry j lies at j * `b_apart`. Only the first `valid` columns of c are written; all of B is read.
+/// c = c - A B (Into::full) or -A B (Into::empty), where step s of A is a column of `V` packets and step s of B is a
+/// row whose entry j is at j * `b_apart`. Writes only the first `valid` columns of c; reads all of B.
 template <int V, int Columns, Into Mode>
 PALPATE_ALWAYS_INLINE void subtract_tile_here(Index steps, Steps a, Steps b, Index b_apart, double* c, Index c_stride,
                                               Index valid) noexcept {
@@ -83,7 +83,7 @@ PALPATE_ALWAYS_INLINE void subtract_tile_here(Index steps, Steps a, Steps b, Ind
   }
 }
 
-/// The same, to be called: fewer copies of the loop, for many steps.
+/// The same as a function call: fewer copies of the loop, for many steps.
 template <int V, int Columns, Into Mode>
 inline void subtract_tile(Index steps, Steps a, Steps b, Index b_apart, double* c, Index c_stride,
                           Index valid) noexcept {

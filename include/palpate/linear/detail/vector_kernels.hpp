@@ -1,4 +1,4 @@
-// The operations on long vectors that iterative solvers are made of, each compiled once.
+// Operations on long vectors for iterative solvers, each compiled once.
 #pragma once
 
 #include <palpate/core/types.hpp>
@@ -10,7 +10,7 @@ double dot(const double* a, const double* b, Index size) noexcept;
 /// y = y + factor x
 void add_scaled(double* y, double factor, const double* x, Index size) noexcept;
 
-/// So many zeros. Allocates.
+/// A vector of `size` zeros. Allocates.
 VectorX zeros(Index size);
 void fill(VectorX& x, double value) noexcept;
 inline double dot(const VectorX& a, const VectorX& b) noexcept {

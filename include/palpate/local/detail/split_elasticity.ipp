@@ -10,8 +10,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE double bulk_modulus(const Matrix6& d) noexcept {
   if (const auto c = lame_constants(d)) return c->lambda + 2.0 / 3.0 * c->mu;
-  // D = L diag(p) L^T and L y = m: m . D^-1 m is the sum of y_i^2 / p_i. By hand: Eigen's LDLT of six rows costs every
-  // program a second and a half of compilation.
+  // D = L diag(p) L^T and L y = m: m . D^-1 m is the sum of y_i^2 / p_i. Written out because Eigen's LDLT of six rows
+  // adds 1.5 s of compile time to every program.
   Matrix6 a = d;
   Vector6 y = Vector6::Zero();
   for (int i = 0; i < 3; ++i) y[i] = 1.0;

@@ -1,4 +1,4 @@
-// What the laws for large strain take from a deformation gradient, and their derivatives.
+// Functions of the deformation gradient for large-strain materials, and their derivatives.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -9,20 +9,20 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// J - 1 of F = I + h without the digits that det F - 1 loses at small strain.
+/// J - 1 of F = I + h, without the cancellation that det F - 1 has at small strain.
 template <class S>
 PALPATE_ALWAYS_INLINE S volume_change(const Tensor3<S>& h) noexcept {
   const Tensor3<S> c = cofactor(h);
   return trace(h) + trace(c) + determinant(h, c);
 }
 
-/// |F|^2 - 3 of F = I + h, the first invariant less its value at rest.
+/// |F|^2 - 3 of F = I + h: the first invariant minus its value at rest.
 template <class S>
 PALPATE_ALWAYS_INLINE S stretch_change(const Tensor3<S>& h) noexcept {
   return S(2) * trace(h) + contract(h, h);
 }
 
-/// Where a law that needs J > 0 holds.
+/// True if F is admissible for a material that needs J > 0.
 inline bool has_volume(const Tensor3<double>& f) noexcept {
   return all_finite(f) && determinant(f) > 0.0;
 }
@@ -50,14 +50,14 @@ inline Matrix9 cofactor_derivative(const Tensor3<double>& f) noexcept {
   return d;
 }
 
-/// b += factor * d(F A)/dF for a symmetric A held fixed: A_lj between equal rows.
+/// b += factor * d(F A)/dF for a symmetric A kept constant: A_lj between equal rows.
 inline void add_right_product(Matrix9& b, double factor, const Tensor3<double>& a) noexcept {
   for (int j = 0; j < 3; ++j)
     for (int l = 0; l < 3; ++l)
       for (int i = 0; i < 3; ++i) b(i + 3 * j, i + 3 * l) += factor * a(l, j);
 }
 
-/// b += factor * d(F E)/dF for F held fixed and E = F^T F: F_il F_kj + (F F^T)_ik delta_jl.
+/// b += factor * d(F E)/dF for F kept constant and E = F^T F: F_il F_kj + (F F^T)_ik delta_jl.
 inline void add_strain_product(Matrix9& b, double factor, const Tensor3<double>& f) noexcept {
   const Tensor3<double> left = f * transpose(f);
   for (int j = 0; j < 3; ++j)

@@ -1,4 +1,4 @@
-// Isotropic laws written in the invariants I = |F|^2, II = |cof F|^2 and J = det F.
+// Isotropic materials in terms of the invariants I = |F|^2, II = |cof F|^2 and J = det F.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -8,13 +8,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// First derivatives of W by I, II and J, and the second ones that are not zero in the laws of this folder.
+/// First derivatives of W by I, II and J, and those second derivatives that are not zero for the materials here.
 struct InvariantDerivatives {
   double first = 0.0, second = 0.0, volume = 0.0;
   double first_volume = 0.0, second_volume = 0.0, volume_volume = 0.0;
 };
 
-/// dP/dF of a law in these invariants.
+/// dP/dF of a material in these invariants.
 inline Matrix9 tangent_of_invariants(const Tensor3<double>& f, const InvariantDerivatives& w) noexcept {
   using Column = Eigen::Matrix<double, 9, 1>;
   const Tensor3<double> c = cofactor(f), right = transpose_product(f, f);

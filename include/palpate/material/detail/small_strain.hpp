@@ -13,7 +13,7 @@ struct Lame {
   scalar_of<S> lambda, mu;
 };
 
-/// Two divisions, which a compiler moves out of a loop when the law is a local variable.
+/// Two divisions, which a compiler moves out of a loop when the material is a local variable.
 template <class S>
 PALPATE_ALWAYS_INLINE Lame<S> lame(const LinearElastic& material) noexcept {
   return {static_cast<scalar_of<S>>(material.lame_lambda()), static_cast<scalar_of<S>>(material.shear_modulus())};

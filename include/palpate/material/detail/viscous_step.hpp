@@ -1,4 +1,4 @@
-// A law with memory over one step: a hyperelastic one.
+// A viscoelastic material over one step, which is hyperelastic.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -14,7 +14,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// The stress of a law under a change of volume alone: U(J) = W(J^(1/3) I), for J > 0.
+/// The stress of a material under a pure change of volume: U(J) = W(J^(1/3) I), for J > 0.
 template <class Base>
 class VolumeStress {
  public:
@@ -48,10 +48,11 @@ class VolumeStress {
 
 }  // namespace detail
 
-/// The incremental potential of a Prony series over a step (Ortiz and Stainier 1999): what faded is already gone, so
+/// The incremental potential of a Prony series over a step (Ortiz and Stainier 1999), after relaxation over the step:
 ///   W = share W0(F) + kept U(J) + driving : E,   E = (F^T F - I)/2,
-/// with `driving` what the past leaves of the second Piola-Kirchhoff stress and U the part of W0 of a change of volume.
-/// It exists for every base, so a step with memory is minimised like one without. Needs J > 0. Refers to the base.
+/// where `driving` is the remaining second Piola-Kirchhoff stress of the history and U the part of W0 from a change of
+/// volume. It exists for every base, so a viscoelastic step is minimised like an elastic one. Needs J > 0. Refers to
+/// the base.
 template <class Base>
 struct ViscousStep {
   const Base& base;
