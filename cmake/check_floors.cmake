@@ -2,7 +2,7 @@
 # the physics wing and the contact wing never include each other; static and moving models never include each other; no
 # include cycles; examples and README include no internal header (detail/). docs/architecture.md has the table and the
 # graph of includes, which are checked too.
-#   cmake [-DHEADERS=<folder that holds palpate/>] -P cmake/check_floors.cmake
+#   cmake [-DHEADERS=<folder that contains palpate/>] -P cmake/check_floors.cmake
 cmake_minimum_required(VERSION 3.21)
 
 # room                 floor wing
@@ -41,7 +41,7 @@ macro(complain text)
   string(APPEND errors "  ${text}\n")
 endmacro()
 
-# Sets room, floor and wing of a header named like palpate/core/types.hpp.
+# Sets room, floor and wing of a header with a name like palpate/core/types.hpp.
 macro(look_up header)
   string(REGEX REPLACE "^palpate/([^/]+).*" "\\1" room ${header})
   if(DEFINED room_${room})
@@ -53,7 +53,7 @@ macro(look_up header)
   endif()
 endmacro()
 
-# Definitions (x.ipp) keep the same rules; that x.hpp includes x.ipp at its end is no cycle.
+# Definitions (x.ipp) follow the same rules; the include of x.ipp at the end of x.hpp is not a cycle.
 file(GLOB_RECURSE headers RELATIVE ${HEADERS} ${HEADERS}/palpate/*.hpp ${HEADERS}/palpate/*.ipp ${HEADERS}/palpate/*.tpp)
 foreach(header IN LISTS headers)
   look_up(${header})
@@ -69,7 +69,7 @@ foreach(header IN LISTS headers)
   file(STRINGS ${HEADERS}/${header} lines REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")
   foreach(line IN LISTS lines)
     string(REGEX REPLACE "^[^<\"]*[<\"]([^>\"]*)[>\"].*" "\\1" target "${line}")
-    if(NOT target MATCHES "^palpate/")  # a neighbour by relative path, or somebody else's header
+    if(NOT target MATCHES "^palpate/")  # a neighbour by relative path, or a header of another library
       get_filename_component(folder ${HEADERS}/${header} DIRECTORY)
       get_filename_component(path "${target}" ABSOLUTE BASE_DIR ${folder})
       file(RELATIVE_PATH target ${HEADERS} ${path})
@@ -91,7 +91,7 @@ foreach(header IN LISTS headers)
     elseif(from_room MATCHES "^(palpate|own_types).hpp$" OR (from_room STREQUAL "fwd.hpp" AND NOT wing STREQUAL "roof"))
       # the umbrella headers may include anything
     elseif(wing STREQUAL "roof")
-      complain("${header} includes ${target}: nobody includes the umbrella headers")
+      complain("${header} includes ${target}: the umbrella headers must not be included")
     elseif("${from_wing};${wing}" MATCHES "^(physics;contact|contact;physics)$")
       complain("${header} (${from_wing} wing) includes ${target} (${wing} wing): the wings meet only in model/ and above")
     elseif(floor GREATER from_floor)
@@ -100,7 +100,7 @@ foreach(header IN LISTS headers)
   endforeach()
 endforeach()
 
-# Take away every header whose includes are all gone, again and again: what stays is on a cycle or leads into one.
+# Repeatedly remove every header whose includes have all been removed: the remaining ones are on a cycle or lead to one.
 set(left ${headers})
 set(before -1)
 list(LENGTH left count)
@@ -124,7 +124,7 @@ if(left)
   complain("include cycle among: ${left}")
 endif()
 
-# Users get along with public headers.
+# Examples and README use public headers only.
 file(GLOB_RECURSE programs ${HEADERS}/../examples/*.cpp ${HEADERS}/../examples/*.hpp ${HEADERS}/../README.md)
 foreach(program IN LISTS programs)
   file(STRINGS ${program} lines REGEX "#[ \t]*include[ \t]*<palpate/[^>]*detail/")
@@ -184,6 +184,6 @@ endif()
 
 list(LENGTH headers count)
 if(errors)
-  message(FATAL_ERROR "floors: broken house rules\n${errors}")
+  message(FATAL_ERROR "floors: rules violated\n${errors}")
 endif()
-message(STATUS "floors: ${count} headers keep the house rules")
+message(STATUS "floors: ${count} headers follow the rules")

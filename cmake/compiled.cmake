@@ -1,13 +1,13 @@
-# palpate::compiled: the definitions of include/palpate (x.ipp beside x.hpp), compiled once. Its sources are made here:
-# one per unit, which includes the unit's definitions, and one per x.inst.ipp (explicit instantiations).
+# palpate::compiled: the definitions of include/palpate (x.ipp next to x.hpp), compiled once. Its sources are generated
+# here: one per unit, which includes the definitions of the unit, and one per x.inst.ipp (explicit instantiations).
 
-# <unit> <patterns of files below include/palpate, separated by spaces>. A file goes to the first unit that takes it;
-# what none takes goes to a unit named like its room. Give a big room several units to compile it on several processors;
-# small functions that one tick calls should share a unit, so that they are inlined.
+# <unit> <patterns of files below include/palpate, separated by spaces>. A file belongs to the first unit with a
+# matching pattern, otherwise to a unit with the name of its room. Divide a large room into several units to compile it
+# on several processors; small functions called in a tick should be in one unit, so that they are inlined.
 set(palpate_units
   "contact_haptic contact/* haptic/*")  # one tick runs through both
 
-# Adapters of SDKs come after the SDK's own header, in the program that has it.
+# Adapters of SDKs must be included after the header of the SDK, in the program that uses it.
 set(palpate_units_exclude "^device/(openhaptics|force_dimension|chai3d)\\.")
 
 set(left "")
@@ -63,7 +63,8 @@ endif()
 list(JOIN sources "\n" lines)
 file(WRITE ${PROJECT_BINARY_DIR}/compiled/units.txt "${lines}\n")  # for sh cmake/run compile-time
 
-# Static, or what BUILD_SHARED_LIBS says. Where it is a guest's, or not wanted, it is built when somebody links it.
+# Static unless BUILD_SHARED_LIBS is set. As part of another project, or if PALPATE_BUILD_COMPILED is off, it is built
+# only when a target links it.
 add_library(palpate_compiled ${sources})
 add_library(palpate::compiled ALIAS palpate_compiled)
 if(NOT PALPATE_BUILD_COMPILED)
@@ -73,14 +74,14 @@ set_target_properties(palpate_compiled PROPERTIES EXPORT_NAME compiled VERSION $
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} WINDOWS_EXPORT_ALL_SYMBOLS ON CXX_EXTENSIONS OFF)
 target_compile_definitions(palpate_compiled PUBLIC PALPATE_COMPILED)
 target_link_libraries(palpate_compiled PUBLIC palpate)
-# A guest may hide symbols; these are the library's interface.
+# The including project may hide symbols by default; these are the interface of the library.
 set_target_properties(palpate_compiled PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
-# g++ -fPIC would call its own functions through a table, in case somebody replaces them: no inlining on the tick.
+# g++ -fPIC would call the library's functions through a table, in case they are replaced: no inlining in the tick.
 target_compile_options(palpate_compiled PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
-if(TARGET palpate_dev_options)  # warnings, and the processor that palpate's own programs are for
+if(TARGET palpate_dev_options)  # warnings, and the target processor of palpate's own programs
   target_compile_options(palpate_compiled PRIVATE $<TARGET_PROPERTY:palpate_dev_options,INTERFACE_COMPILE_OPTIONS>)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    # False alarms: vectors of eight in loops of Eigen that run no time on the fours of Hex8.
+    # False positives: loops of Eigen over vectors of eight that are never executed for the vectors of four of Hex8.
     target_compile_options(palpate_compiled PRIVATE -Wno-array-bounds)
   endif()
 endif()

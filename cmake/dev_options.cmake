@@ -1,4 +1,4 @@
-# palpate_dev_options: what palpate's own tests, examples and benchmarks are compiled with. Users never get it.
+# palpate_dev_options: compile options of palpate's own tests, examples and benchmarks. Not used for other projects.
 add_library(palpate_dev_options INTERFACE)
 
 if(MSVC)
@@ -6,15 +6,15 @@ if(MSVC)
   return()
 endif()
 
-# clang counts -Wsign-conversion into -Wconversion and g++ does not: off, so that both see the same rules.
+# clang includes -Wsign-conversion in -Wconversion and g++ does not: off, so that both apply the same rules.
 target_compile_options(palpate_dev_options INTERFACE -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # False alarms: on std::string (GCC bug 105651); on std::variant, and on g++'s own AVX-512 intrinsics (105593).
+  # False positives: on std::string (GCC bug 105651); on std::variant, and on g++'s own AVX-512 intrinsics (105593).
   target_compile_options(palpate_dev_options INTERFACE -Wno-restrict -Wno-maybe-uninitialized -Wno-uninitialized)
 endif()
 if(PALPATE_WERROR)
   target_compile_options(palpate_dev_options INTERFACE -Werror)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # flow analysis after inlining Eigen: too many false alarms to stop a build
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # flow analysis after inlining Eigen: too many false positives for errors
     target_compile_options(palpate_dev_options INTERFACE -Wno-error=maybe-uninitialized -Wno-error=array-bounds
                                                          -Wno-error=stringop-overflow -Wno-error=stringop-overread)
   endif()

@@ -1,5 +1,5 @@
-# Installs the headers and the package, so that find_package(palpate) works. Nothing of these depends on the processor or
-# needs to be built; palpate::compiled comes along, as a component, when it was built.
+# Installs the headers and the package, so that find_package(palpate) works. They do not depend on the processor and
+# need no build; palpate::compiled is installed, as a component, if it was built.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/palpate)
@@ -29,7 +29,7 @@ install(FILES ${PROJECT_BINARY_DIR}/palpateConfig.cmake ${PROJECT_BINARY_DIR}/pa
         DESTINATION ${package_dir})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/palpate)
 
-# pkg-config: finds its way from where it lies, so that the installed folder may be moved.
+# pkg-config: paths are relative to the .pc file, so that the installed folder may be moved.
 function(palpate_pc name folder)
   file(RELATIVE_PATH PALPATE_PC_TO_PREFIX ${CMAKE_INSTALL_FULL_${folder}}/pkgconfig ${CMAKE_INSTALL_PREFIX})
   string(REGEX REPLACE "/$" "" PALPATE_PC_TO_PREFIX "${PALPATE_PC_TO_PREFIX}")

@@ -1,4 +1,4 @@
-# Toolchain file: programs for 64-bit Windows from a Debian or Ubuntu machine, run under wine when there is one.
+# Toolchain file: programs for 64-bit Windows from a Debian or Ubuntu machine, run under wine if it is installed.
 #   apt-get install g++-mingw-w64-x86-64-posix wine64
 #   cmake -S . -B build/windows -DCMAKE_TOOLCHAIN_FILE=cmake/mingw-w64.cmake
 set(CMAKE_SYSTEM_NAME Windows)
@@ -7,8 +7,8 @@ set(CMAKE_SYSTEM_PROCESSOR AMD64)
 set(CMAKE_CXX_COMPILER x86_64-w64-mingw32-g++-posix)
 set(CMAKE_RC_COMPILER x86_64-w64-mingw32-windres)
 
-# Libraries of the machine that builds are not for Windows; its headers-only ones are, but not with all of /usr/include:
-# they get a folder and packages of their own. Catch2 must be v2 for that.
+# Libraries of the host cannot be used for Windows; its header-only libraries can, but not with all of /usr/include:
+# they get a separate folder and packages. Catch2 must be v2 for that.
 set(CMAKE_FIND_ROOT_PATH /usr/x86_64-w64-mingw32)
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
@@ -31,7 +31,7 @@ if(NOT trying)
   endforeach()
 endif()
 
-# One file that runs by itself. Without -Wa,-mbig-obj Eigen's templates are too many for an object file.
+# One self-contained executable. Without -Wa,-mbig-obj Eigen's templates need too many sections for an object file.
 set(CMAKE_EXE_LINKER_FLAGS_INIT -static)
 set(CMAKE_CXX_FLAGS_INIT -Wa,-mbig-obj)
 

@@ -1,4 +1,4 @@
-// Charts as SVG that stands in the page itself.
+// Charts as SVG embedded in the page.
 #pragma once
 
 #include <palpate/palpate.hpp>
@@ -19,7 +19,7 @@ using palpate::Vector2;
   return line.data();
 }
 
-/// The smallest round number (1, 2, 3, 4, 5, 6 or 8 times a power of ten) that is no less than `value`.
+/// The smallest round number (1, 2, 3, 4, 5, 6 or 8 times a power of ten) that is not less than `value`.
 inline double round_up(double value, std::initializer_list<double> factors = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
   for (const double factor : factors)
@@ -27,7 +27,7 @@ inline double round_up(double value, std::initializer_list<double> factors = {1.
   return 10.0 * power;
 }
 
-/// A direction of a chart: what it shows and from where to where; logarithmic if it says so.
+/// An axis of a chart: label, range, and whether it is logarithmic.
 struct Axis {
   std::string label;
   double low, high;
@@ -50,14 +50,14 @@ struct Axis {
   }
 };
 
-/// An axis that holds zero and everything up to `most`, ending at a tick.
+/// An axis from zero to at least `most`, ending at a tick.
 inline Axis from_zero(std::string label, double most) {
   most = std::max(most, 1e-9);
   const double step = round_up(most / 6.0, {1.0, 2.0, 5.0});
   return {std::move(label), 0.0, step * std::ceil(most / step - 1e-9)};
 }
 
-/// A chart in the making: a frame with ticks, to which lines and bars are added.
+/// A chart under construction: a frame with ticks, to which lines and bars are added.
 class Chart {
  public:
   Chart(std::string title, Axis x, Axis y, double height = 220.0)
@@ -87,13 +87,13 @@ class Chart {
     body_ += text("<rect class='%s' x=%.1f width=%.1f y=%.1f height=%.1f />", style, x, place_x(to) - x - 0.5, top,
                   std::max(0.0, height_ - below - top));
   }
-  /// A vertical line at x with a word beside it.
+  /// A vertical line at x with a label.
   void mark(double x, const char* word) {
     body_ +=
         text("<line class=mark x1=%.1f x2=%.1f y1=%g y2=%g /><text class=tick x=%.1f y=%g text-anchor=end>%s</text>",
              place_x(x), place_x(x), above, height_ - below, place_x(x) - 4.0, above + 10.0, word);
   }
-  /// Something for the page's script to move along x: a vertical line (`now`) or a dot (`here`).
+  /// A marker that the script of the page moves along x: a vertical line (`now`) or a dot (`here`).
   void cursor(const char* kind) {
     body_ += text("<g class='cursor %s' data-x='%g,%g,%g,%g' data-y='%g,%g,%g,%g'>", kind, x_.low, x_.high, left,
                   width - right, y_.low, y_.high, height_ - below, above);

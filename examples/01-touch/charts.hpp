@@ -11,7 +11,7 @@ struct Charts {
   std::string force, depth, curve, latency, latency_note;
 };
 
-/// Points of every tenth tick or so: more than a screen can show.
+/// About every tenth point: still more than a screen can show.
 inline std::vector<Vector2> thinned(const std::vector<Vector2>& all, std::size_t from, std::size_t to) {
   const std::size_t step = std::max<std::size_t>(1, (to - from) / 800);
   std::vector<Vector2> few;
@@ -19,7 +19,8 @@ inline std::vector<Vector2> thinned(const std::vector<Vector2>& all, std::size_t
   return few;
 }
 
-/// Counts per bin, eight bins per decade from 1 us to 10 ms; rarer and more frequent durations go into the last ones.
+/// Counts per bin, eight bins per decade from 1 us to 10 ms; shorter and longer durations go into the first and the
+/// last bin.
 inline std::string latency_chart(const LoopReport& loop) {
   constexpr int per_decade = 8, bins = 4 * per_decade;
   std::array<double, bins> compute{}, late{};

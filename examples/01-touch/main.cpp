@@ -2,27 +2,28 @@
 //
 //   example_01_touch [--out DIR] [--seconds S] [--unpaced] [--mesh FILE]
 //
-// A simulated probe is pressed into a liver-like body, dragged across a stiff lesion under its surface and lifted.
-// A thousand times a second palpate is told where the probe is and answers with the force on it. That is the whole
-// of a haptic program but for the device, which is a MockDevice here: it follows a path instead of a hand.
+// A simulated probe is pressed into a liver-like body, moved across a stiff lesion under its surface and lifted. A
+// thousand times a second palpate receives the position of the probe and returns the force on it. The only part of a
+// haptic program that is missing is a real device: the MockDevice used here follows a path instead of a hand.
 //
-// What happens, and where to read it:
+// Steps, and the files that contain them:
 //
-//   1. A mesh with named groups is read, and a Scene says what holds it, what may be touched and what is looked at
+//   1. A mesh with named groups is read. A Scene defines its supports and which parts are touchable and rendered
 //      (scene.hpp).
-//   2. HapticFEModel<Element, Material, Solver> prepares everything that can be known before the first touch: it
-//      assembles the stiffness, condenses it to the touchable nodes and inverts what is left. A second or two, once.
-//   3. HapticSession ticks in a thread of its own, once per millisecond, within the device's limits. A tick takes some
-//      microseconds. It finds where the sphere meets the surface, solves for the contact forces, and passes their sum
-//      through a gate that no force gets round: never NaN, never longer than the device allows, never a jump.
-//   4. Meanwhile this thread does what a renderer does, thirty times a second: it takes the newest contact forces from
-//      the session, without either waiting for the other, and computes from them how all nodes have moved
+//   2. HapticFEModel<Element, Material, Solver> computes everything that does not depend on the contact: it assembles
+//      the stiffness, condenses it to the touchable nodes and inverts the condensed matrix. This takes a second or two,
+//      once.
+//   3. HapticSession ticks in its own thread, once per millisecond, within the limits of the device. A tick takes some
+//      microseconds. It finds the contacts between sphere and surface, solves for the contact forces, and passes their
+//      sum through the force gate: the output is never NaN, never exceeds the limit of the device, and has no jumps.
+//   4. Meanwhile the main thread works as a renderer, thirty times a second: it reads the newest contact forces from
+//      the session, without one thread waiting for the other, and computes the displacement of all nodes from them
 //      (session.hpp).
-//   5. Stresses follow from displacements (pictures.hpp), and all of it becomes a page to look at, DIR/report.html, and
-//      a drawing of the moment of the longest force, DIR/still.svg, and a series for ParaView, DIR/touch.pvd.
+//   5. Stresses are computed from displacements (pictures.hpp). The results are written as a page, DIR/report.html, a
+//      drawing of the moment of the largest force, DIR/still.svg, and a series for ParaView, DIR/touch.pvd.
 //
-// --unpaced does the same in simulated time, as fast as it goes; for tests. The exit code is 1 when a force was not
-// finite or longer than the device allows, 2 when the arguments or the mesh are refused.
+// --unpaced does the same in simulated time, as fast as possible; for tests. The exit code is 1 when a force was not
+// finite or exceeded the limit of the device, 2 when the arguments or the mesh are refused.
 #include <palpate/device/recorder.hpp>
 #include "report.hpp"
 #include "still.hpp"
@@ -41,7 +42,7 @@ struct Arguments {
   bool paced = true;
 };
 
-/// Nothing when there is something it does not know.
+/// Empty when an argument is not known.
 std::optional<Arguments> read_arguments(int count, char** values) {
   Arguments a;
   for (int i = 1; i < count; ++i) {
@@ -62,7 +63,7 @@ std::optional<Arguments> read_arguments(int count, char** values) {
   return a;
 }
 
-/// Whether the device was told nothing but finite forces within its limit.
+/// Whether all forces written to the device were finite and within its limit.
 bool all_forces_fine(const std::vector<RecordedTick>& ticks) {
   const double most = DeviceLimits{}.peak_force * (1.0 + 1e-9);
   return std::ranges::all_of(ticks,
@@ -91,7 +92,7 @@ int run_example(const Arguments& arguments) {
             << " (" << files << " files)\n";
 
   if (all_forces_fine(session.ticks)) return 0;
-  std::cerr << "a force was not finite or beyond the limit of the device\n";
+  std::cerr << "a force was not finite or exceeded the limit of the device\n";
   return 1;
 }
 
@@ -105,7 +106,7 @@ int main(int count, char** values) {
   }
   try {
     return run_example(*arguments);
-  } catch (const std::exception& error) {  // SetupError says what was refused, why, and what to change
+  } catch (const std::exception& error) {  // a SetupError states what was refused, why, and what to change
     std::cerr << error.what() << '\n';
     return 2;
   }

@@ -1,4 +1,4 @@
-// The numbers the page's script draws from, packed small: displacement in 16 bits, stress in 8.
+// The data for the script of the page, compressed: displacement in 16 bits, stress in 8.
 #pragma once
 
 #include "pictures.hpp"
@@ -40,7 +40,7 @@ class Packed {
   std::string bytes_;
 };
 
-/// What is drawn: the surface and the lesion inside, in vertices of their own.
+/// The drawn geometry: the surface and the lesion inside, with separate vertices.
 class PageData {
  public:
   PageData(const Organ& organ, const std::vector<Picture>& pictures)
@@ -51,14 +51,14 @@ class PageData {
     surface_vertices_ = nodes_.size();
     for (const auto& face : lesion_)
       for (const NodeId node : face) include(node);
-    // Base64 makes 4 bytes of 3: no more than 4 MB of pictures.
+    // Base64 needs 4 bytes for 3; the pictures take at most 4 MB.
     const std::size_t most = std::max<std::size_t>(1, 4'000'000 / (7 * nodes_.size()));
     const std::size_t step = (pictures.size() + most - 1) / most;
     for (std::size_t i = 0; i < pictures.size(); i += step) pictures_.push_back(&pictures[i]);
   }
 
-  /// The colours' range [Pa], the same for all pictures. It ends at half the highest stress of the surface, where few
-  /// nodes near the sphere go beyond: up to the top, the rest would look alike.
+  /// The range of the colours [Pa], the same for all pictures. It ends at half the largest stress of the surface, which
+  /// only a few nodes near the sphere exceed; with the full range the rest would have almost one colour.
   ColourScale scale() const {
     double highest = 2.0;
     for (const Picture* p : pictures_) highest = std::max(highest, surface_stress(*p));

@@ -1,4 +1,4 @@
-// From what a session kept to what is drawn and written: positions, stress, the tool; the series for ParaView.
+// Converts the record of a session to pictures (positions, stress, the tool) and to a series for ParaView.
 #pragma once
 
 #include "chart.hpp"
@@ -14,18 +14,18 @@
 
 namespace touch {
 
-/// A frame with what follows from it.
+/// A frame and the quantities computed from it.
 struct Picture {
   double time = 0.0;
   Vector3 hand, sphere,
-      force;  ///< world frame: where the device is, where the sphere rests [m]; force on the sphere [N]
+      force;                   ///< world frame: device, sphere on the surface [m]; force on the sphere [N]
   double penetration = 0.0;    ///< of the device into the surface at rest [m]; negative: above it
   VectorX displacement;        ///< 3 per node [m]
   VectorX von_mises;           ///< per node [Pa]
   VectorX von_mises_elements;  ///< per element [Pa]
 };
 
-/// How deep a sphere at `position` is in the surface at rest [m].
+/// Penetration of a sphere at `position` into the surface at rest [m].
 inline double penetration(const Organ& organ, const Vector3& position) {
   return tool.radius - organ.contact_surface().closest(organ.to_world().inverse() * position).distance;
 }
@@ -39,7 +39,7 @@ inline std::vector<Picture> develop(const Organ& organ, const Recording& session
         std::ranges::lower_bound(session.ticks, frame.time, {}, [](const RecordedTick& t) { return t.state.time; });
     if (tick == session.ticks.end()) continue;
     const Vector3 hand = tick->state.position;
-    // The hand is coupled to the sphere by a spring of the device's stiffness: on the surface the two are apart.
+    // Hand and sphere are coupled by a spring of the device's stiffness: in contact their positions differ.
     const Vector3 sphere = hand + frame.force / DeviceLimits{}.stiffness;
     pictures.push_back({frame.time, hand, sphere, frame.force, penetration(organ, hand), frame.displacement,
                         stress.von_mises_nodes, stress.von_mises_elements});
@@ -59,7 +59,7 @@ inline std::vector<std::array<NodeId, 3>> region_surface(const Organ& organ, std
   return faces;
 }
 
-/// About 50 files for ParaView, evenly spread, and the list that plays them. Returns how many.
+/// About 50 files for ParaView, evenly spaced in time, and the list of them. Returns their number.
 inline Index write_series(const std::filesystem::path& folder, const Organ& organ,
                           const std::vector<Picture>& pictures) {
   std::filesystem::create_directories(folder / "vtu");

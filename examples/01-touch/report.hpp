@@ -1,4 +1,4 @@
-// report.html: one page that needs nothing but itself.
+// report.html: one self-contained page.
 #pragma once
 
 #include "charts.hpp"
@@ -11,7 +11,7 @@
 
 namespace touch {
 
-/// A part of the page that lies beside this file: its frame, its looks, its script.
+/// A part of the page from the folder of this file: HTML, style or script.
 inline std::string part(const std::string& name) {
   return io::read_file(PALPATE_EXAMPLE_DATA "/../01-touch/" + name);
 }
@@ -67,36 +67,36 @@ inline std::string make_page(const Organ& organ, const TouchPath& path, const Re
   const Charts charts = make_charts(organ, session, plan);
   const double per_newton =
       1.0 / round_up(std::max(1e-3, session.loop.peak_force) / (0.25 * size.maxCoeff()), {1.0, 2.0, 4.0, 5.0});
-  return fill(
-      part("page.html"),
-      {{"style", part("page.css")},
-       {"script", part("viewer.js")},
-       {"summary", text("A sphere of %g mm radius is pressed %g mm into a soft organ, dragged %g mm across a "
-                        "stiffer lesion hidden %.0f mm below, and lifted. "
-                        "palpate computed the force in every millisecond.",
-                        1e3 * tool.radius, 1e3 * plan.depth, 1e3 * plan.drag, 1e3 * path.target_depth())},
-       {"gradient", gradient(data.scale())},
-       {"legend", legend(data.scale())},
-       {"arrow", text("%.0f mm per newton", 1e3 * per_newton)},
-       {"figures", figures(organ, session.loop)},
-       {"force_chart", charts.force},
-       {"depth_chart", charts.depth},
-       {"curve_chart", charts.curve},
-       {"latency_chart", charts.latency},
-       {"latency_note", charts.latency_note},
-       {"scene", scene_table(organ, plan, size, path.target_depth())},
-       {"setup", setup_table(organ.report())},
-       {"loop", loop_table(session.loop)},
-       {"loop_facts", loop_facts(session.loop)},
-       {"status", status_table(session.loop)},
-       {"remarks",
-        "The tissue is linear: strains beyond a few per cent, as right under the sphere, show the trend, not the "
-        "truth. "
-        "It has no inertia and no memory, and contact has no friction; so lifting follows the curve of pressing at the "
-        "same place, and "
-        "the grey curve differs because the place does. Von Mises stress is averaged to the nodes."},
-       {"version", text("%d.%d.%d", PALPATE_VERSION_MAJOR, PALPATE_VERSION_MINOR, PALPATE_VERSION_PATCH)},
-       {"data", data.json(path.outward(), size, per_newton)}});
+  return fill(part("page.html"),
+              {{"style", part("page.css")},
+               {"script", part("viewer.js")},
+               {"summary", text("A sphere of %g mm radius is pressed %g mm into a soft organ, moved %g mm across a "
+                                "stiffer lesion hidden %.0f mm below, and lifted. "
+                                "palpate computed the force in every millisecond.",
+                                1e3 * tool.radius, 1e3 * plan.depth, 1e3 * plan.drag, 1e3 * path.target_depth())},
+               {"gradient", gradient(data.scale())},
+               {"legend", legend(data.scale())},
+               {"arrow", text("%.0f mm per newton", 1e3 * per_newton)},
+               {"figures", figures(organ, session.loop)},
+               {"force_chart", charts.force},
+               {"depth_chart", charts.depth},
+               {"curve_chart", charts.curve},
+               {"latency_chart", charts.latency},
+               {"latency_note", charts.latency_note},
+               {"scene", scene_table(organ, plan, size, path.target_depth())},
+               {"setup", setup_table(organ.report())},
+               {"loop", loop_table(session.loop)},
+               {"loop_facts", loop_facts(session.loop)},
+               {"status", status_table(session.loop)},
+               {"remarks",
+                "The tissue is linear: strains beyond a few per cent, as directly under the sphere, are only "
+                "qualitative. "
+                "It has no inertia and no viscosity, and contact has no friction; so lifting follows the curve of "
+                "pressing at the "
+                "same place, and "
+                "the grey curve differs because the place is different. Von Mises stress is averaged to the nodes."},
+               {"version", text("%d.%d.%d", PALPATE_VERSION_MAJOR, PALPATE_VERSION_MINOR, PALPATE_VERSION_PATCH)},
+               {"data", data.json(path.outward(), size, per_newton)}});
 }
 
 }  // namespace touch

@@ -1,4 +1,4 @@
-// What is touched: the organ, its materials, how it is held, and the way the tool takes over it.
+// The scene: the organ, its materials, its supports, and the path of the tool.
 #pragma once
 
 #include <palpate/palpate.hpp>
@@ -10,17 +10,17 @@ namespace touch {
 
 using namespace palpate;
 
-// The three choices that make a tissue: which element, which material, how it is solved. Smoothed<Tet4> is Tet4 without
-// its locking: tissue is nearly incompressible. Condensed<SelectiveInverse> keeps the nodes a tool can reach and reads
-// their compliance from a stored inverse: the least work in a tick.
+// A model is defined by element, material and solver. Smoothed<Tet4> is Tet4 without locking, since tissue is nearly
+// incompressible. Condensed<SelectiveInverse> keeps the nodes that a tool can reach and reads their compliance from a
+// stored inverse: the least work in a tick.
 using Organ = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
 
 inline const RegionMaterials<LinearElastic> materials{
     {"parenchyma", {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}},  // soft, nearly incompressible
-    {"lesion", {.youngs_modulus = 50e3, .poisson_ratio = 0.45, .density = 1060.0}},     // what a finger looks for
+    {"lesion", {.youngs_modulus = 50e3, .poisson_ratio = 0.45, .density = 1060.0}},  // the stiff inclusion to be found
 };
 
-/// The nodes of all boundary triangles that face downwards: what the organ lies on.
+/// The nodes of all boundary triangles that face downwards: the surface on which the organ rests.
 inline std::vector<NodeId> underside(const Mesh<Tet4>& mesh) {
   std::vector<NodeId> nodes;
   for (const auto& face : extract_boundary<Tet4>(mesh)) {
@@ -30,29 +30,29 @@ inline std::vector<NodeId> underside(const Mesh<Tet4>& mesh) {
   return nodes;
 }
 
-/// A condition is about a named group of the mesh file or a list of nodes. There is no gravity here: the mesh shows the
-/// organ as it lies, so its weight is in the shape already. (Switched on, it would flatten it by another 2.8 mm.)
+/// Conditions refer to a named group of the mesh file or to a list of nodes. There is no gravity here: the mesh is the
+/// shape of the organ under its weight. (With gravity it would be flattened by another 2.8 mm.)
 inline Scene make_scene(const Mesh<Tet4>& mesh) {
   Scene scene;
   scene.fix("ligament").fix(underside(mesh)).touch("front").render("surface");
   return scene;
 }
 
-/// A 4 mm probe. The triangles of the patch are 4 mm long: their corners can be felt a little.
+/// A 4 mm probe. The triangles of the patch are 4 mm long, so their corners cause a small force ripple.
 inline constexpr SphereTool tool{.radius = 4e-3};
 
 /// How the tool moves; lengths in [m].
 struct Plan {
   double seconds = 10.0;
-  double depth = 5e-3;    ///< how far it is pressed in
-  double drag = 30e-3;    ///< how far it is dragged, half of it on either side of the lesion
-  double height = 12e-3;  ///< of the sphere over the surface before and after
+  double depth = 5e-3;    ///< depth of the press
+  double drag = 30e-3;    ///< length of the slide, half of it on either side of the lesion
+  double height = 12e-3;  ///< of the sphere above the surface before and after
 };
 
 /// A right-angled frame on the touchable surface: `x` along its longest extent, `z` outward.
 struct PatchFrame {
   Vector3 origin, x, y, z;
-  double depth;  ///< of the middle of what lies below [m]
+  double depth;  ///< of the centre of the region below the surface [m]
 };
 
 /// The frame above the region `name`, in the model's coordinates.
@@ -81,8 +81,8 @@ inline PatchFrame frame_above(const Organ& organ, std::string_view name) {
   return frame;
 }
 
-/// Down, across and up again, always at the same height over the surface. The surface is a hill made of flat triangles;
-/// a hand follows the hill. So the path knows it as the paraboloid that fits its vertices best.
+/// Down, across and up again; the slide is at constant depth. The surface consists of flat triangles, but a hand would
+/// follow its smooth shape, so the path follows the paraboloid fitted to its vertices.
 class TouchPath {
  public:
   TouchPath(const Organ& organ, const Plan& plan)
@@ -106,11 +106,11 @@ class TouchPath {
   }
   /// Outward direction of the patch.
   const Vector3& outward() const noexcept { return frame_.z; }
-  /// How deep the middle of the lesion lies [m].
+  /// Depth of the centre of the lesion [m].
   double target_depth() const noexcept { return frame_.depth; }
 
  private:
-  /// Along the patch (x) and over the hill (z).
+  /// Along the patch (x) and above the paraboloid (z).
   static Trajectory moves(const Plan& p) {
     const double left = -0.5 * p.drag, right = 0.5 * p.drag, above = tool.radius + p.height, in = tool.radius - p.depth;
     const auto at = [&](double share, double x, double z) {

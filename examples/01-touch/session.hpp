@@ -1,4 +1,4 @@
-// The two threads of a haptic program: one that feels, a thousand times a second, and one that looks, thirty times.
+// The two threads of a haptic program: the haptic thread at 1000 Hz and the rendering thread at 30 Hz.
 #pragma once
 
 #include <palpate/device/recorder.hpp>
@@ -10,7 +10,7 @@
 
 namespace touch {
 
-/// What the looking thread keeps: all that is needed to draw the organ at one moment.
+/// State stored by the rendering thread: everything needed to draw the organ at one moment.
 struct Frame {
   double time = 0.0;                ///< [s] of the device
   VectorX displacement;             ///< 3 per node [m]
@@ -19,7 +19,7 @@ struct Frame {
 
 struct Recording {
   LoopReport loop;
-  std::vector<RecordedTick> ticks;  ///< every pose the device gave and every force it was told
+  std::vector<RecordedTick> ticks;  ///< every pose read from the device and every force written to it
   std::vector<Frame> frames;
 };
 
@@ -30,7 +30,7 @@ inline void show_progress(const LoopProgress& p) {
                "..............................", p.elapsed, p.force);
 }
 
-/// Takes the newest snapshot that the haptic thread left and computes the displacement of all nodes from it: one
+/// Reads the newest snapshot of the haptic thread and computes the displacement of all nodes from it: one
 /// back-substitution. Neither thread waits for the other.
 inline bool look(Organ& organ, HapticSession& session, double not_before, Frame& frame) {
   const ServoSnapshot& snapshot = session.snapshot();
@@ -41,15 +41,15 @@ inline bool look(Organ& organ, HapticSession& session, double not_before, Frame&
   return true;
 }
 
-/// Lets a simulated hand follow the path and feel the organ. Paced: in real time, a wall clock decides what is late.
-/// Unpaced: as fast as it goes, in simulated time, the same in every run but for the frames.
+/// Moves a simulated device along the path, in contact with the organ. Paced: in real time, lateness is measured by a
+/// wall clock. Unpaced: as fast as possible, in simulated time; every run is the same except for the frames.
 inline Recording run(Organ& organ, const TouchPath& path, const Plan& plan, bool paced) {
   MockDevice hand(path, {.clock = paced ? DeviceClock::wall : DeviceClock::simulated});  // 3.3 N, 500 N/m
   Recorder device(hand, static_cast<std::size_t>(1000.0 * plan.seconds) + 1);
   HapticSession session(device, organ, tool);
   session.start({.duration = plan.seconds, .paced = paced, .real_time = true});
 
-  // Meanwhile, this thread does what a renderer does. It keeps no more than 600 pictures of a long session.
+  // Meanwhile, this thread works as a renderer. It keeps at most 600 pictures of a long session.
   const double interval = std::max(1.0 / 30.0, plan.seconds / 600.0);
   const auto pause =
       paced ? std::chrono::microseconds(static_cast<int>(1e6 * interval)) : std::chrono::microseconds(50);
@@ -59,7 +59,7 @@ inline Recording run(Organ& organ, const TouchPath& path, const Plan& plan, bool
   for (double next = 0.0; session.running(); std::this_thread::sleep_for(pause))
     if (look(organ, session, next, frame)) {
       recording.frames.push_back(frame);
-      next = frame.time + (paced ? 0.5 : 1.0) * interval;  // paced, the pause itself keeps the distance
+      next = frame.time + (paced ? 0.5 : 1.0) * interval;  // paced: the sleep already provides the interval
       show_progress(session.progress());
     }
 

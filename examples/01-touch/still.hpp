@@ -1,4 +1,4 @@
-// One moment of a session as a drawing that needs no program to look at: still.svg.
+// One moment of a session as a static drawing: still.svg.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,7 +7,7 @@
 
 namespace touch {
 
-/// Parallel projection onto the page and painter's algorithm: what is farthest away is drawn first.
+/// Parallel projection onto the page with the painter's algorithm: the farthest parts are drawn first.
 class Still {
  public:
   /// Looks at `centre` [m] from a direction between `outward` and the horizon.
@@ -31,13 +31,13 @@ class Still {
     add(at.dot(towards_) + radius,
         text("<circle cx='%.1f' cy='%.1f' r='%.1f' fill='url(#sphere)'/>", x(at), y(at), scale_ * radius));
   }
-  /// Drawn over everything.
+  /// Drawn on top of everything.
   void arrow(const Vector3& from, const Vector3& to) {
     add(infinity, text("<line x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f' stroke='#111' stroke-width='3' "
                        "marker-end='url(#head)'/>",
                        x(from), y(from), x(to), y(to)));
   }
-  /// A bar of colours at the left, with what its ends mean.
+  /// A colour bar at the left, with the values at its ends.
   void legend(const ColourScale& scale, const std::string& caption) {
     std::string bar;
     for (int i = 0; i < 32; ++i)
@@ -76,7 +76,7 @@ class Still {
   std::vector<std::pair<double, std::string>> parts_;
 };
 
-/// The organ at the moment of the longest force: its surface coloured by stress, the sphere, the force on it.
+/// The organ at the moment of the largest force: its surface coloured by stress, the sphere, the force on it.
 inline std::string draw_still(const Organ& organ, const TouchPath& path, const std::vector<Picture>& pictures) {
   const Picture& p = *std::ranges::max_element(pictures, {}, [](const Picture& q) { return q.force.norm(); });
   Vector3 low = organ.rest_position(0), high = low;
@@ -87,7 +87,7 @@ inline std::string draw_still(const Organ& organ, const TouchPath& path, const s
     most = std::max(most, p.von_mises[node]);
   }
   const Vector3 size = high - low;
-  const ColourScale colours(0.0, round_up(0.5 * most));  // few nodes right under the sphere are beyond
+  const ColourScale colours(0.0, round_up(0.5 * most));  // only a few nodes under the sphere exceed this
   Still still(0.5 * (low + high), path.outward(), size.maxCoeff());
   const auto moved = [&](NodeId n) {
     return Vector3(organ.rest_position(n) + p.displacement.segment<3>(3 * Index{n}));

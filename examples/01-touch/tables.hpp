@@ -29,27 +29,28 @@ inline std::string scene_table(const Organ& organ, const Plan& plan, const Vecto
     facts.push_back({name, text("linear elastic, E = %g kPa, ν = %g, ρ = %g kg/m³", 1e-3 * m.youngs_modulus,
                                 m.poisson_ratio, m.density)});
   facts.push_back({"depth of the lesion", text("%.0f mm from the patch to its middle", 1e3 * lesion_depth)});
-  facts.push_back({"held", "ligament and underside; no gravity (the mesh is the shape under it)"});
+  facts.push_back({"supports", "ligament and underside; no gravity (the mesh is the shape under gravity)"});
   facts.push_back({"tool", text("rigid sphere, radius %g mm, no friction", 1e3 * tool.radius)});
   facts.push_back({"device", text("simulated: up to %g N, coupled by %g N/m", DeviceLimits{}.peak_force,
                                   DeviceLimits{}.stiffness)});
   facts.push_back(
-      {"way of the hand", text("%g mm in, %g mm across the lesion, out again", 1e3 * plan.depth, 1e3 * plan.drag)});
+      {"path of the hand", text("%g mm in, %g mm across the lesion, out again", 1e3 * plan.depth, 1e3 * plan.drag)});
   return rows(facts);
 }
 
 inline std::string setup_table(const SetupReport& r) {
   const auto count = [](Index i) { return std::to_string(i); };
   const auto megabytes = [](std::size_t bytes) { return text("%.2f MB", 1e-6 * static_cast<double>(bytes)); };
-  Fields facts{{"free degrees of freedom",
-                count(r.free_dofs) + ": " + count(r.kept_dofs) + " kept, " + count(r.condensed_dofs) + " condensed"},
-               {"touchable, seen", count(r.touchable_vertices) + " vertices, " + count(r.rendered_nodes) + " nodes"},
-               {"memory", "stiffness " + megabytes(r.stiffness_bytes) + ", solver " + megabytes(r.solver_bytes) +
-                              ", compliance " + megabytes(r.compliance_bytes)},
-               {"mesh quality", text("worst %.2f, mean %.2f (1: regular)", r.worst_quality, r.mean_quality)},
-               {"condition, probe error", text("%.2g, %.1g", r.condition_estimate, r.probe_error)}};
+  Fields facts{
+      {"free degrees of freedom",
+       count(r.free_dofs) + ": " + count(r.kept_dofs) + " kept, " + count(r.condensed_dofs) + " condensed"},
+      {"touchable, rendered", count(r.touchable_vertices) + " vertices, " + count(r.rendered_nodes) + " nodes"},
+      {"memory", "stiffness " + megabytes(r.stiffness_bytes) + ", solver " + megabytes(r.solver_bytes) +
+                     ", compliance " + megabytes(r.compliance_bytes)},
+      {"mesh quality", text("worst %.2f, mean %.2f (1: regular)", r.worst_quality, r.mean_quality)},
+      {"condition, probe error", text("%.2g, %.1g", r.condition_estimate, r.probe_error)}};
   for (const auto& [stage, seconds] : r.seconds) facts.push_back({"time: " + stage, seconds_text(seconds)});
-  facts.push_back({"time: all", seconds_text(r.total_seconds())});
+  facts.push_back({"time: total", seconds_text(r.total_seconds())});
   for (const auto& [flag, remark] : r.remarks) facts.push_back({"note", remark});
   return rows(facts);
 }
@@ -62,18 +63,18 @@ inline std::string loop_table(const LoopReport& r) {
       out += "<td>" + seconds_text(d);
   };
   row("computing a tick", r.compute);
-  if (r.paced) row("waking up late by", r.lateness);
+  if (r.paced) row("waking up late", r.lateness);
   return out;
 }
 
 inline std::string loop_facts(const LoopReport& r) {
   const RealtimeGrant& g = r.real_time;
-  std::string grant = !g.requested ? "not asked for" : g.fifo ? "SCHED_FIFO granted" : "normal scheduling";
+  std::string grant = !g.requested ? "not requested" : g.fifo ? "SCHED_FIFO granted" : "normal scheduling";
   if (g.memory_locked) grant += ", memory locked";
   if (!g.refusals.empty()) grant += "; refused: " + g.refusals;
   return rows({{"ticks", text("%llu in %.2f s", static_cast<unsigned long long>(r.ticks), r.elapsed) +
                              (r.paced ? text(", paced at %g Hz", r.rate)
-                                      : text(", as fast as they go; simulated at %g Hz", r.rate))},
+                                      : text(", as fast as possible; simulated at %g Hz", r.rate))},
                {"missed periods", std::to_string(r.missed_deadlines)},
                {"peak force", text("%.3f N", r.peak_force)},
                {"real time", grant},

@@ -1,4 +1,4 @@
-// Draws the organ of report.html with WebGL, and moves what goes with the slider. Copied into the page.
+// Draws the organ of report.html with WebGL, and updates everything that depends on the slider. Copied into the page.
 "use strict";
 const D = JSON.parse(document.getElementById("data").textContent);
 const element = id => document.getElementById(id);
@@ -30,7 +30,7 @@ const product = (a, b) => {
 };
 const placed = (x, y, z, at) => new Float32Array([...x, 0, ...y, 0, ...z, 0, ...at, 1]);
 
-// --- where the camera is ---
+// --- camera ---
 const home = () => ({
   yaw: Math.atan2(D.outward[1], D.outward[0]),
   pitch: Math.min(Math.asin(D.outward[2]), 0.5),
@@ -375,7 +375,7 @@ function makeRenderer() {
   };
 }
 
-// --- numbers and cursors that go with the frame ---
+// --- numbers and cursors of the frame ---
 function tell() {
   const force = Math.hypot(of(frame, 4), of(frame, 5), of(frame, 6)),
     depth = 1e3 * of(frame, 7),
@@ -384,7 +384,7 @@ function tell() {
   element("r-force").textContent = force.toFixed(3) + " N";
   element("r-depth").textContent = Math.max(0, depth).toFixed(1) + " mm";
   element("r-stress").textContent = (1e-3 * most).toFixed(2) + " kPa";
-  element("clamped").textContent = most > D.most ? "more in places" : "";
+  element("clamped").textContent = most > D.most ? "higher in places" : "";
   element("slider").value = frame;
   element("slider").setAttribute("aria-valuetext", of(frame, 0).toFixed(2) + " seconds");
   for (const cursor of document.querySelectorAll(".cursor")) {
@@ -403,7 +403,7 @@ function show(f) {
   tell();
 }
 
-// --- hands on the page ---
+// --- user input ---
 const slider = element("slider");
 slider.max = frames - 1;
 slider.addEventListener("input", () => {

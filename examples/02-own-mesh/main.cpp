@@ -1,22 +1,24 @@
-// Example 02: a mesh of your own.
+// Example 02: your own mesh.
 //
 //   example_02_own_mesh [FILE] [--scale METRES] [--fix GROUP] [--touch GROUP] [--radius METRES] [--out DIR]
 //
-// Reads a file, says what is wrong with it and what to do about that, and touches it with a scripted sphere. Without a
-// file it takes the organ that comes with palpate. docs/from_images.md tells how to make such a file from a scan.
+// Reads a mesh file, reports its defects and what to do about them, and touches the body with a scripted sphere.
+// Without a file it uses the organ shipped with palpate. docs/from_images.md describes how to make such a file from a
+// scan.
 //
-//   1. Read. The content of the file decides about its format. Positions become metres: --scale 1e-3 for a file in
-//      millimetres, which most scans are. A file without solids is refused with the command that fills it.
-//   2. Diagnose. `diagnose` measures without judging: sizes, quality, inverted and flat elements, duplicates, orphans,
-//      loose pieces. Read it before you look for an error anywhere else.
-//   3. Say what holds the body and what may be touched, by the names of groups, by position or by lists
-//      of nodes (scene.hpp here).
-//   4. Set up. HapticFEModel refuses what cannot be right. Every refusal has a kind; `advice` says what to do about the
-//      commonest. Mending is never done in silence: ask for it with AdmissionPolicy.
-//   5. Touch, and write what happened for ParaView: DIR/touched.vtu, with displacement and stress.
+//   1. Read. The format is detected from the content of the file. Positions are converted to metres: --scale 1e-3 for a
+//      file in millimetres, the unit of most scans. A file without solids is refused; the message contains the command
+//      that meshes it.
+//   2. Diagnose. `diagnose` measures and refuses nothing: sizes, quality, inverted and flat elements, duplicates,
+//      orphans, disconnected pieces. Read its output before you look for an error elsewhere.
+//   3. Define the supports of the body and its touchable part, by names of groups, by position or by lists of nodes
+//      (scene.hpp in this folder).
+//   4. Set up. HapticFEModel refuses invalid input. Every refusal has a kind; `advice` states what to do about the most
+//      common ones. Nothing is repaired silently: repairs must be requested with AdmissionPolicy.
+//   5. Touch, and write the result for ParaView: DIR/touched.vtu, with displacement and stress.
 //
-// The exit code is 0 when the sphere was pressed in and felt something, 1 when it was not, 2 when the mesh or the
-// arguments were refused.
+// The exit code is 0 when the sphere was pressed in and the force was not zero, 1 when it was zero, 2 when the mesh or
+// the arguments were refused.
 #include "scene.hpp"
 
 #include <palpate/io/vtu.hpp>
@@ -54,29 +56,29 @@ std::optional<Arguments> read_arguments(int count, char** values) {
   return a;
 }
 
-/// What to do about a refusal, for the kinds that people meet.
+/// What to do about a refusal, for the most common kinds.
 const char* advice(SetupErrorKind kind) {
   switch (kind) {
     case SetupErrorKind::inverted_element:
-      return "If all elements are inverted, the file numbers them the other way round: set\n"
-             "SetupOptions::admission.inverted = Admission::repair. If only some are, mesh anew.";
+      return "If all elements are inverted, the file uses the opposite node order: set\n"
+             "SetupOptions::admission.inverted = Admission::repair. If only some are, mesh again.";
     case SetupErrorKind::degenerate_element:
     case SetupErrorKind::poor_quality:
-      return "Smooth the surface and mesh anew (gmsh -optimize, tetgen -pq1.2); dropping flat elements with\n"
+      return "Smooth the surface and mesh again (gmsh -optimize, tetgen -pq1.2); dropping flat elements with\n"
              "admission.degenerate = Admission::repair may leave holes.";
     case SetupErrorKind::duplicate_node:
-      return "Parts that were meshed apart share no nodes. If they belong together:\n"
+      return "Parts that were meshed separately share no nodes. If they should be connected:\n"
              "admission.duplicate_nodes = Admission::repair welds them.";
     case SetupErrorKind::unconstrained:
-      return "Hold at least three nodes of every piece that are not on one line: --fix with a group.";
+      return "Fix at least three nodes of every piece that are not on one line: --fix with a group.";
     case SetupErrorKind::unknown_group:
     case SetupErrorKind::empty_group:
       return "Name one of the groups listed above, or leave --fix and --touch out.";
     case SetupErrorKind::unsupported:
-      return "A surface has to be filled first; a file of ten-node tetrahedra wants read_mesh<Tet10>, one of\n"
+      return "A surface has to be meshed first; a file of ten-node tetrahedra needs read_mesh<Tet10>, one of\n"
              "hexahedra read_mesh<Hex8>.";
     case SetupErrorKind::bad_file:
-      return "The message names the line, what was expected there and what was found: look at it in the file.";
+      return "The message names the line, what was expected there and what was found: check it in the file.";
     default:
       return "docs/errors.md lists every kind of refusal.";
   }
@@ -90,7 +92,7 @@ void print_groups(const Mesh<Tet4>& mesh) {
   if (mesh.groups.all().empty()) std::cout << "  none\n";
 }
 
-/// How many elements have which quality, as bars.
+/// Histogram of element quality, as bars.
 void print_quality(const MeshDiagnosis& d) {
   std::cout << "quality (mean ratio, 1 is regular; below " << MeshThresholds{}.poor_quality << " is poor):\n";
   const Index most = *std::ranges::max_element(d.quality_histogram);
@@ -102,8 +104,8 @@ void print_quality(const MeshDiagnosis& d) {
   }
 }
 
-/// Presses the sphere in, as fast as the machine goes. Returns the longest force [N] and leaves the displacement of the
-/// deepest moment in `u`.
+/// Presses the sphere in, unpaced. Returns the largest force [N] and stores the displacement at the deepest moment in
+/// `u`.
 double touch(Organ& organ, const Press& press, VectorX& u) {
   MockDevice stylus(trajectory::poke({.from = press.above, .to = press.deepest, .approach = 0.5, .hold = 0.2}));
   HapticSession session(stylus, organ, press.sphere);
@@ -124,7 +126,7 @@ int run(const Arguments& arguments) {
   print_quality(diagnosis);
 
   const Chosen chosen = choose(mesh, diagnosis, arguments);
-  std::cout << "held: " << chosen.constrained << "; touched: " << chosen.touched << '\n';
+  std::cout << "supports: " << chosen.constrained << "; touched: " << chosen.touched << '\n';
   Organ organ(mesh, chosen.scene, {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
   std::cout << organ.report();
 

@@ -1,4 +1,4 @@
-// What holds a body, what of it is touched, and where the sphere goes, for a mesh nobody has seen before.
+// Supports, touchable part and path of the sphere for an unknown mesh.
 #pragma once
 
 #include <palpate/mesh/diagnosis.hpp>
@@ -18,23 +18,23 @@ struct Arguments {
   double radius = 0.0;  ///< of the sphere [m]; 0: see plan_press
 };
 
-/// A scene, and in words what was chosen.
+/// A scene, and a description of what was chosen.
 struct Chosen {
   Scene scene;
   std::string constrained, touched;
 };
 
-/// A height as a share of the body's (0 the lowest, 1 the highest point), z up.
+/// A point at a share of the height of the body (0 the lowest, 1 the highest point), z up.
 inline Vector3 at_height(const MeshDiagnosis& diagnosis, double share) {
   return diagnosis.box_min + share * (diagnosis.box_max - diagnosis.box_min);
 }
 
-/// The named groups; where none is named, "ligament" and "front" if the mesh has them, else the lowest tenth of the
-/// body is held and the surface of the upper half may be touched.
+/// Uses the named groups; where none is named, "ligament" and "front" if the mesh has them, otherwise the lowest tenth
+/// of the body is fixed and the surface of the upper half is touchable.
 inline Chosen choose(const Mesh<Tet4>& mesh, const MeshDiagnosis& diagnosis, const Arguments& arguments) {
   Chosen c;
-  const auto name_of = [&](const std::string& named, const char* usual) {
-    return !named.empty() ? named : mesh.find_group(usual) != nullptr ? std::string(usual) : std::string();
+  const auto name_of = [&](const std::string& named, const char* fallback) {
+    return !named.empty() ? named : mesh.find_group(fallback) != nullptr ? std::string(fallback) : std::string();
   };
   const std::string fix = name_of(arguments.fix, "ligament"), touch = name_of(arguments.touch, "front");
   c.constrained = fix.empty() ? "the lowest tenth" : "group '" + fix + "'";
@@ -45,15 +45,15 @@ inline Chosen choose(const Mesh<Tet4>& mesh, const MeshDiagnosis& diagnosis, con
   return c;
 }
 
-/// A sphere and its way: from above the surface to its deepest place, world frame [m].
+/// A sphere and its path: from above the surface to its deepest position, world frame [m].
 struct Press {
   SphereTool sphere;
   Vector3 above, deepest;
   double depth;  ///< of the sphere in the surface at rest
 };
 
-/// In the middle of what may be touched, along the outward normal there, a quarter of the radius deep. Without a radius
-/// the sphere is twice as large as the mean edge there: facets longer than half the radius make contact too stiff.
+/// Presses in the middle of the touchable surface, along the normal there, to a depth of a quarter of the radius. If no
+/// radius is given, it is twice the mean edge length there: facets longer than half the radius make contact too stiff.
 template <class Organ>
 Press plan_press(const Organ& organ, double radius) {
   const ContactSurface& surface = organ.contact_surface();

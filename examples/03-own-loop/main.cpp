@@ -1,23 +1,23 @@
-// Example 03: the loop belongs to somebody else.
+// Example 03: a loop owned by an SDK.
 //
 //   example_03_own_loop [--seconds S] [--unpaced]
 //
 // Some SDKs (OpenHaptics, HAPI) own the servo thread: they call you a thousand times a second, and you must return
-// within that millisecond. palpate does not mind. `servo.tick(states)` is a function like any other: it never throws,
-// allocates, locks or waits, and its last step is the force gate, so what it returns may go to the motors as it is.
+// within that millisecond. palpate supports this: `servo.tick(states)` is an ordinary function that never throws,
+// allocates, locks or waits. Its last step is the force gate, so its result can be sent to the motors unchanged.
 //
-// Here `Scheduler` plays the SDK: it runs a callback in a thread of its own until the callback says that it is done.
-// Three rules make the rest:
+// Here `Scheduler` represents the SDK: it runs a callback in its own thread until the callback returns false. There are
+// three rules:
 //
-//   1. All that is expensive happens before the scheduler starts: reading, set-up, the servo's constructor.
-//   2. The callback converts units at the border (this SDK speaks millimetres and newtons, and its z points at the
-//      user), ticks, and hands the force over. It counts status flags in memory of its own; it prints nothing.
-//   3. Another thread draws. It takes `servo.read_snapshot()`, which neither waits nor makes the tick wait, and turns
-//   the
-//      contact forces in it into the displacement of every node: one back-substitution, thirty times a second.
+//   1. All expensive work is done before the scheduler starts: reading, set-up, the constructor of the servo.
+//   2. The callback converts units (this SDK uses millimetres and newtons, and its z axis points to the user), ticks,
+//      and passes the force to the SDK. It counts status flags in its own memory; it prints nothing.
+//   3. Another thread draws. It calls `servo.read_snapshot()`, which neither waits nor makes the tick wait, and
+//      computes the displacement of every node from the contact forces: one back-substitution, thirty times a second.
 //
-// --unpaced calls back as fast as it goes, in simulated time; for tests. The exit code is 0 when every force was finite
-// and within the limit of the device, the tissue was felt, and the drawing thread saw it move.
+// --unpaced calls back as fast as possible, in simulated time; for tests. The exit code is 0 when every force was
+// finite and within the limit of the device, the contact force was not zero, and the drawing thread read a
+// displacement.
 #include <palpate/palpate.hpp>
 
 #include <chrono>
@@ -31,9 +31,9 @@ namespace {
 using Organ = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
 using Steady = std::chrono::steady_clock;
 
-// --- what an SDK brings
+// --- part of an SDK
 
-/// The state of a device as a C library keeps it: a hand that pokes, in millimetres, z towards the user, y up.
+/// The state of a device as stored by a C library, in millimetres, z towards the user, y up.
 struct SdkDevice {
   double position_mm[3] = {0.0, 0.0, 0.0};
   double force_newton[3] = {0.0, 0.0, 0.0};
@@ -53,12 +53,12 @@ class Scheduler {
   std::thread thread_;
 };
 
-// --- what you bring
+// --- part of your program
 
-/// Everything the callback touches: made before the scheduler starts, read by others after it has stopped.
+/// All data of the callback: constructed before the scheduler starts, read by other threads after it has stopped.
 struct Session {
   Session(Organ& organ, double duration)
-      : servo(organ, SphereTool{.radius = 4e-3}, {.device = {.peak_force = 3.3, .stiffness = 500.0}}),  // ask your SDK
+      : servo(organ, SphereTool{.radius = 4e-3}, {.device = {.peak_force = 3.3, .stiffness = 500.0}}),  // from your SDK
         seconds(duration) {}
 
   HapticServo servo;
@@ -67,7 +67,7 @@ struct Session {
   std::uint64_t ticks = 0;
   StatusCounters status;
   double peak = 0.0;  ///< [N]
-  bool sound = true;  ///< every force was finite and within the limit
+  bool valid = true;  ///< every force was finite and within the limit
   std::atomic<bool> running{true};
 };
 
@@ -75,14 +75,14 @@ struct Session {
 Vector3 to_world(const double (&mm)[3]) noexcept {
   return 1e-3 * Vector3(mm[0], -mm[2], mm[1]);
 }
-/// Forces go the other way by the same turn, without the scale.
+/// Forces are converted by the inverse rotation, without the scale.
 void to_device(const Vector3& force, double (&out)[3]) noexcept {
   out[0] = force[0];
   out[1] = force[2];
   out[2] = -force[1];
 }
 
-/// Where the simulated hand is, in the SDK's own words: it presses in and sways.
+/// Moves the simulated hand, in the units and axes of the SDK: it presses in and oscillates sideways.
 void move_hand(double t, SdkDevice& device) noexcept {
   const double in = std::min(1.0, 2.0 * t);
   device.position_mm[0] = -31.0 + 4.0 * std::sin(3.0 * t);
@@ -93,7 +93,7 @@ void move_hand(double t, SdkDevice& device) noexcept {
 /// The servo callback. In an OpenHaptics program its first and last lines are hdBeginFrame and hdEndFrame.
 bool on_servo_tick(void* user) {
   Session& s = *static_cast<Session*>(user);
-  const double now = 1e-3 * static_cast<double>(s.ticks);  // an SDK has a clock; use it where there is one
+  const double now = 1e-3 * static_cast<double>(s.ticks);  // use the clock of the SDK if it has one
   move_hand(now, s.device);
 
   ToolState state;
@@ -104,13 +104,13 @@ bool on_servo_tick(void* user) {
 
   s.status.count(out.status);
   s.peak = std::max(s.peak, out.force().norm());
-  s.sound = s.sound && out.force().allFinite() && out.force().norm() <= 3.3 * (1.0 + 1e-9);
+  s.valid = s.valid && out.force().allFinite() && out.force().norm() <= 3.3 * (1.0 + 1e-9);
   const bool go_on = 1e-3 * static_cast<double>(++s.ticks) < s.seconds;
   if (!go_on) s.running.store(false, std::memory_order_release);
   return go_on;
 }
 
-/// What a renderer does between two pictures. Returns how far the organ has moved at most [m].
+/// The work of a renderer for one picture. Returns the largest displacement of the organ [m].
 double look(Organ& organ, HapticServo& servo, VectorX& u) {
   organ.displacement_with(servo.read_snapshot(), u);
   return u.cwiseAbs().maxCoeff();
@@ -133,12 +133,12 @@ int run(double seconds, bool paced) {
       ++pictures;
       std::this_thread::sleep_for(std::chrono::milliseconds(paced ? 33 : 1));
     }
-  }  // the thread has ended: its counts may be read
+  }  // the thread has ended: its counters may be read
   moved = std::max(moved, look(organ, session.servo, u));
 
   std::cout << session.ticks << " ticks, " << pictures << " pictures, peak force " << session.peak
             << " N, surface moved " << 1e3 * moved << " mm\nstatus: " << session.status << '\n';
-  return session.sound && session.peak > 0.05 && moved > 1e-4 ? 0 : 1;
+  return session.valid && session.peak > 0.05 && moved > 1e-4 ? 0 : 1;
 }
 
 }  // namespace

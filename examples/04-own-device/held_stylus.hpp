@@ -1,4 +1,4 @@
-// A device of one's own: everything a HapticDevice needs, in one struct.
+// A user-defined device: everything a HapticDevice needs, in one class.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
@@ -14,16 +14,16 @@ using palpate::Status;
 using palpate::ToolState;
 using palpate::Vector3;
 
-/// A stylus in a hand, simulated: a mass pulled by the hand's spring to where the hand wants to be, and pushed by the
-/// force that is rendered. So unlike a MockDevice it feels: pushed back, it moves back, as a mouse or a real arm would.
-/// Time is its own, one millisecond per read.
+/// A simulated stylus in a hand: a mass pulled to the goal of the hand by a spring, and pushed by the rendered force.
+/// Unlike a MockDevice it moves under the rendered force, as a real device would. It has a simulated clock, one
+/// millisecond per read.
 class HeldStylus {
  public:
   HeldStylus(const Vector3& start, const Vector3& goal) : start_(start), goal_(goal), position_(start) {}
 
   // --- the five functions of a HapticDevice
 
-  /// Never throws, blocks, allocates or locks. SI units and the clock of the device; a state that could not be had is
+  /// Never throws, blocks, allocates or locks. SI units and the clock of the device; a state that could not be read is
   /// marked invalid, not guessed.
   ToolState read() noexcept {
     advance();
@@ -32,25 +32,26 @@ class HeldStylus {
     state.velocity = velocity_;
     state.time = time_;
     state.valid = plugged_;
-    motors_.read_was(plugged_);  // who cannot read must not push
+    motors_.read_was(plugged_);  // no force without a valid reading
     return state;
   }
 
-  /// The force comes from a force gate: it is finite and has no jumps. The device is the last to touch it: within the
-  /// peak, and zero unless running and readable. RenderLimits does that; real motors get motors_.force() and torque().
+  /// The force comes from a force gate: it is finite and has no jumps. The device is the last stage: it must limit the
+  /// force to the peak, and set it to zero unless it is running and readable. RenderLimits does that; send
+  /// motors_.force() and torque() to real motors.
   Status write(const GatedForce& force) noexcept { return motors_.render(force); }
 
-  /// From the data sheet, or better from the SDK. `stiffness` bounds what is felt: the servo couples tool and tissue
-  /// with it. Too high and a real device buzzes.
+  /// From the data sheet, or better from the SDK. `stiffness` bounds the rendered stiffness: the servo uses it to
+  /// couple device and proxy. If it is too high, a real device vibrates.
   DeviceLimits limits() const noexcept { return motors_.limits(); }
 
-  /// Opens, checks, calibrates; the only one that may throw.
+  /// Opens, checks, calibrates; the only function that may throw.
   void start() noexcept { motors_.start(); }
   void stop() noexcept { motors_.stop(); }
 
   // --- for tests
 
-  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] what is rendered now
+  const Vector3& last_force() const noexcept { return motors_.force(); }  ///< [N] rendered now
   void unplug(bool unplugged) noexcept { plugged_ = !unplugged; }
   const Vector3& goal() const noexcept { return goal_; }
   const Vector3& position() const noexcept { return position_; }
@@ -64,9 +65,9 @@ class HeldStylus {
   /// One millisecond of the hand: symplectic Euler.
   void advance() noexcept {
     time_ += step;
-    const double share = std::min(1.0, time_);  // the hand takes a second to get there
-    const Vector3 wanted = start_ + share * (goal_ - start_);
-    const Vector3 pull = stiffness * (wanted - position_) - damping * velocity_;
+    const double share = std::min(1.0, time_);  // the hand reaches its goal after a second
+    const Vector3 target = start_ + share * (goal_ - start_);
+    const Vector3 pull = stiffness * (target - position_) - damping * velocity_;
     velocity_ += step / mass * (pull + motors_.force());
     position_ += step * velocity_;
   }
@@ -81,6 +82,6 @@ class HeldStylus {
                                   .workspace_high = Vector3(0.1, 0.1, 0.15)}};
 };
 
-static_assert(palpate::HapticDevice<HeldStylus>);  // says at once what is missing
+static_assert(palpate::HapticDevice<HeldStylus>);  // the compiler names what is missing
 
 }  // namespace own

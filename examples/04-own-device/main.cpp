@@ -1,17 +1,17 @@
-// Example 04: a device of your own.
+// Example 04: your own device.
 //
 // A device is a type with five functions (concepts/haptic_device.hpp): read, write, limits, start, stop. No base class,
-// no registration. held_stylus.hpp is one, simulated, so that this runs anywhere; an adapter of a real SDK has the same
-// shape, and docs/tutorials.md says which units and traps wait there.
+// no registration. held_stylus.hpp is a simulated one, so that this program runs anywhere; an adapter of a real SDK has
+// the same structure, and docs/tutorials.md describes units and pitfalls.
 //
-//   1. The concept is checked when it compiles: a missing `noexcept` is an error with the name of the function.
-//   2. What a compiler cannot see, the law suite tries: forces beyond the peak, NaN, reads that fail, time that runs
-//      back, forces after stop. Do that with a device that nobody holds.
-//   3. HapticSession does the rest: peak force, stiffness and rate come from the device.
+//   1. The concept is checked at compile time: a missing `noexcept` is an error with the name of the function.
+//   2. The law suite tests what a compiler cannot check: forces beyond the peak, NaN, reads that fail, time that runs
+//      backwards, forces after stop. Run it with nobody holding the device.
+//   3. HapticSession reads peak force, stiffness and rate from the device.
 //
-// The stylus is pushed at a point 8 mm inside the organ by a soft hand. It must come to rest earlier, where the pull of
-// the hand and the push of the tissue are the same: if units, signs or the order of read and write were wrong, it
-// would not. The exit code says so.
+// A soft hand moves the stylus towards a point 8 mm inside the organ. It must come to rest before, where the force of
+// the hand and the force of the tissue balance; if units, signs or the order of read and write were wrong, it would
+// not. The exit code is 0 when they balance.
 #include "held_stylus.hpp"
 
 #include <palpate/palpate.hpp>
@@ -23,11 +23,11 @@ using namespace palpate;
 
 namespace {
 
-/// Whether the law suite finds nothing.
+/// Whether the law suite finds no violation.
 bool keeps_the_laws() {
   own::HeldStylus spare(Vector3::Zero(), Vector3(0.0, 0.0, 0.01));
   const auto violations = testing::device_laws(spare);
-  std::cout << "laws of a device: " << (violations.empty() ? "kept" : testing::describe(violations)) << '\n';
+  std::cout << "laws of a device: " << (violations.empty() ? "satisfied" : testing::describe(violations)) << '\n';
   return violations.empty();
 }
 
@@ -43,16 +43,16 @@ int run() {
   own::HeldStylus stylus(Vector3(-0.031, -0.036, 0.060), Vector3(-0.031, -0.033, 0.036));
   HapticSession session(stylus, organ, SphereTool{.radius = 4e-3});
 
-  // Its time is simulated: no need to wait for it. With motors: paced, and real_time = true.
+  // Time is simulated, so the loop is not paced. With real motors: paced, and real_time = true.
   const LoopReport report = session.run({.duration = 3.0, .paced = false});
   std::cout << report << session.snapshot() << '\n';
 
   const Vector3 pull = 150.0 * (stylus.goal() - stylus.position());  // of the hand, at rest
   const Vector3 push = session.snapshot().contact_force();
-  std::cout << "the hand pulls with " << pull.norm() << " N, the tissue pushes with " << push.norm() << " N, together "
+  std::cout << "the hand pulls with " << pull.norm() << " N, the tissue pushes with " << push.norm() << " N, sum "
             << (pull + push).norm() << " N\n";
   const bool balanced = push.norm() > 0.05 && (pull + push).norm() < 0.05 * push.norm();
-  if (!balanced) std::cerr << "the stylus is not at rest where both forces are the same\n";
+  if (!balanced) std::cerr << "the stylus is not at rest where both forces balance\n";
   return balanced && report.status[StatusFlag::non_finite_force] == 0 ? 0 : 1;
 }
 

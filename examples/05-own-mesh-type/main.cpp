@@ -1,20 +1,17 @@
-// Example 05: the mesh is in somebody else's memory.
+// Example 05: a mesh in the memory of a simulator.
 //
-// A simulator has its mesh already. palpate reads it where it is, in one of two ways:
+// A simulator already has a mesh. palpate can read it in place, in one of two ways:
 //
-//   1. A class of your own that answers eight questions (concepts/mesh.hpp) is a MeshView: simulator.hpp. No base
-//   class,
-//      no copy; units are converted in `position`.
-//   2. Raw arrays (x y z x y z ..., ids, ids, ...) become one by MeshArrays, of any floating and integral type. It
-//   keeps
-//      pointers: temporaries do not compile.
+//   1. Your own class with the eight functions of concepts/mesh.hpp is a MeshView: simulator.hpp. No base class, no
+//      copy; units are converted in `position`.
+//   2. MeshArrays makes a MeshView of raw arrays (x y z x y z ..., ids, ids, ...) of any floating and integral type. It
+//      keeps pointers: temporaries do not compile.
 //
-// `testing::mesh_laws` tells whether the answers fit together: indices, orientation, a closed surface. A model then
-// takes either, and copies what it needs while it is set up; afterwards the simulator may do with its mesh what it
-// likes.
+// `testing::mesh_laws` checks whether the data are consistent: indices, orientation, a closed surface. A model accepts
+// either, and copies what it needs during set-up; afterwards the simulator may change or delete its mesh.
 //
-// Both are tried with the same organ and the same poke. The forces must be the same in every tick as those of the mesh
-// from the file: exactly from the arrays, and to rounding through millimetres. The exit code says so.
+// Both are tested with the same organ and the same press. In every tick the forces must equal those of the mesh from
+// the file: exactly for the arrays, and to rounding for the class in millimetres. The exit code is 0 when they do.
 #include "simulator.hpp"
 
 #include <palpate/own_types.hpp>
@@ -29,7 +26,7 @@ namespace {
 
 using Organ = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
 
-/// Stands for the simulator's own loader.
+/// Represents the mesh loader of the simulator.
 own::SimulatorBody load_into_simulator(const Mesh<Tet4>& mesh) {
   own::SimulatorBody body;
   for (const Vector3& x : mesh.positions)
@@ -44,7 +41,7 @@ own::SimulatorBody load_into_simulator(const Mesh<Tet4>& mesh) {
   return body;
 }
 
-/// The force of every tick of a poke [N].
+/// The force of every tick of a press [N].
 template <MeshOf<Tet4> M>
 std::vector<Vector3> poke(const char* name, const M& mesh) {
   const RegionMaterials<LinearElastic> materials{
@@ -66,7 +63,7 @@ std::vector<Vector3> poke(const char* name, const M& mesh) {
   return forces;
 }
 
-/// Longest difference relative to the longest force.
+/// Largest difference relative to the largest force.
 double difference(const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
   double most = 0.0, peak = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {
@@ -79,7 +76,7 @@ double difference(const std::vector<Vector3>& a, const std::vector<Vector3>& b) 
 template <MeshOf<Tet4> M>
 bool keeps_the_laws(const char* name, const M& mesh) {
   const auto violations = testing::mesh_laws<Tet4>(mesh);
-  std::cout << "laws of " << name << ": " << (violations.empty() ? "kept" : testing::describe(violations)) << '\n';
+  std::cout << "laws of " << name << ": " << (violations.empty() ? "satisfied" : testing::describe(violations)) << '\n';
   return violations.empty();
 }
 

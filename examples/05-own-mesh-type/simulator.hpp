@@ -1,4 +1,4 @@
-// A mesh class as a simulator has one, made readable for palpate without a copy.
+// The mesh class of a simulator, made readable for palpate without a copy.
 #pragma once
 
 #include <palpate/concepts/mesh.hpp>
@@ -9,7 +9,7 @@ using palpate::Group;
 using palpate::Index;
 using palpate::Vector3;
 
-/// A particle of the simulator: more than palpate wants to know.
+/// A particle of the simulator, with more data than palpate needs.
 struct Particle {
   double x, y, z;       ///< [mm]
   double vx, vy, vz;    ///< [mm/s]
@@ -22,14 +22,15 @@ struct Cell {
   unsigned short tissue;
 };
 
-/// The simulator's own class. What palpate asks for is below the line: eight short functions that look things up where
-/// they are. Units are converted there, on the way: the simulator thinks in millimetres.
+/// The class of the simulator. palpate requires the eight short functions below the line, which read the data in place.
+/// They also convert units: the simulator uses millimetres.
 class SimulatorBody {
  public:
   std::vector<Particle> particles;
   std::vector<Cell> cells;
   std::vector<std::string> tissues;
-  std::vector<Group> sets;  ///< palpate's type for named sets; a simulator with its own keeps a table of these beside
+  std::vector<Group>
+      sets;  ///< palpate's type for named sets; a simulator with its own type keeps a table of these in addition
 
   // --- MeshView
   static constexpr int nodes_per_element = 4;

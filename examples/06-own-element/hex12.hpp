@@ -1,9 +1,10 @@
-// An element of one's own: a hexahedron with more nodes along x, where the answer bends most (thesis, figure 3.2).
+// A user-defined element: a hexahedron with more nodes along x, the direction of largest variation (thesis, figure
+// 3.2).
 #pragma once
 
 #include <palpate/element/quad4.hpp>
 
-/// All an element needs is here: nodes, shape functions and their gradients, faces, rules. Nothing registers it
+/// An element consists of nodes, shape functions and their gradients, faces and quadrature rules. It is not registered
 /// anywhere. `static_assert(palpate::Element<Hex12>)` below checks the form at compile time, the laws of
 /// palpate/testing/element_laws.hpp check the numbers (main.cpp runs them).
 namespace own {
@@ -12,7 +13,7 @@ namespace own {
 /// edges.
 struct Quad6 {
   static constexpr int nodes = 6;
-  /// What a tool touches: triangles that use every node.
+  /// Triangles for contact; together they use every node.
   static constexpr std::array<std::array<int, 3>, 4> triangles{{{0, 4, 5}, {0, 5, 3}, {4, 1, 2}, {4, 2, 5}}};
   using Quadrature = palpate::QuadrilateralRule<3>;
 
@@ -57,7 +58,7 @@ struct LongRule {
 /// Quadratic along x, linear along y and z. Nodes: the corners of Hex8, then the middles of the edges along x.
 struct Hex12 {
   static constexpr int nodes = 12;
-  static constexpr int order = 1;  // complete to this degree; along x it does better
+  static constexpr int order = 1;  // complete to this degree; along x one higher
   static constexpr double reference_volume = 8.0;
   /// Outward, their first edge along x; the two ends have four nodes only.
   static constexpr std::array<std::array<int, 6>, 6> faces{{{3, 2, 1, 0, 9, 8},

@@ -1,19 +1,20 @@
-// Example 08: hold and feel it give.
+// Example 08: relaxation of viscoelastic tissue.
 //
 //   example_08_relax [--out DIR]
 //
-// A finger presses 4 mm into a pad of tissue, quickly, and stays. Living tissue gives: the force falls while nothing
-// moves, to 40 % of what it was, with a relaxation time of 0.4 s.
+// A finger presses 4 mm into a pad of tissue, quickly, and stays there. Living tissue relaxes: the force decreases at
+// constant displacement, here to 40 % of its initial value, with a relaxation time of 0.4 s.
 //
-//   1. `Viscoelastic<NeoHookean, 1>` is NeoHookean of which shares fade. E is the fast modulus.
-//   2. On `Implicit<...>` the model moves by steps of 10 ms, which a `BackgroundWorker` takes in a thread. Here both
-//      rates are simulated, so that every run is the same. `HapticServo` ticks a thousand times a second.
-//   3. DIR/report.html has the force over time.
+//   1. `Viscoelastic<NeoHookean, 1>` is NeoHookean with one relaxing share of the stress. E is the instantaneous
+//      modulus.
+//   2. With `Implicit<...>` the model moves in steps of 10 ms, usually computed by a `BackgroundWorker` in a thread.
+//      Here both rates are simulated, so that every run is the same. `HapticServo` ticks a thousand times a second.
+//   3. DIR/report.html contains the force over time.
 //
-// The example judges itself. All of the stress relaxes alike and the finger does not move, so the shape of the pad
-// stays and all forces fall alike: the relaxation time of the force must be that of the law. It is measured from three
-// forces at equal distances, (F3 - F2) / (F2 - F1) = exp(-d / tau), which knows nothing of the law. The exit code is 0
-// when they agree within 2 %, 1 when they do not, 2 when the arguments were refused.
+// The example checks itself. The whole stress relaxes and the finger does not move, so the shape of the pad is constant
+// and all forces decrease in proportion: the relaxation time of the force must be that of the material. It is measured
+// from three forces at equal time intervals d, (F3 - F2) / (F2 - F1) = exp(-d / tau), independent of the material
+// parameters. The exit code is 0 when they agree within 2 %, 1 when they do not, 2 when the arguments were refused.
 #include "../common/main_with_out.hpp"
 #include "../common/page.hpp"
 
@@ -27,19 +28,19 @@ using touch::text;
 
 namespace {
 
-using Law = Viscoelastic<NeoHookean, 1>;
-using Pad = HapticFEModel<Tet4, Law, Implicit<Newton<SparseCholesky>>>;
+using Tissue = Viscoelastic<NeoHookean, 1>;
+using Pad = HapticFEModel<Tet4, Tissue, Implicit<Newton<SparseCholesky>>>;
 constexpr PronyTerm term{.share = 0.6, .relaxation_time = 0.4};
-constexpr double depth = 4e-3, fast = 0.05, seconds = 2.5;  // [m], [s] to press, [s] in all
+constexpr double depth = 4e-3, fast = 0.05, seconds = 2.5;  // [m], time to press [s], total time [s]
 constexpr SphereTool finger{.radius = 8e-3};
 
-const Law liver{{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}, {{term}}};
+const Tissue liver{{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}, {{term}}};
 const Vector3 size(0.06, 0.06, 0.03);  // [m]
 
 /// The force of every millisecond [N], before the gate.
-std::vector<double> hold(Pad& pad) {
+std::vector<double> press_and_wait(Pad& pad) {
   ServoOptions options;
-  options.device = {.peak_force = 20.0, .stiffness = 5e4};  // a finger that does not give way
+  options.device = {.peak_force = 20.0, .stiffness = 5e4};  // a stiff finger
   HapticServo servo(pad, finger, options);
   std::vector<double> force;
   double next = 0.0;
@@ -60,28 +61,29 @@ std::vector<double> hold(Pad& pad) {
 
 int run_example(const std::filesystem::path& out) {
   Pad pad(box_tet4(size, {8, 8, 4}), Scene().fix("z0").touch("z1"), liver, {}, {.step = 0.01});
-  const std::vector<double> force = hold(pad);
+  const std::vector<double> force = press_and_wait(pad);
 
   const auto at = [&](double t) { return force[static_cast<std::size_t>(1e3 * t)]; };
   const double d = 0.5, first = 0.2, f1 = at(first), f2 = at(first + d), f3 = at(first + 2.0 * d);
   const double measured = -d / std::log((f3 - f2) / (f2 - f1));
-  const double left = f1 - (f2 - f1) * (f2 - f1) / (f3 - 2.0 * f2 + f1);  // after a long time (Aitken)
+  const double left = f1 - (f2 - f1) * (f2 - f1) / (f3 - 2.0 * f2 + f1);  // long-term force (Aitken)
   const double peak = *std::ranges::max_element(force);
 
   std::vector<Vector2> line;
   for (std::size_t k = 0; k < force.size(); k += 5) line.emplace_back(1e-3 * static_cast<double>(k), force[k]);
-  touch::Chart chart("force while held", touch::from_zero("time [s]", seconds), touch::from_zero("force [N]", peak));
+  touch::Chart chart("force at constant depth", touch::from_zero("time [s]", seconds),
+                     touch::from_zero("force [N]", peak));
   chart.line(line, "blue");
   chart.line({{0.0, left}, {seconds, left}}, "grey");
   const double error = measured / term.relaxation_time - 1.0;
   const example::Figures figures{
       {"largest force", text("%.3f N", peak)},
       {"force at the end, and after a long time", text("%.3f N, %.3f N", force.back(), left)},
-      {"relaxation time of the law", text("%.4f s", term.relaxation_time)},
+      {"relaxation time of the material", text("%.4f s", term.relaxation_time)},
       {"relaxation time of the force", text("%.4f s (%+.2f %%)", measured, 100.0 * error)}};
   example::write_page(
       out, "Relaxation under a finger",
-      "A finger presses 4 mm into a pad of tissue within 50 ms and stays. The straight line is what is left "
+      "A finger presses 4 mm into a pad of tissue within 50 ms and stays there. The straight line is the force "
       "after a long time.",
       {chart.svg()}, figures);
   example::print(figures);

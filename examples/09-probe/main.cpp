@@ -2,14 +2,14 @@
 //
 //   example_09_probe [--out DIR]      writes DIR/probe.svg and DIR/probe.vtu
 //
-//   1. The tool is a capsule: a cylinder with round ends. It turns with the device's orientation.
-//   2. It is lowered, pressed in, tilted, and drawn along with friction: force and torque are printed on the way. A
-//      device with three motors renders the force; one with six, told by its limits, the torque too.
-//   3. The stress of the deepest moment is drawn.
+//   1. The tool is a capsule: a cylinder with round ends. It rotates with the orientation of the device.
+//   2. It is lowered, pressed in, tilted, and moved sideways with friction; force and torque are printed. A device with
+//      three motors renders the force; one with six (peak torque in its limits) also the torque.
+//   3. The stress at the deepest position is drawn.
 //
-// The exit code is 0 when a level probe feels the press along the vertical, the torque turns the tilted probe back,
-// friction drags, and nothing is left once it is lifted. The drag is mu times the press and a little more: a dent has a
-// wall in front of the probe.
+// The exit code is 0 when the force on a level probe is vertical, the torque on the tilted probe acts against the tilt,
+// the friction force opposes the motion, and the force is zero after lifting. The horizontal force is a little more
+// than mu times the normal force, because the front side of the dent also pushes against the probe.
 #include <palpate/palpate.hpp>
 #include <palpate/io/vtu.hpp>
 #include <palpate/post/stress.hpp>
@@ -41,7 +41,7 @@ ServoOptions options() {
   return o;
 }
 
-/// The probe's device: where it is, how far it is tilted about y.
+/// The device of the probe: its position and its tilt about y.
 class Hand {
  public:
   Hand(HapticServo& servo, const Vector3& from) : servo_(servo) { state_.position = from; }
@@ -67,7 +67,7 @@ class Hand {
   double tilt_ = 0.0;
 };
 
-void say(const char* what, const GatedForce& f) {
+void print(const char* what, const GatedForce& f) {
   std::printf("%-26s force (%6.3f %6.3f %6.3f) N   torque (%7.4f %7.4f %7.4f) N m\n", what, f.force()[0], f.force()[1],
               f.force()[2], f.torque()[0], f.torque()[1], f.torque()[2]);
 }
@@ -115,20 +115,21 @@ int run_example(const std::filesystem::path& folder) {
   Hand hand(servo, middle + Vector3(0, 0, 2e-3));
   hand.move(middle + Vector3(0, 0, 2e-3), 0.0, 50);
   const GatedForce pressed = hand.move(middle - Vector3(0, 0, depth), 0.0, 300);
-  say("pressed", pressed);
+  print("pressed", pressed);
   draw(tissue, servo, folder, pressed.force().norm());
   const GatedForce tilted = hand.move(middle - Vector3(0, 0, depth), 0.1, 200);
-  say("one end lower by 1.5 mm", tilted);
+  print("one end lower by 1.5 mm", tilted);
   hand.move(middle - Vector3(0, 0, depth), 0.0, 200);
-  const GatedForce drawn = hand.move(middle - Vector3(0, -0.006, depth), 0.0, 600);
-  say("drawn along y", drawn);
+  const GatedForce dragged = hand.move(middle - Vector3(0, -0.006, depth), 0.0, 600);
+  print("moved along y", dragged);
   const GatedForce free = hand.move(middle + Vector3(0, 0.006, 2e-3), 0.0, 200);
 
   bool right = check(pressed.force()[2] > 0.5 && pressed.force().head<2>().norm() < 0.05 * pressed.force()[2],
-                     "a level probe feels the press along the vertical");
-  right = check(tilted.torque()[1] < -1e-3, "the torque turns the tilted probe back") && right;
-  right = check(-drawn.force()[1] > 0.5 * friction * drawn.force()[2], "friction drags") && right;
-  right = check(free.force().norm() == 0.0, "lifted, nothing is left") && right;
+                     "the force on a level probe is vertical");
+  right = check(tilted.torque()[1] < -1e-3, "the torque acts against the tilt") && right;
+  right = check(-dragged.force()[1] > 0.5 * friction * dragged.force()[2], "the friction force opposes the motion") &&
+          right;
+  right = check(free.force().norm() == 0.0, "the force is zero after lifting") && right;
   return right ? 0 : 1;
 }
 

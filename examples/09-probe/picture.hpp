@@ -1,4 +1,4 @@
-// A drawing of a pressed body: its surface coloured by stress, the probe over it.
+// A drawing of an indented body: its surface coloured by stress, with the probe.
 #pragma once
 
 #include <palpate/core/types.hpp>
@@ -17,7 +17,7 @@ namespace probe {
 
 using namespace palpate;
 
-/// Parallel projection onto the page; what is farther away is drawn first.
+/// Parallel projection onto the page; the farthest parts are drawn first.
 class Picture {
  public:
   Picture(const Vector3& centre, double size) : centre_(centre), scale_(560.0 / size) {}
@@ -32,7 +32,7 @@ class Picture {
         (x[0] + x[1] + x[2]).dot(towards_) / 3.0,
         "<path d='M" + at(x[0]) + "L" + at(x[1]) + "L" + at(x[2]) + "z' fill='" + fill + "' stroke='" + fill + "'/>\n");
   }
-  /// A capsule between two points; drawn over everything.
+  /// A capsule between two points; drawn on top of everything.
   void capsule(const Vector3& a, const Vector3& b, double radius) {
     for (const auto& [share, colour] : {std::pair{1.0, "#555"}, std::pair{0.55, "#888"}, std::pair{0.2, "#bbb"}})
       over_ += "<path d='M" + at(a) + "L" + at(b) + "' stroke='" + colour + "' stroke-linecap='round' stroke-width='" +

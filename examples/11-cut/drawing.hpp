@@ -1,4 +1,4 @@
-// The organ as a drawing: what is left of it, from above and a little from the front; wounds in red.
+// A drawing of the remaining organ, from above and a little from the front; cut surfaces in red.
 #pragma once
 
 #include <palpate/cut.hpp>
@@ -15,12 +15,12 @@ namespace cut_example {
 using namespace palpate;
 using Organ = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
 
-/// What is held, with the displacement of its nodes [m].
+/// The supported part of the organ, with the displacement of its nodes [m].
 struct Rest {
   Mesh<Tet4> mesh;
   VectorX displacement;
   std::vector<bool> wound;  ///< per face of extract_boundary
-  double gape = 0.0;        ///< largest distance between two nodes that were one [m]
+  double gape = 0.0;        ///< largest distance between two copies of a node [m]
 };
 
 inline Rest rest_of(Organ& tissue) {
@@ -73,7 +73,7 @@ inline std::string draw(const Rest& rest) {
       x[a] = {p[0], -0.87 * p[1] - 0.5 * p[2], 0.87 * p[2] - 0.5 * p[1]};
     }
     const Vector3 normal = (x[1] - x[0]).cross(x[2] - x[0]).normalized();
-    if (normal[2] > 0.0) continue;  // y points down on paper: facing away
+    if (normal[2] > 0.0) continue;  // y points down on the page: facing away
     const double light = 0.45 - 0.55 * normal[2];
     std::array<char, 160> text{};
     std::snprintf(text.data(), text.size(), "<path d=\"M%.1f %.1fL%.1f %.1fL%.1f %.1fZ\" fill=\"rgb(%d,%d,%d)\"/>",

@@ -2,19 +2,19 @@
 //
 //   example_11_cut [--out DIR]
 //
-// The organ is held at one end and pulled at the other, so it is under tension. A scripted blade is pushed into it from
-// above: a slit opens, and the wound gapes. Then it is sliced until nothing is held any more.
+// The organ is fixed at one end and pulled at the other, so it is under tension. A scripted blade is pushed into it
+// from above: a slit opens, and the wound gapes. Then the organ is sliced until no supported part is left.
 //
-//   1. With Cuttable<...> as solver the model can be cut. A session can touch it as any other model.
-//   2. A BladeTool gives the hand the force of cutting: toughness times the length of edge that is in the tissue. What
-//      the edge sweeps is ordered from the tissue, a stroke at a time.
-//   3. `tissue.process_cuts()` cuts: here every sixteenth tick in this thread, so that the run is the same every time; in a
-//      program of yours a BackgroundWorker does it beside the ticks. A cut is a change of a few rows, not a new inverse: the
-//      report says how long it took until it could be felt.
-//   4. Parts that nothing holds come off as pieces; the rest goes on. No solve is ever singular.
+//   1. With Cuttable<...> as solver the model can be cut. A session can touch it like any other model.
+//   2. A BladeTool renders the cutting force: toughness times the length of edge that is in the tissue. The surface
+//      swept by the edge is sent to the tissue as cut orders, one cut spacing at a time.
+//   3. `tissue.process_cuts()` executes cuts: here every sixteenth tick in this thread, so that every run is the same;
+//      in your program a BackgroundWorker does it in a background thread. A cut changes a few rows and needs no new
+//      inverse; the report contains the time until the tick used it.
+//   4. Unsupported parts become detached fragments; the rest can still be touched and cut. No solve is ever singular.
 //
-// Writes DIR/report.html to look at, and DIR/cut.pvd for ParaView. The exit code is 1 when the wound did not gape, a
-// force was not finite or beyond the device's limit, or mass was lost.
+// Writes DIR/report.html and DIR/cut.pvd (for ParaView). The exit code is 1 when the wound did not gape, a force was
+// not finite or exceeded the limit of the device, or mass was lost.
 #include "drawing.hpp"
 
 #include <palpate/mesh/diagnose.hpp>
@@ -30,7 +30,7 @@ using touch::text;
 
 namespace {
 
-/// Held at the right end, pulled 8 mm at the left one, touchable everywhere.
+/// Fixed at the right end, pulled by 8 mm at the left one, touchable everywhere.
 Scene make_scene(const Mesh<Tet4>& mesh) {
   const MeshDiagnosis d = diagnose<Tet4>(mesh);
   const Vector3 right = d.box_min + Vector3(0.02, 0.0, 0.0), left = d.box_max - Vector3(0.02, 0.0, 0.0);
@@ -40,7 +40,7 @@ Scene make_scene(const Mesh<Tet4>& mesh) {
       .touch("surface");
 }
 
-/// Pictures of the organ, one after the other.
+/// A sequence of pictures of the organ.
 class Record {
  public:
   explicit Record(const std::filesystem::path& folder)
@@ -61,7 +61,7 @@ class Record {
   io::PvdSeries series_;
 };
 
-/// Pushes the blade in. The force of every tick [mm, N]; empty when one was not fine.
+/// Pushes the blade in. Returns depth and force of every tick [mm, N]; empty when a force was not valid.
 std::vector<Vector2> push_blade(Organ& tissue, HapticServo& servo, const Vector3& start, double path) {
   std::vector<Vector2> force;
   const int ticks = 1000;
@@ -73,12 +73,12 @@ std::vector<Vector2> push_blade(Organ& tissue, HapticServo& servo, const Vector3
     if (!(force.back()[1] <= ForceLimits{}.peak_force * (1.0 + 1e-9))) return {};
     if (i % 16 == 15) tissue.process_cuts();
   }
-  while (tissue.process_cuts()) {  // nothing is ordered any more: the error is measured, nodes inside follow
+  while (tissue.process_cuts()) {  // no order is pending: the error is measured, interior nodes are updated
   }
   return force;
 }
 
-/// Mass of what is held, loose and removed [kg].
+/// Mass that is supported, detached and removed [kg].
 std::array<double, 3> masses(const Organ& tissue) {
   std::array<double, 3> mass{};
   tissue.read([&](const auto& topology, const auto& physics) {
@@ -88,11 +88,12 @@ std::array<double, 3> masses(const Organ& tissue) {
   return mass;
 }
 
-/// Slices lengthwise and across until nothing is held, and burns the rest. The largest share of mass that was lost.
+/// Slices lengthwise and across until no part is supported, and removes the rest. Returns the largest relative error of
+/// the mass.
 double cut_apart(Organ& tissue, Index elements, Record& record) {
   const double whole = masses(tissue)[0];
-  double lost = 0.0, constrained = whole;
-  for (int k = 0; k < 20 && constrained > 0.0; ++k) {
+  double lost = 0.0, supported = whole;
+  for (int k = 0; k < 20 && supported > 0.0; ++k) {
     const double x = k % 2 == 0 ? -0.1 + 0.02 * k : 0.1 - 0.02 * (k - 1), y = -0.06 + 0.006 * k;
     tissue.cut(BladeSweep{{x, -1, -1}, {x, 1, -1}, {x, -1, 1}, {x, 1, 1}});
     tissue.cut(BladeSweep{{-1, y, -1}, {1, y, -1}, {-1, y, 1}, {1, y, 1}});
@@ -103,14 +104,15 @@ double cut_apart(Organ& tissue, Index elements, Record& record) {
     }
     tissue.process_cuts();
     const auto mass = masses(tissue);
-    constrained = mass[0];
+    supported = mass[0];
     lost = std::max(lost, std::abs(mass[0] + mass[1] + mass[2] - whole) / whole);
-    std::size_t pieces = 0;
-    tissue.read([&](const auto& topology, const auto&) { pieces = topology.detached_fragments().size(); });
-    if (k % 3 == 0 || constrained == 0.0)
-      record.add(tissue, 2.0 + k, text("%d pieces came off, %.3f kg held", static_cast<int>(pieces), constrained));
+    std::size_t fragments = 0;
+    tissue.read([&](const auto& topology, const auto&) { fragments = topology.detached_fragments().size(); });
+    if (k % 3 == 0 || supported == 0.0)
+      record.add(tissue, 2.0 + k,
+                 text("%d fragments detached, %.3f kg supported", static_cast<int>(fragments), supported));
   }
-  return constrained == 0.0 ? lost : infinity;
+  return supported == 0.0 ? lost : infinity;
 }
 
 int run_example(const std::filesystem::path& out) {
@@ -119,7 +121,7 @@ int run_example(const std::filesystem::path& out) {
   Record record(out);
   record.add(tissue, 0.0, "under tension");
 
-  Vector3 top = mesh.position(0);  // of the middle
+  Vector3 top = mesh.position(0);  // highest node near the middle
   for (const Vector3& x : mesh.positions)
     if (std::abs(x[0]) < 0.02 && x[2] > top[2]) top = x;
   HapticServo servo(tissue, BladeTool{.edge = {0.0, 0.05, 0.0}, .toughness = 50.0});
@@ -132,29 +134,28 @@ int run_example(const std::filesystem::path& out) {
 
   double longest = 0.0;
   for (const Vector2& f : force) longest = std::max(longest, f[1]);
-  touch::Chart chart("force of the blade", touch::from_zero("way of the hand [mm]", 30.0),
+  touch::Chart chart("force of the blade", touch::from_zero("path of the hand [mm]", 30.0),
                      touch::from_zero("force [N]", longest));
   chart.line(force, "blue");
   std::vector<std::string> sections{chart.svg()};
   sections.insert(sections.end(), record.pictures.begin(), record.pictures.end());
   const example::Figures figures{
       {"largest force of the blade", text("%.2f N", longest)},
-      {"cut against resistance",
-       text("%.1f cm^2 with %.1f mJ", 1e4 * servo.blade()->area(), 1e3 * servo.blade()->work())},
-      {"how far the wound gapes", text("%.2f mm", 1e3 * gape)},
-      {"the last cut of the slit was felt after", text("%.1f ms", 1e3 * slit.latency)},
-      {"cuts, new factors", text("%d, %d", static_cast<int>(end.cuts), static_cast<int>(end.renewals))},
+      {"cut area and work", text("%.1f cm^2 with %.1f mJ", 1e4 * servo.blade()->area(), 1e3 * servo.blade()->work())},
+      {"opening of the wound", text("%.2f mm", 1e3 * gape)},
+      {"latency of the last cut of the slit", text("%.1f ms", 1e3 * slit.latency)},
+      {"cuts, factorisations", text("%d, %d", static_cast<int>(end.cuts), static_cast<int>(end.renewals))},
       {"error of the compliance after the slit", text("%.1e", slit.error)},
-      {"share of the mass that was lost", text("%.1e", lost)}};
+      {"relative loss of mass", text("%.1e", lost)}};
   example::write_page(out, "A cut",
                       "A blade opens a slit in an organ under tension, and the wound gapes. Then the organ is sliced "
-                      "until nothing of it is held.",
+                      "until no supported part is left.",
                       sections, figures);
   example::print(figures);
   std::cout << "wrote " << (out / "report.html").string() << " and " << (out / "cut.pvd").string() << '\n';
-  const bool fine = longest > 0.0 && gape > 1e-4 && lost < 1e-12 && slit.error <= 1e-10 && !end.failed;
-  if (!fine) std::cerr << "the wound did not gape, a force was not fine, or something was lost\n";
-  return fine ? 0 : 1;
+  const bool valid = longest > 0.0 && gape > 1e-4 && lost < 1e-12 && slit.error <= 1e-10 && !end.failed;
+  if (!valid) std::cerr << "the wound did not gape, a force was not valid, or mass was lost\n";
+  return valid ? 0 : 1;
 }
 
 }  // namespace

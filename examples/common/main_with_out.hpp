@@ -1,4 +1,4 @@
-// The `main` of an example whose only argument is the folder that it writes to.
+// The `main` of an example whose only argument is its output folder.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace example {
 
-/// Gives `run` the folder of --out DIR, and returns what it returns; 2 when arguments or anything else were refused.
+/// Calls `run` with the folder of --out DIR and returns its result; 2 when arguments or anything else were refused.
 template <class Run>
 int main_with_out(int count, char** values, const char* fallback, const Run& run) {
   const bool given = count == 3 && std::string_view(values[1]) == "--out";

@@ -1,4 +1,4 @@
-// A page with charts and a table that needs nothing but itself.
+// A self-contained page with charts and a table.
 #pragma once
 
 #include "../01-touch/chart.hpp"
@@ -15,9 +15,9 @@
 
 namespace example {
 
-using Figures = std::vector<std::pair<std::string, std::string>>;  ///< what, how much
+using Figures = std::vector<std::pair<std::string, std::string>>;  ///< name, value
 
-/// Writes FOLDER/report.html; the looks are those of 01-touch.
+/// Writes FOLDER/report.html, in the style of 01-touch.
 inline void write_page(const std::filesystem::path& folder, const std::string& title, const std::string& summary,
                        const std::vector<std::string>& charts, const Figures& figures) {
   std::string page = "<!doctype html><html lang=en><meta charset=utf-8><title>" + title + "</title><style>" +

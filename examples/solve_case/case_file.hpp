@@ -1,5 +1,5 @@
-// Reads a case file: load cases on one mesh, as JSON. Everything the file may say is listed here; anything else is
-// refused rather than skipped.
+// Reads a case file: load cases on one mesh, as JSON. All supported keys are listed here; others are refused, not
+// skipped.
 #pragma once
 
 #include <palpate/palpate.hpp>
@@ -15,7 +15,7 @@ using nlohmann::json;
 using palpate::SetupErrorKind;
 using Materials = palpate::RegionMaterials<palpate::LinearElastic>;
 
-/// A case file: the element type, the mesh files beside it, and the load cases as they stand.
+/// A case file: the element type, the mesh files in its folder, and the load cases as JSON.
 struct CaseFile {
   std::string title;
   std::string element;  ///< "tet4", "tet10", "hex8", "hex20"
@@ -55,11 +55,11 @@ inline CaseFile case_file_on(const json& mesh, const std::filesystem::path& fold
   return read;
 }
 
-inline constexpr const char* cube_in_time = "cube with memory";
+inline constexpr const char* cube_in_time = "viscoelastic cube";
 inline constexpr const char* bar_in_time = "bar in motion";
 
-/// A cube that is held, loaded or shaken while it relaxes: every way with every law becomes a load case, on each of the
-/// meshes that is there.
+/// A viscoelastic cube under constant strain, load or oscillation: every loading with every material law becomes a load
+/// case, on each of the existing meshes.
 inline std::vector<CaseFile> read_cube_in_time(const json& file, const std::filesystem::path& folder) {
   std::vector<CaseFile> read;
   for (const auto& [element, variant] : file.at("meshes").items()) {
@@ -82,7 +82,7 @@ inline std::vector<CaseFile> read_cube_in_time(const json& file, const std::file
   return read;
 }
 
-/// A bar that is pulled at once, by each of the meshes that is there.
+/// A bar under a suddenly applied tension, on each of the existing meshes.
 inline std::vector<CaseFile> read_bar_in_time(const json& file, const std::filesystem::path& folder) {
   std::vector<CaseFile> read;
   for (const auto& [element, variant] : file.at("variants").items()) {
@@ -99,8 +99,7 @@ inline std::vector<CaseFile> read_bar_in_time(const json& file, const std::files
   return read;
 }
 
-/// Reads the file, one CaseFile per mesh; of a kind that is not known it has no load cases. Throws
-/// SetupError(bad_file).
+/// Reads the file, one CaseFile per mesh; for unknown kinds of files it has no load cases. Throws SetupError(bad_file).
 inline std::vector<CaseFile> read_case_files(const std::string& path) {
   const std::string text = palpate::io::read_file(path);
   return checked(path, [&] {
@@ -125,7 +124,7 @@ inline constexpr const char* statics = "linear static, small strain";
 inline constexpr const char* large_strain_statics = "geometrically non-linear static, dead loads";
 inline constexpr const char* eigenfrequencies = "linear eigenfrequency";
 
-/// Refuses another analysis than the one wanted, and keys that mean nothing to it.
+/// Refuses another analysis than the expected one, and keys that do not belong to it.
 inline void check_analysis(const json& load_case, const char* wanted) {
   allow_keys(load_case, "the load case",
              {"name", "title", "analysis", "materials", "boundary_conditions", "reference", "crosscheck", "closed_form",
@@ -134,7 +133,7 @@ inline void check_analysis(const json& load_case, const char* wanted) {
   if (analysis != wanted)
     palpate::raise(
         SetupErrorKind::unsupported, "the analysis '" + analysis + "'",
-        "'" + std::string(statics) + "', '" + large_strain_statics + "' and '" + eigenfrequencies + "' are solved");
+        "'" + std::string(statics) + "', '" + large_strain_statics + "' and '" + eigenfrequencies + "' are supported");
 }
 
 /// The material of each region.
@@ -199,7 +198,7 @@ void read_load(palpate::Scene& scene, const json& load, const json& materials, c
     allow_keys(load, "gravity", {"type", "g"});
     for (const auto& [region, m] : materials.items())
       if (!m.contains("rho"))
-        palpate::raise(SetupErrorKind::bad_density, "gravity acts, but material '" + region + "' has no rho");
+        palpate::raise(SetupErrorKind::bad_density, "there is gravity, but material '" + region + "' has no rho");
     scene.gravity(read_vector(load.at("g")));
   } else if (type == "initial_strain") {
     allow_keys(load, "an initial strain", {"type", "eps0"});
@@ -209,7 +208,7 @@ void read_load(palpate::Scene& scene, const json& load, const json& materials, c
   }
 }
 
-/// What is held. A component that is null stays free.
+/// The constraints. A component that is null is free.
 template <palpate::Element E>
 palpate::Scene read_supports(const json& load_case, const palpate::Mesh<E>& mesh) {
   palpate::Scene scene;
@@ -225,7 +224,7 @@ palpate::Scene read_supports(const json& load_case, const palpate::Mesh<E>& mesh
   return scene;
 }
 
-/// What is held and loaded.
+/// Constraints and loads.
 template <palpate::Element E>
 palpate::Scene read_scene(const json& load_case, const palpate::Mesh<E>& mesh) {
   palpate::Scene scene = read_supports(load_case, mesh);

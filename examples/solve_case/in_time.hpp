@@ -1,4 +1,4 @@
-// Relaxation, creep and motion of one load case with elements E, beside a table of what it should be.
+// Relaxation, creep and motion of one load case with elements E, compared with a reference table.
 #pragma once
 
 #include <palpate/mesh/admission.hpp>
@@ -12,7 +12,7 @@
 
 namespace solve_case {
 
-/// What was found at every row of the table, and its largest difference to what stands there, against the largest
+/// The computed values at every row of the table, and the largest difference from the table, relative to the largest
 /// number of each column.
 struct Course {
   std::string header;
@@ -21,7 +21,7 @@ struct Course {
   double seconds = 0.0;
 };
 
-/// A table of numbers under names.
+/// A table of numbers with named columns.
 struct Table {
   std::vector<std::string> names;
   std::vector<std::vector<double>> rows;
@@ -50,17 +50,17 @@ struct Table {
     std::vector<double> row(words.size(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t k = 0; k < words.size(); ++k)
       if (words[k] != "nan" && palpate::io::parse_decimal(words[k], row[k]) != std::errc{})
-        palpate::raise(SetupErrorKind::bad_file, path + ": '" + words[k] + "' is no number");
+        palpate::raise(SetupErrorKind::bad_file, path + ": '" + words[k] + "' is not a number");
     if (row.size() != names.size())
-      palpate::raise(SetupErrorKind::bad_file, path + ": a row has not as many numbers as the first line has names");
+      palpate::raise(SetupErrorKind::bad_file, path + ": a row and the first line have different numbers of columns");
     return row;
   }
 };
 
 inline constexpr double largest_error = 1e-3;
 
-/// Compares columns of a course, from the second on, with those of a table, row by row. Throws not_converged when they
-/// are too far apart: a wrong answer is not printed.
+/// Compares columns of a course, from the second on, with those of a table, row by row. Throws not_converged when the
+/// difference is too large: a wrong result is not printed.
 inline void compare(Course& course, const Table& table, const std::vector<std::string>& columns) {
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const std::size_t c = table.column(columns[k]);
@@ -73,11 +73,11 @@ inline void compare(Course& course, const Table& table, const std::vector<std::s
     course.error = std::max(course.error, worst / largest);
   }
   if (!(course.error <= largest_error))
-    palpate::raise(SetupErrorKind::not_converged,
-                   "the course differs by " + palpate::number(course.error) + " of its largest number from the table");
+    palpate::raise(SetupErrorKind::not_converged, "the computed history differs from the table by " +
+                                                      palpate::number(course.error) + " of its largest number");
 }
 
-/// The unit cube of such a case and how it is held.
+/// The unit cube of such a case and its constraints.
 template <palpate::Element E>
 class CubeInTime {
  public:
@@ -86,7 +86,7 @@ class CubeInTime {
     const json& m = load_case.at("material");
     const auto law = load_case.at("law").template get<std::string>();
     if (law != "all_moduli" && law != "shear_only")
-      palpate::raise(SetupErrorKind::unsupported, "the law '" + law + "'");
+      palpate::raise(SetupErrorKind::unsupported, "the material law '" + law + "'");
     material_ = {{.youngs_modulus = m.at("E0").template get<double>(),
                   .poisson_ratio = m.at("nu0").template get<double>(),
                   .density = 0.0},
@@ -98,13 +98,13 @@ class CubeInTime {
 
   double tau() const { return material_.terms[0].relaxation_time; }
   bool shears() const { return hold_ == "shear" || hold_ == "ramp_shear" || hold_ == "harmonic"; }
-  /// Lets dt pass, at the end of which the strain is `share` of the whole.
+  /// Advances time by dt; the strain at the end is `share` of the full strain.
   void step(double dt, double share) {
     body_->set_prescribed(share * full_);
     const auto report = body_->step(dt);
     if (!report.converged) palpate::raise(SetupErrorKind::not_converged, palpate::describe(report));
   }
-  /// Mean stress in x [Pa] on the face where it is pulled or sheared.
+  /// Mean stress in x [Pa] on the face that is pulled or sheared.
   double stress() const {
     const palpate::VectorX r = body_->reactions();
     double sum = 0.0;
@@ -130,21 +130,21 @@ class CubeInTime {
         scene.prescribe(std::vector<palpate::NodeId>{i}, {whole * mesh_.position(i).y(), 0.0, 0.0});
       return scene;
     }
-    const auto hold = [&](const char* group, std::size_t axis, double u) {
+    const auto constrain = [&](const char* group, std::size_t axis, double u) {
       palpate::Components c;
       c[axis] = u;
       scene.prescribe(group, c);
     };
-    hold("x0", 0, 0.0);
-    hold("y0", 1, 0.0);
-    hold("z0", 2, 0.0);
+    constrain("x0", 0, 0.0);
+    constrain("y0", 1, 0.0);
+    constrain("z0", 2, 0.0);
     if (hold_ == "creep") return scene.traction("x1", {pull, 0.0, 0.0});
-    hold("x1", 0, whole);
+    constrain("x1", 0, whole);
     if (hold_ == "confined") {
-      hold("y1", 1, 0.0);
-      hold("z1", 2, 0.0);
+      constrain("y1", 1, 0.0);
+      constrain("z1", 2, 0.0);
     } else if (hold_ != "uniaxial_free" && hold_ != "ramp_uniaxial") {
-      palpate::raise(SetupErrorKind::unsupported, "a cube held as '" + hold_ + "'");
+      palpate::raise(SetupErrorKind::unsupported, "the constraints '" + hold_ + "' of a cube");
     }
     return scene;
   }
@@ -156,19 +156,19 @@ class CubeInTime {
   palpate::VectorX full_;
 };
 
-/// Storage and loss modulus [Pa] at every frequency of the table that forgets its start within 100 periods.
+/// Storage and loss modulus [Pa] at every frequency of the table for which the transient decays within 100 periods.
 template <palpate::Element E>
-void shake(const palpate::Mesh<E>& mesh, const json& load_case, const Table& table, Course& course) {
-  constexpr double turn = 2.0 * std::numbers::pi;
+void oscillate(const palpate::Mesh<E>& mesh, const json& load_case, const Table& table, Course& course) {
+  constexpr double full_circle = 2.0 * std::numbers::pi;
   constexpr int steps = 200;
   for (const auto& row : table.rows) {
     CubeInTime<E> cube(mesh, load_case);
-    const double periods = std::ceil(20.0 * cube.tau() * row[0] / turn);
+    const double periods = std::ceil(20.0 * cube.tau() * row[0] / full_circle);
     if (periods > 100.0) break;
     double storage = 0.0, loss = 0.0;
     for (int k = 1; k <= steps * (1 + static_cast<int>(periods)); ++k) {
-      const double angle = turn * k / steps;
-      cube.step(turn / row[0] / steps, std::sin(angle));
+      const double angle = full_circle * k / steps;
+      cube.step(full_circle / row[0] / steps, std::sin(angle));
       if (k <= steps * static_cast<int>(periods)) continue;
       storage += cube.stress() / cube.whole * std::sin(angle) * 2.0 / steps;
       loss += cube.stress() / cube.whole * std::cos(angle) * 2.0 / steps;
@@ -179,7 +179,7 @@ void shake(const palpate::Mesh<E>& mesh, const json& load_case, const Table& tab
   compare(course, table, {"storage_G", "loss_G"});
 }
 
-/// Follows a cube with memory through the times of its table, with 20 steps between two. Throws SetupError.
+/// Computes a viscoelastic cube at the times of its table, with 20 steps between two rows. Throws SetupError.
 template <palpate::Element E>
 Course solve_cube_in_time(const palpate::Mesh<E>& mesh, const json& load_case) {
   const auto hold = load_case.at("hold").template get<std::string>(),
@@ -188,7 +188,7 @@ Course solve_cube_in_time(const palpate::Mesh<E>& mesh, const json& load_case) {
   const auto start = std::chrono::steady_clock::now();
   Course course;
   if (hold == "harmonic") {
-    shake(mesh, load_case, table, course);
+    oscillate(mesh, load_case, table, course);
   } else {
     CubeInTime<E> cube(mesh, load_case);
     const bool ramp = hold.starts_with("ramp"), creep = hold == "creep";
@@ -217,8 +217,7 @@ Course solve_cube_in_time(const palpate::Mesh<E>& mesh, const json& load_case) {
   return course;
 }
 
-/// Newmark's rule with the consistent mass, as the table was made: the displacement of the pulled end. Throws
-/// SetupError.
+/// Newmark's rule with the consistent mass, as in the table: the displacement of the loaded end. Throws SetupError.
 template <palpate::Element E>
 Course solve_bar_in_time(const palpate::Mesh<E>& mesh, const json& load_case) {
   const Table table(load_case.at("table").template get<std::string>());
@@ -261,7 +260,7 @@ void write_csv(const std::filesystem::path& folder, const std::string& name, con
   if (!file.flush()) palpate::raise(SetupErrorKind::bad_file, folder.string() + ": writing failed");
 }
 
-/// The line printed for a course.
+/// The line printed for a time history.
 inline nlohmann::ordered_json summary(const std::string& name, const std::string& element, const Course& course) {
   return {{"case", name},
           {"element", element},

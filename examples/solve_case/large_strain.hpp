@@ -11,9 +11,9 @@
 
 namespace solve_case {
 
-/// A law of the case file as one of ours; nothing when it is another.
+/// Reads a material of the case file as M.
 template <class M>
-struct LawReader;
+struct MaterialReader;
 
 template <class M>
 M read_by_modulus(const json& m) {
@@ -22,24 +22,24 @@ M read_by_modulus(const json& m) {
           .density = m.value("rho", 0.0)};
 }
 template <>
-struct LawReader<palpate::NeoHookeanIsochoric> {
+struct MaterialReader<palpate::NeoHookeanIsochoric> {
   static constexpr const char* name = "neo_hooke_iso";
   static palpate::NeoHookeanIsochoric read(const json& m) { return read_by_modulus<palpate::NeoHookeanIsochoric>(m); }
 };
 template <>
-struct LawReader<palpate::NeoHookeanLogarithmic> {
+struct MaterialReader<palpate::NeoHookeanLogarithmic> {
   static constexpr const char* name = "neo_hooke_log";
   static palpate::NeoHookeanLogarithmic read(const json& m) {
     return read_by_modulus<palpate::NeoHookeanLogarithmic>(m);
   }
 };
 template <>
-struct LawReader<palpate::StVenantKirchhoff> {
+struct MaterialReader<palpate::StVenantKirchhoff> {
   static constexpr const char* name = "svk";
   static palpate::StVenantKirchhoff read(const json& m) { return read_by_modulus<palpate::StVenantKirchhoff>(m); }
 };
 template <>
-struct LawReader<palpate::MooneyRivlin> {
+struct MaterialReader<palpate::MooneyRivlin> {
   static constexpr const char* name = "mooney_rivlin_iso";
   static palpate::MooneyRivlin read(const json& m) {
     return {.c10 = m.at("C10").get<double>(),
@@ -49,27 +49,27 @@ struct LawReader<palpate::MooneyRivlin> {
   }
 };
 
-/// The law of each region, all of one kind.
+/// The material of each region, all of one type.
 template <class M>
-palpate::RegionMaterials<M> read_laws(const json& load_case) {
-  palpate::RegionMaterials<M> laws;
+palpate::RegionMaterials<M> read_hyperelastic(const json& load_case) {
+  palpate::RegionMaterials<M> materials;
   for (const auto& [region, m] : load_case.at("materials").items()) {
-    if (m.at("model") != LawReader<M>::name)
-      palpate::raise(SetupErrorKind::unsupported, "regions with laws of different kinds");
+    if (m.at("model") != MaterialReader<M>::name)
+      palpate::raise(SetupErrorKind::unsupported, "regions with materials of different types");
     allow_keys(m, "material '" + region + "'", {"model", "E", "nu", "mu", "K", "lambda", "C10", "C01", "D1", "rho"});
-    laws.emplace_back(region, LawReader<M>::read(m));
+    materials.emplace_back(region, MaterialReader<M>::read(m));
   }
-  return laws;
+  return materials;
 }
 
 template <class M, palpate::Element E>
-Solution solve_with_law(const palpate::Mesh<E>& mesh, const json& load_case) {
+Solution solve_with(const palpate::Mesh<E>& mesh, const json& load_case) {
   const palpate::Scene scene = read_scene(load_case, mesh);
-  const auto laws = read_laws<M>(load_case);
+  const auto materials = read_hyperelastic<M>(load_case);
 
   const auto start = std::chrono::steady_clock::now();
   palpate::Admitted<E> admitted = palpate::admit<E>(mesh);
-  palpate::Equilibrium body(palpate::make_hyperelastic_body(std::move(admitted.mesh), laws),
+  palpate::Equilibrium body(palpate::make_hyperelastic_body(std::move(admitted.mesh), materials),
                             scene.mapped(admitted.node_map, palpate::Vector3::Zero()));
   const palpate::EquilibriumReport report = body.solve();
   if (!report.converged || !report.stable || report.deformation.inverted > 0)
@@ -86,7 +86,7 @@ Solution solve_with_law(const palpate::Mesh<E>& mesh, const json& load_case) {
   return s;
 }
 
-/// Equilibrium under the loads of a load case, by the law its materials name. Throws SetupError.
+/// Equilibrium under the loads of a load case, with the material model it names. Throws SetupError.
 template <palpate::Element E>
 Solution solve_large_strain(const palpate::Mesh<E>& mesh, const json& load_case) {
   check_analysis(load_case, large_strain_statics);
@@ -95,8 +95,8 @@ Solution solve_large_strain(const palpate::Mesh<E>& mesh, const json& load_case)
       materials.empty() ? std::string("none") : materials.begin()->at("model").template get<std::string>();
   Solution solution;
   const auto tried = [&]<class M>(std::type_identity<M>) {
-    if (model != LawReader<M>::name) return false;
-    solution = solve_with_law<M>(mesh, load_case);
+    if (model != MaterialReader<M>::name) return false;
+    solution = solve_with<M>(mesh, load_case);
     return true;
   };
   if (tried(std::type_identity<palpate::NeoHookeanIsochoric>{}) ||

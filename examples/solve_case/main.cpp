@@ -2,11 +2,12 @@
 //
 //   solve_case CASE.json [--out DIR] [--mesh41]
 //
-// A case file names a Gmsh mesh that lies beside it and lists load cases: a material for every region, what is held
-// (boundary conditions on named groups, null means free) and what loads the body (point forces, tractions, pressure,
-// gravity, initial strain). For each of them this program
+// A case file names a Gmsh mesh in the same folder and lists load cases: a material for every region, constraints
+// (boundary conditions on named groups, null means free) and loads (point forces, tractions, pressure, gravity, initial
+// strain). For each of them this program
 //
-//   1. turns groups and conditions into a Scene, which knows names but neither mesh nor element (case_file.hpp),
+//   1. converts groups and conditions to a Scene, which contains names but depends on neither mesh nor element
+//      (case_file.hpp),
 //   2. sets up a HapticFEModel, which assembles, factorises and solves (solve.hpp),
 //   3. writes DIR/<load case>_u.csv and DIR/<load case>_reactions.csv and prints one line of JSON with the largest
 //      displacement, the strain energy, the sum of the reactions and the time it took.
@@ -14,15 +15,15 @@
 // Where the analysis is "geometrically non-linear static, dead loads" it finds the equilibrium of hyperelastic bodies
 // instead (large_strain.hpp). Where it is "linear eigenfrequency" it finds the lowest elastic modes instead
 // (modes.hpp), writes DIR/<load case>_mode<k>_u.csv, shapes normalised by mass, and prints their frequencies; rigid
-// motions of a body that is not held are counted apart.
+// motions of an unconstrained body are counted separately.
 //
-// Two kinds of files have a course in time and a table of what it should be, made by closed forms or another code: a
-// cube that relaxes, creeps or is shaken, and a bar that is pulled at once (in_time.hpp). DIR/<load case>.csv gets the
-// course, and the line says how far it is from the table.
+// Two kinds of files describe a time history, with a reference table from closed forms or another code: a cube that
+// relaxes, creeps or oscillates, and a bar under a suddenly applied tension (in_time.hpp). The history is written to
+// DIR/<load case>.csv, and the printed line contains the difference from the table.
 //
-// Whatever palpate does not do (another law, an element it lacks, a group that the mesh does not have) is refused by
-// name in that line, and the next load case is tried: a wrong answer is never printed. The exit code is 0 when every
-// load case was solved or refused, and 2 when the case file or its mesh cannot be read.
+// Everything that palpate does not support (another material law, another element, a group that the mesh does not have)
+// is refused by name in that line, and the next load case is tried: a wrong result is never printed. The exit code is 0
+// when every load case was solved or refused, and 2 when the case file or its mesh cannot be read.
 #include "solve_all.hpp"
 
 using namespace solve_case;
@@ -35,7 +36,7 @@ void refuse_all(const CaseFile& file, const Arguments&) {
   };
   for (const json& load_case : file.load_cases)
     refuse(case_name(load_case), "the element '" + file.element + "'", "palpate has tet4, tet10, hex8 and hex20");
-  if (file.load_cases.empty()) refuse(file.title, "a case file without load cases that are known", {});
+  if (file.load_cases.empty()) refuse(file.title, "a case file without known load cases", {});
 }
 
 /// A new element is one line here and a source file like tet4.cpp.

@@ -14,8 +14,8 @@ struct Modes {
   double seconds = 0.0;
 };
 
-/// Finds the lowest elastic modes, eight unless the load case says "modes": n. A body that is not held, or not
-/// completely, keeps its rigid motions. Throws SetupError.
+/// Finds the lowest elastic modes, eight unless the load case has "modes": n. A body that is not fully constrained has
+/// rigid motions. Throws SetupError.
 template <palpate::Element E>
 Modes solve_modes(const palpate::Mesh<E>& mesh, const json& load_case) {
   check_analysis(load_case, eigenfrequencies);

@@ -1,4 +1,4 @@
-// Solves one load case with elements E and writes what came out.
+// Solves one load case with elements E and writes the results.
 #pragma once
 
 #include "case_file.hpp"
@@ -18,8 +18,8 @@ struct NumberedMesh {
   palpate::io::GmshNumbering ids;
 };
 
-/// The static state of a load case. Vectors are 3 x nodes of the model, node by node; `node_map` says where the nodes
-/// of the mesh file are among them, -1 for nodes of no element, which the model drops.
+/// The static state of a load case. Vectors are 3 x nodes of the model, node by node; `node_map` maps the nodes of the
+/// mesh file to them, -1 for nodes of no element, which the model drops.
 struct Solution {
   palpate::VectorX displacement, internal_force, reactions;
   double strain_energy = 0.0;

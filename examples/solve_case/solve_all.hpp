@@ -26,12 +26,13 @@ inline void print_refusal(const std::string& name, const palpate::SetupError& er
 inline std::string case_name(const json& load_case) {
   const auto name = checked("the load case", [&] { return load_case.at("name").get<std::string>(); });
   if (name.empty() || name.find_first_of("/\\") != name.npos)
-    palpate::raise(SetupErrorKind::bad_file, "the name of a load case becomes a file name; '" + name + "' is none");
+    palpate::raise(SetupErrorKind::bad_file,
+                   "the name of a load case becomes a file name, but '" + name + "' is not a valid one");
   return name;
 }
 
 /// Reads the mesh as one of elements E, solves every load case and prints a line for each. Every element is compiled in
-/// a file of its own: see tet4.cpp.
+/// a separate file: see tet4.cpp.
 template <palpate::Element E>
 void solve_all(const CaseFile& file, const Arguments& arguments);
 

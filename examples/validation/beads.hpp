@@ -1,4 +1,4 @@
-// The beads of the Truth Cube: where they were measured.
+// The measured positions of the beads of the Truth Cube.
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
@@ -34,7 +34,7 @@ struct Bead {
   }
 };
 
-/// Numbers of a line between commas; empty when a cell is no number.
+/// Numbers of a line between commas; empty when a cell is not a number.
 inline std::vector<double> numbers_of(std::string_view line) {
   std::vector<double> numbers;
   while (!line.empty()) {
@@ -47,7 +47,8 @@ inline std::vector<double> numbers_of(std::string_view line) {
   return numbers;
 }
 
-/// From the scanner's frame into that of the cube, which lies where a regular lattice fits the beads at rest best.
+/// Transforms from the frame of the scanner to that of the cube, given by the best fit of a regular lattice to the
+/// beads at rest.
 inline void align(std::vector<Bead>& beads) {
   Vector3 centre = Vector3::Zero();
   for (const Bead& b : beads) centre += b.rest / static_cast<double>(beads.size());
@@ -63,11 +64,11 @@ inline void align(std::vector<Bead>& beads) {
 }
 
 /// Reads uniaxial_positions.csv: i, j, k and four positions [mm] per bead. Throws bad_file unless there are 343 beads,
-/// one per place. Beads come in order of their places, x fastest.
+/// one per place. Beads are ordered by place, x fastest.
 inline std::vector<Bead> read_beads(const std::string& path) {
   const std::string text = io::read_file(path);
   std::vector<Bead> beads(per_side * per_side * per_side);
-  std::vector<int> seen(beads.size(), 0);
+  std::vector<int> rows_of(beads.size(), 0);
   for (std::string_view rest = text; !rest.empty();) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     std::string_view line = rest.substr(0, end);
@@ -76,7 +77,7 @@ inline std::vector<Bead> read_beads(const std::string& path) {
     const std::vector<double> n = numbers_of(line);
     if (n.size() != 15) continue;  // titles
     Bead bead;
-    // The scanner's z falls with k, and k = 7 lies next to the platen.
+    // The z of the scanner decreases with k; k = 7 is next to the platen.
     bead.place = {int(n[0]) - 1, int(n[1]) - 1, per_side - int(n[2])};
     if (std::ranges::any_of(bead.place, [](int i) { return i < 0 || i >= per_side; }))
       raise(SetupErrorKind::bad_file, path + ": a bead outside 1 ... 7");
@@ -87,9 +88,9 @@ inline std::vector<Bead> read_beads(const std::string& path) {
     for (std::size_t s = 0; s < 3; ++s) bead.displacement[s] = at(s + 1) - bead.rest;
     const auto index = static_cast<std::size_t>(bead.place[0] + per_side * (bead.place[1] + per_side * bead.place[2]));
     beads[index] = bead;
-    ++seen[index];
+    ++rows_of[index];
   }
-  if (std::ranges::any_of(seen, [](int times) { return times != 1; }))
+  if (std::ranges::any_of(rows_of, [](int times) { return times != 1; }))
     raise(SetupErrorKind::bad_file, path + ": not one row for each of the 343 beads",
           "It must be uniaxial_positions.csv of the Truth Cube");
   align(beads);

@@ -1,4 +1,4 @@
-// The cube in finite elements: displacements at the beads.
+// Finite element models of the cube: displacements at the beads.
 #pragma once
 
 #include "../../benchmarks/accuracy/meshes.hpp"
@@ -20,19 +20,19 @@ using Motion = std::vector<Vector3>;
 
 inline constexpr LinearElastic rubber{.youngs_modulus = 15.3e3, .poisson_ratio = 0.499, .density = 980.0};
 
-/// The same at large strain.
+/// The same material at large strain.
 inline constexpr NeoHookean large_strain_rubber{
     .youngs_modulus = rubber.youngs_modulus, .poisson_ratio = rubber.poisson_ratio, .density = rubber.density};
 
-/// Displacement of the nodes, by linear elasticity.
+/// Solves for the displacement of the nodes with linear elasticity.
 struct Linear {
   template <Element E>
   VectorX operator()(const Mesh<E>& mesh, const Scene& scene) const {
     return solve_static(body_of(mesh, {rubber}), scene).displacement;
   }
 };
-/// By equilibrium at large strain; throws not_converged.
-struct LargeStrainLaw {
+/// The same at large strain; throws not_converged.
+struct AtLargeStrain {
   template <Element E>
   VectorX operator()(const Mesh<E>& mesh, const Scene& scene) const {
     Equilibrium body(mesh, scene, large_strain_rubber);
@@ -43,7 +43,7 @@ struct LargeStrainLaw {
   }
 };
 
-/// A value given at the beads, at `place` in 0 ... 6 along every axis between them (trilinear).
+/// Trilinear interpolation of a value given at the beads, at `place` in 0 ... 6 along every axis.
 template <class Value>
 Vector3 between_beads(const Vector3& place, Value value) {
   std::array<int, 3> cell{};
@@ -66,8 +66,8 @@ Vector3 between_beads(const Vector3& place, Value value) {
   return sum;
 }
 
-/// (a) The body between the beads, `cells` per gap, the measured motion prescribed on its whole surface: nothing needs
-/// to be known of platen and base. What is predicted is the motion of the 125 beads inside.
+/// (a) The body between the beads, `cells` per gap, with the measured motion prescribed on its whole surface: no
+/// assumptions on platen and base are needed. The motion of the 125 beads inside is predicted.
 template <Element E, class Solve>
 Motion inside_measured_shell(const std::vector<Bead>& beads, std::size_t state, int cells, Solve solve) {
   const int n = (per_side - 1) * cells;
@@ -92,7 +92,7 @@ Motion inside_measured_shell(const std::vector<Bead>& beads, std::size_t state, 
   return motion;
 }
 
-/// Displacement of a box of straight elements in the bead positions.
+/// Displacement of a box of straight-edged elements at the positions of the beads.
 template <Element E>
 Motion at_beads(const Mesh<E>& mesh, const VectorX& u, const std::vector<Bead>& beads) {
   constexpr bool tetrahedra = E::faces.size() == 4;
@@ -116,7 +116,7 @@ Motion at_beads(const Mesh<E>& mesh, const VectorX& u, const std::vector<Bead>& 
   return motion;
 }
 
-/// What a platen may do: travel along z, shift along x and y [m], and let its side widen [-].
+/// Parameters of the platen motion: travel along z, shift along x and y [m], widening of the side in contact [-].
 using PlatenMotion = Eigen::Vector4d;
 
 /// (b) The whole cube of n^3 cells, its base bonded: the motions of the beads for a unit of each part of PlatenMotion.
@@ -136,14 +136,14 @@ std::array<Motion, 4> under_the_platen(const std::vector<Bead>& beads, int n) {
   return motions;
 }
 
-/// (b) at large strain, the platen held sideways.
+/// (b) at large strain, the platen fixed laterally.
 template <Element E>
 Motion pushed_far(const std::vector<Bead>& beads, int n, double travel) {
   const Mesh<E> mesh = box_of<E>({edge, edge, edge}, {n, n, n});
-  return at_beads(mesh, LargeStrainLaw{}(mesh, Scene().fix("z1").prescribe("z0", {0.0, 0.0, travel})), beads);
+  return at_beads(mesh, AtLargeStrain{}(mesh, Scene().fix("z1").prescribe("z0", {0.0, 0.0, travel})), beads);
 }
 
-/// The motion that belongs to a platen's.
+/// The motion of the beads for a motion of the platen.
 inline Motion combine(const std::array<Motion, 4>& unit, const PlatenMotion& platen) {
   Motion motion(unit[0].size(), Vector3::Zero());
   for (std::size_t b = 0; b < motion.size(); ++b)
@@ -151,7 +151,7 @@ inline Motion combine(const std::array<Motion, 4>& unit, const PlatenMotion& pla
   return motion;
 }
 
-/// The platen's motion that fits the beads of a state best, by least squares.
+/// The motion of the platen that gives the best fit to the beads of a state, by least squares.
 inline PlatenMotion fit(const std::vector<Bead>& beads, const std::array<Motion, 4>& unit, std::size_t state) {
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
   PlatenMotion right = PlatenMotion::Zero();
@@ -164,7 +164,7 @@ inline PlatenMotion fit(const std::vector<Bead>& beads, const std::array<Motion,
   return normal.ldlt().solve(right);
 }
 
-/// Affine motion that fits the outer beads best: what one would guess without mechanics.
+/// Affine motion with the best fit to the outer beads: a guess without mechanics.
 inline Motion affine_from_shell(const std::vector<Bead>& beads, std::size_t state) {
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
   Eigen::Matrix<double, 4, 3> right = Eigen::Matrix<double, 4, 3>::Zero();

@@ -1,22 +1,22 @@
-// truth_cube: finite elements against a measured body.
+// truth_cube: comparison of finite elements with a measured body.
 //
 //   truth_cube <uniaxial_positions.csv> [--out <folder>]
 //
 // The Truth Cube (Kerdok, Cotin, Ottensmeyer, Galea, Howe, Dawson: "Truth cube: establishing physical standards for
 // soft tissue simulation", Medical Image Analysis 7, 2003, 283-291) is a cube of silicone rubber, 80 mm, with 343
-// Teflon beads in it, scanned at rest and pressed together by 5, 12.5 and 18.25 % between a base and a platen. The
-// positions of the beads are the data of the Harvard Biorobotics Laboratory (biorobotics.harvard.edu/truthcube); they
-// are not part of this project. A copy lies in the repository simquest/opensurgsim,
+// Teflon beads in it, scanned at rest and compressed by 5, 12.5 and 18.25 % between a base and a platen. The positions
+// of the beads are the data of the Harvard Biorobotics Laboratory (biorobotics.harvard.edu/truthcube); they are not
+// part of this project. A copy is in the repository simquest/opensurgsim,
 // SurgSim/Physics/RenderTests/Data/uniaxial_positions.csv, with the parameters used here: E = 15.3 kPa, nu = 0.499, rho
 // = 980 kg/m^3. E does not matter: displacements are given.
 //
 // Two set-ups. (a) The measured motion of the 218 outer beads is prescribed and that of the 125 inner ones predicted:
-// nothing has to be assumed about base and platen. (b) The whole cube, base bonded, the platen pushing: held sideways
-// with its nominal travel, and with its travel, sideways shift and slip fitted (four numbers per state, by least
-// squares over all beads: the beads drift by up to 2 mm along y, which a platen that moves straight cannot do).
-// Linear elasticity, and beside it neo-Hookean rubber at large strain with the same constants. Prints tables in
-// Markdown and writes truth_cube_shell.svg and truth_cube_platen.svg. Exit code 1: the treated element does no better
-// than an affine guess where strain is large, or a number is not finite.
+// no assumptions about base and platen are needed. (b) The whole cube, base bonded, compressed by the platen: first
+// with nominal travel and no lateral motion, then with travel, lateral shift and slip of the platen fitted (four
+// numbers per state, by least squares over all beads: the beads drift by up to 2 mm along y, which a straight motion of
+// the platen cannot cause). Both with linear elasticity and with neo-Hookean rubber at large strain with the same
+// constants. Prints tables in Markdown and writes truth_cube_shell.svg and truth_cube_platen.svg. Exit code 1: the
+// locking-free element is not more accurate than an affine guess where strain is large, or a number is not finite.
 #include "picture.hpp"
 
 #include "../../benchmarks/accuracy/report.hpp"
@@ -32,7 +32,8 @@ using Treated = MeanDilatation<Hex8>;
 
 /// Distances between computed and measured beads [m].
 struct Errors {
-  double mean = 0.0, root_mean_square = 0.0, largest = 0.0, relative = 0.0;  ///< the last over the motion measured
+  double mean = 0.0, root_mean_square = 0.0, largest = 0.0,
+         relative = 0.0;  ///< the last relative to the measured motion
 };
 
 template <class Choose>
@@ -111,7 +112,7 @@ void prescribe_shell(const std::vector<Bead>& beads, const std::string& out, Che
   run(std::type_identity<Tet4>{}, "Tet4", 1, Linear{});
   run(std::type_identity<Tet4>{}, "Tet4", 2, Linear{});
   run(std::type_identity<Tet10>{}, "Tet10", 1, Linear{});
-  run(std::type_identity<Tet10>{}, "Tet10, neo-Hookean", 1, LargeStrainLaw{});
+  run(std::type_identity<Tet10>{}, "Tet10, neo-Hookean", 1, AtLargeStrain{});
   run(std::type_identity<Treated>{}, "MeanDilatation<Hex8>", 1, Linear{});
   const auto best = run(std::type_identity<Treated>{}, "MeanDilatation<Hex8>", 2, Linear{});
   table.print();
@@ -119,13 +120,13 @@ void prescribe_shell(const std::vector<Bead>& beads, const std::string& out, Che
   print_layers(beads, best, true);
   const auto treated = judge(beads, best, true, checks);
   for (const std::size_t s : {1u, 2u})
-    checks.expect(treated[s].root_mean_square < affine[s].root_mean_square, "no better than an affine guess");
+    checks.expect(treated[s].root_mean_square < affine[s].root_mean_square, "not more accurate than an affine guess");
   write_slices(out + "/truth_cube_shell.svg", beads, best, "Truth Cube, outer beads prescribed; linear, nu = 0.499");
 }
 
 void push_platen(const std::vector<Bead>& beads, const std::string& out, Checks& checks) {
   std::printf("## (b) The whole cube, base bonded, all 343 beads\n\n");
-  Table constrained = error_table(), fitted = error_table();
+  Table straight = error_table(), fitted = error_table();
   std::string found;
   const auto run = [&]<class E>(std::type_identity<E>, const char* name, int n) {
     const auto unit = under_the_platen<E>(beads, n);
@@ -139,7 +140,7 @@ void push_platen(const std::vector<Bead>& beads, const std::string& out, Checks&
                ", " + millimetres(p[2]) + ") mm, widening " + text(100.0 * p[3], "%.1f") + " % at " + strains[s];
     }
     const std::string mesh = std::to_string(n) + "^3";
-    add_row(constrained, name, mesh, judge(beads, nominal, false, checks));
+    add_row(straight, name, mesh, judge(beads, nominal, false, checks));
     add_row(fitted, name, mesh, judge(beads, best, false, checks));
     return best;
   };
@@ -152,10 +153,10 @@ void push_platen(const std::vector<Bead>& beads, const std::string& out, Checks&
   for (const int n : {4, 8}) {
     std::array<Motion, 3> far;
     for (std::size_t s = 0; s < 3; ++s) far[s] = pushed_far<Tet10>(beads, n, nominal_travel[s]);
-    add_row(constrained, "Tet10, neo-Hookean", std::to_string(n) + "^3", judge(beads, far, false, checks));
+    add_row(straight, "Tet10, neo-Hookean", std::to_string(n) + "^3", judge(beads, far, false, checks));
   }
-  std::printf("Platen held sideways, nominal travel (4, 10, 14.6 mm):\n\n");
-  constrained.print();
+  std::printf("Platen fixed laterally, nominal travel (4, 10, 14.6 mm):\n\n");
+  straight.print();
   std::printf("Travel, shift and widening of the platen side fitted:\n\n");
   fitted.print();
   std::printf("%s.\n\nPer layer, fitted, MeanDilatation<Hex8>:\n\n", found.c_str());
@@ -175,7 +176,7 @@ int main(int argc, char** argv) try {
   std::filesystem::create_directories(out);
   const std::vector<Bead> beads = read_beads(argv[1]);
   Checks checks;
-  std::printf("# The Truth Cube, nu = 0.499, linear but where a law is named\n\n");
+  std::printf("# The Truth Cube, nu = 0.499, linear except where a material is named\n\n");
   prescribe_shell(beads, out, checks);
   push_platen(beads, out, checks);
   return checks.failed() == 0 ? 0 : 1;

@@ -7,8 +7,8 @@
 
 namespace truth_cube {
 
-/// The middle slice (y = 4th bead) in the three states, seen from the side: rings are measured beads, dots computed
-/// ones, lines the errors, three times as large. Throws bad_file when it cannot be written.
+/// The middle slice (y = 4th bead) in the three states, viewed from the side: rings are measured beads, dots computed
+/// ones, lines the errors, magnified three times. Throws bad_file when it cannot be written.
 inline void write_slices(const std::string& path, const std::vector<Bead>& beads, const std::array<Motion, 3>& computed,
                          const std::string& title) {
   std::ofstream out(path);
@@ -22,7 +22,7 @@ inline void write_slices(const std::string& path, const std::vector<Bead>& beads
     const auto x = [&](const Vector3& p) { return left + 12.0 + scale * p[0]; };
     const auto y = [&](const Vector3& p) {
       return top + scale * (edge - p[2]);
-    };  // the platen below, as it was scanned
+    };  // the platen at the bottom, as in the scan
     out << "<text x='" << left << "' y='56'>" << strains[s] << "</text>\n<rect x='" << left + 12.0 << "' y='" << top
         << "' width='" << scale * edge << "' height='" << scale * edge << "' fill='none' stroke='#ccc'/>\n";
     for (std::size_t b = 0; b < beads.size(); ++b) {
