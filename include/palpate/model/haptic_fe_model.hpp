@@ -23,8 +23,9 @@ namespace detail {
 /// Readable compile-time checks of the arguments of the primary template, and its base class.
 template <class E, class M, class Solver>
 struct StaticModel {
-  static_assert(Element<E>, "palpate: the first argument of HapticFEModel is an element, for example Smoothed<Tet4>; "
-                            "for a user-defined one see the concept Element");
+  static_assert(Element<E>,
+                "palpate: the first argument of HapticFEModel is an element, for example Smoothed<Tet4>; "
+                "for a user-defined one see the concept Element");
   static_assert(Material<M>, "palpate: the second argument of HapticFEModel is a material, for example LinearElastic");
   static_assert(SolverPolicy<Solver>,
                 "palpate: the third argument of HapticFEModel is a solver: Condensed<SelectiveInverse>, SparseCholesky "

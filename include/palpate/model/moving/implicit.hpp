@@ -63,7 +63,7 @@ struct CorotatedParameters {
   double stiffness_damping = 0.0;  ///< Rayleigh's beta [s]
   BoundedSolveParameters solve{.maximum_iterations = 40, .tolerance = 3e-3};
   int precondition_every = 16;     ///< steps between two updates of the preconditioner
-  bool check = true;               ///< compare the energy after a step with that before it; costs one more force evaluation
+  bool check = true;  ///< compare the energy after a step with that before it; costs one more force evaluation
   int maximum_linearisations = 8;  ///< per step, when the check fails
 };
 

@@ -19,7 +19,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// A solver policy for dynamics. SolverTraits<P> has
 ///   Parameters                                    an aggregate with `step` [s]; with `settle`, a body that can still
 ///                                                 move as a whole is refused when that is true
-///   make_motion(body, scene, parameters, limits)  a PreparedMotion; `body` is a HyperelasticBody at large strain, at small
+///   make_motion(body, scene, parameters, limits)  a PreparedMotion; `body` is a HyperelasticBody at large strain, at
+///   small
 ///                                                 strain a Body or ViscousBody
 /// Shipped: Implicit<...> (model/moving/implicit.hpp), Explicit<...> (model/moving/explicit.hpp).
 template <class P>

@@ -92,7 +92,7 @@ class RenewedFactor {
   VectorX rest_;   // no displacement
   long renewals_ = 0;
   std::atomic<State> state_{State::idle};
-  std::thread thread_;  // last: it uses all the others
+  std::thread thread_;  // last: it uses all other members
 };
 
 }}  // namespace palpate
