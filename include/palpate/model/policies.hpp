@@ -137,7 +137,7 @@ struct CondensedTraits<ConjugateGradient> {
 
 template <class Inner>
 struct SolverTraits<Condensed<Inner>> {
-  static_assert(sizeof(Condensed<Inner>) > 0);  // what Condensed has to say of Inner is said first
+  static_assert(sizeof(Condensed<Inner>) > 0);  // triggers the static_assert of Condensed first
   using Assembly = Assembled;
   using Scalar = typename CondensedTraits<Inner>::Scalar;
   static constexpr bool eager = CondensedTraits<Inner>::eager;
