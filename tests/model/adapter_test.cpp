@@ -1,4 +1,4 @@
-// A simulator's own arrays instead of the library's mesh.
+// Models from the arrays of a simulator instead of a Mesh.
 #include <palpate/mesh/mesh_arrays.hpp>
 
 #include "model/any_model.hpp"
@@ -28,7 +28,7 @@ struct Arrays {
 
 }  // namespace
 
-TEST_CASE("arrays give the same answer as a mesh, bit by bit", "[model][adapter]") {
+TEST_CASE("arrays give the same results as a mesh, bit for bit", "[model][adapter]") {
   const Mesh<Tet4> mesh = two_cubes();
   const Arrays<double, std::int64_t> arrays(mesh);
   MeshArrays<Tet4, double, std::int64_t> view(arrays.positions, arrays.connectivity, arrays.regions);

@@ -1,4 +1,4 @@
-// Every policy gives the answer of a dense solve in long double.
+// Every policy gives the result of a dense solve in long double.
 #include <palpate/testing/tissue_laws.hpp>
 
 #include "model/any_model.hpp"
@@ -53,7 +53,8 @@ TEST_CASE("forces of tools on top of the loads", "[model][policies]") {
     INFO(name(policy));
     const auto model = make_model(policy, mesh, scene, liver);
     const std::array forces{VertexForce{11, {0.02, 0.0, -0.1}}, VertexForce{5, {0.0, 0.03, -0.05}},
-                            VertexForce{11, {0.01, 0.0, 0.0}}, VertexForce{0, {1.0, 1.0, 1.0}}};  // 0 is held
+                            VertexForce{11, {0.01, 0.0, 0.0}},
+                            VertexForce{0, {1.0, 1.0, 1.0}}};  // vertex 0 is constrained
     VectorX u(model->displacement().size()), expected = rest.displacement;
     const SolveReport report = model->displacement_with(forces, u);
     CHECK(report.converged);
@@ -68,7 +69,7 @@ TEST_CASE("forces of tools on top of the loads", "[model][policies]") {
   }
 }
 
-TEST_CASE("thousands of forces at once are all counted, or refused", "[model]") {
+TEST_CASE("thousands of simultaneous forces are all applied, or refused", "[model]") {
   const auto model = make_model(PolicyName::condensed_inverse, brick(), brick_scene(), liver);
   const std::vector<VertexForce> one{{11, {0.0, 0.0, -1.0}}};
   const std::vector<VertexForce> many(4000, {11, {0.0, 0.0, -1.0 / 4000}});
@@ -96,7 +97,7 @@ TEST_CASE("forces balance", "[model][policies]") {
     CHECK(largest(sum_reactions + sum_load) <= 100 * accuracy(policy) * scale);
     for (Index i = 0; i < mesh.node_count(); ++i)
       if (mesh.position(i)[0] > 0.0 && i != 3) CHECK(reactions.segment<3>(3 * i).isZero(0.0));
-    CHECK(reactions[9] != 0.0);  // node 3 is pulled along x only
+    CHECK(reactions[9] != 0.0);  // node 3 is displaced along x only
     CHECK(reactions[10] == 0.0);
   }
 }
@@ -126,7 +127,7 @@ TEST_CASE("a bar under uniaxial stress", "[model][closed_form]") {
   }
 }
 
-TEST_CASE("a lazy model remembers the columns it was asked for last", "[model][lazy]") {
+TEST_CASE("a model with few compliance slots keeps the columns requested last", "[model][lazy]") {
   const Mesh<Tet4> mesh = brick();
   const Reference truth(mesh, {liver}, brick_scene());
   for (PolicyName policy : {PolicyName::sparse_cholesky, PolicyName::condensed_cholesky}) {
@@ -155,7 +156,7 @@ TEST_CASE("a lazy model remembers the columns it was asked for last", "[model][l
       for (int i = 0; i < 12; ++i)
         if (i != v) elsewhere = std::max(elsewhere, largest(model->compliance(i, v)));
       if (elsewhere == 0.0) {
-        // never another vertex's column: soft where it is pushed, all else still
+        // never the column of another vertex: the pushed vertex is compliant, all others do not move
         CHECK(model->compliance(v, v).isDiagonal());
         CHECK(model->compliance(v, v)(0, 0) > 0.0);
         CHECK(model->compliance_bound(v) >= model->compliance(v, v).norm());

@@ -77,7 +77,8 @@ class AnyModel : public StillTissue {
 
 using Materials = RegionMaterials<LinearElastic>;
 
-/// Defined by one source per test executable, with model/make_any_model.hpp. Policies it does not know fail the test.
+/// Defined by one source per test executable, with model/make_any_model.hpp. Policies that are not compiled in fail the
+/// test.
 std::unique_ptr<AnyModel> make_model(PolicyName policy, const Mesh<Tet4>& mesh, const Scene& scene,
                                      const Materials& materials, const SetupOptions& options = {});
 

@@ -22,7 +22,7 @@ inline void write_bytes(const fs::path& path, const Bytes& bytes) {
       .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// A folder of one test's own, gone afterwards, with a cache file in mind.
+/// A temporary folder of one test for a cache file; removed by the destructor.
 class CacheFolder {
  public:
   CacheFolder() { fs::create_directories(path_); }
@@ -49,7 +49,7 @@ class CacheFolder {
     static int count = 0;
     return count++;
   }
-  /// In memory where there is such a thing: a disk may take milliseconds for every file that replaces another.
+  /// A folder in memory when available: a disk may take milliseconds to replace a file.
   static fs::path base() { return fs::is_directory("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path(); }
   fs::path path_ =
       base() / ("palpate_cache_" + std::to_string(std::chrono::steady_clock::now().time_since_epoch().count()) + "_" +
@@ -64,7 +64,7 @@ inline Scene two_cells_scene() {
   return Scene().fix("x0").touch("x1").gravity({0.0, 0.0, -9.81});
 }
 
-/// All that a model answers: displacement, reactions, compliance, displacement under a touch, condition.
+/// All results of a model: displacement, reactions, compliance, displacement under a contact force, condition.
 inline std::vector<double> answers(AnyModel& model) {
   std::vector<double> all;
   const auto add = [&](const auto& m) { all.insert(all.end(), m.data(), m.data() + m.size()); };

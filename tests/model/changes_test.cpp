@@ -1,4 +1,4 @@
-// Loads, gravity, pose and reset: the same as a new model, without a new factorisation, all or nothing.
+// Changes of loads, gravity and pose, and reset: same results as a new model, no new factorisation, strong guarantee.
 #include "model/any_model.hpp"
 #include "model/reference.hpp"
 
@@ -27,7 +27,7 @@ Eigen::Isometry3d some_pose() {
   return pose;
 }
 
-/// The surface as seen in the world.
+/// Positions of the surface in the world frame.
 std::vector<Vector3> world_surface(const AnyModel& model) {
   std::vector<Vector3> x;
   for (const Vector3& p : model.contact_surface().positions()) x.push_back(model.to_world() * p);
@@ -44,7 +44,7 @@ void check_surface(const AnyModel& model, const Eigen::Isometry3d& pose) {
   }
 }
 
-/// What must not change when a call fails.
+/// The state that must not change when a call fails.
 struct State {
   VectorX u, r, f;
   double energy;
@@ -65,7 +65,7 @@ struct State {
 
 }  // namespace
 
-TEST_CASE("changed loads give what a new model gives, without set-up", "[model][changes]") {
+TEST_CASE("changed loads give the results of a new model, without set-up", "[model][changes]") {
   const Scene plain = brick_scene().prescribe(std::vector<NodeId>{3}, {0.0, std::nullopt, std::nullopt});
   const Scene full_scene = loaded(brick_scene());
   const Reference truth(brick(), {liver}, full_scene);
@@ -113,7 +113,7 @@ TEST_CASE("changed gravity", "[model][changes]") {
   }
 }
 
-TEST_CASE("a turned organ hangs the other way", "[model][changes][M2]") {
+TEST_CASE("gravity acts on a rotated organ in the world direction", "[model][changes][M2]") {
   const Eigen::Isometry3d pose = some_pose();
   const Vector3 g(0, 0, -9.81);
   for (PolicyName policy : all_policies) {
@@ -144,7 +144,7 @@ TEST_CASE("a moved organ without gravity does not deform", "[model][changes]") {
   check_surface(*model, some_pose());
 }
 
-TEST_CASE("an organ that is put where it is stays there", "[model][changes]") {
+TEST_CASE("setting the current pose changes nothing", "[model][changes]") {
   const auto model = make_model(PolicyName::condensed_inverse, brick(), brick_scene(), liver);
   CHECK(model->pose().isApprox(Eigen::Isometry3d::Identity(), 0.0));
   const auto before = world_surface(*model);
@@ -156,7 +156,7 @@ TEST_CASE("an organ that is put where it is stays there", "[model][changes]") {
   CHECK(world_surface(*model) == moved);
 }
 
-TEST_CASE("reset goes back to the beginning", "[model][changes]") {
+TEST_CASE("reset restores the initial state", "[model][changes]") {
   for (PolicyName policy :
        {PolicyName::sparse_cholesky, PolicyName::conjugate_gradient, PolicyName::condensed_inverse}) {
     INFO(name(policy));
@@ -200,7 +200,7 @@ TEST_CASE("a refused change changes nothing", "[model][changes][strong]") {
     refused(SetupErrorKind::conflicting_conditions, [&] {
       model->set_conditions(Scene(scene).prescribe("x0", {1.0, 0.0, 0.0}));
     });
-    refused(SetupErrorKind::unsupported, [&] { model->set_conditions(brick_scene()); });  // node 3 would come free
+    refused(SetupErrorKind::unsupported, [&] { model->set_conditions(brick_scene()); });  // node 3 would become free
     refused(SetupErrorKind::unsupported, [&] { model->set_conditions(Scene(scene).fix("z1")); });
     refused(SetupErrorKind::index_out_of_range, [&] {
       model->set_conditions(Scene(scene).point_load(std::vector<NodeId>{99}, {1, 0, 0}));
@@ -214,7 +214,7 @@ TEST_CASE("a refused change changes nothing", "[model][changes][strong]") {
   }
 }
 
-TEST_CASE("a change whose answer overflows changes nothing", "[model][changes][strong]") {
+TEST_CASE("a change whose result overflows changes nothing", "[model][changes][strong]") {
   const LinearElastic mist{1e-6, 0.3, 1e3};  // so soft that a large load has no finite displacement
   const Scene scene = loaded(brick_scene());
   for (PolicyName policy :
@@ -245,14 +245,14 @@ TEST_CASE("gravity needs a density", "[model][changes][strong]") {
 }
 
 TEST_CASE("new loads may name any group of the mesh", "[model][changes]") {
-  // The scene of construction does not speak of y1.
+  // The scene of construction does not name y1.
   const auto model = make_model(PolicyName::sparse_cholesky, brick(), brick_scene(), liver);
   const Scene pressed = brick_scene().pressure("y1", 20.0);
   REQUIRE_NOTHROW(model->set_conditions(pressed));
   CHECK(relative(model->displacement(), Reference(brick(), {liver}, pressed).displacement) <= 1e-11);
 }
 
-TEST_CASE("a scene that touches something else is refused", "[model][changes][strong]") {
+TEST_CASE("a scene with another touchable set is refused", "[model][changes][strong]") {
   const Scene scene = loaded(brick_scene());
   for (PolicyName policy : {PolicyName::sparse_cholesky, PolicyName::condensed_inverse}) {
     INFO(name(policy));
@@ -279,7 +279,7 @@ TEST_CASE("a model without touch refuses a scene with one", "[model][changes][st
   CHECK_NOTHROW(model->set_conditions(scene));
 }
 
-TEST_CASE("the same touched set may be told in another way, or not at all", "[model][changes]") {
+TEST_CASE("the same touchable set may be specified differently, or omitted", "[model][changes]") {
   const Mesh<Tet4> mesh = brick();
   const Scene untouched = loaded(Scene().fix("x0"));
   const auto model = make_model(PolicyName::sparse_cholesky, mesh, loaded(brick_scene().touch("x1")), liver);

@@ -1,4 +1,4 @@
-// Implicit steps without a matrix against steps that are solved to the end, conservation laws and equilibrium.
+// Matrix-free implicit steps against fully converged steps, conservation laws and equilibrium.
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/moving/detail/corotated_motion.hpp>
 #include <palpate/model/moving/implicit_dynamics.hpp>
@@ -19,7 +19,7 @@ HyperelasticBody<Tet4, Law> pad(double poisson_ratio = 0.4) {
   return make_hyperelastic_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}),
                                 std::vector<Law>{{{5e3, poisson_ratio, 1000.0}}});
 }
-/// Held below, under its own weight.
+/// Fixed at the bottom, under its own weight.
 Scene standing() {
   Scene scene;
   scene.fix("z0").gravity({0.0, 0.0, -9.81});
@@ -51,7 +51,7 @@ VectorX bent(const Exact& m, double amount) {
   return u;
 }
 
-/// Largest distance of two motions on the way, of the largest displacement.
+/// Largest distance of two motions over all steps, relative to the largest displacement.
 template <class Motion>
 double apart_on_the_path(Motion& motion, ImplicitDynamics& reference, double h, int steps) {
   double apart = 0.0, largest = 0.0;
@@ -66,7 +66,7 @@ double apart_on_the_path(Motion& motion, ImplicitDynamics& reference, double h, 
 
 }  // namespace
 
-TEST_CASE("one linearisation per step follows the solved steps, closer with shorter ones", "[model][corotated]") {
+TEST_CASE("one linearisation per step follows the converged steps, closer with shorter steps", "[model][corotated]") {
   for (const TimeScheme& scheme : {TimeScheme::implicit_euler(), TimeScheme::newmark()}) {
     double error[2];
     for (int fine = 0; fine < 2; ++fine) {
@@ -84,7 +84,7 @@ TEST_CASE("one linearisation per step follows the solved steps, closer with shor
   }
 }
 
-TEST_CASE("single precision and one percent of the increment stay near", "[model][corotated]") {
+TEST_CASE("single precision with a tolerance of one percent stays close to the reference", "[model][corotated]") {
   CorotatedMotionOptions options;
   options.solve.tolerance = 1e-2;
   CorotatedMotion<LinearElastic, float> motion(pad(), standing(), options);
@@ -100,7 +100,7 @@ TEST_CASE("single precision and one percent of the increment stay near", "[model
   CHECK(apart <= 5e-3 * reference.displacement().norm());
 }
 
-TEST_CASE("it comes to rest in the equilibrium, whatever the step and the preconditioner", "[model][corotated]") {
+TEST_CASE("the motion settles in the equilibrium for any step and preconditioner", "[model][corotated]") {
   ImplicitDynamics reference(make_deformable_body(pad(), standing()), {.mass_damping = 20.0});
   for (int k = 0; k < 200; ++k) reference.step(0.05);
   const auto settles = [&](auto&& motion, double h, double tolerance) {
@@ -141,7 +141,7 @@ TEST_CASE("implicit Euler never adds energy, from any state", "[model][corotated
       for (double& x : u) x = random.uniform(-amount, amount);
       motion.set_state(u, VectorX::Zero(u.size()));
       double energy = stored(pad(0.45), u), start = energy;
-      INFO("step " << h << ", scrambled by " << amount);
+      INFO("step " << h << ", random displacements up to " << amount);
       for (int k = 0; k < 40; ++k) {
         const CorotatedStep step = motion.step(h);
         REQUIRE(step.taken);
@@ -153,7 +153,7 @@ TEST_CASE("implicit Euler never adds energy, from any state", "[model][corotated
     }
 }
 
-TEST_CASE("scrambled bodies come to rest without elements inside out", "[model][corotated][E5]") {
+TEST_CASE("bodies with random displacements settle without inverted elements", "[model][corotated][E5]") {
   testing::Random random(12);
   CorotatedMotionOptions options;
   options.mass_damping = 5.0;
@@ -171,7 +171,7 @@ TEST_CASE("scrambled bodies come to rest without elements inside out", "[model][
   CHECK(upright == 20);
 }
 
-TEST_CASE("a correction is what the step would have been with the force", "[model][corotated]") {
+TEST_CASE("a correction gives the result of the step with the force", "[model][corotated]") {
   Exact first(pad(), standing(), to_the_end()), second(pad(), standing(), to_the_end());
   VectorX more = VectorX::Zero(first.size());
   more[more.size() - 1] = 1e-4;
@@ -191,7 +191,7 @@ TEST_CASE("a correction is what the step would have been with the force", "[mode
   CHECK(second.displacement() == before);
 }
 
-TEST_CASE("held nodes go where they are told, and the others follow", "[model][corotated]") {
+TEST_CASE("prescribed nodes follow their values, and the others follow them", "[model][corotated]") {
   Scene scene;
   scene.fix("z0").fix("z1");
   Exact motion(pad(), scene, to_the_end());
@@ -216,7 +216,7 @@ TEST_CASE("held nodes go where they are told, and the others follow", "[model][c
   CHECK(up < 1.3 * 5e3 * 0.0016 * 0.1);
 }
 
-TEST_CASE("steps that are none change nothing", "[model][corotated][E1]") {
+TEST_CASE("invalid steps change nothing", "[model][corotated][E1]") {
   Exact motion(pad(), standing());
   motion.step(1e-3);
   const VectorX u = motion.displacement(), v = motion.velocity();
@@ -268,7 +268,7 @@ TEST_CASE("co-rotated motion refuses what it cannot do", "[model][corotated]") {
   CHECK(kind(weightless, standing(), {}) == "bad_density");
 }
 
-TEST_CASE("a correction that was not solved is not made", "[model][corotated]") {
+TEST_CASE("a correction that did not converge is not applied", "[model][corotated]") {
   CorotatedMotionOptions options;
   options.solve.maximum_iterations = 1;
   CorotatedMotion<LinearElastic, double> motion(pad(), standing(), options);
@@ -278,7 +278,7 @@ TEST_CASE("a correction that was not solved is not made", "[model][corotated]") 
   CHECK(motion.displacement() == u);
 }
 
-TEST_CASE("a body at rest leaves no force, a damped one no more than all of it", "[model][corotated]") {
+TEST_CASE("the relative residual is zero at rest and at most one with strong damping", "[model][corotated]") {
   Scene scene;
   scene.fix("z0");
   CorotatedMotion<> still(pad(), scene);
@@ -290,7 +290,7 @@ TEST_CASE("a body at rest leaves no force, a damped one no more than all of it",
   for (int k = 0; k < 5; ++k) CHECK(damped.step(1e-3).residual <= 1.0);
 }
 
-TEST_CASE("after a refused step the next is as if there had been none", "[model][corotated][E6]") {
+TEST_CASE("a refused step does not affect the next step", "[model][corotated][E6]") {
   CorotatedMotionOptions options = to_the_end();
   options.stiffness_damping = 1e-3;
   Exact motion(pad(), standing(), options), same(pad(), standing(), options);

@@ -46,7 +46,7 @@ TEST_CASE("a prescribed affine boundary gives the affine state inside", "[model]
     CHECK((body.displacement().segment<3>(3 * i) - (a * mesh.position(i) - mesh.position(i))).norm() <= 1e-12);
 }
 
-TEST_CASE("loads, supports and inner forces balance", "[model][equilibrium]") {
+TEST_CASE("loads, reactions and internal forces balance", "[model][equilibrium]") {
   Equilibrium body = pillar(Scene().fix("z0").gravity({2.0, 0.0, -9.81}).point_load("z1", {0.01, 0.02, -0.03}));
   const EquilibriumReport report = body.solve();
   REQUIRE(report.converged);
@@ -59,7 +59,7 @@ TEST_CASE("loads, supports and inner forces balance", "[model][equilibrium]") {
   CHECK_THAT(sum_along(r, 2), WithinRel(9.81 * mass + 0.03, 1e-9));
 }
 
-TEST_CASE("small loads give the answer of linear elasticity, and the difference is of second order",
+TEST_CASE("small loads give the result of linear elasticity, and the difference is of second order",
           "[model][equilibrium]") {
   const auto tip = [](double g) {
     Equilibrium body = pillar(Scene().fix("z0").gravity({g, 0.0, 0.0}));
@@ -82,19 +82,19 @@ TEST_CASE("the number of load steps does not change the answer", "[model][equili
   CHECK((one.displacement() - many.displacement()).norm() <= 1e-8 * one.displacement().norm());
 }
 
-TEST_CASE("a pillar pressed too far buckles into a stable state", "[model][equilibrium]") {
+TEST_CASE("a pillar compressed beyond its buckling load settles in a stable state", "[model][equilibrium]") {
   Equilibrium body = pillar(Scene().fix("z0").prescribe("z1", {0.0, 0.0, -0.036}));
   const EquilibriumReport report = body.solve();
   CHECK(report.converged);
   CHECK(report.stable);
   Equilibrium again = pillar(Scene().fix("z0").prescribe("z1", {0.0, 0.0, -0.036}));
   again.solve();
-  CHECK(again.displacement() == body.displacement());  // the same way every time
+  CHECK(again.displacement() == body.displacement());  // always in the same direction
 }
 
-TEST_CASE("what cannot be reached is said, with the worst element", "[model][equilibrium]") {
+TEST_CASE("a load without equilibrium is reported, with the most deformed element", "[model][equilibrium]") {
   const Components no_x{0.0, std::nullopt, std::nullopt}, no_y{std::nullopt, 0.0, std::nullopt};
-  Equilibrium body = pillar<NeoHookeanLogarithmic>(  // in a box, the top is to go through the floor
+  Equilibrium body = pillar<NeoHookeanLogarithmic>(  // confined, with the top prescribed below the bottom
       Scene()
           .fix("z0")
           .prescribe("z1", {0.0, 0.0, -0.0801})
@@ -112,7 +112,7 @@ TEST_CASE("what cannot be reached is said, with the worst element", "[model][equ
   CHECK_THAT(describe(report), test::contains("no equilibrium was found beyond"));
 }
 
-TEST_CASE("equilibrium refuses bodies that can move, and initial strains", "[model][equilibrium]") {
+TEST_CASE("equilibrium refuses bodies that can move rigidly, and initial strains", "[model][equilibrium]") {
   const auto kind = [](const Scene& scene) {
     try {
       pillar(scene);
@@ -196,7 +196,7 @@ TEST_CASE("the most deformed element is named in the mesh as given", "[model][eq
   CHECK(Equilibrium(mesh, scene, rubber, drop).solve().deformation.worst_element == worst + 1);
 }
 
-TEST_CASE("parameters with which nothing could be solved are refused", "[model][equilibrium]") {
+TEST_CASE("invalid solver parameters are refused", "[model][equilibrium]") {
   Equilibrium body = pillar(Scene().fix("z0").gravity({0.0, 0.0, -9.81}));
   const auto kind = [&](const EquilibriumParameters& parameters) {
     try {

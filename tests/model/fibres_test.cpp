@@ -20,7 +20,7 @@ Mesh<Tet4> block_with_fibres() {
 
 }  // namespace
 
-TEST_CASE("a cache is not for a body with other fibres", "[model][cache][fibres]") {
+TEST_CASE("the cache of a body is rejected for other fibres", "[model][cache][fibres]") {
   const Mesh<Tet4> mesh = block_with_fibres();
   Scene scene;
   scene.fix("x0");
@@ -38,7 +38,7 @@ TEST_CASE("a cache is not for a body with other fibres", "[model][cache][fibres]
     CHECK(compare(key, key_of(make_body(other, muscle)), why) == CacheMismatch::material);
 }
 
-TEST_CASE("a model of a body with fibres solves what its parts say", "[model][fibres]") {
+TEST_CASE("a model with fibres agrees with the equilibrium of its assembled parts", "[model][fibres]") {
   const Mesh<Tet4> mesh = block_with_fibres();
   Scene scene;
   scene.fix("x0").touch("x1").gravity({0, 0, -9.81}).expand(everywhere, 0.01);

@@ -1,4 +1,4 @@
-// Motion in time against closed forms, conservation laws and another code.
+// Dynamics against closed forms, conservation laws and another code.
 #include <palpate/element/hex8.hpp>
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/material/linear_elastic.hpp>
@@ -27,8 +27,8 @@ namespace {
 
 constexpr double length = 0.1, youngs_modulus = 1e4, density = 1e3;
 
-/// A cube that can only stretch along x, and evenly: an oscillator of mass m = rho V / 2 (half of it sits at the free
-/// end) and stiffness E A / L.
+/// A cube that can only stretch uniformly along x: an oscillator of mass m = rho V / 2 (half of it at the free end) and
+/// stiffness E A / L.
 DeformableBody oscillator(double load = 0.0) {
   Scene scene;
   const Components still{0.0, 0.0, 0.0}, along{std::nullopt, 0.0, 0.0};
@@ -41,14 +41,14 @@ const double omega = std::sqrt(youngs_modulus * length / (0.5 * density * length
 double end_of(const ImplicitDynamics& d) {
   return d.displacement()[d.body().conditions.free_dofs.front()];
 }
-/// Lets it go from 1 mm.
+/// Releases it from a displacement of 1 mm.
 void release(ImplicitDynamics& d) {
   VectorX u = VectorX::Zero(d.displacement().size());
   for (const Index dof : d.body().conditions.free_dofs) u[dof] = 1e-3;
   d.set_state(u, VectorX::Zero(u.size()));
 }
 
-/// Displacement of the free end after `time`, let go from 1 mm.
+/// Displacement of the free end after `time`, released from 1 mm.
 double released(TimeScheme scheme, int steps, double time, double damping = 0.0) {
   ImplicitDynamics d(oscillator(), {.scheme = scheme, .mass_damping = damping});
   release(d);
@@ -85,7 +85,7 @@ TEST_CASE("time schemes have their orders", "[model][dynamics]") {
              WithinAbs(2.0, 0.1));
 }
 
-TEST_CASE("implicit Euler damps an oscillation as theory says", "[model][dynamics]") {
+TEST_CASE("implicit Euler damps an oscillation as predicted by theory", "[model][dynamics]") {
   const double h = 0.1 / omega;
   ImplicitDynamics d(oscillator(), {});
   release(d);
@@ -160,7 +160,7 @@ TEST_CASE("an elastic bar under a sudden pull moves as in another code", "[model
   CHECK(worst <= 1e-8 * 2e-3);  // printed with 9 digits
 }
 
-TEST_CASE("a free body keeps its momentum and falls as it must", "[model][dynamics][energy]") {
+TEST_CASE("a free body conserves its momentum and falls with gravity", "[model][dynamics][energy]") {
   Scene scene;
   scene.gravity({0.0, 0.0, -9.81});
   for (const TimeScheme scheme : {TimeScheme::implicit_euler(), TimeScheme::newmark()}) {
@@ -187,13 +187,14 @@ TEST_CASE("a free body keeps its momentum and falls as it must", "[model][dynami
   for (int k = 0; k < 50; ++k) {
     REQUIRE(turning.step(2e-3).newton.converged);
     const double now = angular_momentum(turning).z();
-    CHECK(std::abs(now) <= std::abs(before) * (1.0 + 1e-9));  // implicit Euler loses spin, and never gains any
+    CHECK(std::abs(now) <=
+          std::abs(before) * (1.0 + 1e-9));  // implicit Euler loses angular momentum and never gains any
     before = now;
   }
   CHECK(before > 0.5 * spin);
 }
 
-TEST_CASE("a body at rest stays, and one that has come to rest is where statics puts it", "[model][dynamics]") {
+TEST_CASE("a body at rest stays at rest, and a settled one agrees with statics", "[model][dynamics]") {
   const Scene scene = Scene().fix("z0").gravity({9.81, 0.0, 0.0});
   Equilibrium statics(block(), scene);
   REQUIRE(statics.solve().converged);
@@ -207,7 +208,7 @@ TEST_CASE("a body at rest stays, and one that has come to rest is where statics 
   CHECK(still.displacement().isZero(0.0));
 }
 
-TEST_CASE("any step is bounded, and none that is no step is taken", "[model][dynamics][extreme][E1]") {
+TEST_CASE("steps of any length are bounded, and invalid steps are not taken", "[model][dynamics][extreme][E1]") {
   for (const double h : {1e-9, 1e-6, 1e-3, 0.1, 1.0, 100.0}) {
     ImplicitDynamics d(make_deformable_body(block(), Scene().fix("z0").gravity({9.81, 0.0, 0.0})), {});
     double before = d.energy();
@@ -230,7 +231,7 @@ TEST_CASE("any step is bounded, and none that is no step is taken", "[model][dyn
   }
 }
 
-TEST_CASE("vertices thrown about settle to rest", "[model][dynamics][extreme][E5]") {
+TEST_CASE("bodies with random displacements settle to rest", "[model][dynamics][extreme][E5]") {
   testing::Random random(11);
   int settled = 0;
   constexpr int runs = 12;
@@ -248,7 +249,7 @@ TEST_CASE("vertices thrown about settle to rest", "[model][dynamics][extreme][E5
   CHECK(settled == runs);
 }
 
-TEST_CASE("dynamics refuses what cannot move, and negative damping", "[model][dynamics]") {
+TEST_CASE("dynamics refuses bodies without mass, and negative damping", "[model][dynamics]") {
   const auto kind = [](DeformableBody body, const DynamicsParameters& parameters) {
     try {
       ImplicitDynamics d(std::move(body), parameters);
@@ -271,7 +272,7 @@ TEST_CASE("dynamics refuses what cannot move, and negative damping", "[model][dy
   CHECK(kind(oscillator(), {.scheme = TimeScheme::newmark(0.0, 0.5)}) == SetupErrorKind::bad_argument);
 }
 
-TEST_CASE("a correction is that of the tangent, also after a step that needed no iteration", "[model][dynamics]") {
+TEST_CASE("a correction uses the tangent, also after a step without iterations", "[model][dynamics]") {
   for (const MassKind mass : {MassKind::lumped, MassKind::consistent}) {
     const Scene scene = Scene().fix("z0");
     ImplicitDynamics d(make_deformable_body(block(), scene), {.mass = mass});
@@ -285,7 +286,7 @@ TEST_CASE("a correction is that of the tangent, also after a step that needed no
     fresh.respond(force, expected);
     REQUIRE(expected.norm() > 0.0);
     CHECK((d.displacement() - expected).norm() <= 1e-12 * expected.norm());
-    // the same force from the start of the step gives that to first order
+    // the same force applied from the start of the step gives the same result to first order
     ImplicitDynamics loaded(make_deformable_body(block(), scene), {.mass = mass});
     loaded.set_load(1e-3 * force);
     REQUIRE(loaded.step(h).newton.converged);
@@ -293,7 +294,7 @@ TEST_CASE("a correction is that of the tangent, also after a step that needed no
   }
 }
 
-TEST_CASE("what is no end of a step is not corrected, and no state that cannot be comes of it", "[model][dynamics]") {
+TEST_CASE("only the end of a step is corrected, and the result is always a valid state", "[model][dynamics]") {
   const auto scene = Scene().fix("z0");
   ImplicitDynamics d(
       make_deformable_body(make_hyperelastic_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}),
@@ -312,7 +313,7 @@ TEST_CASE("what is no end of a step is not corrected, and no state that cannot b
     CHECK(d.displacement() == u);
   }
   d.prepare_response(1e-3);
-  CHECK_FALSE(d.correct(force));  // of which step?
+  CHECK_FALSE(d.correct(force));  // no step to correct
   CHECK(d.displacement() == u);
   REQUIRE(d.step(5e-3).taken);
   d.set_prescribed(VectorX::Constant(u.size(), std::numeric_limits<double>::quiet_NaN()));
@@ -322,7 +323,7 @@ TEST_CASE("what is no end of a step is not corrected, and no state that cannot b
   CHECK(d.displacement() == last);
 }
 
-TEST_CASE("a state that is set has its prescribed parts where they are prescribed", "[model][dynamics]") {
+TEST_CASE("set_state applies the prescribed values", "[model][dynamics]") {
   const Scene scene = Scene().fix("z0").prescribe("z1", {0.0, 0.0, -0.02});
   Equilibrium statics(block(), scene);
   REQUIRE(statics.solve().converged);
@@ -334,7 +335,7 @@ TEST_CASE("a state that is set has its prescribed parts where they are prescribe
   CHECK((d.displacement() - statics.displacement()).norm() <= 1e-9 * statics.displacement().norm());
 }
 
-TEST_CASE("a correction leaves held nodes where the step put them", "[model][dynamics]") {
+TEST_CASE("a correction does not move prescribed nodes", "[model][dynamics]") {
   const Scene scene = Scene().fix("z0").prescribe("z1", {0.0, 0.0, 0.0});
   ImplicitDynamics d(make_deformable_body(block(), scene), {}), same(make_deformable_body(block(), scene), {});
   VectorX force = VectorX::Zero(d.displacement().size());
@@ -346,7 +347,7 @@ TEST_CASE("a correction leaves held nodes where the step put them", "[model][dyn
   CHECK(d.displacement() == same.displacement());
 }
 
-TEST_CASE("a response needs a step, and is that of its tangent, also where it took no iteration", "[model][dynamics]") {
+TEST_CASE("a response needs a step and uses its tangent, also after a step without iterations", "[model][dynamics]") {
   for (const MassKind mass : {MassKind::lumped, MassKind::consistent}) {
     ImplicitDynamics d(make_deformable_body(block(), Scene().fix("z0")), {.mass = mass}),
         fresh(make_deformable_body(block(), Scene().fix("z0")), {.mass = mass});
@@ -362,7 +363,7 @@ TEST_CASE("a response needs a step, and is that of its tangent, also where it to
   }
 }
 
-TEST_CASE("a step ends no higher than it began, however far the body would fly in it", "[model][dynamics][E1]") {
+TEST_CASE("the potential does not rise in a step, for any predicted displacement", "[model][dynamics][E1]") {
   const auto body = make_hyperelastic_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}),
                                            std::vector<StVenantKirchhoff>{{5e3, 0.4, density}});
   for (const double h : {1e-3, 1e-2, 1e-1, 1.0}) {
@@ -381,7 +382,7 @@ TEST_CASE("a step ends no higher than it began, however far the body would fly i
   }
 }
 
-TEST_CASE("vectors of another size are refused by motions and equilibria", "[model][dynamics][extreme]") {
+TEST_CASE("vectors of a wrong size are refused by motions and equilibria", "[model][dynamics][extreme]") {
   const Scene scene = Scene().fix("z0");
   ImplicitDynamics d(make_deformable_body(block(), scene), {});
   Equilibrium statics(block(), scene);
@@ -396,7 +397,7 @@ TEST_CASE("vectors of another size are refused by motions and equilibria", "[mod
   CHECK(statics.solve().converged);
 }
 
-TEST_CASE("a linear body at rest is an equilibrium like any other", "[model][equilibrium]") {
+TEST_CASE("equilibrium supports linear bodies", "[model][equilibrium]") {
   const auto body = make_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}), LinearElastic{5e3, 0.4, density});
   const Scene scene = Scene().fix("z0").gravity({0.0, 0.0, -9.81});
   Equilibrium statics(make_constrained_body(body, scene));

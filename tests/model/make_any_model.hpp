@@ -4,7 +4,7 @@
 
 namespace test {
 
-/// The options with columns computed in the call that asks for them: the tests compare answers at once.
+/// The options with columns computed in the call that requests them, because the tests compare results immediately.
 inline SetupOptions synchronous(SetupOptions options) {
   options.columns = ColumnFill::synchronous;
   return options;

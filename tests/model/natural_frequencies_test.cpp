@@ -45,7 +45,7 @@ void check_shapes(const Body<E>& body, const NaturalFrequencies& modes) {
 
 }  // namespace
 
-TEST_CASE("the free cube has the modes of the exact one", "[model][modal]") {
+TEST_CASE("the free cube has the exact modes", "[model][modal]") {
   // NUMERICS.md 7 item 10: Ritz degree 12; the Lame mode pi sqrt 2 is exact and the same for any Poisson ratio.
   const LinearElastic m{3e3, 0.3, 1100.0};
   const double length = 0.05;
@@ -67,14 +67,14 @@ TEST_CASE("the free cube has the modes of the exact one", "[model][modal]") {
                          4.5728};
   for (std::size_t k = 0; k < exact.size(); ++k) CHECK_THAT(w[static_cast<Index>(k)], WithinRel(exact[k], 2e-3));
   for (Index k : {8, 9, 10}) CHECK(w[k] > pi * std::sqrt(2.0));  // a Ritz method bounds from above
-  CHECK_THAT(w[1], WithinRel(w[0], 1e-9));                       // what the symmetry of the mesh demands
+  CHECK_THAT(w[1], WithinRel(w[0], 1e-9));                       // by symmetry of the mesh
   CHECK_THAT(w[3], WithinRel(w[2], 1e-9));
   CHECK_THAT(w[4], WithinRel(w[2], 1e-9));
   CHECK_THAT(w[7], WithinRel(w[5], 1e-9));
   check_shapes(body, modes);
 }
 
-TEST_CASE("the Lame mode converges with the fourth order", "[model][modal]") {
+TEST_CASE("the Lame mode converges with fourth order", "[model][modal]") {
   const LinearElastic m{3e3, 0.45, 1100.0};
   const auto error = [&](int cells) {
     const auto body = make_body(box_hex20(Vector3::Constant(1.0), {cells, cells, cells}), m);
@@ -86,7 +86,7 @@ TEST_CASE("the Lame mode converges with the fourth order", "[model][modal]") {
   CHECK(std::log2(coarse / fine) >= 3.6);
 }
 
-TEMPLATE_TEST_CASE("few dofs: the frequencies are those of a dense solver", "[model][modal]", Tet4, Tet10, Hex8) {
+TEMPLATE_TEST_CASE("the frequencies of small bodies are those of a dense solver", "[model][modal]", Tet4, Tet10, Hex8) {
   using E = TestType;
   const auto body = [] {
     if constexpr (E::nodes == 4) return make_body(jittered(box_tet4({1, 2, 3}, {2, 2, 3}), 0.1, {1, 2, 3}), liver);
@@ -123,7 +123,7 @@ TEST_CASE("a bar on rollers has the frequencies of the wave equation", "[model][
     CHECK_THAT(modes.frequencies[k], WithinRel(static_cast<double>(2 * k + 1) * c / 4.0, 2e-5));
 }
 
-TEST_CASE("two loose pieces have twelve rigid motions and every frequency twice", "[model][modal]") {
+TEST_CASE("two separate bodies have twelve rigid motions and every frequency twice", "[model][modal]") {
   const Mesh<Tet4> one = box_tet4({0.1, 0.2, 0.3}, {1, 2, 3});
   Mesh<Tet4> two = one;
   for (const Vector3& x : one.positions) two.positions.push_back(x + Vector3(5, 0, 0));
@@ -138,7 +138,7 @@ TEST_CASE("two loose pieces have twelve rigid motions and every frequency twice"
   for (Index k = 0; k < 10; ++k) CHECK_THAT(pair.frequencies[k], WithinRel(single.frequencies[k / 2], 1e-9));
 }
 
-TEST_CASE("units, place and order do not matter", "[model][modal]") {
+TEST_CASE("frequencies scale with units and do not depend on position", "[model][modal]") {
   const Mesh<Tet4> mesh = jittered(box_tet4({0.1, 0.2, 0.3}, {2, 2, 3}), 0.01, {0.1, 0.2, 0.3});
   const VectorX f = natural_frequencies(make_body(mesh, liver), {}, 6).frequencies;
   const auto same = [&](Mesh<Tet4> other, LinearElastic m, double factor) {
@@ -158,7 +158,7 @@ TEST_CASE("units, place and order do not matter", "[model][modal]") {
   CHECK(natural_frequencies(make_body(mesh, liver), {}, 6).frequencies == f);
 }
 
-TEST_CASE("hard cases: slender, nearly incompressible, soft part in a hard body", "[model][modal][extreme]") {
+TEST_CASE("difficult cases: slender, nearly incompressible, soft part in a hard body", "[model][modal][extreme]") {
   SECTION("a free rod a hundred times as long as thick") {
     const LinearElastic m{1e6, 0.0, 1000.0};
     const auto modes = natural_frequencies(make_body(box_hex20({1.0, 0.01, 0.01}, {40, 1, 1}), m), {}, 6);
@@ -184,7 +184,7 @@ TEST_CASE("hard cases: slender, nearly incompressible, soft part in a hard body"
   }
 }
 
-TEST_CASE("rounding is reported, and refused when it is all there is", "[model][modal][extreme]") {
+TEST_CASE("rounding is reported, and refused when it dominates", "[model][modal][extreme]") {
   LinearElastic hard = reference_material;
   const auto constrained_with_contrast = [&](double contrast) {
     Mesh<Hex20> mesh = box_hex20({1, 1, 1}, {3, 3, 3});
@@ -201,21 +201,22 @@ TEST_CASE("rounding is reported, and refused when it is all there is", "[model][
   CHECK(some > 1e-10);
   CHECK(some <= 1e-3);
   CHECK_REFUSED(SetupErrorKind::ill_conditioned, constrained_with_contrast(3e12));
-  CHECK_REFUSED(SetupErrorKind::not_positive_definite, constrained_with_contrast(1e15));  // by the pivots already
+  CHECK_REFUSED(SetupErrorKind::not_positive_definite,
+                constrained_with_contrast(1e15));  // already refused by the pivots
 }
 
-TEST_CASE("two tetrahedra joined in a node are a mechanism", "[model][modal]") {
+TEST_CASE("two tetrahedra joined at a node are a mechanism", "[model][modal]") {
   Mesh<Tet4> mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
   mesh.elements = {{0, 1, 2, 3}, {0, 5, 4, 6}};
   const auto modes = natural_frequencies(make_body(mesh, liver), {}, 4);
   CHECK(modes.rigid_modes() == 6);
-  CHECK(modes.frequencies.head(3).maxCoeff() <= 1e-6 * modes.frequencies[3]);  // turns about the node
+  CHECK(modes.frequencies.head(3).maxCoeff() <= 1e-6 * modes.frequencies[3]);  // rotations about the node
   CHECK_THAT(modes.frequencies[3],
              WithinRel(std::sqrt(dense_eigenvalues(make_body(mesh, liver), {})[9]) / (2.0 * pi), 1e-9));
 }
 
-TEST_CASE("what has no natural frequencies is refused", "[model][modal]") {
+TEST_CASE("invalid requests for natural frequencies are refused", "[model][modal]") {
   const auto body = make_body(two_cubes(), reference_material);
   CHECK_REFUSED(SetupErrorKind::bad_argument, natural_frequencies(body, {}, 0));
   CHECK_REFUSED(SetupErrorKind::bad_argument, natural_frequencies(body, {}, -3));

@@ -1,4 +1,4 @@
-// One session text for models of all solvers: a program changes its `using Model = ...`, and nothing else.
+// One session program for models of all solvers: only the line `using Model = ...` differs.
 #pragma once
 
 #include <palpate/haptic/background_worker.hpp>
@@ -46,8 +46,8 @@ inline Scene constrained_block() {
   return Scene().fix("z0").touch("z1");
 }
 
-/// Forces [N] of a tool pressed `depth` into the middle of the block as it lies at `pose`, one per tick of 1 ms. Work
-/// beside the ticks is done between them, so that every run is the same.
+/// Forces [N] of a tool pressed `depth` into the middle of the block at its pose, one per tick of 1 ms. Background work
+/// is done between the ticks, so that every run is the same.
 template <class Model>
 std::vector<Vector3> press(Model& model, HapticServo& servo, double depth, int ticks = 600) {
   std::vector<Vector3> forces;
@@ -128,12 +128,12 @@ void run() {
   CHECK_REFUSED(SetupErrorKind::index_out_of_range,
                 model.displacement(std::array{VertexForce{1000000, {0.0, 0.0, 1.0}}}));
 
-  // Start means start.
+  // Reset restores the initial state exactly.
   servo.reset();
   model.reset();
   CHECK((press(model, servo, 0.004) == first));
 
-  // The organ upside down and elsewhere feels the same, rotated with it.
+  // A rotated and translated organ gives the same forces, rotated with it.
   servo.reset();
   model.reset();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -148,7 +148,7 @@ void run() {
   CHECK_REFUSED(SetupErrorKind::bad_argument, model.set_pose(scaled));
   CHECK(model.pose().matrix() == pose.matrix());
 
-  // Gravity sinks the block, whichever way it is set; another set of supports is refused.
+  // Gravity deforms the block equally by set_gravity and by set_conditions; other supports are refused.
   const auto sunk = [&](const auto& change) {
     model.reset();
     servo.reset();
@@ -165,7 +165,7 @@ void run() {
   CHECK_REFUSED(SetupErrorKind::unsupported, model.set_conditions(Scene().fix("z0").touch("x1")));
   CHECK_REFUSED(SetupErrorKind::non_finite, model.set_gravity({0.0, infinity, 0.0}));
 
-  // A thread does what is to be done beside the ticks.
+  // The background work in a thread.
   model.reset();
   servo.reset();
   {
@@ -181,7 +181,7 @@ void run() {
     CHECK(report.rate >= 0.0);
   }
 
-  // What is refused, and what is said.
+  // Errors and flags.
   CHECK_REFUSED(SetupErrorKind::unconstrained, Model(mesh, Scene().touch("z1"), material<M>()));
   CHECK_REFUSED(SetupErrorKind::unknown_group, Model(mesh, Scene().fix("nowhere").touch("z1"), material<M>()));
   auto bad = mesh;

@@ -1,4 +1,4 @@
-// The session text on co-rotated motion without a factor.
+// The session program with co-rotational motion without a factor.
 #include <palpate/material/corotational.hpp>
 #include <palpate/model/moving/implicit.hpp>
 
@@ -6,7 +6,7 @@
 
 using namespace palpate;
 
-TEST_CASE("one session text: co-rotated motion without a factor", "[model][door]") {
+TEST_CASE("one session program: co-rotational motion without a factor", "[model][door]") {
   using Model = HapticFEModel<Tet4, Corotational<LinearElastic>, Implicit<MatrixFreeCG<BlockJacobi>>>;
   one_session::run<Model>();
 }

@@ -1,4 +1,4 @@
-// The session text on tissue that is cut.
+// The session program with cuttable tissue.
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
@@ -6,7 +6,7 @@
 
 using namespace palpate;
 
-TEST_CASE("one session text: tissue that is cut", "[model][door]") {
+TEST_CASE("one session program: cuttable tissue", "[model][door]") {
   using Model = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
   one_session::run<Model>();
 }

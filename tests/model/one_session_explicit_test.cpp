@@ -1,4 +1,4 @@
-// The session text on explicit motion.
+// The session program with explicit motion.
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/model/moving/explicit.hpp>
 
@@ -6,7 +6,7 @@
 
 using namespace palpate;
 
-TEST_CASE("one session text: explicit motion", "[model][door]") {
+TEST_CASE("one session program: explicit motion", "[model][door]") {
   using Model = HapticFEModel<Tet4, NeoHookean, Explicit<CentralDifference>>;
   one_session::run<Model>();
 }

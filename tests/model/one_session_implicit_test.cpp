@@ -1,4 +1,4 @@
-// The session text on implicit motion by Newton's method.
+// The session program with implicit motion by Newton's method.
 #include <palpate/element/tet10.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/promote.hpp>
@@ -8,7 +8,7 @@
 
 using namespace palpate;
 
-TEST_CASE("one session text: implicit motion by Newton's method", "[model][door]") {
+TEST_CASE("one session program: implicit motion by Newton's method", "[model][door]") {
   using Model = HapticFEModel<Tet10, NeoHookean, Implicit<Newton<SparseCholesky>>>;
   one_session::run<Model>();
 }

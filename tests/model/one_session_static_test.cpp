@@ -1,4 +1,4 @@
-// The session text on linear statics.
+// The session program with linear statics.
 #include <palpate/element/smoothed.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
@@ -6,7 +6,7 @@
 
 using namespace palpate;
 
-TEST_CASE("one session text: linear statics", "[model][door]") {
+TEST_CASE("one session program: linear statics", "[model][door]") {
   using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic>;
   one_session::run<Model>();
 }

@@ -1,4 +1,4 @@
-// The session text on tissue that stiffens.
+// The session program with stiffening tissue.
 #include <palpate/element/smoothed.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/static/stiffening.hpp>
@@ -7,7 +7,7 @@
 
 using namespace palpate;
 
-TEST_CASE("one session text: tissue that stiffens", "[model][door]") {
+TEST_CASE("one session program: stiffening tissue", "[model][door]") {
   using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic, Stiffening<Condensed<SelectiveInverse>>>;
   one_session::run<Model>();
 }

@@ -1,4 +1,4 @@
-// What is refused after admission names nodes, elements and axes of the mesh as given.
+// Errors after admission name nodes, elements and axes of the mesh as given.
 #include <palpate/mesh/admission.hpp>
 
 #include <algorithm>
@@ -22,14 +22,14 @@ void shift_nodes(Mesh<Tet4>& mesh, NodeId by) {
   }
 }
 
-/// The mesh with a node in front that no element uses: admission drops it, and every other node is one lower.
+/// The mesh with an orphan node in front: admission drops it and decrements all other node ids.
 Mesh<Tet4> with_orphan(Mesh<Tet4> mesh) {
   shift_nodes(mesh, 1);
   mesh.positions.insert(mesh.positions.begin(), Vector3(0.05, 0.03, 0.02));
   return mesh;
 }
 
-/// The mesh with a flat element in front: admission can drop it, and every other element is one lower.
+/// The mesh with a flat element in front: admission can drop it and decrement all other element ids.
 Mesh<Tet4> with_flat_element(Mesh<Tet4> mesh) {
   const auto& e = mesh.elements.front();
   const Vector3 middle =
@@ -54,7 +54,7 @@ std::unique_ptr<AnyModel> model_of(const Mesh<Tet4>& mesh, const Scene& scene, c
   return make_model(policy, mesh, scene, LinearElastic{5e3, 0.3, 1000.0}, options);
 }
 
-/// The nodes where `x` is this in two components.
+/// The nodes at the given x and y coordinates.
 std::vector<NodeId> edge_at(const Mesh<Tet4>& mesh, double x, double y) {
   std::vector<NodeId> nodes;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
@@ -63,7 +63,7 @@ std::vector<NodeId> edge_at(const Mesh<Tet4>& mesh, double x, double y) {
   return nodes;
 }
 
-/// An element all of whose faces belong to another one as well.
+/// An element that shares all its faces with other elements.
 std::array<NodeId, 4> inner_element(const Mesh<Tet4>& mesh) {
   std::vector<int> outer(mesh.elements.size(), 0);
   for (const BoundaryFace& face : extract_boundary<Tet4>(mesh)) outer[static_cast<std::size_t>(face.element)] = 1;
@@ -82,7 +82,8 @@ TEST_CASE("a free rotation is named in the frame of the mesh as given", "[model]
     CHECK_THAT(p.what, contains("rotation about the axis (0, 0, 1) through (3, -2, 0)"));
   }
   const auto p = refusal([&] { model_of(mesh, Scene().fix(edge_at(mesh, 3.01, -1.98)).touch("z1")); });
-  CHECK_THAT(p.what, contains("through (3.01, -1.98, 0)"));  // told to a hundredth of the body, not to three digits
+  CHECK_THAT(p.what,
+             contains("through (3.01, -1.98, 0)"));  // printed to a hundredth of the body size, not to three digits
 }
 
 TEST_CASE("the ids of an unconstrained piece are those of the mesh as given", "[model][refusals]") {
@@ -131,9 +132,9 @@ TEST_CASE("a welded node has the lowest of its ids", "[model][refusals]") {
   CHECK(p.ids == Ids{9});
 }
 
-TEST_CASE("pivots that fail name nodes of the mesh as given", "[model][refusals]") {
-  // A node of the brick is told twice, so that one of the two goes; the last node is an orphan, which is accepted and
-  // has no stiffness.
+TEST_CASE("failed pivots name nodes of the mesh as given", "[model][refusals]") {
+  // A node of the brick is duplicated, so that one of the two is merged; the last node is an accepted orphan without
+  // stiffness.
   Mesh<Tet4> mesh = brick();
   shift_nodes(mesh, 1);
   constexpr NodeId twice = 9;
@@ -176,7 +177,7 @@ TEST_CASE("elements are named as in the mesh as given", "[model][refusals][extre
   }
 }
 
-TEST_CASE("what is refused inside a progress callback keeps its own ids", "[model][refusals]") {
+TEST_CASE("errors of other meshes inside a progress callback keep their own ids", "[model][refusals]") {
   const Mesh<Tet4> mesh = with_orphan(brick());
   Ids seen;
   SetupOptions options;

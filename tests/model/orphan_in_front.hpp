@@ -7,7 +7,7 @@ namespace test {
 
 using namespace palpate;
 
-/// The mesh with a node in front of all others that no element uses.
+/// The mesh with an orphan node (used by no element) in front of all others.
 template <class E>
 Mesh<E> with_orphan_in_front(Mesh<E> mesh, const Vector3& orphan) {
   mesh.positions.insert(mesh.positions.begin(), orphan);

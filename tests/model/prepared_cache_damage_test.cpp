@@ -1,4 +1,4 @@
-// Cache files that are damaged, foreign, forged or cannot be written: never a failure, never a wrong answer.
+// Cache files that are damaged, foreign, forged or cannot be written: never a failure, never a wrong result.
 #include <algorithm>
 #include <sstream>
 
@@ -29,8 +29,8 @@ class Tampered {
   std::unique_ptr<AnyModel> make(const SetupOptions& options) const {
     return make_model(policy_, two_cells(), two_cells_scene(), liver, options);
   }
-  /// What a set-up finds in a file of these bytes. The answer must be right and a bad file replaced by a good one, a
-  /// foreign one left alone; `mistakes` counts what is not so.
+  /// Report of a set-up with a file of these bytes. The results must be right, a bad file must be replaced by a good
+  /// one, and a foreign file must be left unchanged; `mistakes` counts violations.
   CacheReport report_on(const Bytes& bytes) {
     write_bytes(folder.cache(), bytes);
     const auto model = make(folder.options());
@@ -45,7 +45,7 @@ class Tampered {
   }
   CacheMismatch mismatch_of(const Bytes& bytes) { return report_on(bytes).mismatch; }
 
-  /// The good file with its header changed, as somebody's other version would have written it.
+  /// The good file with a changed header, as another version of the library would have written it.
   template <class Change>
   Bytes with_header(Change change) const {
     CacheHeader header;
@@ -111,7 +111,7 @@ std::size_t peak_kilobytes() {
 
 }  // namespace
 
-TEST_CASE("every flipped bit of a cache is found", "[model][cache][extreme][C6]") {
+TEST_CASE("every flipped bit of a cache is detected", "[model][cache][extreme][C6]") {
   Tampered t;
   std::array<int, 32> found{};
   for (std::size_t bit = 0; bit < 8 * t.good.size(); ++bit) {
@@ -133,7 +133,7 @@ TEST_CASE("every flipped bit of a cache is found", "[model][cache][extreme][C6]"
   CHECK(t.folder.files() == 1);
 }
 
-TEST_CASE("every length of a cut cache is found", "[model][cache][extreme][C6]") {
+TEST_CASE("truncation of a cache to any length is detected", "[model][cache][extreme][C6]") {
   Tampered t;
   for (std::size_t size = 0; size < t.good.size(); ++size)
     if (t.mismatch_of(Bytes(t.good.begin(), t.good.begin() + static_cast<std::ptrdiff_t>(size))) !=
@@ -148,7 +148,7 @@ TEST_CASE("every length of a cut cache is found", "[model][cache][extreme][C6]")
   CHECK(t.mistakes == 0);
 }
 
-TEST_CASE("random damage of every policy's cache is found", "[model][cache][extreme][C6]") {
+TEST_CASE("random damage of the cache of every policy is detected", "[model][cache][extreme][C6]") {
   for (PolicyName policy : {PolicyName::sparse_cholesky, PolicyName::selective_inverse, PolicyName::condensed_float,
                             PolicyName::condensed_cholesky, PolicyName::condensed_conjugate_gradient}) {
     INFO(name(policy));
@@ -157,7 +157,7 @@ TEST_CASE("random damage of every policy's cache is found", "[model][cache][extr
     for (int i = 0; i < 100; ++i) {
       Bytes bytes = t.good;
       const auto size = static_cast<double>(bytes.size());
-      for (int n = 0; n <= i % 5; ++n) {  // some bytes, all different from what they were
+      for (int n = 0; n <= i % 5; ++n) {  // changes some bytes
         auto& byte = bytes[static_cast<std::size_t>(random.uniform(0.0, size * 0.999999))];
         byte = static_cast<char>(byte ^ static_cast<char>(1 + static_cast<int>(random.uniform(0.0, 254.9))));
       }
@@ -167,7 +167,7 @@ TEST_CASE("random damage of every policy's cache is found", "[model][cache][extr
   }
 }
 
-TEST_CASE("other versions and other machines are told apart", "[model][cache][extreme][C6]") {
+TEST_CASE("caches of other versions and other machines are rejected", "[model][cache][extreme][C6]") {
   Tampered t;
   const auto why = [&](const Bytes& bytes, CacheMismatch expected) {
     const CacheReport r = t.report_on(bytes);
@@ -193,11 +193,11 @@ TEST_CASE("other versions and other machines are told apart", "[model][cache][ex
   CHECK(t.mistakes == 0);
 }
 
-TEST_CASE("a cache whose hashes are right and whose numbers are not", "[model][cache][extreme][C6]") {
+TEST_CASE("a cache with right hashes and wrong numbers is rejected", "[model][cache][extreme][C6]") {
   Tampered t;
   const auto order = value_at<std::uint64_t>(t.good, order_at);
   forge(t.folder.cache(), t.good, order, 1.0);
-  REQUIRE(bytes_of(t.folder.cache()) == t.good);  // the forger knows the format
+  REQUIRE(bytes_of(t.folder.cache()) == t.good);  // `forge` reproduces the format
   forge(t.folder.cache(), t.good, order, 2.0);
   CHECK(t.mismatch_of(bytes_of(t.folder.cache())) == CacheMismatch::answers);
   forge(t.folder.cache(), t.good, order, std::numeric_limits<double>::quiet_NaN());
@@ -207,7 +207,7 @@ TEST_CASE("a cache whose hashes are right and whose numbers are not", "[model][c
   CHECK(t.mistakes == 0);
 }
 
-TEST_CASE("counts that lie allocate nothing", "[model][cache][memory][extreme][C6]") {
+TEST_CASE("wrong counts in a cache allocate nothing", "[model][cache][memory][extreme][C6]") {
   Tampered t;
   const auto count = value_at<std::uint64_t>(t.good, count_at);
   const std::size_t second_at = factor_at + count * word;
@@ -228,7 +228,7 @@ TEST_CASE("counts that lie allocate nothing", "[model][cache][memory][extreme][C
 #endif
 }
 
-TEST_CASE("a file that is something else is never overwritten", "[model][cache][extreme][C6]") {
+TEST_CASE("a file that is not a cache is never overwritten", "[model][cache][extreme][C6]") {
   Tampered t;
   const std::string mesh = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
   const CacheReport r = t.report_on(Bytes(mesh.begin(), mesh.end()));
@@ -238,14 +238,14 @@ TEST_CASE("a file that is something else is never overwritten", "[model][cache][
   CHECK(t.folder.files() == 1);
 #if defined(__linux__)
   fs::remove(t.folder.cache());
-  REQUIRE(::mkfifo(t.folder.cache().c_str(), 0600) == 0);  // to open it would wait for ever
+  REQUIRE(::mkfifo(t.folder.cache().c_str(), 0600) == 0);  // opening it would block for ever
   const auto model = t.make(t.folder.options());
   CHECK(model->report().cache.mismatch == CacheMismatch::foreign);
   CHECK(fs::is_fifo(t.folder.cache()));
 #endif
 }
 
-TEST_CASE("a cache that cannot be written is reported, no more", "[model][cache][extreme][C6]") {
+TEST_CASE("a cache that cannot be written is only reported", "[model][cache][extreme][C6]") {
   const CacheFolder folder;
   std::ofstream(folder.path() / "file") << "x";
   fs::create_directory(folder.path() / "folder");
@@ -288,5 +288,5 @@ TEST_CASE("a cache that cannot be written is reported, no more", "[model][cache]
   }
   std::signal(SIGXFSZ, handler);
 #endif
-  CHECK(folder.files() == 2);  // no scraps
+  CHECK(folder.files() == 2);  // no temporary files left
 }

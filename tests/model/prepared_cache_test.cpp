@@ -1,4 +1,4 @@
-// The cache file of a prepared model: same answers, and every difference by its name.
+// The cache file of a prepared model: same results, and every difference is named.
 #include <sstream>
 #include <thread>
 
@@ -18,7 +18,7 @@ std::string text_of(const CacheReport& report) {
   return text.str();
 }
 
-/// What a set-up may look like.
+/// Inputs of a set-up, with defaults.
 struct Setup {
   Mesh<Tet4> mesh = brick();
   Scene scene = brick_scene();
@@ -32,7 +32,7 @@ struct Setup {
 
 }  // namespace
 
-TEST_CASE("a model from a cache answers as the one that wrote it, bit for bit", "[model][cache][M14]") {
+TEST_CASE("a model from a cache gives the results of the one that wrote it, bit for bit", "[model][cache][M14]") {
   for (PolicyName policy : cacheable) {
     INFO(name(policy));
     Setup setup;
@@ -69,7 +69,7 @@ TEST_CASE("a model from a cache answers as the one that wrote it, bit for bit", 
   }
 }
 
-TEST_CASE("a model from a cache can be changed as any other", "[model][cache]") {
+TEST_CASE("a model from a cache can be changed like any other", "[model][cache]") {
   const CacheFolder folder;
   Setup setup;
   setup.scene.prescribe(std::vector<NodeId>{3}, {2e-3, std::nullopt, std::nullopt});
@@ -80,7 +80,7 @@ TEST_CASE("a model from a cache can be changed as any other", "[model][cache]") 
   CHECK(same_bits(answers(*read), answers(*plain)));
 }
 
-TEST_CASE("what does not touch the stored numbers does not spoil the cache", "[model][cache]") {
+TEST_CASE("changes that do not affect the stored numbers keep the cache valid", "[model][cache]") {
   const CacheFolder folder;
   Setup setup;
   setup.make(folder.options());
@@ -94,7 +94,7 @@ TEST_CASE("what does not touch the stored numbers does not spoil the cache", "[m
   SECTION("density") {
     setup.materials[0].second.density = 1.0;
   }
-  SECTION("what is looked at") {
+  SECTION("rendered nodes") {
     setup.scene.render("x1");
   }
   SECTION("names of regions") {
@@ -118,32 +118,32 @@ TEST_CASE("a change of inputs is named, and the cache rebuilt", "[model][cache][
     setup.mesh.positions[17].x() += 1e-9;
     expected = CacheMismatch::mesh, word = "the mesh differs";
   }
-  SECTION("one element the other way round") {
+  SECTION("one element with rotated node order") {
     auto& e = setup.mesh.elements[11];
     std::rotate(e.begin(), e.begin() + 1, e.begin() + 3);  // even: the same tetrahedron
     expected = CacheMismatch::mesh, word = "the mesh differs";
   }
-  SECTION("an element of another region") {
+  SECTION("an element in another region") {
     setup.mesh.region_names = {"body", "tumour"};
     setup.mesh.regions.assign(60, 0);
     setup.mesh.regions[5] = 1;
     setup.materials = {{"body", {5e3, 0.3, 0.0}}, {"tumour", {5e3, 0.3, 0.0}}};
-    expected = CacheMismatch::mesh, word = "the mesh differs, the material differs";  // of how many regions
+    expected = CacheMismatch::mesh, word = "the mesh differs, the material differs";  // the number of regions differs
   }
   SECTION("a stiffer material, in the last digit") {
     double& e = setup.materials[0].second.youngs_modulus;
     e = std::nextafter(e, 1e9);
     expected = CacheMismatch::material, word = "the material differs";
   }
-  SECTION("another node held") {
+  SECTION("another node constrained") {
     setup.scene.fix(std::vector<NodeId>{3});
     expected = CacheMismatch::conditions, word = "the conditions differ";
   }
-  SECTION("another component held") {
+  SECTION("another component constrained") {
     setup.scene.prescribe(std::vector<NodeId>{3}, {std::nullopt, 0.0, std::nullopt});
     expected = CacheMismatch::conditions, word = "the conditions differ";
   }
-  SECTION("touched elsewhere") {
+  SECTION("another touchable set") {
     setup.scene.touch("x1");
     expected = CacheMismatch::touched, word = "the touched set differs";
   }
@@ -177,7 +177,7 @@ TEST_CASE("a change of inputs is named, and the cache rebuilt", "[model][cache][
   CHECK(same_bits(answers(*again), answers(*setup.make())));
 }
 
-TEST_CASE("an element with other points is another element", "[model][cache][extreme][C6]") {
+TEST_CASE("an element with other quadrature points is another element", "[model][cache][extreme][C6]") {
   struct FinerTet4 : Tet4 {  // the same stiffness up to rounding, from four points instead of one
     using Quadrature = TetrahedronRule<2>;
   };
@@ -190,7 +190,7 @@ TEST_CASE("an element with other points is another element", "[model][cache][ext
   CHECK(why == "the element differs");
 }
 
-TEST_CASE("a solver with nothing to store says so", "[model][cache]") {
+TEST_CASE("a solver with nothing to store is reported", "[model][cache]") {
   for (PolicyName policy : {PolicyName::conjugate_gradient, PolicyName::assembled_conjugate_gradient}) {
     const CacheFolder folder;
     Setup setup;
@@ -203,7 +203,7 @@ TEST_CASE("a solver with nothing to store says so", "[model][cache]") {
   }
 }
 
-TEST_CASE("nothing touched, nothing free", "[model][cache]") {
+TEST_CASE("caches of models with no touchable or no free nodes", "[model][cache]") {
   for (PolicyName policy : cacheable)
     for (const Scene& scene : {Scene().fix("x0"), Scene().fix("surface").fix(std::vector<NodeId>{17, 18}),
                                Scene().fix("x0").fix("z1").touch("z1")}) {
@@ -219,7 +219,7 @@ TEST_CASE("nothing touched, nothing free", "[model][cache]") {
     }
 }
 
-TEST_CASE("a refused or cancelled set-up leaves no cache and no scraps", "[model][cache][progress]") {
+TEST_CASE("a refused or cancelled set-up leaves no cache and no temporary files", "[model][cache][progress]") {
   const CacheFolder folder;
   Setup setup;
   int calls = 0, stop_at = -1;
@@ -240,7 +240,7 @@ TEST_CASE("a refused or cancelled set-up leaves no cache and no scraps", "[model
   CHECK(folder.files() == 0);
 }
 
-TEST_CASE("the memory limit holds with a cache", "[model][cache][memory][extreme][B10]") {
+TEST_CASE("the memory limit applies with a cache", "[model][cache][memory][extreme][B10]") {
   for (PolicyName policy : cacheable) {
     INFO(name(policy));
     const CacheFolder folder;
@@ -255,7 +255,7 @@ TEST_CASE("the memory limit holds with a cache", "[model][cache][memory][extreme
   }
 }
 
-TEST_CASE("writers at once leave a file that fits one of them", "[model][cache][extreme][C6]") {
+TEST_CASE("simultaneous writers leave a file that is valid for one of them", "[model][cache][extreme][C6]") {
   const CacheFolder folder;
   std::array<Setup, 2> setups;
   setups[1].materials[0].second.youngs_modulus = 1e4;  // each rejects what the other wrote

@@ -30,7 +30,7 @@ NodeId top_middle(const Mesh<Tet4>& mesh) {
   return best;
 }
 
-/// The same block at small strain, with all nodes for vertices.
+/// The same block at small strain, with all nodes as vertices.
 struct LinearBlock : StillTissue {
   struct Surface {
     int count;
@@ -71,7 +71,7 @@ struct LinearBlock : StillTissue {
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
 };
 
-/// Force that holds the middle of the top of the rubber at a displacement; components that are not given are free.
+/// Force that keeps the middle of the top of the rubber at a displacement; omitted components are free.
 Vector3 rubber_force(const Components& u) {
   const Mesh<Tet4> mesh = rubber_block();
   const NodeId node = top_middle(mesh);
@@ -80,7 +80,7 @@ Vector3 rubber_force(const Components& u) {
   REQUIRE(body.solve().converged);
   return body.reactions().segment<3>(3 * Index{node});
 }
-/// Pressed down, or pulled aside, along the curve.
+/// Curve measured by pressing down or pulling sideways.
 StiffeningCurve measured(const LinearBlock& linear, int axis, double sign) {
   const int node = top_middle(rubber_block());
   std::vector<StiffeningCurve::Point> points{{0.0, 1.0}};
@@ -92,7 +92,7 @@ StiffeningCurve measured(const LinearBlock& linear, int axis, double sign) {
   }
   return StiffeningCurve(points);
 }
-/// Force of the wrapped tissue where the vertex is held at the given components, after some ticks.
+/// Force of the wrapped tissue after some ticks, with the given components of the vertex prescribed.
 template <class Tissue>
 Vector3 settled_force(Tissue& tissue, int node, const std::vector<int>& constrained, const Vector3& u) {
   Vector3 force = Vector3::Zero();
@@ -109,7 +109,7 @@ Vector3 settled_force(Tissue& tissue, int node, const std::vector<int>& constrai
 
 }  // namespace
 
-TEST_CASE("with curves that say nothing the forces are those of the tissue, bit for bit", "[model][quasi_non_linear]") {
+TEST_CASE("with constant curves the forces are those of the tissue, bit for bit", "[model][quasi_non_linear]") {
   test::AnalyticTissue plain(12, 0.06, 2e-3, 5e-4), same = plain;
   QuasiNonLinear wrapped(same, StiffeningCurve({{0.0, 1.0}, {0.01, 1.0}}));
   HapticServo a(plain, SphereTool{.radius = 0.01});
@@ -126,7 +126,7 @@ TEST_CASE("with curves that say nothing the forces are those of the tissue, bit 
   CHECK(wrapped.compliance_revision() == 0);
 }
 
-TEST_CASE("along the direction that was measured the force is that of the rubber", "[model][quasi_non_linear]") {
+TEST_CASE("along the measured direction the force is that of the rubber", "[model][quasi_non_linear]") {
   LinearBlock linear;
   const int node = top_middle(rubber_block());
   QuasiNonLinear tissue(linear, measured(linear, 2, -1.0), measured(linear, 0, 1.0));
@@ -137,12 +137,12 @@ TEST_CASE("along the direction that was measured the force is that of the rubber
     CHECK(std::abs(found[2] / exact - 1.0) <= 0.02);
     differs = std::max(differs, std::abs(-d / linear.compliance(node, node)(2, 2) / exact - 1.0));
   }
-  CHECK(differs > 0.1);  // of the linear block
+  CHECK(differs > 0.1);  // error of the linear block
   const Vector3 back = settled_force(tissue, node, {2}, {0.0, 0.0, -1e-9});
   CHECK(std::abs(back[2] * linear.compliance(node, node)(2, 2) / -1e-9 - 1.0) <= 1e-4);
 }
 
-TEST_CASE("off the measured direction it is an approximation, nearer than linear", "[model][quasi_non_linear]") {
+TEST_CASE("off the measured direction the force is more accurate than linear", "[model][quasi_non_linear]") {
   LinearBlock linear;
   const int node = top_middle(rubber_block());
   QuasiNonLinear tissue(linear, measured(linear, 2, -1.0), measured(linear, 0, 1.0));
@@ -159,7 +159,7 @@ TEST_CASE("off the measured direction it is an approximation, nearer than linear
   }
 }
 
-TEST_CASE("a tissue that has stiffened keeps the laws of tissues", "[model][quasi_non_linear][laws]") {
+TEST_CASE("a stiffened tissue passes the tissue law suite", "[model][quasi_non_linear][laws]") {
   LinearBlock linear;
   const int node = top_middle(rubber_block());
   QuasiNonLinear tissue(linear, StiffeningCurve({{0.0, 1.0}, {5e-3, 3.0}}), StiffeningCurve({{0.0, 1.0}, {5e-3, 1.7}}));
@@ -169,9 +169,9 @@ TEST_CASE("a tissue that has stiffened keeps the laws of tissues", "[model][quas
   CHECK(testing::describe(testing::tissue_laws(tissue, std::array{node, node - 1, node - 6, 0}, {1e-10})) == "");
   const std::uint64_t still = tissue.compliance_revision();
   settled_force(tissue, node, {0, 1, 2}, {2e-3, 1e-3, -4e-3});
-  CHECK(tissue.compliance_revision() == still);  // a hold keeps its compliances
+  CHECK(tissue.compliance_revision() == still);  // a steady contact keeps its compliances
   const Vector3 force = settled_force(tissue, node, {0, 1, 2}, {2e-3, 1e-3, -4e-3});
-  for (const double turn : {1e-9, -1e-9, 0.0}) {  // as rounding does, and a shaking sensor
+  for (const double turn : {1e-9, -1e-9, 0.0}) {  // like rounding and sensor noise
     const VertexForce rotated{node, ModelVector(force + turn * force.unitOrthogonal() * force.norm())};
     tissue.end_tick({&rotated, 1});
   }
@@ -185,7 +185,7 @@ TEST_CASE("a tissue that has stiffened keeps the laws of tissues", "[model][quas
   CHECK(tissue.compliance(node, node).allFinite());
 }
 
-TEST_CASE("curves that cannot be are refused", "[model][quasi_non_linear]") {
+TEST_CASE("invalid curves are refused", "[model][quasi_non_linear]") {
   using Points = std::vector<StiffeningCurve::Point>;
   const double none = std::numeric_limits<double>::quiet_NaN();
   for (const Points& bad :

@@ -28,7 +28,7 @@ class Reference {
     set_scene(scene, scene.gravity());
   }
 
-  /// Loads and prescribed values; gravity is that of the body's frame.
+  /// Sets loads and prescribed values; gravity is in the body frame.
   void set_scene(const Scene& scene, const Vector3& gravity) {
     conditions_.prescribed = resolve_essential(body_.mesh, boundary_, scene).prescribed;
     body_.initial_strain = initial_strains_by_region(body_.mesh, scene);
@@ -80,7 +80,7 @@ inline double relative(const VectorX& a, const VectorX& b) {
   return (a - b).norm() / b.norm();
 }
 
-/// A small brick of tissue, ten centimetres long, held at x = 0, touched on top; nodes inside and below are condensed.
+/// A small brick of tissue, 10 cm long, fixed at x = 0, touchable on top; nodes inside and below are condensed.
 inline Mesh<Tet4> brick() {
   return box_tet4({0.1, 0.06, 0.04}, {3, 2, 2});
 }
@@ -88,7 +88,7 @@ inline Scene brick_scene() {
   return Scene().fix("x0").touch("z1").render("surface");
 }
 
-/// Loads of every kind, on touched and on condensed nodes.
+/// Loads of every kind, on touchable and on condensed nodes.
 inline Scene loaded(Scene scene) {
   Vector6 strain;
   strain << 1e-3, -2e-3, 5e-4, 3e-4, -1e-4, 2e-4;

@@ -1,4 +1,4 @@
-// A factor renewed by a thread changes how fast a step is solved, never what it is.
+// A factor renewed by a background thread changes the speed of a step, never its result.
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/moving/detail/corotated_motion.hpp>
 #include <palpate/model/moving/renewed_factor.hpp>
@@ -19,7 +19,7 @@ HyperelasticBody<Tet4, Corotational<LinearElastic>> column() {
   return make_hyperelastic_body(box_tet4({0.02, 0.02, 0.08}, {2, 2, 8}),
                                 std::vector<Corotational<LinearElastic>>{{{5e3, 0.4, 1000.0}}});
 }
-/// Held at both ends, the upper of which is turned: a twist that no rotation at rest knows.
+/// Fixed at both ends, with the upper end rotated: a twist that a factor at rest does not represent.
 template <class Motion>
 struct Twisting {
   Motion motion;
@@ -49,7 +49,7 @@ CorotatedMotionOptions solved_well() {
 
 }  // namespace
 
-TEST_CASE("steps with a renewed factor are the same steps, in fewer iterations", "[model][corotated][renewed]") {
+TEST_CASE("a renewed factor gives the same steps in fewer iterations", "[model][corotated][renewed]") {
   Twisting<Renewed> renewed(solved_well());
   Twisting<Rotated> rotated(solved_well());
   long late = 0, late_rotated = 0;
@@ -59,7 +59,7 @@ TEST_CASE("steps with a renewed factor are the same steps, in fewer iterations",
     CHECK((renewed.motion.displacement() - rotated.motion.displacement()).norm() <=
           1e-7 * rotated.motion.displacement().norm());
     if (k < 150) continue;
-    if (k == 150)  // the thread may have had no time yet: wait for it
+    if (k == 150)  // the thread may not have run yet: wait for it
       for (const long before = renewed.motion.preconditioner().renewals();
            renewed.motion.preconditioner().renewals() < before + 2;) {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -80,7 +80,7 @@ TEST_CASE("renewing does not allocate in the stepping thread", "[model][corotate
   CHECK(scope.allocations() == 0);
 }
 
-TEST_CASE("another step, and an end at any time, are no matter", "[model][corotated][renewed]") {
+TEST_CASE("step changes and destruction at any time are safe", "[model][corotated][renewed]") {
   for (int run = 0; run < 20; ++run) {
     Twisting<Renewed> renewed(solved_well());
     for (int k = 0; k < run; ++k) REQUIRE(renewed.move(k % 3 == 0 ? 0.02 : 0.01).solve.converged);

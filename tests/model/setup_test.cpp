@@ -1,4 +1,4 @@
-// Set-up: what it refuses, reports and lets the caller decide.
+// Set-up: errors, report and options.
 #include <palpate/linear/condition.hpp>
 #include <palpate/mesh/mesh_arrays.hpp>
 #include <set>
@@ -26,7 +26,7 @@ TEST_CASE("the report counts and measures", "[model][report]") {
     CHECK(r.nodes == 36);
     CHECK(r.elements == 60);
     CHECK(r.free_dofs == 81);
-    CHECK(r.kept_dofs == 27);  // twelve touched nodes, three of them held
+    CHECK(r.kept_dofs == 27);  // twelve touchable nodes, three of them constrained
     CHECK(r.condensed_dofs == 54);
     CHECK(r.touchable_vertices == 12);
     CHECK(r.rendered_nodes == 34);  // two nodes are inside
@@ -46,7 +46,7 @@ TEST_CASE("the report counts and measures", "[model][report]") {
   }
 }
 
-TEST_CASE("loads that move the body too far for small strain are reported, and only they", "[model][report]") {
+TEST_CASE("only loads that deform the body too much for small strain are flagged", "[model][report]") {
   const Mesh<Tet4> mesh = brick();
   const auto model = model_of(mesh, Scene().fix("z0").touch("z1").gravity({1.0, 0.0, 0.0}), {5e3, 0.3, 1000.0});
   const auto flagged = [&] { return model->report().has(SetupFlag::large_displacement); };
@@ -58,7 +58,7 @@ TEST_CASE("loads that move the body too far for small strain are reported, and o
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
   }
-  const double just = 0.1 * (high - low).norm() / spread;  // gravity that moves it by a tenth [m/s^2]
+  const double just = 0.1 * (high - low).norm() / spread;  // gravity that displaces it by a tenth of its size [m/s^2]
   CHECK_FALSE(flagged());
   model->set_gravity({1.01 * just, 0.0, 0.0});
   CHECK(flagged());
@@ -69,7 +69,7 @@ TEST_CASE("loads that move the body too far for small strain are reported, and o
   CHECK(model->report().remarks.size() == static_cast<std::size_t>(std::popcount(model->report().flags)));
   model->reset();
   CHECK_FALSE(flagged());
-  const double far = 10.0 * (high - low).norm();  // a motion of the whole body is no strain
+  const double far = 10.0 * (high - low).norm();  // a rigid motion is not flagged
   CHECK_FALSE(model_of(mesh, Scene().prescribe("z0", {far, 0.0, 0.0}).touch("z1"), {5e3, 0.3, 0.0})
                   ->report()
                   .has(SetupFlag::large_displacement));
@@ -157,7 +157,7 @@ TEST_CASE("a repaired mesh is flagged and mapped", "[model][report][extreme][B4]
     CHECK(model->node_map().back() == 35);
     CHECK(relative(model->displacement(), good->displacement()) <= 1e-13);
   }
-  SECTION("an inverted element is turned when asked") {
+  SECTION("an inverted element is repaired on request") {
     Mesh<Tet4> mesh = brick();
     std::swap(mesh.elements[7][0], mesh.elements[7][3]);
     CHECK_REFUSED(SetupErrorKind::inverted_element, model_of(mesh, scene));
@@ -167,7 +167,7 @@ TEST_CASE("a repaired mesh is flagged and mapped", "[model][report][extreme][B4]
   }
 }
 
-TEST_CASE("set-up can be cancelled at every step and leaves nothing behind", "[model][progress]") {
+TEST_CASE("set-up can be cancelled at every stage and leaves nothing behind", "[model][progress]") {
   const Scene scene = loaded(brick_scene());
   for (PolicyName policy : all_policies) {
     INFO(name(policy));
@@ -194,7 +194,7 @@ TEST_CASE("set-up can be cancelled at every step and leaves nothing behind", "[m
   }
 }
 
-TEST_CASE("too large is refused with the number of bytes", "[model][memory][extreme][B10]") {
+TEST_CASE("a model that is too large is refused with the number of bytes", "[model][memory][extreme][B10]") {
   SetupOptions options;
   options.memory_limit = 2000;
   for (PolicyName policy : all_policies) {
@@ -207,7 +207,7 @@ TEST_CASE("too large is refused with the number of bytes", "[model][memory][extr
   }
 }
 
-TEST_CASE("the limit holds for the stiffness and its factor as well", "[model][memory][extreme][B10]") {
+TEST_CASE("the limit applies to the stiffness and its factor as well", "[model][memory][extreme][B10]") {
   // Nothing is touched: no compliance, but tens of kilobytes of K and of L.
   SetupOptions options;
   options.memory_limit = 2000;
@@ -254,7 +254,7 @@ TEST_CASE("scenes that do not fit the mesh are refused", "[model][scene]") {
   CHECK_REFUSED(SetupErrorKind::empty_mesh, model_of({}, Scene()));
 }
 
-TEST_CASE("a model without a touchable surface still answers", "[model][scene]") {
+TEST_CASE("a model without a touchable surface still solves", "[model][scene]") {
   const Scene scene = Scene().fix("x0").traction("x1", {5, 0, 0});
   for (PolicyName policy : all_policies) {
     INFO(name(policy));
@@ -265,7 +265,7 @@ TEST_CASE("a model without a touchable surface still answers", "[model][scene]")
   }
 }
 
-TEST_CASE("the frame of the model is the middle of the body", "[model][frame]") {
+TEST_CASE("the origin of the model frame is the centre of the body", "[model][frame]") {
   Mesh<Tet4> mesh = brick();
   for (Vector3& x : mesh.positions) x += Vector3(100.0, -50.0, 7.0);
   const auto model = model_of(mesh, brick_scene().gravity({0, 0, -9.81}));

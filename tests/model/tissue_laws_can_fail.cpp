@@ -1,4 +1,4 @@
-// A deliberate break for every law of tissues.
+// A deliberate violation of every law of the tissue law suite.
 #include <palpate/concepts/still_tissue.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/testing/tissue_laws.hpp>
@@ -11,7 +11,7 @@ using testing::violates;
 
 namespace {
 
-/// Three vertices on springs; the third is held.
+/// Three vertices on springs; the third is constrained.
 struct Springs : StillTissue {
   struct Surface {
     int vertex_count() const noexcept { return 3; }
@@ -47,11 +47,11 @@ testing::Violations laws(Springs tissue) {
 
 }  // namespace
 
-TEST_CASE("the laws accept springs", "[testing][model]") {
+TEST_CASE("the tissue law suite accepts springs", "[testing][model]") {
   CHECK(testing::describe(laws({})) == "");
 }
 
-TEST_CASE("tissue laws can fail", "[testing][model]") {
+TEST_CASE("every law of the tissue law suite can fail", "[testing][model]") {
   Springs t;
   SECTION("columns available") {
     t.status = StatusFlag::degraded_model;
@@ -65,7 +65,7 @@ TEST_CASE("tissue laws can fail", "[testing][model]") {
     t.c(3, 0) += 1e-6;
     CHECK(violates(laws(t), "reciprocity"));
   }
-  SECTION("positive semidefinite, though every vertex gives way") {
+  SECTION("positive semidefinite, though every vertex is compliant") {
     t.c(3, 0) = t.c(0, 3) = 1.5;
     const auto v = laws(t);
     CHECK(violates(v, "positive semidefinite"));

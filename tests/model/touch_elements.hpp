@@ -7,7 +7,7 @@
 
 #include "catch.hpp"
 
-/// A block of any element under a sphere, written once; each element is compiled in a file of its own.
+/// A block of any element under a sphere, defined once; each element is compiled in a separate file.
 namespace test {
 
 using namespace palpate;
@@ -26,8 +26,8 @@ auto touch_block() {
     return box_hex20(size, {4, 4, 2});
 }
 
-/// A contact point reads what a force spread from another by its weights does to the whole body; the same the other way
-/// round.
+/// The compliance between two contact points agrees with the displacement of the whole body under a force distributed
+/// by the contact weights, and is symmetric.
 template <class Model>
 void check_weights_both_ways(Model& model) {
   const ContactSurface& surface = model.contact_surface();
@@ -62,7 +62,7 @@ void check_weights_both_ways(Model& model) {
   }
 }
 
-/// Pressing: the force points out, grows with depth, and is what the supports take.
+/// Pressing: the force points outwards and grows with depth as in Hertz's theory.
 template <class Model>
 void check_press(Model& model) {
   ServoOptions options;

@@ -1,4 +1,4 @@
-// Faces of every kind as triangles that tools touch.
+// Faces of every kind as touchable triangles.
 #include <palpate/contact/detail/contact_samples.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/model/detail/touchable.hpp>
@@ -89,7 +89,7 @@ TEMPLATE_TEST_CASE("contact weights are positive, sum to one, and carry force an
       work += (w * force).dot(gradient * x);
     }
     CHECK_THAT(sum, Catch::Matchers::WithinAbs(1.0, 1e-14));
-    CHECK((moved - gradient * at).norm() <= 1e-13);                         // a linear field is read exactly
+    CHECK((moved - gradient * at).norm() <= 1e-13);                         // a linear field is reproduced exactly
     CHECK((moment - at.cross(force)).norm() <= 1e-13);                      // the force acts where the point is
     CHECK_THAT(work, Catch::Matchers::WithinAbs(force.dot(moved), 1e-13));  // and works as much as the point moves
   }

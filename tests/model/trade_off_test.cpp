@@ -12,7 +12,7 @@ using namespace palpate;
 
 namespace {
 
-/// Clouds with many ties: figures are small whole numbers.
+/// Random compositions with many ties: figures are small integers.
 std::vector<MeasuredComposition> random_compositions(testing::Random& random, int count) {
   const auto figure = [&] { return std::floor(random.uniform(0.0, 8.0)); };
   std::vector<MeasuredComposition> all;
@@ -46,7 +46,7 @@ void shuffle(testing::Random& random, std::vector<MeasuredComposition>& all) {
 
 }  // namespace
 
-TEST_CASE("the front is exactly what nothing dominates, in order", "[model][trade_off]") {
+TEST_CASE("the front is the set of undominated compositions, in order", "[model][trade_off]") {
   testing::Random random(5);
   for (int round = 0; round < 200; ++round) {
     const auto all = random_compositions(random, 1 + round % 40);
@@ -79,7 +79,7 @@ TEST_CASE("domination is a strict order", "[model][trade_off]") {
   }
 }
 
-TEST_CASE("what is chosen does not depend on the order of adding", "[model][trade_off]") {
+TEST_CASE("the choice does not depend on the order of adding", "[model][trade_off]") {
   testing::Random random(7);
   for (int round = 0; round < 100; ++round) {
     auto all = random_compositions(random, 25);
@@ -94,7 +94,7 @@ TEST_CASE("what is chosen does not depend on the order of adding", "[model][trad
   }
 }
 
-TEST_CASE("the choice keeps its budget, is on the front, and a larger budget never chooses worse",
+TEST_CASE("the choice is within budget and on the front, and a larger budget never gives a worse choice",
           "[model][trade_off]") {
   testing::Random random(8);
   for (int round = 0; round < 100; ++round) {
@@ -123,7 +123,7 @@ TEST_CASE("the choice keeps its budget, is on the front, and a larger budget nev
   }
 }
 
-TEST_CASE("a dominated composition changes nothing that is chosen", "[model][trade_off]") {
+TEST_CASE("a dominated composition does not change the choice", "[model][trade_off]") {
   testing::Random random(9);
   for (int round = 0; round < 50; ++round) {
     const auto all = random_compositions(random, 10);
@@ -141,7 +141,7 @@ TEST_CASE("a dominated composition changes nothing that is chosen", "[model][tra
   }
 }
 
-TEST_CASE("of equal figures memory decides, then set-up, then the name", "[model][trade_off]") {
+TEST_CASE("ties are resolved by memory, then set-up, then name", "[model][trade_off]") {
   TradeOff trade;
   trade.add({.name = "b", .latency = 1.0, .error = 1.0, .setup_seconds = 1.0, .bytes = 2.0});
   CHECK(name_of(trade.fastest_within(1.0)) == "b");
@@ -154,7 +154,7 @@ TEST_CASE("of equal figures memory decides, then set-up, then the name", "[model
   CHECK(trade.front().size() == 4);
 }
 
-TEST_CASE("figures that are none are refused, and nothing is added", "[model][trade_off]") {
+TEST_CASE("invalid figures are refused, and nothing is added", "[model][trade_off]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   TradeOff trade;
   trade.add({.name = "good", .latency = 1.0, .error = 1.0});
@@ -176,7 +176,7 @@ TEST_CASE("figures that are none are refused, and nothing is added", "[model][tr
   CHECK_THAT(problem.what, test::contains("latency of 'cg'"));
 }
 
-TEST_CASE("nothing measured, nothing chosen", "[model][trade_off]") {
+TEST_CASE("without measurements there is no choice", "[model][trade_off]") {
   const TradeOff none;
   CHECK(none.front().empty());
   CHECK_FALSE(none.most_accurate_within(infinity));

@@ -18,7 +18,7 @@ std::unique_ptr<AnyModel> pressed(PolicyName policy = PolicyName::condensed_inve
 
 }  // namespace
 
-TEST_CASE("a displacement vector of any size gets the right one", "[model][forces][extreme]") {
+TEST_CASE("a displacement vector of any size is resized", "[model][forces][extreme]") {
   for (const PolicyName policy : {PolicyName::condensed_inverse, PolicyName::conjugate_gradient}) {
     INFO(name(policy));
     const auto model = pressed(policy);
@@ -38,7 +38,7 @@ TEST_CASE("a displacement vector of any size gets the right one", "[model][force
   }
 }
 
-TEST_CASE("a force on a vertex that does not exist is left out, and said", "[model][forces][extreme]") {
+TEST_CASE("a force on a vertex that does not exist is ignored and reported", "[model][forces][extreme]") {
   const auto model = pressed();
   VectorX expected, u;
   REQUIRE(model->displacement_with(two, expected).converged);

@@ -1,4 +1,4 @@
-// Relaxation, creep and motion of bodies with memory, against closed forms (tests/data/oracle/README.md).
+// Relaxation, creep and motion of viscoelastic bodies, against closed forms (tests/data/oracle/README.md).
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/transversely_isotropic.hpp>
@@ -42,7 +42,7 @@ std::vector<std::vector<double>> oracle_rows(const std::string& name) {
   return rows;
 }
 
-/// The three ways a unit cube is held by the reference, and its stress.
+/// The three load cases of a unit cube in the reference, and its stress.
 struct Hold {
   const char* name;
   std::size_t column;  // of the table, for whole_stress
@@ -67,7 +67,7 @@ Scene constrained_as(const Hold& hold, const Mesh<E>& mesh, double size) {
   if (hold.column == confined.column) scene.prescribe("y1", along(1, 0.0)).prescribe("z1", along(2, 0.0));
   return scene;
 }
-/// Force in x on the face at x = 1 (for shear y = 1) [N], of a unit cube its stress.
+/// Force in x on the face at x = 1 (for shear y = 1) [N], for a unit cube equal to its stress [Pa].
 template <Element E>
 double stress_of(const Hold& hold, const Mesh<E>& mesh, const Equilibrium& body) {
   const VectorX r = body.reactions();
@@ -100,7 +100,7 @@ constexpr double period = 2.0 * std::numbers::pi;
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a held cube relaxes as its closed form", "[model][viscous][oracle]", Tet4, Hex8) {
+TEMPLATE_TEST_CASE("a cube under constant strain relaxes as its closed form", "[model][viscous][oracle]", Tet4, Hex8) {
   const auto mesh = [] {
     if constexpr (std::is_same_v<TestType, Tet4>)
       return box_tet4({1, 1, 1}, {2, 2, 2});
@@ -112,14 +112,14 @@ TEMPLATE_TEST_CASE("a held cube relaxes as its closed form", "[model][viscous][o
     CHECK(relaxation_error(mesh, hold, Relaxation::whole_stress, 1) <= 1e-9);
     if (hold.column != pulled.column) CHECK(relaxation_error(mesh, hold, Relaxation::deviatoric, 1) <= 1e-9);
   }
-  // The sides move while only the shape relaxes: of second order.
+  // The sides move during deviatoric relaxation: second-order accurate.
   const double rough = relaxation_error(mesh, pulled, Relaxation::deviatoric, 10);
   const double fine = relaxation_error(mesh, pulled, Relaxation::deviatoric, 20);
   CHECK(fine <= 1e-5);
   CHECK(rough / fine > 3.5);
 }
 
-TEST_CASE("a ramp is exact at any step, creep of second order", "[model][viscous][oracle]") {
+TEST_CASE("a ramp is exact for any step, creep is of second order", "[model][viscous][oracle]") {
   const Mesh<Hex8> mesh = box_hex8({1, 1, 1}, {2, 2, 2});
   const auto rows = oracle_rows("closed_form_ramp_creep_harmonic.csv");
   REQUIRE(rows.size() == 18);
@@ -158,14 +158,14 @@ TEST_CASE("a ramp is exact at any step, creep of second order", "[model][viscous
   CHECK(rough / fine > 3.5);
 }
 
-TEST_CASE("a body that is shaken answers with its complex modulus", "[model][viscous][oracle]") {
+TEST_CASE("the response to harmonic strain has the complex modulus", "[model][viscous][oracle]") {
   const Mesh<Hex8> mesh = box_hex8({1, 1, 1}, {2, 2, 2});
   const auto error = [&](const std::vector<double>& row, int steps) {
     Equilibrium body(
         make_constrained_body(make_body(mesh, cube_law(Relaxation::deviatoric)), constrained_as(sheared, mesh, 1.0)));
     const VectorX full = body.conditions().prescribed;
     const double h = period / row[0] / steps;
-    const int still = steps * (1 + static_cast<int>(20.0 * tau * row[0] / period));  // until the start is forgotten
+    const int still = steps * (1 + static_cast<int>(20.0 * tau * row[0] / period));  // until transients have decayed
     double storage = 0.0, loss = 0.0;
     for (int k = 1; k <= still + steps; ++k) {
       const double angle = period * k / steps;
@@ -181,7 +181,7 @@ TEST_CASE("a body that is shaken answers with its complex modulus", "[model][vis
   const auto rows = oracle_rows("closed_form_complex_modulus.csv");
   REQUIRE(rows.size() == 8);
   for (const auto& row : rows) {
-    if (row[0] > 10.0) break;  // the start is forgotten after thousands of periods
+    if (row[0] > 10.0) break;  // transients would take thousands of periods to decay
     INFO("omega = " << row[0]);
     const double rough = error(row, 40), fine = error(row, 80);
     CHECK(fine <= 1e-3);
@@ -189,7 +189,7 @@ TEST_CASE("a body that is shaken answers with its complex modulus", "[model][vis
   }
 }
 
-TEST_CASE("regions relax each at their own time", "[model][viscous]") {
+TEST_CASE("each region relaxes with its own time constant", "[model][viscous]") {
   Mesh<Hex8> mesh = box_hex8({1, 1, 1}, {2, 1, 1});
   mesh.region_names = {"left", "right"};
   mesh.regions.assign(2, 0);
@@ -203,7 +203,7 @@ TEST_CASE("regions relax each at their own time", "[model][viscous]") {
   CHECK_THAT(stress_of(pulled, mesh, body), WithinRel(1e4 * 2.0 * constrained_strain / (1.0 / 0.5 + 1.0 / 0.7), 1e-9));
 }
 
-TEST_CASE("a deformation that is held relaxes exactly at large strain too", "[model][viscous]") {
+TEST_CASE("a constant deformation relaxes exactly at large strain too", "[model][viscous]") {
   const Mesh<Tet4> mesh = box_tet4({0.04, 0.04, 0.04}, {2, 2, 2});
   Scene scene;
   Matrix3 a;
@@ -248,7 +248,7 @@ TEST_CASE("at small strain both kinematics agree", "[model][viscous]") {
 
 namespace {
 
-/// An oscillator with memory: m x'' + k (x relaxing) = 0, let go from 1 mm at once.
+/// A viscoelastic oscillator: m x'' + k (x relaxing) = 0, suddenly released from 1 mm.
 struct Solid {
   double mass, stiffness;
 
@@ -291,7 +291,7 @@ double released_solid(TimeScheme scheme, double time, int steps) {
 
 }  // namespace
 
-TEST_CASE("an oscillator with memory moves as its closed form", "[model][viscous][dynamics]") {
+TEST_CASE("a viscoelastic oscillator moves as its closed form", "[model][viscous][dynamics]") {
   const Solid exact{500.0, 1e4};
   for (const double time : {0.6, 2.0}) {
     const double x = exact.at(time);
@@ -303,7 +303,7 @@ TEST_CASE("an oscillator with memory moves as its closed form", "[model][viscous
   }
 }
 
-TEST_CASE("a correction counts once in what a body remembers", "[model][viscous][dynamics]") {
+TEST_CASE("a correction counts once in the viscoelastic history", "[model][viscous][dynamics]") {
   const double h = 0.01;
   ImplicitDynamics all(solid_body(), {}), later(solid_body(), {}), twice(solid_body(), {});
   VectorX force = VectorX::Zero(all.displacement().size());
@@ -321,7 +321,7 @@ TEST_CASE("a correction counts once in what a body remembers", "[model][viscous]
   CHECK((twice.displacement() - all.displacement()).norm() <= 1e-9 * all.displacement().norm());
 }
 
-TEST_CASE("a step that is refused leaves the memory alone", "[model][viscous][dynamics]") {
+TEST_CASE("a refused step does not change the viscoelastic history", "[model][viscous][dynamics]") {
   const Mesh<Tet4> mesh = box_tet4({0.04, 0.04, 0.04}, {2, 2, 2});
   const Viscoelastic<NeoHookean, 1> material{{5e3, 0.45, 1000.0}, {{{0.6, 0.05}}}};
   const auto body = [&] {
@@ -342,7 +342,7 @@ TEST_CASE("a step that is refused leaves the memory alone", "[model][viscous][dy
   CHECK(one.displacement() == other.displacement());
 }
 
-TEST_CASE("motion with memory loses energy and ends where statics does", "[model][viscous][dynamics]") {
+TEST_CASE("viscoelastic motion dissipates energy and settles in the static equilibrium", "[model][viscous][dynamics]") {
   const Mesh<Tet4> mesh = box_tet4({0.04, 0.04, 0.08}, {2, 2, 4});
   const Scene scene = Scene().fix("z0").gravity({4.0, 0.0, -9.81});
   for (const auto relaxation : {Relaxation::whole_stress, Relaxation::deviatoric}) {
@@ -357,7 +357,7 @@ TEST_CASE("motion with memory loses energy and ends where statics does", "[model
   }
 }
 
-TEST_CASE("a step with memory allocates nothing; without terms it is that of the base",
+TEST_CASE("a viscoelastic step allocates nothing; with zero terms it is that of the base material",
           "[model][viscous][allocation]") {
   const Mesh<Tet4> mesh = box_tet4({0.04, 0.04, 0.08}, {2, 2, 4});
   const Scene scene = Scene().fix("z0").gravity({4.0, 0.0, -9.81});
@@ -378,7 +378,7 @@ TEST_CASE("a step with memory allocates nothing; without terms it is that of the
   STATIC_REQUIRE(std::is_empty_v<detail::PointHistory<NeoHookean, 1>::type>);
 }
 
-TEST_CASE("bodies with memory refuse what they cannot be", "[model][viscous]") {
+TEST_CASE("viscoelastic bodies refuse unsupported set-ups", "[model][viscous]") {
   const Mesh<Tet4> mesh = box_tet4({1, 1, 1}, {1, 1, 1});
   const auto kind = [](auto make) {
     try {

@@ -1,4 +1,4 @@
-// Every kind of tissue takes selections by position, in the frame of the mesh as given.
+// Every kind of tissue accepts selections by position, in the frame of the mesh as given.
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators_box.hpp>
@@ -18,7 +18,7 @@ namespace {
 const Vector3 slab_size(0.06, 0.06, 0.03), slab_place(3.0, -7.0, 0.2);
 const LinearElastic tissue_law{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0};
 
-/// A slab away from zero, with an orphan in front of all, so that ids change and positions move at admission.
+/// A slab away from the origin, with an orphan node in front, so that ids and positions change at admission.
 Mesh<Tet4> distant_slab() {
   Mesh<Tet4> mesh = test::with_orphan_in_front(box_tet4(slab_size, {4, 4, 3}), Vector3(0.5, 0.5, 0.5));
   for (Vector3& x : mesh.positions) x += slab_place;
@@ -53,7 +53,7 @@ void check_same_surface(const Tissue& named, const Tissue& placed) {
 
 }  // namespace
 
-TEST_CASE("a linear model takes positions for names", "[model][where]") {
+TEST_CASE("a linear model accepts positions instead of names", "[model][where]") {
   using Model = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
   SetupOptions options;
   options.admission = drop_orphans();
@@ -63,7 +63,7 @@ TEST_CASE("a linear model takes positions for names", "[model][where]") {
   check_same_surface(named, placed);
   CHECK(placed.rendered_nodes().size() == static_cast<std::size_t>(placed.mesh().node_count()));
 
-  // Changes of the loads afterwards, too.
+  // The same for later changes of the loads.
   const Scene other = Scene().fix("z0").traction("x1", {2.0, 0.0, 0.0});
   const auto side = where::above(Vector3(slab_place + Vector3(slab_size[0], 0, 0)), Vector3::UnitX());
   named.set_conditions(other);
@@ -72,7 +72,7 @@ TEST_CASE("a linear model takes positions for names", "[model][where]") {
   CHECK_REFUSED(SetupErrorKind::unsupported, placed.set_conditions(Scene().fix(bottom).touch(side)));
 }
 
-TEST_CASE("only the surface of a set of points is touched", "[model][where]") {
+TEST_CASE("only the surface of a set of points is touchable", "[model][where]") {
   const auto upper = where::above(Vector3(slab_place + Vector3(0, 0, 0.5 * slab_size[2])));
   const HapticFEModel<Tet4, LinearElastic, SparseCholesky> model(distant_slab(), Scene().fix(bottom).touch(upper),
                                                                  tissue_law, {.admission = drop_orphans()});
@@ -83,7 +83,7 @@ TEST_CASE("only the surface of a set of points is touched", "[model][where]") {
     CHECK(!model.contact_surface().triangles_at(v).empty());
 }
 
-TEST_CASE("a set that selects nothing is refused where the mesh was given", "[model][where]") {
+TEST_CASE("an empty selection is refused with the extent of the mesh as given", "[model][where]") {
   const auto refused = [](const Scene& scene) {
     return test::refusal([&] {
       HapticFEModel<Tet4, LinearElastic, SparseCholesky>(distant_slab(), scene, tissue_law,
@@ -100,7 +100,7 @@ TEST_CASE("a set that selects nothing is refused where the mesh was given", "[mo
   }
 }
 
-TEST_CASE("a view of somebody's arrays needs no group", "[model][where]") {
+TEST_CASE("a view of arrays needs no group", "[model][where]") {
   const Mesh<Tet4> mesh = box_tet4(slab_size, {4, 4, 3});
   const auto count = [](Index n) { return static_cast<std::size_t>(n); };
   const MeshArrays<Tet4, double, NodeId> view(
@@ -113,7 +113,7 @@ TEST_CASE("a view of somebody's arrays needs no group", "[model][where]") {
   check_same_surface(model, same);
 }
 
-TEST_CASE("tissue that moves takes positions for names", "[model][where]") {
+TEST_CASE("moving tissue accepts positions instead of names", "[model][where]") {
   const auto check = [](const auto& named, const auto& placed) {
     CHECK(named.motion().displacement() == placed.motion().displacement());
     CHECK(named.touchable_nodes() == placed.touchable_nodes());
@@ -129,7 +129,7 @@ TEST_CASE("tissue that moves takes positions for names", "[model][where]") {
         Corotated(distant_slab(), by_place(), material, mending));
 }
 
-TEST_CASE("tissue that is cut takes positions for names", "[model][cut][where]") {
+TEST_CASE("cuttable tissue accepts positions instead of names", "[model][cut][where]") {
   using Cut = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
   const CutParameters by_group{.cuttable = Selection("x1")},
       by_point{.cuttable = where::above(Vector3(slab_place + Vector3(slab_size[0], 0, 0)), Vector3::UnitX())};
@@ -140,7 +140,7 @@ TEST_CASE("tissue that is cut takes positions for names", "[model][cut][where]")
   CHECK(named.cut_report().kept == placed.cut_report().kept);
   CHECK(named.displacement() == placed.displacement());
 
-  // The elements in a tool leave, wherever the tissue keeps its mesh.
+  // Elements inside a tool are removed, independent of the frame of the stored mesh.
   const auto tool =
       where::capsule(slab_place + Vector3(0.03, 0.03, 0.03), slab_place + Vector3(0.03, 0.03, 0.02), 0.015);
   CutOrder order;
@@ -156,7 +156,7 @@ TEST_CASE("tissue that is cut takes positions for names", "[model][cut][where]")
   });
 }
 
-TEST_CASE("equilibrium takes positions for names", "[model][equilibrium][where]") {
+TEST_CASE("equilibrium accepts positions instead of names", "[model][equilibrium][where]") {
   const Mesh<Tet4> mesh = admit<Tet4>(distant_slab(), drop_orphans()).mesh;
   const std::vector<NeoHookean> laws{{5e3, 0.4, 1000.0}};
   Equilibrium named(make_hyperelastic_body(mesh, laws), by_name()),

@@ -1,4 +1,4 @@
-// expect: palpate: explicit steps do not move what a material remembers
+// expect: palpate: explicit steps do not support viscoelastic materials
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/viscoelastic.hpp>

@@ -21,7 +21,7 @@ double distance(const Lab& a, const Lab& b) {
 
 }  // namespace
 
-TEST_CASE("Maps begin and end where they say, and go on no further", "[post]") {
+TEST_CASE("Maps have their documented end colours and are constant beyond", "[post]") {
   const auto [map, low, high] =
       GENERATE(table<ColourMap, Bytes, Bytes>({{ColourMap::rose_blue, Bytes{255, 210, 202}, Bytes{0, 57, 139}},
                                                {ColourMap::viridis, Bytes{68, 1, 84}, Bytes{253, 231, 37}},
@@ -50,7 +50,7 @@ TEST_CASE("Lightness falls from rose to blue and rises in viridis; a hue ramp do
   CHECK_THAT(to_lab(colour_at(ColourMap::rose_blue, 1.0))[0], WithinAbs(25.7, 0.5));
 }
 
-TEST_CASE("From rose to blue equal steps look equally different", "[post]") {
+TEST_CASE("From rose to blue equal steps have equal distances in CIELAB", "[post]") {
   const double whole =
       distance(to_lab(colour_at(ColourMap::rose_blue, 0.0)), to_lab(colour_at(ColourMap::rose_blue, 1.0)));
   for (int i = 0; i < 64; ++i) {
@@ -62,7 +62,7 @@ TEST_CASE("From rose to blue equal steps look equally different", "[post]") {
   CHECK(distance(to_lab(colour_at(ColourMap::rose_blue, 0.75)), {41.6, 17.6, -35.2}) < 1.0);
 }
 
-TEST_CASE("CIELAB there and back, and its fixed points", "[post]") {
+TEST_CASE("CIELAB conversion and its inverse, and reference colours", "[post]") {
   for (int r = 0; r <= 5; ++r)
     for (int g = 0; g <= 5; ++g)
       for (int b = 0; b <= 5; ++b) {
@@ -74,7 +74,7 @@ TEST_CASE("CIELAB there and back, and its fixed points", "[post]") {
   CHECK(distance(to_lab({1.0, 0.0, 0.0}), {53.24, 80.09, 67.20}) < 0.02);
 }
 
-TEST_CASE("A scale keeps its range and knows what is outside", "[post]") {
+TEST_CASE("A colour scale clamps to its range and reports values outside", "[post]") {
   const ColourScale scale(100.0, 300.0);
   CHECK(scale.fraction(100.0) == 0.0);
   CHECK(scale.fraction(200.0) == 0.5);

@@ -1,5 +1,5 @@
-// A thick cylinder under inner pressure, held in plane strain: recovered stress against Lame's. The recovery was chosen
-// on a sphere and on a plate; this body had no part in that.
+// A thick cylinder under inner pressure in plane strain: recovered stress against Lame's solution. The recovery was
+// developed on a sphere and a plate; this body is an independent check.
 #include <palpate/post/error_estimate.hpp>
 
 #include "../../benchmarks/accuracy/elements.hpp"
@@ -48,8 +48,8 @@ TEST_CASE("a thick cylinder: hoop stress at all nodes, root mean square", "[post
     const double hex8 = hoop_error<MeanDilatation<Hex8>>(nu), tet4 = hoop_error<Smoothed<Tet4>>(nu);
     INFO("nu " << nu << ": Hex20 " << hex20 << ", Tet10 " << tet10 << ", MeanDilatation<Hex8> " << hex8
                << ", Smoothed<Tet4> " << tet4);
-    // The bounds were set before the first run. Hex20 breaks its own near incompressibility, where its stress
-    // oscillates: docs/accuracy.md says so.
+    // The bounds were set before the first run. Hex20 exceeds its bound near incompressibility, where its stress
+    // oscillates: see docs/accuracy.md.
     CHECK(hex20 < (nu < 0.4 ? 0.03 : 0.25));
     CHECK(tet10 < 0.05);
     CHECK(hex8 < 0.05);

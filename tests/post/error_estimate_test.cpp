@@ -1,4 +1,4 @@
-// The error estimate against the error.
+// The error estimate against the true error.
 #include <palpate/post/error_estimate.hpp>
 
 #include <Eigen/LU>
@@ -15,7 +15,7 @@ namespace {
 using Cured = MeanDilatation<Hex8>;
 constexpr LinearElastic tissue{.youngs_modulus = 5e3, .poisson_ratio = 0.3};
 
-/// Energy norm of the difference between the stress found and an exact one.
+/// Energy norm of the difference between the computed and the exact stress.
 template <Element E, class Stress>
 double true_error(const Body<E>& body, const VectorX& u, Stress exact) {
   const Matrix6 compliance = body.elasticity.front().inverse();
@@ -73,10 +73,10 @@ TEST_CASE("the estimate tends to the error on Lame's sphere", "[post]") {
   }
   SECTION("Hex20") {
     check_effectivity<Hex20>(2, 2.5, 1.8);
-  }  // patches at surfaces are wide: from above, slowly
+  }  // wide patches at surfaces: slow convergence from above
 }
 
-TEST_CASE("no error where the element holds the solution, and none without load", "[post]") {
+TEST_CASE("no error when the element represents the solution, and none without load", "[post]") {
   const Body<Tet4> body = body_of(box_of<Tet4>({1, 1, 1}, {3, 3, 3}), {tissue});
   VectorX u(3 * body.mesh.node_count());
   for (Index i = 0; i < body.mesh.node_count(); ++i)
@@ -87,9 +87,8 @@ TEST_CASE("no error where the element holds the solution, and none without load"
   CHECK((none.size_ratio(0.05).array() == 8.0).all());
 }
 
-TEST_CASE("the estimate finds where the mesh is too coarse, and the sizes it asks for keep what they promise",
-          "[post]") {
-  // A beam clamped at one end: the error sits there.
+TEST_CASE("the estimate finds where the mesh is too coarse, and the suggested sizes reach the target", "[post]") {
+  // A beam clamped at one end: the error is concentrated there.
   const Scene scene = Scene().fix("x0").traction("x1", {0.0, 0.0, -1e-3});
   const Body<Hex8> body = body_of(box_of<Hex8>({4, 1, 1}, {8, 4, 4}), {tissue});
   const ErrorEstimate coarse = estimate_error(body, accuracy::solve_static(body, scene).displacement);
@@ -101,7 +100,7 @@ TEST_CASE("the estimate finds where the mesh is too coarse, and the sizes it ask
   ratio.minCoeff(&smallest);
   CHECK(smallest == worst);
 
-  // Half of the error by elements of half the size, for a smooth solution.
+  // For a smooth solution, elements of half the size have half of the error.
   const accuracy::LameSphere sphere;
   const auto estimate = [&](int n) {
     const Body<Hex8> wall = body_of(accuracy::sphere_octant<Hex8>(1.0, 2.0, n, n), {sphere.material});
@@ -116,7 +115,7 @@ TEST_CASE("the estimate finds where the mesh is too coarse, and the sizes it ask
   CHECK(mean < 0.75);
 }
 
-TEST_CASE("the estimate does not depend on units, place and direction", "[post]") {
+TEST_CASE("the estimate does not depend on units, position and orientation", "[post]") {
   testing::Random random(3);
   const Matrix3 r = testing::random_rotation(random);
   const Mesh<Tet10> mesh = accuracy::jittered(box_of<Tet10>({1, 1, 1}, {2, 2, 2}), 0.05);
@@ -134,7 +133,7 @@ TEST_CASE("the estimate does not depend on units, place and direction", "[post]"
   CHECK((here.size_ratio(0.01) - there.size_ratio(0.01)).cwiseAbs().maxCoeff() <= 1e-8);
 }
 
-TEST_CASE("an estimate of what is not finite is not finite; bad arguments are refused", "[post]") {
+TEST_CASE("the estimate of a displacement that is not finite is not finite; bad arguments are refused", "[post]") {
   const Body<Tet4> body = body_of(box_of<Tet4>({1, 1, 1}, {3, 3, 3}), {tissue});
   VectorX u = VectorX::Zero(3 * body.mesh.node_count());
   u[1] = std::numeric_limits<double>::quiet_NaN();

@@ -1,4 +1,4 @@
-// NAFEMS LE10: recovered stress at a point on an edge of the body, where it peaks.
+// NAFEMS LE10: recovered stress at a point on an edge of the body, where the stress peaks.
 #include <palpate/io/gmsh.hpp>
 #include <palpate/post/error_estimate.hpp>
 #include <palpate/post/stress.hpp>
@@ -24,7 +24,7 @@ double error_at_d(std::array<int, 3> cells) {
 
 }  // namespace
 
-TEST_CASE("LE10: recovered stress comes to the target with refinement", "[post][le10]") {
+TEST_CASE("LE10: recovered stress converges to the target with refinement", "[post][le10]") {
   const double tet10 = error_at_d<Tet10>({6, 4, 2}), tet10_fine = error_at_d<Tet10>({12, 8, 4});
   const double hex20 = error_at_d<Hex20>({6, 4, 2}), hex20_fine = error_at_d<Hex20>({12, 8, 4});
   INFO("Tet10 " << tet10 << ' ' << tet10_fine << ", Hex20 " << hex20 << ' ' << hex20_fine);
@@ -61,7 +61,7 @@ TEST_CASE("LE10 on the reference mesh: recovered stress between the values of tw
   INFO(recovered);
   CHECK(recovered > -5.60e6);
   CHECK(recovered < -5.25e6);
-  // The mean around a node is of first order only: it is far off on this mesh.
+  // The mean around a node is of first order only: its error is large on this mesh.
   const double mean =
       stress_field(body, solved.displacement).nodes(voigt::yy, accuracy::nearest_node(body.mesh, {2, 0, 0.6}));
   CHECK(std::abs(mean / le10_target - 1.0) > 2.0 * std::abs(recovered / le10_target - 1.0));

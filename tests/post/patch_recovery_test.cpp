@@ -1,4 +1,4 @@
-// Stress in points and recovered at nodes, against fields whose stress is known.
+// Stress at points and recovered at nodes, against fields with known stress.
 #include <palpate/post/detail/patch_recovery.hpp>
 #include <palpate/post/stress.hpp>
 
@@ -59,7 +59,7 @@ struct Polynomial {
   }
 };
 
-/// Largest error of the recovered stress at any node, over the largest stress.
+/// Largest error of the recovered stress at any node, relative to the largest stress.
 template <Element E, class Stress>
 double worst_recovered(const Body<E>& body, const VectorX& u, Stress exact) {
   const NodalStress nodal = patch_recovery(body, u);
@@ -104,7 +104,7 @@ void for_elements(Check check) {
 
 }  // namespace
 
-TEST_CASE("a stress of degree order - 1 is exact in all points and at all nodes, on distorted meshes", "[post]") {
+TEST_CASE("a stress of degree order - 1 is exact at all points and all nodes, on distorted meshes", "[post]") {
   for_elements<Tet4, Tet10, Hex8, Cured>([]<class E>(std::type_identity<E>) {
     INFO("nodes " << E::nodes);
     for (const std::array<int, 3>& cells : {std::array{3, 3, 3}, {2, 2, 2}, {1, 1, 1}, {4, 1, 1}, {1, 3, 2}}) {
@@ -126,14 +126,14 @@ TEST_CASE("a stress of degree order - 1 is exact in all points and at all nodes,
   }
 }
 
-TEST_CASE("on even meshes of hexahedra recovered stress is one order better than the element's", "[post]") {
+TEST_CASE("on uniform meshes of hexahedra recovered stress is one order better than that of the element", "[post]") {
   CHECK(polynomial_error(box_of<Hex8>({1, 2, 3}, {4, 3, 2}), 2) <= 1e-12);
   CHECK(polynomial_error(box_of<Hex20>({1, 2, 3}, {3, 2, 2}), 3) <= 1e-12);
-  // The same points do not hold it without recovery.
+  // The same points are not exact without recovery.
   CHECK(points_error(box_of<Hex8>({1, 1, 1}, {3, 3, 3}), 2) > 1e-2);
 }
 
-TEST_CASE("MeanDilatation: points and nodes carry the element's own strain", "[post]") {
+TEST_CASE("MeanDilatation: points have the strain of the element formulation", "[post]") {
   testing::Random random(31);
   const Body<Cured> body = body_of(jittered(box_of<Cured>({1, 1, 1}, {2, 2, 2}), 0.1), {{5e3, 0.499, 1.0}});
   VectorX u(3 * body.mesh.node_count());
@@ -150,7 +150,7 @@ TEST_CASE("MeanDilatation: points and nodes carry the element's own strain", "[p
   CHECK_THAT(energy, Catch::Matchers::WithinRel(strain_energy(body, u), 1e-12));
 }
 
-TEST_CASE("recovery beats the mean around a node on a smooth field", "[post]") {
+TEST_CASE("recovery is more accurate than the mean around a node on a smooth field", "[post]") {
   const accuracy::LameSphere sphere;
   const auto errors = [&]<class E>(std::type_identity<E>, int n) {  // recovered, mean
     const Body<E> body = body_of(accuracy::sphere_octant<E>(1.0, 2.0, n, n), {sphere.material});
@@ -169,7 +169,7 @@ TEST_CASE("recovery beats the mean around a node on a smooth field", "[post]") {
     const double order = std::log2(coarse / fine);
     INFO("nodes " << E::nodes << ": recovered " << coarse << ' ' << fine << " order " << order << ", mean "
                   << coarse_mean << ' ' << fine_mean);
-    CHECK(order > 0.85);  // in the worst node, on an edge
+    CHECK(order > 0.85);  // at the worst node, on an edge
     CHECK(fine < 0.9 * fine_mean);
   });
 }
@@ -182,7 +182,7 @@ TEST_CASE("stress jumps between two materials, and stays uniform on both sides",
     for (Index e = 0; e < mesh.element_count(); ++e)
       mesh.regions.push_back(element_nodes<E>(mesh, e).col(2).mean() > 1.0 ? 1 : 0);
     const Body<E> body = body_of(mesh, {soft, hard});
-    // Uniaxial strain in two layers: the same pressure, different strain, different stress across.
+    // Uniaxial strain in two layers: the same pressure, different strain, different lateral stress.
     const auto modulus = [](const LinearElastic& m) { return m.lame_lambda() + 2.0 * m.shear_modulus(); };
     const auto field = [&](const Vector3& x) -> Vector3 {
       return {0, 0, -std::min(x[2], 1.0) / modulus(soft) - std::max(x[2] - 1.0, 0.0) / modulus(hard)};
@@ -204,7 +204,7 @@ TEST_CASE("stress jumps between two materials, and stays uniform on both sides",
   });
 }
 
-TEST_CASE("recovered stress turns with the body, and does not depend on where it is", "[post]") {
+TEST_CASE("recovered stress rotates with the body and does not depend on its position", "[post]") {
   testing::Random random(17);
   const Matrix3 r = testing::random_rotation(random);
   for_elements<Tet4, Tet10, Hex8, Hex20>([&]<class E>(std::type_identity<E>) {
@@ -230,12 +230,12 @@ TEST_CASE("recovered stress turns with the body, and does not depend on where it
   });
 }
 
-TEST_CASE("patch recovery: initial strain, lone nodes, single elements, bad input", "[post]") {
+TEST_CASE("patch recovery: initial strain, orphan nodes, single elements, bad input", "[post]") {
   Vector6 swelling;
   swelling << 0.01, -0.02, 0.03, 0.004, 0.005, -0.006;
   Body<Tet4> body = body_of(box_of<Tet4>({1, 1, 1}, {2, 2, 2}), {soft});
   body.initial_strain.front() = swelling;
-  body.mesh.positions.emplace_back(9, 9, 9);  // a node of no element
+  body.mesh.positions.emplace_back(9, 9, 9);  // a node without elements
   VectorX u = VectorX::Zero(3 * body.mesh.node_count());
   const NodalStress constrained = patch_recovery(body, u);
   for (Index i = 0; i + 1 < body.mesh.node_count(); ++i)

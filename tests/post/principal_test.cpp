@@ -14,7 +14,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// Falling values, a right-handed orthonormal basis, and the tensor put together again.
+/// Checks descending values, a right-handed orthonormal basis, and the reassembled tensor.
 void check(const Matrix3& t, double tolerance = 1e-14) {
   const Principal p = principal(t);
   const double size = t.cwiseAbs().maxCoeff();
@@ -28,7 +28,7 @@ void check(const Matrix3& t, double tolerance = 1e-14) {
 
 }  // namespace
 
-TEST_CASE("principal values of known tensors, in every frame, repeated values too", "[post]") {
+TEST_CASE("principal values of known tensors in random frames, including repeated values", "[post]") {
   testing::Random random(101);
   for (const Vector3& values :
        {Vector3(3, 2, -1), Vector3(5, 5, -2), Vector3(4, -1, -1), Vector3(2, 2, 2), Vector3(0, 0, 0),
@@ -43,7 +43,7 @@ TEST_CASE("principal values of known tensors, in every frame, repeated values to
     }
 }
 
-TEST_CASE("principal values at extremes", "[post]") {
+TEST_CASE("principal values of extreme tensors", "[post]") {
   testing::Random random(103);
   for (double size : {1e-320, 1e-300, 1e-160, 1.0, 1e160, 1e300}) {
     Matrix3 t;
@@ -64,7 +64,7 @@ TEST_CASE("principal values at extremes", "[post]") {
   }
 }
 
-TEST_CASE("principal stress and strain read their Voigt vectors", "[post]") {
+TEST_CASE("principal stress and strain use their Voigt conventions", "[post]") {
   const double tau = 3.0;
   const Principal shear = principal_stress(tau * Vector6::Unit(voigt::xz));
   CHECK((shear.values - Vector3(tau, 0.0, -tau)).norm() <= 1e-14);

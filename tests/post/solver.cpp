@@ -1,2 +1,2 @@
-// The solver of the accuracy benchmark, for the bodies of these tests.
+// The solver of the accuracy benchmark, for these tests.
 #include "../../benchmarks/accuracy/solver.cpp"

@@ -42,7 +42,7 @@ double difference(const StressField& field, const Vector6& expected) {
 
 }  // namespace
 
-TEST_CASE("A bar under tension carries E times its strain, and nothing else", "[post]") {
+TEST_CASE("A bar under tension has the uniaxial stress E times strain", "[post]") {
   const double strain = GENERATE(1e-3, -0.2, 1e-12);
   const double nu = GENERATE(0.0, 0.3, 0.45, -0.5);
   const LinearElastic material{.youngs_modulus = 5e3, .poisson_ratio = nu};
@@ -78,11 +78,11 @@ TEST_CASE("Von Mises of pure shear, of pressure and of a plane state", "[post]")
   CHECK_THAT(equivalent[1], WithinAbs(0.0, 1e-14));
 }
 
-TEST_CASE("A rigid motion, and swelling that nothing hinders, make no stress", "[post]") {
+TEST_CASE("A rigid motion and free swelling cause no stress", "[post]") {
   testing::Random random(7);
   const Vector6 swelling = random.vector<6>(-0.1, 0.1);
   const Body<Tet4> cube = body_of(box_tet4({1, 1, 1}, {2, 2, 2}), gel, swelling);
-  Matrix3 gradient;  // the strain of the swelling, and a turn
+  Matrix3 gradient;  // the strain of the swelling, and a rotation
   gradient << swelling[0], swelling[3], swelling[4], 0, swelling[1], swelling[5], 0, 0, swelling[2];
   const Vector3 turn = random.vector<3>(-0.1, 0.1);
   for (int i = 0; i < 3; ++i) gradient.col(i) += turn.cross(Vector3::Unit(i));
@@ -92,9 +92,9 @@ TEST_CASE("A rigid motion, and swelling that nothing hinders, make no stress", "
   CHECK(difference(stress_field(cube, VectorX::Zero(u.size())), -(gel.elasticity() * swelling)) <= 1e-13 * 5e3);
 }
 
-TEST_CASE("A node carries the mean of its elements, weighted by their volumes", "[post]") {
+TEST_CASE("Nodal stress is the volume-weighted mean of the elements", "[post]") {
   Mesh<Tet4> pair;
-  pair.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -3}, {5, 5, 5}};  // the last belongs to none
+  pair.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -3}, {5, 5, 5}};  // the last has no element
   pair.elements = {{0, 1, 2, 3}, {0, 2, 1, 4}};                                          // volumes 1/6 and 3/6
   const Body<Tet4> body = body_of(pair);
   VectorX u = VectorX::Zero(18);
@@ -119,7 +119,7 @@ TEST_CASE("Mean and point stress of an element agree where the stress is constan
   CHECK((mean.stress - point).norm() <= 1e-12 * point.norm());
 }
 
-TEST_CASE("Stress keeps its digits far from the origin", "[post]") {
+TEST_CASE("Stress stays accurate far from the origin", "[post]") {
   Mesh<Tet4> cube = box_tet4({0.1, 0.1, 0.1}, {2, 2, 2});
   Matrix3 gradient = Vector3(0.01, 0.0, 0.0).asDiagonal();
   const VectorX u = linear_field(cube, gradient);
@@ -128,7 +128,7 @@ TEST_CASE("Stress keeps its digits far from the origin", "[post]") {
   CHECK(difference(stress_field(body_of(cube), u), expected) <= 1e-9 * expected.norm());
 }
 
-TEST_CASE("Stress of a displacement that is not finite is not finite, of the wrong length refused", "[post]") {
+TEST_CASE("A displacement that is not finite gives stress that is not finite; a wrong length is refused", "[post]") {
   const Body<Tet4> cube = body_of(box_tet4({1, 1, 1}, {2, 2, 2}));
   VectorX u = VectorX::Zero(3 * cube.mesh.node_count());
   u[0] = std::numeric_limits<double>::quiet_NaN();

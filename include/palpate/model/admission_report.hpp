@@ -1,4 +1,4 @@
-// What admission and materials have to say in a set-up report.
+// Entries of admission and materials in a set-up report.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -45,21 +45,23 @@ concept SaysWhenItLocks = requires {
   E::locking_poisson_ratio;
 };
 
-/// Flags an element that locks with one of the laws of a body, where it says when it does.
+/// Flags an element that locks with one of the materials of a body. Applies to elements that define
+/// `locking_poisson_ratio`.
 template <Element E>
 void report_locking(const std::vector<Matrix6>& elasticity, SetupReport& report) {
   if constexpr (SaysWhenItLocks<E>)
     for (const Matrix6& d : elasticity) {
       const double nu = equivalent_poisson_ratio(d);
-      if (!(nu > E::locking_poisson_ratio + 1e-9)) continue;  // what rounding makes of an equal one
+      if (!(nu > E::locking_poisson_ratio + 1e-9)) continue;  // equal up to rounding
       report.set(SetupFlag::locking, "this element is too stiff at a Poisson ratio of " + number(nu) + " (above " +
                                          number(E::locking_poisson_ratio) + ")");
       return;
     }
 }
 
-/// Flags a displacement u, 3 per node [m], that is not small: linear strain takes a turn for a stretch. Judged by how
-/// far single nodes move from the mean, against the diagonal of the box around the body.
+/// Flags a displacement u, 3 per node [m], that is not small: linear strain misinterprets a rotation as a stretch. The
+/// criterion is the largest difference between the displacement of a node and the mean, relative to the diagonal of the
+/// bounding box.
 void report_displacement(const std::vector<Vector3>& positions, const VectorX& u, SetupReport& report);
 
 }}  // namespace palpate

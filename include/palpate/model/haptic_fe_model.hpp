@@ -1,4 +1,4 @@
-// The composition: element, material and solver make a tissue that can be touched.
+// HapticFEModel: tissue composed of element, material and solver.
 #pragma once
 
 #include <palpate/assembly/detail/region_materials.hpp>
@@ -20,16 +20,17 @@ struct BoundaryFace;
 
 namespace detail {
 
-/// What the primary template asks of its arguments, in sentences, and the base it has.
+/// Readable compile-time checks of the arguments of the primary template, and its base class.
 template <class E, class M, class Solver>
 struct StaticModel {
-  static_assert(Element<E>, "palpate: the first argument of HapticFEModel is an element, for example Smoothed<Tet4>; "
-                            "for one of your own see the concept Element");
+  static_assert(Element<E>,
+                "palpate: the first argument of HapticFEModel is an element, for example Smoothed<Tet4>; "
+                "for a user-defined one see the concept Element");
   static_assert(Material<M>, "palpate: the second argument of HapticFEModel is a material, for example LinearElastic");
   static_assert(SolverPolicy<Solver>,
                 "palpate: the third argument of HapticFEModel is a solver: Condensed<SelectiveInverse>, SparseCholesky "
-                "...; Implicit and Explicit come with palpate/soft.hpp, Cuttable with palpate/cut.hpp; for one of your "
-                "own specialise SolverTraits");
+                "...; Implicit and Explicit come with palpate/soft.hpp, Cuttable with palpate/cut.hpp; for a "
+                "user-defined one specialise SolverTraits");
   static_assert(!Material<M> || !SolverPolicy<Solver> || LinearMaterial<M>,
                 "palpate: this solver is for statics at small strain, which takes a LinearMaterial; for large strain "
                 "or viscoelasticity choose Implicit<Newton<SparseCholesky>>");
@@ -38,13 +39,12 @@ struct StaticModel {
 
 }  // namespace detail
 
-/// Tissue of element `E`, material `M` and solver `Solver`. This one is linear and static; moving, cut and stiffening
-/// tissue are specialisations on their solvers, with the same constructor and functions. Assembly, quadrature and
-/// condensation come with the arguments. The model is prepared once and copies what it needs from mesh and scene.
-/// Afterwards it changes through named calls only (loads, prescribed values, gravity, pose, reset), none of which
-/// refactorises; none may run while a tick does. Satisfies TissueModel. What does not depend on the types is in its
-/// base, LinearTissue.
-/// Frames: see ModelBase.
+/// Tissue of element `E`, material `M` and solver `Solver`. The primary template is linear and static; moving, cut and
+/// stiffening tissue are specialisations on their solvers, with the same constructor and functions. The arguments
+/// determine assembly, quadrature and condensation. The model is prepared once and copies the data it needs from mesh
+/// and scene. Afterwards only named calls change it (loads, prescribed values, gravity, pose, reset). None of them
+/// refactorises, and none may run during a tick. Satisfies TissueModel. The base LinearTissue contains the parts that
+/// do not depend on the types. Frames: see ModelBase.
 template <class E, class M, class Solver = Condensed<SelectiveInverse>>
 class HapticFEModel : public detail::StaticModel<E, M, Solver>::Base {
   using Tissue = typename detail::StaticModel<E, M, Solver>::Base;
@@ -69,7 +69,7 @@ class HapticFEModel : public detail::StaticModel<E, M, Solver>::Base {
   const Mesh<E>& mesh() const noexcept;
   /// The mesh with its materials evaluated (assembly/body.hpp).
   const Body<E>& body() const noexcept;
-  /// The faces of the mesh that belong to one element only.
+  /// The boundary faces: faces of the mesh that belong to one element only.
   const std::vector<BoundaryFace>& boundary() const noexcept;
 };
 

@@ -1,4 +1,4 @@
-// What every model has, whatever its solver is: the admitted body, the report, and where it lies in the world.
+// Common base of all models, for any solver: the admitted body, the report, and the pose in the world.
 #pragma once
 
 #include <palpate/contact/contact_surface.hpp>
@@ -23,22 +23,23 @@ class ElasticBody;
 struct AdmittedBody;
 struct Touchable;
 
-/// What a caller may decide about the set-up of any model.
+/// Options for the set-up of any model.
 struct SetupOptions {
   ProgressCallback progress{};  ///< may cancel
   std::size_t memory_limit =
       std::numeric_limits<std::size_t>::max();  ///< [bytes]; more is refused as too_large before it is allocated
   AdmissionPolicy admission{};
 
-  // Statics; other solvers have no use for the first two and refuse the last.
-  int compliance_slots = 256;  ///< vertices whose compliance is remembered by a solver that does not store all
-  /// When such a solver computes it. `automatic` decides by the numbers that a column reads, the same way on every
-  /// machine: beyond 100 000, some 50 us, a thread computes it; the report says which.
+  // For static models. Other solvers ignore the first two and refuse the last.
+  int compliance_slots = 256;  ///< vertices whose compliance a solver keeps that does not store all columns
+  /// When such a solver computes a column. `automatic` decides by the count of numbers that a column reads, so the
+  /// decision is the same on every machine: above 100 000 (some 50 us) a background thread computes it. The report
+  /// states which.
   ColumnFill columns = ColumnFill::automatic;
-  std::string cache_file{};  ///< where the prepared system is kept for the next time; empty: nowhere. See docs/cache.md
+  std::string cache_file{};  ///< stores the prepared system for the next set-up; empty: none. See docs/cache.md
 };
 
-/// The part of HapticFEModel that depends on neither element, material nor solver. Base of all models.
+/// The part of HapticFEModel that does not depend on element, material or solver. Base of all models.
 ///
 /// Frames: `set_pose` of a model places the frame of the mesh as given in the world of the tools. Forces and
 /// displacements have the axes of that mesh. Positions of `mesh()` and of the contact surface have these axes, too, and
@@ -46,18 +47,18 @@ struct SetupOptions {
 class ModelBase {
  public:
   const SetupReport& report() const noexcept { return report_; }
-  /// Where the admitted mesh's frame lies in the mesh as given [m].
+  /// Origin of the frame of the admitted mesh, in the frame of the mesh as given [m].
   const Vector3& origin() const noexcept { return origin_; }
-  /// New id of every node as given, -1 for those dropped at admission.
+  /// New id of every node of the mesh as given, -1 for nodes dropped at admission.
   const std::vector<NodeId>& node_map() const noexcept { return node_map_; }
-  /// Resting position of an admitted node, in the frame of the mesh as given [m].
+  /// Rest position of an admitted node, in the frame of the mesh as given [m].
   Vector3 rest_position(NodeId node) const noexcept;
   /// Node of every vertex of the contact surface.
   const std::vector<NodeId>& touchable_nodes() const noexcept { return touchable_; }
   const std::vector<NodeId>& rendered_nodes() const noexcept { return rendered_; }
-  /// Where the organ lies in the world, as set last: from the frame of the mesh as given to the world's.
+  /// Pose set last: maps the frame of the mesh as given to the world frame.
   const Eigen::Isometry3d& pose() const noexcept { return pose_; }
-  /// From the frame of the contact surface, whose origin is `origin()`, to the world's.
+  /// Maps the frame of the contact surface, whose origin is `origin()`, to the world frame.
   const Eigen::Isometry3d& to_world() const noexcept { return world_; }
 
  protected:
@@ -76,30 +77,30 @@ class ModelBase {
   const OriginalIds& original_ids() const noexcept { return original_ids_; }
   OriginalIds& original_ids() noexcept { return original_ids_; }
 
-  /// Takes over an admitted body and resolves what of it is touched and seen. Throws what resolving throws.
+  /// Takes over an admitted body and resolves its touchable and rendered parts. Throws the errors of resolving.
   Touchable admit(const Scene& scene, AdmittedBody admitted);
   /// The scene of the set-up, with the ids of the admitted mesh.
   const Scene& scene() const noexcept { return scene_; }
-  /// A scene with the ids of the admitted mesh. Throws unsupported when it lets tools touch other nodes or faces than
-  /// `triangles` on the touchable nodes.
+  /// The scene with the ids of the admitted mesh. Throws unsupported when its touchable nodes or faces differ from the
+  /// touchable nodes and `triangles` of the model.
   Scene mapped(const Scene& scene, const std::vector<Triangle>& triangles) const;
 
   /// Gravity [m/s^2], world frame.
   const Vector3& gravity() const noexcept { return gravity_; }
-  /// What acts on the body but gravity, in words.
+  /// Description of the loads on the body other than gravity.
   const std::string& other_loads() const noexcept { return other_loads_; }
   void keep_gravity(const Vector3& gravity) noexcept { gravity_ = gravity; }
   void keep_loads(const Vector3& gravity, std::string& others) noexcept {
     gravity_ = gravity;
     other_loads_.swap(others);
   }
-  /// Touchable nodes where they rest, and what acts on the body.
+  /// Rest positions of the touchable nodes, and a description of the loads on the body.
   ContactSurface::Unloaded unloaded() const;
-  /// A gravity of the world in the frame of a body at `pose`.
+  /// Gravity given in the world frame, expressed in the frame of a body at `pose`.
   static Vector3 local(const Vector3& gravity, const Eigen::Isometry3d& pose) noexcept;
   /// Throws non_finite.
   static void require_finite_gravity(const Vector3& gravity);
-  /// Throws bad_argument unless it is a rigid motion.
+  /// Throws bad_argument unless the pose is a rigid motion.
   static void require_rigid(const Eigen::Isometry3d& pose);
   void place(const Eigen::Isometry3d& pose) noexcept;
 

@@ -51,9 +51,9 @@ PALPATE_INLINE Scene ModelBase::mapped(const Scene& scene, const std::vector<Tri
   if (touchable.nodes != touchable_ || touchable.triangles != triangles)
     raise(SetupErrorKind::unsupported,
           "the new scene lets tools touch " + std::to_string(touchable.nodes.size()) + " nodes and " +
-              std::to_string(touchable.triangles.size()) + " triangles, the model was made for another set of " +
+              std::to_string(touchable.triangles.size()) + " triangles, but the model was made for another set of " +
               std::to_string(touchable_.size()) + " and " + std::to_string(triangles.size()),
-          "Loads may change, what tools touch may not: make a new model, or leave touch out of the scene");
+          "Loads may change, the touchable set may not: make a new model, or leave touch out of the scene");
   return mapped;
 }
 

@@ -1,4 +1,4 @@
-// The solver policies a model is composed with, and what each stands for.
+// The solver policies of a model, and their traits.
 #pragma once
 
 #include <palpate/core/types.hpp>
@@ -23,16 +23,17 @@ class SparseCholesky;
 class StiffnessView;
 class Uncondensed;
 
-/// Conjugate gradients; matrix-free unless WithAssembly says otherwise.
+/// Conjugate gradients; matrix-free unless WithAssembly selects an assembly.
 struct ConjugateGradient {};
 
-/// The stored inverse with the selective product. Scalar is what a tick reads; it is always built in double.
+/// The stored inverse with the selective product. Scalar is the type that a tick reads; the inverse is always computed
+/// in double.
 template <std::floating_point Scalar>
 struct BasicSelectiveInverse {};
 using SelectiveInverse = BasicSelectiveInverse<double>;
 using SelectiveInverseFloat = BasicSelectiveInverse<float>;
 
-/// Keeps the touched dofs only and solves the condensed system with `Inner`: SelectiveInverse, SelectiveInverseFloat,
+/// Condenses the system onto the touched dofs and solves it with `Inner`: SelectiveInverse, SelectiveInverseFloat,
 /// DenseCholesky or ConjugateGradient.
 template <class Inner>
 struct Condensed {
@@ -41,7 +42,7 @@ struct Condensed {
                 "Condensed<ConjugateGradient>");
 };
 
-/// The same policy on another assembly: WithAssembly<ConjugateGradient, Assembled>.
+/// The same policy with another assembly: WithAssembly<ConjugateGradient, Assembled>.
 template <class Policy, class Assembly>
 struct WithAssembly {};
 
@@ -66,10 +67,10 @@ CondensedSystem read_condensed(DenseKind kind, BinaryReader& in, const BlockMatr
 
 }  // namespace detail
 
-/// What a policy means: `Assembly`, `Scalar` of the contact compliance, whether it is `eager` (computed at set-up), and
-/// how to make the prepared system from the stiffness (a BlockMatrix when Assembly is Assembled, else a StiffnessView)
-/// and what is known of its dofs. Specialise it for a solver of your
-/// own. With `cache_name` and `read` (see CacheablePolicy) the system can be kept in a cache file.
+/// Traits of a policy: `Assembly`; `Scalar` of the contact compliance; `eager`, true when the compliance is computed at
+/// set-up; and `make`, which builds the prepared system from the stiffness (a BlockMatrix when Assembly is Assembled,
+/// else a StiffnessView) and the dof layout. Specialise it for a user-defined solver. With `cache_name` and `read` (see
+/// CacheablePolicy) the system can be stored in a cache file.
 template <class Policy>
 struct SolverTraits;
 
@@ -136,7 +137,7 @@ struct CondensedTraits<ConjugateGradient> {
 
 template <class Inner>
 struct SolverTraits<Condensed<Inner>> {
-  static_assert(sizeof(Condensed<Inner>) > 0);  // what Condensed has to say of Inner is said first
+  static_assert(sizeof(Condensed<Inner>) > 0);  // triggers the static_assert of Condensed first
   using Assembly = Assembled;
   using Scalar = typename CondensedTraits<Inner>::Scalar;
   static constexpr bool eager = CondensedTraits<Inner>::eager;

@@ -22,7 +22,7 @@ PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::make(const BlockMatrix&
                                                               const EssentialConditions& conditions,
                                                               const DofLayout& given, const SetupLimits& limits) {
   DofLayout layout = given;
-  std::vector<Index> kept = std::exchange(layout.kept, {});  // asked for, but nothing is condensed onto them
+  std::vector<Index> kept = std::exchange(layout.kept, {});  // requested, but nothing is condensed onto them
   const SparseMatrix lower = free_matrix(k, conditions);
   return {SparseCholesky(CholeskyAnalysis(lower, layout, limits), lower, limits), std::move(kept)};
 }

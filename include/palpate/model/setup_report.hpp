@@ -1,4 +1,4 @@
-// What a set-up did, found and used.
+// Report of a set-up: sizes, memory, times and findings.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -13,7 +13,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Things a set-up accepts but does not keep quiet about.
+/// Conditions that a set-up accepts and reports.
 enum class SetupFlag : std::uint32_t {
   locking = 1u << 0,           ///< the element is too stiff at this Poisson ratio
   ill_conditioned = 1u << 1,   ///< the probe solve lost more digits than expected
@@ -24,24 +24,24 @@ enum class SetupFlag : std::uint32_t {
   cache_rejected = 1u << 6,    ///< there was a cache file and it was not used
   cache_unwritten = 1u << 7,   ///< the cache file could not be written
   non_manifold = 1u << 8,      ///< more than two touchable triangles meet at an edge
-  /// the scene's loads alone move parts of the body by a tenth of its size against each other: not small
+  /// the loads of the scene alone displace parts of the body relative to each other by a tenth of its size
   large_displacement = 1u << 9,
 };
 
-/// Sizes, memory, times and findings of a set-up.
+/// Sizes, memory [bytes], times [s] and findings of a set-up.
 struct SetupReport {
   Index nodes = 0, elements = 0, free_dofs = 0, condensed_dofs = 0, kept_dofs = 0, touchable_vertices = 0,
         rendered_nodes = 0;
   std::size_t stiffness_bytes = 0, solver_bytes = 0, compliance_bytes = 0;
   double worst_quality = 1.0, mean_quality = 1.0;       ///< mean ratio, 1 is a regular element
   double condition_estimate = 0.0;                      ///< 1-norm; 0 when not estimated (iterative solvers)
-  double probe_error = 0.0;                             ///< relative error of a solve with known answer
+  double probe_error = 0.0;                             ///< relative error of a solve with a known solution
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage
-  double column_seconds = 0.0;  ///< for the compliance of a vertex pressed for the first time; 0 when all is stored
-  bool asynchronous_columns = false;  ///< a thread computes it, and ticks do not wait
+  double column_seconds = 0.0;  ///< time for the compliance of a vertex at its first contact; 0 when all is stored
+  bool asynchronous_columns = false;  ///< a background thread computes it, and ticks do not wait
   CacheReport cache;
   std::uint32_t flags = 0;
-  std::vector<std::pair<SetupFlag, std::string>> remarks;  ///< a sentence per flag
+  std::vector<std::pair<SetupFlag, std::string>> remarks;  ///< one sentence per flag
 
   void set(SetupFlag flag, std::string remark);
   void clear(SetupFlag flag);
@@ -49,7 +49,7 @@ struct SetupReport {
   double total_seconds() const noexcept;
 };
 
-/// A few lines for a log.
+/// Prints a summary of a few lines for a log.
 std::ostream& operator<<(std::ostream& out, const SetupReport& r);
 
 }}  // namespace palpate

@@ -25,7 +25,7 @@ PALPATE_INLINE double SetupReport::total_seconds() const noexcept {
 PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const SetupReport& r) {
   out << "set-up: " << r.nodes << " nodes, " << r.elements << " elements, " << r.free_dofs
       << " free dofs: " << r.kept_dofs << " kept, " << r.condensed_dofs << " condensed; " << r.touchable_vertices
-      << " touchable vertices, " << r.rendered_nodes << " seen nodes\n"
+      << " touchable vertices, " << r.rendered_nodes << " rendered nodes\n"
       << "  memory: stiffness " << number(static_cast<double>(r.stiffness_bytes) / 1e6) << " MB, solver "
       << number(static_cast<double>(r.solver_bytes) / 1e6) << " MB, compliance "
       << number(static_cast<double>(r.compliance_bytes) / 1e6) << " MB\n  time:";
@@ -34,8 +34,8 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const SetupReport& r)
       << (r.condition_estimate > 0.0 ? number(r.condition_estimate) : std::string("not estimated")) << ", probe error "
       << number(r.probe_error) << '\n';
   if (r.column_seconds > 0.0)
-    out << "  a vertex pressed for the first time: " << number(1e6 * r.column_seconds)
-        << (r.asynchronous_columns ? " us, by a thread of its own\n" : " us, in the tick\n");
+    out << "  compliance of a vertex at its first contact: " << number(1e6 * r.column_seconds)
+        << (r.asynchronous_columns ? " us, in a background thread\n" : " us, in the tick\n");
   if (!r.cache.file.empty()) out << "  cache: " << r.cache << '\n';
   for (const auto& [flag, remark] : r.remarks) out << "  note: " << remark << '\n';
   return out;

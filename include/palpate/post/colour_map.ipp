@@ -67,7 +67,7 @@ PALPATE_INLINE Rgb viridis(double t) noexcept {
 
 /// Full saturation and value, hue from 0 to 240 degrees.
 inline Rgb hue_ramp(double t) noexcept {
-  const double h = 4.0 * t;  // sixths of a turn
+  const double h = 4.0 * t;  // hue in units of 60 degrees
   return {std::clamp(2.0 - h, 0.0, 1.0), std::clamp(std::min(h, 4.0 - h), 0.0, 1.0), std::clamp(h - 2.0, 0.0, 1.0)};
 }
 
@@ -98,7 +98,7 @@ PALPATE_INLINE std::string to_hex(const Rgb& c) {
 PALPATE_INLINE ColourScale::ColourScale(double low, double high, ColourMap map) : low_(low), high_(high), map_(map) {
   if (!(std::isfinite(low) && std::isfinite(high) && low < high))
     raise(SetupErrorKind::bad_argument, "a colour scale from " + number(low) + " to " + number(high),
-          "Give two finite values that rise");
+          "Give two finite values, the lower one first");
 }
 
 PALPATE_INLINE double ColourScale::fraction(double value) const noexcept {

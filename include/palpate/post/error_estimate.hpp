@@ -1,4 +1,4 @@
-// How wrong the stress is, and where the mesh is too coarse.
+// Estimate of the discretisation error of the stress, and of where the mesh is too coarse.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -21,26 +21,26 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// Estimate of the discretisation error in the energy norm |e| = (integral of e_sigma : D^-1 : e_sigma)^1/2, the square
 /// root of twice its strain energy [J^1/2].
 struct ErrorEstimate {
-  VectorX elements;          ///< of every element [J^1/2]; their squares add up to that of the body
+  VectorX elements;          ///< of every element [J^1/2]; the sum of their squares is the square of `error`
   double error = 0.0;        ///< of the body [J^1/2]
-  double energy_norm = 0.0;  ///< of the elastic strain found, sqrt(2 strain energy) [J^1/2]
+  double energy_norm = 0.0;  ///< of the computed elastic strain, sqrt(2 strain energy) [J^1/2]
   int order = 1;             ///< of the element
 
   /// Error over the norm of the estimated exact solution, 0 ... 1; 0 for an unloaded body.
   double relative() const noexcept;
 
   /// h_new / h per element for a mesh whose relative error is `target`, spread evenly over the elements (Zienkiewicz
-  /// and Zhu 1987): below 1 the mesh is too coarse there, above 1 finer than need be. Cut off at 1 / `most` and `most`.
-  /// Next to a singular point the error falls more slowly than the order of the element says: refine in steps, and
-  /// estimate again. Throws bad_argument unless 0 < target < 1 and most >= 1.
+  /// and Zhu 1987): below 1 the mesh is too coarse there, above 1 finer than necessary. Clamped to 1 / `most` ...
+  /// `most`. Next to a singular point the error converges more slowly than the order of the element: refine in steps,
+  /// and estimate again. Throws bad_argument unless 0 < target < 1 and most >= 1.
   VectorX size_ratio(double target, double most = 8.0) const;
 };
 
 /// The estimate of Zienkiewicz and Zhu (1987, 1992): the recovered stress, interpolated with the shape functions,
-/// stands for the exact one. `nodal` is patch_recovery of the same body and displacement. Sound where the mesh resolves
-/// the solution: then error estimated / error tends to 1. It cannot see what the whole mesh misses; a body that locks
-/// (plain Tet4 or Hex8 near nu = 0.5) has more error than it says. Costs 1 us (Tet4) to 35 us (Hex20) an element.
-/// Throws bad_argument when `u` or `nodal` do not fit the body.
+/// replaces the exact one. `nodal` is patch_recovery of the same body and displacement. Valid where the mesh resolves
+/// the solution: there the ratio of estimated to true error tends to 1. It cannot detect features that the whole mesh
+/// does not resolve; a body that locks (plain Tet4 or Hex8 near nu = 0.5) has a larger error than estimated. Costs 1 us
+/// (Tet4) to 35 us (Hex20) per element. Throws bad_argument when `u` or `nodal` do not fit the body.
 template <Element E>
 ErrorEstimate estimate_error(const Body<E>& body, const VectorX& u, const NodalStress& nodal) {
   const ElementStress<E> state(body, u);
@@ -70,7 +70,7 @@ ErrorEstimate estimate_error(const Body<E>& body, const VectorX& u, const NodalS
   return estimate;
 }
 
-/// The same, recovering the stress first.
+/// The same; recovers the stress first.
 template <Element E>
 ErrorEstimate estimate_error(const Body<E>& body, const VectorX& u) {
   return estimate_error(body, u, patch_recovery(body, u));

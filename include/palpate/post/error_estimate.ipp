@@ -14,7 +14,8 @@ PALPATE_INLINE double ErrorEstimate::relative() const noexcept {
 
 PALPATE_INLINE VectorX ErrorEstimate::size_ratio(double target, double most) const {
   if (!(target > 0.0 && target < 1.0) || !(most >= 1.0))
-    raise(SetupErrorKind::bad_argument, "a mesh for a relative error of " + number(target), "Give one between 0 and 1");
+    raise(SetupErrorKind::bad_argument, "a mesh for a relative error of " + number(target),
+          "Give a target between 0 and 1");
   const double allowed =
       target * std::hypot(error, energy_norm) / std::sqrt(static_cast<double>(std::max<Index>(elements.size(), 1)));
   VectorX ratio(elements.size());

@@ -1,4 +1,4 @@
-// Stress to draw: the volume mean of every element, smeared over the nodes. For values to trust at a node see
+// Stress for drawing: the volume mean of every element, averaged at the nodes. For accurate values at a node see
 // post/detail/patch_recovery.hpp.
 #pragma once
 
@@ -15,21 +15,21 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// Equivalent (von Mises) stress [Pa] of every column.
 void von_mises(const StressColumns& stress, VectorX& equivalent);
 
-/// The stress of a body, cheap and for drawing. Nodal values are means over the elements around a node, weighted by
-/// their volumes: of first order whatever the element, too low where stress peaks on a surface, and smeared where two
-/// materials meet (the stress itself jumps there). Von Mises at a node is that of its mean stress.
+/// The stress of a body, cheap to compute, for drawing. Nodal values are volume-weighted means over the elements around
+/// a node: first-order accurate for every element, too low where stress peaks on a surface, and averaged across
+/// material interfaces, where the exact stress jumps. The von Mises stress at a node is that of its mean stress.
 struct StressField {
   StressColumns elements;      ///< volume mean of every element [Pa]
-  StressColumns nodes;         ///< mean around every node [Pa]; zero at a node of no element
+  StressColumns nodes;         ///< mean around every node [Pa]; zero at a node without elements
   VectorX von_mises_elements;  ///< [Pa]
   VectorX von_mises_nodes;     ///< [Pa]
   VectorX node_volumes;        ///< volume of the elements around every node [m^3], the weights of the mean
 };
 
 /// Fills `field` with the stress under the displacement `u` (3 per node [m]). One pass over the elements, about 0.1 us
-/// for a linear tetrahedron; no allocation when `field` has the body's sizes, unless strain is averaged over
-/// neighbours. What is not finite in `u` stays so in the stress around it. Throws bad_argument when `u` has another
-/// length.
+/// for a linear tetrahedron; no allocation when `field` has the body's sizes, unless the element smooths strain over
+/// neighbours. Values of `u` that are not finite give stress that is not finite around them. Throws bad_argument when
+/// `u` has a wrong length.
 template <Element E>
 void recover_stress(const Body<E>& body, const VectorX& u, StressField& field) {
   const Mesh<E>& mesh = body.mesh;
@@ -52,7 +52,7 @@ void recover_stress(const Body<E>& body, const VectorX& u, StressField& field) {
 }
 
 /// The stress of a body under the displacement `u` (3 per node [m]), for instance `model.body()` and
-/// `model.displacement()`. See recover_stress; this one allocates.
+/// `model.displacement()`. See recover_stress; this overload allocates.
 template <Element E>
 StressField stress_field(const Body<E>& body, const VectorX& u) {
   StressField field;

@@ -1,4 +1,4 @@
-// What became of a cache file.
+// Report on the use of a cache file.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -9,12 +9,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Why a cache file was not used, the first reason found.
+/// The first reason found for not using a cache file.
 enum class CacheMismatch : std::uint8_t {
   none,
-  unreadable,   ///< it is there but does not open
+  unreadable,   ///< it exists but cannot be opened
   foreign,      ///< not a cache file of palpate; never overwritten
-  truncated,    ///< shorter than it must be
+  truncated,    ///< shorter than required
   byte_order,   ///< written on a machine of other endianness
   version,      ///< of the library or of the file's layout
   header,       ///< damaged: its own hash is wrong
@@ -25,22 +25,22 @@ enum class CacheMismatch : std::uint8_t {
   material,     ///< elasticity; densities and loads do not matter
   conditions,   ///< which components are prescribed; their values do not matter
   touched,      ///< the touched nodes
-  stiffness,    ///< none of these, and still another matrix: code or compiler changed
+  stiffness,    ///< all of the above agree, but the matrix differs: code or compiler changed
   elimination,  ///< another order of elimination: code or compiler changed
   payload,      ///< damaged: the hash of the stored numbers is wrong
-  answers,      ///< everything fits, but a solve with a known answer is wrong
+  answers,      ///< everything matches, but a solve with a known solution is wrong
 };
 
-/// What a set-up with `cache_file` did; `file` is empty when none was asked for.
+/// Result of a set-up with `cache_file`; `file` is empty when no cache was requested.
 struct CacheReport {
   std::string file;
   bool supported = true;  ///< the solver has something to store
-  bool read = false;      ///< the system comes from the file
+  bool read = false;      ///< the system was read from the file
   bool written = false;   ///< the file was (re)written
   CacheMismatch mismatch = CacheMismatch::none;
-  std::string why;        ///< what differs, for `mismatch`
+  std::string why;        ///< description of the differences, for `mismatch`
   std::string problem;    ///< why the file could not be written
-  std::size_t bytes = 0;  ///< of the file, read or written
+  std::size_t bytes = 0;  ///< size of the file, read or written
 };
 
 /// One line: read / written / rebuilt because ... / could not be written because ...

@@ -1,4 +1,4 @@
-// From a mesh as given and its materials to the admitted body of a linear model.
+// Makes the admitted body of a linear model from a mesh as given and its materials.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -12,8 +12,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Admits a mesh and evaluates its materials. Reports what admission found. Throws what materials_by_region and admit
-/// throw.
+/// Admits a mesh and evaluates its materials. Reports what admission found. Throws the errors of materials_by_region
+/// and admit.
 template <Element E, LinearMaterial M, MeshOf<E> Given>
 AdmittedBody admit_body(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
                         const AdmissionPolicy& policy, const SetupLimits& limits, SetupReport& report) {

@@ -1,4 +1,4 @@
-// From a mesh as given to the admitted mesh of a model, in the frame of the middle of its box.
+// Makes the admitted mesh of a model from a mesh as given, with the origin at the centre of its bounding box.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -14,23 +14,23 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// An admitted mesh, its nodes moved so that the centre of its box is the origin.
+/// An admitted mesh, translated so that the centre of its bounding box is the origin.
 template <Element E>
 struct AdmittedMesh {
   Mesh<E> mesh;
-  std::vector<NodeId> node_map;  ///< new id of every node as given, -1 for those dropped
-  OriginalIds ids;               ///< of its nodes and elements in the mesh as given
-  Vector3 origin;                ///< of the mesh's frame in the mesh as given [m]
+  std::vector<NodeId> node_map;  ///< new id of every node as given, -1 for dropped nodes
+  OriginalIds ids;               ///< ids of its nodes and elements in the mesh as given
+  Vector3 origin;                ///< origin of its frame, in the frame of the mesh as given [m]
 };
 
-/// Admits a mesh and reports what admission found. Throws what admit throws.
+/// Admits a mesh and reports what admission found. Throws the errors of admit.
 template <Element E, MeshOf<E> Given>
 AdmittedMesh<E> admit_mesh(const Given& mesh, const Scene& scene, const AdmissionPolicy& policy,
                            const SetupLimits& limits, SetupReport& report) {
   limits.advance("admission", 0.0);
   Admitted<E> admitted = [&] {
     const StageTimer timer(report, "admission");
-    // A mesh that lists its groups keeps all, so that later conditions may name any.
+    // A mesh that lists its groups keeps all of them, so that later conditions may name any group.
     if constexpr (ListsGroups<Given>)
       return admit<E>(mesh, policy);
     else

@@ -31,7 +31,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What holds and moves a body, without its elements and laws. Vectors have 3 entries per node.
+/// Forces, conditions, loads and mass of a body, independent of its elements and materials. Vectors have 3 entries per
+/// node.
 struct DeformableBody {
   std::unique_ptr<ElasticForces> elastic;
   EssentialConditions conditions;
@@ -42,15 +43,15 @@ struct DeformableBody {
   std::vector<Vector3> positions;  ///< at rest [m]
 };
 
-/// Diagonal of the box round a body [m].
+/// Diagonal of the bounding box of a body [m].
 double extent(const std::vector<Vector3>& positions);
 
-/// Throws bad_density where a node that may move has no mass.
+/// Throws bad_density when a free node has no mass.
 void require_mass(const DeformableBody& body);
 
 namespace detail {
 
-/// All but the forces and the mass.
+/// Everything except the forces and the mass.
 template <Element E>
 DeformableBody body_without_mass(const Body<E>& rest, const Scene& scene) {
   DeformableBody body;
@@ -85,7 +86,7 @@ DeformableBody constrained_body_without_forces(const Body<E>& rest, const Scene&
 
 void refuse_initial_strains(const Scene& scene);
 
-/// A mesh with materials of any kind, at large strain or small.
+/// Makes a material body from a mesh and materials at large or small strain.
 template <Element E, LargeStrainMaterial M>
 auto make_any_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
   return make_hyperelastic_body(std::move(mesh), materials);
@@ -97,10 +98,10 @@ auto make_any_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
 
 }  // namespace detail
 
-// The functions below take the geometry of a body as it is: make bodies of admitted meshes (mesh/admission.hpp). Flat and
-// inverted elements are not looked for here. Equilibrium and HapticFEModel admit the meshes they are given.
+// The functions below do not check the geometry of a body (flat and inverted elements): make bodies from admitted
+// meshes (mesh/admission.hpp). Equilibrium and HapticFEModel admit their meshes.
 
-/// A hyperelastic body in a scene. Throws what assembly and conditions throw, and unsupported for initial strains.
+/// A hyperelastic body in a scene. Throws the errors of assembly and conditions, and unsupported for initial strains.
 template <Element E, LargeStrainMaterial M>
 DeformableBody make_deformable_body(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
   detail::refuse_initial_strains(scene);
@@ -109,7 +110,7 @@ DeformableBody make_deformable_body(HyperelasticBody<E, M> body, const Scene& sc
   return made;
 }
 
-/// The same for statics: without mass, and unconstrained is thrown where the scene lets it move as a whole.
+/// The same for statics: without mass. Also throws unconstrained when the body can move rigidly in the scene.
 template <Element E, LargeStrainMaterial M>
 DeformableBody make_constrained_body(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
   detail::refuse_initial_strains(scene);
@@ -122,7 +123,7 @@ DeformableBody make_constrained_body(HyperelasticBody<E, M> body, const Scene& s
 template <Element E>
 DeformableBody make_deformable_body(Body<E> body, const Scene& scene, const SetupLimits& limits = {}) {
   static_assert(!HasSmoothedStrain<E>,
-                "palpate: the stiffness of a smoothed element has another pattern than its mass");
+                "palpate: the stiffness of a smoothed element has a different sparsity pattern than its mass");
   DeformableBody made = detail::body_with_mass(body, scene, limits);
   made.load += initial_strain_load(body, initial_strains_by_region(body.mesh, scene));
   made.elastic = std::make_unique<LinearForces>(assemble_stiffness<E>(body, limits));
@@ -132,18 +133,18 @@ DeformableBody make_deformable_body(Body<E> body, const Scene& scene, const Setu
 /// The same for statics, as above.
 template <Element E>
 DeformableBody make_constrained_body(Body<E> body, const Scene& scene, const SetupLimits& limits = {}) {
-  static_assert(!HasSmoothedStrain<E>, "palpate: statics at small strain with smoothed elements is HapticFEModel's");
+  static_assert(!HasSmoothedStrain<E>, "palpate: for statics at small strain with smoothed elements use HapticFEModel");
   DeformableBody made = detail::constrained_body_without_forces(body, scene);
   made.load += initial_strain_load(body, initial_strains_by_region(body.mesh, scene));
   made.elastic = std::make_unique<LinearForces>(assemble_stiffness<E>(body, limits));
   return made;
 }
 
-/// A body at small strain with memory. Throws also unsupported for initial strains, and what ViscousForces throws.
+/// A viscoelastic body at small strain. Also throws unsupported for initial strains, and the errors of ViscousForces.
 template <Element E>
 DeformableBody make_deformable_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {
   static_assert(!HasSmoothedStrain<E>,
-                "palpate: the stiffness of a smoothed element has another pattern than its mass");
+                "palpate: the stiffness of a smoothed element has a different sparsity pattern than its mass");
   detail::refuse_initial_strains(scene);
   DeformableBody made = detail::body_with_mass(body.fast, scene, limits);
   made.elastic = std::make_unique<ViscousForces>(std::move(body), limits);
@@ -154,7 +155,7 @@ DeformableBody make_deformable_body(ViscousBody<E> body, const Scene& scene, con
 template <Element E>
 DeformableBody make_constrained_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {
   static_assert(!HasSmoothedStrain<E>,
-                "palpate: the stiffness of a smoothed element has another pattern than its mesh");
+                "palpate: the stiffness of a smoothed element has a different sparsity pattern than its mesh");
   detail::refuse_initial_strains(scene);
   DeformableBody made = detail::constrained_body_without_forces(body.fast, scene);
   made.elastic = std::make_unique<ViscousForces>(std::move(body), limits);

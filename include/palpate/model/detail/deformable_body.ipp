@@ -27,7 +27,8 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE void refuse_initial_strains(const Scene& scene) {
   if (!scene.initial_strains().empty())
-    raise(SetupErrorKind::unsupported, "initial strains at large deformation or with memory", "Use a linear material");
+    raise(SetupErrorKind::unsupported, "initial strains at large deformation or with viscoelasticity",
+          "Use a linear material");
 }
 
 }}}  // namespace palpate::detail

@@ -1,4 +1,4 @@
-// A linear elastic body without its element type: what statics asks of it.
+// Interface of a linear elastic body for statics, independent of the element type.
 #pragma once
 
 #include <palpate/assembly/detail/essential_conditions.hpp>
@@ -14,8 +14,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// An admitted body with its boundary. Everything here is for set-up and for changes of loads, none for a tick. Vectors
-/// have 3 entries per node. Functions that take a scene throw what resolving it throws (unknown_group, empty_group,
+/// An admitted body with its boundary. All functions are for set-up and for changes of loads, not for a tick. Vectors
+/// have 3 entries per node. Functions that take a scene throw the errors of resolving it (unknown_group, empty_group,
 /// unsupported ...).
 class ElasticBody {
  public:
@@ -28,18 +28,18 @@ class ElasticBody {
   virtual const std::vector<std::string>& region_names() const noexcept = 0;
   virtual const std::vector<double>& densities() const noexcept = 0;
 
-  /// Refuses a body that can still move: unconstrained. Names axes in the frame of the mesh as given.
+  /// Throws unconstrained when the body can move rigidly. The error gives axes in the frame of the mesh as given.
   virtual void require_constrained(const EssentialConditions& conditions) const = 0;
   virtual EssentialConditions conditions(const Scene& scene) const = 0;
   virtual Touchable touchable(const Scene& scene) const = 0;
   virtual std::vector<NodeId> rendered(const Scene& scene) const = 0;
 
-  /// All loads of a scene but gravity [N].
+  /// All loads of a scene except gravity [N].
   virtual VectorX applied_load(const Scene& scene) const = 0;
   /// Initial strain per region.
   virtual std::vector<Vector6> initial_strains(const Scene& scene) const = 0;
   virtual VectorX initial_strain_load(const std::vector<Vector6>& strains) const = 0;
-  /// What `strain_energy` leaves out.
+  /// Swaps the initial strains, which `strain_energy` subtracts from the strain.
   virtual void swap_initial_strains(std::vector<Vector6>& strains) noexcept = 0;
   /// Mass per node [kg].
   virtual VectorX nodal_mass() const = 0;
@@ -49,12 +49,12 @@ class ElasticBody {
   virtual void report_locking(SetupReport& report) const = 0;
 };
 
-/// A body that passed admission, its nodes moved so that the centre of its box is the origin.
+/// An admitted body, translated so that the centre of its bounding box is the origin.
 struct AdmittedBody {
   std::unique_ptr<ElasticBody> body;
-  std::vector<NodeId> node_map;  ///< new id of every node as given, -1 for those dropped
-  OriginalIds ids;                ///< of its nodes and elements in the mesh as given
-  Vector3 origin;                ///< of the body's frame in the mesh as given [m]
+  std::vector<NodeId> node_map;  ///< new id of every node as given, -1 for dropped nodes
+  OriginalIds ids;               ///< ids of its nodes and elements in the mesh as given
+  Vector3 origin;                ///< origin of its frame, in the frame of the mesh as given [m]
 };
 
 }}  // namespace palpate

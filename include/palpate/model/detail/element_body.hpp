@@ -11,11 +11,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The body of elements E.
+/// A body of elements E.
 template <Element E>
 class ElementBody final : public ElasticBody {
  public:
-  /// `origin` is where the body's frame lies in the mesh as given [m].
+  /// `origin` is the origin of the body frame, in the frame of the mesh as given [m].
   explicit ElementBody(Body<E> body, const Vector3& origin = Vector3::Zero());
 
   const Body<E>& body() const noexcept { return body_; }

@@ -1,4 +1,4 @@
-// How much the surroundings of nodes have turned.
+// Local rotations at nodes.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -9,15 +9,15 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// For chosen nodes the rotation of the deformation that fits the motion of their neighbours best (shape matching,
-/// Mueller et al. 2005, over one ring). O(neighbours), no allocation after set-up.
+/// For chosen nodes, the rotation of the best-fitting affine motion of their neighbours (shape matching, Mueller et al.
+/// 2005, over one ring). O(neighbours), no allocation after set-up.
 class NodalRotations {
  public:
   NodalRotations() = default;
   /// `positions` at rest [m].
   NodalRotations(const BlockPattern& pattern, const std::vector<Vector3>& positions, const std::vector<NodeId>& nodes);
 
-  /// Of node k of those chosen, under a displacement u with 3 entries per node [m].
+  /// Rotation at the k-th chosen node under a displacement u with 3 entries per node [m].
   Matrix3 operator()(std::size_t k, const VectorX& u) const noexcept;
 
  private:

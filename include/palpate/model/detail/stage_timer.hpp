@@ -1,4 +1,4 @@
-// How long a stage of set-up took.
+// Measures the duration of a stage of set-up.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -9,8 +9,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Adds the time since its construction to a report when it goes. Its line in the report is made at once: a destructor
-/// must not run out of memory.
+/// Its destructor writes the time since construction [s] to a report. The constructor allocates the line in the report,
+/// because a destructor must not run out of memory.
 class StageTimer {
  public:
   StageTimer(SetupReport& report, const char* stage);

@@ -1,4 +1,4 @@
-// Which part of a body can be touched, and which is looked at.
+// The touchable and the rendered part of a body.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -15,25 +15,25 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The touchable surface: its nodes, sorted, and its outward triangles in numbers of those nodes. Faces with more nodes
-/// than three give the triangles their face element lists.
+/// The touchable surface: its sorted nodes, and its outward triangles as indices of those nodes. Faces with more than
+/// three nodes are divided into the triangles listed by their face element.
 struct Touchable {
   std::vector<NodeId> nodes;
   std::vector<Triangle> triangles;
 };
 
-/// Sorts and drops repetitions.
+/// Sorts and removes duplicates.
 void sort_unique(std::vector<NodeId>& nodes);
 
-/// Resolves what a scene lets tools touch: the boundary faces of every selection and their nodes; of groups and lists
-/// also the nodes on no such face. Throws as resolve_faces does.
+/// Resolves the touchable part of a scene: the boundary faces of every selection and their nodes; for groups and lists
+/// also nodes on no such face. Throws as resolve_faces.
 Touchable resolve_touchable(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary, const Scene& scene);
 
-/// Refuses forces on vertices outside 0 ... vertices - 1 (index_out_of_range; the ids are vertices), and forces that
-/// are no numbers (non_finite).
+/// Throws index_out_of_range for a force on a vertex outside 0 ... vertices - 1 (the ids are vertices), and non_finite
+/// for a force that is not finite.
 void require_vertex_forces(std::span<const VertexForce> forces, int vertices);
 
-/// The nodes somebody looks at, sorted.
+/// The rendered nodes, sorted.
 std::vector<NodeId> resolve_rendered(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
                                      const Scene& scene);
 

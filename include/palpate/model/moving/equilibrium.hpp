@@ -1,4 +1,4 @@
-// Static equilibrium at large deformation, by Newton's method along a path of loads.
+// Static equilibrium at large deformation by Newton's method with load steps.
 #pragma once
 
 #include <palpate/assembly/detail/essential_conditions.hpp>
@@ -27,11 +27,11 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 struct EquilibriumParameters {
   NewtonParameters newton{};
-  int load_steps = 1;           ///< to start with; a step that fails is halved, one that is easy doubled
-  double smallest_step = 1e-4;  ///< of the loads; a smaller one gives up
+  int load_steps = 1;           ///< initial number; a step that fails is halved, one that converges fast is doubled
+  double smallest_step = 1e-4;  ///< fraction of the loads; the solve stops when a step would be smaller
 };
 
-/// What a caller may decide about how a body is made from a mesh.
+/// Options for making a body from a mesh.
 struct EquilibriumOptions {
   AdmissionPolicy admission{};
   SetupLimits limits{};
@@ -40,22 +40,22 @@ struct EquilibriumOptions {
 struct EquilibriumReport {
   bool converged = false;
   int load_steps = 0, iterations = 0, refused_steps = 0;
-  double fraction = 0.0;            ///< of the loads that are in equilibrium
+  double fraction = 0.0;            ///< fraction of the loads for which equilibrium was found
   double relative_residual = 0.0;   ///< of the last step
-  bool stable = true;               ///< the tangent stiffness is positive definite there
-  DeformationReport deformation{};  ///< ids of elements are those of the mesh as given
+  bool stable = true;               ///< the tangent stiffness is positive definite in the final state
+  DeformationReport deformation{};  ///< element ids are those of the mesh as given
 };
 
-/// What was reached, in a sentence.
+/// Describes the result in one sentence.
 std::string describe(const EquilibriumReport& r);
 
-/// A body under dead loads and prescribed displacements, at rest or so slow that inertia does not count. Neither copied
-/// nor moved.
+/// A body under dead loads and prescribed displacements, at rest or so slow that inertia is negligible. Neither
+/// copyable nor movable.
 class Equilibrium {
  public:
-  /// Admits the mesh as other tissues do, with one material everywhere or one per region: hyperelastic, linear, or with
-  /// memory. Throws what admit, make_deformable_body and conditions throw, and unconstrained; ids are those of the mesh
-  /// as given. Vectors have the nodes of the admitted mesh, see `node_map`.
+  /// Admits the mesh like other tissues. One material everywhere or one per region: hyperelastic, linear or
+  /// viscoelastic. Throws the errors of admit, make_deformable_body and conditions, and unconstrained; ids are those of
+  /// the mesh as given. Vectors have 3 entries per node of the admitted mesh, see `node_map`.
   template <Element E, Material M>
   Equilibrium(const Mesh<E>& mesh, const Scene& scene, const M& material, const EquilibriumOptions& options = {})
       : Equilibrium(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options) {}
@@ -63,40 +63,41 @@ class Equilibrium {
   Equilibrium(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
               const EquilibriumOptions& options = {})
       : Equilibrium(prepare(mesh, scene, materials, options), options.limits) {}
-  /// Of a mesh that has been admitted; its geometry is not checked. Throws what make_deformable_body throws, and
+  /// From the body of an admitted mesh; its geometry is not checked. Throws the errors of make_deformable_body, and
   /// unconstrained.
   template <Element E, LargeStrainMaterial M>
   Equilibrium(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {})
       : Equilibrium(make_constrained_body(std::move(body), scene, limits), limits) {}
-  /// A body that is held, with or without mass, at any strain, of a mesh that has been admitted.
+  /// From a constrained body of an admitted mesh, with or without mass, at small or large strain.
   explicit Equilibrium(DeformableBody body, const SetupLimits& limits = {});
   Equilibrium(const Equilibrium&) = delete;
   Equilibrium& operator=(const Equilibrium&) = delete;
 
-  /// Raises the loads from none to all. What is reached at the end is in `displacement()`. A body with memory is held
-  /// there until nothing fades any more. Throws bad_argument for parameters that cannot be.
+  /// Raises the loads from zero to their full values. The result is in `displacement()`. A viscoelastic body is relaxed
+  /// completely (time to infinity). Throws bad_argument for invalid parameters.
   EquilibriumReport solve(const EquilibriumParameters& parameters = {});
 
-  /// Lets dt >= 0 seconds pass, at the end of which loads and prescribed values are as they are set: relaxation and
-  /// creep without inertia. dt = 0 is a sudden change. Where no equilibrium is found nothing has changed. Throws
-  /// bad_argument.
+  /// Advances time by dt >= 0 [s]; loads and prescribed values reach their set values at the end of the step:
+  /// relaxation and creep without inertia. dt = 0 is a sudden change. When no equilibrium is found, the state is
+  /// unchanged. Throws bad_argument for a negative or NaN dt and for invalid parameters.
   EquilibriumReport step(double dt, const EquilibriumParameters& parameters = {});
 
-  /// Dead loads from the next `solve` or `step` on [N]. Throws bad_argument for another size.
+  /// Sets the dead loads from the next `solve` or `step` on [N]. Throws bad_argument for a wrong size.
   void set_load(const VectorX& load);
-  /// Values of the prescribed components at the end of the next `solve` or `step` [m]. Throws as set_load.
+  /// Sets the values of the prescribed components at the end of the next `solve` or `step` [m]. Throws as set_load.
   void set_prescribed(const VectorX& values);
 
-  /// New id of every node as given, -1 for those dropped at admission. Empty when the body was given ready made.
+  /// New id of every node of the mesh as given, -1 for nodes dropped at admission. Empty when the constructor received
+  /// a body.
   const std::vector<NodeId>& node_map() const noexcept { return node_map_; }
   const EssentialConditions& conditions() const noexcept { return body_.conditions; }
   const VectorX& displacement() const noexcept { return displacement_; }
   double energy() const noexcept { return body_.elastic->energy(displacement_); }
   VectorX internal_force() const;
-  /// Forces of the supports, zero on free dofs, 3 per node [N].
+  /// Reaction forces of the supports, zero on free dofs, 3 per node [N].
   VectorX reactions() const;
-  /// Gives the body away. Nothing else may be called after it. Positions of a body made from a mesh are relative to the
-  /// centre of its box.
+  /// Moves the body out; no other function may be called afterwards. Positions of a body made from a mesh are relative
+  /// to the centre of its bounding box.
   DeformableBody release() &&;
 
   // NewtonProblem, at the present loads
@@ -137,20 +138,20 @@ class Equilibrium {
 
   void end() noexcept;
 
-  /// From the loads and held values at the start to those that are set, in steps that adapt.
+  /// Goes from the initial loads and prescribed values to the set ones, in adaptive steps.
   EquilibriumReport follow_loads(const EquilibriumParameters& parameters);
 
-  /// Sets loads and held values to a fraction of the way.
+  /// Interpolates loads and prescribed values at a fraction between the initial and the set values.
   void go(double fraction) noexcept;
-  /// Full displacement from the free dofs, with the present held values.
+  /// Full displacement from the free dofs and the current prescribed values.
   void place(const VectorX& x) noexcept { body_.conditions.place(x, prescribed_, displacement_); }
 
-  /// From equilibrium at the present loads to equilibrium at another fraction: a step along the tangent, then Newton's
-  /// method.
+  /// Goes from the equilibrium at the current loads to that at another fraction: a tangent step, then Newton's method.
   NewtonReport advance(NewtonMethod& newton, double to) noexcept;
 
-  /// Where the tangent is not positive definite the state may be an unstable equilibrium, which the residual alone does
-  /// not leave (a column pressed straight): adds the direction of most negative curvature, by inverse iteration.
+  /// When the tangent is not positive definite, the state may be an unstable equilibrium (a column under axial
+  /// compression), which a step along the residual does not leave. Adds the direction of most negative curvature, found
+  /// by inverse iteration.
   void add_descent_direction(const VectorX& residual, VectorX& d) noexcept;
 
   OriginalIds ids_;

@@ -18,7 +18,7 @@ PALPATE_INLINE std::string describe(const EquilibriumReport& r) {
                      std::to_string(r.iterations) + " iterations, residual " + number(r.relative_residual);
   if (!r.stable) text += ", not stable";
   if (r.deformation.inverted > 0)
-    text += ", " + std::to_string(r.deformation.inverted) + " elements inside out, first of all " +
+    text += ", " + std::to_string(r.deformation.inverted) + " inverted elements, the worst is " +
             std::to_string(r.deformation.worst_element);
   return text;
 }
@@ -135,7 +135,7 @@ PALPATE_INLINE void Equilibrium::require_usable(const EquilibriumParameters& p) 
     raise(SetupErrorKind::bad_argument, std::to_string(p.load_steps) + " load steps", "Give at least one");
   if (!(p.smallest_step > 0.0 && p.smallest_step <= 1.0))
     raise(SetupErrorKind::bad_argument, "a smallest load step of " + number(p.smallest_step),
-          "Give a part of the loads above 0 and at most 1");
+          "Give a fraction of the loads above 0 and at most 1");
 }
 
 PALPATE_INLINE void Equilibrium::end() noexcept {

@@ -1,4 +1,4 @@
-// A solver policy that moves a body by explicit steps: Explicit<CentralDifference>.
+// A solver policy for dynamics with explicit time steps: Explicit<CentralDifference>.
 #pragma once
 
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
@@ -19,26 +19,26 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A body that moves by explicit steps with a lumped mass, without a factor or a matrix. `Scheme` is CentralDifference
+/// Dynamics with explicit steps and a lumped mass, without a matrix or a factorisation. `Scheme` is CentralDifference
 /// or SemiImplicitEuler.
 template <ExplicitScheme Scheme>
 struct Explicit {};
 
-/// What a model on Explicit<...> may choose.
+/// Parameters of a model on Explicit<...>.
 struct ExplicitParameters {
-  double step = 1e-3;          ///< [s] between two surfaces; taken in as many equal stable steps as it needs
+  double step = 1e-3;          ///< [s] between two published surfaces; divided into equal stable substeps
   bool settle = true;          ///< start in equilibrium under the scene's loads
   double mass_damping = 0.0;   ///< alpha of the mass-proportional damping [1/s]
-  double margin = 0.07;        ///< the stable limit is taken this much smaller than estimated
-  int maximum_substeps = 200;  ///< of a step; more are refused, at set-up as bad_argument, later as step_refused
+  double margin = 0.07;        ///< relative safety margin below the estimated stability limit
+  int maximum_substeps = 200;  ///< per step; more are refused: at set-up bad_argument, later step_refused
 };
 
-/// An ExplicitMotion as a moving model drives it: a step is a number of equal stable ones, a correction takes them
-/// again with the other forces. What a force adds to a step (`respond`) is found by taking the step with it.
+/// TissueMotion on an ExplicitMotion. A step consists of equal stable substeps; a correction repeats them with the new
+/// forces. The response to a force (`respond`) is found by taking the step with that force.
 template <ForceOperator Force, ExplicitScheme Scheme>
 class ExplicitTissueMotion final : public TissueMotion {
  public:
-  /// Throws what ExplicitMotion throws.
+  /// Throws the errors of ExplicitMotion, and bad_argument when a step needs more than `maximum_substeps`.
   ExplicitTissueMotion(Force force, const VectorX& lumped, const EssentialConditions& conditions,
                        double frequency_bound, const ExplicitParameters& parameters)
       : motion_(std::move(force), lumped, conditions.free_dofs, frequency_bound,
@@ -46,7 +46,7 @@ class ExplicitTissueMotion final : public TissueMotion {
         prescribed_(conditions.prescribed),
         maximum_substeps_(parameters.maximum_substeps),
         probe_force_(probe_force(lumped, parameters.step)) {
-    for (auto* checkpoint : {&start_, &end_}) motion_.save(*checkpoint);  // allocates, so that steps need not
+    for (auto* checkpoint : {&start_, &end_}) motion_.save(*checkpoint);  // allocates here, so that steps do not
     if (substeps(parameters.step) <= maximum_substeps_) return;
     SetupProblem p;
     p.what = "a step of " + number(parameters.step) + " s takes " + number(parameters.step / motion_.limit()) +
@@ -111,13 +111,13 @@ class ExplicitTissueMotion final : public TissueMotion {
   }
 
  private:
-  /// [N], which moves the lightest node within a step by about the length that differences of forces can see.
+  /// Force [N] that displaces the lightest node within a step by about the length that force differences can resolve.
   double probe_force(const VectorX& lumped, double step) {
     return motion_.force().probe_length() * lumped.minCoeff() / (step * step);
   }
   double substeps(double h) const noexcept { return std::max(1.0, std::ceil(h / motion_.limit())); }
 
-  /// From the present state over `length_`; held dofs go to where they are prescribed at constant speed.
+  /// Steps from the current state over `length_`; prescribed dofs move to their prescribed values at constant speed.
   MotionStep take() noexcept {
     MotionStep done;
     const double count = substeps(length_);
@@ -142,7 +142,7 @@ class ExplicitTissueMotion final : public TissueMotion {
   VectorX prescribed_, unloaded_;
   int maximum_substeps_;
   double probe_force_;
-  double length_ = 0.0;  // of the last step; 0: there is none to correct
+  double length_ = 0.0;  // of the last step; 0: there is no step to correct
   typename ExplicitMotion<Force, Scheme>::Checkpoint start_, end_;
 };
 
@@ -167,7 +167,7 @@ struct SolverTraits<Explicit<Scheme>> {
                                     const SetupLimits& limits) {
     static_assert(
         !detail::has_history<MaterialBody>,
-        "palpate: explicit steps do not move what a material remembers; use Implicit<Newton<SparseCholesky>>");
+        "palpate: explicit steps do not support viscoelastic materials; use Implicit<Newton<SparseCholesky>>");
     const Body rest = detail::rest_body(body);
     return make_motion(rest, std::move(body), scene, p, limits);
   }

@@ -1,4 +1,4 @@
-// Solver policies that move a body by implicit steps: Implicit<Newton<SparseCholesky>>, Implicit<MatrixFreeCG<...>>.
+// Solver policies for dynamics with implicit time steps: Implicit<Newton<SparseCholesky>>, Implicit<MatrixFreeCG<...>>.
 #pragma once
 
 #include <palpate/model/moving/detail/corotated_motion.hpp>
@@ -12,23 +12,23 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Newton's method on the incremental potential of a step, with a factor in every iteration. Any element but smoothed
-/// ones, any material, any step. See ImplicitDynamics.
+/// Newton's method on the incremental potential of a step, with a factorisation in every iteration. Supports all
+/// elements except smoothed ones, all materials and all step lengths. See ImplicitDynamics.
 template <class Factor>
 struct Newton {
   static_assert(std::same_as<Factor, SparseCholesky>, "palpate: Newton's method takes a factor: Newton<SparseCholesky>");
 };
 
-/// Conjugate gradients on products without a matrix, in numbers of type S: fixed work per step. For Tet4 and
-/// Corotational<...>. See CorotatedMotion. `Preconditioner` is BlockJacobi or another StepPreconditioner.
+/// Matrix-free conjugate gradients in scalar type S, with bounded work per step. For Tet4 and Corotational<...>. See
+/// CorotatedMotion. `Preconditioner` is BlockJacobi or another StepPreconditioner.
 template <class Preconditioner, class S = float>
 struct MatrixFreeCG {};
 
-/// A body that moves by implicit steps.
+/// Dynamics with implicit steps.
 template <class StepSolver>
 struct Implicit {};
 
-/// What a model on Implicit<Newton<...>> may choose.
+/// Parameters of a model on Implicit<Newton<...>>.
 struct ImplicitParameters {
   double step = 0.01;  ///< [s]
   bool settle = true;  ///< start in equilibrium under the scene's loads
@@ -54,7 +54,7 @@ struct SolverTraits<Implicit<Newton<SparseCholesky>>> {
                                 const SetupLimits& limits);
 };
 
-/// What a model on Implicit<MatrixFreeCG<...>> may choose.
+/// Parameters of a model on Implicit<MatrixFreeCG<...>>.
 struct CorotatedParameters {
   double step = 1e-3;  ///< [s]
   bool settle = true;  ///< start in equilibrium under the scene's loads
@@ -63,11 +63,11 @@ struct CorotatedParameters {
   double stiffness_damping = 0.0;  ///< Rayleigh's beta [s]
   BoundedSolveParameters solve{.maximum_iterations = 40, .tolerance = 3e-3};
   int precondition_every = 16;     ///< steps between two updates of the preconditioner
-  bool check = true;               ///< compare the energy after a step with that before it: one more sweep of forces
-  int maximum_linearisations = 8;  ///< of a step whose check fails
+  bool check = true;  ///< compare the energy after a step with that before it; costs one more force evaluation
+  int maximum_linearisations = 8;  ///< per step, when the check fails
 };
 
-/// A CorotatedMotion as a moving model drives it.
+/// TissueMotion on a CorotatedMotion.
 template <class Base, class S, class Preconditioner>
 class CorotatedTissueMotion final : public TissueMotion {
  public:

@@ -1,4 +1,4 @@
-// Motion in time by implicit steps.
+// Dynamics with implicit time steps.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -18,47 +18,47 @@ enum class MassKind { lumped, consistent };
 
 struct DynamicsParameters {
   TimeScheme scheme = TimeScheme::implicit_euler();
-  double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]: drags, also a body that moves freely
+  double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]; also damps rigid motion
   double stiffness_damping = 0.0;  ///< Rayleigh's beta [s], with the tangent at the start of the step
   MassKind mass = MassKind::lumped;
   NewtonParameters newton{};  ///< `maximum_iterations` bounds the work of a step, TangentSolver that of an iteration
 };
 
-/// What a step did.
+/// Result of a step.
 struct StepReport {
-  bool taken = false;     ///< false: the step was not a positive number, or there is no way on; nothing has changed
-  NewtonReport newton{};  ///< not converged: the state is the best found, and relative_residual says what is missing
+  bool taken = false;     ///< false: the length was not positive, or no finite state was found; nothing has changed
+  NewtonReport newton{};  ///< not converged: the state is the best found, relative_residual is what is left
   DeformationReport deformation{};
   bool energy_bounded =
-      true;  ///< false: half as much again kinetic and stored energy as there was and as was put in since
+      true;  ///< false: kinetic and stored energy exceed 1.5 times the initial energy plus the work put in since
 };
 
-/// M a + D v + f(u) = load: every step minimises its incremental potential (Ortiz and Stainier 1999; Gast et al. 2015),
-/// so a step never ends at a higher potential than where it began. For implicit Euler that bounds the energy; Newmark's
-/// rule, which keeps it at small strain, may add some at large strain in steps of many periods, and then goes on
-/// adding: `calm` of the report. A step neither allocates nor throws. Neither copied nor moved. Vectors have 3 entries
-/// per node.
+/// Integrates M a + D v + f(u) = load. Every step minimises its incremental potential (Ortiz and Stainier 1999; Gast et
+/// al. 2015), so the potential at the end of a step is never higher than at its start. For implicit Euler this bounds
+/// the energy. Newmark's rule conserves the energy at small strain, but may add energy at large strain in steps of many
+/// periods, and then continues to add it: see `energy_bounded` of the report. A step neither allocates nor throws.
+/// Neither copyable nor movable. Vectors have 3 entries per node.
 class ImplicitDynamics {
  public:
-  /// Starts at rest without displacement, but for the initial acceleration, which follows from the loads. Throws
-  /// too_large, bad_density where a free node has no mass, bad_argument for negative damping and useless parameters.
+  /// Starts at rest with zero displacement; the initial acceleration follows from the loads. Throws too_large,
+  /// bad_density when a free node has no mass, bad_argument for negative damping and invalid parameters.
   explicit ImplicitDynamics(DeformableBody body, const DynamicsParameters& parameters = {},
                             const SetupLimits& limits = {});
   ImplicitDynamics(const ImplicitDynamics&) = delete;
   ImplicitDynamics& operator=(const ImplicitDynamics&) = delete;
 
-  /// Moves on by h [s].
+  /// Advances by h [s].
   StepReport step(double h) noexcept;
 
-  /// Takes `more` forces [N] into account in the step just taken, and what it left, to first order: with the tangent of
-  /// its last iteration, or where it needed none, of its end. One solve and two forces; up to four more where the first
-  /// order leads too far. False, and nothing changes, where no step was taken since the state or the length of steps
-  /// was changed, and where nothing on the way leaves less force than there was.
+  /// Corrects the last step for `more` forces [N] and for its remaining residual, to first order: with the tangent of
+  /// its last iteration, or of its end when it needed no iteration. Costs one solve and two force evaluations, up to
+  /// four more when the first-order change is too large and is halved. Returns false and changes nothing when no step
+  /// was taken since the state or the step length changed, or when no tried change reduces the residual.
   bool correct(const VectorX& more) noexcept;
-  /// Displacement [m] that forces [N] add at the end of a step, to first order, as `correct` has it. False where there
-  /// is no step, or its tangent has no factor.
+  /// Displacement u [m] that `forces` [N] add at the end of a step, to first order, with the tangent of `correct`.
+  /// Returns false when there is no step, or its tangent cannot be factorised.
   bool respond(const VectorX& forces, VectorX& u) noexcept;
-  /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
+  /// Prepares `respond` for a step of h [s] from the current state. Returns false when h is not a valid length.
   bool prepare_response(double h) noexcept;
 
   double time() const noexcept { return time_; }
@@ -67,20 +67,22 @@ class ImplicitDynamics {
   const VectorX& acceleration() const noexcept { return a_; }
   const DeformableBody& body() const noexcept { return body_; }
 
-  /// Changes the state; prescribed components rest where they are prescribed. The acceleration follows. For a body with
-  /// memory the change is sudden. Throws bad_argument, without a change, for vectors of another size.
+  /// Sets the state; prescribed components take their prescribed values with zero velocity. The acceleration follows
+  /// from the forces. For a viscoelastic body the change is sudden. Throws bad_argument, without a change, for vectors
+  /// of a wrong size.
   void set_state(const VectorX& u, const VectorX& v);
-  /// At rest in u, where it has been until nothing fades any more. Throws as set_state.
+  /// Sets a state at rest in u with the viscoelastic stress fully relaxed. Throws as set_state.
   void rest_at(const VectorX& u);
-  /// Forces from now on instead of the scene's loads [N]. Throws bad_argument for another size; does not allocate.
+  /// Sets the forces from now on, replacing the loads of the scene [N]. Throws bad_argument for a wrong size; does not
+  /// allocate.
   void set_load(const VectorX& load);
-  /// Values of the prescribed components at the end of the next step [m]. Throws as set_load.
+  /// Sets the values of the prescribed components at the end of the next step [m]. Throws as set_load.
   void set_prescribed(const VectorX& values);
 
   double kinetic_energy() noexcept;
-  /// Stored [J]. For a body with memory: the potential of its last step, which counts what faded in it.
+  /// Stored energy [J]. For a viscoelastic body: the potential of its last step, which includes what dissipated in it.
   double elastic_energy() const noexcept { return body_.elastic->energy(u_); }
-  /// Kinetic and stored, less the work that the loads can still do [J]: constant without damping.
+  /// Kinetic and stored energy plus the potential of the loads [J]; constant without damping.
   double energy() noexcept;
 
   // NewtonProblem: one step
@@ -92,9 +94,9 @@ class ImplicitDynamics {
   double rounding() const noexcept;
 
  private:
-  /// A step of h starts at the end of the last one.
+  /// Starts a step of length h at the end of the last step.
   void begin(double h) noexcept;
-  /// The last step, if there was one, can not be corrected any more.
+  /// Ends the last step, if there was one; it can no longer be corrected.
   void end() noexcept;
 
   /// Factorises the tangent of a step at a displacement.
@@ -102,15 +104,15 @@ class ImplicitDynamics {
 
   static DeformableBody checked(DeformableBody body, const DynamicsParameters& p);
 
-  /// x_ is where the body coasts to, or where it is: wherever the potential of the step is lower.
+  /// Sets x_ to the predicted or the current state, whichever has the lower potential of the step.
   void start_from_the_lower() noexcept;
-  /// Changes the state after `seconds` in it; infinite: until nothing fades any more.
+  /// Sets a state that has lasted for `seconds`; infinite: fully relaxed.
   void set_state(const VectorX& u, const VectorX& v, double seconds);
 
-  /// The state is what was evaluated last.
+  /// Sets the state to the one evaluated last.
   void accept() noexcept;
 
-  /// Against energy from nowhere: not a measure of accuracy.
+  /// Detects spurious energy; not a measure of accuracy.
   bool energy_is_explained() noexcept;
 
   void apply_mass(const VectorX& x, VectorX& y) const noexcept;
@@ -128,17 +130,17 @@ class ImplicitDynamics {
   NewtonMethod newton_;
   VectorX u_, v_, a_, load_;
   VectorX prescribed_;                   // prescribed components at the end of the last step
-  VectorX from_, unbalanced_, balance_;  // displacement and forces left over at the start of a step, and now
+  VectorX from_, unbalanced_, balance_;  // displacement and residual force at the start of a step; residual force now
   VectorX trial_, velocity_, acceleration_, force_, full_, other_, damping_force_, x_, residual_;
-  VectorX kept_load_, step_load_, change_, start_;  // of corrections
+  VectorX kept_load_, step_load_, change_, start_;  // workspaces of corrections
   DeformationReport deformation_;
   bool stepped_ = false;     // the state is the end of step_
   bool factorised_ = false;  // tangent_ is that of this step
   double time_ = 0.0, scale_ = 0.0, heaviest_ = 0.0, floor_ = 0.0;
-  double small_ = 0.0;  // a length that rounding may move the body by [m]
+  double small_ = 0.0;  // displacement that rounding may cause [m]
   struct Work {
-    double of_loads = 0.0, most = 0.0;  // so far, and the most that was
-    double of_supports = 0.0;           // of every step, all counted as put in
+    double of_loads = 0.0, most = 0.0;  // so far, and its largest magnitude
+    double of_supports = 0.0;           // sum over steps of magnitudes, all counted as energy put in
   };
   Work work_, work_before_;  // since the state was set: now, and at the start of the step
   double start_energy_ = 0.0, stored_ = 0.0;

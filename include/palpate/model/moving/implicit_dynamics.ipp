@@ -117,7 +117,7 @@ PALPATE_INLINE void ImplicitDynamics::set_state(const VectorX& u, const VectorX&
   for (const VectorX* given : {&u, &v}) require_entries(*given, u_.size());
   end();
   body_.elastic->begin_step(seconds);
-  for (Index dof = 0; dof < u_.size(); ++dof) {  // u and v may be those of this motion
+  for (Index dof = 0; dof < u_.size(); ++dof) {  // u and v may alias u_ and v_
     const bool constrained = body_.conditions.is_constrained(dof);
     u_[dof] = constrained ? body_.conditions.prescribed[dof] : u[dof];
     v_[dof] = constrained ? 0.0 : v[dof];
@@ -269,8 +269,8 @@ PALPATE_INLINE void ImplicitDynamics::find_acceleration() {
     tangent_.solve(residual_, x_);
   }
   body_.conditions.scatter(x_, a_);
-  if (!all_finite(a_)) a_.setZero();   // of loads that are none: steps refuse these
-  balance_ = load_ - force_ - other_;  // on held dofs, which are at rest
+  if (!all_finite(a_)) a_.setZero();   // the loads are not finite: steps refuse these
+  balance_ = load_ - force_ - other_;  // on constrained dofs, which are at rest
   work_ = {};
   start_energy_ = kinetic_energy() + std::abs(elastic_energy());
 }

@@ -1,4 +1,4 @@
-// The composition for tissue that moves: element, material, and a solver that integrates in time.
+// HapticFEModel for moving tissue: element, material, and a solver that integrates in time.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -16,10 +16,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A solver that moves a body: SolverTraits<P> has
+/// A solver policy for dynamics. SolverTraits<P> has
 ///   Parameters                                    an aggregate with `step` [s]; with `settle`, a body that can still
 ///                                                 move as a whole is refused when that is true
-///   make_motion(body, scene, parameters, limits)  a PreparedMotion; `body` is a HyperelasticBody at large strain, at small
+///   make_motion(body, scene, parameters, limits)  a PreparedMotion; `body` is a HyperelasticBody at large strain, at
+///   small
 ///                                                 strain a Body or ViscousBody
 /// Shipped: Implicit<...> (model/moving/implicit.hpp), Explicit<...> (model/moving/explicit.hpp).
 template <class P>
@@ -29,7 +30,7 @@ concept MotionPolicy = requires(const typename SolverTraits<P>::Parameters& para
 
 namespace detail {
 
-/// The part of a material body that is no material: mesh, elasticity at rest, densities.
+/// The material-independent part of a material body: mesh, elasticity at rest, densities.
 template <class MaterialBody>
 const auto& rest_body(const MaterialBody& body) noexcept {
   if constexpr (requires { body.rest.mesh; })
@@ -45,8 +46,8 @@ void require_step(double step);
 
 }  // namespace detail
 
-/// Tissue that moves, by a solver that integrates in time; see MovingTissue. Initial strains are for linear materials.
-/// Set-up solves once per touchable dof.
+/// Moving tissue with a solver that integrates in time; see MovingTissue. Initial strains are supported for linear
+/// materials only. Set-up solves once per touchable dof.
 template <class E, class M, MotionPolicy Solver>
 class HapticFEModel<E, M, Solver> : public MovingTissue {
  public:
@@ -59,8 +60,8 @@ class HapticFEModel<E, M, Solver> : public MovingTissue {
   using MaterialType = M;
   using Parameters = typename Traits::Parameters;
 
-  /// One material everywhere. Throws what admission, assembly and the motion throw, bad_argument for a step that is not
-  /// positive, not_converged when there is no equilibrium to settle in, unsupported for a cache file.
+  /// One material everywhere. Throws the errors of admission, assembly and the motion, bad_argument for a step that is
+  /// not positive, not_converged when no initial equilibrium is found, unsupported for a cache file.
   template <MeshOf<E> Given>
   HapticFEModel(const Given& mesh, const Scene& scene, const M& material, const SetupOptions& options = {},
                 const Parameters& parameters = {})
@@ -88,9 +89,9 @@ class HapticFEModel<E, M, Solver> : public MovingTissue {
 
   /// The admitted mesh, in the frame of `origin()`.
   const Mesh<E>& mesh() const noexcept { return body().mesh; }
-  /// The mesh with what its materials are at small strain (assembly/body.hpp).
+  /// The mesh with its materials linearised at small strain (assembly/body.hpp).
   const Body<E>& body() const noexcept { return detail::element_body<E>(elastic_body()).body(); }
-  /// The faces of the mesh that belong to one element only.
+  /// The boundary faces: faces of the mesh that belong to one element only.
   const std::vector<BoundaryFace>& boundary() const noexcept {
     return detail::element_body<E>(elastic_body()).boundary();
   }

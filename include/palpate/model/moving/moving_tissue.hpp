@@ -1,4 +1,4 @@
-// Tissue in motion without its element, material and motion: what a session and a program see of it.
+// Moving tissue independent of element, material and motion: the interface for sessions and programs.
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
@@ -22,82 +22,87 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 struct BlockPattern;
 
-/// A body that moves at its own rate, beside a servo that solves the contact in every tick (the architecture of Duriez
-/// et al. 2006 and Courtecuisse et al. 2015). Base of HapticFEModel on Implicit<...> and Explicit<...>.
+/// A body that moves at its own rate, in a background thread of a servo that solves the contact in every tick (the
+/// architecture of Duriez et al. 2006 and Courtecuisse et al. 2015). Base of HapticFEModel on Implicit<...> and
+/// Explicit<...>.
 ///
-/// After every step the tissue publishes where its surface would be without the tools, and how much each vertex has
-/// rotated. Between two steps the servo solves the contact on that surface with the compliance of a step as the body
-/// settled, rotated with the vertices: C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). The forces at
-/// the end of a step correct that step and load the next one. In a steady hold the force is that of the non-linear
-/// equilibrium, whatever the step and however inexact C is: C only predicts the change until the next step.
+/// After every step the tissue publishes the position of its surface without the tool forces, and the rotation of each
+/// vertex. Between two steps the servo solves the contact on that surface with the compliance of one step from the
+/// settled state, rotated with the vertices: C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). The
+/// forces at the end of a step correct that step and load the next one. In a steady contact the force is that of the
+/// non-linear equilibrium, for any step length and for an inexact C: C only predicts the change until the next step.
 ///
-/// Threads: `advance` and what changes the model are for any thread but the one that ticks, and wait for each other.
-/// The functions of TissueModel are for the thread that ticks, `displacement_with` for one thread that draws; neither
-/// ever waits. set_pose and reset must not run beside a tick. Neither copied nor moved. Satisfies TissueModel.
+/// Threads: `advance` and the functions that change the model may run in any thread except the ticking one, and lock
+/// each other out. The functions of TissueModel are for the ticking thread, `displacement_with` for one drawing thread;
+/// neither ever waits. set_pose and reset must not run during a tick. Neither copyable nor movable. Satisfies
+/// TissueModel.
 class MovingTissue : public ModelBase {
  public:
-  /// On vertices, three to a contact; of more the tissue feels the first.
+  /// Maximum number of vertex forces, three per contact; forces beyond it are not applied.
   static constexpr std::size_t most_forces = 3 * default_contact_capacity;
 
   // The thread that steps (BackgroundWorker)
 
-  /// Takes in the forces since the last step, and advances by one step. No allocation; takes as long as the step does.
+  /// Corrects the last step for the current tool forces, then advances by one step. No allocation; the duration is that
+  /// of the step.
   MotionStep advance() noexcept;
   /// One step, for BackgroundWorker.
   BackgroundStep background_work() noexcept {
     advance();
     return {true, step_};
   }
-  /// Of the motion [s].
+  /// Step length of the motion [s].
   double step() const noexcept { return step_; }
   /// Steps published so far.
   std::uint64_t steps() const noexcept { return steps_; }
-  /// Whether steps take longer than they last, so that the tissue moves in slow motion: sets slow_tissue in ticks.
+  /// Reports whether steps take longer to compute than their length, so that the tissue moves in slow motion; sets
+  /// slow_tissue in ticks.
   void report_slow(bool slow) noexcept { slow_.store(slow, std::memory_order_relaxed); }
-  /// For the thread that steps.
+  /// The motion; for the stepping thread.
   const TissueMotion& motion() const noexcept { return *motion_; }
 
   // Any thread but the one that ticks
 
-  /// Replaces loads and prescribed values, which act from the next step on. Throws as LinearTissue::set_conditions.
-  /// Strong guarantee.
+  /// Replaces loads and prescribed values from the next step on. Throws as LinearTissue::set_conditions. Strong
+  /// guarantee.
   void set_conditions(const Scene& scene);
-  /// Gravity [m/s^2] in the world's frame, from the next step on. Strong guarantee.
+  /// Sets gravity [m/s^2] in the world frame from the next step on. Strong guarantee.
   void set_gravity(const Vector3& gravity);
-  /// Where the organ lies in the world; rotates gravity with it. The tissue feels no acceleration of its frame. Not
-  /// beside a tick. Throws bad_argument unless it is a rigid motion. Strong guarantee.
+  /// Sets the pose of the organ in the world; the direction of gravity in the body changes with it. No inertial forces
+  /// of the moving frame are applied. Not during a tick. Throws bad_argument unless it is a rigid motion. Strong
+  /// guarantee.
   void set_pose(const Eigen::Isometry3d& pose);
-  /// Back to scene, pose and state of construction. Not beside a tick. Strong guarantee.
+  /// Restores scene, pose and state of construction. Not during a tick. Strong guarantee.
   void reset();
 
   // One thread that draws
 
-  /// Displacement after the newest step, 3 per admitted node [m]; the forces of the tools are in it. Resizes u when it
-  /// has another size. A copy, no solve. Never waits.
+  /// Displacement after the newest step, 3 per admitted node [m]; it includes the effect of the tool forces. Resizes u
+  /// when it has another size. A copy, no solve. Never waits.
   SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept;
   /// The same as a new vector.
   VectorX displacement(std::span<const VertexForce> forces = {});
 
   // TissueModel: the thread that ticks
 
-  /// Brings in the newest surface. `inverted` while elements are inside out, solver_not_converged when the last step
-  /// ended far from its answer, degraded_model when forces since the step before could only be taken in by the next, or
-  /// were more than most_forces, non_finite_force when the last `end_tick` had forces that are not finite, slow_tissue
-  /// when a BackgroundWorker does not keep up.
+  /// Takes the newest surface. Status: `inverted` while elements are inverted; solver_not_converged when the last step
+  /// ended far from its solution; degraded_model when a step could not be corrected for the tool forces, so that only
+  /// the next one includes them, or when there were more than most_forces; non_finite_force when the last `end_tick`
+  /// received forces that are not finite; slow_tissue when a BackgroundWorker does not keep up.
   Status begin_tick() noexcept;
-  /// Forces that are not finite are dropped.
+  /// Forces that are not finite are ignored.
   void end_tick(std::span<const VertexForce> forces) noexcept;
   const ContactSurface& contact_surface() const noexcept { return surface_; }
   Status require_columns(std::span<const int>) noexcept { return {}; }
   Matrix3 compliance(int i, int j) const noexcept { return compliance_.rotated(views_.front().rotation, i, j); }
   std::uint64_t compliance_revision() const noexcept { return revision_; }
-  /// Surfaces brought in so far.
+  /// Number of surfaces taken so far.
   std::uint64_t updates() const noexcept { return revision_; }
   double compliance_bound(int j) const noexcept { return compliance_.bound(j); }
   double compliance_floor() const noexcept { return compliance_.floor(); }
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
-  /// Brings the loads that refusals name up to date; not while a session ticks.
+  /// Updates the description of loads that error messages contain; not while a session ticks.
   void prepare_tools(double, const ContactParameters&);
   NoHook try_cut(const BladeSweep&) noexcept { return {}; }
 
@@ -105,8 +110,8 @@ class MovingTissue : public ModelBase {
   explicit MovingTissue(const SetupOptions& options);
   ~MovingTissue();
 
-  /// All of the set-up that comes after the motion. Solves once per touchable dof. Throws not_converged and what
-  /// WarpedCompliance throws.
+  /// The part of the set-up after the motion is prepared. Solves once per touchable dof. Throws not_converged and the
+  /// errors of WarpedCompliance.
   void set_up(const Touchable& touchable, PreparedMotion prepared, double step, const BlockPattern& pattern);
 
  private:
@@ -124,8 +129,8 @@ class MovingTissue : public ModelBase {
   /// Loads of a scene of the admitted mesh [N]; `gravity` in the body's frame.
   VectorX load_of(const Scene& scene, const Vector3& gravity) const;
   void add(const Forces& forces, double factor, VectorX& load) const noexcept;
-  /// Where the surface is without the forces in use, by the compliance that the servo uses: then the same forces bring
-  /// it back to where it is.
+  /// Position of the surface without the current tool forces, computed with the compliance of the servo, so that the
+  /// same forces restore the current position.
   void update_view(View& view) const noexcept;
   void publish(Status status) noexcept;
 

@@ -15,7 +15,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE MovingTissue::MovingTissue(const SetupOptions& options) : ModelBase(options) {
   if (!options.cache_file.empty())
-    raise(SetupErrorKind::unsupported, "a cache file for tissue in motion, which has nothing to keep in it",
+    raise(SetupErrorKind::unsupported, "a cache file for moving tissue, which has nothing to store",
           "Leave cache_file empty");
 }
 PALPATE_INLINE MovingTissue::~MovingTissue() = default;
@@ -38,7 +38,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   motion_->set_load(load_);
   motion_->rest_at(start_);
   compliance_ = WarpedCompliance(*motion_, step_, touchable.nodes, rotations_, limits());
-  motion_->rest_at(start_);  // what reset() returns to
+  motion_->rest_at(start_);  // the state that reset() restores
   View view{std::vector<Vector3>(touchable.nodes.size()), std::vector<Matrix3>(touchable.nodes.size()), {}};
   update_view(view);
   surface_ = ContactSurface(view.free, touchable.triangles);

@@ -1,4 +1,4 @@
-// A factor that a thread of its own makes anew while steps go on with the last one.
+// A factor that a background thread recomputes while steps continue with the previous one.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -22,10 +22,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Preconditioner of CorotatedMotion: the factor of A at a recent state, turned on from there with the nodes,
-/// (R R_s^T) A_s^-1 (R R_s^T)^T (asynchronous preconditioning, Courtecuisse et al. 2010). When it is due and the thread
-/// is free, an update hands it the state; a finished factor is taken in by the next update. No update waits, but for
-/// the first after the factors of M and K have changed, which factorises at rest. Two factors are held.
+/// Preconditioner of CorotatedMotion: the factor of A at a recent state s, rotated from there with the nodes, (R R_s^T)
+/// A_s^-1 (R R_s^T)^T (asynchronous preconditioning, Courtecuisse et al. 2010). When a renewal is due and the thread is
+/// idle, an update passes the state to the thread; the next update takes a finished factor. No update waits, except the
+/// first after the factors of M and K have changed, which factorises at rest. Stores two factors.
 class RenewedFactor {
  public:
   RenewedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits);
@@ -54,7 +54,7 @@ class RenewedFactor {
     corotated_.update(u, front().rotation);
   }
   void apply(const VectorX& r, VectorX& z) const noexcept { corotated_.solve(*made_[front_].factor, r, z); }
-  /// Factors of the thread taken in so far.
+  /// Number of factors taken from the thread so far.
   long renewals() const noexcept { return renewals_; }
 
  private:
@@ -68,7 +68,7 @@ class RenewedFactor {
   struct Made {
     Made(const DeformableBody& body, const EssentialConditions& conditions, const SetupLimits& limits);
     std::unique_ptr<TangentSolver> factor;
-    std::vector<Matrix3> rotation;  // of the nodes at its state
+    std::vector<Matrix3> rotation;  // of the nodes in the state of the factor
     StepFactors factors;
     bool usable = false;
   };
@@ -88,11 +88,11 @@ class RenewedFactor {
   std::vector<RotatingElement> elements_;
   std::array<Made, 2> made_;
   std::size_t front_ = 0;
-  VectorX asked_;  // the thread's while it is asked
+  VectorX asked_;  // used by the thread in state `asked`
   VectorX rest_;   // no displacement
   long renewals_ = 0;
   std::atomic<State> state_{State::idle};
-  std::thread thread_;  // last: it uses all the others
+  std::thread thread_;  // last: it uses all other members
 };
 
 }}  // namespace palpate

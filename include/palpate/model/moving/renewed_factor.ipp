@@ -42,7 +42,7 @@ PALPATE_INLINE void RenewedFactor::work() noexcept {
       case State::stopped:
         return;
       case State::asked: {
-        Made& made = spare();  // the front stays where it is until this one is ready
+        Made& made = spare();  // the front factor stays in use until this one is ready
         make(made, made.factors, asked_);
         State expected = State::asked;
         state_.compare_exchange_strong(expected, State::ready, std::memory_order_acq_rel);

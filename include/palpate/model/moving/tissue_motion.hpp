@@ -1,4 +1,4 @@
-// A motion in time as a moving model drives it, whatever integrates it.
+// Interface of a motion for a moving model, independent of the time integration.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -11,17 +11,17 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// How a step ended.
+/// Result of a step.
 struct MotionStep {
   bool taken = false;  ///< false: nothing has changed
-  /// `inverted`, `solver_not_converged` where the step ended far from its answer, or what else the motion reports.
+  /// `inverted`, `solver_not_converged` when the step ended far from its solution, or other flags of the motion.
   Status status;
   DeformationReport deformation{};
 };
 
-/// A motion of a body under loads, 3 entries per admitted node. Implement it, and SolverTraits of a policy that makes
-/// it (model/motion_policy.hpp), for a motion of your own. `step`, `correct` and the functions that return state
-/// neither allocate nor throw.
+/// A motion of a body under loads; vectors have 3 entries per admitted node. For a user-defined motion, implement this
+/// class and SolverTraits of a policy that makes it (model/moving/moving_model.hpp). `step`, `correct` and the
+/// functions that return state neither allocate nor throw.
 class TissueMotion {
  public:
   TissueMotion() = default;
@@ -31,27 +31,28 @@ class TissueMotion {
 
   /// Advances by h [s] under the loads and prescribed values set last.
   virtual MotionStep step(double h) noexcept = 0;
-  /// Adds what `more` forces [N] change in the step just taken, at least to first order. False, and nothing changes,
-  /// where that is not possible.
+  /// Corrects the last step for `more` forces [N], at least to first order. Returns false and changes nothing when that
+  /// is not possible.
   virtual bool correct(const VectorX& more) noexcept = 0;
-  /// Prepares `respond` for steps of h [s] from the present state. False where it cannot be prepared. For set-up.
+  /// Prepares `respond` for steps of h [s] from the current state. Returns false on failure. For set-up.
   virtual bool prepare_response(double h) noexcept = 0;
-  /// Displacement [m] that forces [N] add at the end of a step, to first order. False where it was not found.
+  /// Displacement u [m] that `forces` [N] add at the end of a step, to first order. Returns false when it was not
+  /// found.
   virtual bool respond(const VectorX& forces, VectorX& u) noexcept = 0;
-  /// After the last step [m], [m/s].
+  /// State after the last step [m], [m/s].
   virtual const VectorX& displacement() const noexcept = 0;
   virtual const VectorX& velocity() const noexcept = 0;
 
-  /// At rest in displacement u [m], where it has been for so long that no viscoelastic stress fades any more.
-  /// Prescribed components are where they are prescribed. Throws bad_argument for another size.
+  /// Sets a state at rest in displacement u [m] with the viscoelastic stress fully relaxed. Prescribed components take
+  /// their prescribed values. Throws bad_argument for a wrong size.
   virtual void rest_at(const VectorX& u) = 0;
-  /// Loads from the next step on [N]. Throws bad_argument for another size; does not allocate.
+  /// Sets the loads from the next step on [N]. Throws bad_argument for a wrong size; does not allocate.
   virtual void set_load(const VectorX& load) = 0;
-  /// Values of the prescribed components at the end of the next step [m]. Throws as set_load.
+  /// Sets the values of the prescribed components at the end of the next step [m]. Throws as set_load.
   virtual void set_prescribed(const VectorX& values) = 0;
 };
 
-/// A motion and where it starts.
+/// A motion and its initial displacement.
 struct PreparedMotion {
   std::unique_ptr<TissueMotion> motion;
   VectorX start;                         ///< displacement at rest [m]

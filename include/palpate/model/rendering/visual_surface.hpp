@@ -1,4 +1,4 @@
-// A surface to draw: the body's own, or a finer one that moves with it.
+// A surface for graphics: the boundary of the body, or a finer surface that moves with it.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -24,23 +24,23 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Triangles over points that a renderer draws. `positions` in the frame of the mesh as given [m].
+/// A triangle mesh for graphics. `positions` are in the frame of the mesh as given [m].
 struct VisualMesh {
   std::vector<Vector3> positions;
   std::vector<std::array<int, 3>> triangles;
 };
 
-/// What became of the points of a fine surface that was laid over a coarse mesh.
+/// Quality of the embedding of a fine surface in a coarse mesh.
 struct EmbeddingReport {
-  Index outside = 0;          ///< points in no element: they follow the nearest one, continued beyond its border
-  double worst_distance = 0;  ///< of these from the boundary [m]
-  double element_size = 0;    ///< mean longest edge on the boundary, to compare with [m]
+  Index outside = 0;          ///< points in no element; they follow the nearest element, extrapolated
+  double worst_distance = 0;  ///< largest distance of these points from the boundary [m]
+  double element_size = 0;    ///< mean longest edge of the boundary elements, for comparison [m]
 };
 
 namespace detail {
 
-/// Unit normals of points, means of those of their triangles weighted by area, and both written as x y z of every
-/// point. `normal` has a place per point. No allocation.
+/// Computes a unit normal per point (the area-weighted mean of the normals of its triangles) and writes points and
+/// normals as x y z. `normal` is a workspace with one entry per point. No allocation.
 inline void write_surface(const std::vector<Vector3>& points, const std::vector<std::array<int, 3>>& triangles,
                           std::vector<Vector3>& normal, std::span<float> positions, std::span<float> normals) noexcept {
   for (Vector3& n : normal) n.setZero();
@@ -60,21 +60,22 @@ inline void write_surface(const std::vector<Vector3>& points, const std::vector<
 
 }  // namespace detail
 
-/// Positions and normals for a renderer's own thread. Every point of the drawn surface is a fixed combination of the
-/// nodes of one element (its shape functions there), so a fine surface follows a coarse mesh smoothly. Reading recovers
-/// the displacement of the whole body from the contact forces of a tick (one back-substitution, exact); with
-/// HapticServo::read_snapshot it never waits for the haptic thread, nor that for the reader. Refers to the model; one
-/// reader at a time.
+/// Positions and normals for a graphics thread. Every point of the surface is a fixed combination of the nodes of one
+/// element (its shape functions at the point), so a fine surface follows a coarse mesh smoothly. A read recovers the
+/// displacement of the whole body from the contact forces of a tick (one back-substitution, exact). With
+/// HapticServo::read_snapshot the reader and the haptic thread never wait for each other. Keeps a reference to the
+/// model; one reader at a time.
 template <class Model>
 class VisualSurface {
  public:
   using E = typename Model::ElementType;
 
-  /// The boundary of the body: what the scene lets be seen, or all of it. Nodes become points.
+  /// The boundary of the body: the rendered part of the scene, or all of it when the scene selects none. One point per
+  /// node.
   explicit VisualSurface(Model& model) : VisualSurface(model, boundary_of(model)) {}
 
-  /// A surface of one's own. Throws index_out_of_range for a triangle that names a point that does not exist,
-  /// non_finite, empty_mesh without triangles. O(points log elements), allocates.
+  /// A user-defined surface. Throws index_out_of_range for a triangle with a point that does not exist, non_finite for
+  /// a point that is not finite, empty_mesh without triangles. O(points log elements), allocates.
   VisualSurface(Model& model, VisualMesh surface)
       : model_(&model), surface_(checked(std::move(surface))), displacement_(3 * model.mesh().node_count()) {
     for (Vector3& x : surface_.positions) x -= model.origin();
@@ -83,7 +84,7 @@ class VisualSurface {
     moved_.resize(surface_.positions.size());
   }
 
-  /// For models that are cut: whether points and triangles are others now. Those of this model never change.
+  /// For models that are cut: whether points and triangles have changed. Always false for this model.
   bool update() noexcept { return false; }
 
   Index point_count() const noexcept { return static_cast<Index>(surface_.positions.size()); }
@@ -91,8 +92,8 @@ class VisualSurface {
   const EmbeddingReport& report() const noexcept { return report_; }
 
   /// Writes x y z of every point and of its unit normal, world frame [m], under the contact forces of a tick
-  /// (`servo.read_snapshot().vertex_forces()`; empty: at rest). False when a span has not 3 numbers per point: nothing
-  /// is written then. For one thread, beside the haptic one; no allocation, no lock.
+  /// (`servo.read_snapshot().vertex_forces()`; empty: at rest). Returns false and writes nothing when a span does not
+  /// have 3 numbers per point. For one thread that runs next to the haptic thread; no allocation, no lock.
   bool read_surface(std::span<const VertexForce> forces, std::span<float> positions,
                     std::span<float> normals) noexcept {
     const std::size_t size = 3 * surface_.positions.size();
@@ -118,11 +119,11 @@ class VisualSurface {
       for (const int v : t)
         if (v < 0 || static_cast<std::size_t>(v) >= surface.positions.size())
           raise(SetupErrorKind::index_out_of_range,
-                "a triangle of the surface to draw names point " + std::to_string(v));
+                "a triangle of the surface to draw refers to point " + std::to_string(v));
     return surface;
   }
 
-  /// Triangles of the boundary faces all of whose nodes may be seen, in the frame of the mesh as given.
+  /// Triangles of the boundary faces whose nodes are all rendered, in the frame of the mesh as given.
   static VisualMesh boundary_of(const Model& model) {
     std::vector<NodeId> nodes = model.rendered_nodes();
     if (nodes.empty()) nodes = nodes_of(model.boundary());
@@ -158,7 +159,7 @@ class VisualSurface {
     }
   }
 
-  /// The triangles of the body's boundary, to find the element nearest to a point outside.
+  /// The triangles of the boundary, to find the element nearest to an outside point.
   struct Boundary {
     explicit Boundary(const Model& model) {
       for (const auto& face : model.boundary()) {
@@ -198,7 +199,7 @@ class VisualSurface {
     Bvh bvh;
   };
 
-  /// The point of an element's continuation; its middle where Newton's method finds nothing.
+  /// The point in the extrapolated coordinates of an element; the centre of the element where Newton's method fails.
   ElementPoint beyond(Index element, const Vector3& p) const noexcept {
     const auto xi = reference_coordinates<E>(element_nodes<E>(model_->mesh(), element), p);
     return {element, xi.value_or(reference_centre<E>())};

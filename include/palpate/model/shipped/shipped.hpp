@@ -12,8 +12,8 @@
 #include <palpate/material/transversely_isotropic.hpp>
 #include <palpate/model/haptic_fe_model.tpp>
 
-/// A model of element E and material M, made from a Mesh<GIVEN>. The last argument is the solver. PREFIX is `extern` to
-/// declare the instantiation, and empty to compile it.
+/// A model of element E and material M, constructed from a Mesh<GIVEN>. The last argument is the solver. PREFIX is
+/// `extern` to declare the instantiation, and empty to compile it.
 #define PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, M, GIVEN, ...)                                                     \
   PREFIX template HapticFEModel<E, M, __VA_ARGS__>::HapticFEModel(const Mesh<GIVEN>&, const Scene&,                \
                                                                   const RegionMaterials<M>&, const SetupOptions&); \

@@ -1,4 +1,5 @@
-// Linear static tissue without its element, material and solver: what a session and a program see of a HapticFEModel.
+// Linear static tissue independent of element, material and solver: the interface of a static HapticFEModel for
+// sessions and programs.
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
@@ -21,38 +22,37 @@ class AnyStiffness;
 class Statics;
 struct SolverRecipe;
 
-/// The part of HapticFEModel that is no template of element, material or solver. Scalar, float or double, is what the
-/// stored compliance is. Base of the static HapticFEModel. Satisfies TissueModel.
+/// The part of HapticFEModel that does not depend on element, material or solver. Scalar, float or double, is the type
+/// of the stored compliance. Base of the static HapticFEModel. Satisfies TissueModel.
 template <std::floating_point Scalar>
 class LinearTissue : public ModelBase, public StillTissue {
  public:
-  /// Displacement under the scene's loads, no tool: 3 per admitted node [m].
+  /// Displacement under the loads of the scene without tools, 3 per admitted node [m].
   const VectorX& displacement() const noexcept;
-  /// K u - f_0: forces with which the body answers, 3 per admitted node [N].
+  /// Internal force K u - f_0, 3 per admitted node [N].
   VectorX internal_force() const;
-  /// Forces of the supports, zero on free dofs, 3 per admitted node [N].
+  /// Reaction forces of the supports, zero on free dofs, 3 per admitted node [N].
   VectorX reactions() const;
   double strain_energy() const;
 
   /// Displacement with these forces on the contact surface, for drawing: one back-substitution. u has 3 entries per
-  /// admitted node [m]. Resizes u when it has another size, which allocates; otherwise it does not. A force on a
-  /// vertex that does not exist is left out, and the report says not converged. May run beside a tick, but not twice at
-  /// once.
+  /// admitted node [m]. Allocates only to resize u when it has another size. A force on a vertex that does not exist is
+  /// ignored, and the report states not converged. May run during a tick, but not in two threads simultaneously.
   SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept;
   /// The same as a new vector; allocates. Throws index_out_of_range for a vertex that does not exist, non_finite for a
   /// force that is not finite, not_converged for a solve that stopped early.
   VectorX displacement(std::span<const VertexForce> forces);
 
-  /// Replaces loads and prescribed values. Throws unsupported for another set of prescribed components, and when the
-  /// scene lets tools touch other nodes or faces than the model was made for. A scene without touch() keeps
-  /// the touched set; see() is ignored. Strong guarantee.
+  /// Replaces loads and prescribed values. Throws unsupported when the set of prescribed components, or the touchable
+  /// nodes or faces, differ from those of the construction. A scene without touch() keeps the touchable set; render()
+  /// is ignored. Strong guarantee.
   void set_conditions(const Scene& scene);
-  /// Gravity [m/s^2] in the world's frame. Strong guarantee.
+  /// Sets gravity [m/s^2] in the world frame. Strong guarantee.
   void set_gravity(const Vector3& gravity);
-  /// Where the organ lies in the world; turns gravity with it. Throws bad_argument unless it is a rigid motion. Strong
-  /// guarantee.
+  /// Sets the pose of the organ in the world; the direction of gravity in the body changes with it. Throws bad_argument
+  /// unless it is a rigid motion. Strong guarantee.
   void set_pose(const Eigen::Isometry3d& pose);
-  /// Back to the scene and pose of construction. Strong guarantee.
+  /// Restores the scene and pose of construction. Strong guarantee.
   void reset();
 
   // TissueModel
@@ -72,7 +72,7 @@ class LinearTissue : public ModelBase, public StillTissue {
   LinearTissue& operator=(LinearTissue&&) noexcept;
   ~LinearTissue();
 
-  /// All of the set-up that comes after admission. Throws what Statics and ContactCompliance throw.
+  /// The part of the set-up after admission. Throws the errors of Statics and ContactCompliance.
   void set_up(const Scene& scene, AdmittedBody admitted, MakeStiffness make_stiffness, const SolverRecipe& recipe,
               const SetupOptions& options);
 
@@ -80,13 +80,14 @@ class LinearTissue : public ModelBase, public StillTissue {
   void prepare_contact(const std::vector<Triangle>& triangles, bool eager, const SetupOptions& options);
   /// Kept dof of every touchable dof, -1 when it is prescribed.
   std::vector<Index> kept_index() const;
-  /// Computes a few columns: how soft the surface is, and how long a column takes; starts a thread where one is to
-  /// compute the others.
+  /// Computes a few columns to measure the compliance of the surface and the time per column; starts a background
+  /// thread when that is to compute the other columns.
   void sample_columns(ColumnFill fill);
-  /// Whether the three solves for a vertex would make a tick late.
+  /// Whether the three solves for a vertex would delay a tick.
   bool is_column_late() const;
   Vector3 deformed(NodeId node) const noexcept;
-  /// For changes of the loads: what is to be said of their displacement is said before they are accepted.
+  /// For changes of the loads: a function that enters the findings on a new displacement in `report` before it is
+  /// accepted.
   std::function<void(const VectorX&)> reporting_to(SetupReport& report) const;
   void accept_displacement(SetupReport& report) noexcept;
   void move_surface() noexcept;

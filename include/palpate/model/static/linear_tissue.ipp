@@ -130,7 +130,7 @@ void LinearTissue<Scalar>::prepare_contact(const std::vector<Triangle>& triangle
     }
   else if (vertices > 0)
     sample_columns(options.columns);
-  // A thousandth of a millionth of the tissue's own compliance, or a nanometre per newton where nothing moves.
+  // 1e-9 of the largest compliance of the tissue, or 1 nm/N when nothing moves.
   for (int v = 0; v < vertices; ++v) compliance_floor_ = std::max(compliance_floor_, 1e-9 * compliance_.bound(v));
   if (compliance_floor_ == 0.0) compliance_floor_ = 1e-9;
   std::vector<Vector3> positions;
@@ -140,7 +140,7 @@ void LinearTissue<Scalar>::prepare_contact(const std::vector<Triangle>& triangle
   moved_ = std::move(positions);
   if (const int edges = surface_.crowded_edges())
     setup_report().set(SetupFlag::non_manifold, "more than two touchable triangles meet at " + std::to_string(edges) +
-                                             " edges: contact does not pass across them smoothly");
+                                                    " edges: the contact is not smooth across them");
   setup_report().compliance_bytes = compliance_.bytes();
   limits().advance("checks", 1.0);
 }
@@ -172,7 +172,7 @@ void LinearTissue<Scalar>::sample_columns(ColumnFill fill) {
 
 template <std::floating_point Scalar>
 bool LinearTissue<Scalar>::is_column_late() const {
-  constexpr double most_numbers = 1e5;  // a core reads about two of a factor per nanosecond
+  constexpr double most_numbers = 1e5;  // a core reads about two numbers of a factor per nanosecond
   AnyStaticSystem system = statics_->system();
   if (system.kept() == 0) return false;
   VectorX column(system.kept());

@@ -31,21 +31,21 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The lowest elastic modes of a body, ascending, and the rigid motions it is left with.
+/// The lowest elastic modes of a body in ascending order, and its remaining rigid motions.
 struct NaturalFrequencies {
   VectorX frequencies;    ///< [Hz]
   MatrixX shapes;         ///< one per column, 3 per node, shape^T M shape = 1 kg m^2; its largest component is positive
-  VectorX residuals;      ///< |K x - omega^2 M x| / |K x| [-]; means nothing at zero frequency (a mechanism)
-  MatrixX rigid_shapes;   ///< motions without strain and frequency, likewise M-orthonormal; six for a free body
+  VectorX residuals;      ///< |K x - omega^2 M x| / |K x| [-]; meaningless at zero frequency (a mechanism)
+  MatrixX rigid_shapes;   ///< motions without strain, at zero frequency, also M-orthonormal; six for a free body
   double rounding = 0.0;  ///< largest relative difference of omega^2 (beyond the shift) computed from the factor and
-                          ///< from the matrices: digits lost to contrast and slenderness; above 1e-3 it is refused
+                          ///< from the matrices: digits lost by contrast and slenderness; above 1e-3 an error is thrown
 
   int rigid_modes() const noexcept { return static_cast<int>(rigid_shapes.cols()); }
 };
 
 namespace detail {
 
-/// K and M of the free dofs, and the rigid motions among them.
+/// K and M of the free dofs, and the rigid motions of these dofs.
 struct ModalProblem {
   SparseMatrix stiffness, mass;  // lower halves
   MatrixX rigid;
@@ -74,8 +74,8 @@ void require_density(const Body<E>& body) {
 
 void require_count(Index wanted, Index available);
 
-/// The frequency scale of a body that can move rigidly [1/s^2]: the lowest Rayleigh quotient of the six uniform
-/// strains, with their rigid part taken out.
+/// The frequency scale of a body that can move rigidly [1/s^2]: the lowest Rayleigh quotient of the six uniform strains
+/// after their rigid part is removed.
 template <Element E>
 double uniform_strain_quotient(const Body<E>& body, const EssentialConditions& conditions,
                                const ModalProblem& problem) {
@@ -98,8 +98,8 @@ double uniform_strain_quotient(const Body<E>& body, const EssentialConditions& c
 /// Modes of the free dofs as shapes of all nodes, each with its largest component positive.
 MatrixX full_shapes(const MatrixX& free, const EssentialConditions& conditions);
 
-/// What is returned of modes of the free dofs: sorted, on all nodes, with their residuals. A template only to be
-/// compiled where it is used.
+/// Builds the result from the modes of the free dofs: sorted, on all nodes, with their residuals. A template so that it
+/// is compiled only where it is used.
 template <class Problem>
 NaturalFrequencies natural_frequencies_of(const Problem& problem, const MatrixX& modes,
                                           const EssentialConditions& conditions) {
@@ -122,27 +122,28 @@ NaturalFrequencies natural_frequencies_of(const Problem& problem, const MatrixX&
   return result;
 }
 
-/// Largest relative difference between theta, which knows the factor only, and the quotients of K and M. Refuses pairs
-/// that did not converge or differ by more than 1e-3.
+/// Largest relative difference between theta, computed from the factor only, and the Rayleigh quotients of K and M.
+/// Refuses pairs that did not converge or differ by more than 1e-3.
 double require_pairs(const LanczosPairs& pairs, const VectorX& lambda, double shift, double tolerance);
 
 }  // namespace detail
 
-/// The `count` lowest natural frequencies of a body held as in `scene` (prescribed components stay at rest, whatever
-/// their value; loads do not matter), or not held at all: the rigid motions that are left are found from geometry,
-/// returned apart and not counted. An eigenvalue of multiplicity m comes m times, its shapes are some basis. Consistent
-/// mass, stiffness with the element's own rule: frequencies converge from above where both are exact.
+/// The `count` lowest natural frequencies of a body constrained as in `scene` (prescribed components stay at rest for
+/// any prescribed value; loads are ignored), or of a free body. The remaining rigid motions are found from the
+/// geometry, returned separately and not counted. An eigenvalue of multiplicity m is returned m times; its shapes are
+/// an arbitrary basis. Consistent mass, stiffness with the quadrature of the element: frequencies converge from above
+/// when both are exact.
 ///
 ///   auto modes = natural_frequencies(model.body(), scene, 6);                                // of a model
 ///   auto modes = natural_frequencies(make_body(admit<Tet10>(mesh).mesh, material), {}, 6);   // of a free body
 ///
-/// Node ids and positions in `scene` are those of the body's mesh; for a model's body take
-/// `scene.mapped(model.node_map(), model.origin())`, unless the scene has names only.
+/// Node ids and positions in `scene` refer to the mesh of the body; for the body of a model use
+/// `scene.mapped(model.node_map(), model.origin())`, unless the scene selects by names only.
 ///
 /// Throws bad_density for a region without mass, bad_argument or count_too_large for the count, not_positive_definite
-/// for a held body that is a mechanism, not_converged, ill_conditioned, too_large, cancelled, and what assembly and
-/// conditions throw. Cost: a sparse factorisation of K - sigma M (sigma = 0 when held) and some 10 solves with count +
-/// 4 right-hand sides; a body with far softer parts may take up to four factorisations.
+/// for a constrained body that is a mechanism, not_converged, ill_conditioned, too_large, cancelled, and the errors of
+/// assembly and conditions. Cost: a sparse factorisation of K - sigma M (sigma = 0 for a constrained body) and some 10
+/// solves with count + 4 right-hand sides; a body with much softer parts may take up to four factorisations.
 template <Element E>
 NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, int count,
                                        const SetupLimits& limits = {}) {
@@ -161,7 +162,8 @@ NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, 
   LanczosPairs pairs;
   VectorX lambda;
   for (int attempt = 0; attempt < (constrained ? 1 : 4) && !pairs.converged; ++attempt) {
-    if (attempt > 0) shift = -1e-2 * lambda.cwiseAbs().minCoeff();  // far below the uniform strains: start again there
+    if (attempt > 0)
+      shift = -1e-2 * lambda.cwiseAbs().minCoeff();  // far below the uniform strains: restart with this shift
     const SparseCholesky factor(
         constrained ? problem.stiffness : SparseMatrix(problem.stiffness - shift * problem.mass), limits);
     BlockLanczos lanczos(factor, problem.mass, problem.rigid, count);

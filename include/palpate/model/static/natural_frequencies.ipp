@@ -20,8 +20,8 @@ PALPATE_INLINE void require_count(Index wanted, Index available) {
   if (wanted >= 1 && wanted <= available) return;
   SetupProblem p;
   p.kind = wanted < 1 ? SetupErrorKind::bad_argument : SetupErrorKind::count_too_large;
-  p.what = std::to_string(wanted) + " natural frequencies are asked for, the body has " + std::to_string(available);
-  p.hint = "Ask for one at least, and for no more than free dofs minus rigid motions";
+  p.what = std::to_string(wanted) + " natural frequencies are requested, the body has " + std::to_string(available);
+  p.hint = "Request at least one, and at most as many as free dofs minus rigid motions";
   p.value = static_cast<double>(wanted);
   p.threshold = static_cast<double>(available);
   raise(std::move(p));

@@ -15,14 +15,14 @@ namespace palpate { inline namespace PALPATE_ABI {
 template <class Inner>
 struct Stiffening {};
 
-/// What a model on Stiffening<...> may choose. Curves that are not given leave the tissue linear.
+/// Parameters of a model on Stiffening<...>. The default curves leave the tissue linear.
 struct StiffeningParameters {
   StiffeningCurve axial{};   ///< along the direction of pressing
   StiffeningCurve radial{};  ///< across it
 };
 
 /// Linear static tissue that stiffens: the forces of a tick are those of QuasiNonLinear over the model on `Inner`.
-/// What has no tools in it (loads, report, energies) is that of the linear model. Neither copied nor moved.
+/// Functions without tools (loads, report, energies) are those of the linear model. Neither copyable nor movable.
 template <class E, class M, class Inner>
 class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner> {
   static_assert(SolverPolicy<Inner>,
@@ -49,12 +49,13 @@ class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner>
   HapticFEModel(const HapticFEModel&) = delete;
   HapticFEModel& operator=(const HapticFEModel&) = delete;
 
-  /// How many times stiffer than linear it is now, along the force and across. For the thread that ticks.
+  /// Current ratio of the stiffness to that of the linear tissue, along the force and across it. For the ticking
+  /// thread.
   double axial_ratio() const noexcept { return stiffened_.axial_ratio(); }
   double radial_ratio() const noexcept { return stiffened_.radial_ratio(); }
 
-  /// As the linear model has it, with the compliance of the newest tick: for one thread that draws. Allocates when
-  /// there are more forces than ever before.
+  /// As in the linear model, with the compliance of the newest tick. For one drawing thread. Allocates when there are
+  /// more forces than in any earlier call.
   SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept {
     scales_.update();
     const Matrix3& scale = scales_.front();
@@ -70,7 +71,7 @@ class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner>
   }
   using Linear::displacement;
   VectorX displacement(std::span<const VertexForce> forces) {
-    VectorX u = Linear::displacement(forces);  // refuses what is to be refused
+    VectorX u = Linear::displacement(forces);  // checks the forces
     displacement_with(forces, u);
     return u;
   }

@@ -1,4 +1,4 @@
-// Which of several measured compositions to take: the front of those that nothing beats, and the best within a budget.
+// Choice among measured compositions: the Pareto front, and the best composition within a budget.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -9,14 +9,14 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What was measured of one composition of element, material and solver in one scene. All figures are finite and not
+/// Measurements of one composition of element, material and solver in one scene. All figures are finite and not
 /// negative.
 struct MeasuredComposition {
-  std::string name;            ///< tells it from all others
-  double latency = 0.0;        ///< of a tick, its p99 for example [s]
-  double error = 0.0;          ///< against a reference, relative [-]
+  std::string name;            ///< unique
+  double latency = 0.0;        ///< of a tick, for example its p99 [s]
+  double error = 0.0;          ///< relative to a reference [-]
   double setup_seconds = 0.0;  ///< [s]
-  double bytes = 0.0;          ///< memory at its peak
+  double bytes = 0.0;          ///< peak memory
 };
 
 /// Whether `a` is no worse than `b` in latency and error, and better in one.
@@ -27,21 +27,22 @@ bool dominates(const MeasuredComposition& a, const MeasuredComposition& b) noexc
 class TradeOff {
  public:
   /// Throws non_finite for a figure that is NaN or infinite, bad_argument for one that is negative, for a name that is
-  /// empty or there already. Strong guarantee. O(compositions).
+  /// empty or already used. Strong guarantee. O(compositions).
   void add(MeasuredComposition measured);
 
   const std::vector<MeasuredComposition>& all() const noexcept { return all_; }
-  /// nullptr when there is none of that name.
+  /// nullptr when no composition has that name.
   const MeasuredComposition* find(const std::string& name) const noexcept;
 
-  /// The Pareto front: all that nothing dominates, by rising latency and falling error; of equal ones each. O(n log n).
+  /// The Pareto front: all compositions that are not dominated, in order of rising latency and falling error; ties are
+  /// all included. O(n log n).
   std::vector<MeasuredComposition> front() const;
 
-  /// The smallest error with a latency of at most `seconds`; of equal ones the faster, then what takes less memory,
-  /// then less set-up, then the first by name. Nothing when all are slower. Throws bad_argument for a budget that is
-  /// NaN or negative; infinity is allowed. O(compositions).
+  /// The smallest error with a latency of at most `seconds`; ties are resolved by lower latency, then less memory, then
+  /// shorter set-up, then name. Empty when all are slower. Throws bad_argument for a budget that is NaN or negative;
+  /// infinity is allowed. O(compositions).
   std::optional<MeasuredComposition> most_accurate_within(double seconds) const;
-  /// The smallest latency with an error of at most `error`; of equal ones the more accurate, then as above.
+  /// The smallest latency with an error of at most `error`; ties are resolved by smaller error, then as above.
   std::optional<MeasuredComposition> fastest_within(double error) const;
 
  private:

@@ -1,4 +1,4 @@
-// A polynomial through stresses scattered around a node.
+// A polynomial fitted to stresses at points around a node.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -13,7 +13,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Coordinates in which a patch of elements is about a unit sphere round its centre, however stretched it is.
+/// Coordinates that map a patch of elements of any aspect ratio to about a unit sphere around its centre.
 struct PatchFrame {
   Vector3 centre = Vector3::Zero();
   Matrix3 map = Matrix3::Identity();  ///< [1/m]
@@ -24,14 +24,15 @@ struct PatchFrame {
 /// The frame of points: their mean, and the inverse of their Cholesky-factorised covariance.
 PatchFrame patch_frame(const std::vector<Vector3>& points);
 
-/// Least-squares fit of a polynomial of degree 1 or 2 to every stress component, points weighted by the inverse
-/// of their distance to the node. A constant is always met; directions in which the points do not differ get no slope.
+/// Least-squares fit of a polynomial of degree 1 or 2 to every stress component, points weighted by the inverse of
+/// their distance to the node. A constant is reproduced exactly; directions in which the points do not differ get zero
+/// slope.
 template <int Degree>
 requires(Degree == 1 || Degree == 2) class PatchPolynomial {
  public:
-  static constexpr int terms = Degree == 1 ? 3 : 9;  ///< besides the constant
+  static constexpr int terms = Degree == 1 ? 3 : 9;  ///< without the constant
 
-  /// Fits to one stress per point (at least one). It is `complete` only with `oversampling` points per term. O(points x
+  /// Fits to one stress per point (at least one point). `complete` requires `oversampling` points per term. O(points x
   /// terms^2), allocates.
   PatchPolynomial(const PatchFrame& frame, const Vector3& node, const std::vector<Vector3>& points,
                   const StressColumns& stress, int oversampling)
@@ -56,7 +57,7 @@ requires(Degree == 1 || Degree == 2) class PatchPolynomial {
     slopes_ = fit.solve(roots.asDiagonal() * (stress.colwise() - mean_).transpose());
   }
 
-  /// Do the points determine the polynomial, with some to spare?
+  /// Whether the points determine the polynomial, with the required oversampling.
   bool complete() const noexcept { return complete_; }
 
   Vector6 operator()(const Vector3& x) const noexcept {
@@ -64,7 +65,7 @@ requires(Degree == 1 || Degree == 2) class PatchPolynomial {
   }
 
  private:
-  /// A pivot this much smaller than the largest says that a term cannot be told from the others.
+  /// A pivot smaller than this fraction of the largest indicates a linearly dependent term.
   static constexpr double least_pivot = 0.03;
   static constexpr double nearest = 0.01;  ///< keeps the weights finite
 

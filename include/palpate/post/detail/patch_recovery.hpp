@@ -1,4 +1,4 @@
-// Stress at the nodes to trust: superconvergent patch recovery.
+// Accurate stress at the nodes: superconvergent patch recovery.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -20,23 +20,24 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Stress at the nodes [Pa], one column per node and region of an element around it: between two materials the stress
-/// jumps, and a node there has two.
+/// Stress at the nodes [Pa], one column per node and adjacent region: the stress jumps between two materials, so a node
+/// on an interface has two columns.
 struct NodalStress {
   StressColumns stress;
-  std::vector<Index> first;  ///< columns of node i are first[i] ... first[i + 1] - 1; none at a node of no element
-  std::vector<int> region;   ///< of every column, rising within a node
+  std::vector<Index> first;  ///< columns of node i are first[i] ... first[i + 1] - 1; empty for a node without elements
+  std::vector<int> region;   ///< of every column, ascending within a node
 
-  /// The column of a node seen from a region; -1 when no element of it meets there.
+  /// The column of a node for a region; -1 when no element of the region contains the node.
   Index column(Index node, int of_region) const noexcept;
-  /// Stress at a node [Pa]; where regions meet, that of the one with the lowest number. Zero at a node of no element.
+  /// Stress at a node [Pa]; on an interface, that of the region with the lowest number. Zero at a node without
+  /// elements.
   Vector6 at(Index node) const noexcept;
 };
 
-/// Where patch recovery looks at an element's stress, and how many such points it wants per unknown: the centre of Hex8
-/// and eight points of Hex20, where the stress is better than elsewhere (Barlow 1976), by ten times near
-/// incompressibility; one or four points in tetrahedra, and more of them, for their stress scatters. Other elements:
-/// the points of their own rule.
+/// Sampling points of patch recovery in an element, and the required number of points per unknown. Hexahedra: the
+/// centre of Hex8 and eight points of Hex20, where the stress is more accurate than elsewhere (Barlow 1976), ten times
+/// near incompressibility. Tetrahedra: one or four points, with more oversampling because their stress scatters. Other
+/// elements: their own quadrature points.
 template <Element E>
 struct SamplingRule {
   using Type = typename E::Quadrature;
@@ -55,7 +56,7 @@ requires(E::faces.size() == 6 && E::order <= 2) struct SamplingRule<E> {
 
 namespace detail {
 
-/// Patches around the corner nodes of one mesh, and what is sampled in their elements.
+/// Patches around the corner nodes of one mesh, and the stress samples in their elements.
 template <Element E>
 class PatchRecovery {
  public:
@@ -164,8 +165,9 @@ class PatchRecovery {
     return Polynomial(patch_frame(corner_points), mesh().position(node), points, stress, SamplingRule<E>::oversampling);
   }
 
-  /// From the elements at a corner, and while these do not determine it, from those around them. In a body with too few
-  /// elements for that, from the points of the element's own rule, with no slope where even these show none.
+  /// Fits the polynomial to the elements at a corner; while these do not determine it, adds the elements around them.
+  /// When the body has too few elements, uses the element's own quadrature points, with zero slope in undetermined
+  /// directions.
   Polynomial fit(Index node, int region) const {
     std::vector<NodeId> patch;
     for (const NodeId e : around_.of(node))
@@ -189,7 +191,8 @@ class PatchRecovery {
     ++parts_[static_cast<std::size_t>(k)];
   }
 
-  /// The polynomial's value at its corner, and at the middles of the edges that end there, which have two such values.
+  /// Adds the value of the polynomial at its corner, and at the midside nodes of the edges that end there; a midside
+  /// node gets two such values.
   void spread(Index node, int region, const Polynomial& polynomial) {
     add(node, region, polynomial);
     if constexpr (QuadraticElement<E>) {
@@ -219,12 +222,12 @@ class PatchRecovery {
 
 /// Stress at the nodes under the displacement `u` (3 per node [m]), by superconvergent patch recovery (Zienkiewicz and
 /// Zhu 1992): around every corner a polynomial of the element's order (at most 2) is fitted to the stress in the points
-/// of SamplingRule; nodes in the middle of an edge take the mean of its two ends. Exact when the stress is a polynomial
-/// of degree order - 1; on even meshes of hexahedra of degree order. Regions are kept apart. Where a patch does not
-/// determine its polynomial (at surfaces) it grows by up to two rings of elements; what cannot be determined then gets
-/// no slope, so that a body of a single element has its mean. What is not finite in `u` stays so in the patches that
-/// see it. Costs 3 to 12 us a node, allocates: for looking at results, not for every
-/// frame. Throws bad_argument when `u` has another length.
+/// of SamplingRule; midside nodes take the mean of the values from the two ends of their edge. Exact when the stress is
+/// a polynomial of degree order - 1; on uniform meshes of hexahedra also of degree order. Regions are recovered
+/// separately. A patch that does not determine its polynomial (at surfaces) grows by up to two rings of elements;
+/// directions that are still undetermined get zero slope, so a body of a single element gets its mean. Values of `u`
+/// that are not finite give stress that is not finite in the patches that contain them. Costs 3 to 12 us per node,
+/// allocates: for evaluating results, not for every frame. Throws bad_argument when `u` has a wrong length.
 template <Element E>
 NodalStress patch_recovery(const Body<E>& body, const VectorX& u) {
   require_displacement(body.mesh, u);

@@ -1,4 +1,4 @@
-// Strain and stress in points of one element, and their mean.
+// Strain and stress at points of one element, and their mean.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -23,9 +23,9 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// One stress per column [Pa], Voigt order of core/voigt.hpp.
 using StressColumns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// Stress [Pa] in the reference point `xi` of an element: sigma = D (epsilon - epsilon_0) (thesis 3.24, with the
-/// initial strain of 3.1). `x` holds the nodes [m], `u` their displacements [m], one per row; `d` the elasticity matrix
-/// [Pa].
+/// Stress [Pa] at the reference point `xi` of an element: sigma = D (epsilon - epsilon_0) (thesis 3.24, with the
+/// initial strain of 3.1). `x` contains the nodes [m] and `u` their displacements [m], one per row; `d` is the
+/// elasticity matrix [Pa].
 template <Element E>
 Vector6 point_stress(const ElementNodes<E>& x, const ElementNodes<E>& u, const Vector3& xi, const Matrix6& d,
                      const Vector6& strain0 = Vector6::Zero()) noexcept {
@@ -38,7 +38,8 @@ struct MeanStress {
   double volume = 0.0;               ///< of the undeformed element [m^3]
 };
 
-/// Mean stress of an element with its own rule; exact where `point_stress` is, for linear tetrahedra constant.
+/// Mean stress of an element with its own quadrature; exact where `point_stress` is. Linear tetrahedra have constant
+/// stress.
 template <Element E>
 MeanStress mean_stress(const ElementNodes<E>& x, const ElementNodes<E>& u, const Matrix6& d,
                        const Vector6& strain0 = Vector6::Zero()) noexcept {
@@ -52,12 +53,12 @@ MeanStress mean_stress(const ElementNodes<E>& x, const ElementNodes<E>& u, const
   return mean;
 }
 
-/// State of a body in one point.
+/// Strain and stress of a body at one point.
 struct StressPoint {
   Vector3 position = Vector3::Zero();  ///< undeformed [m]
-  Vector6 strain = Vector6::Zero();    ///< whole strain, initial strain included
+  Vector6 strain = Vector6::Zero();    ///< total strain, including initial strain
   Vector6 stress = Vector6::Zero();    ///< [Pa]
-  double volume = 0.0;                 ///< the point stands for [m^3]
+  double volume = 0.0;                 ///< quadrature volume of the point [m^3]
 };
 
 /// Displacements of an element's nodes, one per row [m], from those of all nodes (3 per node).
@@ -69,7 +70,7 @@ ElementNodes<E> element_displacements(const Mesh<E>& mesh, Index e, const Vector
   return rows;
 }
 
-/// Refuses (bad_argument) a displacement that has not three numbers per node.
+/// Throws bad_argument when a displacement does not have three numbers per node.
 template <Element E>
 void require_displacement(const Mesh<E>& mesh, const VectorX& u) {
   if (u.size() != 3 * mesh.node_count())
@@ -80,18 +81,20 @@ void require_displacement(const Mesh<E>& mesh, const VectorX& u) {
 }
 
 /// Strain and stress in the elements of a body under the displacement `u` (3 per node [m]). The strain is that of the
-/// element: with a mean change of volume, its own; an average over neighbours, constant in every element, where it has
-/// that (element/smoothed.hpp), for which all are computed at once. Refers to body and displacement.
+/// element formulation: for mean-dilatation elements with the mean change of volume; for smoothed elements
+/// (element/smoothed.hpp) the average over neighbours, constant in every element and computed for all elements by the
+/// constructor. Keeps references to body and displacement.
 template <Element E>
 class ElementStress {
  public:
-  /// Throws bad_argument when `u` has not three numbers per node.
+  /// Throws bad_argument when `u` does not have three numbers per node.
   ElementStress(const Body<E>& body, const VectorX& u) : body_(body), u_(u) {
     require_displacement(body.mesh, u);
     if constexpr (HasSmoothedStrain<E>) smoothed_ = smoothed_state(body, u);
   }
 
-  /// In the points of the element's own rule, or of another one. No allocation; 0.1 us (Tet4) to 25 us (Hex20).
+  /// State at the points of the element's own quadrature, or of another rule. No allocation; 0.1 us (Tet4) to 25 us
+  /// (Hex20).
   template <Quadrature Rule = typename E::Quadrature>
   std::array<StressPoint, Rule::points.size()> points(Index e) const noexcept {
     const ElementNodes<E> x = element_nodes<E>(body_.mesh, e);

@@ -19,7 +19,7 @@ PALPATE_INLINE Principal principal(const Matrix3& t) noexcept {
   }
   const double scale = t.cwiseAbs().maxCoeff();
   if (scale == 0.0) return p;
-  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(t / scale);  // values rise
+  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(t / scale);  // ascending values
   p.values = scale * eigen.eigenvalues().reverse();
   p.directions.leftCols<2>() = eigen.eigenvectors().rightCols<2>().rowwise().reverse();
   p.directions.col(2) = p.directions.col(0).cross(p.directions.col(1)).normalized();  // right-handed

@@ -1,4 +1,4 @@
-// What a prepared system depends on.
+// The inputs that a prepared system depends on.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -20,11 +20,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Everything that decides the numbers in a cache file, part by part, so that a mismatch has a name. The stiffness
-/// matrix is hashed as well, value by value: whatever the parts may miss (an element or law whose code was changed,
-/// other compiler flags) shows there. Plain bytes, stored as they are.
+/// Hashes of all inputs that determine the numbers in a cache file, one per part, so that a mismatch can be named. All
+/// values of the stiffness matrix are hashed too, which detects differences that the parts miss (changed code of an
+/// element or material, other compiler flags). Plain bytes, stored unchanged.
 struct CacheKey {
-  std::array<char, 64> policy{};   ///< name, filled up with zeros
+  std::array<char, 64> policy{};   ///< name, padded with zeros
   std::uint64_t scalar_bytes = 0;  ///< of the stored compliance: 4 or 8
   std::uint64_t element = 0;       ///< reference nodes, shape functions and gradients at the quadrature points
   std::uint64_t mesh = 0;          ///< positions, connectivity, regions
@@ -71,7 +71,7 @@ std::uint64_t hash_of_mesh(const Mesh<E>& mesh) noexcept {
 
 }  // namespace detail
 
-/// What of a key depends on the body alone. Cost: one pass over the mesh.
+/// The part of a key that depends on the body only. Cost: one pass over the mesh.
 template <Element E>
 CacheKey body_key(const Body<E>& body) noexcept {
   CacheKey key;
@@ -84,11 +84,12 @@ CacheKey body_key(const Body<E>& body) noexcept {
   return key;
 }
 
-/// The key of a body held at `conditions` and touched at `kept`, for a solver. Cost: one pass over the stiffness.
+/// The key of a body with constraints `conditions` and touchable nodes `kept`, for a solver. Cost: one pass over the
+/// stiffness.
 CacheKey cache_key(CacheKey of_body, const EssentialConditions& conditions, const std::vector<NodeId>& kept,
                    const BlockMatrix& stiffness, std::string_view policy, std::size_t scalar_bytes) noexcept;
 
-/// Compares the key in a file with the one at hand: the first part that differs, and in `why` all of them.
+/// Compares the key in a file with the current one. Returns the first part that differs; `why` lists all of them.
 CacheMismatch compare(const CacheKey& file, const CacheKey& here, std::string& why);
 
 }}  // namespace palpate

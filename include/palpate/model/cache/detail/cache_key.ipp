@@ -71,7 +71,7 @@ PALPATE_INLINE CacheMismatch compare(const CacheKey& file, const CacheKey& here,
   differs(file.touched != here.touched, CacheMismatch::touched, "the touched set differs");
   if (first == CacheMismatch::none)
     differs(file.stiffness != here.stiffness, CacheMismatch::stiffness,
-            "the stiffness differs, though nothing that makes it does: other code or compiler flags");
+            "the stiffness differs, but none of its inputs does: other code or compiler flags");
   return first;
 }
 

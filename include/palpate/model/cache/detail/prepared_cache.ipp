@@ -54,7 +54,7 @@ PALPATE_INLINE bool PreparedCache::open() {
   if (status.type() == fs::file_type::not_found) return false;
   if (status.type() == fs::file_type::none)
     return reject(CacheMismatch::unreadable, "it cannot be read: " + problem.message());
-  // Opening a pipe would wait for ever, and a device is nothing to replace.
+  // Opening a pipe would block for ever, and a device must not be replaced.
   if (!fs::is_regular_file(status)) return reject(CacheMismatch::foreign, "it is not a regular file");
   errno = 0;
   file_.reset(std::fopen(report_->file.c_str(), "rb"));
@@ -91,7 +91,7 @@ PALPATE_INLINE bool PreparedCache::reject(CacheMismatch mismatch, std::string wh
 }
 
 PALPATE_INLINE void PreparedCache::store(const std::function<void(BinaryWriter&)>& write) {
-  if (report_->mismatch == CacheMismatch::foreign) {  // somebody's mesh, given by mistake
+  if (report_->mismatch == CacheMismatch::foreign) {  // for example a mesh, given by mistake
     report_->problem = report_->why + " and was left alone: remove it or give another name";
     return;
   }

@@ -1,4 +1,4 @@
-// Motion in time of a co-rotated body by implicit steps without a factor: fixed work per step.
+// Dynamics of a co-rotational body with implicit steps without a factorisation: bounded work per step.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -33,23 +33,24 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// M a + D v + f(u) = load for linear tetrahedra that turn (CorotatedTetrahedra), linearised at the state the motion
-/// coasts to (Baraff and Witkin 1998) and solved by conjugate gradients on products without a matrix. A step takes up
-/// to two sweeps of forces and `solve.maximum_iterations` products; it neither allocates nor throws. What it leaves:
-/// `solve.error` of the increment, and what the rotations change within the step, which `residual` shows and the next
-/// step takes up. The check keeps implicit Euler from adding energy: the potential of the step must end no higher than
-/// at the state it starts from, else it is linearised again. Vectors have 3 entries per node; mass is lumped. Neither
-/// copied nor moved.
+/// Integrates M a + D v + f(u) = load for co-rotational linear tetrahedra (CorotatedTetrahedra). A step is linearised
+/// at the predicted state (Baraff and Witkin 1998) and solved by matrix-free conjugate gradients. A step takes up to
+/// two force evaluations and `solve.maximum_iterations` products; it neither allocates nor throws. Remaining errors:
+/// `solve.error` of the increment, and the change of the rotations within the step, which `residual` reports and the
+/// next step includes. The check prevents implicit Euler from adding energy: the potential of the step must not be
+/// higher at its end than at its initial state, otherwise the step is linearised again. Vectors have 3 entries per
+/// node; mass is lumped. Neither copyable nor movable.
 template <class Base = LinearElastic, class S = float, class Preconditioner = BlockJacobi>
 class CorotatedMotion {
  public:
   using Tetrahedra = CorotatedTetrahedra<Base, S>;
-  /// Of an increment, in the energy norm: with more a step is not close to its answer, and a correction not made.
+  /// Largest tolerable error of an increment in the energy norm. Above it a step counts as not converged, and a
+  /// correction is not applied.
   static constexpr double tolerable_error = 0.05;
   static_assert(StepPreconditioner<Preconditioner, Tetrahedra>);
 
-  /// Starts at rest without displacement. Throws what Tetrahedra and conditions throw, unsupported for initial strains,
-  /// bad_density where a free node has no mass, bad_argument for options out of range.
+  /// Starts at rest with zero displacement. Throws the errors of Tetrahedra and conditions, unsupported for initial
+  /// strains, bad_density when a free node has no mass, bad_argument for options out of range.
   CorotatedMotion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene,
                   const CorotatedMotionOptions& options = {}, const SetupLimits& limits = {})
       : options_(checked(options)),
@@ -70,7 +71,7 @@ class CorotatedMotion {
   CorotatedMotion(const CorotatedMotion&) = delete;
   CorotatedMotion& operator=(const CorotatedMotion&) = delete;
 
-  /// Moves on by h [s].
+  /// Advances by h [s].
   CorotatedStep step(double h) noexcept {
     CorotatedStep report;
     if (!ImplicitStep::is_length(h)) return report;
@@ -80,7 +81,7 @@ class CorotatedMotion {
     const double highest = options_.check ? limit() : infinity;
     coast();
     double reached = evaluate(report.deformation);
-    energy_known_ = false;  // rotations are no longer those of the present state
+    energy_known_ = false;  // rotations are no longer those of the current state
     if (!std::isfinite(reached)) return report;
     do {
       prepare();
@@ -98,9 +99,8 @@ class CorotatedMotion {
     return report;
   }
 
-  /// Adds what `more` forces [N] change in the step just taken, to first order. One solve. False, and nothing changes,
-  /// where no step was taken since the state or the length of steps was changed, and where the solve does not end
-  /// within tolerable_error.
+  /// Corrects the last step for `more` forces [N], to first order. One solve. Returns false and changes nothing when no
+  /// step was taken since the state or the step length changed, or when the error of the solve exceeds tolerable_error.
   bool correct(const VectorX& more) noexcept {
     const FlushDenormals flush;
     if (!stepped_) return false;
@@ -114,12 +114,12 @@ class CorotatedMotion {
     energy_known_ = false;
     return true;
   }
-  /// Displacement [m] that forces [N] add at the end of a step, to first order, with the rotations looked at last.
-  /// Solved to the end, whatever the options say: for set-up. False where it does not get there.
+  /// Displacement u [m] that `forces` [N] add at the end of a step, to first order, with the rotations evaluated last.
+  /// Solved to full accuracy, independent of the options: for set-up. Returns false when the solve does not converge.
   bool respond(const VectorX& forces, VectorX& u) noexcept {
     return gradients_.solve_into(*this, forces, u, {1000, sizeof(S) == 8 ? 1e-10 : 1e-6}).converged;
   }
-  /// Makes `respond` ready as for a step of h [s] from the present state. False for a step that is none.
+  /// Prepares `respond` for a step of h [s] from the current state. Returns false when h is not a valid length.
   bool prepare_response(double h) noexcept {
     if (!ImplicitStep::is_length(h)) return false;
     set_length(h);
@@ -136,8 +136,8 @@ class CorotatedMotion {
   const VectorX& acceleration() const noexcept { return a_; }
   const DeformableBody& body() const noexcept { return body_; }
   const Preconditioner& preconditioner() const noexcept { return preconditioner_; }
-  /// With what force the body answers its state [N], inertia and damping included, as the last step left it: on held
-  /// dofs the reaction and the load there.
+  /// Resistance of the body in its current state [N], including inertia and damping: on constrained dofs the sum of
+  /// reaction and load.
   const VectorX& resistance() noexcept {
     tetrahedra_.linearise(u_, force_, energy_);
     energy_known_ = true;
@@ -145,8 +145,8 @@ class CorotatedMotion {
     return damping_force_ += force_ + mass_.cwiseProduct(a_);
   }
 
-  /// Changes the state; prescribed components rest where they are prescribed. The acceleration follows from the forces.
-  /// Throws bad_argument, without a change, for vectors of another size.
+  /// Sets the state; prescribed components take their prescribed values with zero velocity. The acceleration follows
+  /// from the forces. Throws bad_argument, without a change, for vectors of a wrong size.
   void set_state(const VectorX& u, const VectorX& v) {
     for (const VectorX* given : {&u, &v}) require_entries(*given, u_.size());
     for (const Index dof : constrained_dofs_) {
@@ -161,20 +161,21 @@ class CorotatedMotion {
     damp(v_, damping_force_);
     for (const Index dof : body_.conditions.free_dofs)
       a_[dof] = (load_[dof] - force_[dof] - damping_force_[dof]) / mass_[dof];
-    if (!all_finite(a_)) a_.setZero();  // of loads that are none: steps refuse these
+    if (!all_finite(a_)) a_.setZero();  // the loads are not finite: steps refuse these
     energy_known_ = true;
     stepped_ = false;
     age_ = 0;
   }
-  /// At rest in u, as if nothing had been before: the same steps follow to the last bit. Throws as set_state.
+  /// Sets a state at rest in u, independent of the past: later steps are reproducible bit for bit. Throws as set_state.
   void rest_at(const VectorX& u) {
     tetrahedra_.forget_rotations();
     set_state(u, VectorX::Zero(u.size()));
   }
-  /// Elements for which gone(element) leave where they are, for good, with their mass; `nodal_mass` is what is left
-  /// (lumped_mass(body, gone)), `load` the loads on it [N] (CutPhysics::load_left). Velocities of what is left stay,
-  /// and nodes without mass are held where they are. A preconditioner that can takes it in (BlockJacobi); another goes
-  /// on with what it knows, which is right but slower. Throws bad_argument or bad_density, without a change.
+  /// Removes the elements for which gone(element) is true, permanently and with their mass. `nodal_mass` is the
+  /// remaining mass (lumped_mass(body, gone)) [kg], `load` the loads on the remaining body [N] (CutPhysics::load_left).
+  /// The remaining nodes keep their velocities; nodes without mass are constrained at their current positions. A
+  /// preconditioner with `change` (BlockJacobi) is updated; another one continues unchanged, which is correct but
+  /// slower. Throws bad_argument or bad_density, without a change.
   template <class Gone>
   void remove_elements(Gone&& gone, const VectorX& nodal_mass, const VectorX& load) {
     require_mass_left(nodal_mass, load);
@@ -186,12 +187,13 @@ class CorotatedMotion {
     if constexpr (requires { preconditioner_.change(body_); }) preconditioner_.change(body_);
     set_state(u_, v_);
   }
-  /// Forces from now on instead of the scene's loads [N]. Throws bad_argument for another size; does not allocate.
+  /// Sets the forces from now on, replacing the loads of the scene [N]. Throws bad_argument for a wrong size; does not
+  /// allocate.
   void set_load(const VectorX& load) {
     require_entries(load, u_.size());
     load_ = load;
   }
-  /// Values of the prescribed components at the end of the next step [m]. Throws as set_load.
+  /// Sets the values of the prescribed components at the end of the next step [m]. Throws as set_load.
   void set_prescribed(const VectorX& values) {
     require_entries(values, u_.size());
     body_.conditions.prescribed = values;
@@ -199,7 +201,7 @@ class CorotatedMotion {
 
   double kinetic_energy() const noexcept { return 0.5 * v_.dot(mass_.cwiseProduct(v_)); }
 
-  // SpdOperator: what multiplies the increment
+  // SpdOperator: the matrix of the increment
   Index size() const noexcept { return mass_.size(); }
   void apply(const VectorX& x, VectorX& y) const noexcept {
     tetrahedra_.apply(x, y);
@@ -215,7 +217,7 @@ class CorotatedMotion {
     require_damping(o.mass_damping, o.stiffness_damping);
     if (o.solve.maximum_iterations < 1 || !(o.solve.tolerance >= 0.0 && o.solve.tolerance < 1.0) ||
         o.precondition_every < 1 || o.maximum_linearisations < 1)
-      raise(SetupErrorKind::bad_argument, "a step without work",
+      raise(SetupErrorKind::bad_argument, "options with which a step does no work",
             "Give at least one of each, and a tolerance from 0 to less than 1");
     return o;
   }
@@ -233,10 +235,10 @@ class CorotatedMotion {
     for (Index i = 0; i < mass.size(); ++i)
       if (!(mass[i] >= 0.0) || !(mass[i] <= body_.lumped[i] * (1.0 + 1e-9)))
         raise(SetupErrorKind::bad_density,
-              "node " + std::to_string(i) + " has the mass " + number(mass[i]) + " after elements have left",
+              "node " + std::to_string(i) + " has the mass " + number(mass[i]) + " after elements were removed",
               "Give lumped_mass(body, gone)");
   }
-  /// Holds the nodes that no element is left at.
+  /// Constrains the nodes that have no element left.
   void hold_bare(const VectorX& mass) {
     EssentialConditions& c = body_.conditions;
     for (Index dof = 0; dof < size(); ++dof) {
@@ -252,7 +254,7 @@ class CorotatedMotion {
       c.free_index[static_cast<std::size_t>(c.free_dofs[i])] = static_cast<Index>(i);
   }
 
-  /// The last step, if there was one, can not be corrected any more.
+  /// After this call the last step, if there was one, can no longer be corrected.
   void set_length(double h) noexcept {
     if (h != step_.length()) age_ = 0;
     step_.set_length(h);
@@ -266,7 +268,7 @@ class CorotatedMotion {
     ++age_;
   }
 
-  /// Where the step would end without new acceleration, held dofs where they are told to be.
+  /// Predicts the end of the step without new acceleration; constrained dofs take their prescribed values.
   void coast() noexcept {
     trial_ = step_.predicted();
     for (const Index dof : constrained_dofs_) trial_[dof] = body_.conditions.prescribed[dof];
@@ -290,13 +292,13 @@ class CorotatedMotion {
     if (options_.mass_damping > 0.0) f += options_.mass_damping * mass_.cwiseProduct(v);
   }
 
-  /// Potential of the step at trial_, given the energy stored there; leaves drag and inertia.
+  /// Potential of the step at trial_, given the energy stored there; also computes damping and inertia forces.
   double potential(double stored) noexcept {
     damp(velocity_, damping_force_);
     inertia_ = mass_.cwiseProduct(acceleration_);
     return stored - load_.dot(trial_) + step_.potential(velocity_, damping_force_, acceleration_, inertia_);
   }
-  /// The same with the force that is left there on free dofs.
+  /// The same, and the residual force on free dofs.
   double evaluate(DeformationReport& deformation) noexcept {
     deformation = tetrahedra_.linearise(trial_, force_, trial_energy_);
     const double at_trial = potential(trial_energy_);
@@ -304,7 +306,7 @@ class CorotatedMotion {
     for (const Index dof : constrained_dofs_) residual_[dof] = 0.0;
     return at_trial;
   }
-  /// Potential of the step at the state it starts from; no limit where held dofs move, which does work.
+  /// Potential of the step at its initial state; infinite when constrained dofs move, because they do work.
   double limit() noexcept {
     for (const Index dof : constrained_dofs_)
       if (u_[dof] != body_.conditions.prescribed[dof]) return infinity;
@@ -313,7 +315,8 @@ class CorotatedMotion {
     find_motion();
     return potential(energy_);
   }
-  /// Halves the increment until the potential is no higher than before it; true when it is within the limit as well.
+  /// Halves the increment until the potential is no higher than without it. Returns true when it is also within the
+  /// limit.
   bool settle(double highest, double& reached, CorotatedStep& report) noexcept {
     const double before = reached,
                  noise = std::numeric_limits<S>::epsilon() * (std::abs(before) + force_.norm() * trial_.norm());
@@ -342,7 +345,7 @@ class CorotatedMotion {
   VectorX trial_, velocity_, acceleration_, increment_, force_, residual_, damping_force_, inertia_;
   StepFactors factors_;
   double energy_ = 0.0, trial_energy_ = 0.0;  // stored
-  bool energy_known_ = false;                 // at the present state
+  bool energy_known_ = false;                 // energy_ belongs to the current state
   bool stepped_ = false;                      // the state is the end of step_
   int age_ = 0;                               // of the preconditioner, in steps
   double time_ = 0.0;

@@ -1,4 +1,4 @@
-// A factor of a body, used for the same body when its parts have rotated.
+// Uses a factor of a body for the same body after its parts have rotated.
 #pragma once
 
 #include <palpate/assembly/detail/essential_conditions.hpp>
@@ -12,8 +12,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// z = R A^-1 R^T r with a factor of A and a rotation per node. Exact for a body that rotates as a whole, good where
-/// neighbours rotate alike. O(nodes) beside the solve; allocates when it is made only.
+/// z = R A^-1 R^T r with a factor of A and a rotation per node. Exact for a rigid rotation, accurate where neighbours
+/// have similar rotations. O(nodes) in addition to the solve; only the constructor allocates.
 class CorotatedSolve {
  public:
   explicit CorotatedSolve(const DeformableBody& body);
@@ -22,7 +22,7 @@ class CorotatedSolve {
 
   /// The rotation of every node under a displacement [m].
   void fit(const VectorX& u, std::vector<Matrix3>& rotation) const noexcept;
-  /// Takes the rotations of u, for a factor of the body at rest.
+  /// Sets the rotations from u [m], for a factor of the body at rest.
   void update(const VectorX& u) noexcept { fit(u, rotation_); }
   /// The same for a factor of the body whose nodes were rotated by `since`.
   void update(const VectorX& u, const std::vector<Matrix3>& since) noexcept;

@@ -1,4 +1,4 @@
-// What the steps of a co-rotated body may choose, and what they report.
+// Options and report of the steps of a co-rotational body.
 #pragma once
 
 #include <palpate/concepts/integrator.hpp>
@@ -9,25 +9,25 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What a CorotatedMotion may choose.
+/// Options of a CorotatedMotion.
 struct CorotatedMotionOptions {
   TimeScheme scheme = TimeScheme::implicit_euler();
   double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]
   double stiffness_damping = 0.0;  ///< Rayleigh's beta [s]
   BoundedSolveParameters solve{};
-  int precondition_every = 16;     ///< steps between two looks at the diagonal of the stiffness
-  bool check = true;               ///< hold the energy after a step against that before it: one more sweep of forces
-  int maximum_linearisations = 8;  ///< of a step whose check fails; one is enough for all but wild ones
+  int precondition_every = 16;     ///< steps between two updates of the preconditioner
+  bool check = true;               ///< compare the energy after a step with that before; one more force evaluation
+  int maximum_linearisations = 8;  ///< per step, when the check fails; one suffices except for extreme steps
 };
 
-/// What a step did.
+/// Result of a step.
 struct CorotatedStep {
-  bool taken = false;  ///< false: the step was not a positive number, or nothing finite came of it; nothing has changed
+  bool taken = false;          ///< false: the length was not positive, or the result not finite; nothing has changed
   BoundedSolveReport solve{};  ///< the last one
   int linearisations = 0;
-  bool energy_bounded = true;       ///< false: checked, and the energy is still above that at the start of the step
-  double residual = infinity;       ///< force left over, of the largest force of the step; infinite without the check
-  DeformationReport deformation{};  ///< at the end; without the check where it coasts to
+  bool energy_bounded = true;       ///< false: the check found more energy than at the start of the step
+  double residual = infinity;       ///< residual relative to the largest force of the step; infinite without the check
+  DeformationReport deformation{};  ///< at the end; without the check at the predicted state
 };
 
 }}  // namespace palpate

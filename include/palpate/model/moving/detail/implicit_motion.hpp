@@ -1,4 +1,4 @@
-// Implicit steps by Newton's method, as a moving model drives them.
+// TissueMotion with implicit steps by Newton's method.
 #pragma once
 
 #include <palpate/model/moving/implicit_dynamics.hpp>
@@ -6,7 +6,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// An ImplicitDynamics. A step that is cut off may leave a twentieth of the force.
+/// Wraps an ImplicitDynamics. A step whose iterations end early may leave a residual of a twentieth of the force.
 class ImplicitMotion final : public TissueMotion {
  public:
   static constexpr double tolerable_residual = 0.05;

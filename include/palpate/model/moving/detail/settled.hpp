@@ -1,4 +1,4 @@
-// Where tissue in motion rests before it is touched.
+// Initial equilibrium of moving tissue.
 #pragma once
 
 #include <palpate/core/types.hpp>

@@ -14,7 +14,7 @@ PALPATE_INLINE VectorX settled(Equilibrium& statics) {
     SetupProblem p;
     p.kind = SetupErrorKind::not_converged;
     p.what = "no equilibrium was found beyond " + number(100.0 * report.fraction) + " % of the loads";
-    p.hint = "Set settle = false, or hold it better";
+    p.hint = "Set settle = false, or add supports";
     if (const Index worst = report.deformation.worst_element; worst >= 0) {
       p.what += "; the most deformed element has a volume ratio of " + number(report.deformation.smallest_volume_ratio);
       p.set_ids({&worst, 1}, SetupIds::elements);

@@ -1,4 +1,4 @@
-// Solves with a tangent stiffness that changes, and is not always positive definite.
+// Solves with a tangent stiffness that changes and may be indefinite.
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
@@ -16,8 +16,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A matrix on the pattern of a mesh, its free part and its factor. After the constructor nothing allocates or throws.
-/// Refers to `conditions`; neither copied nor moved.
+/// A matrix with the pattern of a mesh, its free part and its factor. Only the constructor allocates or throws. Keeps a
+/// reference to `conditions`; neither copyable nor movable.
 class TangentSolver {
  public:
   /// Analyses the pattern and allocates the factor. Throws too_large.
@@ -32,22 +32,22 @@ class TangentSolver {
   TangentSolver& operator=(const TangentSolver&) = delete;
 
   Index size() const noexcept { return factor_.size(); }
-  /// To be filled before `factorise`.
+  /// The matrix, to be filled before `factorise`.
   BlockMatrix& matrix() noexcept { return matrix_; }
 
-  /// Factorises the free part. One that is not positive definite gets a multiple of the unit matrix added that makes it
-  /// so (Nocedal and Wright, Numerical Optimization, 3.4): see shift(). Tries none, then from a quarter of the last
-  /// shift on four times as much each, then what Gershgorin's circles say is enough: `most_factorisations` in all.
-  /// False when the matrix is not finite.
+  /// Factorises the free part. If it is not positive definite, a multiple of the unit matrix is added (Nocedal and
+  /// Wright, Numerical Optimization, 3.4): see shift(). Tries zero, then a quarter of the last shift and four times
+  /// more in each further attempt, finally the bound of Gershgorin's circles: at most `most_factorisations` attempts.
+  /// Returns false when the matrix is not finite.
   bool factorise() noexcept;
   static constexpr int most_factorisations = 6;
-  /// What was added to the diagonal; 0 for a positive definite matrix.
+  /// Value added to the diagonal; 0 for a positive definite matrix.
   double shift() const noexcept { return shift_; }
 
   /// d = K^-1 r on the free dofs.
   void solve(const VectorX& r, VectorX& d) noexcept { factor_.solve_into(r, d); }
 
-  /// What rounding leaves of a sum of forces [N] in a body of this size [m] with the present matrix.
+  /// Rounding error of a sum of forces [N] in a body of this size [m] with the current matrix.
   double rounding(double size) const noexcept;
 
   double largest_diagonal() const noexcept;

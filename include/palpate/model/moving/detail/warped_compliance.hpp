@@ -1,4 +1,4 @@
-// Contact compliance of a body that turns.
+// Contact compliance of a rotating body.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -12,13 +12,14 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What a force on a touchable vertex moves the others within a step, as the body settled, turned on with the vertices:
-/// C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). Holds 72 bytes per pair of vertices.
+/// Displacement of touchable vertices within a step per force on another, computed in the settled state and rotated
+/// with the vertices: C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). Stores 72 bytes per pair of
+/// vertices.
 class WarpedCompliance {
  public:
   WarpedCompliance() = default;
-  /// Of a motion in its present state for steps of h [s]: one `respond` per dof of `nodes`. Throws too_large,
-  /// not_positive_definite for a body without stiffness, not_converged where a response was not found.
+  /// Computes the compliance of a motion in its current state for steps of h [s]: one `respond` per dof of `nodes`.
+  /// Throws too_large, not_positive_definite for a body without stiffness, not_converged when a response was not found.
   template <class Motion>
   WarpedCompliance(Motion& motion, double h, const std::vector<NodeId>& nodes, const NodalRotations& rotations,
                    const SetupLimits& limits)
@@ -47,11 +48,11 @@ class WarpedCompliance {
     find_bounds();
   }
 
-  /// Turned back to the shape at rest [m/N].
+  /// Compliance rotated back to the rest configuration [m/N].
   const Matrix3& at_rest(std::size_t i, std::size_t j) const noexcept { return rest_[i + count_ * j]; }
-  /// Where vertices have turned by `rotation`.
+  /// Compliance for vertices rotated by `rotation` [m/N].
   Matrix3 rotated(const std::vector<Matrix3>& rotation, int i, int j) const noexcept;
-  /// As TissueModel has them.
+  /// See TissueModel.
   double bound(int j) const noexcept { return bound_[static_cast<std::size_t>(j)]; }
   double floor() const noexcept { return floor_; }
   std::size_t bytes() const noexcept { return rest_.size() * sizeof(Matrix3); }
@@ -60,7 +61,7 @@ class WarpedCompliance {
   void find_bounds();
 
   std::size_t count_ = 0;
-  std::vector<Matrix3> rest_;  // of vertex i per force on j at i + count x j
+  std::vector<Matrix3> rest_;  // of vertex i per force on j, at index i + count x j
   std::vector<double> bound_;
   double floor_ = 0.0;
 };

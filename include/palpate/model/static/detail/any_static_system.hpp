@@ -1,4 +1,4 @@
-// A prepared static system of any type as a value.
+// A prepared static system of any type with value semantics.
 #pragma once
 
 #include <palpate/concepts/condensation.hpp>
@@ -11,8 +11,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 class BinaryWriter;
 
-/// Owns any StaticSystem that can be copied. A copy has workspaces of its own; systems share factors among copies. One
-/// indirect call per solve.
+/// Owns any copyable StaticSystem. Each copy has its own workspaces; copies share factors. One indirect call per solve.
 class AnyStaticSystem {
  public:
   AnyStaticSystem() = default;
@@ -29,12 +28,12 @@ class AnyStaticSystem {
   Index size() const noexcept { return system_ ? system_->size() : 0; }
   Index kept() const noexcept { return system_ ? system_->kept() : 0; }
   std::size_t bytes() const noexcept { return system_ ? system_->bytes() : 0; }
-  /// What `compliance_column` reads of the system at most, once per sweep or iteration; all of it unless the system has
-  /// a function `column_bytes()`.
+  /// Upper bound of the bytes that `compliance_column` reads per sweep or iteration; the whole system unless it has a
+  /// function `column_bytes()`.
   std::size_t column_bytes() const noexcept { return system_ ? system_->column_bytes() : 0; }
   SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return system_->solve_into(b, x); }
   SolveReport compliance_column(Index j, VectorX& column) noexcept { return system_->compliance_column(j, column); }
-  /// For systems that can be stored; nothing is written of others.
+  /// Writes a system that can be stored; writes nothing for others.
   void write(BinaryWriter& out) const { system_->write(out); }
 
  private:

@@ -1,4 +1,4 @@
-// Computes compliance columns beside the tick.
+// Computes compliance columns in a background thread.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -18,8 +18,9 @@ struct ColumnOrder {
   bool converged = true;
 };
 
-/// A thread that fills slots as ordered. Orders and answers pass through queues: who orders never waits. An ordered
-/// slot belongs to the thread until its answer is taken. The destructor waits for the column in work.
+/// A thread that fills slots on request. Requests and results pass through lock-free queues, so the requesting thread
+/// never waits. A requested slot belongs to the worker thread until its result is taken. The destructor waits for the
+/// column being computed.
 template <std::floating_point Scalar>
 class ColumnWorker {
  public:
@@ -31,9 +32,9 @@ class ColumnWorker {
   ColumnWorker(const ColumnWorker&) = delete;
   ColumnWorker& operator=(const ColumnWorker&) = delete;
 
-  /// False when there are too many orders already.
+  /// Returns false when the queue of requests is full.
   bool order(int vertex, int slot) noexcept { return orders_.push({vertex, slot, true}); }
-  /// The next column that is ready.
+  /// Takes the next finished column; false when there is none.
   bool take(ColumnOrder& done) noexcept { return answers_.pop(done); }
 
  private:
@@ -44,7 +45,7 @@ class ColumnWorker {
   VectorX column_;
   SpscRing<ColumnOrder, most_orders> orders_, answers_;
   std::atomic<bool> stop_{false};
-  std::thread thread_;  // last: it uses all the others
+  std::thread thread_;  // last: it uses all other members
 };
 
 }}  // namespace palpate

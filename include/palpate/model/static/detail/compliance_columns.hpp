@@ -1,4 +1,4 @@
-// Where compliance columns are kept and how one is computed.
+// Storage and computation of compliance columns.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -11,8 +11,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Slots for compliance columns: per loaded vertex nine values for every touchable vertex, in one piece, as a tick
-/// reads single blocks of it. Stored as Scalar, float or double. A slot is written by one thread at a time.
+/// Slots for compliance columns: per loaded vertex nine contiguous values for every touchable vertex, because a tick
+/// reads single blocks. Stored as Scalar, float or double. A slot is written by one thread at a time.
 template <std::floating_point Scalar>
 class ComplianceColumns {
  public:
@@ -28,7 +28,8 @@ class ComplianceColumns {
   /// Largest displacement of any vertex per unit force [m/N].
   double bound(int slot) const noexcept { return bound_[static_cast<std::size_t>(slot)]; }
 
-  /// Three solves; false when one did not converge. `column` is a workspace of `system.kept()` entries.
+  /// Computes the columns of a vertex with three solves; false when one did not converge. `column` is a workspace of
+  /// `system.kept()` entries.
   bool fill(AnyStaticSystem& system, int vertex, int slot, VectorX& column) noexcept;
 
  private:

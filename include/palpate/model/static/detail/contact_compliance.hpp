@@ -1,4 +1,5 @@
-// The compliance of the touchable surface, as columns: all at set-up, each when first needed, or by a thread.
+// The compliance of the touchable surface, stored as columns that are computed at set-up, on first use, or in a
+// background thread.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -19,13 +20,15 @@ class ColumnWorker;
 
 /// When a solver that does not store the whole compliance computes a column.
 enum class ColumnFill : std::uint8_t {
-  automatic,    ///< synchronous where a column is cheap, asynchronous where it would make a tick late
-  synchronous,  ///< in the tick that first needs it: exact in every tick, which takes as long as it takes
-  asynchronous  ///< by a thread, for all vertices near a tool; a tick that has to do without says degraded_model
+  automatic,    ///< synchronous when a column is cheap, asynchronous when it would delay a tick
+  synchronous,  ///< in the tick that first needs it: exact in every tick; the duration of a tick is not bounded
+  asynchronous  ///< in a background thread, for all vertices near a tool; a tick without a needed column reports
+                ///< degraded_model
 };
 
-/// Response of all touchable vertices to forces on some: three columns (x, y, z) per stored vertex, read as double.
-/// With a slot for every vertex all columns stay; with fewer the least recently used makes room.
+/// Response of all touchable vertices to forces on some of them: three columns (x, y, z) per stored vertex, read as
+/// double. With a slot for every vertex all columns stay stored; with fewer slots the least recently used column is
+/// replaced.
 template <std::floating_point Scalar>
 class ContactCompliance {
  public:
@@ -37,24 +40,24 @@ class ContactCompliance {
   ContactCompliance& operator=(ContactCompliance&&) noexcept;
   ~ContactCompliance();
 
-  /// From now on a thread computes the columns.
+  /// Starts a background thread that computes the columns from now on.
   void fill_asynchronously();
 
   std::size_t bytes() const noexcept { return columns_ ? columns_->bytes() : 0; }
   bool has(int vertex) const noexcept { return slot_of_[static_cast<std::size_t>(vertex)] >= 0; }
 
-  /// Makes the columns of these vertices available: at once, three solves for each that is not, or as soon as the
-  /// thread gets to it. degraded_model when one is not there, solver_not_converged when a solve failed.
+  /// Makes the columns of these vertices available: immediately, with three solves for each missing one, or later by
+  /// the background thread. degraded_model when a column is missing, solver_not_converged when a solve failed.
   Status require(std::span<const int> vertices) noexcept;
 
-  /// Tells which vertices may be required soon.
+  /// Announces vertices that may be required soon.
   void prefetch(std::span<const int> vertices) noexcept;
 
-  /// What a column that is not there reads as: the vertex itself this soft, all others still. Keeps a missing column
-  /// from feeling like stone.
+  /// Substitute for a missing column: the vertex itself has this compliance [m/N], all others do not move. Without it a
+  /// missing column would be rendered as rigid.
   void assume(double own_compliance) noexcept;
 
-  /// Displacement of vertex i per force on vertex j [m/N], 3 x 3, read where it is stored.
+  /// Displacement of vertex i per force on vertex j [m/N], 3 x 3, read without a copy.
   auto operator()(int i, int j) const noexcept {
     using Block = Eigen::Matrix<Scalar, 3, 3>;
     const int s = slot_of_[static_cast<std::size_t>(j)];
@@ -64,7 +67,7 @@ class ContactCompliance {
     else
       return stored.template cast<double>();
   }
-  /// Another number when a column that was missing has come.
+  /// Changes when a missing column has become available.
   std::uint64_t revision() const noexcept { return revision_; }
   /// Upper bound of |displacement| of any vertex per unit force on vertex j [m/N].
   double bound(int j) const noexcept {
@@ -76,24 +79,24 @@ class ContactCompliance {
     return static_cast<std::size_t>(slot_of_[static_cast<std::size_t>(vertex)]);
   }
 
-  /// Takes in the columns that the thread has finished.
+  /// Takes the columns that the background thread has finished.
   Status collect() noexcept;
 
-  /// Computes or orders a column that is not there, in the slot that was not used for the longest time.
+  /// Computes or requests a missing column, in the least recently used slot.
   Status obtain(int v) noexcept;
 
   static constexpr std::array<Scalar, 9> none{};
   static constexpr std::uint64_t in_work = std::numeric_limits<std::uint64_t>::max();
 
   AnyStaticSystem system_;
-  std::unique_ptr<ComplianceColumns<Scalar>> columns_;  // at a fixed place, for the thread
+  std::unique_ptr<ComplianceColumns<Scalar>> columns_;  // at a fixed address, for the thread
   std::vector<int> slot_of_, vertex_of_;
-  std::vector<bool> ordered_;             // per vertex: the thread has it
+  std::vector<bool> ordered_;             // per vertex: requested from the thread
   std::vector<std::uint64_t> last_used_;  // per slot
   std::uint64_t clock_ = 0, revision_ = 0;
   VectorX column_;
   std::array<Scalar, 9> own_{};
-  std::unique_ptr<ColumnWorker<Scalar>> worker_;  // last: it ends before what it writes to
+  std::unique_ptr<ColumnWorker<Scalar>> worker_;  // last: destroyed before the data it writes to
 };
 
 }}  // namespace palpate

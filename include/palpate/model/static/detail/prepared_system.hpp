@@ -1,4 +1,4 @@
-// The prepared solver of a body: made and checked, or read from a cache file and checked.
+// The prepared solver of a body: computed or read from a cache file, and checked.
 #pragma once
 
 #include <palpate/assembly/detail/any_stiffness.hpp>
@@ -19,19 +19,19 @@ class PreparedCache;
 class FreeStiffness;
 struct EssentialConditions;
 
-/// A solver policy without its type: its functions and constants. See solver_recipe.
+/// The type-erased functions and constants of a solver policy. See solver_recipe.
 struct SolverRecipe {
   std::string_view cache_name;  ///< empty: its systems cannot be stored
   std::size_t scalar_bytes = sizeof(double);
   bool eager = false;                ///< all compliance is computed at set-up
-  bool estimates_condition = false;  ///< a few more solves are cheap
+  bool estimates_condition = false;  ///< true when a few more solves are cheap
   AnyStaticSystem (*make)(const AnyStiffness&, const EssentialConditions&, const DofLayout&, const SetupLimits&);
-  /// Null when its systems cannot be stored. Takes the stored matrix.
+  /// Null when its systems cannot be stored. The matrix is the assembled stiffness.
   AnyStaticSystem (*read)(BinaryReader&, const BlockMatrix&, const EssentialConditions&, const DofLayout&,
                           const SetupLimits&);
 };
 
-/// What a system is prepared from. Refers to all of it.
+/// Input for the preparation of a system. Keeps references to all of it.
 struct SystemSource {
   const SolverRecipe& recipe;
   const ElasticBody& body;
@@ -41,20 +41,22 @@ struct SystemSource {
   const DofLayout& dofs;
   const SetupLimits& limits;
 
-  /// The system, measured: flags what lost digits. With a `cache_file` it is read from there, or made and stored there.
-  /// Throws what factorisation and checks throw; a cache that is bad or cannot be written is reported and no error.
+  /// Prepares the system and checks its accuracy; flags a loss of digits. With a `cache_file` the system is read from
+  /// it, or computed and stored in it. Throws the errors of factorisation and checks; a cache that is invalid or cannot
+  /// be written is reported and is not an error.
   AnyStaticSystem prepare(const std::string& cache_file, SetupReport& report) const;
 
  private:
   AnyStaticSystem prepare_with(const std::string& cache_file, SetupReport& report) const;
-  /// The system when the file holds it and a solve with it is right: a last check that trusts no hash. The condition is
-  /// as it was measured when the system was made; to measure it again costs as much as to read.
+  /// Returns the system when the file contains it and a solve with it is right: a final check that does not depend on
+  /// hashes. The condition number is the one measured when the system was computed; measuring it again would cost as
+  /// much as reading the file.
   std::optional<AnyStaticSystem> read(PreparedCache& cache, SetupReport& report) const;
   AnyStaticSystem make(SetupReport& report) const;
-  /// Flags or refuses what was measured.
+  /// Flags or refuses the system by its measured accuracy.
   static void judge(SetupReport& report);
-  /// Refuses a system whose softest motion is lost in rounding: a mechanism that geometry does not show, or as good as
-  /// one. Asked only where digits are missing.
+  /// Refuses a system whose softest motion is lost in rounding: a mechanism or near-mechanism that the geometric check
+  /// does not find. Only checked when digits are lost.
   void require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system, const SetupReport& report) const;
 
   static constexpr double flagged_probe_error = 1e-6;

@@ -85,8 +85,8 @@ PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& fr
   SetupProblem p;
   p.kind = SetupErrorKind::ill_conditioned;
   p.what = "a solve for the softest motion of the body is wrong by " + number(softest.error) +
-           " (relative); the node moves most in it";
-  p.hint = "Look there for a part that is hardly held: a mechanism, slivers, or extreme stiffness contrast";
+           " (relative); the named node moves most in it";
+  p.hint = "Look there for a part that is hardly constrained: a mechanism, slivers, or extreme stiffness contrast";
   if (const auto& nodes = dofs.node_of_dof; softest.largest >= 0 && !nodes.empty()) {
     p.ids = {nodes[static_cast<std::size_t>(softest.largest)]};
     p.ids_of = SetupIds::nodes;
@@ -111,11 +111,11 @@ PALPATE_INLINE void SystemSource::judge(SetupReport& report) {
   }
   if (report.probe_error > flagged_probe_error)
     report.set(SetupFlag::ill_conditioned, "a solve with a known answer is wrong by " + number(report.probe_error) +
-                                               " (relative): forces keep no more digits than that");
+                                               " (relative): forces are no more accurate than that");
   else if (report.condition_estimate > flagged_condition)
-    report.set(SetupFlag::ill_conditioned, "the condition of the stiffness is about " +
-                                               number(report.condition_estimate) +
-                                               ": parameters that differ in the last digits give other forces");
+    report.set(SetupFlag::ill_conditioned,
+               "the condition of the stiffness is about " + number(report.condition_estimate) +
+                   ": a change of parameters in the last digits changes the forces noticeably");
 }
 
 }}  // namespace palpate

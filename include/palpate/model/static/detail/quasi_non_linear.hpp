@@ -17,8 +17,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// How many times the force of the linear tissue a displacement takes: points (displacement [m], ratio [-]), from a
-/// displacement of 0 on, in between straight, beyond the last point constant.
+/// Ratio of the force at a displacement to that of the linear tissue: points (displacement [m], ratio [-]) that start
+/// at displacement 0, with linear interpolation and a constant ratio beyond the last point.
 class StiffeningCurve {
  public:
   struct Point {
@@ -27,9 +27,9 @@ class StiffeningCurve {
 
   /// Linear tissue: the ratio is 1 everywhere.
   StiffeningCurve() : points_{{0.0, 1.0}} {}
-  /// Throws bad_argument for no points, displacements that do not start at 0 and rise, ratios that are not positive,
-  /// and where the force, displacement times ratio, would fall while the displacement rises; value is that
-  /// displacement.
+  /// Throws bad_argument when there are no points, when displacements do not start at 0 and rise, when a ratio is not
+  /// positive, and when the force, displacement times ratio, falls while the displacement rises; `value` of the error
+  /// is that displacement.
   explicit StiffeningCurve(std::vector<Point> points);
 
   /// O(points), no allocation.
@@ -42,14 +42,13 @@ class StiffeningCurve {
 };
 
 /// The quasi-non-linear elasticity of Cotin, Delingette and Ayache 1999: the force of the linear tissue is scaled by a
-/// curve measured along the direction of pressing (axial) and one measured across it (radial). Written as a compliance,
+/// curve measured along the direction of pressing (axial) and one measured across it (radial). As a compliance,
 ///   C'_ij = T C_ij T,   T = n n^T / sqrt(s_axial) + (I - n n^T) / sqrt(s_radial),
-/// n the direction of the sum of the forces, so that it stays symmetric and positive, and contact stays one problem.
-/// The ratios follow the displacements of the loaded vertices, weighed with their forces: half of the way in each tick,
-/// so they arrive within a few. Right where it was measured; elsewhere as good as the measurement applies
-/// (docs/soft.md). Holds a reference to the tissue. Satisfies TissueModel.
-/// Cost: a tick pays the loaded vertices squared, and remembers no compliances from one tick to the next while it
-/// moves.
+/// where n is the direction of the sum of the forces. The compliance stays symmetric and positive, and the contact
+/// stays one problem. The ratios follow the force-weighted displacements of the loaded vertices: by half of the
+/// difference in each tick, so they converge within a few ticks. Accurate for the measured load cases; elsewhere only
+/// as far as the measurement applies (docs/soft.md). Keeps a reference to the tissue. Satisfies TissueModel. Cost: per
+/// tick quadratic in the number of loaded vertices; compliances are not reused between ticks while the ratios change.
 template <TissueModel Tissue>
 class QuasiNonLinear : public TissueAdaptor<Tissue> {
  public:
@@ -75,7 +74,7 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
   double compliance_bound(int j) const noexcept { return this->tissue().compliance_bound(j) / std::min(along_, across_); }
   double compliance_floor() const noexcept { return this->tissue().compliance_floor() / std::max(along_, across_); }
 
-  /// Back to the state after construction.
+  /// Restores the state after construction.
   void reset() noexcept {
     along_ = axial_.ratio(0.0);
     across_ = radial_.ratio(0.0);
@@ -84,14 +83,14 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
     ++revision_;
   }
 
-  /// How many times stiffer than linear it is now, along the force and across.
+  /// Current ratio of the stiffness to that of the linear tissue, along the force and across it.
   double axial_ratio() const noexcept { return along_; }
   double radial_ratio() const noexcept { return across_; }
-  /// T, for pictures: displacements are T times those of the linear tissue under forces T f.
+  /// T, for drawing: displacements are T times those of the linear tissue under forces T f.
   const Matrix3& scale() const noexcept { return scale_; }
 
  private:
-  /// Moves the ratios towards those of the present displacements.
+  /// Moves the ratios towards those of the current displacements.
   void follow(std::span<const VertexForce> forces) noexcept {
     Vector3 sum = Vector3::Zero(), moved = Vector3::Zero();
     double weight = 0.0;
@@ -120,7 +119,7 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
     set_scale();
     ++revision_;
   }
-  /// A change too small to feel is none, so that a hold keeps its compliances.
+  /// Ignores imperceptible changes, so that a steady contact keeps its compliances.
   static double midway(double now, double wanted) noexcept {
     return std::abs(wanted - now) <= unfelt * now ? now : 0.5 * (now + wanted);
   }

@@ -16,7 +16,7 @@ PALPATE_INLINE StiffeningCurve::StiffeningCurve(std::vector<Point> points) : poi
     const Point& before = points_[i - 1];
     if (!(p.displacement > before.displacement && p.displacement < infinity))
       refuse("has displacements that do not rise", p.displacement);
-    // d(force) / d(displacement) is linear in between: positive everywhere if it is at both ends
+    // d(force) / d(displacement) is linear between two points: positive everywhere if positive at both
     const double slope = (p.ratio - before.ratio) / (p.displacement - before.displacement);
     for (const Point& end : {before, p})
       if (!(end.ratio + slope * end.displacement > 0.0)) refuse("has a force that falls", end.displacement);

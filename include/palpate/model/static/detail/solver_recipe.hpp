@@ -16,7 +16,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-// Of policies.hpp: here the systems they make are complete.
+// Definitions of policies.hpp, placed here because the system types are complete here.
 template <class AssemblyPolicy>
 Uncondensed SolverTraits<WithAssembly<ConjugateGradient, AssemblyPolicy>>::make(const StiffnessView& k,
                                                                                 const EssentialConditions& conditions,
@@ -47,9 +47,9 @@ CondensedSystem SolverTraits<Condensed<Inner>>::read(BinaryReader& in, const Blo
   return detail::read_condensed(CondensedTraits<Inner>::kind, in, k, conditions, layout, limits);
 }
 
-/// A policy whose prepared system can be stored: `cache_name` tells it from all others, the system has `write`, and
-/// `read` makes it again from what was written, given the same stiffness, conditions and layout. `read` takes every
-/// size from these and none from the file, and returns whatever it likes when the reader fails.
+/// A policy whose prepared system can be stored: `cache_name` is unique, the system has `write`, and `read` restores it
+/// from the written data, given the same stiffness, conditions and layout. `read` takes every size from these arguments
+/// and none from the file; its result is unspecified when the reader fails.
 template <class P>
 concept CacheablePolicy = SolverPolicy<P> &&
     requires(BinaryReader& in, BinaryWriter& out, const BlockMatrix& k, const EssentialConditions& conditions,

@@ -1,4 +1,4 @@
-// The static problem of one body: prepared once, loads changed at will.
+// The static problem of one body: prepared once, loads can be changed any number of times.
 #pragma once
 
 #include <palpate/assembly/detail/any_stiffness.hpp>
@@ -15,17 +15,17 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Stiffness, essential conditions, loads and prepared solver of a body, which it refers to. Neither copied nor moved:
-/// the solver refers to its members.
+/// Stiffness, essential conditions, loads and prepared solver of a body; keeps a reference to the body. Neither
+/// copyable nor movable, because the solver refers to members.
 class Statics {
  public:
   using MakeStiffness = std::function<AnyStiffness(const ElasticBody&, const SetupLimits&)>;
-  /// Sees a displacement before it is accepted, 3 per node [m]; may throw.
+  /// Receives a displacement, 3 per node [m], before it is accepted; may throw.
   using Look = std::function<void(const VectorX&)>;
 
-  /// Prepares everything but the contact. `kept_nodes` are the touchable ones; `cache_file` may hold the prepared
-  /// system, or will. Throws what assembly, factorisation and checks throw: unconstrained, not_positive_definite,
-  /// ill_conditioned ... but nothing because of the cache.
+  /// Prepares everything except the contact. `kept_nodes` are the touchable nodes; the prepared system is read from or
+  /// stored in `cache_file`. Throws the errors of assembly, factorisation and checks: unconstrained,
+  /// not_positive_definite, ill_conditioned ...; cache problems never throw.
   Statics(ElasticBody& body, const Scene& scene, const std::vector<NodeId>& kept_nodes,
           const MakeStiffness& make_stiffness, const SolverRecipe& recipe, const SetupLimits& limits,
           const std::string& cache_file, SetupReport& report);
@@ -33,29 +33,29 @@ class Statics {
   Statics& operator=(const Statics&) = delete;
   ~Statics();
 
-  /// Loads, prescribed values and initial strains of a scene; `gravity` [m/s^2] in the body's frame. Solves once, and
-  /// shows the new displacement to `look` before anything is changed. Strong guarantee.
+  /// Sets loads, prescribed values and initial strains of a scene; `gravity` [m/s^2] in the body frame. Solves once,
+  /// and passes the new displacement to `look` before anything is changed. Strong guarantee.
   void set_conditions(const Scene& scene, const Vector3& gravity, const Look& look);
 
-  /// Changes gravity [m/s^2], body frame, and solves once; `look` as above. Throws bad_density when some region has
-  /// none. Strong guarantee.
+  /// Changes gravity [m/s^2], body frame, and solves once; `look` as above. Throws bad_density when a region has no
+  /// density. Strong guarantee.
   void set_gravity(const Vector3& gravity, const Look& look);
 
-  /// Displacement under the scene's loads and `forces` [N] on vertices, 3 per node [m]. Resizes u when it has another
-  /// size, which allocates; otherwise it does not. A force on a vertex that does not exist is left out, and the report
-  /// says not converged, with a residual of infinity. Not to be called by two threads at once.
+  /// Displacement under the scene's loads and `forces` [N] on vertices, 3 per node [m]. Allocates only to resize u when
+  /// it has another size. A force on a vertex that does not exist is ignored, and the report states not converged, with
+  /// a residual of infinity. Not to be called by two threads simultaneously.
   SolveReport displacement_with(std::span<const VertexForce> forces, const std::vector<NodeId>& node_of_vertex,
                                 VectorX& u) noexcept;
 
   const ElasticBody& body() const noexcept { return *body_; }
   const EssentialConditions& conditions() const noexcept { return conditions_; }
   const VectorX& displacement() const noexcept { return displacement_; }
-  /// A solver with a workspace of its own; factors are shared.
+  /// A copy of the solver with its own workspace; factors are shared.
   AnyStaticSystem system() const { return system_; }
 
-  /// K u - f_0: forces with which the body answers, 3 per node [N].
+  /// Internal force K u - f_0, 3 per node [N].
   VectorX internal_force() const;
-  /// Forces of the supports, zero on free dofs, 3 per node [N].
+  /// Reaction forces of the supports, zero on free dofs, 3 per node [N].
   VectorX reactions() const;
 
  private:
@@ -63,7 +63,7 @@ class Statics {
     VectorX load, displacement;
   };
 
-  /// The answer to given loads; nothing is changed but workspaces. Throws bad_density, non_finite or not_converged.
+  /// Solution for given loads; changes only workspaces. Throws bad_density, non_finite or not_converged.
   Loaded solve_loads(const VectorX& applied, const VectorX& strain_load, const VectorX& prescribed,
                      const Vector3& gravity);
   void accept(Loaded& loaded) noexcept;
