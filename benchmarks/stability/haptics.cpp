@@ -120,7 +120,7 @@ void summarise(const std::vector<Cell>& cells) {
 
 void write_csv(const std::vector<Cell>& cells, const std::string& path) {
   std::ofstream out(path);
-  out << "device,hand,rate_hz,delay_ticks,linear,exact,calm,late,motors_4x_w,motors_4x_tank_w\n";
+  out << "device,hand,rate_hz,delay_ticks,linear,exact,energy_bounded,late,motors_4x_w,motors_4x_tank_w\n";
   for (const Cell& c : cells)
     out << c.device->name << ',' << c.hand->name << ',' << c.rate << ',' << c.delay << ',' << c.linear << ',' << c.exact
         << ',' << c.stable << ',' << c.late << ',' << c.power << ',' << c.power_tank << '\n';

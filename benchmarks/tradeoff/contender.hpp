@@ -52,7 +52,7 @@ struct Row : Description {
   double p50 = 0.0, p99 = 0.0, worst = 0.0;       ///< time of a tick [s]
   double update_p99 = 0.0, update_period = 0.0;   ///< [s]
   double force_small = 0.0, force_large = 0.0;    ///< force error in holds
-  double felt = 0.0;  ///< root mean square force error in motion (of the largest force); column felt
+  double in_motion = 0.0;  ///< root mean square force error in motion (of the largest force); column "in motion"
   double moved_small = 0.0, moved_large = 0.0;    ///< root mean square displacement error of all nodes
   double volume_small = 0.0, volume_large = 0.0;  ///< error of volume, relative to the volume displaced by the spheres
   double drift = 0.0;

@@ -88,7 +88,7 @@ void evaluate(const Bench& bench, Contender& contender, Row& row) {
 
   double largest = 0.0;
   for (std::size_t b = 0; b < scene.spheres.size(); ++b) largest = std::max(largest, r.force(b, scene.large).norm());
-  row.felt = std::sqrt(session.squared_error / session.samples) / largest;
+  row.in_motion = std::sqrt(session.squared_error / session.samples) / largest;
   row.p50 = bench::percentile(session.ticks, 0.5);
   row.p99 = bench::percentile(session.ticks, 0.99);
   row.worst = std::ranges::max(session.ticks);
@@ -100,7 +100,7 @@ void evaluate(const Bench& bench, Contender& contender, Row& row) {
       row.remark += (row.remark.empty() ? "" : "; ") + ("slower than real time: " + three_digits(1e3 * median) +
                                                         " ms for " + three_digits(1e3 * row.update_period));
   }
-  const bool finite = session.finite && std::isfinite(row.felt) && std::isfinite(row.force_small) &&
+  const bool finite = session.finite && std::isfinite(row.in_motion) && std::isfinite(row.force_small) &&
                       std::isfinite(row.force_large) && std::isfinite(row.moved_small) &&
                       std::isfinite(row.moved_large);
   if (!finite)
@@ -142,7 +142,7 @@ Row measure(const Bench& bench, const Entry& entry) {
     evaluate(bench, *contender, row);
   } catch (const SetupError& refused) {
     row.verdict = std::string("REFUSED: ") + refused.what();
-    row.p99 = row.felt = row.force_small = row.force_large = bench::unknown;
+    row.p99 = row.in_motion = row.force_small = row.force_large = bench::unknown;
   }
   return row;
 }

@@ -55,7 +55,7 @@ void write_table(std::ostream& out, const std::vector<Row>& rows) {
   out << "<table><thead><tr>";
   for (const char* head :
        {"composition", "nodes", "kept dofs", "set-up [ms]", "memory [MB]", "tick p50 [us]", "p99 [us]", "worst [us]",
-        "update p99 [ms]", "force small [%]", "large [%]", "felt [%]", "moved small [%]", "large [%]",
+        "update p99 [ms]", "force small [%]", "large [%]", "in motion [%]", "moved small [%]", "large [%]",
         "volume small [%]", "large [%]", "energy in 0.1 s [%]", "own check", "remark"})
     out << "<th>" << head << "</th>";
   out << "</tr></thead><tbody>\n";
@@ -66,7 +66,7 @@ void write_table(std::ostream& out, const std::vector<Row>& rows) {
          {std::to_string(r.nodes), r.kept_dofs > 0 ? std::to_string(r.kept_dofs) : "", three_digits(1e3 * r.setup),
           three_digits(1e-6 * r.bytes), three_digits(1e6 * r.p50), three_digits(1e6 * r.p99),
           three_digits(1e6 * r.worst), r.update_p99 > 0.0 ? three_digits(1e3 * r.update_p99) : "",
-          percent(r.force_small), percent(r.force_large), percent(r.felt), percent(r.moved_small),
+          percent(r.force_small), percent(r.force_large), percent(r.in_motion), percent(r.moved_small),
           percent(r.moved_large), percent(r.volume_small), percent(r.volume_large), percent(r.drift),
           figure(r.own_error, "%.1e"),
           escaped(r.verdict + (r.verdict.empty() || r.remark.empty() ? "" : "; ") + r.remark)})
@@ -82,7 +82,7 @@ void write_csv(const std::vector<Row>& rows, const std::string& path) {
   std::ofstream out(path);
   out << "family,element,mesh,kinematics,solver,kept,scalar,work,own_core,nodes,kept_dofs,setup_s,peak_bytes,"
       << "tick_p50_s,tick_p99_s,tick_worst_s,update_p99_s,update_period_s,force_error_small,force_error_large,"
-      << "felt_error,displacement_error_small,displacement_error_large,volume_error_small,volume_error_large,"
+      << "motion_error,displacement_error_small,displacement_error_large,volume_error_small,volume_error_large,"
       << "energy_drift,own_error,verdict,remark\n";
   for (const Row& r : rows) {
     for (const std::string* text :
@@ -90,7 +90,7 @@ void write_csv(const std::vector<Row>& rows, const std::string& path) {
       out << '"' << *text << "\",";
     out << (r.own_core ? 1 : 0) << ',' << r.nodes << ',' << r.kept_dofs;
     for (const double value :
-         {r.setup, r.bytes, r.p50, r.p99, r.worst, r.update_p99, r.update_period, r.force_small, r.force_large, r.felt,
+         {r.setup, r.bytes, r.p50, r.p99, r.worst, r.update_p99, r.update_period, r.force_small, r.force_large, r.in_motion,
           r.moved_small, r.moved_large, r.volume_small, r.volume_large, r.drift, r.own_error})
       out << ',' << figure(value, "%.6g");
     out << ",\"" << r.verdict << "\",\"" << r.remark << "\"\n";
@@ -114,7 +114,7 @@ std::string advice(const std::vector<Row>& rows, double budget) {
 
 void write_picture(const Bench& bench, const std::vector<Row>& rows, double budget, const std::string& path) {
   std::ofstream out(path);
-  write_plot(out, rows, &Row::felt, budget, doubt(bench.reference, &Row::felt));
+  write_plot(out, rows, &Row::in_motion, budget, doubt(bench.reference, &Row::in_motion));
 }
 
 void write_page(const Bench& bench, const std::vector<Row>& rows, double budget, const std::string& path) {
@@ -149,7 +149,7 @@ void write_page(const Bench& bench, const std::vector<Row>& rows, double budget,
   }
   out << "<h2>Within " << three_digits(1e6 * budget) << " us</h2><pre>" << escaped(advice(rows, budget)) << "</pre>\n";
   write_table(out, rows);
-  out << "<p>Times are processor times of one thread. felt: root mean square force error at 1 kHz while the spheres "
+  out << "<p>Times are processor times of one thread. in motion: root mean square force error at 1 kHz while the spheres "
          "move, late ticks and updates included, relative to the largest force. moved: displacement error of all nodes "
          "of the given mesh. volume: error relative to the volume displaced by the spheres. energy: gain of a released "
          "body without damping. own check: residual of the method's own equations.</p></html>\n";

@@ -15,9 +15,9 @@ struct Measure {
   const char* title;
   double Row::*error;
 };
-inline constexpr std::array<Measure, 3> measures{{{"felt at 1 kHz, in motion", &Row::felt},
-                                                  {"held at the small depth", &Row::force_small},
-                                                  {"held at the large depth", &Row::force_large}}};
+inline constexpr std::array<Measure, 3> measures{{{"in motion, rendered at 1 kHz", &Row::in_motion},
+                                                  {"at rest, small depth", &Row::force_small},
+                                                  {"at rest, large depth", &Row::force_large}}};
 
 inline bool is_good(const Row& row) {
   return row.verdict.empty();

@@ -16,7 +16,7 @@ void add_line(std::ostream& out, const Row& r) {
   out << " | " << r.mesh << " | " << three_digits(1e3 * r.setup) << " | " << three_digits(1e6 * r.p99) << ", "
       << three_digits(1e6 * r.worst) << " | " << (r.update_p99 > 0.0 ? three_digits(1e3 * r.update_p99) : "") << " | "
       << three_digits(100.0 * r.force_small) << " | " << three_digits(100.0 * r.force_large) << " | "
-      << three_digits(100.0 * r.felt) << " | " << three_digits(100.0 * r.moved_large) << " | "
+      << three_digits(100.0 * r.in_motion) << " | " << three_digits(100.0 * r.moved_large) << " | "
       << three_digits(100.0 * r.volume_large) << " | "
       << r.verdict + (r.verdict.empty() || r.remark.empty() ? "" : "; ") + r.remark << " |\n";
 }
@@ -33,10 +33,10 @@ std::string summary(const Bench& bench, const std::vector<Row>& rows, double bud
       << " nodes, " << three_digits(ref.force(0, s.small).norm()) << " and "
       << three_digits(ref.force(0, s.large).norm()) << " N, relative error "
       << three_digits(100.0 * ref.mesh_error_small) << " and " << three_digits(100.0 * ref.mesh_error_large)
-      << " %.\n\n![Force error felt over the p99 of a tick](tradeoff-" << s.name << ".svg)\n\n```cpp\n"
+      << " %.\n\n![Force error in motion over the p99 of a tick](tradeoff-" << s.name << ".svg)\n\n```cpp\n"
       << advice(rows, budget) << "```\n\n"
       << "| composition | mesh | set-up [ms] | tick p99, worst [us] | update p99 [ms] | force small [%] | large [%] "
-      << "| felt [%] | moved large [%] | volume large [%] | remark |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+      << "| in motion [%] | moved large [%] | volume large [%] | remark |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   std::set<std::string> shown;
   for (const auto& [title, error] : measures)
     for (const MeasuredComposition& m : trade_off_of(rows, error, true).front()) shown.insert(m.name);

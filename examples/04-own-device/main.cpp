@@ -1,7 +1,7 @@
 // Example 04: your own device.
 //
 // A device is a type with five functions (concepts/haptic_device.hpp): read, write, limits, start, stop. No base class,
-// no registration. held_stylus.hpp is a simulated one, so that this program runs anywhere; an adapter of a real SDK has
+// no registration. simulated_stylus.hpp is a simulated one, so that this program runs anywhere; an adapter of a real SDK has
 // the same structure, and docs/tutorials.md describes units and pitfalls.
 //
 //   1. The concept is checked at compile time: a missing `noexcept` is an error with the name of the function.
@@ -12,7 +12,7 @@
 // A soft hand moves the stylus towards a point 8 mm inside the organ. It must come to rest before, where the force of
 // the hand and the force of the tissue balance; if units, signs or the order of read and write were wrong, it would
 // not. The exit code is 0 when they balance.
-#include "held_stylus.hpp"
+#include "simulated_stylus.hpp"
 
 #include <palpate/palpate.hpp>
 #include <palpate/testing/device_laws.hpp>

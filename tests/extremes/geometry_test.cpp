@@ -34,7 +34,7 @@ Mesh<Tet4> rotated(Mesh<Tet4> mesh) {
   return mesh;
 }
 
-/// Two tetrahedra with `shared` nodes in common: 1 a sphere joint, 2 a hinge, 3 a face.
+/// Two tetrahedra with `shared` nodes in common: 1 a spherical joint, 2 a hinge, 3 a face.
 Mesh<Tet4> joined(int shared) {
   Mesh<Tet4> mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.2, 1, 0}, {0.3, 0.3, 1}};

@@ -1,4 +1,4 @@
-// Connected bodies whose parts can still move: hinges, sphere joints, chains and linkages of blocks.
+// Connected bodies whose parts can still move: hinges, spherical joints, chains and linkages of blocks.
 #include <palpate/mesh/detail/mechanisms.hpp>
 
 #include "extremes/verdict.hpp"
@@ -57,17 +57,17 @@ struct Linkage {
 const std::vector<Linkage> linkages{
     {"a hinge", {{0, 0, 0}, {1, 0, 1}}, {0}, 1},
     {"half a hinge", {{0, 0, 0}, {1, 0.5, 1}}, {0}, 1},
-    {"a sphere joint", {{0, 0, 0}, {1, 1, 1}}, {0}, 3},
+    {"a spherical joint", {{0, 0, 0}, {1, 1, 1}}, {0}, 3},
     {"two hinges in a row", {{0, 0, 0}, {1, 0, 1}, {2, 0, 2}}, {0}, 1},
-    {"a hinge and a sphere joint in a row", {{0, 0, 0}, {1, 0, 1}, {2, 1, 2}}, {0}, 1},
+    {"a hinge and a spherical joint in a row", {{0, 0, 0}, {1, 0, 1}, {2, 1, 2}}, {0}, 1},
     {"four bars", {{0, 0, 0}, {1, 0, 1}, {2, 0, 0}, {1, 0, -1}}, {0}, 1},
-    {"a cube on two sphere joints", {{0, 0, 0}, {1, 1, 1}, {2, 2, 0}}, {0, 2}, 1},
+    {"a cube on two spherical joints", {{0, 0, 0}, {1, 1, 1}, {2, 2, 0}}, {0, 2}, 1},
 };
-/// No part of these can move: hinges that are not parallel, sphere joints that are not collinear.
+/// No part of these can move: hinges that are not parallel, spherical joints that are not collinear.
 const std::vector<Linkage> constrained_linkages{
     {"two hinges across", {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}}, {0, 2}, 0},
     {"three hinges in a corner", {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}}, {0}, 0},
-    {"a hinge and a sphere joint off its axis", {{0, 0, 0}, {1, 0, 1}, {2, 1, 0}}, {0, 2}, 0},
+    {"a hinge and a spherical joint off its axis", {{0, 0, 0}, {1, 0, 1}, {2, 1, 0}}, {0, 2}, 0},
 };
 
 Scene scene_of(const Blocks& b, const Linkage& l) {

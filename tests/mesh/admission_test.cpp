@@ -478,13 +478,13 @@ TEST_CASE("arrays of the caller are used without a copy", "[mesh][arrays]") {
   const std::vector<unsigned> ids{0, 1, 2, 3};
   MeshArrays<Tet4, float, unsigned> view(x, ids);
   const std::vector<NodeId> constrained{0, 2, 1, 0};
-  view.group("held", constrained);
+  view.group("supports", constrained);
   CHECK_THAT(diagnose<Tet4>(view).volume, WithinRel(1.0 / 6.0, 1e-7));
   x[3] = 2.0f;  // the view shows the change: nothing was copied
   CHECK(view.position(1)[0] == 2.0);
   CHECK_THAT(diagnose<Tet4>(view).volume, WithinRel(1.0 / 3.0, 1e-7));
-  const auto a = admit<Tet4>(view, {}, {"held"});
-  CHECK(a.mesh.find_group("held")->nodes == std::vector<NodeId>{0, 1, 2});
+  const auto a = admit<Tet4>(view, {}, {"supports"});
+  CHECK(a.mesh.find_group("supports")->nodes == std::vector<NodeId>{0, 1, 2});
   x[3] = 3.0f;  // the admitted mesh owns its numbers
   CHECK(a.mesh.position(1)[0] == 2.0);
 }

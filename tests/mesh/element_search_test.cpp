@@ -77,7 +77,7 @@ TEST_CASE("points between a sphere and its box are in no element", "[mesh][searc
     inside += found ? 1 : 0;
   }
   CHECK(inside > 900);
-  CHECK(inside < 1100);  // pi / 6 of the box, minus the volume cut off by facets
+  CHECK(inside < 1100);  // pi / 6 of the box, minus what facets cut off
 }
 
 TEST_CASE("the search works for a flat mesh and for a mesh of one element", "[mesh][search]") {

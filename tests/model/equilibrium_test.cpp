@@ -161,7 +161,7 @@ TEST_CASE("equilibrium refuses the meshes that a linear model refuses, with the 
   check("outside", edited([](auto& m) { m.elements[3][2] = 4711; }), scene);
   check("inverted", edited([](auto& m) { std::swap(m.elements[2][0], m.elements[2][1]); }), scene);
   check("empty", edited([](auto& m) { m.elements.clear(); }), scene);
-  check("loose", good(), Scene().fix(std::vector<NodeId>{1, 2}).touch("z1"));
+  check("free", good(), Scene().fix(std::vector<NodeId>{1, 2}).touch("z1"));
   check("two values", good(), Scene().fix("z0").prescribe(std::vector<NodeId>{1}, {1.0, 0.0, 0.0}));
   check("unknown group", good(), Scene().fix("nowhere"));
 }

@@ -177,16 +177,16 @@ TEST_CASE("a free body conserves its momentum and falls with gravity", "[model][
       CHECK((momentum(d) - expected).norm() <= 1e-10 * expected.norm());
     }
   }
-  ImplicitDynamics turning(make_deformable_body(block(), Scene()), {.scheme = TimeScheme::implicit_euler()});
-  VectorX v(turning.displacement().size());
+  ImplicitDynamics rotating(make_deformable_body(block(), Scene()), {.scheme = TimeScheme::implicit_euler()});
+  VectorX v(rotating.displacement().size());
   for (Index i = 0; i < v.size() / 3; ++i)
-    v.segment<3>(3 * i) = Vector3(0.0, 0.0, 5.0).cross(turning.body().positions[static_cast<std::size_t>(i)]);
-  turning.set_state(VectorX::Zero(v.size()), v);
-  const double spin = angular_momentum(turning).z();
+    v.segment<3>(3 * i) = Vector3(0.0, 0.0, 5.0).cross(rotating.body().positions[static_cast<std::size_t>(i)]);
+  rotating.set_state(VectorX::Zero(v.size()), v);
+  const double spin = angular_momentum(rotating).z();
   double before = spin;
   for (int k = 0; k < 50; ++k) {
-    REQUIRE(turning.step(2e-3).newton.converged);
-    const double now = angular_momentum(turning).z();
+    REQUIRE(rotating.step(2e-3).newton.converged);
+    const double now = angular_momentum(rotating).z();
     CHECK(std::abs(now) <=
           std::abs(before) * (1.0 + 1e-9));  // implicit Euler loses angular momentum and never gains any
     before = now;

@@ -144,7 +144,7 @@ Figure anomalies(const Places& p) {
 }
 
 Figure maps(const Places& p) {
-  Figure f{"R13", "stability maps, including hand-held devices", "not run: `sh cmake/run stability`"};
+  Figure f{"R13", "stability maps, including devices in a hand", "not run: `sh cmake/run stability`"};
   const std::string text = read_text(p.others / "stability" / "summary.txt");
   if (text.empty()) return f;
   f.value.clear();

@@ -30,7 +30,7 @@ constexpr const char* planted_v2 = R"(<?xml version="1.0" encoding="UTF-8"?>
         <OverallResults successes="3" failures="1" expectedFailures="0"/>
       </Section>
       <OverallResult success="false">
-        <StdOut>[A1] said</StdOut>
+        <StdOut>[A1] text</StdOut>
       </OverallResult>
     </TestCase>
     <TestCase name="also of A3" tags="[A3]" filename="x.cpp" line="9">

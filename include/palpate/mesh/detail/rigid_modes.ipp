@@ -131,16 +131,16 @@ PALPATE_INLINE std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vect
 PALPATE_INLINE void require_constrained(std::span<const Vector3> positions, std::span<const NodeId> component,
                                         std::span<const std::uint8_t> constrained, const Vector3& origin) {
   const std::vector<FreeRigidModes> all = free_rigid_modes(positions, component, constrained, origin);
-  const auto loose = std::ranges::count_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
-  if (loose == 0) return;
+  const auto free = std::ranges::count_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
+  if (free == 0) return;
   const FreeRigidModes& first = *std::ranges::find_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
   SetupProblem p;
   p.kind = SetupErrorKind::unconstrained;
   p.what = "component " + std::to_string(first.component) + " of " + std::to_string(all.size()) + " has " +
            std::to_string(first.count()) + (first.count() == 1 ? " free rigid motion:" : " free rigid motions:");
   for (std::size_t i = 0; i < first.modes.size(); ++i) p.what += (i == 0 ? " " : ", ") + first.modes[i];
-  if (loose > 1)
-    p.what += "; " + std::to_string(loose - 1) + " more " + (loose == 2 ? "component" : "components") + " can move";
+  if (free > 1)
+    p.what += "; " + std::to_string(free - 1) + " more " + (free == 2 ? "component" : "components") + " can move";
   p.hint = "Prescribe more components of the displacement; a static body needs six independent ones";
   p.ids.assign(first.first_nodes.begin(), first.first_nodes.end());
   p.ids_of = SetupIds::nodes;
