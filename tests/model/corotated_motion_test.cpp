@@ -13,11 +13,11 @@ using Catch::Matchers::WithinAbs;
 
 namespace {
 
-using Law = Corotational<LinearElastic>;
+using Elastic = Corotational<LinearElastic>;
 
-HyperelasticBody<Tet4, Law> pad(double poisson_ratio = 0.4) {
+HyperelasticBody<Tet4, Elastic> pad(double poisson_ratio = 0.4) {
   return make_hyperelastic_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}),
-                                std::vector<Law>{{{5e3, poisson_ratio, 1000.0}}});
+                                std::vector<Elastic>{{{5e3, poisson_ratio, 1000.0}}});
 }
 /// Fixed at the bottom, under its own weight.
 Scene standing() {
@@ -38,8 +38,8 @@ Vector3 momentum_of(const Exact& m) {
   for (Index i = 0; i < m.body().lumped.size(); ++i) sum += m.body().lumped[i] * m.velocity().segment<3>(3 * i);
   return sum;
 }
-double stored(const HyperelasticBody<Tet4, Law>& body, const VectorX& u) {
-  return LargeStrain<Tet4, Law>(body).energy(u);
+double stored(const HyperelasticBody<Tet4, Elastic>& body, const VectorX& u) {
+  return LargeStrain<Tet4, Elastic>(body).energy(u);
 }
 /// A bend that grows with height [m].
 VectorX bent(const Exact& m, double amount) {
@@ -246,7 +246,8 @@ TEST_CASE("co-rotated steps do not allocate", "[model][corotated]") {
 }
 
 TEST_CASE("co-rotated motion refuses what it cannot do", "[model][corotated]") {
-  const auto kind = [](const HyperelasticBody<Tet4, Law>& body, const Scene& scene, CorotatedMotionOptions options) {
+  const auto kind = [](const HyperelasticBody<Tet4, Elastic>& body, const Scene& scene,
+                       CorotatedMotionOptions options) {
     try {
       Exact(body, scene, options);
     } catch (const SetupError& e) {

@@ -41,7 +41,7 @@ Mesh<Tet4> with_flat_element(Mesh<Tet4> mesh) {
   return mesh;
 }
 
-SetupOptions mending() {
+SetupOptions repairing() {
   SetupOptions options;
   options.admission.degenerate = Admission::repair;
   options.admission.duplicate_nodes = Admission::repair;
@@ -127,7 +127,7 @@ TEST_CASE("a welded node has the lowest of its ids", "[model][refusals]") {
                           .fix("x0")
                           .prescribe(std::vector<NodeId>{9}, {1e-3, 0.0, 0.0})
                           .prescribe(std::vector<NodeId>{copy + 1}, {2e-3, 0.0, 0.0});
-  const auto p = refusal([&] { model_of(mesh, scene, mending()); });
+  const auto p = refusal([&] { model_of(mesh, scene, repairing()); });
   CHECK(to_string(p.kind) == "conflicting_conditions");
   CHECK(p.ids == Ids{9});
 }
@@ -142,7 +142,7 @@ TEST_CASE("failed pivots name nodes of the mesh as given", "[model][refusals]") 
   auto& user = *std::ranges::find_if(mesh.elements, [&](const auto& e) { return std::ranges::count(e, twice) > 0; });
   std::ranges::replace(user, twice, NodeId{0});
   mesh.positions.emplace_back(0.05, 0.03, 0.5);
-  SetupOptions options = mending();
+  SetupOptions options = repairing();
   options.admission.orphans = Admission::accept;
   for (const PolicyName policy : {PolicyName::sparse_cholesky, PolicyName::condensed_inverse}) {
     INFO(name(policy));
@@ -158,7 +158,7 @@ TEST_CASE("elements are named as in the mesh as given", "[model][refusals][extre
     Mesh<Tet4> mesh = brick();
     std::swap(mesh.elements[7][0], mesh.elements[7][1]);
     mesh = with_flat_element(std::move(mesh));
-    const auto p = refusal([&] { model_of(mesh, Scene().fix("x0").touch("z1"), mending()); });
+    const auto p = refusal([&] { model_of(mesh, Scene().fix("x0").touch("z1"), repairing()); });
     CHECK(to_string(p.kind) == "inverted_element");
     CHECK(p.ids == Ids{8});
     CHECK_THAT(describe(p), contains("element 8"));
@@ -169,9 +169,10 @@ TEST_CASE("elements are named as in the mesh as given", "[model][refusals][extre
     third[3] = static_cast<NodeId>(mesh.positions.size());
     mesh.positions.emplace_back(0.5, 0.5, 0.5);
     mesh.elements.push_back(third);
-    const auto plain = refusal([&] { model_of(mesh, Scene().fix("x0").touch("z1"), mending()); });
+    const auto plain = refusal([&] { model_of(mesh, Scene().fix("x0").touch("z1"), repairing()); });
     REQUIRE(to_string(plain.kind) == "non_manifold");
-    const auto shifted = refusal([&] { model_of(with_flat_element(mesh), Scene().fix("x0").touch("z1"), mending()); });
+    const auto shifted =
+        refusal([&] { model_of(with_flat_element(mesh), Scene().fix("x0").touch("z1"), repairing()); });
     REQUIRE(shifted.ids.size() == plain.ids.size());
     for (std::size_t k = 0; k < plain.ids.size(); ++k) CHECK(shifted.ids[k] == plain.ids[k] + 1);
   }

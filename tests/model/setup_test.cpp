@@ -139,8 +139,8 @@ TEST_CASE("a repaired mesh is flagged and mapped", "[model][report][extreme][B4]
   const Scene scene = brick_scene().gravity({0, 0, -9.81});
   const auto good = model_of(brick(), scene);
   CHECK_FALSE(good->report().has(SetupFlag::repaired));
-  SetupOptions mend;
-  mend.admission.inverted = Admission::repair;
+  SetupOptions repair_inverted;
+  repair_inverted.admission.inverted = Admission::repair;
   SECTION("orphan nodes are dropped by default") {
     Mesh<Tet4> mesh = brick();
     mesh.positions.insert(mesh.positions.begin(), Vector3(0.05, 0.03, 0.02));
@@ -161,7 +161,7 @@ TEST_CASE("a repaired mesh is flagged and mapped", "[model][report][extreme][B4]
     Mesh<Tet4> mesh = brick();
     std::swap(mesh.elements[7][0], mesh.elements[7][3]);
     CHECK_REFUSED(SetupErrorKind::inverted_element, model_of(mesh, scene));
-    const auto model = model_of(mesh, scene, liver, mend);
+    const auto model = model_of(mesh, scene, liver, repair_inverted);
     CHECK(model->report().has(SetupFlag::repaired));
     CHECK(relative(model->displacement(), good->displacement()) <= 1e-13);
   }

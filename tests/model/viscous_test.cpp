@@ -26,7 +26,7 @@ namespace {
 constexpr double share = 0.5, tau = 0.5, constrained_strain = 0.01;
 using Cube = Viscoelastic<LinearElastic, 1>;
 
-Cube cube_law(Relaxation relaxation) {
+Cube cube_material(Relaxation relaxation) {
   return {LinearElastic{1e4, 0.45, 1000.0}, {{{share, tau}}}, relaxation};
 }
 std::vector<std::vector<double>> oracle_rows(const std::string& name) {
@@ -43,35 +43,35 @@ std::vector<std::vector<double>> oracle_rows(const std::string& name) {
 }
 
 /// The three load cases of a unit cube in the reference, and its stress.
-struct Hold {
+struct LoadCase {
   const char* name;
   std::size_t column;  // of the table, for whole_stress
 };
-constexpr Hold pulled{"uniaxial_free", 1}, confined{"confined", 2}, sheared{"shear", 3};
+constexpr LoadCase pulled{"uniaxial_free", 1}, confined{"confined", 2}, sheared{"shear", 3};
 
 template <Element E>
-Scene constrained_as(const Hold& hold, const Mesh<E>& mesh, double size) {
+Scene constrained_as(const LoadCase& load_case, const Mesh<E>& mesh, double size) {
   const auto along = [](int axis, double u) {
     Components c;
     c[static_cast<std::size_t>(axis)] = u;
     return c;
   };
   Scene scene;
-  if (hold.column == sheared.column) {
+  if (load_case.column == sheared.column) {
     for (const NodeId i : nodes_of(extract_boundary<E>(mesh)))
       scene.prescribe(std::vector<NodeId>{i}, {size * mesh.position(i).y(), 0.0, 0.0});
     return scene;
   }
   scene.prescribe("x0", along(0, 0.0)).prescribe("y0", along(1, 0.0)).prescribe("z0", along(2, 0.0));
   scene.prescribe("x1", along(0, size));
-  if (hold.column == confined.column) scene.prescribe("y1", along(1, 0.0)).prescribe("z1", along(2, 0.0));
+  if (load_case.column == confined.column) scene.prescribe("y1", along(1, 0.0)).prescribe("z1", along(2, 0.0));
   return scene;
 }
 /// Force in x on the face at x = 1 (for shear y = 1) [N], for a unit cube equal to its stress [Pa].
 template <Element E>
-double stress_of(const Hold& hold, const Mesh<E>& mesh, const Equilibrium& body) {
+double stress_of(const LoadCase& load_case, const Mesh<E>& mesh, const Equilibrium& body) {
   const VectorX r = body.reactions();
-  const int axis = hold.column == sheared.column ? 1 : 0;
+  const int axis = load_case.column == sheared.column ? 1 : 0;
   double sum = 0.0;
   for (Index i = 0; i < mesh.node_count(); ++i)
     if (mesh.position(i)[axis] > 1.0 - 1e-9) sum += r[3 * i];
@@ -80,9 +80,9 @@ double stress_of(const Hold& hold, const Mesh<E>& mesh, const Equilibrium& body)
 
 /// Largest relative error over the rows of the table, with `steps` steps between two.
 template <Element E>
-double relaxation_error(const Mesh<E>& mesh, const Hold& hold, Relaxation relaxation, int steps) {
-  Equilibrium body(
-      make_constrained_body(make_body(mesh, cube_law(relaxation)), constrained_as(hold, mesh, constrained_strain)));
+double relaxation_error(const Mesh<E>& mesh, const LoadCase& load_case, Relaxation relaxation, int steps) {
+  Equilibrium body(make_constrained_body(make_body(mesh, cube_material(relaxation)),
+                                         constrained_as(load_case, mesh, constrained_strain)));
   double time = 0.0, worst = 0.0;
   const auto rows = oracle_rows("closed_form_relaxation.csv");
   REQUIRE(rows.size() == 18);
@@ -90,8 +90,8 @@ double relaxation_error(const Mesh<E>& mesh, const Hold& hold, Relaxation relaxa
     const int count = row[0] == 0.0 ? 1 : steps;
     for (int k = 0; k < count; ++k) REQUIRE(body.step((row[0] - time) / count).converged);
     time = row[0];
-    const double exact = row[hold.column + (relaxation == Relaxation::deviatoric ? 3 : 0)];
-    worst = std::max(worst, std::abs(stress_of(hold, mesh, body) / exact - 1.0));
+    const double exact = row[load_case.column + (relaxation == Relaxation::deviatoric ? 3 : 0)];
+    worst = std::max(worst, std::abs(stress_of(load_case, mesh, body) / exact - 1.0));
   }
   return worst;
 }
@@ -107,10 +107,10 @@ TEMPLATE_TEST_CASE("a cube under constant strain relaxes as its closed form", "[
     else
       return box_hex8({1, 1, 1}, {2, 2, 2});
   }();
-  for (const Hold& hold : {pulled, confined, sheared}) {
-    INFO(hold.name);
-    CHECK(relaxation_error(mesh, hold, Relaxation::whole_stress, 1) <= 1e-9);
-    if (hold.column != pulled.column) CHECK(relaxation_error(mesh, hold, Relaxation::deviatoric, 1) <= 1e-9);
+  for (const LoadCase& load_case : {pulled, confined, sheared}) {
+    INFO(load_case.name);
+    CHECK(relaxation_error(mesh, load_case, Relaxation::whole_stress, 1) <= 1e-9);
+    if (load_case.column != pulled.column) CHECK(relaxation_error(mesh, load_case, Relaxation::deviatoric, 1) <= 1e-9);
   }
   // The sides move during deviatoric relaxation: second-order accurate.
   const double rough = relaxation_error(mesh, pulled, Relaxation::deviatoric, 10);
@@ -123,16 +123,16 @@ TEST_CASE("a ramp is exact for any step, creep is of second order", "[model][vis
   const Mesh<Hex8> mesh = box_hex8({1, 1, 1}, {2, 2, 2});
   const auto rows = oracle_rows("closed_form_ramp_creep_harmonic.csv");
   REQUIRE(rows.size() == 18);
-  for (const Hold& hold : {sheared, pulled}) {
-    Equilibrium body(make_constrained_body(make_body(mesh, cube_law(Relaxation::whole_stress)),
-                                           constrained_as(hold, mesh, constrained_strain)));
+  for (const LoadCase& load_case : {sheared, pulled}) {
+    Equilibrium body(make_constrained_body(make_body(mesh, cube_material(Relaxation::whole_stress)),
+                                           constrained_as(load_case, mesh, constrained_strain)));
     const VectorX full = body.conditions().prescribed;
     double time = 0.0;
     for (const auto& row : rows) {
       body.set_prescribed(std::min(row[0] / 0.2, 1.0) * full);
       REQUIRE(body.step(row[0] - time).converged);
       time = row[0];
-      CHECK_THAT(stress_of(hold, mesh, body), WithinAbs(row[hold.column == sheared.column ? 1 : 2], 1e-8));
+      CHECK_THAT(stress_of(load_case, mesh, body), WithinAbs(row[load_case.column == sheared.column ? 1 : 2], 1e-8));
     }
   }
   const auto creep_error = [&](int steps) {
@@ -140,7 +140,7 @@ TEST_CASE("a ramp is exact for any step, creep is of second order", "[model][vis
     Scene loaded;
     loaded.prescribe("x0", no_x).prescribe("y0", no_y).prescribe("z0", Components{std::nullopt, std::nullopt, 0.0});
     loaded.traction("x1", {100.0, 0.0, 0.0});
-    Equilibrium body(make_constrained_body(make_body(mesh, cube_law(Relaxation::whole_stress)), loaded));
+    Equilibrium body(make_constrained_body(make_body(mesh, cube_material(Relaxation::whole_stress)), loaded));
     double time = 0.0, worst = 0.0;
     for (const auto& row : rows) {
       const int count = row[0] == 0.0 ? 1 : steps;
@@ -161,8 +161,8 @@ TEST_CASE("a ramp is exact for any step, creep is of second order", "[model][vis
 TEST_CASE("the response to harmonic strain has the complex modulus", "[model][viscous][oracle]") {
   const Mesh<Hex8> mesh = box_hex8({1, 1, 1}, {2, 2, 2});
   const auto error = [&](const std::vector<double>& row, int steps) {
-    Equilibrium body(
-        make_constrained_body(make_body(mesh, cube_law(Relaxation::deviatoric)), constrained_as(sheared, mesh, 1.0)));
+    Equilibrium body(make_constrained_body(make_body(mesh, cube_material(Relaxation::deviatoric)),
+                                           constrained_as(sheared, mesh, 1.0)));
     const VectorX full = body.conditions().prescribed;
     const double h = period / row[0] / steps;
     const int still = steps * (1 + static_cast<int>(20.0 * tau * row[0] / period));  // until transients have decayed
@@ -195,8 +195,8 @@ TEST_CASE("each region relaxes with its own time constant", "[model][viscous]") 
   mesh.regions.assign(2, 0);
   mesh.regions[1] = 1;
   const LinearElastic base{1e4, 0.0, 1000.0};  // in a row: the same force in both
-  const RegionMaterials<Cube> laws{{"left", Cube{base, {{{0.5, 0.1}}}}}, {"right", Cube{base, {{{0.3, 10.0}}}}}};
-  Equilibrium body(make_constrained_body(make_body(mesh, laws), constrained_as(pulled, mesh, constrained_strain)));
+  const RegionMaterials<Cube> materials{{"left", Cube{base, {{{0.5, 0.1}}}}}, {"right", Cube{base, {{{0.3, 10.0}}}}}};
+  Equilibrium body(make_constrained_body(make_body(mesh, materials), constrained_as(pulled, mesh, constrained_strain)));
   REQUIRE(body.step(0.0).converged);
   CHECK_THAT(stress_of(pulled, mesh, body), WithinRel(100.0, 1e-9));
   REQUIRE(body.step(infinity).converged);
@@ -234,7 +234,7 @@ TEST_CASE("at small strain both kinematics agree", "[model][viscous]") {
   for (const auto relaxation : {Relaxation::whole_stress, Relaxation::deviatoric}) {
     const double small = 1e-6;
     Equilibrium linear(
-        make_constrained_body(make_body(mesh, cube_law(relaxation)), constrained_as(pulled, mesh, small)));
+        make_constrained_body(make_body(mesh, cube_material(relaxation)), constrained_as(pulled, mesh, small)));
     Equilibrium large(make_hyperelastic_body(mesh, std::vector{Viscoelastic<NeoHookean, 1>{
                                                        {1e4, 0.45, 1000.0}, {{{share, tau}}}, relaxation}}),
                       constrained_as(pulled, mesh, small));
@@ -399,7 +399,7 @@ TEST_CASE("viscoelastic bodies refuse unsupported set-ups", "[model][viscous]") 
   const Scene constrained = Scene().fix("z0");
   CHECK(kind([&] { make_constrained_body(make_body(mesh, whole), constrained); }) == SetupErrorKind::cancelled);
   CHECK(kind([&] { make_constrained_body(make_body(mesh, shape), constrained); }) == SetupErrorKind::unsupported);
-  const Cube cube = cube_law(Relaxation::whole_stress);
+  const Cube cube = cube_material(Relaxation::whole_stress);
   CHECK(kind([&] { make_constrained_body(make_body(mesh, cube), Scene()); }) == SetupErrorKind::unconstrained);
   CHECK(kind([&] {
           Scene expanding = constrained;

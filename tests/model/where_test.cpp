@@ -119,23 +119,23 @@ TEST_CASE("moving tissue accepts positions instead of names", "[model][where]") 
     CHECK(named.touchable_nodes() == placed.touchable_nodes());
     check_same_surface(named, placed);
   };
-  const SetupOptions mending{.admission = drop_orphans()};
+  const SetupOptions repairing{.admission = drop_orphans()};
   using Rubber = HapticFEModel<Tet4, NeoHookean, Implicit<Newton<SparseCholesky>>>;
   const NeoHookean rubber{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0};
-  check(Rubber(distant_slab(), by_name(), rubber, mending), Rubber(distant_slab(), by_place(), rubber, mending));
+  check(Rubber(distant_slab(), by_name(), rubber, repairing), Rubber(distant_slab(), by_place(), rubber, repairing));
   using Corotated = HapticFEModel<Tet4, Corotational<LinearElastic>, Implicit<MatrixFreeCG<BlockJacobi>>>;
   const Corotational<LinearElastic> material{tissue_law};
-  check(Corotated(distant_slab(), by_name(), material, mending),
-        Corotated(distant_slab(), by_place(), material, mending));
+  check(Corotated(distant_slab(), by_name(), material, repairing),
+        Corotated(distant_slab(), by_place(), material, repairing));
 }
 
 TEST_CASE("cuttable tissue accepts positions instead of names", "[model][cut][where]") {
   using Cut = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
   const CutParameters by_group{.cuttable = Selection("x1")},
       by_point{.cuttable = where::above(Vector3(slab_place + Vector3(slab_size[0], 0, 0)), Vector3::UnitX())};
-  const SetupOptions mending{.admission = drop_orphans()};
-  Cut named(distant_slab(), by_name(), tissue_law, mending, by_group),
-      placed(distant_slab(), by_place(), tissue_law, mending, by_point);
+  const SetupOptions repairing{.admission = drop_orphans()};
+  Cut named(distant_slab(), by_name(), tissue_law, repairing, by_group),
+      placed(distant_slab(), by_place(), tissue_law, repairing, by_point);
   check_same_surface(named, placed);
   CHECK(named.cut_report().kept == placed.cut_report().kept);
   CHECK(named.displacement() == placed.displacement());
@@ -158,9 +158,9 @@ TEST_CASE("cuttable tissue accepts positions instead of names", "[model][cut][wh
 
 TEST_CASE("equilibrium accepts positions instead of names", "[model][equilibrium][where]") {
   const Mesh<Tet4> mesh = admit<Tet4>(distant_slab(), drop_orphans()).mesh;
-  const std::vector<NeoHookean> laws{{5e3, 0.4, 1000.0}};
-  Equilibrium named(make_hyperelastic_body(mesh, laws), by_name()),
-      placed(make_hyperelastic_body(mesh, laws), by_place());
+  const std::vector<NeoHookean> materials{{5e3, 0.4, 1000.0}};
+  Equilibrium named(make_hyperelastic_body(mesh, materials), by_name()),
+      placed(make_hyperelastic_body(mesh, materials), by_place());
   CHECK(named.solve().converged);
   CHECK(placed.solve().converged);
   CHECK(named.displacement() == placed.displacement());

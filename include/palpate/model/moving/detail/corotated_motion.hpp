@@ -180,7 +180,7 @@ class CorotatedMotion {
   void remove_elements(Gone&& gone, const VectorX& nodal_mass, const VectorX& load) {
     require_mass_left(nodal_mass, load);
     tetrahedra_.remove_if(gone);
-    hold_bare(nodal_mass);
+    constrain_bare(nodal_mass);
     body_.lumped = nodal_mass;
     mass_ = mass_of_dofs(nodal_mass);
     load_ = body_.load = load;
@@ -239,7 +239,7 @@ class CorotatedMotion {
               "Give lumped_mass(body, gone)");
   }
   /// Constrains the nodes that have no element left.
-  void hold_bare(const VectorX& mass) {
+  void constrain_bare(const VectorX& mass) {
     EssentialConditions& c = body_.conditions;
     for (Index dof = 0; dof < size(); ++dof) {
       if (mass[dof / 3] > 0.0 || !(body_.lumped[dof / 3] > 0.0)) continue;

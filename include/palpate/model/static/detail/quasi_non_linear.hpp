@@ -111,7 +111,7 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
   }
   void settle(const Vector3& axis, double along, double across) noexcept {
     const double next_along = midway(along_, axial_.ratio(along)), next_across = midway(across_, radial_.ratio(across));
-    const bool same_axis = along_ == across_ || (axis - axis_).norm() <= unfelt;
+    const bool same_axis = along_ == across_ || (axis - axis_).norm() <= imperceptible;
     if (next_along == along_ && next_across == across_ && same_axis) return;
     along_ = next_along;
     across_ = next_across;
@@ -121,7 +121,7 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
   }
   /// Ignores imperceptible changes, so that a steady contact keeps its compliances.
   static double midway(double now, double wanted) noexcept {
-    return std::abs(wanted - now) <= unfelt * now ? now : 0.5 * (now + wanted);
+    return std::abs(wanted - now) <= imperceptible * now ? now : 0.5 * (now + wanted);
   }
   void set_scale() noexcept {
     const double b = 1.0 / std::sqrt(across_);
@@ -129,7 +129,7 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
     for (int c = 0; c < 3; ++c) scale_(c, c) += b;
   }
 
-  static constexpr double unfelt = 1e-5;  // relative, and radians of the axis
+  static constexpr double imperceptible = 1e-5;  // relative, and radians of the axis
 
   StiffeningCurve axial_, radial_;
   double along_, across_;
