@@ -2,6 +2,7 @@
 #include <palpate/device/mock_device.hpp>
 #include <palpate/testing/open_gate.hpp>
 #include <palpate/device/placement.hpp>
+#include <palpate/haptic/energy_tank.hpp>
 #include <palpate/testing/device_laws.hpp>
 #include <palpate/testing/random.hpp>
 
@@ -130,6 +131,19 @@ TEST_CASE("invalid placements are refused", "[device][placement][extreme]") {
   refused([](Placement& p) { p.rotation *= 1.001; });
   refused([](Placement& p) { p.rotation.col(0) *= -1.0; });
   refused([&](Placement& p) { p.rotation(0, 0) = nan; });
+}
+
+TEST_CASE("energy limits of a placed device are those of the device, in the scene's units", "[device][placement]") {
+  Placement p = some_placement();
+  p.scale = 10.0;
+  p.force_scale = 2.0;
+  const StillDevice device;
+  const EnergyLimits own = EnergyLimits::from(device.limits()),
+                     placed = EnergyLimits::from(p.limits_in_scene(device.limits()));
+  CHECK_THAT(placed.allowance, WithinRel(5.0 * own.allowance, 1e-12));
+  CHECK_THAT(placed.refill, WithinRel(5.0 * own.refill, 1e-12));
+  CHECK_THAT(placed.capacity, WithinRel(5.0 * own.capacity, 1e-12));
+  CHECK_THAT(placed.damping, WithinRel(own.damping / 20.0, 1e-12));
 }
 
 TEST_CASE("a placed device is a HapticDevice", "[device][placement]") {

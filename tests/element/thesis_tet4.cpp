@@ -15,7 +15,7 @@ namespace {
 template <class E>
 std::set<std::string> broken_laws() {
   std::set<std::string> laws;
-  for (const auto& v : testing::element_laws<E>()) laws.insert(v.material);
+  for (const auto& v : testing::element_laws<E>()) laws.insert(v.law);
   return laws;
 }
 using Laws = std::set<std::string>;

@@ -1,5 +1,6 @@
 // A haptic session with extreme input: catalogue D of the extremes.
 #include "contact/servo_session.hpp"
+#include "refused.hpp"
 
 #include <palpate/testing/random.hpp>
 
@@ -474,4 +475,16 @@ TEST_CASE("a missing compliance column does not make the contact rigid", "[hapti
   CHECK(session.forces[0].status.has(StatusFlag::degraded_model));
   CHECK(session.forces[0].force().allFinite());
   CHECK(session.forces[0].force().norm() <= 1.5 * reference.forces[0].force().norm());
+}
+
+TEST_CASE("a coupling too soft for its compliance to be a number is refused", "[haptic][servo][extreme][D7]") {
+  test::Pad& pad = test::whole_pad();
+  for (const double soft : {0.0, -1.0, 1e-320, 1e-7, std::numeric_limits<double>::quiet_NaN()}) {
+    ServoOptions options;
+    options.coupling_stiffness = soft;
+    CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(pad, SphereTool{}, options));
+    options = {};
+    options.rotational_stiffness = soft;
+    CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(pad, CapsuleTool(SphereTool{}), options));
+  }
 }

@@ -72,6 +72,7 @@ class ContactProblem {
   void prefetch(const TissueView& tissue) noexcept;
   bool solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;
   void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
+  void share_rows(Tools tools) noexcept;
   inline void note_pressing(Candidate& c) noexcept;
   void predict_normals(int iteration) noexcept;
   bool add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
@@ -86,6 +87,8 @@ class ContactProblem {
   ProxyMotion proxies_;
   std::array<Grasp, maximum_tools> grasps_{};
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
+  std::array<int, maximum_tools> pressing_of_{};  // per tool
+  int share_ = 1;                                 // rows per tool
   bool arrived_ = true;  // proxies are at the solution of the last linearisation
   double feedback_ = 0.0;
   double floor_ = 0.0;

@@ -38,14 +38,31 @@ inline bool ContactProblem::is_grasped(const Candidate& c) const noexcept {
   return c.sample == grasps_[at(c.tool)].sample;
 }
 
-/// Normally all fit: no more points press than there were rows.
+/// Tools that have points near share the rows equally: none takes those of another.
+PALPATE_INLINE void ContactProblem::share_rows(Tools tools) noexcept {
+  int near = 0;
+  for (std::size_t t = 0; t < tools.size(); ++t) near += tools[t].active && candidates_.has_any(static_cast<int>(t));
+  share_ = std::max(1, rows_.capacity() / std::max(1, near));
+}
+
+/// A tool with more pressing points than its share keeps those that press most.
 inline void ContactProblem::note_pressing(Candidate& c) noexcept {
   c.row = -1;
   if (c.grasped || !(c.force > 0.0)) return;
-  if (pressing_count_ < rows_.capacity())
+  int& own = pressing_of_[at(c.tool)];
+  if (own < share_ && pressing_count_ < rows_.capacity()) {
+    ++own;
     pressing_[at(pressing_count_++)] = &c;
-  else
-    c.lift();
+    return;
+  }
+  Candidate** weakest = nullptr;
+  for (int i = 0; i < pressing_count_; ++i) {
+    Candidate*& other = pressing_[at(i)];
+    if (other->tool == c.tool && other->force < (weakest == nullptr ? c : **weakest).force) weakest = &other;
+  }
+  if (weakest == nullptr) return c.lift();
+  (*weakest)->lift();
+  *weakest = &c;
 }
 
 PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<ContactTool> tools) noexcept {
@@ -61,7 +78,10 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
     proxies_.begin(tools);
     status |= candidates_.update(tissue, tools, displacement_);
-    if (iteration == 0) grasp(tissue, tools);
+    if (iteration == 0) {
+      grasp(tissue, tools);
+      share_rows(tools);
+    }
     if (candidates_.is_new()) prefetch(tissue);
     std::swap(start_, displacement_);
     if (!solve_linearised(tissue, tools, iteration, status)) {
@@ -185,6 +205,7 @@ PALPATE_INLINE bool ContactProblem::solve_linearised(const TissueView& tissue, T
 /// Lists the candidates that press and updates their geometry for the present positions of sphere and surface.
 PALPATE_INLINE void ContactProblem::gather_pressing(const TissueView& tissue, Tools tools) noexcept {
   pressing_count_ = 0;
+  pressing_of_.fill(0);
   if (candidates_.is_new()) {
     for (Candidate& c : candidates_.items()) note_pressing(c);
   } else {
@@ -239,13 +260,29 @@ PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools
     const double gap = c.gap + c.normal.dot(ahead.path + c.along * ahead.axis - moved);
     if (gap < -allowed) violated_[at(violated_count_++)] = {gap, &c};
   }
-  const auto wanted = std::min(violated_count_, added_per_round);
-  std::partial_sort(violated_.begin(), violated_.begin() + wanted, violated_.begin() + violated_count_,
+  std::array<int, maximum_tools> own = rows_.count_by_tool();
+  std::array<int, maximum_tools> wanted = own;
+  bool crowded = rows_.count() + std::min(violated_count_, added_per_round) > rows_.capacity();
+  for (int i = 0; i < violated_count_; ++i)
+    crowded = ++wanted[at(violated_[at(i)].candidate->tool)] > share_ || crowded;
+  if (crowded && violated_count_ > 0 && rows_.drop_idle()) {
+    built = 0;
+    own = rows_.count_by_tool();
+  }
+  const auto end = std::partition(violated_.begin(), violated_.begin() + violated_count_,
+                                  [&](const Violated& v) { return own[at(v.candidate->tool)] < share_; });
+  const auto fitting = static_cast<int>(end - violated_.begin());
+  const int adding = std::min({fitting, added_per_round, rows_.capacity() - rows_.count()});
+  std::partial_sort(violated_.begin(), violated_.begin() + adding, end,
                     [](const Violated& a, const Violated& b) { return a.gap < b.gap; });
-  if (rows_.count() + wanted > rows_.capacity() && rows_.drop_idle()) built = 0;
-  const int room = std::min(wanted, rows_.capacity() - rows_.count());
-  for (int i = 0; i < room; ++i) rows_.add(tissue.contact_surface(), candidates_, *violated_[at(i)].candidate);
-  return room > 0 || wanted == 0;
+  int added = 0;
+  for (int i = 0; i < adding; ++i) {
+    Candidate& c = *violated_[at(i)].candidate;
+    if (own[at(c.tool)]++ >= share_) continue;
+    rows_.add(tissue.contact_surface(), candidates_, c);
+    ++added;
+  }
+  return added > 0 || violated_count_ == 0;
 }
 
 /// Takes the step to the solution, or the part of it within which the list of candidates is complete.

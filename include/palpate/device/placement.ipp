@@ -53,6 +53,7 @@ PALPATE_INLINE GatedForce Placement::to_device(const GatedForce& scene) const no
 
 PALPATE_INLINE DeviceLimits Placement::limits_in_scene(const DeviceLimits& device) const noexcept {
   DeviceLimits scene = device;
+  scene.length_scale = scale * device.length_scale;
   scene.peak_force = device.peak_force / force_scale;
   scene.continuous_force = device.continuous_force / force_scale;
   scene.peak_torque = device.peak_torque * scale / force_scale;

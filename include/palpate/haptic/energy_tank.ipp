@@ -13,7 +13,7 @@ PALPATE_INLINE EnergyLimits EnergyLimits::from(const DeviceLimits& device) {
   EnergyLimits limits;
   limits.damping = 0.5 * device.stiffness / device.rate;
   limits.allowance = limits.refill = 0.05 * device.peak_force * device.peak_force / device.stiffness;
-  limits.capacity = std::max(0.03 * device.peak_force, limits.allowance);
+  limits.capacity = std::max(0.03 * device.length_scale * device.peak_force, limits.allowance);
   return limits;
 }
 

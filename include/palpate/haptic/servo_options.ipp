@@ -24,6 +24,9 @@ PALPATE_INLINE double detail::stable_at(double rate, const DeviceLimits& device,
 
 namespace detail {
 
+/// [N/m] and [N m/rad]; no hand feels less, and its compliance is far from overflow.
+inline constexpr double softest_coupling = 1e-6;
+
 [[noreturn]] inline void refuse_stiffness(std::size_t tool, const char* which, double value, const char* hint) {
   SetupProblem problem;
   problem.what = std::string("the ") + which + " stiffness is " + number(value);
@@ -38,8 +41,8 @@ PALPATE_INLINE double coupling_stiffness_of(std::size_t tool, const ServoOptions
   const DeviceLimits& device = options.device_of(tool);
   const double stiffness =
       options.coupling_stiffness.value_or(stable_at(options.tick_rate(), device, device.stiffness));
-  if (!(stiffness > 0.0))
-    refuse_stiffness(tool, "coupling", stiffness, "It must be positive, in N/m; infinity is allowed");
+  if (!(stiffness >= softest_coupling))
+    refuse_stiffness(tool, "coupling", stiffness, "It must be at least 1e-6 N/m; infinity is allowed");
   return stiffness;
 }
 
@@ -49,9 +52,9 @@ inline ContactTool make_contact_tool(const CapsuleTool& tool, std::size_t i, con
   const bool renders_torque = device.rotational_stiffness > 0.0 || options.limits(i).peak_torque > 0.0;
   const double rotational = options.rotational_stiffness.value_or(
       renders_torque ? stable_at(rate, device, device.rotational_stiffness) : infinity);
-  if (!(rotational > 0.0))
+  if (!(rotational >= softest_coupling))
     refuse_stiffness(i, "rotational", rotational,
-                     "A device that renders torque needs a positive one, in N m/rad; infinity is allowed");
+                     "A device that renders torque needs at least 1e-6 N m/rad; infinity is allowed");
   tool.require_valid();
   ContactTool made;
   made.radius = tool.radius;

@@ -26,6 +26,7 @@ class ContactRows {
   int capacity() const noexcept { return capacity_; }
   int count() const noexcept { return count_; }
   std::span<const Contact> contacts() const noexcept { return {rows_.data(), at(count_)}; }
+  std::array<int, maximum_tools> count_by_tool() const noexcept;
   Candidate& candidate(int row) noexcept { return *candidate_[at(row)]; }
 
   /// The caller guarantees that there is room.

@@ -128,6 +128,12 @@ PALPATE_INLINE void ContactRows::add(const ContactSurface& surface, const Candid
   row.grasped = c.grasped;
 }
 
+PALPATE_INLINE std::array<int, maximum_tools> ContactRows::count_by_tool() const noexcept {
+  std::array<int, maximum_tools> counts{};
+  for (const Contact& row : contacts()) ++counts[at(row.tool)];
+  return counts;
+}
+
 PALPATE_INLINE bool ContactRows::drop_idle() noexcept {
   const auto works = [this](int i) { return rows_[at(i)].force > 0.0 || candidate_[at(i)]->grasped; };
   int kept = 0;

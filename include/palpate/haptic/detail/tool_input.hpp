@@ -58,8 +58,11 @@ class ToolInput {
 
   void rotate(const Quaternion<double>& orientation, const Eigen::Isometry3d& pose, ContactTool& tool) noexcept;
 
-  /// A tool that moved farther than its diameter restarts where its path first met the surface, otherwise at its new
-  /// position: it cannot pass through a surface at any speed.
+  /// The reading is lost: nothing presses the tool until the next one.
+  void lose_reading(std::span<const Contact> contacts, ContactTool& tool) noexcept;
+
+  /// A tool that moved farther than its diameter, or whose readings return, is swept from its proxy: it passes through
+  /// nothing. Without a proxy it is placed beside the surface.
   void follow(const Vector3& position, const ContactSurface& surface, std::span<const Contact> contacts,
               ContactTool& tool) noexcept;
 
@@ -71,6 +74,8 @@ class ToolInput {
   double time_ = 0.0;
   double news_ = 0.0;   // time of the last update of the tissue
   bool known_ = false;  // position_ is valid
+  bool has_proxy_ = false;    // while not known_: the proxy is that of the last reading
+  bool needs_press_ = false;  // a grasp begins with a press of the button, not with a reading
   bool readable_ = false, restarted_ = false, rotates_;
   std::uint32_t grasp_buttons_;
   Status status_;

@@ -15,10 +15,12 @@ PALPATE_INLINE void ToolInput::take(const ToolState& state, const Eigen::Isometr
                                     ContactTool& tool) noexcept {
   tool.motion.setZero();
   tool.end_path = 0.0;
-  if (!state.valid) tool.lift();
+  if (!state.valid && known_) lose_reading(contacts, tool);
   Pose taken{position_, {1.0, 0.0, 0.0, 0.0}};
   if (!accept(state, pose, taken)) return;
-  tool.grasping = (state.buttons & grasp_buttons_) != 0;
+  const bool pressed = (state.buttons & grasp_buttons_) != 0;
+  needs_press_ = needs_press_ && pressed;
+  tool.grasping = pressed && !needs_press_;
   if (rotates_) rotate(taken.orientation, pose, tool);
   follow(taken.position, surface, contacts, tool);
 }
@@ -63,8 +65,17 @@ PALPATE_INLINE void ToolInput::note_tissue(bool has_news) noexcept {
 }
 
 PALPATE_INLINE void ToolInput::lose() noexcept {
-  known_ = false;
+  known_ = has_proxy_ = false;
+  needs_press_ = true;
   status_.set(StatusFlag::reacquired);
+}
+
+/// The tool stays where its proxy is; without its force the surface springs back and lifts it.
+PALPATE_INLINE void ToolInput::lose_reading(std::span<const Contact> contacts, ContactTool& tool) noexcept {
+  if (tool.active) tool.proxy = off_surface(contacts, tool);
+  has_proxy_ = tool.active;
+  needs_press_ = true;
+  tool.lift();
 }
 
 PALPATE_INLINE void ToolInput::reset() noexcept {
@@ -91,15 +102,16 @@ PALPATE_INLINE void ToolInput::rotate(const Quaternion<double>& orientation, con
 PALPATE_INLINE void ToolInput::follow(const Vector3& position, const ContactSurface& surface,
                                       std::span<const Contact> contacts, ContactTool& tool) noexcept {
   const Vector3 motion = position - position_;
-  restarted_ = !known_;
-  if (!known_) {
-    place_beside(tool, surface, position);
-  } else if (motion.norm() + tool.end_path > 2.0 * tool.radius) {
-    sweep(tool, surface, off_surface(contacts, tool), position);
+  const bool leaps = known_ && motion.norm() + tool.end_path > 2.0 * tool.radius;
+  restarted_ = !known_ || leaps;
+  if (leaps || (!known_ && has_proxy_)) {
+    sweep(tool, surface, leaps ? off_surface(contacts, tool) : tool.proxy, position);
     tool.end_path = 0.0;
     tool.grasping = false;
-    restarted_ = true;
+    needs_press_ = true;
     status_.set(StatusFlag::reacquired);
+  } else if (!known_) {
+    place_beside(tool, surface, position);
   } else {
     tool.motion = motion;
   }

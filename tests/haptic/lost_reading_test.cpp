@@ -1,0 +1,114 @@
+// What a tool does when readings of its pose are lost: no thin tissue is passed, no grasp begins by itself.
+#include "contact/servo_session.hpp"
+
+#include "catch.hpp"
+
+using namespace palpate;
+
+namespace {
+
+/// A plate of 4 mm, fixed at two sides, touchable above and below.
+test::Pad thin_plate() {
+  Scene scene;
+  scene.fix("x0").fix("x1").touch("z0").touch("z1");
+  return test::Pad(box_tet4(Vector3(0.06, 0.06, 0.004), {12, 12, 2}, BoxSplit::six), scene,
+                   LinearElastic{.youngs_modulus = 5e4, .poisson_ratio = 0.3});
+}
+
+struct Session {
+  HapticServo servo;
+  ToolState state;
+  GatedForce force;
+
+  explicit Session(test::Pad& pad, const ServoOptions& options = {}, double radius = test::sphere_radius)
+      : servo(pad, SphereTool{.radius = radius}, options) {}
+  const GatedForce& tick(const Vector3& position, bool valid = true) {
+    state.time += 1e-3;
+    state.position = position;
+    state.valid = valid;
+    return force = servo.tick(state);
+  }
+  void move(const Vector3& from, const Vector3& to, int ticks) {
+    for (int i = 1; i <= ticks; ++i) tick(from + (to - from) * i / ticks);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a lost reading does not move the tool through thin tissue", "[haptic][servo][extreme][D5]") {
+  test::Pad plate = thin_plate();
+  const int lost = GENERATE(1, 5, 200);
+  Session s(plate);
+  const Vector3 above(0.0301, 0.0293, 0.012), pressed(0.0301, 0.0293, 0.0);
+  s.tick(above);
+  s.move(above, pressed, 200);
+  for (int i = 0; i < 300; ++i) s.tick(pressed);
+  const double before = s.force.force()[2];
+  REQUIRE(before > 0.05);
+  for (int i = 0; i < lost; ++i) CHECK(s.tick(pressed, false).force().norm() == 0.0);
+  CHECK(s.tick(pressed).status.has(StatusFlag::reacquired));
+  for (int i = 0; i < 500; ++i) CHECK(s.tick(pressed).force()[2] >= 0.0);
+  CHECK(std::abs(s.force.force()[2] - before) <= 1e-3 * before);
+}
+
+TEST_CASE("while readings are lost the hand may go anywhere: the tool is swept from where it was",
+          "[haptic][servo][extreme][D5]") {
+  test::Pad plate = thin_plate();
+  Session s(plate);
+  const Vector3 above(0.0301, 0.0293, 0.012), below(0.0301, 0.0293, -0.008);
+  s.tick(above);
+  s.move(above, Vector3(0.0301, 0.0293, 0.006), 100);
+  s.tick(above, false);
+  for (int i = 0; i < 400; ++i) s.tick(below);
+  CHECK(s.force.force()[2] > 0.1);  // it is above the plate, which it dents
+}
+
+TEST_CASE("a grasp begins with a press of the button, not with a reading that returns", "[haptic][servo][grasp]") {
+  test::Pad pad = test::make_pad("z1");
+  ServoOptions options;
+  options.grasp_buttons = 1;
+  Session s(pad, options);
+  const double touching = test::pad_height + test::sphere_radius - 2e-4;
+  const Vector3 above(0.0137, 0.0159, test::pad_height + 0.01), on(0.0137, 0.0159, touching);
+  s.tick(above);
+  s.move(above, on, 100);
+  s.state.buttons = 1;
+  s.tick(on);
+  REQUIRE(s.servo.is_holding());
+  s.tick(on, false);
+  s.tick(on);
+  for (int i = 0; i < 50; ++i) s.tick(on);
+  CHECK_FALSE(s.servo.is_holding());
+  s.move(on, above, 100);
+  CHECK(s.force.force().norm() == 0.0);
+  s.move(above, on, 100);
+  s.state.buttons = 0;
+  s.tick(on);
+  s.state.buttons = 1;
+  s.tick(on);
+  CHECK(s.servo.is_holding());
+}
+
+TEST_CASE("a tool has its share of the rows, whatever the other presses", "[haptic][servo][extreme][D9]") {
+  test::Pad pad = test::make_pad("z1", 1e4, {20, 20, 4});
+  const bool large_first = GENERATE(false, true);
+  const SphereTool large{.radius = 40e-3}, small{.radius = 4e-3};
+  ServoOptions options;
+  options.contact.capacity = 24;
+  const auto pressed_force = [&](bool both) {
+    HapticServo servo(pad, large_first ? ToolList{large, small} : ToolList{small, large}, options);
+    std::array<ToolState, 2> states;
+    ToolState &big = states[large_first ? 0 : 1], &little = states[large_first ? 1 : 0];
+    for (int i = 0; i < 400; ++i) {
+      const double first = std::min(1.0, i / 150.0), second = std::clamp((i - 150) / 150.0, 0.0, 1.0);
+      big.time = little.time = 1e-3 * i;
+      big.position = Vector3(0.008, 0.015, test::pad_height + 40e-3 + (both ? 1e-3 - 5e-3 * first : 20e-3));
+      little.position = Vector3(0.026, 0.015, test::pad_height + 4e-3 + 1e-3 - 3e-3 * second);
+      servo.tick(states);
+    }
+    return servo.contact_force(large_first ? 1 : 0).norm();
+  };
+  const double alone = pressed_force(false);
+  REQUIRE(alone > 0.05);
+  CHECK(pressed_force(true) > 0.5 * alone);
+}
