@@ -43,8 +43,13 @@ class ContactSurface {
   void set_loads(std::string loads) noexcept { unloaded_.loads = std::move(loads); }
   const Unloaded& unloaded() const noexcept { return unloaded_; }
 
-  /// Moves the resting surface (new loads, new pose of the loads). No allocation; not while a tick runs.
+  /// Moves the resting surface (new loads, new pose of the loads). No allocation; not while a tick runs. Vertices
+  /// beyond those given stay: give those of the shell, too, where there is one.
   void move_to(std::span<const Vector3> positions) noexcept;
+
+  /// Adds the boundary of the body that cannot be touched: the positions of its further vertices, and its triangles,
+  /// which number those after vertex_count(). Decides where closest_of_body is inside. Allocates; for set-up.
+  void add_shell(std::span<const Vector3> positions, const std::vector<Triangle>& triangles);
 
   /// The closest point of the resting surface: triangle, point, and signed distance (negative inside) by the
   /// angle-weighted pseudo-normal of the closest feature (Baerentzen and Aanaes 2005). Where the closest feature is on
@@ -56,6 +61,12 @@ class ContactSurface {
     double distance = infinity;
   };
   Closest closest(const Vector3& p) const noexcept;
+  /// The same, signed by the whole boundary of the body where there is a shell. Without triangle, and infinite, where
+  /// the shell is closer than the touchable surface.
+  Closest closest_of_body(const Vector3& p) const noexcept;
+  bool has_shell() const noexcept { return !body_.empty(); }
+  /// Whether a point is in the body or, without a shell, behind the touchable surface.
+  bool is_inside(const Vector3& p) const noexcept;
 
  private:
   inline TrianglePoint closest_on(int t, const Vector3& p) const noexcept;
@@ -74,6 +85,7 @@ class ContactSurface {
   std::vector<int> first_at_, triangles_at_;  // triangles of every vertex
   int crowded_edges_ = 0;
   std::uint64_t revision_ = 0;
+  std::vector<ContactSurface> body_;  // with the shell; none or one
   Unloaded unloaded_;
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20; -1 at the rim
 };

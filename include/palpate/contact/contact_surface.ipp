@@ -66,10 +66,22 @@ PALPATE_INLINE void ContactSurface::update_normals() noexcept {
 }
 
 PALPATE_INLINE void ContactSurface::move_to(std::span<const Vector3> positions) noexcept {
-  std::copy(positions.begin(), positions.end(), positions_.begin());
+  if (!body_.empty()) body_.front().move_to(positions);
+  std::copy_n(positions.begin(), std::min(positions.size(), positions_.size()), positions_.begin());
   ++revision_;
   bvh_.refit(triangles_, positions_);
   update_normals();
+}
+
+PALPATE_INLINE void ContactSurface::add_shell(std::span<const Vector3> positions,
+                                              const std::vector<Triangle>& triangles) {
+  if (triangles.empty()) return;
+  std::vector<Vector3> all = positions_;
+  all.insert(all.end(), positions.begin(), positions.end());
+  std::vector<Triangle> closed = triangles_;
+  closed.insert(closed.end(), triangles.begin(), triangles.end());
+  body_.clear();
+  body_.emplace_back(std::move(all), std::move(closed));
 }
 
 inline TrianglePoint ContactSurface::closest_on(int t, const Vector3& p) const noexcept {
@@ -116,6 +128,25 @@ PALPATE_INLINE ContactSurface::Closest ContactSurface::closest(const Vector3& p)
   const bool on_surface = length <= 1e-12 * (bvh_.bounds().high - bvh_.bounds().low).norm();
   result.outward = on_surface ? normal : Vector3(offset / result.distance);
   return result;
+}
+
+PALPATE_INLINE ContactSurface::Closest ContactSurface::closest_of_body(const Vector3& p) const noexcept {
+  Closest own = closest(p);
+  if (body_.empty() || own.triangle < 0) return own;
+  const Closest body = body_.front().closest(p);
+  const double rounding = 1e-12 * (bvh_.bounds().high - bvh_.bounds().low).norm();
+  if (std::abs(body.distance) < std::abs(own.distance) - rounding) return {};
+  if ((body.distance < 0.0) != (own.distance < 0.0)) {
+    own.distance = -own.distance;
+    own.outward = -own.outward;
+  }
+  return own;
+}
+
+PALPATE_INLINE bool ContactSurface::is_inside(const Vector3& p) const noexcept {
+  if (body_.empty()) return closest(p).distance < 0.0;
+  const ContactSurface& body = body_.front();
+  return body.bvh_.bounds().squared_distance(p) == 0.0 && body.closest(p).distance < 0.0;
 }
 
 }}  // namespace palpate

@@ -147,20 +147,27 @@ PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, co
     blade.lift();
 }
 
-/// A sphere whose centre is inside the body without any contact has lost the surface: it is placed on it again in the
-/// next tick, with the ramp.
+/// A sphere whose centre is in the body without any contact either came in where the body cannot be touched, and passes
+/// through until it is outside again, or has lost the surface: then it is put back in the next tick, with the ramp.
 PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
   const ContactTool& tool = contact_tools_[i];
   if (!tool.active || !detail::is_zero(tool.force)) return;
-  // Far from all contact points nothing changes fast: one check in 16 ticks is enough, staggered over the tools.
-  if (!problem_.is_near(static_cast<int>(i)) && (ticks_ + i) % 16 != 0) return;
-  bool inside = false;
+  const ContactSurface& surface = tissue_.contact_surface();
+  // Far from all contact points of an open surface nothing changes fast: each tool is checked every 16 ticks.
+  if (!surface.has_shell() && !problem_.is_near(static_cast<int>(i)) && (ticks_ + i) % 16 != 0) return;
+  bool inside = false, behind = false;
   for (const double s : {0.0, -tool.half_length, tool.half_length}) {
     const Vector3 centre = tool.target + s * tool.axis();
-    inside = inside || tissue_.contact_surface().closest(centre).distance < 0.0;
+    if (surface.is_inside(centre)) {
+      inside = true;
+      behind = behind || surface.closest_of_body(centre).triangle >= 0;
+    }
     if (tool.half_length == 0.0) break;
   }
-  if (inside) inputs_[i].lose();
+  if (inside && behind && !inputs_[i].is_passing())
+    inputs_[i].lose();
+  else
+    inputs_[i].set_passing(inside);
 }
 
 /// Passes the contact force through the energy tank and the gate; the tank then receives the gate's output.

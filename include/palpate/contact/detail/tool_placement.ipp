@@ -37,7 +37,7 @@ PALPATE_INLINE void place_beside(ContactTool& tool, const ContactSurface& surfac
     double deepest = tool.radius;
     detail::for_each_sphere(tool, [&](double s) {
       const Vector3 centre = tool.proxy + s * axis;
-      const auto closest = surface.closest(centre);
+      const auto closest = surface.closest_of_body(centre);
       if (closest.distance >= deepest) return;
       deepest = closest.distance;
       move = closest.point + tool.radius * closest.outward - centre;

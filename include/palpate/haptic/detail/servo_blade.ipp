@@ -33,7 +33,7 @@ PALPATE_INLINE double ServoBlade::width_inside(const TissueView& tissue) const n
   int inside = 0;
   for (int k = 0; k < samples; ++k) {
     const Vector3 x = cut_.edge() + ((k + 0.5) / samples - 0.5) * edge;
-    if (tissue.contact_surface().closest(to_model * x).distance < 0.0) ++inside;
+    if (tissue.contact_surface().is_inside(to_model * x)) ++inside;
   }
   return edge.norm() * inside / samples;
 }

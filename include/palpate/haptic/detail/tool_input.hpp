@@ -43,6 +43,9 @@ class ToolInput {
   bool readable() const noexcept { return readable_; }
   bool restarted() const noexcept { return restarted_; }  ///< forces begin from zero
   bool rotates() const noexcept { return rotates_; }
+  /// In the body, where it came in through a surface that cannot be touched.
+  bool is_passing() const noexcept { return passing_; }
+  void set_passing(bool passing) noexcept { passing_ = passing; }
   Status status() const noexcept { return status_; }
 
  private:
@@ -75,6 +78,7 @@ class ToolInput {
   double news_ = 0.0;   // time of the last update of the tissue
   bool known_ = false;  // position_ is valid
   bool has_proxy_ = false;    // while not known_: the proxy is that of the last reading
+  bool passing_ = false;
   bool needs_press_ = false;  // a grasp begins with a press of the button, not with a reading
   bool readable_ = false, restarted_ = false, rotates_;
   std::uint32_t grasp_buttons_;

@@ -20,6 +20,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 struct Touchable {
   std::vector<NodeId> nodes;
   std::vector<Triangle> triangles;
+
+  /// The rest of the boundary, in the same way: a vertex k >= nodes.size() is node shell_nodes[k - nodes.size()].
+  std::vector<NodeId> shell_nodes;
+  std::vector<Triangle> shell;
 };
 
 /// Sorts and removes duplicates.

@@ -16,6 +16,27 @@ PALPATE_INLINE void sort_unique(std::vector<NodeId>& nodes) {
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
 }
 
+namespace detail {
+
+/// The faces of the boundary that are not among `touched`, whatever their first node.
+inline std::vector<BoundaryFace> other_faces(const std::vector<BoundaryFace>& boundary,
+                                             const std::vector<BoundaryFace>& touched) {
+  const auto key = [](const BoundaryFace& face) {
+    std::vector<NodeId> nodes(face.nodes.begin(), face.nodes.end());
+    std::ranges::sort(nodes);
+    return nodes;
+  };
+  std::vector<std::vector<NodeId>> keys;
+  for (const BoundaryFace& face : touched) keys.push_back(key(face));
+  std::ranges::sort(keys);
+  std::vector<BoundaryFace> others;
+  for (const BoundaryFace& face : boundary)
+    if (!std::ranges::binary_search(keys, key(face))) others.push_back(face);
+  return others;
+}
+
+}  // namespace detail
+
 PALPATE_INLINE Touchable resolve_touchable(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
                                            const Scene& scene) {
   Touchable touchable;
@@ -30,17 +51,30 @@ PALPATE_INLINE Touchable resolve_touchable(const MeshRef& mesh, const std::vecto
   }
   for (const auto& face : faces) touchable.nodes.insert(touchable.nodes.end(), face.nodes.begin(), face.nodes.end());
   sort_unique(touchable.nodes);
+  const std::vector<BoundaryFace> touched = detail::sort_unique(faces, mesh.element.face.nodes, mesh.node_count);
+  const std::vector<BoundaryFace> rest = detail::other_faces(boundary, touched);
+  for (const auto& face : rest)
+    for (const NodeId node : face.nodes)
+      if (!std::ranges::binary_search(touchable.nodes, node)) touchable.shell_nodes.push_back(node);
+  sort_unique(touchable.shell_nodes);
   const auto vertex = [&](NodeId node) {
-    return static_cast<int>(std::ranges::lower_bound(touchable.nodes, node) - touchable.nodes.begin());
+    const auto own = std::ranges::lower_bound(touchable.nodes, node);
+    if (own != touchable.nodes.end() && *own == node) return static_cast<int>(own - touchable.nodes.begin());
+    const auto other = std::ranges::lower_bound(touchable.shell_nodes, node) - touchable.shell_nodes.begin();
+    return static_cast<int>(touchable.nodes.size()) + static_cast<int>(other);
   };
-  for (const auto& face : detail::sort_unique(faces, mesh.element.face.nodes, mesh.node_count)) {
-    const auto at = [&](int local) { return vertex(face.nodes[static_cast<std::size_t>(local)]); };
-    const FaceLayout& layout = mesh.element.face_of(face.nodes.size());
-    for (int t = 0; t < layout.triangle_count; ++t) {
-      const auto& [a, b, c] = layout.triangles[t];
-      touchable.triangles.push_back({at(a), at(b), at(c)});
+  const auto add = [&](const std::vector<BoundaryFace>& from, std::vector<Triangle>& to) {
+    for (const auto& face : from) {
+      const auto at = [&](int local) { return vertex(face.nodes[static_cast<std::size_t>(local)]); };
+      const FaceLayout& layout = mesh.element.face_of(face.nodes.size());
+      for (int t = 0; t < layout.triangle_count; ++t) {
+        const auto& [i, j, k] = layout.triangles[t];
+        to.push_back({at(i), at(j), at(k)});
+      }
     }
-  }
+  };
+  add(touched, touchable.triangles);
+  add(rest, touchable.shell);
   return touchable;
 }
 

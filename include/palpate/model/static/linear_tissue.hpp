@@ -77,7 +77,7 @@ class LinearTissue : public ModelBase, public StillTissue {
               const SetupOptions& options);
 
  private:
-  void prepare_contact(const std::vector<Triangle>& triangles, bool eager, const SetupOptions& options);
+  void prepare_contact(const Touchable& touchable, bool eager, const SetupOptions& options);
   /// Kept dof of every touchable dof, -1 when it is prescribed.
   std::vector<Index> kept_index() const;
   /// Computes a few columns to measure the compliance of the surface and the time per column; starts a background
@@ -97,6 +97,7 @@ class LinearTissue : public ModelBase, public StillTissue {
   double compliance_floor_ = 0.0;
   ContactSurface surface_;
   std::vector<Vector3> moved_;
+  std::vector<NodeId> shell_nodes_;  // of the boundary that cannot be touched
 };
 
 }}  // namespace palpate

@@ -70,7 +70,8 @@ void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, Mak
   statics_ = std::make_unique<Statics>(elastic_body(), this->scene(), touchable.nodes, make_stiffness, recipe,
                                        limits(), options.cache_file, report);
   statics_->set_conditions(this->scene(), gravity(), reporting_to(report));
-  prepare_contact(touchable.triangles, recipe.eager, options);
+  shell_nodes_ = touchable.shell_nodes;
+  prepare_contact(touchable, recipe.eager, options);
 }
 
 template <std::floating_point Scalar>
@@ -117,8 +118,7 @@ void LinearTissue<Scalar>::reset() {
 }
 
 template <std::floating_point Scalar>
-void LinearTissue<Scalar>::prepare_contact(const std::vector<Triangle>& triangles, bool eager,
-                                           const SetupOptions& options) {
+void LinearTissue<Scalar>::prepare_contact(const Touchable& touchable, bool eager, const SetupOptions& options) {
   const StageTimer timer(setup_report(), "compliance");
   const int vertices = static_cast<int>(touchable_nodes().size());
   compliance_ =
@@ -135,9 +135,11 @@ void LinearTissue<Scalar>::prepare_contact(const std::vector<Triangle>& triangle
   if (compliance_floor_ == 0.0) compliance_floor_ = 1e-9;
   std::vector<Vector3> positions;
   for (NodeId node : touchable_nodes()) positions.push_back(deformed(node));
-  surface_ = ContactSurface(positions, triangles);
+  surface_ = ContactSurface(positions, touchable.triangles);
   surface_.set_unloaded(unloaded());
   moved_ = std::move(positions);
+  for (const NodeId node : touchable.shell_nodes) moved_.push_back(deformed(node));
+  surface_.add_shell(std::span(moved_).subspan(touchable.nodes.size()), touchable.shell);
   if (const int edges = surface_.crowded_edges())
     setup_report().set(SetupFlag::non_manifold, "more than two touchable triangles meet at " + std::to_string(edges) +
                                                     " edges: the contact is not smooth across them");
@@ -200,7 +202,9 @@ void LinearTissue<Scalar>::accept_displacement(SetupReport& report) noexcept {
 
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::move_surface() noexcept {
-  for (std::size_t v = 0; v < moved_.size(); ++v) moved_[v] = deformed(touchable_nodes()[v]);
+  const std::size_t touchable = touchable_nodes().size();
+  for (std::size_t v = 0; v < moved_.size(); ++v)
+    moved_[v] = deformed(v < touchable ? touchable_nodes()[v] : shell_nodes_[v - touchable]);
   surface_.move_to(moved_);
 }
 

@@ -1,0 +1,77 @@
+// A body of which only a patch can be touched: inside and outside are those of the whole body.
+#include "contact/servo_session.hpp"
+
+#include <palpate/testing/random.hpp>
+
+#include "catch.hpp"
+
+using namespace palpate;
+using test::pad_height;
+using test::ServoSession;
+using test::sphere_radius;
+
+namespace {
+
+/// The largest force of a session that stays at `height` and moves about over, beside and below the block.
+double force_at(double height, std::uint64_t seed) {
+  test::Pad pad = test::make_pad("z1");
+  ServoSession session(pad);
+  testing::Random random(seed);
+  double largest = 0.0;
+  session.tick(Vector3(0.015, 0.015, height));
+  for (int k = 0; k < 20; ++k) {
+    const Vector3 to(random.uniform(-0.02, 0.05), random.uniform(-0.02, 0.05), height);
+    const Vector3 from = session.states[0].position;
+    for (int i = 1; i <= 50; ++i) {
+      const GatedForce& f = session.tick(from + (to - from) * i / 50);
+      largest = std::max({largest, f.force().norm(), session.servo.contact_force().norm()});
+      CHECK_FALSE(f.status.has(StatusFlag::reacquired));
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("below an open patch nothing presses, however far below", "[haptic][servo][extreme][D2]") {
+  for (const double below : {0.005, 0.006, 0.02, 0.3, 10.0}) CHECK(force_at(-below, 3) == 0.0);
+}
+
+TEST_CASE("a tool that enters where the body cannot be touched passes through", "[haptic][servo][extreme][D2]") {
+  test::Pad pad = test::make_pad("z1");
+  const double speed = GENERATE(0.02, 0.2, 1.0);  // [m/s]
+  for (const double height : {0.006, 0.012, 0.0145}) {
+    ServoSession session(pad);
+    const Vector3 left(-0.02, 0.0141, height), right(0.05, 0.0153, height);
+    session.tick(left);
+    const int ticks = static_cast<int>(0.07 / speed * 1e3);
+    double largest = 0.0;
+    for (int i = 1; i <= ticks; ++i) {
+      session.tick(left + (right - left) * i / ticks);
+      largest = std::max(largest, session.servo.contact_force().norm());
+    }
+    CAPTURE(height, speed);
+    CHECK(largest == 0.0);
+    session.move(Vector3(0.05, 0.015, 0.06), 200);
+    session.move(Vector3(0.0137, 0.0159, 0.06), 200);
+    session.move(Vector3(0.0137, 0.0159, pad_height + sphere_radius - 1e-3), 200);
+    CHECK(session.hold(50).force()[2] > 0.01);  // from above it is stopped, as before
+  }
+}
+
+TEST_CASE("the sign of the distance to a patch is that of the body", "[contact][surface]") {
+  test::Pad pad = test::make_pad("z1");
+  const ContactSurface& top = pad.contact_surface();
+  const auto in_model = [&](double x, double y, double z) { return pad.to_world().inverse() * Vector3(x, y, z); };
+  REQUIRE(top.has_shell());
+  CHECK(top.closest_of_body(in_model(0.015, 0.015, 0.019)).distance < 0.0);
+  CHECK(top.closest_of_body(in_model(0.015, 0.015, 0.021)).distance > 0.0);
+  CHECK(top.closest_of_body(in_model(-0.001, 0.015, 0.021)).distance > 0.0);  // beside the rim, above
+  for (const auto& p : {in_model(0.015, 0.015, 0.001), in_model(0.001, 0.015, 0.015), in_model(0.015, 0.015, -0.001)})
+    CHECK(top.closest_of_body(p).triangle < 0);
+  CHECK(top.is_inside(in_model(0.001, 0.015, 0.015)));
+  CHECK_FALSE(top.is_inside(in_model(-0.001, 0.015, 0.015)));
+  CHECK_FALSE(top.is_inside(in_model(0.015, 0.015, -0.001)));
+  const ContactSurface& whole = test::whole_pad().contact_surface();
+  CHECK(whole.is_inside(whole.positions()[0] * 0.9));
+}
