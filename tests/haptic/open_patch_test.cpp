@@ -1,6 +1,7 @@
 // A body of which only a patch can be touched: inside and outside are those of the whole body.
 #include "contact/servo_session.hpp"
 
+#include <palpate/contact/tissue_group.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"
@@ -74,4 +75,35 @@ TEST_CASE("the sign of the distance to a patch is that of the body", "[contact][
   CHECK_FALSE(top.is_inside(in_model(0.015, 0.015, -0.001)));
   const ContactSurface& whole = test::whole_pad().contact_surface();
   CHECK(whole.is_inside(whole.positions()[0] * 0.9));
+}
+
+TEST_CASE("a group has the inside of its members, also after one has moved", "[contact][group]") {
+  test::Pad left = test::make_pad("z1"), right = test::make_pad("z1");
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = Vector3(0.04, 0.0, 0.01);
+  right.set_pose(pose);
+  TissueGroup both(left, right);
+  HapticServo servo(both, SphereTool{.radius = sphere_radius});
+  const auto largest_force = [&](const Vector3& from, const Vector3& to) {
+    ToolState state;
+    double largest = 0.0;
+    servo.reset();
+    for (int i = 0; i <= 300; ++i) {
+      state.time = 1e-3 * i;
+      state.position = from + (to - from) * i / 300;
+      servo.tick(state);
+      largest = std::max(largest, servo.contact_force().norm());
+    }
+    return largest;
+  };
+  const Vector3 across(0.09, 0.0, 0.0);
+  CHECK(largest_force(Vector3(-0.01, 0.015, -0.006), Vector3(-0.01, 0.015, -0.006) + across) == 0.0);  // below both
+  CHECK(largest_force(Vector3(0.055, 0.015, 0.0), Vector3(0.055, 0.015, 0.004)) == 0.0);  // below the higher one
+  CHECK(largest_force(Vector3(0.055, 0.015, 0.036), Vector3(0.055, 0.015, 0.032)) > 0.01);
+  pose.translation() = Vector3(0.04, 0.0, -0.01);
+  right.set_pose(pose);
+  both.update();
+  CHECK(largest_force(Vector3(0.055, 0.015, 0.036), Vector3(0.055, 0.015, 0.026)) == 0.0);  // now above it
+  CHECK(largest_force(Vector3(0.055, 0.015, -0.04), Vector3(0.055, 0.015, -0.016)) == 0.0);
+  CHECK(largest_force(Vector3(0.055, 0.015, 0.016), Vector3(0.055, 0.015, 0.012)) > 0.01);
 }

@@ -65,6 +65,9 @@ class ContactSurface {
   /// the shell is closer than the touchable surface.
   Closest closest_of_body(const Vector3& p) const noexcept;
   bool has_shell() const noexcept { return !body_.empty(); }
+  /// The shell as given to add_shell.
+  std::span<const Vector3> shell_positions() const noexcept;
+  std::span<const Triangle> shell() const noexcept;
   /// Whether a point is in the body or, without a shell, behind the touchable surface.
   bool is_inside(const Vector3& p) const noexcept;
 

@@ -130,6 +130,15 @@ PALPATE_INLINE ContactSurface::Closest ContactSurface::closest(const Vector3& p)
   return result;
 }
 
+PALPATE_INLINE std::span<const Vector3> ContactSurface::shell_positions() const noexcept {
+  if (body_.empty()) return {};
+  return std::span(body_.front().positions_).subspan(positions_.size());
+}
+PALPATE_INLINE std::span<const Triangle> ContactSurface::shell() const noexcept {
+  if (body_.empty()) return {};
+  return std::span(body_.front().triangles_).subspan(triangles_.size());
+}
+
 PALPATE_INLINE ContactSurface::Closest ContactSurface::closest_of_body(const Vector3& p) const noexcept {
   Closest own = closest(p);
   if (body_.empty() || own.triangle < 0) return own;

@@ -79,6 +79,7 @@ class TissueGroup : public StillTissue {
   }
   void add(const TissueView& tissue);
   void build();
+  void add_shells();
   /// Of all members, in the world frame; empty if it is not set for one of them.
   ContactSurface::Unloaded unloaded() const;
   const Member& member_of(int vertex) const noexcept;
@@ -86,7 +87,7 @@ class TissueGroup : public StillTissue {
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
   std::vector<Member> members_;
-  std::vector<Vector3> moved_;
+  std::vector<Vector3> moved_;  // vertices of all members, then those of their shells
   std::vector<Triangle> triangles_;
   std::vector<int> own_;  // workspace
   ContactSurface surface_;

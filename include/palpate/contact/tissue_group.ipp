@@ -25,6 +25,23 @@ PALPATE_INLINE void TissueGroup::build() {
   surface_ = ContactSurface(moved_, std::move(triangles_));
   surface_.set_unloaded(unloaded());
   own_.resize(moved_.size());
+  add_shells();
+}
+
+/// The members' shells, with vertices numbered after those of all members.
+PALPATE_INLINE void TissueGroup::add_shells() {
+  const auto vertices = moved_.size();
+  std::vector<Triangle> shell;
+  for (const Member& m : members_) {
+    const ContactSurface& own = m.tissue.contact_surface();
+    const int after = static_cast<int>(moved_.size()) - m.count;
+    for (Triangle t : own.shell()) {
+      for (int& v : t) v += v < m.count ? m.first : after;
+      shell.push_back(t);
+    }
+    for (const Vector3& x : own.shell_positions()) moved_.push_back(m.tissue.to_world() * x);
+  }
+  surface_.add_shell(std::span(moved_).subspan(vertices), shell);
 }
 
 PALPATE_INLINE ContactSurface::Unloaded TissueGroup::unloaded() const {
@@ -39,10 +56,12 @@ PALPATE_INLINE ContactSurface::Unloaded TissueGroup::unloaded() const {
 }
 
 PALPATE_INLINE void TissueGroup::update() noexcept {
+  auto shell = static_cast<std::size_t>(surface_.vertex_count());
   for (Member& m : members_) {
     m.tissue.look();
     const Eigen::Isometry3d& pose = m.tissue.to_world();
     for (int v = 0; v < m.count; ++v) moved_[at(m.first + v)] = pose * m.tissue.contact_surface().position(v);
+    for (const Vector3& x : m.tissue.contact_surface().shell_positions()) moved_[shell++] = pose * x;
   }
   surface_.move_to(moved_);
   ++updates_;
