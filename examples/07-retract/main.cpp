@@ -3,8 +3,7 @@
 //   example_07_retract [--out DIR]
 //
 // A surgeon's hook grasps the thin lobe of the organ shipped with palpate and pulls it up and to the middle by 50 mm, a
-// quarter of the length of the organ. With linear elasticity the lobe would grow as it rotates; this needs large
-// strain.
+// quarter of its length. With linear elasticity the lobe would grow as it rotates; this needs large strain.
 //
 //   1. `Equilibrium` takes mesh, scene and a material per region, here NeoHookean, and finds the equilibrium under
 //      constraints and loads: Newton's method on the energy.
@@ -12,8 +11,7 @@
 //      is not viscoelastic, so the time step is zero; 08-relax has a viscoelastic one.
 //   3. `reactions` are the forces at constrained nodes, including the hook. The report of every step states whether it
 //      converged, whether the equilibrium is stable, and whether elements are inverted.
-//   4. DIR/report.html contains the force curve and that of linear elasticity; DIR/retract.pvd is a series for
-//      ParaView.
+//   4. DIR/report.html has the force curve and that of linear elasticity; DIR/retract.pvd is a series for ParaView.
 //
 // The example checks itself: all steps converge, are stable and have no inverted elements, and the work of the hook
 // equals the energy stored in the organ. The exit code is 0 when that is true, 1 when it is not, 2 when the mesh or the

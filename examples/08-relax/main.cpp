@@ -5,16 +5,14 @@
 // A finger presses 4 mm into a pad of tissue, quickly, and stays there. Living tissue relaxes: the force decreases at
 // constant displacement, here to 40 % of its initial value, with a relaxation time of 0.4 s.
 //
-//   1. `Viscoelastic<NeoHookean, 1>` is NeoHookean with one relaxing share of the stress. E is the instantaneous
-//      modulus.
+//   1. `Viscoelastic<NeoHookean, 1>` is NeoHookean with one relaxing share of the stress; E is its modulus at first.
 //   2. With `Implicit<...>` the model moves in steps of 10 ms, usually computed by a `BackgroundWorker` in a thread.
 //      Here both rates are simulated, so that every run is the same. `HapticServo` ticks a thousand times a second.
 //   3. DIR/report.html contains the force over time.
 //
 // The example checks itself. The whole stress relaxes and the finger does not move, so the shape of the pad is constant
-// and all forces decrease in proportion: the relaxation time of the force must be that of the material. It is measured
-// from three forces at equal time intervals d, (F3 - F2) / (F2 - F1) = exp(-d / tau), independent of the material
-// parameters. The exit code is 0 when they agree within 2 %, 1 when they do not, 2 when the arguments were refused.
+// and all forces decrease in proportion, with the relaxation time of the material. It is measured from three forces at
+// equal intervals d: (F3 - F2) / (F2 - F1) = exp(-d / tau). The exit code is 0 when they agree within 2 %, otherwise 1.
 #include "../common/main_with_out.hpp"
 #include "../common/page.hpp"
 

@@ -3,13 +3,11 @@
 //   example_09_probe [--out DIR]      writes DIR/probe.svg and DIR/probe.vtu
 //
 //   1. The tool is a capsule: a cylinder with round ends. It rotates with the orientation of the device.
-//   2. It is lowered, pressed in, tilted, and moved sideways with friction; force and torque are printed. A device with
-//      three motors renders the force; one with six (peak torque in its limits) also the torque.
+//   2. It is lowered, pressed in, tilted, and moved sideways with friction; force and torque are printed.
 //   3. The stress at the deepest position is drawn.
 //
 // The exit code is 0 when the force on a level probe is vertical, the torque on the tilted probe acts against the tilt,
-// the friction force opposes the motion, and the force is zero after lifting. The horizontal force is a little more
-// than mu times the normal force, because the front side of the dent also pushes against the probe.
+// the friction force opposes the motion, and the force is zero after lifting. The dent adds a little to the friction.
 #include <palpate/palpate.hpp>
 #include <palpate/io/vtu.hpp>
 #include <palpate/post/stress.hpp>
@@ -32,11 +30,8 @@ constexpr double radius = 0.006, half_length = 0.015, depth = 0.005, friction = 
 
 ServoOptions options() {
   ServoOptions o;
-  o.device = {.peak_force = 20.0,
-              .continuous_force = 10.0,
-              .stiffness = 3000.0,
-              .peak_torque = 0.4,
-              .rotational_stiffness = 3.0};
+  o.device = {.peak_force = 20.0, .continuous_force = 10.0, .stiffness = 3000.0, .peak_torque = 0.4};
+  o.device.rotational_stiffness = 3.0;
   o.contact.friction = friction;
   return o;
 }
