@@ -1,4 +1,4 @@
-// expect: Smoothed and MeanDilatation average strains of small deformations
+// expect: Smoothed and MeanDilatation average small strains
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/element/hex8.hpp>
 #include <palpate/material/neo_hookean.hpp>

@@ -1,4 +1,4 @@
-// expect: palpate: a cut changes the averages of a smoothed element
+// expect: palpate: a cut changes the averages of smoothed elements
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>

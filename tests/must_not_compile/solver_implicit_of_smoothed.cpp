@@ -1,4 +1,4 @@
-// expect: palpate: Smoothed and MeanDilatation average strains of small deformations
+// expect: palpate: Smoothed and MeanDilatation average small strains
 #include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact_problem.hpp>
+#include <palpate/contact/detail/candidates.ipp>  // its inline functions
 #include <palpate/core/setup_error.hpp>
 
 #include <algorithm>
@@ -76,7 +77,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   candidates_.look_round(tissue, tools, displacement_);
   double change = 0.0, before = 0.0;
   for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
-    proxies_.begin(tools);
+    proxies_.begin(tools, floor_);
     status |= candidates_.update(tissue, tools, displacement_);
     if (iteration == 0) {
       grasp(tissue, tools);
@@ -86,9 +87,11 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     std::swap(start_, displacement_);
     if (!solve_linearised(tissue, tools, iteration, status)) {
       std::swap(start_, displacement_);
+      proxies_.end(tools);
       break;
     }
     follow(tools);
+    proxies_.end(tools);
     change = proxies_.relative_change(tools);
     // Each step is smaller than the last by about the same ratio (the linearisation neglects the curvature of the
     // sphere), so the sum of the remaining steps is a geometric series. The first step is due to the motion of the
@@ -288,8 +291,8 @@ PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools
 /// Takes the step to the solution, or the part of it within which the list of candidates is complete.
 PALPATE_INLINE void ContactProblem::follow(Tools tools) noexcept {
   const double part = proxies_.follow(tools, floor_, rows_.longest_path());
-  arrived_ = part == 1.0;
-  if (arrived_)
+  arrived_ = proxies_.arrived();
+  if (part == 1.0)
     rows_.place_points();
   else
     displacement_.blend(start_, part);

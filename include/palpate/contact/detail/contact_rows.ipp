@@ -1,6 +1,7 @@
 // Definitions of contact_rows.hpp.
 #pragma once
 
+#include <palpate/contact/detail/candidates.ipp>  // its inline functions
 #include <palpate/contact/detail/contact_rows.hpp>
 
 #include <algorithm>

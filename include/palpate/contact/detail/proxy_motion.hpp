@@ -23,22 +23,30 @@ class ProxyMotion {
   /// Moves the proxies with their devices, perpendicular to the contact force: this makes the first linearisation
   /// nearly exact for a sphere that slides.
   static void slide(Tools tools) noexcept;
-  /// Stores the forces at the start of a linearisation.
-  void begin(Tools tools) noexcept;
-  /// Computes `ahead` of every tool. `floor`: the least compliance of a contact [m/N], as TissueModel has it.
+  /// Begins a linearisation: stores the forces, and moves targets that are farther than it may go to where it may.
+  /// `floor`: the least compliance of a contact [m/N], as TissueModel has it.
+  void begin(Tools tools, double floor) noexcept;
+  /// Ends a linearisation: the targets are those of the devices again.
+  void end(Tools tools) noexcept;
+  /// Computes `ahead` of every tool.
   void look_ahead(Tools tools, double floor) noexcept;
   const Ahead& ahead(std::size_t tool) const noexcept { return ahead_[tool]; }
   /// Moves the proxies towards the positions of the solution, and the forces with them, by the part of the step that is
   /// returned: 1, or less where a proxy or the surface (`surface` [m]) would move farther than one linearisation may.
+  /// A tool that nothing presses moves independently.
   double follow(Tools tools, double floor, double surface) noexcept;
+  /// Whether all proxies got to the positions of the solution in the last step.
+  bool arrived() const noexcept { return arrived_; }
   /// Relative change of the tools' forces and torques since `begin`.
   double relative_change(Tools tools) const noexcept;
 
  private:
+  inline static double allowed_part(const ContactTool& tool, double path) noexcept;
   static void rotate(ContactTool& tool, double part) noexcept;
 
-  std::array<Vector3, maximum_tools> start_force_{}, start_torque_{};
+  std::array<Vector3, maximum_tools> start_force_{}, start_torque_{}, target_{};
   std::array<Ahead, maximum_tools> ahead_{};
+  bool clipped_ = false, arrived_ = true;
 };
 
 }}  // namespace palpate

@@ -25,11 +25,23 @@ PALPATE_INLINE void ProxyMotion::slide(Tools tools) noexcept {
   }
 }
 
-PALPATE_INLINE void ProxyMotion::begin(Tools tools) noexcept {
+PALPATE_INLINE void ProxyMotion::begin(Tools tools, double floor) noexcept {
+  clipped_ = false;
   for (std::size_t t = 0; t < tools.size(); ++t) {
-    start_force_[t] = tools[t].force;
-    start_torque_[t] = tools[t].torque;
+    ContactTool& tool = tools[t];
+    start_force_[t] = tool.force;
+    start_torque_[t] = tool.torque;
+    target_[t] = tool.target;
+    const Vector3 path = tool.goal(floor) - tool.proxy;
+    const double length = path.norm(), longest = tool.longest_step();
+    if (!tool.active || !(length > longest)) continue;
+    tool.target -= (1.0 - longest / length) * path;
+    clipped_ = true;
   }
+}
+
+PALPATE_INLINE void ProxyMotion::end(Tools tools) noexcept {
+  for (std::size_t t = 0; t < tools.size(); ++t) tools[t].target = target_[t];
 }
 
 PALPATE_INLINE void ProxyMotion::look_ahead(Tools tools, double floor) noexcept {
@@ -44,18 +56,29 @@ PALPATE_INLINE void ProxyMotion::look_ahead(Tools tools, double floor) noexcept 
   }
 }
 
+/// The part of a step of length `path` that one linearisation may go.
+inline double ProxyMotion::allowed_part(const ContactTool& tool, double path) noexcept {
+  const double longest = tool.longest_step();
+  return path > longest ? longest / path : 1.0;
+}
+
 PALPATE_INLINE double ProxyMotion::follow(Tools tools, double floor, double surface) noexcept {
   look_ahead(tools, floor);
+  const auto is_free = [&](std::size_t t) {
+    return start_force_[t].squaredNorm() == 0.0 && tools[t].force.squaredNorm() == 0.0;
+  };
   double part = 1.0;
-  for (std::size_t t = 0; t < tools.size(); ++t) {
-    const double longest = tools[t].longest_step(), path = std::max(surface, ahead_[t].farthest);
-    if (tools[t].active && path > longest) part = std::min(part, longest / path);
-  }
+  for (std::size_t t = 0; t < tools.size(); ++t)
+    if (tools[t].active && !is_free(t))
+      part = std::min(part, allowed_part(tools[t], std::max(surface, ahead_[t].farthest)));
+  arrived_ = part == 1.0 && !clipped_;
   for (std::size_t t = 0; t < tools.size(); ++t) {
     ContactTool& tool = tools[t];
     if (!tool.active) continue;
-    tool.proxy += part * ahead_[t].path;
-    rotate(tool, part);
+    const double own = is_free(t) ? allowed_part(tool, ahead_[t].farthest) : part;
+    arrived_ = arrived_ && own == 1.0;
+    tool.proxy += own * ahead_[t].path;
+    rotate(tool, own);
     if (part == 1.0) continue;
     tool.force = start_force_[t] + part * (tool.force - start_force_[t]);
     tool.torque = start_torque_[t] + part * (tool.torque - start_torque_[t]);
