@@ -89,6 +89,28 @@ TEST_CASE("a grasp begins with a press of the button, not with a reading that re
   CHECK(s.servo.is_holding());
 }
 
+TEST_CASE("a reading that is lost while the tool is about to be placed again lifts it, too", "[haptic][servo]") {
+  test::Pad pad = test::make_pad("z1");
+  const ContactSurface& surface = pad.contact_surface();
+  ToolInput input(0, false, 0);
+  ContactTool tool;
+  tool.radius = test::sphere_radius;
+  ToolState state;
+  state.position = Vector3(0.0137, 0.0159, test::pad_height);
+  input.take(state, pad.to_world(), surface, {}, tool);
+  REQUIRE(tool.active);
+  tool.force = Vector3(0.0, 0.0, 1.0);
+  input.lose();
+  state.valid = false;
+  input.take(state, pad.to_world(), surface, {}, tool);
+  CHECK_FALSE(tool.active);
+  CHECK(tool.force.norm() == 0.0);
+  state.valid = true;
+  input.take(state, pad.to_world(), surface, {}, tool);
+  CHECK(tool.active);
+  CHECK(input.restarted());
+}
+
 TEST_CASE("a tool has its share of the rows, whatever the other presses", "[haptic][servo][extreme][D9]") {
   test::Pad pad = test::make_pad("z1", 1e4, {20, 20, 4});
   const bool large_first = GENERATE(false, true);

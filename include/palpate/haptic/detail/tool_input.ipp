@@ -15,7 +15,7 @@ PALPATE_INLINE void ToolInput::take(const ToolState& state, const Eigen::Isometr
                                     ContactTool& tool) noexcept {
   tool.motion.setZero();
   tool.end_path = 0.0;
-  if (!state.valid && known_) lose_reading(contacts, tool);
+  if (!state.valid) lose_reading(contacts, tool);
   Pose taken{position_, {1.0, 0.0, 0.0, 0.0}};
   if (!accept(state, pose, taken)) return;
   const bool pressed = (state.buttons & grasp_buttons_) != 0;
@@ -72,8 +72,10 @@ PALPATE_INLINE void ToolInput::lose() noexcept {
 
 /// The tool stays where its proxy is; without its force the surface springs back and lifts it.
 PALPATE_INLINE void ToolInput::lose_reading(std::span<const Contact> contacts, ContactTool& tool) noexcept {
-  if (tool.active) tool.proxy = off_surface(contacts, tool);
-  has_proxy_ = tool.active;
+  if (known_) {
+    tool.proxy = off_surface(contacts, tool);
+    has_proxy_ = true;
+  }
   needs_press_ = true;
   tool.lift();
 }
