@@ -1,5 +1,5 @@
 // A force that has passed the gate cannot be changed.
-// expect: operator*=
+// expect: *=
 #include <palpate/haptic/force_gate.hpp>
 
 using namespace palpate;

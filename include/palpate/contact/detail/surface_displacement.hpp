@@ -18,8 +18,8 @@ class SurfaceDisplacement {
 
   /// Clears cached displacements when the tissue's compliance has changed since the last tick.
   void begin_tick(std::uint64_t revision) noexcept;
-  /// Continues on a surface with the same vertex numbers and possibly more, for which `fresh` was constructed. No
-  /// allocation.
+  /// Continues on a surface with the same vertex numbers and possibly more or fewer, for which `fresh` was constructed.
+  /// Forces on vertices that are gone are dropped. No allocation.
   void move_to(SurfaceDisplacement& fresh) noexcept;
   void clear() noexcept {
     count_ = 0;

@@ -22,6 +22,10 @@ PALPATE_INLINE void SurfaceDisplacement::move_to(SurfaceDisplacement& fresh) noe
   displacement_.swap(fresh.displacement_);
   stamp_.swap(fresh.stamp_);
   slot_.swap(fresh.slot_);
+  const auto end = std::remove_if(forces_.begin(), forces_.begin() + count_, [&](const VertexForce& f) {
+    return static_cast<std::size_t>(f.vertex) >= displacement_.size();
+  });
+  count_ = static_cast<int>(end - forces_.begin());
   ++generation_;
 }
 
