@@ -59,7 +59,7 @@ Figure bad_files(const Places& p, const std::vector<TestResult>& results) {
   }
   bool found = false;
   for (const TestResult& r : results)
-    if (r.name == "Every bad file gets its refusal") {
+    if (r.name == "Every bad file is refused as expected") {
       found = true;
       f.failed = !r.passed;
     }
