@@ -256,9 +256,10 @@ PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools
     if (c.row >= 0 || is_grasped(c)) continue;
     const ContactTool& tool = tools[at(c.tool)];
     const ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
-    if (candidates_.least_gap(c) > ahead.farthest + 2.0 * rows_.longest_path()) continue;
+    const double reach = ahead.farthest + 2.0 * rows_.longest_path();
+    if (candidates_.least_gap(c) > reach) continue;
     if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, start_, c);
-    if (!c.facing) continue;
+    if (!c.facing || c.gap > reach) continue;
     const Vector3 moved = candidates_.position(tissue, displacement_, c) - c.point;
     const double gap = c.gap + c.normal.dot(ahead.path + c.along * ahead.axis - moved);
     if (gap < -allowed) violated_[at(violated_count_++)] = {gap, &c};
