@@ -1,4 +1,4 @@
-// A body of which only a patch can be touched: inside and outside are those of the whole body.
+// A body with a touchable patch: inside and outside are those of the whole body.
 #include "contact/servo_session.hpp"
 
 #include <palpate/contact/tissue_group.hpp>

@@ -1,7 +1,7 @@
 // Several tools of one servo, grasped points, and the data of a snapshot for both.
 #include <palpate/haptic/haptic_servo.hpp>
 
-#include "contact/analytic_tissue.hpp"
+#include "contact/servo_session.hpp"
 
 #include "catch.hpp"
 
@@ -95,4 +95,28 @@ TEST_CASE("the sum of a snapshot's contacts is the contact force, also with gras
   tools.states[1].buttons = 1;
   tools.move(1, {0.009, 0.001, round_radius + 2e-3}, 20);
   look(2);
+}
+
+TEST_CASE("two tools share the contact rows: neither starves the other", "[haptic][servo][extreme][D9]") {
+  test::Pad pad = test::make_pad("z1", 1e4, {20, 20, 4});
+  const bool large_first = GENERATE(false, true);
+  const SphereTool large{.radius = 40e-3}, small{.radius = 4e-3};
+  ServoOptions options;
+  options.contact.capacity = 24;
+  const auto pressed_force = [&](bool both) {
+    HapticServo servo(pad, large_first ? ToolList{large, small} : ToolList{small, large}, options);
+    std::array<ToolState, 2> states;
+    ToolState &big = states[large_first ? 0 : 1], &little = states[large_first ? 1 : 0];
+    for (int i = 0; i < 400; ++i) {
+      const double first = std::min(1.0, i / 150.0), second = std::clamp((i - 150) / 150.0, 0.0, 1.0);
+      big.time = little.time = 1e-3 * i;
+      big.position = Vector3(0.008, 0.015, test::pad_height + 40e-3 + (both ? 1e-3 - 5e-3 * first : 20e-3));
+      little.position = Vector3(0.026, 0.015, test::pad_height + 4e-3 + 1e-3 - 3e-3 * second);
+      servo.tick(states);
+    }
+    return servo.contact_force(large_first ? 1 : 0).norm();
+  };
+  const double alone = pressed_force(false);
+  REQUIRE(alone > 0.05);
+  CHECK(pressed_force(true) > 0.5 * alone);
 }

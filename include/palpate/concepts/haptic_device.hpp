@@ -53,7 +53,7 @@ struct DeviceLimits {
   Vector3 workspace_high = Vector3::Constant(0.1);  ///< [m]
   double peak_torque = 0.0;                         ///< [N m]; 0: three actuated degrees of freedom, no torque
   double rotational_stiffness = 0.0;                ///< [N m/rad] largest that it renders stably; 0 without torque
-  double length_scale = 1.0;                        ///< of these limits: one metre in the hand is this long (Placement)
+  double length_scale = 1.0;                        ///< length in these limits per length at the handle (Placement)
   double rate = 1000.0;                             ///< [1/s] highest intended update rate
 };
 

@@ -39,14 +39,14 @@ inline bool ContactProblem::is_grasped(const Candidate& c) const noexcept {
   return c.sample == grasps_[at(c.tool)].sample;
 }
 
-/// Tools that have points near share the rows equally: none takes those of another.
+/// Shares the rows equally among the tools that have contact points near them.
 PALPATE_INLINE void ContactProblem::share_rows(Tools tools) noexcept {
   int near = 0;
   for (std::size_t t = 0; t < tools.size(); ++t) near += tools[t].active && candidates_.has_any(static_cast<int>(t));
   share_ = std::max(1, rows_.capacity() / std::max(1, near));
 }
 
-/// A tool with more pressing points than its share keeps those that press most.
+/// Of a tool with more pressing points than its share, those with the largest forces are kept.
 inline void ContactProblem::note_pressing(Candidate& c) noexcept {
   c.row = -1;
   if (c.grasped || !(c.force > 0.0)) return;

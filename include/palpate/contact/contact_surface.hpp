@@ -43,12 +43,13 @@ class ContactSurface {
   void set_loads(std::string loads) noexcept { unloaded_.loads = std::move(loads); }
   const Unloaded& unloaded() const noexcept { return unloaded_; }
 
-  /// Moves the resting surface (new loads, new pose of the loads). No allocation; not while a tick runs. Vertices
-  /// beyond those given stay: give those of the shell, too, where there is one.
+  /// Moves the resting surface (new loads, new pose of the loads). With a shell, its positions follow those of the
+  /// vertices; without them it stays. No allocation; not while a tick runs.
   void move_to(std::span<const Vector3> positions) noexcept;
 
-  /// Adds the boundary of the body that cannot be touched: the positions of its further vertices, and its triangles,
-  /// which number those after vertex_count(). Decides where closest_of_body is inside. Allocates; for set-up.
+  /// Adds the untouchable rest of the body's boundary, so that inside and outside are known beyond the touchable
+  /// surface. An index v of a triangle is a vertex of this surface if v < vertex_count(), otherwise it means
+  /// positions[v - vertex_count()] [m]. Allocates; for set-up.
   void add_shell(std::span<const Vector3> positions, const std::vector<Triangle>& triangles);
 
   /// The closest point of the resting surface: triangle, point, and signed distance (negative inside) by the
@@ -61,14 +62,14 @@ class ContactSurface {
     double distance = infinity;
   };
   Closest closest(const Vector3& p) const noexcept;
-  /// The same, signed by the whole boundary of the body where there is a shell. Without triangle, and infinite, where
-  /// the shell is closer than the touchable surface.
+  /// As closest, with the sign of the closed boundary if there is a shell. Where the shell is closer than the touchable
+  /// surface, the result has no triangle and an infinite distance.
   Closest closest_of_body(const Vector3& p) const noexcept;
   bool has_shell() const noexcept { return !body_.empty(); }
   /// The shell as given to add_shell.
   std::span<const Vector3> shell_positions() const noexcept;
   std::span<const Triangle> shell() const noexcept;
-  /// Whether a point is in the body or, without a shell, behind the touchable surface.
+  /// Whether a point is inside the closed boundary; without a shell, whether it is behind the touchable surface.
   bool is_inside(const Vector3& p) const noexcept;
 
  private:

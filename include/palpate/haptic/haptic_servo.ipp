@@ -147,8 +147,9 @@ PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, co
     blade.lift();
 }
 
-/// A sphere whose centre is in the body without any contact either came in where the body cannot be touched, and passes
-/// through until it is outside again, or has lost the surface: then it is put back in the next tick, with the ramp.
+/// A sphere whose centre is inside the body without any contact either entered through an untouchable surface, and
+/// passes until it is outside again, or has lost the surface. In the second case it is placed on the surface in the
+/// next tick, with the ramp.
 PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
   const ContactTool& tool = contact_tools_[i];
   if (!tool.active || !detail::is_zero(tool.force)) return;

@@ -24,7 +24,7 @@ PALPATE_INLINE double detail::stable_at(double rate, const DeviceLimits& device,
 
 namespace detail {
 
-/// [N/m] and [N m/rad]; no hand feels less, and its compliance is far from overflow.
+/// Smallest stiffness of a coupling [N/m], [N m/rad]: with less, its compliance could overflow.
 inline constexpr double softest_coupling = 1e-6;
 
 [[noreturn]] inline void refuse_stiffness(std::size_t tool, const char* which, double value, const char* hint) {

@@ -23,7 +23,8 @@ class ProxyMotion {
   /// Moves the proxies with their devices, perpendicular to the contact force: this makes the first linearisation
   /// nearly exact for a sphere that slides.
   static void slide(Tools tools) noexcept;
-  /// Begins a linearisation: stores the forces, and moves targets that are farther than it may go to where it may.
+  /// Begins a linearisation: stores the forces, and replaces a target that one linearisation may not reach by the
+  /// farthest point on the path to it that it may reach.
   /// `floor`: the least compliance of a contact [m/N], as TissueModel has it.
   void begin(Tools tools, double floor) noexcept;
   /// Ends a linearisation: the targets are those of the devices again.

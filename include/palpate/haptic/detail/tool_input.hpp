@@ -43,7 +43,7 @@ class ToolInput {
   bool readable() const noexcept { return readable_; }
   bool restarted() const noexcept { return restarted_; }  ///< forces begin from zero
   bool rotates() const noexcept { return rotates_; }
-  /// In the body, where it came in through a surface that cannot be touched.
+  /// Whether the tool is inside the body because it entered through an untouchable surface.
   bool is_passing() const noexcept { return passing_; }
   void set_passing(bool passing) noexcept { passing_ = passing; }
   Status status() const noexcept { return status_; }
@@ -79,7 +79,7 @@ class ToolInput {
   bool known_ = false;  // position_ is valid
   bool has_proxy_ = false;    // while not known_: the proxy is that of the last reading
   bool passing_ = false;
-  bool needs_press_ = false;  // a grasp begins with a press of the button, not with a reading
+  bool needs_press_ = false;  // after a loss or jump: no grasp until the button is released and pressed again
   bool readable_ = false, restarted_ = false, rotates_;
   std::uint32_t grasp_buttons_;
   Status status_;

@@ -70,7 +70,7 @@ PALPATE_INLINE void ToolInput::lose() noexcept {
   status_.set(StatusFlag::reacquired);
 }
 
-/// The tool stays where its proxy is; without its force the surface springs back and lifts it.
+/// Keeps the proxy for the next reading, moved out by the depth of the dent, which springs back without the force.
 PALPATE_INLINE void ToolInput::lose_reading(std::span<const Contact> contacts, ContactTool& tool) noexcept {
   if (known_) {
     tool.proxy = off_surface(contacts, tool);

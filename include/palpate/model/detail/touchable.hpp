@@ -21,7 +21,7 @@ struct Touchable {
   std::vector<NodeId> nodes;
   std::vector<Triangle> triangles;
 
-  /// The rest of the boundary, in the same way: a vertex k >= nodes.size() is node shell_nodes[k - nodes.size()].
+  /// The rest of the boundary; an index k >= nodes.size() means shell_nodes[k - nodes.size()].
   std::vector<NodeId> shell_nodes;
   std::vector<Triangle> shell;
 };

@@ -18,20 +18,15 @@ PALPATE_INLINE void sort_unique(std::vector<NodeId>& nodes) {
 
 namespace detail {
 
-/// The faces of the boundary that are not among `touched`, whatever their first node.
+/// The faces of the boundary that are not among `touched`, for any order of their nodes.
 inline std::vector<BoundaryFace> other_faces(const std::vector<BoundaryFace>& boundary,
                                              const std::vector<BoundaryFace>& touched) {
-  const auto key = [](const BoundaryFace& face) {
-    std::vector<NodeId> nodes(face.nodes.begin(), face.nodes.end());
-    std::ranges::sort(nodes);
-    return nodes;
-  };
-  std::vector<std::vector<NodeId>> keys;
-  for (const BoundaryFace& face : touched) keys.push_back(key(face));
+  std::vector<decltype(BoundaryFace{}.key())> keys;
+  for (const BoundaryFace& face : touched) keys.push_back(face.key());
   std::ranges::sort(keys);
   std::vector<BoundaryFace> others;
   for (const BoundaryFace& face : boundary)
-    if (!std::ranges::binary_search(keys, key(face))) others.push_back(face);
+    if (!std::ranges::binary_search(keys, face.key())) others.push_back(face);
   return others;
 }
 
