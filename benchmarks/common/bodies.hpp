@@ -29,7 +29,7 @@ std::vector<NodeId> nodes_where(const Mesh<Tet4>& mesh, Wanted wanted) {
 }
 
 /// A mesh with its constrained and its touchable nodes.
-struct Constrained {
+struct SupportedBody {
   Mesh<Tet4> mesh;
   std::vector<NodeId> constrained, touched;
 
@@ -47,8 +47,8 @@ struct Constrained {
 
 /// Cube of 0.1 m in n x n x n cells of six tetrahedra, constrained at the bottom. Touchable is a square patch in the
 /// middle of the top with an odd number of nodes per side: 7 x 7 at n = 16, 11 x 11 at n = 24.
-inline Constrained standard_block(int n) {
-  Constrained b{box_tet4(Vector3(0.1, 0.1, 0.1), {n, n, n}, BoxSplit::six), {}, {}};
+inline SupportedBody standard_block(int n) {
+  SupportedBody b{box_tet4(Vector3(0.1, 0.1, 0.1), {n, n, n}, BoxSplit::six), {}, {}};
   const double half = 0.1 / n * (n < 16 ? 2 : n < 24 ? 3 : n < 32 ? 5 : 7) + 1e-6;
   b.constrained = nodes_where(b.mesh, [](const Vector3& p) { return p.z() < 1e-9; });
   b.touched = nodes_where(b.mesh, [=](const Vector3& p) {
@@ -81,10 +81,10 @@ Mesh<Tet4> part_of(const Mesh<Tet4>& mesh, Wanted wanted) {
 
 /// A body like an organ: a sphere of `layers` layers, with element edges of about `edge` [m], a cavity inside and nodes
 /// displaced at random. Constrained at the bottom; the 300 surface nodes nearest to the top are touchable.
-inline Constrained organ_like(int layers, double edge) {
+inline SupportedBody organ_like(int layers, double edge) {
   const double radius = layers * edge;
   const Vector3 cavity = radius * Vector3(0.3, 0.1, -0.1);
-  Constrained b{
+  SupportedBody b{
       part_of(sphere_tet4(radius, layers), [&](const Vector3& c) { return (c - cavity).norm() > 0.35 * radius; }),
       {},
       {}};
@@ -106,14 +106,14 @@ struct System {
   DofLayout layout;          ///< without kept dofs
   std::vector<Index> patch;  ///< free dofs of the touched nodes
 
-  explicit System(const Constrained& constrained) {
+  explicit System(const SupportedBody& supported) {
     Scene scene;
-    scene.fix(constrained.constrained);
-    const auto conditions = resolve_essential(constrained.mesh, extract_boundary<Tet4>(constrained.mesh), scene);
-    lower = free_matrix(assemble_stiffness<Tet4>(constrained.body(), {}), conditions);
-    layout.positions = constrained.mesh.positions;
+    scene.fix(supported.constrained);
+    const auto conditions = resolve_essential(supported.mesh, extract_boundary<Tet4>(supported.mesh), scene);
+    lower = free_matrix(assemble_stiffness<Tet4>(supported.body(), {}), conditions);
+    layout.positions = supported.mesh.positions;
     for (Index dof : conditions.free_dofs) layout.node_of_dof.push_back(dof / 3);
-    for (NodeId node : constrained.touched)
+    for (NodeId node : supported.touched)
       for (int c = 0; c < 3; ++c)
         if (const Index f = conditions.free_index[static_cast<std::size_t>(3 * Index{node} + c)]; f >= 0)
           patch.push_back(f);

@@ -16,9 +16,9 @@ inline constexpr double cell = 1e-3;  ///< element size of the bodies that are t
 
 /// Block of 1 mm cells, across x across x deep. Touchable are 17 x 17 nodes in the middle of its top, the same in every
 /// block. `across` is even and at least 16.
-inline Constrained touch_block(int across, int deep) {
+inline SupportedBody touch_block(int across, int deep) {
   const Vector3 size(cell * across, cell * across, cell * deep);
-  Constrained b{box_tet4(size, {across, across, deep}, BoxSplit::six), {}, {}};
+  SupportedBody b{box_tet4(size, {across, across, deep}, BoxSplit::six), {}, {}};
   for (Vector3& p : b.mesh.positions) p -= Vector3(0.5 * size.x(), 0.5 * size.y(), size.z());
   b.constrained = nodes_where(b.mesh, [&](const Vector3& p) { return p.z() < 1e-6 * cell - size.z(); });
   b.touched = nodes_where(
@@ -26,8 +26,8 @@ inline Constrained touch_block(int across, int deep) {
   return b;
 }
 /// An organ-like body of 1 mm elements, with its top at the origin.
-inline Constrained touch_organ(int layers) {
-  Constrained b = organ_like(layers, cell);
+inline SupportedBody touch_organ(int layers) {
+  SupportedBody b = organ_like(layers, cell);
   for (Vector3& p : b.mesh.positions) p.z() -= layers * cell;
   return b;
 }
@@ -38,7 +38,7 @@ class Touching {
  public:
   using Model = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
 
-  explicit Touching(const Constrained& body)
+  explicit Touching(const SupportedBody& body)
       : model_(body.mesh, body.scene(), tissue), servo_(model_, SphereTool{radius}) {}
 
   /// Lowers the tool until the average number of pressing contacts over the circle is `contacts`.

@@ -147,7 +147,7 @@ void measure_scrambles(bench::RowFile& rows, Motion& motion, const char* name, i
 }  // namespace
 
 void measure_implicit_scrambles(bench::RowFile& rows, int runs) {
-  const bench::Constrained block = bench::standard_block(2);
+  const bench::SupportedBody block = bench::standard_block(2);
   Scene scene;
   scene.fix(block.constrained);
   CorotatedMotionOptions options;

@@ -19,7 +19,7 @@ using Corotated = Corotational<LinearElastic>;
 /// The standard block under its weight, fixed at the bottom; a patch in the middle of its top is pressed 20 mm down and
 /// up again, twice a second.
 struct Pressing {
-  bench::Constrained block;
+  bench::SupportedBody block;
   HyperelasticBody<Tet4, Corotated> body;
   Scene scene;
 

@@ -23,7 +23,7 @@ struct Sample {
 };
 
 /// Measures one body. Small bodies are set up several times.
-Sample measure(const std::string& name, const bench::Constrained& constrained) {
+Sample measure(const std::string& name, const bench::SupportedBody& constrained) {
   Sample s{.body = name, .tick = {}};
   std::unique_ptr<bench::Touching> body;
   s.memory = bench::peak_growth([&] { body = std::make_unique<bench::Touching>(constrained); });

@@ -116,7 +116,7 @@ void measure_factorisation(Session& session) {
 }
 
 void measure_irregular(Session& session, const char* organ_file) {
-  const auto measure = [&](const bench::Constrained& constrained, const std::string& name) {
+  const auto measure = [&](const bench::SupportedBody& constrained, const std::string& name) {
     const bench::System system(constrained);
     const std::string where = ", " + name + ", " + std::to_string(system.lower.rows()) + " dofs";
     const Times t = factorise(system);
@@ -130,7 +130,7 @@ void measure_irregular(Session& session, const char* organ_file) {
                         .bound = bench::at_most(1.3),
                         .error = ""});
   };
-  bench::Constrained organ{io::read_mesh<Tet4>(organ_file), {}, {}};
+  bench::SupportedBody organ{io::read_mesh<Tet4>(organ_file), {}, {}};
   organ.constrained = organ.mesh.find_group("ligament")->nodes;
   organ.touched = organ.mesh.find_group("front")->nodes;
   measure(organ, "organ.msh");

@@ -81,7 +81,7 @@ void measure_models(Session& session, const char* organ_file) {
     measure_seed(session, {12, 7, 5}, all, 4 * 60.0, "over 4 min for 624 (2004)", 25e-3);
   }
   for (const int n : {10, 16}) {
-    const bench::Constrained block = bench::standard_block(n);
+    const bench::SupportedBody block = bench::standard_block(n);
     measure_body(session, block.mesh, block.scene(), at_size("block", n));
   }
   Scene scene;

@@ -10,7 +10,7 @@ constexpr double sphere = 4e-3;  ///< [m] radius
 constexpr double pressed = 0.1;  ///< [N]
 
 Block make_block(double youngs_modulus) {
-  const bench::Constrained constrained = bench::touch_block(16, 6);
+  const bench::SupportedBody constrained = bench::touch_block(16, 6);
   LinearElastic material = bench::tissue;
   material.youngs_modulus = youngs_modulus;
   return Block(constrained.mesh, constrained.scene(), material);

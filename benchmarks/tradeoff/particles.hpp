@@ -69,7 +69,7 @@ struct Particles {
   double damping_ = rest_damping;
 };
 
-/// Contender for a `Body` with the members particles, step(dt, centres, forces), energy() and constrained_force().
+/// Contender for a `Body` with the members particles, step(dt, centres, forces), energy() and support_reaction().
 template <class Body>
 class ParticleContender : public Contender {
  public:
@@ -93,7 +93,7 @@ class ParticleContender : public Contender {
   VectorX displacement() override { return body_.particles.displacement().head(3 * bench_.scene.mesh.node_count()); }
   /// Relative difference between the forces on constrained nodes and on the spheres.
   double own_error() override {
-    Vector3 sum = body_.constrained_force();
+    Vector3 sum = body_.support_reaction();
     double size = 0.0;
     for (const Vector3& f : forces_) {
       sum -= f;

@@ -84,7 +84,7 @@ struct PositionBased {
     return sum;
   }
   /// Computed from the derivative of the energy, which equals the multipliers when a step has converged.
-  Vector3 constrained_force() const {
+  Vector3 support_reaction() const {
     Vector3 sum = Vector3::Zero();
     for (const Element& e : elements) {
       const Matrix3 f = deformation(e), c = cofactor(f);

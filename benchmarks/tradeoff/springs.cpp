@@ -70,7 +70,7 @@ struct MassSpring {
     }
     return sum;
   }
-  Vector3 constrained_force() {
+  Vector3 support_reaction() {
     pull();
     Vector3 sum = Vector3::Zero();
     for (std::size_t i = 0; i < particles.force.size(); ++i)

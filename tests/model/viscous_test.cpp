@@ -23,7 +23,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-constexpr double share = 0.5, tau = 0.5, constrained_strain = 0.01;
+constexpr double share = 0.5, tau = 0.5, applied_strain = 0.01;
 using Cube = Viscoelastic<LinearElastic, 1>;
 
 Cube cube_material(Relaxation relaxation) {
@@ -50,7 +50,7 @@ struct LoadCase {
 constexpr LoadCase pulled{"uniaxial_free", 1}, confined{"confined", 2}, sheared{"shear", 3};
 
 template <Element E>
-Scene constrained_as(const LoadCase& load_case, const Mesh<E>& mesh, double size) {
+Scene supports_of(const LoadCase& load_case, const Mesh<E>& mesh, double size) {
   const auto along = [](int axis, double u) {
     Components c;
     c[static_cast<std::size_t>(axis)] = u;
@@ -81,8 +81,8 @@ double stress_of(const LoadCase& load_case, const Mesh<E>& mesh, const Equilibri
 /// Largest relative error over the rows of the table, with `steps` steps between two.
 template <Element E>
 double relaxation_error(const Mesh<E>& mesh, const LoadCase& load_case, Relaxation relaxation, int steps) {
-  Equilibrium body(make_constrained_body(make_body(mesh, cube_material(relaxation)),
-                                         constrained_as(load_case, mesh, constrained_strain)));
+  Equilibrium body(
+      make_constrained_body(make_body(mesh, cube_material(relaxation)), supports_of(load_case, mesh, applied_strain)));
   double time = 0.0, worst = 0.0;
   const auto rows = oracle_rows("closed_form_relaxation.csv");
   REQUIRE(rows.size() == 18);
@@ -125,7 +125,7 @@ TEST_CASE("a ramp is exact for any step, creep is of second order", "[model][vis
   REQUIRE(rows.size() == 18);
   for (const LoadCase& load_case : {sheared, pulled}) {
     Equilibrium body(make_constrained_body(make_body(mesh, cube_material(Relaxation::whole_stress)),
-                                           constrained_as(load_case, mesh, constrained_strain)));
+                                           supports_of(load_case, mesh, applied_strain)));
     const VectorX full = body.conditions().prescribed;
     double time = 0.0;
     for (const auto& row : rows) {
@@ -161,18 +161,18 @@ TEST_CASE("a ramp is exact for any step, creep is of second order", "[model][vis
 TEST_CASE("the response to harmonic strain has the complex modulus", "[model][viscous][oracle]") {
   const Mesh<Hex8> mesh = box_hex8({1, 1, 1}, {2, 2, 2});
   const auto error = [&](const std::vector<double>& row, int steps) {
-    Equilibrium body(make_constrained_body(make_body(mesh, cube_material(Relaxation::deviatoric)),
-                                           constrained_as(sheared, mesh, 1.0)));
+    Equilibrium body(
+        make_constrained_body(make_body(mesh, cube_material(Relaxation::deviatoric)), supports_of(sheared, mesh, 1.0)));
     const VectorX full = body.conditions().prescribed;
     const double h = period / row[0] / steps;
     const int still = steps * (1 + static_cast<int>(20.0 * tau * row[0] / period));  // until transients have decayed
     double storage = 0.0, loss = 0.0;
     for (int k = 1; k <= still + steps; ++k) {
       const double angle = period * k / steps;
-      body.set_prescribed(constrained_strain * std::sin(angle) * full);
+      body.set_prescribed(applied_strain * std::sin(angle) * full);
       REQUIRE(body.step(h).converged);
       if (k <= still) continue;
-      const double modulus = stress_of(sheared, mesh, body) / constrained_strain * 2.0 / steps;
+      const double modulus = stress_of(sheared, mesh, body) / applied_strain * 2.0 / steps;
       storage += modulus * std::sin(angle);
       loss += modulus * std::cos(angle);
     }
@@ -196,11 +196,11 @@ TEST_CASE("each region relaxes with its own time constant", "[model][viscous]") 
   mesh.regions[1] = 1;
   const LinearElastic base{1e4, 0.0, 1000.0};  // in a row: the same force in both
   const RegionMaterials<Cube> materials{{"left", Cube{base, {{{0.5, 0.1}}}}}, {"right", Cube{base, {{{0.3, 10.0}}}}}};
-  Equilibrium body(make_constrained_body(make_body(mesh, materials), constrained_as(pulled, mesh, constrained_strain)));
+  Equilibrium body(make_constrained_body(make_body(mesh, materials), supports_of(pulled, mesh, applied_strain)));
   REQUIRE(body.step(0.0).converged);
   CHECK_THAT(stress_of(pulled, mesh, body), WithinRel(100.0, 1e-9));
   REQUIRE(body.step(infinity).converged);
-  CHECK_THAT(stress_of(pulled, mesh, body), WithinRel(1e4 * 2.0 * constrained_strain / (1.0 / 0.5 + 1.0 / 0.7), 1e-9));
+  CHECK_THAT(stress_of(pulled, mesh, body), WithinRel(1e4 * 2.0 * applied_strain / (1.0 / 0.5 + 1.0 / 0.7), 1e-9));
 }
 
 TEST_CASE("a constant deformation relaxes exactly at large strain too", "[model][viscous]") {
@@ -234,10 +234,10 @@ TEST_CASE("at small strain both kinematics agree", "[model][viscous]") {
   for (const auto relaxation : {Relaxation::whole_stress, Relaxation::deviatoric}) {
     const double small = 1e-6;
     Equilibrium linear(
-        make_constrained_body(make_body(mesh, cube_material(relaxation)), constrained_as(pulled, mesh, small)));
+        make_constrained_body(make_body(mesh, cube_material(relaxation)), supports_of(pulled, mesh, small)));
     Equilibrium large(make_hyperelastic_body(mesh, std::vector{Viscoelastic<NeoHookean, 1>{
                                                        {1e4, 0.45, 1000.0}, {{{share, tau}}}, relaxation}}),
-                      constrained_as(pulled, mesh, small));
+                      supports_of(pulled, mesh, small));
     for (const double dt : {0.0, 0.1, 0.1, 0.5, 2.0}) {
       REQUIRE(linear.step(dt).converged);
       REQUIRE(large.step(dt).converged);
