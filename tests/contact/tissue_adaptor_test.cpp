@@ -20,7 +20,7 @@ struct Counting : test::AnalyticTissue {
   void end_tick(std::span<const VertexForce> forces) noexcept { pressing = forces.size(); }
   std::uint64_t updates() const noexcept { return 7; }
   void exchange_contacts(ContactProblem&) noexcept { ++exchanged; }
-  void prepare_tools(double radius, const ContactParameters&) { smallest = radius; }
+  void prepare_tools(const ToolRadii& radii, const ContactParameters&) { smallest = radii.smallest; }
   bool try_cut(const BladeSweep&) noexcept { return ++cuts < 2; }
   BackgroundStep background_work() noexcept { return {true, 0.5}; }
   void report_slow(bool is) noexcept { slow = is; }

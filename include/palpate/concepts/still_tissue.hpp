@@ -14,7 +14,7 @@ struct StillTissue {
   NoHook end_tick(std::span<const VertexForce>) noexcept { return {}; }
   NoHook updates() const noexcept { return {}; }
   NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
-  NoHook prepare_tools(double, const ContactParameters&) noexcept { return {}; }
+  NoHook prepare_tools(const ToolRadii&, const ContactParameters&) noexcept { return {}; }
   NoHook try_cut(const BladeSweep&) noexcept { return {}; }
   NoHook background_work() noexcept { return {}; }
   NoHook report_slow(bool) noexcept { return {}; }

@@ -30,8 +30,8 @@ class TissueAdaptor {
   auto end_tick(std::span<const VertexForce> forces) noexcept { return tissue_->end_tick(forces); }
   auto updates() const noexcept { return tissue().updates(); }
   auto exchange_contacts(ContactProblem& problem) noexcept { return tissue_->exchange_contacts(problem); }
-  auto prepare_tools(double smallest_radius, const ContactParameters& parameters) {
-    return tissue_->prepare_tools(smallest_radius, parameters);
+  auto prepare_tools(const ToolRadii& radii, const ContactParameters& parameters) {
+    return tissue_->prepare_tools(radii, parameters);
   }
   auto try_cut(const BladeSweep& sweep) noexcept { return tissue_->try_cut(sweep); }
   auto background_work() { return tissue_->background_work(); }

@@ -17,6 +17,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 class ContactProblem;
 struct ContactParameters;
+struct ToolRadii;
 struct BladeSweep;
 
 /// Return type of a hook that does nothing; such a hook is never called.
@@ -71,8 +72,8 @@ concept HasExchangeContacts = requires(T& tissue, ContactProblem& problem) {
   { tissue.exchange_contacts(problem) } noexcept -> HookResult<void>;
 };
 template <class T>
-concept HasPrepareTools = requires(T& tissue, double radius, const ContactParameters& parameters) {
-  { tissue.prepare_tools(radius, parameters) } -> HookResult<void>;
+concept HasPrepareTools = requires(T& tissue, const ToolRadii& radii, const ContactParameters& parameters) {
+  { tissue.prepare_tools(radii, parameters) } -> HookResult<void>;
 };
 template <class T>
 concept HasTryCut = requires(T& tissue, const BladeSweep& sweep) {
@@ -136,7 +137,7 @@ concept HasOutOfDateScale = requires { &T::compliance; } &&
 /// number does not change for too long.
 /// - `exchange_contacts(problem)` -> void: after `begin_tick`, for a tissue whose triangles change: moves the session's
 /// contact problem to the new surface, where the contacts continue.
-/// - `prepare_tools(smallest_radius, parameters)` -> void: called once at the start of a session; may throw to refuse
+/// - `prepare_tools(radii, parameters)` -> void: called once at the start of a session; may throw to refuse
 /// it.
 /// - `try_cut(sweep)` -> bool: requests a cut along a BladeSweep in the world frame; false when too many requests are
 /// pending. Only such a tissue accepts a BladeTool.

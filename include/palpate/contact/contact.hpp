@@ -5,10 +5,18 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Default number of contacts of one contact problem.
-inline constexpr int default_contact_capacity = 64;
+/// Default number of contacts of a contact problem with one tool, and what every other tool adds.
+inline constexpr int default_contact_capacity = 64, default_capacity_per_tool = 32;
 /// Largest number of tools of one contact problem.
 inline constexpr std::size_t maximum_tools = 8;
+
+/// Radii of the tools of a session [m].
+struct ToolRadii {
+  double smallest, largest;
+  ToolRadii(double radius) noexcept : smallest(radius), largest(radius) {}  // NOLINT(google-explicit-constructor)
+  ToolRadii(double least, double most) noexcept : smallest(least), largest(most) {}
+  friend bool operator==(const ToolRadii&, const ToolRadii&) = default;
+};
 
 /// Limits and parameters of the contact solution of a tick.
 struct ContactParameters {
@@ -16,7 +24,10 @@ struct ContactParameters {
   double force_tolerance = 1e-3;            ///< relative change of the force between linearisations that ends the tick
   double sample_spacing = 0.5;              ///< of contact points on the surface, in radii of the smallest tool
   double friction = 0.0;                    ///< Coulomb's coefficient; 0 has no cost
-  int capacity = default_contact_capacity;  ///< of contacts of all tools; more are ignored (degraded_model)
+  int capacity = 0;  ///< of contacts of all tools; more are ignored (degraded_model); 0: the default for the tools
+
+  /// The same with a capacity for this number of tools.
+  ContactParameters for_tools(std::size_t tools) const noexcept;
 };
 
 /// A sphere or capsule as the contact problem represents it, in the model's frame.

@@ -22,11 +22,11 @@ class ContactProblem {
   /// Largest ContactParameters::capacity.
   static constexpr int maximum_capacity = 1024;
 
-  /// Places the contact points for spheres of at least `smallest_radius` [m]. Allocates workspaces; for set-up.
+  /// Places the contact points for spheres of these radii. Allocates workspaces; for set-up.
   /// Throws bad_argument unless 0.4 <= sample_spacing <= 1, with less than one iteration or a capacity below one
   /// contact, and for an edge of the surface longer than 32 radii (ids: its vertices): the lattice of points ends
   /// there, and the sphere would fall through.
-  ContactProblem(const ContactSurface& surface, double smallest_radius, const ContactParameters& parameters = {});
+  ContactProblem(const ContactSurface& surface, const ToolRadii& radii, const ContactParameters& parameters = {});
 
   /// Finds the forces for the tools' new targets; updates proxy and force of every active tool. At most
   /// `maximum_tools` tools. Any TissueModel is a TissueView. Never allocates.
@@ -49,6 +49,11 @@ class ContactProblem {
   std::span<const VertexForce> vertex_forces() const noexcept { return displacement_.forces(); }
   /// Whether a contact point is near a tool's sphere.
   bool is_near(int tool) const noexcept { return candidates_.has_any(tool); }
+  /// The closest point of the touchable surface as the forces of the last tick deform it. `distance` [m] is that of the
+  /// resting surface. Visits the triangles that the forces may have moved there; no allocation.
+  ContactSurface::Closest closest(const TissueView& tissue, const Vector3& position, double distance) noexcept {
+    return candidates_.closest(tissue, displacement_, position, distance);
+  }
   /// Whether a tool grasps a point.
   bool is_holding(std::size_t tool) const noexcept { return grasps_[tool].sample >= 0; }
 

@@ -10,16 +10,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, double smallest_radius,
+PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, const ToolRadii& radii,
                                               const ContactParameters& parameters)
-    : parameters_(checked(parameters)),
-      displacement_(surface.vertex_count(), vertices_per_contact * parameters.capacity),
-      start_(surface.vertex_count(), vertices_per_contact * parameters.capacity),
-      candidates_(surface, parameters.sample_spacing * smallest_radius, parameters.capacity),
-      rows_(surface.vertex_count(), parameters.friction, parameters.capacity),
-      pressing_(at(parameters.capacity)),
+    : parameters_(checked(parameters.for_tools(1))),
+      displacement_(surface.vertex_count(), vertices_per_contact * parameters_.capacity),
+      start_(surface.vertex_count(), vertices_per_contact * parameters_.capacity),
+      candidates_(surface, radii, parameters_.sample_spacing, parameters_.capacity),
+      rows_(surface.vertex_count(), parameters_.friction, parameters_.capacity),
+      pressing_(at(parameters_.capacity)),
       violated_(at(candidates_.maximum())) {
-  require_dense_points(surface, smallest_radius);
+  require_dense_points(surface, radii.smallest);
 }
 
 PALPATE_INLINE ContactParameters ContactProblem::checked(const ContactParameters& p) {

@@ -69,8 +69,13 @@ class ContactSurface {
   /// The shell as given to add_shell.
   std::span<const Vector3> shell_positions() const noexcept;
   std::span<const Triangle> shell() const noexcept;
+  /// Signed distance of a point from the closed boundary, negative inside; without a shell, from the touchable surface,
+  /// as `closest` has it [m].
+  double distance_of_body(const Vector3& p) const noexcept;
   /// Whether a point is inside the closed boundary; without a shell, whether it is behind the touchable surface.
-  bool is_inside(const Vector3& p) const noexcept;
+  bool is_inside(const Vector3& p) const noexcept { return distance_of_body(p) < 0.0; }
+  /// Whether the boundary that decides about inside and outside has no rim.
+  bool is_closed() const noexcept { return body_.empty() ? !has_rim_ : !body_.front().has_rim_; }
 
  private:
   inline TrianglePoint closest_on(int t, const Vector3& p) const noexcept;
@@ -88,6 +93,7 @@ class ContactSurface {
   std::vector<bool> rim_vertex_;
   std::vector<int> first_at_, triangles_at_;  // triangles of every vertex
   int crowded_edges_ = 0;
+  bool has_rim_ = false;
   std::uint64_t revision_ = 0;
   std::vector<ContactSurface> body_;  // with the shell; none or one
   Unloaded unloaded_;

@@ -47,6 +47,7 @@ PALPATE_INLINE void ContactSurface::list_neighbours() {
       }
       neighbour_[t][i] = sharing == 2 ? other : -1;
       if (sharing > 2 && first == own) ++crowded_edges_;
+      has_rim_ = has_rim_ || sharing == 1;
       if (sharing == 1) rim_vertex_[static_cast<std::size_t>(a)] = rim_vertex_[static_cast<std::size_t>(b)] = true;
     }
 }
@@ -152,10 +153,8 @@ PALPATE_INLINE ContactSurface::Closest ContactSurface::closest_of_body(const Vec
   return own;
 }
 
-PALPATE_INLINE bool ContactSurface::is_inside(const Vector3& p) const noexcept {
-  if (body_.empty()) return closest(p).distance < 0.0;
-  const ContactSurface& body = body_.front();
-  return body.bvh_.bounds().squared_distance(p) == 0.0 && body.closest(p).distance < 0.0;
+PALPATE_INLINE double ContactSurface::distance_of_body(const Vector3& p) const noexcept {
+  return body_.empty() ? closest(p).distance : body_.front().closest(p).distance;
 }
 
 }}  // namespace palpate

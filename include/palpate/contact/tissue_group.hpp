@@ -18,7 +18,7 @@ concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> for
   { tissue.end_tick(forces) } -> std::same_as<NoHook>;
   { tissue.updates() } -> std::same_as<NoHook>;
   { tissue.exchange_contacts(problem) } -> std::same_as<NoHook>;
-  { tissue.prepare_tools(0.0, parameters) } -> std::same_as<NoHook>;
+  { tissue.prepare_tools(ToolRadii(0.0), parameters) } -> std::same_as<NoHook>;
   { tissue.try_cut(sweep) } -> std::same_as<NoHook>;
 };
 

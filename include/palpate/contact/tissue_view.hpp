@@ -27,7 +27,7 @@ struct TissueFunctions {
   void (*end_tick)(void*, std::span<const VertexForce>) noexcept;
   std::uint64_t (*updates)(const void*) noexcept;
   void (*exchange_contacts)(void*, ContactProblem&) noexcept;
-  void (*prepare_tools)(void*, double, const ContactParameters&);
+  void (*prepare_tools)(void*, const ToolRadii&, const ContactParameters&);
   bool (*try_cut)(void*, const BladeSweep&) noexcept;
 };
 
@@ -96,8 +96,8 @@ struct TissueCalls {
       f.updates = [](const void* t) noexcept -> std::uint64_t { return of(t).updates(); };
     if constexpr (calls<decltype(hooked().exchange_contacts(std::declval<ContactProblem&>()))>)
       f.exchange_contacts = [](void* t, ContactProblem& p) noexcept { of(t).exchange_contacts(p); };
-    if constexpr (calls<decltype(hooked().prepare_tools(0.0, std::declval<const ContactParameters&>()))>)
-      f.prepare_tools = [](void* t, double radius, const ContactParameters& p) { of(t).prepare_tools(radius, p); };
+    if constexpr (calls<decltype(hooked().prepare_tools(ToolRadii(0.0), std::declval<const ContactParameters&>()))>)
+      f.prepare_tools = [](void* t, const ToolRadii& radii, const ContactParameters& p) { of(t).prepare_tools(radii, p); };
     if constexpr (calls<decltype(hooked().try_cut(std::declval<const BladeSweep&>()))>)
       f.try_cut = [](void* t, const BladeSweep& s) noexcept -> bool { return of(t).try_cut(s); };
     return f;
@@ -164,9 +164,9 @@ class TissueView {
   bool has_updates() const noexcept { return functions_->updates != nullptr; }
   std::uint64_t updates() const noexcept { return has_updates() ? functions_->updates(tissue_) : 0; }
   /// For the tools of a session that begins. Throws what the tissue's hook throws.
-  void prepare_tools(double smallest_radius, const ContactParameters& parameters) {
+  void prepare_tools(const ToolRadii& radii, const ContactParameters& parameters) {
     if (functions_->prepare_tools == nullptr) return;
-    functions_->prepare_tools(tissue_, smallest_radius, parameters);
+    functions_->prepare_tools(tissue_, radii, parameters);
     look();
   }
 

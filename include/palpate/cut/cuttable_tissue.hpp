@@ -164,9 +164,9 @@ class CuttableTissue : public ModelBase {
   }
   /// Makes the contact surface for the tools of a session that begins; not while another session ticks. Throws
   /// bad_argument when a tool is too small for the mesh. Strong guarantee.
-  void prepare_tools(double smallest_radius, const ContactParameters& contact) {
+  void prepare_tools(const ToolRadii& radii, const ContactParameters& contact) {
     const std::scoped_lock lock(changes_);
-    process_->set_tools(smallest_radius, contact, loads_in_words(gravity(), other_loads()));
+    process_->set_tools(radii, contact, loads_in_words(gravity(), other_loads()));
     views_.update();
     revision_ = view().contact->cut;
     renewed_ = false;

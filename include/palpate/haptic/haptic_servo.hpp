@@ -94,6 +94,10 @@ class HapticServo {
   void note_updates() noexcept;
   void take(std::size_t i, const ToolState& state) noexcept;
   void take_blade(ServoBlade& blade, std::size_t i, const ToolState& state) noexcept;
+  bool is_lost(std::size_t i) noexcept;
+  bool is_free(const Vector3& position, double depth) noexcept;
+  bool sweep_lost_tools() noexcept;
+  bool place_lost_tools() noexcept;
   void recover(std::size_t i) noexcept;
   void pass(std::size_t i, Status shared) noexcept;
   void publish() noexcept;
@@ -111,7 +115,6 @@ class HapticServo {
   bool started_ = false;
   TripleBuffer<Snapshot> snapshots_;
   const Snapshot* newest_ = &snapshots_.back();  // published last; not written before the next is published
-  std::size_t ticks_ = 0;
 };
 
 }}  // namespace palpate

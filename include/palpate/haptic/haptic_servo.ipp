@@ -14,18 +14,21 @@ static_assert(Servo<HapticServo>);
 
 namespace detail {
 
-inline double smallest_radius(const std::vector<ContactTool>& tools) noexcept {
-  double radius = infinity;
-  for (const ContactTool& tool : tools) radius = std::min(radius, tool.radius);
-  return radius;
+inline bool is_sphere(const ContactTool& tool) noexcept {
+  return tool.radius < no_sphere;
 }
-inline bool has_sphere(const std::vector<ContactTool>& tools) noexcept {
-  return smallest_radius(tools) < no_sphere;
+inline ToolRadii radii_of(const std::vector<ContactTool>& tools) noexcept {
+  ToolRadii radii(no_sphere, 0.0);
+  for (const ContactTool& tool : tools) {
+    radii.smallest = std::min(radii.smallest, tool.radius);
+    if (is_sphere(tool)) radii.largest = std::max(radii.largest, tool.radius);
+  }
+  return radii;
 }
 /// The surface of a tissue after it was prepared for these tools.
 inline const ContactSurface& surface_for(TissueView& tissue, const std::vector<ContactTool>& tools,
                                          const ContactParameters& contact) {
-  if (has_sphere(tools)) tissue.prepare_tools(smallest_radius(tools), contact);
+  if (std::any_of(tools.begin(), tools.end(), is_sphere)) tissue.prepare_tools(radii_of(tools), contact);
   return tissue.contact_surface();
 }
 inline ToolState unreadable() noexcept {
@@ -43,7 +46,7 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
                                         std::vector<EnergyTank> energies)
     : tissue_(tissue),
       contact_tools_(make_contact_tools(tools, options)),
-      problem_(detail::surface_for(tissue_, contact_tools_, options.contact), detail::smallest_radius(contact_tools_),
+      problem_(detail::surface_for(tissue_, contact_tools_, options.contact), detail::radii_of(contact_tools_),
                options.contact),
       energies_(std::move(energies)),
       forces_(tools.size()),
@@ -81,11 +84,12 @@ PALPATE_INLINE void HapticServo::add_blade(const BladeTool& blade, std::size_t t
 
 PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const ToolState> states) noexcept {
   const FlushDenormals flush;
-  ++ticks_;
   Status shared = tissue_.begin_tick(problem_);
   for (std::size_t i = 0; i < inputs_.size(); ++i) take(i, i < states.size() ? states[i] : detail::unreadable());
   note_updates();
   shared |= problem_.solve(tissue_, contact_tools_);
+  if (sweep_lost_tools()) shared |= problem_.solve(tissue_, contact_tools_);
+  if (place_lost_tools()) shared |= problem_.solve(tissue_, contact_tools_);
   for (std::size_t i = 0; i < inputs_.size(); ++i) recover(i);
   for (std::size_t i = 0; i < inputs_.size(); ++i) pass(i, shared);
   tissue_.end_tick(problem_.vertex_forces());
@@ -96,7 +100,7 @@ PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const Too
 PALPATE_INLINE void HapticServo::reset() noexcept {
   problem_.reset();
   started_ = false;
-  updates_ = ticks_ = 0;
+  updates_ = 0;
   for (ToolInput& input : inputs_) input.reset();
   for (ContactTool& tool : contact_tools_) tool.reset();
   for (auto& blade : blades_)
@@ -147,28 +151,64 @@ PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, co
     blade.lift();
 }
 
-/// A sphere whose centre is inside the body without any contact either entered through an untouchable surface, and
-/// passes until it is outside again, or has lost the surface. In the second case it is placed on the surface in the
-/// next tick, with the ramp.
-PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
+/// Whether a tool's centre, or an end of its axis, is inside the body without any contact, and got there through the
+/// touchable surface. A tool that entered elsewhere passes until it is outside again.
+PALPATE_INLINE bool HapticServo::is_lost(std::size_t i) noexcept {
   const ContactTool& tool = contact_tools_[i];
-  if (!tool.active || !detail::is_zero(tool.force)) return;
+  ToolInput& input = inputs_[i];
+  if (!tool.active || !detail::is_zero(tool.force)) return false;
   const ContactSurface& surface = tissue_.contact_surface();
-  // Far from all contact points of an open surface nothing changes fast: each tool is checked every 16 ticks.
-  if (!surface.has_shell() && !problem_.is_near(static_cast<int>(i)) && (ticks_ + i) % 16 != 0) return;
+  if (input.is_clear(surface.revision(), tool.target)) return false;
   bool inside = false, behind = false;
   for (const double s : {0.0, -tool.half_length, tool.half_length}) {
     const Vector3 centre = tool.target + s * tool.axis();
-    if (surface.is_inside(centre)) {
+    const double distance = surface.distance_of_body(centre);
+    if (s == 0.0) input.set_clearance(surface.revision(), centre, surface.is_closed() ? distance - tool.half_length : 0.0);
+    if (distance < 0.0 && !is_free(centre, -distance)) {
       inside = true;
       behind = behind || surface.closest_of_body(centre).triangle >= 0;
     }
     if (tool.half_length == 0.0) break;
   }
-  if (inside && behind && !inputs_[i].is_passing())
+  const bool lost = inside && behind && !input.is_passing();
+  if (!lost) input.set_passing(inside);
+  return lost;
+}
+
+/// Whether forces have moved the surface so far that a position inside the resting body is outside now.
+PALPATE_INLINE bool HapticServo::is_free(const Vector3& position, double depth) noexcept {
+  return !problem_.vertex_forces().empty() && problem_.closest(tissue_, position, depth).distance > 0.0;
+}
+
+/// Lost tools are swept again from where they were outside; true if there are any.
+PALPATE_INLINE bool HapticServo::sweep_lost_tools() noexcept {
+  bool any = false;
+  for (std::size_t i = 0; i < inputs_.size(); ++i)
+    any = (is_lost(i) && inputs_[i].sweep_from_outside(tissue_.contact_surface(), contact_tools_[i])) || any;
+  return any;
+}
+
+/// Tools that are still lost are placed beside the surface as the other tools deform it; true if there are any.
+PALPATE_INLINE bool HapticServo::place_lost_tools() noexcept {
+  bool any = false;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    ContactTool& tool = contact_tools_[i];
+    if (!is_lost(i) || problem_.vertex_forces().empty()) continue;
+    const double depth = tissue_.contact_surface().distance_of_body(tool.target);
+    const auto closest = problem_.closest(tissue_, tool.target, std::abs(depth));
+    if (closest.triangle < 0) continue;
+    tool.proxy = closest.point + tool.radius * closest.outward;
+    any = true;
+  }
+  return any;
+}
+
+/// A tool that is lost even so is placed on the resting surface in the next tick, with the ramp.
+PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
+  if (is_lost(i))
     inputs_[i].lose();
-  else
-    inputs_[i].set_passing(inside);
+  else if (!inputs_[i].is_passing())
+    inputs_[i].note_outside(problem_.contacts(), contact_tools_[i]);
 }
 
 /// Passes the contact force through the energy tank and the gate; the tank then receives the gate's output.

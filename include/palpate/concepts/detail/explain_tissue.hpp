@@ -30,7 +30,7 @@ constexpr void explain_tissue() noexcept {
     PALPATE_HOOK(HasEndTick, "end_tick(span<const VertexForce>) noexcept -> void or NoHook");
     PALPATE_HOOK(HasUpdates, "updates() const noexcept -> uint64_t or NoHook");
     PALPATE_HOOK(HasExchangeContacts, "exchange_contacts(ContactProblem&) noexcept -> void or NoHook");
-    PALPATE_HOOK(HasPrepareTools, "prepare_tools(double, const ContactParameters&) -> void or NoHook");
+    PALPATE_HOOK(HasPrepareTools, "prepare_tools(const ToolRadii&, const ContactParameters&) -> void or NoHook");
     PALPATE_HOOK(HasTryCut, "try_cut(const BladeSweep&) noexcept -> bool or NoHook");
     PALPATE_HOOK(HasWorkHooks,
                  "background_work() -> BackgroundStep or NoHook, or report_slow(bool) noexcept -> void or NoHook");

@@ -50,8 +50,9 @@ struct Candidate {
 /// evaluated.
 class Candidates {
  public:
-  /// Places the samples `spacing` [m] apart; `capacity` is that of the contact problem. Allocates; for set-up.
-  Candidates(const ContactSurface& surface, double spacing, int capacity);
+  /// Places the samples for spheres of these radii, `spacing` radii of the smallest apart; larger spheres use a level of
+  /// larger spacing. `capacity` is that of the contact problem. Allocates; for set-up.
+  Candidates(const ContactSurface& surface, const ToolRadii& radii, double spacing, int capacity);
 
   /// Largest number of points in the list.
   int maximum() const noexcept { return static_cast<int>(items_.size()); }
@@ -101,6 +102,10 @@ class Candidates {
   /// Sets the position of a candidate's point and updates its gap and normal.
   inline void place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept;
 
+  /// See ContactProblem::closest.
+  ContactSurface::Closest closest(const TissueView& tissue, SurfaceDisplacement& displacement, const Vector3& position,
+                                  double distance) const noexcept;
+
   /// Checks the next few vertices of the scan.
   void look_round(const TissueView& tissue, std::span<const ContactTool> tools,
                   SurfaceDisplacement& displacement) noexcept;
@@ -110,11 +115,19 @@ class Candidates {
 
  private:
   static constexpr int per_tick = 2;
+  static constexpr double level_ratio = 1.5;  // of the spacing of a level to that of the level before
 
   inline static double needed(const ContactTool& tool) noexcept;
+  int level_of(const ContactTool& tool) const noexcept;
   int triangle_of(const ContactSurface& surface, int sample) const noexcept;
   double travel(std::size_t tool) const noexcept { return travel_[tool] + surface_travel_; }
   void build(const TissueView& tissue, std::span<const ContactTool> tools, SurfaceDisplacement& displacement) noexcept;
+  /// From the closest point of a triangle, as it is deformed, to a position; and the triangle's normal, not unit.
+  struct Offset {
+    Vector3 offset, normal;
+  };
+  static Offset offset(const TissueView& tissue, SurfaceDisplacement& displacement, int triangle,
+                       const Vector3& position) noexcept;
   void keep_loaded(const TissueView& tissue, std::span<const ContactTool> tools,
                    SurfaceDisplacement& displacement) noexcept;
   bool is_loaded(int tool, int sample) const noexcept;
@@ -122,6 +135,7 @@ class Candidates {
                 SurfaceDisplacement& displacement) noexcept;
   bool faces_sphere(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
 
+  double smallest_radius_;
   ContactSamples samples_;
   std::vector<Candidate> items_, loaded_;  // loaded: of the list before
   int count_ = 0, loaded_count_ = 0;

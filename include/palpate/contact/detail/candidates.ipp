@@ -4,6 +4,7 @@
 #include <palpate/contact/detail/candidates.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -15,11 +16,24 @@ inline bool has_vertex(const Triangle& t, int vertex) noexcept {
 
 }  // namespace detail
 
-PALPATE_INLINE Candidates::Candidates(const ContactSurface& surface, double spacing, int capacity)
-    : samples_(surface, spacing),
+PALPATE_INLINE Candidates::Candidates(const ContactSurface& surface, const ToolRadii& radii, double spacing,
+                                      int capacity)
+    : smallest_radius_(radii.smallest),
+      samples_(surface, spacing * radii.smallest),
       items_(4 * static_cast<std::size_t>(capacity)),
       loaded_(static_cast<std::size_t>(capacity)) {
+  // From the longest edge on all levels would be equal: vertices only.
+  const double most = std::min(radii.largest, longest_edge(surface) / spacing * level_ratio);
+  for (double r = level_ratio * radii.smallest; r <= most; r *= level_ratio) samples_.add_level(surface, spacing * r);
   reset();
+}
+
+/// The level whose spacing fits a tool.
+PALPATE_INLINE int Candidates::level_of(const ContactTool& tool) const noexcept {
+  int level = 0;
+  for (double r = level_ratio * smallest_radius_; r <= tool.radius && level + 1 < samples_.levels(); r *= level_ratio)
+    ++level;
+  return level;
 }
 
 PALPATE_INLINE void Candidates::reset() noexcept {
@@ -92,7 +106,8 @@ PALPATE_INLINE void Candidates::move_to(Candidates& fresh, const ContactSurface&
 
 PALPATE_INLINE bool Candidates::move(Candidate& c, const ContactSamples& before,
                                      const ContactSurface& surface) const noexcept {
-  c.sample = samples_.nearest(surface, before[c.sample]);
+  const int level = std::min(before.level_of(c.sample), samples_.levels() - 1);
+  c.sample = samples_.nearest(surface, before[c.sample], level);
   if (c.sample < 0) return false;
   c.triangle = triangle_of(surface, c.sample);
   c.row = c.slot = -1;
@@ -168,8 +183,9 @@ PALPATE_INLINE void Candidates::look_round(const TissueView& tissue, std::span<c
 }
 
 PALPATE_INLINE int Candidates::triangle_of(const ContactSurface& surface, int sample) const noexcept {
+  const int level = samples_.level_of(sample);
   for (const int t : surface.triangles_at(samples_[sample].vertices[0]))
-    if (samples_.first_of(t) <= sample && sample < samples_.first_of(t + 1)) return t;
+    if (samples_.first_of(t, level) <= sample && sample < samples_.first_of(t + 1, level)) return t;
   return 0;
 }
 
@@ -188,17 +204,48 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
     if (!tool.active) continue;
     range_[t] = needed(tool) + 0.25 * tool.radius;
     built_[t] = travel(t);
-    const double far = tool.radius + range_[t] + reach_;
-    const Vector3 axis = tool.axis();
-    surface.bvh().visit_near(tool.proxy, far + tool.half_length, [&](int triangle) {
-      for (int s = samples_.first_of(triangle); s < samples_.first_of(triangle + 1); ++s) {
-        const Vector3 x = rest(surface, s);
-        if ((x - tool.proxy - tool.along(x) * axis).squaredNorm() <= far * far)
-          consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
-      }
+    const double near = tool.radius + tool.half_length + range_[t];
+    const int level = level_of(tool);
+    surface.bvh().visit_near(tool.proxy, near + reach_, [&](int triangle) {
+      if (offset(tissue, displacement, triangle, tool.proxy).offset.squaredNorm() > near * near) return;
+      for (int s = samples_.first_of(triangle, level); s < samples_.first_of(triangle + 1, level); ++s)
+        consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
     });
   }
   valid_ = !lost_forces_;
+}
+
+PALPATE_INLINE Candidates::Offset Candidates::offset(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                                     int triangle, const Vector3& position) noexcept {
+  const Triangle& v = tissue.contact_surface().triangle(triangle);
+  const Vector3 a = displacement.position(tissue, v[0]), b = displacement.position(tissue, v[1]),
+                c = displacement.position(tissue, v[2]);
+  const TrianglePoint on = closest_point(position, a, b, c);
+  return {position - on.weights[0] * a - on.weights[1] * b - on.weights[2] * c, cross(b - a, c - a)};
+}
+
+PALPATE_INLINE ContactSurface::Closest Candidates::closest(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                                           const Vector3& position, double distance) const noexcept {
+  const double moved = std::max({displacement.reach(tissue), far_, far_last_round_});
+  ContactSurface::Closest best;
+  double nearest = infinity, height = 0.0;
+  tissue.contact_surface().bvh().visit_near(position, distance + 2.0 * moved, [&](int triangle) {
+    const Offset from = offset(tissue, displacement, triangle, position);
+    const double squared = from.offset.squaredNorm(), area = from.normal.norm();
+    if (squared > nearest * (1.0 + 1e-9) || !(area > 0.0)) return;
+    // Triangles that share the closest edge or vertex are equally near: the one that is seen least at an angle decides.
+    const double own = from.offset.dot(from.normal) / area;
+    if (squared < nearest * (1.0 - 1e-9) || std::abs(own) > std::abs(height)) {
+      height = own;
+      best.triangle = triangle;
+      best.point = position - from.offset;
+      best.outward = from.normal / area;
+    }
+    nearest = std::min(nearest, squared);
+  });
+  best.distance = std::copysign(std::sqrt(nearest), height);
+  if (std::abs(best.distance) > 1e-3 * std::abs(distance)) best.outward = (position - best.point) / best.distance;
+  return best;
 }
 
 /// Begins a new list with the points that press: they keep their forces however far the sphere still is from its goal.
@@ -232,9 +279,10 @@ PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const Contact
   c.sample = sample;
   c.triangle = triangle;
   c.tool = t;
-  evaluate(tissue, tool, displacement, c);
+  place(c, position(tissue, displacement, c), tool);
   double& range = range_[static_cast<std::size_t>(t)];
   if (!(c.gap <= range) || is_loaded(t, sample)) return;
+  c.facing = faces_sphere(tissue, displacement, c);
   if (count_ < maximum()) {
     items_[static_cast<std::size_t>(count_++)] = c;
     return;

@@ -51,25 +51,41 @@ inline double unloaded_length(const ContactSurface& surface, std::int64_t a, std
 }  // namespace detail
 
 PALPATE_INLINE ContactSamples::ContactSamples(const ContactSurface& surface, double spacing) {
+  add_level(surface, spacing);
+}
+
+PALPATE_INLINE void ContactSamples::add_level(const ContactSurface& surface, double spacing) {
   std::vector<bool> vertex_taken(static_cast<std::size_t>(surface.vertex_count()), false);
-  first_.push_back(0);
+  std::vector<int> first{count()};
   for (int number = 0; number < static_cast<int>(surface.triangles().size()); ++number) {
-    const Triangle& t = surface.triangle(number);
-    double longest = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      longest = std::max(longest, (surface.position(t[i]) - surface.position(t[(i + 1) % 3])).norm());
-      if (!vertex_taken[static_cast<std::size_t>(t[i])])
-        samples_.push_back({{t[i], t[(i + 1) % 3], t[(i + 2) % 3]}, {1.0, 0.0, 0.0}});
-      vertex_taken[static_cast<std::size_t>(t[i])] = true;
-    }
-    for (std::size_t i = 0; i < 3; ++i) add_edge(surface, number, i, spacing);
-    const int n = detail::subdivision(longest, spacing);
-    for (int a = 1; a < n - 1; ++a)
-      for (int b = 1; b < n - a; ++b)
-        samples_.push_back(
-            {t, {static_cast<double>(a) / n, static_cast<double>(b) / n, static_cast<double>(n - a - b) / n}});
-    first_.push_back(static_cast<int>(samples_.size()));
+    add_triangle(surface, number, spacing, vertex_taken);
+    first.push_back(count());
   }
+  first_.push_back(std::move(first));
+}
+
+PALPATE_INLINE void ContactSamples::add_triangle(const ContactSurface& surface, int number, double spacing,
+                                                 std::vector<bool>& vertex_taken) {
+  const Triangle& t = surface.triangle(number);
+  double longest = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    longest = std::max(longest, (surface.position(t[i]) - surface.position(t[(i + 1) % 3])).norm());
+    if (!vertex_taken[static_cast<std::size_t>(t[i])])
+      samples_.push_back({{t[i], t[(i + 1) % 3], t[(i + 2) % 3]}, {1.0, 0.0, 0.0}});
+    vertex_taken[static_cast<std::size_t>(t[i])] = true;
+  }
+  for (std::size_t i = 0; i < 3; ++i) add_edge(surface, number, i, spacing);
+  const int n = detail::subdivision(longest, spacing);
+  for (int a = 1; a < n - 1; ++a)
+    for (int b = 1; b < n - a; ++b)
+      samples_.push_back(
+          {t, {static_cast<double>(a) / n, static_cast<double>(b) / n, static_cast<double>(n - a - b) / n}});
+}
+
+PALPATE_INLINE int ContactSamples::level_of(int sample) const noexcept {
+  int level = levels() - 1;
+  while (level > 0 && sample < first_of(0, level)) --level;
+  return level;
 }
 
 PALPATE_INLINE void ContactSamples::add_edge(const ContactSurface& surface, int number, std::size_t i, double spacing) {
@@ -81,15 +97,24 @@ PALPATE_INLINE void ContactSamples::add_edge(const ContactSurface& surface, int 
     samples_.push_back({{a, b, c}, {1.0 - static_cast<double>(k) / n, static_cast<double>(k) / n, 0.0}});
 }
 
-PALPATE_INLINE int ContactSamples::nearest(const ContactSurface& surface, const ContactSample& wanted) const noexcept {
+PALPATE_INLINE int ContactSamples::nearest(const ContactSurface& surface, const ContactSample& wanted,
+                                          int level) const noexcept {
   int best = -1;
   // A cut body that is restored has fewer vertices.
   if (wanted.vertices[0] >= surface.vertex_count()) return best;
   double least = 1.0;  // with half of the weight on other vertices it is a different place
   for (const int t : surface.triangles_at(wanted.vertices[0]))
-    for (int s = first_of(t); s < first_of(t + 1); ++s)
+    for (int s = first_of(t, level); s < first_of(t + 1, level); ++s)
       if (const double off = detail::difference((*this)[s], wanted); off < least) least = off, best = s;
   return best;
+}
+
+PALPATE_INLINE double longest_edge(const ContactSurface& surface) noexcept {
+  double longest = 0.0;
+  for (const Triangle& t : surface.triangles())
+    for (std::size_t i = 0; i < 3; ++i)
+      longest = std::max(longest, (surface.position(t[i]) - surface.position(t[(i + 1) % 3])).norm());
+  return longest;
 }
 
 PALPATE_INLINE void require_dense_points(const ContactSurface& surface, double radius) {

@@ -101,14 +101,14 @@ class CutProcess {
   }
   /// Rebuilds the contact surface for these tools. Before the first cut, throws what require_dense_points throws;
   /// `loads` describes the scene's loads in its message. Strong guarantee.
-  void set_tools(double smallest_radius, const ContactParameters& parameters, const std::string& loads) {
-    if (smallest_radius == tools_.radius && parameters.sample_spacing == tools_.contact.sample_spacing) return;
-    const Tools before = std::exchange(tools_, {smallest_radius, parameters});
+  void set_tools(const ToolRadii& radii, const ContactParameters& parameters, const std::string& loads) {
+    if (radii == tools_.radii && parameters.sample_spacing == tools_.contact.sample_spacing) return;
+    const Tools before = std::exchange(tools_, {radii, parameters});
     const auto surface = contact_;
     ++cut_;
     try {
       make_contact();
-      if (contact_->left_out && report_.cuts == 0) require_dense_surface(smallest_radius, loads);
+      if (contact_->left_out && report_.cuts == 0) require_dense_surface(radii.smallest, loads);
     } catch (...) {
       tools_ = before;
       contact_ = surface;
@@ -139,7 +139,7 @@ class CutProcess {
   /// The tools that the contact surface is made for. Radius 0, before the first session: a tool large enough that no
   /// triangle is left out.
   struct Tools {
-    double radius = 0.0;
+    ToolRadii radii = 0.0;
     ContactParameters contact{};
   };
   bool& is_due(Check check) noexcept { return due_[static_cast<std::size_t>(check)]; }
@@ -282,8 +282,8 @@ class CutProcess {
   void make_contact() {
     std::vector<Vector3> positions;
     for (const NodeId node : touchable_.nodes()) positions.push_back(position(node));
-    const double radius = tools_.radius > 0.0 ? tools_.radius : longest_edge(positions);
-    contact_ = std::make_shared<CutContact>(system_, touchable_, std::move(positions), radius, tools_.contact, cut_);
+    const ToolRadii radii = tools_.radii.smallest > 0.0 ? tools_.radii : ToolRadii(longest_edge(positions));
+    contact_ = std::make_shared<CutContact>(system_, touchable_, std::move(positions), radii, tools_.contact, cut_);
   }
   void publish_exactly() {
     CutView made{contact_, system_.folded_step()};

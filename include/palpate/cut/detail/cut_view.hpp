@@ -31,11 +31,11 @@ struct CutContact {
   std::uint64_t cut = 0;  ///< number of the cut
 
   template <Element E>
-  CutContact(const CutSystem<E>& system, const CutSurface<E>& touchable, std::vector<Vector3> positions, double radius,
+  CutContact(const CutSystem<E>& system, const CutSurface<E>& touchable, std::vector<Vector3> positions, const ToolRadii& radii,
              const ContactParameters& contact, std::uint64_t number)
-      : surface(covered(std::move(positions), touchable.triangles(), ContactSamples::maximum_subdivision * radius)),
+      : surface(covered(std::move(positions), touchable.triangles(), ContactSamples::maximum_subdivision * radii.smallest)),
         place(touchable.nodes().size(), {-1, -1, -1}),
-        problem(surface, radius, contact),
+        problem(surface, radii, contact),
         cut(number) {
     for (std::size_t v = 0; v < place.size(); ++v)
       for (int c = 0; c < 3; ++c)

@@ -33,6 +33,12 @@ class ToolInput {
   /// Time of the state for the gate: it stops once the tissue was not updated for `patience` [s].
   double stamp(double patience) const noexcept { return time_ < news_ + patience ? time_ : news_ + patience; }
 
+  /// Stores where the tool would be without its dent, as a position outside the body. For the end of a tick with the
+  /// contacts of that tick, for a tool that did not lose the surface.
+  void note_outside(std::span<const Contact> contacts, const ContactTool& tool) noexcept;
+  /// The tool is inside the body without a contact: moves its proxy from the last position outside towards the target
+  /// until it touches the resting surface. False when no position outside is known.
+  bool sweep_from_outside(const ContactSurface& surface, ContactTool& tool) noexcept;
   /// The tool has lost the surface: it is placed again in the next tick.
   void lose() noexcept;
   void reset() noexcept;
@@ -47,6 +53,12 @@ class ToolInput {
   bool is_passing() const noexcept { return passing_; }
   void set_passing(bool passing) noexcept { passing_ = passing; }
   Status status() const noexcept { return status_; }
+
+  /// Whether a position is closer to that of the last query than the surface was; `revision` is the surface's.
+  bool is_clear(std::uint64_t revision, const Vector3& position) const noexcept {
+    return revision == clear_revision_ && (position - clear_position_).squaredNorm() < clearance_ * std::abs(clearance_);
+  }
+  void set_clearance(std::uint64_t revision, const Vector3& position, double distance) noexcept;
 
  private:
   /// No workspace extends beyond 1e6 m, and squares of such values cannot overflow.
@@ -79,6 +91,12 @@ class ToolInput {
   bool known_ = false;  // position_ is valid
   bool has_proxy_ = false;    // while not known_: the proxy is that of the last reading
   bool passing_ = false;
+  std::uint64_t clear_revision_ = 0;
+  Vector3 clear_position_ = Vector3::Zero();
+  double clearance_ = 0.0;    // [m]; not positive: none
+  bool was_outside_ = false;  // outside_ is known
+  Vector3 outside_ = Vector3::Zero();
+  Matrix3 outside_rotation_ = Matrix3::Identity();
   bool needs_press_ = false;  // after a loss or jump: no grasp until the button is released and pressed again
   bool readable_ = false, restarted_ = false, rotates_;
   std::uint32_t grasp_buttons_;

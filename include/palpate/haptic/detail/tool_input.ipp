@@ -64,8 +64,30 @@ PALPATE_INLINE void ToolInput::note_tissue(bool has_news) noexcept {
   if (has_news || !(news_ <= time_)) news_ = time_;
 }
 
+PALPATE_INLINE void ToolInput::set_clearance(std::uint64_t revision, const Vector3& position,
+                                             double distance) noexcept {
+  clear_revision_ = revision;
+  clear_position_ = position;
+  clearance_ = distance;
+}
+
+PALPATE_INLINE void ToolInput::note_outside(std::span<const Contact> contacts, const ContactTool& tool) noexcept {
+  was_outside_ = tool.active;
+  if (!tool.active) return;
+  outside_ = off_surface(contacts, tool);
+  outside_rotation_ = tool.rotation;
+}
+
+PALPATE_INLINE bool ToolInput::sweep_from_outside(const ContactSurface& surface, ContactTool& tool) noexcept {
+  if (!was_outside_) return false;
+  tool.rotation = outside_rotation_;
+  sweep(tool, surface, outside_, position_);
+  was_outside_ = false;
+  return true;
+}
+
 PALPATE_INLINE void ToolInput::lose() noexcept {
-  known_ = has_proxy_ = false;
+  known_ = has_proxy_ = was_outside_ = false;
   needs_press_ = true;
   status_.set(StatusFlag::reacquired);
 }

@@ -103,7 +103,7 @@ class MovingTissue : public ModelBase {
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
   /// Updates the description of loads that error messages contain; not while a session ticks.
-  void prepare_tools(double, const ContactParameters&);
+  void prepare_tools(const ToolRadii&, const ContactParameters&);
   NoHook try_cut(const BladeSweep&) noexcept { return {}; }
 
  protected:

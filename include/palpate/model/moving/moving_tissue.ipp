@@ -135,7 +135,7 @@ PALPATE_INLINE VectorX MovingTissue::displacement(std::span<const VertexForce> f
   return drawn_.front();
 }
 
-PALPATE_INLINE void MovingTissue::prepare_tools(double, const ContactParameters&) {
+PALPATE_INLINE void MovingTissue::prepare_tools(const ToolRadii&, const ContactParameters&) {
   const std::scoped_lock lock(changes_);
   surface_.set_loads(loads_in_words(gravity(), other_loads()));
 }

@@ -1,0 +1,268 @@
+// Random contact sessions: tools of all sizes against bodies of all facet sizes, and counts of what must never happen.
+#pragma once
+
+#include <palpate/element/tet4.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/mesh/generators.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/testing/random.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace test {
+
+using namespace palpate;
+
+/// Events over all sessions. Those from `lost` on must be zero.
+struct TortureCounts {
+  long sessions = 0, ticks = 0, pressed = 0, held = 0, reacquired = 0, flagged = 0;
+  long not_converged = 0, degraded = 0;
+  long lost = 0;        ///< ticks without force and without a flag, with the tool's target inside the body
+  long unsettled = 0;   ///< held presses whose force still changes by more than 2 %
+  long inside = 0;      ///< tools whose proxy is inside the deformed body at the end
+  long jumps = 0;       ///< changes of force without a flag beyond what coupling and motion allow
+  long non_finite = 0;  ///< forces that are not finite, or longer than the device's limit
+
+  long failures() const noexcept { return lost + unsettled + inside + jumps + non_finite; }
+};
+
+/// One random session of 1 ms ticks. Everything follows from the seed.
+class TortureSession {
+ public:
+  using Model = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
+  static constexpr int hold_ticks = 400, watched_ticks = 100;
+
+  TortureSession(std::uint64_t seed, bool print) : random_(seed), seed_(seed), print_(print) {
+    make_body();
+    make_tools();
+  }
+
+  void run(int ticks, TortureCounts& counts) {
+    ++counts.sessions;
+    std::vector<double> low(tools_.size(), infinity), high(tools_.size(), 0.0);
+    std::vector<bool> restarted(tools_.size(), false);
+    for (int k = 0; k < ticks; ++k) {
+      const int left = ticks - k;
+      for (Tool& tool : tools_) move(tool, k, left <= hold_ticks);
+      tick(counts, left > hold_ticks);
+      for (std::size_t t = 0; t < tools_.size() && left <= watched_ticks; ++t) {
+        const double force = tools_[t].force.norm();
+        low[t] = std::min(low[t], force);
+        high[t] = std::max(high[t], force);
+        restarted[t] = restarted[t] || tools_[t].status.has(StatusFlag::reacquired);
+      }
+    }
+    for (std::size_t t = 0; t < tools_.size(); ++t) {
+      if (!(high[t] > 0.0)) continue;
+      ++counts.held;
+      if (restarted[t] || high[t] - low[t] > 0.02 * high[t] + 1e-6) note(counts.unsettled, "unsettled", t);
+    }
+    check_sides(counts);
+  }
+
+ private:
+  struct Tool {
+    double radius = 0.0;
+    int triangle = 0;      // below the present target
+    bool crosses = false;  // the present path may lead through the body
+    bool tangled = false;  // so did a path since the tool was last free
+    double pace = 0.0;     // mean motion over about 30 ticks [m]
+    ToolState state{};
+    Vector3 from = Vector3::Zero(), to = Vector3::Zero();  // of the present motion, model frame
+    int length = 1, done = 0, pause = 0, unreadable = 0;   // [ticks]
+    int readable = 0;                                      // ticks since the last lost reading or restart
+    Vector3 force = Vector3::Zero(), last_position = Vector3::Zero();
+    Status status{};
+  };
+
+  double logarithmic(double low, double high) { return low * std::pow(high / low, random_.uniform()); }
+  bool chance(double p) { return random_.uniform() < p; }
+
+  void make_body() {
+    edge_ = logarithmic(1e-3, 30e-3);
+    const int kind = static_cast<int>(random_.uniform(0.0, 3.0));
+    std::array<int, 3> cells{};
+    if (kind == 0)  // block
+      for (int& n : cells) n = 2 + static_cast<int>(random_.uniform(0.0, 6.0));
+    else if (kind == 1)  // plate
+      cells = {4 + static_cast<int>(random_.uniform(0.0, 8.0)), 4 + static_cast<int>(random_.uniform(0.0, 8.0)), 1};
+    else  // beam
+      cells = {6 + static_cast<int>(random_.uniform(0.0, 10.0)), 2, 2};
+    Vector3 size;
+    for (int c = 0; c < 3; ++c) size[c] = edge_ * cells[static_cast<std::size_t>(c)];
+    if (kind == 1) size[2] *= random_.uniform(0.2, 1.0);
+    thickness_ = size.minCoeff();
+    auto mesh = box_tet4(size, cells, BoxSplit::six);
+    const bool bumpy = chance(0.5);  // a curved, irregular surface
+    for (Vector3& x : mesh.positions)
+      if (bumpy) x += 0.15 * thickness_ * Vector3(std::sin(40.0 * x[1]), std::sin(55.0 * x[0]), std::sin(70.0 * x[0] + 30.0 * x[1]));
+    Scene scene;
+    kind == 0 ? scene.fix("z0") : scene.fix("x0");
+    if (kind == 1) scene.fix("x1");
+    is_open_ = chance(0.4);
+    is_open_ ? scene.touch("z1") : scene.touch("surface");
+    const LinearElastic material{.youngs_modulus = logarithmic(2e3, 2e5), .poisson_ratio = random_.uniform(0.1, 0.47)};
+    model_ = std::make_unique<Model>(std::move(mesh), scene, material, SetupOptions{.columns = ColumnFill::synchronous});
+    name_ = std::string(kind == 0 ? "block" : kind == 1 ? "plate" : "beam") + (is_open_ ? ", open" : "") + (bumpy ? ", bumpy" : "");
+  }
+
+  void make_tools() {
+    const ContactSurface& surface = model_->contact_surface();
+    double longest = 0.0;
+    for (const Triangle& t : surface.triangles())
+      for (std::size_t i = 0; i < 3; ++i)
+        longest = std::max(longest, (surface.position(t[i]) - surface.position(t[(i + 1) % 3])).norm());
+    const int count = chance(0.5) ? 1 : 1 + static_cast<int>(random_.uniform(0.0, 8.0));
+    std::vector<SphereTool> shapes;
+    for (int i = 0; i < count; ++i) {
+      Tool tool;
+      tool.radius = std::max(logarithmic(1e-4, 20e-3), longest / 31.0);
+      shapes.push_back({.radius = tool.radius});
+      tool.to = near_surface(tool, -2.0);
+      tools_.push_back(tool);
+    }
+    ServoOptions options;
+    if (chance(0.3)) options.contact.friction = random_.uniform(0.1, 1.0);
+    friction_ = options.contact.friction;
+    stiffness_ = options.device.stiffness;
+    servo_ = std::make_unique<HapticServo>(*model_, ToolList(shapes), options);
+  }
+
+  /// A position over a random triangle, mostly of similar direction as the last, `depth` of the largest depth inside;
+  /// outside if negative.
+  Vector3 near_surface(Tool& tool, double depth) {
+    const ContactSurface& surface = model_->contact_surface();
+    const auto count = static_cast<double>(surface.triangles().size());
+    int t = static_cast<int>(random_.uniform(0.0, count));
+    tool.crosses = chance(0.1);
+    for (int trial = 0; trial < 20 && !tool.crosses && surface.normal(t).dot(surface.normal(tool.triangle)) < 0.5; ++trial)
+      t = static_cast<int>(random_.uniform(0.0, count));
+    tool.triangle = t;
+    const Triangle& v = surface.triangle(t);
+    const double a = random_.uniform(), b = random_.uniform(0.0, 1.0 - a);
+    const Vector3 p = a * surface.position(v[0]) + b * surface.position(v[1]) + (1.0 - a - b) * surface.position(v[2]);
+    const double deepest = std::min({0.3 * thickness_, 2e-3 + tool.radius, 8e-3});
+    return model_->to_world() * Vector3(p + (tool.radius - depth * deepest) * surface.normal(t));
+  }
+
+  Vector3 in_model(const Vector3& p) const { return model_->to_world().inverse() * p; }
+  /// Signed distance of a position from the body at rest [m].
+  double height(const Vector3& p) const { return model_->contact_surface().closest(in_model(p)).distance; }
+
+  void move(Tool& tool, int k, bool hold) {
+    tool.state.time = 1e-3 * k;
+    tool.state.valid = true;
+    if (hold) {
+      tool.state.position = tool.to;
+      return;
+    }
+    if (tool.done >= tool.length + tool.pause) {
+      tool.from = tool.to;
+      tool.to = near_surface(tool, chance(0.25) ? -1.0 : random_.uniform(0.1, 1.0));
+      const double speed = tool.radius * logarithmic(0.01, 3.0);  // per tick
+      tool.length = static_cast<int>(std::clamp(std::ceil((tool.to - tool.from).norm() / speed), 1.0, 150.0));
+      tool.pause = chance(0.3) ? 50 : 0;
+      tool.done = 0;
+    }
+    ++tool.done;
+    tool.state.position = tool.from + std::min(1.0, static_cast<double>(tool.done) / tool.length) * (tool.to - tool.from);
+    if (chance(0.001)) tool.unreadable = 1 + static_cast<int>(random_.uniform(0.0, 20.0));
+    if (tool.unreadable > 0) {
+      --tool.unreadable;
+      tool.state.valid = false;
+    } else if (chance(0.0005)) {
+      tool.state.position[1] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+
+  void tick(TortureCounts& counts, bool moving) {
+    std::vector<ToolState> states;
+    for (const Tool& tool : tools_) states.push_back(tool.state);
+    const auto forces = servo_->tick(states);
+    ++counts.ticks;
+    double motion = 0.0;  // of all tools, now and of late
+    int pressing = 0;
+    for (std::size_t t = 0; t < tools_.size(); ++t) {
+      Tool& tool = tools_[t];
+      const double own = states[t].position.allFinite() ? (states[t].position - tool.last_position).norm() : 0.0;
+      tool.pace += (own - tool.pace) / 30.0;
+      motion += own + tool.pace;
+      pressing += servo_->contact_force(t).norm() > 0.0;
+    }
+    for (std::size_t t = 0; t < tools_.size(); ++t) check_tick(t, forces[t], motion, pressing, counts);
+    (void)moving;
+  }
+
+  void check_tick(std::size_t t, const GatedForce& rendered, double motion, int pressing, TortureCounts& counts) {
+    Tool& tool = tools_[t];
+    const Vector3 force = servo_->contact_force(t);
+    tool.status = rendered.status;
+    if (!force.allFinite() || !rendered.force().allFinite() || rendered.force().norm() > 3.3 * (1.0 + 1e-12))
+      note(counts.non_finite, "non-finite", t);
+    const bool readable = tool.state.valid && tool.state.position.allFinite();
+    const bool restarts = tool.status.has(StatusFlag::reacquired);
+    counts.reacquired += restarts;
+    tool.readable = readable && !restarts ? tool.readable + 1 : 0;
+    const bool flagged = tool.status.has(StatusFlag::degraded_model) || tool.status.has(StatusFlag::solver_not_converged);
+    counts.flagged += flagged;
+    counts.not_converged += tool.status.has(StatusFlag::solver_not_converged);
+    counts.degraded += tool.status.has(StatusFlag::degraded_model);
+    const bool presses = force.norm() > 0.0;
+    counts.pressed += presses;
+    if (tool.readable > 1 && !presses && pressing == 0 && !is_open_ &&
+        height(tool.state.position) < -1e-6 * thickness_)
+      note(counts.lost, "lost", t);
+    tool.tangled = (tool.tangled && presses) || tool.crosses;
+    if (tool.readable > 30 && !flagged && !tool.tangled && (force - tool.force).norm() > 2.0 * stiffness_ * motion + 0.05 * force.norm() + 0.01)
+      note(counts.jumps, "jump", t);
+    tool.force = force;
+    if (readable) tool.last_position = tool.state.position;
+  }
+
+  /// The proxies against the surface as it is deformed by all forces.
+  void check_sides(TortureCounts& counts) {
+    const ContactSurface& surface = model_->contact_surface();
+    const VectorX u = model_->displacement(servo_->read_snapshot().vertex_forces());
+    std::vector<Vector3> positions = surface.positions();
+    for (std::size_t v = 0; v < positions.size(); ++v) positions[v] += u.segment<3>(3 * Index{model_->touchable_nodes()[v]});
+    const ContactSurface deformed(std::move(positions), surface.triangles());
+    for (std::size_t t = 0; t < tools_.size(); ++t)
+      if (!(is_open_ && tools_[t].force.norm() == 0.0) && deformed.closest(in_model(servo_->proxy(t))).distance < 0.0)
+        note(counts.inside, "inside", t);
+  }
+
+  void note(long& count, const char* what, std::size_t t) {
+    ++count;
+    if (!print_ || ++notes_ > 6) return;
+    const Tool& tool = tools_[t];
+    std::printf("seed %llu %s, edge %.2f mm, thickness %.2f mm, %zu tools, friction %.2f: %s, tool %zu, radius %.2f mm, tick %.0f, "
+                "force %.4f N, before %.4f N, rows %d, depth %.3f mm\n",
+                static_cast<unsigned long long>(seed_), name_.c_str(), 1e3 * edge_, 1e3 * thickness_, tools_.size(), friction_, what, t,
+                1e3 * tool.radius, 1e3 * tool.state.time, servo_->contact_force(t).norm(), tool.force.norm(), servo_->contact_rows(),
+                -1e3 * height(tool.state.position));
+  }
+
+  testing::Random random_;
+  std::uint64_t seed_;
+  bool print_, is_open_ = false;
+  double edge_ = 0.0, thickness_ = 0.0, friction_ = 0.0, stiffness_ = 0.0;
+  std::string name_;
+  int notes_ = 0;
+  std::unique_ptr<Model> model_;
+  std::vector<Tool> tools_;
+  std::unique_ptr<HapticServo> servo_;
+};
+
+inline TortureCounts torture(std::uint64_t first, int sessions, int ticks, bool print) {
+  TortureCounts counts;
+  for (int i = 0; i < sessions; ++i) TortureSession(first + static_cast<std::uint64_t>(i), print).run(ticks, counts);
+  return counts;
+}
+
+}  // namespace test
