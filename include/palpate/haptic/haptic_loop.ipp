@@ -185,6 +185,19 @@ PALPATE_INLINE void HapticLoop::State::end_thread() noexcept {
   started = false;
 }
 
+/// Refuses a loop of which every tick would be late for the servo's gate: it would report missed deadlines all the
+/// time and, beyond stale_after, render no force.
+inline void require_punctual(double rate, const LoopServo& servo) {
+  if (rate > servo.slowest_rate * (1.0 + 1e-9)) return;
+  SetupProblem slow;
+  slow.what = "a haptic loop of " + number(rate) + " Hz is too slow for the servo: its force gate takes ticks of " +
+              number(servo.slowest_rate) + " Hz or less as missed";
+  slow.hint = "Give ServoOptions::rate (or ForceLimits::from) the rate of the loop, that in the slowest device's limits()";
+  slow.value = rate;
+  slow.threshold = servo.slowest_rate;
+  raise(std::move(slow));
+}
+
 PALPATE_INLINE HapticLoop::HapticLoop(std::vector<LoopDevice> devices, const LoopServo& servo, double rate) {
   if (devices.empty()) raise(SetupErrorKind::bad_argument, "a haptic loop has no device");
   for (std::size_t i = 0; i < devices.size(); ++i)
@@ -198,6 +211,7 @@ PALPATE_INLINE HapticLoop::HapticLoop(std::vector<LoopDevice> devices, const Loo
   if (!(rate >= 0.1 && rate <= 1e5))
     raise(SetupErrorKind::bad_argument, "the rate of a haptic loop is " + number(rate) + " Hz",
           "It is the rate in the slowest device's limits(); it must be 0.1 to 1e5, 1000 is typical");
+  require_punctual(rate, servo);
   state_ = std::make_unique<State>(std::move(devices), servo, rate);
 }
 
