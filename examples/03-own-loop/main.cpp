@@ -98,7 +98,7 @@ bool on_servo_tick(void* user) {
 
   ToolState state;
   state.position = to_world(s.device.position_mm);
-  state.time = now;
+  state.time = state.now = now;
   const GatedForce out = s.servo.tick(state);
   to_device(out.force(), s.device.force_newton);
 

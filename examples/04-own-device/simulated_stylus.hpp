@@ -30,7 +30,7 @@ class HeldStylus {
     ToolState state;
     state.position = position_;
     state.velocity = velocity_;
-    state.time = time_;
+    state.time = state.now = time_;
     state.valid = plugged_;
     motors_.read_was(plugged_);  // no force without a valid reading
     return state;

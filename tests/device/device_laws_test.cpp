@@ -162,6 +162,13 @@ struct Backwards : Good {
     return Good::read();
   }
 };
+struct FromTheFuture : Good {
+  ToolState read() noexcept {
+    ToolState s = Good::read();
+    s.now = s.time - 1e-3;
+    return s;
+  }
+};
 struct NoWorkspace : Good {
   DeviceLimits limits() const noexcept {
     DeviceLimits l;
@@ -234,5 +241,6 @@ TEST_CASE("each kind of faulty device is detected", "[device][laws][extreme][D6]
   CHECK(breaks<HalfVelocity>("valid states are finite"));
   CHECK(breaks<NoRotation>("valid states are finite"));
   CHECK(breaks<Backwards>("time does not run backwards"));
+  CHECK(breaks<FromTheFuture>("a pose is not newer than the present time"));
   CHECK(breaks<NoWorkspace>("limits are sane"));
 }

@@ -4,6 +4,7 @@
 #include <palpate/device/replay_device.hpp>
 #include <palpate/device/trajectory.hpp>
 #include <palpate/haptic/force_gate.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/haptic/run_haptic_loop.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/random.hpp>
@@ -11,6 +12,7 @@
 #include <sstream>
 #include <thread>
 
+#include "contact/analytic_tissue.hpp"
 #include "refused.hpp"
 
 #include "catch.hpp"
@@ -441,4 +443,45 @@ TEST_CASE("the loop allocates nothing between its first and its last tick", "[ha
   }
   run_haptic_loop(recorder, servo, options);
   CHECK(servo.calls == 0);
+}
+
+TEST_CASE("a loop whose punctual ticks would be late for the gate of the servo is refused", "[haptic][loop][refused]") {
+  test::AnalyticTissue tissue(4, 0.2, 1e-3);
+  HapticServo servo(tissue, SphereTool{.radius = 5e-3});  // 1000 Hz
+  for (const double rate : {100.0, 1000.0 / 3.0, 500.0, 666.0, 2000.0 / 3.0}) {
+    INFO("rate " << rate);
+    MockOptions slow;
+    slow.rate = rate;
+    MockDevice stylus(trajectory::poke(), slow);
+    const SetupProblem problem = test::refusal([&] { run_haptic_loop(stylus, servo, unpaced(0.1)); });
+    CHECK(problem.kind == SetupErrorKind::bad_argument);
+    CHECK(problem.value == rate);
+    CHECK_THAT(problem.threshold, WithinRel(1000.0 / 1.5, 1e-12));
+    CHECK(problem.hint.find("ServoOptions::rate") != std::string::npos);
+    CHECK(stylus.reads() == 0);
+  }
+}
+
+TEST_CASE("a loop that is little slower than the servo, or faster, or of the same low rate, renders the full force",
+          "[haptic][loop]") {
+  const auto run = [](double loop_rate, double servo_rate) {
+    test::AnalyticTissue tissue(4, 0.2, 1e-3);
+    ServoOptions options;
+    options.rate = servo_rate;
+    options.coupling_stiffness = 400.0;
+    HapticServo servo(tissue, SphereTool{.radius = 5e-3}, options);
+    MockOptions device;
+    device.rate = loop_rate;
+    MockDevice stylus([](double t) { return Vector3(0.0, 0.0, 6e-3 - 3e-3 * std::min(1.0, t / 0.5)); }, device);
+    const LoopReport report = run_haptic_loop(stylus, servo, unpaced(1.0));
+    INFO("loop " << loop_rate << ", servo " << servo_rate);
+    CHECK(report.status[StatusFlag::deadline_missed] == 0);
+    CHECK(report.status[StatusFlag::stale] == 0);
+    CHECK_THAT(report.peak_force, WithinRel(2e-3 / (1.0 / 400.0 + 1e-3), 1e-3));
+  };
+  run(667.0, 1000.0);
+  run(1000.0, 1000.0);
+  run(3000.0, 1000.0);
+  run(1000.0, 300.0);
+  run(333.0, 333.0);
 }

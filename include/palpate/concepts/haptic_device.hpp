@@ -11,11 +11,21 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// State of the tool as the device reports it. SI units, in the device's own frame.
+///
+/// Poses older than ForceLimits::stale_after fade the force, so `time` must be the time at which the pose was measured,
+/// also where it waited in a queue. The age is `now - time`. A device that sets `now` may stamp with any clock that does
+/// not run backwards; in simulated time, `now` is the simulated time. Where it is NaN, a paced haptic loop sets it:
+/// - Stamps of std::chrono::steady_clock, in seconds since its epoch, have exact ages. They are recognised by a first
+///   stamp that is less than 1 s old.
+/// - Stamps of another clock are compared with the youngest pose so far: a delay that grows beyond `stale_after` fades
+///   the force, one that is the same from the start is not noticed. Such a clock may be slow by a thousandth.
+/// Without a loop, or in an unpaced one, set it, or only stamps that do not change become stale.
 struct ToolState {
   Vector3 position = Vector3::Zero();                                              ///< [m]
   Vector3 velocity = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());  ///< [m/s]; NaN: not given
   std::array<double, 4> orientation{1.0, 0.0, 0.0, 0.0};                           ///< unit quaternion w x y z
-  double time = 0.0;  ///< [s] monotonic time at which the state was read
+  double time = 0.0;  ///< [s] monotonic time at which the pose was measured
+  double now = std::numeric_limits<double>::quiet_NaN();  ///< [s] present time on the same clock; NaN: not given
   std::uint32_t buttons = 0;
   bool valid = true;  ///< false: the device could not be read
 };

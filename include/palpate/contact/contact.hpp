@@ -5,10 +5,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Default number of contacts of a contact problem with one tool, and what every other tool adds.
-inline constexpr int default_contact_capacity = 64, default_capacity_per_tool = 32;
 /// Largest number of tools of one contact problem.
 inline constexpr std::size_t maximum_tools = 8;
+/// Default number of contacts of a contact problem with one tool, and what every other tool adds.
+inline constexpr int default_contact_capacity = 64, default_capacity_per_tool = 32;
+/// The default with all tools.
+inline constexpr int largest_default_capacity =
+    default_contact_capacity + default_capacity_per_tool * (static_cast<int>(maximum_tools) - 1);
 
 /// Radii of the tools of a session [m].
 struct ToolRadii {

@@ -68,7 +68,8 @@ class ContactProblem {
   static constexpr int maximum_rounds = 12;   // solutions of the contact problem per tick
   static constexpr int added_per_round = 16;  // rows, those of deepest penetration
   static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
-  static constexpr double violation = 1e-5;   // allowed penetration, relative to the deepest push
+  static constexpr double unsettled_alternation = 0.01;  // the same for normal forces between turns with friction
+  static constexpr double violation = 1e-5;              // allowed penetration, relative to the deepest push
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static ContactParameters checked(const ContactParameters& p);
@@ -94,7 +95,7 @@ class ContactProblem {
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   std::array<int, maximum_tools> pressing_of_{};  // per tool
   int share_ = 1;                                 // rows per tool
-  bool arrived_ = true;  // proxies are at the solution of the last linearisation
+  bool arrived_ = true;                           // proxies are at the solution of the last linearisation
   double feedback_ = 0.0;
   double floor_ = 0.0;
 };

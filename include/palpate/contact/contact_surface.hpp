@@ -30,7 +30,7 @@ class ContactSurface {
   }
   /// Changes whenever the resting surface moves.
   std::uint64_t revision() const noexcept { return revision_; }
-  /// Number of edges with more than two triangles: a triangle has no neighbour across such an edge.
+  /// Number of edges with more than two triangles, where bodies or sheets meet.
   int crowded_edges() const noexcept { return crowded_edges_; }
   int vertex_count() const noexcept { return static_cast<int>(positions_.size()); }
 
@@ -53,8 +53,9 @@ class ContactSurface {
   void add_shell(std::span<const Vector3> positions, const std::vector<Triangle>& triangles);
 
   /// The closest point of the resting surface: triangle, point, and signed distance (negative inside) by the
-  /// angle-weighted pseudo-normal of the closest feature (Baerentzen and Aanaes 2005). Where the closest feature is on
-  /// the rim of an open surface, the distance is positive.
+  /// angle-weighted pseudo-normal of the closest feature (Baerentzen and Aanaes 2005), or by the wedge in which the
+  /// point lies (detail/wedge.hpp) where more than two triangles meet at an edge, or several fans of triangles at a
+  /// vertex. Where the closest feature is on the rim of an open surface, the distance is positive.
   struct Closest {
     int triangle = -1;
     Vector3 point = Vector3::Zero();
@@ -81,23 +82,26 @@ class ContactSurface {
   inline TrianglePoint closest_on(int t, const Vector3& p) const noexcept;
   inline Vector3 point_on(int t, const TrianglePoint& on) const noexcept;
   Vector3 feature_normal(int t, TriangleFeature feature) const noexcept;
-  bool is_rim(int t, TriangleFeature feature) const noexcept;
+  bool is_outside(int t, TriangleFeature feature, const Vector3& offset) const noexcept;
   void list_triangles();
   void list_neighbours();
+  bool is_one_fan(int v) const;
   void update_normals() noexcept;
 
   std::vector<Vector3> positions_;
   std::vector<Triangle> triangles_;
   Bvh bvh_;
   std::vector<Vector3> normals_, vertex_normals_;
-  std::vector<bool> rim_vertex_;
+  enum class VertexKind : std::uint8_t { regular, rim, crowded };  // crowded: not one fan of triangles
+  std::vector<VertexKind> vertex_kind_;
   std::vector<int> first_at_, triangles_at_;  // triangles of every vertex
   int crowded_edges_ = 0;
   bool has_rim_ = false;
   std::uint64_t revision_ = 0;
   std::vector<ContactSurface> body_;  // with the shell; none or one
   Unloaded unloaded_;
-  std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20; -1 at the rim
+  std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20, or one of these:
+  static constexpr int no_neighbour = -1, several_neighbours = -2;
 };
 
 }}  // namespace palpate

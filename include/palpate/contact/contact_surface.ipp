@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact_surface.hpp>
+#include <palpate/contact/detail/wedge.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,7 @@ PALPATE_INLINE ContactSurface::ContactSurface(std::vector<Vector3> positions, st
       bvh_(triangles_, positions_),
       normals_(triangles_.size()),
       vertex_normals_(positions_.size()),
-      rim_vertex_(positions_.size(), false),
+      vertex_kind_(positions_.size(), VertexKind::regular),
       neighbour_(triangles_.size()) {
   list_triangles();
   list_neighbours();
@@ -45,11 +46,35 @@ PALPATE_INLINE void ContactSurface::list_neighbours() {
         if (sharing++ == 0) first = s;
         if (s != own) other = s;
       }
-      neighbour_[t][i] = sharing == 2 ? other : -1;
+      neighbour_[t][i] = sharing == 2 ? other : sharing == 1 ? no_neighbour : several_neighbours;
       if (sharing > 2 && first == own) ++crowded_edges_;
       has_rim_ = has_rim_ || sharing == 1;
-      if (sharing == 1) rim_vertex_[static_cast<std::size_t>(a)] = rim_vertex_[static_cast<std::size_t>(b)] = true;
+      if (sharing == 1)
+        vertex_kind_[static_cast<std::size_t>(a)] = vertex_kind_[static_cast<std::size_t>(b)] = VertexKind::rim;
     }
+  for (std::size_t v = 0; v < positions_.size(); ++v)
+    if (vertex_kind_[v] == VertexKind::regular && !is_one_fan(static_cast<int>(v)))
+      vertex_kind_[v] = VertexKind::crowded;
+}
+
+/// Whether walking from triangle to triangle around a vertex that is not on the rim visits all of its triangles.
+PALPATE_INLINE bool ContactSurface::is_one_fan(int v) const {
+  const std::span<const int> all = triangles_at(v);
+  if (all.empty()) return true;
+  int t = all.front(), from = no_neighbour;
+  std::size_t visited = 0;
+  do {
+    const auto& across = neighbour_[static_cast<std::size_t>(t)];
+    int next = no_neighbour;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (triangle(t)[i] != v && triangle(t)[(i + 1) % 3] != v) continue;
+      if (across[i] == several_neighbours) return false;
+      if (across[i] != from) next = across[i];
+    }
+    from = t;
+    t = next;
+  } while (++visited < all.size() && t >= 0 && t != all.front());
+  return visited == all.size();
 }
 
 PALPATE_INLINE void ContactSurface::update_normals() noexcept {
@@ -106,13 +131,22 @@ PALPATE_INLINE Vector3 ContactSurface::feature_normal(int t, TriangleFeature fea
   return other < 0 ? own : (own + normals_[static_cast<std::size_t>(other)]).normalized();
 }
 
-PALPATE_INLINE bool ContactSurface::is_rim(int t, TriangleFeature feature) const noexcept {
+/// Whether a point at `offset` from its closest point, on this feature, is outside.
+PALPATE_INLINE bool ContactSurface::is_outside(int t, TriangleFeature feature, const Vector3& offset) const noexcept {
   const auto index = static_cast<std::size_t>(feature);
-  if (feature == TriangleFeature::face) return false;
-  if (index >= static_cast<std::size_t>(TriangleFeature::vertex0))
-    return rim_vertex_[static_cast<std::size_t>(
-        triangle(t)[index - static_cast<std::size_t>(TriangleFeature::vertex0)])];
-  return neighbour_[static_cast<std::size_t>(t)][index - static_cast<std::size_t>(TriangleFeature::edge01)] < 0;
+  if (index >= static_cast<std::size_t>(TriangleFeature::vertex0)) {
+    const int v = triangle(t)[index - static_cast<std::size_t>(TriangleFeature::vertex0)];
+    const VertexKind kind = vertex_kind_[static_cast<std::size_t>(v)];
+    if (kind == VertexKind::rim) return true;
+    if (kind == VertexKind::crowded) return detail::outside_at_vertex(*this, v, offset);
+  } else if (feature != TriangleFeature::face) {
+    const std::size_t edge = index - static_cast<std::size_t>(TriangleFeature::edge01);
+    const int other = neighbour_[static_cast<std::size_t>(t)][edge];
+    if (other == no_neighbour) return true;
+    if (other == several_neighbours)
+      return detail::outside_at_edge(*this, triangle(t)[edge], triangle(t)[(edge + 1) % 3], offset);
+  }
+  return offset.dot(feature_normal(t, feature)) >= 0.0;
 }
 
 PALPATE_INLINE ContactSurface::Closest ContactSurface::closest(const Vector3& p) const noexcept {
@@ -121,13 +155,12 @@ PALPATE_INLINE ContactSurface::Closest ContactSurface::closest(const Vector3& p)
   if (result.triangle < 0) return result;
   const TrianglePoint on = closest_on(result.triangle, p);
   result.point = point_on(result.triangle, on);
-  const Vector3 offset = p - result.point, normal = feature_normal(result.triangle, on.feature);
+  const Vector3 offset = p - result.point;
   const double length = offset.norm();
-  const bool outside = offset.dot(normal) >= 0.0 || is_rim(result.triangle, on.feature);
-  result.distance = outside ? length : -length;
+  result.distance = is_outside(result.triangle, on.feature, offset) ? length : -length;
   // At a distance below the rounding of positions the direction of the offset is undefined.
   const bool on_surface = length <= 1e-12 * (bvh_.bounds().high - bvh_.bounds().low).norm();
-  result.outward = on_surface ? normal : Vector3(offset / result.distance);
+  result.outward = on_surface ? feature_normal(result.triangle, on.feature) : Vector3(offset / result.distance);
   return result;
 }
 

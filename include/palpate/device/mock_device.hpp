@@ -63,6 +63,7 @@ class MockDevice {
     }
     if (!frozen) last_ = state_at(now(n));
     ToolState state = last_;
+    state.now = now(n);
     for (const DeviceFault& f : options_.faults)
       if (hits(f, n)) corrupt(state, f);
     if (unplugged_) state.valid = false;

@@ -19,7 +19,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 std::vector<RecordedTick> read_recording(const std::string& path);
 
 /// A HapticDevice that returns the states of a recording one by one, including time stamps, and the last one as invalid
-/// after the end of the recording. Forces are rendered by no motors; see last_force() and recorded().
+/// after the end of the recording. A file has no ToolState::now: its poses count as measured when they are read. Forces
+/// are rendered by no motors; see last_force() and recorded().
 class ReplayDevice {
  public:
   /// Throws SetupError(bad_argument) when the recording is empty.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <locale>
 #include <sstream>
@@ -139,6 +140,7 @@ PALPATE_INLINE ToolState ReplayDevice::read() noexcept {
     state.valid = false;
   else
     ++next_;
+  if (!std::isfinite(state.now)) state.now = state.time;
   rendered_.read_was(state.valid);
   return state;
 }

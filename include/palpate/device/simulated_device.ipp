@@ -53,7 +53,7 @@ PALPATE_INLINE SimulatedDevice::SimulatedDevice(const SimulatedOptions& options)
 PALPATE_INLINE ToolState SimulatedDevice::read() noexcept {
   advance_to(next_sample());
   ToolState state;
-  state.time = now_;
+  state.time = state.now = now_;
   state.position = measured(mechanics_.position());
   state.valid = !unplugged_;
   rendered_.read_was(state.valid);

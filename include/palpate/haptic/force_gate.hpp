@@ -19,6 +19,10 @@ struct ForceLimits {
   double continuous_force = 1e9;  ///< [N] what motors sustain indefinitely, as root mean square over heating_time
   double heating_time = 60.0;     ///< [s] time constant of the mean square
 
+  static constexpr double late_factor = 1.5;  ///< a tick later than this many periods counts as missed
+
+  /// Punctual ticks of a loop of this rate [1/s] or slower are late.
+  double slowest_rate() const noexcept { return 1.0 / (late_factor * period); }
   /// The defaults scaled to a device's limits and its nominal rate.
   static ForceLimits from(const DeviceLimits& device) { return from(device, device.rate); }
   /// The same for a loop of another rate [1/s].
@@ -61,7 +65,6 @@ class ForceGate {
   const Vector3& last_torque() const noexcept { return last_torque_; }  ///< [N m] the same
 
  private:
-  static constexpr double late_factor = 1.5;
   static constexpr double warm = 0.75;  // fraction of the continuous mean square above which the peak decreases
   static bool is_finite(const Vector3& v) noexcept;
   static void require(bool holds, const std::string& what, const char* hint);

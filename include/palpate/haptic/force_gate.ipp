@@ -28,7 +28,7 @@ PALPATE_INLINE ForceGate::ForceGate(const ForceLimits& limits) : limits_(limits)
     require(value >= 1e-9 && value <= 1e9, "a force limit is " + number(value), "Give 1e-9 to 1e9, in SI units");
   require(l.slew_rate * l.fade_time >= l.peak_force * (1.0 - 1e-9),
           "slew_rate * fade_time is less than peak_force, " + number(l.peak_force) + " N", "Raise one of the two");
-  require(l.stale_after >= late_factor * l.period, "stale_after is less than 1.5 periods: " + number(l.stale_after),
+  require(l.stale_after >= ForceLimits::late_factor * l.period, "stale_after is less than 1.5 periods: " + number(l.stale_after),
           "Use ForceLimits::from(device, rate)");
 }
 
@@ -45,7 +45,7 @@ PALPATE_INLINE GatedForce ForceGate::apply(const Vector3& wanted, const Vector3&
   const double warming = (last_.squaredNorm() - heat_) * std::min(1.0, dt / limits_.heating_time);
   heat_ += measured > 0.0 ? warming : std::max(0.0, warming);
   const double overdue = time_overdue(dt, now, input_time);
-  if (dt > late_factor * limits_.period) status.set(StatusFlag::deadline_missed);
+  if (dt > ForceLimits::late_factor * limits_.period) status.set(StatusFlag::deadline_missed);
 
   const bool finite = is_finite(wanted) && is_finite(torque);
   if (!finite) status.set(StatusFlag::non_finite_force);

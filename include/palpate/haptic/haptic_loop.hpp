@@ -19,7 +19,8 @@ double rate_of(const std::vector<LoopDevice>& devices) noexcept;
 /// force number i are those of device i. Refers to devices and servo.
 class HapticLoop {
  public:
-  /// Throws bad_argument without a device, for one given twice (ids: its numbers), and for a rate outside 0.1 to 1e5.
+  /// Throws bad_argument without a device, for one given twice (ids: its numbers), for a rate outside 0.1 to 1e5, and
+  /// for one so low that the servo's gate would take every tick as missed (value and threshold: rates).
   HapticLoop(std::vector<LoopDevice> devices, const LoopServo& servo, double rate);
   /// Stops as `stop` does.
   ~HapticLoop();

@@ -4,6 +4,7 @@
 #include <palpate/core/platform.hpp>
 #include <palpate/core/realtime.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/haptic/detail/stamp_clock.hpp>
 #include <palpate/haptic/haptic_loop.hpp>
 
 #include <algorithm>
@@ -66,12 +67,13 @@ class StartedDevices {
 /// Devices, shared state of the threads, and the body of the haptic thread.
 struct HapticLoop::State {
   State(std::vector<LoopDevice> list, const LoopServo& s, double r)
-      : devices(std::move(list)), servo(s), rate(r), states(devices.all().size()) {}
+      : devices(std::move(list)), servo(s), rate(r), states(devices.all().size()), clocks(states.size()) {}
 
   void run();
   void run_unpaced() noexcept;
   void run_paced(std::int64_t start) noexcept;
   void tick(double seconds) noexcept;
+  void set_now() noexcept;
   void silence() noexcept;
   std::int64_t periods() const noexcept;
   bool cancelled() const noexcept { return cancel.load(std::memory_order_relaxed); }
@@ -82,6 +84,7 @@ struct HapticLoop::State {
   const LoopServo servo;
   const double rate;
   std::vector<ToolState> states;
+  std::vector<StampClock> clocks;
   LoopOptions options;
   LoopReport report;
   bool started = false;
@@ -142,6 +145,7 @@ PALPATE_INLINE void HapticLoop::State::run_paced(std::int64_t start) noexcept {
 PALPATE_INLINE void HapticLoop::State::tick(double seconds) noexcept {
   const std::vector<LoopDevice>& all = devices.all();
   for (std::size_t i = 0; i < all.size(); ++i) states[i] = all[i].read(all[i].device);
+  if (options.paced) set_now();
   const std::int64_t before = platform::compute_ns();
   const std::span<const GatedForce> forces = servo.tick(servo.servo, states);
   report.compute.record(1e-9 * static_cast<double>(platform::compute_ns() - before));
@@ -166,6 +170,13 @@ PALPATE_INLINE void HapticLoop::State::tick(double seconds) noexcept {
   elapsed.store(seconds, std::memory_order_relaxed);
 }
 
+/// Sets the present time in states of devices that do not give it.
+PALPATE_INLINE void HapticLoop::State::set_now() noexcept {
+  const double steady = 1e-9 * static_cast<double>(platform::wall_ns());
+  for (std::size_t i = 0; i < states.size(); ++i)
+    if (!std::isfinite(states[i].now)) states[i].now = clocks[i].now(states[i].time, steady);
+}
+
 PALPATE_INLINE void HapticLoop::State::silence() noexcept {
   for (const LoopDevice& d : devices.all()) d.write(d.device, GatedForce{});
 }
@@ -185,6 +196,20 @@ PALPATE_INLINE void HapticLoop::State::end_thread() noexcept {
   started = false;
 }
 
+/// Refuses a loop of which every tick would be late for the servo's gate: it would report missed deadlines all the
+/// time and, beyond stale_after, render no force.
+inline void require_punctual(double rate, const LoopServo& servo) {
+  if (rate > servo.slowest_rate * (1.0 + 1e-9)) return;
+  SetupProblem slow;
+  slow.what = "a haptic loop of " + number(rate) + " Hz is too slow for the servo: its force gate takes ticks of " +
+              number(servo.slowest_rate) + " Hz or less as missed";
+  slow.hint =
+      "Give ServoOptions::rate (or ForceLimits::from) the rate of the loop, that in the slowest device's limits()";
+  slow.value = rate;
+  slow.threshold = servo.slowest_rate;
+  raise(std::move(slow));
+}
+
 PALPATE_INLINE HapticLoop::HapticLoop(std::vector<LoopDevice> devices, const LoopServo& servo, double rate) {
   if (devices.empty()) raise(SetupErrorKind::bad_argument, "a haptic loop has no device");
   for (std::size_t i = 0; i < devices.size(); ++i)
@@ -198,6 +223,7 @@ PALPATE_INLINE HapticLoop::HapticLoop(std::vector<LoopDevice> devices, const Loo
   if (!(rate >= 0.1 && rate <= 1e5))
     raise(SetupErrorKind::bad_argument, "the rate of a haptic loop is " + number(rate) + " Hz",
           "It is the rate in the slowest device's limits(); it must be 0.1 to 1e5, 1000 is typical");
+  require_punctual(rate, servo);
   state_ = std::make_unique<State>(std::move(devices), servo, rate);
 }
 
@@ -222,6 +248,7 @@ PALPATE_INLINE void HapticLoop::start(const LoopOptions& options) {
   s.force = s.elapsed = 0.0;
   s.duration = options.duration;
   s.cancel = false;
+  std::fill(s.clocks.begin(), s.clocks.end(), StampClock{});
   s.devices.start();
   struct StopUnlessRunning {
     State& s;

@@ -46,8 +46,8 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
                                         std::vector<EnergyTank> energies)
     : tissue_(tissue),
       contact_tools_(make_contact_tools(tools, options)),
-      problem_(detail::surface_for(tissue_, contact_tools_, options.contact), detail::radii_of(contact_tools_),
-               options.contact),
+      problem_(detail::surface_for(tissue_, contact_tools_, options.contact.for_tools(tools.size())),
+               detail::radii_of(contact_tools_), options.contact.for_tools(tools.size())),
       energies_(std::move(energies)),
       forces_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after) {
@@ -64,7 +64,7 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
     const bool rotates = !blades_[i] && (contact_tools_[i].half_length > 0.0 || gates_[i].limits().peak_torque > 0.0);
     inputs_.emplace_back(static_cast<int>(i), rotates, options.grasp_buttons);
   }
-  Snapshot empty(options.contact.capacity);
+  Snapshot empty(problem_.capacity());
   empty.tool_count = tools.size();
   snapshots_.fill(empty);
 }
@@ -228,7 +228,7 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
     torque *= energy->gain();
   }
   const double time = tissue_.has_updates() ? input.stamp(stale_tissue_after_) : input.time();
-  forces_[i] = gates_[i].apply(force, torque, input.time(), time, input.readable(), input.restarted());
+  forces_[i] = gates_[i].apply(force, torque, input.now(), time, input.readable(), input.restarted());
   if (energy != nullptr) energy->gave(forces_[i].force());
   forces_[i].status |= input.status() | shared | limited;
 }

@@ -141,16 +141,19 @@ class DeviceLaws {
 
   void survives(int reads) {
     double time = -infinity;
-    std::int64_t bad_states = 0, backwards = 0;
+    std::int64_t bad_states = 0, backwards = 0, future = 0;
     for (int i = 0; i < reads; ++i) {
       const ToolState s = device_.read();
       if (s.valid && !is_sound(s)) ++bad_states;
       if (!(s.time >= time)) ++backwards;
+      if (s.now < s.time) ++future;
       time = std::max(time, s.time);
       write(Vector3(0.0, 0.0, 0.1 * limits_.peak_force));
     }
     expect_at_most(violations_, "valid states are finite", static_cast<double>(bad_states), 0.0, "states");
     expect_at_most(violations_, "time does not run backwards", static_cast<double>(backwards), 0.0, "states");
+    expect_at_most(violations_, "a pose is not newer than the present time", static_cast<double>(future), 0.0,
+                   "states");
     expect_at_most(violations_, "never above the peak", rendered().norm(), limits_.peak_force, "after many reads");
   }
 
@@ -185,9 +188,10 @@ class DeviceLaws {
 /// Starts the device, tests the laws, stops it. Nobody may hold the device: forces up to the peak are written. Laws:
 /// "limits are sane", "never above the peak", "renders what it can", "saturates at the peak", "keeps the direction",
 /// "reports saturation", "reports a failed read", "zero after an invalid read", "reports disconnection", "renders again
-/// when reads are valid", "valid states are finite", "time does not run backwards", "zero after stop"; if the probe
-/// returns the torque, "torque within its peak", and the laws of force for torque. The concept checks that nothing
-/// throws, and that a device accepts only forces from a gate, which are finite.
+/// when reads are valid", "valid states are finite", "time does not run backwards", "a pose is not newer than the
+/// present time", "zero after stop"; if the probe returns the torque, "torque within its peak", and the laws of force
+/// for torque. The concept checks that nothing throws, and that a device accepts only forces from a gate, which are
+/// finite.
 template <HapticDevice Device>
 Violations device_laws(Device& device, const DeviceProbe<Device>& probe = default_probe<Device>(), int reads = 10'000) {
   return detail::DeviceLaws<Device>(device, probe).run(reads);

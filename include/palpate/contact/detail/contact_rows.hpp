@@ -42,9 +42,13 @@ class ContactRows {
              int first) noexcept;
   /// Solves for the normal forces with the present friction forces. False when the iteration was stopped early.
   bool solve() noexcept;
-  /// Solves for the friction forces, then once more for the normal forces: each is exact for the other
-  /// (Panagiotopoulos 1975); further linearisations and ticks continue the iteration. False when stopped early.
+  /// Solves for the friction forces and for the normal forces in turn, each exact for the other (Panagiotopoulos 1975),
+  /// until the normal forces stay, or the bound of the work is reached; further linearisations and ticks continue the
+  /// iteration. Stopped after one turn, it may alternate from tick to tick between two states, since normals follow the
+  /// unfinished forces. False when a solution was stopped early.
   bool slide() noexcept;
+  /// Largest change of a normal force in the last turn of slide, relative to the largest normal force.
+  double alternation_change() const noexcept { return alternation_change_; }
   bool has_friction() const noexcept { return friction_.acts(); }
   /// Penetration without contact force, at the deepest row built [m].
   double deepest_push() const noexcept;
@@ -60,6 +64,9 @@ class ContactRows {
   void stick(std::span<const ContactTool> tools) noexcept;
 
  private:
+  static constexpr int maximum_alternations = 16;  // turns of slide
+  static constexpr int alternation_work = 1024;    // turns times rows^2: many rows have one turn
+  static constexpr double alternation_tolerance = 1e-5;
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   inline bool sticks(const Candidate& c) const noexcept;
   inline static void reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept;
@@ -81,7 +88,7 @@ class ContactRows {
   ComplementarityProblem problem_;
   CoulombFriction friction_;
   std::vector<double> free_gap_, pressing_before_;
-  double floor_ = 0.0, longest_path_ = 0.0;
+  double floor_ = 0.0, longest_path_ = 0.0, alternation_change_ = 0.0;
   std::uint64_t tick_ = 0;
   PointCompliance compliance_;
   std::vector<Contact> rows_;

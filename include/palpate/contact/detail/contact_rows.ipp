@@ -96,7 +96,7 @@ PALPATE_INLINE void ContactRows::begin_tick(std::uint64_t compliance_revision) n
 
 PALPATE_INLINE void ContactRows::clear() noexcept {
   count_ = 0;
-  longest_path_ = 0.0;
+  longest_path_ = alternation_change_ = 0.0;
   compliance_.begin_rows();
 }
 
@@ -195,9 +195,22 @@ PALPATE_INLINE bool ContactRows::solve() noexcept {
 }
 
 PALPATE_INLINE bool ContactRows::slide() noexcept {
-  friction_.solve(count_);
-  friction_.press(count_, problem_.lambda.data());
-  return solve();
+  const int most = std::clamp(alternation_work / (count_ * count_), 1, maximum_alternations);
+  bool solved = true;
+  for (int k = 0; k < most; ++k) {
+    std::copy_n(problem_.lambda.begin(), count_, pressing_before_.begin());
+    friction_.solve(count_);
+    friction_.press(count_, problem_.lambda.data());
+    solved = solve();
+    double change = 0.0, largest = 0.0;
+    for (int i = 0; i < count_; ++i) {
+      change = std::max(change, std::abs(problem_.lambda[at(i)] - pressing_before_[at(i)]));
+      largest = std::max(largest, std::abs(problem_.lambda[at(i)]));
+    }
+    alternation_change_ = largest > 0.0 ? change / largest : 0.0;
+    if (!(alternation_change_ > alternation_tolerance)) break;
+  }
+  return solved;
 }
 
 PALPATE_INLINE double ContactRows::deepest_push() const noexcept {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <palpate/concepts/servo.hpp>
+#include <palpate/haptic/force_gate.hpp>
 
+#include <concepts>
 #include <tuple>
 #include <vector>
 
@@ -23,6 +25,7 @@ struct LoopDevice {
 struct LoopServo {
   void* servo;
   std::span<const GatedForce> (*tick)(void*, std::span<const ToolState>) noexcept;
+  double slowest_rate;  ///< [1/s] slower ticks count as missed; 0: the servo does not state its gate's limits
 };
 
 template <HapticDevice D>
@@ -45,7 +48,14 @@ std::vector<LoopDevice> loop_devices(const std::tuple<D&...>& devices) {
 
 template <Servo S>
 LoopServo loop_servo(S& servo) noexcept {
-  return {&servo, [](void* s, std::span<const ToolState> states) noexcept { return static_cast<S*>(s)->tick(states); }};
+  LoopServo view{&servo,
+                 [](void* s, std::span<const ToolState> states) noexcept { return static_cast<S*>(s)->tick(states); },
+                 0.0};
+  if constexpr (requires {
+                  { servo.limits() } -> std::convertible_to<ForceLimits>;
+                })
+    view.slowest_rate = ForceLimits(servo.limits()).slowest_rate();
+  return view;
 }
 
 }}}  // namespace palpate::detail

@@ -6,6 +6,8 @@
 #include <palpate/contact/contact.hpp>
 #include <palpate/core/rigid_motion.hpp>
 
+#include <cmath>
+#include <limits>
 #include <span>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -46,6 +48,8 @@ class ToolInput {
   const Vector3& position() const noexcept { return position_; }  ///< last valid one, model frame [m]
   const Vector3& rotation() const noexcept { return rotation_; }  ///< since the last valid one, world frame [rad]
   double time() const noexcept { return time_; }                  ///< of the last valid one [s]
+  /// Time of the tick on the same clock [s]; where it is not known, time().
+  double now() const noexcept { return std::isfinite(now_) ? now_ : time_; }
   bool readable() const noexcept { return readable_; }
   bool restarted() const noexcept { return restarted_; }  ///< forces begin from zero
   bool rotates() const noexcept { return rotates_; }
@@ -86,10 +90,10 @@ class ToolInput {
 
   int number_;
   Vector3 position_ = Vector3::Zero(), rotation_ = Vector3::Zero();
-  double time_ = 0.0;
-  double news_ = 0.0;   // time of the last update of the tissue
-  bool known_ = false;  // position_ is valid
-  bool has_proxy_ = false;    // while not known_: the proxy is that of the last reading
+  double time_ = 0.0, now_ = std::numeric_limits<double>::quiet_NaN();
+  double news_ = 0.0;       // time of the last update of the tissue
+  bool known_ = false;      // position_ is valid
+  bool has_proxy_ = false;  // while not known_: the proxy is that of the last reading
   bool passing_ = false;
   std::uint64_t clear_revision_ = 0;
   Vector3 clear_position_ = Vector3::Zero();

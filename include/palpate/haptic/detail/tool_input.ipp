@@ -40,6 +40,7 @@ PALPATE_INLINE bool ToolInput::accept(const ToolState& state, const Eigen::Isome
   status_ = {};
   readable_ = state.valid;
   restarted_ = false;
+  now_ = state.now;
   rotation_.setZero();
   if (!state.valid) {
     known_ = false;

@@ -39,7 +39,7 @@ struct BlockPattern;
 class MovingTissue : public ModelBase {
  public:
   /// Maximum number of vertex forces, three per contact; forces beyond it are not applied.
-  static constexpr std::size_t most_forces = 3 * default_contact_capacity;
+  static constexpr std::size_t most_forces = 3 * largest_default_capacity;
 
   // The thread that steps (BackgroundWorker)
 

@@ -44,7 +44,7 @@ class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner>
                 const SetupOptions& options = {}, const Parameters& parameters = {})
       : Linear(mesh, scene, materials, options), stiffened_(*this, parameters.axial, parameters.radial) {
     scales_.fill(stiffened_.scale());
-    scaled_.reserve(3 * default_contact_capacity);
+    scaled_.reserve(3 * largest_default_capacity);
   }
   HapticFEModel(const HapticFEModel&) = delete;
   HapticFEModel& operator=(const HapticFEModel&) = delete;
