@@ -44,18 +44,24 @@ class ConvexHull {
   /// of a visible face; inside it is in the nearest face. The signed distance is convex. Exact; work bounded by the
   /// number of faces and edges (12 and 6 for a box).
   Closest closest(const Vector3& p) const noexcept;
-  /// A lower bound of the distance, by the planes of the faces [m]; exact inside. -infinity without faces.
+  /// A lower bound of the signed distance, by the planes of the faces and, of a plane polygon, of its sides [m]; exact
+  /// inside. -infinity without faces.
   double least_distance(const Vector3& p) const noexcept;
+  /// False only for points farther from the hull than a distance >= 0: those outside of its sphere, or above the plane
+  /// of a face, by more.
+  bool may_be_within(const Vector3& p, double distance) const noexcept;
 
  private:
   struct Face {
     Vector3 normal;  // unit, outward
     double offset;   // of its plane along the normal
     int first, end;  // of sides_
+    double height(const Vector3& p) const noexcept { return normal.dot(p) - offset; }
   };
   struct Side {  // of a face, in its plane
     Vector3 outward;
     double offset;
+    double height(const Vector3& p) const noexcept { return outward.dot(p) - offset; }
   };
   struct Edge {
     Vector3 start, along;
@@ -66,7 +72,6 @@ class ConvexHull {
   void add_face(std::span<const int> corners);
   void add_edges(const std::vector<std::vector<int>>& faces);
   void bound();
-  inline double height(const Face& face, const Vector3& p) const noexcept { return face.normal.dot(p) - face.offset; }
   inline bool covers(const Face& face, const Vector3& p) const noexcept;
 
   int dimension_ = 0;

@@ -79,24 +79,34 @@ PALPATE_INLINE void ConvexHull::bound() {
 
 /// Whether the foot of the perpendicular from p to the plane of a face is in the face.
 inline bool ConvexHull::covers(const Face& face, const Vector3& p) const noexcept {
-  for (int i = face.first; i < face.end; ++i) {
-    const Side& side = sides_[static_cast<std::size_t>(i)];
-    if (side.outward.dot(p) > side.offset) return false;
-  }
+  for (int i = face.first; i < face.end; ++i)
+    if (sides_[static_cast<std::size_t>(i)].height(p) > 0.0) return false;
   return true;
 }
 
 PALPATE_INLINE double ConvexHull::least_distance(const Vector3& p) const noexcept {
   double highest = -infinity;
-  for (const Face& face : faces_) highest = std::max(highest, height(face, p));
+  for (const Face& face : faces_) highest = std::max(highest, face.height(p));
+  for (int i = 0; dimension_ == 2 && i < faces_[0].end; ++i)
+    highest = std::max(highest, sides_[static_cast<std::size_t>(i)].height(p));
   return highest;
+}
+
+PALPATE_INLINE bool ConvexHull::may_be_within(const Vector3& p, double distance) const noexcept {
+  if ((p - middle_).squaredNorm() > (distance + radius_) * (distance + radius_)) return false;
+  for (const Face& face : faces_)
+    if (face.height(p) > distance) return false;
+  for (int i = 0; dimension_ == 2 && i < faces_[0].end; ++i)
+    if (sides_[static_cast<std::size_t>(i)].height(p) > distance) return false;
+  return true;
 }
 
 PALPATE_INLINE ConvexHull::Closest ConvexHull::closest(const Vector3& p) const noexcept {
   std::array<double, maximum_faces> heights;
+  heights[0] = -infinity;
   std::size_t top = 0;
   for (std::size_t f = 0; f < faces_.size(); ++f) {
-    heights[f] = height(faces_[f], p);
+    heights[f] = faces_[f].height(p);
     if (heights[f] > heights[top]) top = f;
   }
   const bool inside = dimension_ == 3 && heights[top] <= 0.0;

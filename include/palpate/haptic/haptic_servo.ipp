@@ -1,6 +1,7 @@
 // Definitions of haptic_servo.hpp.
 #pragma once
 
+#include <palpate/contact/detail/tool_placement.hpp>
 #include <palpate/core/realtime.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
@@ -42,7 +43,8 @@ inline bool is_zero(const Vector3& v) noexcept {
 PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options,
                                         std::vector<EnergyTank> energies)
     : tissue_(tissue),
-      contact_tools_(make_contact_tools(tools, options)),
+      tools_(tools),
+      contact_tools_(make_contact_tools(tools_, options)),
       problem_(detail::surface_for(tissue_, contact_tools_, options.contact), detail::smallest_radius(contact_tools_),
                options.contact),
       energies_(std::move(energies)),
@@ -121,6 +123,11 @@ PALPATE_INLINE Vector3 HapticServo::proxy_axis(std::size_t tool) const noexcept 
   return rotation_of(tissue_.to_world()) * contact_tools_[tool].axis();
 }
 
+PALPATE_INLINE Matrix3 HapticServo::proxy_rotation(std::size_t tool) const noexcept {
+  if (blades_[tool]) return Matrix3::Identity();
+  return rotation_of(tissue_.to_world()) * contact_tools_[tool].rotation;
+}
+
 /// Notes when a tissue that moves by itself was last updated.
 PALPATE_INLINE void HapticServo::note_updates() noexcept {
   if (!tissue_.has_updates()) return;
@@ -157,14 +164,12 @@ PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
   // Far from all contact points of an open surface nothing changes fast: each tool is checked every 16 ticks.
   if (!surface.has_shell() && !problem_.is_near(static_cast<int>(i)) && (ticks_ + i) % 16 != 0) return;
   bool inside = false, behind = false;
-  for (const double s : {0.0, -tool.half_length, tool.half_length}) {
-    const Vector3 centre = tool.target + s * tool.axis();
-    if (surface.is_inside(centre)) {
-      inside = true;
-      behind = behind || surface.closest_of_body(centre).triangle >= 0;
-    }
-    if (tool.half_length == 0.0) break;
-  }
+  for_each_probe(tool, [&](const Vector3& probe) {
+    const Vector3 centre = tool.half_length > 0.0 ? tool.target + tool.rotation * probe : tool.target;
+    if (!surface.is_inside(centre)) return;
+    inside = true;
+    behind = behind || surface.closest_of_body(centre).triangle >= 0;
+  });
   if (inside && behind && !inputs_[i].is_passing())
     inputs_[i].lose();
   else
@@ -199,6 +204,7 @@ PALPATE_INLINE void HapticServo::publish() noexcept {
   for (std::size_t i = 0; i < contact_tools_.size(); ++i) {
     s.proxies[i] = proxy(i);
     s.axes[i] = proxy_axis(i);
+    if (contact_tools_[i].hull != nullptr) s.rotations[i] = proxy_rotation(i);
     if (blades_[i]) s.note_blade(static_cast<int>(i), s.proxies[i], blades_[i]->force());
   }
   s.time = inputs_.front().time();

@@ -27,7 +27,7 @@ PALPATE_INLINE void Candidates::reset() noexcept {
   valid_ = is_new_ = lost_forces_ = false;
   revision_ = 0;
   proxy_.fill(Vector3::Zero());
-  axis_.fill(Vector3::Zero());
+  rotation_.fill(Matrix3::Zero());
   was_active_.fill(false);
   range_.fill(0.0);
   built_.fill(0.0);
@@ -50,16 +50,11 @@ inline Vector3 Candidates::rest(const ContactSurface& surface, int s) const noex
 }
 
 inline void Candidates::place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept {
+  const CorePoint core = tool.closest(point);
   c.point = point;
-  c.along = tool.along(point);
-  Vector3 offset = tool.proxy - point;
-  if (c.along != 0.0) offset = tool.proxy + c.along * tool.axis() - point;
-  const double distance = offset.norm();
-  if (distance > 0.0)
-    c.normal = offset / distance;
-  else
-    c.normal = Vector3(0.0, 0.0, 1.0);
-  c.gap = distance - tool.radius;
+  c.core = core.point;
+  c.normal = core.normal;
+  c.gap = core.distance - tool.radius;
   c.seen = travel(static_cast<std::size_t>(c.tool));
 }
 
@@ -114,9 +109,8 @@ PALPATE_INLINE void Candidates::move_sphere(std::size_t t, const ContactTool& to
   travel_[t] += (tool.proxy - proxy_[t]).norm();
   proxy_[t] = tool.proxy;
   if (tool.half_length == 0.0) return;
-  const Vector3 axis = tool.axis();
-  travel_[t] += tool.half_length * (axis - axis_[t]).norm();
-  axis_[t] = axis;
+  travel_[t] += tool.core_path(tool.rotation - rotation_[t]);
+  rotation_[t] = tool.rotation;
 }
 
 PALPATE_INLINE Status Candidates::update(const TissueView& tissue, std::span<const ContactTool> tools,
@@ -189,12 +183,10 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
     range_[t] = needed(tool) + 0.25 * tool.radius;
     built_[t] = travel(t);
     const double far = tool.radius + range_[t] + reach_;
-    const Vector3 axis = tool.axis();
-    surface.bvh().visit_near(tool.proxy, far + tool.half_length, [&](int triangle) {
+    surface.bvh().visit_near(tool.middle(), far + tool.core_radius(), [&](int triangle) {
       for (int s = samples_.first_of(triangle); s < samples_.first_of(triangle + 1); ++s) {
         const Vector3 x = rest(surface, s);
-        if ((x - tool.proxy - tool.along(x) * axis).squaredNorm() <= far * far)
-          consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
+        if (tool.is_within(x, far)) consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
       }
     });
   }
