@@ -1,6 +1,8 @@
 // Swept contact detection: no part is too thin and no tool too fast.
 #include "contact/analytic_tissue.hpp"
 
+#include <palpate/contact/detail/hull_placement.hpp>
+#include <palpate/contact/detail/hull_separation.hpp>
 #include <palpate/contact/detail/sweep.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
@@ -123,6 +125,56 @@ TEST_CASE("at the reported first contact a sphere touches the triangle, and befo
   CHECK(met > 500);
   CHECK(worst <= 1e-9);
   CHECK(sunk <= 1e-9);
+}
+
+TEST_CASE("at the reported first contact a rounded hull touches the triangle, and before it does not",
+          "[contact][sweep][convex]") {
+  testing::Random random(93);
+  const auto point = [&](double s) {
+    return Vector3(random.uniform(-s, s), random.uniform(-s, s), random.uniform(-s, s));
+  };
+  int met = 0, missed = 0, behind = 0, sunk = 0;
+  double worst = 0.0;
+  for (int run = 0; run < 20'000; ++run) {
+    std::vector<Vector3> points;
+    for (int i = 0; i < 1 + run % 9; ++i) points.push_back(point(0.7));
+    const ConvexHull shape(points);
+    const std::array<Vector3, 3> corner{point(1), point(1), point(1)};
+    const Vector3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+    const double radius = random.uniform(0.01, 0.5);
+    const Matrix3 turn = run % 2 ? rotation_by(point(0.2)) : Matrix3(Matrix3::Identity());
+    const Vector3 from = point(3), to = from + point(6);
+    const HullPath hull(shape, from, Matrix3::Identity(), to, turn);
+    const auto apart = [&](double t) {
+      std::vector<Vector3> now;
+      for (std::size_t v = 0; v < hull.count; ++v) now.push_back(hull.start[v] + t * hull.path[v]);
+      return separate(now, corner);
+    };
+    if (!(apart(0.0).distance > radius)) continue;
+    const double t = hull_meets_triangle(hull, radius, corner, normal, 1.0);
+    if (t <= 1.0) {
+      ++met;
+      worst = std::max(worst, std::abs(apart(t).distance - radius));
+      CHECK(apart(t).normal.dot(normal) > 0.0);
+    }
+    const double end = std::min(t, 1.0);
+    int k = 1;
+    while (k <= 100 && apart(end * (k / 100.0)).distance >= radius - 1e-6) ++k;
+    if (k > 100) continue;
+    if (t <= 1.0) ++sunk;
+    double out = end * ((k - 1) / 100.0), in = end * (k / 100.0);  // without a hit it may come near only from behind
+    for (int halving = 0; halving < 50; ++halving) {
+      const double middle = 0.5 * (out + in);
+      (apart(middle).distance >= radius ? out : in) = middle;
+    }
+    ++(apart(out).normal.dot(normal) > 1e-3 ? missed : behind);
+  }
+  INFO(met << " met, " << behind << " from behind, " << missed << " missed, error " << worst << ", sunk " << sunk);
+  CHECK(met > 300);
+  CHECK(behind > 200);
+  CHECK(missed == 0);
+  CHECK(worst <= 1e-6);
+  CHECK(sunk == 0);
 }
 
 TEST_CASE("a tool that teleports never passes through a plate of 0.2 mm", "[contact][sweep][haptic]") {

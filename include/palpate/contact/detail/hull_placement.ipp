@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/contact/detail/hull_placement.hpp>
-#include <palpate/contact/detail/hull_separation.hpp>
+#include <palpate/contact/detail/hull_separation.ipp>  // its inline functions
 #include <palpate/core/rigid_motion.hpp>
 
 #include <algorithm>
