@@ -287,7 +287,7 @@ TEST_CASE("shapes that are no convex tools are refused", "[contact][convex]") {
   CHECK(many.value == 65.0);
   CHECK(many.threshold == 64.0);
   CHECK_NOTHROW(ConvexTool(random_points(random, 64, 0.01), r));
-  // A corner cut off by less than a millionth: its face would be missing.
+  // A corner that is cut off, but less than a millionth: its face would be missing.
   std::vector<Vector3> cut = corners_of_box({1, 1, 1});
   cut.pop_back();
   for (int i = 0; i < 3; ++i) cut.push_back(Vector3(1, 1, 1) - 2e-7 * Vector3::Unit(i));
