@@ -5,9 +5,11 @@
 //   1. The tool is a capsule: a cylinder with round ends. It rotates with the orientation of the device.
 //   2. It is lowered, pressed in, tilted, and moved sideways with friction; force and torque are printed.
 //   3. The stress at the deepest position is drawn.
+//   4. A spatula, a plate with round edges (ConvexTool), is pressed flat into the tissue, and tilted.
 //
 // The exit code is 0 when the force on a level probe is vertical, the torque on the tilted probe acts against the tilt,
-// the friction force opposes the motion, and the force is zero after lifting. The dent adds a little to the friction.
+// the friction force opposes the motion, and the force is zero after lifting; the same for force and torque of the
+// spatula. The dent adds a little to the friction.
 #include <palpate/palpate.hpp>
 #include <palpate/io/vtu.hpp>
 #include <palpate/post/stress.hpp>
@@ -99,11 +101,8 @@ bool check(bool holds, const char* what) {
   return holds;
 }
 
-int run_example(const std::filesystem::path& folder) {
-  Scene scene;
-  scene.fix("z0").touch("z1");
-  Tissue tissue(box_tet4(size, {24, 18, 8}), scene,
-                LinearElastic{.youngs_modulus = 8e3, .poisson_ratio = 0.45, .density = 1050.0});
+/// A cylinder with round ends.
+bool press_probe(Tissue& tissue, const std::filesystem::path& folder) {
   HapticServo servo(tissue, CapsuleTool(radius, half_length, Vector3::UnitX()), options());
 
   const Vector3 middle(0.5 * size[0], 0.5 * size[1], size[2] + radius);
@@ -125,9 +124,39 @@ int run_example(const std::filesystem::path& folder) {
   right = check(-dragged.force()[1] > 0.5 * friction * dragged.force()[2], "the friction force opposes the motion") &&
           right;
   right = check(free.force().norm() == 0.0, "the force is zero after lifting") && right;
-  return right ? 0 : 1;
+  return right;
+}
+
+/// A plate: its core is a rectangle, its edges are rounded with 5 mm.
+bool press_spatula(Tissue& tissue) {
+  const double rounding = 0.005;
+  ServoOptions with_spatula = options();
+  with_spatula.contact.sample_spacing = 1.0;  // a large flat tool has many contact points: as few as are safe
+  HapticServo servo(tissue, ConvexTool::box({0.034, 0.018, 2.0 * rounding}, rounding), with_spatula);
+  const Vector3 middle(0.5 * size[0], 0.5 * size[1], size[2] + rounding);
+  Hand hand(servo, middle + Vector3(0, 0, 2e-3));
+  hand.move(middle + Vector3(0, 0, 2e-3), 0.0, 50);
+  const GatedForce pressed = hand.move(middle - Vector3(0, 0, 3e-3), 0.0, 300);
+  print("spatula, flat", pressed);
+  const GatedForce tilted = hand.move(middle - Vector3(0, 0, 3e-3), 0.1, 200);
+  print("spatula, tilted", tilted);
+  bool right = check(pressed.force()[2] > 0.5 && pressed.force().head<2>().norm() < 0.05 * pressed.force()[2],
+                     "the force on a flat spatula is vertical");
+  right = check(!pressed.status.has(StatusFlag::degraded_model), "all contacts of the spatula have a row") && right;
+  return check(tilted.torque()[1] < -1e-3, "the torque acts against the tilt of the spatula") && right;
+}
+
+int run_example(const std::filesystem::path& folder) {
+  Scene scene;
+  scene.fix("z0").touch("z1");
+  Tissue tissue(box_tet4(size, {24, 18, 8}), scene,
+                LinearElastic{.youngs_modulus = 8e3, .poisson_ratio = 0.45, .density = 1050.0});
+  const bool probe = press_probe(tissue, folder);
+  return press_spatula(tissue) && probe ? 0 : 1;
 }
 
 }  // namespace
 
-int main(int count, char** values) { return example::main_with_out(count, values, "build/probe", run_example); }
+int main(int count, char** values) {
+  return example::main_with_out(count, values, "build/probe", run_example);
+}

@@ -1,7 +1,10 @@
 // Swept contact detection: no part is too thin and no tool too fast.
 #include "contact/analytic_tissue.hpp"
 
+#include <palpate/contact/detail/hull_placement.hpp>
+#include <palpate/contact/detail/hull_separation.hpp>
 #include <palpate/contact/detail/sweep.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/testing/random.hpp>
@@ -11,6 +14,8 @@
 #include "catch.hpp"
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 using namespace palpate;
 using Catch::Matchers::WithinAbs;
@@ -122,23 +127,83 @@ TEST_CASE("at the reported first contact a sphere touches the triangle, and befo
   CHECK(sunk <= 1e-9);
 }
 
+TEST_CASE("at the reported first contact a rounded hull touches the triangle, and before it does not",
+          "[contact][sweep][convex]") {
+  testing::Random random(93);
+  const auto point = [&](double s) {
+    return Vector3(random.uniform(-s, s), random.uniform(-s, s), random.uniform(-s, s));
+  };
+  int met = 0, missed = 0, behind = 0, sunk = 0;
+  double worst = 0.0;
+  for (int run = 0; run < 20'000; ++run) {
+    std::vector<Vector3> points;
+    for (int i = 0; i < 1 + run % 9; ++i) points.push_back(point(0.7));
+    const ConvexHull shape(points);
+    const std::array<Vector3, 3> corner{point(1), point(1), point(1)};
+    const Vector3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+    const double radius = random.uniform(0.01, 0.5);
+    const Matrix3 turn = run % 2 ? rotation_by(point(0.2)) : Matrix3(Matrix3::Identity());
+    const Vector3 from = point(3), to = from + point(6);
+    const HullPath hull(shape, from, Matrix3::Identity(), to, turn);
+    const auto apart = [&](double t) {
+      std::vector<Vector3> now;
+      for (std::size_t v = 0; v < hull.count; ++v) now.push_back(hull.start[v] + t * hull.path[v]);
+      return separate(now, corner);
+    };
+    if (!(apart(0.0).distance > radius)) continue;
+    const double t = hull_meets_triangle(hull, radius, corner, normal, 1.0);
+    if (t <= 1.0) {
+      ++met;
+      worst = std::max(worst, std::abs(apart(t).distance - radius));
+      CHECK(apart(t).normal.dot(normal) > 0.0);
+    }
+    const double end = std::min(t, 1.0);
+    int k = 1;
+    while (k <= 100 && apart(end * (k / 100.0)).distance >= radius - 1e-6) ++k;
+    if (k > 100) continue;
+    if (t <= 1.0) ++sunk;
+    double out = end * ((k - 1) / 100.0), in = end * (k / 100.0);  // without a hit it may come near only from behind
+    for (int halving = 0; halving < 50; ++halving) {
+      const double middle = 0.5 * (out + in);
+      (apart(middle).distance >= radius ? out : in) = middle;
+    }
+    ++(apart(out).normal.dot(normal) > 1e-3 ? missed : behind);
+  }
+  INFO(met << " met, " << behind << " from behind, " << missed << " missed, error " << worst << ", sunk " << sunk);
+  CHECK(met > 300);
+  CHECK(behind > 200);
+  CHECK(missed == 0);
+  CHECK(worst <= 1e-6);
+  CHECK(sunk == 0);
+}
+
 TEST_CASE("a tool that teleports never passes through a plate of 0.2 mm", "[contact][sweep][haptic]") {
-  for (const double half : {0.0, 8e-3}) {
+  const Matrix3 tilt = rotation_by({0.3, 0.2, 0.5});
+  std::vector<Vector3> rod;  // a bar of three sides
+  for (const Vector3& p : {Vector3(0, 0, 0), Vector3(2e-3, 0, 0), Vector3(0, 2e-3, 0)})
+    for (const double z : {-9e-3, 9e-3}) rod.push_back(tilt * Vector3(p[0], p[1], z));
+  const std::vector<std::pair<const char*, Tool>> tools{{"sphere", CapsuleTool(2e-3, 0.0)},
+                                                        {"capsule", CapsuleTool(2e-3, 8e-3)},
+                                                        {"box", ConvexTool::box({0.016, 0.01, 0.008}, 2e-3)},
+                                                        {"plate", ConvexTool::box({0.016, 0.01, 4e-3}, 2e-3)},
+                                                        {"bar", ConvexTool(rod, 1.5e-3)}};
+  for (const auto& [name, tool] : tools) {
     ThinPlate plate;
-    HapticServo servo(plate, CapsuleTool(2e-3, half), ServoOptions{});
+    HapticServo servo(plate, tool, ServoOptions{});
+    const bool rotates = !std::string(name).starts_with("sphere");
     testing::Random random(92);
     ToolState state;
     state.position = Vector3(0, 0, 0.03);
     int through = 0, jumps = 0, pressed = 0, wild = 0;
     double lowest = infinity;
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < 2500; ++k) {
       state.time = 1e-3 * k;
       if (k > 0 && random.uniform(0.0, 1.0) < 0.3)  // anywhere above, below or in the plate
         state.position = {random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), random.uniform(-0.03, 0.03)};
       else if (k > 0)
         state.position +=
             Vector3(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3));
-      if (half > 0.0)
+      if (rotates)
         state.orientation = rotated_to(Vector3(std::cos(0.01 * k), std::sin(0.01 * k), 0.3 * std::sin(0.02 * k)));
       const GatedForce out = servo.tick({&state, 1})[0];
       if (!out.force().allFinite() || out.force().norm() > 3.3 * (1.0 + 1e-12)) ++wild;
@@ -147,12 +212,12 @@ TEST_CASE("a tool that teleports never passes through a plate of 0.2 mm", "[cont
       lowest = std::min(lowest, servo.proxy()[2]);
       through += servo.proxy()[2] < 0.0;
     }
-    INFO("half length " << half << ": " << jumps << " jumps, " << pressed
-                        << " ticks pressed, lowest middle of the tool " << 1e3 * lowest << " mm");
+    INFO(name << ": " << jumps << " jumps, " << pressed << " ticks pressed, lowest middle of the tool " << 1e3 * lowest
+              << " mm");
     CHECK(through == 0);
     CHECK(wild == 0);
-    CHECK(jumps > 800);
-    CHECK(pressed > 800);
+    CHECK(jumps > 500);
+    CHECK(pressed > 500);
   }
 }
 

@@ -28,7 +28,7 @@ struct ToolSession {
     }
     ContactTool& t = tools[i];
     t.motion = target - t.target;
-    t.end_path = t.half_length * ((rotation - t.target_rotation) * t.own_axis).norm();
+    t.end_path = t.core_path(rotation - t.target_rotation);
     t.target = target;
     t.target_rotation = rotation;
     tick();

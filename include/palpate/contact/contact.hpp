@@ -1,7 +1,9 @@
 // Tools and contacts as the contact problem represents them.
 #pragma once
 
-#include <palpate/contact/detail/triangle.hpp>
+#include <palpate/contact/convex_hull.hpp>
+
+#include <algorithm>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -33,7 +35,16 @@ struct ContactParameters {
   ContactParameters for_tools(std::size_t tools) const noexcept;
 };
 
-/// A sphere or capsule as the contact problem represents it, in the model's frame.
+/// The point of a tool's core closest to another point. The core is the centre of a sphere, the segment of a capsule or
+/// the hull of a convex tool: the tool is all points within its radius of the core.
+struct CorePoint {
+  Vector3 point = Vector3::Zero();   ///< from the tool's position, in its own frame [m]
+  Vector3 normal = Vector3::Zero();  ///< unit, from the other point to this one; inside a hull from it to its nearest
+                                     ///< face, reversed
+  double distance = 0.0;             ///< [m], negative inside a hull; convex
+};
+
+/// A tool as the contact problem represents it, in the model's frame.
 struct ContactTool {
   Vector3 target = Vector3::Zero();  ///< position of the device [m]
   Vector3 proxy = Vector3::Zero();   ///< position of the tool: on the surface, never inside [m]
@@ -44,13 +55,15 @@ struct ContactTool {
   bool active = false;               ///< takes part in this tick
   bool grasping = false;             ///< grasps the point it touched when this became true
 
-  double half_length = 0.0;                       ///< of a capsule's axis [m]; 0 is a sphere
+  double half_length = 0.0;                       ///< farthest point of the core from the tool's position [m]: of a
+                                                  ///< capsule half of its axis; 0 is a sphere
+  const ConvexHull* hull = nullptr;               ///< core of a convex tool, in its own frame, not owned; else null
   Vector3 own_axis{0.0, 0.0, 1.0};                ///< of a capsule, in the tool's own frame, unit
   Matrix3 target_rotation = Matrix3::Identity();  ///< of the device: from the tool's own frame
   Matrix3 rotation = Matrix3::Identity();         ///< of the proxy
   Vector3 torque = Vector3::Zero();               ///< of the tissue on the tool, about the proxy [N m]
   double rotational_compliance = 0.0;             ///< of the coupling [rad/(N m)]; 0 is rigid
-  double end_path = 0.0;                          ///< of the capsule's ends around its middle, last tick [m]
+  double end_path = 0.0;                          ///< bound of the path of its core by rotation, last tick [m]
 
   Vector3 friction_displacement = Vector3::Zero(),
           friction_rotation = Vector3::Zero();  ///< of the coupling under friction [m], [rad]
@@ -64,15 +77,37 @@ struct ContactTool {
   /// The same for the rotation.
   Matrix3 goal_rotation() const noexcept;
   Vector3 axis() const noexcept;
-  /// Coordinate on the axis, from the middle, of the point closest to `p` [m].
-  double along(const Vector3& p) const noexcept { return half_length > 0.0 ? along_capsule(p) : 0.0; }
+  /// The point of the core closest to `p`.
+  CorePoint closest(const Vector3& p) const noexcept {
+    return half_length > 0.0 ? closest_extended(p) : from_core(p, proxy, Vector3(0.0, 0.0, 0.0));
+  }
+  /// Whether the core is within a distance of `p`; true for some points that are slightly farther from a hull.
+  bool is_within(const Vector3& p, double distance) const noexcept {
+    return half_length > 0.0 ? is_within_extended(p, distance) : (p - proxy).squaredNorm() <= distance * distance;
+  }
+  /// Upper bound of the displacement of any point of the core by a change of its rotation matrix [m].
+  double core_path(const Matrix3& change) const noexcept;
+  /// Centre of a sphere that contains the core [m].
+  Vector3 middle() const noexcept;
+  /// Radius of that sphere [m].
+  double core_radius() const noexcept { return hull == nullptr ? half_length : hull->radius(); }
   /// Upper bound of the path of the device since the last tick, at the end that moved most [m].
   double path_length() const noexcept;
   /// Longest path of the proxy in one linearisation: contact points up to this distance are in the list.
   double longest_step() const noexcept { return 0.25 * radius + path_length(); }
 
  private:
-  double along_capsule(const Vector3& p) const noexcept;
+  CorePoint closest_extended(const Vector3& p) const noexcept;
+  bool is_within_extended(const Vector3& p, double distance) const noexcept;
+  double along_capsule(const Vector3& p, const Vector3& direction) const noexcept {
+    return std::clamp(direction.dot(p - proxy), -half_length, half_length);
+  }
+  /// For a point of the core in the model's frame, and in the tool's own.
+  static CorePoint from_core(const Vector3& p, const Vector3& core, const Vector3& own) noexcept {
+    const Vector3 offset = core - p;
+    const double distance = offset.norm();
+    return {own, distance > 0.0 ? Vector3(offset / distance) : Vector3(0.0, 0.0, 1.0), distance};
+  }
 };
 
 /// One contact of one tool: a point of the deformed surface and the three vertices of its triangle. The barycentric
@@ -82,7 +117,7 @@ struct Contact {
   int tool = 0;
   Triangle vertices{};
   std::array<double, 3> weights{};
-  Vector3 normal = Vector3::Zero();    ///< unit, from the surface to the sphere's centre
+  Vector3 normal = Vector3::Zero();    ///< unit, from the surface to the tool's core
   Vector3 rest = Vector3::Zero();      ///< position of the point without contact [m]
   double force = 0.0;                  ///< normal force [N], >= 0; of a grasp: along `normal`, any sign
   Vector3 point = Vector3::Zero();     ///< on the deformed surface [m]

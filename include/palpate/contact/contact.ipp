@@ -24,6 +24,7 @@ PALPATE_INLINE void ContactTool::reset() noexcept {
   fresh.radius = radius;
   fresh.compliance = compliance;
   fresh.half_length = half_length;
+  fresh.hull = hull;
   fresh.own_axis = own_axis;
   fresh.rotational_compliance = rotational_compliance;
   *this = fresh;
@@ -37,8 +38,29 @@ PALPATE_INLINE Matrix3 ContactTool::goal_rotation() const noexcept {
 PALPATE_INLINE Vector3 ContactTool::axis() const noexcept {
   return rotation * own_axis;
 }
-PALPATE_INLINE double ContactTool::along_capsule(const Vector3& p) const noexcept {
-  return std::clamp(axis().dot(p - proxy), -half_length, half_length);
+PALPATE_INLINE CorePoint ContactTool::closest_extended(const Vector3& p) const noexcept {
+  if (hull != nullptr) {
+    const ConvexHull::Closest on = hull->closest(rotation.transpose() * (p - proxy));
+    return {on.point, -(rotation * on.outward), on.distance};
+  }
+  const Vector3 direction = axis();
+  const double along = along_capsule(p, direction);
+  return from_core(p, proxy + along * direction, along * own_axis);
+}
+PALPATE_INLINE bool ContactTool::is_within_extended(const Vector3& p, double distance) const noexcept {
+  if (hull != nullptr) return hull->may_be_within(rotation.transpose() * (p - proxy), distance);
+  const Vector3 direction = axis();
+  return (p - proxy - along_capsule(p, direction) * direction).squaredNorm() <= distance * distance;
+}
+PALPATE_INLINE double ContactTool::core_path(const Matrix3& change) const noexcept {
+  if (half_length == 0.0) return 0.0;
+  if (hull == nullptr) return half_length * (change * own_axis).norm();
+  double square = 0.0;  // the two largest singular values of a difference of rotations are equal, the third is zero
+  for (int i = 0; i < 9; ++i) square += change.data()[i] * change.data()[i];
+  return half_length * std::sqrt(0.5 * square);
+}
+PALPATE_INLINE Vector3 ContactTool::middle() const noexcept {
+  return hull == nullptr ? proxy : Vector3(proxy + rotation * hull->middle());
 }
 PALPATE_INLINE double ContactTool::path_length() const noexcept {
   return motion.norm() + end_path;

@@ -1,4 +1,4 @@
-// Contact of rigid spheres and capsules with a deformable surface, solved exactly in every tick.
+// Contact of rigid spheres, capsules and convex tools with a deformable surface, solved exactly in every tick.
 #pragma once
 
 #include <palpate/contact/detail/contact_rows.hpp>

@@ -261,7 +261,8 @@ PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools
     if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, start_, c);
     if (!c.facing || c.gap > reach) continue;
     const Vector3 moved = candidates_.position(tissue, displacement_, c) - c.point;
-    const double gap = c.gap + c.normal.dot(ahead.path + c.along * ahead.axis - moved);
+    double gap = c.gap + c.normal.dot(ahead.path - moved);
+    if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);
     if (gap < -allowed) violated_[at(violated_count_++)] = {gap, &c};
   }
   std::array<int, maximum_tools> own = rows_.count_by_tool();

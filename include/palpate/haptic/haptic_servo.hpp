@@ -69,6 +69,9 @@ class HapticServo {
   Vector3 contact_torque(std::size_t tool = 0) const noexcept;
   /// Axis of a capsule on the surface, or of a blade's edge, world frame. For the tick's own thread.
   Vector3 proxy_axis(std::size_t tool = 0) const noexcept;
+  /// Rotation of a tool on the surface, from its own frame to the world; the identity for a blade. For the tick's own
+  /// thread.
+  Matrix3 proxy_rotation(std::size_t tool = 0) const noexcept;
   /// Whether a tool grasps a point of the surface. For the tick's own thread.
   bool is_holding(std::size_t tool = 0) const noexcept { return problem_.is_holding(tool); }
   /// State of a blade; null for another tool. For the tick's own thread.
@@ -104,6 +107,7 @@ class HapticServo {
   void publish() noexcept;
 
   TissueView tissue_;
+  ToolList tools_;  // owns the shapes of convex tools
   std::vector<ContactTool> contact_tools_;
   ContactProblem problem_;
   std::vector<ToolInput> inputs_;

@@ -1,6 +1,7 @@
 // Definitions of haptic_servo.hpp.
 #pragma once
 
+#include <palpate/contact/detail/tool_placement.hpp>
 #include <palpate/core/realtime.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
@@ -45,7 +46,8 @@ inline bool is_zero(const Vector3& v) noexcept {
 PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options,
                                         std::vector<EnergyTank> energies)
     : tissue_(tissue),
-      contact_tools_(make_contact_tools(tools, options)),
+      tools_(tools),
+      contact_tools_(make_contact_tools(tools_, options)),
       problem_(detail::surface_for(tissue_, contact_tools_, options.contact.for_tools(tools.size())),
                detail::radii_of(contact_tools_), options.contact.for_tools(tools.size())),
       energies_(std::move(energies)),
@@ -125,6 +127,11 @@ PALPATE_INLINE Vector3 HapticServo::proxy_axis(std::size_t tool) const noexcept 
   return rotation_of(tissue_.to_world()) * contact_tools_[tool].axis();
 }
 
+PALPATE_INLINE Matrix3 HapticServo::proxy_rotation(std::size_t tool) const noexcept {
+  if (blades_[tool]) return Matrix3::Identity();
+  return rotation_of(tissue_.to_world()) * contact_tools_[tool].rotation;
+}
+
 /// Notes when a tissue that moves by itself was last updated.
 PALPATE_INLINE void HapticServo::note_updates() noexcept {
   if (!tissue_.has_updates()) return;
@@ -160,16 +167,16 @@ PALPATE_INLINE bool HapticServo::is_lost(std::size_t i) noexcept {
   const ContactSurface& surface = tissue_.contact_surface();
   if (input.is_clear(surface.revision(), tool.target)) return false;
   bool inside = false, behind = false;
-  for (const double s : {0.0, -tool.half_length, tool.half_length}) {
-    const Vector3 centre = tool.target + s * tool.axis();
+  double least = infinity;
+  for_each_probe(tool, [&](const Vector3& probe) {
+    const Vector3 centre = tool.half_length > 0.0 ? tool.target + tool.rotation * probe : tool.target;
     const double distance = surface.distance_of_body(centre);
-    if (s == 0.0) input.set_clearance(surface.revision(), centre, surface.is_closed() ? distance - tool.half_length : 0.0);
-    if (distance < 0.0 && !is_free(centre, -distance)) {
-      inside = true;
-      behind = behind || surface.closest_of_body(centre).triangle >= 0;
-    }
-    if (tool.half_length == 0.0) break;
-  }
+    least = std::min(least, distance);
+    if (!(distance < 0.0) || is_free(centre, -distance)) return;
+    inside = true;
+    behind = behind || surface.closest_of_body(centre).triangle >= 0;
+  });
+  input.set_clearance(surface.revision(), tool.target, surface.is_closed() ? least - 2.0 * tool.half_length : 0.0);
   const bool lost = inside && behind && !input.is_passing();
   if (!lost) input.set_passing(inside);
   return lost;
@@ -188,12 +195,12 @@ PALPATE_INLINE bool HapticServo::sweep_lost_tools() noexcept {
   return any;
 }
 
-/// Tools that are still lost are placed beside the surface as the other tools deform it; true if there are any.
+/// Spheres that are still lost are placed beside the surface as the other tools deform it; true if there are any.
 PALPATE_INLINE bool HapticServo::place_lost_tools() noexcept {
   bool any = false;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     ContactTool& tool = contact_tools_[i];
-    if (!is_lost(i) || problem_.vertex_forces().empty()) continue;
+    if (tool.half_length > 0.0 || problem_.vertex_forces().empty() || !is_lost(i)) continue;
     const double depth = tissue_.contact_surface().distance_of_body(tool.target);
     const auto closest = problem_.closest(tissue_, tool.target, std::abs(depth));
     if (closest.triangle < 0) continue;
@@ -239,6 +246,7 @@ PALPATE_INLINE void HapticServo::publish() noexcept {
   for (std::size_t i = 0; i < contact_tools_.size(); ++i) {
     s.proxies[i] = proxy(i);
     s.axes[i] = proxy_axis(i);
+    if (contact_tools_[i].hull != nullptr) s.rotations[i] = proxy_rotation(i);
     if (blades_[i]) s.note_blade(static_cast<int>(i), s.proxies[i], blades_[i]->force());
   }
   s.time = inputs_.front().time();

@@ -48,7 +48,8 @@ inline constexpr double no_sphere = 1e6;
 
 }  // namespace detail
 
-/// The tools of a servo in the contact problem; blades as tools that are never active. Throws bad_argument for an
+/// The tools of a servo in the contact problem; blades as tools that are never active. They refer to the shapes of the
+/// convex tools of the list, which must outlive them. Throws bad_argument for an
 /// invalid tool, coupling or number of tools, or when there are `devices`, but not one per tool (ids: the tool).
 std::vector<ContactTool> make_contact_tools(const ToolList& tools, const ServoOptions& options);
 

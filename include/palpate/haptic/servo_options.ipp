@@ -46,7 +46,8 @@ PALPATE_INLINE double coupling_stiffness_of(std::size_t tool, const ServoOptions
   return stiffness;
 }
 
-inline ContactTool make_contact_tool(const CapsuleTool& tool, std::size_t i, const ServoOptions& options) {
+/// A tool of a radius, with its coupling.
+inline ContactTool make_coupled_tool(double radius, std::size_t i, const ServoOptions& options) {
   const DeviceLimits& device = options.device_of(i);
   const double rate = options.tick_rate(), stiffness = coupling_stiffness_of(i, options);
   const bool renders_torque = device.rotational_stiffness > 0.0 || options.limits(i).peak_torque > 0.0;
@@ -55,13 +56,25 @@ inline ContactTool make_contact_tool(const CapsuleTool& tool, std::size_t i, con
   if (!(rotational >= softest_coupling))
     refuse_stiffness(i, "rotational", rotational,
                      "A device that renders torque needs at least 1e-6 N m/rad; infinity is allowed");
-  tool.require_valid();
   ContactTool made;
-  made.radius = tool.radius;
-  made.half_length = tool.half_length;
-  if (tool.half_length > 0.0) made.own_axis = tool.axis.normalized();
+  made.radius = radius;
   made.compliance = 1.0 / stiffness;
   made.rotational_compliance = 1.0 / rotational;
+  return made;
+}
+
+inline ContactTool make_contact_tool(const CapsuleTool& tool, std::size_t i, const ServoOptions& options) {
+  ContactTool made = make_coupled_tool(tool.radius, i, options);
+  tool.require_valid();
+  made.half_length = tool.half_length;
+  if (tool.half_length > 0.0) made.own_axis = tool.axis.normalized();
+  return made;
+}
+
+inline ContactTool make_contact_tool(const ConvexTool& tool, std::size_t i, const ServoOptions& options) {
+  ContactTool made = make_coupled_tool(tool.radius(), i, options);
+  made.half_length = tool.hull().extent();
+  made.hull = &tool.hull();
   return made;
 }
 
@@ -82,6 +95,8 @@ PALPATE_INLINE std::vector<ContactTool> make_contact_tools(const ToolList& tools
       made.push_back(detail::make_contact_tool(*sphere, i, options));
     else if (const auto* capsule = std::get_if<CapsuleTool>(&tools[i]))
       made.push_back(detail::make_contact_tool(*capsule, i, options));
+    else if (const auto* convex = std::get_if<ConvexTool>(&tools[i]))
+      made.push_back(detail::make_contact_tool(*convex, i, options));
     else
       made.emplace_back().radius = detail::no_sphere;
   }

@@ -34,9 +34,10 @@ struct ServoSnapshot {
   std::vector<ToolContact> contacts;  ///< the first `contact_count`
   std::size_t contact_count = 0;
   std::size_t tool_count = 1;
-  std::array<Vector3, maximum_tools> proxies;  ///< middle of every tool or blade's edge, world frame [m]
-  std::array<Vector3, maximum_tools> axes;     ///< of capsules and edges, unit, world frame
-  double time = 0.0;                           ///< [s] time stamp of the first tool's state in the tick
+  std::array<Vector3, maximum_tools> proxies;    ///< middle of every tool or blade's edge, world frame [m]
+  std::array<Vector3, maximum_tools> axes;       ///< of capsules and edges, unit, world frame
+  std::array<Matrix3, maximum_tools> rotations;  ///< of convex tools, own frame to world; else the identity
+  double time = 0.0;                             ///< [s] time stamp of the first tool's state in the tick
 
   /// Room for `capacity` contacts, and blades. Allocates; a tick does not.
   explicit ServoSnapshot(int capacity);

@@ -13,6 +13,7 @@ PALPATE_INLINE ServoSnapshot::ServoSnapshot(int capacity)
     : forces(3 * static_cast<std::size_t>(capacity)), contacts(static_cast<std::size_t>(capacity) + maximum_tools) {
   proxies.fill(Vector3::Zero());
   axes.fill(Vector3::Zero());
+  rotations.fill(Matrix3::Identity());
 }
 
 PALPATE_INLINE void ServoSnapshot::note(std::span<const Contact> all, std::span<const VertexForce> on_vertices,

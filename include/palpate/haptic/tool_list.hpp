@@ -3,6 +3,7 @@
 
 #include <palpate/contact/blade_tool.hpp>
 #include <palpate/contact/capsule_tool.hpp>
+#include <palpate/contact/convex_tool.hpp>
 
 #include <concepts>
 #include <initializer_list>
@@ -12,11 +13,11 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// A tool of any kind. A blade needs a tissue that can be cut.
-using Tool = std::variant<SphereTool, CapsuleTool, BladeTool>;
+using Tool = std::variant<SphereTool, CapsuleTool, BladeTool, ConvexTool>;
 
 template <class T>
-concept AnyTool =
-    std::same_as<T, SphereTool> || std::same_as<T, CapsuleTool> || std::same_as<T, BladeTool> || std::same_as<T, Tool>;
+concept AnyTool = std::same_as<T, SphereTool> || std::same_as<T, CapsuleTool> || std::same_as<T, BladeTool> ||
+                  std::same_as<T, ConvexTool> || std::same_as<T, Tool>;
 
 /// Tools in the order of their states and forces: one tool, a list in braces of tools of any kinds, or a vector.
 class ToolList {

@@ -24,8 +24,8 @@ struct Candidate {
   double seen = 0.0;                 ///< travel of sphere and surface at the last evaluation [m]
   double force = 0.0;                ///< of the last solution [N]
   Vector3 point = Vector3::Zero();   ///< on the deformed surface [m]
-  Vector3 normal = Vector3::Zero();  ///< unit, from the point to the sphere's centre
-  double along = 0.0;                ///< coordinate of that centre on a capsule's axis [m]
+  Vector3 normal = Vector3::Zero();  ///< unit, from the point to the closest point of the tool's core
+  Vector3 core = Vector3::Zero();    ///< that point, in the tool's own frame [m]; zero for a sphere
   NormalHistory history;
 
   Vector3 friction = Vector3::Zero();  ///< of the last solution, on the tool [N]
@@ -141,7 +141,8 @@ class Candidates {
   int count_ = 0, loaded_count_ = 0;
   bool valid_ = false, is_new_ = false, lost_forces_ = false;
   std::uint64_t revision_ = 0;
-  std::array<Vector3, maximum_tools> proxy_, axis_;
+  std::array<Vector3, maximum_tools> proxy_;
+  std::array<Matrix3, maximum_tools> rotation_;
   std::array<bool, maximum_tools> was_active_{};
   std::array<double, maximum_tools> range_{}, built_{}, travel_{};  // range: gaps up to which the list was complete
   double surface_travel_ = 0.0;

@@ -41,7 +41,7 @@ PALPATE_INLINE void Candidates::reset() noexcept {
   valid_ = is_new_ = lost_forces_ = false;
   revision_ = 0;
   proxy_.fill(Vector3::Zero());
-  axis_.fill(Vector3::Zero());
+  rotation_.fill(Matrix3::Zero());
   was_active_.fill(false);
   range_.fill(0.0);
   built_.fill(0.0);
@@ -64,16 +64,11 @@ inline Vector3 Candidates::rest(const ContactSurface& surface, int s) const noex
 }
 
 inline void Candidates::place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept {
+  const CorePoint core = tool.closest(point);
   c.point = point;
-  c.along = tool.along(point);
-  Vector3 offset = tool.proxy - point;
-  if (c.along != 0.0) offset = tool.proxy + c.along * tool.axis() - point;
-  const double distance = offset.norm();
-  if (distance > 0.0)
-    c.normal = offset / distance;
-  else
-    c.normal = Vector3(0.0, 0.0, 1.0);
-  c.gap = distance - tool.radius;
+  c.core = core.point;
+  c.normal = core.normal;
+  c.gap = core.distance - tool.radius;
   c.seen = travel(static_cast<std::size_t>(c.tool));
 }
 
@@ -129,9 +124,8 @@ PALPATE_INLINE void Candidates::move_sphere(std::size_t t, const ContactTool& to
   travel_[t] += (tool.proxy - proxy_[t]).norm();
   proxy_[t] = tool.proxy;
   if (tool.half_length == 0.0) return;
-  const Vector3 axis = tool.axis();
-  travel_[t] += tool.half_length * (axis - axis_[t]).norm();
-  axis_[t] = axis;
+  travel_[t] += tool.core_path(tool.rotation - rotation_[t]);
+  rotation_[t] = tool.rotation;
 }
 
 PALPATE_INLINE Status Candidates::update(const TissueView& tissue, std::span<const ContactTool> tools,
@@ -204,10 +198,11 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
     if (!tool.active) continue;
     range_[t] = needed(tool) + 0.25 * tool.radius;
     built_[t] = travel(t);
-    const double near = tool.radius + tool.half_length + range_[t];
+    const double near = tool.radius + tool.core_radius() + range_[t];
+    const Vector3 middle = tool.middle();
     const int level = level_of(tool);
-    surface.bvh().visit_near(tool.proxy, near + reach_, [&](int triangle) {
-      if (offset(tissue, displacement, triangle, tool.proxy).offset.squaredNorm() > near * near) return;
+    surface.bvh().visit_near(middle, near + reach_, [&](int triangle) {
+      if (offset(tissue, displacement, triangle, middle).offset.squaredNorm() > near * near) return;
       for (int s = samples_.first_of(triangle, level); s < samples_.first_of(triangle + 1, level); ++s)
         consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
     });

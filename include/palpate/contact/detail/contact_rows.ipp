@@ -35,9 +35,9 @@ inline void ContactRows::reach(const ContactTool& tool, const Candidate& c, Cont
   }
   row.arm = -tool.radius * row.normal;
   row.offset = -tool.radius;
-  if (c.along == 0.0) return;
-  row.arm += c.along * tool.axis();
-  row.offset += c.along * row.normal.dot(tool.target_rotation * tool.own_axis);
+  if (tool.half_length == 0.0) return;
+  row.arm += tool.rotation * c.core;
+  row.offset += row.normal.dot(tool.target_rotation * c.core);
 }
 
 /// The compliance between two rows' points.

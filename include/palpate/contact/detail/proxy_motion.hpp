@@ -15,8 +15,8 @@ class ProxyMotion {
   using Tools = std::span<ContactTool>;
   /// Displacement of a proxy to its goal under the present force.
   struct Ahead {
-    Vector3 path = Vector3::Zero(),
-            axis = Vector3::Zero();  ///< of the proxy [m]; change of a capsule's unit axis
+    Vector3 path = Vector3::Zero();  ///< of the proxy [m]
+    Matrix3 turn = Matrix3::Zero();  ///< change of its rotation; zero for a sphere
     double farthest = 0.0;           ///< upper bound of the displacement of any of its points [m]
   };
 

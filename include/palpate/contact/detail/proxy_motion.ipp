@@ -51,8 +51,8 @@ PALPATE_INLINE void ProxyMotion::look_ahead(Tools tools, double floor) noexcept 
     ahead.path = tool.goal(floor) - tool.proxy;
     ahead.farthest = ahead.path.norm();
     if (tool.half_length == 0.0) continue;
-    ahead.axis = (tool.goal_rotation() - tool.rotation) * tool.own_axis;
-    ahead.farthest += tool.half_length * ahead.axis.norm();
+    ahead.turn = tool.goal_rotation() - tool.rotation;
+    ahead.farthest += tool.core_path(ahead.turn);
   }
 }
 

@@ -1,6 +1,7 @@
 // Definitions of tool_placement.hpp.
 #pragma once
 
+#include <palpate/contact/detail/hull_placement.hpp>
 #include <palpate/contact/detail/sweep.hpp>
 #include <palpate/contact/detail/tool_placement.hpp>
 #include <palpate/core/rigid_motion.hpp>
@@ -31,6 +32,7 @@ PALPATE_INLINE void place_beside(ContactTool& tool, const ContactSurface& surfac
   tool.torque.setZero();
   tool.rotation = tool.target_rotation;
   tool.proxy = position;
+  if (tool.hull != nullptr) return place_hull_beside(tool, surface);
   const Vector3 axis = tool.axis();
   for (int round = 0; round < (tool.half_length > 0.0 ? 4 : 1); ++round) {
     Vector3 move = Vector3::Zero();
@@ -51,9 +53,12 @@ PALPATE_INLINE void sweep(ContactTool& tool, const ContactSurface& surface, cons
                           const Vector3& position) noexcept {
   const Vector3 path = position - from, axis = tool.axis(), turn = tool.target_rotation * tool.own_axis - axis;
   double part = 1.0;
-  detail::for_each_sphere(tool, [&](double s) {  // smaller, so that a touching sphere that moves away has no hit
-    part = std::min(part, first_touch(surface, from + s * axis, path + s * turn, (1.0 - 1e-6) * tool.radius));
-  });
+  if (tool.hull != nullptr)
+    part = first_touch(tool, surface, from, position);
+  else
+    detail::for_each_sphere(tool, [&](double s) {  // smaller, so that a touching sphere that moves away has no hit
+      part = std::min(part, first_touch(surface, from + s * axis, path + s * turn, (1.0 - 1e-6) * tool.radius));
+    });
   tool.proxy = from + part * path;
   const Vector3 by = rotation_vector(tool.target_rotation * tool.rotation.transpose());
   tool.rotation = part < 1.0 ? rotation_by(part * by) * tool.rotation : tool.target_rotation;

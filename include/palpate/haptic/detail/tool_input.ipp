@@ -119,7 +119,7 @@ PALPATE_INLINE void ToolInput::rotate(const Quaternion<double>& orientation, con
   const Matrix3 rotation = rotation_of(pose).transpose() * rotation_matrix(orientation);
   if (known_) {
     rotation_ = rotation_of(pose) * rotation_vector(rotation * tool.target_rotation.transpose());
-    tool.end_path = tool.half_length * ((rotation - tool.target_rotation) * tool.own_axis).norm();
+    tool.end_path = tool.core_path(rotation - tool.target_rotation);
   }
   tool.target_rotation = rotation;
 }

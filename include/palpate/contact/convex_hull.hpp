@@ -1,0 +1,91 @@
+// The convex hull of a few points, and its closest point to any point.
+#pragma once
+
+#include <palpate/contact/detail/triangle.hpp>
+
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// A point, a segment, a plane convex polygon or a convex polyhedron: the convex hull of 1 to 64 points. Constant after
+/// construction; queries do not allocate.
+class ConvexHull {
+ public:
+  static constexpr std::size_t maximum_points = 64;
+  static constexpr std::size_t maximum_faces = 2 * maximum_points - 4;
+
+  /// Points inside the hull, and within 1e-9 of its size of its faces and edges, are no vertices. A hull thinner than
+  /// 1e-6 of its length is a plane polygon, or a segment. Throws bad_argument for no or more than 64 points, points
+  /// that are not finite, and features smaller than a millionth of the hull. Allocates; for set-up.
+  explicit ConvexHull(std::span<const Vector3> points);
+
+  /// 0: a point, 1: a segment, 2: a plane polygon, 3: a polyhedron.
+  int dimension() const noexcept { return dimension_; }
+  std::span<const Vector3> vertices() const noexcept { return vertices_; }
+  /// Outward triangles of its faces, for drawing; of a plane polygon both sides.
+  std::span<const Triangle> triangles() const noexcept { return triangles_; }
+
+  /// Centre of a sphere that contains the hull, inside the hull.
+  const Vector3& middle() const noexcept { return middle_; }
+  /// Radius of that sphere [m].
+  double radius() const noexcept { return radius_; }
+  /// Largest distance of a vertex from the origin [m].
+  double extent() const noexcept { return extent_; }
+  /// The middle, then up to eight vertices far from each other.
+  std::span<const Vector3> probes() const noexcept { return probes_; }
+
+  struct Closest {
+    Vector3 point = Vector3::Zero();
+    Vector3 outward = Vector3::Zero();  ///< unit, from the hull to free space
+    double distance = 0.0;              ///< [m], negative inside a polyhedron
+  };
+  /// The closest point of the boundary. Outside it is in the face whose plane is farthest below `p`, or else on an edge
+  /// of a visible face; inside it is in the nearest face. The signed distance is convex. Exact; work bounded by the
+  /// number of faces and edges (12 and 6 for a box).
+  Closest closest(const Vector3& p) const noexcept;
+  /// A lower bound of the signed distance, by the planes of the faces and, of a plane polygon, of its sides [m]; exact
+  /// inside. -infinity without faces.
+  double least_distance(const Vector3& p) const noexcept;
+  /// False only for points farther from the hull than a distance >= 0: those outside of its sphere, or above the plane
+  /// of a face, by more.
+  bool may_be_within(const Vector3& p, double distance) const noexcept;
+
+ private:
+  struct Face {
+    Vector3 normal;  // unit, outward
+    double offset;   // of its plane along the normal
+    int first, end;  // of sides_
+    double height(const Vector3& p) const noexcept { return normal.dot(p) - offset; }
+  };
+  struct Side {  // of a face, in its plane
+    Vector3 outward;
+    double offset;
+    double height(const Vector3& p) const noexcept { return outward.dot(p) - offset; }
+  };
+  struct Edge {
+    Vector3 start, along;
+    double inverse_square;     // of its length; 0 for a point
+    std::array<int, 2> faces;  // -1: none
+  };
+
+  void add_face(std::span<const int> corners);
+  void add_edges(const std::vector<std::vector<int>>& faces);
+  void bound();
+  inline bool covers(const Face& face, const Vector3& p) const noexcept;
+
+  int dimension_ = 0;
+  std::vector<Vector3> vertices_, probes_;
+  std::vector<Triangle> triangles_;
+  std::vector<Face> faces_;
+  std::vector<Side> sides_;
+  std::vector<Edge> edges_;
+  Vector3 middle_ = Vector3::Zero();
+  double radius_ = 0.0, extent_ = 0.0;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/convex_hull.ipp>
+#endif
