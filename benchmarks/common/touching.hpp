@@ -5,6 +5,7 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
+#include <memory>
 #include <numbers>
 
 #include "bodies.hpp"
@@ -39,11 +40,14 @@ class Touching {
   using Model = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
 
   explicit Touching(const SupportedBody& body)
-      : model_(body.mesh, body.scene(), tissue), servo_(model_, SphereTool{radius}) {}
+      : Touching(std::make_shared<Model>(body.mesh, body.scene(), tissue), 4e-3) {}
+  /// A sphere of `radius` [m] on a model that several of these may share.
+  Touching(std::shared_ptr<Model> model, double radius, const ServoOptions& options = {})
+      : model_(std::move(model)), servo_(*model_, SphereTool{radius}, options), radius_(radius) {}
 
-  /// Lowers the tool until the average number of pressing contacts over the circle is `contacts`.
-  void press_until(int contacts) {
-    for (depth_ = 5e-6; depth_ < radius; depth_ += 5e-6) {
+  /// Lowers the tool in steps [m] until the average number of pressing contacts over the circle is `contacts`.
+  void press_until(int contacts, double step = 5e-6) {
+    for (depth_ = step; depth_ < radius_; depth_ += step) {
       int sum = 0;
       for (int i = 0; i < ticks_around; ++i) {
         tick();
@@ -52,10 +56,23 @@ class Touching {
       if (sum >= (contacts - 0.25) * ticks_around) return;
     }
   }
+  /// Lowers the tool to a depth [m] in 31 ticks.
+  void press_to(double depth) noexcept {
+    const double start = depth_;
+    for (int i = 1; i <= ticks_around; ++i) {
+      depth_ = start + (depth - start) * i / ticks_around;
+      tick();
+    }
+  }
+  double depth() const noexcept { return depth_; }
+  /// From now on the tool moves on, or rests where it is.
+  void slide(bool on) noexcept { step_ = on ? 1 : 0; }
 
   Vector3 tick() noexcept {
     const ToolState state = read();
-    return servo_.tick({&state, 1}).front().force();
+    const GatedForce& force = servo_.tick(state);
+    status_ |= force.status;
+    return force.force();
   }
   int pressing() const noexcept { return static_cast<int>(servo_.contacts().size()); }
 
@@ -68,14 +85,17 @@ class Touching {
     return percentile(std::move(gaps), 0.5);
   }
 
-  const SetupReport& report() const noexcept { return model_.report(); }
+  /// The flags since the last call.
+  Status take_status() noexcept { return std::exchange(status_, {}); }
+  const SetupReport& report() const noexcept { return model_->report(); }
   auto& servo() noexcept { return servo_; }
 
   // Interface of a haptic device.
   ToolState read() noexcept {
-    const double angle = 2.0 * std::numbers::pi * (count_ % ticks_around) / ticks_around;
+    const double angle = 2.0 * std::numbers::pi * (place_ % ticks_around) / ticks_around;
+    place_ += step_;
     ToolState state;
-    state.position << 0.23 * cell + orbit * std::cos(angle), 0.41 * cell + orbit * std::sin(angle), radius - depth_;
+    state.position << 0.23 * cell + orbit * std::cos(angle), 0.41 * cell + orbit * std::sin(angle), radius_ - depth_;
     state.time = 1e-3 * static_cast<double>(++count_);
     return state;
   }
@@ -88,27 +108,28 @@ class Touching {
   double settled_gap() {
     ToolState state = read();
     for (int i = 0; i < 50; ++i, state.time += 1e-3) servo_.tick({&state, 1});
-    VectorX u(3 * model_.mesh().node_count());
-    model_.displacement_with(servo_.read_snapshot().vertex_forces(), u);
+    VectorX u(3 * model_->mesh().node_count());
+    model_->displacement_with(servo_.read_snapshot().vertex_forces(), u);
     double worst = pressing() > 0 ? 0.0 : infinity;
     for (const ToolContact& c : servo_.contacts()) {
       Vector3 point = Vector3::Zero();
       for (std::size_t a = 0; a < 3; ++a) {
-        const NodeId node = model_.touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];
-        point += c.weights[a] * (model_.rest_position(node) + u.segment<3>(3 * Index{node}));
+        const NodeId node = model_->touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];
+        point += c.weights[a] * (model_->rest_position(node) + u.segment<3>(3 * Index{node}));
       }
-      worst = std::max(worst, std::abs((servo_.proxy() - point).norm() - radius));
+      worst = std::max(worst, std::abs((servo_.proxy() - point).norm() - radius_));
     }
     return worst / depth_;
   }
 
-  static constexpr double radius = 4e-3, orbit = 0.1e-3;
+  static constexpr double orbit = 0.1e-3;
   static constexpr int ticks_around = 31;
 
-  Model model_;
+  std::shared_ptr<Model> model_;
   HapticServo servo_;
-  double depth_ = 0.0;
-  int count_ = 0;
+  double radius_, depth_ = 0.0;
+  int count_ = 0, place_ = 0, step_ = 1;
+  Status status_;
 };
 
 /// Durations of ticks [s].
