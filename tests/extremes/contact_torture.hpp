@@ -101,15 +101,21 @@ class TortureSession {
     auto mesh = box_tet4(size, cells, BoxSplit::six);
     const bool bumpy = chance(0.5);  // a curved, irregular surface
     for (Vector3& x : mesh.positions)
-      if (bumpy) x += 0.15 * thickness_ * Vector3(std::sin(40.0 * x[1]), std::sin(55.0 * x[0]), std::sin(70.0 * x[0] + 30.0 * x[1]));
+      if (bumpy)
+        x += 0.15 * thickness_ *
+             Vector3(std::sin(40.0 * x[1]), std::sin(55.0 * x[0]), std::sin(70.0 * x[0] + 30.0 * x[1]));
     Scene scene;
     kind == 0 ? scene.fix("z0") : scene.fix("x0");
     if (kind == 1) scene.fix("x1");
     is_open_ = chance(0.4);
     is_open_ ? scene.touch("z1") : scene.touch("surface");
     const LinearElastic material{.youngs_modulus = logarithmic(2e3, 2e5), .poisson_ratio = random_.uniform(0.1, 0.47)};
-    model_ = std::make_unique<Model>(std::move(mesh), scene, material, SetupOptions{.columns = ColumnFill::synchronous});
-    name_ = std::string(kind == 0 ? "block" : kind == 1 ? "plate" : "beam") + (is_open_ ? ", open" : "") + (bumpy ? ", bumpy" : "");
+    model_ =
+        std::make_unique<Model>(std::move(mesh), scene, material, SetupOptions{.columns = ColumnFill::synchronous});
+    name_ = std::string(kind == 0   ? "block"
+                        : kind == 1 ? "plate"
+                                    : "beam") +
+            (is_open_ ? ", open" : "") + (bumpy ? ", bumpy" : "");
   }
 
   void make_tools() {
@@ -141,7 +147,8 @@ class TortureSession {
     const auto count = static_cast<double>(surface.triangles().size());
     int t = static_cast<int>(random_.uniform(0.0, count));
     tool.crosses = chance(0.1);
-    for (int trial = 0; trial < 20 && !tool.crosses && surface.normal(t).dot(surface.normal(tool.triangle)) < 0.5; ++trial)
+    for (int trial = 0; trial < 20 && !tool.crosses && surface.normal(t).dot(surface.normal(tool.triangle)) < 0.5;
+         ++trial)
       t = static_cast<int>(random_.uniform(0.0, count));
     tool.triangle = t;
     const Triangle& v = surface.triangle(t);
@@ -171,7 +178,8 @@ class TortureSession {
       tool.done = 0;
     }
     ++tool.done;
-    tool.state.position = tool.from + std::min(1.0, static_cast<double>(tool.done) / tool.length) * (tool.to - tool.from);
+    tool.state.position =
+        tool.from + std::min(1.0, static_cast<double>(tool.done) / tool.length) * (tool.to - tool.from);
     if (chance(0.001)) tool.unreadable = 1 + static_cast<int>(random_.uniform(0.0, 20.0));
     if (tool.unreadable > 0) {
       --tool.unreadable;
@@ -209,17 +217,18 @@ class TortureSession {
     const bool restarts = tool.status.has(StatusFlag::reacquired);
     counts.reacquired += restarts;
     tool.readable = readable && !restarts ? tool.readable + 1 : 0;
-    const bool flagged = tool.status.has(StatusFlag::degraded_model) || tool.status.has(StatusFlag::solver_not_converged);
+    const bool flagged =
+        tool.status.has(StatusFlag::degraded_model) || tool.status.has(StatusFlag::solver_not_converged);
     counts.flagged += flagged;
     counts.not_converged += tool.status.has(StatusFlag::solver_not_converged);
     counts.degraded += tool.status.has(StatusFlag::degraded_model);
     const bool presses = force.norm() > 0.0;
     counts.pressed += presses;
-    if (tool.readable > 1 && !presses && pressing == 0 && !is_open_ &&
-        height(tool.state.position) < -1e-6 * thickness_)
+    if (tool.readable > 1 && !presses && pressing == 0 && !is_open_ && height(tool.state.position) < -1e-6 * thickness_)
       note(counts.lost, "lost", t);
     tool.tangled = (tool.tangled && presses) || tool.crosses;
-    if (tool.readable > 30 && !flagged && !tool.tangled && (force - tool.force).norm() > 2.0 * stiffness_ * motion + 0.05 * force.norm() + 0.01)
+    if (tool.readable > 30 && !flagged && !tool.tangled &&
+        (force - tool.force).norm() > 2.0 * stiffness_ * motion + 0.05 * force.norm() + 0.01)
       note(counts.jumps, "jump", t);
     tool.force = force;
     if (readable) tool.last_position = tool.state.position;
@@ -230,7 +239,8 @@ class TortureSession {
     const ContactSurface& surface = model_->contact_surface();
     const VectorX u = model_->displacement(servo_->read_snapshot().vertex_forces());
     std::vector<Vector3> positions = surface.positions();
-    for (std::size_t v = 0; v < positions.size(); ++v) positions[v] += u.segment<3>(3 * Index{model_->touchable_nodes()[v]});
+    for (std::size_t v = 0; v < positions.size(); ++v)
+      positions[v] += u.segment<3>(3 * Index{model_->touchable_nodes()[v]});
     const ContactSurface deformed(std::move(positions), surface.triangles());
     for (std::size_t t = 0; t < tools_.size(); ++t)
       if (!(is_open_ && tools_[t].force.norm() == 0.0) && deformed.closest(in_model(servo_->proxy(t))).distance < 0.0)
@@ -241,11 +251,13 @@ class TortureSession {
     ++count;
     if (!print_ || ++notes_ > 6) return;
     const Tool& tool = tools_[t];
-    std::printf("seed %llu %s, edge %.2f mm, thickness %.2f mm, %zu tools, friction %.2f: %s, tool %zu, radius %.2f mm, tick %.0f, "
-                "force %.4f N, before %.4f N, rows %d, depth %.3f mm\n",
-                static_cast<unsigned long long>(seed_), name_.c_str(), 1e3 * edge_, 1e3 * thickness_, tools_.size(), friction_, what, t,
-                1e3 * tool.radius, 1e3 * tool.state.time, servo_->contact_force(t).norm(), tool.force.norm(), servo_->contact_rows(),
-                -1e3 * height(tool.state.position));
+    std::printf(
+        "seed %llu %s, edge %.2f mm, thickness %.2f mm, %zu tools, friction %.2f: %s, tool %zu, radius %.2f mm, tick "
+        "%.0f, "
+        "force %.4f N, before %.4f N, rows %d, depth %.3f mm\n",
+        static_cast<unsigned long long>(seed_), name_.c_str(), 1e3 * edge_, 1e3 * thickness_, tools_.size(), friction_,
+        what, t, 1e3 * tool.radius, 1e3 * tool.state.time, servo_->contact_force(t).norm(), tool.force.norm(),
+        servo_->contact_rows(), -1e3 * height(tool.state.position));
   }
 
   testing::Random random_;

@@ -25,10 +25,10 @@ struct ToolRadii {
 
 /// Limits and parameters of the contact solution of a tick.
 struct ContactParameters {
-  int maximum_iterations = 4;               ///< linearisations per tick
-  double force_tolerance = 1e-3;            ///< relative change of the force between linearisations that ends the tick
-  double sample_spacing = 0.5;              ///< of contact points on the surface, in radii of the smallest tool
-  double friction = 0.0;                    ///< Coulomb's coefficient; 0 has no cost
+  int maximum_iterations = 4;     ///< linearisations per tick
+  double force_tolerance = 1e-3;  ///< relative change of the force between linearisations that ends the tick
+  double sample_spacing = 0.5;    ///< of contact points on the surface, in radii of the smallest tool
+  double friction = 0.0;          ///< Coulomb's coefficient; 0 has no cost
   int capacity = 0;  ///< of contacts of all tools; more are ignored (degraded_model); 0: the default for the tools
 
   /// The same with a capacity for this number of tools.

@@ -11,7 +11,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE ContactParameters ContactParameters::for_tools(std::size_t tools) const noexcept {
   ContactParameters p = *this;
   if (p.capacity == 0)
-    p.capacity = default_contact_capacity + default_capacity_per_tool * (static_cast<int>(std::max<std::size_t>(tools, 1)) - 1);
+    p.capacity =
+        default_contact_capacity + default_capacity_per_tool * (static_cast<int>(std::max<std::size_t>(tools, 1)) - 1);
   return p;
 }
 PALPATE_INLINE void ContactTool::lift() noexcept {

@@ -21,8 +21,8 @@ class CoulombFriction {
   /// One contact of the problem.
   struct Row {
     Vector3 normal = Vector3::Zero();
-    double pressing = 0.0;            ///< lambda [N]
-    Vector3 drift = Vector3::Zero();  ///< d [m]
+    double pressing = 0.0;                     ///< lambda [N]
+    Vector3 drift = Vector3::Zero();           ///< d [m]
     Vector3 friction_force = Vector3::Zero();  ///< t [N], on the tool: initial value and solution
     bool sticks = false;                       ///< false: no friction, it came into contact in this tick
   };

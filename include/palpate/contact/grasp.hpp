@@ -10,7 +10,7 @@ struct Grasp {
   static constexpr double reach = 0.1;  ///< largest gap, in radii, of a point that can be grasped
 
   bool requested = false;  ///< since the tool began to grasp
-  int sample = -1;  ///< -1: no point was near enough
+  int sample = -1;         ///< -1: no point was near enough
   std::array<Candidate, 3> rows{};
 
   /// Grasps this point at its present place on the tool.

@@ -13,7 +13,7 @@ namespace detail {
 /// Whether all hooks except prefetch do nothing.
 template <class T>
 concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> forces, ContactProblem& problem,
-                                    const ContactParameters& parameters, const BladeSweep& sweep) {
+                                     const ContactParameters& parameters, const BladeSweep& sweep) {
   { tissue.begin_tick() } -> std::same_as<NoHook>;
   { tissue.end_tick(forces) } -> std::same_as<NoHook>;
   { tissue.updates() } -> std::same_as<NoHook>;

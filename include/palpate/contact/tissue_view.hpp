@@ -97,7 +97,9 @@ struct TissueCalls {
     if constexpr (calls<decltype(hooked().exchange_contacts(std::declval<ContactProblem&>()))>)
       f.exchange_contacts = [](void* t, ContactProblem& p) noexcept { of(t).exchange_contacts(p); };
     if constexpr (calls<decltype(hooked().prepare_tools(ToolRadii(0.0), std::declval<const ContactParameters&>()))>)
-      f.prepare_tools = [](void* t, const ToolRadii& radii, const ContactParameters& p) { of(t).prepare_tools(radii, p); };
+      f.prepare_tools = [](void* t, const ToolRadii& radii, const ContactParameters& p) {
+        of(t).prepare_tools(radii, p);
+      };
     if constexpr (calls<decltype(hooked().try_cut(std::declval<const BladeSweep&>()))>)
       f.try_cut = [](void* t, const BladeSweep& s) noexcept -> bool { return of(t).try_cut(s); };
     return f;

@@ -28,8 +28,8 @@ PALPATE_INLINE ForceGate::ForceGate(const ForceLimits& limits) : limits_(limits)
     require(value >= 1e-9 && value <= 1e9, "a force limit is " + number(value), "Give 1e-9 to 1e9, in SI units");
   require(l.slew_rate * l.fade_time >= l.peak_force * (1.0 - 1e-9),
           "slew_rate * fade_time is less than peak_force, " + number(l.peak_force) + " N", "Raise one of the two");
-  require(l.stale_after >= ForceLimits::late_factor * l.period, "stale_after is less than 1.5 periods: " + number(l.stale_after),
-          "Use ForceLimits::from(device, rate)");
+  require(l.stale_after >= ForceLimits::late_factor * l.period,
+          "stale_after is less than 1.5 periods: " + number(l.stale_after), "Use ForceLimits::from(device, rate)");
 }
 
 PALPATE_INLINE GatedForce ForceGate::apply(const Vector3& wanted, double now, double input_time, bool input_valid,

@@ -23,8 +23,15 @@ PALPATE_INLINE void ServoSnapshot::note(std::span<const Contact> all, std::span<
   contact_count = 0;
   for (const Contact& c : all)
     if (c.force > 0.0 && !c.grasped)
-      contacts[contact_count++] = {c.tool, pose * c.point, rotation_of(pose) * c.normal, c.force,
-                                   rotation_of(pose) * c.friction, false, false, c.vertices, c.weights};
+      contacts[contact_count++] = {c.tool,
+                                   pose * c.point,
+                                   rotation_of(pose) * c.normal,
+                                   c.force,
+                                   rotation_of(pose) * c.friction,
+                                   false,
+                                   false,
+                                   c.vertices,
+                                   c.weights};
   for (std::size_t i = 0; i + 2 < all.size(); ++i) {
     if (!all[i].grasped) continue;
     const Vector3 total = all[i].total() + all[i + 1].total() + all[i + 2].total();

@@ -17,7 +17,7 @@ using Tool = std::variant<SphereTool, CapsuleTool, BladeTool, ConvexTool>;
 
 template <class T>
 concept AnyTool = std::same_as<T, SphereTool> || std::same_as<T, CapsuleTool> || std::same_as<T, BladeTool> ||
-                  std::same_as<T, ConvexTool> || std::same_as<T, Tool>;
+    std::same_as<T, ConvexTool> || std::same_as<T, Tool>;
 
 /// Tools in the order of their states and forces: one tool, a list in braces of tools of any kinds, or a vector.
 class ToolList {

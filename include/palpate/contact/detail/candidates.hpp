@@ -50,8 +50,8 @@ struct Candidate {
 /// evaluated.
 class Candidates {
  public:
-  /// Places the samples for spheres of these radii, `spacing` radii of the smallest apart; larger spheres use a level of
-  /// larger spacing. `capacity` is that of the contact problem. Allocates; for set-up.
+  /// Places the samples for spheres of these radii, `spacing` radii of the smallest apart; larger spheres use a level
+  /// of larger spacing. `capacity` is that of the contact problem. Allocates; for set-up.
   Candidates(const ContactSurface& surface, const ToolRadii& radii, double spacing, int capacity);
 
   /// Largest number of points in the list.

@@ -274,8 +274,10 @@ PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const Contact
   c.sample = sample;
   c.triangle = triangle;
   c.tool = t;
-  place(c, position(tissue, displacement, c), tool);
   double& range = range_[static_cast<std::size_t>(t)];
+  const Vector3 point = position(tissue, displacement, c);
+  if (!tool.is_within(point, tool.radius + range)) return;
+  place(c, point, tool);
   if (!(c.gap <= range) || is_loaded(t, sample)) return;
   c.facing = faces_sphere(tissue, displacement, c);
   if (count_ < maximum()) {

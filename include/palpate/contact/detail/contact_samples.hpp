@@ -33,7 +33,8 @@ class ContactSamples {
 
   /// The samples that belong to a triangle.
   std::span<const ContactSample> of_triangle(int t, int level = 0) const noexcept {
-    return {samples_.data() + first_of(t, level), static_cast<std::size_t>(first_of(t + 1, level) - first_of(t, level))};
+    return {samples_.data() + first_of(t, level),
+            static_cast<std::size_t>(first_of(t + 1, level) - first_of(t, level))};
   }
   int count() const noexcept { return static_cast<int>(samples_.size()); }
   const ContactSample& operator[](int sample) const noexcept { return samples_[static_cast<std::size_t>(sample)]; }

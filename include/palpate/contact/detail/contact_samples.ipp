@@ -98,7 +98,7 @@ PALPATE_INLINE void ContactSamples::add_edge(const ContactSurface& surface, int 
 }
 
 PALPATE_INLINE int ContactSamples::nearest(const ContactSurface& surface, const ContactSample& wanted,
-                                          int level) const noexcept {
+                                           int level) const noexcept {
   int best = -1;
   // A cut body that is restored has fewer vertices.
   if (wanted.vertices[0] >= surface.vertex_count()) return best;

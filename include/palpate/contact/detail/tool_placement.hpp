@@ -15,8 +15,8 @@ void place_beside(ContactTool& tool, const ContactSurface& surface, const Vector
 /// outside. Forces are zero. No allocation.
 void sweep(ContactTool& tool, const ContactSurface& surface, const Vector3& from, const Vector3& position) noexcept;
 
-/// Calls look(point) for points of the core, in the tool's own frame, by which a tool inside the body is found: the centre
-/// of a sphere, the middle and ends of a capsule, the probes of a hull.
+/// Calls look(point) for points of the core, in the tool's own frame, by which a tool inside the body is found: the
+/// centre of a sphere, the middle and ends of a capsule, the probes of a hull.
 template <class Look>
 void for_each_probe(const ContactTool& tool, Look&& look) {
   if (tool.hull != nullptr) {

@@ -60,7 +60,8 @@ class ToolInput {
 
   /// Whether a position is closer to that of the last query than the surface was; `revision` is the surface's.
   bool is_clear(std::uint64_t revision, const Vector3& position) const noexcept {
-    return revision == clear_revision_ && (position - clear_position_).squaredNorm() < clearance_ * std::abs(clearance_);
+    return revision == clear_revision_ &&
+           (position - clear_position_).squaredNorm() < clearance_ * std::abs(clearance_);
   }
   void set_clearance(std::uint64_t revision, const Vector3& position, double distance) noexcept;
 
