@@ -96,7 +96,8 @@ struct TissueCalls {
       f.updates = [](const void* t) noexcept -> std::uint64_t { return of(t).updates(); };
     if constexpr (calls<decltype(hooked().exchange_contacts(std::declval<ContactProblem&>()))>)
       f.exchange_contacts = [](void* t, ContactProblem& p) noexcept { of(t).exchange_contacts(p); };
-    if constexpr (calls<decltype(hooked().prepare_tools(ToolRadii(0.0), std::declval<const ContactParameters&>()))>)
+    if constexpr (calls<decltype(hooked().prepare_tools(std::declval<const ToolRadii&>(),
+                                                        std::declval<const ContactParameters&>()))>)
       f.prepare_tools = [](void* t, const ToolRadii& radii, const ContactParameters& p) {
         of(t).prepare_tools(radii, p);
       };
