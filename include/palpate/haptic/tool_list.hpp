@@ -22,7 +22,7 @@ concept AnyTool = std::same_as<T, SphereTool> || std::same_as<T, CapsuleTool> ||
 /// Tools in the order of their states and forces: one tool, a list in braces of tools of any kinds, or a vector.
 class ToolList {
  public:
-  ToolList(const AnyTool auto& tool) : tools_{Tool(tool)} {}  // NOLINT(google-explicit-constructor)
+  ToolList(const AnyTool auto& tool) { tools_.emplace_back(tool); }  // NOLINT(google-explicit-constructor)
   ToolList(std::initializer_list<Tool> tools) : tools_(tools) {}
   template <AnyTool T>
   ToolList(const std::vector<T>& tools)  // NOLINT(google-explicit-constructor)
