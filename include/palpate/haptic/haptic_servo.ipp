@@ -28,6 +28,11 @@ inline const ContactSurface& surface_for(TissueView& tissue, const std::vector<C
   if (has_sphere(tools)) tissue.prepare_tools(smallest_radius(tools), contact);
   return tissue.contact_surface();
 }
+/// The local compliance needs materials that belong to the tissue's compliance.
+inline ContactParameters contact_parameters(const TissueView& tissue, ContactParameters parameters) noexcept {
+  parameters.local_compliance = parameters.local_compliance && tissue.has_contact_materials();
+  return parameters;
+}
 inline ToolState unreadable() noexcept {
   ToolState s;
   s.valid = false;
@@ -44,7 +49,7 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
     : tissue_(tissue),
       contact_tools_(make_contact_tools(tools, options)),
       problem_(detail::surface_for(tissue_, contact_tools_, options.contact), detail::smallest_radius(contact_tools_),
-               options.contact),
+               detail::contact_parameters(tissue_, options.contact)),
       energies_(std::move(energies)),
       forces_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after) {
@@ -108,7 +113,7 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
 }
 
 PALPATE_INLINE Vector3 HapticServo::proxy(std::size_t tool) const noexcept {
-  return blades_[tool] ? blades_[tool]->cut().edge() : Vector3(tissue_.to_world() * contact_tools_[tool].proxy);
+  return blades_[tool] ? blades_[tool]->cut().edge() : Vector3(tissue_.to_world() * contact_tools_[tool].position());
 }
 PALPATE_INLINE Vector3 HapticServo::contact_force(std::size_t tool) const noexcept {
   return blades_[tool] ? blades_[tool]->force() : Vector3(rotation_of(tissue_.to_world()) * contact_tools_[tool].force);
