@@ -91,7 +91,7 @@ class ContactProblem {
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   std::array<int, maximum_tools> pressing_of_{};  // per tool
   int share_ = 1;                                 // rows per tool
-  bool arrived_ = true;  // proxies are at the solution of the last linearisation
+  bool arrived_ = true;                           // proxies are at the solution of the last linearisation
   double feedback_ = 0.0;
   double floor_ = 0.0;
 };

@@ -108,7 +108,7 @@ class ContactSurface {
   std::uint64_t revision_ = 0;
   std::vector<ContactSurface> body_;  // with the shell; none or one
   Unloaded unloaded_;
-  std::vector<ContactMaterial> materials_;  // per triangle, or empty
+  std::vector<ContactMaterial> materials_;     // per triangle, or empty
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20; -1 at the rim
 };
 

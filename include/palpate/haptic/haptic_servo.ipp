@@ -50,6 +50,8 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
       contact_tools_(make_contact_tools(tools, options)),
       problem_(detail::surface_for(tissue_, contact_tools_, options.contact), detail::smallest_radius(contact_tools_),
                detail::contact_parameters(tissue_, options.contact)),
+      coarse_facets_(
+          report_coarse_facets(tissue_.contact_surface(), detail::smallest_radius(contact_tools_))),
       energies_(std::move(energies)),
       forces_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after) {

@@ -49,10 +49,9 @@ struct Candidate {
 /// closed its gap. The search on the resting surface reaches as far as the surface has moved
 /// (SurfaceDisplacement::reach). On facets that are too long for a sphere and have a known modulus (CoarseFacets) the
 /// points are not those of the lattice, between which the sphere would sink, but one per facet and sphere: the closest
-/// to the sphere's centre. It moves along the facet whenever it is evaluated, its stick anchor with it. A scan over all vertices, a few per tick, finds what
-/// moved farther than the search reaches. No allocation;
-/// work bounded by `maximum` and, when the list is rebuilt, by the samples of all triangles in reach: each is
-/// evaluated.
+/// to the sphere's centre. It moves along the facet whenever it is evaluated, its stick anchor with it. A scan over all
+/// vertices, a few per tick, finds what moved farther than the search reaches. No allocation; work bounded by `maximum`
+/// and, when the list is rebuilt, by the samples of all triangles in reach: each is evaluated.
 class Candidates {
  public:
   /// Places the samples `spacing` [m] apart; `capacity` is that of the contact problem. `local`: whether the moduli of

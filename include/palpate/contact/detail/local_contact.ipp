@@ -16,7 +16,8 @@ PALPATE_INLINE void LocalContact::start(Tools tools, Candidates& candidates) con
       continue;
     const Candidate* nearest = nullptr;
     for (const Candidate& c : candidates.items())
-      if (c.tool == static_cast<int>(t) && (nearest == nullptr || candidates.least_gap(c) < candidates.least_gap(*nearest)))
+      if (c.tool == static_cast<int>(t) &&
+          (nearest == nullptr || candidates.least_gap(c) < candidates.least_gap(*nearest)))
         nearest = &c;
     tool.local_compliance = 0.0;
     if (nearest == nullptr || !candidates.is_moving(*nearest)) continue;

@@ -14,12 +14,12 @@ struct FacetScale {
 /// What a sphere indents beyond the displacement of the facet under it: its indentation of a half-space minus what a
 /// linear facet shows of it, its displacement under a point load.
 ///
-/// Half-space: Hertz, F = 4/3 E* sqrt(R) d^1.5 (Johnson, Contact Mechanics, 1985, 4.2), times 1 - 1.8 nu^2 (d/R)^2.5:
-/// solutions on refined meshes have this, since a sphere is steeper than the paraboloid of Hertz (docs/contact.md). From
-/// d = R on these are no truth either, and the law is linear with the slope that it has there.
-/// Facet: 0.7 F / (E* length). Meshes have 0.6 in the middle of a facet, 0.7 on its edges and 1.0 at its vertices. One
-/// value is used for all places: the force then depends on the place only as the mesh makes it, and a closed path of
-/// the tool over a uniform surface makes no energy.
+/// Half-space: Hertz, F = 4/3 E* sqrt(R) d^1.5 (Johnson, Contact Mechanics, 1985, 4.2), times 1 - 1.7 nu^2 (d/R)^1.5:
+/// solutions on refined meshes have this, since a sphere is steeper than the paraboloid of Hertz (docs/contact.md).
+/// From d = R on these are no truth either, and the law is linear with the slope that it has there. Facet: 0.7 F / (E*
+/// length). Meshes have 0.6 in the middle of a facet, 0.7 on its edges and 1.0 at its vertices. One value is used for
+/// all places: the force then depends on the place only as the mesh makes it, and a closed path of the tool over a
+/// uniform surface makes no energy.
 ///
 /// The depth increases monotonically with the force. For a radius of more than `coarse` lengths it is zero, for less
 /// than `fine` complete, between them a smooth part. No allocation; a few Newton steps per function.

@@ -9,8 +9,9 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE LocalIndentation::LocalIndentation(double radius, const FacetScale& facets, double known) noexcept
-    : radius_(radius), unit_(4.0 / 3.0 * facets.material.modulus * radius * radius),
-      steeper_(1.8 * facets.material.poisson_ratio * facets.material.poisson_ratio) {
+    : radius_(radius),
+      unit_(4.0 / 3.0 * facets.material.modulus * radius * radius),
+      steeper_(1.7 * facets.material.poisson_ratio * facets.material.poisson_ratio) {
   constexpr double shown = 0.7;
   if (!(facets.material.modulus > 0.0 && facets.length > 0.0)) return;
   shown_ = shown / (facets.material.modulus * facets.length);
@@ -19,8 +20,8 @@ PALPATE_INLINE LocalIndentation::LocalIndentation(double radius, const FacetScal
 }
 
 PALPATE_INLINE LocalIndentation::Law LocalIndentation::law(double depth) const noexcept {
-  const double d = std::min(depth, 1.0), root = std::sqrt(d), cube = d * d * d;
-  const Law inside{d * root - steeper_ * cube * d, 1.5 * root - 4.0 * steeper_ * cube};
+  const double d = std::min(depth, 1.0), root = std::sqrt(d);
+  const Law inside{d * root - steeper_ * d * d * d, 1.5 * root - 3.0 * steeper_ * d * d};
   return {inside.force + (depth - d) * inside.slope, inside.slope};
 }
 
@@ -54,9 +55,9 @@ PALPATE_INLINE double LocalIndentation::force_of(double rest, double total) cons
     const double beyond = own * d + other * force - total;
     (beyond > 0.0 ? high : low) = d;
     const double step = beyond / (own + other * slope);
+    if (!(std::abs(step) > 1e-12 * d)) break;
     const double next = d - step;
     d = next > low && next < high ? next : 0.5 * (low + high);
-    if (!(std::abs(step) > 1e-12 * d)) break;
   }
   return unit_ * law(d).force;
 }
