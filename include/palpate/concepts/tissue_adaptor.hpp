@@ -14,6 +14,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 template <TissueModel Tissue>
 class TissueAdaptor {
  public:
+  static constexpr bool wraps_changed_compliance = detail::HasOutOfDateMaterials<Tissue>;
+
   explicit TissueAdaptor(Tissue& tissue) noexcept : tissue_(&tissue) {}
   explicit TissueAdaptor(Tissue&&) = delete;
 

@@ -112,6 +112,12 @@ concept HasOutOfDateScale = requires { &T::compliance; } &&
                              (requires { &T::compliance_floor; } &&
                               OutOfDate<decltype(&T::compliance), decltype(&T::compliance_floor)>));
 
+/// Whether a tissue, or the one that it wraps, changes the compliance of a class from which it has its surface.
+template <class T>
+concept HasOutOfDateMaterials = (requires { &T::compliance; &T::contact_surface; } &&
+                               OutOfDate<decltype(&T::compliance), decltype(&T::contact_surface)>) ||
+                              T::wraps_changed_compliance;
+
 }  // namespace detail
 
 /// A tissue that can be touched. Vertices are those of `contact_surface()`, the surface at rest without tools.
@@ -124,7 +130,8 @@ concept HasOutOfDateScale = requires { &T::compliance; } &&
 /// a tissue whose compliance never changes.
 /// - `compliance_bound(j)` is an upper bound of the displacement [m/N] of any vertex per unit force on j.
 /// - `compliance_floor()` is a tiny compliance that prevents division by zero at a fixed vertex.
-/// A class that inherits these four and changes `compliance` must also define the other three.
+/// A class that inherits these four and changes `compliance` must also define the other three. If it inherits
+/// `contact_surface`, too, the materials of that surface are not used.
 ///
 /// Hooks. A tissue must have all of them, so that none is forgotten; one that returns NoHook is never called.
 /// StillTissue provides all of them for a tissue that does not move; TissueAdaptor forwards all those of another

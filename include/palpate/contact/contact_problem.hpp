@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/detail/contact_rows.hpp>
+#include <palpate/contact/detail/local_contact.hpp>
 #include <palpate/contact/detail/proxy_motion.hpp>
 #include <palpate/contact/grasp.hpp>
 
@@ -91,6 +92,7 @@ class ContactProblem {
   std::vector<Candidate*> pressing_;  // those of the last linearisation
   std::vector<Violated> violated_;
   ProxyMotion proxies_;
+  LocalContact local_;
   std::array<Grasp, maximum_tools> grasps_{};
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   std::array<int, maximum_tools> pressing_of_{};  // per tool

@@ -15,7 +15,7 @@ PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, con
     : parameters_(checked(parameters.for_tools(1))),
       displacement_(surface.vertex_count(), vertices_per_contact * parameters_.capacity),
       start_(surface.vertex_count(), vertices_per_contact * parameters_.capacity),
-      candidates_(surface, radii, parameters_.sample_spacing, parameters_.capacity),
+      candidates_(surface, radii, parameters_.sample_spacing, parameters_.capacity, parameters_.local_compliance),
       rows_(surface.vertex_count(), parameters_.friction, parameters_.capacity),
       pressing_(at(parameters_.capacity)),
       violated_(at(candidates_.maximum())) {
@@ -77,9 +77,11 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   candidates_.look_round(tissue, tools, displacement_);
   double change = 0.0, before = 0.0;
   for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
+    local_.apply(tools);
     proxies_.begin(tools, floor_);
     status |= candidates_.update(tissue, tools, displacement_);
     if (iteration == 0) {
+      local_.start(tools, candidates_);
       grasp(tissue, tools);
       share_rows(tools);
     }
@@ -90,9 +92,10 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
       proxies_.end(tools);
       break;
     }
+    const double local_change = local_.predict(tools, candidates_, rows_);
     follow(tools);
     proxies_.end(tools);
-    change = proxies_.relative_change(tools);
+    change = std::max(local_change, proxies_.relative_change(tools));
     // Each step is smaller than the last by about the same ratio (the linearisation neglects the curvature of the
     // sphere), so the sum of the remaining steps is a geometric series. The first step is due to the motion of the
     // device, so the second gives no ratio yet.
@@ -103,6 +106,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     if (arrived_ && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) break;
   }
   rows_.stick(tools);
+  status |= local_.status(tools);
   if (change > unsettled || rows_.alternation_change() > unsettled_alternation)
     status.set(StatusFlag::solver_not_converged);
   return status;
@@ -128,6 +132,7 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   start_.clear();
   candidates_.reset();
   rows_.reset();
+  local_.reset();
   proxies_ = {};
   grasps_.fill({});
   pressing_count_ = violated_count_ = 0;
@@ -157,7 +162,7 @@ PALPATE_INLINE void ContactProblem::grasp(const TissueView& tissue, Tools tools)
 PALPATE_INLINE void ContactProblem::prefetch(const TissueView& tissue) noexcept {
   if (!tissue.prefetches()) return;
   for (const Candidate& c : candidates_.items()) {
-    const ContactSample& sample = candidates_.samples()[c.sample];
+    const ContactSample& sample = candidates_.sample_of(c);
     for (std::size_t a = 0; a < 3; ++a)
       if (sample.weights[a] > 0.0) tissue.prefetch({&sample.vertices[a], 1});
   }
@@ -218,10 +223,10 @@ PALPATE_INLINE void ContactProblem::gather_pressing(const TissueView& tissue, To
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
     const ContactTool& tool = tools[at(c.tool)];
-    if (arrived_) {
+    if (arrived_ && !candidates_.is_moving(c)) {
       candidates_.place(c, c.point, tool);
     } else {
-      c.history.known = 0;
+      if (!arrived_) c.history.known = 0;
       candidates_.evaluate(tissue, tool, start_, c);
     }
   }
@@ -260,7 +265,7 @@ PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools
     const double reach = ahead.farthest + 2.0 * rows_.longest_path();
     if (candidates_.least_gap(c) > reach) continue;
     if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, start_, c);
-    if (!c.facing || c.gap > reach) continue;
+    if (!c.facing || c.gap > reach || rows_.has_same(candidates_, c, tool.radius)) continue;
     const Vector3 moved = candidates_.position(tissue, displacement_, c) - c.point;
     double gap = c.gap + c.normal.dot(ahead.path - moved);
     if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);
@@ -284,9 +289,12 @@ PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools
   int added = 0;
   for (int i = 0; i < adding; ++i) {
     Candidate& c = *violated_[at(i)].candidate;
-    if (own[at(c.tool)]++ >= share_) continue;
-    rows_.add(tissue.contact_surface(), candidates_, c);
+    if (own[at(c.tool)] >= share_) continue;
     ++added;
+    if (rows_.has_same(candidates_, c, tools[at(c.tool)].radius)) continue;
+    ++own[at(c.tool)];
+    rows_.inherit_friction(tissue.contact_surface(), candidates_, tools[at(c.tool)], c);
+    rows_.add(tissue.contact_surface(), candidates_, c);
   }
   return added > 0 || violated_count_ == 0;
 }

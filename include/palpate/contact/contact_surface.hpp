@@ -8,6 +8,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+/// The isotropic material behind a triangle.
+struct ContactMaterial {
+  double modulus = 0.0;        ///< contact modulus E / (1 - nu^2) [Pa]; 0 is unknown
+  double poisson_ratio = 0.0;  ///< nu
+};
+
 /// Vertices and outward triangles of the touchable surface, at rest under its loads and without tools.
 class ContactSurface {
  public:
@@ -42,6 +48,17 @@ class ContactSurface {
   void set_unloaded(Unloaded unloaded) { unloaded_ = std::move(unloaded); }
   void set_loads(std::string loads) noexcept { unloaded_.loads = std::move(loads); }
   const Unloaded& unloaded() const noexcept { return unloaded_; }
+
+  /// Sets the isotropic material behind every triangle; an empty list is unknown. With it a sphere much smaller than a
+  /// facet gets the indentation that the facet does not show; without it the contact of such a sphere is too stiff, and
+  /// ticks report coarse_contact.
+  void set_materials(std::vector<ContactMaterial> materials) noexcept { materials_ = std::move(materials); }
+  ContactMaterial material(int t) const noexcept {
+    return static_cast<std::size_t>(t) < materials_.size() ? materials_[static_cast<std::size_t>(t)]
+                                                           : ContactMaterial{};
+  }
+  /// sqrt(2 area): of half a square, the side of that square [m].
+  double facet_length(int t) const noexcept;
 
   /// Moves the resting surface (new loads, new pose of the loads). With a shell, its positions follow those of the
   /// vertices; without them it stays. No allocation; not while a tick runs.
@@ -100,6 +117,7 @@ class ContactSurface {
   std::uint64_t revision_ = 0;
   std::vector<ContactSurface> body_;  // with the shell; none or one
   Unloaded unloaded_;
+  std::vector<ContactMaterial> materials_;     // per triangle, or empty
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20, or one of these:
   static constexpr int no_neighbour = -1, several_neighbours = -2;
 };

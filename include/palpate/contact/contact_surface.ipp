@@ -110,6 +110,11 @@ PALPATE_INLINE void ContactSurface::add_shell(std::span<const Vector3> positions
   body_.emplace_back(std::move(all), std::move(closed));
 }
 
+PALPATE_INLINE double ContactSurface::facet_length(int t) const noexcept {
+  const Triangle& v = triangle(t);
+  return std::sqrt(cross(position(v[1]) - position(v[0]), position(v[2]) - position(v[0])).norm());
+}
+
 inline TrianglePoint ContactSurface::closest_on(int t, const Vector3& p) const noexcept {
   const Triangle& v = triangle(t);
   return closest_point(p, position(v[0]), position(v[1]), position(v[2]));

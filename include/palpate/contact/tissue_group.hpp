@@ -80,6 +80,7 @@ class TissueGroup : public StillTissue {
   void add(const TissueView& tissue);
   void build();
   void add_shells();
+  std::vector<ContactMaterial> materials() const;
   /// Of all members, in the world frame; empty if it is not set for one of them.
   ContactSurface::Unloaded unloaded() const;
   const Member& member_of(int vertex) const noexcept;

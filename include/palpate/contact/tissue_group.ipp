@@ -24,6 +24,7 @@ PALPATE_INLINE void TissueGroup::build() {
   if (members_.empty()) raise(SetupErrorKind::bad_argument, "a TissueGroup has no members");
   surface_ = ContactSurface(moved_, std::move(triangles_));
   surface_.set_unloaded(unloaded());
+  surface_.set_materials(materials());
   own_.resize(moved_.size());
   add_shells();
 }
@@ -53,6 +54,16 @@ PALPATE_INLINE ContactSurface::Unloaded TissueGroup::unloaded() const {
     all.loads += (all.loads.empty() ? "" : "; ") + own.loads;
   }
   return all;
+}
+
+PALPATE_INLINE std::vector<ContactMaterial> TissueGroup::materials() const {
+  std::vector<ContactMaterial> materials;
+  for (const Member& m : members_) {
+    const ContactSurface& own = m.tissue.contact_surface();
+    for (int t = 0; t < static_cast<int>(own.triangles().size()); ++t)
+      materials.push_back(m.tissue.has_contact_materials() ? own.material(t) : ContactMaterial{});
+  }
+  return materials;
 }
 
 PALPATE_INLINE void TissueGroup::update() noexcept {

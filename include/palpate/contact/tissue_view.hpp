@@ -29,6 +29,7 @@ struct TissueFunctions {
   void (*exchange_contacts)(void*, ContactProblem&) noexcept;
   void (*prepare_tools)(void*, const ToolRadii&, const ContactParameters&);
   bool (*try_cut)(void*, const BladeSweep&) noexcept;
+  bool has_contact_materials;
 };
 
 template <class T>
@@ -83,10 +84,23 @@ struct TissueCalls {
   static constexpr bool calls = !std::same_as<Result, NoHook>;
 
   static constexpr TissueFunctions table() noexcept {
-    TissueFunctions f{
-        contact_surface,  to_world,         require_columns, compliance, between, displacement, compliance_revision,
-        compliance_bound, compliance_floor, nullptr,         nullptr,    nullptr, nullptr,      nullptr,
-        nullptr,          nullptr};
+    TissueFunctions f{contact_surface,
+                      to_world,
+                      require_columns,
+                      compliance,
+                      between,
+                      displacement,
+                      compliance_revision,
+                      compliance_bound,
+                      compliance_floor,
+                      nullptr,
+                      nullptr,
+                      nullptr,
+                      nullptr,
+                      nullptr,
+                      nullptr,
+                      nullptr,
+                      !HasOutOfDateMaterials<T>};
     if constexpr (calls<decltype(hooked().prefetch(std::span<const int>{}))>)
       f.prefetch = [](void* t, std::span<const int> v) noexcept { of(t).prefetch(v); };
     if constexpr (AnnouncesChanges<T>) f.begin_tick = [](void* t) noexcept -> Status { return of(t).begin_tick(); };
@@ -173,6 +187,9 @@ class TissueView {
     look();
   }
 
+  /// Whether the materials of the surface belong to the compliance: false for a tissue that changes the compliance of
+  /// the one that has the surface.
+  bool has_contact_materials() const noexcept { return functions_->has_contact_materials; }
   bool can_be_cut() const noexcept { return functions_->try_cut != nullptr; }
   /// Requests a cut along the surface swept by a blade, world frame; false when the tissue cannot be cut, or not now.
   bool try_cut(const BladeSweep& sweep) const noexcept { return can_be_cut() && functions_->try_cut(tissue_, sweep); }

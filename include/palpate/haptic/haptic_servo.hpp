@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/servo.hpp>
+#include <palpate/contact/coarse_facet_report.hpp>
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/detail/servo_blade.hpp>
@@ -56,6 +57,8 @@ class HapticServo {
 
   /// Largest number of contacts of all tools, from ServoOptions::contact; more are ignored (degraded_model).
   int contact_capacity() const noexcept { return problem_.capacity(); }
+  /// The facets that are too long for the smallest tool, on the surface at construction.
+  const CoarseFacetReport& coarse_facets() const noexcept { return coarse_facets_; }
   /// Number of contact rows of the last tick: points that press, and points that would have penetrated.
   int contact_rows() const noexcept { return static_cast<int>(problem_.contacts().size()); }
   /// Pressing contacts, grasped points and cutting blades of the last tick, world frame; valid until the next. For the
@@ -110,6 +113,7 @@ class HapticServo {
   ToolList tools_;  // owns the shapes of convex tools
   std::vector<ContactTool> contact_tools_;
   ContactProblem problem_;
+  CoarseFacetReport coarse_facets_;
   std::vector<ToolInput> inputs_;
   std::vector<std::optional<ServoBlade>> blades_;  // only for tools that are blades
   std::vector<ForceGate> gates_;

@@ -32,6 +32,11 @@ inline const ContactSurface& surface_for(TissueView& tissue, const std::vector<C
   if (std::any_of(tools.begin(), tools.end(), is_sphere)) tissue.prepare_tools(radii_of(tools), contact);
   return tissue.contact_surface();
 }
+/// The local compliance needs materials that belong to the tissue's compliance.
+inline ContactParameters contact_parameters(const TissueView& tissue, ContactParameters parameters) noexcept {
+  parameters.local_compliance = parameters.local_compliance && tissue.has_contact_materials();
+  return parameters;
+}
 inline ToolState unreadable() noexcept {
   ToolState s;
   s.valid = false;
@@ -49,7 +54,9 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
       tools_(tools),
       contact_tools_(make_contact_tools(tools_, options)),
       problem_(detail::surface_for(tissue_, contact_tools_, options.contact.for_tools(tools.size())),
-               detail::radii_of(contact_tools_), options.contact.for_tools(tools.size())),
+               detail::radii_of(contact_tools_),
+               detail::contact_parameters(tissue_, options.contact.for_tools(tools.size()))),
+      coarse_facets_(report_coarse_facets(tissue_.contact_surface(), detail::radii_of(contact_tools_).smallest)),
       energies_(std::move(energies)),
       forces_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after) {
@@ -114,7 +121,7 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
 }
 
 PALPATE_INLINE Vector3 HapticServo::proxy(std::size_t tool) const noexcept {
-  return blades_[tool] ? blades_[tool]->cut().edge() : Vector3(tissue_.to_world() * contact_tools_[tool].proxy);
+  return blades_[tool] ? blades_[tool]->cut().edge() : Vector3(tissue_.to_world() * contact_tools_[tool].position());
 }
 PALPATE_INLINE Vector3 HapticServo::contact_force(std::size_t tool) const noexcept {
   return blades_[tool] ? blades_[tool]->force() : Vector3(rotation_of(tissue_.to_world()) * contact_tools_[tool].force);

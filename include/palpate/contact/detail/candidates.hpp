@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact.hpp>
+#include <palpate/contact/detail/coarse_facets.hpp>
 #include <palpate/contact/detail/surface_displacement.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -14,7 +15,7 @@ struct NormalHistory {
 
 /// A contact point near the sphere of one tool, as of its last evaluation.
 struct Candidate {
-  int sample = 0;
+  int sample = 0;  ///< from the number of samples on: a point that moves, see Candidates
   int triangle = 0;
   int tool = 0;
   int row = -1;                      ///< of the contact problem, -1 when it has none
@@ -32,6 +33,7 @@ struct Candidate {
   Vector3 anchor = Vector3::Zero();    ///< stick anchor on the tool after the last tick, tool's own frame [m]
   std::uint64_t stuck_tick = 0;        ///< the tick after which it stuck
   bool grasped = false;                ///< a grasped point, not one found near a sphere
+  ContactSample moving{};              ///< where a point that moves is
 
   /// Removes its force, friction and history.
   void lift() noexcept {
@@ -45,18 +47,27 @@ struct Candidate {
 /// the path of sphere and surface since then is accumulated, and the list is rebuilt when the margin is used up (as
 /// neighbour lists in molecular dynamics, Verlet 1967). A point is evaluated again only when that path could have
 /// closed its gap. The search on the resting surface reaches as far as the surface has moved
-/// (SurfaceDisplacement::reach); a scan over all vertices, a few per tick, finds what moved farther. No allocation;
-/// work bounded by `maximum` and, when the list is rebuilt, by the samples of all triangles in reach: each is
-/// evaluated.
+/// (SurfaceDisplacement::reach). On facets that are too long for a sphere and have a known modulus (CoarseFacets) the
+/// points are not those of the lattice, between which the sphere would sink, but one per facet and sphere: the closest
+/// to the sphere's centre. It moves along the facet whenever it is evaluated, its stick anchor with it. A scan over all
+/// vertices, a few per tick, finds what moved farther than the search reaches. No allocation; work bounded by `maximum`
+/// and, when the list is rebuilt, by the samples of all triangles in reach: each is evaluated.
 class Candidates {
  public:
   /// Places the samples for spheres of these radii, `spacing` radii of the smallest apart; larger spheres use a level
-  /// of larger spacing. `capacity` is that of the contact problem. Allocates; for set-up.
-  Candidates(const ContactSurface& surface, const ToolRadii& radii, double spacing, int capacity);
+  /// of larger spacing. `capacity` is that of the contact problem. `local`: whether
+  /// the moduli of the surface are used. Allocates; for set-up.
+  Candidates(const ContactSurface& surface, const ToolRadii& radii, double spacing, int capacity, bool local);
 
   /// Largest number of points in the list.
   int maximum() const noexcept { return static_cast<int>(items_.size()); }
   const ContactSamples& samples() const noexcept { return samples_; }
+  const CoarseFacets& facets() const noexcept { return facets_; }
+  bool is_moving(const Candidate& c) const noexcept { return c.sample >= samples_.count(); }
+  /// The material point of a candidate.
+  const ContactSample& sample_of(const Candidate& c) const noexcept {
+    return is_moving(c) ? c.moving : samples_[c.sample];
+  }
   std::span<Candidate> items() noexcept { return {items_.data(), static_cast<std::size_t>(count_)}; }
   bool has_any(int tool) const noexcept;
   void forget() noexcept { valid_ = false; }
@@ -111,12 +122,15 @@ class Candidates {
                   SurfaceDisplacement& displacement) noexcept;
 
   /// Position of a sample on the resting surface [m].
-  inline Vector3 rest(const ContactSurface& surface, int s) const noexcept;
+  inline static Vector3 rest(const ContactSurface& surface, const ContactSample& sample) noexcept;
 
  private:
   static constexpr int per_tick = 2;
   static constexpr double level_ratio = 1.5;  // of the spacing of a level to that of the level before
 
+  /// Moves a point that moves to the present closest point of its facet.
+  void project(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
+               Candidate& c) const noexcept;
   inline static double needed(const ContactTool& tool) noexcept;
   int level_of(const ContactTool& tool) const noexcept;
   int triangle_of(const ContactSurface& surface, int sample) const noexcept;
@@ -137,6 +151,7 @@ class Candidates {
 
   double smallest_radius_;
   ContactSamples samples_;
+  CoarseFacets facets_;
   std::vector<Candidate> items_, loaded_;  // loaded: of the list before
   int count_ = 0, loaded_count_ = 0;
   bool valid_ = false, is_new_ = false, lost_forces_ = false;

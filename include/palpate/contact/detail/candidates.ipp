@@ -17,9 +17,10 @@ inline bool has_vertex(const Triangle& t, int vertex) noexcept {
 }  // namespace detail
 
 PALPATE_INLINE Candidates::Candidates(const ContactSurface& surface, const ToolRadii& radii, double spacing,
-                                      int capacity)
+                                      int capacity, bool local)
     : smallest_radius_(radii.smallest),
       samples_(surface, spacing * radii.smallest),
+      facets_(surface, local),
       items_(4 * static_cast<std::size_t>(capacity)),
       loaded_(static_cast<std::size_t>(capacity)) {
   // From the longest edge on all levels would be equal: vertices only.
@@ -56,8 +57,7 @@ inline double Candidates::needed(const ContactTool& tool) noexcept {
   return tool.longest_step() + 0.5 * tool.path_length();
 }
 
-inline Vector3 Candidates::rest(const ContactSurface& surface, int s) const noexcept {
-  const ContactSample& sample = samples_[s];
+inline Vector3 Candidates::rest(const ContactSurface& surface, const ContactSample& sample) noexcept {
   return sample.weights[0] * surface.position(sample.vertices[0]) +
          sample.weights[1] * surface.position(sample.vertices[1]) +
          sample.weights[2] * surface.position(sample.vertices[2]);
@@ -78,6 +78,7 @@ PALPATE_INLINE bool Candidates::has_any(int tool) const noexcept {
 
 PALPATE_INLINE void Candidates::move_to(Candidates& fresh, const ContactSurface& surface) noexcept {
   std::swap(samples_, fresh.samples_);
+  std::swap(facets_, fresh.facets_);
   const ContactSamples& before = fresh.samples_;
   int kept = 0;
   for (int i = 0; i < count_; ++i) {
@@ -101,8 +102,9 @@ PALPATE_INLINE void Candidates::move_to(Candidates& fresh, const ContactSurface&
 
 PALPATE_INLINE bool Candidates::move(Candidate& c, const ContactSamples& before,
                                      const ContactSurface& surface) const noexcept {
-  const int level = std::min(before.level_of(c.sample), samples_.levels() - 1);
-  c.sample = samples_.nearest(surface, before[c.sample], level);
+  const bool moves = c.sample >= before.count();
+  const int level = moves ? 0 : std::min(before.level_of(c.sample), samples_.levels() - 1);
+  c.sample = samples_.nearest(surface, moves ? c.moving : before[c.sample], level);
   if (c.sample < 0) return false;
   c.triangle = triangle_of(surface, c.sample);
   c.row = c.slot = -1;
@@ -143,7 +145,7 @@ PALPATE_INLINE Status Candidates::update(const TissueView& tissue, std::span<con
 
 PALPATE_INLINE Vector3 Candidates::position(const TissueView& tissue, SurfaceDisplacement& displacement,
                                             const Candidate& c) const noexcept {
-  const ContactSample& sample = samples_[c.sample];
+  const ContactSample& sample = sample_of(c);
   Vector3 point = Vector3::Zero();
   for (std::size_t a = 0; a < 3; ++a)
     if (sample.weights[a] > 0.0) point += sample.weights[a] * displacement.position(tissue, sample.vertices[a]);
@@ -152,8 +154,19 @@ PALPATE_INLINE Vector3 Candidates::position(const TissueView& tissue, SurfaceDis
 
 PALPATE_INLINE void Candidates::evaluate(const TissueView& tissue, const ContactTool& tool,
                                          SurfaceDisplacement& displacement, Candidate& c) noexcept {
+  if (is_moving(c) && !c.grasped) project(tissue, tool, displacement, c);
   place(c, position(tissue, displacement, c), tool);
   c.facing = faces_sphere(tissue, displacement, c);
+}
+
+PALPATE_INLINE void Candidates::project(const TissueView& tissue, const ContactTool& tool,
+                                        SurfaceDisplacement& displacement, Candidate& c) const noexcept {
+  const ContactSurface& surface = tissue.contact_surface();
+  const ContactSample before = c.moving;
+  c.moving.vertices = surface.triangle(c.triangle);
+  const auto corner = [&](std::size_t a) { return displacement.position(tissue, c.moving.vertices[a]); };
+  c.moving.weights = closest_point(tool.proxy, corner(0), corner(1), corner(2)).weights;
+  if (c.stuck_tick != 0) c.anchor += tool.rotation.transpose() * (rest(surface, c.moving) - rest(surface, before));
 }
 
 PALPATE_INLINE void Candidates::look_round(const TissueView& tissue, std::span<const ContactTool> tools,
@@ -203,6 +216,10 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
     const int level = level_of(tool);
     surface.bvh().visit_near(middle, near + reach_, [&](int triangle) {
       if (offset(tissue, displacement, triangle, middle).offset.squaredNorm() > near * near) return;
+      if (facets_.is_local(tool, surface.triangle(triangle))) {
+        const int moving = samples_.count() + static_cast<int>(t * surface.triangles().size()) + triangle;
+        return consider(tissue, tool, static_cast<int>(t), triangle, moving, displacement);
+      }
       for (int s = samples_.first_of(triangle, level); s < samples_.first_of(triangle + 1, level); ++s)
         consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
     });
@@ -275,6 +292,7 @@ PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const Contact
   c.triangle = triangle;
   c.tool = t;
   double& range = range_[static_cast<std::size_t>(t)];
+  if (is_moving(c)) project(tissue, tool, displacement, c);
   const Vector3 point = position(tissue, displacement, c);
   if (!tool.is_within(point, tool.radius + range)) return;
   place(c, point, tool);
@@ -298,7 +316,7 @@ PALPATE_INLINE bool Candidates::faces_sphere(const TissueView& tissue, SurfaceDi
                                              const Candidate& c) const noexcept {
   const ContactSurface& surface = tissue.contact_surface();
   if (c.normal.dot(surface.normal(c.triangle)) > 0.0) return true;
-  const ContactSample& sample = samples_[c.sample];
+  const ContactSample& sample = sample_of(c);
   for (int t : surface.triangles_at(sample.vertices[0])) {
     bool contains = true;
     for (std::size_t a = 1; a < 3; ++a)

@@ -28,7 +28,13 @@ class ContactRows {
   std::span<const Contact> contacts() const noexcept { return {rows_.data(), at(count_)}; }
   std::array<int, maximum_tools> count_by_tool() const noexcept;
   Candidate& candidate(int row) noexcept { return *candidate_[at(row)]; }
+  const Candidate& candidate(int row) const noexcept { return *candidate_[at(row)]; }
+  /// Whether a row is at the place of a candidate that moves: two facets have their closest points on a common edge.
+  bool has_same(const Candidates& candidates, const Candidate& c, double radius) const noexcept;
 
+  /// Before a point that moves is added: continues the friction of the facet from which the tool comes.
+  void inherit_friction(const ContactSurface& surface, const Candidates& candidates, const ContactTool& tool,
+                        Candidate& c) const noexcept;
   /// The caller guarantees that there is room.
   void add(const ContactSurface& surface, const Candidates& candidates, Candidate& c) noexcept;
   /// Drops rows without force to make room; W must then be rebuilt. False when all rows have force.
@@ -50,6 +56,9 @@ class ContactRows {
   /// Largest change of a normal force in the last turn of slide, relative to the largest normal force.
   double alternation_change() const noexcept { return alternation_change_; }
   bool has_friction() const noexcept { return friction_.acts(); }
+  /// Sum of force times penetration without contact force, over the rows of a tool: twice the energy of its contact, if
+  /// no other tool presses [J].
+  double push_work(int tool) const noexcept;
   /// Penetration without contact force, at the deepest row built [m].
   double deepest_push() const noexcept;
 

@@ -82,7 +82,7 @@ inline void ContactRows::build_row(const TissueView& tissue, const ContactSample
     const double* const n = cj.normal.data();
     double w = p >= q ? set_responses(compliance_(tissue, samples, p, q).data(), m, n, on_j->data(), on_i->data())
                       : set_responses(compliance_(tissue, samples, q, p).data(), n, m, on_i->data(), on_j->data());
-    if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
+    if (ci.tool == cj.tool) w += (tool.total_compliance() + floor_) * ci.normal.dot(cj.normal);
     if (rotates && ci.tool == cj.tool)
       w += tool.rotational_compliance * cross(ci.arm, ci.normal).dot(cross(cj.arm, cj.normal));
     column[j] = *row = w;
@@ -116,17 +116,34 @@ PALPATE_INLINE void ContactRows::add(const ContactSurface& surface, const Candid
                                      Candidate& c) noexcept {
   c.row = count_;
   c.slot = compliance_.slot_of(c.sample, c.slot);
-  const ContactSample& sample = candidates.samples()[c.sample];
+  const ContactSample& sample = candidates.sample_of(c);
+  if (candidates.is_moving(c)) compliance_.move(c.slot, sample);
   candidate_[at(count_)] = &c;
   Contact& row = rows_[at(count_++)];
   row.tool = c.tool;
   row.vertices = sample.vertices;
   row.weights = sample.weights;
   row.normal = c.normal;
-  row.rest = candidates.rest(surface, c.sample);
+  row.rest = candidates.rest(surface, sample);
   row.point = c.point;
   row.force = c.force;
   row.grasped = c.grasped;
+}
+
+PALPATE_INLINE void ContactRows::inherit_friction(const ContactSurface& surface, const Candidates& candidates,
+                                                  const ContactTool& tool, Candidate& c) const noexcept {
+  constexpr double same_direction = 0.98;
+  if (!friction_.acts() || !candidates.is_moving(c) || sticks(c)) return;
+  for (int i = 0; i < count_; ++i) {
+    const Candidate& other = *candidate_[at(i)];
+    if (other.tool != c.tool || !candidates.is_moving(other) || other.grasped || !sticks(other)) continue;
+    if (other.normal.dot(c.normal) < same_direction) continue;
+    const Vector3 path = candidates.rest(surface, c.moving) - candidates.rest(surface, other.moving);
+    c.anchor = other.anchor + tool.rotation.transpose() * path;
+    c.friction = other.friction;
+    c.stuck_tick = other.stuck_tick;
+    return;
+  }
 }
 
 PALPATE_INLINE std::array<int, maximum_tools> ContactRows::count_by_tool() const noexcept {
@@ -213,6 +230,13 @@ PALPATE_INLINE bool ContactRows::slide() noexcept {
   return solved;
 }
 
+PALPATE_INLINE double ContactRows::push_work(int tool) const noexcept {
+  double work = 0.0;
+  for (int i = 0; i < count_; ++i)
+    if (rows_[at(i)].tool == tool) work -= problem_.lambda[at(i)] * problem_.b[at(i)];
+  return work;
+}
+
 PALPATE_INLINE double ContactRows::deepest_push() const noexcept {
   double deepest = 0.0;
   for (int i = 0; i < count_; ++i) deepest = std::max(deepest, -problem_.b[at(i)]);
@@ -261,6 +285,19 @@ PALPATE_INLINE void ContactRows::place_points() noexcept {
   for (int i = 0; i < count_; ++i) candidate_[at(i)]->point = rows_[at(i)].point;
 }
 
+PALPATE_INLINE bool ContactRows::has_same(const Candidates& candidates, const Candidate& c,
+                                          double radius) const noexcept {
+  constexpr double near = 1e-4;  // radii; closer points are the same, on a common edge or vertex
+  if (!candidates.is_moving(c)) return false;
+  for (int i = 0; i < count_; ++i) {
+    const Candidate& other = *candidate_[at(i)];
+    if (other.tool == c.tool && candidates.is_moving(other) && !other.grasped &&
+        (other.point - c.point).squaredNorm() < near * near * radius * radius && other.normal.dot(c.normal) > 0.0)
+      return true;
+  }
+  return false;
+}
+
 PALPATE_INLINE void ContactRows::stick(std::span<const ContactTool> tools) noexcept {
   if (!friction_.acts()) return;
   for (int i = 0; i < count_; ++i) {
@@ -285,7 +322,7 @@ PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const 
     const Contact& cj = rows_[at(j)];
     Matrix3 w = between(tissue, samples, i, j);
     if (ci.tool == cj.tool) {
-      const double own = tool.compliance + floor_ + tool.rotational_compliance * ci.arm.dot(cj.arm);
+      const double own = tool.total_compliance() + floor_ + tool.rotational_compliance * ci.arm.dot(cj.arm);
       for (int r = 0; r < 3; ++r) w(r, r) += own;
     }
     if (ci.tool == cj.tool && tool.rotational_compliance > 0.0)
@@ -303,7 +340,7 @@ PALPATE_INLINE void ContactRows::store_friction(std::span<ContactTool> tools) co
   for (int j = 0; j < count_; ++j) {
     const Contact& row = rows_[at(j)];
     ContactTool& tool = tools[at(row.tool)];
-    tool.friction_displacement += (tool.compliance + floor_) * friction_.row(j).friction_force;
+    tool.friction_displacement += (tool.total_compliance() + floor_) * friction_.row(j).friction_force;
     tool.friction_rotation += tool.rotational_compliance * cross(row.arm, friction_.row(j).friction_force);
   }
 }

@@ -25,13 +25,16 @@ class PointCompliance {
   /// The slot of a point; `hint` is its last slot. At most `capacity` different points between two `begin_rows`.
   int slot_of(int sample, int hint) noexcept;
 
+  /// Sets the point in a slot whose number is not one of a sample: a point that moves.
+  void move(int slot, const ContactSample& point) noexcept;
+
   /// The compliance between the points in two slots, p >= q.
   const Matrix3& operator()(const TissueView& tissue, const ContactSamples& samples, int p, int q) noexcept {
     const std::size_t i = at(p) * (at(p) + 1) / 2 + at(q);
     const std::uint64_t version = version_[at(p)] << 32 | version_[at(q)];
     if (known_[i] != version) {
       known_[i] = version;
-      tissue.between(samples[sample_[at(p)]], samples[sample_[at(q)]], block_[i]);
+      tissue.between(point(samples, p), point(samples, q), block_[i]);
     }
     return block_[i];
   }
@@ -39,10 +42,14 @@ class PointCompliance {
  private:
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   int take(int sample) noexcept;
+  const ContactSample& point(const ContactSamples& samples, int slot) const noexcept {
+    return sample_[at(slot)] < samples.count() ? samples[sample_[at(slot)]] : moving_[at(slot)];
+  }
 
   std::vector<Matrix3> block_;        // of pairs of slots, lower triangle by rows
   std::vector<std::uint64_t> known_;  // versions of the two points that the block belongs to
   std::vector<int> sample_;
+  std::vector<ContactSample> moving_;  // of slots with points that move
   std::vector<std::uint64_t> version_, used_;
   std::uint64_t versions_ = 0, rows_ = 0, revision_ = 0;
   int next_ = 0;

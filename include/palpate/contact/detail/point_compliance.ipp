@@ -11,6 +11,7 @@ PALPATE_INLINE PointCompliance::PointCompliance(int capacity)
     : block_(at(capacity) * (at(capacity) + 1) / 2),
       known_(block_.size(), 0),
       sample_(at(capacity), -1),
+      moving_(at(capacity)),
       version_(at(capacity), 0),
       used_(at(capacity), 0) {}
 
@@ -35,6 +36,13 @@ PALPATE_INLINE int PointCompliance::slot_of(int sample, int hint) noexcept {
   }
   used_[at(hint)] = rows_;
   return hint;
+}
+
+PALPATE_INLINE void PointCompliance::move(int slot, const ContactSample& point) noexcept {
+  ContactSample& own = moving_[at(slot)];
+  if (own.vertices == point.vertices && own.weights == point.weights) return;
+  own = point;
+  version_[at(slot)] = ++versions_ & 0xffffffffu;
 }
 
 PALPATE_INLINE int PointCompliance::take(int sample) noexcept {

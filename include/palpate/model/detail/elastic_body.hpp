@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/cache/detail/cache_key.hpp>
@@ -9,6 +10,7 @@
 #include <palpate/model/setup_report.hpp>
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +47,8 @@ class ElasticBody {
   virtual VectorX nodal_mass() const = 0;
   virtual double strain_energy(const VectorX& u) const = 0;
 
+  /// The material of each of these elements at small strain; unknown if it is not isotropic.
+  virtual std::vector<ContactMaterial> contact_materials(std::span<const Index> elements) const = 0;
   virtual CacheKey key() const noexcept = 0;
   virtual void report_locking(SetupReport& report) const = 0;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/load_vector.hpp>
+#include <palpate/local/isotropic.hpp>
 #include <palpate/mesh/detail/mechanisms.hpp>
 #include <palpate/mesh/surface.hpp>
 #include <palpate/model/admission_report.hpp>
@@ -34,6 +35,7 @@ class ElementBody final : public ElasticBody {
   void swap_initial_strains(std::vector<Vector6>& strains) noexcept override;
   VectorX nodal_mass() const override;
   double strain_energy(const VectorX& u) const override;
+  std::vector<ContactMaterial> contact_materials(std::span<const Index> elements) const override;
   CacheKey key() const noexcept override;
   void report_locking(SetupReport& report) const override;
 
@@ -107,6 +109,18 @@ VectorX ElementBody<E>::nodal_mass() const {
 template <Element E>
 double ElementBody<E>::strain_energy(const VectorX& u) const {
   return palpate::strain_energy(body_, u);
+}
+template <Element E>
+std::vector<ContactMaterial> ElementBody<E>::contact_materials(std::span<const Index> elements) const {
+  std::vector<ContactMaterial> materials;
+  for (const Index e : elements) {
+    ContactMaterial& material = materials.emplace_back();
+    if (const auto lame = lame_constants(body_.elasticity_of(e))) {
+      const double sum = lame->lambda + lame->mu;
+      material = {4.0 * lame->mu * sum / (sum + lame->mu), 0.5 * lame->lambda / sum};
+    }
+  }
+  return materials;
 }
 template <Element E>
 CacheKey ElementBody<E>::key() const noexcept {

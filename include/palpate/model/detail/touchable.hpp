@@ -20,6 +20,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 struct Touchable {
   std::vector<NodeId> nodes;
   std::vector<Triangle> triangles;
+  std::vector<Index> elements;  ///< behind the triangles
 
   /// The rest of the boundary; an index k >= nodes.size() means shell_nodes[k - nodes.size()].
   std::vector<NodeId> shell_nodes;

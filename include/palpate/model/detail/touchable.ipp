@@ -69,6 +69,10 @@ PALPATE_INLINE Touchable resolve_touchable(const MeshRef& mesh, const std::vecto
     }
   };
   add(touched, touchable.triangles);
+  for (const auto& face : touched)
+    touchable.elements.insert(touchable.elements.end(),
+                              static_cast<std::size_t>(mesh.element.face_of(face.nodes.size()).triangle_count),
+                              face.element);
   add(rest, touchable.shell);
   return touchable;
 }

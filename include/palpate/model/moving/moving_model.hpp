@@ -78,8 +78,10 @@ class HapticFEModel<E, M, Solver> : public MovingTissue {
     auto body = detail::make_any_body(std::move(admitted.mesh), materials);
     auto rest = std::make_unique<ElementBody<E>>(detail::rest_body(body), admitted.origin);
     rest->report_locking(setup_report());
-    const Touchable touchable =
+    Touchable touchable =
         admit(scene, {std::move(rest), std::move(admitted.node_map), std::move(admitted.ids), admitted.origin});
+    if constexpr (requires { typename M::LargeStrainHistory; } || requires { body.fast.mesh; })
+      touchable.elements.clear();  // the dent of a small tool relaxes, its law does not
     const ScopedIdTranslation own(original_ids());  // those of `admitted` are moved from
     if constexpr (requires { parameters.settle; })
       if (parameters.settle) elastic_body().require_constrained(elastic_body().conditions(this->scene()));

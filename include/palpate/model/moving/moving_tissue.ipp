@@ -43,6 +43,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   update_view(view);
   surface_ = ContactSurface(view.free, touchable.triangles);
   surface_.set_unloaded(unloaded());
+  surface_.set_materials(elastic_body().contact_materials(touchable.elements));
   views_.fill(view);
   drawn_.fill(start_);
   setup_report().compliance_bytes = compliance_.bytes();

@@ -137,6 +137,7 @@ void LinearTissue<Scalar>::prepare_contact(const Touchable& touchable, bool eage
   for (NodeId node : touchable_nodes()) positions.push_back(deformed(node));
   surface_ = ContactSurface(positions, touchable.triangles);
   surface_.set_unloaded(unloaded());
+  surface_.set_materials(elastic_body().contact_materials(touchable.elements));
   moved_ = std::move(positions);
   for (const NodeId node : touchable.shell_nodes) moved_.push_back(deformed(node));
   surface_.add_shell(std::span(moved_).subspan(touchable.nodes.size()), touchable.shell);

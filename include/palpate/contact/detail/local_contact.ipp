@@ -1,0 +1,102 @@
+// Definitions of local_contact.hpp.
+#pragma once
+
+#include <palpate/contact/detail/candidates.ipp>  // its inline functions
+#include <palpate/contact/detail/local_contact.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE void LocalContact::start(Tools tools, Candidates& candidates) const noexcept {
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    ContactTool& tool = tools[t];
+    if (!tool.active || tool.grasping || tool.force.squaredNorm() > 0.0 || !candidates.facets().are_coarse(tool))
+      continue;
+    const Candidate* nearest = nullptr;
+    for (const Candidate& c : candidates.items())
+      if (c.tool == static_cast<int>(t) &&
+          (nearest == nullptr || candidates.least_gap(c) < candidates.least_gap(*nearest)))
+        nearest = &c;
+    tool.local_compliance = 0.0;
+    if (nearest == nullptr || !candidates.is_moving(*nearest)) continue;
+    tool.local_compliance =
+        LocalIndentation(tool.radius, candidates.facets().at(candidates.sample_of(*nearest))).secant(0.0);
+  }
+}
+
+PALPATE_INLINE LocalContact::Load LocalContact::load_of(int tool, const ContactTool& own, const Candidates& candidates,
+                                                        const ContactRows& rows) noexcept {
+  Load load;
+  double known = 0.0;
+  for (int i = 0; i < rows.count(); ++i) {
+    const Candidate& c = rows.candidate(i);
+    if (c.tool != tool || c.grasped || !(c.force > 0.0)) continue;
+    const FacetScale scale = candidates.facets().at(candidates.sample_of(c));
+    load.force += c.force;
+    load.facets.length += c.force * scale.length;
+    if (scale.material.modulus == 0.0 || own.half_length > 0.0) continue;
+    known += c.force;
+    load.facets.material.modulus += c.force * scale.material.modulus;
+    load.facets.material.poisson_ratio += c.force * scale.material.poisson_ratio;
+  }
+  if (!(load.force > 0.0)) return load;
+  load.facets.length /= load.force;
+  if (known > 0.0) {
+    load.facets.material.modulus /= known;
+    load.facets.material.poisson_ratio /= known;
+  }
+  load.known = known / load.force;
+  return load;
+}
+
+PALPATE_INLINE double LocalContact::predict(Tools tools, const Candidates& candidates,
+                                            const ContactRows& rows) noexcept {
+  double change = 0.0;
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    const ContactTool& tool = tools[t];
+    Next& next = next_[t];
+    next.known = false;
+    const double force = tool.force.norm();
+    if (!tool.active || !(force > 0.0) || !candidates.facets().are_coarse(tool)) continue;
+    next.load = load_of(static_cast<int>(t), tool, candidates, rows);
+    if (!(next.load.force > 0.0)) continue;
+    next.known = true;
+    const double all = std::max(rows.push_work(static_cast<int>(t)) / (force * force), tool.total_compliance());
+    next.rest = all - tool.total_compliance();
+    next.compliance = tool.local_compliance;
+    if (tool.grasping) continue;
+    const LocalIndentation law(tool.radius, next.load.facets, next.load.known);
+    const double other = all - tool.local_compliance;
+    next.compliance = law.secant(law.force_of(other, force * all));
+    change = std::max(change, std::abs(next.compliance - tool.local_compliance) / all);
+  }
+  return change;
+}
+
+PALPATE_INLINE void LocalContact::apply(Tools tools) noexcept {
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    if (next_[t].known && tools[t].active) tools[t].local_compliance = next_[t].compliance;
+    next_[t].known = false;
+  }
+}
+
+PALPATE_INLINE Status LocalContact::status(Tools tools) const noexcept {
+  constexpr double mostly = 0.5, negligible = 0.1;
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    const ContactTool& tool = tools[t];
+    const auto& [compliance, rest, load, known] = next_[t];
+    const double force = tool.force.norm();
+    if (!known || !(force > 0.0) || tool.radius >= LocalIndentation::coarse * load.facets.length) continue;
+    if (load.known < 1.0) return StatusFlag::coarse_contact;
+    const LocalIndentation law(tool.radius, load.facets);
+    const double indentation = (rest + compliance) * force, local = law.depth(force);
+    const double left_out = law.missing(force) - local;
+    if (local > mostly * indentation || left_out > negligible * indentation || law.half_space(force) > tool.radius)
+      return StatusFlag::coarse_contact;
+  }
+  return {};
+}
+
+}}  // namespace palpate
