@@ -2,6 +2,7 @@
 #include "contact/servo_session.hpp"
 
 #include <palpate/contact/detail/hull_separation.hpp>
+#include <palpate/contact/detail/tool_placement.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/haptic/haptic_session.hpp>
 #include <palpate/testing/allocation_counter.hpp>

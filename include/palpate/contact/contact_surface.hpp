@@ -94,6 +94,8 @@ class ContactSurface {
   bool is_inside(const Vector3& p) const noexcept { return distance_of_body(p) < 0.0; }
   /// Whether the boundary that decides about inside and outside has no rim.
   bool is_closed() const noexcept { return body_.empty() ? !has_rim_ : !body_.front().has_rim_; }
+  /// Whether an edge or vertex of a triangle is on the rim of the touchable surface.
+  bool is_rim(int t, TriangleFeature feature) const noexcept;
 
  private:
   inline TrianglePoint closest_on(int t, const Vector3& p) const noexcept;

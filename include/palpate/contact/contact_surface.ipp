@@ -136,14 +136,23 @@ PALPATE_INLINE Vector3 ContactSurface::feature_normal(int t, TriangleFeature fea
   return other < 0 ? own : (own + normals_[static_cast<std::size_t>(other)]).normalized();
 }
 
+PALPATE_INLINE bool ContactSurface::is_rim(int t, TriangleFeature feature) const noexcept {
+  const auto index = static_cast<std::size_t>(feature);
+  constexpr auto edges = static_cast<std::size_t>(TriangleFeature::edge01),
+                 vertices = static_cast<std::size_t>(TriangleFeature::vertex0);
+  if (feature == TriangleFeature::face) return false;
+  if (index < vertices) return neighbour_[static_cast<std::size_t>(t)][index - edges] == no_neighbour;
+  return vertex_kind_[static_cast<std::size_t>(triangle(t)[index - vertices])] == VertexKind::rim;
+}
+
 /// Whether a point at `offset` from its closest point, on this feature, is outside.
 PALPATE_INLINE bool ContactSurface::is_outside(int t, TriangleFeature feature, const Vector3& offset) const noexcept {
   const auto index = static_cast<std::size_t>(feature);
   if (index >= static_cast<std::size_t>(TriangleFeature::vertex0)) {
     const int v = triangle(t)[index - static_cast<std::size_t>(TriangleFeature::vertex0)];
-    const VertexKind kind = vertex_kind_[static_cast<std::size_t>(v)];
-    if (kind == VertexKind::rim) return true;
-    if (kind == VertexKind::crowded) return detail::outside_at_vertex(*this, v, offset);
+    if (is_rim(t, feature)) return true;
+    if (vertex_kind_[static_cast<std::size_t>(v)] == VertexKind::crowded)
+      return detail::outside_at_vertex(*this, v, offset);
   } else if (feature != TriangleFeature::face) {
     const std::size_t edge = index - static_cast<std::size_t>(TriangleFeature::edge01);
     const int other = neighbour_[static_cast<std::size_t>(t)][edge];

@@ -165,25 +165,25 @@ PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, co
     blade.lift();
 }
 
-/// Whether a tool's centre, or an end of its axis, is inside the body without any contact, and got there through the
+/// Whether the proxy of a tool is inside the body without any contact, and got there through the
 /// touchable surface. A tool that entered elsewhere passes until it is outside again.
 PALPATE_INLINE bool HapticServo::is_lost(std::size_t i) noexcept {
   const ContactTool& tool = contact_tools_[i];
   ToolInput& input = inputs_[i];
   if (!tool.active || !detail::is_zero(tool.force)) return false;
   const ContactSurface& surface = tissue_.contact_surface();
-  if (input.is_clear(surface.revision(), tool.target)) return false;
+  if (input.is_clear(surface.revision(), tool.proxy)) return false;
   bool inside = false, behind = false;
   double least = infinity;
   for_each_probe(tool, [&](const Vector3& probe) {
-    const Vector3 centre = tool.half_length > 0.0 ? tool.target + tool.rotation * probe : tool.target;
+    const Vector3 centre = tool.half_length > 0.0 ? tool.proxy + tool.rotation * probe : tool.proxy;
     const double distance = surface.distance_of_body(centre);
     least = std::min(least, distance);
     if (!(distance < 0.0) || is_free(centre, -distance)) return;
     inside = true;
     behind = behind || surface.closest_of_body(centre).triangle >= 0;
   });
-  input.set_clearance(surface.revision(), tool.target, surface.is_closed() ? least - 2.0 * tool.half_length : 0.0);
+  input.set_clearance(surface.revision(), tool.proxy, surface.is_closed() ? least - 2.0 * tool.half_length : 0.0);
   const bool lost = inside && behind && !input.is_passing();
   if (!lost) input.set_passing(inside);
   return lost;

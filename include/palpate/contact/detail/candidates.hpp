@@ -139,6 +139,7 @@ class Candidates {
   /// From the closest point of a triangle, as it is deformed, to a position; and the triangle's normal, not unit.
   struct Offset {
     Vector3 offset, normal;
+    TriangleFeature feature;
   };
   static Offset offset(const TissueView& tissue, SurfaceDisplacement& displacement, int triangle,
                        const Vector3& position) noexcept;

@@ -233,7 +233,7 @@ PALPATE_INLINE Candidates::Offset Candidates::offset(const TissueView& tissue, S
   const Vector3 a = displacement.position(tissue, v[0]), b = displacement.position(tissue, v[1]),
                 c = displacement.position(tissue, v[2]);
   const TrianglePoint on = closest_point(position, a, b, c);
-  return {position - on.weights[0] * a - on.weights[1] * b - on.weights[2] * c, cross(b - a, c - a)};
+  return {position - on.weights[0] * a - on.weights[1] * b - on.weights[2] * c, cross(b - a, c - a), on.feature};
 }
 
 PALPATE_INLINE ContactSurface::Closest Candidates::closest(const TissueView& tissue, SurfaceDisplacement& displacement,
@@ -241,6 +241,7 @@ PALPATE_INLINE ContactSurface::Closest Candidates::closest(const TissueView& tis
   const double moved = std::max({displacement.reach(tissue), far_, far_last_round_});
   ContactSurface::Closest best;
   double nearest = infinity, height = 0.0;
+  bool on_rim = false;
   tissue.contact_surface().bvh().visit_near(position, distance + 2.0 * moved, [&](int triangle) {
     const Offset from = offset(tissue, displacement, triangle, position);
     const double squared = from.offset.squaredNorm(), area = from.normal.norm();
@@ -249,13 +250,14 @@ PALPATE_INLINE ContactSurface::Closest Candidates::closest(const TissueView& tis
     const double own = from.offset.dot(from.normal) / area;
     if (squared < nearest * (1.0 - 1e-9) || std::abs(own) > std::abs(height)) {
       height = own;
+      on_rim = tissue.contact_surface().is_rim(triangle, from.feature);
       best.triangle = triangle;
       best.point = position - from.offset;
       best.outward = from.normal / area;
     }
     nearest = std::min(nearest, squared);
   });
-  best.distance = std::copysign(std::sqrt(nearest), height);
+  best.distance = std::copysign(std::sqrt(nearest), on_rim ? 1.0 : height);
   if (std::abs(best.distance) > 1e-3 * std::abs(distance)) best.outward = (position - best.point) / best.distance;
   return best;
 }

@@ -139,6 +139,9 @@ PALPATE_INLINE void ToolInput::follow(const Vector3& position, const ContactSurf
     place_beside(tool, surface, position);
   } else {
     tool.motion = motion;
+    // A proxy that nothing presses any more, but that is not where the device was yet: it need not go there in steps.
+    if (tool.force.squaredNorm() == 0.0 && (position_ - tool.proxy).norm() > 0.5 * tool.radius)
+      sweep(tool, surface, tool.proxy, position);
   }
   position_ = tool.target = position;
   known_ = tool.active = true;
