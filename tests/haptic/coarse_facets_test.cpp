@@ -129,7 +129,7 @@ TEST_CASE("the local indentation increases with the force, and its inverse agree
   CHECK(LocalIndentation(0.1 * cell, {cell, {}}).share() == 0.0);
 }
 
-TEST_CASE("a sphere of a twelfth of a facet has the force of a refined mesh", "[haptic][coarse]") {
+TEST_CASE("a sphere of a twelfth of a facet has the force of a refined mesh", "[haptic][coarse][extreme][D10]") {
   const double radius = 0.5e-3;
   const std::vector<double> depths{0.1 * radius, 0.25 * radius, 0.5 * radius, 0.75 * radius, radius};
   const auto split = GENERATE(BoxSplit::six, BoxSplit::five_mirrored);

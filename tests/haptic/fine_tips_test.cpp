@@ -42,7 +42,7 @@ Press press(Pad& pad, double radius, double depth, double x, double y) {
 
 }  // namespace
 
-TEST_CASE("a fine tip does not lose the tissue: radii of 1/20 to 1/5 of a facet", "[haptic][servo][extreme][D2]") {
+TEST_CASE("a fine tip does not lose the tissue: radii of 1/20 to 1/5 of a facet", "[haptic][servo][extreme][D10]") {
   Pad pad = test::make_pad("z1", 1e4, {3, 3, 2});
   for (const auto& [radius, depth] : {std::pair{0.5e-3, 2e-3}, {0.5e-3, 5e-3}, {1e-3, 4e-3}, {2e-3, 8e-3}})
     for (int i = 0; i < 5; ++i)

@@ -35,7 +35,7 @@ struct Session {
 
 }  // namespace
 
-TEST_CASE("a lost reading does not move the tool through thin tissue", "[haptic][servo][extreme][D5]") {
+TEST_CASE("a lost reading does not move the tool through thin tissue", "[haptic][servo][extreme][D12]") {
   test::Pad plate = thin_plate();
   const int lost = GENERATE(1, 5, 200);
   Session s(plate);
@@ -51,7 +51,7 @@ TEST_CASE("a lost reading does not move the tool through thin tissue", "[haptic]
   CHECK(std::abs(s.force.force()[2] - before) <= 1e-3 * before);
 }
 
-TEST_CASE("after lost readings the tool is swept from its last proxy", "[haptic][servo][extreme][D5]") {
+TEST_CASE("after lost readings the tool is swept from its last proxy", "[haptic][servo][extreme][D12]") {
   test::Pad plate = thin_plate();
   Session s(plate);
   const Vector3 above(0.0301, 0.0293, 0.012), below(0.0301, 0.0293, -0.008);
@@ -62,7 +62,7 @@ TEST_CASE("after lost readings the tool is swept from its last proxy", "[haptic]
   CHECK(s.force.force()[2] > 0.1);  // it is above the plate, which it dents
 }
 
-TEST_CASE("a grasp begins with a press of the button, not with a reading that returns", "[haptic][servo][grasp]") {
+TEST_CASE("a grasp begins with a press of the button, not with a reading that returns", "[haptic][servo][grasp][extreme][D15]") {
   test::Pad pad = test::make_pad("z1");
   ServoOptions options;
   options.grasp_buttons = 1;

@@ -34,11 +34,11 @@ double force_at(double height, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("below an open patch nothing presses, however far below", "[haptic][servo][extreme][D2]") {
+TEST_CASE("below an open patch nothing presses, however far below", "[haptic][servo][extreme][D13]") {
   for (const double below : {0.005, 0.006, 0.02, 0.3, 10.0}) CHECK(force_at(-below, 3) == 0.0);
 }
 
-TEST_CASE("a tool that enters where the body cannot be touched passes through", "[haptic][servo][extreme][D2]") {
+TEST_CASE("a tool that enters where the body cannot be touched passes through", "[haptic][servo][extreme][D13]") {
   test::Pad pad = test::make_pad("z1");
   const double speed = GENERATE(0.02, 0.2, 1.0);  // [m/s]
   for (const double height : {0.006, 0.012, 0.0145}) {

@@ -97,7 +97,7 @@ TEST_CASE("the sum of a snapshot's contacts is the contact force, also with gras
   look(2);
 }
 
-TEST_CASE("two tools share the contact rows: neither starves the other", "[haptic][servo][extreme][D9]") {
+TEST_CASE("two tools share the contact rows: neither starves the other", "[haptic][servo][extreme][D11]") {
   test::Pad pad = test::make_pad("z1", 1e4, {20, 20, 4});
   const bool large_first = GENERATE(false, true);
   const SphereTool large{.radius = 40e-3}, small{.radius = 4e-3};

@@ -55,6 +55,8 @@ class ContactProblem {
   ContactSurface::Closest closest(const TissueView& tissue, const Vector3& position, double distance) noexcept {
     return candidates_.closest(tissue, displacement_, position, distance);
   }
+  /// What `solve` returned for all tools does not include this: coarse_contact of one tool.
+  Status status_of(std::size_t t, const ContactTool& tool) const noexcept { return local_.status(t, tool); }
   /// Whether a tool grasps a point.
   bool is_holding(std::size_t tool) const noexcept { return grasps_[tool].sample >= 0; }
 

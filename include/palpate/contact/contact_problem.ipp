@@ -106,7 +106,6 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     if (arrived_ && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) break;
   }
   rows_.stick(tools);
-  status |= local_.status(tools);
   if (change > unsettled || rows_.alternation_change() > unsettled_alternation)
     status.set(StatusFlag::solver_not_converged);
   return status;

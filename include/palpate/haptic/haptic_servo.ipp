@@ -244,7 +244,7 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   const double time = tissue_.has_updates() ? input.stamp(stale_tissue_after_) : input.time();
   forces_[i] = gates_[i].apply(force, torque, input.now(), time, input.readable(), input.restarted());
   if (energy != nullptr) energy->gave(forces_[i].force());
-  forces_[i].status |= input.status() | shared | limited;
+  forces_[i].status |= input.status() | shared | limited | problem_.status_of(i, tool);
 }
 
 PALPATE_INLINE void HapticServo::publish() noexcept {

@@ -19,9 +19,9 @@ class LocalContact {
   double predict(Tools tools, const Candidates& candidates, const ContactRows& rows) noexcept;
   /// Before a linearisation: sets what `predict` computed.
   void apply(Tools tools) noexcept;
-  /// coarse_contact if a tool presses coarse facets and most of its indentation is local, beyond the range of Hertz's
+  /// coarse_contact if tool `t` presses coarse facets and most of its indentation is local, beyond the range of Hertz's
   /// theory, or left out in part or completely.
-  Status status(Tools tools) const noexcept;
+  Status status(std::size_t t, const ContactTool& tool) const noexcept;
   void reset() noexcept { next_ = {}; }
 
  private:

@@ -82,21 +82,18 @@ PALPATE_INLINE void LocalContact::apply(Tools tools) noexcept {
   }
 }
 
-PALPATE_INLINE Status LocalContact::status(Tools tools) const noexcept {
+PALPATE_INLINE Status LocalContact::status(std::size_t t, const ContactTool& tool) const noexcept {
   constexpr double mostly = 0.5, negligible = 0.1;
-  for (std::size_t t = 0; t < tools.size(); ++t) {
-    const ContactTool& tool = tools[t];
-    const auto& [compliance, rest, load, known] = next_[t];
-    const double force = tool.force.norm();
-    if (!known || !(force > 0.0) || tool.radius >= LocalIndentation::coarse * load.facets.length) continue;
-    if (load.known < 1.0) return StatusFlag::coarse_contact;
-    const LocalIndentation law(tool.radius, load.facets);
-    const double indentation = (rest + compliance) * force, local = law.depth(force);
-    const double left_out = law.missing(force) - local;
-    if (local > mostly * indentation || left_out > negligible * indentation || law.half_space(force) > tool.radius)
-      return StatusFlag::coarse_contact;
-  }
-  return {};
+  const auto& [compliance, rest, load, known] = next_[t];
+  const double force = tool.force.norm();
+  if (!known || !(force > 0.0) || tool.radius >= LocalIndentation::coarse * load.facets.length) return {};
+  if (load.known < 1.0) return StatusFlag::coarse_contact;
+  const LocalIndentation law(tool.radius, load.facets);
+  const double indentation = (rest + compliance) * force, local = law.depth(force);
+  const double left_out = law.missing(force) - local;
+  const bool estimated =
+      local > mostly * indentation || left_out > negligible * indentation || law.half_space(force) > tool.radius;
+  return estimated ? StatusFlag::coarse_contact : Status{};
 }
 
 }}  // namespace palpate
