@@ -31,8 +31,6 @@ struct TortureCounts {
   long jumps = 0;          ///< ticks in which a force changes by more than motion and coupling allow
   long non_finite = 0;     ///< forces that are not finite, or longer than the device's limit
   long energy_gained = 0;  ///< masses thrown at a body that have more energy afterwards
-
-  long failures() const noexcept { return lost + unsettled + inside + jumps + non_finite + energy_gained; }
 };
 
 /// One random session of 1 ms ticks. Everything follows from the seed.
