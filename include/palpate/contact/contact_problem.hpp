@@ -52,9 +52,7 @@ class ContactProblem {
   bool is_near(int tool) const noexcept { return candidates_.has_any(tool); }
   /// The closest point of the touchable surface as the forces of the last tick deform it. `distance` [m] is that of the
   /// resting surface. Visits the triangles that the forces may have moved there; no allocation.
-  ContactSurface::Closest closest(const TissueView& tissue, const Vector3& position, double distance) noexcept {
-    return candidates_.closest(tissue, displacement_, position, distance);
-  }
+  ContactSurface::Closest closest(const TissueView& tissue, const Vector3& position, double distance) noexcept;
   /// What `solve` returned for all tools does not include this: coarse_contact of one tool.
   Status status_of(std::size_t t, const ContactTool& tool) const noexcept { return local_.status(t, tool); }
   /// Whether a tool grasps a point.

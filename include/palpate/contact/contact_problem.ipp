@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact_problem.hpp>
+#include <palpate/contact/detail/deformed_surface.hpp>
 #include <palpate/contact/detail/candidates.ipp>  // its inline functions
 #include <palpate/core/setup_error.hpp>
 
@@ -109,6 +110,11 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   if (change > unsettled || rows_.alternation_change() > unsettled_alternation)
     status.set(StatusFlag::solver_not_converged);
   return status;
+}
+
+PALPATE_INLINE ContactSurface::Closest ContactProblem::closest(const TissueView& tissue, const Vector3& position,
+                                                               double distance) noexcept {
+  return closest_deformed(tissue, displacement_, position, distance + 2.0 * candidates_.reach(tissue, displacement_));
 }
 
 PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const ContactSurface& surface) noexcept {

@@ -165,8 +165,8 @@ PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, co
     blade.lift();
 }
 
-/// Whether the proxy of a tool is inside the body without any contact, and got there through the
-/// touchable surface. A tool that entered elsewhere passes until it is outside again.
+/// Whether the proxy of a tool is inside the body without any contact, and got there through the touchable surface. A
+/// tool that entered elsewhere passes until it is outside again.
 PALPATE_INLINE bool HapticServo::is_lost(std::size_t i) noexcept {
   const ContactTool& tool = contact_tools_[i];
   ToolInput& input = inputs_[i];

@@ -55,8 +55,8 @@ struct Candidate {
 class Candidates {
  public:
   /// Places the samples for spheres of these radii, `spacing` radii of the smallest apart; larger spheres use a level
-  /// of larger spacing. `capacity` is that of the contact problem. `local`: whether
-  /// the moduli of the surface are used. Allocates; for set-up.
+  /// of larger spacing. `capacity` is that of the contact problem. `local`: whether the moduli of the surface are
+  /// used. Allocates; for set-up.
   Candidates(const ContactSurface& surface, const ToolRadii& radii, double spacing, int capacity, bool local);
 
   /// Largest number of points in the list.
@@ -113,9 +113,8 @@ class Candidates {
   /// Sets the position of a candidate's point and updates its gap and normal.
   inline void place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept;
 
-  /// See ContactProblem::closest.
-  ContactSurface::Closest closest(const TissueView& tissue, SurfaceDisplacement& displacement, const Vector3& position,
-                                  double distance) const noexcept;
+  /// Upper bound of the displacement of the surface near the tools, as far as it is known [m].
+  double reach(const TissueView& tissue, SurfaceDisplacement& displacement) const noexcept;
 
   /// Checks the next few vertices of the scan.
   void look_round(const TissueView& tissue, std::span<const ContactTool> tools,
@@ -136,13 +135,6 @@ class Candidates {
   int triangle_of(const ContactSurface& surface, int sample) const noexcept;
   double travel(std::size_t tool) const noexcept { return travel_[tool] + surface_travel_; }
   void build(const TissueView& tissue, std::span<const ContactTool> tools, SurfaceDisplacement& displacement) noexcept;
-  /// From the closest point of a triangle, as it is deformed, to a position; and the triangle's normal, not unit.
-  struct Offset {
-    Vector3 offset, normal;
-    TriangleFeature feature;
-  };
-  static Offset offset(const TissueView& tissue, SurfaceDisplacement& displacement, int triangle,
-                       const Vector3& position) noexcept;
   void keep_loaded(const TissueView& tissue, std::span<const ContactTool> tools,
                    SurfaceDisplacement& displacement) noexcept;
   bool is_loaded(int tool, int sample) const noexcept;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <palpate/contact/detail/candidates.hpp>
+#include <palpate/contact/detail/deformed_surface.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -204,7 +204,7 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
       loaded_[static_cast<std::size_t>(loaded_count_++)] = c;
   keep_loaded(tissue, tools, displacement);
   is_new_ = true;
-  reach_ = std::max({displacement.reach(tissue), far_, far_last_round_});
+  reach_ = reach(tissue, displacement);
   const ContactSurface& surface = tissue.contact_surface();
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const ContactTool& tool = tools[t];
@@ -215,7 +215,7 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
     const Vector3 middle = tool.middle();
     const int level = level_of(tool);
     surface.bvh().visit_near(middle, near + reach_, [&](int triangle) {
-      if (offset(tissue, displacement, triangle, middle).offset.squaredNorm() > near * near) return;
+      if (offset_from(tissue, displacement, triangle, middle).offset.squaredNorm() > near * near) return;
       if (facets_.is_local(tool, surface.triangle(triangle))) {
         const int moving = samples_.count() + static_cast<int>(t * surface.triangles().size()) + triangle;
         return consider(tissue, tool, static_cast<int>(t), triangle, moving, displacement);
@@ -227,39 +227,8 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
   valid_ = !lost_forces_;
 }
 
-PALPATE_INLINE Candidates::Offset Candidates::offset(const TissueView& tissue, SurfaceDisplacement& displacement,
-                                                     int triangle, const Vector3& position) noexcept {
-  const Triangle& v = tissue.contact_surface().triangle(triangle);
-  const Vector3 a = displacement.position(tissue, v[0]), b = displacement.position(tissue, v[1]),
-                c = displacement.position(tissue, v[2]);
-  const TrianglePoint on = closest_point(position, a, b, c);
-  return {position - on.weights[0] * a - on.weights[1] * b - on.weights[2] * c, cross(b - a, c - a), on.feature};
-}
-
-PALPATE_INLINE ContactSurface::Closest Candidates::closest(const TissueView& tissue, SurfaceDisplacement& displacement,
-                                                           const Vector3& position, double distance) const noexcept {
-  const double moved = std::max({displacement.reach(tissue), far_, far_last_round_});
-  ContactSurface::Closest best;
-  double nearest = infinity, height = 0.0;
-  bool on_rim = false;
-  tissue.contact_surface().bvh().visit_near(position, distance + 2.0 * moved, [&](int triangle) {
-    const Offset from = offset(tissue, displacement, triangle, position);
-    const double squared = from.offset.squaredNorm(), area = from.normal.norm();
-    if (squared > nearest * (1.0 + 1e-9) || !(area > 0.0)) return;
-    // Triangles that share the closest edge or vertex are equally near: the one that is seen least at an angle decides.
-    const double own = from.offset.dot(from.normal) / area;
-    if (squared < nearest * (1.0 - 1e-9) || std::abs(own) > std::abs(height)) {
-      height = own;
-      on_rim = tissue.contact_surface().is_rim(triangle, from.feature);
-      best.triangle = triangle;
-      best.point = position - from.offset;
-      best.outward = from.normal / area;
-    }
-    nearest = std::min(nearest, squared);
-  });
-  best.distance = std::copysign(std::sqrt(nearest), on_rim ? 1.0 : height);
-  if (std::abs(best.distance) > 1e-3 * std::abs(distance)) best.outward = (position - best.point) / best.distance;
-  return best;
+PALPATE_INLINE double Candidates::reach(const TissueView& tissue, SurfaceDisplacement& displacement) const noexcept {
+  return std::max({displacement.reach(tissue), far_, far_last_round_});
 }
 
 /// Begins a new list with the points that press: they keep their forces however far the sphere still is from its goal.
