@@ -33,6 +33,31 @@ double drag_of(const Vector3& force) {
 
 }  // namespace
 
+TEST_CASE("a tick with the default tolerance has the friction of converged ticks while the direction of slip changes",
+          "[contact][friction]") {
+  const double own = 5e-3, mu = 0.3;
+  const Vector3 centre(0.0, 0.0, 4e-3 - 1e-4);
+  AnalyticTissue tissue(9, 1e-2, own), same(9, 1e-2, own);  // 1.25 mm apart: the contact moves over vertices
+  ContactParameters exact = rough(mu);
+  exact.maximum_iterations = 30;
+  exact.force_tolerance = 1e-10;
+  const Vector3 above = centre + Vector3(0.0, 0.0, 3e-4);
+  ToolSession s(tissue, {round_tool(4e-3, above, 2e-3)}, rough(mu)),
+      converged(same, {round_tool(4e-3, above, 2e-3)}, exact);
+  double worst = 0.0;
+  for (int k = 0; k < 600; ++k) {
+    const double angle = 0.02 * k;
+    const Vector3 at =
+        k < 100
+            ? Vector3(above + (centre - above) * k / 99.0)
+            : Vector3(centre + 1e-3 * Vector3(std::cos(angle) - std::cos(2.0), std::sin(angle) - std::sin(2.0), 0.0));
+    s.tick(0, at);
+    converged.tick(0, at);
+    if (k >= 100) worst = std::max(worst, (s.force() - converged.force()).norm() / converged.force().norm());
+  }
+  CHECK(worst <= 5e-3);
+}
+
 TEST_CASE("one point sticks like a spring up to mu N, slips at mu N, and sticks again when the motion reverses",
           "[contact][friction]") {
   for (const double own : {1e-4, 5e-3})

@@ -299,11 +299,14 @@ PALPATE_INLINE bool ContactRows::has_same(const Candidates& candidates, const Ca
 }
 
 PALPATE_INLINE void ContactRows::stick(std::span<const ContactTool> tools) noexcept {
+  // A tick converges to a tolerance: a point that slips may end slightly within its disc. With its old anchor it would
+  // stick in the next tick. A point that sticks so close to slipping loses nothing by a new anchor.
+  constexpr double slipping = 0.99;
   if (!friction_.acts()) return;
   for (int i = 0; i < count_; ++i) {
     Candidate& c = *candidate_[at(i)];
     if (c.grasped || !(c.force > 0.0)) continue;
-    const bool kept = sticks(c) && c.friction.norm() < (1.0 - 1e-6) * friction_.coefficient() * c.force;
+    const bool kept = sticks(c) && c.friction.norm() < slipping * friction_.coefficient() * c.force;
     const ContactTool& tool = tools[at(c.tool)];
     if (!kept) c.anchor = tool.rotation.transpose() * (rows_[at(i)].point - tool.proxy);
     c.stuck_tick = tick_;
