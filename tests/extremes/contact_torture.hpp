@@ -137,7 +137,7 @@ class TortureSession {
     const bool bumpy = chance(0.5);  // a curved, irregular surface
     for (Vector3& x : mesh.positions)
       if (bumpy)
-        x += 0.15 * thickness_ *
+        x += std::min(0.15 * thickness_, 0.1 * edge_) *
              Vector3(std::sin(40.0 * x[1]), std::sin(55.0 * x[0]), std::sin(70.0 * x[0] + 30.0 * x[1]));
     Scene scene;
     kind == 0 ? scene.fix("z0") : scene.fix("x0");
