@@ -226,7 +226,7 @@ TEST_CASE("hulls of one and two points are a point and a segment", "[contact][hu
   for (int k = 0; k < 1000; ++k) {
     const Vector3 p = random_point(random, 4.0);
     const double t = closest_on_segment(p, a, b);
-    CHECK(std::abs(point.closest(p).distance - (p - a).norm()) <= 1e-15);
+    CHECK(std::abs(point.closest(p).distance - (p - a).norm()) <= 1e-14);
     CHECK(std::abs(segment.closest(p).distance - (p - (1 - t) * a - t * b).norm()) <= 1e-14);
   }
   CHECK(point.closest(a).outward.norm() == 1.0);

@@ -114,7 +114,7 @@ TEST_CASE("the forces of a convex tool on the tissue and on the tool are in equi
   CHECK(servo.contact_force()[2] > 0.05);
   CHECK(worst <= 1e-9 * servo.contact_force().norm());
   // The arms are those of the last linearisation: micrometres from the contact points.
-  CHECK(worst_moment <= 2e-5 * servo.contact_force().norm());
+  CHECK(worst_moment <= 5e-5 * servo.contact_force().norm());
 }
 
 TEST_CASE("a convex tool that appears inside the body is placed outside of it", "[haptic][servo][convex]") {
