@@ -63,7 +63,7 @@ TEST_CASE("full rows: a point that loses its row to a grasp also loses its force
   CHECK((s.tools[0].proxy - s.tools[0].target).norm() <= 1e-12);
 }
 
-TEST_CASE("full rows: points that press keep their rows, and the solution for them is exact",
+TEST_CASE("full rows: they go to points spread over the contact, and the solution for them is exact",
           "[contact][rows][extreme][D4]") {
   AnalyticTissue tissue(60, 0.02, spring);  // a third of a millimetre apart
   const double radius = 4e-3;
@@ -71,12 +71,19 @@ TEST_CASE("full rows: points that press keep their rows, and the solution for th
   s.move(0, {5e-5, 2e-5, radius - 1e-3}, 25);
   s.settle();
   CHECK(s.status == Status(StatusFlag::degraded_model));
-  REQUIRE(s.problem.contacts().size() == row_count);
+  CHECK(s.problem.contacts().size() >= row_count - 2);
+  CHECK(s.problem.missing_depth() > 0.1);
+  CHECK(s.problem.missing_depth() <= 1.0);
+  Vector3 sum = Vector3::Zero();
+  double farthest = 0.0;
   for (const Contact& c : s.problem.contacts()) {
     const Vector3 path = s.tools[0].proxy - c.rest;
     CHECK_THAT(c.force, WithinRel((radius - path.norm()) / spring, 1e-6));  // independent springs
-    CHECK(c.rest.head<2>().norm() < 2e-3);  // the first points touched, below the middle of a sphere that moved down
+    sum += c.rest;
+    farthest = std::max(farthest, c.rest.head<2>().norm());
   }
+  CHECK(sum.head<2>().norm() / row_count < 1e-3);
+  CHECK(farthest > 1.2e-3);  // the contact has a radius of 2.6 mm
 }
 
 TEST_CASE("full rows: friction acts on the points that press", "[contact][rows][friction][D4]") {

@@ -30,7 +30,8 @@ struct ContactParameters {
   bool local_compliance = true;   ///< spheres smaller than facets get the dent that facets do not show
   double sample_spacing = 0.5;    ///< of contact points on the surface, in radii of the smallest tool
   double friction = 0.0;          ///< Coulomb's coefficient; 0 has no cost
-  int capacity = 0;  ///< of contacts of all tools; more are ignored (degraded_model); 0: the default for the tools
+  int capacity = 0;               ///< of contacts of all tools; of more, evenly spread ones are kept (degraded_model);
+                                  ///< 0: the default for the tools
 
   /// The same with a capacity for this number of tools.
   ContactParameters for_tools(std::size_t tools) const noexcept;

@@ -4,6 +4,7 @@
 #include <palpate/contact/detail/contact_rows.hpp>
 #include <palpate/contact/detail/local_contact.hpp>
 #include <palpate/contact/detail/proxy_motion.hpp>
+#include <palpate/contact/detail/row_shares.hpp>
 #include <palpate/contact/grasp.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -55,6 +56,9 @@ class ContactProblem {
   ContactSurface::Closest closest(const TissueView& tissue, const Vector3& position, double distance) noexcept;
   /// What `solve` returned for all tools does not include this: coarse_contact of one tool.
   Status status_of(std::size_t t, const ContactTool& tool) const noexcept { return local_.status(t, tool); }
+  /// Penetration of the deepest contact point that has no row because more points press than the capacity, relative to
+  /// the deepest push: of the order of the relative error of the force. 0 when every point has a row.
+  double missing_depth() const noexcept;
   /// Whether a tool grasps a point.
   bool is_holding(std::size_t tool) const noexcept { return grasps_[tool].sample >= 0; }
 
@@ -76,13 +80,14 @@ class ContactProblem {
   static ContactParameters checked(const ContactParameters& p);
   void grasp(const TissueView& tissue, Tools tools) noexcept;
   inline bool is_grasped(const Candidate& c) const noexcept;
+  inline bool may_have_row(const Candidate& c) const noexcept;
   void prefetch(const TissueView& tissue) noexcept;
   bool solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;
   void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
   void share_rows(Tools tools) noexcept;
   inline void note_pressing(Candidate& c) noexcept;
   void predict_normals(int iteration) noexcept;
-  bool add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
+  void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
   void follow(Tools tools) noexcept;
 
   ContactParameters parameters_;
@@ -93,10 +98,10 @@ class ContactProblem {
   std::vector<Violated> violated_;
   ProxyMotion proxies_;
   LocalContact local_;
+  RowShares shares_;
   std::array<Grasp, maximum_tools> grasps_{};
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   std::array<int, maximum_tools> pressing_of_{};  // per tool
-  int share_ = 1;                                 // rows per tool
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
   double feedback_ = 0.0;
   double floor_ = 0.0;

@@ -40,19 +40,25 @@ inline bool ContactProblem::is_grasped(const Candidate& c) const noexcept {
   return c.sample == grasps_[at(c.tool)].sample;
 }
 
-/// Shares the rows equally among the tools that have contact points near them.
+/// Divides the rows among the tools that have contact points near them.
 PALPATE_INLINE void ContactProblem::share_rows(Tools tools) noexcept {
-  int near = 0;
-  for (std::size_t t = 0; t < tools.size(); ++t) near += tools[t].active && candidates_.has_any(static_cast<int>(t));
-  share_ = std::max(1, rows_.capacity() / std::max(1, near));
+  std::array<double, maximum_tools> radius{};
+  for (std::size_t t = 0; t < tools.size(); ++t)
+    if (tools[t].active && candidates_.has_any(static_cast<int>(t))) radius[t] = tools[t].radius;
+  shares_.begin_tick(radius, rows_.capacity(), candidates_.samples().densest());
 }
 
-/// Of a tool with more pressing points than its share, those with the largest forces are kept.
+inline bool ContactProblem::may_have_row(const Candidate& c) const noexcept {
+  return candidates_.is_moving(c) || shares_.keeps(c.tool, candidates_.samples().density(c.sample));
+}
+
+/// Of a tool with more pressing points than its share, those that its density keeps, with the largest forces, are kept.
 inline void ContactProblem::note_pressing(Candidate& c) noexcept {
   c.row = -1;
   if (c.grasped || !(c.force > 0.0)) return;
+  if (!may_have_row(c)) return c.lift();
   int& own = pressing_of_[at(c.tool)];
-  if (own < share_ && pressing_count_ < rows_.capacity()) {
+  if (own < shares_.share(c.tool) && pressing_count_ < rows_.capacity()) {
     ++own;
     pressing_[at(pressing_count_++)] = &c;
     return;
@@ -107,9 +113,15 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     if (arrived_ && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) break;
   }
   rows_.stick(tools);
+  shares_.end_tick(rows_.count_pressing());
+  if (shares_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
   if (change > unsettled || rows_.alternation_change() > unsettled_alternation)
     status.set(StatusFlag::solver_not_converged);
   return status;
+}
+
+PALPATE_INLINE double ContactProblem::missing_depth() const noexcept {
+  return shares_.deepest() > 0.0 ? shares_.deepest() / std::max(shares_.deepest(), rows_.deepest_push()) : 0.0;
 }
 
 PALPATE_INLINE ContactSurface::Closest ContactProblem::closest(const TissueView& tissue, const Vector3& position,
@@ -138,6 +150,7 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   candidates_.reset();
   rows_.reset();
   local_.reset();
+  shares_.reset();
   proxies_ = {};
   grasps_.fill({});
   pressing_count_ = violated_count_ = 0;
@@ -196,8 +209,7 @@ PALPATE_INLINE bool ContactProblem::solve_linearised(const TissueView& tissue, T
   bool applied = rows_.count() == 0;
   int built = 0;
   for (;; built = rows_.count()) {
-    if (built > 0 || rows_.count() == 0)
-      if (!add_violated(tissue, tools, built)) status.set(StatusFlag::degraded_model);  // solved for the rows that fit
+    if (built > 0 || rows_.count() == 0) add_violated(tissue, tools, built);
     if (rows_.count() == built) break;
     if (rounds_left_-- <= 0) {
       status.set(StatusFlag::solver_not_converged);
@@ -257,10 +269,11 @@ PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
   }
 }
 
-/// Adds rows for the points that would penetrate deepest with the present forces; false when there is no room because
-/// all rows press: those that pressed first keep theirs. `built` is zero when idle rows were dropped.
-PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools tools, int& built) noexcept {
+/// Adds rows for the points that would penetrate deepest with the present forces. Where there is no room because all
+/// rows press, those that pressed first keep theirs. `built` is zero when idle rows were dropped.
+PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools tools, int& built) noexcept {
   violated_count_ = 0;
+  shares_.begin_round();
   proxies_.look_ahead(tools, floor_);
   const double allowed = built > 0 ? violation * rows_.deepest_push() : 0.0;
   for (Candidate& c : candidates_.items()) {
@@ -274,34 +287,42 @@ PALPATE_INLINE bool ContactProblem::add_violated(const TissueView& tissue, Tools
     const Vector3 moved = candidates_.position(tissue, displacement_, c) - c.point;
     double gap = c.gap + c.normal.dot(ahead.path - moved);
     if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);
-    if (gap < -allowed) violated_[at(violated_count_++)] = {gap, &c};
+    if (!(gap < -allowed)) continue;
+    if (may_have_row(c))
+      violated_[at(violated_count_++)] = {gap, &c};
+    else
+      shares_.note_skipped(c.tool, -gap);
   }
   std::array<int, maximum_tools> own = rows_.count_by_tool();
   std::array<int, maximum_tools> wanted = own;
   bool crowded = rows_.count() + std::min(violated_count_, added_per_round) > rows_.capacity();
   for (int i = 0; i < violated_count_; ++i)
-    crowded = ++wanted[at(violated_[at(i)].candidate->tool)] > share_ || crowded;
+    crowded =
+        ++wanted[at(violated_[at(i)].candidate->tool)] > shares_.share(violated_[at(i)].candidate->tool) || crowded;
   if (crowded && violated_count_ > 0 && rows_.drop_idle()) {
     built = 0;
     own = rows_.count_by_tool();
   }
-  const auto end = std::partition(violated_.begin(), violated_.begin() + violated_count_,
-                                  [&](const Violated& v) { return own[at(v.candidate->tool)] < share_; });
+  const auto end = std::partition(violated_.begin(), violated_.begin() + violated_count_, [&](const Violated& v) {
+    return own[at(v.candidate->tool)] < shares_.share(v.candidate->tool);
+  });
   const auto fitting = static_cast<int>(end - violated_.begin());
   const int adding = std::min({fitting, added_per_round, rows_.capacity() - rows_.count()});
   std::partial_sort(violated_.begin(), violated_.begin() + adding, end,
                     [](const Violated& a, const Violated& b) { return a.gap < b.gap; });
-  int added = 0;
   for (int i = 0; i < adding; ++i) {
     Candidate& c = *violated_[at(i)].candidate;
-    if (own[at(c.tool)] >= share_) continue;
-    ++added;
+    if (own[at(c.tool)] >= shares_.share(c.tool)) continue;
     if (rows_.has_same(candidates_, c, tools[at(c.tool)].radius)) continue;
     ++own[at(c.tool)];
     rows_.inherit_friction(tissue.contact_surface(), candidates_, tools[at(c.tool)], c);
     rows_.add(tissue.contact_surface(), candidates_, c);
   }
-  return added > 0 || violated_count_ == 0;
+  const bool full = rows_.count() == rows_.capacity();
+  for (int i = 0; i < violated_count_; ++i) {
+    const auto& [gap, c] = violated_[at(i)];
+    if (c->row < 0 && (full || own[at(c->tool)] >= shares_.share(c->tool))) shares_.note_left_out(c->tool, -gap);
+  }
 }
 
 /// Takes the step to the solution, or the part of it within which the list of candidates is complete.

@@ -55,8 +55,12 @@ class HapticServo {
   /// tick's own thread.
   void release() noexcept { tissue_.end_tick({}); }
 
-  /// Largest number of contacts of all tools, from ServoOptions::contact; more are ignored (degraded_model).
+  /// Largest number of contacts of all tools, from ServoOptions::contact. Of more, evenly spread ones are kept
+  /// (degraded_model).
   int contact_capacity() const noexcept { return problem_.capacity(); }
+  /// How much force that costs, roughly: penetration of the deepest point left out in the last tick, relative to the
+  /// deepest push. For the tick's own thread.
+  double missing_depth() const noexcept { return problem_.missing_depth(); }
   /// The facets that are too long for the smallest tool, on the surface at construction.
   const CoarseFacetReport& coarse_facets() const noexcept { return coarse_facets_; }
   /// Number of contact rows of the last tick: points that press, and points that would have penetrated.

@@ -21,7 +21,7 @@ PALPATE_INLINE Candidates::Candidates(const ContactSurface& surface, const ToolR
     : smallest_radius_(radii.smallest),
       samples_(surface, spacing * radii.smallest),
       facets_(surface, local),
-      items_(4 * static_cast<std::size_t>(capacity)),
+      items_(std::max<std::size_t>(4 * static_cast<std::size_t>(capacity), least_room)),
       loaded_(static_cast<std::size_t>(capacity)) {
   // From the longest edge on all levels would be equal: vertices only.
   const double most = std::min(radii.largest, longest_edge(surface) / spacing * level_ratio);

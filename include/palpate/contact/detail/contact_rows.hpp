@@ -27,6 +27,8 @@ class ContactRows {
   int count() const noexcept { return count_; }
   std::span<const Contact> contacts() const noexcept { return {rows_.data(), at(count_)}; }
   std::array<int, maximum_tools> count_by_tool() const noexcept;
+  /// Those with force.
+  std::array<int, maximum_tools> count_pressing() const noexcept;
   Candidate& candidate(int row) noexcept { return *candidate_[at(row)]; }
   const Candidate& candidate(int row) const noexcept { return *candidate_[at(row)]; }
   /// Whether a row is at the place of a candidate that moves: two facets have their closest points on a common edge.

@@ -152,6 +152,12 @@ PALPATE_INLINE std::array<int, maximum_tools> ContactRows::count_by_tool() const
   return counts;
 }
 
+PALPATE_INLINE std::array<int, maximum_tools> ContactRows::count_pressing() const noexcept {
+  std::array<int, maximum_tools> counts{};
+  for (const Contact& row : contacts()) counts[at(row.tool)] += row.force > 0.0;
+  return counts;
+}
+
 PALPATE_INLINE bool ContactRows::drop_idle() noexcept {
   const auto works = [this](int i) { return rows_[at(i)].force > 0.0 || candidate_[at(i)]->grasped; };
   int kept = 0;

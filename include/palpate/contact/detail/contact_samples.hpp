@@ -31,6 +31,12 @@ class ContactSamples {
   int levels() const noexcept { return static_cast<int>(first_.size()); }
   int level_of(int sample) const noexcept;
 
+  /// Fewer points: those whose `density` is below a bound [1/m^2] are spread evenly over the surface, about that many
+  /// per area, or all where there are fewer.
+  double density(int sample) const noexcept { return density_[static_cast<std::size_t>(sample)]; }
+  /// An upper bound of all densities.
+  double densest() const noexcept { return densest_; }
+
   /// The samples that belong to a triangle.
   std::span<const ContactSample> of_triangle(int t, int level = 0) const noexcept {
     return {samples_.data() + first_of(t, level),
@@ -50,7 +56,11 @@ class ContactSamples {
   void add_triangle(const ContactSurface& surface, int number, double spacing, std::vector<bool>& vertex_taken);
   void add_edge(const ContactSurface& surface, int number, std::size_t i, double spacing);
 
+  void rank_level(const ContactSurface& surface, int first);
+
   std::vector<ContactSample> samples_;
+  std::vector<float> density_;
+  double densest_ = 0.0;
   std::vector<std::vector<int>> first_;  // of every level; per triangle, one past the end last
 };
 

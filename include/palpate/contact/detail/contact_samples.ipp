@@ -41,6 +41,26 @@ inline bool is_new_edge(const ContactSurface& surface, int t, std::size_t i) noe
   return true;
 }
 
+/// The coordinates of a point in a box, 20 bits each, digit by digit in turn.
+inline std::uint64_t morton_code(const Vector3& x, const Vector3& low, const Vector3& high) noexcept {
+  const double side = (high - low).maxCoeff();
+  std::uint64_t code = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double part = side > 0.0 ? std::clamp((x[i] - low[i]) / side, 0.0, 1.0) : 0.0;
+    const auto digits = static_cast<std::uint64_t>(part * 1048575.0);
+    for (int bit = 0; bit < 20; ++bit) code |= (digits >> bit & 1u) << (3 * bit + i);
+  }
+  return code;
+}
+
+/// The binary digits of a number below 2^24 in reverse order behind the point.
+inline double reversed_digits(std::size_t number) noexcept {
+  double value = 0.0, digit = 0.5;
+  for (; number != 0; number >>= 1, digit *= 0.5)
+    if (number & 1u) value += digit;
+  return value;
+}
+
 /// Length of an edge without loads; infinity if not known.
 inline double unloaded_length(const ContactSurface& surface, std::int64_t a, std::int64_t b) {
   const std::vector<Vector3>& x = surface.unloaded().positions;
@@ -61,7 +81,29 @@ PALPATE_INLINE void ContactSamples::add_level(const ContactSurface& surface, dou
     add_triangle(surface, number, spacing, vertex_taken);
     first.push_back(count());
   }
+  rank_level(surface, first.front());
   first_.push_back(std::move(first));
+}
+
+/// Along a curve that fills space, neighbours in the order are neighbours in space (Morton 1966): reversed binary
+/// digits of the number in that order are low for points that are spread evenly (van der Corput 1935).
+PALPATE_INLINE void ContactSamples::rank_level(const ContactSurface& surface, int first) {
+  std::vector<std::pair<std::uint64_t, int>> order;
+  order.reserve(samples_.size() - static_cast<std::size_t>(first));
+  Vector3 low = Vector3::Constant(infinity), high = -low;
+  for (const Vector3& x : surface.positions()) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  for (int s = first; s < count(); ++s) {
+    const ContactSample& c = (*this)[s];
+    Vector3 x = Vector3::Zero();
+    for (std::size_t a = 0; a < 3; ++a) x += c.weights[a] * surface.position(c.vertices[a]);
+    order.emplace_back(detail::morton_code(x, low, high), s);
+  }
+  std::sort(order.begin(), order.end());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    float& density = density_[static_cast<std::size_t>(order[i].second)];
+    densest_ = std::max(densest_, 1.01 * static_cast<double>(density));
+    density *= static_cast<float>(detail::reversed_digits(i));
+  }
 }
 
 PALPATE_INLINE void ContactSamples::add_triangle(const ContactSurface& surface, int number, double spacing,
@@ -80,6 +122,11 @@ PALPATE_INLINE void ContactSamples::add_triangle(const ContactSurface& surface, 
     for (int b = 1; b < n - a; ++b)
       samples_.push_back(
           {t, {static_cast<double>(a) / n, static_cast<double>(b) / n, static_cast<double>(n - a - b) / n}});
+  // n^2 / 2 points per triangle, since vertices and edges belong to several. A flat triangle has a large, finite
+  // density.
+  const Vector3 x = surface.position(t[0]);
+  const double area = 0.5 * cross(surface.position(t[1]) - x, surface.position(t[2]) - x).norm();
+  density_.resize(samples_.size(), static_cast<float>(0.5 * n * n / std::max(area, 1e-6 * longest * longest)));
 }
 
 PALPATE_INLINE int ContactSamples::level_of(int sample) const noexcept {
