@@ -215,12 +215,18 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
     const Vector3 middle = tool.middle();
     const int level = level_of(tool);
     surface.bvh().visit_near(middle, near + reach_, [&](int triangle) {
-      if (offset_from(tissue, displacement, triangle, middle).offset.squaredNorm() > near * near) return;
-      if (facets_.is_local(tool, surface.triangle(triangle))) {
+      const bool local = facets_.is_local(tool, surface.triangle(triangle));
+      const int first = samples_.first_of(triangle, level), end = samples_.first_of(triangle + 1, level);
+      if (!local && first == end) return;
+      // Each of a few points is checked anyway.
+      if ((local || end - first > 3) &&
+          offset_from(tissue, displacement, triangle, middle).offset.squaredNorm() > near * near)
+        return;
+      if (local) {
         const int moving = samples_.count() + static_cast<int>(t * surface.triangles().size()) + triangle;
         return consider(tissue, tool, static_cast<int>(t), triangle, moving, displacement);
       }
-      for (int s = samples_.first_of(triangle, level); s < samples_.first_of(triangle + 1, level); ++s)
+      for (int s = first; s < end; ++s)
         consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
     });
   }
