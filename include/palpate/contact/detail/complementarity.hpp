@@ -3,6 +3,7 @@
 
 #include <palpate/core/config.hpp>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -17,6 +18,12 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// construction; work bounded by `maximum_pivots`.
 class ComplementarityProblem {
  public:
+  /// Doubles between columns of `capacity` values: an odd number of cache lines, so that the values of a row, one per
+  /// column, do not compete for the same few lines of the cache.
+  static constexpr std::size_t column_stride(int capacity) noexcept {
+    return ((static_cast<std::size_t>(capacity) + 7) / 8 | 1u) * 8;
+  }
+
   /// More points than dofs make W singular. With this relative increase of the diagonal the problem is strictly convex:
   /// its solution is unique, and gaps are in error by a millionth of the indentation.
   static constexpr double relaxation = 1e-6;
@@ -35,6 +42,7 @@ class ComplementarityProblem {
   void resize(int rows) noexcept { rows_ = rows; }
   /// Compliance [m/N].
   double& w(int i, int j) noexcept { return w_[place(i, j)]; }
+  std::size_t stride() const noexcept { return stride_; }
   double w(int i, int j) const noexcept { return w_[place(i, j)]; }
 
   /// False when the pivot limit was reached: lambda is then >= 0 and its energy is below that of zero force, but some
@@ -43,8 +51,9 @@ class ComplementarityProblem {
 
  private:
   std::size_t place(int i, int j) const noexcept {
-    return static_cast<std::size_t>(i) + static_cast<std::size_t>(capacity_) * static_cast<std::size_t>(j);
+    return static_cast<std::size_t>(i) + stride_ * static_cast<std::size_t>(j);
   }
+  static constexpr int width = 4;  // columns of the factor that are worked on together
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
   bool is_finite() const noexcept;
@@ -57,10 +66,12 @@ class ComplementarityProblem {
   void solve_active() noexcept;
   void factor_all() noexcept;
   void factor_row(int p) noexcept;
+  inline std::array<const double*, 4> columns(int p, int q) const noexcept;
   inline double inverse_root(double pivot, int i) const noexcept;
 
   int capacity_, rows_ = 0;
-  std::vector<double> w_, factor_;  // by columns, `capacity_` apart
+  std::size_t stride_;
+  std::vector<double> w_, factor_;  // by columns, `stride_` apart
   std::vector<double> answer_, gap_, row_;
   std::vector<int> active_, flip_;
   std::vector<int> order_;  // active rows in the order they joined

@@ -2,18 +2,33 @@
 #pragma once
 
 #include <palpate/contact/detail/complementarity.hpp>
+#include <palpate/core/types.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
+using ColumnView = Eigen::Map<const Eigen::Array<double, Eigen::Dynamic, 1>>;
+
+/// y += sum_k v[k] c[k] with four columns: y is read and written once. The expression is vectorised with any flags.
+inline void add_columns(double* y, const std::array<const double*, 4>& c, const std::array<double, 4>& v,
+                        int n) noexcept {
+  Eigen::Map<Eigen::Array<double, Eigen::Dynamic, 1>>(y, n) +=
+      v[0] * ColumnView(c[0], n) + v[1] * ColumnView(c[1], n) + v[2] * ColumnView(c[2], n) + v[3] * ColumnView(c[3], n);
+}
+
+}  // namespace detail
+
 PALPATE_INLINE ComplementarityProblem::ComplementarityProblem(int capacity)
     : b(at(capacity)),
       lambda(at(capacity)),
       bilateral(at(capacity)),
       capacity_(capacity),
-      w_(at(capacity) * at(capacity)),
+      stride_(column_stride(capacity)),
+      w_(stride_ * at(capacity)),
       factor_(w_.size()),
       answer_(at(capacity)),
       gap_(at(capacity)),
@@ -139,13 +154,26 @@ PALPATE_INLINE bool ComplementarityProblem::step() noexcept {
 PALPATE_INLINE void ComplementarityProblem::update_gaps() noexcept {
   double* const gap = gap_.data();
   std::copy_n(b.begin(), rows_, gap);
+  std::array<const double*, 4> columns{};
+  std::array<double, 4> forces{};
+  std::size_t count = 0;
   for (int p = 0; p < order_count_; ++p) {
     const int j = order_[at(p)];
-    const double force = lambda[at(j)];
     const double* const column = &w_[place(0, j)];
-    for (int i = 0; i < rows_; ++i) gap[i] += force * column[i];
+    const double force = lambda[at(j)];
     gap[j] += relaxation * column[j] * force;
+    columns[count] = column;
+    forces[count++] = force;
+    if (count < columns.size() && p + 1 < order_count_) continue;
+    for (; count < columns.size(); ++count) columns[count] = column, forces[count] = 0.0;
+    detail::add_columns(gap, columns, forces, rows_);
+    count = 0;
   }
+}
+
+/// The factor from row p, of the four columns from q on.
+inline std::array<const double*, 4> ComplementarityProblem::columns(int p, int q) const noexcept {
+  return {&factor_[place(p, q)], &factor_[place(p, q + 1)], &factor_[place(p, q + 2)], &factor_[place(p, q + 3)]};
 }
 
 /// Solves W_aa answer = -b_a for answer_, in the order of order_. A pivot lost to rounding drops its row (the point
@@ -156,20 +184,25 @@ PALPATE_INLINE void ComplementarityProblem::solve_active() noexcept {
   for (; factored_ < m; ++factored_) factor_row(factored_);
   double* const x = answer_.data();
   for (int p = 0; p < m; ++p) x[p] = -b[at(order_[at(p)])];
-  for (int q = 0; q < m; ++q) {
-    const double* const column = &factor_[place(0, q)];
-    const double value = x[q] *= column[q];
-    for (int p = q + 1; p < m; ++p) x[p] -= value * column[p];
+  for (int first = 0; first < m; first += width) {
+    const int end = std::min(first + width, m);
+    for (int q = first; q < end; ++q) {
+      const double* const column = &factor_[place(0, q)];
+      const double value = x[q] *= column[q];
+      for (int p = q + 1; p < end; ++p) x[p] -= value * column[p];
+    }
+    if (end < m)
+      detail::add_columns(x + end, columns(end, first), {-x[first], -x[first + 1], -x[first + 2], -x[first + 3]},
+                          m - end);
   }
   for (int p = m - 1; p >= 0; --p) {
     const double* const column = &factor_[place(0, p)];
-    double sum = x[p];
-    for (int k = p + 1; k < m; ++k) sum -= column[k] * x[k];
-    x[p] = sum * column[p];
+    const int n = m - p - 1;
+    x[p] = (x[p] - (detail::ColumnView(column + p + 1, n) * detail::ColumnView(x + p + 1, n)).sum()) * column[p];
   }
 }
 
-/// The whole Cholesky factor, column by column; the diagonal stores its inverse.
+/// The whole Cholesky factor, four columns at a time; the diagonal stores its inverse.
 PALPATE_INLINE void ComplementarityProblem::factor_all() noexcept {
   const int m = factored_ = order_count_;
   for (int q = 0; q < m; ++q) {
@@ -178,14 +211,21 @@ PALPATE_INLINE void ComplementarityProblem::factor_all() noexcept {
     for (int p = q; p < m; ++p) column[p] = from[order_[at(p)]];
     column[q] *= 1.0 + relaxation;
   }
-  for (int q = 0; q < m; ++q) {
-    double* const column = &factor_[place(0, q)];
-    const double scale = column[q] = inverse_root(column[q], order_[at(q)]);
-    for (int p = q + 1; p < m; ++p) column[p] *= scale;
-    for (int k = q + 1; k < m; ++k) {
-      double* const other = &factor_[place(0, k)];
-      const double value = column[k];
-      for (int p = k; p < m; ++p) other[p] -= value * column[p];
+  for (int first = 0; first < m; first += width) {
+    const int end = std::min(first + width, m);
+    for (int q = first; q < end; ++q) {
+      double* const column = &factor_[place(0, q)];
+      const double scale = column[q] = inverse_root(column[q], order_[at(q)]);
+      for (int p = q + 1; p < m; ++p) column[p] *= scale;
+      for (int k = q + 1; k < end; ++k) {
+        double* const other = &factor_[place(0, k)];
+        const double value = column[k];
+        for (int p = k; p < m; ++p) other[p] -= value * column[p];
+      }
+    }
+    for (int k = end; k < m; ++k) {
+      const auto from = columns(k, first);
+      detail::add_columns(&factor_[place(k, k)], from, {-*from[0], -*from[1], -*from[2], -*from[3]}, m - k);
     }
   }
 }

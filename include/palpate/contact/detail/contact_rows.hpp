@@ -92,8 +92,8 @@ class ContactRows {
   inline Vector3 moved_point(int i) const noexcept;
 
   /// Displacement of the point of row i per unit force on that of row j.
-  Vector3& response(int i, int j) noexcept { return response_[at(i) * at(capacity_) + at(j)]; }
-  const Vector3& response(int i, int j) const noexcept { return response_[at(i) * at(capacity_) + at(j)]; }
+  Vector3& response(int i, int j) noexcept { return response_[at(i) * problem_.stride() + at(j)]; }
+  const Vector3& response(int i, int j) const noexcept { return response_[at(i) * problem_.stride() + at(j)]; }
 
   int capacity_, count_ = 0;
   ComplementarityProblem problem_;

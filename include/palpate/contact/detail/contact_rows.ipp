@@ -18,7 +18,7 @@ PALPATE_INLINE ContactRows::ContactRows(int vertices, double friction, int capac
       compliance_(capacity),
       rows_(at(capacity)),
       candidate_(at(capacity)),
-      response_(at(capacity) * at(capacity)),
+      response_(problem_.stride() * at(capacity)),
       vertices_(3 * at(capacity)),
       slot_(at(vertices), -1) {}
 
@@ -76,7 +76,8 @@ inline void ContactRows::build_row(const TissueView& tissue, const ContactSample
   const double* const m = ci.normal.data();
   double *column = &problem_.w(0, i), *row = &problem_.w(i, 0);
   Vector3 *on_j = &response(i, 0), *on_i = &response(0, i);
-  for (int j = 0; j <= i; ++j, ++on_j, on_i += capacity_, row += capacity_) {
+  const std::size_t stride = problem_.stride();
+  for (int j = 0; j <= i; ++j, ++on_j, on_i += stride, row += stride) {
     const Contact& cj = rows_[at(j)];
     const int q = candidate_[at(j)]->slot;
     const double* const n = cj.normal.data();
