@@ -26,7 +26,7 @@ struct TortureCounts {
   long steady = 0;   ///< presses that stay at the same place at the end, and are checked
   long reacquired = 0, not_converged = 0, degraded = 0;  ///< ticks of tools with these flags
   long everted = 0;        ///< proxies at a surface whose elements are inverted: it has no inside
-  long caught_up = 0;      ///< jumps from a force that was flagged as not converged
+  long caught_up = 0;      ///< those of the jumps whose tick before was flagged
   long lost = 0;           ///< without force or flag, with the target inside the body
   long unsettled = 0;      ///< steady presses whose force still changes by more than 2 %, or restarts
   long inside = 0;         ///< tools whose proxy is inside the deformed body at the end
@@ -270,13 +270,10 @@ class TortureSession {
     // A tool that pulls at a fold of the surface from outside, or slips, leaves with a jump.
     const bool presses_on = readable && height(tool.state.position) < tool.radius;
     const double share = friction_ > 0.0 ? 0.3 : 0.1;
-    // A force that was flagged is not that of its place: a tool that snaps off an edge is on the way for some ticks.
     if (tool.readable > 30 && !flagged && !tool.tangled && presses_on &&
         (force - tool.force).norm() > 2.0 * stiffness_ * motion + share * largest + 0.05) {
-      if (tool.flagged)
-        ++counts.caught_up;
-      else
-        note(counts.jumps, "jump", t);
+      note(counts.jumps, "jump", t);
+      counts.caught_up += tool.flagged;
     }
     tool.flagged = flagged;
     tool.force = force;

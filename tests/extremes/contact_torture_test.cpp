@@ -14,7 +14,7 @@ TEST_CASE("random tools on random bodies never lose the tissue", "[extreme][tort
   std::printf(
       "contact torture: %ld sessions, %ld ticks, %ld ticks of tools with force, %ld steady presses\n"
       "  flagged: reacquired %ld, not converged %ld, degraded %ld\n"
-      "  at an everted surface %ld, jumps from a flagged force %ld\n"
+      "  at an everted surface %ld; of the jumps, from a flagged force %ld\n"
       "  lost %ld, unsettled %ld, inside %ld, jumps %ld, not finite %ld, energy gained %ld\n",
       counts.sessions, counts.ticks, counts.pressed, counts.steady, counts.reacquired, counts.not_converged,
       counts.degraded, counts.everted, counts.caught_up, counts.lost, counts.unsettled, counts.inside, counts.jumps,
