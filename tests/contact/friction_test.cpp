@@ -159,6 +159,31 @@ TEST_CASE("the friction force on a sphere of 4 mm that slides over many points i
   CHECK(roughest <= 0.02);
 }
 
+TEST_CASE("a sphere that slips from one point to the next keeps its friction", "[contact][friction]") {
+  for (const double mu : {0.4, 0.9})
+    for (const double angle : {0.0, 0.4}) {
+      AnalyticTissue tissue(16, 0.032, 1e-5);  // 2 mm apart and stiff: the sphere rests on one to four points
+      const Vector3 along(std::cos(angle), std::sin(angle), 0.0), start(-8e-3, -1e-3, 7e-3);
+      ToolSession s(tissue, {round_tool(8e-3, {-8e-3, -1e-3, 8.1e-3}, 2e-3)}, rough(mu));
+      s.move(0, start, 100);
+      double least = 1.0, largest_change = 0.0;
+      Vector3 before = s.force();
+      for (int k = 1; k <= 800; ++k) {
+        s.tick(0, start + 2e-5 * k * along);
+        if (k > 300) {
+          least = std::min(least, -along.dot(s.force()) / s.force().norm());
+          largest_change = std::max(largest_change, (s.force() - before).norm() / s.force().norm());
+        }
+        before = s.force();
+      }
+      INFO("mu " << mu << ", angle " << angle << ": least friction over force " << least << ", largest change "
+                 << largest_change);
+      // The surface through points 2 mm apart is inclined by 0.13, and a slip from point to point takes one tick.
+      CHECK(least >= std::sin(std::atan(mu) - 0.26));
+      CHECK(largest_change <= 0.3);
+    }
+}
+
 TEST_CASE("friction never generates energy for any motion of the hand", "[contact][friction][energy]") {
   testing::Random random(72);
   for (const double coupling : {0.0, 2e-3}) {

@@ -25,7 +25,9 @@ struct TortureCounts {
   long pressed = 0;  ///< ticks of tools with a force
   long steady = 0;   ///< presses that stay at the same place at the end, and are checked
   long reacquired = 0, not_converged = 0, degraded = 0;  ///< ticks of tools with these flags
-  long lost = 0;                                         ///< without force or flag, with the target inside the body
+  long everted = 0;        ///< proxies at a surface whose elements are inverted: it has no inside
+  long caught_up = 0;      ///< those of the jumps whose tick before was flagged
+  long lost = 0;           ///< without force or flag, with the target inside the body
   long unsettled = 0;      ///< steady presses whose force still changes by more than 2 %, or restarts
   long inside = 0;         ///< tools whose proxy is inside the deformed body at the end
   long jumps = 0;          ///< ticks in which a force changes by more than motion and coupling allow
@@ -114,6 +116,7 @@ class TortureSession {
     int readable = 0;                                      // ticks since the last lost reading or restart
     Vector3 force = Vector3::Zero(), last_position = Vector3::Zero();
     Status status{};
+    bool flagged = false;  // as not converged, in the last tick
   };
 
   double logarithmic(double low, double high) { return low * std::pow(high / low, random_.uniform()); }
@@ -268,8 +271,11 @@ class TortureSession {
     const bool presses_on = readable && height(tool.state.position) < tool.radius;
     const double share = friction_ > 0.0 ? 0.3 : 0.1;
     if (tool.readable > 30 && !flagged && !tool.tangled && presses_on &&
-        (force - tool.force).norm() > 2.0 * stiffness_ * motion + share * largest + 0.05)
+        (force - tool.force).norm() > 2.0 * stiffness_ * motion + share * largest + 0.05) {
       note(counts.jumps, "jump", t);
+      counts.caught_up += tool.flagged;
+    }
+    tool.flagged = flagged;
     tool.force = force;
     if (readable) tool.last_position = tool.state.position;
   }
@@ -282,12 +288,39 @@ class TortureSession {
     for (std::size_t v = 0; v < positions.size(); ++v)
       positions[v] += u.segment<3>(3 * Index{model_->touchable_nodes()[v]});
     const ContactSurface deformed(std::move(positions), surface.triangles());
+    const std::vector<bool> inverted = inverted_nodes(u);
     for (std::size_t t = 0; t < tools_.size(); ++t) {
       const Tool& tool = tools_[t];
       // A sphere much smaller than the facets is in a dent that they do not show.
       if (tool.status.has(StatusFlag::coarse_contact) || tool.force.norm() == 0.0) continue;
-      if (deformed.closest(in_model(servo_->proxy(t))).distance < -1e-9 * thickness_) note(counts.inside, "inside", t);
+      const auto closest = deformed.closest(in_model(servo_->proxy(t)));
+      if (!(closest.distance < -1e-9 * thickness_)) continue;
+      const Triangle& v = surface.triangle(closest.triangle);
+      const bool everted = std::any_of(v.begin(), v.end(), [&](int i) {
+        return inverted[static_cast<std::size_t>(model_->touchable_nodes()[static_cast<std::size_t>(i)])];
+      });
+      if (everted)
+        ++counts.everted;
+      else
+        note(counts.inside, "inside", t);
     }
+  }
+
+  /// Nodes of the tetrahedra that a displacement turns inside out. The linear model allows that, and the surface there
+  /// has no inside and outside: its normals point into the body.
+  std::vector<bool> inverted_nodes(const VectorX& u) const {
+    const auto& mesh = model_->mesh();
+    const auto volume = [&](const auto& element, double share) {
+      std::array<Vector3, 4> x;
+      for (std::size_t a = 0; a < 4; ++a)
+        x[a] = mesh.positions[static_cast<std::size_t>(element[a])] + share * u.segment<3>(3 * Index{element[a]});
+      return (x[1] - x[0]).cross(x[2] - x[0]).dot(x[3] - x[0]);
+    };
+    std::vector<bool> inverted(mesh.positions.size(), false);
+    for (const auto& element : mesh.elements)
+      if (volume(element, 0.0) * volume(element, 1.0) < 0.0)
+        for (const auto node : element) inverted[static_cast<std::size_t>(node)] = true;
+    return inverted;
   }
 
   void note(long& count, const char* what, std::size_t t) {

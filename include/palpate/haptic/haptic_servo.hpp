@@ -108,6 +108,7 @@ class HapticServo {
   bool is_lost(std::size_t i) noexcept;
   bool is_free(const Vector3& position, double depth) noexcept;
   bool sweep_lost_tools() noexcept;
+  bool is_on_the_way(std::size_t i) const noexcept;
   bool place_lost_tools() noexcept;
   void recover(std::size_t i) noexcept;
   void pass(std::size_t i, Status shared) noexcept;

@@ -194,11 +194,26 @@ PALPATE_INLINE bool HapticServo::is_free(const Vector3& position, double depth) 
   return !problem_.vertex_forces().empty() && problem_.closest(tissue_, position, depth).distance > 0.0;
 }
 
-/// Lost tools are swept again from where they were outside; true if there are any.
+/// Whether nothing presses a tool any more but the linearisations of the tick ended before it reached its device.
+PALPATE_INLINE bool HapticServo::is_on_the_way(std::size_t i) const noexcept {
+  constexpr double near = 1e-6;  // radii
+  const ContactTool& tool = contact_tools_[i];
+  return tool.active && detail::is_zero(tool.force) && (tool.target - tool.proxy).norm() > near * tool.radius;
+}
+
+/// Lost tools are swept again from where they were outside, and tools on the way the rest of it; true if there are any.
 PALPATE_INLINE bool HapticServo::sweep_lost_tools() noexcept {
+  const ContactSurface& surface = tissue_.contact_surface();
   bool any = false;
-  for (std::size_t i = 0; i < inputs_.size(); ++i)
-    any = (is_lost(i) && inputs_[i].sweep_from_outside(tissue_.contact_surface(), contact_tools_[i])) || any;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    ContactTool& tool = contact_tools_[i];
+    if (is_lost(i)) {
+      any = inputs_[i].sweep_from_outside(surface, tool) || any;
+    } else if (is_on_the_way(i)) {
+      sweep(tool, surface, tool.proxy, tool.target);
+      any = true;
+    }
+  }
   return any;
 }
 

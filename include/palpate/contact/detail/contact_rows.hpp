@@ -34,7 +34,9 @@ class ContactRows {
   /// Whether a row is at the place of a candidate that moves: two facets have their closest points on a common edge.
   bool has_same(const Candidates& candidates, const Candidate& c, double radius) const noexcept;
 
-  /// Before a point that moves is added: continues the friction of the facet from which the tool comes.
+  /// Before a point is added: its slip counts from where the tool stuck or slipped to in the last tick, as that of the
+  /// nearest point that pressed then. Otherwise a tool that passes from point to point would slide without friction in
+  /// the ticks between. A point that moves continues the friction of the facet from which the tool comes.
   void inherit_friction(const ContactSurface& surface, const Candidates& candidates, const ContactTool& tool,
                         Candidate& c) const noexcept;
   /// The caller guarantees that there is room.
@@ -80,6 +82,7 @@ class ContactRows {
   static constexpr double alternation_tolerance = 1e-5;
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   inline bool sticks(const Candidate& c) const noexcept;
+  inline static bool takes_over(const Candidates& candidates, const Candidate& other, const Candidate& c) noexcept;
   inline static void reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept;
   void build_friction(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool, int i) noexcept;
   inline Matrix3 between(const TissueView& tissue, const ContactSamples& samples, int i, int j) noexcept;

@@ -131,20 +131,33 @@ PALPATE_INLINE void ContactRows::add(const ContactSurface& surface, const Candid
   row.grasped = c.grasped;
 }
 
+/// Whether a point that moves continues another on the next facet: it takes the friction force too.
+inline bool ContactRows::takes_over(const Candidates& candidates, const Candidate& other, const Candidate& c) noexcept {
+  constexpr double same_direction = 0.98;
+  return candidates.is_moving(c) && candidates.is_moving(other) && other.normal.dot(c.normal) >= same_direction;
+}
+
 PALPATE_INLINE void ContactRows::inherit_friction(const ContactSurface& surface, const Candidates& candidates,
                                                   const ContactTool& tool, Candidate& c) const noexcept {
-  constexpr double same_direction = 0.98;
-  if (!friction_.acts() || !candidates.is_moving(c) || sticks(c)) return;
+  if (!friction_.acts() || sticks(c)) return;
+  const Candidate* nearest = nullptr;
   for (int i = 0; i < count_; ++i) {
     const Candidate& other = *candidate_[at(i)];
-    if (other.tool != c.tool || !candidates.is_moving(other) || other.grasped || !sticks(other)) continue;
-    if (other.normal.dot(c.normal) < same_direction) continue;
-    const Vector3 path = candidates.rest(surface, c.moving) - candidates.rest(surface, other.moving);
-    c.anchor = other.anchor + tool.rotation.transpose() * path;
-    c.friction = other.friction;
-    c.stuck_tick = other.stuck_tick;
-    return;
+    if (other.tool != c.tool || other.grasped || !sticks(other)) continue;
+    if (takes_over(candidates, other, c)) {
+      const Vector3 path = candidates.rest(surface, c.moving) - candidates.rest(surface, other.moving);
+      c.anchor = other.anchor + tool.rotation.transpose() * path;
+      c.friction = other.friction;
+      c.stuck_tick = other.stuck_tick;
+      return;
+    }
+    if (nearest == nullptr || (other.point - c.point).squaredNorm() < (nearest->point - c.point).squaredNorm())
+      nearest = &other;
   }
+  if (nearest == nullptr) return;
+  c.anchor = nearest->anchor + tool.rotation.transpose() * (c.point - nearest->point);
+  c.friction.setZero();
+  c.stuck_tick = nearest->stuck_tick;
 }
 
 PALPATE_INLINE std::array<int, maximum_tools> ContactRows::count_by_tool() const noexcept {
