@@ -17,7 +17,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// after construction.
 class CoulombFriction {
  public:
-  static constexpr int maximum_sweeps = 5;   ///< per turn
+  static constexpr int maximum_sweeps = 4;   ///< per turn
   static constexpr double tolerance = 1e-4;  ///< change of t in a sweep, relative to the largest mu lambda
 
   /// For up to `capacity` contacts. Allocates unless the coefficient is zero; for set-up.
@@ -46,14 +46,15 @@ class CoulombFriction {
   Vector3 force(int i) const noexcept { return in_space(i, force_[at(i)]); }
   /// Displacement due to the friction forces at contact i, tool over tissue, along the normal [m]. O(rows).
   double raised(int i) const noexcept;
-  /// The whole displacement [m].
-  Vector3 moved(int i) const noexcept { return in_space(i, moved_[at(i)]) + raised(i) * frame_[at(i)].normal; }
+  /// The whole displacement [m]. O(rows).
+  Vector3 displacement(int i) const noexcept;
 
  private:
   using Pair = Eigen::Vector2d;  // components along the tangents of a contact
   struct Frame {
     Vector3 normal;
     Pair x, y, z;  // components of both tangents
+    Pair along(const Vector3& v) const noexcept { return v[0] * x + v[1] * y + v[2] * z; }
     bool sticks = false;
   };
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -63,7 +64,7 @@ class CoulombFriction {
     return {f.x.dot(p), f.y.dot(p), f.z.dot(p)};
   }
   inline Pair within(int i, const Pair& friction_force) const noexcept;
-  inline void push(int j, const Pair& force) noexcept;
+  inline Pair moved(int i) const noexcept;
   void slip_by_normal_forces() noexcept;
   double sweep() noexcept;
 
@@ -74,8 +75,7 @@ class CoulombFriction {
   std::vector<Pair> across_;  // row i: normal displacement there per tangential force at j, and the reverse
   std::vector<Frame> frame_;
   std::vector<double> pressing_, step_;
-  std::vector<Pair> force_, start_, drift_;
-  std::vector<Pair> slip_, moved_;  // without and by friction forces
+  std::vector<Pair> force_, start_, drift_, slip_;  // slip: without friction forces
   AndersonAcceleration acceleration_;
 };
 

@@ -20,15 +20,14 @@ class AndersonAcceleration {
   void forget() noexcept { known_ = next_ = 0, has_last_ = false; }
   /// The next map differs from the last by a shift: its residuals are others, their differences are about the same.
   void shift() noexcept { has_last_ = false; }
-  /// Replaces `count` results g of the map for x by the next x to try, and `image` by its image under the same linear
-  /// map.
-  void extrapolate(int count, const double* x, double* g, double* image) noexcept;
+  /// Replaces `count` results g of the map for x by the next x to try.
+  void extrapolate(int count, const double* x, double* g) noexcept;
 
  private:
   static constexpr int depth = 3;
   static constexpr double longest = 10.0, growth = 2.0;
   struct Step {
-    VectorX residual, result, image;
+    VectorX residual, result;
   };
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   void add_difference(int count) noexcept;

@@ -9,12 +9,12 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE AndersonAcceleration::AndersonAcceleration(int capacity) : residual_(capacity) {
-  const Step zero{VectorX::Zero(capacity), VectorX::Zero(capacity), VectorX::Zero(capacity)};
+  const Step zero{VectorX::Zero(capacity), VectorX::Zero(capacity)};
   last_ = zero;
   difference_.fill(zero);
 }
 
-PALPATE_INLINE void AndersonAcceleration::extrapolate(int count, const double* x, double* g, double* image) noexcept {
+PALPATE_INLINE void AndersonAcceleration::extrapolate(int count, const double* x, double* g) noexcept {
   double square = 0.0;
   for (int i = 0; i < count; ++i) {
     residual_[i] = g[i] - x[i];
@@ -27,13 +27,11 @@ PALPATE_INLINE void AndersonAcceleration::extrapolate(int count, const double* x
     for (int i = 0; i < count; ++i) {
       step.residual[i] = residual_[i] - last_.residual[i];
       step.result[i] = g[i] - last_.result[i];
-      step.image[i] = image[i] - last_.image[i];
     }
     add_difference(count);
   }
   std::copy_n(residual_.data(), count, last_.residual.data());
   std::copy_n(g, count, last_.result.data());
-  std::copy_n(image, count, last_.image.data());
   has_last_ = true;
   least_residual(count);
   double length = 0.0;
@@ -45,12 +43,7 @@ PALPATE_INLINE void AndersonAcceleration::extrapolate(int count, const double* x
   }
   if (!(length > 0.0)) return;
   const double part = std::min(1.0, longest * std::sqrt(square / length));
-  for (int i = 0; i < count; ++i) {
-    double by = 0.0;
-    for (int k = 0; k < known_; ++k) by += weight_[at(k)] * difference_[at(k)].image[i];
-    g[i] -= part * residual_[i];
-    image[i] -= part * by;
-  }
+  for (int i = 0; i < count; ++i) g[i] -= part * residual_[i];
 }
 
 /// Counts the difference just stored, and its products with the others.

@@ -141,14 +141,12 @@ PALPATE_INLINE bool ComplementarityProblem::step() noexcept {
 }
 
 PALPATE_INLINE void ComplementarityProblem::update_gaps() noexcept {
-  double* const gap = gap_.data();
-  std::copy_n(b.begin(), rows_, gap);
-  for (int p = 0; p < order_count_; ++p) {
-    const int j = order_[at(p)];
-    const double force = lambda[at(j)];
-    const double* const column = &w_[place(0, j)];
-    for (int i = 0; i < rows_; ++i) gap[i] += force * column[i];
-    gap[j] += relaxation * column[j] * force;
+  for (int i = 0; i < rows_; ++i) {
+    if (active_[at(i)]) continue;
+    const double* const column = &w_[place(0, i)];
+    double gap = b[at(i)];
+    for (int p = 0; p < order_count_; ++p) gap += column[order_[at(p)]] * lambda[at(order_[at(p)])];
+    gap_[at(i)] = gap;
   }
 }
 

@@ -74,7 +74,7 @@ class ContactRows {
 
  private:
   static constexpr int least_alternations = 2, maximum_alternations = 16;  // turns of slide
-  static constexpr int alternation_work = 400;                             // turns times rows^2
+  static constexpr int alternation_work = 700;                             // turns times rows^2
   static constexpr double alternation_tolerance = 1e-5;
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   inline bool sticks(const Candidate& c) const noexcept;

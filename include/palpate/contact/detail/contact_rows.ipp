@@ -46,8 +46,8 @@ inline Matrix3 ContactRows::turning(const ContactTool& tool, const Vector3& at_a
   return tool.rotational_compliance * (at_arm.dot(by_arm) * Matrix3::Identity() - by_arm * at_arm.transpose());
 }
 
-/// Displacement of the coupling due to friction forces, at the contact point; the rest of CoulombFriction::moved is the
-/// tissue's.
+/// Displacement of the coupling due to friction forces, at the contact point; the rest of CoulombFriction::displacement
+/// is the tissue's.
 inline Vector3 ContactRows::coupling_displacement(const ContactTool& tool, const Contact& row) noexcept {
   return tool.friction_displacement + cross(tool.friction_rotation, row.arm);
 }
@@ -273,7 +273,7 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
     if (friction_.acts()) c.friction = row.friction = friction_.force(i);
     if (c.force == 0.0 && !c.grasped) c.history.known = 0;
     row.point = moved_point(i);
-    if (friction_.acts()) row.point -= friction_.moved(i) - coupling_displacement(tools[at(row.tool)], row);
+    if (friction_.acts()) row.point -= friction_.displacement(i) - coupling_displacement(tools[at(row.tool)], row);
     longest = std::max(longest, (row.point - c.point).squaredNorm());
     if (row.force == 0.0) continue;
     ContactTool& tool = tools[at(row.tool)];
@@ -324,21 +324,21 @@ PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const 
                                                 const ContactTool& tool, int i) noexcept {
   const Candidate& c = *candidate_[at(i)];
   const Contact& ci = rows_[at(i)];
+  const bool rotates = tool.rotational_compliance > 0.0;
+  const double compliance = tool.total_compliance() + floor_;
   const Vector3 drift = tool.target + tool.target_rotation * c.anchor - ci.rest;
   friction_.set(i, ci.normal, drift, c.friction, !c.grasped && sticks(c));
-  const int p = c.slot;
   for (int j = 0; j <= i; ++j) {
     const Contact& cj = rows_[at(j)];
     const bool same = ci.tool == cj.tool;
-    const int q = candidate_[at(j)]->slot;
-    const Matrix3& between = p >= q ? compliance_(tissue, samples, p, q) : compliance_(tissue, samples, q, p);
-    const double own = same ? tool.total_compliance() + floor_ : 0.0;
-    if (same && tool.rotational_compliance > 0.0)
-      friction_.set(i, j, (p >= q ? between : between.transpose()) + turning(tool, ci.arm, cj.arm), own);
-    else if (p >= q)
-      friction_.set(i, j, between, own);
-    else
-      friction_.set(j, i, between, own);
+    const int p = c.slot, q = candidate_[at(j)]->slot;
+    const Matrix3* between = p >= q ? &compliance_(tissue, samples, p, q) : &compliance_(tissue, samples, q, p);
+    Matrix3 turned;
+    if (same && rotates) {
+      turned = *between + (p >= q ? turning(tool, ci.arm, cj.arm) : turning(tool, cj.arm, ci.arm));
+      between = &turned;
+    }
+    friction_.set(p >= q ? i : j, p >= q ? j : i, *between, same ? compliance : 0.0);
   }
 }
 
