@@ -1,7 +1,7 @@
 // Coulomb friction of the contacts of a tick, for known normal forces.
 #pragma once
 
-#include <palpate/core/types.hpp>
+#include <palpate/contact/detail/anderson.hpp>
 
 #include <vector>
 
@@ -12,53 +12,71 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// t_j), where d_i is the slip without forces since the point last stuck. With lambda fixed the t_i minimise a convex
 /// energy over discs; found by block descent with projection (Duriez et al. 2006 after Moreau and Alart): continuous in
 /// all inputs, no switch between sticking and sliding, no regularised velocity. It starts from the friction forces of
-/// the last tick, so that a few sweeps suffice; O(rows^2) each. No allocation after construction.
+/// the last tick, so that a few sweeps suffice, O(rows^2) each; turns of sweeps here and normal forces elsewhere are
+/// extrapolated together. Vectors are kept in the frames of the contacts: two tangents and the normal. No allocation
+/// after construction.
 class CoulombFriction {
  public:
-  static constexpr int maximum_sweeps = 12;
+  static constexpr int maximum_sweeps = 4;   ///< per turn
   static constexpr double tolerance = 1e-4;  ///< change of t in a sweep, relative to the largest mu lambda
-
-  /// One contact of the problem.
-  struct Row {
-    Vector3 normal = Vector3::Zero();
-    double pressing = 0.0;                     ///< lambda [N]
-    Vector3 drift = Vector3::Zero();           ///< d [m]
-    Vector3 friction_force = Vector3::Zero();  ///< t [N], on the tool: initial value and solution
-    bool sticks = false;                       ///< false: no friction, it came into contact in this tick
-  };
 
   /// For up to `capacity` contacts. Allocates unless the coefficient is zero; for set-up.
   CoulombFriction(double coefficient, int capacity);
 
   bool acts() const noexcept { return coefficient_ > 0.0; }
   double coefficient() const noexcept { return coefficient_; }
-  Row& row(int i) noexcept { return rows_[at(i)]; }
-  const Row& row(int i) const noexcept { return rows_[at(i)]; }
 
-  /// W_ij: displacement of tool over tissue at i per force at j [m/N], for j <= i; W_ji is its transpose.
-  void set(int i, int j, const Matrix3& w) noexcept;
-  /// Finds all friction forces for the present `pressing` of the rows.
-  void solve(int count) noexcept;
-  /// Sets the normal forces; friction forces above mu lambda are shortened.
-  void press(int count, const double* lambda) noexcept;
-  /// Displacement due to the friction forces at contact i, tool over tissue, after press [m].
-  Vector3 moved(int i) const noexcept;
+  /// The next contacts are not those of the last problem with small changes.
+  void forget() noexcept { count_ = 0; }
+  /// Contact i: its unit normal, the drift d_i [m], and the friction force on the tool to start from [N]. A contact
+  /// that does not stick has no friction: it came into contact in this tick.
+  void set(int i, const Vector3& normal, const Vector3& drift, const Vector3& friction_force, bool sticks) noexcept;
+  /// W_ij: displacement of tool over tissue at i per force at j [m/N]: c and `own` times the identity. For every pair
+  /// of contacts once, since W_ji is its transpose.
+  inline void set(int i, int j, const Matrix3& c, double own) noexcept;
+  /// Sets the normal forces of the first `count` contacts, whose W is set.
+  void begin(int count, const double* lambda) noexcept;
+  /// Changes the normal forces; friction forces above mu lambda are shortened.
+  void press(const double* lambda) noexcept;
+  /// A turn: some sweeps of block descent, extrapolated. Returns the largest change of a friction force in the first
+  /// sweep, relative to the largest mu lambda: the residual at the start.
+  double turn() noexcept;
+
+  /// Friction force on the tool [N].
+  Vector3 force(int i) const noexcept { return in_space(i, force_[at(i)]); }
+  /// Displacement due to the friction forces at contact i, tool over tissue, along the normal [m]. O(rows).
+  double raised(int i) const noexcept;
+  /// The whole displacement [m]. O(rows).
+  Vector3 displacement(int i) const noexcept;
 
  private:
+  using Pair = Eigen::Vector2d;  // components along the tangents of a contact
+  struct Frame {
+    Vector3 normal;
+    Pair x, y, z;  // components of both tangents
+    Pair along(const Vector3& v) const noexcept { return v[0] * x + v[1] * y + v[2] * z; }
+    bool sticks = false;
+  };
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-  double* column(int j) noexcept { return w_.data() + at(j) * stride_; }
-  const double* column(int j) const noexcept { return w_.data() + at(j) * stride_; }
-
-  Vector3 within(const Row& r, const Vector3& friction_force) const noexcept;
-  void push(double* sum, int count, int j, const Vector3& force) const noexcept;
-  static double stiffest(const Matrix3& w, const Vector3& normal) noexcept;
+  std::size_t place(int i, int j) const noexcept { return at(i) * capacity_ + at(j); }
+  Vector3 in_space(int i, const Pair& p) const noexcept {
+    const Frame& f = frame_[at(i)];
+    return {f.x.dot(p), f.y.dot(p), f.z.dot(p)};
+  }
+  inline Pair within(int i, const Pair& friction_force) const noexcept;
+  inline Pair moved(int i) const noexcept;
+  void slip_by_normal_forces() noexcept;
+  double sweep() noexcept;
 
   double coefficient_;
-  std::size_t stride_;
-  std::vector<double> w_;  // by columns, three rows and columns per contact
-  std::vector<double> slip_, moved_;
-  std::vector<Row> rows_;
-  std::vector<double> step_;
+  std::size_t capacity_;
+  int count_ = 0;
+  std::vector<Pair> along_;   // row 2 j + c: tangential displacements per force at j along its tangent c
+  std::vector<Pair> across_;  // row i: normal displacement there per tangential force at j, and the reverse
+  std::vector<Frame> frame_;
+  std::vector<double> pressing_, step_;
+  std::vector<Pair> force_, start_, drift_, slip_;  // slip: without friction forces
+  AndersonAcceleration acceleration_;
 };
 
 }}  // namespace palpate

@@ -48,6 +48,8 @@ class ComplementarityProblem {
   /// False when the pivot limit was reached: lambda is then >= 0 and its energy is below that of zero force, but some
   /// gaps are still negative. Also false, with zero force, when W or b is not finite.
   bool solve() noexcept;
+  /// The same for other gaps b, after `solve` with the same W: its factor is used again.
+  bool solve_again() noexcept;
 
  private:
   std::size_t place(int i, int j) const noexcept {

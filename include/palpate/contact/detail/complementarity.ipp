@@ -38,6 +38,15 @@ PALPATE_INLINE ComplementarityProblem::ComplementarityProblem(int capacity)
       order_(at(capacity)) {}
 
 PALPATE_INLINE bool ComplementarityProblem::solve() noexcept {
+  order_count_ = factored_ = 0;
+  for (int i = 0; i < rows_; ++i) {
+    active_[at(i)] = bilateral[at(i)] || lambda[at(i)] > 0.0;
+    if (active_[at(i)]) order_[at(order_count_++)] = i;
+  }
+  return solve_again();
+}
+
+PALPATE_INLINE bool ComplementarityProblem::solve_again() noexcept {
   bool sound = true;
   double largest = 0.0;
   for (int i = 0; i < rows_; ++i) {
@@ -73,11 +82,6 @@ inline double ComplementarityProblem::inverse_root(double pivot, int i) const no
 
 /// Block principal pivoting as long as the number of wrong rows decreases.
 PALPATE_INLINE bool ComplementarityProblem::pivot_blocks() noexcept {
-  order_count_ = factored_ = 0;
-  for (int i = 0; i < rows_; ++i) {
-    active_[at(i)] = bilateral[at(i)] || lambda[at(i)] > 0.0;
-    if (active_[at(i)]) order_[at(order_count_++)] = i;
-  }
   int best = rows_ + 1, patience = 3;
   while (patience > 0) {
     ++pivots;

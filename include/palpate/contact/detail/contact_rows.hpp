@@ -52,10 +52,10 @@ class ContactRows {
              int first) noexcept;
   /// Solves for the normal forces with the present friction forces. False when the iteration was stopped early.
   bool solve() noexcept;
-  /// Solves for the friction forces and for the normal forces in turn, each exact for the other (Panagiotopoulos 1975),
-  /// until the normal forces stay, or the bound of the work is reached; further linearisations and ticks continue the
-  /// iteration. Stopped after one turn, it may alternate from tick to tick between two states, since normals follow the
-  /// unfinished forces. False when a solution was stopped early.
+  /// Solves for the friction forces and for the normal forces in turn (Panagiotopoulos 1975), extrapolating the turns,
+  /// until both stay or the bound of the work is reached; further linearisations and ticks continue the iteration.
+  /// Stopped too early, it may alternate from tick to tick between two states, since normals follow the unfinished
+  /// forces. False when a solution was stopped early.
   bool slide() noexcept;
   /// Largest change of a normal force in the last turn of slide, relative to the largest normal force.
   double alternation_change() const noexcept { return alternation_change_; }
@@ -77,21 +77,22 @@ class ContactRows {
   void stick(std::span<const ContactTool> tools) noexcept;
 
  private:
-  static constexpr int maximum_alternations = 16;  // turns of slide
-  static constexpr int alternation_work = 1024;    // turns times rows^2: many rows have one turn
+  static constexpr int least_alternations = 2, maximum_alternations = 16;  // turns of slide
+  static constexpr int alternation_work = 700;                             // turns times rows^2
   static constexpr double alternation_tolerance = 1e-5;
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   inline bool sticks(const Candidate& c) const noexcept;
   inline static bool takes_over(const Candidates& candidates, const Candidate& other, const Candidate& c) noexcept;
   inline static void reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept;
   void build_friction(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool, int i) noexcept;
-  inline Matrix3 between(const TissueView& tissue, const ContactSamples& samples, int i, int j) noexcept;
+  inline static Matrix3 turning(const ContactTool& tool, const Vector3& at_arm, const Vector3& by_arm) noexcept;
   inline static Vector3 coupling_displacement(const ContactTool& tool, const Contact& row) noexcept;
   void store_friction(std::span<ContactTool> tools) const noexcept;
   inline static double set_responses(const double* c, const double* m, const double* n, double* of_n,
                                      double* of_m) noexcept;
   inline void build_row(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool,
                         int i) noexcept;
+  inline void raise_gaps() noexcept;
   inline Vector3 moved_point(int i) const noexcept;
 
   /// Displacement of the point of row i per unit force on that of row j.

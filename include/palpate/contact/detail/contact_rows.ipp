@@ -1,7 +1,8 @@
 // Definitions of contact_rows.hpp.
 #pragma once
 
-#include <palpate/contact/detail/candidates.ipp>  // its inline functions
+#include <palpate/contact/coulomb_friction.ipp>  // inline functions, as of the next
+#include <palpate/contact/detail/candidates.ipp>
 #include <palpate/contact/detail/contact_rows.hpp>
 
 #include <algorithm>
@@ -40,14 +41,13 @@ inline void ContactRows::reach(const ContactTool& tool, const Candidate& c, Cont
   row.offset += row.normal.dot(tool.target_rotation * c.core);
 }
 
-/// The compliance between two rows' points.
-inline Matrix3 ContactRows::between(const TissueView& tissue, const ContactSamples& samples, int i, int j) noexcept {
-  const int p = candidate_[at(i)]->slot, q = candidate_[at(j)]->slot;
-  return p >= q ? compliance_(tissue, samples, p, q) : Matrix3(compliance_(tissue, samples, q, p).transpose());
+/// Displacement of the tool at one arm per force at another, by its rotation.
+inline Matrix3 ContactRows::turning(const ContactTool& tool, const Vector3& at_arm, const Vector3& by_arm) noexcept {
+  return tool.rotational_compliance * (at_arm.dot(by_arm) * Matrix3::Identity() - by_arm * at_arm.transpose());
 }
 
-/// Displacement of the coupling due to friction forces, at the contact point; the rest of CoulombFriction::moved is the
-/// tissue's.
+/// Displacement of the coupling due to friction forces, at the contact point; the rest of CoulombFriction::displacement
+/// is the tissue's.
 inline Vector3 ContactRows::coupling_displacement(const ContactTool& tool, const Contact& row) noexcept {
   return tool.friction_displacement + cross(tool.friction_rotation, row.arm);
 }
@@ -93,6 +93,7 @@ inline void ContactRows::build_row(const TissueView& tissue, const ContactSample
 PALPATE_INLINE void ContactRows::begin_tick(std::uint64_t compliance_revision) noexcept {
   compliance_.begin_tick(compliance_revision);
   ++tick_;
+  friction_.forget();
 }
 
 PALPATE_INLINE void ContactRows::clear() noexcept {
@@ -220,32 +221,37 @@ PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const ContactSa
   }
   if (!friction_.acts()) return;
   for (int i = 0; i < count_; ++i) pressing_before_[at(i)] = candidate_[at(i)]->force;
-  friction_.press(count_, pressing_before_.data());
+  friction_.begin(count_, pressing_before_.data());
 }
 
 PALPATE_INLINE bool ContactRows::solve() noexcept {
-  if (!friction_.acts()) return problem_.solve();
-  for (int i = 0; i < count_; ++i) problem_.b[at(i)] = free_gap_[at(i)] + rows_[at(i)].normal.dot(friction_.moved(i));
+  if (friction_.acts()) raise_gaps();
   const bool solved = problem_.solve();
-  friction_.press(count_, problem_.lambda.data());
+  if (friction_.acts()) friction_.press(problem_.lambda.data());
   return solved;
 }
 
+/// Gaps without normal forces, with the present friction forces.
+inline void ContactRows::raise_gaps() noexcept {
+  for (int i = 0; i < count_; ++i) problem_.b[at(i)] = free_gap_[at(i)] + friction_.raised(i);
+}
+
 PALPATE_INLINE bool ContactRows::slide() noexcept {
-  const int most = std::clamp(alternation_work / (count_ * count_), 1, maximum_alternations);
+  const int most = std::clamp(alternation_work / (count_ * count_), least_alternations, maximum_alternations);
   bool solved = true;
   for (int k = 0; k < most; ++k) {
     std::copy_n(problem_.lambda.begin(), count_, pressing_before_.begin());
-    friction_.solve(count_);
-    friction_.press(count_, problem_.lambda.data());
-    solved = solve();
+    const double friction_change = friction_.turn();
+    raise_gaps();
+    solved = problem_.solve_again();
+    friction_.press(problem_.lambda.data());
     double change = 0.0, largest = 0.0;
     for (int i = 0; i < count_; ++i) {
       change = std::max(change, std::abs(problem_.lambda[at(i)] - pressing_before_[at(i)]));
       largest = std::max(largest, std::abs(problem_.lambda[at(i)]));
     }
     alternation_change_ = largest > 0.0 ? change / largest : 0.0;
-    if (!(alternation_change_ > alternation_tolerance)) break;
+    if (friction_change == 0.0 && !(alternation_change_ > alternation_tolerance)) break;
   }
   return solved;
 }
@@ -284,10 +290,10 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
     Contact& row = rows_[at(i)];
     Candidate& c = *candidate_[at(i)];
     c.force = row.force = problem_.lambda[at(i)];
-    if (friction_.acts()) c.friction = row.friction = friction_.row(i).friction_force;
+    if (friction_.acts()) c.friction = row.friction = friction_.force(i);
     if (c.force == 0.0 && !c.grasped) c.history.known = 0;
     row.point = moved_point(i);
-    if (friction_.acts()) row.point -= friction_.moved(i) - coupling_displacement(tools[at(row.tool)], row);
+    if (friction_.acts()) row.point -= friction_.displacement(i) - coupling_displacement(tools[at(row.tool)], row);
     longest = std::max(longest, (row.point - c.point).squaredNorm());
     if (row.force == 0.0) continue;
     ContactTool& tool = tools[at(row.tool)];
@@ -338,20 +344,21 @@ PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const 
                                                 const ContactTool& tool, int i) noexcept {
   const Candidate& c = *candidate_[at(i)];
   const Contact& ci = rows_[at(i)];
+  const bool rotates = tool.rotational_compliance > 0.0;
+  const double compliance = tool.total_compliance() + floor_;
   const Vector3 drift = tool.target + tool.target_rotation * c.anchor - ci.rest;
-  const bool holds = !c.grasped && sticks(c);
-  friction_.row(i) = {ci.normal, 0.0, drift, holds ? c.friction : Vector3(0.0, 0.0, 0.0), holds};
+  friction_.set(i, ci.normal, drift, c.friction, !c.grasped && sticks(c));
   for (int j = 0; j <= i; ++j) {
     const Contact& cj = rows_[at(j)];
-    Matrix3 w = between(tissue, samples, i, j);
-    if (ci.tool == cj.tool) {
-      const double own = tool.total_compliance() + floor_ + tool.rotational_compliance * ci.arm.dot(cj.arm);
-      for (int r = 0; r < 3; ++r) w(r, r) += own;
+    const bool same = ci.tool == cj.tool;
+    const int p = c.slot, q = candidate_[at(j)]->slot;
+    const Matrix3* between = p >= q ? &compliance_(tissue, samples, p, q) : &compliance_(tissue, samples, q, p);
+    Matrix3 turned;
+    if (same && rotates) {
+      turned = *between + (p >= q ? turning(tool, ci.arm, cj.arm) : turning(tool, cj.arm, ci.arm));
+      between = &turned;
     }
-    if (ci.tool == cj.tool && tool.rotational_compliance > 0.0)
-      for (int col = 0; col < 3; ++col)
-        for (int r = 0; r < 3; ++r) w(r, col) -= tool.rotational_compliance * cj.arm[r] * ci.arm[col];
-    friction_.set(i, j, w);
+    friction_.set(p >= q ? i : j, p >= q ? j : i, *between, same ? compliance : 0.0);
   }
 }
 
@@ -363,8 +370,9 @@ PALPATE_INLINE void ContactRows::store_friction(std::span<ContactTool> tools) co
   for (int j = 0; j < count_; ++j) {
     const Contact& row = rows_[at(j)];
     ContactTool& tool = tools[at(row.tool)];
-    tool.friction_displacement += (tool.total_compliance() + floor_) * friction_.row(j).friction_force;
-    tool.friction_rotation += tool.rotational_compliance * cross(row.arm, friction_.row(j).friction_force);
+    const Vector3 friction = friction_.force(j);
+    tool.friction_displacement += (tool.total_compliance() + floor_) * friction;
+    tool.friction_rotation += tool.rotational_compliance * cross(row.arm, friction);
   }
 }
 
