@@ -1,7 +1,7 @@
 // Coulomb friction of the contacts of a tick, for known normal forces.
 #pragma once
 
-#include <palpate/contact/detail/anderson.hpp>
+#include <palpate/core/types.hpp>
 
 #include <vector>
 
@@ -12,9 +12,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// t_j), where d_i is the slip without forces since the point last stuck. With lambda fixed the t_i minimise a convex
 /// energy over discs; found by block descent with projection (Duriez et al. 2006 after Moreau and Alart): continuous in
 /// all inputs, no switch between sticking and sliding, no regularised velocity. It starts from the friction forces of
-/// the last tick, so that a few sweeps suffice, O(rows^2) each; turns of sweeps here and normal forces elsewhere are
-/// extrapolated together. Vectors are kept in the frames of the contacts: two tangents and the normal. No allocation
-/// after construction.
+/// the last tick, so that a few sweeps suffice, O(rows^2) each. Vectors are kept in the frames of the contacts: two
+/// tangents and the normal. No allocation after construction.
 class CoulombFriction {
  public:
   static constexpr int maximum_sweeps = 4;   ///< per turn
@@ -26,8 +25,6 @@ class CoulombFriction {
   bool acts() const noexcept { return coefficient_ > 0.0; }
   double coefficient() const noexcept { return coefficient_; }
 
-  /// The next contacts are not those of the last problem with small changes.
-  void forget() noexcept { count_ = 0; }
   /// Contact i: its unit normal, the drift d_i [m], and the friction force on the tool to start from [N]. A contact
   /// that does not stick has no friction: it came into contact in this tick.
   void set(int i, const Vector3& normal, const Vector3& drift, const Vector3& friction_force, bool sticks) noexcept;
@@ -38,7 +35,7 @@ class CoulombFriction {
   void begin(int count, const double* lambda) noexcept;
   /// Changes the normal forces; friction forces above mu lambda are shortened.
   void press(const double* lambda) noexcept;
-  /// A turn: some sweeps of block descent, extrapolated. Returns the largest change of a friction force in the first
+  /// A turn: some sweeps of block descent. Returns the largest change of a friction force in the first
   /// sweep, relative to the largest mu lambda: the residual at the start.
   double turn() noexcept;
 
@@ -75,8 +72,7 @@ class CoulombFriction {
   std::vector<Pair> across_;  // row i: normal displacement there per tangential force at j, and the reverse
   std::vector<Frame> frame_;
   std::vector<double> pressing_, step_;
-  std::vector<Pair> force_, start_, drift_, slip_;  // slip: without friction forces
-  AndersonAcceleration acceleration_;
+  std::vector<Pair> force_, drift_, slip_;  // slip: without friction forces
 };
 
 }}  // namespace palpate

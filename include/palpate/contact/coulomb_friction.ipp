@@ -17,10 +17,8 @@ PALPATE_INLINE CoulombFriction::CoulombFriction(double coefficient, int capacity
       pressing_(capacity_),
       step_(capacity_),
       force_(capacity_),
-      start_(capacity_),
       drift_(capacity_),
-      slip_(capacity_),
-      acceleration_(2 * static_cast<int>(capacity_)) {}
+      slip_(capacity_) {}
 
 /// A unit vector perpendicular to a unit vector.
 inline Vector3 unit_across(const Vector3& n) noexcept {
@@ -59,10 +57,6 @@ inline void CoulombFriction::set(int i, int j, const Matrix3& c, double own) noe
 }
 
 PALPATE_INLINE void CoulombFriction::begin(int count, const double* lambda) noexcept {
-  if (count == count_)
-    acceleration_.shift();
-  else
-    acceleration_.forget();
   count_ = count;
   press(lambda);
 }
@@ -77,13 +71,10 @@ PALPATE_INLINE void CoulombFriction::press(const double* lambda) noexcept {
 PALPATE_INLINE double CoulombFriction::turn() noexcept {
   const double largest = coefficient_ * *std::max_element(pressing_.begin(), pressing_.begin() + count_);
   slip_by_normal_forces();
-  std::copy_n(force_.begin(), count_, start_.begin());
   const double first = sweep();
   if (!(first > tolerance * largest)) return 0.0;
   for (int k = 1; k < maximum_sweeps; ++k)
     if (!(sweep() > tolerance * largest)) break;
-  acceleration_.extrapolate(2 * count_, start_.front().data(), force_.front().data());
-  press(pressing_.data());
   return first / largest;
 }
 

@@ -126,7 +126,7 @@ class Candidates {
  private:
   static constexpr int per_tick = 2;
   static constexpr std::size_t least_room = 1024;  // points: a large tool on fine facets has many more near than rows
-  static constexpr double level_ratio = 1.5;  // of the spacing of a level to that of the level before
+  static constexpr double level_ratio = 1.5;       // of the spacing of a level to that of the level before
 
   /// Moves a point that moves to the present closest point of its facet.
   void project(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,

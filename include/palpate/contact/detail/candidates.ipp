@@ -226,8 +226,7 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
         const int moving = samples_.count() + static_cast<int>(t * surface.triangles().size()) + triangle;
         return consider(tissue, tool, static_cast<int>(t), triangle, moving, displacement);
       }
-      for (int s = first; s < end; ++s)
-        consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
+      for (int s = first; s < end; ++s) consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
     });
   }
   valid_ = !lost_forces_;

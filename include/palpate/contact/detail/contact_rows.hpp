@@ -52,7 +52,7 @@ class ContactRows {
              int first) noexcept;
   /// Solves for the normal forces with the present friction forces. False when the iteration was stopped early.
   bool solve() noexcept;
-  /// Solves for the friction forces and for the normal forces in turn (Panagiotopoulos 1975), extrapolating the turns,
+  /// Solves for the friction forces and for the normal forces in turn (Panagiotopoulos 1975),
   /// until both stay or the bound of the work is reached; further linearisations and ticks continue the iteration.
   /// Stopped too early, it may alternate from tick to tick between two states, since normals follow the unfinished
   /// forces. False when a solution was stopped early.

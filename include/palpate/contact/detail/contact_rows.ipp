@@ -93,7 +93,6 @@ inline void ContactRows::build_row(const TissueView& tissue, const ContactSample
 PALPATE_INLINE void ContactRows::begin_tick(std::uint64_t compliance_revision) noexcept {
   compliance_.begin_tick(compliance_revision);
   ++tick_;
-  friction_.forget();
 }
 
 PALPATE_INLINE void ContactRows::clear() noexcept {
