@@ -79,6 +79,7 @@ class ContactRows {
  private:
   static constexpr int least_alternations = 2, maximum_alternations = 16;  // turns of slide
   static constexpr int alternation_work = 700;                             // turns times rows^2
+  static constexpr int full_alternations = 6;  // then half steps: with much friction, full ones may go in a circle
   static constexpr double alternation_tolerance = 1e-5;
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   inline bool sticks(const Candidate& c) const noexcept;
@@ -102,7 +103,7 @@ class ContactRows {
   int capacity_, count_ = 0;
   ComplementarityProblem problem_;
   CoulombFriction friction_;
-  std::vector<double> free_gap_, pressing_before_;
+  std::vector<double> free_gap_, pressed_;
   double floor_ = 0.0, longest_path_ = 0.0, alternation_change_ = 0.0;
   std::uint64_t tick_ = 0;
   PointCompliance compliance_;

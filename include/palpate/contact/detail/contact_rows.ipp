@@ -15,7 +15,7 @@ PALPATE_INLINE ContactRows::ContactRows(int vertices, double friction, int capac
       problem_(capacity),
       friction_(friction, capacity),
       free_gap_(at(capacity)),
-      pressing_before_(at(capacity)),
+      pressed_(at(capacity)),
       compliance_(capacity),
       rows_(at(capacity)),
       candidate_(at(capacity)),
@@ -219,8 +219,8 @@ PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const ContactSa
     if (friction_.acts()) build_friction(tissue, samples, tool, i);
   }
   if (!friction_.acts()) return;
-  for (int i = 0; i < count_; ++i) pressing_before_[at(i)] = candidate_[at(i)]->force;
-  friction_.begin(count_, pressing_before_.data());
+  for (int i = 0; i < count_; ++i) pressed_[at(i)] = candidate_[at(i)]->force;
+  friction_.begin(count_, pressed_.data());
 }
 
 PALPATE_INLINE bool ContactRows::solve() noexcept {
@@ -238,20 +238,24 @@ inline void ContactRows::raise_gaps() noexcept {
 PALPATE_INLINE bool ContactRows::slide() noexcept {
   const int most = std::clamp(alternation_work / (count_ * count_), least_alternations, maximum_alternations);
   bool solved = true;
+  std::copy_n(problem_.lambda.begin(), count_, pressed_.begin());
   for (int k = 0; k < most; ++k) {
-    std::copy_n(problem_.lambda.begin(), count_, pressing_before_.begin());
     const double friction_change = friction_.turn();
     raise_gaps();
     solved = problem_.solve_again();
-    friction_.press(problem_.lambda.data());
+    const double part = k < full_alternations ? 1.0 : 0.5;
     double change = 0.0, largest = 0.0;
     for (int i = 0; i < count_; ++i) {
-      change = std::max(change, std::abs(problem_.lambda[at(i)] - pressing_before_[at(i)]));
-      largest = std::max(largest, std::abs(problem_.lambda[at(i)]));
+      const double force = problem_.lambda[at(i)], own = force - pressed_[at(i)];
+      change = std::max(change, std::abs(own));
+      largest = std::max(largest, std::abs(force));
+      pressed_[at(i)] += part * own;
     }
+    friction_.press(pressed_.data());
     alternation_change_ = largest > 0.0 ? change / largest : 0.0;
     if (friction_change == 0.0 && !(alternation_change_ > alternation_tolerance)) break;
   }
+  friction_.press(problem_.lambda.data());
   return solved;
 }
 
