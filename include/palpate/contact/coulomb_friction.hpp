@@ -47,7 +47,16 @@ class CoulombFriction {
   Vector3 displacement(int i) const noexcept;
 
  private:
-  using Pair = Eigen::Vector2d;  // components along the tangents of a contact
+  /// Components along the two tangents of a contact. Not an Eigen vector: expressions of these cost much to compile.
+  struct Pair {
+    double first = 0.0, second = 0.0;
+
+    friend Pair operator+(const Pair& a, const Pair& b) noexcept { return {a.first + b.first, a.second + b.second}; }
+    friend Pair operator-(const Pair& a, const Pair& b) noexcept { return {a.first - b.first, a.second - b.second}; }
+    friend Pair operator*(double a, const Pair& b) noexcept { return {a * b.first, a * b.second}; }
+    double dot(const Pair& b) const noexcept { return first * b.first + second * b.second; }
+  };
+  static_assert(sizeof(Pair) == 2 * sizeof(double));  // arrays of pairs are read as arrays of numbers
   struct Frame {
     Vector3 normal;
     Pair x, y, z;  // components of both tangents
@@ -56,6 +65,8 @@ class CoulombFriction {
   };
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   std::size_t place(int i, int j) const noexcept { return at(i) * capacity_ + at(j); }
+  const double* along_row(int i) const noexcept { return &along_[place(i, 0)].first; }
+  const double* across_row(int i) const noexcept { return &across_[place(i, 0)].first; }
   Vector3 in_space(int i, const Pair& p) const noexcept {
     const Frame& f = frame_[at(i)];
     return {f.x.dot(p), f.y.dot(p), f.z.dot(p)};

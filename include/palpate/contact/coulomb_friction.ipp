@@ -2,8 +2,10 @@
 #pragma once
 
 #include <palpate/contact/coulomb_friction.hpp>
+#include <palpate/core/detail/packet.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -42,17 +44,19 @@ inline void CoulombFriction::set(int i, int j, const Matrix3& c, double own) noe
   const Pair x = cx * g.x + c(0, 1) * g.y + c(0, 2) * g.z;  // at i, per force along each tangent of j
   const Pair y = c(1, 0) * g.x + cy * g.y + c(1, 2) * g.z;
   const Pair z = c(2, 0) * g.x + c(2, 1) * g.y + cz * g.z;
-  const Pair first = f.x[0] * x + f.y[0] * y + f.z[0] * z, second = f.x[1] * x + f.y[1] * y + f.z[1] * z;
+  const Pair first = f.x.first * x + f.y.first * y + f.z.first * z;
+  const Pair second = f.x.second * x + f.y.second * y + f.z.second * z;
   across_[place(i, j)] = m[0] * x + m[1] * y + m[2] * z;
   across_[place(j, i)] = (cx * n[0] + c(0, 1) * n[1] + c(0, 2) * n[2]) * f.x +
                          (c(1, 0) * n[0] + cy * n[1] + c(1, 2) * n[2]) * f.y +
                          (c(2, 0) * n[0] + c(2, 1) * n[1] + cz * n[2]) * f.z;
   along_[place(2 * i, j)] = first;
   along_[place(2 * i + 1, j)] = second;
-  along_[place(2 * j, i)] = {first[0], second[0]};
-  along_[place(2 * j + 1, i)] = {first[1], second[1]};
+  along_[place(2 * j, i)] = {first.first, second.first};
+  along_[place(2 * j + 1, i)] = {first.second, second.second};
   if (i != j) return;
-  const double stiffest = 0.5 * (first[0] + second[1]) + std::hypot(0.5 * (first[0] - second[1]), first[1]);
+  const double stiffest =
+      0.5 * (first.first + second.second) + std::hypot(0.5 * (first.first - second.second), first.second);
   step_[at(i)] = 1.0 / stiffest;
 }
 
@@ -78,17 +82,17 @@ PALPATE_INLINE double CoulombFriction::turn() noexcept {
   return first / largest;
 }
 
-/// Two rows at a time.
 PALPATE_INLINE void CoulombFriction::slip_by_normal_forces() noexcept {
-  const int count = count_;
-  Pair* const slip = slip_.data();
-  std::copy_n(drift_.begin(), count, slip);
-  for (int i = 0; i < count; i += 2) {
-    const int k = i + 1 < count ? i + 1 : i;
-    const double one = pressing_[at(i)], other = k > i ? pressing_[at(k)] : 0.0;
-    const Pair *a = &across_[place(i, 0)], *b = &across_[place(k, 0)];
-    if (one == 0.0 && other == 0.0) continue;
-    for (int j = 0; j < count; ++j) slip[j] += one * a[j] + other * b[j];
+  std::copy_n(drift_.begin(), count_, slip_.begin());
+  for (int i = 0; i < count_; i += 4) {
+    std::array<const double*, 4> rows{};
+    std::array<double, 4> forces{};
+    for (int k = 0; k < 4; ++k) {
+      const bool is_row = i + k < count_;
+      rows[at(k)] = across_row(is_row ? i + k : i);
+      forces[at(k)] = is_row ? pressing_[at(i + k)] : 0.0;
+    }
+    detail::add_columns(&slip_.front().first, rows, forces, 2 * count_);
   }
 }
 
@@ -99,41 +103,19 @@ PALPATE_INLINE double CoulombFriction::sweep() noexcept {
     const Pair before = force_[at(i)];
     force_[at(i)] = within(i, before - step_[at(i)] * (slip_[at(i)] + moved(i)));
     const Pair change = force_[at(i)] - before;
-    largest = std::max(largest, change.squaredNorm());
+    largest = std::max(largest, change.dot(change));
   }
   return std::sqrt(largest);
 }
 
 PALPATE_INLINE double CoulombFriction::raised(int i) const noexcept {
-  const Pair *row = &across_[place(i, 0)], *t = force_.data();
-  Pair even(0.0, 0.0), odd(0.0, 0.0);
-  int j = 0;
-  for (const int last = count_ - 1; j < last; j += 2) {
-    even += row[j].cwiseProduct(t[j]);
-    odd += row[j + 1].cwiseProduct(t[j + 1]);
-  }
-  if (j < count_) even += row[j].cwiseProduct(t[j]);
-  return (even + odd).sum();
+  return detail::dot(across_row(i), &force_.front().first, 2 * count_);
 }
 
-/// Tangential displacement due to the friction forces. Two columns at a time: half of the work of a tick is here.
+/// Tangential displacement due to the friction forces: half of the work of a tick.
 inline CoulombFriction::Pair CoulombFriction::moved(int i) const noexcept {
-  const Pair *a = &along_[place(2 * i, 0)], *b = a + capacity_, *t = force_.data();
-  Pair even_a(0.0, 0.0), even_b(0.0, 0.0), odd_a(0.0, 0.0), odd_b(0.0, 0.0);
-  int j = 0;
-  for (const int last = count_ - 1; j < last; j += 2) {
-    even_a += a[j].cwiseProduct(t[j]);
-    even_b += b[j].cwiseProduct(t[j]);
-    odd_a += a[j + 1].cwiseProduct(t[j + 1]);
-    odd_b += b[j + 1].cwiseProduct(t[j + 1]);
-  }
-  if (j < count_) {
-    even_a += a[j].cwiseProduct(t[j]);
-    even_b += b[j].cwiseProduct(t[j]);
-  }
-  even_a += odd_a;
-  even_b += odd_b;
-  return {even_a[0] + even_a[1], even_b[0] + even_b[1]};
+  const double* const forces = &force_.front().first;
+  return {detail::dot(along_row(2 * i), forces, 2 * count_), detail::dot(along_row(2 * i + 1), forces, 2 * count_)};
 }
 
 PALPATE_INLINE Vector3 CoulombFriction::displacement(int i) const noexcept {
@@ -143,8 +125,8 @@ PALPATE_INLINE Vector3 CoulombFriction::displacement(int i) const noexcept {
 /// A friction force projected on the friction disc of its contact: at most mu lambda.
 inline CoulombFriction::Pair CoulombFriction::within(int i, const Pair& friction_force) const noexcept {
   if (!frame_[at(i)].sticks) return {0.0, 0.0};
-  const double most = coefficient_ * std::max(0.0, pressing_[at(i)]), square = friction_force.squaredNorm();
-  return square <= most * most ? friction_force : Pair(friction_force * (most / std::sqrt(square)));
+  const double most = coefficient_ * std::max(0.0, pressing_[at(i)]), square = friction_force.dot(friction_force);
+  return square <= most * most ? friction_force : (most / std::sqrt(square)) * friction_force;
 }
 
 }}  // namespace palpate

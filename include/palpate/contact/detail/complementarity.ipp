@@ -1,26 +1,13 @@
 // Definitions of complementarity.hpp.
 #pragma once
 
+#include <palpate/core/detail/packet.hpp>
 #include <palpate/contact/detail/complementarity.hpp>
-#include <palpate/core/types.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
-
-using ColumnView = Eigen::Map<const Eigen::Array<double, Eigen::Dynamic, 1>>;
-
-/// y += sum_k v[k] c[k] with four columns: y is read and written once. The expression is vectorised with any flags.
-inline void add_columns(double* y, const std::array<const double*, 4>& c, const std::array<double, 4>& v,
-                        int n) noexcept {
-  Eigen::Map<Eigen::Array<double, Eigen::Dynamic, 1>>(y, n) +=
-      v[0] * ColumnView(c[0], n) + v[1] * ColumnView(c[1], n) + v[2] * ColumnView(c[2], n) + v[3] * ColumnView(c[3], n);
-}
-
-}  // namespace detail
 
 PALPATE_INLINE ComplementarityProblem::ComplementarityProblem(int capacity)
     : b(at(capacity)),
@@ -202,7 +189,7 @@ PALPATE_INLINE void ComplementarityProblem::solve_active() noexcept {
   for (int p = m - 1; p >= 0; --p) {
     const double* const column = &factor_[place(0, p)];
     const int n = m - p - 1;
-    x[p] = (x[p] - (detail::ColumnView(column + p + 1, n) * detail::ColumnView(x + p + 1, n)).sum()) * column[p];
+    x[p] = (x[p] - detail::dot(column + p + 1, x + p + 1, n)) * column[p];
   }
 }
 

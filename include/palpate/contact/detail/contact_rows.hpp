@@ -86,7 +86,7 @@ class ContactRows {
   inline static bool takes_over(const Candidates& candidates, const Candidate& other, const Candidate& c) noexcept;
   inline static void reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept;
   void build_friction(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool, int i) noexcept;
-  inline static Matrix3 turning(const ContactTool& tool, const Vector3& at_arm, const Vector3& by_arm) noexcept;
+  inline static Matrix3 by_rotation(const ContactTool& tool, const Vector3& at_arm, const Vector3& by_arm) noexcept;
   inline static Vector3 coupling_displacement(const ContactTool& tool, const Contact& row) noexcept;
   void store_friction(std::span<ContactTool> tools) const noexcept;
   inline static double set_responses(const double* c, const double* m, const double* n, double* of_n,

@@ -42,8 +42,13 @@ inline void ContactRows::reach(const ContactTool& tool, const Candidate& c, Cont
 }
 
 /// Displacement of the tool at one arm per force at another, by its rotation.
-inline Matrix3 ContactRows::turning(const ContactTool& tool, const Vector3& at_arm, const Vector3& by_arm) noexcept {
-  return tool.rotational_compliance * (at_arm.dot(by_arm) * Matrix3::Identity() - by_arm * at_arm.transpose());
+inline Matrix3 ContactRows::by_rotation(const ContactTool& tool, const Vector3& at_arm,
+                                        const Vector3& by_arm) noexcept {
+  Matrix3 displacement;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      displacement(r, c) = tool.rotational_compliance * ((r == c ? at_arm.dot(by_arm) : 0.0) - by_arm[r] * at_arm[c]);
+  return displacement;
 }
 
 /// Displacement of the coupling due to friction forces, at the contact point; the rest of CoulombFriction::displacement
@@ -356,10 +361,10 @@ PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const 
     const bool same = ci.tool == cj.tool;
     const int p = c.slot, q = candidate_[at(j)]->slot;
     const Matrix3* between = p >= q ? &compliance_(tissue, samples, p, q) : &compliance_(tissue, samples, q, p);
-    Matrix3 turned;
+    Matrix3 sum;
     if (same && rotates) {
-      turned = *between + (p >= q ? turning(tool, ci.arm, cj.arm) : turning(tool, cj.arm, ci.arm));
-      between = &turned;
+      sum = *between + (p >= q ? by_rotation(tool, ci.arm, cj.arm) : by_rotation(tool, cj.arm, ci.arm));
+      between = &sum;
     }
     friction_.set(p >= q ? i : j, p >= q ? j : i, *between, same ? compliance : 0.0);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/detail/contact_samples.hpp>
+#include <palpate/core/detail/box.hpp>
 #include <palpate/core/setup_error.hpp>
 
 #include <algorithm>
@@ -42,11 +43,12 @@ inline bool is_new_edge(const ContactSurface& surface, int t, std::size_t i) noe
 }
 
 /// The coordinates of a point in a box, 20 bits each, digit by digit in turn.
-inline std::uint64_t morton_code(const Vector3& x, const Vector3& low, const Vector3& high) noexcept {
-  const double side = (high - low).maxCoeff();
+inline std::uint64_t morton_code(const Vector3& x, const Box& box) noexcept {
+  const Vector3 size = box.size();
+  const double side = std::max({size[0], size[1], size[2]});
   std::uint64_t code = 0;
   for (int i = 0; i < 3; ++i) {
-    const double part = side > 0.0 ? std::clamp((x[i] - low[i]) / side, 0.0, 1.0) : 0.0;
+    const double part = side > 0.0 ? std::clamp((x[i] - box.low[i]) / side, 0.0, 1.0) : 0.0;
     const auto digits = static_cast<std::uint64_t>(part * 1048575.0);
     for (int bit = 0; bit < 20; ++bit) code |= (digits >> bit & 1u) << (3 * bit + i);
   }
@@ -90,13 +92,13 @@ PALPATE_INLINE void ContactSamples::add_level(const ContactSurface& surface, dou
 PALPATE_INLINE void ContactSamples::rank_level(const ContactSurface& surface, int first) {
   std::vector<std::pair<std::uint64_t, int>> order;
   order.reserve(samples_.size() - static_cast<std::size_t>(first));
-  Vector3 low = Vector3::Constant(infinity), high = -low;
-  for (const Vector3& x : surface.positions()) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  Box box;
+  for (const Vector3& x : surface.positions()) box.include(x);
   for (int s = first; s < count(); ++s) {
     const ContactSample& c = (*this)[s];
     Vector3 x = Vector3::Zero();
     for (std::size_t a = 0; a < 3; ++a) x += c.weights[a] * surface.position(c.vertices[a]);
-    order.emplace_back(detail::morton_code(x, low, high), s);
+    order.emplace_back(detail::morton_code(x, box), s);
   }
   std::sort(order.begin(), order.end());
   for (std::size_t i = 0; i < order.size(); ++i) {

@@ -1,31 +1,14 @@
 // The innermost loop of the direct solver: a small block of a matrix product kept in registers.
 #pragma once
 
-#include <palpate/core/types.hpp>
+#include <palpate/core/detail/packet.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// The doubles of one register; their number depends on the compiler flags.
-using Packet = Eigen::internal::packet_traits<double>::type;
-inline constexpr int packet_size = Eigen::internal::packet_traits<double>::size;
 /// Tile shape: three packets times as many columns as leave registers for the operands.
 inline constexpr int tile_packets = 3;
 inline constexpr int tile_rows = tile_packets * packet_size;
 inline constexpr int tile_columns = packet_size == 8 ? 8 : 4;
-
-inline Packet load(const double* p) noexcept {
-  return Eigen::internal::ploadu<Packet>(p);
-}
-inline void store(double* p, const Packet& x) noexcept {
-  Eigen::internal::pstoreu(p, x);
-}
-inline Packet broadcast(double x) noexcept {
-  return Eigen::internal::pset1<Packet>(x);
-}
-/// a b + c
-inline Packet multiply_add(const Packet& a, const Packet& b, const Packet& c) noexcept {
-  return Eigen::internal::pmadd(a, b, c);
-}
 
 // g++ -O2 does not unroll these loops by itself, and would keep the tile in memory instead of registers.
 #if defined(__clang__)
