@@ -33,7 +33,11 @@ class AnalyticTissue : public StillTissue {
 
   const ContactSurface& contact_surface() const noexcept { return surface_; }
   Status require_columns(std::span<const int>) noexcept { return {}; }
-  Matrix3 compliance(int i, int j) const noexcept { return (common_ + (i == j ? own_ : 0.0)) * Matrix3::Identity(); }
+  Matrix3 compliance(int i, int j) const noexcept {
+    ++compliance_calls;
+    return (common_ + (i == j ? own_ : 0.0)) * Matrix3::Identity();
+  }
+  mutable long compliance_calls = 0;
   double compliance_bound(int) const noexcept { return own_ + common_; }
   std::uint64_t compliance_revision() const noexcept { return 0; }
   double compliance_floor() const noexcept { return 1e-12; }

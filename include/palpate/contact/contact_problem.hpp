@@ -82,7 +82,7 @@ class ContactProblem {
   inline bool is_grasped(const Candidate& c) const noexcept;
   inline bool may_have_row(const Candidate& c) const noexcept;
   void prefetch(const TissueView& tissue) noexcept;
-  bool solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;
+  void solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;
   void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
   void share_rows(Tools tools) noexcept;
   inline void note_pressing(Candidate& c) noexcept;

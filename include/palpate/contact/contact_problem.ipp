@@ -82,8 +82,13 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   ProxyMotion::slide(tools);
   candidates_.begin_tick(tissue.contact_surface(), tools);
   candidates_.look_round(tissue, tools, displacement_);
+  candidates_.prepare(tissue, tools, displacement_);
   double change = 0.0, before = 0.0;
   for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
+    if (rounds_left_ <= 0) {
+      status.set(StatusFlag::solver_not_converged);
+      break;
+    }
     local_.apply(tools);
     proxies_.begin(tools, floor_);
     status |= candidates_.update(tissue, tools, displacement_);
@@ -94,11 +99,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     }
     if (candidates_.is_new()) prefetch(tissue);
     std::swap(start_, displacement_);
-    if (!solve_linearised(tissue, tools, iteration, status)) {
-      std::swap(start_, displacement_);
-      proxies_.end(tools);
-      break;
-    }
+    solve_linearised(tissue, tools, iteration, status);
     const double local_change = local_.predict(tools, candidates_, rows_);
     follow(tools);
     proxies_.end(tools);
@@ -189,8 +190,8 @@ PALPATE_INLINE void ContactProblem::prefetch(const TissueView& tissue) noexcept 
 /// One Signorini problem, linearised where proxies and surface are (`start_`): distances and normals of all points stay
 /// as they are there while rows are added until no point penetrates. The distance to a point is a convex function, so a
 /// step of any length to the solution keeps all points out of the sphere. Updates the forces of points, vertices and
-/// tools; false when no rounds were left, and nothing has changed.
-PALPATE_INLINE bool ContactProblem::solve_linearised(const TissueView& tissue, Tools tools, int iteration,
+/// tools. The caller guarantees that rounds are left: the rows are those of the forces.
+PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, Tools tools, int iteration,
                                                      Status& status) noexcept {
   gather_pressing(tissue, tools);
   predict_normals(iteration);
@@ -206,7 +207,6 @@ PALPATE_INLINE bool ContactProblem::solve_linearised(const TissueView& tissue, T
       c.lift();  // only rows carry forces
   }
   if (rows_.count() == 0) rows_.apply(tools, displacement_);
-  bool applied = rows_.count() == 0;
   int built = 0;
   for (;; built = rows_.count()) {
     if (built > 0 || rows_.count() == 0) add_violated(tissue, tools, built);
@@ -219,13 +219,11 @@ PALPATE_INLINE bool ContactProblem::solve_linearised(const TissueView& tissue, T
     rows_.build(tissue, candidates_.samples(), tools, floor_, built);
     if (!rows_.solve()) status.set(StatusFlag::solver_not_converged);
     rows_.apply(tools, displacement_);
-    applied = true;
   }
   if (rows_.has_friction() && built > 0 && built == rows_.count()) {
     if (!rows_.slide()) status.set(StatusFlag::solver_not_converged);
     rows_.apply(tools, displacement_);
   }
-  return applied;
 }
 
 /// Lists the candidates that press and updates their geometry for the present positions of sphere and surface.

@@ -23,6 +23,27 @@ class Bvh {
   /// Recomputes all boxes for moved positions. O(n), no allocation.
   void refit(std::span<const Triangle> triangles, std::span<const Vector3> positions) noexcept;
 
+  static constexpr int max_depth = 64;  // median splits halve the count: depth <= log2(2^31), two entries per level
+  /// The boxes that a search still has to descend into.
+  struct Descent {
+    std::array<int, max_depth> stack;
+    int top = 0;
+  };
+  /// Begins a search that is continued by `visit_next_near`.
+  Descent begin() const noexcept {
+    Descent d;
+    if (!nodes_.empty()) d.stack[static_cast<std::size_t>(d.top++)] = 0;
+    return d;
+  }
+  /// Calls visit(triangle) for the triangles of the next leaf whose box comes within `radius` of `centre`. False when
+  /// there is none.
+  template <class Visit>
+  bool visit_next_near(Descent& descent, const Vector3& centre, double radius, Visit&& visit) const noexcept {
+    const double limit = radius * radius;
+    return visit_next(
+        descent, [&](const Box& box) { return box.squared_distance(centre) <= limit; }, visit);
+  }
+
   /// Calls visit(triangle) for every triangle of a leaf whose box comes within `radius` of `centre`.
   template <class Visit>
   void visit_near(const Vector3& centre, double radius, Visit&& visit) const noexcept {
@@ -73,8 +94,6 @@ class Bvh {
   const Box& bounds() const noexcept { return nodes_.front().box; }
 
  private:
-  // Median splits halve the count, so depth is at most log2(2^31); two entries per level may be on the stack.
-  static constexpr int max_depth = 64;
   struct Node {
     Box box;
     int first = 0;  // leaf: first of order_; inner: right child (the left one follows directly)
@@ -84,20 +103,23 @@ class Bvh {
   /// Calls visit(triangle) for the triangles of leaves below boxes for which reaches(box) holds, left before right.
   template <class Reaches, class Visit>
   void descend(Reaches&& reaches, Visit&& visit) const noexcept {
-    std::array<int, max_depth> stack;
-    int top = 0;
-    if (!nodes_.empty()) stack[static_cast<std::size_t>(top++)] = 0;
-    while (top > 0) {
-      const int i = stack[static_cast<std::size_t>(--top)];
+    for (Descent d = begin(); visit_next(d, reaches, visit);) continue;
+  }
+  /// The same for one leaf; false when none is left.
+  template <class Reaches, class Visit>
+  bool visit_next(Descent& descent, Reaches&& reaches, Visit&& visit) const noexcept {
+    while (descent.top > 0) {
+      const int i = descent.stack[static_cast<std::size_t>(--descent.top)];
       const Node& node = nodes_[static_cast<std::size_t>(i)];
       if (!reaches(node.box)) continue;
       if (node.count > 0) {
         for (int k = node.first; k < node.first + node.count; ++k) visit(order_[static_cast<std::size_t>(k)]);
-      } else {
-        stack[static_cast<std::size_t>(top++)] = node.first;
-        stack[static_cast<std::size_t>(top++)] = i + 1;
+        return true;
       }
+      descent.stack[static_cast<std::size_t>(descent.top++)] = node.first;
+      descent.stack[static_cast<std::size_t>(descent.top++)] = i + 1;
     }
+    return false;
   }
 
   static const Vector3& at(std::span<const Vector3> positions, int i) noexcept {

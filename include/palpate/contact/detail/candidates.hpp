@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact.hpp>
+#include <palpate/contact/detail/bvh.hpp>
 #include <palpate/contact/detail/coarse_facets.hpp>
 #include <palpate/contact/detail/surface_displacement.hpp>
 
@@ -21,6 +22,7 @@ struct Candidate {
   int row = -1;                      ///< of the contact problem, -1 when it has none
   int slot = -1;                     ///< slot of its compliance in the last use
   bool facing = true;                ///< the sphere is on the outer side
+  bool evaluated = true;             ///< false: only a lower bound of the gap is known
   double gap = 0.0;                  ///< [m]
   double seen = 0.0;                 ///< travel of sphere and surface at the last evaluation [m]
   double force = 0.0;                ///< of the last solution [N]
@@ -45,13 +47,14 @@ struct Candidate {
 
 /// All contact points that a sphere can reach within a tick, and some more, so that the list stays valid for a while:
 /// the path of sphere and surface since then is accumulated, and the list is rebuilt when the margin is used up (as
-/// neighbour lists in molecular dynamics, Verlet 1967). A point is evaluated again only when that path could have
-/// closed its gap. The search on the resting surface reaches as far as the surface has moved
+/// neighbour lists in molecular dynamics, Verlet 1967). While the last part of the margin is used up, the next list is
+/// built in parts, so that no tick has all of that work; leaps have it at once. A point is evaluated again only when
+/// that path could have closed its gap. The search on the resting surface reaches as far as the surface has moved
 /// (SurfaceDisplacement::reach). On facets that are too long for a sphere and have a known modulus (CoarseFacets) the
 /// points are not those of the lattice, between which the sphere would sink, but one per facet and sphere: the closest
 /// to the sphere's centre. It moves along the facet whenever it is evaluated, its stick anchor with it. A scan over all
 /// vertices, a few per tick, finds what moved farther than the search reaches. No allocation; work bounded by `maximum`
-/// and, when the list is rebuilt, by the samples of all triangles in reach: each is evaluated.
+/// and, when the list is rebuilt at once, by the samples of all triangles in reach: each is evaluated.
 class Candidates {
  public:
   /// Places the samples for spheres of these radii, `spacing` radii of the smallest apart; larger spheres use a level
@@ -60,7 +63,7 @@ class Candidates {
   Candidates(const ContactSurface& surface, const ToolRadii& radii, double spacing, int capacity, bool local);
 
   /// Largest number of points in the list.
-  int maximum() const noexcept { return static_cast<int>(items_.size()); }
+  int maximum() const noexcept { return static_cast<int>(list_.items.size()); }
   const ContactSamples& samples() const noexcept { return samples_; }
   const CoarseFacets& facets() const noexcept { return facets_; }
   bool is_moving(const Candidate& c) const noexcept { return c.sample >= samples_.count(); }
@@ -68,7 +71,7 @@ class Candidates {
   const ContactSample& sample_of(const Candidate& c) const noexcept {
     return is_moving(c) ? c.moving : samples_[c.sample];
   }
-  std::span<Candidate> items() noexcept { return {items_.data(), static_cast<std::size_t>(count_)}; }
+  std::span<Candidate> items() noexcept { return {list_.items.data(), static_cast<std::size_t>(list_.count)}; }
   bool has_any(int tool) const noexcept;
   void forget() noexcept { valid_ = false; }
   /// Back to the state after construction.
@@ -93,13 +96,18 @@ class Candidates {
   /// Adds a displacement of the surface; `distance` is an upper bound for every point of it [m].
   void move_surface(double distance) noexcept { surface_travel_ += distance; }
 
-  /// Rebuilds the list unless it stays valid for another linearisation. degraded_model when there is no room for all
-  /// points that a sphere may reach.
+  /// Once per tick: builds a part of the next list when the present one will not stay valid for long.
+  void prepare(const TissueView& tissue, std::span<const ContactTool> tools,
+               SurfaceDisplacement& displacement) noexcept;
+  /// Takes the next list, or builds one, unless the list stays valid for another linearisation. degraded_model when
+  /// there is no room for all points that a sphere may reach.
   Status update(const TissueView& tissue, std::span<const ContactTool> tools,
                 SurfaceDisplacement& displacement) noexcept;
 
-  /// Whether sphere or surface may have moved since a candidate was evaluated.
-  bool is_stale(const Candidate& c) const noexcept { return travel(static_cast<std::size_t>(c.tool)) != c.seen; }
+  /// Whether a candidate was not evaluated yet, or sphere or surface may have moved since.
+  bool is_stale(const Candidate& c) const noexcept {
+    return !c.evaluated || travel(static_cast<std::size_t>(c.tool)) != c.seen;
+  }
   /// Lower bound of the present gap of a candidate.
   double least_gap(const Candidate& c) const noexcept {
     return c.gap - (travel(static_cast<std::size_t>(c.tool)) - c.seen);
@@ -127,6 +135,9 @@ class Candidates {
   static constexpr int per_tick = 2;
   static constexpr std::size_t least_room = 1024;  // points: a large tool on fine facets has many more near than rows
   static constexpr double level_ratio = 1.5;       // of the spacing of a level to that of the level before
+  static constexpr int not_begun = -1;             // Descent::top, before the search for a tool
+  static constexpr double margin = 0.25;           // radii
+  static constexpr double begin_used = 0.6, end_used = 0.8;  // parts of the margin while the next list is built
 
   /// Moves a point that moves to the present closest point of its facet.
   void project(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
@@ -135,27 +146,57 @@ class Candidates {
   int level_of(const ContactTool& tool) const noexcept;
   int triangle_of(const ContactSurface& surface, int sample) const noexcept;
   double travel(std::size_t tool) const noexcept { return travel_[tool] + surface_travel_; }
+
+  struct List {
+    std::vector<Candidate> items;
+    int count = 0, room = 0, kept = 0;                   // kept: points that press, before the others
+    std::array<double, maximum_tools> range{}, built{};  // range: gaps up to which it was complete at travel `built`
+    double reach = 0.0;                                  // of the surface, least in the search
+  };
+  /// A search for the points of a list, tool by tool.
+  struct Search {
+    Bvh::Descent descent;
+    std::size_t tool = 0;
+    int leaves = 0;      // visited
+    double reach = 0.0;  // of the surface at present
+    bool runs = false, ends = false;
+  };
+  double used(const List& list, std::span<const ContactTool> tools) const noexcept;
+  void begin(Search& search, List& list, int room) const noexcept;
+  bool advance(const TissueView& tissue, std::span<const ContactTool> tools, Search& search, List& list,
+               SurfaceDisplacement& displacement) noexcept;
   void build(const TissueView& tissue, std::span<const ContactTool> tools, SurfaceDisplacement& displacement) noexcept;
+  void take_next() noexcept;
+  void store_loaded() noexcept;
   void keep_loaded(const TissueView& tissue, std::span<const ContactTool> tools,
                    SurfaceDisplacement& displacement) noexcept;
+  static std::uint64_t key(int tool, int sample) noexcept {
+    return static_cast<std::uint64_t>(sample) * maximum_tools + static_cast<std::uint64_t>(tool);
+  }
   bool is_loaded(int tool, int sample) const noexcept;
-  void consider(const TissueView& tissue, const ContactTool& tool, int t, int triangle, int sample,
+  void examine(const TissueView& tissue, const ContactTool& tool, int triangle, const Search& search, List& list,
+               SurfaceDisplacement& displacement) noexcept;
+  void consider(const TissueView& tissue, const ContactTool& tool, Candidate& c, const Search& search, List& list,
                 SurfaceDisplacement& displacement) noexcept;
   bool faces_sphere(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
 
   double smallest_radius_;
   ContactSamples samples_;
   CoarseFacets facets_;
-  std::vector<Candidate> items_, loaded_;  // loaded: of the list before
-  int count_ = 0, loaded_count_ = 0;
+  List list_, next_list_;
+  Search search_;                           // for the next list
+  int leaves_ = 0;                          // visited for the list
+  std::vector<Candidate> loaded_;           // points of the list before that press
+  std::vector<std::uint64_t> loaded_keys_;  // of their tools and samples, sorted
+  int loaded_count_ = 0;
   bool valid_ = false, is_new_ = false, lost_forces_ = false;
   std::uint64_t revision_ = 0;
   std::array<Vector3, maximum_tools> proxy_;
   std::array<Matrix3, maximum_tools> rotation_;
   std::array<bool, maximum_tools> was_active_{};
-  std::array<double, maximum_tools> range_{}, built_{}, travel_{};  // range: gaps up to which the list was complete
+  std::array<double, maximum_tools> travel_{};
   double surface_travel_ = 0.0;
-  double reach_ = 0.0, far_ = 0.0, far_last_round_ = 0.0;
+  double far_ = 0.0, far_last_round_ = 0.0;
   int next_ = 0;  // next vertex of the scan
 };
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <palpate/contact/detail/candidates.hpp>
-#include <palpate/contact/detail/deformed_surface.hpp>
 
 #include <algorithm>
 
@@ -21,8 +20,10 @@ PALPATE_INLINE Candidates::Candidates(const ContactSurface& surface, const ToolR
     : smallest_radius_(radii.smallest),
       samples_(surface, spacing * radii.smallest),
       facets_(surface, local),
-      items_(std::max<std::size_t>(4 * static_cast<std::size_t>(capacity), least_room)),
-      loaded_(static_cast<std::size_t>(capacity)) {
+      loaded_(static_cast<std::size_t>(capacity)),
+      loaded_keys_(loaded_.size()) {
+  list_.items.resize(std::max<std::size_t>(4 * static_cast<std::size_t>(capacity), least_room));
+  next_list_.items.resize(list_.items.size());
   // From the longest edge on all levels would be equal: vertices only.
   const double most = std::min(radii.largest, longest_edge(surface) / spacing * level_ratio);
   for (double r = level_ratio * radii.smallest; r <= most; r *= level_ratio) samples_.add_level(surface, spacing * r);
@@ -38,16 +39,19 @@ PALPATE_INLINE int Candidates::level_of(const ContactTool& tool) const noexcept 
 }
 
 PALPATE_INLINE void Candidates::reset() noexcept {
-  count_ = loaded_count_ = 0;
+  list_.count = loaded_count_ = 0;
+  search_.runs = search_.ends = false;
+  list_.range.fill(0.0);
+  list_.built.fill(0.0);
+  list_.reach = 0.0;
+  leaves_ = 0;
   valid_ = is_new_ = lost_forces_ = false;
   revision_ = 0;
   proxy_.fill(Vector3::Zero());
   rotation_.fill(Matrix3::Zero());
   was_active_.fill(false);
-  range_.fill(0.0);
-  built_.fill(0.0);
   travel_.fill(0.0);
-  surface_travel_ = reach_ = far_ = far_last_round_ = 0.0;
+  surface_travel_ = far_ = far_last_round_ = 0.0;
   next_ = 0;
 }
 
@@ -69,11 +73,13 @@ inline void Candidates::place(Candidate& c, const Vector3& point, const ContactT
   c.core = core.point;
   c.normal = core.normal;
   c.gap = core.distance - tool.radius;
+  c.evaluated = true;
   c.seen = travel(static_cast<std::size_t>(c.tool));
 }
 
 PALPATE_INLINE bool Candidates::has_any(int tool) const noexcept {
-  return std::any_of(items_.begin(), items_.begin() + count_, [tool](const Candidate& c) { return c.tool == tool; });
+  return std::any_of(list_.items.begin(), list_.items.begin() + list_.count,
+                     [tool](const Candidate& c) { return c.tool == tool; });
 }
 
 PALPATE_INLINE void Candidates::move_to(Candidates& fresh, const ContactSurface& surface) noexcept {
@@ -81,20 +87,20 @@ PALPATE_INLINE void Candidates::move_to(Candidates& fresh, const ContactSurface&
   std::swap(facets_, fresh.facets_);
   const ContactSamples& before = fresh.samples_;
   int kept = 0;
-  for (int i = 0; i < count_; ++i) {
-    Candidate c = items_[static_cast<std::size_t>(i)];
+  for (int i = 0; i < list_.count; ++i) {
+    Candidate c = list_.items[static_cast<std::size_t>(i)];
     if (!(c.force > 0.0) || !move(c, before, surface)) continue;
-    const auto end = items_.begin() + kept;
-    const auto same =
-        std::find_if(items_.begin(), end, [&](const Candidate& d) { return d.sample == c.sample && d.tool == c.tool; });
+    const auto end = list_.items.begin() + kept;
+    const auto same = std::find_if(list_.items.begin(), end,
+                                   [&](const Candidate& d) { return d.sample == c.sample && d.tool == c.tool; });
     if (same == end) {
-      items_[static_cast<std::size_t>(kept++)] = c;
+      list_.items[static_cast<std::size_t>(kept++)] = c;
     } else {
       same->force += c.force;
       same->friction += c.friction;
     }
   }
-  count_ = kept;
+  list_.count = kept;
   next_ = 0;
   valid_ = false;
   revision_ = surface.revision();
@@ -130,16 +136,43 @@ PALPATE_INLINE void Candidates::move_sphere(std::size_t t, const ContactTool& to
   rotation_[t] = tool.rotation;
 }
 
+/// Part of the margin of a list that is used up, the largest of all tools; above 1 the list may miss points.
+PALPATE_INLINE double Candidates::used(const List& list, std::span<const ContactTool> tools) const noexcept {
+  double most = 0.0;
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    if (!tools[t].active) continue;
+    const double left = list.range[t] - needed(tools[t]), path = travel(t) - list.built[t];
+    most = std::max(most, path < left ? path / left : infinity);  // also where both are infinite
+  }
+  return most;
+}
+
+PALPATE_INLINE void Candidates::prepare(const TissueView& tissue, std::span<const ContactTool> tools,
+                                        SurfaceDisplacement& displacement) noexcept {
+  if (!valid_ || search_.ends) return;
+  const double part = used(list_, tools);
+  if (!(part > begin_used && part <= 1.0)) return;
+  if (!search_.runs) begin(search_, next_list_, maximum() - static_cast<int>(loaded_.size()));
+  search_.reach = reach(tissue, displacement);
+  next_list_.reach = std::min(next_list_.reach, search_.reach);
+  const double aim = leaves_ * (part - begin_used) / (end_used - begin_used);
+  do {
+    search_.ends = !advance(tissue, tools, search_, next_list_, displacement);
+  } while (!search_.ends && search_.leaves < aim);
+}
+
 PALPATE_INLINE Status Candidates::update(const TissueView& tissue, std::span<const ContactTool> tools,
                                          SurfaceDisplacement& displacement) noexcept {
   Status status;
   is_new_ = false;
-  bool holds = valid_;
-  for (std::size_t t = 0; t < tools.size() && holds; ++t)
-    holds = !tools[t].active || needed(tools[t]) <= range_[t] - (travel(t) - built_[t]);
-  if (!holds) build(tissue, tools, displacement);
+  if (!valid_ || used(list_, tools) > 1.0) {
+    if (valid_ && search_.ends && used(next_list_, tools) <= 1.0)
+      take_next();
+    else
+      build(tissue, tools, displacement);
+  }
   for (std::size_t t = 0; t < tools.size(); ++t)
-    if (tools[t].active && range_[t] < needed(tools[t])) status.set(StatusFlag::degraded_model);
+    if (tools[t].active && list_.range[t] < needed(tools[t])) status.set(StatusFlag::degraded_model);
   return status;
 }
 
@@ -179,10 +212,10 @@ PALPATE_INLINE void Candidates::look_round(const TissueView& tissue, std::span<c
       far_ = 0.0;
     }
     const double moved = displacement.at(tissue, next_).norm();
-    if (moved <= reach_) continue;
+    if (moved <= list_.reach) continue;
     const Vector3 x = displacement.position(tissue, next_);
     for (std::size_t t = 0; t < tools.size(); ++t)
-      if (tools[t].active && (x - tools[t].proxy).norm() < tools[t].radius + tools[t].half_length + range_[t]) {
+      if (tools[t].active && (x - tools[t].proxy).norm() < tools[t].radius + tools[t].half_length + list_.range[t]) {
         far_ = std::max(far_, 1.1 * moved);
         forget();
       }
@@ -196,40 +229,108 @@ PALPATE_INLINE int Candidates::triangle_of(const ContactSurface& surface, int sa
   return 0;
 }
 
-PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const ContactTool> tools,
-                                      SurfaceDisplacement& displacement) noexcept {
-  loaded_count_ = 0;
-  for (const Candidate& c : items())
-    if (c.force > 0.0 && loaded_count_ < static_cast<int>(loaded_.size()))
-      loaded_[static_cast<std::size_t>(loaded_count_++)] = c;
-  keep_loaded(tissue, tools, displacement);
-  is_new_ = true;
-  reach_ = reach(tissue, displacement);
-  const ContactSurface& surface = tissue.contact_surface();
-  for (std::size_t t = 0; t < tools.size(); ++t) {
+PALPATE_INLINE void Candidates::begin(Search& search, List& list, int room) const noexcept {
+  search.tool = 0;
+  search.descent.top = not_begun;
+  search.leaves = 0;
+  search.runs = true;
+  search.ends = false;
+  list.count = list.kept = 0;
+  list.room = room;
+  list.reach = infinity;
+}
+
+/// Searches the next leaf; false when none is left. The surface and the spheres may move between two calls: what is
+/// left out of the list is farther than its range at that time, and at travel `built` or later.
+PALPATE_INLINE bool Candidates::advance(const TissueView& tissue, std::span<const ContactTool> tools, Search& search,
+                                        List& list, SurfaceDisplacement& displacement) noexcept {
+  const Bvh& bvh = tissue.contact_surface().bvh();
+  for (; search.tool < tools.size(); ++search.tool, search.descent.top = not_begun) {
+    const std::size_t t = search.tool;
     const ContactTool& tool = tools[t];
     if (!tool.active) continue;
-    range_[t] = needed(tool) + 0.25 * tool.radius;
-    built_[t] = travel(t);
-    const double near = tool.radius + tool.core_radius() + range_[t];
-    const Vector3 middle = tool.middle();
-    const int level = level_of(tool);
-    surface.bvh().visit_near(middle, near + reach_, [&](int triangle) {
-      const bool local = facets_.is_local(tool, surface.triangle(triangle));
-      const int first = samples_.first_of(triangle, level), end = samples_.first_of(triangle + 1, level);
-      if (!local && first == end) return;
-      // Each of a few points is checked anyway.
-      if ((local || end - first > 3) &&
-          offset_from(tissue, displacement, triangle, middle).offset.squaredNorm() > near * near)
-        return;
-      if (local) {
-        const int moving = samples_.count() + static_cast<int>(t * surface.triangles().size()) + triangle;
-        return consider(tissue, tool, static_cast<int>(t), triangle, moving, displacement);
-      }
-      for (int s = first; s < end; ++s) consider(tissue, tool, static_cast<int>(t), triangle, s, displacement);
-    });
+    if (search.descent.top == not_begun) {
+      search.descent = bvh.begin();
+      list.range[t] = needed(tool) + margin * tool.radius;
+      list.built[t] = travel(t);
+    }
+    const double near = tool.radius + tool.core_radius() + list.range[t] + search.reach;
+    const auto visit = [&](int triangle) { examine(tissue, tool, triangle, search, list, displacement); };
+    if (!bvh.visit_next_near(search.descent, tool.middle(), near, visit)) continue;
+    ++search.leaves;
+    return true;
   }
+  return false;
+}
+
+/// Adds the points of a triangle that are near a tool.
+PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactTool& tool, int triangle,
+                                        const Search& search, List& list, SurfaceDisplacement& displacement) noexcept {
+  const ContactSurface& surface = tissue.contact_surface();
+  Candidate c;
+  c.triangle = triangle;
+  c.tool = static_cast<int>(search.tool);
+  if (facets_.is_local(tool, surface.triangle(triangle))) {
+    c.sample = samples_.count() + c.tool * static_cast<int>(surface.triangles().size()) + triangle;
+    project(tissue, tool, displacement, c);
+    return consider(tissue, tool, c, search, list, displacement);
+  }
+  const int level = level_of(tool);
+  const int first = samples_.first_of(triangle, level), end = samples_.first_of(triangle + 1, level);
+  if (end - first > 8) {  // in a leaf whose other triangles are near
+    Box box;
+    for (const int v : surface.triangle(triangle)) box.include(surface.position(v));
+    const double near = tool.radius + tool.core_radius() + list.range[search.tool] + search.reach;
+    if (box.squared_distance(tool.middle()) > near * near) return;
+  }
+  for (c.sample = first; c.sample < end; ++c.sample) consider(tissue, tool, c, search, list, displacement);
+}
+
+PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const ContactTool> tools,
+                                      SurfaceDisplacement& displacement) noexcept {
+  travel_.fill(0.0);  // small numbers again, after a leap also finite ones
+  surface_travel_ = 0.0;
+  store_loaded();
+  begin(search_, list_, maximum());
+  keep_loaded(tissue, tools, displacement);
+  search_.reach = list_.reach = reach(tissue, displacement);
+  while (advance(tissue, tools, search_, list_, displacement)) continue;
+  leaves_ = search_.leaves;
+  search_.runs = false;
+  is_new_ = true;
   valid_ = !lost_forces_;
+}
+
+/// The next list becomes the present one. Points that press keep their forces, also those that are not near any more.
+PALPATE_INLINE void Candidates::take_next() noexcept {
+  store_loaded();
+  std::swap(list_, next_list_);
+  int kept = 0;
+  for (int i = 0; i < list_.count; ++i) {
+    const Candidate& c = list_.items[static_cast<std::size_t>(i)];
+    if (is_loaded(c.tool, c.sample)) continue;
+    if (kept < i) list_.items[static_cast<std::size_t>(kept)] = c;
+    ++kept;
+  }
+  list_.count = kept;
+  for (int i = 0; i < loaded_count_; ++i) {
+    Candidate& c = list_.items[static_cast<std::size_t>(list_.count++)] = loaded_[static_cast<std::size_t>(i)];
+    c.row = -1;
+  }
+  leaves_ = search_.leaves;
+  search_.runs = search_.ends = false;
+  is_new_ = true;
+}
+
+/// Copies the points of the list that press.
+PALPATE_INLINE void Candidates::store_loaded() noexcept {
+  loaded_count_ = 0;
+  for (const Candidate& c : items()) {
+    if (!(c.force > 0.0) || loaded_count_ == static_cast<int>(loaded_.size())) continue;
+    loaded_[static_cast<std::size_t>(loaded_count_)] = c;
+    loaded_keys_[static_cast<std::size_t>(loaded_count_++)] = key(c.tool, c.sample);
+  }
+  std::sort(loaded_keys_.begin(), loaded_keys_.begin() + loaded_count_);
 }
 
 PALPATE_INLINE double Candidates::reach(const TissueView& tissue, SurfaceDisplacement& displacement) const noexcept {
@@ -240,47 +341,47 @@ PALPATE_INLINE double Candidates::reach(const TissueView& tissue, SurfaceDisplac
 PALPATE_INLINE void Candidates::keep_loaded(const TissueView& tissue, std::span<const ContactTool> tools,
                                             SurfaceDisplacement& displacement) noexcept {
   lost_forces_ = false;
-  count_ = 0;
   for (int i = 0; i < loaded_count_; ++i) {
     const Candidate& old = loaded_[static_cast<std::size_t>(i)];
     const ContactTool& tool = tools[static_cast<std::size_t>(old.tool)];
     lost_forces_ = lost_forces_ || !tool.active;
     if (!tool.active) continue;
-    Candidate& c = items_[static_cast<std::size_t>(count_++)] = old;
+    Candidate& c = list_.items[static_cast<std::size_t>(list_.count++)] = old;
     c.row = -1;
     c.history.known = 0;
     evaluate(tissue, tool, displacement, c);
   }
-  loaded_count_ = count_;
+  list_.kept = list_.count;
 }
 
 PALPATE_INLINE bool Candidates::is_loaded(int tool, int sample) const noexcept {
-  return std::any_of(items_.begin(), items_.begin() + loaded_count_,
-                     [=](const Candidate& c) { return c.sample == sample && c.tool == tool; });
+  return std::binary_search(loaded_keys_.begin(), loaded_keys_.begin() + loaded_count_, key(tool, sample));
 }
 
-/// Adds a sample to the list if it is near. When the list is full, it is complete only up to the nearest sample left
-/// out. Points that press stay.
-PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const ContactTool& tool, int t, int triangle,
-                                         int sample, SurfaceDisplacement& displacement) noexcept {
-  Candidate c;
-  c.sample = sample;
-  c.triangle = triangle;
-  c.tool = t;
-  double& range = range_[static_cast<std::size_t>(t)];
-  if (is_moving(c)) project(tissue, tool, displacement, c);
-  const Vector3 point = position(tissue, displacement, c);
-  if (!tool.is_within(point, tool.radius + range)) return;
-  place(c, point, tool);
-  if (!(c.gap <= range) || is_loaded(t, sample)) return;
-  c.facing = faces_sphere(tissue, displacement, c);
-  if (count_ < maximum()) {
-    items_[static_cast<std::size_t>(count_++)] = c;
+/// Adds a point to the list if it is near. Far points are not evaluated: their displacement would cost more than the
+/// rest of the search, and the reach of the surface is a bound for it, unless that is large. When the list is full, it
+/// is complete only up to the nearest point left out. Points that press stay.
+PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const ContactTool& tool, Candidate& c,
+                                         const Search& search, List& list, SurfaceDisplacement& displacement) noexcept {
+  double& range = list.range[search.tool];
+  const Vector3 resting = rest(tissue.contact_surface(), sample_of(c));
+  c.gap = (resting - tool.middle()).norm() - tool.core_radius() - tool.radius - search.reach;
+  if (!(c.gap <= range)) return;
+  const bool far = c.gap > 0.0 && search.reach <= 0.5 * tool.radius && list.count < list.room;
+  c.evaluated = is_moving(c) || !far;
+  if (c.evaluated)
+    place(c, position(tissue, displacement, c), tool);
+  else
+    c.seen = travel(search.tool);
+  if (!(c.gap <= range) || (list.kept > 0 && is_loaded(c.tool, c.sample))) return;
+  c.facing = !c.evaluated || faces_sphere(tissue, displacement, c);
+  if (list.count < list.room) {
+    list.items[static_cast<std::size_t>(list.count++)] = c;
     return;
   }
-  Candidate& farthest = *std::max_element(items_.begin() + loaded_count_, items_.end(),
+  Candidate& farthest = *std::max_element(list.items.begin() + list.kept, list.items.begin() + list.count,
                                           [](const Candidate& a, const Candidate& b) { return a.gap < b.gap; });
-  double& lost = range_[static_cast<std::size_t>(farthest.gap > c.gap ? farthest.tool : t)];
+  double& lost = list.range[farthest.gap > c.gap ? static_cast<std::size_t>(farthest.tool) : search.tool];
   lost = std::min(lost, std::max(c.gap, farthest.gap));
   if (farthest.gap > c.gap) farthest = c;
 }

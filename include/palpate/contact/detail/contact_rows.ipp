@@ -133,6 +133,7 @@ PALPATE_INLINE void ContactRows::add(const ContactSurface& surface, const Candid
   row.rest = candidates.rest(surface, sample);
   row.point = c.point;
   row.force = c.force;
+  row.friction = c.friction;
   row.grasped = c.grasped;
 }
 
