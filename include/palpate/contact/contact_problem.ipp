@@ -118,6 +118,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   if (shares_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
   if (change > unsettled || rows_.alternation_change() > unsettled_alternation)
     status.set(StatusFlag::solver_not_converged);
+  proxies_.end_tick(tools, change <= unsettled);
   return status;
 }
 

@@ -40,14 +40,21 @@ class ProxyMotion {
   bool arrived() const noexcept { return arrived_; }
   /// Relative change of the tools' forces and torques since `begin`.
   double relative_change(Tools tools) const noexcept;
+  /// Ends a tick. With friction or at a thin plate the linearisations may go in a circle. When many ticks in turn have
+  /// not converged although the devices hardly move, steps become shorter, until a device moves.
+  void end_tick(Tools tools, bool converged) noexcept;
 
  private:
+  static constexpr int patience = 8;                         // ticks
+  static constexpr double least_part = 0.125, still = 0.01;  // still: path of a device in a tick, radii
   inline static double allowed_part(const ContactTool& tool, double path) noexcept;
   static void rotate(ContactTool& tool, double part) noexcept;
 
   std::array<Vector3, maximum_tools> start_force_{}, start_torque_{}, target_{};
   std::array<Ahead, maximum_tools> ahead_{};
-  bool clipped_ = false, arrived_ = true;
+  double longest_part_ = 1.0;  // of a step
+  int restless_ticks_ = 0;     // with a step that no radius has shortened
+  bool clipped_ = false, arrived_ = true, was_whole_ = false;
 };
 
 }}  // namespace palpate

@@ -67,10 +67,11 @@ PALPATE_INLINE double ProxyMotion::follow(Tools tools, double floor, double surf
   const auto is_free = [&](std::size_t t) {
     return start_force_[t].squaredNorm() == 0.0 && tools[t].force.squaredNorm() == 0.0;
   };
-  double part = 1.0;
+  double part = longest_part_;
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (tools[t].active && !is_free(t))
       part = std::min(part, allowed_part(tools[t], std::max(surface, ahead_[t].farthest)));
+  was_whole_ = was_whole_ || (part == longest_part_ && !clipped_);
   arrived_ = part == 1.0 && !clipped_;
   for (std::size_t t = 0; t < tools.size(); ++t) {
     ContactTool& tool = tools[t];
@@ -92,9 +93,22 @@ PALPATE_INLINE double ProxyMotion::relative_change(Tools tools) const noexcept {
     change = std::max(change, (tools[t].force - start_force_[t]).norm());
     scale = std::max(scale, tools[t].force.norm());
     if (!(tools[t].half_length > 0.0)) continue;
-    change = std::max(change, (tools[t].torque - start_torque_[t]).norm() / tools[t].half_length);
+    const double arm = std::max(tools[t].half_length, tools[t].radius);
+    change = std::max(change, (tools[t].torque - start_torque_[t]).norm() / arm);
   }
   return change > 0.0 ? change / scale : 0.0;
+}
+
+PALPATE_INLINE void ProxyMotion::end_tick(Tools tools, bool converged) noexcept {
+  const bool moves = std::any_of(tools.begin(), tools.end(), [](const ContactTool& tool) {
+    return tool.active && tool.path_length() > still * tool.radius;
+  });
+  if (moves) longest_part_ = 1.0;
+  restless_ticks_ = moves || converged ? 0 : restless_ticks_ + was_whole_;
+  was_whole_ = false;
+  if (restless_ticks_ < patience) return;
+  restless_ticks_ = 0;
+  longest_part_ = std::max(least_part, 0.5 * longest_part_);
 }
 
 }}  // namespace palpate
