@@ -13,12 +13,13 @@ namespace detail {
 /// Whether all hooks except prefetch do nothing.
 template <class T>
 concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> forces, ContactProblem& problem,
-                                     const ContactParameters& parameters, const BladeSweep& sweep) {
+                                     const ToolRadii& radii, const ContactParameters& parameters,
+                                     const BladeSweep& sweep) {
   { tissue.begin_tick() } -> std::same_as<NoHook>;
   { tissue.end_tick(forces) } -> std::same_as<NoHook>;
   { tissue.updates() } -> std::same_as<NoHook>;
   { tissue.exchange_contacts(problem) } -> std::same_as<NoHook>;
-  { tissue.prepare_tools(ToolRadii(0.0), parameters) } -> std::same_as<NoHook>;
+  { tissue.prepare_tools(radii, parameters) } -> std::same_as<NoHook>;
   { tissue.try_cut(sweep) } -> std::same_as<NoHook>;
 };
 
