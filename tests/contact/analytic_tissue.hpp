@@ -37,7 +37,7 @@ class AnalyticTissue : public StillTissue {
     ++compliance_calls;
     return (common_ + (i == j ? own_ : 0.0)) * Matrix3::Identity();
   }
-  mutable long compliance_calls = 0;
+  mutable long compliance_calls = 0;  ///< measures the work of a tick
   double compliance_bound(int) const noexcept { return own_ + common_; }
   std::uint64_t compliance_revision() const noexcept { return 0; }
   double compliance_floor() const noexcept { return 1e-12; }

@@ -16,7 +16,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// tangents and the normal. No allocation after construction.
 class CoulombFriction {
  public:
-  static constexpr int maximum_sweeps = 4;   ///< per turn
+  static constexpr int maximum_sweeps = 4;   ///< of `improve`
   static constexpr double tolerance = 1e-4;  ///< change of t in a sweep, relative to the largest mu lambda
 
   /// For up to `capacity` contacts. Allocates unless the coefficient is zero; for set-up.
@@ -35,14 +35,14 @@ class CoulombFriction {
   void begin(int count, const double* lambda) noexcept;
   /// Changes the normal forces; friction forces above mu lambda are shortened.
   void press(const double* lambda) noexcept;
-  /// A turn: some sweeps of block descent. Returns the largest change of a friction force in the first
-  /// sweep, relative to the largest mu lambda: the residual at the start.
-  double turn() noexcept;
+  /// Some sweeps of block descent for the present normal forces. False when the friction forces already were the
+  /// solution, up to the tolerance.
+  bool improve() noexcept;
 
   /// Friction force on the tool [N].
-  Vector3 force(int i) const noexcept { return in_space(i, force_[at(i)]); }
+  Vector3 force(int i) const noexcept { return in_model(i, force_[at(i)]); }
   /// Displacement due to the friction forces at contact i, tool over tissue, along the normal [m]. O(rows).
-  double raised(int i) const noexcept;
+  double normal_displacement(int i) const noexcept;
   /// The whole displacement [m]. O(rows).
   Vector3 displacement(int i) const noexcept;
 
@@ -67,12 +67,12 @@ class CoulombFriction {
   std::size_t place(int i, int j) const noexcept { return at(i) * capacity_ + at(j); }
   const double* along_row(int i) const noexcept { return &along_[place(i, 0)].first; }
   const double* across_row(int i) const noexcept { return &across_[place(i, 0)].first; }
-  Vector3 in_space(int i, const Pair& p) const noexcept {
+  Vector3 in_model(int i, const Pair& p) const noexcept {
     const Frame& f = frame_[at(i)];
     return {f.x.dot(p), f.y.dot(p), f.z.dot(p)};
   }
-  inline Pair within(int i, const Pair& friction_force) const noexcept;
-  inline Pair moved(int i) const noexcept;
+  inline Pair project(int i, const Pair& friction_force) const noexcept;
+  inline Pair tangential_displacement(int i) const noexcept;
   void slip_by_normal_forces() noexcept;
   double sweep() noexcept;
 

@@ -68,18 +68,17 @@ PALPATE_INLINE void CoulombFriction::begin(int count, const double* lambda) noex
 PALPATE_INLINE void CoulombFriction::press(const double* lambda) noexcept {
   for (int i = 0; i < count_; ++i) {
     pressing_[at(i)] = lambda[i];
-    force_[at(i)] = within(i, force_[at(i)]);
+    force_[at(i)] = project(i, force_[at(i)]);
   }
 }
 
-PALPATE_INLINE double CoulombFriction::turn() noexcept {
+PALPATE_INLINE bool CoulombFriction::improve() noexcept {
   const double largest = coefficient_ * *std::max_element(pressing_.begin(), pressing_.begin() + count_);
   slip_by_normal_forces();
-  const double first = sweep();
-  if (!(first > tolerance * largest)) return 0.0;
+  if (!(sweep() > tolerance * largest)) return false;
   for (int k = 1; k < maximum_sweeps; ++k)
     if (!(sweep() > tolerance * largest)) break;
-  return first / largest;
+  return true;
 }
 
 PALPATE_INLINE void CoulombFriction::slip_by_normal_forces() noexcept {
@@ -101,29 +100,29 @@ PALPATE_INLINE double CoulombFriction::sweep() noexcept {
   for (int i = 0; i < count_; ++i) {
     if (!frame_[at(i)].sticks || !(pressing_[at(i)] > 0.0)) continue;
     const Pair before = force_[at(i)];
-    force_[at(i)] = within(i, before - step_[at(i)] * (slip_[at(i)] + moved(i)));
+    force_[at(i)] = project(i, before - step_[at(i)] * (slip_[at(i)] + tangential_displacement(i)));
     const Pair change = force_[at(i)] - before;
     largest = std::max(largest, change.dot(change));
   }
   return std::sqrt(largest);
 }
 
-PALPATE_INLINE double CoulombFriction::raised(int i) const noexcept {
+PALPATE_INLINE double CoulombFriction::normal_displacement(int i) const noexcept {
   return detail::dot(across_row(i), &force_.front().first, 2 * count_);
 }
 
 /// Tangential displacement due to the friction forces: half of the work of a tick.
-inline CoulombFriction::Pair CoulombFriction::moved(int i) const noexcept {
+inline CoulombFriction::Pair CoulombFriction::tangential_displacement(int i) const noexcept {
   const double* const forces = &force_.front().first;
   return {detail::dot(along_row(2 * i), forces, 2 * count_), detail::dot(along_row(2 * i + 1), forces, 2 * count_)};
 }
 
 PALPATE_INLINE Vector3 CoulombFriction::displacement(int i) const noexcept {
-  return in_space(i, moved(i)) + raised(i) * frame_[at(i)].normal;
+  return in_model(i, tangential_displacement(i)) + normal_displacement(i) * frame_[at(i)].normal;
 }
 
 /// A friction force projected on the friction disc of its contact: at most mu lambda.
-inline CoulombFriction::Pair CoulombFriction::within(int i, const Pair& friction_force) const noexcept {
+inline CoulombFriction::Pair CoulombFriction::project(int i, const Pair& friction_force) const noexcept {
   if (!frame_[at(i)].sticks) return {0.0, 0.0};
   const double most = coefficient_ * std::max(0.0, pressing_[at(i)]), square = friction_force.dot(friction_force);
   return square <= most * most ? friction_force : (most / std::sqrt(square)) * friction_force;

@@ -184,7 +184,7 @@ class Candidates {
   ContactSamples samples_;
   CoarseFacets facets_;
   List list_, next_list_;
-  Search search_;                           // for the next list
+  Search search_;                           // for the next list, or for one that is built at once
   int leaves_ = 0;                          // visited for the list
   std::vector<Candidate> loaded_;           // points of the list before that press
   std::vector<std::uint64_t> loaded_keys_;  // of their tools and samples, sorted

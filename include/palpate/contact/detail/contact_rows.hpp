@@ -86,14 +86,15 @@ class ContactRows {
   inline static bool takes_over(const Candidates& candidates, const Candidate& other, const Candidate& c) noexcept;
   inline static void reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept;
   void build_friction(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool, int i) noexcept;
-  inline static Matrix3 by_rotation(const ContactTool& tool, const Vector3& at_arm, const Vector3& by_arm) noexcept;
+  inline static Matrix3 rotational_compliance(const ContactTool& tool, const Vector3& at_arm,
+                                              const Vector3& by_arm) noexcept;
   inline static Vector3 coupling_displacement(const ContactTool& tool, const Contact& row) noexcept;
   void store_friction(std::span<ContactTool> tools) const noexcept;
   inline static double set_responses(const double* c, const double* m, const double* n, double* of_n,
                                      double* of_m) noexcept;
   inline void build_row(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool,
                         int i) noexcept;
-  inline void raise_gaps() noexcept;
+  inline void update_gaps() noexcept;
   inline Vector3 moved_point(int i) const noexcept;
 
   /// Displacement of the point of row i per unit force on that of row j.
@@ -103,7 +104,7 @@ class ContactRows {
   int capacity_, count_ = 0;
   ComplementarityProblem problem_;
   CoulombFriction friction_;
-  std::vector<double> free_gap_, pressed_;
+  std::vector<double> free_gap_, pressed_;  // pressed: normal forces that bound the friction forces
   double floor_ = 0.0, longest_path_ = 0.0, alternation_change_ = 0.0;
   std::uint64_t tick_ = 0;
   PointCompliance compliance_;

@@ -42,8 +42,8 @@ inline void ContactRows::reach(const ContactTool& tool, const Candidate& c, Cont
 }
 
 /// Displacement of the tool at one arm per force at another, by its rotation.
-inline Matrix3 ContactRows::by_rotation(const ContactTool& tool, const Vector3& at_arm,
-                                        const Vector3& by_arm) noexcept {
+inline Matrix3 ContactRows::rotational_compliance(const ContactTool& tool, const Vector3& at_arm,
+                                                  const Vector3& by_arm) noexcept {
   Matrix3 displacement;
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r)
@@ -230,15 +230,15 @@ PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const ContactSa
 }
 
 PALPATE_INLINE bool ContactRows::solve() noexcept {
-  if (friction_.acts()) raise_gaps();
+  if (friction_.acts()) update_gaps();
   const bool solved = problem_.solve();
   if (friction_.acts()) friction_.press(problem_.lambda.data());
   return solved;
 }
 
 /// Gaps without normal forces, with the present friction forces.
-inline void ContactRows::raise_gaps() noexcept {
-  for (int i = 0; i < count_; ++i) problem_.b[at(i)] = free_gap_[at(i)] + friction_.raised(i);
+inline void ContactRows::update_gaps() noexcept {
+  for (int i = 0; i < count_; ++i) problem_.b[at(i)] = free_gap_[at(i)] + friction_.normal_displacement(i);
 }
 
 PALPATE_INLINE bool ContactRows::slide() noexcept {
@@ -246,8 +246,8 @@ PALPATE_INLINE bool ContactRows::slide() noexcept {
   bool solved = true;
   std::copy_n(problem_.lambda.begin(), count_, pressed_.begin());
   for (int k = 0; k < most; ++k) {
-    const double friction_change = friction_.turn();
-    raise_gaps();
+    const bool friction_changed = friction_.improve();
+    update_gaps();
     solved = problem_.solve_again();
     const double part = k < full_alternations ? 1.0 : 0.5;
     double change = 0.0, largest = 0.0;
@@ -259,7 +259,7 @@ PALPATE_INLINE bool ContactRows::slide() noexcept {
     }
     friction_.press(pressed_.data());
     alternation_change_ = largest > 0.0 ? change / largest : 0.0;
-    if (friction_change == 0.0 && !(alternation_change_ > alternation_tolerance)) break;
+    if (!friction_changed && !(alternation_change_ > alternation_tolerance)) break;
   }
   friction_.press(problem_.lambda.data());
   return solved;
@@ -364,7 +364,8 @@ PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const 
     const Matrix3* between = p >= q ? &compliance_(tissue, samples, p, q) : &compliance_(tissue, samples, q, p);
     Matrix3 sum;
     if (same && rotates) {
-      sum = *between + (p >= q ? by_rotation(tool, ci.arm, cj.arm) : by_rotation(tool, cj.arm, ci.arm));
+      sum = *between +
+            (p >= q ? rotational_compliance(tool, ci.arm, cj.arm) : rotational_compliance(tool, cj.arm, ci.arm));
       between = &sum;
     }
     friction_.set(p >= q ? i : j, p >= q ? j : i, *between, same ? compliance : 0.0);

@@ -53,8 +53,8 @@ class ProxyMotion {
   std::array<Vector3, maximum_tools> start_force_{}, start_torque_{}, target_{};
   std::array<Ahead, maximum_tools> ahead_{};
   double longest_part_ = 1.0;  // of a step
-  int restless_ticks_ = 0;     // with a step that no radius has shortened
-  bool clipped_ = false, arrived_ = true, was_whole_ = false;
+  int restless_ticks_ = 0;     // in turn, that took a whole step and have not converged
+  bool clipped_ = false, arrived_ = true, took_whole_step_ = false;
 };
 
 }}  // namespace palpate

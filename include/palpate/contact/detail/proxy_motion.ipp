@@ -71,7 +71,7 @@ PALPATE_INLINE double ProxyMotion::follow(Tools tools, double floor, double surf
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (tools[t].active && !is_free(t))
       part = std::min(part, allowed_part(tools[t], std::max(surface, ahead_[t].farthest)));
-  was_whole_ = was_whole_ || (part == longest_part_ && !clipped_);
+  took_whole_step_ = took_whole_step_ || (part == longest_part_ && !clipped_);
   arrived_ = part == 1.0 && !clipped_;
   for (std::size_t t = 0; t < tools.size(); ++t) {
     ContactTool& tool = tools[t];
@@ -104,8 +104,8 @@ PALPATE_INLINE void ProxyMotion::end_tick(Tools tools, bool converged) noexcept 
     return tool.active && tool.path_length() > still * tool.radius;
   });
   if (moves) longest_part_ = 1.0;
-  restless_ticks_ = moves || converged ? 0 : restless_ticks_ + was_whole_;
-  was_whole_ = false;
+  restless_ticks_ = moves || converged ? 0 : restless_ticks_ + took_whole_step_;
+  took_whole_step_ = false;
   if (restless_ticks_ < patience) return;
   restless_ticks_ = 0;
   longest_part_ = std::max(least_part, 0.5 * longest_part_);
