@@ -110,6 +110,7 @@ void add_smoothed(const Bench& bench, std::vector<Entry>& entries);
 void add_tet10(const Bench& bench, std::vector<Entry>& entries);
 void add_quasi_non_linear(const Bench& bench, std::vector<Entry>& entries);
 void add_soft(const Bench& bench, std::vector<Entry>& entries);
+void add_quasi_newton(const Bench& bench, std::vector<Entry>& entries);
 void add_corotated(const Bench& bench, std::vector<Entry>& entries);
 void add_explicit(const Bench& bench, std::vector<Entry>& entries);
 void add_springs(const Bench& bench, std::vector<Entry>& entries);

@@ -9,6 +9,7 @@
 #include <palpate/linear/sparse_cholesky.hpp>
 #include <palpate/mesh/surface.hpp>
 #include <palpate/model/policies.hpp>
+#include <palpate/model/static/detail/solver_recipe.hpp>
 
 #include <algorithm>
 

@@ -72,7 +72,7 @@ int main(int argc, char** argv) try {
   std::fflush(stdout);
   std::vector<Entry> entries;
   for (auto* add : {add_tet4, add_tet4_uncondensed, add_smoothed, add_tet10, add_quasi_non_linear, add_soft,
-                    add_corotated, add_explicit, add_springs, add_position_based, add_plain_eigen})
+                    add_quasi_newton, add_corotated, add_explicit, add_springs, add_position_based, add_plain_eigen})
     add(bench, entries);
   std::vector<Row> rows;
   for (const Entry& entry : entries) {

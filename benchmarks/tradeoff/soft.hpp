@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/model/moving/implicit.hpp>
+#include <palpate/model/moving/quasi_newton.hpp>
 
 #include "free_motion.hpp"
 #include "linear.hpp"
@@ -19,6 +20,15 @@ RegionMaterials<Material> large_strain_materials(const RegionMaterials<LinearEla
   return converted;
 }
 
+/// The mesh converted for element E, as a mesh of E.
+template <Element E>
+Mesh<E> mesh_of(const Mesh<Tet4>& mesh) {
+  if constexpr (HasSmoothedStrain<E>)
+    return copy_mesh<E>(mesh);
+  else
+    return mesh_for<E>(mesh);
+}
+
 /// A moving model. `Material` is the material, `E` the element.
 template <class E, class Material, class Solver>
 class SoftContender : public Contender {
@@ -29,31 +39,38 @@ class SoftContender : public Contender {
   SoftContender(const Bench& bench, const std::string& mesh, const Parameters& parameters)
       : bench_(bench),
         parameters_(parameters),
-        mesh_(mesh_for<E>(bench.mesh(mesh))),
+        mesh_(mesh_of<E>(bench.mesh(mesh))),
         materials_(large_strain_materials<Material>(bench.scene.materials)),
         tissue_(mesh_, bench.scene.scene(near_group), materials_, {}, parameters),
+        conditions_(palpate::detail::body_without_mass(tissue_.body(), bench.scene.scene(near_group)).conditions),
         rendered_(tissue_, bench.scene) {}
 
   std::span<const Vector3> tick(std::span<const Vector3> centres) override { return rendered_.tick(centres); }
   double update_period() const override { return parameters_.step; }
   void update() override { tissue_.advance(); }
-  bool has_inertia() const override { return true; }
+  bool has_inertia() const override {
+    if constexpr (requires { parameters_.inertia; })
+      return parameters_.inertia;
+    else
+      return true;
+  }
   VectorX displacement() override { return tissue_.motion().displacement().head(3 * bench_.scene.mesh.node_count()); }
   /// Imbalance of support forces, by the exact material, and forces of the spheres, relative to the contact force.
   double own_error() override {
-    const DeformableBody& body = exact();
-    VectorX left(body.elastic->size()), contact = VectorX::Zero(left.size());
-    body.elastic->force(tissue_.motion().displacement(), left);
+    VectorX left(conditions_.dof_count()), contact = VectorX::Zero(left.size());
+    DeformationReport report;
+    exact().evaluate(tissue_.motion().displacement(), left, report);
     for (const VertexForce& f : rendered_.vertex_forces())
       contact.segment<3>(3 * Index{tissue_.touchable_nodes()[static_cast<std::size_t>(f.vertex)]}) +=
           f.force.in_model_axes();
     Vector3 sum = Vector3::Zero();  // support forces plus forces of the spheres
     for (Index dof = 0; dof < left.size(); ++dof)
-      if (body.conditions.is_constrained(dof)) sum[dof % 3] += left[dof];
+      if (conditions_.is_constrained(dof)) sum[dof % 3] += left[dof];
     for (Index i = 0; i < contact.size() / 3; ++i) sum += contact.segment<3>(3 * i);
     return sum.norm() / contact.norm();
   }
   double energy_drift() override {
+    if (!has_inertia()) return std::numeric_limits<double>::quiet_NaN();
     Parameters free = parameters_;
     free.mass_damping = 0.0;
     free.settle = false;
@@ -62,31 +79,38 @@ class SoftContender : public Contender {
                             .motion;
     const VectorX start = tissue_.motion().displacement();
     motion->rest_at(start);
-    const double before = exact().elastic->energy(start);
+    const double before = energy_at(start);
     for (double t = 0.0; t < free_swing - 1e-9; t += free.step) motion->step(free.step);
     const VectorX mass = lumped_mass(tissue_.body());
     double kinetic = 0.0;
     for (Index i = 0; i < mass.size(); ++i)
       kinetic += 0.5 * mass[i] * motion->velocity().template segment<3>(3 * i).squaredNorm();
-    return (kinetic + exact().elastic->energy(motion->displacement())) / before - 1.0;
+    return (kinetic + energy_at(motion->displacement())) / before - 1.0;
   }
   Index nodes() const override { return mesh_.node_count(); }
   Index kept_dofs() const override { return 3 * static_cast<Index>(tissue_.touchable_nodes().size()); }
   std::string remark() override { return rendered_.remark(); }
 
  private:
-  const DeformableBody& exact() {
-    if (!exact_.elastic)
-      exact_ = make_constrained_body(make_hyperelastic_body(mesh_, materials_), bench_.scene.scene(near_group));
-    return exact_;
+  /// Forces in double, of the exact material.
+  EnergyForces& exact() {
+    if (!exact_)
+      exact_ = palpate::detail::make_energy_forces<double>(make_hyperelastic_body(mesh_, materials_), SetupLimits{});
+    return *exact_;
+  }
+  double energy_at(const VectorX& u) {
+    VectorX f(u.size());
+    DeformationReport report;
+    return exact().evaluate(u, f, report);
   }
   const Bench& bench_;
   Parameters parameters_;
   Mesh<E> mesh_;
   RegionMaterials<Material> materials_;
   Tissue tissue_;
+  EssentialConditions conditions_;
   RenderedTissue<Tissue> rendered_;
-  DeformableBody exact_;
+  std::unique_ptr<EnergyForces> exact_;
 };
 
 /// An entry of a moving model; `paste` is its C++ code.

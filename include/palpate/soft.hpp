@@ -14,5 +14,6 @@
 #include <palpate/material/viscoelastic.hpp>
 #include <palpate/model/moving/explicit.hpp>
 #include <palpate/model/moving/implicit.hpp>
+#include <palpate/model/moving/quasi_newton.hpp>
 #include <palpate/model/moving/renewed_factor.hpp>
 #include <palpate/model/static/stiffening.hpp>

@@ -71,3 +71,32 @@ TEST_CASE("factorising again and solving do not allocate", "[linear][repeated_ch
   CHECK(factorised);
   CHECK(allocations == 0);
 }
+
+TEST_CASE("a factor read in single precision is a preconditioner", "[linear][repeated_cholesky]") {
+  for (const SparseCase& c : sparse_cases()) {
+    INFO(c.name);
+    const CholeskyAnalysis analysis(c.lower, c.layout);
+    RepeatedCholesky exact(analysis), single(analysis, {}, FactorScalar::single_precision);
+    CHECK(single.bytes() > exact.bytes());
+    REQUIRE(exact.factorise(c.lower));
+    REQUIRE(single.factorise(c.lower));
+    VectorX x(exact.size()), y(exact.size());
+    for (const double size : {1.0, 1e-60, 1e60}) {  // beyond the range of single precision
+      const VectorX b = size * random_vector(exact.size(), 5);
+      exact.solve_into(b, x);
+      const testing::AllocationScope scope;
+      single.solve_into(b, y);
+      CHECK(scope.allocations() == 0);
+      CHECK((x - y).norm() <= 1e-3 * x.norm());
+    }
+    // one refinement with it gains digits
+    const VectorX b = random_vector(exact.size(), 5);
+    exact.solve_into(b, x);
+    single.solve_into(b, y);
+    VectorX left = b - SparseMatrix(c.lower.selfadjointView<Eigen::Lower>()) * y, more(y.size());
+    const double before = (x - y).norm();
+    single.solve_into(left, more);
+    y += more;
+    CHECK((x - y).norm() <= 0.01 * before + 1e-12 * x.norm());
+  }
+}

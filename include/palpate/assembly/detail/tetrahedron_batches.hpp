@@ -4,6 +4,7 @@
 #include <palpate/assembly/detail/constant_geometry.hpp>
 #include <palpate/assembly/detail/element_blocks.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/concepts/element.hpp>
 #include <palpate/concepts/material.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/detail/lane_rows.hpp>
@@ -12,7 +13,6 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/element/tet4.hpp>
 #include <palpate/local/geometry.hpp>
 #include <palpate/mesh/mesh.hpp>
 
@@ -23,6 +23,10 @@
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+/// Tet4, or Tet4 with smoothed strain.
+template <class E>
+concept LinearTetrahedron = Element<E> && E::nodes == 4 && E::order == 1;
 
 /// N tetrahedra of one region. Lanes without an element have zero gradients and volume, so F = I there.
 template <class S, int N>
@@ -85,7 +89,8 @@ struct TetrahedronBatches {
 
   TetrahedronBatches() = default;
   /// Throws inverted_element or non_finite, with the element's id.
-  explicit TetrahedronBatches(const Mesh<Tet4>& mesh) {
+  template <LinearTetrahedron E>
+  explicit TetrahedronBatches(const Mesh<E>& mesh) {
     for (const ElementBlock& block : element_blocks(mesh, elements_per_block, N)) add_block(mesh, block);
     first_copy.assign(static_cast<std::size_t>(mesh.node_count()) + 1, 0);
     for (NodeId node : nodes) ++first_copy[static_cast<std::size_t>(node) + 1];
@@ -159,7 +164,8 @@ struct TetrahedronBatches {
   }
 
  private:
-  void add_block(const Mesh<Tet4>& mesh, const ElementBlock& block) {
+  template <class E>
+  void add_block(const Mesh<E>& mesh, const ElementBlock& block) {
     const auto count = static_cast<Index>(block.elements.size()), groups = (count + N - 1) / N;
     const std::vector<NodeId> local = nodes_of(mesh, block);
     blocks.push_back({static_cast<Index>(batches.size()), groups, static_cast<Index>(nodes.size()),
@@ -177,7 +183,8 @@ struct TetrahedronBatches {
         }
     }
   }
-  static std::vector<NodeId> nodes_of(const Mesh<Tet4>& mesh, const ElementBlock& block) {
+  template <class E>
+  static std::vector<NodeId> nodes_of(const Mesh<E>& mesh, const ElementBlock& block) {
     std::vector<NodeId> local;
     for (NodeId e : block.elements)
       for (int a = 0; a < 4; ++a) local.push_back(mesh.element_node(e, a));
@@ -185,9 +192,10 @@ struct TetrahedronBatches {
     local.erase(std::unique(local.begin(), local.end()), local.end());
     return local;
   }
-  static void set_lane(TetrahedronBatch<S, N>& batch, int lane, const Mesh<Tet4>& mesh, Index e,
+  template <class E>
+  static void set_lane(TetrahedronBatch<S, N>& batch, int lane, const Mesh<E>& mesh, Index e,
                        const std::vector<NodeId>& local) {
-    const PointGeometry<Tet4> g = constant_geometry<Tet4>(mesh, e);
+    const PointGeometry<E> g = constant_geometry(mesh, e);
     for (int a = 0; a < 3; ++a) {
       batch.gradient[a].x.set(lane, static_cast<S>(g.gradient(a + 1, 0)));
       batch.gradient[a].y.set(lane, static_cast<S>(g.gradient(a + 1, 1)));
@@ -202,8 +210,8 @@ struct TetrahedronBatches {
 
 /// The batches of a body, after check() of its materials. Throws inverted_element, non_finite, unsupported for a
 /// material with fibres on a mesh with fibre directions, too_large, or the problem of a material's check().
-template <class S, int N, HyperelasticMaterial M>
-TetrahedronBatches<S, N> make_batches(const HyperelasticBody<Tet4, M>& body, double bytes_per_element,
+template <class S, int N, LinearTetrahedron E, HyperelasticMaterial M>
+TetrahedronBatches<S, N> make_batches(const HyperelasticBody<E, M>& body, double bytes_per_element,
                                       const SetupLimits& limits) {
   for (const M& material : body.materials)
     if (auto problem = material.check()) raise(std::move(*problem));

@@ -24,6 +24,40 @@ inline Packet multiply_add(const Packet& a, const Packet& b, const Packet& c) no
   return Eigen::internal::pmadd(a, b, c);
 }
 
+/// The same for floats; at most eight, so that a column padded to eight rows is a whole number of packets.
+template <class T>
+struct PacketOf {
+  using type = Packet;
+  static constexpr int size = packet_size;
+};
+template <bool Halved>
+struct FloatPacket {
+  using type = Eigen::internal::packet_traits<float>::type;
+};
+template <>
+struct FloatPacket<true> {
+  using type = Eigen::internal::packet_traits<float>::half;
+};
+template <>
+struct PacketOf<float> {
+  static constexpr int whole = Eigen::internal::packet_traits<float>::size;
+  using type = FloatPacket<(whole > 8)>::type;
+  static constexpr int size = whole > 8 ? 8 : whole;
+};
+inline PacketOf<float>::type load(const float* p) noexcept {
+  return Eigen::internal::ploadu<PacketOf<float>::type>(p);
+}
+inline void store(float* p, const PacketOf<float>::type& x) noexcept {
+  Eigen::internal::pstoreu(p, x);
+}
+inline PacketOf<float>::type broadcast(float x) noexcept {
+  return Eigen::internal::pset1<PacketOf<float>::type>(x);
+}
+inline PacketOf<float>::type multiply_add(const PacketOf<float>::type& a, const PacketOf<float>::type& b,
+                                          const PacketOf<float>::type& c) noexcept {
+  return Eigen::internal::pmadd(a, b, c);
+}
+
 /// y += sum_k v[k] c[k] with four columns of n doubles: y is read and written once.
 inline void add_columns(double* y, const std::array<const double*, 4>& c, const std::array<double, 4>& v,
                         int n) noexcept {

@@ -24,10 +24,6 @@ struct Newton {
 template <class Preconditioner, class S = float>
 struct MatrixFreeCG {};
 
-/// Dynamics with implicit steps.
-template <class StepSolver>
-struct Implicit {};
-
 /// Parameters of a model on Implicit<Newton<...>>.
 struct ImplicitParameters {
   double step = 0.01;  ///< [s]

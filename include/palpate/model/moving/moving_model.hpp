@@ -16,6 +16,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+/// Dynamics with implicit steps: Implicit<Newton<SparseCholesky>>, Implicit<MatrixFreeCG<...>> (model/moving/implicit.hpp),
+/// Implicit<QuasiNewton<>> (model/moving/quasi_newton.hpp).
+template <class StepSolver>
+struct Implicit {};
+
 /// A solver policy for dynamics. SolverTraits<P> has
 ///   Parameters                                    an aggregate with `step` [s]; with `settle`, a body that can still
 ///                                                 move as a whole is refused when that is true
@@ -83,8 +88,10 @@ class HapticFEModel<E, M, Solver> : public MovingTissue {
     if constexpr (requires { typename M::LargeStrainHistory; } || requires { body.fast.mesh; })
       touchable.elements.clear();  // the dent of a small tool relaxes, its law does not
     const ScopedIdTranslation own(original_ids());  // those of `admitted` are moved from
-    if constexpr (requires { parameters.settle; })
-      if (parameters.settle) elastic_body().require_constrained(elastic_body().conditions(this->scene()));
+    bool must_hold = false;  // without supports there is no equilibrium
+    if constexpr (requires { parameters.settle; }) must_hold = parameters.settle;
+    if constexpr (requires { parameters.inertia; }) must_hold = must_hold || !parameters.inertia;
+    if (must_hold) elastic_body().require_constrained(elastic_body().conditions(this->scene()));
     PreparedMotion prepared = Traits::make_motion(std::move(body), this->scene(), parameters, limits());
     set_up(touchable, std::move(prepared), parameters.step, block_pattern(this->mesh()));
   }

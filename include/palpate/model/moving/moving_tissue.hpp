@@ -7,6 +7,7 @@
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/haptic/detail/triple_buffer.hpp>
 #include <palpate/model/model_base.hpp>
+#include <palpate/model/moving/detail/secant_compliance.hpp>
 #include <palpate/model/moving/detail/warped_compliance.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
 #include <palpate/model/detail/nodal_rotation.hpp>
@@ -29,8 +30,10 @@ struct BlockPattern;
 /// After every step the tissue publishes the position of its surface without the tool forces, and the rotation of each
 /// vertex. Between two steps the servo solves the contact on that surface with the compliance of one step from the
 /// settled state, rotated with the vertices: C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). The
-/// forces at the end of a step correct that step and load the next one. In a steady contact the force is that of the
-/// non-linear equilibrium, for any step length and for an inexact C: C only predicts the change until the next step.
+/// forces at the end of a step correct that step and load the next one. For a motion without inertia C is also
+/// corrected by the last steps (SecantCompliance), so that it follows the state. In a steady contact the force is that
+/// of the non-linear equilibrium, for any step length and for an inexact C: C only predicts the change until the next
+/// step.
 ///
 /// Threads: `advance` and the functions that change the model may run in any thread except the ticking one, and lock
 /// each other out. The functions of TissueModel are for the ticking thread, `displacement_with` for one drawing thread;
@@ -94,11 +97,19 @@ class MovingTissue : public ModelBase {
   void end_tick(std::span<const VertexForce> forces) noexcept;
   const ContactSurface& contact_surface() const noexcept { return surface_; }
   Status require_columns(std::span<const int>) noexcept { return {}; }
-  Matrix3 compliance(int i, int j) const noexcept { return compliance_.rotated(views_.front().rotation, i, j); }
+  Matrix3 compliance(int i, int j) const noexcept {
+    const View& view = views_.front();
+    const Matrix3 rotated = compliance_.rotated(view.rotation, i, j);
+    return view.secants.count == 0
+               ? rotated
+               : Matrix3(rotated + view.secants(static_cast<std::size_t>(i), static_cast<std::size_t>(j)));
+  }
   std::uint64_t compliance_revision() const noexcept { return revision_; }
   /// Number of surfaces taken so far.
   std::uint64_t updates() const noexcept { return revision_; }
-  double compliance_bound(int j) const noexcept { return compliance_.bound(j); }
+  double compliance_bound(int j) const noexcept {
+    return compliance_.bound(j) + views_.front().secants.bound(static_cast<std::size_t>(j));
+  }
   double compliance_floor() const noexcept { return compliance_.floor(); }
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
@@ -122,6 +133,7 @@ class MovingTissue : public ModelBase {
   struct View {
     std::vector<Vector3> free;
     std::vector<Matrix3> rotation;
+    SecantTerms secants;
     Status status;
   };
 
@@ -132,6 +144,8 @@ class MovingTissue : public ModelBase {
   /// Position of the surface without the current tool forces, computed with the compliance of the servo, so that the
   /// same forces restore the current position.
   void update_view(View& view) const noexcept;
+  /// The displacement of the vertices.
+  void find_moved(std::vector<Vector3>& moved) const noexcept;
   void publish(Status status) noexcept;
 
   double step_ = 0.0;
@@ -143,6 +157,8 @@ class MovingTissue : public ModelBase {
   VectorX applied_, load_;  // of the scene without and with gravity [N]
   VectorX full_;
   WarpedCompliance compliance_;
+  SecantCompliance secants_;
+  std::vector<Vector3> moved_, moved_before_;  // of the vertices, after the last step and the one before
   Forces used_;
   std::uint64_t steps_ = 0;
   std::mutex changes_;

@@ -39,7 +39,15 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   motion_->rest_at(start_);
   compliance_ = WarpedCompliance(*motion_, step_, touchable.nodes, rotations_, limits());
   motion_->rest_at(start_);  // the state that reset() restores
-  View view{std::vector<Vector3>(touchable.nodes.size()), std::vector<Matrix3>(touchable.nodes.size()), {}};
+  const std::size_t vertices = touchable.nodes.size();
+  View view{std::vector<Vector3>(vertices), std::vector<Matrix3>(vertices), {}, {}};
+  if (motion_->is_static()) {
+    secants_ = SecantCompliance(vertices, most_forces);
+    for (SecantTerms::Term& term : view.secants.term) term.resize(vertices);
+    moved_.resize(vertices);
+    find_moved(moved_);
+    moved_before_ = moved_;
+  }
   update_view(view);
   surface_ = ContactSurface(view.free, touchable.triangles);
   surface_.set_unloaded(unloaded());
@@ -60,11 +68,19 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   add(pressing_.front(), 1.0, full_);
   add(used_, -1.0, full_);
   const bool corrected = full_.isZero(0.0) || motion_->correct(full_) || steps_ == 0;
+  const Forces before = used_;
   used_ = pressing_.front();
   full_ = load_;
   add(used_, 1.0, full_);
   motion_->set_load(full_);
   const MotionStep done = motion_->step(step_);
+  if (motion_->is_static()) {
+    moved_before_.swap(moved_);
+    find_moved(moved_);
+    if (done.taken)
+      secants_.record({before.item.data(), before.count}, {used_.item.data(), used_.count}, moved_before_, moved_,
+                      done.relative_residual);
+  }
   Status status = done.status;
   if (!corrected) status.set(StatusFlag::degraded_model);
   publish(status);
@@ -120,6 +136,8 @@ PALPATE_INLINE void MovingTissue::reset() {
   keep_loads(scene().gravity(), others);
   pressing_.update();
   used_.count = 0;
+  secants_.clear();
+  find_moved(moved_);
   steps_ = 0;
   publish({});
 }
@@ -184,20 +202,27 @@ PALPATE_INLINE void MovingTissue::add(const Forces& forces, double factor, Vecto
     add_node_vector(load, touchable_nodes()[vertex(forces.item[k])], factor * forces.item[k].force.in_model_axes());
 }
 
+PALPATE_INLINE void MovingTissue::find_moved(std::vector<Vector3>& moved) const noexcept {
+  for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = node_vector(motion_->displacement(), touchable_nodes()[i]);
+}
+
 PALPATE_INLINE void MovingTissue::update_view(View& view) const noexcept {
   const VectorX& u = motion_->displacement();
   const std::vector<Vector3>& rest = elastic_body().positions();
   const std::size_t n = touchable_nodes().size();
   for (std::size_t i = 0; i < n; ++i) view.rotation[i] = rotations_(i, u);
+  secants_.find_terms(compliance_, view.rotation, view.secants);
   std::array<Vector3, most_forces> unrotated;
   for (std::size_t k = 0; k < used_.count; ++k)
     unrotated[k] = view.rotation[vertex(used_.item[k])].transpose() * used_.item[k].force.in_model_axes();
   for (std::size_t i = 0; i < n; ++i) {
     Vector3 moved = Vector3::Zero();
-    for (std::size_t k = 0; k < used_.count; ++k)
-      moved += compliance_.at_rest(i, vertex(used_.item[k])) * unrotated[k];
+    for (std::size_t k = 0; k < used_.count; ++k) moved += compliance_.at_rest(i, vertex(used_.item[k])) * unrotated[k];
+    moved = view.rotation[i] * moved;
+    for (std::size_t k = 0; k < used_.count && view.secants.count > 0; ++k)
+      moved += view.secants(i, vertex(used_.item[k])) * used_.item[k].force.in_model_axes();
     const NodeId node = touchable_nodes()[i];
-    view.free[i] = rest[static_cast<std::size_t>(node)] + node_vector(u, node) - view.rotation[i] * moved;
+    view.free[i] = rest[static_cast<std::size_t>(node)] + node_vector(u, node) - moved;
   }
 }
 

@@ -17,6 +17,7 @@ struct MotionStep {
   /// `inverted`, `solver_not_converged` when the step ended far from its solution, or other flags of the motion.
   Status status;
   DeformationReport deformation{};
+  double relative_residual = 0.0;  ///< of the forces at the end of the step, if the motion knows it
 };
 
 /// A motion of a body under loads; vectors have 3 entries per admitted node. For a user-defined motion, implement this
@@ -39,6 +40,8 @@ class TissueMotion {
   /// Displacement u [m] that `forces` [N] add at the end of a step, to first order. Returns false when it was not
   /// found.
   virtual bool respond(const VectorX& forces, VectorX& u) noexcept = 0;
+  /// Whether every step ends in the equilibrium of its loads, so that the displacement is a function of the loads alone.
+  virtual bool is_static() const noexcept { return false; }
   /// State after the last step [m], [m/s].
   virtual const VectorX& displacement() const noexcept = 0;
   virtual const VectorX& velocity() const noexcept = 0;

@@ -22,11 +22,11 @@ class TangentSolver {
  public:
   /// Analyses the pattern and allocates the factor. Throws too_large.
   TangentSolver(BlockPattern pattern, const EssentialConditions& conditions, const std::vector<Vector3>& positions,
-                const SetupLimits& limits)
+                const SetupLimits& limits, FactorScalar scalar = FactorScalar::double_precision)
       : conditions_(conditions),
         matrix_(make_stiffness(std::move(pattern), limits)),
         values_(matrix_, conditions),
-        factor_(CholeskyAnalysis(values_.lower(), layout(conditions, positions), limits), limits),
+        factor_(CholeskyAnalysis(values_.lower(), layout(conditions, positions), limits), limits, scalar),
         row_sums_(factor_.size()) {}
   TangentSolver(const TangentSolver&) = delete;
   TangentSolver& operator=(const TangentSolver&) = delete;

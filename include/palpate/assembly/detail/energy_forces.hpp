@@ -1,0 +1,67 @@
+// Energy and force of an elastic body, for methods that need no tangent.
+#pragma once
+
+#include <palpate/assembly/detail/elastic_forces.hpp>
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Energy and force of a body at a displacement u, all dofs, 3 per node [m], in one call. Virtual, so that code that
+/// uses it is compiled once for all elements and materials. No allocation.
+class EnergyForces {
+ public:
+  virtual ~EnergyForces() = default;
+
+  virtual Index size() const noexcept = 0;  ///< dofs
+  /// Returns the stored energy [J], infinite where a material is not admissible, and sets f to its derivative [N].
+  virtual double evaluate(const VectorX& u, VectorX& f, DeformationReport& report) noexcept = 0;
+  /// Relative rounding error of the energy.
+  virtual double rounding() const noexcept = 0;
+
+  // Viscoelastic bodies, as in ElasticForces; the default does nothing.
+  virtual bool has_history() const noexcept { return false; }
+  virtual void begin_step(double) noexcept {}
+  virtual void end_step(const VectorX&) noexcept {}
+};
+
+/// A batched force (SmoothedTetrahedra, BatchedTetrahedra) in scalar type S.
+template <class Force, class S>
+class BatchedEnergyForces final : public EnergyForces {
+ public:
+  explicit BatchedEnergyForces(Force force) : force_(std::move(force)) {}
+  Index size() const noexcept override { return force_.size(); }
+  double evaluate(const VectorX& u, VectorX& f, DeformationReport& report) noexcept override {
+    return force_.evaluate(u, f, report);
+  }
+  double rounding() const noexcept override { return static_cast<double>(std::numeric_limits<S>::epsilon()); }
+
+ private:
+  Force force_;
+};
+
+/// A body with a tangent, which is not used.
+class TangentEnergyForces final : public EnergyForces {
+ public:
+  TangentEnergyForces(std::unique_ptr<ElasticForces> elastic, bool has_history)
+      : elastic_(std::move(elastic)), has_history_(has_history) {}
+  Index size() const noexcept override { return elastic_->size(); }
+  double evaluate(const VectorX& u, VectorX& f, DeformationReport& report) noexcept override {
+    report = elastic_->force(u, f);
+    return report.admissible ? elastic_->energy(u) : infinity;
+  }
+  double rounding() const noexcept override { return std::numeric_limits<double>::epsilon(); }
+  bool has_history() const noexcept override { return has_history_; }
+  void begin_step(double dt) noexcept override { elastic_->begin_step(dt); }
+  void end_step(const VectorX& u) noexcept override { elastic_->end_step(u); }
+
+ private:
+  std::unique_ptr<ElasticForces> elastic_;
+  bool has_history_;
+};
+
+}}  // namespace palpate

@@ -1,0 +1,171 @@
+// Minimisation without second derivatives: L-BFGS around an approximate factor.
+#pragma once
+
+#include <palpate/concepts/integrator.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+struct QuasiNewtonLimits {
+  int maximum_iterations = 100;
+  double tolerance = 1e-6;  ///< of the residual relative to the problem's scale
+  int maximum_evaluations = 400;
+  double at_once =
+      1.0;  ///< factor for the tolerance of the start: below 1 a start within the tolerance is still improved
+};
+
+struct QuasiNewtonReport {
+  bool converged = false;
+  int iterations = 0;   ///< solves with the factor
+  int evaluations = 0;  ///< of energy and force
+  double relative_residual = infinity;
+};
+
+/// A potential with an approximate inverse of its second derivative.
+/// - `evaluate(x, residual)`, `scale()`, `rounding()` as in NewtonProblem.
+/// - `precondition(r, d)`: d = H r with a positive definite H, near the inverse of the second derivative.
+/// - `potential_rounding()` is the error of the last potential that is due to rounding alone.
+template <class P>
+concept QuasiNewtonProblem = requires(P& p, const VectorX& x, VectorX& y) {
+  { p.evaluate(x, y) }
+  noexcept->std::same_as<double>;
+  { p.precondition(x, y) }
+  noexcept;
+  { p.scale() }
+  noexcept->std::convertible_to<double>;
+  { p.rounding() }
+  noexcept->std::convertible_to<double>;
+  { p.potential_rounding() }
+  noexcept->std::convertible_to<double>;
+};
+
+/// Limited-memory BFGS with H as the initial inverse (Nocedal and Wright, Numerical Optimization, 7.2; with a factor as
+/// H: Liu, Bouaziz and Kavan 2017), and a line search with Armijo's rule; where differences of the potential are lost
+/// to rounding, with the approximate rule of Hager and Zhang (2005). The potential does not increase by more than its
+/// rounding error. Keeps its pairs from one problem to the next. Owns its workspaces: nothing allocates after the
+/// constructor.
+class QuasiNewtonMethod {
+ public:
+  QuasiNewtonMethod() = default;
+  /// Allocates 2 `memory` + 6 vectors. Throws bad_argument for a negative memory.
+  explicit QuasiNewtonMethod(Index size, int memory = 6);
+
+  /// Forgets all pairs. For a potential of another second derivative.
+  void forget() noexcept { count_ = 0; }
+
+  /// Evaluates the potential at x, where the next iteration starts. Returns it.
+  template <QuasiNewtonProblem P>
+  double start(P& problem, const VectorX& x) noexcept {
+    potential_ = problem.evaluate(x, residual_);
+    return potential_;
+  }
+  /// The same when the caller knows the potential at x and has set residual().
+  void start_from(double potential) noexcept { potential_ = potential; }
+  /// One iteration from x, where the problem was evaluated last, before and after. Returns false, with x unchanged,
+  /// when no step was found.
+  template <QuasiNewtonProblem P>
+  bool iterate(P& problem, VectorX& x, QuasiNewtonReport& report) noexcept;
+  /// Iterates until the residual is small or a limit is reached. `start` comes first.
+  template <QuasiNewtonProblem P>
+  QuasiNewtonReport solve(P& problem, VectorX& x, const QuasiNewtonLimits& limits) noexcept;
+
+  double potential() const noexcept { return potential_; }
+  VectorX& residual() noexcept { return residual_; }
+
+ private:
+  /// direction_ = inverse of the second derivative times residual_.
+  template <class P>
+  void find_direction(P& problem) noexcept;
+  template <class P>
+  bool search(P& problem, VectorX& x, double slope, QuasiNewtonReport& report) noexcept;
+  /// Stores the change of x and of the residual, unless the curvature is not positive.
+  void remember(const VectorX& from, const VectorX& to, const VectorX& residual_there) noexcept;
+  Index newest(int back) const noexcept { return (next_ + memory_ - 1 - back) % memory_; }
+
+  Index memory_ = 0, count_ = 0, next_ = 0;
+  Eigen::MatrixXd steps_, changes_;  // one pair per column
+  VectorX curvature_, weight_;       // 1 / (s . y), and a workspace
+  VectorX residual_, direction_, trial_, trial_residual_, work_;
+  double potential_ = infinity;
+};
+
+template <QuasiNewtonProblem P>
+QuasiNewtonReport QuasiNewtonMethod::solve(P& problem, VectorX& x, const QuasiNewtonLimits& limits) noexcept {
+  QuasiNewtonReport report;
+  if (!(potential_ < infinity)) return report;
+  for (;;) {
+    const double norm = residual_.norm();
+    report.relative_residual = norm <= problem.rounding() ? 0.0 : norm / problem.scale();
+    const double enough = report.iterations == 0 ? limits.at_once * limits.tolerance : limits.tolerance;
+    report.converged = report.relative_residual <= enough;
+    if (report.converged || report.iterations >= limits.maximum_iterations ||
+        report.evaluations >= limits.maximum_evaluations || !iterate(problem, x, report))
+      return report;
+  }
+}
+
+template <QuasiNewtonProblem P>
+bool QuasiNewtonMethod::iterate(P& problem, VectorX& x, QuasiNewtonReport& report) noexcept {
+  find_direction(problem);
+  ++report.iterations;
+  double slope = residual_.dot(direction_);
+  if (!(slope > 0.0) && count_ > 0) {  // stale pairs
+    forget();
+    find_direction(problem);
+    slope = residual_.dot(direction_);
+  }
+  return slope > 0.0 && slope < infinity && search(problem, x, slope, report);
+}
+
+template <class P>
+void QuasiNewtonMethod::find_direction(P& problem) noexcept {
+  work_ = residual_;
+  for (int k = 0; k < count_; ++k) {
+    const Index p = newest(k);
+    weight_[p] = curvature_[p] * steps_.col(p).dot(work_);
+    work_ -= weight_[p] * changes_.col(p);
+  }
+  problem.precondition(work_, direction_);
+  for (int k = static_cast<int>(count_) - 1; k >= 0; --k) {
+    const Index p = newest(k);
+    direction_ += (weight_[p] - curvature_[p] * changes_.col(p).dot(direction_)) * steps_.col(p);
+  }
+}
+
+template <class P>
+bool QuasiNewtonMethod::search(P& problem, VectorX& x, double slope, QuasiNewtonReport& report) noexcept {
+  double length = 1.0;
+  for (int k = 0; k < 8; ++k) {
+    trial_ = x + length * direction_;
+    const double next = problem.evaluate(trial_, trial_residual_);
+    ++report.evaluations;
+    if (!(next < infinity)) {
+      length *= 0.25;
+      continue;
+    }
+    const bool lower = next <= potential_ - 1e-4 * length * slope;
+    const bool level =
+        next <= potential_ + problem.potential_rounding() && trial_residual_.dot(direction_) >= -0.8 * slope;
+    if (lower || level) {
+      remember(x, trial_, trial_residual_);
+      x.swap(trial_);
+      residual_.swap(trial_residual_);
+      potential_ = next;
+      return true;
+    }
+    const double excess = next - potential_ + length * slope;  // of the parabola through both values
+    length *= std::clamp(0.5 * length * slope / excess, 0.1, 0.5);
+  }
+  problem.evaluate(x, residual_);
+  return false;
+}
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/integrator/quasi_newton.ipp>
+#endif

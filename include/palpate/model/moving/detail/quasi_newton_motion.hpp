@@ -1,0 +1,117 @@
+// Dynamics and statics of a hyperelastic body by a quasi-Newton method around one factor.
+#pragma once
+
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/detail/energy_forces.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/integrator/detail/implicit_step.hpp>
+#include <palpate/integrator/quasi_newton.hpp>
+#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/moving/detail/corotated_solve.hpp>
+#include <palpate/model/moving/detail/tangent_solver.hpp>
+#include <palpate/model/moving/tissue_motion.hpp>
+
+#include <memory>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Parameters of a model on Implicit<QuasiNewton<...>>.
+struct QuasiNewtonParameters {
+  double step = 0.016;  ///< [s]
+  bool settle = true;   ///< start in equilibrium under the scene's loads
+  /// false: every step ends in the equilibrium of its forces. Nothing swings, no damping is needed, and the force is
+  /// that of a slow hand. The body must be constrained.
+  bool inertia = true;
+  double mass_damping = 0.0;    ///< alpha of the mass-proportional damping [1/s]
+  int maximum_iterations = 10;  ///< per step; each takes one solve and usually one evaluation of the force
+  double tolerance = 2e-3;      ///< of the residual force, relative to the largest of the forces
+  int memory = 6;               ///< pairs of L-BFGS
+
+  /// Throws bad_argument for parameters out of range.
+  void require_usable() const;
+};
+
+/// Integrates M a + alpha M v + f(u) = load by implicit Euler, or without inertia f(u) = load. Every step minimises its
+/// incremental potential (Ortiz and Stainier 1999) by L-BFGS, with the factor of M/h^2 + K, rotated with the nodes, as
+/// initial inverse (Liu, Bouaziz and Kavan 2017). K is the stiffness at rest. It must be that of the same elements: one
+/// that locks, or of another Poisson ratio, takes three to five times as many iterations. A step costs one solve and
+/// one force evaluation per iteration, allocates nothing and ends after `maximum_iterations`. The potential at its end
+/// is not higher than at its start, so no energy is added.
+class QuasiNewtonMotion final : public TissueMotion {
+ public:
+  /// Largest relative residual of a step that counts as converged.
+  static constexpr double tolerable_residual = 0.05;
+
+  /// Starts at rest with zero displacement. Throws too_large, bad_density, bad_argument.
+  /// `body.elastic` is not used; `stiffness` is that of `forces` at rest.
+  QuasiNewtonMotion(DeformableBody body, std::unique_ptr<EnergyForces> forces, BlockMatrix stiffness,
+                    const QuasiNewtonParameters& parameters, const SetupLimits& limits);
+
+  MotionStep step(double h) noexcept override;
+  bool correct(const VectorX& more) noexcept override;
+  bool prepare_response(double h) noexcept override;
+  bool respond(const VectorX& forces, VectorX& u) noexcept override;
+  bool is_static() const noexcept override { return !parameters_.inertia; }
+  const VectorX& displacement() const noexcept override { return u_; }
+  const VectorX& velocity() const noexcept override { return v_; }
+  void rest_at(const VectorX& u) override;
+  void set_load(const VectorX& load) override;
+  void set_prescribed(const VectorX& values) override;
+
+  /// Minimises the static potential from the current state. Throws not_converged.
+  VectorX settle();
+
+  /// Of the last step.
+  const QuasiNewtonReport& report() const noexcept { return report_; }
+
+  // QuasiNewtonProblem: one step
+  double evaluate(const VectorX& x, VectorX& residual) noexcept;
+  void precondition(const VectorX& r, VectorX& d) noexcept;
+  double scale() const noexcept { return scale_; }
+  double rounding() const noexcept;
+  double potential_rounding() const noexcept;
+
+ private:
+  /// Sets the length of steps; factorises when it is new. Infinite: without inertia. Returns false without a factor.
+  bool set_length(double h) noexcept;
+  /// Potential and residual at trial_, from stored_ and force_.
+  double balance(VectorX& residual) noexcept;
+  /// Starts the method at u_, without an evaluation of the forces when they are known there.
+  double start_at_state() noexcept;
+  void accept() noexcept;
+  void measure_rounding() noexcept;
+
+  QuasiNewtonParameters parameters_;
+  DeformableBody body_;
+  std::unique_ptr<EnergyForces> forces_;
+  BlockMatrix stiffness_;  // at rest
+  CorotatedSolve corotated_;
+  TangentSolver factor_;
+  QuasiNewtonMethod method_;
+  ImplicitStep step_;
+  VectorX inertia_;  // mass per dof
+  VectorX u_, v_, a_, load_, step_load_;
+  VectorX trial_, velocity_, acceleration_, force_, inertial_, damping_, full_, other_;
+  VectorX x_, kept_load_;
+  DeformationReport deformation_;
+  /// Forces at u_, while they are known.
+  struct Known {
+    VectorX force;
+    double stored = 0.0;
+    DeformationReport deformation;
+    bool valid = false;
+  } known_;
+  QuasiNewtonReport report_;
+  double length_ = 0.0;  // of the factor; infinite: without inertia
+  double stored_ = 0.0, scale_ = 0.0, potential_scale_ = 0.0;
+  double floor_ = 0.0;  // residual that is due to rounding [N]
+  bool stepped_ = false;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/detail/quasi_newton_motion.ipp>
+#endif

@@ -1,0 +1,262 @@
+// Definitions of quasi_newton_motion.hpp.
+#pragma once
+
+#include <palpate/model/moving/detail/quasi_newton_motion.hpp>
+#include <palpate/assembly/load_vector.hpp>
+#include <palpate/core/realtime.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/integrator/detail/requirements.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE void QuasiNewtonParameters::require_usable() const {
+  const auto refuse = [](const char* name, const std::string& value, const char* hint) {
+    raise(SetupErrorKind::bad_argument, std::string("the quasi-Newton ") + name + " is " + value, hint);
+  };
+  if (maximum_iterations < 1) refuse("maximum_iterations", std::to_string(maximum_iterations), "Give at least 1");
+  if (!(tolerance > 0.0 && tolerance < 1.0)) refuse("tolerance", number(tolerance), "Give a small number above 0");
+  require_damping(mass_damping, 0.0);
+}
+
+PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::unique_ptr<EnergyForces> forces,
+                                                    BlockMatrix stiffness, const QuasiNewtonParameters& parameters,
+                                                    const SetupLimits& limits)
+    : parameters_(parameters),
+      body_(std::move(body)),
+      forces_(std::move(forces)),
+      stiffness_(std::move(stiffness)),
+      corotated_(body_),
+      factor_(stiffness_.pattern(), body_.conditions, body_.positions, limits, FactorScalar::single_precision),
+      method_(body_.conditions.free_count(), parameters.memory),
+      step_(TimeScheme::implicit_euler(), forces_->size()),
+      inertia_(forces_->size()),
+      u_(VectorX::Zero(forces_->size())),
+      v_(u_),
+      a_(u_),
+      load_(body_.load),
+      step_load_(u_),
+      trial_(u_),
+      velocity_(u_),
+      acceleration_(u_),
+      force_(u_),
+      inertial_(u_),
+      damping_(u_),
+      full_(u_),
+      other_(u_),
+      x_(body_.conditions.free_count()),
+      kept_load_(u_),
+      known_{u_, 0.0, {}, false} {
+  parameters.require_usable();
+  require_mass(body_);
+  for (Index dof = 0; dof < inertia_.size(); ++dof) inertia_[dof] = body_.lumped[dof / 3];
+  measure_rounding();
+}
+
+PALPATE_INLINE void QuasiNewtonMotion::measure_rounding() noexcept {
+  // A rotated body has no internal forces but those of rounding.
+  Matrix3 turn;
+  turn << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;
+  turn /= 3.0;
+  for (std::size_t i = 0; i < body_.positions.size(); ++i)
+    set_node_vector(trial_, static_cast<Index>(i), turn * body_.positions[i] - body_.positions[i]);
+  forces_->evaluate(trial_, force_, deformation_);
+  floor_ = 2.0 * force_.norm();
+}
+
+PALPATE_INLINE bool QuasiNewtonMotion::set_length(double h) noexcept {
+  if (h == length_) return true;
+  length_ = 0.0;
+  BlockMatrix& a = factor_.matrix();
+  a.copy_values(stiffness_);
+  if (h < infinity) {
+    step_.set_length(h);
+    a.add_nodal(step_.acceleration_per_displacement() + parameters_.mass_damping * step_.velocity_per_displacement(),
+                body_.lumped);
+  }
+  if (!factor_.factorise()) return false;
+  method_.forget();
+  length_ = h;
+  return true;
+}
+
+PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
+  MotionStep done;
+  const FlushDenormals flush;
+  if (stepped_) forces_->end_step(u_);
+  stepped_ = false;
+  known_.valid = known_.valid && !forces_->has_history();
+  if (!ImplicitStep::is_length(h) || !set_length(parameters_.inertia ? h : infinity)) return done;
+  forces_->begin_step(h);
+  corotated_.update(u_);
+  if (parameters_.inertia) step_.coast(u_, v_, a_);
+  const double still = start_at_state();
+  if (parameters_.inertia) {
+    // The potential at the end must not be higher than without motion, so that no energy is added.
+    body_.conditions.gather(step_.predicted(), x_);
+    if (!(method_.start(*this, x_) <= still)) start_at_state();
+  }
+  // At least one iteration until the residual is far below the tolerance, so that a force at rest keeps no error.
+  report_ = method_.solve(*this, x_,
+                          {.maximum_iterations = parameters_.maximum_iterations,
+                           .tolerance = parameters_.tolerance,
+                           .maximum_evaluations = 3 * parameters_.maximum_iterations,
+                           .at_once = 0.02});
+  if (!(method_.potential() < infinity) || !all_finite(method_.residual())) return done;
+  accept();
+  step_load_ = load_;
+  stepped_ = done.taken = true;
+  done.deformation = deformation_;
+  done.relative_residual = report_.relative_residual;
+  if (deformation_.inverted > 0) done.status.set(StatusFlag::inverted);
+  if (!(report_.relative_residual <= tolerable_residual)) done.status.set(StatusFlag::solver_not_converged);
+  return done;
+}
+
+PALPATE_INLINE bool QuasiNewtonMotion::correct(const VectorX& more) noexcept {
+  if (!stepped_) return false;
+  if (!parameters_.inertia && !forces_->has_history()) return true;  // the next step forgets this one
+  const FlushDenormals flush;
+  kept_load_ = load_;
+  load_ = step_load_ + more;
+  start_at_state();
+  QuasiNewtonReport report;
+  const bool better = method_.iterate(*this, x_, report) && all_finite(method_.residual());
+  if (better) {
+    step_load_ = load_;
+    accept();
+  }
+  load_ = kept_load_;
+  return better;
+}
+
+PALPATE_INLINE bool QuasiNewtonMotion::prepare_response(double h) noexcept {
+  if (!ImplicitStep::is_length(h) || !set_length(parameters_.inertia ? h : infinity)) return false;
+  corotated_.update(u_);
+  return true;
+}
+
+PALPATE_INLINE bool QuasiNewtonMotion::respond(const VectorX& forces, VectorX& u) noexcept {
+  if (length_ == 0.0) return false;
+  corotated_.solve(factor_, forces, u);
+  return true;
+}
+
+PALPATE_INLINE void QuasiNewtonMotion::rest_at(const VectorX& u) {
+  require_entries(u, u_.size());
+  if (stepped_) forces_->end_step(u_);
+  stepped_ = false;
+  for (Index dof = 0; dof < u_.size(); ++dof)  // u may alias u_
+    u_[dof] = body_.conditions.is_constrained(dof) ? body_.conditions.prescribed[dof] : u[dof];
+  v_.setZero();
+  a_.setZero();
+  known_.valid = false;
+  forces_->begin_step(infinity);
+  forces_->end_step(u_);
+  method_.forget();
+}
+
+PALPATE_INLINE void QuasiNewtonMotion::set_load(const VectorX& load) {
+  require_entries(load, u_.size());
+  load_ = load;
+}
+
+PALPATE_INLINE void QuasiNewtonMotion::set_prescribed(const VectorX& values) {
+  require_entries(values, u_.size());
+  body_.conditions.prescribed = values;
+}
+
+PALPATE_INLINE VectorX QuasiNewtonMotion::settle() {
+  forces_->begin_step(infinity);
+  if (!set_length(infinity)) raise(SetupErrorKind::not_positive_definite, "the body at rest has no stiffness");
+  body_.conditions.gather(u_, x_);
+  QuasiNewtonReport report;
+  const double tolerance = std::max(1e-9, 100.0 * forces_->rounding());
+  for (int round = 0; round < 50 && !report.converged; ++round) {
+    corotated_.update(u_);
+    method_.forget();
+    method_.start(*this, x_);
+    report = method_.solve(*this, x_, {.maximum_iterations = 20, .tolerance = tolerance});
+    body_.conditions.place(x_, body_.conditions.prescribed, u_);
+  }
+  if (!report.converged)
+    raise(
+        SetupErrorKind::not_converged,
+        "no equilibrium was found under the loads: forces of " + number(report.relative_residual) + " of them are left",
+        "Set settle = false, or add supports");
+  known_.valid = false;
+  forces_->end_step(u_);
+  forces_->begin_step(0.0);
+  return u_;
+}
+
+PALPATE_INLINE double QuasiNewtonMotion::evaluate(const VectorX& x, VectorX& residual) noexcept {
+  body_.conditions.place(x, body_.conditions.prescribed, trial_);
+  stored_ = forces_->evaluate(trial_, force_, deformation_);
+  return stored_ < infinity ? balance(residual) : infinity;
+}
+
+PALPATE_INLINE double QuasiNewtonMotion::balance(VectorX& residual) noexcept {
+  double moving = 0.0;
+  full_ = load_ - force_;
+  scale_ = std::max(force_.norm(), load_.norm());
+  if (length_ < infinity) {
+    step_.find_motion(trial_, velocity_, acceleration_);
+    inertial_ = inertia_.cwiseProduct(acceleration_);
+    damping_ = parameters_.mass_damping * inertia_.cwiseProduct(velocity_);
+    moving = step_.potential(velocity_, damping_, acceleration_, inertial_);
+    full_ -= inertial_ + damping_;
+    scale_ = std::max(scale_, inertial_.norm());
+  }
+  body_.conditions.gather(full_, residual);
+  const double work = load_.dot(trial_);
+  potential_scale_ = std::abs(stored_) + std::abs(work) + moving;
+  return moving + stored_ - work;
+}
+
+PALPATE_INLINE double QuasiNewtonMotion::start_at_state() noexcept {
+  body_.conditions.gather(u_, x_);
+  bool same = known_.valid;
+  for (Index dof = 0; same && dof < u_.size(); ++dof)  // supports may have moved
+    same = !body_.conditions.is_constrained(dof) || u_[dof] == body_.conditions.prescribed[dof];
+  if (!same) return method_.start(*this, x_);
+  trial_ = u_;
+  force_ = known_.force;
+  stored_ = known_.stored;
+  deformation_ = known_.deformation;
+  const double potential = balance(method_.residual());
+  method_.start_from(potential);
+  return potential;
+}
+
+PALPATE_INLINE void QuasiNewtonMotion::precondition(const VectorX& r, VectorX& d) noexcept {
+  body_.conditions.scatter(r, other_);
+  corotated_.solve(factor_, other_, full_);
+  body_.conditions.gather(full_, d);
+}
+
+PALPATE_INLINE double QuasiNewtonMotion::rounding() const noexcept {
+  return std::max(floor_, 4.0 * std::numeric_limits<double>::epsilon() * scale_);
+}
+
+PALPATE_INLINE double QuasiNewtonMotion::potential_rounding() const noexcept {
+  return 8.0 * forces_->rounding() * potential_scale_;
+}
+
+PALPATE_INLINE void QuasiNewtonMotion::accept() noexcept {
+  u_ = trial_;
+  if (length_ < infinity) {
+    v_ = velocity_;
+    a_ = acceleration_;
+  }
+  known_.force = force_;
+  known_.stored = stored_;
+  known_.deformation = deformation_;
+  known_.valid = true;
+}
+
+}}  // namespace palpate

@@ -1,0 +1,208 @@
+// Tissue by a quasi-Newton method, against Newton's method and closed forms.
+#include <palpate/element/smoothed.hpp>
+#include <palpate/element/tet10.hpp>
+#include <palpate/material/neo_hookean.hpp>
+#include <palpate/material/viscoelastic.hpp>
+#include <palpate/mesh/promote.hpp>
+#include <palpate/model/moving/implicit.hpp>
+#include <palpate/model/moving/quasi_newton.hpp>
+#include <palpate/testing/allocation_counter.hpp>
+#include <palpate/testing/random.hpp>
+
+#include <Eigen/Geometry>
+
+#include "model/one_session.hpp"
+
+using namespace palpate;
+
+namespace {
+
+const Vector3 beam_size(0.12, 0.03, 0.03);
+const NeoHookean soft{3e3, 0.45, 1000.0};
+
+Mesh<Tet4> beam() {
+  return box_tet4(beam_size, {12, 3, 3}, BoxSplit::six);
+}
+Scene hanging() {
+  return Scene().fix("x0").touch("z1").gravity({0.0, 0.0, -9.81});
+}
+template <class E>
+std::unique_ptr<TissueMotion> quasi_newton(const Mesh<E>& mesh, const Scene& scene, const QuasiNewtonParameters& p,
+                                           const NeoHookean& material = soft) {
+  using Traits = SolverTraits<Implicit<QuasiNewton<>>>;
+  return Traits::make_motion(make_hyperelastic_body(mesh, std::vector<NeoHookean>{material}), scene, p, {}).motion;
+}
+double stored(const Mesh<Smoothed<Tet4>>& mesh, const VectorX& u) {
+  return SmoothedTetrahedra<NeoHookean>(make_hyperelastic_body(mesh, std::vector<NeoHookean>{soft})).energy(u);
+}
+double kinetic(const VectorX& mass, const VectorX& v) {
+  double sum = 0.0;
+  for (Index i = 0; i < mass.size(); ++i) sum += 0.5 * mass[i] * v.segment<3>(3 * i).squaredNorm();
+  return sum;
+}
+
+using Slow = HapticFEModel<Smoothed<Tet4>, NeoHookean, Implicit<QuasiNewton<>>>;
+
+/// Force on a sphere pressed into a block, after coming to rest.
+template <class Model>
+Vector3 force_at_rest(Model& model, double depth, double seconds) {
+  HapticServo servo(model, SphereTool{one_session::radius}, one_session::stiff_device());
+  return one_session::press(model, servo, depth, static_cast<int>(1e3 * seconds)).back();
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a quasi-Newton equilibrium is that of Newton's method", "[model][quasi_newton]", Tet4, Tet10) {
+  Mesh<TestType> mesh;
+  if constexpr (TestType::nodes == 10)
+    mesh = promote<Tet10>(box_tet4(beam_size, {8, 2, 2}, BoxSplit::six));
+  else
+    mesh = beam();
+  Equilibrium newton(make_constrained_body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{soft}), hanging()));
+  REQUIRE(newton.solve().converged);
+  const VectorX& exact = newton.displacement();
+  const auto motion = quasi_newton(mesh, hanging(), {});
+  CHECK(exact.cwiseAbs().maxCoeff() > 0.1 * beam_size[0]);  // bends by much
+  CHECK((motion->displacement() - exact).norm() <= 1e-6 * exact.norm());
+}
+
+TEST_CASE("quasi-Newton steps are those of Newton's method", "[model][quasi_newton]") {
+  const auto mesh = beam();
+  ImplicitDynamics newton(make_deformable_body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{soft}), hanging()),
+                          {.mass_damping = 2.0});
+  const auto motion = quasi_newton(
+      mesh, hanging(), {.settle = false, .mass_damping = 2.0, .maximum_iterations = 100, .tolerance = 1e-10});
+  for (int k = 0; k < 20; ++k) {
+    REQUIRE(newton.step(0.016).newton.converged);
+    const MotionStep done = motion->step(0.016);
+    CHECK(done.taken);
+    CHECK(done.status.ok());
+  }
+  CHECK(newton.displacement().cwiseAbs().maxCoeff() > 0.01);
+  CHECK((motion->displacement() - newton.displacement()).norm() <= 1e-6 * newton.displacement().norm());
+  CHECK((motion->velocity() - newton.velocity()).norm() <= 1e-5 * newton.velocity().norm());
+}
+
+TEST_CASE("a step of a bent body takes few iterations, far from rest and however rotated", "[model][quasi_newton]") {
+  const auto mesh = copy_mesh<Smoothed<Tet4>>(beam());
+  const auto motion = quasi_newton(mesh, hanging(), {.settle = false}, {20e3, 0.45, 1000.0});
+  const auto& report = static_cast<const QuasiNewtonMotion&>(*motion).report();
+  int iterations = 0;
+  double largest = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    const MotionStep done = motion->step(0.016);
+    CHECK(done.status.ok());
+    iterations += report.iterations;
+    largest = std::max(largest, motion->displacement().cwiseAbs().maxCoeff());
+  }
+  CHECK(largest > 0.4 * beam_size[0]);
+  CHECK(iterations <= 600);
+}
+
+TEST_CASE("quasi-Newton steps add no energy", "[model][quasi_newton][energy]") {
+  const auto mesh = copy_mesh<Smoothed<Tet4>>(beam());
+  const VectorX mass = lumped_mass(make_hyperelastic_body(mesh, std::vector<NeoHookean>{soft}).rest);
+  testing::Random random(3);
+  for (const double h : {1e-4, 1e-3, 0.016, 1.0}) {
+    const auto motion = quasi_newton(mesh, Scene().fix("x0").touch("z1"), {.settle = false, .maximum_iterations = 3});
+    VectorX u(3 * mesh.node_count());
+    for (double& x : u) x = random.uniform(-0.004, 0.004);
+    motion->rest_at(u);
+    double last = stored(mesh, motion->displacement());
+    for (int k = 0; k < 30; ++k) {
+      REQUIRE(motion->step(h).taken);
+      const double now = stored(mesh, motion->displacement()) + kinetic(mass, motion->velocity());
+      CHECK(now <= last * (1.0 + 1e-9));
+      last = now;
+    }
+  }
+}
+
+TEST_CASE("bodies with random displacements come to rest upright", "[model][quasi_newton][extreme][E5]") {
+  const auto mesh = copy_mesh<Smoothed<Tet4>>(box_tet4({0.04, 0.04, 0.04}, {3, 3, 3}, BoxSplit::six));
+  testing::Random random(5);
+  for (int start = 0; start < 40; ++start) {
+    const auto motion = quasi_newton(mesh, Scene().fix("z0").touch("z1"), {.settle = false, .mass_damping = 10.0});
+    VectorX u(3 * mesh.node_count());
+    for (double& x : u) x = random.uniform(-0.006, 0.006);
+    motion->rest_at(u);
+    MotionStep done;
+    for (int k = 0; k < 200; ++k) done = motion->step(0.016);
+    CHECK(done.deformation.inverted == 0);
+    CHECK(motion->displacement().cwiseAbs().maxCoeff() < 1e-4);
+  }
+}
+
+TEST_CASE("the force at rest depends neither on inertia nor on the step", "[model][quasi_newton]") {
+  const auto mesh = one_session::block();
+  const Scene scene = one_session::constrained_block();
+  const NeoHookean material{5e3, 0.45, 1000.0};
+  const auto force = [&](const QuasiNewtonParameters& p) {
+    Slow model(mesh, scene, material, {}, p);
+    return force_at_rest(model, 0.006, 1.5);
+  };
+  const Vector3 exact = force({.step = 0.016, .inertia = false, .maximum_iterations = 100, .tolerance = 1e-9});
+  CHECK(exact[2] > 0.1);
+  for (const QuasiNewtonParameters& p :
+       {QuasiNewtonParameters{.inertia = false}, QuasiNewtonParameters{.step = 0.004, .inertia = false},
+        QuasiNewtonParameters{.step = 0.05, .inertia = false}, QuasiNewtonParameters{.mass_damping = 30.0},
+        QuasiNewtonParameters{.step = 0.005, .mass_damping = 30.0}}) {
+    INFO("step " << p.step << ", inertia " << p.inertia);
+    CHECK((force(p) - exact).norm() <= 1e-3 * exact.norm());
+  }
+}
+
+TEST_CASE("quasi-Newton tissue does not allocate in steps and ticks", "[model][quasi_newton][allocation]") {
+  for (const bool inertia : {false, true}) {
+    Slow model(one_session::block(), one_session::constrained_block(), NeoHookean{5e3, 0.45, 1000.0}, {},
+               {.inertia = inertia});
+    HapticServo servo(model, SphereTool{one_session::radius});
+    ToolState state;
+    std::uint64_t allocations = 0;
+    for (int k = 0; k < 300; ++k) {
+      state.time = 1e-3 * k;
+      state.position = Vector3(0.03, 0.03, 0.03 + one_session::radius - 0.03 * state.time);
+      const testing::AllocationScope scope;
+      if (k % 16 == 0) model.advance();
+      servo.tick(state);
+      allocations += scope.allocations();
+    }
+    CHECK(allocations == 0);
+  }
+}
+
+TEST_CASE("viscoelastic tissue relaxes in quasi-Newton steps as in Newton's", "[model][quasi_newton][viscous]") {
+  using Law = Viscoelastic<NeoHookean, 1>;
+  const Law law{.base = {5e3, 0.4, 1000.0}, .terms = {{{0.5, 0.1}}}, .relaxation = Relaxation::deviatoric};
+  const auto mesh = promote<Tet10>(box_tet4({0.04, 0.04, 0.04}, {2, 2, 2}, BoxSplit::six));
+  const Scene scene = Scene().fix("z0").touch("z1").traction("z1", {300.0, 0.0, -200.0});
+  const auto body = [&] { return make_hyperelastic_body(mesh, std::vector<Law>{law}); };
+  ImplicitDynamics newton(make_deformable_body(body(), scene));
+  const auto motion = SolverTraits<Implicit<QuasiNewton<>>>::make_motion(
+                          body(), scene, {.settle = false, .maximum_iterations = 100, .tolerance = 1e-10}, {})
+                          .motion;
+  for (int k = 0; k < 20; ++k) {
+    REQUIRE(newton.step(0.02).newton.converged);
+    REQUIRE(motion->step(0.02).status.ok());
+  }
+  CHECK((motion->displacement() - newton.displacement()).norm() <= 1e-6 * newton.displacement().norm());
+}
+
+TEST_CASE("a body without supports is refused without inertia, and moves with it", "[model][quasi_newton]") {
+  const auto mesh = one_session::block();
+  const Scene free = Scene().touch("z1");
+  CHECK(test::refusal_kind([&] { Slow model(mesh, free, soft, {}, {.settle = false, .inertia = false}); }) ==
+        "unconstrained");
+  Slow model(mesh, free, soft, {}, {.settle = false});
+  CHECK(model.advance().status.ok());
+}
+
+TEST_CASE("quasi-Newton parameters out of range are refused", "[model][quasi_newton][extreme]") {
+  const auto mesh = one_session::block();
+  const Scene scene = one_session::constrained_block();
+  for (const QuasiNewtonParameters& p :
+       {QuasiNewtonParameters{.step = 0.0}, QuasiNewtonParameters{.mass_damping = -1.0},
+        QuasiNewtonParameters{.maximum_iterations = 0}, QuasiNewtonParameters{.tolerance = 0.0},
+        QuasiNewtonParameters{.memory = 0}})
+    CHECK(test::refusal_kind([&] { Slow model(mesh, scene, soft, {}, p); }) == "bad_argument");
+}
