@@ -32,7 +32,8 @@ constexpr PronyTerm term{.share = 0.6, .relaxation_time = 0.4};
 constexpr double depth = 4e-3, fast = 0.05, seconds = 2.5;  // [m], time to press [s], total time [s]
 constexpr SphereTool finger{.radius = 8e-3};
 
-const Tissue liver{{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}, {{term}}};
+const Tissue liver{
+    {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}, {{term}}, Relaxation::whole_stress};
 const Vector3 size(0.06, 0.06, 0.03);  // [m]
 
 /// The force of every millisecond [N], before the gate.
@@ -91,4 +92,6 @@ int run_example(const std::filesystem::path& out) {
 
 }  // namespace
 
-int main(int count, char** values) { return example::main_with_out(count, values, "build/relax", run_example); }
+int main(int count, char** values) {
+  return example::main_with_out(count, values, "build/relax", run_example);
+}

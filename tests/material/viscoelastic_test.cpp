@@ -136,7 +136,7 @@ TEST_CASE("large strain: relaxation of a constant deformation, unaffected by a r
           "[material][viscoelastic][large]") {
   testing::Random random(51);
   const NeoHookeanIsochoric base{5e3, 0.45, 1060.0};  // its energy splits into isochoric and volumetric parts
-  const Viscoelastic<NeoHookeanIsochoric, 2> whole{base, {{{0.3, 0.1}, {0.2, 2.0}}}};
+  const Viscoelastic<NeoHookeanIsochoric, 2> whole{base, {{{0.3, 0.1}, {0.2, 2.0}}}, Relaxation::whole_stress};
   auto shape = whole;
   shape.relaxation = Relaxation::deviatoric;
   CHECK(whole.density == 1060.0);

@@ -3,6 +3,7 @@
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
+#include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/mesh/generators.hpp>
@@ -404,4 +405,29 @@ TEST_CASE("equilibrium supports linear bodies", "[model][equilibrium]") {
   REQUIRE(statics.solve().converged);
   CHECK_THAT(statics.reactions().sum(), WithinRel(density * 0.04 * 0.04 * 0.08 * 9.81, 1e-9));
   CHECK_REFUSED(SetupErrorKind::unconstrained, make_constrained_body(body, Scene().gravity({0.0, 0.0, -9.81})));
+}
+
+TEMPLATE_TEST_CASE("supports may move by more than a layer of elements in a step", "[model][dynamics][extreme]",
+                   NeoHookean, NeoHookeanLogarithmic, StVenantKirchhoff, NeoHookeanIsochoric) {
+  const double height = 0.08, layer = 0.01;
+  const auto mesh = box_tet4({0.04, 0.04, height}, {2, 2, 8});
+  const auto top = [&](const ImplicitDynamics& d) { return d.displacement()[3 * (mesh.node_count() - 1) + 2]; };
+  for (const double moved : {-1.5 * layer, 1.5 * layer}) {
+    const std::vector<TestType> law{TestType{5e3, 0.45, 1000.0}};
+    ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(mesh, law), Scene().fix("z0").fix("z1")),
+                       {.mass_damping = 20.0}),
+        slow(make_deformable_body(make_hyperelastic_body(mesh, law), Scene().fix("z0").fix("z1")),
+             {.mass_damping = 20.0});
+    VectorX values = VectorX::Zero(d.displacement().size());
+    for (int k = 1; k <= 300; ++k) {
+      for (Index i = 0; i < mesh.node_count(); ++i)
+        if (mesh.position(i).z() > height - 1e-9) values[3 * i + 2] = moved;
+      d.set_prescribed(values);
+      slow.set_prescribed(std::min(1.0, 0.02 * k) * values);
+      REQUIRE(d.step(0.01).taken);
+      REQUIRE(slow.step(0.01).taken);
+    }
+    CHECK_THAT(top(d), WithinAbs(moved, 1e-15));
+    CHECK((d.displacement() - slow.displacement()).norm() <= 1e-6 * slow.displacement().norm());
+  }
 }

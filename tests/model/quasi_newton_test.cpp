@@ -2,6 +2,7 @@
 #include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/material/neo_hookean.hpp>
+#include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/viscoelastic.hpp>
 #include <palpate/mesh/promote.hpp>
 #include <palpate/model/moving/implicit.hpp>
@@ -186,6 +187,26 @@ TEST_CASE("viscoelastic tissue relaxes in quasi-Newton steps as in Newton's", "[
     REQUIRE(motion->step(0.02).status.ok());
   }
   CHECK((motion->displacement() - newton.displacement()).norm() <= 1e-6 * newton.displacement().norm());
+}
+
+TEST_CASE("supports of quasi-Newton tissue may move by more than a layer in a step", "[model][quasi_newton][extreme]") {
+  const auto mesh = copy_mesh<Smoothed<Tet4>>(box_tet4({0.04, 0.04, 0.08}, {2, 2, 8}));
+  for (const bool inertia : {false, true}) {
+    const auto motion = SolverTraits<Implicit<QuasiNewton<>>>::make_motion(
+                            make_hyperelastic_body(mesh, std::vector{NeoHookeanLogarithmic{5e3, 0.45, 1000.0}}),
+                            Scene().fix("z0").fix("z1"), {.inertia = inertia}, {})
+                            .motion;
+    VectorX values = VectorX::Zero(3 * mesh.node_count());
+    for (Index i = 0; i < mesh.node_count(); ++i)
+      if (mesh.position(i).z() > 0.0799) values[3 * i + 2] = -0.025;
+    motion->set_prescribed(values);
+    for (int k = 0; k < 60; ++k) {
+      const MotionStep done = motion->step(0.016);
+      REQUIRE(done.taken);
+      CHECK(done.deformation.inverted == 0);
+    }
+    CHECK(motion->displacement()[3 * (mesh.node_count() - 1) + 2] == -0.025);
+  }
 }
 
 TEST_CASE("a body without supports is refused without inertia, and moves with it", "[model][quasi_newton]") {

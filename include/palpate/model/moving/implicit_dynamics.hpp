@@ -109,6 +109,12 @@ class ImplicitDynamics {
   /// Sets a state that has lasted for `seconds`; infinite: fully relaxed.
   void set_state(const VectorX& u, const VectorX& v, double seconds);
 
+  /// Moves supports in parts, with the body following each, when they move so far in a step that elements next to them
+  /// would invert and the material does not admit that. Ends at x_, from where the step is solved. Returns false when
+  /// no way was found.
+  bool move_supports() noexcept;
+  static constexpr int most_support_parts = 64;
+
   /// Sets the state to the one evaluated last.
   void accept() noexcept;
 

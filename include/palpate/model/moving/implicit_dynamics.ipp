@@ -54,6 +54,7 @@ PALPATE_INLINE StepReport ImplicitDynamics::step(double h) noexcept {
   work_before_ = work_;
   if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
   start_from_the_lower();
+  if (!move_supports()) return report;
   report.newton = newton_.solve(*this, x_);
   if (!std::isfinite(evaluate(x_, residual_)) || !all_finite(velocity_)) return report;
   report.taken = true;
@@ -203,6 +204,26 @@ PALPATE_INLINE void ImplicitDynamics::start_from_the_lower() noexcept {
   body_.conditions.gather(u_, start_);
   const double coasted = evaluate(x_, residual_);
   if (!(coasted <= evaluate(start_, residual_))) x_ = start_;
+}
+
+PALPATE_INLINE bool ImplicitDynamics::move_supports() noexcept {
+  if (evaluate(x_, residual_) < infinity) return true;
+  body_.conditions.gather(u_, x_);
+  double reached = 0.0, part = 0.5;
+  for (int trial = 0; trial < most_support_parts; ++trial) {
+    const double next = std::min(1.0, reached + part);
+    prescribed_ = from_ + next * (body_.conditions.prescribed - from_);
+    if (!(evaluate(x_, residual_) < infinity)) {
+      part *= 0.5;
+    } else if (next == 1.0) {
+      prescribed_ = body_.conditions.prescribed;
+      return true;
+    } else {
+      newton_.solve(*this, x_);
+      reached = next;
+    }
+  }
+  return false;
 }
 
 PALPATE_INLINE void ImplicitDynamics::accept() noexcept {

@@ -80,6 +80,9 @@ class QuasiNewtonMotion final : public TissueMotion {
   double balance(VectorX& residual) noexcept;
   /// Starts the method at u_, without an evaluation of the forces when they are known there.
   double start_at_state() noexcept;
+  /// As in ImplicitDynamics: moves supports in parts where the body must follow each part. Ends at x_.
+  bool move_supports() noexcept;
+  static constexpr int most_support_parts = 64;
   void accept() noexcept;
   void measure_rounding() noexcept;
 
@@ -104,6 +107,7 @@ class QuasiNewtonMotion final : public TissueMotion {
     bool valid = false;
   } known_;
   QuasiNewtonReport report_;
+  VectorX prescribed_;   // at the end of the present step, or of a part of it
   double length_ = 0.0;  // of the factor; infinite: without inertia
   double stored_ = 0.0, scale_ = 0.0, potential_scale_ = 0.0;
   double floor_ = 0.0;  // residual that is due to rounding [N]

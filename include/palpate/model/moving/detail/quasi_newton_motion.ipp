@@ -50,7 +50,8 @@ PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::un
       other_(u_),
       x_(body_.conditions.free_count()),
       kept_load_(u_),
-      known_{u_, 0.0, {}, false} {
+      known_{u_, 0.0, {}, false},
+      prescribed_(body_.conditions.prescribed) {
   parameters.require_usable();
   require_mass(body_);
   for (Index dof = 0; dof < inertia_.size(); ++dof) inertia_[dof] = body_.lumped[dof / 3];
@@ -93,6 +94,7 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   if (!ImplicitStep::is_length(h) || !set_length(parameters_.inertia ? h : infinity)) return done;
   forces_->begin_step(h);
   corotated_.update(u_);
+  prescribed_ = body_.conditions.prescribed;
   if (parameters_.inertia) step_.coast(u_, v_, a_);
   const double still = start_at_state();
   if (parameters_.inertia) {
@@ -100,6 +102,7 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
     body_.conditions.gather(step_.predicted(), x_);
     if (!(method_.start(*this, x_) <= still)) start_at_state();
   }
+  if (!move_supports()) return done;
   // At least one iteration until the residual is far below the tolerance, so that a force at rest keeps no error.
   report_ = method_.solve(*this, x_,
                           {.maximum_iterations = parameters_.maximum_iterations,
@@ -115,6 +118,25 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   if (deformation_.inverted > 0) done.status.set(StatusFlag::inverted);
   if (!(report_.relative_residual <= tolerable_residual)) done.status.set(StatusFlag::solver_not_converged);
   return done;
+}
+
+PALPATE_INLINE bool QuasiNewtonMotion::move_supports() noexcept {
+  if (method_.potential() < infinity) return true;
+  body_.conditions.gather(u_, x_);
+  double reached = 0.0, part = 0.5;
+  for (int trial = 0; trial < most_support_parts; ++trial) {
+    const double next = std::min(1.0, reached + part);
+    prescribed_ = u_ + next * (body_.conditions.prescribed - u_);
+    if (next == 1.0) prescribed_ = body_.conditions.prescribed;
+    if (!(method_.start(*this, x_) < infinity)) {
+      part *= 0.5;
+      continue;
+    }
+    if (next == 1.0) return true;
+    method_.solve(*this, x_, {.maximum_iterations = parameters_.maximum_iterations});
+    reached = next;
+  }
+  return false;
 }
 
 PALPATE_INLINE bool QuasiNewtonMotion::correct(const VectorX& more) noexcept {
@@ -172,6 +194,7 @@ PALPATE_INLINE void QuasiNewtonMotion::set_prescribed(const VectorX& values) {
 
 PALPATE_INLINE VectorX QuasiNewtonMotion::settle() {
   forces_->begin_step(infinity);
+  prescribed_ = body_.conditions.prescribed;
   if (!set_length(infinity)) raise(SetupErrorKind::not_positive_definite, "the body at rest has no stiffness");
   body_.conditions.gather(u_, x_);
   QuasiNewtonReport report;
@@ -195,7 +218,7 @@ PALPATE_INLINE VectorX QuasiNewtonMotion::settle() {
 }
 
 PALPATE_INLINE double QuasiNewtonMotion::evaluate(const VectorX& x, VectorX& residual) noexcept {
-  body_.conditions.place(x, body_.conditions.prescribed, trial_);
+  body_.conditions.place(x, prescribed_, trial_);
   stored_ = forces_->evaluate(trial_, force_, deformation_);
   return stored_ < infinity ? balance(residual) : infinity;
 }
@@ -222,7 +245,7 @@ PALPATE_INLINE double QuasiNewtonMotion::start_at_state() noexcept {
   body_.conditions.gather(u_, x_);
   bool same = known_.valid;
   for (Index dof = 0; same && dof < u_.size(); ++dof)  // supports may have moved
-    same = !body_.conditions.is_constrained(dof) || u_[dof] == body_.conditions.prescribed[dof];
+    same = !body_.conditions.is_constrained(dof) || u_[dof] == prescribed_[dof];
   if (!same) return method_.start(*this, x_);
   trial_ = u_;
   force_ = known_.force;
