@@ -6,6 +6,7 @@
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/model/moving/detail/corotated_motion.hpp>
 #include <palpate/model/moving/implicit.hpp>
+#include <palpate/model/moving/quasi_newton.hpp>
 
 #include <Eigen/Geometry>
 
@@ -144,6 +145,31 @@ void measure_scrambles(bench::RowFile& rows, Motion& motion, const char* name, i
   }
 }
 
+/// A quasi-Newton motion with the functions that measure_scrambles uses.
+class QuasiNewtonBlock {
+ public:
+  QuasiNewtonBlock(const Mesh<Tet4>& mesh, const Scene& scene) {
+    auto body = make_hyperelastic_body(copy_mesh<Smoothed<Tet4>>(mesh), std::vector<NeoHookean>{soft});
+    mass_ = lumped_mass(body.rest);
+    motion_ = SolverTraits<Implicit<QuasiNewton<>>>::make_motion(std::move(body), scene,
+                                                                 {.settle = false, .mass_damping = 5.0}, {})
+                  .motion;
+  }
+  void set_state(const VectorX& u, const VectorX&) { motion_->rest_at(u); }
+  void step(double h) { motion_->step(h); }
+  const VectorX& displacement() const { return motion_->displacement(); }
+  double kinetic_energy() const {
+    double sum = 0.0;
+    for (Index i = 0; i < mass_.size(); ++i)
+      sum += 0.5 * mass_[i] * motion_->velocity().segment<3>(3 * i).squaredNorm();
+    return sum;
+  }
+
+ private:
+  std::unique_ptr<TissueMotion> motion_;
+  VectorX mass_;
+};
+
 }  // namespace
 
 void measure_implicit_scrambles(bench::RowFile& rows, int runs) {
@@ -159,6 +185,8 @@ void measure_implicit_scrambles(bench::RowFile& rows, int runs) {
       make_deformable_body(make_hyperelastic_body(block.mesh, std::vector<NeoHookean>{soft}), scene),
       {.mass_damping = 5.0});
   measure_scrambles(rows, solved, "neo-Hookean, implicit Euler", std::min(runs, 200));
+  QuasiNewtonBlock smoothed(block.mesh, scene);
+  measure_scrambles(rows, smoothed, "neo-Hookean, smoothed, quasi-Newton steps", runs);
 }
 
 void measure_static_hold(bench::RowFile& rows, int ticks) {

@@ -153,6 +153,36 @@ TEST_CASE("the force at rest depends neither on inertia nor on the step", "[mode
   }
 }
 
+TEST_CASE("the force at rest follows loads that change under a tool", "[model][quasi_newton]") {
+  const auto mesh = one_session::block();
+  const NeoHookean material{5e3, 0.45, 1000.0};
+  const Vector3 sideways(6.0, 0.0, -9.81);
+  const auto force = [&](const Vector3& first, const Vector3& then) {
+    Slow model(mesh, one_session::constrained_block().gravity(first), material, {}, {.inertia = false});
+    HapticServo servo(model, SphereTool{one_session::radius}, one_session::stiff_device());
+    one_session::press(model, servo, 0.006, 500);
+    model.set_gravity(then);
+    return one_session::press(model, servo, 0.006, 800).back();
+  };
+  const Vector3 exact = force(sideways, sideways), changed = force(Vector3::Zero(), sideways);
+  CHECK((changed - exact).norm() <= 1e-3 * exact.norm());
+  CHECK((force(Vector3::Zero(), Vector3::Zero()) - exact).norm() > 0.02 * exact.norm());
+}
+
+TEST_CASE("a refused quasi-Newton step is flagged and changes nothing", "[model][quasi_newton][extreme]") {
+  const auto motion = quasi_newton(copy_mesh<Smoothed<Tet4>>(beam()), hanging(), {});
+  const VectorX before = motion->displacement();
+  for (const double h : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), infinity}) {
+    const MotionStep done = motion->step(h);
+    CHECK(!done.taken);
+    CHECK(done.status.has(StatusFlag::solver_not_converged));
+    CHECK(motion->displacement() == before);
+  }
+  motion->set_load(VectorX::Constant(before.size(), std::numeric_limits<double>::quiet_NaN()));
+  CHECK(!motion->step(0.016).taken);
+  CHECK(motion->displacement() == before);
+}
+
 TEST_CASE("quasi-Newton tissue does not allocate in steps and ticks", "[model][quasi_newton][allocation]") {
   for (const bool inertia : {false, true}) {
     Slow model(one_session::block(), one_session::constrained_block(), NeoHookean{5e3, 0.45, 1000.0}, {},

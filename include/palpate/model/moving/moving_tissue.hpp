@@ -159,6 +159,7 @@ class MovingTissue : public ModelBase {
   WarpedCompliance compliance_;
   SecantCompliance secants_;
   std::vector<Vector3> moved_, moved_before_;  // of the vertices, after the last step and the one before
+  bool loads_changed_ = false;                 // since the last step: displacements then changed for other reasons
   Forces used_;
   std::uint64_t steps_ = 0;
   std::mutex changes_;

@@ -77,9 +77,12 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   if (motion_->is_static()) {
     moved_before_.swap(moved_);
     find_moved(moved_);
-    if (done.taken)
+    if (loads_changed_)
+      secants_.clear();
+    else if (done.taken)
       secants_.record({before.item.data(), before.count}, {used_.item.data(), used_.count}, moved_before_, moved_,
                       done.relative_residual);
+    loads_changed_ = false;
   }
   Status status = done.status;
   if (!corrected) status.set(StatusFlag::degraded_model);
@@ -102,6 +105,7 @@ PALPATE_INLINE void MovingTissue::set_conditions(const Scene& scene) {
   motion_->set_prescribed(changed.prescribed);
   applied_.swap(applied);
   load_.swap(load);
+  loads_changed_ = true;
   keep_loads(scene.gravity(), others);
 }
 
@@ -109,6 +113,7 @@ PALPATE_INLINE void MovingTissue::set_gravity(const Vector3& gravity) {
   require_finite_gravity(gravity);
   const std::scoped_lock lock(changes_);
   load_ = applied_;
+  loads_changed_ = true;
   const Vector3 own = local(gravity, pose());
   for (Index i = 0; i < mass_.size(); ++i) add_node_vector(load_, i, mass_[i] * own);
   keep_gravity(gravity);

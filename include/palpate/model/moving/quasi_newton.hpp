@@ -1,7 +1,6 @@
 // Solver policy for tissue at large strain in real time: Implicit<QuasiNewton<>>.
 #pragma once
 
-#include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/detail/energy_forces.hpp>
 #include <palpate/assembly/smoothed_tetrahedra.hpp>
 #include <palpate/model/moving/detail/quasi_newton_motion.hpp>
@@ -12,8 +11,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// L-BFGS around the factor of a step at rest, which is computed at set-up; forces of Smoothed<Tet4> and Tet4 in scalar
-/// type S. For hyperelastic materials. Use Smoothed<Tet4>, Tet10 or Hex20, which do not lock. See QuasiNewtonMotion.
+/// L-BFGS around the factor of a step at rest, which is computed at set-up; forces of Smoothed<Tet4> in scalar type S,
+/// those of other elements in double. For hyperelastic materials. Use Smoothed<Tet4>, Tet10 or Hex20, which do not
+/// lock. See QuasiNewtonMotion.
 template <std::floating_point S = double>
 struct QuasiNewton {};
 

@@ -87,6 +87,7 @@ PALPATE_INLINE bool QuasiNewtonMotion::set_length(double h) noexcept {
 
 PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   MotionStep done;
+  done.status.set(StatusFlag::solver_not_converged);  // unless the step is taken
   const FlushDenormals flush;
   if (stepped_) forces_->end_step(u_);
   stepped_ = false;
@@ -112,8 +113,8 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   if (!(method_.potential() < infinity) || !all_finite(method_.residual())) return done;
   accept();
   step_load_ = load_;
-  stepped_ = done.taken = true;
-  done.deformation = deformation_;
+  stepped_ = true;
+  done = {true, {}, deformation_};
   done.relative_residual = report_.relative_residual;
   if (deformation_.inverted > 0) done.status.set(StatusFlag::inverted);
   if (!(report_.relative_residual <= tolerable_residual)) done.status.set(StatusFlag::solver_not_converged);

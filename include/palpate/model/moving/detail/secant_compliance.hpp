@@ -65,7 +65,9 @@ class SecantCompliance {
 
  private:
   struct Pair {
-    std::vector<VertexForce> force;  // y
+    /// y: adds to the force on a vertex.
+    void add(int vertex, const Vector3& f) noexcept;
+    std::vector<VertexForce> force;  // y, every vertex once
     std::vector<Vector3> moved;      // s
   };
   std::array<Pair, SecantTerms::most> pair_;  // the newest last

@@ -23,6 +23,14 @@ PALPATE_INLINE SecantCompliance::SecantCompliance(std::size_t vertices, std::siz
   }
 }
 
+PALPATE_INLINE void SecantCompliance::Pair::add(int vertex, const Vector3& f) noexcept {
+  const auto same = std::ranges::find(force, vertex, &VertexForce::vertex);
+  if (same != force.end())
+    same->force += ModelVector(f);
+  else
+    force.push_back({vertex, ModelVector(f)});
+}
+
 PALPATE_INLINE void SecantCompliance::record(std::span<const VertexForce> before, std::span<const VertexForce> after,
                                              std::span<const Vector3> from, std::span<const Vector3> to,
                                              double error) noexcept {
@@ -31,17 +39,11 @@ PALPATE_INLINE void SecantCompliance::record(std::span<const VertexForce> before
   else
     ++count_;
   Pair& pair = pair_[count_ - 1];
-  pair.force.assign(after.begin(), after.end());
+  pair.force.clear();
+  for (const VertexForce& f : after) pair.add(f.vertex, f.force.in_model_axes());
   double size = 0.0, change = 0.0, product = 0.0;
-  for (const VertexForce& f : after) size += f.force.in_model_axes().squaredNorm();
-  for (const VertexForce& f : before) {
-    const Vector3 less = -f.force.in_model_axes();
-    const auto same = std::ranges::find(pair.force, f.vertex, &VertexForce::vertex);
-    if (same == pair.force.end())
-      pair.force.push_back({f.vertex, ModelVector(less)});
-    else
-      same->force += ModelVector(less);
-  }
+  for (const VertexForce& f : pair.force) size += f.force.in_model_axes().squaredNorm();
+  for (const VertexForce& f : before) pair.add(f.vertex, -f.force.in_model_axes());
   for (std::size_t i = 0; i < to.size(); ++i) pair.moved[i] = to[i] - from[i];
   for (const VertexForce& f : pair.force) {
     change += f.force.in_model_axes().squaredNorm();
