@@ -14,8 +14,8 @@ struct QuasiNewtonLimits {
   int maximum_iterations = 100;
   double tolerance = 1e-6;  ///< of the residual relative to the problem's scale
   int maximum_evaluations = 400;
-  double at_once =
-      1.0;  ///< factor for the tolerance of the start: below 1 a start within the tolerance is still improved
+  double reduction = 1.0;  ///< the residual must also fall to this share of its start ...
+  double enough = 0.0;     ///< ... or to this share of the tolerance
 };
 
 struct QuasiNewtonReport {
@@ -97,11 +97,13 @@ template <QuasiNewtonProblem P>
 QuasiNewtonReport QuasiNewtonMethod::solve(P& problem, VectorX& x, const QuasiNewtonLimits& limits) noexcept {
   QuasiNewtonReport report;
   if (!(potential_ < infinity)) return report;
+  double start = 0.0;
   for (;;) {
     const double norm = residual_.norm();
     report.relative_residual = norm <= problem.rounding() ? 0.0 : norm / problem.scale();
-    const double enough = report.iterations == 0 ? limits.at_once * limits.tolerance : limits.tolerance;
-    report.converged = report.relative_residual <= enough;
+    if (report.iterations == 0) start = report.relative_residual;
+    const double wanted = std::max(limits.reduction * start, limits.enough * limits.tolerance);
+    report.converged = report.relative_residual <= std::min(limits.tolerance, wanted);
     if (report.converged || report.iterations >= limits.maximum_iterations ||
         report.evaluations >= limits.maximum_evaluations || !iterate(problem, x, report))
       return report;

@@ -104,12 +104,14 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
     if (!(method_.start(*this, x_) <= still)) start_at_state();
   }
   if (!move_supports()) return done;
-  // At least one iteration until the residual is far below the tolerance, so that a force at rest keeps no error.
+  // Also below the tolerance every step reduces the residual, so that a force at rest keeps no error and the change of
+  // a step stays larger than its error.
   report_ = method_.solve(*this, x_,
                           {.maximum_iterations = parameters_.maximum_iterations,
                            .tolerance = parameters_.tolerance,
                            .maximum_evaluations = 3 * parameters_.maximum_iterations,
-                           .at_once = 0.02});
+                           .reduction = 0.1,
+                           .enough = 0.05});
   if (!(method_.potential() < infinity) || !all_finite(method_.residual())) return done;
   accept();
   step_load_ = load_;
