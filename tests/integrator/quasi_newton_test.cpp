@@ -10,7 +10,7 @@ using namespace palpate;
 namespace {
 
 /// Rosenbrock's function in pairs of variables: minimum 0 at (1, 1, ...). Infinite for x_0 > 3.
-struct Rosenbrock {
+struct RosenbrockPairs {
   int evaluations = 0;
   double evaluate(const VectorX& x, VectorX& residual) noexcept {
     ++evaluations;
@@ -32,7 +32,7 @@ struct Rosenbrock {
 };
 
 /// x^T A x / 2 - b x with a factor of A.
-struct Quadratic {
+struct FactorisedQuadratic {
   Eigen::Matrix3d a = Eigen::Vector3d(1.0, 10.0, 100.0).asDiagonal();
   VectorX b = VectorX::Ones(3);
   double evaluate(const VectorX& x, VectorX& residual) noexcept {
@@ -48,7 +48,7 @@ struct Quadratic {
 }  // namespace
 
 TEST_CASE("an exact factor needs one iteration", "[integrator][quasi_newton]") {
-  Quadratic problem;
+  FactorisedQuadratic problem;
   QuasiNewtonMethod method(3);
   VectorX x = VectorX::Zero(3);
   method.start(problem, x);
@@ -59,7 +59,7 @@ TEST_CASE("an exact factor needs one iteration", "[integrator][quasi_newton]") {
 }
 
 TEST_CASE("Rosenbrock's function is minimised, monotonically, without allocation", "[integrator][quasi_newton]") {
-  Rosenbrock problem;
+  RosenbrockPairs problem;
   const Index n = 10;
   QuasiNewtonMethod method(n);
   VectorX x = VectorX::Constant(n, -1.2);
@@ -78,7 +78,7 @@ TEST_CASE("Rosenbrock's function is minimised, monotonically, without allocation
 }
 
 TEST_CASE("a step out of the domain is shortened", "[integrator][quasi_newton]") {
-  Rosenbrock problem;
+  RosenbrockPairs problem;
   problem.factor = 1e-3;  // the first steps are far too long
   QuasiNewtonMethod method(2);
   VectorX x(2);
@@ -92,7 +92,7 @@ TEST_CASE("a step out of the domain is shortened", "[integrator][quasi_newton]")
 }
 
 TEST_CASE("a limit on iterations ends with the best state", "[integrator][quasi_newton]") {
-  Rosenbrock problem;
+  RosenbrockPairs problem;
   QuasiNewtonMethod method(2);
   VectorX x = VectorX::Constant(2, -1.2);
   const double before = method.start(problem, x);
