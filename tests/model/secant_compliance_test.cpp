@@ -11,7 +11,7 @@ using namespace palpate;
 namespace {
 
 /// A body whose response is a matrix: not what `respond` of a settled motion would tell.
-struct Springs {
+struct MatrixMotion {
   MatrixX compliance;
   VectorX u;
   bool prepare_response(double) { return true; }
@@ -29,7 +29,7 @@ MatrixX random_compliance(Index size, unsigned seed) {
   return MatrixX::Identity(size, size) + 0.2 / static_cast<double>(size) * a * a.transpose();
 }
 
-struct Case {
+struct CorrectedCase {
   static constexpr int vertices = 6;
   std::vector<NodeId> nodes{0, 1, 2, 3, 4, 5};
   std::vector<Matrix3> rotation{static_cast<std::size_t>(vertices), Matrix3::Identity()};
@@ -37,7 +37,7 @@ struct Case {
   SecantCompliance secants{vertices, 64};
   SecantTerms terms;
 
-  Case() {
+  CorrectedCase() {
     std::vector<Vector3> positions;
     BlockPattern pattern;
     pattern.row_start.push_back(0);
@@ -46,7 +46,7 @@ struct Case {
       for (NodeId j = 0; j <= i; ++j) pattern.column.push_back(j);
       pattern.row_start.push_back(static_cast<Index>(pattern.column.size()));
     }
-    Springs motion{random_compliance(3 * vertices, 3), VectorX::Zero(3 * vertices)};
+    MatrixMotion motion{random_compliance(3 * vertices, 3), VectorX::Zero(3 * vertices)};
     base = WarpedCompliance(motion, 1.0, nodes, NodalRotations(pattern, positions, nodes), {});
     for (auto& term : terms.term) term.resize(vertices);
   }
@@ -76,8 +76,8 @@ std::vector<Vector3> as_vectors(const VectorX& u) {
 }  // namespace
 
 TEST_CASE("the corrected compliance maps the last change of forces to its displacement", "[model][secant]") {
-  Case c;
-  const MatrixX truth = 2.5 * random_compliance(3 * Case::vertices, 8);
+  CorrectedCase c;
+  const MatrixX truth = 2.5 * random_compliance(3 * CorrectedCase::vertices, 8);
   testing::Random random(1);
   VectorX f = VectorX::Zero(truth.rows());
   for (int step = 0; step < 8; ++step) {
@@ -91,8 +91,8 @@ TEST_CASE("the corrected compliance maps the last change of forces to its displa
     CHECK((corrected * (g - f) - (v - u)).norm() <= 1e-10 * (v - u).norm());
     CHECK((corrected - corrected.transpose()).norm() <= 1e-12 * corrected.norm());
     CHECK(Eigen::SelfAdjointEigenSolver<MatrixX>(corrected).eigenvalues().minCoeff() > 0.0);
-    for (int j = 0; j < Case::vertices; ++j)
-      for (std::size_t i = 0; i < Case::vertices; ++i)
+    for (int j = 0; j < CorrectedCase::vertices; ++j)
+      for (std::size_t i = 0; i < CorrectedCase::vertices; ++i)
         CHECK(c.terms(i, static_cast<std::size_t>(j)).norm() <=
               c.terms.bound(static_cast<std::size_t>(j)) * (1.0 + 1e-12));
     f = g;
@@ -100,8 +100,8 @@ TEST_CASE("the corrected compliance maps the last change of forces to its displa
 }
 
 TEST_CASE("pairs that say nothing are not used", "[model][secant]") {
-  Case c;
-  const Index size = 3 * Case::vertices;
+  CorrectedCase c;
+  const Index size = 3 * CorrectedCase::vertices;
   VectorX f = VectorX::Zero(size), g = f, u = f, v = f;
   f[4] = 1.0;
   v[4] = 1.0;
