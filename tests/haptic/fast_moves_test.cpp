@@ -9,7 +9,7 @@ using namespace palpate;
 
 namespace {
 
-constexpr double length = 0.06, tip_radius = 4e-3;
+constexpr double length = 0.06, small_tip = 4e-3;
 
 test::Pad plate(double thickness) {
   Scene scene;
@@ -32,10 +32,10 @@ struct Move {
     const Vector3 direction(std::sin(incline) * std::cos(turn), std::sin(incline) * std::sin(turn),
                             -side * std::cos(incline));
     goal = Vector3(random.uniform(0.4, 0.6) * length, random.uniform(0.4, 0.6) * length,
-                   (side > 0.0 ? thickness : 0.0) + side * end * tip_radius);
+                   (side > 0.0 ? thickness : 0.0) + side * end * small_tip);
     // From anywhere within a tick's path, so that the ticks hit the plate at any distance from its surface.
-    const double path = ((from_contact ? 0.9 : 2.2) - end) * tip_radius / std::cos(incline);
-    way = speed * tip_radius * direction;
+    const double path = ((from_contact ? 0.9 : 2.2) - end) * small_tip / std::cos(incline);
+    way = speed * small_tip * direction;
     ticks = static_cast<int>(std::ceil(path / way.norm() + (from_contact ? 0.0 : random.uniform())));
     if (from_contact) way = path / ticks * direction;
   }
@@ -48,7 +48,7 @@ struct Faults {
 
 /// The force after every tick of the move and while the device stays at its end.
 Faults play(test::Pad& body, const Move& move, double thickness) {
-  HapticServo servo(body, SphereTool{.radius = tip_radius}, ServoOptions{});
+  HapticServo servo(body, SphereTool{.radius = small_tip}, ServoOptions{});
   ToolState state;
   Faults faults;
   const auto tick = [&](const Vector3& position) {
@@ -58,9 +58,9 @@ Faults play(test::Pad& body, const Move& move, double thickness) {
     const double force = move.side * servo.contact_force()[2];
     const double height = move.side * (position[2] - (move.side > 0.0 ? thickness : 0.0));
     faults.wrong_side += force < 0.0;
-    faults.no_force += height < 0.95 * tip_radius && !(force > 0.0);
+    faults.no_force += height < 0.95 * small_tip && !(force > 0.0);
   };
-  const Vector3 start = move.start(), above = start + move.side * Vector3(0.0, 0.0, tip_radius);
+  const Vector3 start = move.start(), above = start + move.side * Vector3(0.0, 0.0, small_tip);
   for (int k = 0; k <= 50; ++k) tick(above + (start - above) * k / 50);
   for (int k = 1; k <= move.ticks; ++k) tick(start + k * move.way);
   for (int k = 0; k < 200; ++k) tick(move.goal);
