@@ -30,12 +30,12 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// (J'_e / det F_e)^(1/3) F_e, the stored energy is
 ///   sum over edges V_e (W(F'_e) - U(J'_e)) + sum over nodes V_n U(J_n),   U(J) = W(J^(1/3) I):
 /// the change of volume is averaged over nodes and all else over edges, for any material. (With W(F_e) in place of
-/// W(F'_e) a distorted edge of a neo-Hookean body gains energy by collapsing, and compressed surfaces buckle.) The
-/// tangent at rest is the stiffness of Smoothed<Tet4> at small strain; a uniform deformation has the energy of the
-/// material. Below J = 1/8, U continues as a parabola with the bulk modulus at rest, and ratios of volumes are those of
-/// 1/8, so that forces stay finite and push an inverted domain back. Materials, vectors and allocation are as in
-/// BatchedTetrahedra; a material that needs J > 0 needs it of the edges. S = float computes in single precision. About
-/// 350 bytes per element in double, 200 in float.
+/// W(F'_e) a distorted edge of a neo-Hookean body lowers its energy by collapsing.) The tangent at rest is the
+/// stiffness of Smoothed<Tet4> at small strain; a uniform deformation has the energy of the material. Below J = 1/8, U
+/// continues as a parabola with the bulk modulus at rest, and ratios of volumes are those of 1/8, so that forces stay
+/// finite and push an inverted domain back. Materials, vectors and allocation are as in BatchedTetrahedra; a material
+/// that needs J > 0 needs it of the edges. S = float computes in single precision. About 350 bytes per element in
+/// double, 200 in float.
 template <HyperelasticMaterial M, class S = double, int N = 64 / sizeof(S)>
 class SmoothedTetrahedra {
  public:

@@ -51,7 +51,7 @@ concept QuasiNewtonProblem = requires(P& p, const VectorX& x, VectorX& y) {
 class QuasiNewtonMethod {
  public:
   QuasiNewtonMethod() = default;
-  /// Allocates 2 `memory` + 6 vectors. Throws bad_argument for a negative memory.
+  /// Allocates 2 `memory` + 5 vectors. Throws bad_argument unless `memory` is 1 to 100.
   explicit QuasiNewtonMethod(Index size, int memory = 6);
 
   /// Forgets all pairs. For a potential of another second derivative.
@@ -65,8 +65,8 @@ class QuasiNewtonMethod {
   }
   /// The same when the caller knows the potential at x and has set residual().
   void start_from(double potential) noexcept { potential_ = potential; }
-  /// One iteration from x, where the problem was evaluated last, before and after. Returns false, with x unchanged,
-  /// when no step was found.
+  /// One iteration from x, at which the problem must have been evaluated last; on return this holds for the new x.
+  /// Returns false, with x unchanged, when no step was found.
   template <QuasiNewtonProblem P>
   bool iterate(P& problem, VectorX& x, QuasiNewtonReport& report) noexcept;
   /// Iterates until the residual is small or a limit is reached. `start` comes first.

@@ -23,13 +23,13 @@ class EnergyForces {
   /// Relative rounding error of the energy.
   virtual double rounding() const noexcept = 0;
 
-  // Viscoelastic bodies, as in ElasticForces; the default does nothing.
+  /// Whether the forces depend on earlier steps. Then `begin_step` and `end_step` are as in ElasticForces.
   virtual bool has_history() const noexcept { return false; }
   virtual void begin_step(double) noexcept {}
   virtual void end_step(const VectorX&) noexcept {}
 };
 
-/// A batched force (SmoothedTetrahedra, BatchedTetrahedra) in scalar type S.
+/// A force that computes energy and force together in scalar type S, for example SmoothedTetrahedra.
 template <class Force, class S>
 class BatchedEnergyForces final : public EnergyForces {
  public:

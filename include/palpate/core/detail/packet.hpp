@@ -24,7 +24,8 @@ inline Packet multiply_add(const Packet& a, const Packet& b, const Packet& c) no
   return Eigen::internal::pmadd(a, b, c);
 }
 
-/// The same for floats; at most eight, so that a column padded to eight rows is a whole number of packets.
+/// The packet of a number type. Of floats at most eight, so that a column padded to eight rows is a whole number of
+/// packets.
 template <class T>
 struct PacketOf {
   using type = Packet;

@@ -1,9 +1,8 @@
 // Definitions of front_sweeps.hpp.
 #pragma once
 
-#include <palpate/linear/detail/front_substitution.hpp>
 #include <palpate/linear/detail/front_sweeps.hpp>
-#include <palpate/linear/detail/front_tree.hpp>
+#include <palpate/linear/detail/one_front.hpp>
 #include <palpate/linear/detail/vector_kernels.hpp>
 
 #include <algorithm>
@@ -75,28 +74,10 @@ PALPATE_INLINE void FrontSweeps::clear(const Front& f) noexcept {
 }
 
 PALPATE_INLINE void FrontSweeps::forward(const Front& f) noexcept {
-  double* const v = local_.data();
-  std::copy_n(values_.data() + f.first, f.pivots, v);
-  const LowerPanels shape = f.panels();
-  std::fill(v + f.pivots, v + shape.height, 0.0);
-  forward_front(factor_ + f.factor, shape, v);
-  std::copy_n(v, f.pivots, values_.data() + f.first);
-  const double* from = v + f.pivots;
-  for (Index r = f.run_begin; r < f.run_end; ++r) {
-    double* const to = values_.data() + tree_->runs[r].first;
-    for (NodeId i = 0; i < tree_->runs[r].count; ++i) to[i] += *from++;
-  }
+  forward_one(*tree_, f, factor_, values_.data(), local_.data());
 }
 PALPATE_INLINE void FrontSweeps::backward(const Front& f) noexcept {
-  double* const v = local_.data();
-  std::copy_n(values_.data() + f.first, f.pivots, v);
-  double* to = v + f.pivots;
-  for (Index r = f.run_begin; r < f.run_end; ++r)
-    to = std::copy_n(values_.data() + tree_->runs[r].first, tree_->runs[r].count, to);
-  const LowerPanels shape = f.panels();
-  std::fill(to, v + shape.height, 0.0);
-  backward_front(factor_ + f.factor, shape, v);
-  std::copy_n(v, f.pivots, values_.data() + f.first);
+  backward_one(*tree_, f, factor_, values_.data(), local_.data());
 }
 
 }}}  // namespace palpate::detail

@@ -8,7 +8,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-struct Front;
 struct FrontTree;
 
 /// A copy of a factor in single precision: a solve reads half as many bytes. Refers to the tree, which must outlive it.
@@ -23,9 +22,6 @@ class SingleSweeps {
   void solve(const double* b, double* x) noexcept;
 
  private:
-  void forward(const Front& f) noexcept;
-  void backward(const Front& f) noexcept;
-
   const FrontTree& tree_;
   Index fronts_;
   std::vector<float> factor_, values_, local_;

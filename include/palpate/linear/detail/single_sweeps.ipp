@@ -1,8 +1,7 @@
 // Definitions of single_sweeps.hpp.
 #pragma once
 
-#include <palpate/linear/detail/front_substitution.hpp>
-#include <palpate/linear/detail/front_tree.hpp>
+#include <palpate/linear/detail/one_front.hpp>
 #include <palpate/linear/detail/single_sweeps.hpp>
 
 #include <algorithm>
@@ -29,35 +28,9 @@ PALPATE_INLINE void SingleSweeps::solve(const double* b, double* x) noexcept {
   if (!(largest > 0.0)) largest = 1.0;
   float* const values = values_.data();
   for (Index i = 0; i < size; ++i) values[tree_.place_of_dof[i]] = static_cast<float>(b[i] / largest);
-  for (Index f = 0; f < fronts_; ++f) forward(tree_.fronts[f]);
-  for (Index f = fronts_ - 1; f >= 0; --f) backward(tree_.fronts[f]);
+  for (Index f = 0; f < fronts_; ++f) forward_one(tree_, tree_.fronts[f], factor_.data(), values, local_.data());
+  for (Index f = fronts_ - 1; f >= 0; --f) backward_one(tree_, tree_.fronts[f], factor_.data(), values, local_.data());
   for (Index i = 0; i < size; ++i) x[i] = largest * static_cast<double>(values[tree_.place_of_dof[i]]);
-}
-
-PALPATE_INLINE void SingleSweeps::forward(const Front& f) noexcept {
-  float* const v = local_.data();
-  std::copy_n(values_.data() + f.first, f.pivots, v);
-  const LowerPanels shape = f.panels();
-  std::fill(v + f.pivots, v + shape.height, 0.0f);
-  forward_front(factor_.data() + f.factor, shape, v);
-  std::copy_n(v, f.pivots, values_.data() + f.first);
-  const float* from = v + f.pivots;
-  for (Index r = f.run_begin; r < f.run_end; ++r) {
-    float* const to = values_.data() + tree_.runs[r].first;
-    for (NodeId i = 0; i < tree_.runs[r].count; ++i) to[i] += *from++;
-  }
-}
-
-PALPATE_INLINE void SingleSweeps::backward(const Front& f) noexcept {
-  float* const v = local_.data();
-  std::copy_n(values_.data() + f.first, f.pivots, v);
-  float* to = v + f.pivots;
-  for (Index r = f.run_begin; r < f.run_end; ++r)
-    to = std::copy_n(values_.data() + tree_.runs[r].first, tree_.runs[r].count, to);
-  const LowerPanels shape = f.panels();
-  std::fill(to, v + shape.height, 0.0f);
-  backward_front(factor_.data() + f.factor, shape, v);
-  std::copy_n(v, f.pivots, values_.data() + f.first);
 }
 
 }}}  // namespace palpate::detail
