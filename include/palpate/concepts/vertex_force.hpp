@@ -12,22 +12,30 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// world frame, so the conversion from a Vector3 is explicit.
 class ModelVector {
  public:
-  ModelVector() noexcept : v_(Vector3::Zero()) {}
+  ModelVector() noexcept : v_(0.0, 0.0, 0.0) {}
   ModelVector(double x, double y, double z) noexcept : v_(x, y, z) {}
   explicit ModelVector(const Vector3& in_model_axes) noexcept : v_(in_model_axes) {}
   /// From a vector in the world frame; `to_world` is the model's pose.
   static ModelVector from_world(const Vector3& v, const Eigen::Isometry3d& to_world) noexcept {
-    return ModelVector(to_world.linear().transpose() * v);
+    const double* m = to_world.data();  // columns of 4 entries; Eigen's block would cost every program its types
+    return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[4] * v[0] + m[5] * v[1] + m[6] * v[2],
+            m[8] * v[0] + m[9] * v[1] + m[10] * v[2]};
   }
 
   const Vector3& in_model_axes() const noexcept { return v_; }
-  Vector3 in_world(const Eigen::Isometry3d& to_world) const noexcept { return to_world.linear() * v_; }
+  Vector3 in_world(const Eigen::Isometry3d& to_world) const noexcept {
+    const double* m = to_world.data();
+    return {m[0] * v_[0] + m[4] * v_[1] + m[8] * v_[2], m[1] * v_[0] + m[5] * v_[1] + m[9] * v_[2],
+            m[2] * v_[0] + m[6] * v_[1] + m[10] * v_[2]};
+  }
 
   ModelVector& operator+=(const ModelVector& other) noexcept {
-    v_ += other.v_;
+    v_ = v_ + other.v_;
     return *this;
   }
-  friend bool operator==(const ModelVector& a, const ModelVector& b) noexcept { return a.v_ == b.v_; }
+  friend bool operator==(const ModelVector& a, const ModelVector& b) noexcept {
+    return a.v_[0] == b.v_[0] && a.v_[1] == b.v_[1] && a.v_[2] == b.v_[2];
+  }
 
  private:
   Vector3 v_;

@@ -64,8 +64,6 @@ class CondensedSystem {
   VectorX kept_load_, kept_answer_;
 };
 
-static_assert(StaticSystem<CondensedSystem>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -7,6 +7,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(StaticSystem<CondensedSystem>);
+
 PALPATE_INLINE CondensedSystem::CondensedSystem(SparseCholesky interior, Index kept)
     : interior_(std::move(interior)), kept_load_(detail::zeros(kept)), kept_answer_(kept) {}
 

@@ -32,8 +32,6 @@ class Uncondensed {
   VectorX load_, answer_;
 };
 
-static_assert(StaticSystem<Uncondensed>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

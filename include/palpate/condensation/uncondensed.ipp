@@ -6,6 +6,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(StaticSystem<Uncondensed>);
+
 PALPATE_INLINE Uncondensed::Uncondensed(AnySolver solver, std::vector<Index> kept)
     : solver_(std::move(solver)),
       kept_(std::move(kept)),

@@ -48,9 +48,6 @@ class ReplayDevice {
   RenderLimits rendered_;
 };
 
-static_assert(HapticDevice<ReplayDevice>);
-static_assert(HapticDevice<Recorder<ReplayDevice>>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -113,6 +113,9 @@ class RecordingReader {
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(HapticDevice<ReplayDevice>);
+static_assert(HapticDevice<Recorder<ReplayDevice>>);
+
 PALPATE_INLINE std::vector<RecordedTick> read_recording(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream)

@@ -102,8 +102,6 @@ class SimulatedDevice {
   bool unplugged_ = false;
 };
 
-static_assert(HapticDevice<SimulatedDevice>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

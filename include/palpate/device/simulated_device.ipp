@@ -10,6 +10,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(HapticDevice<SimulatedDevice>);
+
 PALPATE_INLINE SimulatedOptions SimulatedOptions::precise_stylus() {
   return {.mass = 0.075,
           .damping = 0.05,

@@ -39,8 +39,6 @@ struct Hex20 {
   static Eigen::Matrix<double, 20, 3> reference_nodes() noexcept;
 };
 
-static_assert(Element<Hex20>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -5,6 +5,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(Element<Hex20>);
+
 PALPATE_INLINE Eigen::Matrix<double, 20, 1> Hex20::shape(const Vector3& xi) noexcept {
   return serendipity::shape<20, 3>(reference_nodes(), xi);
 }

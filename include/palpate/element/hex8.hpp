@@ -33,8 +33,6 @@ struct Hex8 {
   static Eigen::Matrix<double, 8, 3> reference_nodes() noexcept;
 };
 
-static_assert(Element<Hex8>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -6,6 +6,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(Element<Hex8>);
+
 PALPATE_INLINE Eigen::Matrix<double, 8, 1> Hex8::shape(const Vector3& xi) noexcept {
   const Eigen::Vector4d n = Quad4::shape({xi[0], xi[1]});
   const double bottom = 0.5 * (1.0 - xi[2]), top = 0.5 * (1.0 + xi[2]);

@@ -23,8 +23,6 @@ struct Quad4 {
   static Eigen::Matrix<double, 4, 2> reference_nodes() noexcept;
 };
 
-static_assert(TriangulatedFace<Quad4>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

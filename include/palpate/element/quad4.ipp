@@ -6,6 +6,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(TriangulatedFace<Quad4>);
+
 PALPATE_INLINE Eigen::Vector4d Quad4::shape(const Eigen::Vector2d& xi) noexcept {
   const double u = xi[0], v = xi[1];
   return {0.25 * ((1 - u) * (1 - v)), 0.25 * ((1 + u) * (1 - v)), 0.25 * ((1 + u) * (1 + v)),

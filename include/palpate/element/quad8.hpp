@@ -24,8 +24,6 @@ struct Quad8 {
   static Eigen::Matrix<double, 8, 2> reference_nodes() noexcept;
 };
 
-static_assert(TriangulatedFace<Quad8>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

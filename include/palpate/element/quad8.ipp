@@ -6,6 +6,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(TriangulatedFace<Quad8>);
+
 PALPATE_INLINE Eigen::Matrix<double, 8, 1> Quad8::shape(const Eigen::Vector2d& xi) noexcept {
   return serendipity::shape<8, 2>(reference_nodes(), xi);
 }

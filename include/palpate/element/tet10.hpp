@@ -37,8 +37,6 @@ struct Tet10 {
   static Eigen::Matrix<double, 10, 3> reference_nodes() noexcept;
 };
 
-static_assert(Element<Tet10>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -6,6 +6,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(Element<Tet10>);
+
 PALPATE_INLINE Eigen::Matrix<double, 10, 1> Tet10::shape(const Vector3& xi) noexcept {
   const Eigen::Vector4d l = Tet4::shape(xi);
   Eigen::Matrix<double, 10, 1> n;

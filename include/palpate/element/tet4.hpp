@@ -32,8 +32,6 @@ struct Tet4 {
   static Eigen::Matrix<double, 4, 3> reference_nodes() noexcept;
 };
 
-static_assert(Element<Tet4>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -6,6 +6,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(Element<Tet4>);
+
 PALPATE_INLINE Eigen::Vector4d Tet4::shape(const Vector3& xi) noexcept {
   return {1.0 - xi[0] - xi[1] - xi[2], xi[0], xi[1], xi[2]};
 }

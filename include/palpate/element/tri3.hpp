@@ -23,8 +23,6 @@ struct Tri3 {
   static Eigen::Matrix<double, 3, 2> reference_nodes() noexcept;
 };
 
-static_assert(TriangulatedFace<Tri3>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -6,6 +6,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(TriangulatedFace<Tri3>);
+
 PALPATE_INLINE Eigen::Matrix<double, 3, 2> Tri3::gradient(const Eigen::Vector2d&) noexcept {
   return detail::matrix_of_rows<3, 2>({{-1, -1}, {1, 0}, {0, 1}});
 }

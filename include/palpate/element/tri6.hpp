@@ -24,8 +24,6 @@ struct Tri6 {
   static Eigen::Matrix<double, 6, 2> reference_nodes() noexcept;
 };
 
-static_assert(TriangulatedFace<Tri6>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -7,6 +7,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(TriangulatedFace<Tri6>);
+
 PALPATE_INLINE Eigen::Matrix<double, 6, 1> Tri6::shape(const Eigen::Vector2d& xi) noexcept {
   const Eigen::Vector3d l = Tri3::shape(xi);
   Eigen::Matrix<double, 6, 1> n;

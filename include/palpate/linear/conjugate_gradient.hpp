@@ -50,8 +50,6 @@ class IterativeSolver {
   ConjugateGradientSolver solver_;
 };
 
-static_assert(LinearSolver<IterativeSolver>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

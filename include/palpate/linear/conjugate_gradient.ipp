@@ -9,6 +9,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(LinearSolver<IterativeSolver>);
+
 PALPATE_INLINE ConjugateGradientSolver::ConjugateGradientSolver(Index size, ConjugateGradientParameters parameters)
     : parameters_(parameters), r_(size), z_(size), p_(size), q_(size) {
   if (parameters_.maximum_iterations <= 0)

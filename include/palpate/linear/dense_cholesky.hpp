@@ -44,8 +44,6 @@ class DenseCholesky {
   Index size_ = 0;
 };
 
-static_assert(LinearSolver<DenseCholesky>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

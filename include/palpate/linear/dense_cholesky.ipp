@@ -14,6 +14,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(LinearSolver<DenseCholesky>);
+
 PALPATE_INLINE DenseCholesky::DenseCholesky(const MatrixX& matrix, const SetupLimits&) {
   const Index n = matrix.rows();
   const detail::LowerPanels shape = detail::LowerPanels::of(n, n);

@@ -46,8 +46,6 @@ class DenseConjugateGradient {
   ConjugateGradientSolver solver_;
 };
 
-static_assert(LinearSolver<DenseConjugateGradient>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -7,6 +7,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(LinearSolver<DenseConjugateGradient>);
+
 PALPATE_INLINE DenseOperator::DenseOperator(MatrixX matrix) : inverse_diagonal_(matrix.rows()) {
   for (Index i = 0; i < matrix.rows(); ++i) inverse_diagonal_.data()[i] = 1.0 / matrix.data()[i * (matrix.rows() + 1)];
   matrix_ = std::make_shared<const MatrixX>(std::move(matrix));

@@ -36,8 +36,6 @@ class DenseInverse {
   std::shared_ptr<const Matrix> inverse_;
 };
 
-static_assert(LinearSolver<DenseInverse<float>>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -9,6 +9,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(LinearSolver<DenseInverse<float>>);
+
 namespace detail {
 
 /// x += columns of an n x n matrix times their loads. A plain loop: compilers vectorise it together with the

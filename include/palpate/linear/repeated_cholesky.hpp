@@ -42,8 +42,6 @@ class RepeatedCholesky {
   bool ready_ = false;
 };
 
-static_assert(LinearSolver<RepeatedCholesky>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -13,6 +13,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(LinearSolver<RepeatedCholesky>);
+
 struct RepeatedCholesky::Factor {
   Factor(const CholeskyAnalysis& analysis, FactorScalar scalar)
       : values(analysis.tree().factor_size + padding),

@@ -94,8 +94,6 @@ class SparseCholesky {
   detail::FrontSweeps sweeps_;
 };
 
-static_assert(LinearSolver<SparseCholesky>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

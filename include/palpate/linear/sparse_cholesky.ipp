@@ -12,6 +12,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(LinearSolver<SparseCholesky>);
+
 struct SparseCholesky::Factor {
   CholeskyAnalysis analysis;
   detail::BigArray values;

@@ -29,8 +29,6 @@ struct LinearElastic {
   std::optional<SetupProblem> check() const;
 };
 
-static_assert(LinearMaterial<LinearElastic>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -7,6 +7,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(LinearMaterial<LinearElastic>);
+
 PALPATE_INLINE double LinearElastic::lame_lambda() const noexcept {
   return youngs_modulus * poisson_ratio / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio));
 }

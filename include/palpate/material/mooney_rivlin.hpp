@@ -74,8 +74,6 @@ struct MooneyRivlin {
   }
 };
 
-static_assert(HyperelasticMaterial<MooneyRivlin>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

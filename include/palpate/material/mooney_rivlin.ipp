@@ -8,6 +8,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(HyperelasticMaterial<MooneyRivlin>);
+
 PALPATE_INLINE LinearElastic MooneyRivlin::small_strain() const noexcept {
   const double mu = shear_modulus(), ratio = mu / bulk_modulus;  // nu = (3 - 2 mu/K) / (6 + 2 mu/K)
   return {9.0 * mu / (3.0 + ratio), (3.0 - 2.0 * ratio) / (6.0 + 2.0 * ratio), density};

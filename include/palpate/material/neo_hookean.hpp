@@ -55,8 +55,6 @@ struct NeoHookean {
   bool admits(const Tensor3<double>& f) const noexcept { return all_finite(f); }
 };
 
-static_assert(HyperelasticMaterial<NeoHookean>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

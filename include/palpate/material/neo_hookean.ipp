@@ -5,6 +5,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(HyperelasticMaterial<NeoHookean>);
+
 PALPATE_INLINE Matrix9 NeoHookean::tangent(const Tensor3<double>& f) const noexcept {
   const auto [lambda, mu] = detail::lame<double>(small_strain());
   const double l = lambda + mu;

@@ -66,8 +66,6 @@ struct NeoHookeanIsochoric {
   }
 };
 
-static_assert(HyperelasticMaterial<NeoHookeanIsochoric>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -6,6 +6,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(HyperelasticMaterial<NeoHookeanIsochoric>);
+
 PALPATE_INLINE Matrix9 NeoHookeanIsochoric::tangent(const Tensor3<double>& f) const noexcept {
   const auto [lambda, mu] = detail::lame<double>(small_strain());
   const double j = determinant(f), root = std::cbrt(1.0 / j), first = contract(f, f), bulk = lambda + 2.0 / 3.0 * mu;

@@ -57,8 +57,6 @@ struct NeoHookeanLogarithmic {
   bool admits(const Tensor3<double>& f) const noexcept { return detail::has_volume(f); }
 };
 
-static_assert(HyperelasticMaterial<NeoHookeanLogarithmic>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

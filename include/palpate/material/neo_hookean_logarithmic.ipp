@@ -6,6 +6,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(HyperelasticMaterial<NeoHookeanLogarithmic>);
+
 PALPATE_INLINE std::optional<SetupProblem> NeoHookeanLogarithmic::check() const {
   auto problem = small_strain().check();
   if (problem || poisson_ratio >= 0.0) return problem;

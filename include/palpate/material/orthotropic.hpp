@@ -35,8 +35,6 @@ struct Orthotropic {
   Matrix3 scaled_compliance() const noexcept;
 };
 
-static_assert(LinearMaterial<Orthotropic>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

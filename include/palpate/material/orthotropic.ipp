@@ -13,6 +13,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(LinearMaterial<Orthotropic>);
+
 namespace detail {
 
 /// t d t^T

@@ -63,8 +63,6 @@ struct StVenantKirchhoff {
   }
 };
 
-static_assert(HyperelasticMaterial<StVenantKirchhoff>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

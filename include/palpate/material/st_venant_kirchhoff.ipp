@@ -5,6 +5,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(HyperelasticMaterial<StVenantKirchhoff>);
+
 PALPATE_INLINE Matrix9 StVenantKirchhoff::tangent(const Tensor3<double>& f) const noexcept {
   const auto [lambda, mu] = detail::lame<double>(small_strain());
   const Eigen::Matrix<double, 9, 1> column = vector9(f);

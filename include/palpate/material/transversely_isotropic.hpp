@@ -38,8 +38,6 @@ struct TransverselyIsotropic {
   Orthotropic orthotropic(const Vector3& along) const noexcept;
 };
 
-static_assert(FibreMaterial<TransverselyIsotropic>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

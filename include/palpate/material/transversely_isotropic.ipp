@@ -7,6 +7,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(FibreMaterial<TransverselyIsotropic>);
+
 namespace detail {
 
 /// A rotation whose first column is the direction of `along`. The second column is perpendicular to it and to the

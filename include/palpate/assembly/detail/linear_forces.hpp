@@ -29,8 +29,6 @@ class LinearForces final : public ElasticForces {
   mutable VectorX force_;
 };
 
-static_assert(ForceOperator<LinearForces>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -5,6 +5,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(ForceOperator<LinearForces>);
+
 PALPATE_INLINE double LinearForces::energy(const VectorX& u) const noexcept {
   stiffness_.apply(u, force_);
   return 0.5 * u.dot(force_);

@@ -172,8 +172,6 @@ class MovingTissue : public ModelBase {
   Status ticked_;  // of the last end_tick
 };
 
-static_assert(TissueModel<MovingTissue>);
-
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -13,6 +13,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+static_assert(TissueModel<MovingTissue>);
+
 PALPATE_INLINE MovingTissue::MovingTissue(const SetupOptions& options) : ModelBase(options) {
   if (!options.cache_file.empty())
     raise(SetupErrorKind::unsupported, "a cache file for moving tissue, which has nothing to store",
