@@ -62,7 +62,9 @@ class ContactSurface {
 
   /// Moves the resting surface (new loads, new pose of the loads). With a shell, its positions follow those of the
   /// vertices; without them it stays. No allocation; not while a tick runs.
-  void move_to(std::span<const Vector3> positions) noexcept;
+  void move_to(std::span<const Vector3> positions) noexcept { move_to(positions, revision_ + 1); }
+  /// The same for one of several copies of a surface that take turns: `revision` is a number of this state only.
+  void move_to(std::span<const Vector3> positions, std::uint64_t revision) noexcept;
 
   /// Adds the untouchable rest of the body's boundary, so that inside and outside are known beyond the touchable
   /// surface. An index v of a triangle is a vertex of this surface if v < vertex_count(), otherwise it means

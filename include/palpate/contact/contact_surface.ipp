@@ -91,10 +91,10 @@ PALPATE_INLINE void ContactSurface::update_normals() noexcept {
   for (Vector3& n : vertex_normals_) n.normalize();
 }
 
-PALPATE_INLINE void ContactSurface::move_to(std::span<const Vector3> positions) noexcept {
-  if (!body_.empty()) body_.front().move_to(positions);
+PALPATE_INLINE void ContactSurface::move_to(std::span<const Vector3> positions, std::uint64_t revision) noexcept {
+  if (!body_.empty()) body_.front().move_to(positions, revision);
   std::copy_n(positions.begin(), std::min(positions.size(), positions_.size()), positions_.begin());
-  ++revision_;
+  revision_ = revision;
   bvh_.refit(triangles_, positions_);
   update_normals();
 }

@@ -28,10 +28,11 @@ enum class StatusFlag : std::uint32_t {
   energy_grew = 1u << 14,          ///< a motion gained energy without a source: it is kept at its last good state
   slow_tissue = 1u << 15,  ///< computing a tissue step takes longer than its time step: the tissue moves in slow motion
   coarse_contact = 1u << 16,  ///< the tool is smaller than the facets: its indentation is mostly estimated, or omitted
+  large_displacement = 1u << 17,  ///< loads displace the tissue too far for linear elasticity
 };
 
 /// Number of flags that exist.
-inline constexpr int status_flag_count = 17;
+inline constexpr int status_flag_count = 18;
 
 /// A set of StatusFlag. Trivially copyable; no operation allocates.
 class Status {
@@ -59,7 +60,7 @@ constexpr std::string_view status_flag_name(int bit) {
   constexpr std::array<std::string_view, status_flag_count> names{
       "NonFiniteInput",     "Saturated",      "SlewLimited",   "Stale",        "DeadlineMissed", "Inverted",
       "SolverNotConverged", "EnergyInjected", "DegradedModel", "Disconnected", "Reacquired",     "Ramping",
-      "NonFiniteForce",     "StepRefused",    "EnergyGrew",    "SlowTissue",   "CoarseContact"};
+      "NonFiniteForce",     "StepRefused",    "EnergyGrew",    "SlowTissue",   "CoarseContact",  "LargeDisplacement"};
   return names[static_cast<std::size_t>(bit)];
 }
 

@@ -30,6 +30,9 @@ struct CutReport {
   int unchecked = 0;           ///< cuts since that measurement
   double latency = 0.0;        ///< of the last cut, from taking the order to passing the surface to the tick [s]
   double fold_seconds = 0.0;   ///< of the last cut, until the tick had no correction left to add [s]
+  /// Largest displacement of a touchable vertex by the scene's loads, against their mean, relative to the body's
+  /// diagonal. Above 0.1 ticks report large_displacement: usually a remnant that hangs on a few faces.
+  double displacement = 0.0;
   bool failed = false;         ///< remaining body cannot be computed; the last good state is rendered, degraded_model
 };
 

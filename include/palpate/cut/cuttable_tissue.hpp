@@ -76,7 +76,8 @@ class CuttableTissue : public ModelBase {
   }
 
   /// Displacement of all nodes, including those created by cuts, with forces on vertices (of the current surface or an
-  /// earlier one), 3 per node [m]. Nodes of detached fragments keep their displacement at detachment. Throws
+  /// earlier one), 3 per node [m]. Detached fragments keep their displacement before the cut that detached them, or
+  /// return to their place in the body at rest, where it was too large for linear elasticity. Throws
   /// index_out_of_range for a vertex that does not exist, non_finite for a force that is not finite. O(kept x forces)
   /// and two substitutions.
   VectorX displacement(std::span<const VertexForce> forces = {}) {
@@ -156,6 +157,7 @@ class CuttableTissue : public ModelBase {
     }
     Status status;
     if (behind || contact().left_out) status.set(StatusFlag::degraded_model);
+    if (contact().too_far) status.set(StatusFlag::large_displacement);
     return status;
   }
   /// Moves a session's contact to a new surface.

@@ -59,6 +59,9 @@ void report_locking(const std::vector<Matrix6>& elasticity, SetupReport& report)
     }
 }
 
+/// Largest displacement against the mean that counts as small, relative to the diagonal of the bounding box.
+inline constexpr double largest_linear_displacement = 0.1;
+
 /// Flags a displacement u, 3 per node [m], that is not small: linear strain misinterprets a rotation as a stretch. The
 /// criterion is the largest difference between the displacement of a node and the mean, relative to the diagonal of the
 /// bounding box.

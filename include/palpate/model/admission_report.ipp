@@ -9,7 +9,6 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE void report_displacement(const std::vector<Vector3>& positions, const VectorX& u, SetupReport& report) {
-  constexpr double largest = 0.1;
   report.clear(SetupFlag::large_displacement);
   const Index nodes = u.size() / 3;
   Vector3 mean = Vector3::Zero();
@@ -20,7 +19,7 @@ PALPATE_INLINE void report_displacement(const std::vector<Vector3>& positions, c
   Box box;
   for (const Vector3& x : positions) box.include(x);
   const double size = box.size().norm();
-  if (spread > largest * size)
+  if (spread > largest_linear_displacement * size)
     report.set(SetupFlag::large_displacement, "the loads move a node by " + number(spread) + " m against the mean, " +
                                                   number(spread / size) +
                                                   " of the body's diagonal: too far for linear elasticity");

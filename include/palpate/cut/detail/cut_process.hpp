@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact.hpp>
+#include <palpate/core/detail/box.hpp>
 #include <palpate/cut/cut_parameters.hpp>
 #include <palpate/cut/detail/cut_orders.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
@@ -11,7 +12,9 @@
 #include <palpate/cut/detail/cut_system.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
 #include <palpate/cut/detail/cut_view.hpp>
+#include <palpate/cut/detail/resting_nodes.hpp>
 #include <palpate/cut/detail/swept_faces.hpp>
+#include <palpate/model/admission_report.hpp>
 #include <palpate/model/detail/touchable.hpp>
 
 #include <algorithm>
@@ -44,7 +47,8 @@ class CutProcess {
         limits_(limits),
         parameters_(parameters),
         publish_to_(std::move(publish)),
-        system_(topology_, *physics_, kept_nodes(), limits_) {
+        system_(topology_, *physics_, kept_nodes(), limits_),
+        diagonal_(diagonal_of(topology_.mesh())) {
     report_.kept = system_.kept();
     make_contact();
     publish_exactly();
@@ -65,6 +69,8 @@ class CutProcess {
     if (change.empty()) return true;
     ++report_.cuts;
     ++report_.changes;
+    if (!change.fragments.empty()) system_.recover();  // what it was before this cut
+    resting_.update(topology_, change, system_.displacement(), largest_linear_displacement * diagonal_);
     touchable_.update(topology_, change);
     take_in(change);
     report_.latency = seconds();
@@ -87,17 +93,21 @@ class CutProcess {
     CutSurface<E> touchable = whole_surface_;
     std::swap(topology_, topology);
     std::swap(touchable_, touchable);
+    RestingNodes resting;
+    std::swap(resting_, resting);
     try {
       set_loads(boundary, scene);
     } catch (...) {
       std::swap(topology_, topology);
       std::swap(touchable_, touchable);
+      std::swap(resting_, resting);
       throw;
     }
     const CutReport before = std::exchange(report_, CutReport{});
     report_.kept = system_.kept();
     report_.error = before.error;
     report_.changes = before.changes + 1;
+    report_.displacement = before.displacement;
   }
   /// Rebuilds the contact surface for these tools. Before the first cut, throws what require_dense_points throws;
   /// `loads` describes the scene's loads in its message. Strong guarantee.
@@ -123,7 +133,9 @@ class CutProcess {
     std::vector<std::pair<NodeId, Vector3>> list;
     for (const VertexForce& f : forces)
       list.push_back({touchable_.nodes()[static_cast<std::size_t>(f.vertex)], f.force.in_model_axes()});
-    return system_.displacement_with(list);
+    VectorX u = system_.displacement_with(list);
+    resting_.place(u);
+    return u;
   }
 
   const CutReport& report() const noexcept { return report_; }
@@ -259,6 +271,7 @@ class CutProcess {
   Vector3 position(NodeId node) const noexcept {
     const Index dof = 3 * Index{node};
     Vector3 x = topology_.mesh().position(node);
+    if (resting_.rests(node)) return x + resting_.displacement(node);
     if (dof < system_.displacement().size()) x += system_.displacement().template segment<3>(dof);
     return x;
   }
@@ -279,11 +292,29 @@ class CutProcess {
       }
     return longest > 0.0 ? longest : 1.0;
   }
+  /// Largest displacement of a touchable vertex against their mean [m].
+  double spread_of(const std::vector<Vector3>& positions) const {
+    Vector3 mean = Vector3::Zero();
+    std::vector<Vector3> moved;
+    for (std::size_t v = 0; v < positions.size(); ++v)
+      if (touchable_.is_used(v)) moved.push_back(positions[v] - topology_.mesh().position(touchable_.nodes()[v]));
+    for (const Vector3& u : moved) mean += u / static_cast<double>(moved.size());
+    double spread = 0.0;
+    for (const Vector3& u : moved) spread = std::max(spread, (u - mean).norm());
+    return spread;
+  }
+  static double diagonal_of(const Mesh<E>& mesh) noexcept {
+    Box box;
+    for (Index i = 0; i < mesh.node_count(); ++i) box.include(mesh.position(static_cast<NodeId>(i)));
+    return box.size().norm();
+  }
   void make_contact() {
     std::vector<Vector3> positions;
     for (const NodeId node : touchable_.nodes()) positions.push_back(position(node));
     const ToolRadii radii = tools_.radii.smallest > 0.0 ? tools_.radii : ToolRadii(longest_edge(positions));
+    report_.displacement = spread_of(positions) / diagonal_;
     contact_ = std::make_shared<CutContact>(system_, touchable_, std::move(positions), radii, tools_.contact, cut_);
+    contact_->too_far = report_.displacement > largest_linear_displacement;
   }
   void publish_exactly() {
     CutView made{contact_, system_.folded_step()};
@@ -306,6 +337,8 @@ class CutProcess {
   Tools tools_;
   Publish publish_to_;
   CutSystem<E> system_;
+  RestingNodes resting_;
+  double diagonal_;  // of the bounding box [m]
   CutReport report_;
   std::shared_ptr<CutContact> contact_;  // of the last cut
   std::vector<double> bound_;            // of the last view

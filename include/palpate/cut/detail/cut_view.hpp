@@ -25,6 +25,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// beyond what contact points can cover are left out; ticks then report degraded_model.
 struct CutContact {
   bool left_out = false;  ///< true if a triangle is left out
+  bool too_far = false;   ///< true if the loads displace a vertex too far for linear elasticity
   ContactSurface surface;
   std::vector<std::array<Index, 3>> place;  ///< per vertex its dofs in the compliance, -1: constrained or removed
   ContactProblem problem;

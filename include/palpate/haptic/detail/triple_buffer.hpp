@@ -27,6 +27,7 @@ class TripleBuffer {
     return true;
   }
   const T& front() const noexcept { return slots_[front_]; }
+  T& front() noexcept { return slots_[front_]; }
 
  private:
   static constexpr unsigned fresh = 4, index_mask = 3;

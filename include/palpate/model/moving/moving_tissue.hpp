@@ -7,6 +7,7 @@
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/haptic/detail/triple_buffer.hpp>
 #include <palpate/model/model_base.hpp>
+#include <palpate/model/moving/detail/near_compliance.hpp>
 #include <palpate/model/moving/detail/secant_compliance.hpp>
 #include <palpate/model/moving/detail/warped_compliance.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
@@ -43,6 +44,9 @@ class MovingTissue : public ModelBase {
  public:
   /// Maximum number of vertex forces, three per contact; forces beyond it are not applied.
   static constexpr std::size_t most_forces = 3 * largest_default_capacity;
+  /// Maximum number of vertices around the tools, and of those that press, whose compliance is evaluated by the thread
+  /// that steps. Ticks evaluate the others.
+  static constexpr std::size_t most_near = 512, most_pressed = 192;
 
   // The thread that steps (BackgroundWorker)
 
@@ -95,14 +99,15 @@ class MovingTissue : public ModelBase {
   Status begin_tick() noexcept;
   /// Forces that are not finite are ignored.
   void end_tick(std::span<const VertexForce> forces) noexcept;
-  const ContactSurface& contact_surface() const noexcept { return surface_; }
-  Status require_columns(std::span<const int>) noexcept { return {}; }
+  const ContactSurface& contact_surface() const noexcept { return views_.front().surface; }
+  /// The next surface comes with the compliance of these vertices, for those whose displacement is requested until
+  /// then.
+  Status require_columns(std::span<const int> vertices) noexcept;
   Matrix3 compliance(int i, int j) const noexcept {
     const View& view = views_.front();
-    const Matrix3 rotated = compliance_.rotated(view.rotation, i, j);
-    return view.secants.count == 0
-               ? rotated
-               : Matrix3(rotated + view.secants(static_cast<std::size_t>(i), static_cast<std::size_t>(j)));
+    list(i, revision_, requested_, near_);
+    const Matrix3* ready = view.near.find(i, j);
+    return ready != nullptr ? *ready : evaluate(view, i, j);
   }
   std::uint64_t compliance_revision() const noexcept { return revision_; }
   /// Number of surfaces taken so far.
@@ -126,24 +131,43 @@ class MovingTissue : public ModelBase {
   void set_up(const Touchable& touchable, PreparedMotion prepared, double step, const BlockPattern& pattern);
 
  private:
+  template <std::size_t Most>
+  struct VertexList {
+    std::array<int, Most> item{};
+    std::size_t count = 0;
+    std::span<const int> all() const noexcept { return {item.data(), count}; }
+  };
   struct Forces {
     std::array<VertexForce, most_forces> item{};
     std::size_t count = 0;
+    VertexList<most_pressed> pressed;  // of the rows of the tick, also of those without force
+    VertexList<most_near> near;        // whose displacement was requested
   };
   struct View {
     std::vector<Vector3> free;
     std::vector<Matrix3> rotation;
     SecantTerms secants;
+    NearCompliance near;
+    ContactSurface surface;
     Status status;
   };
 
-  static std::size_t vertex(const VertexForce& f) noexcept { return static_cast<std::size_t>(f.vertex); }
+  static std::size_t vertex(int v) noexcept { return static_cast<std::size_t>(v); }
+  static std::size_t vertex(const VertexForce& f) noexcept { return vertex(f.vertex); }
   /// Loads of a scene of the admitted mesh [N]; `gravity` in the body's frame.
   VectorX load_of(const Scene& scene, const Vector3& gravity) const;
   void add(const Forces& forces, double factor, VectorX& load) const noexcept;
   /// Position of the surface without the current tool forces, computed with the compliance of the servo, so that the
   /// same forces restore the current position.
   void update_view(View& view) const noexcept;
+  Matrix3 evaluate(const View& view, int i, int j) const noexcept;
+  /// Appends a vertex unless it was listed in the same `round`, or there is no room.
+  template <std::size_t Most>
+  static void list(int v, std::uint64_t round, std::vector<std::uint64_t>& listed, VertexList<Most>& into) noexcept {
+    if (listed[vertex(v)] == round || into.count == Most) return;
+    listed[vertex(v)] = round;
+    into.item[into.count++] = v;
+  }
   /// The displacement of the vertices.
   void find_moved(std::vector<Vector3>& moved) const noexcept;
   void publish(Status status) noexcept;
@@ -167,9 +191,15 @@ class MovingTissue : public ModelBase {
   TripleBuffer<View> views_;
   TripleBuffer<VectorX> drawn_;
   TripleBuffer<Forces> pressing_;
-  ContactSurface surface_;
+  std::vector<Triangle> triangles_;  // of the surface
+  std::uint64_t views_made_ = 0;
   std::uint64_t revision_ = 0;
   Status ticked_;  // of the last end_tick
+  VertexList<most_pressed> pressed_;
+  mutable VertexList<most_near> near_;            // since the surface was taken
+  std::vector<std::uint64_t> required_;           // per vertex: the last tick that required it
+  mutable std::vector<std::uint64_t> requested_;  // per vertex: the last surface for which it was requested
+  std::uint64_t tick_ = 0;
 };
 
 }}  // namespace palpate

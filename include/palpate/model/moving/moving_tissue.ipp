@@ -42,7 +42,10 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   compliance_ = WarpedCompliance(*motion_, step_, touchable.nodes, rotations_, limits());
   motion_->rest_at(start_);  // the state that reset() restores
   const std::size_t vertices = touchable.nodes.size();
-  View view{std::vector<Vector3>(vertices), std::vector<Matrix3>(vertices), {}, {}};
+  required_.assign(vertices, 0);
+  requested_.assign(vertices, ~std::uint64_t{0});
+  View view{
+      std::vector<Vector3>(vertices), std::vector<Matrix3>(vertices), {}, {vertices, most_near, most_pressed}, {}, {}};
   if (motion_->is_static()) {
     secants_ = SecantCompliance(vertices, most_forces);
     for (SecantTerms::Term& term : view.secants.term) term.resize(vertices);
@@ -51,9 +54,10 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
     moved_before_ = moved_;
   }
   update_view(view);
-  surface_ = ContactSurface(view.free, touchable.triangles);
-  surface_.set_unloaded(unloaded());
-  surface_.set_materials(elastic_body().contact_materials(touchable.elements));
+  triangles_ = touchable.triangles;
+  view.surface = ContactSurface(view.free, triangles_);
+  view.surface.set_unloaded(unloaded());
+  view.surface.set_materials(elastic_body().contact_materials(touchable.elements));
   views_.fill(view);
   drawn_.fill(start_);
   setup_report().compliance_bytes = compliance_.bytes();
@@ -96,7 +100,7 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
 PALPATE_INLINE void MovingTissue::set_conditions(const Scene& scene) {
   const std::scoped_lock lock(changes_);
   const ScopedIdTranslation translation(original_ids());
-  const Scene mapped = this->mapped(scene, surface_.triangles());
+  const Scene mapped = this->mapped(scene, triangles_);
   const EssentialConditions changed = elastic_body().conditions(mapped);
   if (changed.constrained != elastic_body().conditions(this->scene()).constrained)
     raise(SetupErrorKind::unsupported, "the new scene prescribes other components than the one the model was made for",
@@ -142,7 +146,7 @@ PALPATE_INLINE void MovingTissue::reset() {
   place(Eigen::Isometry3d::Identity());
   keep_loads(scene().gravity(), others);
   pressing_.update();
-  used_.count = 0;
+  used_ = {};
   secants_.clear();
   find_moved(moved_);
   steps_ = 0;
@@ -163,13 +167,26 @@ PALPATE_INLINE VectorX MovingTissue::displacement(std::span<const VertexForce> f
 
 PALPATE_INLINE void MovingTissue::prepare_tools(const ToolRadii&, const ContactParameters&) {
   const std::scoped_lock lock(changes_);
-  surface_.set_loads(loads_in_words(gravity(), other_loads()));
+  views_.front().surface.set_loads(loads_in_words(gravity(), other_loads()));
+}
+
+PALPATE_INLINE Status MovingTissue::require_columns(std::span<const int> vertices) noexcept {
+  for (const int v : vertices) list(v, tick_, required_, pressed_);
+  return {};
+}
+
+PALPATE_INLINE Matrix3 MovingTissue::evaluate(const View& view, int i, int j) const noexcept {
+  const Matrix3 rotated = compliance_.rotated(view.rotation, i, j);
+  if (view.secants.count == 0) return rotated;
+  return rotated + view.secants(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
 }
 
 PALPATE_INLINE Status MovingTissue::begin_tick() noexcept {
+  ++tick_;
+  pressed_.count = 0;
   if (views_.update()) {
-    surface_.move_to(views_.front().free);
     ++revision_;
+    near_.count = 0;
   }
   Status status = views_.front().status | ticked_;
   if (slow_.load(std::memory_order_relaxed)) status.set(StatusFlag::slow_tissue);
@@ -187,6 +204,8 @@ PALPATE_INLINE void MovingTissue::end_tick(std::span<const VertexForce> forces) 
       out.item[out.count++] = f;
     else
       ticked_.set(StatusFlag::degraded_model);
+  out.pressed = pressed_;
+  out.near = near_;
   pressing_.publish();
 }
 
@@ -231,11 +250,13 @@ PALPATE_INLINE void MovingTissue::update_view(View& view) const noexcept {
     const NodeId node = touchable_nodes()[i];
     view.free[i] = rest[static_cast<std::size_t>(node)] + node_vector(u, node) - moved;
   }
+  view.near.set(used_.near.all(), used_.pressed.all(), [&](int i, int j) { return evaluate(view, i, j); });
 }
 
 PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {
   View& view = views_.back();
   update_view(view);
+  view.surface.move_to(view.free, ++views_made_);
   view.status = status;
   views_.publish();
   drawn_.back() = motion_->displacement();

@@ -1,0 +1,62 @@
+// The compliance near the contacts, ready for a tick.
+#pragma once
+
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// C_ij for the vertices i near the tools and the vertices j that carry contacts. The stepping thread evaluates it when
+/// it publishes a surface, so that a tick reads 72 bytes where it would rotate and correct a block of a large table.
+class NearCompliance {
+ public:
+  NearCompliance() = default;
+  /// For a surface of `vertices`, at most that many rows and columns. The only allocation.
+  NearCompliance(std::size_t vertices, std::size_t rows, std::size_t columns)
+      : rows_{vertices, rows}, columns_{vertices, columns}, block_(rows_.most * columns_.most) {}
+
+  /// Sets C_ij = evaluate(i, j) for the vertices of both lists, each listed once; those beyond the largest numbers are
+  /// left out.
+  template <class Evaluate>
+  void set(std::span<const int> rows, std::span<const int> columns, Evaluate&& evaluate) noexcept {
+    rows_.set(rows);
+    columns_.set(columns);
+    for (std::size_t i = 0; i < rows_.count; ++i)
+      for (std::size_t j = 0; j < columns_.count; ++j)
+        block_[i * columns_.most + j] = evaluate(rows_.listed[i], columns_.listed[j]);
+  }
+
+  /// C_ij; null when it is not known.
+  const Matrix3* find(int i, int j) const noexcept {
+    const int a = rows_.slot[at(i)], b = columns_.slot[at(j)];
+    return a < 0 || b < 0 ? nullptr : &block_[at(a) * columns_.most + at(b)];
+  }
+
+ private:
+  struct List {
+    List() = default;
+    List(std::size_t vertices, std::size_t largest)
+        : most(std::min(vertices, largest)), slot(vertices, -1), listed(most) {}
+    void set(std::span<const int> vertices) noexcept {
+      for (std::size_t k = 0; k < count; ++k) slot[at(listed[k])] = -1;
+      count = std::min(vertices.size(), most);
+      for (std::size_t k = 0; k < count; ++k) {
+        listed[k] = vertices[k];
+        slot[at(listed[k])] = static_cast<int>(k);
+      }
+    }
+    std::size_t most = 0, count = 0;
+    std::vector<int> slot = {};    // per vertex, -1: not listed
+    std::vector<int> listed = {};  // the first `count`
+  };
+  static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+
+  List rows_, columns_;
+  std::vector<Matrix3> block_;  // row i at i * columns_.most: a tick sums over the columns
+};
+
+}}  // namespace palpate
