@@ -21,6 +21,9 @@ struct BladeSweep {
 
  private:
   static double volume(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) noexcept;
+  /// The side of the line from p to q on which the edge from x to y passes; exactly the opposite for the edge from y to
+  /// x, so that no segment passes between two triangles with a common edge.
+  static double side(const Vector3& p, const Vector3& q, const Vector3& x, const Vector3& y) noexcept;
   static bool crosses_triangle(const Vector3& p, const Vector3& q, const Vector3& x, const Vector3& y,
                                const Vector3& z) noexcept;
 };

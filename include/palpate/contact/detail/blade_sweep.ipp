@@ -3,6 +3,8 @@
 
 #include <palpate/contact/detail/blade_sweep.hpp>
 
+#include <algorithm>
+
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE double BladeSweep::area() const noexcept {
@@ -24,10 +26,16 @@ PALPATE_INLINE double BladeSweep::volume(const Vector3& a, const Vector3& b, con
   return cross(b - a, c - a).dot(d - a);
 }
 
+PALPATE_INLINE double BladeSweep::side(const Vector3& p, const Vector3& q, const Vector3& x,
+                                       const Vector3& y) noexcept {
+  return std::lexicographical_compare(x.data(), x.data() + 3, y.data(), y.data() + 3) ? volume(p, q, x, y)
+                                                                                      : -volume(p, q, y, x);
+}
+
 PALPATE_INLINE bool BladeSweep::crosses_triangle(const Vector3& p, const Vector3& q, const Vector3& x, const Vector3& y,
                                                  const Vector3& z) noexcept {
   if ((volume(x, y, z, p) >= 0.0) == (volume(x, y, z, q) >= 0.0)) return false;
-  const double u = volume(p, q, x, y), v = volume(p, q, y, z), w = volume(p, q, z, x);
+  const double u = side(p, q, x, y), v = side(p, q, y, z), w = side(p, q, z, x);
   return (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
 }
 
