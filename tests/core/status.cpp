@@ -61,6 +61,7 @@ TEST_CASE("every flag has one bit and one name", "[core][status]") {
   CHECK(name(StatusFlag::step_refused) == "StepRefused");
   CHECK(name(StatusFlag::energy_grew) == "EnergyGrew");
   CHECK(name(StatusFlag::slow_tissue) == "SlowTissue");
+  CHECK(name(StatusFlag::coarse_contact) == "CoarseContact");
   CHECK(name(StatusFlag::large_displacement) == "LargeDisplacement");
 }
 

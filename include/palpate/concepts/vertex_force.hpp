@@ -17,7 +17,7 @@ class ModelVector {
   explicit ModelVector(const Vector3& in_model_axes) noexcept : v_(in_model_axes) {}
   /// From a vector in the world frame; `to_world` is the model's pose.
   static ModelVector from_world(const Vector3& v, const Eigen::Isometry3d& to_world) noexcept {
-    const double* m = to_world.data();  // columns of 4 entries; Eigen's block would cost every program its types
+    const double* m = to_world.data();  // columns of 4 entries; linear() would add types to every program's compile time
     return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[4] * v[0] + m[5] * v[1] + m[6] * v[2],
             m[8] * v[0] + m[9] * v[1] + m[10] * v[2]};
   }

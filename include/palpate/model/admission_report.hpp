@@ -10,6 +10,7 @@
 #include <palpate/mesh/diagnosis.hpp>
 #include <palpate/model/setup_report.hpp>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,9 @@ void report_locking(const std::vector<Matrix6>& elasticity, SetupReport& report)
 
 /// Largest displacement against the mean that counts as small, relative to the diagonal of the bounding box.
 inline constexpr double largest_linear_displacement = 0.1;
+
+/// The largest difference between one of the displacements and their mean [m]; 0 for none, NaN if one is NaN.
+double displacement_spread(std::span<const Vector3> displacements) noexcept;
 
 /// Flags a displacement u, 3 per node [m], that is not small: linear strain misinterprets a rotation as a stretch. The
 /// criterion is the largest difference between the displacement of a node and the mean, relative to the diagonal of the

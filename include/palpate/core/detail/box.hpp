@@ -5,6 +5,7 @@
 #include <palpate/core/types.hpp>
 
 #include <algorithm>
+#include <span>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -49,5 +50,12 @@ struct Box {
     return side < 0.0 ? 0.0 : side;  // NaN stays NaN, so that no comparison finds it near
   }
 };
+
+/// The smallest box around points.
+inline Box box_of(std::span<const Vector3> points) noexcept {
+  Box box;
+  for (const Vector3& x : points) box.include(x);
+  return box;
+}
 
 }}  // namespace palpate

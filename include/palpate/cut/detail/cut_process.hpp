@@ -48,7 +48,7 @@ class CutProcess {
         parameters_(parameters),
         publish_to_(std::move(publish)),
         system_(topology_, *physics_, kept_nodes(), limits_),
-        diagonal_(diagonal_of(topology_.mesh())) {
+        diagonal_(box_of(topology_.mesh().positions).size().norm()) {
     report_.kept = system_.kept();
     make_contact();
     publish_exactly();
@@ -69,7 +69,7 @@ class CutProcess {
     if (change.empty()) return true;
     ++report_.cuts;
     ++report_.changes;
-    if (!change.fragments.empty()) system_.recover();  // what it was before this cut
+    if (!change.fragments.empty()) system_.recover();  // displacement before this cut
     resting_.update(topology_, change, system_.displacement(), largest_linear_displacement * diagonal_);
     touchable_.update(topology_, change);
     take_in(change);
@@ -292,29 +292,21 @@ class CutProcess {
       }
     return longest > 0.0 ? longest : 1.0;
   }
-  /// Largest displacement of a touchable vertex against their mean [m].
-  double spread_of(const std::vector<Vector3>& positions) const {
-    Vector3 mean = Vector3::Zero();
-    std::vector<Vector3> moved;
+  /// Displacements of the touchable vertices that exist [m].
+  std::vector<Vector3> displacements_to(const std::vector<Vector3>& positions) const {
+    std::vector<Vector3> displacements;
     for (std::size_t v = 0; v < positions.size(); ++v)
-      if (touchable_.is_used(v)) moved.push_back(positions[v] - topology_.mesh().position(touchable_.nodes()[v]));
-    for (const Vector3& u : moved) mean += u / static_cast<double>(moved.size());
-    double spread = 0.0;
-    for (const Vector3& u : moved) spread = std::max(spread, (u - mean).norm());
-    return spread;
-  }
-  static double diagonal_of(const Mesh<E>& mesh) noexcept {
-    Box box;
-    for (Index i = 0; i < mesh.node_count(); ++i) box.include(mesh.position(static_cast<NodeId>(i)));
-    return box.size().norm();
+      if (touchable_.is_used(v))
+        displacements.push_back(positions[v] - topology_.mesh().position(touchable_.nodes()[v]));
+    return displacements;
   }
   void make_contact() {
     std::vector<Vector3> positions;
     for (const NodeId node : touchable_.nodes()) positions.push_back(position(node));
     const ToolRadii radii = tools_.radii.smallest > 0.0 ? tools_.radii : ToolRadii(longest_edge(positions));
-    report_.displacement = spread_of(positions) / diagonal_;
+    report_.displacement = displacement_spread(displacements_to(positions)) / diagonal_;
     contact_ = std::make_shared<CutContact>(system_, touchable_, std::move(positions), radii, tools_.contact, cut_);
-    contact_->too_far = report_.displacement > largest_linear_displacement;
+    contact_->too_far = !(report_.displacement <= largest_linear_displacement);
   }
   void publish_exactly() {
     CutView made{contact_, system_.folded_step()};

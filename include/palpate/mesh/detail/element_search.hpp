@@ -93,8 +93,7 @@ class ElementSearch {
  public:
   /// O(elements), allocates about 8 bytes per pair of an element and a cell that its box touches.
   explicit ElementSearch(const Mesh<E>& mesh) : mesh_(&mesh) {
-    Box box;
-    for (const Vector3& x : mesh.positions) box.include(x);
+    const Box box = box_of(mesh.positions);
     low_ = box.low;
     const Vector3 size = box.size();
     const double volume = std::max(size[0] * size[1] * size[2], 1e-300),

@@ -9,9 +9,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE double extent(const std::vector<Vector3>& positions) {
-  Box box;
-  for (const Vector3& x : positions) box.include(x);
-  return box.size().norm();
+  return box_of(positions).size().norm();
 }
 
 PALPATE_INLINE void require_mass(const DeformableBody& body) {

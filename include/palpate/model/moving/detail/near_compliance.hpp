@@ -19,8 +19,13 @@ class NearCompliance {
   NearCompliance(std::size_t vertices, std::size_t rows, std::size_t columns)
       : rows_{vertices, rows}, columns_{vertices, columns}, block_(rows_.most * columns_.most) {}
 
+  /// Memory of the blocks of such an object.
+  static double bytes(std::size_t vertices, std::size_t rows, std::size_t columns) noexcept {
+    return static_cast<double>(std::min(vertices, rows) * std::min(vertices, columns) * sizeof(Matrix3));
+  }
+
   /// Sets C_ij = evaluate(i, j) for the vertices of both lists, each listed once; those beyond the largest numbers are
-  /// left out.
+  /// left out. O(rows x columns), no allocation.
   template <class Evaluate>
   void set(std::span<const int> rows, std::span<const int> columns, Evaluate&& evaluate) noexcept {
     rows_.set(rows);
