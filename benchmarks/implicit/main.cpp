@@ -1,7 +1,7 @@
 // Implicit steps: time of co-rotated steps compared with plain Eigen and Bullet, the error of every short cut, the
 // largest block at 1 kHz, and the drift of long motions; with --long over a million steps, and ten thousand blocks with
 // randomly displaced nodes.
-//   bench_implicit [--build <name of the flags>] [--csv <file to add rows to>] [--quick] [--long]
+//   bench_implicit [--build <name of the flags>] [--csv <file to add rows to>] [--quick] [--long] [--energy STEPS]
 #include "drift.hpp"
 #include "implicit.hpp"
 
@@ -10,6 +10,10 @@
 
 int main(int argc, char** argv) try {
   bench::RowFile rows(bench::option(argc, argv, "--csv", ""), bench::option(argc, argv, "--build", "this"));
+  if (const int steps = std::stoi(bench::option(argc, argv, "--energy", "0")); steps > 0) {
+    measure_energy_under_loads(rows, steps);
+    return rows.failed() ? 1 : 0;
+  }
   implicit_path::measure_steps(rows, 10, 1e-3);
   implicit_path::measure_steps(rows, 16, 5e-3);
   if (bench::has_option(argc, argv, "--quick")) return rows.failed() ? 1 : 0;
@@ -19,6 +23,7 @@ int main(int argc, char** argv) try {
   const bool all = bench::has_option(argc, argv, "--long");
   measure_implicit_drift(rows, all ? 1000000 : 20000);
   measure_implicit_scrambles(rows, all ? 10000 : 50);
+  measure_energy_under_loads(rows, all ? 1000000 : 2000);
   measure_static_hold(rows, all ? 1000000 : 10000);
   return rows.failed() ? 1 : 0;
 } catch (const std::exception& e) {

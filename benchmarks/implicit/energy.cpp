@@ -1,0 +1,140 @@
+// Energy of blocks under random loads, against the work of the loads: every law and scheme.
+#include <palpate/material/corotational.hpp>
+#include <palpate/material/fibre_reinforced.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/material/mooney_rivlin.hpp>
+#include <palpate/material/neo_hookean.hpp>
+#include <palpate/material/neo_hookean_isochoric.hpp>
+#include <palpate/material/neo_hookean_logarithmic.hpp>
+#include <palpate/material/st_venant_kirchhoff.hpp>
+#include <palpate/material/viscoelastic.hpp>
+#include <palpate/model/moving/explicit.hpp>
+#include <palpate/model/moving/implicit.hpp>
+#include <palpate/model/moving/quasi_newton.hpp>
+#include <palpate/testing/random.hpp>
+
+#include <cstdio>
+
+#include "../common/bodies.hpp"
+#include "drift.hpp"
+
+namespace {
+
+using namespace palpate;
+
+constexpr double young = 3e3, nu = 0.4, density = 1000.0;
+
+/// Stored energy of a body at a displacement; of a viscoelastic one, that of full relaxation.
+template <Element E, LargeStrainMaterial M>
+auto energy_of(HyperelasticBody<E, M> body) {
+  if constexpr (HasSmoothedStrain<E>) {
+    return [force = SmoothedTetrahedra<M>(body)](const VectorX& u) mutable { return force.energy(u); };
+  } else {
+    auto elastic = std::make_shared<LargeStrain<E, M>>(std::move(body));
+    elastic->begin_step(infinity);
+    return [elastic](const VectorX& u) { return elastic->energy(u); };
+  }
+}
+
+/// Loads of random direction, place and size, most of them large enough to fold a cell, for a few steps each.
+class RandomLoads {
+ public:
+  explicit RandomLoads(const Mesh<Tet4>& mesh) : mesh_(mesh) {}
+  /// Returns true when the load has changed.
+  bool next(VectorX& load) {
+    if (steps_-- > 0) return false;
+    steps_ = 1 + static_cast<int>(random_.uniform(0.0, 30.0));
+    load.setZero();
+    if (random_.uniform(0.0, 1.0) < 0.3) return true;
+    const auto node = static_cast<Index>(random_.uniform(0.0, static_cast<double>(mesh_.node_count()) - 1e-9));
+    const double size = young * 2.5e-3 * std::pow(10.0, random_.uniform(-3.0, 0.0));
+    for (int c = 0; c < 3; ++c) load[3 * node + c] = size * random_.uniform(-1.0, 1.0);
+    return true;
+  }
+
+ private:
+  const Mesh<Tet4>& mesh_;
+  testing::Random random_{31};
+  int steps_ = 0;
+};
+
+/// Moves a block under random loads. Its energy less the work of the loads must not rise in steps without a flag, by
+/// more than `allowed` of the largest energy.
+template <class Solver, Element E, LargeStrainMaterial M>
+void measure(bench::RowFile& rows, const char* name, const M& material,
+             const typename SolverTraits<Solver>::Parameters& parameters, int steps, double allowed = 1e-6) {
+  const bench::SupportedBody block = bench::standard_block(2);
+  Scene scene;
+  scene.fix(block.constrained).touch(block.touched);
+  const auto body = make_hyperelastic_body(copy_mesh<E>(block.mesh), std::vector<M>{material});
+  const VectorX mass = lumped_mass(body.rest);
+  auto stored = energy_of(body);
+  const auto motion = SolverTraits<Solver>::make_motion(body, scene, parameters, SetupLimits{}).motion;
+  RandomLoads loads(block.mesh);
+  VectorX load = VectorX::Zero(3 * block.mesh.node_count()), before = load;
+  double work = 0.0, largest = 1e-9, lowest = 0.0, gained = 0.0;
+  long flagged = 0, refused = 0;
+  bool finite = true;
+  for (int k = 0; k < steps; ++k) {
+    if (loads.next(load)) motion->set_load(load);
+    const MotionStep done = motion->step(parameters.step);
+    flagged += done.status.ok() ? 0 : 1;
+    refused += done.taken ? 0 : 1;
+    const VectorX& u = motion->displacement();
+    work += load.dot(u - before);
+    before = u;
+    double energy = stored(u);
+    for (Index i = 0; i < mass.size(); ++i) energy += 0.5 * mass[i] * node_vector(motion->velocity(), i).squaredNorm();
+    finite = finite && std::isfinite(energy);
+    largest = std::max(largest, energy);
+    if (!done.status.ok()) lowest = energy - work;  // flagged: the count begins again
+    lowest = std::min(lowest, energy - work);
+    gained = std::max(gained, energy - work - lowest);
+  }
+  char figure[80], share[80];
+  std::snprintf(figure, sizeof figure, "%.1e", gained / largest);
+  std::snprintf(share, sizeof share, "flagged %.4f, refused %.4f", static_cast<double>(flagged) / steps,
+                static_cast<double>(refused) / steps);
+  rows.add({.target = "m",
+            .what = std::string(name) + ", a block of 48 tetrahedra under random loads over " + std::to_string(steps) +
+                    " steps of " + bench::milliseconds(parameters.step) +
+                    ": largest rise of the energy less the work of the loads, relative to the largest energy",
+            .figure = figure,
+            .baseline = share,
+            .bound = {},
+            .error = !finite                       ? "not finite"
+                     : gained <= allowed * largest ? ""
+                                                   : "energy was gained"});
+}
+
+}  // namespace
+
+void measure_energy_under_loads(bench::RowFile& rows, int steps) {
+  using NewtonSteps = Implicit<Newton<SparseCholesky>>;
+  using QuasiNewtonSteps = Implicit<QuasiNewton<>>;
+  const NeoHookean plain{young, nu, density};
+  const auto law = [&]<class M>(const char* name, const M& material, double allowed = 1e-6) {
+    const std::string with = name;
+    measure<NewtonSteps, Tet4>(rows, (with + ", Newton").c_str(), material, {.settle = false}, steps, allowed);
+    measure<QuasiNewtonSteps, Tet4>(rows, (with + ", quasi-Newton").c_str(), material, {.settle = false}, steps,
+                                    allowed);
+  };
+  law("neo-Hookean", plain);
+  law("neo-Hookean (logarithmic)", NeoHookeanLogarithmic{young, nu, density});
+  law("neo-Hookean (isochoric)", NeoHookeanIsochoric{young, nu, density});
+  law("Mooney-Rivlin", MooneyRivlin{400.0, 135.0, 5e3, density});
+  law("St. Venant-Kirchhoff", StVenantKirchhoff{young, nu, density}, 0.01);  // unstable under compression
+  law("fibre-reinforced", FibreReinforced<NeoHookean>{.base = plain, .k1 = 1e3, .k2 = 2.0});
+  law("viscoelastic", Viscoelastic<NeoHookean, 1>{.base = plain, .terms = {{{0.5, 0.1}}}},
+      0.5);  // stress that has yet to relax stores energy
+  using Smooth = Smoothed<Tet4>;
+  measure<QuasiNewtonSteps, Smooth>(rows, "neo-Hookean, smoothed, quasi-Newton", plain, {.settle = false}, steps);
+  measure<Implicit<QuasiNewton<float>>, Smooth>(rows, "neo-Hookean, smoothed, quasi-Newton in float", plain,
+                                                {.settle = false}, steps);
+  measure<QuasiNewtonSteps, Smooth>(rows, "neo-Hookean (logarithmic), smoothed, quasi-Newton",
+                                    NeoHookeanLogarithmic{young, nu, density}, {.settle = false}, steps);
+  measure<Implicit<MatrixFreeCG<BlockJacobi, double>>, Tet4>(
+      rows, "co-rotated, matrix-free", Corotational<LinearElastic>{{young, nu, density}}, {.settle = false}, steps);
+  measure<Explicit<CentralDifference>, Tet4>(rows, "neo-Hookean, central differences", plain, {.settle = false}, steps,
+                                             0.05);  // its energy swings within a period
+}
