@@ -54,12 +54,11 @@ class SoftContender : public Contender {
     else
       return true;
   }
-  VectorX displacement() override { return tissue_.motion().displacement().head(3 * bench_.scene.mesh.node_count()); }
+  VectorX displacement() override { return tissue_.displacement().head(3 * bench_.scene.mesh.node_count()); }
   /// Imbalance of support forces, by the exact material, and forces of the spheres, relative to the contact force.
   double own_error() override {
-    VectorX left(conditions_.dof_count()), contact = VectorX::Zero(left.size());
-    DeformationReport report;
-    exact().evaluate(tissue_.motion().displacement(), left, report);
+    const VectorX left = support_forces(tissue_.displacement());
+    VectorX contact = VectorX::Zero(left.size());
     for (const VertexForce& f : rendered_.vertex_forces())
       contact.segment<3>(3 * Index{tissue_.touchable_nodes()[static_cast<std::size_t>(f.vertex)]}) +=
           f.force.in_model_axes();
@@ -77,7 +76,7 @@ class SoftContender : public Contender {
     const auto motion = SolverTraits<Solver>::make_motion(make_hyperelastic_body(mesh_, materials_),
                                                           bench_.scene.scene(near_group), free, SetupLimits{})
                             .motion;
-    const VectorX start = tissue_.motion().displacement();
+    const VectorX start = tissue_.displacement();
     motion->rest_at(start);
     const double before = energy_at(start);
     for (double t = 0.0; t < free_swing - 1e-9; t += free.step) motion->step(free.step);
@@ -92,7 +91,32 @@ class SoftContender : public Contender {
   std::string remark() override { return rendered_.remark(); }
 
  private:
-  /// Forces in double, of the exact material.
+  /// Forces in double, of the exact material; linear where the model is.
+  VectorX support_forces(const VectorX& u) {
+    VectorX f(u.size());
+    DeformationReport report;
+    if constexpr (requires { parameters_.large_strain_within; })
+      if (parameters_.large_strain_within < infinity) {
+        const auto body = make_hyperelastic_body(mesh_, materials_);
+        const BodyParts parts =
+            divide_body(mesh_ref(body.rest.mesh), tissue_.touchable_nodes(), parameters_.large_strain_within);
+        const auto far = assemble_stiffness<E>(part_of(body.rest, parts.far), SetupLimits{});
+        VectorX near_u(3 * static_cast<Index>(parts.near.nodes.size())), near_f(near_u.size()), far_u(far.size()),
+            far_f(far.size());
+        parts.near.gather(u, near_u);
+        parts.far.gather(u, far_u);
+        palpate::detail::make_energy_forces<double>(part_of(body, parts.near), SetupLimits{})
+            ->evaluate(near_u, near_f, report);
+        far.apply(far_u, far_f);
+        f.setZero();
+        parts.far.scatter(far_f, f);
+        for (std::size_t i = 0; i < parts.near.nodes.size(); ++i)
+          add_node_vector(f, Index{parts.near.nodes[i]}, node_vector(near_f, static_cast<Index>(i)));
+        return f;
+      }
+    exact().evaluate(u, f, report);
+    return f;
+  }
   EnergyForces& exact() {
     if (!exact_)
       exact_ = palpate::detail::make_energy_forces<double>(make_hyperelastic_body(mesh_, materials_), SetupLimits{});

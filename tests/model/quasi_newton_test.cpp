@@ -10,6 +10,9 @@
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/random.hpp>
 
+#include <chrono>
+#include <thread>
+
 #include <Eigen/Geometry>
 
 #include "model/one_session.hpp"
@@ -256,4 +259,68 @@ TEST_CASE("quasi-Newton parameters out of range are refused", "[model][quasi_new
         QuasiNewtonParameters{.maximum_iterations = 0}, QuasiNewtonParameters{.tolerance = 0.0},
         QuasiNewtonParameters{.memory = 0}})
     CHECK(test::refusal_kind([&] { Slow model(mesh, scene, soft, {}, p); }) == "bad_argument");
+}
+
+TEST_CASE("a renewed factor changes the number of iterations, not where steps end", "[model][quasi_newton][renewed]") {
+  const auto mesh = copy_mesh<Smoothed<Tet4>>(box_tet4({0.04, 0.04, 0.04}, {5, 5, 5}, BoxSplit::six));
+  const Scene scene = Scene().fix("z0").fix("z1").touch("x1");
+  VectorX compressed = VectorX::Zero(3 * mesh.node_count());  // by a quarter
+  for (Index i = 0; i < mesh.node_count(); ++i) compressed[3 * i + 2] = -0.25 * mesh.position(i).z();
+  for (const double within : {infinity, 0.015}) {
+    const auto make = [&](bool renew) {
+      return quasi_newton(mesh, scene,
+                          {.inertia = false,
+                           .maximum_iterations = 100,
+                           .tolerance = 1e-8,
+                           .large_strain_within = within,
+                           .renew_factor = renew});
+    };
+    const auto renewed = make(true), constant = make(false);
+    renewed->set_prescribed(compressed);
+    constant->set_prescribed(compressed);
+    const auto method_of = [](const TissueMotion& motion) -> const QuasiNewtonMotion& {
+      const auto* partly = dynamic_cast<const PartlyLinearMotion*>(&motion);
+      return static_cast<const QuasiNewtonMotion&>(partly != nullptr ? partly->near() : motion);
+    };
+    int iterations = 0, iterations_constant = 0;
+    for (int k = 0; k < 400; ++k) {
+      VectorX load = VectorX::Zero(3 * mesh.node_count());
+      for (Index i = 0; i < mesh.node_count(); ++i) load[3 * i] = 2e-3 * std::sin(0.5 * k);
+      renewed->set_load(load);
+      constant->set_load(load);
+      REQUIRE(!renewed->step(0.016).status.has(StatusFlag::solver_not_converged));
+      REQUIRE(!constant->step(0.016).status.has(StatusFlag::solver_not_converged));
+      CHECK((renewed->displacement() - constant->displacement()).norm() <= 1e-5 * constant->displacement().norm());
+      if (method_of(*renewed).renewals() == 0) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));  // the thread may be slow
+        k = std::min(k, 300);
+        continue;
+      }
+      iterations += method_of(*renewed).report().iterations;
+      iterations_constant += method_of(*constant).report().iterations;
+    }
+    INFO("within " << within << ": " << iterations << " iterations, " << iterations_constant << " without");
+    CHECK(constant->displacement().cwiseAbs().maxCoeff() > 0.008);
+    CHECK(method_of(*constant).renewals() == 0);
+    CHECK(iterations < 0.8 * iterations_constant);
+  }
+}
+
+TEST_CASE("a factor is not renewed at a shape with inverted elements", "[model][quasi_newton][renewed][extreme]") {
+  const auto mesh = copy_mesh<Smoothed<Tet4>>(box_tet4({0.04, 0.04, 0.04}, {3, 3, 3}, BoxSplit::six));
+  testing::Random random(5);
+  const auto motion =
+      quasi_newton(mesh, Scene().fix("z0").touch("z1"), {.settle = false, .inertia = false, .renew_factor = true});
+  VectorX u(3 * mesh.node_count());
+  MotionStep done;
+  for (int start = 0; start < 10; ++start) {
+    for (double& x : u) x = random.uniform(-0.01, 0.01);
+    motion->rest_at(u);
+    for (int k = 0; k < 100; ++k) {
+      done = motion->step(0.016);
+      CHECK(motion->displacement().allFinite());
+    }
+    CHECK(done.deformation.inverted == 0);
+    CHECK(motion->displacement().cwiseAbs().maxCoeff() < 1e-4);
+  }
 }

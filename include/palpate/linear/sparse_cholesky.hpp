@@ -66,6 +66,8 @@ class SparseCholesky {
   /// Interior factor: x from the kept part of the solution and the load of the last `eliminate_into`. No allocation
   /// when x has its size.
   void recover_into(const VectorX& kept_answer, VectorX& x) noexcept;
+  /// `recover_into` without a load; needs no `eliminate_into` before.
+  void extend_into(const VectorX& kept_answer, VectorX& x) noexcept;
 
   /// Interior factor: forward substitution of unit loads on `dofs`, none of them kept. Visits only the fronts above
   /// them. Allocates a workspace.

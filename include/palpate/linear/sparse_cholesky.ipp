@@ -136,6 +136,11 @@ PALPATE_INLINE void SparseCholesky::recover_into(const VectorX& kept_answer, Vec
   sweeps_.gather(x.data());
 }
 
+PALPATE_INLINE void SparseCholesky::extend_into(const VectorX& kept_answer, VectorX& x) noexcept {
+  detail::fill(sweeps_.values(), 0.0);
+  recover_into(kept_answer, x);
+}
+
 PALPATE_INLINE ReducedUnits SparseCholesky::reduce_units(std::span<const Index> dofs) const {
   return detail::reduce_units(factor_->tree(), factor_->values.data(), factor_->fronts, dofs, factor_->analysis.kept());
 }

@@ -8,8 +8,13 @@
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+struct RoundingErrors {
+  double energy = 0.0, force = 0.0;
+};
 
 /// Energy and force of a body at a displacement u, all dofs, 3 per node [m], in one call. Virtual, so that code that
 /// uses it is compiled once for all elements and materials. No allocation.
@@ -22,6 +27,9 @@ class EnergyForces {
   virtual double evaluate(const VectorX& u, VectorX& f, DeformationReport& report) noexcept = 0;
   /// Relative rounding error of the energy.
   virtual double rounding() const noexcept = 0;
+  /// Energy [J] and norm of the forces [N] that are due to rounding: those of the body rotated as a whole. Nodes at
+  /// `positions` [m].
+  virtual RoundingErrors rounding_errors(const std::vector<Vector3>& positions);
 
   /// Whether the forces depend on earlier steps. Then `begin_step` and `end_step` are as in ElasticForces.
   virtual bool has_history() const noexcept { return false; }
@@ -65,3 +73,7 @@ class TangentEnergyForces final : public EnergyForces {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/detail/energy_forces.ipp>
+#endif

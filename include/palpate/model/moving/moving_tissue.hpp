@@ -85,7 +85,7 @@ class MovingTissue : public ModelBase {
   // One thread that draws
 
   /// Displacement after the newest step, 3 per admitted node [m]; it includes the effect of the tool forces. Resizes u
-  /// when it has another size. A copy, no solve. Never waits.
+  /// when it has another size. A copy, and half a solve with linear surroundings. Never waits.
   SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept;
   /// The same as a new vector.
   VectorX displacement(std::span<const VertexForce> forces = {});
@@ -160,6 +160,7 @@ class MovingTissue : public ModelBase {
   /// Position of the surface without the current tool forces, computed with the compliance of the servo, so that the
   /// same forces restore the current position.
   void update_view(View& view) const noexcept;
+  /// Compliance of two vertices, rotated and corrected by the last steps [m/N].
   Matrix3 evaluate(const View& view, int i, int j) const noexcept;
   /// Appends a vertex unless it was listed in the same `round`, or there is no room.
   template <std::size_t Most>

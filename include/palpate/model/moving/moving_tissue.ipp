@@ -42,6 +42,8 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   compliance_ = WarpedCompliance(*motion_, step_, touchable.nodes, rotations_, limits());
   motion_->rest_at(start_);  // the state that reset() restores
   const std::size_t vertices = touchable.nodes.size();
+  const double near_bytes = 3.0 * NearCompliance::bytes(vertices, most_near, most_pressed);  // one per view
+  limits().require_memory(near_bytes, "the compliance near the contacts");
   required_.assign(vertices, 0);
   requested_.assign(vertices, ~std::uint64_t{0});
   View view{
@@ -60,7 +62,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   view.surface.set_materials(elastic_body().contact_materials(touchable.elements));
   views_.fill(view);
   drawn_.fill(start_);
-  setup_report().compliance_bytes = compliance_.bytes();
+  setup_report().compliance_bytes = compliance_.bytes() + static_cast<std::size_t>(near_bytes);
   setup_report().free_dofs = conditions.free_count();
   setup_report().kept_dofs = 3 * setup_report().touchable_vertices;
   if (accepts_initial_strains_) report_displacement(elastic_body().positions(), start_, setup_report());
@@ -156,13 +158,15 @@ PALPATE_INLINE void MovingTissue::reset() {
 PALPATE_INLINE SolveReport MovingTissue::displacement_with(std::span<const VertexForce>, VectorX& u) noexcept {
   drawn_.update();
   u = drawn_.front();
+  motion_->complete(u);
   return {true, 0, 0.0};
 }
 
 PALPATE_INLINE VectorX MovingTissue::displacement(std::span<const VertexForce> forces) {
   require_vertex_forces(forces, static_cast<int>(touchable_nodes().size()));
-  drawn_.update();
-  return drawn_.front();
+  VectorX u;
+  displacement_with(forces, u);
+  return u;
 }
 
 PALPATE_INLINE void MovingTissue::prepare_tools(const ToolRadii&, const ContactParameters&) {

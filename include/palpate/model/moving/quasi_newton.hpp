@@ -3,6 +3,8 @@
 
 #include <palpate/assembly/detail/energy_forces.hpp>
 #include <palpate/assembly/smoothed_tetrahedra.hpp>
+#include <palpate/model/detail/touchable.hpp>
+#include <palpate/model/moving/detail/partly_linear_motion.hpp>
 #include <palpate/model/moving/detail/quasi_newton_motion.hpp>
 #include <palpate/model/moving/moving_model.hpp>
 
@@ -48,14 +50,50 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
                                     const SetupLimits& limits) {
     detail::refuse_initial_strains(scene);
     DeformableBody made = detail::body_with_mass(body.rest, scene, limits);
+    if (p.large_strain_within != infinity) {
+      p.require_divisible(ViscousMaterial<M>);
+      const MeshRef mesh = mesh_ref(body.rest.mesh);
+      const std::vector<NodeId> touched = resolve_touchable(mesh, extract_boundary<E>(body.rest.mesh), scene).nodes;
+      if (BodyParts parts = divide_body(mesh, touched, p.large_strain_within); !parts.far.elements.empty())
+        return make_partly_linear(body, std::move(made), std::move(parts), p, limits);
+    }
     BlockMatrix stiffness = assemble_stiffness<E>(body.rest, limits);
+    StiffnessAt stiffness_at = stiffness_of_shape(body.rest, p);
     auto forces = detail::make_energy_forces<S>(std::move(body), limits);
-    auto motion =
-        std::make_unique<QuasiNewtonMotion>(std::move(made), std::move(forces), std::move(stiffness), p, limits);
+    auto motion = std::make_unique<QuasiNewtonMotion>(std::move(made), std::move(forces), std::move(stiffness), p,
+                                                      limits, std::vector<NodeId>{}, std::move(stiffness_at));
+    if (p.settle) motion->settle();
     PreparedMotion prepared;
-    prepared.start = p.settle ? motion->settle() : VectorX(VectorX::Zero(motion->displacement().size()));
+    prepared.start = motion->displacement();
     prepared.motion = std::move(motion);
     return prepared;
+  }
+
+ private:
+  /// The stiffness of linear elasticity on the displaced mesh.
+  template <Element E>
+  static StiffnessAt stiffness_of_shape(const Body<E>& rest, const Parameters& p) {
+    if (!p.renew_factor) return {};
+    return [body = rest, rest = rest.mesh.positions](const VectorX& u, BlockMatrix& k) mutable {
+      for (std::size_t i = 0; i < rest.size(); ++i)
+        body.mesh.positions[i] = rest[i] + node_vector(u, static_cast<Index>(i));
+      k.copy_values(assemble_stiffness<E>(body, SetupLimits{}));
+    };
+  }
+  template <Element E, LargeStrainMaterial M>
+  static PreparedMotion make_partly_linear(const HyperelasticBody<E, M>& body, DeformableBody made, BodyParts parts,
+                                           const Parameters& p, const SetupLimits& limits) {
+    const Body<E> far = part_of(body.rest, parts.far);
+    auto surroundings = std::make_unique<LinearSurroundings>(assemble_stiffness<E>(far, limits),
+                                                             conditions_of(parts.far, made.conditions),
+                                                             far.mesh.positions, parts.interface_in(parts.far), limits);
+    HyperelasticBody<E, M> near = part_of(body, parts.near);
+    const BlockMatrix stiffness = assemble_stiffness<E>(near.rest, limits);
+    const BlockPattern pattern = block_pattern(near.rest.mesh);
+    StiffnessAt stiffness_at = stiffness_of_shape(near.rest, p);
+    return detail::prepare_partly_linear(std::move(made), std::move(parts), pattern, stiffness, std::move(stiffness_at),
+                                         detail::make_energy_forces<S>(std::move(near), limits),
+                                         std::move(surroundings), p, limits);
   }
 };
 

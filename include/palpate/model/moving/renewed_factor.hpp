@@ -10,14 +10,13 @@
 #include <palpate/element/tet4.hpp>
 #include <palpate/local/isotropic.hpp>
 #include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/moving/detail/renewal_thread.hpp>
 #include <palpate/model/moving/detail/step_preconditioners.hpp>
 #include <palpate/model/moving/detail/tangent_solver.hpp>
 #include <palpate/model/moving/detail/corotated_solve.hpp>
 
 #include <array>
-#include <atomic>
 #include <memory>
-#include <thread>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -29,27 +28,22 @@ namespace palpate { inline namespace PALPATE_ABI {
 class RenewedFactor {
  public:
   RenewedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits);
-  ~RenewedFactor();
-  RenewedFactor(const RenewedFactor&) = delete;
-  RenewedFactor& operator=(const RenewedFactor&) = delete;
 
   template <class Tetrahedra>
   void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool again) noexcept {
-    const State state = state_.load(std::memory_order_acquire);
-    if (state == State::ready) {
+    if (thread_.finished()) {
       if (spare().usable && spare().factors == factors) {
         front_ = 1 - front_;
         ++renewals_;
       }
-      state_.store(State::idle, std::memory_order_relaxed);
+      thread_.take();
     }
     if (front().factors != factors) {
       make(front(), factors, rest_);
-    } else if (again && state != State::asked) {
+    } else if (again && thread_.idle()) {
       asked_ = u;
       spare().factors = factors;
-      state_.store(State::asked, std::memory_order_release);
-      state_.notify_one();
+      thread_.ask();
     }
     corotated_.update(u, front().rotation);
   }
@@ -58,7 +52,6 @@ class RenewedFactor {
   long renewals() const noexcept { return renewals_; }
 
  private:
-  enum class State { idle, asked, ready, stopped };
   struct RotatingElement {
     std::array<NodeId, 4> nodes;
     Eigen::Matrix<double, 4, 3> gradient;
@@ -76,8 +69,6 @@ class RenewedFactor {
   Made& front() noexcept { return made_[front_]; }
   Made& spare() noexcept { return made_[1 - front_]; }
 
-  void work() noexcept;
-
   /// A at a state, and its factor.
   void make(Made& made, const StepFactors& factors, const VectorX& u) const noexcept;
   /// R K R^T of one element.
@@ -88,11 +79,10 @@ class RenewedFactor {
   std::vector<RotatingElement> elements_;
   std::array<Made, 2> made_;
   std::size_t front_ = 0;
-  VectorX asked_;  // used by the thread in state `asked`
+  VectorX asked_;  // used by the thread while it works
   VectorX rest_;   // no displacement
   long renewals_ = 0;
-  std::atomic<State> state_{State::idle};
-  std::thread thread_;  // last: it uses all other members
+  RenewalThread thread_;  // last: it uses all other members
 };
 
 }}  // namespace palpate

@@ -15,47 +15,19 @@ PALPATE_INLINE RenewedFactor::RenewedFactor(const DeformableBody& body, const Bo
       lumped_(body.lumped),
       made_{{Made(body, corotated_.conditions(), limits), Made(body, corotated_.conditions(), limits)}},
       asked_(VectorX::Zero(3 * lumped_.size())),
-      rest_(asked_) {
+      rest_(asked_),
+      thread_([this] { make(spare(), spare().factors, asked_); }) {
   for (Index e = 0; e < rest.mesh.element_count(); ++e) {
     const PointGeometry<Tet4> g = constant_geometry<Tet4>(rest.mesh, e);
     elements_.push_back({rest.mesh.elements[static_cast<std::size_t>(e)], g.gradient, g.volume,
                          *lame_constants(rest.elasticity[rest.region_of(e)])});  // Corotational is isotropic
   }
-  thread_ = std::thread([this] { work(); });
-}
-
-PALPATE_INLINE RenewedFactor::~RenewedFactor() {
-  state_.store(State::stopped, std::memory_order_release);
-  state_.notify_one();
-  thread_.join();
 }
 
 PALPATE_INLINE RenewedFactor::Made::Made(const DeformableBody& body, const EssentialConditions& conditions,
                                          const SetupLimits& limits)
     : factor(std::make_unique<TangentSolver>(body.pattern, conditions, body.positions, limits)),
       rotation(body.positions.size(), Matrix3::Identity()) {}
-
-PALPATE_INLINE void RenewedFactor::work() noexcept {
-  for (;;) {
-    state_.wait(State::idle, std::memory_order_acquire);
-    switch (state_.load(std::memory_order_acquire)) {
-      case State::stopped:
-        return;
-      case State::asked: {
-        Made& made = spare();  // the front factor stays in use until this one is ready
-        make(made, made.factors, asked_);
-        State expected = State::asked;
-        state_.compare_exchange_strong(expected, State::ready, std::memory_order_acq_rel);
-        break;
-      }
-      case State::ready:
-        state_.wait(State::ready, std::memory_order_acquire);
-        break;
-      case State::idle:
-        break;
-    }
-  }
-}
 
 PALPATE_INLINE void RenewedFactor::make(Made& made, const StepFactors& factors, const VectorX& u) const noexcept {
   corotated_.fit(u, made.rotation);

@@ -9,11 +9,11 @@
 #include <palpate/integrator/detail/implicit_step.hpp>
 #include <palpate/integrator/quasi_newton.hpp>
 #include <palpate/model/detail/deformable_body.hpp>
-#include <palpate/model/moving/detail/corotated_solve.hpp>
-#include <palpate/model/moving/detail/tangent_solver.hpp>
+#include <palpate/model/moving/detail/renewable_factor.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
 
 #include <memory>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -28,9 +28,18 @@ struct QuasiNewtonParameters {
   int maximum_iterations = 10;  ///< per step; each takes one solve and usually one evaluation of the force
   double tolerance = 5e-3;      ///< of the residual force, relative to the largest of the forces
   int memory = 6;               ///< pairs of L-BFGS
+  /// Elements up to this distance from the touchable nodes, along element edges [m], are at large strain. The others
+  /// are linear and condensed onto the nodes between, so that the time of a step depends on the near ones only; see
+  /// PartlyLinearMotion. For bodies whose far part moves little. Finite only without inertia and viscoelasticity.
+  double large_strain_within = infinity;
+  /// A second thread computes the factor again for the present shape while steps continue with the last one: fewer
+  /// iterations where a body is far from its shape at rest. Results then depend on its timing, within the tolerance.
+  bool renew_factor = false;
 
   /// Throws bad_argument for parameters out of range.
   void require_usable() const;
+  /// Throws unsupported when a body of these parameters cannot have a linear part.
+  void require_divisible(bool viscous) const;
 };
 
 /// Integrates M a + alpha M v + f(u) = load by implicit Euler, or without inertia f(u) = load. Every step minimises its
@@ -38,16 +47,18 @@ struct QuasiNewtonParameters {
 /// initial inverse (Liu, Bouaziz and Kavan 2017). K is the stiffness at rest. It must be that of the same elements: one
 /// that locks, or of another Poisson ratio, takes three to five times as many iterations. A step costs one solve and
 /// one force evaluation per iteration, allocates nothing and ends after `maximum_iterations`. The potential at its end
-/// is not higher than at its start, so no energy is added.
+/// is not higher than at its start: where the energy of the material is convex, no energy is added.
 class QuasiNewtonMotion final : public TissueMotion {
  public:
   /// Largest relative residual of a step that counts as converged.
   static constexpr double tolerable_residual = 0.05;
 
   /// Starts at rest with zero displacement. Throws too_large, bad_density, bad_argument.
-  /// `body.elastic` is not used; `stiffness` is that of `forces` at rest.
+  /// `body.elastic` is not used; `stiffness` is that of `forces` at rest. The nodes `last` are eliminated last.
+  /// `stiffness_at`, on the same pattern, is needed for `renew_factor`.
   QuasiNewtonMotion(DeformableBody body, std::unique_ptr<EnergyForces> forces, BlockMatrix stiffness,
-                    const QuasiNewtonParameters& parameters, const SetupLimits& limits);
+                    const QuasiNewtonParameters& parameters, const SetupLimits& limits,
+                    const std::vector<NodeId>& last = {}, StiffnessAt stiffness_at = {});
 
   MotionStep step(double h) noexcept override;
   bool correct(const VectorX& more) noexcept override;
@@ -65,6 +76,8 @@ class QuasiNewtonMotion final : public TissueMotion {
 
   /// Of the last step.
   const QuasiNewtonReport& report() const noexcept { return report_; }
+  /// Number of factors taken from the second thread so far.
+  long renewals() const noexcept { return factor_.renewals(); }
 
   // QuasiNewtonProblem: one step
   double evaluate(const VectorX& x, VectorX& residual) noexcept;
@@ -83,15 +96,14 @@ class QuasiNewtonMotion final : public TissueMotion {
   /// As in ImplicitDynamics: moves supports in parts where the body must follow each part. Ends at x_.
   bool move_supports() noexcept;
   static constexpr int most_support_parts = 64;
+  /// A step of so many iterations needs no other factor.
+  static constexpr int few_iterations = 2;
   void accept() noexcept;
-  void measure_rounding() noexcept;
 
   QuasiNewtonParameters parameters_;
   DeformableBody body_;
   std::unique_ptr<EnergyForces> forces_;
-  BlockMatrix stiffness_;  // at rest
-  CorotatedSolve corotated_;
-  TangentSolver factor_;
+  RenewableFactor factor_;
   QuasiNewtonMethod method_;
   ImplicitStep step_;
   VectorX inertia_;  // mass per dof
@@ -107,10 +119,10 @@ class QuasiNewtonMotion final : public TissueMotion {
     bool valid = false;
   } known_;
   QuasiNewtonReport report_;
-  VectorX prescribed_;   // at the end of the present step, or of a part of it
-  double length_ = 0.0;  // of the factor; infinite: without inertia
+  VectorX prescribed_;  // at the end of the present step, or of a part of it
   double stored_ = 0.0, scale_ = 0.0, potential_scale_ = 0.0;
-  double floor_ = 0.0;  // residual that is due to rounding [N]
+  RoundingErrors floor_;
+  double length_ = 0.0;  // of the factor; infinite: without inertia
   bool stepped_ = false;
 };
 

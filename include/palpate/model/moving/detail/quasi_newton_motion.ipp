@@ -23,15 +23,26 @@ PALPATE_INLINE void QuasiNewtonParameters::require_usable() const {
   require_damping(mass_damping, 0.0);
 }
 
+PALPATE_INLINE void QuasiNewtonParameters::require_divisible(bool viscous) const {
+  if (!(large_strain_within >= 0.0))
+    raise(SetupErrorKind::bad_argument, "large_strain_within is " + number(large_strain_within) + " m",
+          "Give a distance of at least 0");
+  if (inertia || viscous)
+    raise(
+        SetupErrorKind::unsupported,
+        std::string("large_strain_within for tissue with ") + (inertia ? "inertia" : "viscoelasticity"),
+        inertia ? "Set inertia = false, or leave large_strain_within infinite" : "Leave large_strain_within infinite");
+}
+
 PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::unique_ptr<EnergyForces> forces,
                                                     BlockMatrix stiffness, const QuasiNewtonParameters& parameters,
-                                                    const SetupLimits& limits)
+                                                    const SetupLimits& limits, const std::vector<NodeId>& last,
+                                                    StiffnessAt stiffness_at)
     : parameters_(parameters),
       body_(std::move(body)),
       forces_(std::move(forces)),
-      stiffness_(std::move(stiffness)),
-      corotated_(body_),
-      factor_(stiffness_.pattern(), body_.conditions, body_.positions, limits, FactorScalar::single_precision),
+      factor_(body_, std::move(stiffness), last, parameters.renew_factor ? std::move(stiffness_at) : StiffnessAt(),
+              limits),
       method_(body_.conditions.free_count(), parameters.memory),
       step_(TimeScheme::implicit_euler(), forces_->size()),
       inertia_(forces_->size()),
@@ -55,31 +66,18 @@ PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::un
   parameters.require_usable();
   require_mass(body_);
   for (Index dof = 0; dof < inertia_.size(); ++dof) inertia_[dof] = body_.lumped[dof / 3];
-  measure_rounding();
-}
-
-PALPATE_INLINE void QuasiNewtonMotion::measure_rounding() noexcept {
-  // A rotated body has no internal forces but those of rounding.
-  Matrix3 turn;
-  turn << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;
-  turn /= 3.0;
-  for (std::size_t i = 0; i < body_.positions.size(); ++i)
-    set_node_vector(trial_, static_cast<Index>(i), turn * body_.positions[i] - body_.positions[i]);
-  forces_->evaluate(trial_, force_, deformation_);
-  floor_ = 2.0 * force_.norm();
+  floor_ = forces_->rounding_errors(body_.positions);
 }
 
 PALPATE_INLINE bool QuasiNewtonMotion::set_length(double h) noexcept {
   if (h == length_) return true;
   length_ = 0.0;
-  BlockMatrix& a = factor_.matrix();
-  a.copy_values(stiffness_);
+  double mass = 0.0;
   if (h < infinity) {
     step_.set_length(h);
-    a.add_nodal(step_.acceleration_per_displacement() + parameters_.mass_damping * step_.velocity_per_displacement(),
-                body_.lumped);
+    mass = step_.acceleration_per_displacement() + parameters_.mass_damping * step_.velocity_per_displacement();
   }
-  if (!factor_.factorise()) return false;
+  if (!factor_.set_mass(mass)) return false;
   method_.forget();
   length_ = h;
   return true;
@@ -93,13 +91,14 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   stepped_ = false;
   known_.valid = known_.valid && !forces_->has_history();
   if (!ImplicitStep::is_length(h) || !set_length(parameters_.inertia ? h : infinity)) return done;
+  if (factor_.take_renewed()) method_.forget();
   forces_->begin_step(h);
-  corotated_.update(u_);
+  factor_.rotate(u_);
   prescribed_ = body_.conditions.prescribed;
   if (parameters_.inertia) step_.coast(u_, v_, a_);
   const double still = start_at_state();
   if (parameters_.inertia) {
-    // The potential at the end must not be higher than without motion, so that no energy is added.
+    // The potential at the end must not be higher than without motion.
     body_.conditions.gather(step_.predicted(), x_);
     if (!(method_.start(*this, x_) <= still)) start_at_state();
   }
@@ -116,6 +115,7 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   accept();
   step_load_ = load_;
   stepped_ = true;
+  if (report_.iterations > few_iterations) factor_.ask(u_);
   done = {true, {}, deformation_};
   done.relative_residual = report_.relative_residual;
   if (deformation_.inverted > 0) done.status.set(StatusFlag::inverted);
@@ -161,13 +161,13 @@ PALPATE_INLINE bool QuasiNewtonMotion::correct(const VectorX& more) noexcept {
 
 PALPATE_INLINE bool QuasiNewtonMotion::prepare_response(double h) noexcept {
   if (!ImplicitStep::is_length(h) || !set_length(parameters_.inertia ? h : infinity)) return false;
-  corotated_.update(u_);
+  factor_.rotate(u_);
   return true;
 }
 
 PALPATE_INLINE bool QuasiNewtonMotion::respond(const VectorX& forces, VectorX& u) noexcept {
   if (length_ == 0.0) return false;
-  corotated_.solve(factor_, forces, u);
+  factor_.solve(forces, u);
   return true;
 }
 
@@ -203,7 +203,7 @@ PALPATE_INLINE VectorX QuasiNewtonMotion::settle() {
   QuasiNewtonReport report;
   const double tolerance = std::max(1e-9, 100.0 * forces_->rounding());
   for (int round = 0; round < 50 && !report.converged; ++round) {
-    corotated_.update(u_);
+    factor_.rotate(u_);
     method_.forget();
     method_.start(*this, x_);
     report = method_.solve(*this, x_, {.maximum_iterations = 20, .tolerance = tolerance});
@@ -261,16 +261,16 @@ PALPATE_INLINE double QuasiNewtonMotion::start_at_state() noexcept {
 
 PALPATE_INLINE void QuasiNewtonMotion::precondition(const VectorX& r, VectorX& d) noexcept {
   body_.conditions.scatter(r, other_);
-  corotated_.solve(factor_, other_, full_);
+  factor_.solve(other_, full_);
   body_.conditions.gather(full_, d);
 }
 
 PALPATE_INLINE double QuasiNewtonMotion::rounding() const noexcept {
-  return std::max(floor_, 4.0 * std::numeric_limits<double>::epsilon() * scale_);
+  return std::max(2.0 * floor_.force, 4.0 * std::numeric_limits<double>::epsilon() * scale_);
 }
 
 PALPATE_INLINE double QuasiNewtonMotion::potential_rounding() const noexcept {
-  return 8.0 * forces_->rounding() * potential_scale_;
+  return 2.0 * floor_.energy + 8.0 * forces_->rounding() * potential_scale_;
 }
 
 PALPATE_INLINE void QuasiNewtonMotion::accept() noexcept {

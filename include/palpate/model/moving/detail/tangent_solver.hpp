@@ -20,13 +20,14 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// reference to `conditions`; neither copyable nor movable.
 class TangentSolver {
  public:
-  /// Analyses the pattern and allocates the factor. Throws too_large.
+  /// Analyses the pattern and allocates the factor. The nodes `last`, ascending, are eliminated last. Throws too_large.
   TangentSolver(BlockPattern pattern, const EssentialConditions& conditions, const std::vector<Vector3>& positions,
-                const SetupLimits& limits, FactorScalar scalar = FactorScalar::double_precision)
+                const SetupLimits& limits, FactorScalar scalar = FactorScalar::double_precision,
+                const std::vector<NodeId>& last = {})
       : conditions_(conditions),
         matrix_(make_stiffness(std::move(pattern), limits)),
         values_(matrix_, conditions),
-        factor_(CholeskyAnalysis(values_.lower(), layout(conditions, positions), limits), limits, scalar),
+        factor_(CholeskyAnalysis(values_.lower(), layout(conditions, positions, last), limits), limits, scalar),
         row_sums_(factor_.size()) {}
   TangentSolver(const TangentSolver&) = delete;
   TangentSolver& operator=(const TangentSolver&) = delete;
@@ -53,7 +54,8 @@ class TangentSolver {
   double largest_diagonal() const noexcept;
 
  private:
-  static DofLayout layout(const EssentialConditions& conditions, const std::vector<Vector3>& positions);
+  static DofLayout layout(const EssentialConditions& conditions, const std::vector<Vector3>& positions,
+                          const std::vector<NodeId>& last);
 
   const EssentialConditions& conditions_;
   BlockMatrix matrix_;

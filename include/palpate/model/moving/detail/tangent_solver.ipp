@@ -40,9 +40,14 @@ PALPATE_INLINE double TangentSolver::largest_diagonal() const noexcept {
 }
 
 PALPATE_INLINE DofLayout TangentSolver::layout(const EssentialConditions& conditions,
-                                               const std::vector<Vector3>& positions) {
+                                               const std::vector<Vector3>& positions,
+                                               const std::vector<NodeId>& last) {
   DofLayout layout{{}, positions, {}};
-  for (const Index dof : conditions.free_dofs) layout.node_of_dof.push_back(dof / 3);
+  for (const Index dof : conditions.free_dofs) {
+    if (std::ranges::binary_search(last, static_cast<NodeId>(dof / 3)))
+      layout.kept.push_back(static_cast<Index>(layout.node_of_dof.size()));
+    layout.node_of_dof.push_back(dof / 3);
+  }
   return layout;
 }
 

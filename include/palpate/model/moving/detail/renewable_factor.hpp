@@ -1,0 +1,76 @@
+// A factor of the matrix of a step, rotated with the nodes and renewed in a thread.
+#pragma once
+
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/moving/detail/corotated_solve.hpp>
+#include <palpate/model/moving/detail/renewal_thread.hpp>
+#include <palpate/model/moving/detail/tangent_solver.hpp>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Sets a matrix to the stiffness of a body at a displacement, approximately. May throw, and allocates.
+using StiffnessAt = std::function<void(const VectorX& u, BlockMatrix& k)>;
+
+/// z = R A^-1 R^T r with a factor of A = K + m M, read in single precision, and a rotation per node. K is the stiffness
+/// at rest, or at a recent shape s when a thread renews it; R are the rotations since that shape. Only the constructor,
+/// and the thread, allocate. Neither copyable nor movable.
+class RenewableFactor {
+ public:
+  /// The nodes `last` are eliminated last. Without `stiffness_at`, on the pattern of `stiffness`, nothing is renewed
+  /// and there is no thread. Refers to `body`. Throws too_large.
+  RenewableFactor(const DeformableBody& body, BlockMatrix stiffness, const std::vector<NodeId>& last,
+                  StiffnessAt stiffness_at, const SetupLimits& limits);
+
+  /// Sets m [1/s^2]; factorises at rest when it is new. Returns false without a factor.
+  bool set_mass(double mass) noexcept;
+  /// Takes a finished factor; returns whether there was one.
+  bool take_renewed() noexcept;
+  /// Asks the thread for the factor at displacement u [m], unless it is at work.
+  void ask(const VectorX& u) noexcept;
+  /// Number of factors taken from the thread so far.
+  long renewals() const noexcept { return renewals_; }
+
+  /// Sets the rotations from u [m].
+  void rotate(const VectorX& u) noexcept { corotated_.update(u, front().rotation); }
+  /// Vectors have 3 entries per node; z is zero on constrained dofs.
+  void solve(const VectorX& r, VectorX& z) noexcept { corotated_.solve(*front().factor, r, z); }
+
+ private:
+  /// A factor and the shape that it was made for.
+  struct Shape {
+    std::unique_ptr<TangentSolver> factor;
+    std::vector<Matrix3> rotation;  // of the nodes
+    double mass = 0.0;
+    bool usable = false;
+  };
+  Shape& front() noexcept { return shapes_[front_]; }
+  Shape& spare() noexcept { return shapes_[1 - front_]; }
+  Shape make_shape(const std::vector<NodeId>& last, const SetupLimits& limits) const;
+  void renew() noexcept;  // in the thread
+
+  const DeformableBody& body_;
+  BlockMatrix stiffness_;  // at rest
+  CorotatedSolve corotated_;
+  std::array<Shape, 2> shapes_;
+  std::size_t front_ = 0;
+  StiffnessAt stiffness_at_;
+  VectorX asked_;  // displacement; used by the thread while it works
+  long renewals_ = 0;
+  std::optional<RenewalThread> thread_;  // last: it uses all other members
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/detail/renewable_factor.ipp>
+#endif

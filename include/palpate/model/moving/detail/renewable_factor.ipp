@@ -1,0 +1,73 @@
+// Definitions of renewable_factor.hpp.
+#pragma once
+
+#include <palpate/model/moving/detail/renewable_factor.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE RenewableFactor::RenewableFactor(const DeformableBody& body, BlockMatrix stiffness,
+                                                const std::vector<NodeId>& last, StiffnessAt stiffness_at,
+                                                const SetupLimits& limits)
+    : body_(body), stiffness_(std::move(stiffness)), corotated_(body), stiffness_at_(std::move(stiffness_at)) {
+  front() = make_shape(last, limits);
+  if (!stiffness_at_) return;
+  spare() = make_shape(last, limits);
+  asked_ = VectorX::Zero(stiffness_.size());
+  thread_.emplace([this] { renew(); });
+}
+
+PALPATE_INLINE RenewableFactor::Shape RenewableFactor::make_shape(const std::vector<NodeId>& last,
+                                                                  const SetupLimits& limits) const {
+  Shape made;
+  made.factor = std::make_unique<TangentSolver>(stiffness_.pattern(), corotated_.conditions(), body_.positions, limits,
+                                                FactorScalar::single_precision, last);
+  made.rotation.assign(body_.positions.size(), Matrix3::Identity());
+  return made;
+}
+
+PALPATE_INLINE bool RenewableFactor::set_mass(double mass) noexcept {
+  Shape& made = front();
+  if (made.usable && mass == made.mass) return true;
+  made.mass = mass;
+  made.factor->matrix().copy_values(stiffness_);
+  if (mass > 0.0) made.factor->matrix().add_nodal(mass, body_.lumped);
+  std::ranges::fill(made.rotation, Matrix3::Identity());
+  made.usable = made.factor->factorise();
+  return made.usable;
+}
+
+PALPATE_INLINE bool RenewableFactor::take_renewed() noexcept {
+  if (!thread_ || !thread_->finished()) return false;
+  const bool fits = spare().usable && spare().mass == front().mass;
+  if (fits) {
+    front_ = 1 - front_;
+    ++renewals_;
+  }
+  thread_->take();
+  return fits;
+}
+
+PALPATE_INLINE void RenewableFactor::ask(const VectorX& u) noexcept {
+  if (!thread_ || !thread_->idle()) return;
+  asked_ = u;
+  spare().mass = front().mass;
+  thread_->ask();
+}
+
+PALPATE_INLINE void RenewableFactor::renew() noexcept {
+  Shape& made = spare();
+  made.usable = false;
+  try {
+    stiffness_at_(asked_, made.factor->matrix());
+  } catch (...) {  // inverted elements, or no memory: the last factor stays in use
+    return;
+  }
+  if (made.mass > 0.0) made.factor->matrix().add_nodal(made.mass, body_.lumped);
+  corotated_.fit(asked_, made.rotation);
+  made.usable = made.factor->factorise();
+}
+
+}}  // namespace palpate
