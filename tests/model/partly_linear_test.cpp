@@ -36,7 +36,8 @@ QuasiNewtonParameters exact_steps(double within) {
 }
 template <class E>
 std::unique_ptr<TissueMotion> motion_of(const Mesh<E>& mesh, const Scene& scene, const QuasiNewtonParameters& p) {
-  return SolverTraits<Solver>::make_motion(make_hyperelastic_body(mesh, std::vector{neo_hookean_liver}), scene, p, {}).motion;
+  return SolverTraits<Solver>::make_motion(make_hyperelastic_body(mesh, std::vector{neo_hookean_liver}), scene, p, {})
+      .motion;
 }
 template <class E>
 std::vector<NodeId> touched_nodes(const Mesh<E>& mesh, const Scene& scene) {
@@ -181,6 +182,62 @@ TEST_CASE("a step with linear surroundings allocates nothing and reports their d
     CHECK(scope.allocations() == 0);
     CHECK(done.taken);
     CHECK(done.status.has(StatusFlag::large_displacement) == (push > 0.01));
+  }
+}
+
+TEST_CASE("a far part that hangs on the interface and turns with it is reported", "[model][partly_linear][extreme]") {
+  const auto mesh = copy_mesh<Smoothed<Tet4>>(box_tet4({0.2, 0.02, 0.02}, {20, 2, 2}, BoxSplit::six));
+  Scene scene = Scene().fix("x0").touch(where::box({0.0, 0.0, 0.019}, {0.05, 0.02, 0.021}));
+  const auto motion = motion_of(mesh, scene, {.settle = false, .inertia = false, .large_strain_within = 0.0});
+  for (const double push : {0.005, 0.1}) {
+    VectorX load = VectorX::Zero(3 * mesh.node_count());
+    for (Index i = 0; i < mesh.node_count(); ++i)
+      if (std::abs(mesh.position(i).x() - 0.04) < 1e-9) add_node_vector(load, i, {0.0, 0.0, -push / 9.0});
+    motion->set_load(load);
+    MotionStep done;
+    for (int k = 0; k < 20; ++k) done = motion->step(0.016);
+    VectorX u = motion->displacement();
+    motion->complete(u);
+    INFO("end moves " << u[u.size() - 1]);
+    CHECK(done.status.has(StatusFlag::large_displacement) == (push > 0.01));
+    CHECK((std::abs(u[u.size() - 1]) > 0.1 * 0.2) == (push > 0.01));
+  }
+}
+
+TEST_CASE("values of free dofs have no effect on prescribed displacements", "[model][partly_linear]") {
+  const auto mesh = slab();
+  const Scene scene = touched_slab();
+  VectorX raised = VectorX::Zero(3 * mesh.node_count()), everywhere_set = raised;
+  for (Index i = 0; i < mesh.node_count(); ++i) {
+    set_node_vector(everywhere_set, i, 1e-3 * mesh.position(i));
+    if (mesh.position(i).z() < 1e-9) set_node_vector(raised, i, node_vector(everywhere_set, i));
+  }
+  const auto motion = motion_of(mesh, scene, exact_steps(0.02));
+  motion->set_prescribed(raised);
+  const VectorX expected = rest_under(*motion, VectorX::Zero(raised.size()));
+  motion->set_prescribed(everywhere_set);
+  CHECK((rest_under(*motion, VectorX::Zero(raised.size())) - expected).norm() <= 1e-9 * expected.norm());
+}
+
+TEST_CASE("a refusal of a part names the nodes of the body", "[model][partly_linear][extreme]") {
+  auto mesh = slab();
+  const auto touched = touched_nodes(mesh, touched_slab());
+  const BodyParts parts = divide_body(mesh_ref(mesh), touched, 0.02);
+  mesh.region_names = {"tissue", "light"};
+  mesh.regions.assign(mesh.elements.size(), 0);
+  for (const Index e : parts.near.elements) mesh.regions[static_cast<std::size_t>(e)] = 1;
+  NeoHookean light = neo_hookean_liver;
+  light.density = 0.0;
+  try {
+    SolverTraits<Solver>::make_motion(make_hyperelastic_body(mesh, std::vector{neo_hookean_liver, light}),
+                                      touched_slab(), exact_steps(0.02), {});
+    FAIL("not refused");
+  } catch (const SetupError& e) {
+    CHECK(e.kind() == SetupErrorKind::bad_density);
+    REQUIRE(!e.problem().ids.empty());
+    const auto node = static_cast<NodeId>(e.problem().ids[0]);
+    CHECK(parts.near.local(node) >= 0);
+    CHECK(parts.far.local(node) < 0);
   }
 }
 

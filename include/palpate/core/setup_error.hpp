@@ -147,6 +147,10 @@ class ScopedIdTranslation {
   const OriginalIds* outer_;
 };
 
+/// Ids of a part of a mesh, given as ids of the mesh, as `raise` translates these now: for a scope around code that
+/// numbers the part's nodes and elements itself.
+OriginalIds translated(OriginalIds part);
+
 /// Refuses: throws SetupError, or without exceptions calls the failure handler. Translates ids first, see
 /// ScopedIdTranslation.
 [[noreturn]] PALPATE_COLD void raise(SetupProblem problem);

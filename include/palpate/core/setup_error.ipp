@@ -42,12 +42,12 @@ inline const OriginalIds*& active_ids() noexcept {
   return ids;
 }
 
-inline void translate_ids(SetupProblem& p) noexcept {
+inline void translate_ids(std::vector<std::int64_t>& ids, SetupIds of) noexcept {
   const OriginalIds* original = active_ids();
-  if (original == nullptr || p.ids_of == SetupIds::others) return;
-  const std::vector<std::int64_t>& origin = p.ids_of == SetupIds::nodes ? original->nodes : original->elements;
+  if (original == nullptr || of == SetupIds::others) return;
+  const std::vector<std::int64_t>& origin = of == SetupIds::nodes ? original->nodes : original->elements;
   const auto size = static_cast<std::int64_t>(origin.size());
-  for (std::int64_t& id : p.ids)
+  for (std::int64_t& id : ids)
     if (id >= 0 && id < size) id = origin[static_cast<std::size_t>(id)];
 }
 
@@ -57,6 +57,12 @@ PALPATE_INLINE ScopedIdTranslation::ScopedIdTranslation(const OriginalIds& ids) 
     : outer_(std::exchange(detail::active_ids(), &ids)) {}
 PALPATE_INLINE ScopedIdTranslation::~ScopedIdTranslation() {
   detail::active_ids() = outer_;
+}
+
+PALPATE_INLINE OriginalIds translated(OriginalIds part) {
+  detail::translate_ids(part.nodes, SetupIds::nodes);
+  detail::translate_ids(part.elements, SetupIds::elements);
+  return part;
 }
 
 PALPATE_INLINE std::string describe(const SetupProblem& p) {
@@ -78,7 +84,7 @@ PALPATE_INLINE SetupFailureHandler& setup_failure_handler() {
 }
 
 PALPATE_INLINE void raise(SetupProblem problem) {
-  detail::translate_ids(problem);
+  detail::translate_ids(problem.ids, problem.ids_of);
 #if defined(PALPATE_HAS_EXCEPTIONS)
   throw SetupError(std::move(problem));
 #else

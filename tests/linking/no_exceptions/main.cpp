@@ -3,6 +3,7 @@
 // element: both must call the handler (exit code 7). `default` is `invalid` with the default handler, `returns` with a
 // handler that returns: both print and abort.
 #include <palpate/palpate.hpp>
+#include <palpate/soft.hpp>
 
 #include <cstdio>
 #include <cstdlib>

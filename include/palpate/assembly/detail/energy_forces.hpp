@@ -12,6 +12,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+/// Parts of a computed energy [J] and of the norm of computed forces [N] that are due to rounding.
 struct RoundingErrors {
   double energy = 0.0, force = 0.0;
 };
@@ -27,8 +28,7 @@ class EnergyForces {
   virtual double evaluate(const VectorX& u, VectorX& f, DeformationReport& report) noexcept = 0;
   /// Relative rounding error of the energy.
   virtual double rounding() const noexcept = 0;
-  /// Energy [J] and norm of the forces [N] that are due to rounding: those of the body rotated as a whole. Nodes at
-  /// `positions` [m].
+  /// Measured: energy and forces of the body rotated as a whole. Nodes at `positions` [m]. Allocates.
   virtual RoundingErrors rounding_errors(const std::vector<Vector3>& positions);
 
   /// Whether the forces depend on earlier steps. Then `begin_step` and `end_step` are as in ElasticForces.

@@ -95,7 +95,8 @@ class MovingTissue : public ModelBase {
   /// Takes the newest surface. Status: `inverted` while elements are inverted; solver_not_converged when the last step
   /// ended far from its solution; degraded_model when a step could not be corrected for the tool forces, so that only
   /// the next one includes them, or when there were more than most_forces; non_finite_force when the last `end_tick`
-  /// received forces that are not finite; slow_tissue when a BackgroundWorker does not keep up.
+  /// received forces that are not finite; slow_tissue when a BackgroundWorker does not keep up; large_displacement when
+  /// linear surroundings are displaced too far.
   Status begin_tick() noexcept;
   /// Forces that are not finite are ignored.
   void end_tick(std::span<const VertexForce> forces) noexcept;

@@ -3,6 +3,7 @@
 
 #include <palpate/assembly/detail/energy_forces.hpp>
 #include <palpate/assembly/smoothed_tetrahedra.hpp>
+#include <palpate/mesh/quality.hpp>
 #include <palpate/model/detail/touchable.hpp>
 #include <palpate/model/moving/detail/partly_linear_motion.hpp>
 #include <palpate/model/moving/detail/quasi_newton_motion.hpp>
@@ -77,16 +78,27 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
     return [body = rest, rest = rest.mesh.positions](const VectorX& u, BlockMatrix& k) mutable {
       for (std::size_t i = 0; i < rest.size(); ++i)
         body.mesh.positions[i] = rest[i] + node_vector(u, static_cast<Index>(i));
+      for (Index e = 0; e < body.mesh.element_count(); ++e)
+        if (!(element_shape<E>(element_nodes<E>(body.mesh, e)).relative_volume > 0.0)) return false;
       k.copy_values(assemble_stiffness<E>(body, SetupLimits{}));
+      return true;
     };
   }
   template <Element E, LargeStrainMaterial M>
   static PreparedMotion make_partly_linear(const HyperelasticBody<E, M>& body, DeformableBody made, BodyParts parts,
                                            const Parameters& p, const SetupLimits& limits) {
-    const Body<E> far = part_of(body.rest, parts.far);
-    auto surroundings = std::make_unique<LinearSurroundings>(assemble_stiffness<E>(far, limits),
-                                                             conditions_of(parts.far, made.conditions),
-                                                             far.mesh.positions, parts.interface_in(parts.far), limits);
+    require_mass(made);
+    std::unique_ptr<LinearSurroundings> surroundings;
+    {
+      const OriginalIds ids = parts.far.original_ids();
+      const ScopedIdTranslation translation(ids);
+      const Body<E> far = part_of(body.rest, parts.far);
+      surroundings = std::make_unique<LinearSurroundings>(assemble_stiffness<E>(far, limits),
+                                                          conditions_of(parts.far, made.conditions), far.mesh.positions,
+                                                          parts.interface_in(parts.far), limits);
+    }
+    const OriginalIds ids = parts.near.original_ids();
+    const ScopedIdTranslation translation(ids);
     HyperelasticBody<E, M> near = part_of(body, parts.near);
     const BlockMatrix stiffness = assemble_stiffness<E>(near.rest, limits);
     const BlockPattern pattern = block_pattern(near.rest.mesh);

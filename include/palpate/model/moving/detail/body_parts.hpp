@@ -4,6 +4,7 @@
 #include <palpate/assembly/detail/essential_conditions.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh_ref.hpp>
 
@@ -23,6 +24,8 @@ struct BodyPart {
   void scatter(const VectorX& part, VectorX& whole) const noexcept;
   /// Number of a node within the part, -1 for others.
   NodeId local(NodeId node) const noexcept;
+  /// For messages about the part.
+  OriginalIds original_ids() const;
 };
 
 /// A part near given nodes, and the rest.

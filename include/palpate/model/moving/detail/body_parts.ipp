@@ -56,6 +56,10 @@ PALPATE_INLINE NodeId BodyPart::local(NodeId node) const noexcept {
   return it != nodes.end() && *it == node ? static_cast<NodeId>(it - nodes.begin()) : NodeId{-1};
 }
 
+PALPATE_INLINE OriginalIds BodyPart::original_ids() const {
+  return translated({{nodes.begin(), nodes.end()}, {elements.begin(), elements.end()}});
+}
+
 PALPATE_INLINE std::vector<NodeId> BodyParts::interface_in(const BodyPart& part) const {
   std::vector<NodeId> local;
   for (const NodeId i : interface) local.push_back(part.local(i));

@@ -25,29 +25,32 @@ class LinearSurroundings {
                      const std::vector<NodeId>& interface, const SetupLimits& limits);
 
   bool is_interface(std::size_t node) const noexcept { return is_interface_[node] != 0; }
-  /// Nodes with a prescribed component.
-  std::vector<NodeId> constrained_nodes() const;
+  const EssentialConditions& conditions() const noexcept { return conditions_; }
   /// Free dofs of the interface, ascending.
   const std::vector<Index>& kept() const noexcept { return kept_; }
   /// Their stiffness, kept x kept [N/m].
   const MatrixX& stiffness() const noexcept { return schur_; }
 
-  /// Sets loads [N] and prescribed values [m]; one solve when they have changed. Loads on interface nodes are ignored.
-  /// Returns whether they have.
+  /// Sets loads [N], or prescribed values [m]; one solve when they have changed. Loads on interface nodes and values of
+  /// free dofs are ignored. Returns whether there was a change.
   bool set_load(const VectorX& load) noexcept;
   bool set_prescribed(const VectorX& values) noexcept;
-  /// Force of the surroundings on kept dofs that do not move [N].
-  const VectorX& kept_load() const noexcept { return kept_load_; }
 
-  /// Displacement of the part while the kept dofs do not move [m]: from loads and prescribed values.
-  const VectorX& still_displacement() const noexcept { return still_displacement_; }
+  /// Displacement while the kept dofs do not move [m], and force on these dofs [N].
+  struct Still {
+    VectorX displacement, kept_load;
+  };
+  const Still& from_load() const noexcept { return from_load_; }
+  const Still& from_prescribed() const noexcept { return from_prescribed_; }
+  /// Their sum on kept dof i [N].
+  double kept_load(Index i) const noexcept { return from_load_.kept_load[i] + from_prescribed_.kept_load[i]; }
   /// Displacement u of the free dofs for a displacement of the kept dofs, without loads. Half a solve. May run in
   /// another thread than the other functions.
   void extend(const VectorX& kept, VectorX& u) noexcept;
 
  private:
-  /// Solves for the loads with the kept dofs fixed.
-  void update() noexcept;
+  /// Solves for `full_` with the kept dofs fixed; prescribed components are not set.
+  void solve(Still& still) noexcept;
 
   BlockMatrix stiffness_;
   EssentialConditions conditions_;
@@ -56,7 +59,8 @@ class LinearSurroundings {
   SparseCholesky interior_;
   MatrixX schur_;
   SparseCholesky extension_;  // shares the factor, with its own workspace
-  VectorX load_, full_, free_, kept_load_, still_displacement_;
+  VectorX load_, full_, free_;
+  Still from_load_, from_prescribed_;
   VectorX zeros_;     // of the kept dofs
   VectorX extended_;  // free dofs
 };

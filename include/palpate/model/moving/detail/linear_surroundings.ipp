@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -27,10 +28,12 @@ PALPATE_INLINE LinearSurroundings::LinearSurroundings(BlockMatrix stiffness, Ess
   interior_ = std::move(schur.interior);
   schur_ = std::move(schur.stiffness);
   extension_ = interior_;
-  load_ = full_ = still_displacement_ = detail::zeros(conditions_.dof_count());
+  load_ = full_ = detail::zeros(conditions_.dof_count());
   free_ = extended_ = detail::zeros(conditions_.free_count());
-  kept_load_ = zeros_ = detail::zeros(schur_.rows());
-  update();
+  zeros_ = detail::zeros(schur_.rows());
+  from_load_ = from_prescribed_ = {full_, zeros_};
+  const VectorX values = std::exchange(conditions_.prescribed, full_);
+  set_prescribed(values);
 }
 
 PALPATE_INLINE bool LinearSurroundings::set_load(const VectorX& load) noexcept {
@@ -40,31 +43,33 @@ PALPATE_INLINE bool LinearSurroundings::set_load(const VectorX& load) noexcept {
     changed = changed || value != load_[dof];
     load_[dof] = value;
   }
-  if (changed) update();
-  return changed;
-}
-
-PALPATE_INLINE bool LinearSurroundings::set_prescribed(const VectorX& values) noexcept {
-  if (values == conditions_.prescribed) return false;
-  conditions_.prescribed = values;
-  update();
+  if (!changed) return false;
+  full_ = load_;
+  solve(from_load_);
   return true;
 }
 
-PALPATE_INLINE std::vector<NodeId> LinearSurroundings::constrained_nodes() const {
-  std::vector<NodeId> nodes;
-  for (std::size_t i = 0; i < conditions_.constrained.size(); ++i)
-    if (conditions_.constrained[i] != 0) nodes.push_back(static_cast<NodeId>(i));
-  return nodes;
+PALPATE_INLINE bool LinearSurroundings::set_prescribed(const VectorX& values) noexcept {
+  VectorX& own = conditions_.prescribed;
+  bool changed = false;
+  for (Index dof = 0; dof < own.size(); ++dof) {
+    if (!conditions_.is_constrained(dof)) continue;
+    changed = changed || own[dof] != values[dof];
+    own[dof] = values[dof];
+  }
+  if (!changed) return false;
+  stiffness_.apply(own, full_);
+  full_ = -full_;
+  solve(from_prescribed_);
+  from_prescribed_.displacement += own;
+  return true;
 }
 
-PALPATE_INLINE void LinearSurroundings::update() noexcept {
-  stiffness_.apply(conditions_.prescribed, full_);
-  full_ = load_ - full_;
+PALPATE_INLINE void LinearSurroundings::solve(Still& still) noexcept {
   conditions_.gather(full_, free_);
-  interior_.eliminate_into(free_, kept_load_);
+  interior_.eliminate_into(free_, still.kept_load);
   interior_.recover_into(zeros_, free_);
-  conditions_.place(free_, conditions_.prescribed, still_displacement_);
+  conditions_.scatter(free_, still.displacement);
 }
 
 PALPATE_INLINE void LinearSurroundings::extend(const VectorX& kept, VectorX& u) noexcept {

@@ -4,6 +4,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/model/moving/detail/body_parts.hpp>
+#include <palpate/model/moving/detail/far_displacement.hpp>
 #include <palpate/model/moving/detail/linear_surroundings.hpp>
 #include <palpate/model/moving/detail/quasi_newton_motion.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
@@ -15,19 +16,19 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// A motion without inertia of the near part, with the far part as its linear surroundings. A step moves the near part
 /// only; `complete` adds the displacement of the far part, by half a solve with its factor. `displacement` and
-/// `respond` are therefore right on nodes of the near part only. Status of a step: large_displacement where the loads
-/// displace the far part, or the interface moves against its supports, by too much for linear elasticity
-/// (largest_linear_displacement).
+/// `respond` are therefore right on nodes of the near part only. Status of a step: large_displacement where the far
+/// part is displaced by too much for linear elasticity (FarDisplacement, largest_linear_displacement).
 class PartlyLinearMotion final : public TissueMotion {
  public:
-  /// `near` is the motion of the near part with SurroundedForces, at rest under `load`. `diagonal` is the size of the
-  /// body [m].
+  /// `near` is the motion of the near part with SurroundedForces, at rest under `load`; `positions` are those of the
+  /// body at rest [m].
   PartlyLinearMotion(BodyParts parts, std::unique_ptr<TissueMotion> near,
-                     std::unique_ptr<LinearSurroundings> surroundings, const VectorX& load, double diagonal);
+                     std::unique_ptr<LinearSurroundings> surroundings, const VectorX& load,
+                     const std::vector<Vector3>& positions);
 
   MotionStep step(double h) noexcept override;
   /// Nothing to do: the next step forgets this one.
-  bool correct(const VectorX& more) noexcept override;
+  bool correct(const VectorX&) noexcept override { return stepped_; }
   bool prepare_response(double h) noexcept override { return near_->prepare_response(h); }
   bool respond(const VectorX& forces, VectorX& u) noexcept override;
   bool is_static() const noexcept override { return near_->is_static(); }
@@ -42,23 +43,19 @@ class PartlyLinearMotion final : public TissueMotion {
   const BodyParts& parts() const noexcept { return parts_; }
 
  private:
-  /// Takes over the displacement of the near part, and of the far part with the interface fixed.
+  /// Takes over the displacement of the near part, and of the far part with the interface fixed where it has changed.
   void take_displacement() noexcept;
   void load_near() noexcept;
-  /// Whether the loads alone displace the far part too far.
-  void watch_loads() noexcept;
 
   BodyParts parts_;
-  std::unique_ptr<TissueMotion> near_;
   std::unique_ptr<LinearSurroundings> surroundings_;
+  std::unique_ptr<TissueMotion> near_;      // refers to the stiffness of the surroundings
   std::vector<Index> kept_, kept_in_body_;  // the kept dofs of the surroundings in the near part, and in the body
-  std::vector<NodeId> watched_;             // the interface, and the constrained nodes of the far part
-  std::vector<Vector3> displaced_, far_displaced_;
-  double largest_displacement_;
+  FarDisplacement far_displacement_;
   VectorX u_, v_, load_;  // of all nodes
   VectorX near_vector_, far_vector_;
   VectorX kept_moved_, extended_;  // for `complete`
-  bool loads_displace_far_ = false;
+  bool stepped_ = false, far_changed_ = true;
 };
 
 namespace detail {

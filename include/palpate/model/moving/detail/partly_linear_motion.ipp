@@ -12,13 +12,12 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE PartlyLinearMotion::PartlyLinearMotion(BodyParts parts, std::unique_ptr<TissueMotion> near,
                                                       std::unique_ptr<LinearSurroundings> surroundings,
-                                                      const VectorX& load, double diagonal)
+                                                      const VectorX& load, const std::vector<Vector3>& positions)
     : parts_(std::move(parts)),
-      near_(std::move(near)),
       surroundings_(std::move(surroundings)),
+      near_(std::move(near)),
       kept_(dofs_in(parts_.near, parts_.far, surroundings_->kept())),
-      watched_(parts_.interface),
-      largest_displacement_(largest_linear_displacement * diagonal),
+      far_displacement_(parts_, positions, *surroundings_, largest_linear_displacement * extent(positions)),
       u_(detail::zeros(load.size())),
       v_(u_),
       load_(load),
@@ -26,30 +25,29 @@ PALPATE_INLINE PartlyLinearMotion::PartlyLinearMotion(BodyParts parts, std::uniq
       far_vector_(detail::zeros(3 * static_cast<Index>(parts_.far.nodes.size()))),
       kept_moved_(detail::zeros(static_cast<Index>(kept_.size()))),
       extended_(far_vector_) {
-  for (const NodeId i : surroundings_->constrained_nodes())
-    watched_.push_back(parts_.far.nodes[static_cast<std::size_t>(i)]);
   for (const Index dof : kept_)
     kept_in_body_.push_back(3 * Index{parts_.near.nodes[static_cast<std::size_t>(dof / 3)]} + dof % 3);
-  displaced_.resize(watched_.size());
-  far_displaced_.resize(parts_.far.nodes.size());
   set_load(load);
-  watch_loads();
+  far_displacement_.set_from_load(surroundings_->from_load().displacement);
+  take_displacement();
 }
 
 PALPATE_INLINE MotionStep PartlyLinearMotion::step(double h) noexcept {
   MotionStep done = near_->step(h);
   if (Index& worst = done.deformation.worst_element; worst >= 0)
     worst = parts_.near.elements[static_cast<std::size_t>(worst)];
+  stepped_ = done.taken;
   if (!done.taken) return done;
   take_displacement();
-  for (std::size_t i = 0; i < watched_.size(); ++i) displaced_[i] = node_vector(u_, Index{watched_[i]});
-  if (loads_displace_far_ || !(displacement_spread(displaced_) <= largest_displacement_))
-    done.status.set(StatusFlag::large_displacement);
+  if (far_displacement_.is_too_large(u_)) done.status.set(StatusFlag::large_displacement);
   return done;
 }
 
 PALPATE_INLINE void PartlyLinearMotion::take_displacement() noexcept {
-  parts_.far.scatter(surroundings_->still_displacement(), u_);
+  if (std::exchange(far_changed_, false)) {
+    far_vector_ = surroundings_->from_load().displacement + surroundings_->from_prescribed().displacement;
+    parts_.far.scatter(far_vector_, u_);
+  }
   parts_.near.scatter(near_->displacement(), u_);
 }
 
@@ -59,11 +57,6 @@ PALPATE_INLINE void PartlyLinearMotion::complete(VectorX& u) noexcept {
   for (std::size_t i = 0; i < parts_.far.nodes.size(); ++i)
     if (!surroundings_->is_interface(i))
       add_node_vector(u, Index{parts_.far.nodes[i]}, node_vector(extended_, static_cast<Index>(i)));
-}
-
-PALPATE_INLINE bool PartlyLinearMotion::correct(const VectorX& more) noexcept {
-  parts_.near.gather(more, near_vector_);
-  return near_->correct(near_vector_);
 }
 
 PALPATE_INLINE bool PartlyLinearMotion::respond(const VectorX& forces, VectorX& u) noexcept {
@@ -78,6 +71,7 @@ PALPATE_INLINE void PartlyLinearMotion::rest_at(const VectorX& u) {
   require_entries(u, u_.size());
   parts_.near.gather(u, near_vector_);
   near_->rest_at(near_vector_);
+  stepped_ = false;
   take_displacement();
 }
 
@@ -85,14 +79,17 @@ PALPATE_INLINE void PartlyLinearMotion::set_load(const VectorX& load) {
   require_entries(load, u_.size());
   load_ = load;
   parts_.far.gather(load, far_vector_);
-  if (surroundings_->set_load(far_vector_)) watch_loads();
+  if (surroundings_->set_load(far_vector_)) {
+    far_displacement_.set_from_load(surroundings_->from_load().displacement);
+    far_changed_ = true;
+  }
   load_near();
 }
 
 PALPATE_INLINE void PartlyLinearMotion::set_prescribed(const VectorX& values) {
   require_entries(values, u_.size());
   parts_.far.gather(values, far_vector_);
-  if (surroundings_->set_prescribed(far_vector_)) watch_loads();
+  far_changed_ = surroundings_->set_prescribed(far_vector_) || far_changed_;
   parts_.near.gather(values, near_vector_);
   near_->set_prescribed(near_vector_);
   load_near();
@@ -101,15 +98,8 @@ PALPATE_INLINE void PartlyLinearMotion::set_prescribed(const VectorX& values) {
 PALPATE_INLINE void PartlyLinearMotion::load_near() noexcept {
   parts_.near.gather(load_, near_vector_);
   for (std::size_t i = 0; i < kept_.size(); ++i)
-    near_vector_[kept_[i]] += surroundings_->kept_load()[static_cast<Index>(i)];
+    near_vector_[kept_[i]] += surroundings_->kept_load(static_cast<Index>(i));
   near_->set_load(near_vector_);
-}
-
-PALPATE_INLINE void PartlyLinearMotion::watch_loads() noexcept {
-  const VectorX& still = surroundings_->still_displacement();
-  for (std::size_t i = 0; i < far_displaced_.size(); ++i) far_displaced_[i] = node_vector(still, static_cast<Index>(i));
-  loads_displace_far_ = !(displacement_spread(far_displaced_) <= largest_displacement_);
-  take_displacement();
 }
 
 namespace detail {
@@ -135,7 +125,7 @@ PALPATE_INLINE PreparedMotion prepare_partly_linear(DeformableBody whole, BodyPa
   VectorX far_load = zeros(3 * static_cast<Index>(parts.far.nodes.size()));
   parts.far.gather(whole.load, far_load);
   surroundings->set_load(far_load);
-  for (std::size_t i = 0; i < kept.size(); ++i) near.load[kept[i]] += surroundings->kept_load()[static_cast<Index>(i)];
+  for (std::size_t i = 0; i < kept.size(); ++i) near.load[kept[i]] += surroundings->kept_load(static_cast<Index>(i));
 
   const auto joint =
       std::make_shared<SurroundedStiffness>(near_stiffness.pattern(), surroundings->stiffness(), kept, limits);
@@ -145,8 +135,9 @@ PALPATE_INLINE PreparedMotion prepare_partly_linear(DeformableBody whole, BodyPa
   if (near_stiffness_at)
     stiffness_at = [joint, part = near_stiffness, at = std::move(near_stiffness_at)](const VectorX& u,
                                                                                      BlockMatrix& k) mutable {
-      at(u, part);
+      if (!at(u, part)) return false;
       joint->add_up(part, k);
+      return true;
     };
   auto motion = std::make_unique<QuasiNewtonMotion>(
       std::move(near), std::make_unique<SurroundedForces>(std::move(near_forces), surroundings->stiffness(), kept),
@@ -154,7 +145,7 @@ PALPATE_INLINE PreparedMotion prepare_partly_linear(DeformableBody whole, BodyPa
   if (parameters.settle) motion->settle();
   PreparedMotion prepared;
   prepared.motion = std::make_unique<PartlyLinearMotion>(std::move(parts), std::move(motion), std::move(surroundings),
-                                                         whole.load, extent(whole.positions));
+                                                         whole.load, whole.positions);
   prepared.start = prepared.motion->displacement();
   return prepared;
 }

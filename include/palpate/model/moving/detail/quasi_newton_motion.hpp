@@ -55,7 +55,7 @@ class QuasiNewtonMotion final : public TissueMotion {
 
   /// Starts at rest with zero displacement. Throws too_large, bad_density, bad_argument.
   /// `body.elastic` is not used; `stiffness` is that of `forces` at rest. The nodes `last` are eliminated last.
-  /// `stiffness_at`, on the same pattern, is needed for `renew_factor`.
+  /// With `stiffness_at`, on the same pattern, a thread renews the factor; `renew_factor` itself is not read.
   QuasiNewtonMotion(DeformableBody body, std::unique_ptr<EnergyForces> forces, BlockMatrix stiffness,
                     const QuasiNewtonParameters& parameters, const SetupLimits& limits,
                     const std::vector<NodeId>& last = {}, StiffnessAt stiffness_at = {});

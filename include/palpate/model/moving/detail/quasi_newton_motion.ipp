@@ -41,8 +41,7 @@ PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::un
     : parameters_(parameters),
       body_(std::move(body)),
       forces_(std::move(forces)),
-      factor_(body_, std::move(stiffness), last, parameters.renew_factor ? std::move(stiffness_at) : StiffnessAt(),
-              limits),
+      factor_(body_, std::move(stiffness), last, std::move(stiffness_at), limits),
       method_(body_.conditions.free_count(), parameters.memory),
       step_(TimeScheme::implicit_euler(), forces_->size()),
       inertia_(forces_->size()),
@@ -91,7 +90,7 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   stepped_ = false;
   known_.valid = known_.valid && !forces_->has_history();
   if (!ImplicitStep::is_length(h) || !set_length(parameters_.inertia ? h : infinity)) return done;
-  if (factor_.take_renewed()) method_.forget();
+  factor_.take_renewed();  // the method's pairs stay valid
   forces_->begin_step(h);
   factor_.rotate(u_);
   prescribed_ = body_.conditions.prescribed;
@@ -115,7 +114,7 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   accept();
   step_load_ = load_;
   stepped_ = true;
-  if (report_.iterations > few_iterations) factor_.ask(u_);
+  if (report_.iterations > few_iterations || !(report_.relative_residual <= parameters_.tolerance)) factor_.ask(u_);
   done = {true, {}, deformation_};
   done.relative_residual = report_.relative_residual;
   if (deformation_.inverted > 0) done.status.set(StatusFlag::inverted);

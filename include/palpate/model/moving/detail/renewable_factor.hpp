@@ -18,8 +18,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Sets a matrix to the stiffness of a body at a displacement, approximately. May throw, and allocates.
-using StiffnessAt = std::function<void(const VectorX& u, BlockMatrix& k)>;
+/// Sets a matrix to the stiffness of a body at a displacement, approximately. Returns false where it has none: inverted
+/// elements. Allocates.
+using StiffnessAt = std::function<bool(const VectorX& u, BlockMatrix& k)>;
 
 /// z = R A^-1 R^T r with a factor of A = K + m M, read in single precision, and a rotation per node. K is the stiffness
 /// at rest, or at a recent shape s when a thread renews it; R are the rotations since that shape. Only the constructor,
@@ -56,7 +57,9 @@ class RenewableFactor {
   Shape& front() noexcept { return shapes_[front_]; }
   Shape& spare() noexcept { return shapes_[1 - front_]; }
   Shape make_shape(const std::vector<NodeId>& last, const SetupLimits& limits) const;
-  void renew() noexcept;  // in the thread
+  // In the thread
+  void renew() noexcept;
+  bool find_stiffness(BlockMatrix& k) noexcept;
 
   const DeformableBody& body_;
   BlockMatrix stiffness_;  // at rest

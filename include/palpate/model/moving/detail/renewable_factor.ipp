@@ -60,14 +60,22 @@ PALPATE_INLINE void RenewableFactor::ask(const VectorX& u) noexcept {
 PALPATE_INLINE void RenewableFactor::renew() noexcept {
   Shape& made = spare();
   made.usable = false;
-  try {
-    stiffness_at_(asked_, made.factor->matrix());
-  } catch (...) {  // inverted elements, or no memory: the last factor stays in use
-    return;
-  }
+  if (!find_stiffness(made.factor->matrix())) return;  // the last factor stays in use
   if (made.mass > 0.0) made.factor->matrix().add_nodal(made.mass, body_.lumped);
   corotated_.fit(asked_, made.rotation);
   made.usable = made.factor->factorise();
+}
+
+PALPATE_INLINE bool RenewableFactor::find_stiffness(BlockMatrix& k) noexcept {
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  try {
+    return stiffness_at_(asked_, k);
+  } catch (...) {  // no memory
+    return false;
+  }
+#else
+  return stiffness_at_(asked_, k);
+#endif
 }
 
 }}  // namespace palpate
