@@ -33,7 +33,7 @@ struct CorrectedCase {
   static constexpr int vertices = 6;
   std::vector<NodeId> nodes{0, 1, 2, 3, 4, 5};
   std::vector<Matrix3> rotation{static_cast<std::size_t>(vertices), Matrix3::Identity()};
-  WarpedCompliance base;
+  VertexCompliance base;
   SecantCompliance secants{vertices, 64};
   SecantTerms terms;
 
@@ -47,7 +47,7 @@ struct CorrectedCase {
       pattern.row_start.push_back(static_cast<Index>(pattern.column.size()));
     }
     MatrixMotion motion{random_compliance(3 * vertices, 3), VectorX::Zero(3 * vertices)};
-    base = WarpedCompliance(motion, 1.0, nodes, NodalRotations(pattern, positions, nodes), {});
+    base = VertexCompliance(WarpedCompliance(motion, 1.0, nodes, NodalRotations(pattern, positions, nodes), {}));
     for (auto& term : terms.term) term.resize(vertices);
   }
   Matrix3 at(int i, int j) const {

@@ -1,4 +1,4 @@
-// expect: palpate: cuts update a stored compliance in double
+// expect: palpate: tissue that is cut is Cuttable<Condensed<SelectiveInverse>>
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>

@@ -9,11 +9,17 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The static solver `Inner`, with a compliance that follows cuts exactly.
+/// Whether tissue of a solver can be cut.
+template <class Solver>
+inline constexpr bool has_cuts = std::same_as<Solver, Condensed<SelectiveInverse>>;
+
+/// The solver `Inner` for tissue that is cut: Condensed<SelectiveInverse>, whose compliance follows cuts exactly, or
+/// Implicit<QuasiNewton<>> (cut/cuttable_moving.hpp).
 template <class Inner>
 struct Cuttable {
-  static_assert(std::same_as<Inner, Condensed<SelectiveInverse>>,
-                "palpate: cuts update a stored compliance in double: choose Cuttable<Condensed<SelectiveInverse>>");
+  static_assert(has_cuts<Inner>,
+                "palpate: tissue that is cut is Cuttable<Condensed<SelectiveInverse>>, or with "
+                "palpate/cut/cuttable_moving.hpp Cuttable<Implicit<QuasiNewton<>>>");
 };
 
 /// Linear static tissue that can be cut; see CuttableTissue.

@@ -39,10 +39,7 @@ class CuttableTissue : public ModelBase {
 
   /// Orders a cut. Immediately throws index_out_of_range for invalid ids.
   void cut(CutOrder order) {
-    const auto outside = [&](Index e) { return e < 0 || e >= elements_; };
-    for (const Index e : order.remove) require_element(!outside(e), e);
-    for (const ElementFace& f : order.open)
-      require_element(!outside(f.element) && f.face >= 0 && f.face < static_cast<int>(E::faces.size()), f.element);
+    require_ids<E>(order, elements_);
     orders_.add(std::move(order));
   }
   /// Orders a cut along the sheet swept by a blade, in the world's frame, through the body deformed by its loads.
@@ -217,11 +214,6 @@ class CuttableTissue : public ModelBase {
   }
 
  private:
-  static void require_element(bool holds, Index e) {
-    if (!holds)
-      raise(SetupErrorKind::index_out_of_range,
-            "a cut refers to element " + std::to_string(e) + " or to a face that it does not have");
-  }
   void load_by(const Vector3& gravity, const Eigen::Isometry3d& pose) {
     const ScopedIdTranslation translation(original_ids());
     Scene changed = loaded_;

@@ -44,6 +44,7 @@ class CutSurface {
     faces_.insert(faces_.end(), change.exposed.begin(), change.exposed.end());
     std::erase_if(faces_, [&](const ElementFace& f) { return topology.state(f.element) != ElementState::supported; });
     triangles_.clear();
+    elements_.clear();
     used_.assign(nodes_.size(), 0);
     for (const ElementFace& f : faces_) {
       const auto face = topology.face_nodes(f);
@@ -52,12 +53,17 @@ class CutSurface {
         return vertex_of_[static_cast<std::size_t>(face[static_cast<std::size_t>(local)])];
       };
       with_face_element<E>(face.size(), [&]<TriangulatedFace F>() {
-        for (const auto& [a, b, c] : F::triangles) triangles_.push_back({at(a), at(b), at(c)});
+        for (const auto& [a, b, c] : F::triangles) {
+          triangles_.push_back({at(a), at(b), at(c)});
+          elements_.push_back(f.element);
+        }
       });
     }
   }
 
   const std::vector<Triangle>& triangles() const noexcept { return triangles_; }
+  /// Element behind every triangle.
+  const std::vector<Index>& elements() const noexcept { return elements_; }
   /// Node of every vertex.
   const std::vector<NodeId>& nodes() const noexcept { return nodes_; }
   /// True if a vertex is still on a triangle.
@@ -87,6 +93,7 @@ class CutSurface {
   std::vector<int> vertex_of_;
   std::vector<char> used_;
   std::vector<Triangle> triangles_;
+  std::vector<Index> elements_;
 };
 
 }}  // namespace palpate

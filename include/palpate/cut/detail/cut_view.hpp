@@ -20,6 +20,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+/// Removes triangles with an edge longer than `longest` [m] and their entries of `elements`, if any; returns whether
+/// there was one.
+bool erase_stretched(const std::vector<Vector3>& positions, double longest, std::vector<Triangle>& triangles,
+                     std::vector<Index>& elements);
+
 /// Surface and contact problem after a cut, and the places of its vertices in the compliance; unchanged while the cut
 /// is folded in. Made by the thread that cuts, used by the one that ticks. Triangles on weak remains that are stretched
 /// beyond what contact points can cover are left out; ticks then report degraded_model.
@@ -32,9 +37,10 @@ struct CutContact {
   std::uint64_t cut = 0;  ///< number of the cut
 
   template <Element E>
-  CutContact(const CutSystem<E>& system, const CutSurface<E>& touchable, std::vector<Vector3> positions, const ToolRadii& radii,
-             const ContactParameters& contact, std::uint64_t number)
-      : surface(covered(std::move(positions), touchable.triangles(), ContactSamples::maximum_subdivision * radii.smallest)),
+  CutContact(const CutSystem<E>& system, const CutSurface<E>& touchable, std::vector<Vector3> positions,
+             const ToolRadii& radii, const ContactParameters& contact, std::uint64_t number)
+      : surface(
+            covered(std::move(positions), touchable.triangles(), ContactSamples::maximum_subdivision * radii.smallest)),
         place(touchable.nodes().size(), {-1, -1, -1}),
         problem(surface, radii, contact),
         cut(number) {

@@ -9,13 +9,27 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+PALPATE_INLINE bool erase_stretched(const std::vector<Vector3>& positions, double longest,
+                                    std::vector<Triangle>& triangles, std::vector<Index>& elements) {
+  std::size_t left = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto at = [&](std::size_t i) { return positions[static_cast<std::size_t>(triangles[t][i])]; };
+    if (!((at(0) - at(1)).norm() <= longest && (at(1) - at(2)).norm() <= longest && (at(2) - at(0)).norm() <= longest))
+      continue;
+    triangles[left] = triangles[t];
+    if (!elements.empty()) elements[left] = elements[t];
+    ++left;
+  }
+  const bool erased = left < triangles.size();
+  triangles.resize(left);
+  if (!elements.empty()) elements.resize(left);
+  return erased;
+}
+
 PALPATE_INLINE ContactSurface CutContact::covered(std::vector<Vector3> positions, std::vector<Triangle> triangles,
                                                   double longest) {
-  const auto is_covered = [&](const Triangle& t) {
-    const auto at = [&](std::size_t i) { return positions[static_cast<std::size_t>(t[i])]; };
-    return (at(0) - at(1)).norm() <= longest && (at(1) - at(2)).norm() <= longest && (at(2) - at(0)).norm() <= longest;
-  };
-  left_out = std::erase_if(triangles, [&](const Triangle& t) { return !is_covered(t); }) > 0;
+  std::vector<Index> elements;
+  left_out = erase_stretched(positions, longest, triangles, elements);
   return ContactSurface(std::move(positions), std::move(triangles));
 }
 

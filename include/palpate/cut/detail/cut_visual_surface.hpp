@@ -1,7 +1,7 @@
 // The visual surface of a model that is cut.
 #pragma once
 
-#include <palpate/cut/cuttable_tissue.hpp>
+#include <palpate/cut/detail/cut_topology.hpp>
 #include <palpate/model/rendering/visual_surface.hpp>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
   explicit VisualSurface(Model& model) : model_(&model) {
     const auto& boundary = model.boundary();
     rendered_ = model.rendered_nodes();
-    model.read([&](const CutTopology<E>& topology, const auto&) {
+    model.read([&](const CutTopology<E>& topology, const auto&...) {
       hidden_.assign(static_cast<std::size_t>(topology.mesh().element_count()), {});
       for (const BoundaryFace& face : boundary) hide_unseen(topology, face);
     });
@@ -38,7 +38,7 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
   bool update() {
     const std::uint64_t cuts = model_->cut_report().changes;
     if (known_ && cuts == cuts_) return false;
-    model_->read([&](const CutTopology<E>& topology, const auto&) { collect(topology); });
+    model_->read([&](const CutTopology<E>& topology, const auto&...) { collect(topology); });
     cuts_ = cuts;
     known_ = true;
     return true;
@@ -110,8 +110,8 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
 
   Model* model_;
   std::vector<NodeId> rendered_;  // sorted
-  std::vector<Flags> hidden_;  // per element and face
-  std::vector<NodeId> nodes_;  // of the points
+  std::vector<Flags> hidden_;     // per element and face
+  std::vector<NodeId> nodes_;     // of the points
   std::vector<std::array<int, 3>> triangles_;
   std::vector<Vector3> rest_, moved_, normals_;
   VectorX displacement_;

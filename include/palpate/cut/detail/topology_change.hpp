@@ -3,9 +3,11 @@
 
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
 
+#include <string>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -24,6 +26,20 @@ struct CutOrder {
 
   bool empty() const noexcept { return remove.empty() && open.empty(); }
 };
+
+/// Throws index_out_of_range unless the order refers to elements 0 ... elements - 1 and to their faces.
+template <Element E>
+void require_ids(const CutOrder& order, Index elements) {
+  const auto require = [](bool holds, Index e) {
+    if (!holds)
+      raise(SetupErrorKind::index_out_of_range,
+            "a cut refers to element " + std::to_string(e) + " or to a face that it does not have");
+  };
+  const auto exists = [&](Index e) { return e >= 0 && e < elements; };
+  for (const Index e : order.remove) require(exists(e), e);
+  for (const ElementFace& f : order.open)
+    require(exists(f.element) && f.face >= 0 && f.face < static_cast<int>(E::faces.size()), f.element);
+}
 
 /// An element that a cut removed, or moved to copies of its nodes.
 template <Element E>
@@ -52,10 +68,10 @@ template <Element E>
 struct TopologyChange {
   std::vector<ChangedElement<E>> elements;           ///< of the supported body, by ascending id
   std::vector<ChangedElement<E>> detached_elements;  ///< of fragments detached before
-  std::vector<NodeCopy> copies;                   ///< with ascending ids
-  std::vector<NodeId> bare_nodes;                 ///< of the supported body, used by no element any more
-  std::vector<ElementFace> exposed;               ///< faces that are now on the surface
-  std::vector<Fragment> fragments;                ///< detached by this cut
+  std::vector<NodeCopy> copies;                      ///< with ascending ids
+  std::vector<NodeId> bare_nodes;                    ///< of the supported body, used by no element any more
+  std::vector<ElementFace> exposed;                  ///< faces that are now on the surface
+  std::vector<Fragment> fragments;                   ///< detached by this cut
 
   bool empty() const noexcept { return elements.empty() && detached_elements.empty(); }
 };

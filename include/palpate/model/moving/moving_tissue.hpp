@@ -9,7 +9,7 @@
 #include <palpate/model/model_base.hpp>
 #include <palpate/model/moving/detail/near_compliance.hpp>
 #include <palpate/model/moving/detail/secant_compliance.hpp>
-#include <palpate/model/moving/detail/warped_compliance.hpp>
+#include <palpate/model/moving/detail/vertex_compliance.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
 #include <palpate/model/detail/nodal_rotation.hpp>
 
@@ -106,7 +106,7 @@ class MovingTissue : public ModelBase {
   Status require_columns(std::span<const int> vertices) noexcept;
   Matrix3 compliance(int i, int j) const noexcept {
     const View& view = views_.front();
-    list(i, revision_, requested_, near_);
+    list(i, revision_, view.requested, near_);
     const Matrix3* ready = view.near.find(i, j);
     return ready != nullptr ? *ready : evaluate(view, i, j);
   }
@@ -114,9 +114,9 @@ class MovingTissue : public ModelBase {
   /// Number of surfaces taken so far.
   std::uint64_t updates() const noexcept { return revision_; }
   double compliance_bound(int j) const noexcept {
-    return compliance_.bound(j) + views_.front().secants.bound(static_cast<std::size_t>(j));
+    return views_.front().compliance.bound(j) + views_.front().secants.bound(static_cast<std::size_t>(j));
   }
-  double compliance_floor() const noexcept { return compliance_.floor(); }
+  double compliance_floor() const noexcept { return views_.front().compliance.floor(); }
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
   /// Updates the description of loads that error messages contain; not while a session ticks.
@@ -125,11 +125,38 @@ class MovingTissue : public ModelBase {
 
  protected:
   explicit MovingTissue(const SetupOptions& options);
-  ~MovingTissue();
+  virtual ~MovingTissue();
 
   /// The part of the set-up after the motion is prepared. Solves once per touchable dof. Throws not_converged and the
   /// errors of WarpedCompliance.
   void set_up(const Touchable& touchable, PreparedMotion prepared, double step, const BlockPattern& pattern);
+
+  // For tissue whose body is cut
+
+  /// A surface after a cut. Vertices keep their numbers; new ones follow.
+  struct CutVertices {
+    std::vector<NodeId> nodes;  ///< of every vertex
+    std::vector<int> similar;   ///< per vertex the vertex of the set-up whose compliance it has
+    ContactSurface surface;
+    std::shared_ptr<ContactProblem> contact;  ///< for a session to continue with
+    Status status;                            ///< of ticks on this surface, in addition to those of the steps
+  };
+  /// Called by `advance` before every step, with the changes locked out.
+  virtual void prepare_step() noexcept {}
+  /// Continues on another surface of the motion's body, which has changed; `mass` per node, `pattern` and `positions`
+  /// of all its nodes. Loads stay on the nodes that they had. From `prepare_step`. Allocates.
+  void change_surface(CutVertices surface, const VectorX& mass, const BlockPattern& pattern,
+                      const std::vector<Vector3>& positions);
+  /// Loads the scene's conditions and rests at the start, for the body of the set-up.
+  void restart();
+  std::mutex& changes() noexcept { return changes_; }
+  /// Publishes the present state for ticks and drawing.
+  void publish(Status status) noexcept;
+  /// Takes the newest surface; for the thread that ticks.
+  void take_surface() noexcept;
+  /// Of the surface that a tick uses: number of changes before it, and its contact problem.
+  std::uint64_t surface_number() const noexcept { return views_.front().number; }
+  ContactProblem& surface_contact() const noexcept { return *views_.front().contact; }
 
  private:
   template <std::size_t Most>
@@ -151,7 +178,14 @@ class MovingTissue : public ModelBase {
     NearCompliance near;
     ContactSurface surface;
     Status status;
+    VertexCompliance compliance;
+    mutable std::vector<std::uint64_t> requested;  // per vertex: the last surface for which it was requested
+    std::vector<std::uint64_t> required;           // per vertex: the last tick that required it
+    std::uint64_t number = 0;                      // of the surface: changes before it
+    std::shared_ptr<ContactProblem> contact;
   };
+  /// A view of all vertices, without surface and data of a step.
+  View make_view() const;
 
   static std::size_t vertex(int v) noexcept { return static_cast<std::size_t>(v); }
   static std::size_t vertex(const VertexForce& f) noexcept { return vertex(f.vertex); }
@@ -170,9 +204,9 @@ class MovingTissue : public ModelBase {
     listed[vertex(v)] = round;
     into.item[into.count++] = v;
   }
+  void start_secants();
   /// The displacement of the vertices.
   void find_moved(std::vector<Vector3>& moved) const noexcept;
-  void publish(Status status) noexcept;
 
   double step_ = 0.0;
   std::unique_ptr<TissueMotion> motion_;
@@ -182,8 +216,11 @@ class MovingTissue : public ModelBase {
   VectorX mass_;            // per node [kg]
   VectorX applied_, load_;  // of the scene without and with gravity [N]
   VectorX full_;
-  WarpedCompliance compliance_;
+  VertexCompliance compliance_;
   SecantCompliance secants_;
+  std::vector<NodeId> nodes_;                  // of every vertex
+  std::vector<Vector3> rest_;                  // of every vertex, without loads [m]
+  View changed_;                               // of the newest surface, when it has changed
   std::vector<Vector3> moved_, moved_before_;  // of the vertices, after the last step and the one before
   bool loads_changed_ = false;                 // since the last step: displacements then changed for other reasons
   Forces used_;
@@ -198,9 +235,7 @@ class MovingTissue : public ModelBase {
   std::uint64_t revision_ = 0;
   Status ticked_;  // of the last end_tick
   VertexList<most_pressed> pressed_;
-  mutable VertexList<most_near> near_;            // since the surface was taken
-  std::vector<std::uint64_t> required_;           // per vertex: the last tick that required it
-  mutable std::vector<std::uint64_t> requested_;  // per vertex: the last surface for which it was requested
+  mutable VertexList<most_near> near_;  // since the surface was taken
   std::uint64_t tick_ = 0;
 };
 

@@ -9,11 +9,24 @@
 #include <palpate/model/detail/stage_timer.hpp>
 #include <palpate/model/detail/touchable.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(TissueModel<MovingTissue>);
+
+namespace detail {
+
+/// The vector with zeros for further entries, or without its last entries.
+PALPATE_INLINE VectorX with_size(const VectorX& given, Index size) {
+  VectorX made = VectorX::Zero(size);
+  const Index common = std::min(size, given.size());
+  made.head(common) = given.head(common);
+  return made;
+}
+
+}  // namespace detail
 
 PALPATE_INLINE MovingTissue::MovingTissue(const SetupOptions& options) : ModelBase(options) {
   if (!options.cache_file.empty())
@@ -39,24 +52,16 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   rotations_ = NodalRotations(pattern, elastic_body().positions(), touchable.nodes);
   motion_->set_load(load_);
   motion_->rest_at(start_);
-  compliance_ = WarpedCompliance(*motion_, step_, touchable.nodes, rotations_, limits());
+  compliance_ = VertexCompliance(WarpedCompliance(*motion_, step_, touchable.nodes, rotations_, limits()));
   motion_->rest_at(start_);  // the state that reset() restores
-  const std::size_t vertices = touchable.nodes.size();
-  const double near_bytes = 3.0 * NearCompliance::bytes(vertices, most_near, most_pressed);  // one per view
+  nodes_ = touchable.nodes;
+  for (const NodeId node : nodes_) rest_.push_back(elastic_body().positions()[static_cast<std::size_t>(node)]);
+  const double near_bytes = 3.0 * NearCompliance::bytes(nodes_.size(), most_near, most_pressed);  // one per view
   limits().require_memory(near_bytes, "the compliance near the contacts");
-  required_.assign(vertices, 0);
-  requested_.assign(vertices, ~std::uint64_t{0});
-  View view{
-      std::vector<Vector3>(vertices), std::vector<Matrix3>(vertices), {}, {vertices, most_near, most_pressed}, {}, {}};
-  if (motion_->is_static()) {
-    secants_ = SecantCompliance(vertices, most_forces);
-    for (SecantTerms::Term& term : view.secants.term) term.resize(vertices);
-    moved_.resize(vertices);
-    find_moved(moved_);
-    moved_before_ = moved_;
-  }
-  update_view(view);
   triangles_ = touchable.triangles;
+  if (motion_->is_static()) start_secants();
+  View view = make_view();
+  update_view(view);
   view.surface = ContactSurface(view.free, triangles_);
   view.surface.set_unloaded(unloaded());
   view.surface.set_materials(elastic_body().contact_materials(touchable.elements));
@@ -68,9 +73,31 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   if (accepts_initial_strains_) report_displacement(elastic_body().positions(), start_, setup_report());
 }
 
+PALPATE_INLINE void MovingTissue::start_secants() {
+  secants_ = SecantCompliance(nodes_.size(), most_forces);
+  moved_.resize(nodes_.size());
+  find_moved(moved_);
+  moved_before_ = moved_;
+}
+
+PALPATE_INLINE MovingTissue::View MovingTissue::make_view() const {
+  const std::size_t vertices = nodes_.size();
+  View view;
+  view.free.resize(vertices);
+  view.rotation.resize(vertices);
+  if (motion_->is_static())
+    for (SecantTerms::Term& term : view.secants.term) term.resize(vertices);
+  view.near = {vertices, most_near, most_pressed};
+  view.compliance = compliance_;
+  view.requested.assign(vertices, ~std::uint64_t{0});
+  view.required.assign(vertices, 0);
+  return view;
+}
+
 PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   const std::scoped_lock lock(changes_);
   const FlushDenormals flush;
+  prepare_step();
   pressing_.update();
   full_.setZero();
   add(pressing_.front(), 1.0, full_);
@@ -138,6 +165,10 @@ PALPATE_INLINE void MovingTissue::set_pose(const Eigen::Isometry3d& pose) {
 
 PALPATE_INLINE void MovingTissue::reset() {
   const std::scoped_lock lock(changes_);
+  restart();
+}
+
+PALPATE_INLINE void MovingTissue::restart() {
   VectorX applied = load_of(scene(), Vector3::Zero());
   std::string others = scene().loads_in_words();
   applied_.swap(applied);
@@ -153,6 +184,30 @@ PALPATE_INLINE void MovingTissue::reset() {
   find_moved(moved_);
   steps_ = 0;
   publish({});
+}
+
+PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const VectorX& mass, const BlockPattern& pattern,
+                                                 const std::vector<Vector3>& positions) {
+  VectorX applied = detail::with_size(applied_, 3 * mass.size()), load = applied;
+  const Vector3 own = local(gravity(), pose());
+  for (Index i = 0; i < mass.size(); ++i) add_node_vector(load, i, mass[i] * own);
+  NodalRotations rotations(pattern, positions, surface.nodes);
+  applied_.swap(applied);
+  load_.swap(load);
+  full_ = load_;
+  mass_ = mass;
+  rotations_ = std::move(rotations);
+  compliance_ = VertexCompliance(compliance_, std::move(surface.similar));
+  nodes_ = std::move(surface.nodes);
+  rest_.clear();
+  for (const NodeId node : nodes_) rest_.push_back(positions[static_cast<std::size_t>(node)]);
+  if (motion_->is_static()) start_secants();
+  const std::uint64_t number = changed_.number + 1;
+  changed_ = make_view();
+  changed_.number = number;
+  changed_.surface = std::move(surface.surface);
+  changed_.status = surface.status;
+  changed_.contact = std::move(surface.contact);
 }
 
 PALPATE_INLINE SolveReport MovingTissue::displacement_with(std::span<const VertexForce>, VectorX& u) noexcept {
@@ -175,23 +230,26 @@ PALPATE_INLINE void MovingTissue::prepare_tools(const ToolRadii&, const ContactP
 }
 
 PALPATE_INLINE Status MovingTissue::require_columns(std::span<const int> vertices) noexcept {
-  for (const int v : vertices) list(v, tick_, required_, pressed_);
+  for (const int v : vertices) list(v, tick_, views_.front().required, pressed_);
   return {};
 }
 
 PALPATE_INLINE Matrix3 MovingTissue::evaluate(const View& view, int i, int j) const noexcept {
-  const Matrix3 rotated = compliance_.rotated(view.rotation, i, j);
+  const Matrix3 rotated = view.compliance.rotated(view.rotation, i, j);
   if (view.secants.count == 0) return rotated;
   return rotated + view.secants(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+}
+
+PALPATE_INLINE void MovingTissue::take_surface() noexcept {
+  if (!views_.update()) return;
+  ++revision_;
+  near_.count = 0;
 }
 
 PALPATE_INLINE Status MovingTissue::begin_tick() noexcept {
   ++tick_;
   pressed_.count = 0;
-  if (views_.update()) {
-    ++revision_;
-    near_.count = 0;
-  }
+  take_surface();
   Status status = views_.front().status | ticked_;
   if (slow_.load(std::memory_order_relaxed)) status.set(StatusFlag::slow_tissue);
   return status;
@@ -222,6 +280,7 @@ PALPATE_INLINE VectorX MovingTissue::load_of(const Scene& scene, const Vector3& 
             "Use a linear material");
     load += body.initial_strain_load(body.initial_strains(scene));
   }
+  load = detail::with_size(load, 3 * mass_.size());
   for (Index i = 0; i < mass_.size(); ++i) add_node_vector(load, i, mass_[i] * gravity);
   if (!all_finite(load)) raise(SetupErrorKind::non_finite, "the loads are not finite");
   return load;
@@ -229,17 +288,16 @@ PALPATE_INLINE VectorX MovingTissue::load_of(const Scene& scene, const Vector3& 
 
 PALPATE_INLINE void MovingTissue::add(const Forces& forces, double factor, VectorX& load) const noexcept {
   for (std::size_t k = 0; k < forces.count; ++k)
-    add_node_vector(load, touchable_nodes()[vertex(forces.item[k])], factor * forces.item[k].force.in_model_axes());
+    add_node_vector(load, nodes_[vertex(forces.item[k])], factor * forces.item[k].force.in_model_axes());
 }
 
 PALPATE_INLINE void MovingTissue::find_moved(std::vector<Vector3>& moved) const noexcept {
-  for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = node_vector(motion_->displacement(), touchable_nodes()[i]);
+  for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = node_vector(motion_->displacement(), nodes_[i]);
 }
 
 PALPATE_INLINE void MovingTissue::update_view(View& view) const noexcept {
   const VectorX& u = motion_->displacement();
-  const std::vector<Vector3>& rest = elastic_body().positions();
-  const std::size_t n = touchable_nodes().size();
+  const std::size_t n = nodes_.size();
   for (std::size_t i = 0; i < n; ++i) view.rotation[i] = rotations_(i, u);
   secants_.find_terms(compliance_, view.rotation, view.secants);
   std::array<Vector3, most_forces> unrotated;
@@ -251,17 +309,17 @@ PALPATE_INLINE void MovingTissue::update_view(View& view) const noexcept {
     moved = view.rotation[i] * moved;
     for (std::size_t k = 0; k < used_.count && view.secants.count > 0; ++k)
       moved += view.secants(i, vertex(used_.item[k])) * used_.item[k].force.in_model_axes();
-    const NodeId node = touchable_nodes()[i];
-    view.free[i] = rest[static_cast<std::size_t>(node)] + node_vector(u, node) - moved;
+    view.free[i] = rest_[i] + node_vector(u, nodes_[i]) - moved;
   }
   view.near.set(used_.near.all(), used_.pressed.all(), [&](int i, int j) { return evaluate(view, i, j); });
 }
 
 PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {
   View& view = views_.back();
+  if (view.number != changed_.number) view = changed_;  // a view from before a cut
   update_view(view);
   view.surface.move_to(view.free, ++views_made_);
-  view.status = status;
+  view.status = status | changed_.status;
   views_.publish();
   drawn_.back() = motion_->displacement();
   drawn_.publish();

@@ -59,10 +59,10 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
         return make_partly_linear(body, std::move(made), std::move(parts), p, limits);
     }
     BlockMatrix stiffness = assemble_stiffness<E>(body.rest, limits);
-    StiffnessAt stiffness_at = stiffness_of_shape(body.rest, p);
-    auto forces = detail::make_energy_forces<S>(std::move(body), limits);
-    auto motion = std::make_unique<QuasiNewtonMotion>(std::move(made), std::move(forces), std::move(stiffness), p,
-                                                      limits, std::vector<NodeId>{}, std::move(stiffness_at));
+    auto factor = std::make_shared<RenewableFactor>(made, std::move(stiffness), std::vector<NodeId>{},
+                                                    stiffness_of_shape(body.rest, p), limits);
+    auto motion = std::make_unique<QuasiNewtonMotion>(
+        std::move(made), detail::make_energy_forces<S>(std::move(body), limits), std::move(factor), p);
     if (p.settle) motion->settle();
     PreparedMotion prepared;
     prepared.start = motion->displacement();

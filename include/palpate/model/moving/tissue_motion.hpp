@@ -40,12 +40,14 @@ class TissueMotion {
   /// Displacement u [m] that `forces` [N] add at the end of a step, to first order. Returns false when it was not
   /// found.
   virtual bool respond(const VectorX& forces, VectorX& u) noexcept = 0;
-  /// Whether every step ends in the equilibrium of its loads, so that the displacement is a function of the loads alone.
+  /// Whether every step ends in the equilibrium of its loads, so that the displacement is a function of the loads
+  /// alone.
   virtual bool is_static() const noexcept { return false; }
   /// State after the last step [m], [m/s]. A motion may leave a part of it to `complete` on nodes that no tool touches.
   virtual const VectorX& displacement() const noexcept = 0;
   virtual const VectorX& velocity() const noexcept = 0;
-  /// Adds to a copy of `displacement` what that leaves out. For one thread, also while another one steps; no allocation.
+  /// Adds to a copy of `displacement` what that leaves out. For one thread, also while another one steps; no
+  /// allocation.
   virtual void complete(VectorX&) noexcept {}
 
   /// Sets a state at rest in displacement u [m] with the viscoelastic stress fully relaxed. Prescribed components take

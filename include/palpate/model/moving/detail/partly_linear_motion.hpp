@@ -7,6 +7,7 @@
 #include <palpate/model/moving/detail/far_displacement.hpp>
 #include <palpate/model/moving/detail/linear_surroundings.hpp>
 #include <palpate/model/moving/detail/quasi_newton_motion.hpp>
+#include <palpate/model/moving/detail/renewable_factor.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
 
 #include <memory>

@@ -139,9 +139,11 @@ PALPATE_INLINE PreparedMotion prepare_partly_linear(DeformableBody whole, BodyPa
       joint->add_up(part, k);
       return true;
     };
+  auto factor = std::make_shared<RenewableFactor>(near, std::move(stiffness), parts.interface_in(parts.near),
+                                                  std::move(stiffness_at), limits);
   auto motion = std::make_unique<QuasiNewtonMotion>(
       std::move(near), std::make_unique<SurroundedForces>(std::move(near_forces), surroundings->stiffness(), kept),
-      std::move(stiffness), parameters, limits, parts.interface_in(parts.near), std::move(stiffness_at));
+      std::move(factor), parameters);
   if (parameters.settle) motion->settle();
   PreparedMotion prepared;
   prepared.motion = std::make_unique<PartlyLinearMotion>(std::move(parts), std::move(motion), std::move(surroundings),

@@ -9,7 +9,7 @@
 #include <palpate/integrator/detail/implicit_step.hpp>
 #include <palpate/integrator/quasi_newton.hpp>
 #include <palpate/model/detail/deformable_body.hpp>
-#include <palpate/model/moving/detail/renewable_factor.hpp>
+#include <palpate/model/moving/detail/step_factor.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
 
 #include <memory>
@@ -53,12 +53,9 @@ class QuasiNewtonMotion final : public TissueMotion {
   /// Largest relative residual of a step that counts as converged.
   static constexpr double tolerable_residual = 0.05;
 
-  /// Starts at rest with zero displacement. Throws too_large, bad_density, bad_argument.
-  /// `body.elastic` is not used; `stiffness` is that of `forces` at rest. The nodes `last` are eliminated last.
-  /// With `stiffness_at`, on the same pattern, a thread renews the factor; `renew_factor` itself is not read.
-  QuasiNewtonMotion(DeformableBody body, std::unique_ptr<EnergyForces> forces, BlockMatrix stiffness,
-                    const QuasiNewtonParameters& parameters, const SetupLimits& limits,
-                    const std::vector<NodeId>& last = {}, StiffnessAt stiffness_at = {});
+  /// Starts at rest with zero displacement. `body.elastic` is not used. Throws bad_density, bad_argument.
+  QuasiNewtonMotion(DeformableBody body, std::unique_ptr<EnergyForces> forces, std::shared_ptr<StepFactor> factor,
+                    const QuasiNewtonParameters& parameters);
 
   MotionStep step(double h) noexcept override;
   bool correct(const VectorX& more) noexcept override;
@@ -68,6 +65,9 @@ class QuasiNewtonMotion final : public TissueMotion {
   const VectorX& displacement() const noexcept override { return u_; }
   const VectorX& velocity() const noexcept override { return v_; }
   void rest_at(const VectorX& u) override;
+  /// Sets displacement [m] and velocity [m/s]; prescribed components take their prescribed values at rest. Throws as
+  /// rest_at.
+  void set_state(const VectorX& u, const VectorX& v);
   void set_load(const VectorX& load) override;
   void set_prescribed(const VectorX& values) override;
 
@@ -77,7 +77,7 @@ class QuasiNewtonMotion final : public TissueMotion {
   /// Of the last step.
   const QuasiNewtonReport& report() const noexcept { return report_; }
   /// Number of factors taken from the second thread so far.
-  long renewals() const noexcept { return factor_.renewals(); }
+  long renewals() const noexcept { return factor_->renewals(); }
 
   // QuasiNewtonProblem: one step
   double evaluate(const VectorX& x, VectorX& residual) noexcept;
@@ -103,7 +103,7 @@ class QuasiNewtonMotion final : public TissueMotion {
   QuasiNewtonParameters parameters_;
   DeformableBody body_;
   std::unique_ptr<EnergyForces> forces_;
-  RenewableFactor factor_;
+  std::shared_ptr<StepFactor> factor_;
   QuasiNewtonMethod method_;
   ImplicitStep step_;
   VectorX inertia_;  // mass per dof

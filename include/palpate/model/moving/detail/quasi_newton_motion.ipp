@@ -35,13 +35,12 @@ PALPATE_INLINE void QuasiNewtonParameters::require_divisible(bool viscous) const
 }
 
 PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::unique_ptr<EnergyForces> forces,
-                                                    BlockMatrix stiffness, const QuasiNewtonParameters& parameters,
-                                                    const SetupLimits& limits, const std::vector<NodeId>& last,
-                                                    StiffnessAt stiffness_at)
+                                                    std::shared_ptr<StepFactor> factor,
+                                                    const QuasiNewtonParameters& parameters)
     : parameters_(parameters),
       body_(std::move(body)),
       forces_(std::move(forces)),
-      factor_(body_, std::move(stiffness), last, std::move(stiffness_at), limits),
+      factor_(std::move(factor)),
       method_(body_.conditions.free_count(), parameters.memory),
       step_(TimeScheme::implicit_euler(), forces_->size()),
       inertia_(forces_->size()),
@@ -76,7 +75,7 @@ PALPATE_INLINE bool QuasiNewtonMotion::set_length(double h) noexcept {
     step_.set_length(h);
     mass = step_.acceleration_per_displacement() + parameters_.mass_damping * step_.velocity_per_displacement();
   }
-  if (!factor_.set_mass(mass)) return false;
+  if (!factor_->set_mass(mass)) return false;
   method_.forget();
   length_ = h;
   return true;
@@ -90,9 +89,9 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   stepped_ = false;
   known_.valid = known_.valid && !forces_->has_history();
   if (!ImplicitStep::is_length(h) || !set_length(parameters_.inertia ? h : infinity)) return done;
-  factor_.take_renewed();  // the method's pairs stay valid
+  factor_->take_renewed();  // the method's pairs stay valid
   forces_->begin_step(h);
-  factor_.rotate(u_);
+  factor_->rotate(u_);
   prescribed_ = body_.conditions.prescribed;
   if (parameters_.inertia) step_.coast(u_, v_, a_);
   const double still = start_at_state();
@@ -114,7 +113,7 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   accept();
   step_load_ = load_;
   stepped_ = true;
-  if (report_.iterations > few_iterations || !(report_.relative_residual <= parameters_.tolerance)) factor_.ask(u_);
+  if (report_.iterations > few_iterations || !(report_.relative_residual <= parameters_.tolerance)) factor_->ask(u_);
   done = {true, {}, deformation_};
   done.relative_residual = report_.relative_residual;
   if (deformation_.inverted > 0) done.status.set(StatusFlag::inverted);
@@ -160,27 +159,33 @@ PALPATE_INLINE bool QuasiNewtonMotion::correct(const VectorX& more) noexcept {
 
 PALPATE_INLINE bool QuasiNewtonMotion::prepare_response(double h) noexcept {
   if (!ImplicitStep::is_length(h) || !set_length(parameters_.inertia ? h : infinity)) return false;
-  factor_.rotate(u_);
+  factor_->rotate(u_);
   return true;
 }
 
 PALPATE_INLINE bool QuasiNewtonMotion::respond(const VectorX& forces, VectorX& u) noexcept {
   if (length_ == 0.0) return false;
-  factor_.solve(forces, u);
+  factor_->solve(forces, u);
   return true;
 }
 
 PALPATE_INLINE void QuasiNewtonMotion::rest_at(const VectorX& u) {
-  require_entries(u, u_.size());
-  if (stepped_) forces_->end_step(u_);
-  stepped_ = false;
-  for (Index dof = 0; dof < u_.size(); ++dof)  // u may alias u_
-    u_[dof] = body_.conditions.is_constrained(dof) ? body_.conditions.prescribed[dof] : u[dof];
-  v_.setZero();
-  a_.setZero();
-  known_.valid = false;
+  set_state(u, VectorX::Zero(u_.size()));
   forces_->begin_step(infinity);
   forces_->end_step(u_);
+}
+
+PALPATE_INLINE void QuasiNewtonMotion::set_state(const VectorX& u, const VectorX& v) {
+  for (const VectorX* given : {&u, &v}) require_entries(*given, u_.size());
+  if (stepped_) forces_->end_step(u_);
+  stepped_ = false;
+  for (Index dof = 0; dof < u_.size(); ++dof) {  // u and v may alias u_ and v_
+    const bool constrained = body_.conditions.is_constrained(dof);
+    u_[dof] = constrained ? body_.conditions.prescribed[dof] : u[dof];
+    v_[dof] = constrained ? 0.0 : v[dof];
+  }
+  a_.setZero();
+  known_.valid = false;
   method_.forget();
 }
 
@@ -202,7 +207,7 @@ PALPATE_INLINE VectorX QuasiNewtonMotion::settle() {
   QuasiNewtonReport report;
   const double tolerance = std::max(1e-9, 100.0 * forces_->rounding());
   for (int round = 0; round < 50 && !report.converged; ++round) {
-    factor_.rotate(u_);
+    factor_->rotate(u_);
     method_.forget();
     method_.start(*this, x_);
     report = method_.solve(*this, x_, {.maximum_iterations = 20, .tolerance = tolerance});
@@ -260,7 +265,7 @@ PALPATE_INLINE double QuasiNewtonMotion::start_at_state() noexcept {
 
 PALPATE_INLINE void QuasiNewtonMotion::precondition(const VectorX& r, VectorX& d) noexcept {
   body_.conditions.scatter(r, other_);
-  factor_.solve(other_, full_);
+  factor_->solve(other_, full_);
   body_.conditions.gather(full_, d);
 }
 

@@ -8,6 +8,7 @@
 #include <palpate/model/detail/deformable_body.hpp>
 #include <palpate/model/moving/detail/corotated_solve.hpp>
 #include <palpate/model/moving/detail/renewal_thread.hpp>
+#include <palpate/model/moving/detail/step_factor.hpp>
 #include <palpate/model/moving/detail/tangent_solver.hpp>
 
 #include <array>
@@ -25,26 +26,26 @@ using StiffnessAt = std::function<bool(const VectorX& u, BlockMatrix& k)>;
 /// z = R A^-1 R^T r with a factor of A = K + m M, read in single precision, and a rotation per node. K is the stiffness
 /// at rest, or at a recent shape s when a thread renews it; R are the rotations since that shape. Only the constructor,
 /// and the thread, allocate. Neither copyable nor movable.
-class RenewableFactor {
+class RenewableFactor final : public StepFactor {
  public:
   /// The nodes `last` are eliminated last. Without `stiffness_at`, on the pattern of `stiffness`, nothing is renewed
-  /// and there is no thread. Refers to `body`. Throws too_large.
+  /// and there is no thread. Throws too_large.
   RenewableFactor(const DeformableBody& body, BlockMatrix stiffness, const std::vector<NodeId>& last,
                   StiffnessAt stiffness_at, const SetupLimits& limits);
 
-  /// Sets m [1/s^2]; factorises at rest when it is new. Returns false without a factor.
-  bool set_mass(double mass) noexcept;
-  /// Takes a finished factor; returns whether there was one.
-  bool take_renewed() noexcept;
-  /// Asks the thread for the factor at displacement u [m], unless it is at work.
-  void ask(const VectorX& u) noexcept;
-  /// Number of factors taken from the thread so far.
-  long renewals() const noexcept { return renewals_; }
+  /// Factorises at rest.
+  bool set_mass(double mass) noexcept override;
+  void rotate(const VectorX& u) noexcept override { corotated_.update(u, front().rotation); }
+  /// z is zero on constrained dofs.
+  void solve(const VectorX& r, VectorX& z) noexcept override { corotated_.solve(*front().factor, r, z); }
+  void ask(const VectorX& u) noexcept override;
+  void take_renewed() noexcept override;
+  long renewals() const noexcept override { return renewals_; }
 
-  /// Sets the rotations from u [m].
-  void rotate(const VectorX& u) noexcept { corotated_.update(u, front().rotation); }
-  /// Vectors have 3 entries per node; z is zero on constrained dofs.
-  void solve(const VectorX& r, VectorX& z) noexcept { corotated_.solve(*front().factor, r, z); }
+  /// Number of nodes.
+  Index nodes() const noexcept { return lumped_.size(); }
+  /// The diagonal block of the matrix at rest, for a node.
+  Matrix3 diagonal(NodeId node) const noexcept;
 
  private:
   /// A factor and the shape that it was made for.
@@ -56,12 +57,12 @@ class RenewableFactor {
   };
   Shape& front() noexcept { return shapes_[front_]; }
   Shape& spare() noexcept { return shapes_[1 - front_]; }
-  Shape make_shape(const std::vector<NodeId>& last, const SetupLimits& limits) const;
+  Shape make_shape(const DeformableBody& body, const std::vector<NodeId>& last, const SetupLimits& limits) const;
   // In the thread
   void renew() noexcept;
   bool find_stiffness(BlockMatrix& k) noexcept;
 
-  const DeformableBody& body_;
+  VectorX lumped_;         // mass per node [kg]
   BlockMatrix stiffness_;  // at rest
   CorotatedSolve corotated_;
   std::array<Shape, 2> shapes_;

@@ -11,20 +11,21 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE RenewableFactor::RenewableFactor(const DeformableBody& body, BlockMatrix stiffness,
                                                 const std::vector<NodeId>& last, StiffnessAt stiffness_at,
                                                 const SetupLimits& limits)
-    : body_(body), stiffness_(std::move(stiffness)), corotated_(body), stiffness_at_(std::move(stiffness_at)) {
-  front() = make_shape(last, limits);
+    : lumped_(body.lumped), stiffness_(std::move(stiffness)), corotated_(body), stiffness_at_(std::move(stiffness_at)) {
+  front() = make_shape(body, last, limits);
   if (!stiffness_at_) return;
-  spare() = make_shape(last, limits);
+  spare() = make_shape(body, last, limits);
   asked_ = VectorX::Zero(stiffness_.size());
   thread_.emplace([this] { renew(); });
 }
 
-PALPATE_INLINE RenewableFactor::Shape RenewableFactor::make_shape(const std::vector<NodeId>& last,
+PALPATE_INLINE RenewableFactor::Shape RenewableFactor::make_shape(const DeformableBody& body,
+                                                                  const std::vector<NodeId>& last,
                                                                   const SetupLimits& limits) const {
   Shape made;
-  made.factor = std::make_unique<TangentSolver>(stiffness_.pattern(), corotated_.conditions(), body_.positions, limits,
+  made.factor = std::make_unique<TangentSolver>(stiffness_.pattern(), corotated_.conditions(), body.positions, limits,
                                                 FactorScalar::single_precision, last);
-  made.rotation.assign(body_.positions.size(), Matrix3::Identity());
+  made.rotation.assign(body.positions.size(), Matrix3::Identity());
   return made;
 }
 
@@ -33,21 +34,19 @@ PALPATE_INLINE bool RenewableFactor::set_mass(double mass) noexcept {
   if (made.usable && mass == made.mass) return true;
   made.mass = mass;
   made.factor->matrix().copy_values(stiffness_);
-  if (mass > 0.0) made.factor->matrix().add_nodal(mass, body_.lumped);
+  if (mass > 0.0) made.factor->matrix().add_nodal(mass, lumped_);
   std::ranges::fill(made.rotation, Matrix3::Identity());
   made.usable = made.factor->factorise();
   return made.usable;
 }
 
-PALPATE_INLINE bool RenewableFactor::take_renewed() noexcept {
-  if (!thread_ || !thread_->finished()) return false;
-  const bool fits = spare().usable && spare().mass == front().mass;
-  if (fits) {
+PALPATE_INLINE void RenewableFactor::take_renewed() noexcept {
+  if (!thread_ || !thread_->finished()) return;
+  if (spare().usable && spare().mass == front().mass) {
     front_ = 1 - front_;
     ++renewals_;
   }
   thread_->take();
-  return fits;
 }
 
 PALPATE_INLINE void RenewableFactor::ask(const VectorX& u) noexcept {
@@ -57,11 +56,16 @@ PALPATE_INLINE void RenewableFactor::ask(const VectorX& u) noexcept {
   thread_->ask();
 }
 
+PALPATE_INLINE Matrix3 RenewableFactor::diagonal(NodeId node) const noexcept {
+  return stiffness_.block(stiffness_.pattern().diagonal(node)) +
+         shapes_[front_].mass * lumped_[node] * Matrix3::Identity();
+}
+
 PALPATE_INLINE void RenewableFactor::renew() noexcept {
   Shape& made = spare();
   made.usable = false;
   if (!find_stiffness(made.factor->matrix())) return;  // the last factor stays in use
-  if (made.mass > 0.0) made.factor->matrix().add_nodal(made.mass, body_.lumped);
+  if (made.mass > 0.0) made.factor->matrix().add_nodal(made.mass, lumped_);
   corotated_.fit(asked_, made.rotation);
   made.usable = made.factor->factorise();
 }

@@ -4,7 +4,7 @@
 #include <palpate/concepts/vertex_force.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/model/moving/detail/warped_compliance.hpp>
+#include <palpate/model/moving/detail/vertex_compliance.hpp>
 
 #include <array>
 #include <span>
@@ -57,7 +57,7 @@ class SecantCompliance {
   void record(std::span<const VertexForce> before, std::span<const VertexForce> after, std::span<const Vector3> from,
               std::span<const Vector3> to, double error) noexcept;
   /// The corrections of a compliance for vertices rotated by `rotation`.
-  void find_terms(const WarpedCompliance& compliance, const std::vector<Matrix3>& rotation,
+  void find_terms(const VertexCompliance& compliance, const std::vector<Matrix3>& rotation,
                   SecantTerms& terms) const noexcept;
 
   /// Smallest change of forces, relative to the forces, that is recorded; and relative to the error.

@@ -53,7 +53,7 @@ PALPATE_INLINE void SecantCompliance::record(std::span<const VertexForce> before
   if (!(change > least * least * size) || !(product > 0.0)) --count_;
 }
 
-PALPATE_INLINE void SecantCompliance::find_terms(const WarpedCompliance& compliance,
+PALPATE_INLINE void SecantCompliance::find_terms(const VertexCompliance& compliance,
                                                  const std::vector<Matrix3>& rotation,
                                                  SecantTerms& terms) const noexcept {
   terms.count = 0;

@@ -40,8 +40,7 @@ PALPATE_INLINE double TangentSolver::largest_diagonal() const noexcept {
 }
 
 PALPATE_INLINE DofLayout TangentSolver::layout(const EssentialConditions& conditions,
-                                               const std::vector<Vector3>& positions,
-                                               const std::vector<NodeId>& last) {
+                                               const std::vector<Vector3>& positions, const std::vector<NodeId>& last) {
   DofLayout layout{{}, positions, {}};
   for (const Index dof : conditions.free_dofs) {
     if (std::ranges::binary_search(last, static_cast<NodeId>(dof / 3)))

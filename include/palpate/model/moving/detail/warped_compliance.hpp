@@ -50,8 +50,6 @@ class WarpedCompliance {
 
   /// Compliance rotated back to the rest configuration [m/N].
   const Matrix3& at_rest(std::size_t i, std::size_t j) const noexcept { return rest_[i + count_ * j]; }
-  /// Compliance for vertices rotated by `rotation` [m/N].
-  Matrix3 rotated(const std::vector<Matrix3>& rotation, int i, int j) const noexcept;
   /// See TissueModel.
   double bound(int j) const noexcept { return bound_[static_cast<std::size_t>(j)]; }
   double floor() const noexcept { return floor_; }

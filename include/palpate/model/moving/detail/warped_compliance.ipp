@@ -7,11 +7,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE Matrix3 WarpedCompliance::rotated(const std::vector<Matrix3>& rotation, int i, int j) const noexcept {
-  const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-  return rotation[a] * at_rest(a, b) * rotation[b].transpose();
-}
-
 PALPATE_INLINE void WarpedCompliance::find_bounds() {
   bound_.assign(count_, 0.0);
   for (std::size_t j = 0; j < count_; ++j) {

@@ -1,0 +1,237 @@
+// Moving tissue at large strain that can be touched while it is cut.
+#pragma once
+
+#include <palpate/contact/contact_problem.hpp>
+#include <palpate/contact/detail/blade_sweep.hpp>
+#include <palpate/core/rigid_motion.hpp>
+#include <palpate/cut/cut_parameters.hpp>
+#include <palpate/cut/detail/cut_motion.hpp>
+#include <palpate/cut/detail/cut_orders.hpp>
+#include <palpate/cut/detail/cut_surface.hpp>
+#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/detail/cut_view.hpp>
+#include <palpate/cut/detail/swept_faces.hpp>
+#include <palpate/model/moving/moving_tissue.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// A moving body of elements E under cuts. Base of HapticFEModel on Cuttable<Implicit<QuasiNewton<...>>>. `cut` orders
+/// a cut; the next `advance` applies all orders before its step, so the first tick after that step feels them. Vertex
+/// numbers never change, so contact forces continue across a cut. While an order is open, ticks report degraded_model.
+///
+/// A step after a cut uses the factor of an earlier body, extended to the new nodes (CutFactor), until a thread has
+/// computed the present one: it may take more iterations. Compliances stay those of the set-up, new vertices have that
+/// of a neighbour: steady forces are right, changes between two steps are predicted less well. A step that applies a
+/// cut allocates, and takes O(elements) in addition.
+///
+/// Fragments that a cut detaches stay where they were, without forces; tools do not touch them. Threads: as
+/// MovingTissue; `try_cut` belongs to the thread that ticks, `cut`, `cut_report` and `read` may be called from any
+/// thread. `reset` must not run during a tick. All but the functions of the ticking thread may wait for a step.
+/// Satisfies TissueModel; one session at a time.
+template <Element E>
+class CuttableMovingTissue : public MovingTissue {
+ public:
+  // Any thread
+
+  /// Orders a cut. Immediately throws index_out_of_range for invalid ids.
+  void cut(CutOrder order) {
+    require_ids<E>(order, elements_);
+    orders_.add(std::move(order));
+  }
+  /// Orders a cut along the sheet swept by a blade, in the world's frame, through the deformed body.
+  void cut(const BladeSweep& sweep) { orders_.add(sweep); }
+  /// `renewals` counts factors computed since the set-up, `failed` is set when there was no memory for a cut. Fields of
+  /// the compliance are not used.
+  CutReport cut_report() {
+    const std::scoped_lock lock(changes());
+    CutReport report = report_;
+    report.renewals = static_cast<std::uint64_t>(cut_motion_->renewals());
+    return report;
+  }
+  /// Visits the topology; no cut is applied meanwhile.
+  template <class Visit>
+  void read(Visit&& visit) {
+    const std::scoped_lock lock(changes());
+    visit(std::as_const(body_->topology));
+  }
+  /// Restores the uncut body with scene, pose and state of construction; drops waiting orders and the vertices that
+  /// cuts have created. Not during a tick.
+  void reset() {
+    const std::scoped_lock lock(changes());
+    if (const CutOrders::Taken taken = orders_.take(); taken.count > 0) orders_.done(taken);
+    body_ = whole_;
+    similar_.resize(known_);
+    cut_motion_->restart(body_->topology);
+    change_surface();
+    failed_.store(false, std::memory_order_release);
+    report_ = {.changes = report_.changes + 1};
+    restart();
+  }
+
+  // One thread that draws
+
+  /// As MovingTissue; includes the nodes that cuts have created. Throws as there.
+  VectorX displacement(std::span<const VertexForce> forces = {}) {
+    {
+      const std::scoped_lock lock(this->changes());
+      require_vertex_forces(forces, static_cast<int>(similar_.size()));
+    }
+    VectorX u;
+    this->displacement_with(forces, u);
+    return u;
+  }
+
+  // The thread that ticks
+
+  /// Orders a cut from a tick; returns false when too many are waiting. Never waits.
+  bool try_cut(const BladeSweep& sweep) noexcept { return orders_.try_add(sweep); }
+  Status begin_tick() noexcept {
+    Status status = MovingTissue::begin_tick();
+    if (orders_.are_open() || failed_.load(std::memory_order_acquire)) status.set(StatusFlag::degraded_model);
+    return status;
+  }
+  /// Moves a session's contact to a new surface.
+  void exchange_contacts(ContactProblem& problem) noexcept {
+    if (std::exchange(seen_, surface_number()) != seen_) problem.move_to(surface_contact(), contact_surface());
+  }
+  /// Makes the contact surface for the tools of a session that begins; not while another session ticks.
+  void prepare_tools(const ToolRadii& radii, const ContactParameters& contact) {
+    MovingTissue::prepare_tools(radii, contact);
+    const std::scoped_lock lock(changes());
+    tools_ = {radii, contact};
+    if (report_.changes > 0) {
+      change_surface();
+      publish({});
+    }
+    take_surface();
+    seen_ = surface_number();
+  }
+
+ protected:
+  explicit CuttableMovingTissue(const SetupOptions& options) : MovingTissue(options) {}
+
+  /// The set-up after admission. Throws as MovingTissue, and unsupported for a mesh whose parts touch only at nodes or
+  /// edges.
+  template <HyperelasticMaterial M, class S>
+  void set_up_cuts(HyperelasticBody<E, M> body, const std::vector<BoundaryFace>& boundary, const Touchable& touchable,
+                   const QuasiNewtonParameters& parameters) {
+    const Mesh<E>& mesh = body.rest.mesh;
+    CutTopology<E> topology(mesh, resolve_essential(mesh, boundary, scene()).constrained);
+    if (topology.mesh().node_count() > mesh.node_count())
+      raise(SetupErrorKind::unsupported, "a mesh whose parts touch only at nodes or edges",
+            "Give each part its own nodes there");
+    elements_ = mesh.element_count();
+    CutSurface<E> surface(topology, boundary, scene());
+    body_ = whole_ = Parts{std::move(topology), std::move(surface)};
+    const BlockPattern pattern = block_pattern(mesh);
+    auto motion = std::make_unique<CutQuasiNewtonMotion<E, M, S>>(std::move(body), body_->topology, scene(), parameters,
+                                                                  limits());
+    cut_motion_ = motion.get();
+    PreparedMotion prepared;
+    prepared.start = motion->displacement();
+    prepared.motion = std::move(motion);
+    set_up(touchable, std::move(prepared), parameters.step, pattern);
+    known_ = touchable.nodes.size();
+    for (std::size_t v = 0; v < known_; ++v) similar_.push_back(static_cast<int>(v));
+  }
+
+ private:
+  struct Parts {
+    CutTopology<E> topology;
+    CutSurface<E> surface;
+  };
+  struct Tools {
+    ToolRadii radii = 0.0;  ///< 0: no session yet
+    ContactParameters contact{};
+  };
+
+  void prepare_step() noexcept override {
+    const CutOrders::Taken taken = orders_.take();
+    if (taken.count == 0) return;
+    try {
+      apply(taken);
+    } catch (...) {
+      failed_.store(true, std::memory_order_release);
+      report_.failed = true;
+    }
+    orders_.done(taken);
+  }
+  void apply(const CutOrders::Taken& taken) {
+    const auto start = std::chrono::steady_clock::now();
+    const Eigen::Isometry3d local = inverse(to_world());
+    CutOrder order = taken.order;
+    for (const BladeSweep& s : taken.sweeps) {
+      const auto faces = swept_faces(body_->topology, {local * s.a0, local * s.b0, local * s.a1, local * s.b1},
+                                     [&](NodeId node) { return position(node); });
+      order.open.insert(order.open.end(), faces.begin(), faces.end());
+    }
+    const TopologyChange<E> change = body_->topology.apply(order);
+    if (change.empty()) return;
+    body_->surface.update(body_->topology, change);
+    cut_motion_->follow(body_->topology);
+    change_surface();
+    ++report_.cuts;
+    ++report_.changes;
+    report_.latency = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+  Vector3 position(NodeId node) const {
+    return body_->topology.mesh().position(Index{node}) + node_vector(cut_motion_->displacement(), Index{node});
+  }
+  void change_surface() {
+    const CutSurface<E>& surface = body_->surface;
+    find_similar();
+    CutVertices made;
+    made.nodes = surface.nodes();
+    made.similar = similar_;
+    std::vector<Vector3> positions;
+    for (const NodeId node : made.nodes) positions.push_back(position(node));
+    std::vector<Triangle> triangles = surface.triangles();
+    std::vector<Index> elements = surface.elements();
+    if (tools_.radii.smallest > 0.0 &&
+        erase_stretched(positions, ContactSamples::maximum_subdivision * tools_.radii.smallest, triangles, elements))
+      made.status.set(StatusFlag::degraded_model);
+    made.surface = ContactSurface(std::move(positions), std::move(triangles));
+    made.surface.set_materials(elastic_body().contact_materials(elements));
+    if (tools_.radii.smallest > 0.0)
+      made.contact = std::make_shared<ContactProblem>(made.surface, tools_.radii, tools_.contact);
+    const CutBody& body = cut_motion_->body();
+    MovingTissue::change_surface(std::move(made), body.nodal_mass, body.body.pattern, body.body.positions);
+  }
+  /// For new vertices the vertex of the set-up that was split, or the nearest one in the body at rest.
+  void find_similar() {
+    const std::vector<NodeId>& nodes = body_->surface.nodes();
+    const Mesh<E>& mesh = body_->topology.mesh();
+    for (std::size_t v = similar_.size(); v < nodes.size(); ++v) {
+      int nearest = 0;
+      double distance = infinity;
+      for (std::size_t k = 0; k < known_; ++k) {
+        const double d = (mesh.position(Index{nodes[k]}) - mesh.position(Index{nodes[v]})).squaredNorm();
+        if (d < distance) distance = d, nearest = static_cast<int>(k);
+      }
+      similar_.push_back(nearest);
+    }
+  }
+
+  Index elements_ = 0;
+  std::optional<Parts> body_, whole_;
+  CutMotion<E>* cut_motion_ = nullptr;
+  std::size_t known_ = 0;     // vertices of the set-up
+  std::vector<int> similar_;  // per vertex
+  Tools tools_;
+  CutOrders orders_;
+  CutReport report_;
+  std::atomic<bool> failed_{false};
+  std::uint64_t seen_ = 0;  // number of the surface that the session uses
+};
+
+}}  // namespace palpate

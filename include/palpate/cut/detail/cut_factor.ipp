@@ -1,0 +1,108 @@
+// Definitions of cut_factor.hpp.
+#pragma once
+
+#include <palpate/cut/detail/cut_factor.hpp>
+
+#include <Eigen/LU>
+
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE CutFactor::CutFactor(std::shared_ptr<RenewableFactor> base)
+    : base_(std::move(base)), whole_(base_), thread_([this] { compute(); }) {
+  relate();
+}
+
+PALPATE_INLINE void CutFactor::follow(std::shared_ptr<const CutBody> body) {
+  newest_ = std::move(body);
+  relate();
+  if (thread_.idle()) order();
+}
+
+PALPATE_INLINE void CutFactor::restart() {
+  newest_.reset();
+  base_ = whole_;
+  order_.wanted = false;
+  relate();
+}
+
+PALPATE_INLINE void CutFactor::order() {
+  order_.body = newest_;
+  order_.mass = mass_;
+  order_.wanted = true;
+  thread_.ask();
+}
+
+PALPATE_INLINE void CutFactor::relate() {
+  const auto nodes = static_cast<NodeId>(base_->nodes());
+  base_node_.resize(newest_ ? newest_->copied_from.size() : static_cast<std::size_t>(nodes));
+  for (std::size_t i = 0; i < base_node_.size(); ++i) {
+    auto node = static_cast<NodeId>(i);
+    while (node >= nodes) node = newest_->copied_from[static_cast<std::size_t>(node)];
+    base_node_[i] = node;
+  }
+  std::vector<int> copies(static_cast<std::size_t>(nodes), 0);
+  for (const NodeId node : base_node_) ++copies[static_cast<std::size_t>(node)];
+  split_.clear();
+  relative_.clear();
+  for (std::size_t i = 0; i < base_node_.size(); ++i)
+    if (copies[static_cast<std::size_t>(base_node_[i])] > 1) {
+      split_.push_back(static_cast<NodeId>(i));
+      const Matrix3 inverse = base_->diagonal(base_node_[i]).inverse();
+      relative_.push_back(all_finite(inverse) ? inverse : Matrix3(Matrix3::Zero()));
+    }
+  base_r_ = base_z_ = VectorX::Zero(3 * Index{nodes});
+}
+
+PALPATE_INLINE bool CutFactor::set_mass(double mass) noexcept {
+  mass_ = mass;
+  return base_->set_mass(mass);
+}
+
+PALPATE_INLINE void CutFactor::rotate(const VectorX& u) noexcept {
+  base_z_ = u.head(base_z_.size());  // nodes that exist in the base keep their ids
+  base_->rotate(base_z_);
+}
+
+PALPATE_INLINE void CutFactor::solve(const VectorX& r, VectorX& z) noexcept {
+  base_r_.setZero();
+  for (std::size_t i = 0; i < base_node_.size(); ++i)
+    add_node_vector(base_r_, Index{base_node_[i]}, node_vector(r, static_cast<Index>(i)));
+  base_->solve(base_r_, base_z_);
+  for (std::size_t i = 0; i < base_node_.size(); ++i)
+    set_node_vector(z, static_cast<Index>(i), node_vector(base_z_, Index{base_node_[i]}));
+  for (std::size_t k = 0; k < split_.size(); ++k)
+    add_node_vector(z, Index{split_[k]}, relative_[k] * node_vector(r, Index{split_[k]}));
+}
+
+PALPATE_INLINE void CutFactor::take_renewed() noexcept {
+  if (!thread_.finished()) return;
+  thread_.take();
+  if (order_.wanted && order_.made && order_.made->set_mass(mass_)) {
+    base_ = std::move(order_.made);
+    relate();
+    ++renewals_;
+  }
+  if (newest_ && (order_.body != newest_ || !order_.wanted)) order();
+}
+
+PALPATE_INLINE void CutFactor::compute() noexcept {
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  try {
+    order_.made = make();
+  } catch (...) {  // no memory: the last factor stays in use
+    order_.made.reset();
+  }
+#else
+  order_.made = make();
+#endif
+}
+
+PALPATE_INLINE std::shared_ptr<RenewableFactor> CutFactor::make() const {
+  auto made = std::make_shared<RenewableFactor>(order_.body->body, order_.body->stiffness(), std::vector<NodeId>{},
+                                                StiffnessAt(), SetupLimits{});
+  return made->set_mass(order_.mass) ? made : nullptr;
+}
+
+}}  // namespace palpate

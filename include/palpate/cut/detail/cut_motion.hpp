@@ -1,0 +1,173 @@
+// A quasi-Newton motion of a body under cuts.
+#pragma once
+
+#include <palpate/assembly/hyperelastic_body.hpp>
+#include <palpate/cut/detail/cut_factor.hpp>
+#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/model/moving/quasi_newton.hpp>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// A motion whose body follows cuts. Nodes keep their ids, and new ones follow.
+template <Element E>
+class CutMotion : public TissueMotion {
+ public:
+  /// Continues on the remaining body of a topology, from the present state; nodes that were split continue with the
+  /// state of the node they were split from. Parts without support stay where they are. Allocates. Strong guarantee.
+  virtual void follow(const CutTopology<E>& topology) = 0;
+  /// Returns to the body before any cut, of this topology; a state must be set then.
+  virtual void restart(const CutTopology<E>& whole) = 0;
+  /// Present body, for all nodes.
+  virtual const CutBody& body() const noexcept = 0;
+  /// Number of factors that a thread has computed.
+  virtual long renewals() const noexcept = 0;
+};
+
+/// Every cut makes a new QuasiNewtonMotion of the remaining elements, with the factor of an earlier body (CutFactor).
+/// O(elements) for a cut.
+template <Element E, HyperelasticMaterial M, class S>
+class CutQuasiNewtonMotion final : public CutMotion<E> {
+ public:
+  /// `topology` of the body without cuts. Throws as make_motion.
+  CutQuasiNewtonMotion(HyperelasticBody<E, M> body, const CutTopology<E>& topology, const Scene& scene,
+                       const QuasiNewtonParameters& parameters, const SetupLimits& limits)
+      : parameters_(parameters), limits_(limits), body_(std::move(body)) {
+    const DeformableBody whole = detail::body_with_mass(body_.rest, scene, limits_);
+    prescribed_ = whole.conditions.prescribed;
+    load_ = whole.load;
+    factor_ = std::make_shared<CutFactor>(std::make_shared<RenewableFactor>(
+        whole, assemble_stiffness<E>(body_.rest, limits_), std::vector<NodeId>{}, StiffnessAt(), limits_));
+    restart(topology);
+    if (parameters_.settle) motion_->settle();
+  }
+
+  void follow(const CutTopology<E>& topology) override {
+    std::vector<NodeId> from;  // node whose state a node continues with
+    for (NodeId i = 0; i < topology.mesh().node_count(); ++i) {
+      NodeId known = i;
+      while (3 * Index{known} >= motion_->displacement().size()) known = topology.copied_from(known);
+      from.push_back(known);
+    }
+    VectorX u(3 * topology.mesh().node_count()), v(u.size());
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      set_node_vector(u, static_cast<Index>(i), node_vector(motion_->displacement(), Index{from[i]}));
+      set_node_vector(v, static_cast<Index>(i), node_vector(motion_->velocity(), Index{from[i]}));
+    }
+    make(topology, u);
+    motion_->set_state(u, v);
+    factor_->follow(cut_);
+    was_cut_ = true;
+  }
+  void restart(const CutTopology<E>& whole) override {
+    factor_->restart();
+    make(whole, VectorX::Zero(3 * whole.mesh().node_count()));
+    motion_->set_load(load_);
+    was_cut_ = false;
+  }
+  const CutBody& body() const noexcept override { return *cut_; }
+  long renewals() const noexcept override { return motion_->renewals(); }
+
+  MotionStep step(double h) noexcept override {
+    was_cut_ = false;
+    return motion_->step(h);
+  }
+  /// Right after a cut there is no step to correct; without inertia the next one forgets it.
+  bool correct(const VectorX& more) noexcept override { return was_cut_ ? is_static() : motion_->correct(more); }
+  bool prepare_response(double h) noexcept override { return motion_->prepare_response(h); }
+  bool respond(const VectorX& forces, VectorX& u) noexcept override { return motion_->respond(forces, u); }
+  bool is_static() const noexcept override { return motion_->is_static(); }
+  const VectorX& displacement() const noexcept override { return motion_->displacement(); }
+  const VectorX& velocity() const noexcept override { return motion_->velocity(); }
+  void rest_at(const VectorX& u) override { motion_->rest_at(u); }
+  void set_load(const VectorX& load) override { motion_->set_load(load); }
+  /// For the nodes before any cut; copies follow.
+  void set_prescribed(const VectorX& values) override {
+    require_entries(values, prescribed_.size());
+    prescribed_ = values;
+    VectorX all = motion_->displacement();
+    for (std::size_t i = 0; i < origin_.size(); ++i)
+      if (origin_[i] >= 0) set_node_vector(all, static_cast<Index>(i), node_vector(prescribed_, Index{origin_[i]}));
+    motion_->set_prescribed(all);
+  }
+
+ private:
+  /// Makes the motion of the remaining body; nodes without it stay at u.
+  void make(const CutTopology<E>& topology, const VectorX& u) {
+    auto cut = std::make_shared<CutBody>();
+    std::vector<NodeId> origin;
+    for (NodeId i = 0; i < topology.mesh().node_count(); ++i) {
+      const std::vector<Index>& around = topology.elements_at(i);
+      const bool remains = !around.empty() && topology.state(around.front()) == ElementState::supported;
+      origin.push_back(remains ? topology.origin_of(i) : NodeId{-1});
+      cut->copied_from.push_back(topology.copied_from(i));
+    }
+    HyperelasticBody<E, M> rest = remaining(topology);
+    cut->body.conditions = conditions(topology, origin, u);
+    cut->body.load = VectorX::Zero(u.size());
+    cut->body.lumped = lumped_mass(rest.rest);
+    cut->nodal_mass = nodal_mass(rest.rest);
+    cut->body.pattern = block_pattern(rest.rest.mesh);
+    cut->body.positions = rest.rest.mesh.positions;
+    cut->stiffness = [own = rest.rest] { return assemble_stiffness<E>(own, SetupLimits{}); };
+    DeformableBody body;
+    body.conditions = cut->body.conditions;
+    body.load = cut->body.load;
+    body.lumped = cut->body.lumped;
+    body.positions = cut->body.positions;
+    motion_ = std::make_unique<QuasiNewtonMotion>(
+        std::move(body), detail::make_energy_forces<S>(std::move(rest), limits_), factor_, parameters_);
+    cut_ = std::move(cut);
+    origin_ = std::move(origin);
+  }
+  HyperelasticBody<E, M> remaining(const CutTopology<E>& topology) const {
+    const Mesh<E>& mesh = topology.mesh();
+    HyperelasticBody<E, M> rest{{{}, body_.rest.elasticity, body_.rest.density, body_.rest.initial_strain},
+                                body_.materials};
+    Mesh<E>& made = rest.rest.mesh;
+    made.positions = mesh.positions;
+    made.region_names = mesh.region_names;
+    for (Index e = 0; e < mesh.element_count(); ++e) {
+      if (topology.state(e) != ElementState::supported) continue;
+      made.elements.push_back(mesh.elements[static_cast<std::size_t>(e)]);
+      made.regions.push_back(mesh.region(e));
+      if (mesh.has_fibres()) made.fibres.push_back(mesh.fibre(e));
+      if (!body_.rest.materials.empty())
+        rest.rest.materials.push_back(body_.rest.materials[static_cast<std::size_t>(e)]);
+    }
+    return rest;
+  }
+  EssentialConditions conditions(const CutTopology<E>& topology, const std::vector<NodeId>& origin,
+                                 const VectorX& u) const {
+    EssentialConditions made;
+    made.prescribed = VectorX::Zero(u.size());
+    made.free_index.assign(static_cast<std::size_t>(u.size()), -1);
+    for (std::size_t i = 0; i < origin.size(); ++i)
+      made.constrained.push_back(origin[i] < 0 ? std::uint8_t{7} : topology.constrained()[i]);
+    for (Index dof = 0; dof < u.size(); ++dof) {
+      const auto node = static_cast<std::size_t>(dof / 3);
+      if ((made.constrained[node] >> (dof % 3) & 1u) != 0) {
+        made.prescribed[dof] = origin[node] < 0 ? u[dof] : prescribed_[3 * Index{origin[node]} + dof % 3];
+      } else {
+        made.free_index[static_cast<std::size_t>(dof)] = made.free_count();
+        made.free_dofs.push_back(dof);
+      }
+    }
+    return made;
+  }
+
+  QuasiNewtonParameters parameters_;
+  SetupLimits limits_;
+  HyperelasticBody<E, M> body_;  // before any cut
+  VectorX prescribed_, load_;    // of the nodes before any cut
+  std::shared_ptr<CutFactor> factor_;
+  std::shared_ptr<const CutBody> cut_;
+  std::vector<NodeId> origin_;  // node before any cut of every node; -1 without support
+  std::unique_ptr<QuasiNewtonMotion> motion_;
+  bool was_cut_ = false;  // since the last step
+};
+
+}}  // namespace palpate

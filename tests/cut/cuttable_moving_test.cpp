@@ -1,0 +1,266 @@
+// Moving tissue at large strain that is cut, against models made of what a cut leaves.
+#include <palpate/cut/cuttable_moving.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/element/tet10.hpp>
+#include <palpate/material/neo_hookean.hpp>
+#include <palpate/mesh/promote.hpp>
+#include <palpate/testing/random.hpp>
+#include <palpate/testing/tissue_laws.hpp>
+
+#include "model/one_session.hpp"
+
+using namespace palpate;
+
+namespace {
+
+template <class E>
+using CutMoving = HapticFEModel<E, NeoHookean, Cuttable<Implicit<QuasiNewton<>>>>;
+using Smooth = CutMoving<Smoothed<Tet4>>;
+static_assert(TissueModel<Smooth> && AnnouncesChanges<Smooth> && HasBackgroundWork<Smooth>);
+
+const NeoHookean flesh{5e3, 0.4, 1000.0};
+const Vector3 weight(0.5, 0.0, -2.0);
+
+template <class E>
+Mesh<E> steak() {
+  if constexpr (E::nodes == 10)
+    return promote<E>(box_tet4({0.08, 0.04, 0.04}, {4, 2, 2}, BoxSplit::six));
+  else
+    return copy_mesh<E>(box_tet4({0.08, 0.04, 0.04}, {8, 4, 4}, BoxSplit::six));
+}
+Scene on_its_side() {
+  return Scene().fix("x0").touch("z1").gravity(weight);
+}
+QuasiNewtonParameters exact() {
+  return {.inertia = false, .maximum_iterations = 200, .tolerance = 1e-9};
+}
+template <class Model>
+void rest(Model& model) {
+  MotionStep done;
+  for (int k = 0; k < 6; ++k) done = model.advance();
+  CHECK(done.taken);
+  CHECK(done.status.ok());
+  CHECK(done.relative_residual <= 1e-6);
+}
+/// Largest difference of a cut tissue from a model of its supported elements alone, relative to the displacement [m].
+template <class E>
+double difference_from_remains(CutMoving<E>& tissue) {
+  std::vector<NodeId> node_map;
+  std::vector<Index> element_map;
+  Mesh<E> remains;
+  tissue.read([&](const CutTopology<E>& t) { remains = t.extract(ElementState::supported, node_map, element_map); });
+  const Scene scene = Scene().fix("x0").touch("x1").gravity(weight);
+  const auto alone = SolverTraits<Implicit<QuasiNewton<>>>::make_motion(
+                         make_hyperelastic_body(remains, std::vector{flesh}), scene, exact(), {})
+                         .motion;
+  for (int k = 0; k < 6; ++k) alone->step(0.016);
+  const VectorX u = tissue.displacement(), &expected = alone->displacement();
+  double most = 0.0;
+  for (std::size_t i = 0; i < node_map.size(); ++i)
+    if (node_map[i] >= 0)
+      most = std::max(most, (node_vector(u, static_cast<Index>(i)) - node_vector(expected, Index{node_map[i]})).norm());
+  return most / expected.cwiseAbs().maxCoeff();
+}
+/// Elements with their centre in a box.
+template <class Model>
+std::vector<Index> elements_in(const Model& model, const Vector3& low, const Vector3& high) {
+  const auto& mesh = model.mesh();
+  std::vector<Index> inside;
+  for (Index e = 0; e < mesh.element_count(); ++e) {
+    Vector3 centre = model.origin();
+    for (const NodeId i : mesh.elements[static_cast<std::size_t>(e)])
+      centre += mesh.position(Index{i}) / Model::ElementType::nodes;
+    if ((centre - low).minCoeff() > 0.0 && (high - centre).minCoeff() > 0.0) inside.push_back(e);
+  }
+  return inside;
+}
+
+}  // namespace
+
+TEST_CASE("tissue that can be cut runs the session program of all models", "[cut][moving][haptic]") {
+  one_session::run<Smooth>();
+}
+
+TEMPLATE_TEST_CASE("after cuts a moving tissue rests like a model of what is left", "[cut][moving]", Tet4,
+                   Smoothed<Tet4>, Tet10) {
+  CutMoving<TestType> tissue(steak<TestType>(), on_its_side(), flesh, {}, exact());
+  rest(tissue);
+  CHECK(difference_from_remains(tissue) <= 1e-5);
+  tissue.cut(CutOrder{elements_in(tissue, {0.02, -1, 0.02}, {0.04, 1, 1}), {}});  // a notch
+  rest(tissue);
+  CHECK(tissue.cut_report().cuts == 1);
+  CHECK(difference_from_remains(tissue) <= 1e-5);
+  const Index nodes = tissue.displacement().size();
+  tissue.cut(BladeSweep{{0.05, -1, -0.5}, {0.05, 1, -0.5}, {0.05, -1, 0.012}, {0.05, 1, 0.012}});  // a slit from below
+  rest(tissue);
+  CHECK(tissue.cut_report().cuts == 2);
+  CHECK(tissue.displacement().size() > nodes);
+  CHECK(difference_from_remains(tissue) <= 1e-5);
+  // The same with the factor of the remaining body.
+  for (int k = 0; k < 500 && tissue.cut_report().renewals == 0; ++k) {
+    tissue.advance();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  CHECK(tissue.cut_report().renewals > 0);
+  rest(tissue);
+  CHECK(difference_from_remains(tissue) <= 1e-5);
+  tissue.reset();
+  rest(tissue);
+  CHECK(tissue.displacement().size() == 3 * tissue.mesh().node_count());
+  CHECK(difference_from_remains(tissue) <= 1e-5);
+}
+
+TEST_CASE("a moving tissue passes the tissue law suite while it is cut", "[cut][moving]") {
+  Smooth tissue(steak<Smoothed<Tet4>>(), on_its_side(), flesh);
+  const auto check = [&] {
+    std::vector<int> used;
+    for (int v = 0; v < tissue.contact_surface().vertex_count(); v += 5)
+      if (!tissue.contact_surface().triangles_at(v).empty()) used.push_back(v);
+    for (const auto& broken : testing::tissue_laws(tissue, used, {1e-5}))
+      FAIL_CHECK(broken.law << ' ' << broken.detail);
+  };
+  tissue.advance();
+  tissue.begin_tick();
+  check();
+  const int vertices = tissue.contact_surface().vertex_count();
+  tissue.cut(BladeSweep{{0.05, -1, 0.015}, {0.05, 1, 0.015}, {0.05, -1, 1}, {0.05, 1, 1}});
+  CHECK(tissue.begin_tick().has(StatusFlag::degraded_model));
+  tissue.advance();
+  CHECK(tissue.begin_tick().ok());
+  CHECK(tissue.contact_surface().vertex_count() > vertices);  // the walls of the cut can be touched
+  check();
+  tissue.cut(CutOrder{{0, 1, 2, 3, 4, 5}, {}});
+  tissue.advance();
+  tissue.begin_tick();
+  check();
+  CHECK_REFUSED(SetupErrorKind::index_out_of_range, tissue.cut(CutOrder{{1000000}, {}}));
+}
+
+TEST_CASE("burning and slitting under a tool: forces continue, and end as in a model of what is left",
+          "[cut][moving][haptic][extreme][F3]") {
+  using namespace one_session;
+  Smooth tissue(block(), constrained_block(), flesh, {}, {.inertia = false});
+  HapticServo servo(tissue, SphereTool{radius}, stiff_device());
+  double time = 0.0, next = 0.0, depth = 0.0;
+  Vector3 last = Vector3::Zero();
+  double largest_jump = 0.0;
+  const auto ticks = [&](int count) {
+    for (int k = 0; k < count; ++k, time += 1e-3) {
+      if (time >= next - 1e-9) next += tissue.background_work().next;
+      depth = std::min(0.005, depth + 2e-5);
+      ToolState state;
+      state.time = time;
+      state.position = Vector3(0.5 * size[0], 0.5 * size[1], size[2] + radius - depth);
+      const Vector3 force = servo.tick(state).force();
+      REQUIRE(force.allFinite());
+      largest_jump = std::max(largest_jump, (force - last).norm());
+      last = force;
+    }
+  };
+  ticks(600);
+  const double whole = last[2];
+  CHECK(whole > 0.2);
+  largest_jump = 0.0;
+  const std::vector<Index> below = elements_in(tissue, {0.02, 0.02, 0.0}, {0.04, 0.04, 0.015});
+  for (std::size_t k = 0; k + 4 <= below.size(); k += 4) {
+    tissue.cut(CutOrder{{below[k], below[k + 1], below[k + 2], below[k + 3]}, {}});
+    ticks(16);
+  }
+  ticks(600);
+  CHECK(tissue.cut_report().cuts > 2);
+  CHECK(last[2] < 0.9 * whole);
+  CHECK(last[2] > 0.05 * whole);
+  INFO("largest jump " << largest_jump << " of " << whole);
+  CHECK(largest_jump < 0.1 * whole);
+  std::vector<NodeId> node_map;
+  std::vector<Index> element_map;
+  Mesh<Smoothed<Tet4>> remains;
+  tissue.read([&](const auto& t) { remains = t.extract(ElementState::supported, node_map, element_map); });
+  for (Vector3& x : remains.positions) x += tissue.origin();
+  HapticFEModel<Smoothed<Tet4>, NeoHookean, Implicit<QuasiNewton<>>> alone(remains, Scene().fix("z0").touch("surface"),
+                                                                           flesh, {}, {.inertia = false});
+  HapticServo other(alone, SphereTool{radius}, stiff_device());
+  const Vector3 expected = press(alone, other, 0.005, 1200).back();
+  CHECK((last - expected).norm() <= 0.02 * expected.norm());
+
+  const Vector3 half = Vector3(0.5 * size[0], -1.0, 0.5 * size[2]);
+  const Index nodes = tissue.displacement().size();
+  tissue.cut(BladeSweep{half, half + Vector3(0, 2, 0), half + Vector3(0, 0, 1), half + Vector3(0, 2, 1)});
+  ticks(600);
+  CHECK(tissue.displacement().size() > nodes);
+  INFO("largest jump " << largest_jump << " of " << whole << ", force " << last[2] << " after " << expected[2]);
+  CHECK(last[2] < expected[2]);
+  CHECK(last[2] > 0.05 * whole);
+  CHECK(largest_jump < 0.25 * whole);
+  CHECK(!tissue.cut_report().failed);
+}
+
+TEST_CASE("a moving tissue is cut at random until nothing is left", "[cut][moving][extreme][F1][F3]") {
+  for (const bool inertia : {false, true}) {
+    Smooth tissue(steak<Smoothed<Tet4>>(), on_its_side(), flesh, {}, {.inertia = inertia, .mass_damping = 5.0});
+    testing::Random random(17);
+    std::vector<Index> left;
+    for (Index e = 0; e < tissue.mesh().element_count(); ++e) left.push_back(e);
+    double farthest = 0.0;
+    for (int k = 0; !left.empty(); ++k) {
+      CutOrder order;
+      for (int burnt = 0; burnt < 12 && !left.empty(); ++burnt) {
+        const auto at = static_cast<std::ptrdiff_t>(random.uniform(0.0, static_cast<double>(left.size()) - 1e-9));
+        order.remove.push_back(left[static_cast<std::size_t>(at)]);
+        left.erase(left.begin() + at);
+      }
+      tissue.cut(order);
+      if (k % 5 == 0) {
+        const Vector3 p = random.vector<3>(0.0, 0.08), q = random.vector<3>(-0.1, 0.1), d = random.vector<3>(-0.1, 0.1);
+        tissue.cut(BladeSweep{p - q - d, p + q - d, p - q + d, p + q + d});
+      }
+      const MotionStep done = tissue.advance();
+      CHECK((done.taken || !done.status.ok()));
+      tissue.begin_tick();
+      const VectorX u = tissue.displacement();
+      REQUIRE(u.allFinite());
+      farthest = std::max(farthest, u.cwiseAbs().maxCoeff());
+      for (const Vector3& x : tissue.contact_surface().positions()) REQUIRE(all_finite(x));
+    }
+    CHECK(!tissue.cut_report().failed);
+    INFO("farthest " << farthest);
+    CHECK(farthest < 0.5);
+    tissue.reset();
+    for (int k = 0; k < 100; ++k) tissue.advance();
+    CHECK(tissue.displacement().cwiseAbs().maxCoeff() < 0.05);
+  }
+}
+
+TEST_CASE("a piece cut from moving tissue stays where it was, the rest keeps its motion", "[cut][moving][extreme]") {
+  Smooth tissue(steak<Smoothed<Tet4>>(), on_its_side(), flesh, {}, {.step = 0.004, .settle = false});
+  for (int k = 0; k < 10; ++k) tissue.advance();
+  const VectorX before = tissue.displacement();
+  const double falling = tissue.motion().velocity().norm();
+  CHECK(falling > 0.0);
+  tissue.cut(BladeSweep{{0.055, -1, -1}, {0.055, 1, -1}, {0.055, -1, 1}, {0.055, 1, 1}});
+  tissue.advance();
+  const VectorX after = tissue.displacement();
+  std::vector<char> detached;
+  tissue.read([&](const CutTopology<Smoothed<Tet4>>& t) {
+    REQUIRE(t.detached_fragments().size() == 1);
+    detached.assign(static_cast<std::size_t>(t.mesh().node_count()), 0);
+    for (const NodeId i : t.detached_fragments()[0].nodes) {
+      detached[static_cast<std::size_t>(i)] = 1;
+      const NodeId parent = t.copied_from(i);
+      CHECK(node_vector(after, Index{i}) == node_vector(before, Index{parent}));
+    }
+  });
+  double faster = 0.0;
+  for (std::size_t i = 0; i < detached.size(); ++i)
+    if (detached[i] == 0) faster += node_vector(tissue.motion().velocity(), static_cast<Index>(i)).squaredNorm();
+  CHECK(std::sqrt(faster) > 0.3 * falling);
+  CHECK(std::sqrt(faster) < 1.5 * falling);
+}
+
+TEST_CASE("moving tissue that cannot be cut is refused", "[cut][moving][extreme]") {
+  const auto refusal = [](const QuasiNewtonParameters& p) {
+    return test::refusal_kind([&] { Smooth tissue(steak<Smoothed<Tet4>>(), on_its_side(), flesh, {}, p); });
+  };
+  CHECK(refusal({.inertia = false, .large_strain_within = 0.01}) == "unsupported");
+  CHECK(refusal({.renew_factor = true}) == "unsupported");
+}
