@@ -213,6 +213,7 @@ void measure_block(bench::RowFile& rows, int n, double limit, bool with_eigen) {
 int main(int argc, char** argv) try {
   bench::RowFile rows(bench::option(argc, argv, "--csv", ""), bench::option(argc, argv, "--build", "this"));
   measure_organ(rows, bench::option(argc, argv, "--trace", ""));
+  measure_moving_organ(rows);
   if (bench::has_option(argc, argv, "--organ")) return rows.failed() ? 1 : 0;
   measure_block(rows, 10, 0.016, true);
   measure_block(rows, 16, 0.016, true);

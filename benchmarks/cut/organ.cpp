@@ -1,12 +1,10 @@
 #include "organ.hpp"
+#include "organ_scene.hpp"
 
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/io/read_mesh.hpp>
 #include <palpate/material/linear_elastic.hpp>
-
-#include <Eigen/Geometry>
 
 #include <cstdio>
 #include <functional>
@@ -17,38 +15,9 @@
 namespace {
 
 using namespace palpate;
+using namespace cut_organ;
 using Tissue = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
 using Clock = std::chrono::steady_clock;
-
-// Middle and normal of the touchable patch.
-const Vector3 middle(-0.0285, -0.0298, 0.0405), outward(0.076, -0.408, 0.910);
-constexpr double smallest_tool = 4e-3;
-
-/// Processor time of this thread [s].
-double thread_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-/// The organ rests on its underside, as in example 01, and sags under its weight.
-Scene organ_scene(const Mesh<Tet4>& mesh) {
-  std::vector<NodeId> below;
-  for (const auto& face : extract_boundary<Tet4>(mesh)) {
-    const Vector3 a = mesh.position(face.nodes[0]), b = mesh.position(face.nodes[1]), c = mesh.position(face.nodes[2]);
-    if ((b - a).cross(c - a).normalized().z() < -0.5) below.insert(below.end(), face.nodes.begin(), face.nodes.end());
-  }
-  return Scene().fix("ligament").fix(below).touch("front").gravity({0.0, 0.0, -9.81});
-}
-/// The present position of the surface next to the middle of the patch [m].
-Vector3 on_surface(const Tissue& tissue) {
-  Vector3 best = Vector3::Constant(infinity);
-  for (const Vector3& x : tissue.contact_surface().positions()) {
-    const Vector3 p = tissue.to_world() * x;
-    if ((p - middle).head<2>().norm() < (best - middle).head<2>().norm()) best = p;
-  }
-  return best;
-}
 
 /// Nodes near the line of the cut, whose compliance is computed at set-up.
 std::vector<NodeId> along_the_cut(const Mesh<Tet4>& mesh) {
@@ -184,28 +153,14 @@ void report(bench::RowFile& rows, const std::string& what, const Session& s) {
 }  // namespace
 
 void measure_organ(bench::RowFile& rows, const std::string& trace) {
-  const auto mesh = io::read_mesh<Tet4>(PALPATE_BENCH_DATA "/organ.msh");
+  const auto mesh = cut_organ::organ_mesh();
   std::FILE* file = trace.empty() ? nullptr : std::fopen(trace.c_str(), "w");
   if (file != nullptr) std::fputs("run,tick,force_N,contact_N,tick_us,late_ms,revision,status\n", file);
-  const auto slit = [](Tissue& tissue, int k) {  // 40 mm long and 8 mm deep after two seconds
-    const Vector3 from = middle + Vector3(-0.02 + 0.04 * k / 120.0, 0, 0), to = from + Vector3(0.04 / 120.0, 0, 0);
-    tissue.cut(BladeSweep{from - 8e-3 * outward, from + 0.01 * outward, to - 8e-3 * outward, to + 0.01 * outward});
-  };
-  report(rows, "a slit", run(mesh, slit, file, "slit"));
-  std::vector<std::pair<double, Index>> nearest;  // elements near a line under the surface, sorted along the line
-  for (Index e = 0; e < mesh.element_count(); ++e) {
-    const Vector3 x = element_nodes<Tet4>(mesh, e).colwise().mean().transpose() - middle;
-    if (std::abs(x[0]) < 0.022 && (x - x[0] * Vector3::UnitX() + 3e-3 * outward).norm() < 6e-3)
-      nearest.push_back({x[0], e});
-  }
-  std::ranges::sort(nearest);
-  const auto burn = [&](Tissue& tissue, int k) {
-    const std::size_t share = nearest.size() * static_cast<std::size_t>(k) / 120,
-                      next = nearest.size() * static_cast<std::size_t>(k + 1) / 120;
-    CutOrder order;
-    for (std::size_t i = share; i < next; ++i) order.remove.push_back(nearest[i].second);
-    tissue.cut(order);
-  };
+  report(rows, "a slit",
+         run(
+             mesh, [](Tissue& tissue, int k) { tissue.cut(cut_organ::slit_part(k)); }, file, "slit"));
+  const std::vector<Index> path = cut_organ::burnt_elements(mesh);
+  const auto burn = [&](Tissue& tissue, int k) { tissue.cut(cut_organ::burning(path, k)); };
   report(rows, "burning", run(mesh, burn, file, "burn"));
   if (file != nullptr) std::fclose(file);
 }

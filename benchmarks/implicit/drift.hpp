@@ -10,7 +10,7 @@ void measure_implicit_drift(bench::RowFile& rows);
 void measure_implicit_drift(bench::RowFile& rows, int steps);
 /// Blocks with all free nodes displaced at random: the share that comes to rest.
 void measure_implicit_scrambles(bench::RowFile& rows, int runs);
-/// Blocks under random loads, of every law and scheme: energy gained beyond the work of the loads.
-void measure_energy_under_loads(bench::RowFile& rows, int steps);
+/// Blocks touched at random, of every law and scheme: energy gained beyond the work of the contact.
+void measure_energy_in_contact(bench::RowFile& rows, int steps);
 /// A fixed sphere in a moving tissue: creep of the tissue over `ticks` ticks.
 void measure_static_hold(bench::RowFile& rows, int ticks);

@@ -11,7 +11,7 @@
 int main(int argc, char** argv) try {
   bench::RowFile rows(bench::option(argc, argv, "--csv", ""), bench::option(argc, argv, "--build", "this"));
   if (const int steps = std::stoi(bench::option(argc, argv, "--energy", "0")); steps > 0) {
-    measure_energy_under_loads(rows, steps);
+    measure_energy_in_contact(rows, steps);
     return rows.failed() ? 1 : 0;
   }
   implicit_path::measure_steps(rows, 10, 1e-3);
@@ -23,7 +23,7 @@ int main(int argc, char** argv) try {
   const bool all = bench::has_option(argc, argv, "--long");
   measure_implicit_drift(rows, all ? 1000000 : 20000);
   measure_implicit_scrambles(rows, all ? 10000 : 50);
-  measure_energy_under_loads(rows, all ? 1000000 : 2000);
+  measure_energy_in_contact(rows, all ? 1000000 : 2000);
   measure_static_hold(rows, all ? 1000000 : 10000);
   return rows.failed() ? 1 : 0;
 } catch (const std::exception& e) {

@@ -2,15 +2,14 @@
 // elements. The touchable patch, the sphere and its ten contacts are always the same.
 //   bench_scaling [--build <name>] [--csv <file to add rows to>] [--out <folder for scaling.svg and scaling.csv>]
 //                 [--up-to <tetrahedra>]
+#include "../common/log_plot.hpp"
 #include "../common/row.hpp"
 #include "../common/touching.hpp"
-#include "log_plot.hpp"
 
 #include <exception>
 #include <memory>
 
-namespace scaling {
-namespace {
+namespace scaling { namespace {
 
 using namespace palpate;
 
@@ -62,8 +61,8 @@ std::vector<Sample> measure_all(double up_to) {
 
 constexpr double fitted_from = 9e3;  ///< [tets] smaller blocks consist mostly of the patch
 
-std::vector<Point> points(const std::vector<Sample>& samples, const char* body, auto value) {
-  std::vector<Point> p;
+std::vector<bench::Point> points(const std::vector<Sample>& samples, const char* body, auto value) {
+  std::vector<bench::Point> p;
   for (const Sample& s : samples)
     if (s.body == body) p.push_back({s.tets, value(s)});
   return p;
@@ -83,8 +82,9 @@ double p99_microseconds(const Sample& s) {
 }
 
 void write_picture(const std::vector<Sample>& samples, const std::string& path) {
-  LogPlot time(10, "Set-up", "s"), memory(380, "Peak memory of the set-up", "MB"),
-      tick(750, "Hot tick, 10 contacts", "µs");
+  const char* const along = "tetrahedra";
+  bench::LogPlot time(10, "Set-up", "s", along), memory(380, "Peak memory of the set-up", "MB", along),
+      tick(750, "Hot tick, 10 contacts", "µs", along);
   for (const auto& [body, colour, light] :
        {std::array{"block", "#2b6cb0", "#90cdf4"}, {"organ", "#b83280", "#fbb6ce"}}) {
     time.add(body, colour, points(samples, body, setup_seconds), fitted_from, true);
@@ -109,7 +109,7 @@ void write_samples(const std::vector<Sample>& samples, const std::string& path) 
 void add_exponents(bench::RowFile& rows, const std::vector<Sample>& samples) {
   for (const char* body : {"block", "organ"}) {
     const auto add = [&](const char* what, auto value) {
-      const PowerLaw power_law = fit(points(samples, body, value), fitted_from);
+      const bench::PowerLaw power_law = bench::fit(points(samples, body, value), fitted_from);
       rows.add({.target = "scaling",
                 .what = std::string(what) + " of the " + body + " ~ tets^e, e fitted above 9,000 tets",
                 .figure = bench::with_unit(power_law.exponent, ""),

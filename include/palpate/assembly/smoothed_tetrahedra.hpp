@@ -112,7 +112,7 @@ class SmoothedTetrahedra {
           place[static_cast<std::size_t>(e)] = static_cast<std::int32_t>(b * N + lane);
           volumes[static_cast<std::size_t>(e)] = constant_geometry(mesh, Index{e}).volume;
         }
-    const StrainDomains<Smoothed<Tet4>> domains(mesh, NodeElements(mesh), limits);
+    const StrainDomains<Smoothed<Tet4>> domains(mesh, NodeElements(mesh), limits, DomainContents::elements);
     edges_ = Averages(domains, StrainPart::deviatoric, place, volumes);
     nodes_ = Averages(domains, StrainPart::volumetric, place, volumes);
     const std::size_t places = layout_.batches.size() * N;

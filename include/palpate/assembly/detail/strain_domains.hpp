@@ -36,16 +36,24 @@ struct StrainDomain {
   void add_force(const Vector6& stress, VectorX& f) const noexcept;
 };
 
+enum class DomainContents : std::uint8_t {
+  gradients,  ///< all of StrainDomain
+  elements,   ///< without nodes and gradients: less time and memory
+};
+
 /// All domains of a mesh, per region: a deviatoric one for every edge, a volumetric one for every node. About 2 kB per
-/// node.
+/// node with gradients.
 template <HasSmoothedStrain E>
 class StrainDomains {
  public:
   StrainDomains() = default;
 
   /// O(elements). Throws inverted_element, non_finite, too_large or cancelled.
-  StrainDomains(const Mesh<E>& mesh, const NodeElements& around, const SetupLimits& limits = {})
-      : geometry_(element_geometry(mesh, limits)), place_(static_cast<std::size_t>(mesh.node_count()), unused) {
+  StrainDomains(const Mesh<E>& mesh, const NodeElements& around, const SetupLimits& limits = {},
+                DomainContents contents = DomainContents::gradients)
+      : geometry_(element_geometry(mesh, limits)),
+        place_(static_cast<std::size_t>(mesh.node_count()), unused),
+        contents_(contents) {
     for (Index i = 0; i < mesh.node_count(); ++i) {
       if (i % 8192 == 0) limits.advance("assembly", static_cast<double>(i) / static_cast<double>(mesh.node_count()));
       collect_shares(mesh, around, i);
@@ -110,20 +118,12 @@ class StrainDomains {
   void add_domain(const Mesh<E>& mesh, std::span<const Share> shares) {
     const bool of_node = shares.front().other < 0;
     const double part = of_node ? 1.0 / 4.0 : 1.0 / 6.0;
-    number_nodes(mesh, shares);
-    gradient_.resize(node_.size(), Vector3::Zero());
     double volume = 0.0;
     for (const Share& s : shares) {
-      const PointGeometry<E>& g = geometry_[static_cast<std::size_t>(s.element)];
-      volume += part * g.volume;
-      for (int a = 0; a < E::nodes; ++a)
-        for (int i = 0; i < 3; ++i)
-          gradient_[place_of(mesh.element_node(s.element, a))][i] += part * g.volume * g.gradient.coeff(a, i);
+      element_.push_back(s.element);
+      volume += part * geometry_[static_cast<std::size_t>(s.element)].volume;
     }
-    for (std::size_t a = node_start_.back(); a < node_.size(); ++a) {
-      gradient_[a] /= volume;
-      place_of(node_[a]) = unused;
-    }
+    if (contents_ == DomainContents::gradients) add_gradients(mesh, shares, part / volume);
     volume_.push_back(volume);
     region_.push_back(shares.front().region);
     part_.push_back(of_node ? StrainPart::volumetric : StrainPart::deviatoric);
@@ -131,16 +131,27 @@ class StrainDomains {
     element_start_.push_back(element_.size());
   }
 
-  /// Appends elements and nodes of a domain, and records the position of every node.
-  void number_nodes(const Mesh<E>& mesh, std::span<const Share> shares) {
+  /// Appends the nodes of a domain and their mean gradients; `share` is the part of an element per volume of the domain.
+  void add_gradients(const Mesh<E>& mesh, std::span<const Share> shares, double share) {
+    number_nodes(mesh, shares);
+    gradient_.resize(node_.size(), Vector3::Zero());
     for (const Share& s : shares) {
-      element_.push_back(s.element);
+      const PointGeometry<E>& g = geometry_[static_cast<std::size_t>(s.element)];
+      for (int a = 0; a < E::nodes; ++a)
+        for (int i = 0; i < 3; ++i)
+          gradient_[place_of(mesh.element_node(s.element, a))][i] += share * g.volume * g.gradient.coeff(a, i);
+    }
+    for (std::size_t a = node_start_.back(); a < node_.size(); ++a) place_of(node_[a]) = unused;
+  }
+
+  /// Appends the nodes of a domain, and records the position of every node.
+  void number_nodes(const Mesh<E>& mesh, std::span<const Share> shares) {
+    for (const Share& s : shares)
       for (const NodeId j : mesh.elements[static_cast<std::size_t>(s.element)]) {
         if (place_of(j) != unused) continue;
         place_of(j) = 0;
         node_.push_back(j);
       }
-    }
     std::sort(node_.begin() + static_cast<std::ptrdiff_t>(node_start_.back()), node_.end());
     for (std::size_t a = node_start_.back(); a < node_.size(); ++a) place_of(node_[a]) = a;
   }
@@ -156,6 +167,7 @@ class StrainDomains {
   std::vector<PointGeometry<E>> geometry_;  // during construction only
   std::vector<std::size_t> place_;          // position of a node in node_
   std::vector<Share> shares_;
+  DomainContents contents_ = DomainContents::gradients;
 };
 
 }}  // namespace palpate

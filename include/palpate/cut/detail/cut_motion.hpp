@@ -109,7 +109,7 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
     cut->body.conditions = conditions(topology, origin, u);
     cut->body.load = VectorX::Zero(u.size());
     cut->body.lumped = lumped_mass(rest.rest);
-    cut->nodal_mass = nodal_mass(rest.rest);
+    cut->nodal_mass = LinearTetrahedron<E> ? cut->body.lumped : nodal_mass(rest.rest);
     cut->body.pattern = block_pattern(rest.rest.mesh);
     cut->body.positions = rest.rest.mesh.positions;
     cut->stiffness = [own = rest.rest] { return assemble_stiffness<E>(own, SetupLimits{}); };

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace scaling {
+namespace bench {
 
 using Point = std::array<double, 2>;
 
@@ -36,8 +36,9 @@ inline PowerLaw fit(const std::vector<Point>& points, double from) {
 /// One panel of a picture. Coordinates in pixels of the picture.
 class LogPlot {
  public:
-  LogPlot(double left, std::string title, std::string unit)
-      : left_(left), title_(std::move(title)), unit_(std::move(unit)) {}
+  /// `along`: quantity and unit of the horizontal axis.
+  LogPlot(double left, std::string title, std::string unit, std::string along)
+      : left_(left), title_(std::move(title)), unit_(std::move(unit)), along_(std::move(along)) {}
 
   /// Adds points joined by a line. `fitted`: adds the power law for x >= `from` as a dashed line, and its exponent to
   /// the name.
@@ -45,6 +46,7 @@ class LogPlot {
     curves_.push_back({std::move(name), std::move(colour), std::move(points), from, fitted});
   }
 
+  double height() const { return bottom() + 50.0; }
   std::string svg() {
     find_range();
     std::string s =
@@ -62,7 +64,9 @@ class LogPlot {
     double from;
     bool fitted;
   };
-  static constexpr double width = 300, top = 110, bottom = 400;
+  static constexpr double width = 300;
+  double top() const { return 46.0 + 16.0 * std::max(4.0, static_cast<double>(curves_.size())); }
+  double bottom() const { return top() + 290.0; }
 
   void find_range() {
     for (const Curve& c : curves_)
@@ -73,7 +77,7 @@ class LogPlot {
         }
   }
   double x(double v) const { return left_ + 40 + width * (std::log10(v) - low_[0]) / (high_[0] - low_[0]); }
-  double y(double v) const { return bottom - (bottom - top) * (std::log10(v) - low_[1]) / (high_[1] - low_[1]); }
+  double y(double v) const { return bottom() - (bottom() - top()) * (std::log10(v) - low_[1]) / (high_[1] - low_[1]); }
 
   static std::string number(double v) {
     std::array<char, 32> b{};
@@ -91,14 +95,16 @@ class LogPlot {
   void grid(std::string& s) const {
     for (double d = low_[0]; d <= high_[0]; ++d) {
       const double v = std::pow(10.0, d);
-      s += line({x(v), top}, {x(v), bottom}, "stroke='#ddd'") +
-           text(x(v) - 14, bottom + 16, d < 6 ? number(1e-3 * v) + "k" : number(1e-6 * v) + "M");
+      s += line({x(v), top()}, {x(v), bottom()}, "stroke='#ddd'") + text(x(v) - 14, bottom() + 16,
+                                                                         d < 3   ? number(v)
+                                                                         : d < 6 ? number(1e-3 * v) + "k"
+                                                                                 : number(1e-6 * v) + "M");
     }
     for (double d = low_[1]; d <= high_[1]; ++d) {
       const double v = std::pow(10.0, d);
       s += line({left_ + 40, y(v)}, {left_ + 40 + width, y(v)}, "stroke='#ddd'") + text(left_, y(v) + 4, number(v));
     }
-    s += text(left_ + 150, bottom + 34, "tetrahedra");
+    s += text(left_ + 150, bottom() + 34, along_);
   }
   void curve(std::string& s, const Curve& c, double key) const {
     std::string path;
@@ -120,9 +126,9 @@ class LogPlot {
   }
 
   double left_;
-  std::string title_, unit_;
+  std::string title_, unit_, along_;
   std::vector<Curve> curves_;
   std::array<double, 2> low_{1e9, 1e9}, high_{-1e9, -1e9};
 };
 
-}  // namespace scaling
+}  // namespace bench
