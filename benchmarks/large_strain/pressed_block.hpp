@@ -7,6 +7,7 @@
 
 #include "../common/bodies.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 #include <functional>

@@ -4,6 +4,7 @@
 #include <palpate/model/moving/detail/far_displacement.hpp>
 #include <palpate/model/admission_report.hpp>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <algorithm>
