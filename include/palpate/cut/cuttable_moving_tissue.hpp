@@ -102,7 +102,8 @@ class CuttableMovingTissue : public MovingTissue {
   }
   /// Moves a session's contact to a new surface.
   void exchange_contacts(ContactProblem& problem) noexcept {
-    if (std::exchange(seen_, surface_number()) != seen_) problem.move_to(surface_contact(), contact_surface());
+    if (std::exchange(seen_, this->surface_number()) != seen_ && this->surface_contact() != nullptr)
+      problem.move_to(*this->surface_contact(), this->contact_surface());
   }
   /// Makes the contact surface for the tools of a session that begins; not while another session ticks.
   void prepare_tools(const ToolRadii& radii, const ContactParameters& contact) {
@@ -182,10 +183,15 @@ class CuttableMovingTissue : public MovingTissue {
     change_surface();
     ++report_.cuts;
     ++report_.changes;
+    report_.failed = false;
+    failed_.store(false, std::memory_order_release);
     report_.latency = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
   Vector3 position(NodeId node) const {
-    return body_->topology.mesh().position(Index{node}) + node_vector(cut_motion_->displacement(), Index{node});
+    const VectorX& u = cut_motion_->displacement();
+    NodeId known = node;  // a cut that failed may have left nodes that the motion does not have
+    while (3 * Index{known} >= u.size()) known = body_->topology.copied_from(known);
+    return body_->topology.mesh().position(Index{node}) + node_vector(u, Index{known});
   }
   void change_surface() {
     const CutSurface<E>& surface = body_->surface;

@@ -73,7 +73,9 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
 
   MotionStep step(double h) noexcept override {
     was_cut_ = false;
-    return motion_->step(h);
+    MotionStep done = motion_->step(h);
+    if (Index& worst = done.deformation.worst_element; worst >= 0) worst = elements_[static_cast<std::size_t>(worst)];
+    return done;
   }
   /// Right after a cut there is no step to correct; without inertia the next one forgets it.
   bool correct(const VectorX& more) noexcept override { return was_cut_ ? is_static() : motion_->correct(more); }
@@ -105,7 +107,10 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
       origin.push_back(remains ? topology.origin_of(i) : NodeId{-1});
       cut->copied_from.push_back(topology.copied_from(i));
     }
-    HyperelasticBody<E, M> rest = remaining(topology);
+    std::vector<Index> elements;
+    for (Index e = 0; e < topology.mesh().element_count(); ++e)
+      if (topology.state(e) == ElementState::supported) elements.push_back(e);
+    HyperelasticBody<E, M> rest = part(topology.mesh(), elements);
     cut->body.conditions = conditions(topology, origin, u);
     cut->body.load = VectorX::Zero(u.size());
     cut->body.lumped = lumped_mass(rest.rest);
@@ -122,23 +127,23 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
         std::move(body), detail::make_energy_forces<S>(std::move(rest), limits_), factor_, parameters_);
     cut_ = std::move(cut);
     origin_ = std::move(origin);
+    elements_ = std::move(elements);
   }
-  HyperelasticBody<E, M> remaining(const CutTopology<E>& topology) const {
-    const Mesh<E>& mesh = topology.mesh();
-    HyperelasticBody<E, M> rest{{{}, body_.rest.elasticity, body_.rest.density, body_.rest.initial_strain},
+  /// Some elements, with all nodes.
+  HyperelasticBody<E, M> part(const Mesh<E>& mesh, const std::vector<Index>& elements) const {
+    HyperelasticBody<E, M> made{{{}, body_.rest.elasticity, body_.rest.density, body_.rest.initial_strain},
                                 body_.materials};
-    Mesh<E>& made = rest.rest.mesh;
-    made.positions = mesh.positions;
-    made.region_names = mesh.region_names;
-    for (Index e = 0; e < mesh.element_count(); ++e) {
-      if (topology.state(e) != ElementState::supported) continue;
-      made.elements.push_back(mesh.elements[static_cast<std::size_t>(e)]);
-      made.regions.push_back(mesh.region(e));
-      if (mesh.has_fibres()) made.fibres.push_back(mesh.fibre(e));
+    Mesh<E>& of_part = made.rest.mesh;
+    of_part.positions = mesh.positions;
+    of_part.region_names = mesh.region_names;
+    for (const Index e : elements) {
+      of_part.elements.push_back(mesh.elements[static_cast<std::size_t>(e)]);
+      of_part.regions.push_back(mesh.region(e));
+      if (mesh.has_fibres()) of_part.fibres.push_back(mesh.fibre(e));
       if (!body_.rest.materials.empty())
-        rest.rest.materials.push_back(body_.rest.materials[static_cast<std::size_t>(e)]);
+        made.rest.materials.push_back(body_.rest.materials[static_cast<std::size_t>(e)]);
     }
-    return rest;
+    return made;
   }
   EssentialConditions conditions(const CutTopology<E>& topology, const std::vector<NodeId>& origin,
                                  const VectorX& u) const {
@@ -165,7 +170,8 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
   VectorX prescribed_, load_;    // of the nodes before any cut
   std::shared_ptr<CutFactor> factor_;
   std::shared_ptr<const CutBody> cut_;
-  std::vector<NodeId> origin_;  // node before any cut of every node; -1 without support
+  std::vector<NodeId> origin_;   // node before any cut of every node; -1 without support
+  std::vector<Index> elements_;  // that remain
   std::unique_ptr<QuasiNewtonMotion> motion_;
   bool was_cut_ = false;  // since the last step
 };

@@ -156,7 +156,7 @@ class MovingTissue : public ModelBase {
   void take_surface() noexcept;
   /// Of the surface that a tick uses: number of changes before it, and its contact problem.
   std::uint64_t surface_number() const noexcept { return views_.front().number; }
-  ContactProblem& surface_contact() const noexcept { return *views_.front().contact; }
+  ContactProblem* surface_contact() const noexcept { return views_.front().contact.get(); }
 
  private:
   template <std::size_t Most>
