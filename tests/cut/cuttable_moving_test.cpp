@@ -31,11 +31,11 @@ Mesh<E> steak() {
 Scene on_its_side() {
   return Scene().fix("x0").touch("z1").gravity(weight);
 }
-QuasiNewtonParameters exact() {
+QuasiNewtonParameters exact_parameters() {
   return {.inertia = false, .maximum_iterations = 200, .tolerance = 1e-9};
 }
 template <class Model>
-void rest(Model& model) {
+void step_to_rest(Model& model) {
   MotionStep done;
   for (int k = 0; k < 6; ++k) done = model.advance();
   CHECK(done.taken);
@@ -51,7 +51,7 @@ double difference_from_remains(CutMoving<E>& tissue) {
   tissue.read([&](const CutTopology<E>& t) { remains = t.extract(ElementState::supported, node_map, element_map); });
   const Scene scene = Scene().fix("x0").touch("x1").gravity(weight);
   const auto alone = SolverTraits<Implicit<QuasiNewton<>>>::make_motion(
-                         make_hyperelastic_body(remains, std::vector{flesh}), scene, exact(), {})
+                         make_hyperelastic_body(remains, std::vector{flesh}), scene, exact_parameters(), {})
                          .motion;
   for (int k = 0; k < 6; ++k) alone->step(0.016);
   const VectorX u = tissue.displacement(), &expected = alone->displacement();
@@ -83,16 +83,16 @@ TEST_CASE("tissue that can be cut runs the session program of all models", "[cut
 
 TEMPLATE_TEST_CASE("after cuts a moving tissue rests like a model of what is left", "[cut][moving]", Tet4,
                    Smoothed<Tet4>, Tet10) {
-  CutMoving<TestType> tissue(steak<TestType>(), on_its_side(), flesh, {}, exact());
-  rest(tissue);
+  CutMoving<TestType> tissue(steak<TestType>(), on_its_side(), flesh, {}, exact_parameters());
+  step_to_rest(tissue);
   CHECK(difference_from_remains(tissue) <= 1e-5);
   tissue.cut(CutOrder{elements_in(tissue, {0.02, -1, 0.02}, {0.04, 1, 1}), {}});  // a notch
-  rest(tissue);
+  step_to_rest(tissue);
   CHECK(tissue.cut_report().cuts == 1);
   CHECK(difference_from_remains(tissue) <= 1e-5);
   const Index nodes = tissue.displacement().size();
   tissue.cut(BladeSweep{{0.05, -1, -0.5}, {0.05, 1, -0.5}, {0.05, -1, 0.012}, {0.05, 1, 0.012}});  // a slit from below
-  rest(tissue);
+  step_to_rest(tissue);
   CHECK(tissue.cut_report().cuts == 2);
   CHECK(tissue.displacement().size() > nodes);
   CHECK(difference_from_remains(tissue) <= 1e-5);
@@ -102,10 +102,10 @@ TEMPLATE_TEST_CASE("after cuts a moving tissue rests like a model of what is lef
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   CHECK(tissue.cut_report().renewals > 0);
-  rest(tissue);
+  step_to_rest(tissue);
   CHECK(difference_from_remains(tissue) <= 1e-5);
   tissue.reset();
-  rest(tissue);
+  step_to_rest(tissue);
   CHECK(tissue.displacement().size() == 3 * tissue.mesh().node_count());
   CHECK(difference_from_remains(tissue) <= 1e-5);
 }
