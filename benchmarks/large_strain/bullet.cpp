@@ -4,20 +4,8 @@
 #ifdef PALPATE_BENCH_BULLET
 #include "../common/bullet_body.hpp"
 
-#include <Eigen/SVD>
-
 namespace large_strain {
 namespace {
-
-/// Co-rotated linear elasticity.
-Matrix3 corotated_stress(const Matrix3& f) {
-  const Eigen::JacobiSVD<Matrix3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vector3 signs(1.0, 1.0, (svd.matrixU() * svd.matrixV().transpose()).determinant());
-  const Matrix3 r = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  const Matrix3 stretch = r.transpose() * f - Matrix3::Identity();
-  return r * (bench::tissue.shear_modulus() * (stretch + stretch.transpose()) +
-              bench::tissue.lame_lambda() * stretch.trace() * Matrix3::Identity());
-}
 
 /// Bullet's neo-Hookean law (Smith et al. 2018 with the logarithmic term). Its constants in terms of Lame's are those
 /// of section 3.4 there, so that it agrees with linear elasticity at small strain.

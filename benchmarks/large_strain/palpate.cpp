@@ -1,11 +1,15 @@
 // palpate's moving tissue.
 #include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
+#include <palpate/material/corotational.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/promote.hpp>
+#include <palpate/model/moving/implicit.hpp>
 #include <palpate/model/moving/quasi_newton.hpp>
 
 #include "pressed_block.hpp"
+
+#include <Eigen/SVD>
 
 namespace large_strain {
 namespace {
@@ -58,7 +62,47 @@ class QuasiNewtonBlock : public Method {
   VectorX prescribed_, f_;
 };
 
+/// Co-rotated linear tetrahedra without a factorisation.
+class CorotatedBlock : public Method {
+ public:
+  explicit CorotatedBlock(const PressedBlock& block) : mesh_(block.mesh), square_(block.square) {
+    Scene scene;
+    scene.fix(block.bottom).fix(square_);
+    motion_ = SolverTraits<Implicit<MatrixFreeCG<BlockJacobi>>>::make_motion(
+                  make_hyperelastic_body(mesh_, std::vector{Corotational<LinearElastic>{{bench::tissue}}}), scene,
+                  {.step = step_length}, SetupLimits{})
+                  .motion;
+    prescribed_ = VectorX::Zero(3 * mesh_.node_count());
+  }
+  void step(const Vector3& square) override {
+    for (const NodeId i : square_) set_node_vector(prescribed_, Index{i}, square);
+    motion_->set_prescribed(prescribed_);
+    motion_->step(step_length);
+  }
+  Vector3 force() override {
+    const auto place = [&](NodeId i) {
+      return Vector3(mesh_.position(Index{i}) + node_vector(motion_->displacement(), Index{i}));
+    };
+    return elastic_force(mesh_, square_, place, corotated_stress);
+  }
+
+ private:
+  Mesh<Tet4> mesh_;
+  std::vector<NodeId> square_;
+  std::unique_ptr<TissueMotion> motion_;
+  VectorX prescribed_;
+};
+
 }  // namespace
+
+Matrix3 corotated_stress(const Matrix3& f) {
+  const Eigen::JacobiSVD<Matrix3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vector3 signs(1.0, 1.0, (svd.matrixU() * svd.matrixV().transpose()).determinant());
+  const Matrix3 r = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  const Matrix3 stretch = r.transpose() * f - Matrix3::Identity();
+  return r * (bench::tissue.shear_modulus() * (stretch + stretch.transpose()) +
+              bench::tissue.lame_lambda() * stretch.trace() * Matrix3::Identity());
+}
 
 void add_palpate(std::vector<Entry>& entries) {
   const auto add = [&]<Element E, class S>(const char* name, const char* colour, int largest,
@@ -72,6 +116,8 @@ void add_palpate(std::vector<Entry>& entries) {
   add.operator()<Smoothed<Tet4>, float>("palpate, Smoothed<Tet4>, float", "#0b6", 16, {.inertia = false});
   add.operator()<Smoothed<Tet4>, float>("palpate, Smoothed<Tet4>, float, with inertia", "#6c3", 16, {});
   add.operator()<Tet10, double>("palpate, Tet10", "#075", 8, {.inertia = false});
+  entries.push_back({"palpate, co-rotated Tet4", "#9c9",
+                     [](const PressedBlock& block) { return std::make_unique<CorotatedBlock>(block); }});
 }
 
 std::vector<Vector3> reference_forces(int n, int every) {

@@ -97,6 +97,9 @@ struct StableNeoHookean {
   Matrix3 operator()(const Matrix3& f) const { return mu * f + pressure(f) * cofactor(f); }
 };
 
+/// First Piola-Kirchhoff stress of co-rotated linear elasticity.
+Matrix3 corotated_stress(const Matrix3& f);
+
 void add_palpate(std::vector<Entry>& entries);
 void add_plain_eigen(std::vector<Entry>& entries);
 void add_position_based(std::vector<Entry>& entries);
