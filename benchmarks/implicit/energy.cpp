@@ -101,7 +101,7 @@ void measure(bench::RowFile& rows, const char* name, const M& material,
     gained = std::max(gained, energy - work - lowest);
   }
   char figure[80], share[80];
-  std::snprintf(figure, sizeof figure, "%.1e", gained / largest);
+  std::snprintf(figure, sizeof figure, "%.1e of %.1e J", gained / largest, largest);
   std::snprintf(share, sizeof share, "flagged %.4f, refused %.4f", static_cast<double>(flagged) / steps,
                 static_cast<double>(refused) / steps);
   rows.add({.target = "m",
@@ -112,6 +112,7 @@ void measure(bench::RowFile& rows, const char* name, const M& material,
             .baseline = share,
             .bound = {},
             .error = !finite                       ? "not finite"
+                     : largest < 1e-4              ? "hardly touched"
                      : gained <= allowed * largest ? ""
                                                    : "energy was gained"});
 }
