@@ -4,6 +4,7 @@
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/cut/detail/cut_factor.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/integrator/detail/requirements.hpp>
 #include <palpate/model/moving/quasi_newton.hpp>
 
 #include <memory>
