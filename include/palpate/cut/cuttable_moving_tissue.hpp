@@ -169,14 +169,8 @@ class CuttableMovingTissue : public MovingTissue {
   }
   void apply(const CutOrders::Taken& taken) {
     const auto start = std::chrono::steady_clock::now();
-    const Eigen::Isometry3d local = inverse(to_world());
-    CutOrder order = taken.order;
-    for (const BladeSweep& s : taken.sweeps) {
-      const auto faces = swept_faces(body_->topology, {local * s.a0, local * s.b0, local * s.a1, local * s.b1},
-                                     [&](NodeId node) { return position(node); });
-      order.open.insert(order.open.end(), faces.begin(), faces.end());
-    }
-    const TopologyChange<E> change = body_->topology.apply(order);
+    const TopologyChange<E> change = body_->topology.apply(
+        combined(taken, body_->topology, inverse(to_world()), [&](NodeId node) { return position(node); }));
     if (change.empty()) return;
     body_->surface.update(body_->topology, change);
     cut_motion_->follow(body_->topology);

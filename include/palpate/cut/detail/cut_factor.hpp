@@ -19,8 +19,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 struct CutBody {
   DeformableBody body;                     ///< conditions, positions, lumped mass and pattern
   std::function<BlockMatrix()> stiffness;  ///< at rest; called by the thread
-  VectorX nodal_mass;  ///< [kg]; the lumped mass has another distribution in elements of second order
-  std::vector<NodeId> copied_from;         ///< node from which a node was split, which has a smaller id; or itself
+  VectorX nodal_mass;               ///< [kg]; the lumped mass has another distribution in elements of second order
+  std::vector<NodeId> copied_from;  ///< node from which a node was split, which has a smaller id; or itself
 };
 
 /// The factor A of an earlier body, extended to the nodes that cuts have copied since: S A^-1 S^T + D. S gives a copy
@@ -44,9 +44,9 @@ class CutFactor final : public StepFactor {
   long renewals() const noexcept override { return renewals_; }
 
  private:
-  void order();
+  void request();
   /// Finds the node of the base of every node, and D.
-  void relate();
+  void find_base_nodes();
   // In the thread
   void compute() noexcept;
   std::shared_ptr<RenewableFactor> make() const;
@@ -55,13 +55,13 @@ class CutFactor final : public StepFactor {
   double mass_ = 0.0;
   std::shared_ptr<const CutBody> newest_;  // null: before any cut
   /// What the thread is asked for, and its result; used by the thread while it works.
-  struct Order {
+  struct Request {
     std::shared_ptr<const CutBody> body;
     double mass = 0.0;
     bool wanted = false;  // false after a restart; not used by the thread
     std::shared_ptr<RenewableFactor> made;
   };
-  Order order_;
+  Request request_;
   std::vector<NodeId> base_node_;
   std::vector<NodeId> split_;      // nodes with a copy, and copies
   std::vector<Matrix3> relative_;  // D, for each

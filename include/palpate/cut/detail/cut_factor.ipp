@@ -11,30 +11,30 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE CutFactor::CutFactor(std::shared_ptr<RenewableFactor> base)
     : base_(std::move(base)), whole_(base_), thread_([this] { compute(); }) {
-  relate();
+  find_base_nodes();
 }
 
 PALPATE_INLINE void CutFactor::follow(std::shared_ptr<const CutBody> body) {
   newest_ = std::move(body);
-  relate();
-  if (thread_.idle()) order();
+  find_base_nodes();
+  if (thread_.idle()) request();
 }
 
 PALPATE_INLINE void CutFactor::restart() {
   newest_.reset();
   base_ = whole_;
-  order_.wanted = false;
-  relate();
+  request_.wanted = false;
+  find_base_nodes();
 }
 
-PALPATE_INLINE void CutFactor::order() {
-  order_.body = newest_;
-  order_.mass = mass_;
-  order_.wanted = true;
+PALPATE_INLINE void CutFactor::request() {
+  request_.body = newest_;
+  request_.mass = mass_;
+  request_.wanted = true;
   thread_.ask();
 }
 
-PALPATE_INLINE void CutFactor::relate() {
+PALPATE_INLINE void CutFactor::find_base_nodes() {
   const auto nodes = static_cast<NodeId>(base_->nodes());
   base_node_.resize(newest_ ? newest_->copied_from.size() : static_cast<std::size_t>(nodes));
   for (std::size_t i = 0; i < base_node_.size(); ++i) {
@@ -79,30 +79,30 @@ PALPATE_INLINE void CutFactor::solve(const VectorX& r, VectorX& z) noexcept {
 PALPATE_INLINE void CutFactor::take_renewed() noexcept {
   if (!thread_.finished()) return;
   thread_.take();
-  if (order_.wanted && order_.made && order_.made->set_mass(mass_)) {
-    base_ = std::move(order_.made);
-    relate();
+  if (request_.wanted && request_.made && request_.made->set_mass(mass_)) {
+    base_ = std::move(request_.made);
+    find_base_nodes();
     ++renewals_;
   }
-  if (newest_ && (order_.body != newest_ || !order_.wanted)) order();
+  if (newest_ && (request_.body != newest_ || !request_.wanted)) request();
 }
 
 PALPATE_INLINE void CutFactor::compute() noexcept {
 #if defined(PALPATE_HAS_EXCEPTIONS)
   try {
-    order_.made = make();
+    request_.made = make();
   } catch (...) {  // no memory: the last factor stays in use
-    order_.made.reset();
+    request_.made.reset();
   }
 #else
-  order_.made = make();
+  request_.made = make();
 #endif
 }
 
 PALPATE_INLINE std::shared_ptr<RenewableFactor> CutFactor::make() const {
-  auto made = std::make_shared<RenewableFactor>(order_.body->body, order_.body->stiffness(), std::vector<NodeId>{},
+  auto made = std::make_shared<RenewableFactor>(request_.body->body, request_.body->stiffness(), std::vector<NodeId>{},
                                                 StiffnessAt(), SetupLimits{});
-  return made->set_mass(order_.mass) ? made : nullptr;
+  return made->set_mass(request_.mass) ? made : nullptr;
 }
 
 }}  // namespace palpate

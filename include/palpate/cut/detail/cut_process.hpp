@@ -172,14 +172,8 @@ class CutProcess {
 
   /// All orders as faces and elements. Blades cut the deformed body.
   CutOrder order_of(const CutOrders::Taken& taken, const Eigen::Isometry3d& local) {
-    CutOrder all = taken.order;
     if (!taken.sweeps.empty() && std::exchange(is_due(Check::inside), false)) system_.recover();
-    for (const BladeSweep& s : taken.sweeps) {
-      const auto faces = swept_faces(topology_, {local * s.a0, local * s.b0, local * s.a1, local * s.b1},
-                                     [&](NodeId node) { return position(node); });
-      all.open.insert(all.open.end(), faces.begin(), faces.end());
-    }
-    return all;
+    return combined(taken, topology_, local, [&](NodeId node) { return position(node); });
   }
 
   /// Updates the compliance and publishes it. Makes a new factor if the update is not positive definite to working

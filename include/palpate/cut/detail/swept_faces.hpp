@@ -4,7 +4,9 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/contact/detail/blade_sweep.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/cut/detail/cut_orders.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 #include <palpate/mesh/mesh.hpp>
@@ -41,6 +43,19 @@ std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const Blade
     }
   }
   return open;
+}
+
+/// Waiting orders as one, with the faces that their sweeps open. `local` maps the world to the frame of the mesh;
+/// `position` as above.
+template <Element E, class Position>
+CutOrder combined(const CutOrders::Taken& taken, const CutTopology<E>& topology, const Eigen::Isometry3d& local,
+                  Position&& position) {
+  CutOrder all = taken.order;
+  for (const BladeSweep& s : taken.sweeps) {
+    const auto faces = swept_faces(topology, {local * s.a0, local * s.b0, local * s.a1, local * s.b1}, position);
+    all.open.insert(all.open.end(), faces.begin(), faces.end());
+  }
+  return all;
 }
 
 }}  // namespace palpate

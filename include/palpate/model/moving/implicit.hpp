@@ -16,8 +16,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// elements except smoothed ones, all materials and all step lengths. See ImplicitDynamics.
 template <class Factor>
 struct Newton {
-  static_assert(std::same_as<Factor, SparseCholesky>,
-                "palpate: Newton's method takes a factor: Newton<SparseCholesky>");
+  static_assert(std::same_as<Factor, SparseCholesky>, "palpate: Newton's method takes a factor: Newton<SparseCholesky>");
 };
 
 /// Matrix-free conjugate gradients in scalar type S, with bounded work per step. For Tet4 and Corotational<...>. See
@@ -42,9 +41,7 @@ struct SolverTraits<Implicit<Newton<SparseCholesky>>> {
 
   template <class Body>
   static PreparedMotion make_motion(Body body, const Scene& scene, const Parameters& p, const SetupLimits& limits) {
-    constexpr bool is_linear = requires {
-      body.mesh;
-    };
+    constexpr bool is_linear = requires { body.mesh; };
     return prepare(make_deformable_body(std::move(body), scene, limits), is_linear, p, limits);
   }
 
@@ -61,7 +58,7 @@ struct CorotatedParameters {
   double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]
   double stiffness_damping = 0.0;  ///< Rayleigh's beta [s]
   BoundedSolveParameters solve{.maximum_iterations = 40, .tolerance = 3e-3};
-  int precondition_every = 16;  ///< steps between two updates of the preconditioner
+  int precondition_every = 16;     ///< steps between two updates of the preconditioner
   bool check = true;  ///< compare the energy after a step with that before it; costs one more force evaluation
   int maximum_linearisations = 8;  ///< per step, when the check fails
 };
@@ -71,8 +68,8 @@ template <class Base, class S, class Preconditioner>
 class CorotatedTissueMotion final : public TissueMotion {
  public:
   using Motion = CorotatedMotion<Base, S, Preconditioner>;
-  CorotatedTissueMotion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene,
-                        const CorotatedMotionOptions& options, const SetupLimits& limits)
+  CorotatedTissueMotion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene, const CorotatedMotionOptions& options,
+                        const SetupLimits& limits)
       : motion_(body, scene, options, limits) {}
 
   MotionStep step(double h) noexcept override {
@@ -116,9 +113,8 @@ struct SolverTraits<Implicit<MatrixFreeCG<Preconditioner, S>>> {
       Equilibrium statics(make_constrained_body(body, scene, limits), limits);
       made.start = detail::settled(statics);
     }
-    const CorotatedMotionOptions options{
-        p.scheme, p.mass_damping,          p.stiffness_damping, p.solve, p.precondition_every,
-        p.check,  p.maximum_linearisations};
+    const CorotatedMotionOptions options{p.scheme, p.mass_damping,       p.stiffness_damping, p.solve,
+                                         p.precondition_every, p.check, p.maximum_linearisations};
     made.motion = std::make_unique<CorotatedTissueMotion<Base, S, Preconditioner>>(body, scene, options, limits);
     return made;
   }
