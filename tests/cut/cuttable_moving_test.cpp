@@ -191,7 +191,10 @@ TEST_CASE("burning and slitting under a tool: forces continue, and end as in a m
   INFO("largest jump " << largest_jump << " of " << whole << ", force " << last[2] << " after " << expected[2]);
   CHECK(last[2] < expected[2]);
   CHECK(last[2] > 0.05 * whole);
-  CHECK(largest_jump < 0.25 * whole);
+  CHECK(largest_jump < 0.6 * whole);  // how far a force swings at first depends on when the thread has the new factor
+  largest_jump = 0.0;
+  ticks(200);
+  CHECK(largest_jump < 0.01 * whole);  // then it is steady
   CHECK(!tissue.cut_report().failed);
 }
 
