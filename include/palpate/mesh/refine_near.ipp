@@ -1,0 +1,204 @@
+// Definitions of refine_near.hpp.
+#pragma once
+
+#include <palpate/core/setup_error.hpp>
+#include <palpate/mesh/detail/bisection.hpp>
+#include <palpate/mesh/detail/curved_boundary.hpp>
+#include <palpate/mesh/detail/fibres.hpp>
+#include <palpate/mesh/detail/refined_groups.hpp>
+#include <palpate/mesh/detail/target_distance.hpp>
+#include <palpate/mesh/quality.hpp>
+#include <palpate/mesh/refine_near.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+[[noreturn]] PALPATE_COLD inline void refuse_option(const std::string& what, double value, double threshold,
+                                                    std::string hint) {
+  SetupProblem problem;
+  problem.what = what + " is " + number(value);
+  problem.hint = std::move(hint);
+  problem.value = value;
+  problem.threshold = threshold;
+  raise(std::move(problem));
+}
+
+struct MeshQuality {
+  double least = infinity, mean = 0.0;
+};
+
+/// Refuses elements without positive volume.
+inline MeshQuality checked_quality(const Mesh<Tet4>& mesh) {
+  MeshQuality quality;
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+    for (const NodeId i : mesh.elements[e])
+      if (i < 0 || i >= static_cast<NodeId>(mesh.positions.size()))
+        raise_at(SetupIds::elements, static_cast<std::int64_t>(e), SetupErrorKind::index_out_of_range,
+                 "an element names a node that does not exist");
+    const auto shape = element_shape<Tet4>(element_nodes<Tet4>(mesh, static_cast<Index>(e)));
+    if (!(shape.quality > 0.0))
+      raise_at(SetupIds::elements, static_cast<std::int64_t>(e),
+               shape.volume < 0.0 ? SetupErrorKind::inverted_element : SetupErrorKind::degenerate_element,
+               "an element has the volume " + number(shape.volume) + " m^3", "Admit the mesh before refinement");
+    quality.least = std::min(quality.least, shape.quality);
+    quality.mean += shape.quality / static_cast<double>(mesh.elements.size());
+  }
+  return quality;
+}
+
+inline void check_mesh(const Mesh<Tet4>& mesh) {
+  if (mesh.elements.empty()) raise(SetupErrorKind::empty_mesh, "a mesh without elements cannot be refined");
+  if (!mesh.regions.empty() && mesh.regions.size() != mesh.elements.size())
+    raise(SetupErrorKind::bad_argument,
+          std::to_string(mesh.regions.size()) + " regions for " + std::to_string(mesh.elements.size()) + " elements");
+  if (mesh.has_fibres()) require_fibre_count(mesh.fibres.size(), mesh.element_count());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    if (!all_finite(mesh.positions[i]))
+      raise_at(SetupIds::nodes, static_cast<std::int64_t>(i), SetupErrorKind::non_finite,
+               "the position of a node is not finite");
+  for (const Group& group : mesh.groups.all()) {
+    const auto n = mesh.node_count();
+    if (std::ranges::any_of(group.nodes, [n](NodeId i) { return i < 0 || i >= n; }) ||
+        std::ranges::any_of(group.elements, [&](Index e) { return e < 0 || e >= mesh.element_count(); }))
+      raise(SetupErrorKind::index_out_of_range,
+            "group '" + group.name + "' names a node or an element that does not exist");
+  }
+}
+
+inline void check_options(const RefineNearOptions& options) {
+  if (!(options.quality_kept > 0.0 && options.quality_kept <= 1.0))
+    refuse_option("RefineNearOptions::quality_kept", options.quality_kept, 1.0, "Give a fraction: 0 < fraction <= 1");
+  if (options.most_nodes < 1)
+    refuse_option("RefineNearOptions::most_nodes", static_cast<double>(options.most_nodes), 1.0,
+                  "Give the number of nodes at which refinement ends");
+}
+
+inline void check_wanted(const WantedEdge& wanted) {
+  if (!(wanted.edge > 0.0 && wanted.edge < infinity))
+    refuse_option("WantedEdge::edge", wanted.edge, 0.0, "Give the wanted length of edges in metres");
+  if (!(wanted.growth > 0.0 && wanted.growth < infinity))
+    refuse_option("WantedEdge::growth", wanted.growth, 0.0,
+                  "Give how fast the length increases with distance, such as 0.35");
+}
+
+inline Mesh<Tet4> refined_mesh(const Mesh<Tet4>& coarse, Bisection& bisection) {
+  const DividedEdges divided(bisection.divided(), bisection.first_new_node());
+  Bisection::Elements sorted = bisection.sorted_elements();
+  Mesh<Tet4> fine;
+  fine.groups = refined_groups(coarse, divided, sorted);
+  for (Index e = 0; e < coarse.element_count(); ++e) {
+    const auto parts = static_cast<std::size_t>(sorted.first[static_cast<std::size_t>(e) + 1] -
+                                                sorted.first[static_cast<std::size_t>(e)]);
+    if (!coarse.regions.empty()) fine.regions.insert(fine.regions.end(), parts, coarse.region(e));
+    if (coarse.has_fibres()) fine.fibres.insert(fine.fibres.end(), parts, coarse.fibre(e));
+  }
+  fine.region_names = coarse.region_names;
+  fine.elements = std::move(sorted.elements);
+  fine.positions = std::move(bisection.positions());
+  return fine;
+}
+
+/// Without a report nobody would learn that the wanted length is not reached.
+[[noreturn]] PALPATE_COLD inline void refuse_too_long_edges(const RefineNearReport& report,
+                                                            const RefineNearOptions& options) {
+  SetupProblem problem;
+  problem.kind = report.most_nodes_reached ? SetupErrorKind::too_large : SetupErrorKind::poor_quality;
+  problem.what = (report.most_nodes_reached
+                      ? "the refined mesh would have more than " + std::to_string(options.most_nodes) + " nodes"
+                      : "elements would get less than " + number(options.quality_kept) +
+                            " of the least quality before, which is " + number(report.least_quality_before)) +
+                 "; " + std::to_string(report.edges_too_long) + " edges are still too long, the worst " +
+                 number(report.worst_excess) + " times";
+  problem.hint = report.most_nodes_reached
+                     ? "Ask for longer edges or a faster growth, raise RefineNearOptions::most_nodes"
+                     : "Lower RefineNearOptions::quality_kept";
+  problem.hint += ", or pass a report to take the mesh as far as it is refined";
+  problem.count = report.edges_too_long;
+  problem.value = report.worst_excess;
+  problem.threshold = 1.0;
+  raise(std::move(problem));
+}
+
+inline double longest_edge_of(const Mesh<Tet4>& mesh) {
+  double longest = 0.0;
+  for (Index e = 0; e < mesh.element_count(); ++e)
+    longest = std::max(longest, longest_edge<Tet4>(element_nodes<Tet4>(mesh, e)));
+  return longest;
+}
+
+}}}  // namespace palpate::detail
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const EdgeField& wanted, const RefineNearOptions& options,
+                                      RefineNearReport* report) {
+  if (!wanted) raise(SetupErrorKind::bad_argument, "an empty function as wanted edge length");
+  detail::check_options(options);
+  detail::check_mesh(mesh);
+  const auto before = detail::checked_quality(mesh);
+  const EdgeField checked = [&wanted](const Vector3& p) {
+    const double length = wanted(p);
+    if (!(length > 0.0))
+      detail::refuse_option("the wanted edge length at " + detail::point_text(p), length, 0.0,
+                            "Return a positive length, infinity where nothing is to be refined");
+    return length;
+  };
+  std::optional<detail::CurvedBoundary> curved;
+  if (options.surface != nullptr) curved.emplace(*options.surface, mesh);
+  detail::Bisection::Limits limits{options.most_nodes, options.quality_kept * before.least, {}};
+  if (curved)
+    limits.place_on_boundary = [&](NodeId node, const Vector3& middle, double length, const auto& quality_at) {
+      return curved->place(node, middle, length, limits.least_quality, quality_at);
+    };
+  detail::Bisection bisection(mesh, limits);
+  bisection.refine(checked);
+  if (curved) curved->finish(bisection);
+  const auto too_long = bisection.too_long(checked);
+  RefineNearReport result;
+  result.nodes_before = mesh.node_count();
+  result.elements_before = mesh.element_count();
+  result.least_quality_before = before.least;
+  result.mean_quality_before = before.mean;
+  result.edges_too_long = too_long.count;
+  result.worst_excess = too_long.worst;
+  result.most_nodes_reached = too_long.count > 0 && bisection.is_full();
+  if (!result.reached() && report == nullptr) detail::refuse_too_long_edges(result, options);
+  Mesh<Tet4> fine = detail::refined_mesh(mesh, bisection);
+  const auto after = detail::checked_quality(fine);
+  result.nodes_after = fine.node_count();
+  result.elements_after = fine.element_count();
+  result.least_quality_after = after.least;
+  result.mean_quality_after = after.mean;
+  result.shortest_edge = shortest_edge(fine);
+  if (curved) {
+    result.curved_nodes = curved->count();
+    result.distance_to_surface = curved->distance(fine.positions);
+  }
+  if (report != nullptr) *report = result;
+  return fine;
+}
+
+PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const std::vector<RefineTarget>& targets,
+                                      const WantedEdge& wanted, const RefineNearOptions& options,
+                                      RefineNearReport* report) {
+  detail::check_wanted(wanted);
+  if (targets.empty())
+    raise(SetupErrorKind::bad_argument, "no target of refinement", "Name what the mesh is to be refined near");
+  detail::check_mesh(mesh);
+  detail::checked_quality(mesh);  // node ids in range
+  const double reach = std::max(detail::longest_edge_of(mesh) - wanted.edge, 0.0) / wanted.growth;
+  const detail::TargetDistance distance(mesh, targets, wanted.edge / 16.0, reach);
+  return refine_near(mesh, EdgeField([&](const Vector3& p) { return wanted.edge + wanted.growth * distance(p); }),
+                     options, report);
+}
+
+PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const RefineTarget& target, const WantedEdge& wanted,
+                                      const RefineNearOptions& options, RefineNearReport* report) {
+  return refine_near(mesh, std::vector<RefineTarget>{target}, wanted, options, report);
+}
+
+}}  // namespace palpate

@@ -1,0 +1,425 @@
+// Refinement of tetrahedra near targets.
+#include "mesh_helpers.hpp"
+
+#include <palpate/io/read_mesh.hpp>
+#include <palpate/core/detail/box.hpp>
+#include <palpate/mesh/detail/element_search.hpp>
+#include <palpate/mesh/diagnose.hpp>
+#include <palpate/mesh/generators_round.hpp>
+#include <palpate/mesh/promote.hpp>
+#include <palpate/mesh/refine.hpp>
+#include <palpate/mesh/refine_near.hpp>
+#include <palpate/mesh/selection.hpp>
+#include <palpate/testing/mesh_laws.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <set>
+
+using namespace test;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+double volume_in_all(const Mesh<Tet4>& mesh) {
+  double sum = 0.0;
+  for (Index e = 0; e < mesh.element_count(); ++e) sum += element_shape<Tet4>(element_nodes<Tet4>(mesh, e)).volume;
+  return sum;
+}
+
+std::array<NodeId, 3> sorted_face(std::array<NodeId, 3> f) {
+  std::ranges::sort(f);
+  return f;
+}
+
+std::array<NodeId, 3> corners_of_face(const std::vector<NodeId>& f) {
+  return {f.at(0), f.at(1), f.at(2)};
+}
+
+Vector3 area_vector_of(const Mesh<Tet4>& mesh, const std::vector<std::vector<NodeId>>& faces) {
+  Vector3 sum = Vector3::Zero();
+  for (const auto& f : faces)
+    sum += 0.5 * (mesh.position(f[1]) - mesh.position(f[0])).cross(mesh.position(f[2]) - mesh.position(f[0]));
+  return sum;
+}
+
+double area_of_faces(const Mesh<Tet4>& mesh, const std::vector<std::vector<NodeId>>& faces) {
+  double sum = 0.0;
+  for (const auto& f : faces)
+    sum += 0.5 * (mesh.position(f[1]) - mesh.position(f[0])).cross(mesh.position(f[2]) - mesh.position(f[0])).norm();
+  return sum;
+}
+
+double volume_of_elements(const Mesh<Tet4>& mesh, const std::vector<Index>& elements) {
+  double sum = 0.0;
+  for (const Index e : elements) sum += element_shape<Tet4>(element_nodes<Tet4>(mesh, e)).volume;
+  return sum;
+}
+
+/// A box whose inner nodes, and those of its faces within them, are moved at random.
+Mesh<Tet4> jittered_box(int cells, double jitter, unsigned seed, BoxSplit split = BoxSplit::six) {
+  Mesh<Tet4> mesh = box_tet4({1.0, 1.0, 1.0}, {cells, cells, cells}, split);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> shift(-jitter / cells, jitter / cells);
+  const Mesh<Tet4> regular = mesh;
+  for (Vector3& x : mesh.positions)
+    for (int c = 0; c < 3; ++c)
+      if (x[c] > 1e-9 && x[c] < 1.0 - 1e-9) x[c] += shift(random);
+  for (Index e = 0; e < mesh.element_count(); ++e)
+    if (!(element_shape<Tet4>(element_nodes<Tet4>(mesh, e)).quality > 0.05)) return regular;
+  return mesh;
+}
+
+/// Regions and one group of every kind: faces, elements, lines, nodes only (on the surface, a solid part), points.
+Mesh<Tet4> with_groups(Mesh<Tet4> mesh) {
+  const auto boundary = extract_boundary<Tet4>(mesh);
+  Box box;
+  for (const Vector3& x : mesh.positions) box.include(x);
+  const double middle = 0.5 * (box.low[0] + box.high[0]);
+  mesh.groups = {};
+  mesh.region_names = {"left", "right"};
+  mesh.regions.clear();
+  Group right{"right half", 3, {}, {}, {}}, faces{"right faces", 2, {}, {}, {}}, marked{"marked", 2, {}, {}, {}},
+      solid{"solid nodes", 0, {}, {}, {}}, line{"line", 1, {}, {}, {}}, two{"two", 0, {}, {}, {}};
+  for (Index e = 0; e < mesh.element_count(); ++e) {
+    const Vector3 centre = element_nodes<Tet4>(mesh, e).colwise().mean();
+    mesh.regions.push_back(centre[0] > middle ? 1 : 0);
+    mesh.fibres.push_back(Vector3(1.0 + centre[0], centre[1], 0.3).normalized());
+    if (centre[0] <= middle) continue;
+    right.elements.push_back(e);
+    for (int a = 0; a < 4; ++a) {
+      right.nodes.push_back(mesh.element_node(e, a));
+      solid.nodes.push_back(mesh.element_node(e, a));
+    }
+  }
+  for (const BoundaryFace& f : boundary) {
+    if (mesh.region(f.element) == 0) continue;
+    faces.faces.emplace_back(f.nodes.begin(), f.nodes.end());
+    faces.nodes.insert(faces.nodes.end(), f.nodes.begin(), f.nodes.end());
+  }
+  marked.nodes = faces.nodes;
+  line.nodes = {mesh.elements[0][0], mesh.elements[0][1]};
+  two.nodes = line.nodes;
+  for (const Group& g : {right, faces, marked, solid, line, two}) mesh.groups.get_or_add(g.name, g.dimension) = g;
+  mesh.groups.tidy();
+  return mesh;
+}
+
+/// What must hold between a mesh and its refinement. The messages of mesh_laws name what does not conform.
+void check_refined(const Mesh<Tet4>& coarse, const Mesh<Tet4>& fine) {
+  CHECK(testing::describe(testing::mesh_laws<Tet4>(fine)) == "");
+  CHECK_THAT(volume_in_all(fine), WithinRel(volume_in_all(coarse), 1e-12));
+  const auto before = measure_boundary(coarse), after = measure_boundary(fine);
+  CHECK_THAT(after.area, WithinRel(before.area, 1e-12));  // a hanging node would open the surface
+  CHECK_THAT(after.volume, WithinRel(before.volume, 1e-12));
+  CHECK(after.euler == before.euler);
+  CHECK(std::equal(coarse.positions.begin(), coarse.positions.end(), fine.positions.begin()));
+  const MeshDiagnosis d = diagnose<Tet4>(coarse), f = diagnose<Tet4>(fine);
+  CHECK(f.inverted.count + f.degenerate.count + f.duplicate_nodes.count + f.orphans.count == 0);
+  CHECK(f.component_count == d.component_count);
+  CHECK(f.min_quality >= 0.5 * d.min_quality);
+  CHECK(fine.region_names == coarse.region_names);
+  CHECK(fine.regions.size() == (coarse.regions.empty() ? 0 : fine.elements.size()));
+  CHECK(fine.fibres.size() == (coarse.fibres.empty() ? 0 : fine.elements.size()));
+}
+
+/// Every node of the fine mesh that lies on a face of a group of faces, and no other, must be in the group.
+void check_groups(const Mesh<Tet4>& coarse, const Mesh<Tet4>& fine) {
+  REQUIRE(fine.groups.all().size() == coarse.groups.all().size());
+  for (const Group& g : coarse.groups.all()) {
+    INFO(g.name);
+    const Group& refined = *fine.find_group(g.name);
+    CHECK(refined.dimension == g.dimension);
+    CHECK(std::ranges::includes(refined.nodes, g.nodes));
+    CHECK_THAT(area_of_faces(fine, refined.faces), WithinRel(area_of_faces(coarse, g.faces), 1e-11));
+    CHECK((area_vector_of(fine, refined.faces) - area_vector_of(coarse, g.faces)).norm() <=
+          1e-12 * area_of_faces(coarse, g.faces));
+    CHECK_THAT(volume_of_elements(fine, refined.elements), WithinRel(volume_of_elements(coarse, g.elements), 1e-11));
+    std::set<NodeId> nodes(g.nodes.begin(), g.nodes.end());
+    for (const auto& f : refined.faces) nodes.insert(f.begin(), f.end());
+    for (const Index e : refined.elements)
+      nodes.insert(fine.elements[static_cast<std::size_t>(e)].begin(),
+                   fine.elements[static_cast<std::size_t>(e)].end());
+    if (!g.faces.empty() || !g.elements.empty())
+      CHECK(refined.nodes == std::vector<NodeId>(nodes.begin(), nodes.end()));
+  }
+}
+
+std::set<std::array<NodeId, 3>> boundary_keys(const Mesh<Tet4>& mesh) {
+  std::set<std::array<NodeId, 3>> keys;
+  for (const BoundaryFace& f : extract_boundary<Tet4>(mesh))
+    keys.insert(sorted_face({f.nodes[0], f.nodes[1], f.nodes[2]}));
+  return keys;
+}
+
+/// Coordinates of nodes and elements in an order that does not depend on the numbering.
+using ElementPoints = std::array<std::array<double, 3>, 4>;
+std::vector<ElementPoints> shapes_in_order(const Mesh<Tet4>& mesh) {
+  std::vector<ElementPoints> all;
+  for (const auto& nodes : mesh.elements) {
+    ElementPoints x;
+    for (std::size_t a = 0; a < 4; ++a)
+      for (int c = 0; c < 3; ++c) x[a][static_cast<std::size_t>(c)] = mesh.position(nodes[a])[c];
+    std::ranges::sort(x);
+    all.push_back(x);
+  }
+  std::ranges::sort(all);
+  return all;
+}
+
+Mesh<Tet4> renumbered(const Mesh<Tet4>& mesh, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<NodeId> place(mesh.positions.size());
+  for (std::size_t i = 0; i < place.size(); ++i) place[i] = static_cast<NodeId>(i);
+  std::ranges::shuffle(place, random);
+  Mesh<Tet4> other;
+  other.positions.resize(place.size());
+  for (std::size_t i = 0; i < place.size(); ++i)
+    other.positions[static_cast<std::size_t>(place[i])] = mesh.positions[i];
+  for (auto nodes : mesh.elements) {
+    std::rotate(nodes.begin(), nodes.begin() + static_cast<int>(random() % 3), nodes.begin() + 3);  // keeps the sign
+    for (NodeId& i : nodes) i = place[static_cast<std::size_t>(i)];
+    other.elements.push_back(nodes);
+  }
+  std::ranges::shuffle(other.elements, random);
+  return other;
+}
+
+}  // namespace
+
+TEST_CASE("refinement near a sphere conforms and keeps volume, regions, fibres and groups", "[mesh][refine_near]") {
+  const Mesh<Tet4> coarse = with_groups(jittered_box(4, 0.25, 1));
+  RefineNearReport report;
+  const Mesh<Tet4> fine = refine_near(coarse, where::sphere({0.6, 0.4, 0.9}, 0.1), {.edge = 0.04}, {}, &report);
+  REQUIRE(fine.node_count() > 2 * coarse.node_count());
+  check_refined(coarse, fine);
+  check_groups(coarse, fine);
+  CHECK(report.reached());
+  CHECK_FALSE(report.most_nodes_reached);
+  CHECK(report.nodes_before == coarse.node_count());
+  CHECK(report.nodes_after == fine.node_count());
+  CHECK(report.elements_before == coarse.element_count());
+  CHECK(report.elements_after == fine.element_count());
+  CHECK_THAT(report.least_quality_before, WithinRel(diagnose<Tet4>(coarse).min_quality, 1e-12));
+  CHECK_THAT(report.least_quality_after, WithinRel(diagnose<Tet4>(fine).min_quality, 1e-12));
+  CHECK(report.shortest_edge == shortest_edge(fine));
+
+  // Every element lies in the one it replaces: regions and fibres are those of the place.
+  for (Index e = 0; e < fine.element_count(); ++e) {
+    const Vector3 centre = element_nodes<Tet4>(fine, e).colwise().mean();
+    Index from = -1;
+    for (Index c = 0; c < coarse.element_count() && from < 0; ++c) {
+      const auto xi = reference_coordinates<Tet4>(element_nodes<Tet4>(coarse, c), centre);
+      if (xi && beyond_faces<Tet4>(*xi) < -1e-9) from = c;
+    }
+    REQUIRE(from >= 0);
+    REQUIRE(fine.region(e) == coarse.region(from));
+    REQUIRE(fine.fibre(e) == coarse.fibre(from));
+  }
+}
+
+TEST_CASE("edges are no longer than wanted, and the mesh far away is as given", "[mesh][refine_near]") {
+  const Mesh<Tet4> coarse = box_tet4({1, 1, 1}, {6, 6, 6}, BoxSplit::six);
+  const Vector3 corner(1, 1, 1);
+  const Mesh<Tet4> fine = refine_near(coarse, PointCloud{{corner}}, {.edge = 0.01, .growth = 0.5});
+  std::set<std::array<NodeId, 4>> given;
+  for (auto e : coarse.elements) given.insert((std::ranges::sort(e), e));
+  Index kept = 0;
+  for (Index e = 0; e < fine.element_count(); ++e) {
+    const auto x = element_nodes<Tet4>(fine, e);
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < a; ++b) {
+        const Vector3 middle = 0.5 * (x.row(a) + x.row(b)).transpose();
+        REQUIRE((x.row(a) - x.row(b)).norm() <= (0.01 + 0.5 * (middle - corner).norm()) * (1.0 + 1e-9));
+      }
+    auto nodes = fine.elements[static_cast<std::size_t>(e)];
+    std::ranges::sort(nodes);
+    kept += given.contains(nodes) ? 1 : 0;
+  }
+  CHECK(kept > coarse.element_count() / 2);
+  CHECK(fine.element_count() < 4 * coarse.element_count());
+}
+
+TEST_CASE("a group of nodes gains nodes on the surface and none through the body", "[mesh][refine_near][extreme]") {
+  // One layer of elements: every edge through the plate joins two nodes of the surface.
+  Mesh<Tet4> plate = box_tet4({1, 1, 0.2}, {4, 4, 1}, BoxSplit::six);
+  Group& skin = plate.groups.get_or_add("skin", 2);
+  for (NodeId i = 0; i < plate.node_count(); ++i) skin.nodes.push_back(i);
+  Group& list = plate.groups.get_or_add("listed", 2);
+  for (const BoundaryFace& f : extract_boundary<Tet4>(plate)) {
+    list.faces.emplace_back(f.nodes.begin(), f.nodes.end());
+    list.nodes.insert(list.nodes.end(), f.nodes.begin(), f.nodes.end());
+  }
+  plate.groups.tidy();
+  const Mesh<Tet4> fine = refine_near(plate, where::sphere({0.5, 0.5, 0.1}, 0.3), {.edge = 0.06});
+  const auto on_surface = nodes_of(extract_boundary<Tet4>(fine));
+  REQUIRE(static_cast<Index>(on_surface.size()) < fine.node_count());  // there are nodes inside
+  CHECK(fine.find_group("skin")->nodes == on_surface);
+  CHECK(fine.find_group("listed")->nodes == on_surface);
+  std::set<std::array<NodeId, 3>> listed;
+  for (const auto& f : fine.find_group("listed")->faces) listed.insert(sorted_face(corners_of_face(f)));
+  CHECK(listed == boundary_keys(fine));
+}
+
+TEST_CASE("groups of nodes, lines and points after refinement", "[mesh][refine_near]") {
+  const Mesh<Tet4> coarse = with_groups(jittered_box(4, 0.2, 3));
+  const Mesh<Tet4> fine = refine_near(coarse, "surface", {.edge = 0.15});
+  CHECK(fine.find_group("marked")->nodes == fine.find_group("right faces")->nodes);
+  CHECK(fine.find_group("solid nodes")->nodes == fine.find_group("right half")->nodes);
+  CHECK(fine.find_group("two")->nodes == coarse.find_group("two")->nodes);
+  const auto& line = fine.find_group("line")->nodes;
+  CHECK(line.size() > 2);
+  const Vector3 from = coarse.position(coarse.find_group("line")->nodes[0]),
+                to = coarse.position(coarse.find_group("line")->nodes[1]);
+  for (const NodeId i : line) CHECK((fine.position(i) - from).cross(to - from).norm() <= 1e-15);
+  for (NodeId i = 0; i < fine.node_count(); ++i) {
+    const Vector3 x = fine.position(i);
+    const double t = (x - from).dot(to - from) / (to - from).squaredNorm();
+    if (t > 0.0 && t < 1.0 && (x - from).cross(to - from).norm() < 1e-12) CHECK(std::ranges::binary_search(line, i));
+  }
+}
+
+TEST_CASE("the refined mesh does not depend on the numbering", "[mesh][refine_near]") {
+  for (const double jitter : {0.0, 0.2}) {
+    const Mesh<Tet4> mesh = jittered_box(4, jitter, 5), other = renumbered(mesh, 6);
+    const auto target = where::capsule({0.2, 0.2, 1.0}, {0.7, 0.5, 1.0}, 0.05);
+    const Mesh<Tet4> fine = refine_near(mesh, target, {.edge = 0.06});
+    CHECK(shapes_in_order(fine) == shapes_in_order(refine_near(other, target, {.edge = 0.06})));
+    const Mesh<Tet4> again = refine_near(mesh, target, {.edge = 0.06});
+    CHECK(again.positions == fine.positions);
+    CHECK(again.elements == fine.elements);
+  }
+}
+
+TEST_CASE("refinement follows scale, rotation and translation", "[mesh][refine_near]") {
+  const Mesh<Tet4> mesh = jittered_box(4, 0.2, 7);
+  const Vector3 p(0.4, 0.6, 1.0), shift(10.0, -7.0, 3.0);
+  const Mesh<Tet4> fine = refine_near(mesh, PointCloud{{p}}, {.edge = 0.03});
+  for (const double scale : {1e-3, 1e6, 1e-40, 1e40}) {  // without ties only rounding differs
+    const Mesh<Tet4> scaled = refine_near(transformed(mesh, scale), PointCloud{{scale * p}}, {.edge = 0.03 * scale});
+    CHECK(scaled.elements == fine.elements);
+  }
+  const Matrix3 q = Eigen::AngleAxisd(0.7, Vector3(1, 2, -1).normalized()).toRotationMatrix();
+  Mesh<Tet4> moved = mesh;
+  for (Vector3& x : moved.positions) x = q * x + shift;
+  const Mesh<Tet4> rotated = refine_near(moved, PointCloud{{q * p + shift}}, {.edge = 0.03});
+  REQUIRE(rotated.elements == fine.elements);
+  for (NodeId i = 0; i < fine.node_count(); ++i)
+    REQUIRE((rotated.position(i) - (q * fine.position(i) + shift)).norm() <= 1e-13);
+}
+
+TEST_CASE("refinement of regular boxes and of round bodies keeps half of the least quality", "[mesh][refine_near]") {
+  std::vector<Mesh<Tet4>> meshes{box_tet4({1, 1, 1}, {2, 2, 2}, BoxSplit::five_mirrored),
+                                 box_tet4({1, 1, 1}, {2, 2, 2}, BoxSplit::six),
+                                 box_tet4({4, 1, 0.1}, {3, 3, 3}, BoxSplit::six),
+                                 corner_tetrahedron(),
+                                 sphere_tet4(1.0, 3),
+                                 cylinder_tet4(0.5, 1.0, 3)};
+  for (const Mesh<Tet4>& mesh : meshes) {
+    RefineNearReport report;
+    const Mesh<Tet4> fine = refine_near(mesh, PointCloud{{mesh.position(0)}}, {.edge = 0.02}, {}, &report);
+    check_refined(mesh, fine);
+    CHECK(report.reached());
+  }
+}
+
+TEST_CASE("where bisection cannot keep the quality it stops, and that is reported", "[mesh][refine_near][extreme]") {
+  Mesh<Tet4> regular = corner_tetrahedron();
+  regular.positions = {{1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}};
+  REQUIRE(element_shape<Tet4>(element_nodes<Tet4>(regular, 0)).quality > 0.999999);
+  const PointCloud target{{regular.position(0)}};
+  RefineNearReport report;
+  const Mesh<Tet4> fine = refine_near(regular, target, {.edge = 0.1}, {}, &report);
+  check_refined(regular, fine);
+  CHECK_FALSE(report.reached());
+  CHECK(report.worst_excess > 1.0);
+  const auto problem = refused(SetupErrorKind::poor_quality, [&] { refine_near(regular, target, {.edge = 0.1}); });
+  CHECK_THAT(problem.hint, test::contains("quality_kept"));
+  CHECK(problem.value == report.worst_excess);
+  const Mesh<Tet4> lower = refine_near(regular, target, {.edge = 0.1}, {.quality_kept = 0.4}, &report);
+  CHECK(report.reached());
+  CHECK(report.least_quality_after >= 0.4);
+  CHECK(testing::describe(testing::mesh_laws<Tet4>(lower)) == "");
+}
+
+TEST_CASE("refinement ends at the number of nodes allowed", "[mesh][refine_near][extreme]") {
+  const Mesh<Tet4> mesh = box_tet4({1, 1, 1}, {3, 3, 3}, BoxSplit::six);
+  RefineNearReport report;
+  const Mesh<Tet4> fine =
+      refine_near(mesh, where::sphere({1, 1, 1}, 0.1), {.edge = 1e-9}, {.most_nodes = 500}, &report);
+  check_refined(mesh, fine);
+  CHECK(fine.node_count() == 500);
+  CHECK(report.most_nodes_reached);
+  CHECK_FALSE(report.reached());
+  CHECK(report.edges_too_long > 0);
+  const auto problem = refused(SetupErrorKind::too_large, [&] {
+    refine_near(mesh, where::sphere({1, 1, 1}, 0.1), {.edge = 1e-9}, {.most_nodes = 500});
+  });
+  CHECK_THAT(problem.hint, test::contains("most_nodes"));
+  const Mesh<Tet4> same = refine_near(mesh, PointCloud{{{1, 1, 1}}}, {.edge = 1e-3}, {.most_nodes = 1}, &report);
+  CHECK(same.elements == mesh.elements);
+  CHECK(report.most_nodes_reached);
+}
+
+TEST_CASE("arguments of refine_near are checked", "[mesh][refine_near]") {
+  const Mesh<Tet4> mesh = with_groups(box_tet4({1, 1, 1}, {2, 2, 2}, BoxSplit::six));
+  const double nan = std::nan("");
+  for (const double bad : {0.0, -1.0, nan, infinity}) {
+    INFO(bad);
+    const auto edge = refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, "two", {.edge = bad}); });
+    CHECK_THAT(edge.what, test::contains("edge"));
+    CHECK(edge.hint != "");
+    CHECK((edge.value == bad || std::isnan(bad)));
+    refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, "two", {.edge = 0.1, .growth = bad}); });
+    refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, "two", {.edge = 0.1}, {.quality_kept = bad}); });
+    if (bad != infinity)
+      refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, [&](const Vector3&) { return bad; }); });
+    refused(SetupErrorKind::non_finite, [&] {
+      refine_near(mesh, PointCloud{{{0, bad == 0.0 || bad == -1.0 ? nan : bad, 0}}}, {.edge = 0.1});
+    });
+  }
+  refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, "two", {.edge = 0.1}, {.most_nodes = 0}); });
+  refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, EdgeField{}); });
+  const auto unknown = refused(SetupErrorKind::unknown_group, [&] { refine_near(mesh, "front", {.edge = 0.1}); });
+  CHECK_THAT(unknown.hint, test::contains("marked"));
+  refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, std::vector<RefineTarget>{}, {.edge = 0.1}); });
+  refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, PointCloud{}, {.edge = 0.1}); });
+  refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, Polyline{}, {.edge = 0.1}); });
+  refused(SetupErrorKind::empty_group, [&] { refine_near(mesh, std::vector<NodeId>{}, {.edge = 0.1}); });
+  refused(SetupErrorKind::index_out_of_range, [&] { refine_near(mesh, std::vector<NodeId>{27}, {.edge = 0.1}); });
+  const auto far = refused(SetupErrorKind::bad_argument, [&] {
+    refine_near(mesh, PointCloud{{{1000, 1000, 1000}}}, {.edge = 0.1});  // millimetres
+  });
+  CHECK_THAT(far.hint, test::contains("unit"));
+  refused(SetupErrorKind::empty_group, [&] { refine_near(mesh, where::sphere({500, 0, 0}, 10.0), {.edge = 0.1}); });
+  refused(SetupErrorKind::empty_group,
+          [&] { refine_near(mesh, where::inside([](const Vector3&) { return false; }), {.edge = 0.1}); });
+}
+
+TEST_CASE("meshes that cannot be refined are refused", "[mesh][refine_near]") {
+  const Mesh<Tet4> good = with_groups(box_tet4({1, 1, 1}, {2, 2, 2}, BoxSplit::six));
+  const PointCloud target{{{0, 0, 0}}};
+  const auto refuse = [&](SetupErrorKind kind, auto change) {
+    Mesh<Tet4> mesh = good;
+    change(mesh);
+    return refused(kind, [&] { refine_near(mesh, target, {.edge = 0.1}); });
+  };
+  refuse(SetupErrorKind::empty_mesh, [](auto& m) { m = {}; });
+  const auto inverted =
+      refuse(SetupErrorKind::inverted_element, [](auto& m) { std::swap(m.elements[5][0], m.elements[5][1]); });
+  CHECK(inverted.ids == std::vector<std::int64_t>{5});
+  refuse(SetupErrorKind::degenerate_element, [](auto& m) { m.elements[5][0] = m.elements[5][1]; });
+  refuse(SetupErrorKind::non_finite, [](auto& m) { m.positions[3][1] = std::nan(""); });
+  refuse(SetupErrorKind::index_out_of_range, [](auto& m) { m.elements[5][0] = 27; });
+  refuse(SetupErrorKind::index_out_of_range, [](auto& m) { m.groups.get_or_add("x", 0).nodes = {27}; });
+  refuse(SetupErrorKind::index_out_of_range, [](auto& m) { m.groups.get_or_add("x", 3).elements = {-1}; });
+  refuse(SetupErrorKind::bad_argument, [](auto& m) { m.regions.pop_back(); });
+  refuse(SetupErrorKind::bad_argument, [](auto& m) { m.fibres.pop_back(); });
+  const auto face = refuse(SetupErrorKind::unsupported, [](auto& m) {
+    m.groups.get_or_add("x", 2).faces = {{0, 1, 26}};
+  });
+  CHECK_THAT(face.what, test::contains("'x'"));
+}
