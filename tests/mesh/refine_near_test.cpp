@@ -1,6 +1,7 @@
 // Refinement of tetrahedra near targets.
 #include "mesh_helpers.hpp"
 
+#include <palpate/element/tet10.hpp>
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/core/detail/box.hpp>
 #include <palpate/mesh/detail/element_search.hpp>
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <random>
 #include <set>
@@ -364,6 +366,126 @@ TEST_CASE("refinement ends at the number of nodes allowed", "[mesh][refine_near]
   CHECK(report.most_nodes_reached);
 }
 
+TEST_CASE("the wanted length increases with the distance to each kind of target", "[mesh][refine_near]") {
+  const Mesh<Tet4> mesh = with_groups(jittered_box(3, 0.2, 9));
+  const WantedEdge wanted{0.05, 0.6};
+  const Vector3 a(0.1, 0.2, 1.0), b(0.9, 0.3, 0.8), c(0.5, 0.9, 0.5);
+  const auto to_segment = [](const Vector3& p, const Vector3& from, const Vector3& to) {
+    const double t = std::clamp((p - from).dot(to - from) / (to - from).squaredNorm(), 0.0, 1.0);
+    return (p - from - t * (to - from)).norm();
+  };
+  using Distance = std::function<double(const Vector3&)>;
+  const std::vector<std::pair<RefineTarget, Distance>> cases{
+      {PointCloud{{a, b, c}},
+       [&](const Vector3& p) {
+         return std::min({(p - a).norm(), (p - b).norm(), (p - c).norm()});
+       }},
+      {Polyline{{a, b, c}}, [&](const Vector3& p) { return std::min(to_segment(p, a, b), to_segment(p, b, c)); }},
+      {Polyline{{a}}, [&](const Vector3& p) { return (p - a).norm(); }},
+      {where::sphere(b, 0.15), [&](const Vector3& p) { return std::max(0.0, (p - b).norm() - 0.15); }},
+      {where::capsule(a, b, 0.1), [&](const Vector3& p) { return std::max(0.0, to_segment(p, a, b) - 0.1); }},
+      {"surface", [](const Vector3& p) { return std::min(p.minCoeff(), (Vector3::Ones() - p).minCoeff()); }},
+      {where::inside([](const Vector3& p) { return p[0] <= 0.0; }), [](const Vector3& p) { return p[0]; }},
+      {std::vector<NodeId>{5}, [&](const Vector3& p) { return (p - mesh.position(5)).norm(); }}};
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    INFO(i);
+    RefineNearReport report;
+    const Mesh<Tet4> fine = refine_near(mesh, cases[i].first, wanted, {}, &report);
+    CHECK(report.reached());
+    CHECK(fine.node_count() > mesh.node_count());
+    check_refined(mesh, fine);
+    if (i == 6) continue;  // the distance to a predicate is that to its nodes, not to their faces
+    double worst = 0.0;
+    for (Index e = 0; e < fine.element_count(); ++e) {
+      const auto x = element_nodes<Tet4>(fine, e);
+      for (int j = 0; j < 4; ++j)
+        for (int k = 0; k < j; ++k) {
+          const Vector3 middle = 0.5 * (x.row(j) + x.row(k)).transpose();
+          worst =
+              std::max(worst, (x.row(j) - x.row(k)).norm() / (wanted.edge + wanted.growth * cases[i].second(middle)));
+        }
+    }
+    CHECK(worst <= 1.001);  // distances to sets of points are accurate to a thousandth
+    const Mesh<Tet4> same =
+        refine_near(mesh, [&](const Vector3& p) { return wanted.edge + wanted.growth * cases[i].second(p); });
+    CHECK_THAT(static_cast<double>(same.node_count()), WithinRel(static_cast<double>(fine.node_count()), 0.02));
+  }
+  const Mesh<Tet4> both = refine_near(mesh, {PointCloud{{a}}, PointCloud{{b}}, PointCloud{{c}}}, wanted);
+  CHECK(both.elements == refine_near(mesh, PointCloud{{a, b, c}}, wanted).elements);
+}
+
+TEST_CASE("distance to a group reaches over its faces and elements", "[mesh][refine_near]") {
+  Mesh<Tet4> mesh = box_tet4({1, 1, 1}, {2, 2, 2}, BoxSplit::six);  // nodes half a metre apart
+  const Mesh<Tet4> fine = refine_near(mesh, "z1", {.edge = 0.1});
+  for (const auto& f : fine.find_group("z1")->faces)
+    for (std::size_t i = 0; i < 3; ++i)
+      REQUIRE((fine.position(f[i]) - fine.position(f[(i + 1) % 3])).norm() <= 0.1 + 1e-9);
+  mesh = with_groups(mesh);
+  for (const std::string name : {"right", "right half"}) {  // a region and a group of elements
+    const Mesh<Tet4> solid = refine_near(mesh, name, {.edge = 0.2});
+    for (const Index e : solid.find_group("right half")->elements)
+      REQUIRE(longest_edge<Tet4>(element_nodes<Tet4>(solid, e)) <= 0.2 + 1e-9);
+  }
+}
+
+TEST_CASE("new nodes of the boundary follow a finer surface", "[mesh][refine_near]") {
+  const Mesh<Tet4> coarse = sphere_tet4(1.0, 2), exact = sphere_tet4(1.0, 24);
+  CurvedSurface surface{exact.positions, {}};
+  for (const auto& f : exact.find_group("surface")->faces) surface.triangles.push_back(corners_of_face(f));
+  RefineNearReport report;
+  const Mesh<Tet4> fine = refine_near(coarse, "surface", {.edge = 0.15}, {.surface = &surface}, &report);
+  CHECK(report.reached());
+  CHECK(report.curved_nodes > 300);
+  CHECK(report.distance_to_surface <= 1e-12);
+  CHECK(report.least_quality_after >= 0.5 * report.least_quality_before);
+  CHECK(testing::describe(testing::mesh_laws<Tet4>(fine)) == "");
+  CHECK(measure_boundary(fine).irregular_edges == 0);
+  const double whole = 4.0 / 3.0 * 3.14159265358979, missing = whole - volume_in_all(coarse);
+  CHECK(missing > 0.1 * whole);
+  CHECK(whole - volume_in_all(fine) < 0.03 * whole);
+  for (const NodeId i : fine.find_group("surface")->nodes) CHECK_THAT(fine.position(i).norm(), WithinAbs(1.0, 2e-3));
+  CHECK(std::equal(coarse.positions.begin(), coarse.positions.end(), fine.positions.begin()));
+}
+
+TEST_CASE("a surface that would invert elements moves nodes only as far as quality allows",
+          "[mesh][refine_near][extreme]") {
+  const Mesh<Tet4> slab = box_tet4({1, 1, 0.02}, {3, 3, 1}, BoxSplit::six);
+  // The surface crosses the slab's lower side: nodes of the upper side are drawn through the body.
+  CurvedSurface surface{{{-1, -1, -0.05}, {2, -1, -0.05}, {2, 2, 0.01}, {-1, 2, 0.01}}, {{0, 1, 2}, {0, 2, 3}}};
+  RefineNearReport report;
+  const Mesh<Tet4> fine =
+      refine_near(slab, where::sphere({0.5, 0.5, 0.0}, 0.2), {.edge = 0.05}, {.surface = &surface}, &report);
+  CHECK(testing::describe(testing::mesh_laws<Tet4>(fine)) == "");
+  const MeshDiagnosis d = diagnose<Tet4>(fine);
+  CHECK(d.inverted.count + d.degenerate.count == 0);
+  CHECK(d.min_quality >= 0.5 * diagnose<Tet4>(slab).min_quality);
+  CHECK(report.distance_to_surface > 0.005);  // and the report states what is left
+  surface.positions = {{50, 0, 0}, {51, 0, 0}, {50, 1, 0}};
+  surface.triangles = {{0, 1, 2}};
+  const auto refuse = [&](SetupErrorKind kind) {
+    refused(kind, [&] { refine_near(slab, "z1", {.edge = 0.1}, {.surface = &surface}); });
+  };
+  refuse(SetupErrorKind::bad_argument);
+  surface.triangles = {{0, 1, 3}};
+  refuse(SetupErrorKind::index_out_of_range);
+  surface.triangles = {};
+  refuse(SetupErrorKind::bad_argument);
+  surface = {{{0, 0, 0}, {1, 0, std::nan("")}, {0, 1, 0}}, {{0, 1, 2}}};
+  refuse(SetupErrorKind::non_finite);
+}
+
+TEST_CASE("the shipped organ is refined near its front", "[mesh][refine_near]") {
+  const Mesh<Tet4> organ = io::read_mesh<Tet4>(PALPATE_TEST_DATA "/../../examples/data/organ.msh");
+  const Vector3 contact = organ.position(organ.find_group("front")->nodes.front());
+  RefineNearReport report;
+  const Mesh<Tet4> fine = refine_near(organ, where::sphere(contact, 4e-3), {.edge = 1.5e-3}, {}, &report);
+  CHECK(report.reached());
+  check_refined(organ, fine);
+  check_groups(organ, fine);
+  const Mesh<Tet10> quadratic = promote<Tet10>(fine);
+  CHECK(testing::describe(testing::mesh_laws<Tet10>(quadratic)) == "");
+}
+
 TEST_CASE("arguments of refine_near are checked", "[mesh][refine_near]") {
   const Mesh<Tet4> mesh = with_groups(box_tet4({1, 1, 1}, {2, 2, 2}, BoxSplit::six));
   const double nan = std::nan("");
@@ -422,4 +544,156 @@ TEST_CASE("meshes that cannot be refined are refused", "[mesh][refine_near]") {
     m.groups.get_or_add("x", 2).faces = {{0, 1, 26}};
   });
   CHECK_THAT(face.what, test::contains("'x'"));
+}
+
+namespace {
+
+/// Faces that belong to one element only, sorted; `problem` is set if more than two elements share one.
+std::vector<std::array<NodeId, 3>> single_faces(const Mesh<Tet4>& mesh, std::string& problem) {
+  std::vector<std::array<NodeId, 3>> all, single;
+  for (const auto& n : mesh.elements)
+    for (const auto& f : {std::array{n[0], n[1], n[2]}, {n[0], n[1], n[3]}, {n[0], n[2], n[3]}, {n[1], n[2], n[3]}})
+      all.push_back(sorted_face(f));
+  std::ranges::sort(all);
+  for (std::size_t i = 0, j = 0; i < all.size(); i = j) {
+    while (j < all.size() && all[j] == all[i]) ++j;
+    if (j - i == 1) single.push_back(all[i]);
+    if (j - i > 2) problem += "a face of three elements; ";
+  }
+  return single;
+}
+
+double area_of_keys(const Mesh<Tet4>& mesh, const std::vector<std::array<NodeId, 3>>& faces) {
+  double sum = 0.0;
+  for (const auto& f : faces)
+    sum += 0.5 * cross(mesh.position(f[1]) - mesh.position(f[0]), mesh.position(f[2]) - mesh.position(f[0])).norm();
+  return sum;
+}
+
+bool differs(double a, double b, double tolerance) {
+  return !(std::abs(a - b) <= tolerance * std::abs(b));
+}
+
+/// What is wrong with the refinement of a mesh that has the groups of `with_groups`; empty if nothing is.
+std::string refinement_problem(const Mesh<Tet4>& coarse, const Mesh<Tet4>& fine) {
+  std::string problem;
+  double least = 1.0, least_before = 1.0, volume = 0.0, volume_before = 0.0;
+  const auto measure = [](const Mesh<Tet4>& mesh, double& quality, double& sum) {
+    for (Index e = 0; e < mesh.element_count(); ++e) {
+      const ElementShape shape = element_shape<Tet4>(element_nodes<Tet4>(mesh, e));
+      quality = std::min(quality, shape.quality);
+      sum += shape.volume;
+    }
+  };
+  measure(coarse, least_before, volume_before);
+  measure(fine, least, volume);
+  if (!(least > 0.0)) problem += "volume not positive; ";
+  if (!(least >= 0.5 * least_before * (1.0 - 1e-12))) problem += "quality below half; ";
+  if (differs(volume, volume_before, 1e-12)) problem += "volume; ";
+  // A hanging node would leave faces on both sides of its face without a neighbour: the surface would be larger.
+  const auto surface_before = single_faces(coarse, problem), surface = single_faces(fine, problem);
+  if (differs(area_of_keys(fine, surface), area_of_keys(coarse, surface_before), 1e-11)) problem += "surface; ";
+  const auto sorted_faces_of = [](const Group& g) {
+    std::vector<std::array<NodeId, 3>> faces;
+    for (const auto& f : g.faces) faces.push_back(sorted_face(corners_of_face(f)));
+    std::ranges::sort(faces);
+    return faces;
+  };
+  const Group &faces = *fine.find_group("right faces"), &faces_before = *coarse.find_group("right faces");
+  const auto keys = sorted_faces_of(faces);
+  if (!std::ranges::includes(surface, keys) || std::ranges::adjacent_find(keys) != keys.end())
+    problem += "a face of the group is not on the surface or is there twice; ";
+  if (differs(area_of_keys(fine, keys), area_of_keys(coarse, sorted_faces_of(faces_before)), 1e-11))
+    problem += "area of the group; ";
+  std::set<NodeId> on_faces, in_right;
+  for (const auto& f : keys) on_faces.insert(f.begin(), f.end());
+  if (!std::ranges::equal(on_faces, faces.nodes)) problem += "nodes of faces; ";
+  const Group& right = *fine.find_group("right half");
+  Index in_region = 0;
+  for (Index e = 0; e < fine.element_count(); ++e) in_region += fine.region(e);
+  for (const Index e : right.elements) {
+    if (fine.region(e) != 1) problem += "element of the group in another region; ";
+    in_right.insert(fine.elements[static_cast<std::size_t>(e)].begin(),
+                    fine.elements[static_cast<std::size_t>(e)].end());
+  }
+  if (in_region != static_cast<Index>(right.elements.size())) problem += "elements of the group; ";
+  if (!std::ranges::equal(in_right, right.nodes)) problem += "nodes of elements; ";
+  std::set<NodeId> used;
+  for (const auto& n : fine.elements) used.insert(n.begin(), n.end());
+  if (static_cast<Index>(used.size()) != fine.node_count()) problem += "orphan nodes; ";
+  if (fine.fibres.size() != fine.elements.size()) problem += "fibres; ";
+  return problem;
+}
+
+/// A stretched box with moved nodes, of which some elements may be missing.
+Mesh<Tet4> random_mesh(std::mt19937& random) {
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const bool five = random() % 2 == 0;
+  Mesh<Tet4> mesh = jittered_box(1 + static_cast<int>(random() % 3), uniform(0.0, 0.35),
+                                 static_cast<unsigned>(random()), five ? BoxSplit::five_mirrored : BoxSplit::six);
+  const Vector3 stretch(1.0, std::pow(10.0, uniform(-1.0, 1.0)), std::pow(10.0, uniform(-1.0, 1.0)));
+  const Matrix3 q = Eigen::AngleAxisd(uniform(0.0, 3.0), Vector3(uniform(-1, 1), uniform(-1, 1), 1.0).normalized())
+                        .toRotationMatrix();
+  for (Vector3& x : mesh.positions) x = q * stretch.cwiseProduct(x) + Vector3(0.1, -0.2, 0.3);
+  if (random() % 3 == 0 && mesh.element_count() > 20) {  // leaves edges and nodes at which the body is not manifold
+    std::ranges::shuffle(mesh.elements, random);
+    mesh.elements.resize(mesh.elements.size() * 2 / 3);
+    std::vector<NodeId> place(mesh.positions.size(), -1);
+    std::vector<Vector3> positions;
+    for (auto& nodes : mesh.elements)
+      for (NodeId& i : nodes) {
+        NodeId& p = place[static_cast<std::size_t>(i)];
+        if (p < 0) {
+          p = static_cast<NodeId>(positions.size());
+          positions.push_back(mesh.positions[static_cast<std::size_t>(i)]);
+        }
+        i = p;
+      }
+    mesh.positions = std::move(positions);
+  }
+  return with_groups(std::move(mesh));
+}
+
+/// Refines random meshes `count` times in all, each up to four times in succession. Returns the first problem.
+std::string refine_at_random(Index count, unsigned seed, Index& not_reached) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  for (Index done = 0; done < count;) {
+    Mesh<Tet4> mesh = random_mesh(random);
+    for (int step = 0; step < 4 && done < count && mesh.node_count() < 250; ++step, ++done) {
+      const Vector3 p = mesh.position(static_cast<NodeId>(random() % mesh.positions.size())),
+                    q = mesh.position(static_cast<NodeId>(random() % mesh.positions.size()));
+      const WantedEdge wanted{std::pow(10.0, uniform(-2.0, -0.3)), uniform(0.3, 1.5)};
+      const std::array<RefineTarget, 4> targets{PointCloud{{p}}, Polyline{{p, q}}, where::sphere(p, uniform(0.01, 0.3)),
+                                                RefineTarget("right faces")};
+      RefineNearReport report;
+      Mesh<Tet4> fine =
+          refine_near(mesh, targets[random() % 4], wanted, {.most_nodes = mesh.node_count() + 120}, &report);
+      not_reached += report.reached() || report.most_nodes_reached ? 0 : 1;
+      if (const std::string problem = refinement_problem(mesh, fine); problem != "")
+        return problem + "in refinement " + std::to_string(done) + " of seed " + std::to_string(seed);
+      mesh = std::move(fine);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("random refinements of random meshes", "[mesh][refine_near]") {
+  Index not_reached = 0;
+  CHECK(refine_at_random(1000, 11, not_reached) == "");
+  CHECK(not_reached < 20);  // of 1000: where no division keeps half of the least quality
+}
+
+TEST_CASE("a million random refinements of random meshes", "[.long][refine_near_long]") {
+  const char* given = std::getenv("PALPATE_REFINEMENTS");
+  const Index count = given != nullptr ? std::atoll(given) : 1'000'000;
+  Index not_reached = 0, done = 0;
+  for (unsigned seed = 100; done < count; ++seed, done += 10'000) {
+    REQUIRE(refine_at_random(10'000, seed, not_reached) == "");
+    std::printf("%lld refinements, %lld ended by quality\n", static_cast<long long>(done + 10'000),
+                static_cast<long long>(not_reached));
+    std::fflush(stdout);
+  }
 }

@@ -155,9 +155,8 @@ PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const EdgeField& w
       return curved->place(node, middle, length, limits.least_quality, quality_at);
     };
   detail::Bisection bisection(mesh, limits);
-  bisection.refine(checked);
+  const auto too_long = bisection.refine(checked);
   if (curved) curved->finish(bisection);
-  const auto too_long = bisection.too_long(checked);
   RefineNearReport result;
   result.nodes_before = mesh.node_count();
   result.elements_before = mesh.element_count();

@@ -44,20 +44,18 @@ class Bisection {
   /// Elements must have positive volume. O(elements), allocates.
   Bisection(const Mesh<Tet4>& mesh, Limits limits);
 
-  /// Divides edges longer than wanted(middle), the worst ratio first, after all longer edges of the elements around
-  /// them (Rivara 1984). Every edge that is divided is longer than the least wanted length, and the volume of an
-  /// element has a lower bound by its quality and longest edge, so that it ends. `wanted` must be positive.
-  void refine(const std::function<double(const Vector3&)>& wanted);
-
-  /// Whether a limit of the size is reached.
-  bool is_full() const noexcept;
-
   struct TooLong {
     Index count = 0;
     double worst = 0.0;  ///< ratio of length and wanted length
   };
-  /// The edges that are longer than wanted.
-  TooLong too_long(const std::function<double(const Vector3&)>& wanted) const;
+  /// Divides edges longer than wanted(middle), the worst ratio first, after all longer edges of the elements around
+  /// them (Rivara 1984). Every edge that is divided is longer than the least wanted length, and the volume of an
+  /// element has a lower bound by its quality and longest edge, so that it ends. `wanted` must be positive. Returns the
+  /// edges that are still too long.
+  TooLong refine(const std::function<double(const Vector3&)>& wanted);
+
+  /// Whether a limit of the size is reached.
+  bool is_full() const noexcept;
 
   /// Moves a node if no element around it gets a quality below the limit.
   bool move(NodeId node, const Vector3& to);

@@ -175,7 +175,7 @@ PALPATE_INLINE void Bisection::wish(const NodePair& edge, const std::function<do
 }
 
 /// Divides an edge after all longer ones around it. Where the longest cannot be divided, the one before it on the path
-/// is. False if that is impossible for all of them.
+/// is. False if the edge is left: no edge of the path can be divided, or the mesh is full.
 PALPATE_INLINE bool Bisection::fulfil(const NodePair& edge, const std::function<double(const Vector3&)>& wanted) {
   std::vector<NodePair> path{edge};
   bool is_blocked = false;
@@ -202,10 +202,10 @@ PALPATE_INLINE bool Bisection::fulfil(const NodePair& edge, const std::function<
     neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
     for (const NodeId i : neighbours) wish(node_pair(i, middle), wanted);
   }
-  return !is_blocked;
+  return path.empty() && !is_blocked;
 }
 
-PALPATE_INLINE void Bisection::refine(const std::function<double(const Vector3&)>& wanted) {
+PALPATE_INLINE Bisection::TooLong Bisection::refine(const std::function<double(const Vector3&)>& wanted) {
   each_edge([&](const NodePair& edge) { wish(edge, wanted); });
   std::vector<Wish> blocked;
   std::size_t divided_before = 0;
@@ -220,17 +220,16 @@ PALPATE_INLINE void Bisection::refine(const std::function<double(const Vector3&)
     wishes_.pop();
     if (!fulfil(next.rank.edge, wanted)) blocked.push_back(next);
   }
-}
-
-PALPATE_INLINE Bisection::TooLong Bisection::too_long(const std::function<double(const Vector3&)>& wanted) const {
-  TooLong result;
-  each_edge([&](const NodePair& edge) {
-    const double ratio = (at(edge.first) - at(edge.second)).norm() / wanted(middle_of(edge));
-    if (!(ratio > 1.0 + 1e-9)) return;
-    ++result.count;
-    result.worst = std::max(result.worst, ratio);
-  });
-  return result;
+  TooLong left;
+  const auto count = [&](const Wish& w) {
+    find_around(w.rank.edge);
+    if (around_.empty()) return;
+    ++left.count;
+    left.worst = std::max(left.worst, w.ratio);
+  };
+  for (; !wishes_.empty(); wishes_.pop()) count(wishes_.top());
+  std::ranges::for_each(blocked, count);
+  return left;
 }
 
 PALPATE_INLINE bool Bisection::move(NodeId node, const Vector3& to) {

@@ -22,8 +22,9 @@ class DividedEdges {
   NodeId middle(NodeId a, NodeId b) const noexcept;
   /// Adds the triangles that replace `face`, with the same orientation.
   void divide_face(const std::array<NodeId, 3>& face, std::vector<std::array<NodeId, 3>>& parts) const;
-  /// Adds the new nodes on edges among `nodes` (sorted) of the coarse mesh, and on the parts of these edges.
-  void divide_lines(const Mesh<Tet4>& coarse, std::vector<NodeId>& nodes) const;
+  /// Sets `is_in` of the new nodes on edges of the coarse mesh both of whose nodes are in, and on parts of these edges.
+  void divide_lines(const Mesh<Tet4>& coarse, std::vector<char>& is_in) const;
+  std::size_t count() const noexcept { return divided_.size(); }
 
  private:
   std::span<const NodePair> divided_;

@@ -42,18 +42,18 @@ PALPATE_INLINE void DividedEdges::divide_face(const std::array<NodeId, 3>& face,
   divide_face({first, b, c}, parts);
 }
 
-PALPATE_INLINE void DividedEdges::divide_lines(const Mesh<Tet4>& coarse, std::vector<NodeId>& nodes) const {
+PALPATE_INLINE void DividedEdges::divide_lines(const Mesh<Tet4>& coarse, std::vector<char>& is_in) const {
   std::set<NodePair> lines;
-  const auto is_on_line = [&, before = nodes](NodeId i) { return std::ranges::binary_search(before, i); };
+  const auto contains = [&](NodeId i) { return is_in[static_cast<std::size_t>(i)] != 0; };
   for (const auto& element : coarse.elements)
     for (std::size_t a = 0; a < 4; ++a)
       for (std::size_t b = 0; b < a; ++b)
-        if (is_on_line(element[a]) && is_on_line(element[b])) lines.insert(node_pair(element[a], element[b]));
+        if (contains(element[a]) && contains(element[b])) lines.insert(node_pair(element[a], element[b]));
   NodeId next = first_new_;
   for (const auto& [a, b] : divided_) {
     const NodeId m = next++;
     if (!lines.contains({a, b})) continue;
-    nodes.push_back(m);
+    is_in[static_cast<std::size_t>(m)] = 1;
     lines.insert({node_pair(a, m), node_pair(b, m)});
   }
 }
@@ -66,14 +66,21 @@ class GroupRefinement {
 
   void refine(Group& group) {
     const bool is_set_of_nodes = group.faces.empty() && group.elements.empty();
-    std::ranges::sort(group.nodes);
-    if (group.dimension == 1) divided_->divide_lines(*coarse_, group.nodes);
+    is_in_.assign(coarse_->positions.size() + divided_->count(), 0);
+    for (const NodeId i : group.nodes) add(i);
+    if (group.dimension == 1) divided_->divide_lines(*coarse_, is_in_);
     if (is_set_of_nodes && group.dimension != 1) divide_nodes(group);
     divide_faces(group);
     divide_elements(group);
+    group.nodes.clear();
+    for (std::size_t i = 0; i < is_in_.size(); ++i)
+      if (is_in_[i] != 0) group.nodes.push_back(static_cast<NodeId>(i));
   }
 
  private:
+  void add(NodeId i) { is_in_[static_cast<std::size_t>(i)] = 1; }
+  bool contains(NodeId i) const { return is_in_[static_cast<std::size_t>(i)] != 0; }
+
   void divide_faces(Group& group) {
     std::vector<std::array<NodeId, 3>> parts;
     for (const auto& face : group.faces) {
@@ -85,55 +92,47 @@ class GroupRefinement {
     group.faces.clear();
     for (const auto& part : parts) {
       group.faces.emplace_back(part.begin(), part.end());
-      group.nodes.insert(group.nodes.end(), part.begin(), part.end());
+      std::ranges::for_each(part, [&](NodeId i) { add(i); });
     }
   }
 
   void divide_elements(Group& group) {
     std::vector<Index> parts;
-    for (const Index e : group.elements) add_parts(e, group.nodes, &parts);
+    for (const Index e : group.elements) add_parts(e, &parts);
     group.elements = std::move(parts);
   }
 
-  void divide_nodes(Group& group) {
-    std::vector<char> is_in(coarse_->positions.size(), 0);
-    for (const NodeId i : group.nodes) is_in[static_cast<std::size_t>(i)] = 1;
-    const auto contains = [&](NodeId i) { return is_in[static_cast<std::size_t>(i)] != 0; };
+  void divide_nodes(const Group& group) {
+    const auto is_given = [&](NodeId i) { return contains(i); };
     const bool is_solid = std::ranges::any_of(group.nodes, [&](NodeId i) { return is_inside(i); });
     std::vector<std::array<NodeId, 3>> parts;
     for (const BoundaryFace& face : boundary())
-      if (std::ranges::all_of(face.nodes, contains))
+      if (std::ranges::all_of(face.nodes, is_given))
         divided_->divide_face({face.nodes[0], face.nodes[1], face.nodes[2]}, parts);
-    for (const auto& part : parts) group.nodes.insert(group.nodes.end(), part.begin(), part.end());
-    if (!is_solid) return;
-    for (Index e = 0; e < coarse_->element_count(); ++e)
-      if (std::ranges::all_of(coarse_->elements[static_cast<std::size_t>(e)], contains))
-        add_parts(e, group.nodes, nullptr);
+    for (const auto& part : parts) std::ranges::for_each(part, [&](NodeId i) { add(i); });
+    for (Index e = 0; is_solid && e < coarse_->element_count(); ++e)
+      if (std::ranges::all_of(coarse_->elements[static_cast<std::size_t>(e)], is_given)) add_parts(e, nullptr);
   }
 
-  void add_parts(Index e, std::vector<NodeId>& nodes, std::vector<Index>* elements) const {
+  /// Adds the nodes of the parts of an element to the group, and the parts to `elements`.
+  void add_parts(Index e, std::vector<Index>* elements) {
     for (Index part = fine_->first[static_cast<std::size_t>(e)]; part < fine_->first[static_cast<std::size_t>(e) + 1];
          ++part) {
-      const auto& corners = fine_->elements[static_cast<std::size_t>(part)];
-      nodes.insert(nodes.end(), corners.begin(), corners.end());
+      std::ranges::for_each(fine_->elements[static_cast<std::size_t>(part)], [&](NodeId i) { add(i); });
       if (elements != nullptr) elements->push_back(part);
     }
   }
 
-  bool is_face(std::array<NodeId, 3> face) {
-    if (faces_.empty()) {
-      faces_.reserve(4 * coarse_->elements.size());
+  bool is_face(const std::array<NodeId, 3>& face) {
+    if (star_.empty()) {
+      star_.resize(coarse_->positions.size());
       for (const auto& element : coarse_->elements)
-        for (const auto& [i, j, k] : Tet4::faces)
-          faces_.push_back(sorted({element[static_cast<std::size_t>(i)], element[static_cast<std::size_t>(j)],
-                                   element[static_cast<std::size_t>(k)]}));
-      std::ranges::sort(faces_);
+        for (const NodeId i : element) star_[static_cast<std::size_t>(i)].push_back(&element);
     }
-    return std::ranges::binary_search(faces_, sorted(face));
-  }
-  static std::array<NodeId, 3> sorted(std::array<NodeId, 3> face) {
-    std::ranges::sort(face);
-    return face;
+    if (std::ranges::any_of(face, [&](NodeId i) { return i < 0 || i >= coarse_->node_count(); })) return false;
+    return std::ranges::any_of(star_[static_cast<std::size_t>(face[0])], [&](const auto* element) {
+      return std::ranges::all_of(face, [&](NodeId i) { return std::ranges::find(*element, i) != element->end(); });
+    });
   }
 
   const std::vector<BoundaryFace>& boundary() {
@@ -152,7 +151,8 @@ class GroupRefinement {
   const Mesh<Tet4>* coarse_;
   const DividedEdges* divided_;
   const Bisection::Elements* fine_;
-  std::vector<std::array<NodeId, 3>> faces_;
+  std::vector<char> is_in_;                                         ///< of every node of the fine mesh
+  std::vector<std::vector<const Mesh<Tet4>::Connectivity*>> star_;  ///< elements at every node of the coarse mesh
   std::optional<std::vector<BoundaryFace>> boundary_;
   std::vector<char> is_on_boundary_;
 };
@@ -162,7 +162,6 @@ PALPATE_INLINE GroupTable refined_groups(const Mesh<Tet4>& coarse, const Divided
   GroupTable groups = coarse.groups;
   GroupRefinement refinement(coarse, divided, fine);
   for (Group& group : groups.all()) refinement.refine(group);
-  groups.tidy();
   return groups;
 }
 

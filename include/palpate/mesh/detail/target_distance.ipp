@@ -50,11 +50,11 @@ class TargetReader {
     simplices.push_back(s);
   }
 
-  /// Elements and boundary faces all of whose nodes are selected, and the other nodes.
+  /// The faces of a part of the surface, the elements of a part of the body, and nodes that belong to none of them.
   void add_part(const Selection& selection) {
     if (!boundary_) boundary_ = extract_boundary<Tet4>(*mesh_);
-    std::vector<char> is_in(mesh_->positions.size(), 0), is_covered = is_in;
     const auto nodes = resolve_nodes(*mesh_, *boundary_, selection);
+    std::vector<char> is_in(mesh_->positions.size(), 0), is_covered = is_in;
     for (const NodeId i : nodes) is_in[static_cast<std::size_t>(i)] = 1;
     const auto is_part = [&](const auto& corners) {
       if (!std::ranges::all_of(corners, [&](NodeId i) { return is_in[static_cast<std::size_t>(i)] != 0; }))
@@ -62,12 +62,24 @@ class TargetReader {
       for (const NodeId i : corners) is_covered[static_cast<std::size_t>(i)] = 1;
       return true;
     };
-    for (const auto& e : mesh_->elements)
-      if (is_part(e)) add({e[0], e[1], e[2], e[3]});
+    if (is_solid(selection, nodes))
+      for (const auto& e : mesh_->elements)
+        if (is_part(e)) add({e[0], e[1], e[2], e[3]});
     for (const BoundaryFace& f : *boundary_)
       if (is_part(f.nodes)) add({f.nodes[0], f.nodes[1], f.nodes[2]});
     for (const NodeId i : nodes)
       if (is_covered[static_cast<std::size_t>(i)] == 0) add({i});
+  }
+
+  /// Whether a selection means elements: a group of elements, a region, or nodes some of which are inside the body. The
+  /// nodes alone do not decide: in a thin part all of them are on the surface.
+  bool is_solid(const Selection& selection, const std::vector<NodeId>& nodes) const {
+    if (const auto* name = std::get_if<std::string>(&selection)) {
+      const Group* group = mesh_->find_group(*name);
+      if (group != nullptr && !group->elements.empty()) return true;
+      if (group == nullptr && *name != surface_group) return true;
+    }
+    return !std::ranges::includes(nodes_of(*boundary_), nodes);
   }
 
   void check(const std::vector<Vector3>& points, const std::string& what) const {
