@@ -29,8 +29,8 @@ struct Polyline {
 
 /// Near what a mesh is refined. A group, a region, "surface" or a list of nodes means the boundary faces all of whose
 /// nodes it contains and its other nodes; a region, a group of elements and nodes some of which are inside the body
-/// also mean the elements all of whose nodes they contain. A set of points of mesh/where.hpp need not contain a node: to
-/// refine near a sphere or a segment pass `where::sphere` or `where::capsule`. The distance to a predicate or a
+/// also mean the elements all of whose nodes they contain. A set of points of mesh/where.hpp need not contain a node:
+/// to refine near a sphere or a segment pass `where::sphere` or `where::capsule`. The distance to a predicate or a
 /// complement is that to the nodes that it selects.
 using RefineTarget = std::variant<std::string, std::vector<NodeId>, where::PointSet, PointCloud, Polyline>;
 

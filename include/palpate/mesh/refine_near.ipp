@@ -31,25 +31,6 @@ struct MeshQuality {
   double least = infinity, mean = 0.0;
 };
 
-/// Refuses elements without positive volume.
-inline MeshQuality checked_quality(const Mesh<Tet4>& mesh) {
-  MeshQuality quality;
-  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
-    for (const NodeId i : mesh.elements[e])
-      if (i < 0 || i >= static_cast<NodeId>(mesh.positions.size()))
-        raise_at(SetupIds::elements, static_cast<std::int64_t>(e), SetupErrorKind::index_out_of_range,
-                 "an element names a node that does not exist");
-    const auto shape = element_shape<Tet4>(element_nodes<Tet4>(mesh, static_cast<Index>(e)));
-    if (!(shape.quality > 0.0))
-      raise_at(SetupIds::elements, static_cast<std::int64_t>(e),
-               shape.volume < 0.0 ? SetupErrorKind::inverted_element : SetupErrorKind::degenerate_element,
-               "an element has the volume " + number(shape.volume) + " m^3", "Admit the mesh before refinement");
-    quality.least = std::min(quality.least, shape.quality);
-    quality.mean += shape.quality / static_cast<double>(mesh.elements.size());
-  }
-  return quality;
-}
-
 inline void check_mesh(const Mesh<Tet4>& mesh) {
   if (mesh.elements.empty()) raise(SetupErrorKind::empty_mesh, "a mesh without elements cannot be refined");
   if (!mesh.regions.empty() && mesh.regions.size() != mesh.elements.size())
@@ -67,6 +48,26 @@ inline void check_mesh(const Mesh<Tet4>& mesh) {
       raise(SetupErrorKind::index_out_of_range,
             "group '" + group.name + "' names a node or an element that does not exist");
   }
+}
+
+/// Refuses what check_mesh refuses, and elements without positive volume.
+inline MeshQuality checked_quality(const Mesh<Tet4>& mesh) {
+  check_mesh(mesh);
+  MeshQuality quality;
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+    for (const NodeId i : mesh.elements[e])
+      if (i < 0 || i >= static_cast<NodeId>(mesh.positions.size()))
+        raise_at(SetupIds::elements, static_cast<std::int64_t>(e), SetupErrorKind::index_out_of_range,
+                 "an element names a node that does not exist");
+    const auto shape = element_shape<Tet4>(element_nodes<Tet4>(mesh, static_cast<Index>(e)));
+    if (!(shape.quality > 0.0))
+      raise_at(SetupIds::elements, static_cast<std::int64_t>(e),
+               shape.volume < 0.0 ? SetupErrorKind::inverted_element : SetupErrorKind::degenerate_element,
+               "an element has the volume " + number(shape.volume) + " m^3", "Admit the mesh before refinement");
+    quality.least = std::min(quality.least, shape.quality);
+    quality.mean += shape.quality / static_cast<double>(mesh.elements.size());
+  }
+  return quality;
 }
 
 inline void check_options(const RefineNearOptions& options) {
@@ -123,39 +124,18 @@ inline Mesh<Tet4> refined_mesh(const Mesh<Tet4>& coarse, Bisection& bisection) {
   raise(std::move(problem));
 }
 
-inline double longest_edge_of(const Mesh<Tet4>& mesh) {
-  double longest = 0.0;
-  for (Index e = 0; e < mesh.element_count(); ++e)
-    longest = std::max(longest, longest_edge<Tet4>(element_nodes<Tet4>(mesh, e)));
-  return longest;
-}
-
-}}}  // namespace palpate::detail
-
-namespace palpate { inline namespace PALPATE_ABI {
-
-PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const EdgeField& wanted, const RefineNearOptions& options,
-                                      RefineNearReport* report) {
-  if (!wanted) raise(SetupErrorKind::bad_argument, "an empty function as wanted edge length");
-  detail::check_options(options);
-  detail::check_mesh(mesh);
-  const auto before = detail::checked_quality(mesh);
-  const EdgeField checked = [&wanted](const Vector3& p) {
-    const double length = wanted(p);
-    if (!(length > 0.0))
-      detail::refuse_option("the wanted edge length at " + detail::point_text(p), length, 0.0,
-                            "Return a positive length, infinity where nothing is to be refined");
-    return length;
-  };
-  std::optional<detail::CurvedBoundary> curved;
+/// Refines a mesh that checked_quality has accepted.
+inline Mesh<Tet4> refine_checked(const Mesh<Tet4>& mesh, const MeshQuality& before, const Bisection::Wanted& wanted,
+                                 const RefineNearOptions& options, RefineNearReport* report) {
+  std::optional<CurvedBoundary> curved;
   if (options.surface != nullptr) curved.emplace(*options.surface, mesh);
-  detail::Bisection::Limits limits{options.most_nodes, options.quality_kept * before.least, {}};
+  Bisection::Limits limits{options.most_nodes, options.quality_kept * before.least, {}};
   if (curved)
     limits.place_on_boundary = [&](NodeId node, const Vector3& middle, double length, const auto& quality_at) {
       return curved->place(node, middle, length, limits.least_quality, quality_at);
     };
-  detail::Bisection bisection(mesh, limits);
-  const auto too_long = bisection.refine(checked);
+  Bisection bisection(mesh, limits);
+  const auto too_long = bisection.refine(wanted);
   if (curved) curved->finish(bisection);
   RefineNearReport result;
   result.nodes_before = mesh.node_count();
@@ -165,9 +145,9 @@ PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const EdgeField& w
   result.edges_too_long = too_long.count;
   result.worst_excess = too_long.worst;
   result.most_nodes_reached = too_long.count > 0 && bisection.is_full();
-  if (!result.reached() && report == nullptr) detail::refuse_too_long_edges(result, options);
-  Mesh<Tet4> fine = detail::refined_mesh(mesh, bisection);
-  const auto after = detail::checked_quality(fine);
+  if (!result.reached() && report == nullptr) refuse_too_long_edges(result, options);
+  Mesh<Tet4> fine = refined_mesh(mesh, bisection);
+  const MeshQuality after = checked_quality(fine);
   result.nodes_after = fine.node_count();
   result.elements_after = fine.element_count();
   result.least_quality_after = after.least;
@@ -181,18 +161,39 @@ PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const EdgeField& w
   return fine;
 }
 
+}}}  // namespace palpate::detail
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const EdgeField& wanted, const RefineNearOptions& options,
+                                      RefineNearReport* report) {
+  if (!wanted) raise(SetupErrorKind::bad_argument, "an empty function as wanted edge length");
+  detail::check_options(options);
+  const auto before = detail::checked_quality(mesh);
+  const auto checked = [&wanted](const Vector3& p, double) {
+    const double length = wanted(p);
+    if (!(length > 0.0))
+      detail::refuse_option("the wanted edge length at " + detail::point_text(p), length, 0.0,
+                            "Return a positive length, infinity where nothing is to be refined");
+    return length;
+  };
+  return detail::refine_checked(mesh, before, checked, options, report);
+}
+
 PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const std::vector<RefineTarget>& targets,
                                       const WantedEdge& wanted, const RefineNearOptions& options,
                                       RefineNearReport* report) {
   detail::check_wanted(wanted);
+  detail::check_options(options);
   if (targets.empty())
     raise(SetupErrorKind::bad_argument, "no target of refinement", "Name what the mesh is to be refined near");
-  detail::check_mesh(mesh);
-  detail::checked_quality(mesh);  // node ids in range
-  const double reach = std::max(detail::longest_edge_of(mesh) - wanted.edge, 0.0) / wanted.growth;
-  const detail::TargetDistance distance(mesh, targets, wanted.edge / 16.0, reach);
-  return refine_near(mesh, EdgeField([&](const Vector3& p) { return wanted.edge + wanted.growth * distance(p); }),
-                     options, report);
+  const auto before = detail::checked_quality(mesh);
+  const detail::TargetDistance distance(mesh, targets);
+  const auto wanted_at = [&](const Vector3& p, double length) {
+    const double reach = (length - wanted.edge) / wanted.growth;
+    return reach > 0.0 ? wanted.edge + wanted.growth * distance(p, reach) : infinity;
+  };
+  return detail::refine_checked(mesh, before, wanted_at, options, report);
 }
 
 PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const RefineTarget& target, const WantedEdge& wanted,

@@ -35,6 +35,10 @@ class Bisection {
   /// Position of the new node of an edge on the boundary, whose middle and length are given.
   using Place = std::function<Vector3(NodeId node, const Vector3& middle, double length, const QualityAt& quality_at)>;
 
+  /// Wanted length of an edge, by its middle and its length [m]; infinity is as good as any length that is not shorter
+  /// than that of the edge.
+  using Wanted = std::function<double(const Vector3& middle, double length)>;
+
   struct Limits {
     Index most_nodes = 0;        ///< and 2^31 elements
     double least_quality = 0.0;  ///< an edge is not divided if an element would get less
@@ -48,11 +52,11 @@ class Bisection {
     Index count = 0;
     double worst = 0.0;  ///< ratio of length and wanted length
   };
-  /// Divides edges longer than wanted(middle), the worst ratio first, after all longer edges of the elements around
+  /// Divides edges longer than wanted, the worst ratio first, after all longer edges of the elements around
   /// them (Rivara 1984). Every edge that is divided is longer than the least wanted length, and the volume of an
   /// element has a lower bound by its quality and longest edge, so that it ends. `wanted` must be positive. Returns the
   /// edges that are still too long.
-  TooLong refine(const std::function<double(const Vector3&)>& wanted);
+  TooLong refine(const Wanted& wanted);
 
   /// Whether a limit of the size is reached.
   bool is_full() const noexcept;
@@ -108,8 +112,8 @@ class Bisection {
   bool is_on_boundary(const NodePair& edge);
   double quality_at(const NodePair& edge, const Vector3& middle) const noexcept;
   bool divide(const NodePair& edge);
-  void wish(const NodePair& edge, const std::function<double(const Vector3&)>& wanted);
-  bool fulfil(const NodePair& edge, const std::function<double(const Vector3&)>& wanted);
+  void wish(const NodePair& edge, const Wanted& wanted);
+  bool fulfil(const NodePair& edge, const Wanted& wanted);
 
   Limits limits_;
   std::vector<Vector3> positions_;

@@ -169,14 +169,14 @@ PALPATE_INLINE bool Bisection::divide(const NodePair& edge) {
   return true;
 }
 
-PALPATE_INLINE void Bisection::wish(const NodePair& edge, const std::function<double(const Vector3&)>& wanted) {
-  const double ratio = (at(edge.first) - at(edge.second)).norm() / wanted(middle_of(edge));
+PALPATE_INLINE void Bisection::wish(const NodePair& edge, const Wanted& wanted) {
+  const double length = (at(edge.first) - at(edge.second)).norm(), ratio = length / wanted(middle_of(edge), length);
   if (ratio > 1.0 + 1e-9) wishes_.push({ratio, rank(edge)});
 }
 
 /// Divides an edge after all longer ones around it. Where the longest cannot be divided, the one before it on the path
 /// is. False if the edge is left: no edge of the path can be divided, or the mesh is full.
-PALPATE_INLINE bool Bisection::fulfil(const NodePair& edge, const std::function<double(const Vector3&)>& wanted) {
+PALPATE_INLINE bool Bisection::fulfil(const NodePair& edge, const Wanted& wanted) {
   std::vector<NodePair> path{edge};
   bool is_blocked = false;
   while (!path.empty() && !is_full()) {
@@ -205,7 +205,7 @@ PALPATE_INLINE bool Bisection::fulfil(const NodePair& edge, const std::function<
   return path.empty() && !is_blocked;
 }
 
-PALPATE_INLINE Bisection::TooLong Bisection::refine(const std::function<double(const Vector3&)>& wanted) {
+PALPATE_INLINE Bisection::TooLong Bisection::refine(const Wanted& wanted) {
   each_edge([&](const NodePair& edge) { wish(edge, wanted); });
   std::vector<Wish> blocked;
   std::size_t divided_before = 0;

@@ -13,17 +13,15 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 /// Distance to the nearest of several targets.
 class TargetDistance {
  public:
-  /// `step` is a length from which distances to sets of points are searched upwards, `reach` the largest distance of
-  /// interest [m]. Throws what refine_near throws for targets.
-  TargetDistance(const Mesh<Tet4>& mesh, const std::vector<RefineTarget>& targets, double step, double reach);
+  /// Throws what refine_near throws for targets.
+  TargetDistance(const Mesh<Tet4>& mesh, const std::vector<RefineTarget>& targets);
 
-  /// Infinite beyond `reach` [m]; to sets of points accurate to a thousandth.
-  double operator()(const Vector3& p) const;
+  /// Infinite beyond `reach` [m]; to sets of points accurate to a thousandth of `reach`.
+  double operator()(const Vector3& p, double reach) const;
 
  private:
   SimplexTree tree_;
   std::vector<where::PointSet> sets_;
-  double step_, reach_;
 };
 
 }}}  // namespace palpate::detail

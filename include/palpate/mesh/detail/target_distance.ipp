@@ -109,24 +109,19 @@ class TargetReader {
   std::optional<std::vector<BoundaryFace>> boundary_;
 };
 
-PALPATE_INLINE TargetDistance::TargetDistance(const Mesh<Tet4>& mesh, const std::vector<RefineTarget>& targets,
-                                              double step, double reach)
-    : step_(step), reach_(reach) {
+PALPATE_INLINE TargetDistance::TargetDistance(const Mesh<Tet4>& mesh, const std::vector<RefineTarget>& targets) {
   TargetReader reader(mesh);
   for (const RefineTarget& target : targets) std::visit(reader, target);
   tree_ = SimplexTree(std::move(reader.simplices));
   sets_ = std::move(reader.sets);
 }
 
-/// Least margin with which a set contains p. A set that does not grow with its margin (a predicate, a complement)
-/// contains p at once or never.
-inline double margin_distance(const where::PointSet& set, const Vector3& p, double step, double reach) {
+/// Least margin up to `reach` with which a set contains p. A set that does not grow with its margin (a predicate, a
+/// complement) contains p at once or not at all.
+inline double margin_distance(const where::PointSet& set, const Vector3& p, double reach) {
   if (set.contains(p)) return 0.0;
-  double low = 0.0, high = step;
-  for (; !set.contains(p, high); high *= 2.0) {
-    low = high;
-    if (low >= reach) return infinity;
-  }
+  if (!set.contains(p, reach)) return infinity;
+  double low = 0.0, high = reach;
   for (int i = 0; i < 10; ++i) {
     const double middle = 0.5 * (low + high);
     (set.contains(p, middle) ? high : low) = middle;
@@ -134,10 +129,10 @@ inline double margin_distance(const where::PointSet& set, const Vector3& p, doub
   return high;
 }
 
-PALPATE_INLINE double TargetDistance::operator()(const Vector3& p) const {
-  double distance = tree_.nearest(p, reach_).distance;
+PALPATE_INLINE double TargetDistance::operator()(const Vector3& p, double reach) const {
+  double distance = tree_.nearest(p, reach).distance;
   for (const where::PointSet& set : sets_)
-    if (distance > 0.0) distance = std::min(distance, margin_distance(set, p, step_, std::min(reach_, distance)));
+    if (distance > 0.0) distance = std::min(distance, margin_distance(set, p, std::min(reach, distance)));
   return distance;
 }
 
