@@ -625,9 +625,61 @@ std::string refinement_problem(const Mesh<Tet4>& coarse, const Mesh<Tet4>& fine)
   return problem;
 }
 
-/// A stretched box with moved nodes, of which some elements may be missing.
+/// Whether p is in the sphere through the corners of a positive tetrahedron.
+bool is_in_circumsphere(const std::vector<Vector3>& x, const std::array<NodeId, 4>& t, const Vector3& p) {
+  Eigen::Matrix4d rows;
+  for (int a = 0; a < 4; ++a) {
+    const Vector3 d = x[static_cast<std::size_t>(t[static_cast<std::size_t>(a)])] - p;
+    rows.row(a) << d.transpose(), d.squaredNorm();
+  }
+  return rows.determinant() < 0.0;
+}
+
+/// Delaunay tetrahedra of random points (Bowyer and Watson 1981): a body with slivers.
+Mesh<Tet4> random_delaunay(int points, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<Vector3> x{{-40, -40, -40}, {120, -40, -40}, {-40, 120, -40}, {-40, -40, 120}};
+  std::vector<std::array<NodeId, 4>> tetrahedra{{0, 1, 2, 3}};
+  for (int i = 0; i < points; ++i) {
+    const Vector3 p(uniform(random), uniform(random), uniform(random));
+    const auto cavity = std::partition(tetrahedra.begin(), tetrahedra.end(),
+                                       [&](const auto& t) { return !is_in_circumsphere(x, t, p); });
+    std::map<std::array<NodeId, 3>, std::pair<int, std::array<NodeId, 3>>> faces;
+    for (auto t = cavity; t != tetrahedra.end(); ++t)
+      for (const auto& f : Tet4::faces) {
+        const std::array<NodeId, 3> face{(*t)[static_cast<std::size_t>(f[0])], (*t)[static_cast<std::size_t>(f[1])],
+                                         (*t)[static_cast<std::size_t>(f[2])]};
+        auto& [count, outward] = faces[sorted_face(face)];
+        ++count;
+        outward = face;
+      }
+    tetrahedra.erase(cavity, tetrahedra.end());
+    for (const auto& [key, face] : faces)
+      if (face.first == 1)
+        tetrahedra.push_back({face.second[0], face.second[2], face.second[1], static_cast<NodeId>(x.size())});
+    x.push_back(p);
+  }
+  Mesh<Tet4> mesh;
+  std::vector<NodeId> place(x.size(), -1);
+  for (auto t : tetrahedra) {
+    if (*std::ranges::min_element(t) < 4) continue;  // at the first, large one
+    for (NodeId& i : t) {
+      NodeId& n = place[static_cast<std::size_t>(i)];
+      if (n < 0) {
+        n = static_cast<NodeId>(mesh.positions.size());
+        mesh.positions.push_back(x[static_cast<std::size_t>(i)]);
+      }
+      i = n;
+    }
+    mesh.elements.push_back(t);
+  }
+  return mesh;
+}
+
+/// A stretched box with moved nodes, of which some elements may be missing, or Delaunay tetrahedra.
 Mesh<Tet4> random_mesh(std::mt19937& random) {
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  if (random() % 3 == 0) return with_groups(random_delaunay(10 + static_cast<int>(random() % 50), random));
   const bool five = random() % 2 == 0;
   Mesh<Tet4> mesh = jittered_box(1 + static_cast<int>(random() % 3), uniform(0.0, 0.35),
                                  static_cast<unsigned>(random()), five ? BoxSplit::five_mirrored : BoxSplit::six);
@@ -679,6 +731,19 @@ std::string refine_at_random(Index count, unsigned seed, Index& not_reached) {
 }
 
 }  // namespace
+
+TEST_CASE("refinement of Delaunay tetrahedra of random points", "[mesh][refine_near]") {
+  std::mt19937 random(17);
+  for (int i = 0; i < 5; ++i) {
+    const Mesh<Tet4> mesh = random_delaunay(200, random);
+    REQUIRE(diagnose<Tet4>(mesh).min_quality > 0.0);
+    REQUIRE(diagnose<Tet4>(mesh).min_quality < 0.1);  // slivers
+    RefineNearReport report;
+    const Mesh<Tet4> fine = refine_near(mesh, where::sphere({0.5, 0.5, 0.5}, 0.1), {.edge = 0.03}, {}, &report);
+    CHECK(report.reached());
+    check_refined(mesh, fine);
+  }
+}
 
 TEST_CASE("random refinements of random meshes", "[mesh][refine_near]") {
   Index not_reached = 0;
