@@ -6,33 +6,13 @@
 #include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh.hpp>
-#include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/refine_target.hpp>
 
-#include <array>
 #include <concepts>
 #include <functional>
-#include <utility>
-#include <variant>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-/// Points in space, such as the places where tools will touch [m].
-struct PointCloud {
-  std::vector<Vector3> points;
-};
-
-/// The segments between consecutive points, such as the path of a tool [m].
-struct Polyline {
-  std::vector<Vector3> points;
-};
-
-/// Near what a mesh is refined. A group, a region, "surface" or a list of nodes means the boundary faces all of whose
-/// nodes it contains and its other nodes; a region, a group of elements and nodes some of which are inside the body
-/// also mean the elements all of whose nodes they contain. A set of points of mesh/where.hpp need not contain a node:
-/// to refine near a sphere or a segment pass `where::sphere` or `where::capsule`. The distance to a predicate or a
-/// complement is that to the nodes that it selects.
-using RefineTarget = std::variant<std::string, std::vector<NodeId>, where::PointSet, PointCloud, Polyline>;
 
 /// Wanted edge length [m] at a distance [m] from the targets: edge + growth * distance. Both positive and finite.
 struct WantedEdge {
@@ -42,12 +22,6 @@ struct WantedEdge {
 
 /// Wanted edge length [m] at a point of the mesh as given [m]: positive, infinity where nothing is to be refined.
 using EdgeField = std::function<double(const Vector3&)>;
-
-/// A triangle surface that is finer than the boundary of the mesh, in the same frame [m].
-struct CurvedSurface {
-  std::vector<Vector3> positions;
-  std::vector<std::array<NodeId, 3>> triangles;
-};
 
 struct RefineNearOptions {
   Index most_nodes = 1'000'000;  ///< refinement ends when the mesh has this number of nodes

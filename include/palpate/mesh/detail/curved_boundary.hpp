@@ -4,7 +4,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/mesh/detail/bisection.hpp>
 #include <palpate/mesh/detail/simplex_tree.hpp>
-#include <palpate/mesh/refine_near.hpp>
+#include <palpate/mesh/refine_target.hpp>
 
 #include <vector>
 

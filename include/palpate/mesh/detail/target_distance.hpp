@@ -2,10 +2,11 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
+#include <palpate/element/tet4.hpp>
 #include <palpate/mesh/detail/simplex_tree.hpp>
-#include <palpate/mesh/refine_near.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/refine_target.hpp>
 
-#include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
