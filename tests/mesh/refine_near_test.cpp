@@ -718,9 +718,10 @@ std::string refine_at_random(Index count, unsigned seed, Index& not_reached) {
       const WantedEdge wanted{std::pow(10.0, uniform(-2.0, -0.3)), uniform(0.3, 1.5)};
       const std::array<RefineTarget, 4> targets{PointCloud{{p}}, Polyline{{p, q}}, where::sphere(p, uniform(0.01, 0.3)),
                                                 RefineTarget("right faces")};
+      const std::size_t kinds = mesh.find_group("right faces")->nodes.empty() ? 3 : 4;  // an empty group is refused
       RefineNearReport report;
       Mesh<Tet4> fine =
-          refine_near(mesh, targets[random() % 4], wanted, {.most_nodes = mesh.node_count() + 120}, &report);
+          refine_near(mesh, targets[random() % kinds], wanted, {.most_nodes = mesh.node_count() + 120}, &report);
       not_reached += report.reached() || report.most_nodes_reached ? 0 : 1;
       if (const std::string problem = refinement_problem(mesh, fine); problem != "")
         return problem + "in refinement " + std::to_string(done) + " of seed " + std::to_string(seed);
