@@ -79,13 +79,12 @@ void PlainEigenStep::add(Element& e, const VectorX& predicted, VectorX& residual
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j)
       rotated.block<3, 3>(3 * i, 3 * j).noalias() = r * e.stiffness.block<3, 3>(3 * i, 3 * j) * r.transpose();
-  // force = R K (R^T x - x0) = rotated (x - R x0): for linear tetrahedra it depends only on the deformation gradient
-  Matrix3 d = Matrix3::Identity();
+  Matrix3 f = Matrix3::Identity(), cofactor;
   for (int a = 0; a < 4; ++a)
-    d += predicted.segment<3>(3 * Index{e.nodes[static_cast<std::size_t>(a)]}) * e.gradient.row(a);
-  d = r.transpose() * d - Matrix3::Identity();
+    f += predicted.segment<3>(3 * Index{e.nodes[static_cast<std::size_t>(a)]}) * e.gradient.row(a);
+  cofactor << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
   const double lambda = bench::tissue.lame_lambda(), mu = bench::tissue.shear_modulus();
-  const Matrix3 stress = e.volume * r * (mu * (d + d.transpose()) + lambda * d.trace() * Matrix3::Identity());
+  const Matrix3 stress = e.volume * (2.0 * mu * (f - r) + lambda * (f.determinant() - 1.0) * cofactor);
   for (int a = 0; a < 4; ++a)
     residual.segment<3>(3 * Index{e.nodes[static_cast<std::size_t>(a)]}) -= stress * e.gradient.row(a).transpose();
   double* const values = a_.valuePtr();

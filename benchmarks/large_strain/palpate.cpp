@@ -62,14 +62,16 @@ class QuasiNewtonBlock : public Method {
   VectorX prescribed_, f_;
 };
 
-/// Co-rotated linear tetrahedra without a factorisation.
+const Corotational<LinearElastic> corotational{bench::tissue};
+
+/// Co-rotated tetrahedra without a factorisation.
 class CorotatedBlock : public Method {
  public:
   explicit CorotatedBlock(const PressedBlock& block) : mesh_(block.mesh), square_(block.square) {
     Scene scene;
     scene.fix(block.bottom).fix(square_);
     motion_ = SolverTraits<Implicit<MatrixFreeCG<BlockJacobi>>>::make_motion(
-                  make_hyperelastic_body(mesh_, std::vector{Corotational<LinearElastic>{{bench::tissue}}}), scene,
+                  make_hyperelastic_body(mesh_, std::vector{corotational}), scene,
                   {.step = step_length}, SetupLimits{})
                   .motion;
     prescribed_ = VectorX::Zero(3 * mesh_.node_count());
@@ -83,7 +85,8 @@ class CorotatedBlock : public Method {
     const auto place = [&](NodeId i) {
       return Vector3(mesh_.position(Index{i}) + node_vector(motion_->displacement(), Index{i}));
     };
-    return elastic_force(mesh_, square_, place, corotated_stress);
+    return elastic_force(mesh_, square_, place,
+                         [](const Matrix3& f) { return matrix3(corotational.stress(tensor3<double>(f))); });
   }
 
  private:

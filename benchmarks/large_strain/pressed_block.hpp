@@ -97,7 +97,7 @@ struct StableNeoHookean {
   Matrix3 operator()(const Matrix3& f) const { return mu * f + pressure(f) * cofactor(f); }
 };
 
-/// First Piola-Kirchhoff stress of co-rotated linear elasticity.
+/// First Piola-Kirchhoff stress of co-rotated linear elasticity, tr(R^T F - I) as its volume change.
 Matrix3 corotated_stress(const Matrix3& f);
 
 void add_palpate(std::vector<Entry>& entries);

@@ -7,6 +7,7 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/material/detail/deformation.hpp>
 #include <palpate/material/detail/small_strain.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
@@ -18,24 +19,27 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Energy density and stress from the closest rotation R and D = F - R; constants in the number type of the lanes.
+/// Energy density and stress from D = F - R with the closest rotation R, the cofactors of F and its volume change J - 1;
+/// constants in the number type of the lanes.
 template <class S>
-PALPATE_ALWAYS_INLINE S corotated_energy(const Lame<S>& c, const Tensor3<S>& r, const Tensor3<S>& d) noexcept {
-  const S swelling = contract(r, d);
+PALPATE_ALWAYS_INLINE S corotated_energy(const Lame<S>& c, const Tensor3<S>& d, const S& swelling) noexcept {
   return c.mu * contract(d, d) + S(0.5f) * c.lambda * swelling * swelling;
 }
 template <class S>
-PALPATE_ALWAYS_INLINE Tensor3<S> corotated_stress(const Lame<S>& c, const Tensor3<S>& r, const Tensor3<S>& d) noexcept {
-  return S(2) * c.mu * d + (c.lambda * contract(r, d)) * r;
+PALPATE_ALWAYS_INLINE Tensor3<S> corotated_stress(const Lame<S>& c, const Tensor3<S>& d, const Tensor3<S>& cofactors,
+                                                  const S& swelling) noexcept {
+  return S(2) * c.mu * d + (c.lambda * swelling) * cofactors;
 }
 
 }  // namespace detail
 
-/// W = mu |F - R|^2 + lambda/2 tr(R^T F - I)^2 with the rotation R closest to F (core/rotation.hpp): Hooke's law for
-/// large rotations, not for large strains. Finite for every F; inverted elements are pushed back. Where the closest
-/// rotation is not unique (an element pressed to a line, or inverted so far that two stretches cancel) the stress
-/// jumps. Isotropic bases only: for others the stress needs the derivative of R, and the tangent the second derivative.
-/// Cost of stress: one closest rotation, see docs/materials.md.
+/// Fixed co-rotated elasticity (Stomakhin, Howes, Schroeder and Teran 2012), W = mu |F - R|^2 + lambda/2 (J - 1)^2 with
+/// the rotation R closest to F (core/rotation.hpp): Hooke's law at small strain and any rotation. The volume term is that
+/// of J = det F, so that compressed elements resist until they are flat; with tr(R^T F - I) in its place, as in Hooke's
+/// law of the stretch, an element can be pressed flat at constant energy. Finite for every F; inverted elements are
+/// pushed back. Where the closest rotation is not unique (an element pressed to a line, or inverted so far that two
+/// stretches cancel) the stress jumps. Isotropic bases only: others have no Lame constants. Cost of stress: one closest
+/// rotation, see docs/materials.md.
 template <class Base = LinearElastic>
 requires LinearMaterial<Base> && requires(const Base& b) {
   { b.lame_lambda() } -> std::same_as<double>;
@@ -58,33 +62,33 @@ struct Corotational {
 
   template <class S>
   PALPATE_ALWAYS_INLINE S energy(const Tensor3<S>& f) const noexcept {
-    const Tensor3<S> r = closest_rotation(f);
-    return detail::corotated_energy(detail::lame<S>(base), r, f - r);
+    return detail::corotated_energy(detail::lame<S>(base), f - closest_rotation(f), determinant(f) - S(1));
   }
 
   template <class S>
   PALPATE_ALWAYS_INLINE Tensor3<S> stress(const Tensor3<S>& f) const noexcept {
-    const Tensor3<S> r = closest_rotation(f);
-    return detail::corotated_stress(detail::lame<S>(base), r, f - r);
+    const Tensor3<S> c = cofactor(f);
+    return detail::corotated_stress(detail::lame<S>(base), f - closest_rotation(f), c, determinant(f, c) - S(1));
   }
 
-  /// Exact, with dR/dF. Indefinite under compression, where mu (si + sj - 2) + lambda (s1 + s2 + s3 - 3) < 0. dR/dF is
-  /// infinite where two stretches cancel; near that point their sum is bounded below by 1e-6.
+  /// Exact, with dR/dF. Indefinite where elements are compressed or have much changed their volume. dR/dF is infinite
+  /// where two stretches cancel; near that point their sum is bounded below by 1e-6.
   Matrix9 tangent(const Tensor3<double>& f) const noexcept {
     const double lambda = base.lame_lambda(), mu = base.shear_modulus();
-    const Tensor3<double> r = closest_rotation(f);
-    Matrix9 t = (lambda * contract(r, f - r) - 2.0 * mu) * rotation_derivative(f, r);
-    t += (lambda * vector9(r)) * vector9(r).transpose();
+    const Tensor3<double> r = closest_rotation(f), c = cofactor(f);
+    Matrix9 t = (-2.0 * mu) * rotation_derivative(f, r);
+    t += (lambda * (determinant(f, c) - 1.0)) * detail::cofactor_derivative(f);
+    t += (lambda * vector9(c)) * vector9(c).transpose();
     t.diagonal().array() += 2.0 * mu;
     return t;
   }
 
-  /// dP/dF at fixed R, the R D R^T of standard corotational codes: positive semidefinite at every F, exact at rest and
-  /// for any rotation; 2 mu sym(R^T dF) in the rotated frame.
+  /// 2 mu R sym(R^T dF) + lambda (cof F : dF) cof F: the tangent of Hooke's shear stress at fixed R, and the Gauss-Newton
+  /// part of the volume term. Positive semidefinite at every F, exact at rest and for any rotation.
   Matrix9 semidefinite_tangent(const Tensor3<double>& f) const noexcept {
     const double lambda = base.lame_lambda(), mu = base.shear_modulus();
-    const Tensor3<double> r = closest_rotation(f);
-    Matrix9 t = (lambda * vector9(r)) * vector9(r).transpose();
+    const Tensor3<double> r = closest_rotation(f), c = cofactor(f);
+    Matrix9 t = (lambda * vector9(c)) * vector9(c).transpose();
     t.diagonal().array() += mu;
     for (int j = 0; j < 3; ++j)
       for (int l = 0; l < 3; ++l)

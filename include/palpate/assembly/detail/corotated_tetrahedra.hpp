@@ -27,11 +27,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A `Corotational` body at a displacement, several elements simultaneously: energy, force, and products with its
-/// stiffness at fixed rotations, R K R^T of Mueller and Gross (2004), which is positive semidefinite in every state. An
-/// element is the linear one with rotated gradients, so a product costs as much as at small strain. Each rotation is
-/// computed from that of the previous state. Blocks, sums and vectors as in BatchedTetrahedra; S = float computes
-/// products and forces in single precision. No allocation after construction.
+/// A `Corotational` body at a displacement, several elements simultaneously: energy, force, and products with the
+/// stiffness of Corotational::semidefinite_tangent, which is positive semidefinite in every state. Its shear part is
+/// R K R^T of Mueller and Gross (2004): that of the linear element with rotated gradients; its volume part is the
+/// Gauss-Newton matrix of lambda/2 (J - 1)^2. With the volume part of R K R^T instead, steps diverge at a Poisson ratio
+/// of 0.49. Each rotation is computed from that of the previous state. Blocks, sums and vectors as in BatchedTetrahedra;
+/// S = float computes products and forces in single precision. No allocation after construction.
 template <class Base = LinearElastic, class S = double, int N = 64 / sizeof(S)>
 class CorotatedTetrahedra {
  public:
@@ -70,22 +71,25 @@ class CorotatedTetrahedra {
     return detail::report_of(reports_);
   }
 
-  /// y = R K R^T x with the rotations of the last linearise().
+  /// y = K x with the stiffness K at the state of the last linearise().
   void apply(const VectorX& x, VectorX& y) const noexcept {
     for (const TetrahedronBlock& block : layout_.blocks) apply_block(block, x);
     layout_.add_up(rows_.data(), 0, layout_.node_count(), y);
   }
 
-  /// Diagonal blocks of R K R^T [N/m], symmetric: xx, yy, zz of every node, and xy, xz, yz.
+  /// Diagonal blocks of K [N/m], symmetric: xx, yy, zz of every node, and xy, xz, yz.
   void diagonal_blocks(VectorX& straight, VectorX& mixed) const noexcept {
     add_diagonals(
-        [](const Vector& g, const Lane& isotropic, const Lane& more) {
-          return Vector{isotropic + more * g.x * g.x, isotropic + more * g.y * g.y, isotropic + more * g.z * g.z};
+        [](const Vector& g, const Vector& c, const Lane& lambda, const Lane& mu) {
+          const Lane isotropic = mu * dot(g, g);
+          return Vector{isotropic + mu * g.x * g.x + lambda * c.x * c.x, isotropic + mu * g.y * g.y + lambda * c.y * c.y,
+                        isotropic + mu * g.z * g.z + lambda * c.z * c.z};
         },
         straight);
     add_diagonals(
-        [](const Vector& g, const Lane&, const Lane& more) {
-          return Vector{more * g.x * g.y, more * g.x * g.z, more * g.y * g.z};
+        [](const Vector& g, const Vector& c, const Lane& lambda, const Lane& mu) {
+          return Vector{mu * g.x * g.y + lambda * c.x * c.y, mu * g.x * g.z + lambda * c.x * c.z,
+                        mu * g.y * g.z + lambda * c.y * c.z};
         },
         mixed);
   }
@@ -94,9 +98,22 @@ class CorotatedTetrahedra {
   using Batch = TetrahedronBatch<S, N>;
   using Lane = Lanes<S, N>;
   using Vector = Triple<Lane>;
+  struct Symmetric {
+    Lane xx, yy, zz, xy, xz, yz;
+
+    PALPATE_ALWAYS_INLINE static Symmetric part_of(const Tensor3<Lane>& a) noexcept {
+      const Lane half(S(0.5f));
+      return {a(0, 0), a(1, 1), a(2, 2), half * (a(0, 1) + a(1, 0)), half * (a(0, 2) + a(2, 0)),
+              half * (a(1, 2) + a(2, 1))};
+    }
+    PALPATE_ALWAYS_INLINE Vector operator*(const Vector& v) const noexcept {
+      return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
+    }
+  };
   struct RotatedBatch {
     Vector gradient[3];  // R grad N_a sqrt(V)
     Lane root_volume;    // sqrt(V)
+    Symmetric cofactor;  // cof(F) R^T
     Quaternion<Lane> rotation;
   };
 
@@ -105,6 +122,7 @@ class CorotatedTetrahedra {
     for (int lane = 0; lane < N; ++lane) rotated.root_volume.set(lane, std::sqrt(batch.volume[lane]));
     rotated.rotation = {Lane(S(1)), Lane(S(0)), Lane(S(0)), Lane(S(0))};
     rotate_gradients(Tensor3<Lane>::identity(), batch, rotated);
+    rotated.cofactor = Symmetric::part_of(Tensor3<Lane>::identity());
     return rotated;
   }
   PALPATE_ALWAYS_INLINE static void rotate_gradients(const Tensor3<Lane>& r, const Batch& batch,
@@ -124,11 +142,14 @@ class CorotatedTetrahedra {
     for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
       const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
       RotatedBatch& rotated = rotated_[static_cast<std::size_t>(b)];
-      const Tensor3<Lane> f = batch.deformation_gradient(local), r = tracked_rotation(f, rotated.rotation), d = f - r;
-      watch.observe(determinant(f, cofactor(f)), batch.volume);
-      stored += batch.volume * detail::corotated_energy(material, r, d);
-      batch.add_force(detail::corotated_stress(material, r, d), rows);
+      const Tensor3<Lane> f = batch.deformation_gradient(local), c = cofactor(f),
+                          r = tracked_rotation(f, rotated.rotation), d = f - r;
+      const Lane ratio = determinant(f, c), swelling = ratio - Lane(S(1));
+      watch.observe(ratio, batch.volume);
+      stored += batch.volume * detail::corotated_energy(material, d, swelling);
+      batch.add_force(detail::corotated_stress(material, d, c, swelling), rows);
       rotate_gradients(r, batch, rotated);
+      rotated.cofactor = Symmetric::part_of(c * transpose(r));
     }
     reports_[index] = watch.summary(layout_, block, true);
     double sum = 0.0;
@@ -143,28 +164,36 @@ class CorotatedTetrahedra {
     const auto [lambda, mu] = materials_[static_cast<std::size_t>(block.region)];
     for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
       const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
-      const Vector(&g)[3] = rotated_[static_cast<std::size_t>(b)].gradient;
+      const RotatedBatch& rotated = rotated_[static_cast<std::size_t>(b)];
+      const Vector(&g)[3] = rotated.gradient;
+      const Symmetric& c = rotated.cofactor;
       Vector d[3];
       batch.differences(local, d);
-      const Tensor3<Lane> h = outer(d[0], g[0]) + outer(d[1], g[1]) + outer(d[2], g[2]);
-      const Tensor3<Lane> stress = plus_identity(Lane(mu) * (h + transpose(h)), Lane(lambda) * trace(h));
+      const Tensor3<Lane> h = outer(d[0], g[0]) + outer(d[1], g[1]) + outer(d[2], g[2]), twice = h + transpose(h);
+      const Lane xy = twice(0, 1), xz = twice(0, 2), yz = twice(1, 2);
+      const Lane p = lambda * (c.xx * h(0, 0) + c.yy * h(1, 1) + c.zz * h(2, 2) + c.xy * xy + c.xz * xz + c.yz * yz);
+      const Lane sxy = mu * xy + p * c.xy, sxz = mu * xz + p * c.xz, syz = mu * yz + p * c.yz;
+      const Tensor3<Lane> stress{{mu * twice(0, 0) + p * c.xx, sxy, sxz, sxy, mu * twice(1, 1) + p * c.yy, syz, sxz, syz,
+                                  mu * twice(2, 2) + p * c.zz}};
       batch.add_balanced(stress * g[0], stress * g[1], stress * g[2], rows);
     }
   }
 
-  /// Sums part(g, mu V |grad|^2, (lambda + mu)) over every element and node; g is its rotated gradient times sqrt(V).
+  /// Sums part(g, c, lambda, mu) over every element and node; g is its rotated gradient and c the product of cof(F) with
+  /// its gradient, times sqrt(V).
   template <class Part>
   void add_diagonals(Part part, VectorX& to) const noexcept {
     for (const TetrahedronBlock& block : layout_.blocks) {
       S* const rows = layout_.cleared(block, rows_);
       const auto [lambda, mu] = materials_[static_cast<std::size_t>(block.region)];
       for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
-        const Vector(&g)[3] = rotated_[static_cast<std::size_t>(b)].gradient;
+        const RotatedBatch& rotated = rotated_[static_cast<std::size_t>(b)];
+        const Vector(&g)[3] = rotated.gradient;
         const Vector first{-(g[0].x + g[1].x + g[2].x), -(g[0].y + g[1].y + g[2].y), -(g[0].z + g[1].z + g[2].z)};
         const Vector* const all[4] = {&first, &g[0], &g[1], &g[2]};
         for (int a = 0; a < 4; ++a)
           add_rows(rows, layout_.batches[static_cast<std::size_t>(b)].row[a],
-                   part(*all[a], Lane(mu) * dot(*all[a], *all[a]), Lane(lambda + mu)));
+                   part(*all[a], rotated.cofactor * *all[a], lambda, mu));
       }
     }
     layout_.add_up(rows_.data(), 0, layout_.node_count(), to);

@@ -71,7 +71,7 @@ class RenewedFactor {
 
   /// A at a state, and its factor.
   void make(Made& made, const StepFactors& factors, const VectorX& u) const noexcept;
-  /// R K R^T of one element.
+  /// Stiffness of one element, as in CorotatedTetrahedra.
   static void add(const RotatingElement& e, double factor, const VectorX& u, BlockMatrix& a) noexcept;
 
   mutable CorotatedSolve corotated_;

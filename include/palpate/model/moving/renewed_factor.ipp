@@ -46,13 +46,17 @@ PALPATE_INLINE void RenewedFactor::add(const RotatingElement& e, double factor, 
     for (int c = 0; c < 3; ++c)
       for (int i = 0; i < 3; ++i) f(i, c) += u[3 * Index{e.nodes[static_cast<std::size_t>(n)]} + i] * e.gradient(n, c);
   if (!all_finite(f)) f.setIdentity();
-  const Eigen::Matrix<double, 4, 3> g = e.gradient * matrix3(closest_rotation(tensor3<double>(f))).transpose();
+  const Tensor3<double> t = tensor3<double>(f);
+  const Eigen::Matrix<double, 4, 3> g = e.gradient * matrix3(closest_rotation(t)).transpose(),
+                                    c = e.gradient * matrix3(cofactor(t)).transpose();
+  const LameConstants shear{0.0, e.material.mu}, volume{e.material.lambda, 0.0};
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) {
       const NodeId row = e.nodes[static_cast<std::size_t>(i)], column = e.nodes[static_cast<std::size_t>(j)];
       if (column > row) continue;
       Matrix3 block = Matrix3::Zero();
-      add_isotropic_block(e.material, g.row(i), g.row(j), block.data());
+      add_isotropic_block(shear, g.row(i), g.row(j), block.data());
+      add_isotropic_block(volume, c.row(i), c.row(j), block.data());
       a.block(a.pattern().find(row, column)) += factor * e.volume * block;
     }
 }

@@ -89,9 +89,12 @@ class CorotatedMotion {
       trial_ += increment_;
       find_motion();
       ++report.linearisations;
-      if (options_.check) report.energy_bounded = settle(highest, reached, report);
+      if (!options_.check) break;
+      report.energy_bounded = settle(highest, reached, report);
+      if (!report.energy_bounded && report.linearisations == 1) reached = return_to_start(report.deformation);
     } while (!report.energy_bounded && report.linearisations < options_.maximum_linearisations);
     if (!all_finite(trial_) || !all_finite(velocity_)) return report;
+    if (report.energy_bounded && is_implicit_euler(options_.scheme)) limit_velocity(highest);
     accept();
     energy_known_ = options_.check;
     time_ += h;
@@ -221,6 +224,9 @@ class CorotatedMotion {
             "Give at least one of each, and a tolerance from 0 to less than 1");
     return o;
   }
+  static bool is_implicit_euler(const TimeScheme& s) noexcept {
+    return s.old_in_u == 0.0 && s.new_in_u == 1.0 && s.old_in_v == 0.0 && s.new_in_v == 1.0;
+  }
   static DeformableBody checked(const Body<Tet4>& rest, const Scene& scene, const SetupLimits& limits) {
     detail::refuse_initial_strains(scene);
     DeformableBody body = detail::body_with_mass(rest, scene, limits);
@@ -315,14 +321,46 @@ class CorotatedMotion {
     find_motion();
     return potential(energy_);
   }
+  /// Rounding error of a potential near `value`.
+  double rounding(double value) const noexcept {
+    return std::numeric_limits<S>::epsilon() * (std::abs(value) + force_.norm() * trial_.norm());
+  }
+  /// Where the stored energy is not convex, as in folded shapes, implicit Euler may add energy although the potential of
+  /// the step falls from `highest`. Reduces the velocities so that kinetic and stored energy do not exceed those at the
+  /// start and the work of the loads. A free body keeps its momentum.
+  void limit_velocity(double highest) noexcept {
+    const double available = highest + load_.dot(trial_) - trial_energy_ + rounding(highest),
+                 kinetic = 0.5 * velocity_.dot(mass_.cwiseProduct(velocity_));
+    if (!(kinetic > available)) return;
+    Vector3 mean = Vector3::Zero();
+    double mass = 0.0;
+    if (constrained_dofs_.empty()) {
+      for (Index i = 0; i < size() / 3; ++i) {
+        mean += mass_[3 * i] * node_vector(velocity_, i);
+        mass += mass_[3 * i];
+      }
+      mean /= mass;
+    }
+    const double drift = 0.5 * mass * mean.squaredNorm(),
+                 scale = std::sqrt(std::max(0.0, available - drift) / (kinetic - drift));
+    for (Index i = 0; i < size() / 3; ++i)
+      set_node_vector(velocity_, i, mean + scale * (node_vector(velocity_, i) - mean));
+  }
+  /// Linearises at the initial state of the step instead of the predicted one: from there the potential only falls.
+  double return_to_start(DeformationReport& deformation) noexcept {
+    trial_ = u_;
+    for (const Index dof : constrained_dofs_) trial_[dof] = body_.conditions.prescribed[dof];
+    find_motion();
+    return evaluate(deformation);
+  }
   /// Halves the increment until the potential is no higher than without it. Returns true when it is also within the
   /// limit.
   bool settle(double highest, double& reached, CorotatedStep& report) noexcept {
-    const double before = reached,
-                 noise = std::numeric_limits<S>::epsilon() * (std::abs(before) + force_.norm() * trial_.norm());
+    constexpr int most_halvings = 20;
+    const double before = reached, noise = rounding(before);
     for (int halvings = 0;; ++halvings) {
       reached = evaluate(report.deformation);
-      if (reached <= before + noise || halvings == 6) break;
+      if (reached <= before + noise || halvings == most_halvings) break;
       increment_ *= 0.5;
       trial_ -= increment_;
       find_motion();
