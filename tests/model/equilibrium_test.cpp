@@ -1,14 +1,22 @@
 // Static equilibrium at large deformation.
+#include <palpate/element/hex20.hpp>
+#include <palpate/element/hex8.hpp>
+#include <palpate/element/tet10.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
+#include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/mesh/generators.hpp>
+#include <palpate/mesh/generators_box.hpp>
+#include <palpate/mesh/promote.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/moving/equilibrium.hpp>
 
 #include "catch.hpp"
 #include "orphan_in_front.hpp"
 #include "refused.hpp"
+
+#include <numbers>
 
 using namespace palpate;
 using Catch::Matchers::WithinRel;
@@ -27,7 +35,148 @@ double sum_along(const VectorX& forces, int axis) {
   return Eigen::Map<const Eigen::Matrix3Xd>(forces.data(), 3, forces.size() / 3).row(axis).sum();
 }
 
+/// A slender column, fixed at the bottom, with a dead load on its free top; no imperfection.
+struct Column {
+  static constexpr double modulus = 1e6, length = 0.3, thickness = 0.01, width = 0.015;  // [Pa], [m]
+  static constexpr double bending = modulus * width * thickness * thickness * thickness / 12.0;
+  static constexpr double euler = std::numbers::pi * std::numbers::pi * bending / (4.0 * length * length);  // [N]
+
+  template <Element E>
+  static Equilibrium loaded(Mesh<E> mesh, double load) {
+    return Equilibrium(make_hyperelastic_body(std::move(mesh), std::vector<NeoHookean>{{modulus, 0.0, 1000.0}}),
+                       Scene().fix("z0").traction("z1", {0.0, 0.0, -load / (thickness * width)}));
+  }
+  /// Sideways displacement of the upper end, the mean of its corners, which are the last nodes of the linear mesh.
+  static double sideways(const Equilibrium& body, Index linear_nodes, Index corners) {
+    Vector3 sum = Vector3::Zero();
+    for (Index i = linear_nodes - corners; i < linear_nodes; ++i) sum += body.displacement().segment<3>(3 * i);
+    return sum.head<2>().norm() / static_cast<double>(corners);
+  }
+  /// The same of the elastica, for a load relative to Euler's: K(p) = pi/2 sqrt(load), 2 p / K (Timoshenko and Gere,
+  /// Theory of Elastic Stability, 2.7).
+  static double elastica(double load) {
+    const double wanted = 0.5 * std::numbers::pi * std::sqrt(load);
+    double low = 0.0, high = 1.0;
+    for (int k = 0; k < 60; ++k) (std::comp_ellint_1(0.5 * (low + high)) < wanted ? low : high) = 0.5 * (low + high);
+    return length * 2.0 * low / wanted;
+  }
+};
+
+/// Half of a shallow truss of two bars: a bar with hinges at both ends, one fixed, the other one 10 mm higher and 100 mm
+/// away, where it can only move up and down. `load` presses it down [N].
+struct Truss {
+  static constexpr double modulus = 1e6, span = 0.1, thickness = 0.01, width = 0.01, rise = 0.01;
+  Mesh<Hex20> mesh = mesh_of();
+  std::vector<NodeId> top;
+
+  static Mesh<Hex20> mesh_of() {
+    Mesh<Hex8> bar = box_hex8({span, width, thickness}, {10, 1, 2});
+    for (Vector3& x : bar.positions) x.z() += rise * x.x() / span;
+    return promote<Hex20>(bar);
+  }
+  Equilibrium loaded(double load) {
+    std::vector<NodeId> bottom;
+    for (Index i = 0; i < mesh.node_count(); ++i) {
+      const Vector3& x = mesh.position(i);
+      if (std::abs(x.z() - 0.5 * thickness - rise * x.x() / span) > 1e-6) continue;  // not on the axis
+      if (x.x() < 1e-6) bottom.push_back(static_cast<NodeId>(i));
+      if (x.x() > span - 1e-6) top.push_back(static_cast<NodeId>(i));
+    }
+    Scene scene;
+    scene.fix(bottom).prescribe(top, Components{0.0, 0.0, std::nullopt}).point_load(top, {0.0, 0.0, -load});
+    return Equilibrium(make_hyperelastic_body(mesh, std::vector<NeoHookean>{{modulus, 0.0, 1000.0}}), scene);
+  }
+  /// Height of the upper hinge above the lower one, relative to that at rest.
+  double height(const Equilibrium& body) const { return 1.0 + body.displacement()[3 * Index{top[0]} + 2] / rise; }
+  /// Load of the shallow truss at a height: EA (rise / length)^3 (y - y^3) / 2.
+  static double load_at(double y) {
+    const double slope = rise / span;
+    return 0.5 * modulus * thickness * width * slope * slope * slope * (y - y * y * y);
+  }
+};
+
 }  // namespace
+
+TEST_CASE("a column loaded beyond Euler's load buckles into the elastica", "[model][equilibrium][buckling]") {
+  const Mesh<Hex8> bricks = box_hex8({Column::thickness, Column::width, Column::length}, {1, 1, 15});
+  for (const double load : {0.95, 1.05, 1.2, 2.0}) {
+    Equilibrium body = Column::loaded(promote<Hex20>(bricks), load * Column::euler);
+    const EquilibriumReport report = body.solve();
+    INFO("load " << load << ": " << describe(report));
+    CHECK(report.converged);
+    CHECK(report.stable);
+    CHECK(report.iterations <= 100);
+    const double sideways = Column::sideways(body, bricks.node_count(), 4);
+    if (load < 1.0)
+      CHECK(sideways <= 1e-9 * Column::length);
+    else
+      CHECK_THAT(sideways, WithinRel(Column::elastica(load), 0.02));
+  }
+}
+
+TEST_CASE("a column of tetrahedra buckles too, and straightens when it is unloaded", "[model][equilibrium][buckling]") {
+  const Mesh<Tet4> tets = box_tet4({Column::thickness, Column::width, Column::length}, {1, 2, 12}, BoxSplit::six);
+  Equilibrium body = Column::loaded(promote<Tet10>(tets), 1.1 * Column::euler);
+  const EquilibriumReport report = body.solve();
+  INFO(describe(report));
+  CHECK(report.converged);
+  CHECK(report.stable);
+  CHECK(report.iterations <= 100);
+  CHECK_THAT(Column::sideways(body, tets.node_count(), 6), WithinRel(Column::elastica(1.1), 0.05));
+  body.set_load(VectorX::Zero(body.displacement().size()));
+  REQUIRE(body.step(0.0).converged);
+  CHECK(Column::sideways(body, tets.node_count(), 6) <= 1e-9 * Column::length);
+}
+
+TEST_CASE("a shallow truss snaps through beyond its limit load, and stays there", "[model][equilibrium][buckling]") {
+  const double limit = Truss::load_at(std::sqrt(1.0 / 3.0));
+  Truss stiff;
+  Equilibrium small = stiff.loaded(1e-3 * limit);
+  REQUIRE(small.solve().converged);
+  const double share = 1e-3 * limit / Truss::load_at(stiff.height(small));  // of the axial stiffness: hinges yield
+  CHECK(share > 0.8);
+  CHECK(share < 1.0);
+  for (const double load : {0.7, 1.3, 3.0}) {
+    Truss truss;
+    Equilibrium body = truss.loaded(load * limit);
+    const EquilibriumReport report = body.solve();
+    INFO("load " << load << ": " << describe(report));
+    CHECK(report.converged);
+    CHECK(report.stable);
+    CHECK(report.iterations <= 100);
+    const double y = truss.height(body);
+    CHECK((y > 0.0) == (load < 1.0));
+    CHECK_THAT(share * Truss::load_at(y), WithinRel(load * limit, 0.03));
+    body.set_load(VectorX::Zero(body.displacement().size()));
+    const EquilibriumReport unloaded = body.step(0.0);
+    CHECK(unloaded.converged);
+    CHECK(unloaded.stable);
+    CHECK_THAT(truss.height(body), WithinRel(load < 1.0 ? 1.0 : -1.0, 1e-2));
+  }
+}
+
+TEST_CASE("a dead load that a material cannot bear is reported", "[model][equilibrium][buckling]") {
+  // Confined St. Venant-Kirchhoff: P(s) = E s (s^2 - 1) / 2 at nu = 0, largest at s = 1 / sqrt 3
+  const double modulus = 1e4, largest = modulus / std::sqrt(27.0);
+  const Components no_x{0.0, std::nullopt, std::nullopt}, no_y{std::nullopt, 0.0, std::nullopt};
+  for (const double load : {0.9, 1.3}) {
+    Equilibrium body(make_hyperelastic_body(box_tet4(size, {2, 2, 4}), std::vector<StVenantKirchhoff>{{modulus, 0.0, 1.0}}),
+                     Scene()
+                         .fix("z0")
+                         .traction("z1", {0.0, 0.0, -load * largest})
+                         .prescribe("x0", no_x)
+                         .prescribe("x1", no_x)
+                         .prescribe("y0", no_y)
+                         .prescribe("y1", no_y));
+    const EquilibriumReport report = body.solve();
+    INFO("load " << load << ": " << describe(report));
+    CHECK(report.converged == (load < 1.0));
+    CHECK(body.displacement().allFinite());
+    if (load < 1.0) continue;
+    CHECK(report.fraction > 0.9 / load);
+    CHECK(report.fraction <= 1.0 / load + 1e-9);
+  }
+}
 
 TEST_CASE("a prescribed affine boundary gives the affine state inside", "[model][equilibrium]") {
   const Mesh<Tet4> mesh = box_tet4(size, {3, 3, 4});

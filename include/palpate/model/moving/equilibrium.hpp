@@ -17,6 +17,7 @@
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>
 #include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/moving/detail/proximal_descent.hpp>
 #include <palpate/model/moving/detail/tangent_solver.hpp>
 
 #include <string>
@@ -107,6 +108,9 @@ class Equilibrium {
   void direction(const VectorX& residual, VectorX& d) noexcept;
   double scale() const noexcept { return scale_; }
   double rounding() const noexcept { return rounding_; }
+  // and of ProximalDescent
+  void assemble(const VectorX& x) noexcept;
+  double extent() const noexcept { return size_; }
 
  private:
   struct Prepared {
@@ -146,20 +150,26 @@ class Equilibrium {
   /// Full displacement from the free dofs and the current prescribed values.
   void place(const VectorX& x) noexcept { body_.conditions.place(x, prescribed_, displacement_); }
 
-  /// Goes from the equilibrium at the current loads to that at another fraction: a tangent step, then Newton's method.
+  /// Goes from the equilibrium at the current loads to that at another fraction: a tangent step, then Newton's method,
+  /// then `settle` where tangents are not positive definite.
   NewtonReport advance(NewtonMethod& newton, double to) noexcept;
 
-  /// When the tangent is not positive definite, the state may be an unstable equilibrium (a column under axial
-  /// compression), which a step along the residual does not leave. Adds the direction of most negative curvature, found
-  /// by inverse iteration.
-  void add_descent_direction(const VectorX& residual, VectorX& d) noexcept;
+  /// Minimises the potential at the current loads: from an unstable equilibrium (a column under axial compression), or
+  /// where Newton's method met tangents that are not positive definite.
+  NewtonReport settle(NewtonMethod& newton) noexcept;
+  /// True if the tangent stiffness at x_ is positive definite.
+  bool is_stable() noexcept;
 
   OriginalIds ids_;
   std::vector<NodeId> node_map_;
   DeformableBody body_;
   TangentSolver tangent_;
   VectorX displacement_, force_, full_, prescribed_, load_, from_prescribed_, from_load_;
-  VectorX x_, start_, residual_, direction_, buckling_, trial_;
+  ProximalDescent descent_;
+  VectorX x_, start_, residual_, direction_;
+  int indefinite_ = 0;      // tangents in succession that were not positive definite
+  int descent_budget_ = 0;  // factorisations
+  double tolerance_ = 0.0;
   bool stepped_ = false;  // displacement_ is the end of a step
   double scale_ = 0.0, size_ = 0.0, rounding_ = 0.0;
 };

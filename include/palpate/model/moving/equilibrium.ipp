@@ -41,14 +41,12 @@ PALPATE_INLINE Equilibrium::Equilibrium(DeformableBody body, const SetupLimits& 
       load_(displacement_),
       from_prescribed_(displacement_),
       from_load_(displacement_),
+      descent_(tangent_, size()),
       x_(VectorX::Zero(size())),
       start_(x_),
       residual_(x_),
       direction_(x_),
-      buckling_(x_),
-      trial_(x_),
-      size_(extent(body_.positions)) {
-  for (Index i = 0; i < size(); ++i) buckling_[i] = std::sin(1.0 + static_cast<double>(i));
+      size_(palpate::extent(body_.positions)) {
   body_.elastic->tangent(displacement_, tangent_.matrix());
   if (!body_.elastic->is_linear()) rounding_ = tangent_.rounding(size_);
 }
@@ -118,15 +116,21 @@ PALPATE_INLINE double Equilibrium::evaluate(const VectorX& x, VectorX& residual)
   return body_.elastic->energy(displacement_) - load_.dot(displacement_);
 }
 
-PALPATE_INLINE bool Equilibrium::prepare(const VectorX& x) noexcept {
+PALPATE_INLINE void Equilibrium::assemble(const VectorX& x) noexcept {
   place(x);
   body_.elastic->tangent(displacement_, tangent_.matrix());
-  return tangent_.factorise();
+}
+
+PALPATE_INLINE bool Equilibrium::prepare(const VectorX& x) noexcept {
+  constexpr int most_indefinite = 4;  // then `settle` takes over
+  assemble(x);
+  if (!tangent_.factorise()) return false;
+  indefinite_ = tangent_.shift() > 0.0 ? indefinite_ + 1 : 0;
+  return indefinite_ <= most_indefinite;
 }
 
 PALPATE_INLINE void Equilibrium::direction(const VectorX& residual, VectorX& d) noexcept {
   tangent_.solve(residual, d);
-  if (tangent_.shift() > 0.0 && residual.norm() <= 1e-3 * scale_) add_descent_direction(residual, d);
 }
 
 PALPATE_INLINE void Equilibrium::require_usable(const EquilibriumParameters& p) {
@@ -146,6 +150,8 @@ PALPATE_INLINE void Equilibrium::end() noexcept {
 PALPATE_INLINE EquilibriumReport Equilibrium::follow_loads(const EquilibriumParameters& parameters) {
   EquilibriumReport report;
   NewtonMethod newton(size(), parameters.newton);
+  descent_budget_ = 300;
+  tolerance_ = parameters.newton.tolerance;
   go(0.0);
   double step = 1.0 / parameters.load_steps;
   while (report.fraction < 1.0) {
@@ -167,7 +173,17 @@ PALPATE_INLINE EquilibriumReport Equilibrium::follow_loads(const EquilibriumPara
     if (step < parameters.smallest_step) break;
   }
   report.converged = report.fraction == 1.0;
-  report.stable = prepare(x_) && tangent_.shift() == 0.0;
+  report.stable = is_stable();
+  if (report.converged && !report.stable) {
+    start_ = x_;
+    const NewtonReport found = settle(newton);
+    report.iterations += found.iterations;
+    if (found.converged)
+      report.relative_residual = found.relative_residual;
+    else
+      x_ = start_;
+    report.stable = is_stable();
+  }
   report.deformation = body_.elastic->force(displacement_, force_);
   Index& worst = report.deformation.worst_element;
   if (worst >= 0 && !ids_.elements.empty()) worst = ids_.elements[static_cast<std::size_t>(worst)];
@@ -181,6 +197,7 @@ PALPATE_INLINE void Equilibrium::go(double fraction) noexcept {
 }
 
 PALPATE_INLINE NewtonReport Equilibrium::advance(NewtonMethod& newton, double to) noexcept {
+  indefinite_ = 0;
   if (!prepare(x_)) return {};
   body_.elastic->force(displacement_, force_);
   displacement_ = prescribed_;
@@ -191,20 +208,36 @@ PALPATE_INLINE NewtonReport Equilibrium::advance(NewtonMethod& newton, double to
   body_.conditions.gather(full_, residual_);
   direction(residual_, direction_);
   x_ += direction_;
-  return newton.solve(*this, x_);
+  indefinite_ = 0;
+  const NewtonReport found = newton.solve(*this, x_);
+  if (indefinite_ == 0) return found;
+  NewtonReport settled = settle(newton);
+  settled.iterations += found.iterations;
+  return settled;
 }
 
-PALPATE_INLINE void Equilibrium::add_descent_direction(const VectorX& residual, VectorX& d) noexcept {
-  double softest = infinity;
-  for (int k = 0; k < 6; ++k) {
-    buckling_.normalize();
-    tangent_.solve(buckling_, trial_);
-    softest = 1.0 / buckling_.dot(trial_) - tangent_.shift();
-    buckling_.swap(trial_);
+PALPATE_INLINE NewtonReport Equilibrium::settle(NewtonMethod& newton) noexcept {
+  NewtonReport report;
+  for (int k = 0; k < 3 && descent_budget_ > 0; ++k) {
+    int count = 0;
+    const bool found = descent_.run(*this, x_, tolerance_, descent_budget_, count);
+    descent_budget_ -= count;
+    const int before = report.iterations + count;
+    if (!found) {
+      report = {};
+      report.iterations = before;
+      return report;
+    }
+    report = newton.solve(*this, x_);
+    report.iterations += before;
+    if (report.converged && is_stable()) return report;
   }
-  if (!(softest < 0.0)) return;
-  const double length = 0.02 * size_ / buckling_.cwiseAbs().maxCoeff();
-  d += std::copysign(length, residual.dot(buckling_)) * buckling_;
+  return report;
+}
+
+PALPATE_INLINE bool Equilibrium::is_stable() noexcept {
+  assemble(x_);
+  return tangent_.factorise_shifted(0.0);
 }
 
 }}  // namespace palpate

@@ -42,6 +42,8 @@ class TangentSolver {
   /// Returns false when the matrix is not finite.
   bool factorise() noexcept;
   static constexpr int most_factorisations = 6;
+  /// Factorises the free part with this shift, in one attempt; false when it is not positive definite.
+  bool factorise_shifted(double shift) noexcept;
   /// Value added to the diagonal; 0 for a positive definite matrix.
   double shift() const noexcept { return shift_; }
 

@@ -26,6 +26,13 @@ PALPATE_INLINE bool TangentSolver::factorise() noexcept {
   return false;
 }
 
+PALPATE_INLINE bool TangentSolver::factorise_shifted(double shift) noexcept {
+  values_.update(matrix_, conditions_);
+  if (shift > 0.0) values_.add_to_diagonal(shift);
+  shift_ = shift;
+  return factor_.factorise(values_.lower());
+}
+
 PALPATE_INLINE double TangentSolver::rounding(double size) const noexcept {
   return std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(factor_.size())) * largest_diagonal() *
          size;
