@@ -71,8 +71,7 @@ class CorotatedBlock : public Method {
     Scene scene;
     scene.fix(block.bottom).fix(square_);
     motion_ = SolverTraits<Implicit<MatrixFreeCG<BlockJacobi>>>::make_motion(
-                  make_hyperelastic_body(mesh_, std::vector{corotational}), scene,
-                  {.step = step_length}, SetupLimits{})
+                  make_hyperelastic_body(mesh_, std::vector{corotational}), scene, {.step = step_length}, SetupLimits{})
                   .motion;
     prescribed_ = VectorX::Zero(3 * mesh_.node_count());
   }

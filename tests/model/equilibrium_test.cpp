@@ -62,8 +62,8 @@ struct Column {
   }
 };
 
-/// Half of a shallow truss of two bars: a bar with hinges at both ends, one fixed, the other one 10 mm higher and 100 mm
-/// away, where it can only move up and down. `load` presses it down [N].
+/// Half of a shallow truss of two bars: a bar with hinges at both ends, one fixed, the other one 10 mm higher and 100
+/// mm away, where it can only move up and down. `load` presses it down [N].
 struct Truss {
   static constexpr double modulus = 1e6, span = 0.1, thickness = 0.01, width = 0.01, rise = 0.01;
   Mesh<Hex20> mesh = mesh_of();
@@ -160,14 +160,15 @@ TEST_CASE("a dead load that a material cannot bear is reported", "[model][equili
   const double modulus = 1e4, largest = modulus / std::sqrt(27.0);
   const Components no_x{0.0, std::nullopt, std::nullopt}, no_y{std::nullopt, 0.0, std::nullopt};
   for (const double load : {0.9, 1.3}) {
-    Equilibrium body(make_hyperelastic_body(box_tet4(size, {2, 2, 4}), std::vector<StVenantKirchhoff>{{modulus, 0.0, 1.0}}),
-                     Scene()
-                         .fix("z0")
-                         .traction("z1", {0.0, 0.0, -load * largest})
-                         .prescribe("x0", no_x)
-                         .prescribe("x1", no_x)
-                         .prescribe("y0", no_y)
-                         .prescribe("y1", no_y));
+    Equilibrium body(
+        make_hyperelastic_body(box_tet4(size, {2, 2, 4}), std::vector<StVenantKirchhoff>{{modulus, 0.0, 1.0}}),
+        Scene()
+            .fix("z0")
+            .traction("z1", {0.0, 0.0, -load * largest})
+            .prescribe("x0", no_x)
+            .prescribe("x1", no_x)
+            .prescribe("y0", no_y)
+            .prescribe("y1", no_y));
     const EquilibriumReport report = body.solve();
     INFO("load " << load << ": " << describe(report));
     CHECK(report.converged == (load < 1.0));

@@ -19,8 +19,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Energy density and stress from D = F - R with the closest rotation R, the cofactors of F and its volume change J - 1;
-/// constants in the number type of the lanes.
+/// Energy density and stress from D = F - R with the closest rotation R, the cofactors of F and its volume change J -
+/// 1; constants in the number type of the lanes.
 template <class S>
 PALPATE_ALWAYS_INLINE S corotated_energy(const Lame<S>& c, const Tensor3<S>& d, const S& swelling) noexcept {
   return c.mu * contract(d, d) + S(0.5f) * c.lambda * swelling * swelling;
@@ -34,10 +34,10 @@ PALPATE_ALWAYS_INLINE Tensor3<S> corotated_stress(const Lame<S>& c, const Tensor
 }  // namespace detail
 
 /// Fixed co-rotated elasticity (Stomakhin, Howes, Schroeder and Teran 2012), W = mu |F - R|^2 + lambda/2 (J - 1)^2 with
-/// the rotation R closest to F (core/rotation.hpp): Hooke's law at small strain and any rotation. The volume term is that
-/// of J = det F, so that compressed elements resist until they are flat; with tr(R^T F - I) in its place, as in Hooke's
-/// law of the stretch, an element can be pressed flat at constant energy. Finite for every F; inverted elements are
-/// pushed back. Where the closest rotation is not unique (an element pressed to a line, or inverted so far that two
+/// the rotation R closest to F (core/rotation.hpp): Hooke's law at small strain and any rotation. The volume term is
+/// that of J = det F, so that compressed elements resist until they are flat; with tr(R^T F - I) in its place, as in
+/// Hooke's law of the stretch, an element can be pressed flat at constant energy. Finite for every F; inverted elements
+/// are pushed back. Where the closest rotation is not unique (an element pressed to a line, or inverted so far that two
 /// stretches cancel) the stress jumps. Isotropic bases only: others have no Lame constants. Cost of stress: one closest
 /// rotation, see docs/materials.md.
 template <class Base = LinearElastic>
@@ -83,8 +83,8 @@ struct Corotational {
     return t;
   }
 
-  /// 2 mu R sym(R^T dF) + lambda (cof F : dF) cof F: the tangent of Hooke's shear stress at fixed R, and the Gauss-Newton
-  /// part of the volume term. Positive semidefinite at every F, exact at rest and for any rotation.
+  /// 2 mu R sym(R^T dF) + lambda (cof F : dF) cof F: the tangent of Hooke's shear stress at fixed R, and the
+  /// Gauss-Newton part of the volume term. Positive semidefinite at every F, exact at rest and for any rotation.
   Matrix9 semidefinite_tangent(const Tensor3<double>& f) const noexcept {
     const double lambda = base.lame_lambda(), mu = base.shear_modulus();
     const Tensor3<double> r = closest_rotation(f), c = cofactor(f);

@@ -31,8 +31,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// stiffness of Corotational::semidefinite_tangent, which is positive semidefinite in every state. Its shear part is
 /// R K R^T of Mueller and Gross (2004): that of the linear element with rotated gradients; its volume part is the
 /// Gauss-Newton matrix of lambda/2 (J - 1)^2. With the volume part of R K R^T instead, steps diverge at a Poisson ratio
-/// of 0.49. Each rotation is computed from that of the previous state. Blocks, sums and vectors as in BatchedTetrahedra;
-/// S = float computes products and forces in single precision. No allocation after construction.
+/// of 0.49. Each rotation is computed from that of the previous state. Blocks, sums and vectors as in
+/// BatchedTetrahedra; S = float computes products and forces in single precision. No allocation after construction.
 template <class Base = LinearElastic, class S = double, int N = 64 / sizeof(S)>
 class CorotatedTetrahedra {
  public:
@@ -82,7 +82,8 @@ class CorotatedTetrahedra {
     add_diagonals(
         [](const Vector& g, const Vector& c, const Lane& lambda, const Lane& mu) {
           const Lane isotropic = mu * dot(g, g);
-          return Vector{isotropic + mu * g.x * g.x + lambda * c.x * c.x, isotropic + mu * g.y * g.y + lambda * c.y * c.y,
+          return Vector{isotropic + mu * g.x * g.x + lambda * c.x * c.x,
+                        isotropic + mu * g.y * g.y + lambda * c.y * c.y,
                         isotropic + mu * g.z * g.z + lambda * c.z * c.z};
         },
         straight);
@@ -103,7 +104,11 @@ class CorotatedTetrahedra {
 
     PALPATE_ALWAYS_INLINE static Symmetric part_of(const Tensor3<Lane>& a) noexcept {
       const Lane half(S(0.5f));
-      return {a(0, 0), a(1, 1), a(2, 2), half * (a(0, 1) + a(1, 0)), half * (a(0, 2) + a(2, 0)),
+      return {a(0, 0),
+              a(1, 1),
+              a(2, 2),
+              half * (a(0, 1) + a(1, 0)),
+              half * (a(0, 2) + a(2, 0)),
               half * (a(1, 2) + a(2, 1))};
     }
     PALPATE_ALWAYS_INLINE Vector operator*(const Vector& v) const noexcept {
@@ -173,14 +178,14 @@ class CorotatedTetrahedra {
       const Lane xy = twice(0, 1), xz = twice(0, 2), yz = twice(1, 2);
       const Lane p = lambda * (c.xx * h(0, 0) + c.yy * h(1, 1) + c.zz * h(2, 2) + c.xy * xy + c.xz * xz + c.yz * yz);
       const Lane sxy = mu * xy + p * c.xy, sxz = mu * xz + p * c.xz, syz = mu * yz + p * c.yz;
-      const Tensor3<Lane> stress{{mu * twice(0, 0) + p * c.xx, sxy, sxz, sxy, mu * twice(1, 1) + p * c.yy, syz, sxz, syz,
-                                  mu * twice(2, 2) + p * c.zz}};
+      const Tensor3<Lane> stress{{mu * twice(0, 0) + p * c.xx, sxy, sxz, sxy, mu * twice(1, 1) + p * c.yy, syz, sxz,
+                                  syz, mu * twice(2, 2) + p * c.zz}};
       batch.add_balanced(stress * g[0], stress * g[1], stress * g[2], rows);
     }
   }
 
-  /// Sums part(g, c, lambda, mu) over every element and node; g is its rotated gradient and c the product of cof(F) with
-  /// its gradient, times sqrt(V).
+  /// Sums part(g, c, lambda, mu) over every element and node; g is its rotated gradient and c the product of cof(F)
+  /// with its gradient, times sqrt(V).
   template <class Part>
   void add_diagonals(Part part, VectorX& to) const noexcept {
     for (const TetrahedronBlock& block : layout_.blocks) {

@@ -325,9 +325,9 @@ class CorotatedMotion {
   double rounding(double value) const noexcept {
     return std::numeric_limits<S>::epsilon() * (std::abs(value) + force_.norm() * trial_.norm());
   }
-  /// Where the stored energy is not convex, as in folded shapes, implicit Euler may add energy although the potential of
-  /// the step falls from `highest`. Reduces the velocities so that kinetic and stored energy do not exceed those at the
-  /// start and the work of the loads. A free body keeps its momentum.
+  /// Where the stored energy is not convex, as in folded shapes, implicit Euler may add energy although the potential
+  /// of the step falls from `highest`. Reduces the velocities so that kinetic and stored energy do not exceed those at
+  /// the start and the work of the loads. A free body keeps its momentum.
   void limit_velocity(double highest) noexcept {
     const double available = highest + load_.dot(trial_) - trial_energy_ + rounding(highest),
                  kinetic = 0.5 * velocity_.dot(mass_.cwiseProduct(velocity_));

@@ -13,9 +13,9 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// Minimises a potential by proximal steps (Rockafellar 1976), which are steps of implicit Euler along its gradient:
 /// each minimises potential + s/2 |x - c|^2, c the end of the last step, by Newton's method without a line search. In a
 /// slender body the potential is a narrow curved valley. A line search allows short steps only, because every straight
-/// step stretches the body; here the next iteration removes the stretch, and s keeps the step within bounds. With s above
-/// the most negative curvature, steps grow away from an unstable equilibrium; s is halved and more while few iterations
-/// suffice, so that the last steps are Newton's.
+/// step stretches the body; here the next iteration removes the stretch, and s keeps the step within bounds. With s
+/// above the most negative curvature, steps grow away from an unstable equilibrium; s is halved and more while few
+/// iterations suffice, so that the last steps are Newton's.
 ///
 /// The problem is a NewtonProblem with two more functions: assemble(x), which sets the matrix of `tangent`, and
 /// extent(), the size of the body [m]. Only the constructor allocates.
