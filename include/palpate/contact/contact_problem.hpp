@@ -56,6 +56,11 @@ class ContactProblem {
   ContactSurface::Closest closest(const TissueView& tissue, const Vector3& position, double distance) noexcept;
   /// What `solve` returned for all tools does not include this: coarse_contact of one tool.
   Status status_of(std::size_t t, const ContactTool& tool) const noexcept { return local_.status(t, tool); }
+  /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m].
+  double indentation(std::size_t t, const ContactTool& tool) const noexcept;
+  /// Estimated error of the force of a tool in the last tick: from the mesh, as measured at set-up, and from contact
+  /// points without a row. The bound is infinite where nothing was measured. No allocation.
+  ForceError force_error(const TissueView& tissue, std::size_t t, const ContactTool& tool) const noexcept;
   /// Penetration of the deepest contact point that has no row because more points press than the capacity, relative to
   /// the deepest push: of the order of the relative error of the force. 0 when every point has a row.
   double missing_depth() const noexcept;

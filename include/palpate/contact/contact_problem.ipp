@@ -126,6 +126,30 @@ PALPATE_INLINE double ContactProblem::missing_depth() const noexcept {
   return shares_.deepest() > 0.0 ? shares_.deepest() / std::max(shares_.deepest(), rows_.deepest_push()) : 0.0;
 }
 
+PALPATE_INLINE double ContactProblem::indentation(std::size_t t, const ContactTool& tool) const noexcept {
+  const double force = tool.force.norm();
+  return force > 0.0 ? std::max(0.0, rows_.push_work(static_cast<int>(t)) / force - tool.compliance * force) : 0.0;
+}
+
+/// A sphere without force may have entered a facet between contact points.
+PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, std::size_t t,
+                                                      const ContactTool& tool) const noexcept {
+  const int number = static_cast<int>(t);
+  if (!tool.active || !candidates_.has_any(number)) return {0.0, 0.0};
+  const ContactSurface& surface = tissue.contact_surface();
+  const ForceAccuracy* accuracy = surface.force_accuracy();
+  if (accuracy == nullptr || !tissue.has_contact_materials()) return {};
+  const double force = tool.force.norm();
+  if (!(force > 0.0)) {
+    const auto closest = surface.closest(tool.proxy);
+    return closest.distance < tool.radius ? accuracy->error_without_force(surface.triangle(closest.triangle)[0])
+                                          : ForceError{0.0, 0.0};
+  }
+  ForceError error = accuracy->error(tool, number, rows_.contacts(), indentation(t, tool));
+  error.bound += missing_depth() * force;
+  return error;
+}
+
 PALPATE_INLINE ContactSurface::Closest ContactProblem::closest(const TissueView& tissue, const Vector3& position,
                                                                double distance) noexcept {
   return closest_deformed(tissue, displacement_, position, distance + 2.0 * candidates_.reach(tissue, displacement_));

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <palpate/contact/detail/bvh.hpp>
+#include <palpate/contact/force_accuracy.hpp>
 
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -57,6 +59,9 @@ class ContactSurface {
     return static_cast<std::size_t>(t) < materials_.size() ? materials_[static_cast<std::size_t>(t)]
                                                            : ContactMaterial{};
   }
+  /// Sets the errors that were measured on this surface; null: none were.
+  void set_force_accuracy(std::shared_ptr<const ForceAccuracy> accuracy) noexcept { accuracy_ = std::move(accuracy); }
+  const ForceAccuracy* force_accuracy() const noexcept { return accuracy_.get(); }
   /// sqrt(2 area): of half a square, the side of that square [m].
   double facet_length(int t) const noexcept;
 
@@ -98,6 +103,8 @@ class ContactSurface {
   bool is_closed() const noexcept { return body_.empty() ? !has_rim_ : !body_.front().has_rim_; }
   /// Whether an edge or vertex of a triangle is on the rim of the touchable surface.
   bool is_rim(int t, TriangleFeature feature) const noexcept;
+  /// Whether a vertex is on the rim of the touchable surface.
+  bool is_rim_vertex(int v) const noexcept { return vertex_kind_[static_cast<std::size_t>(v)] == VertexKind::rim; }
 
  private:
   inline TrianglePoint closest_on(int t, const Vector3& p) const noexcept;
@@ -122,6 +129,7 @@ class ContactSurface {
   std::vector<ContactSurface> body_;  // with the shell; none or one
   Unloaded unloaded_;
   std::vector<ContactMaterial> materials_;     // per triangle, or empty
+  std::shared_ptr<const ForceAccuracy> accuracy_;
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20, or one of these:
   static constexpr int no_neighbour = -1, several_neighbours = -2;
 };

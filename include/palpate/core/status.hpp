@@ -27,7 +27,8 @@ enum class StatusFlag : std::uint32_t {
   step_refused = 1u << 13,         ///< the time step is not positive or above the stability limit: no step was made
   energy_grew = 1u << 14,          ///< a motion gained energy without a source: it is kept at its last good state
   slow_tissue = 1u << 15,  ///< computing a tissue step takes longer than its time step: the tissue moves in slow motion
-  coarse_contact = 1u << 16,  ///< the tool is smaller than the facets: its indentation is mostly estimated, or omitted
+  coarse_contact = 1u << 16,  ///< the tool is smaller than the facets: its indentation is mostly estimated, or omitted;
+                              ///< or the estimated error of the force is above a tenth of it
   large_displacement = 1u << 17,  ///< loads displace the tissue too far for linear elasticity
 };
 

@@ -72,6 +72,17 @@ class HapticServo {
   Vector3 proxy(std::size_t tool = 0) const noexcept;
   /// Contact force, or cutting force of a blade, before the gate, world frame [N]. For the tick's own thread.
   Vector3 contact_force(std::size_t tool = 0) const noexcept;
+  /// Estimated error of the contact force: of the mesh, as measured at set-up for the tool that Scene::touch names, and
+  /// of contacts left out. Its bound is infinite where nothing was measured. For the tick's own thread.
+  ForceError force_error(std::size_t tool = 0) const noexcept { return errors_[tool]; }
+  /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m]. For the
+  /// tick's own thread.
+  double indentation(std::size_t tool = 0) const noexcept { return problem_.indentation(tool, contact_tools_[tool]); }
+  /// The part of it that facets longer than the tool do not show and that is estimated
+  /// (ContactParameters::local_compliance) [m]. For the tick's own thread.
+  double local_indentation(std::size_t tool = 0) const noexcept {
+    return contact_tools_[tool].local_compliance * contact_tools_[tool].force.norm();
+  }
   /// Contact torque about the proxy before the gate, world frame [N m]. For the tick's own thread.
   Vector3 contact_torque(std::size_t tool = 0) const noexcept;
   /// Axis of a capsule on the surface, or of a blade's edge, world frame. For the tick's own thread.
@@ -124,6 +135,7 @@ class HapticServo {
   std::vector<ForceGate> gates_;
   std::vector<EnergyTank> energies_;  // one per tool, or none at all
   std::vector<GatedForce> forces_;
+  std::vector<ForceError> errors_;
   double stale_tissue_after_;
   std::uint64_t updates_ = 0;
   bool started_ = false;

@@ -15,6 +15,8 @@ static_assert(Servo<HapticServo>);
 
 namespace detail {
 
+inline constexpr double flagged_error = 0.1;  // of the force
+
 inline bool is_sphere(const ContactTool& tool) noexcept {
   return tool.radius < no_sphere;
 }
@@ -59,6 +61,7 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
       coarse_facets_(report_coarse_facets(tissue_.contact_surface(), detail::radii_of(contact_tools_).smallest)),
       energies_(std::move(energies)),
       forces_(tools.size()),
+      errors_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after) {
   if (tissue_.contact_surface().triangles().empty())
     raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
@@ -115,6 +118,7 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
   for (auto& blade : blades_)
     if (blade) blade->reset();
   for (ForceGate& gate : gates_) gate.reset();
+  std::fill(errors_.begin(), errors_.end(), ForceError{});
   tissue_.end_tick({});
   for (EnergyTank& energy : energies_) energy.reset();
   publish();
@@ -260,6 +264,9 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   forces_[i] = gates_[i].apply(force, torque, input.now(), time, input.readable(), input.restarted());
   if (energy != nullptr) energy->gave(forces_[i].force());
   forces_[i].status |= input.status() | shared | limited | problem_.status_of(i, tool);
+  errors_[i] = problem_.force_error(tissue_, i, tool);
+  if (errors_[i].bound > detail::flagged_error * tool.force.norm() && errors_[i].bound < infinity)
+    forces_[i].status.set(StatusFlag::coarse_contact);
 }
 
 PALPATE_INLINE void HapticServo::publish() noexcept {
@@ -268,6 +275,7 @@ PALPATE_INLINE void HapticServo::publish() noexcept {
   for (std::size_t i = 0; i < contact_tools_.size(); ++i) {
     s.proxies[i] = proxy(i);
     s.axes[i] = proxy_axis(i);
+    s.errors[i] = errors_[i];
     if (contact_tools_[i].hull != nullptr) s.rotations[i] = proxy_rotation(i);
     if (blades_[i]) s.note_blade(static_cast<int>(i), s.proxies[i], blades_[i]->force());
   }

@@ -3,6 +3,7 @@
 
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact.hpp>
+#include <palpate/contact/force_accuracy.hpp>
 
 #include <array>
 #include <iosfwd>
@@ -37,6 +38,7 @@ struct ServoSnapshot {
   std::array<Vector3, maximum_tools> proxies;    ///< middle of every tool or blade's edge, world frame [m]
   std::array<Vector3, maximum_tools> axes;       ///< of capsules and edges, unit, world frame
   std::array<Matrix3, maximum_tools> rotations;  ///< of convex tools, own frame to world; else the identity
+  std::array<ForceError, maximum_tools> errors;  ///< estimated errors of the contact forces of the tools
   double time = 0.0;                             ///< [s] time stamp of the first tool's state in the tick
 
   /// Room for `capacity` contacts, and blades. Allocates; a tick does not.

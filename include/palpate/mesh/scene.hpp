@@ -29,6 +29,13 @@ inline const std::string everywhere{};
 /// Displacement per component [m]; an empty component stays free.
 using Components = std::array<std::optional<double>, 3>;
 
+/// What will touch a part of a scene.
+struct TouchOptions {
+  /// Radius of the smallest sphere that will touch [m]; 0: not known. With it a static model measures at set-up how far
+  /// the forces on that sphere are off because of the mesh, and ticks give the error of their forces.
+  double radius = 0.0;
+};
+
 /// The conditions of a scene. Stores groups by name only; selections are resolved, and unknown or empty ones refused,
 /// when a model is constructed. Every call throws SetupError(non_finite) on NaN or infinity.
 class Scene {
@@ -92,8 +99,8 @@ class Scene {
   /// Thermal expansion of a region, or `everywhere`: coefficient [1/K] times rise of temperature [K].
   Scene& thermal_strain(std::string region, double coefficient, double rise);
   /// The part a tool may touch: the dofs of these nodes are kept, all others are condensed away. A set of points
-  /// selects only boundary faces all of whose nodes it contains.
-  Scene& touch(Selection where);
+  /// selects only boundary faces all of whose nodes it contains. Throws bad_argument for a negative radius.
+  Scene& touch(Selection where, const TouchOptions& options = {});
   /// Nodes to be displayed: their displacement is recovered at visual rate.
   Scene& render(Selection where);
 
@@ -105,6 +112,8 @@ class Scene {
   const std::vector<InitialStrain>& initial_strains() const noexcept { return initial_strains_; }
   const std::vector<Selection>& touched() const noexcept { return touched_; }
   const std::vector<Selection>& rendered() const noexcept { return rendered_; }
+  /// Least radius of the spheres that will touch [m]; 0: not known.
+  double touch_radius() const noexcept { return touch_radius_; }
   const Vector3& gravity() const noexcept { return gravity_; }
 
   /// The same scene for an admitted mesh, see `mapped` of a Selection.
@@ -128,6 +137,7 @@ class Scene {
   std::vector<Selection> touched_;
   std::vector<Selection> rendered_;
   Vector3 gravity_ = Vector3::Zero();
+  double touch_radius_ = 0.0;
 };
 
 /// Text that lists all loads, with gravity [m/s^2]: "gravity of 9.81 m/s^2, 2 pressures".

@@ -74,7 +74,13 @@ PALPATE_INLINE Scene& Scene::thermal_strain(std::string region, double coefficie
   return expand(std::move(region), coefficient * rise);
 }
 
-PALPATE_INLINE Scene& Scene::touch(Selection where) {
+PALPATE_INLINE Scene& Scene::touch(Selection where, const TouchOptions& options) {
+  require_finite(options.radius, "the radius of a tool");
+  if (options.radius < 0.0)
+    raise(SetupErrorKind::bad_argument, "the radius of a tool is " + number(options.radius) + " m",
+          "Give a positive radius, or none");
+  if (options.radius > 0.0)
+    touch_radius_ = touch_radius_ > 0.0 ? std::min(touch_radius_, options.radius) : options.radius;
   touched_.push_back(std::move(where));
   return *this;
 }

@@ -7,21 +7,13 @@
 #include <palpate/model/detail/admit_body.hpp>
 #include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/model/static/detail/make_stiffness.hpp>
 #include <palpate/model/static/detail/solver_recipe.hpp>
 
 #include <memory>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
-
-template <Element E, class Assembly>
-AnyStiffness make_stiffness(const ElasticBody& body, const SetupLimits& limits) {
-  return AnyStiffness(Assembly::make(element_body<E>(body).body(), limits));
-}
-
-}  // namespace detail
 
 template <class E, class M, class Solver>
 template <MeshOf<E> Mesh>

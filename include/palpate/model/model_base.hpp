@@ -36,6 +36,9 @@ struct SetupOptions {
   /// decision is the same on every machine: above 100 000 (some 50 us) a background thread computes it. The report
   /// states which.
   ColumnFill columns = ColumnFill::automatic;
+  /// Places of the touchable surface where the error of forces is measured, if the scene names the radius of a tool
+  /// (TouchOptions). Costs about as much as the set-up itself for three; 0: nothing is measured.
+  int accuracy_places = 3;
   std::string cache_file{};  ///< stores the prepared system for the next set-up; empty: none. See docs/cache.md
 };
 

@@ -3,6 +3,7 @@
 
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/model/accuracy_report.hpp>
 #include <palpate/model/cache/cache_report.hpp>
 
 #include <iosfwd>
@@ -26,6 +27,7 @@ enum class SetupFlag : std::uint32_t {
   non_manifold = 1u << 8,      ///< more than two touchable triangles meet at an edge
   /// the loads of the scene alone displace parts of the body relative to each other by a tenth of its size
   large_displacement = 1u << 9,
+  coarse_contact = 1u << 10,  ///< the facets are too long for the sphere that will touch: see AccuracyReport
 };
 
 /// Sizes, memory [bytes], times [s] and findings of a set-up.
@@ -39,6 +41,7 @@ struct SetupReport {
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage
   double column_seconds = 0.0;  ///< time for the compliance of a vertex at its first contact; 0 when all is stored
   bool asynchronous_columns = false;  ///< a background thread computes it, and ticks do not wait
+  AccuracyReport accuracy;
   CacheReport cache;
   std::uint32_t flags = 0;
   std::vector<std::pair<SetupFlag, std::string>> remarks;  ///< one sentence per flag

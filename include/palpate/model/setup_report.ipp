@@ -36,6 +36,12 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const SetupReport& r)
   if (r.column_seconds > 0.0)
     out << "  compliance of a vertex at its first contact: " << number(1e6 * r.column_seconds)
         << (r.asynchronous_columns ? " us, in a background thread\n" : " us, in the tick\n");
+  if (r.accuracy.places > 0)
+    out << "  force error of a sphere of " << number(1e3 * r.accuracy.radius) << " mm, pressed in by an eighth of that: "
+        << number(100.0 * r.accuracy.typical) << " % typically, " << number(100.0 * r.accuracy.largest)
+        << " % at most, at " << r.accuracy.places << " places\n";
+  else if (!r.accuracy.remark.empty())
+    out << "  force error: not measured, " << r.accuracy.remark << '\n';
   if (!r.cache.file.empty()) out << "  cache: " << r.cache << '\n';
   for (const auto& [flag, remark] : r.remarks) out << "  note: " << remark << '\n';
   return out;

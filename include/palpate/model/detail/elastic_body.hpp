@@ -4,6 +4,7 @@
 #include <palpate/assembly/detail/essential_conditions.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/mesh/mesh_ref.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/cache/detail/cache_key.hpp>
 #include <palpate/model/detail/touchable.hpp>
@@ -46,6 +47,12 @@ class ElasticBody {
   /// Mass per node [kg].
   virtual VectorX nodal_mass() const = 0;
   virtual double strain_energy(const VectorX& u) const = 0;
+
+  /// The admitted mesh; valid as long as the body.
+  virtual MeshRef mesh() const noexcept = 0;
+  /// The elasticity matrices of the body [Pa], and the number of that of an element.
+  virtual std::span<const Matrix6> elasticities() const noexcept = 0;
+  virtual int elasticity_of(Index e) const noexcept = 0;
 
   /// The material of each of these elements at small strain; unknown if it is not isotropic.
   virtual std::vector<ContactMaterial> contact_materials(std::span<const Index> elements) const = 0;

@@ -35,6 +35,9 @@ class ElementBody final : public ElasticBody {
   void swap_initial_strains(std::vector<Vector6>& strains) noexcept override;
   VectorX nodal_mass() const override;
   double strain_energy(const VectorX& u) const override;
+  MeshRef mesh() const noexcept override { return mesh_ref(body_.mesh); }
+  std::span<const Matrix6> elasticities() const noexcept override { return body_.elasticity; }
+  int elasticity_of(Index e) const noexcept override { return static_cast<int>(body_.material_of(e)); }
   std::vector<ContactMaterial> contact_materials(std::span<const Index> elements) const override;
   CacheKey key() const noexcept override;
   void report_locking(SetupReport& report) const override;

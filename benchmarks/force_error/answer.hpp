@@ -1,0 +1,43 @@
+// Definition of answer().
+#pragma once
+
+#include <palpate/element/mean_dilatation.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/mesh/promote.hpp>
+
+#include "press.hpp"
+
+namespace force_error {
+
+template <class E>
+auto mesh_for(const TestBody& body) {
+  if constexpr (E::nodes == 8)
+    return copy_mesh<E>(body.hexahedra);
+  else if constexpr (E::nodes == 10)
+    return promote<E>(body.tetrahedra);
+  else
+    return copy_mesh<E>(body.tetrahedra);
+}
+
+template <class E>
+Answer answer(const Case& test) {
+  Scene scene;
+  scene.fix(test.body.fixed).touch(test.body.touched, {.radius = test.radius});
+  HapticFEModel<E, LinearElastic> model(mesh_for<E>(test.body), scene, materials_of(test));
+  Answer answer;
+  answer.presses.resize(test.places.size());
+  answer.setup_seconds = model.report().total_seconds();
+  const AccuracyReport& accuracy = model.report().accuracy;
+  for (const auto& [stage, seconds] : model.report().seconds)
+    if (stage == "accuracy") answer.accuracy_seconds = seconds;
+  answer.typical = accuracy.typical;
+  answer.largest = accuracy.largest;
+  answer.remark = accuracy.remark;
+  press(model, test, 0, [&](std::size_t i, std::size_t d, const HapticServo& servo, double force) {
+    const ForceError error = servo.force_error();
+    answer.presses[i][d] = {force, error.expected, error.bound, model.report().has(SetupFlag::locking)};
+  });
+  return answer;
+}
+
+}  // namespace force_error

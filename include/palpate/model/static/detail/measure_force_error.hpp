@@ -1,0 +1,80 @@
+// Measures the error of contact forces because of the mesh, at set-up.
+#pragma once
+
+#include <palpate/contact/force_accuracy.hpp>
+#include <palpate/model/accuracy_report.hpp>
+#include <palpate/model/detail/elastic_body.hpp>
+#include <palpate/model/static/detail/pressed_points.hpp>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Input of a measurement. Keeps references.
+struct ForceErrorSource {
+  const ElasticBody& body;
+  const EssentialConditions& conditions;
+  const std::vector<NodeId>& nodes;  ///< of the vertices of the touchable surface
+  const ContactSurface& surface;     ///< touchable, under its loads
+  Vector3 origin;                    ///< of the frame of the surface, in the frame of the tools [m]
+  double radius;                     ///< of the sphere that touches [m]
+  int places;                        ///< where it is pressed
+};
+
+/// Presses a sphere into the tissue at some places of its surface, far from each other: over a vertex, an edge and a
+/// facet, to depths of a 32nd to a half of its radius; then into Smoothed<Tet4> tissue on a mesh with edges of at most
+/// a sixth of the radius there, with the same supports. At equal depth the forces differ by the error of the mesh.
+class ForceErrorMeasurement {
+ public:
+  /// Chooses the places.
+  explicit ForceErrorMeasurement(const ForceErrorSource& source);
+
+  /// Places where a sphere can be pressed; without any, `report` has the reason.
+  bool is_possible() const noexcept { return !places_.empty(); }
+  /// Presses the tissue as given, through a servo that was made for it with `rigid_press_options`.
+  void press_given(HapticServo& servo);
+  /// Makes the fine tissue and presses it. If it cannot be made, `report` has the reason. Throws cancelled.
+  void press_reference(const SetupLimits& limits);
+  /// The errors, one per vertex; null when nothing was measured.
+  std::shared_ptr<const ForceAccuracy> take() const;
+  const AccuracyReport& report() const noexcept { return report_; }
+
+ private:
+  using Positions = std::array<SurfacePoint, MissingDepth::positions>;
+  using Presses = std::array<std::vector<PressedPoint>, MissingDepth::positions>;
+  struct Place {
+    int vertex = 0, triangle = 0;
+    double length = 0.0, modulus = 0.0;  // of its facets [m], [Pa]
+    Presses given, reference;
+  };
+
+  std::vector<int> inner_vertices() const;
+  void choose_places();
+  void add_place(int vertex);
+  double own_error(double depth) const;
+  FacetScale scale_at(int vertex) const;
+  /// The points of a place on a surface with these positions of the vertices.
+  template <class PositionOf>
+  Positions points(const Place& place, PositionOf position) const;
+  std::vector<double> depths() const;
+  MissingDepth missing(const Place& place) const;
+  void make_reference(const SetupLimits& limits);
+  static void add_spread(std::vector<MissingDepth>& places);
+  void summarise();
+
+  ForceErrorSource source_;
+  std::vector<Place> places_;
+  double edge_ = 0.0;  // of the fine mesh at the places [m]
+  AccuracyReport report_;
+};
+
+/// Enters the findings in a report; flags errors above a tenth of the force, with the length of facets that would do.
+void report_accuracy(const AccuracyReport& accuracy, SetupReport& report);
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/static/detail/measure_force_error.ipp>
+#endif

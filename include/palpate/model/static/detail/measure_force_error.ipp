@@ -1,0 +1,292 @@
+// Definitions of measure_force_error.hpp.
+#pragma once
+
+#include <palpate/model/static/detail/measure_force_error.hpp>
+
+#include <palpate/mesh/refine_near.hpp>
+#include <palpate/model/static/detail/reference_tissue.hpp>
+#include <palpate/model/static/detail/tetrahedral_copy.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE ForceErrorMeasurement::ForceErrorMeasurement(const ForceErrorSource& source) : source_(source) {
+  report_.radius = source.radius;
+  choose_places();
+  if (places_.empty()) report_.remark = "the touchable surface has no vertex away from its rim";
+}
+
+PALPATE_INLINE FacetScale ForceErrorMeasurement::scale_at(int vertex) const {
+  FacetScale scale;
+  const auto triangles = source_.surface.triangles_at(vertex);
+  for (const int t : triangles) {
+    const double share = 1.0 / static_cast<double>(triangles.size());
+    scale.length += share * source_.surface.facet_length(t);
+    scale.material.modulus += share * source_.surface.material(t).modulus;
+  }
+  return scale;
+}
+
+/// Vertices away from the rim by more than the contact is large; if there are none, the vertex farthest from it.
+PALPATE_INLINE std::vector<int> ForceErrorMeasurement::inner_vertices() const {
+  const ContactSurface& surface = source_.surface;
+  std::vector<Vector3> rim;
+  for (int v = 0; v < surface.vertex_count(); ++v)
+    if (surface.is_rim_vertex(v)) rim.push_back(surface.position(v));
+  std::vector<int> inner;
+  int farthest = -1;
+  double largest = 0.0;
+  for (int v = 0; v < surface.vertex_count(); ++v) {
+    if (surface.triangles_at(v).empty()) continue;
+    double square = infinity;
+    for (const Vector3& p : rim) square = std::min(square, (p - surface.position(v)).squaredNorm());
+    if (std::sqrt(square) > source_.radius + scale_at(v).length) inner.push_back(v);
+    if (square > largest) {
+      largest = square;
+      farthest = v;
+    }
+  }
+  if (inner.empty() && farthest >= 0) inner.push_back(farthest);
+  return inner;
+}
+
+/// Farthest point sampling, from the vertex nearest to the middle of the surface.
+PALPATE_INLINE void ForceErrorMeasurement::choose_places() {
+  const ContactSurface& surface = source_.surface;
+  std::vector<int> vertices = inner_vertices();
+  Vector3 middle = Vector3::Zero();
+  for (const int v : vertices) middle += surface.position(v) / static_cast<double>(vertices.size());
+  const auto from = [&](const Vector3& p) {
+    return [&surface, p](int a, int b) {
+      return (surface.position(a) - p).squaredNorm() < (surface.position(b) - p).squaredNorm();
+    };
+  };
+  std::vector<double> distance(vertices.size(), infinity);
+  int next = vertices.empty() ? -1 : *std::min_element(vertices.begin(), vertices.end(), from(middle));
+  while (next >= 0 && static_cast<int>(places_.size()) < source_.places) {
+    add_place(next);
+    double farthest = 0.0;
+    const Vector3 last = surface.position(next);
+    next = -1;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      distance[i] = std::min(distance[i], (surface.position(vertices[i]) - last).squaredNorm());
+      if (distance[i] > farthest) {
+        farthest = distance[i];
+        next = vertices[i];
+      }
+    }
+  }
+}
+
+PALPATE_INLINE void ForceErrorMeasurement::add_place(int vertex) {
+  const ContactSurface& surface = source_.surface;
+  const auto at = surface.triangles_at(vertex);
+  std::vector<int> triangles(at.begin(), at.end());
+  const auto middle = triangles.begin() + static_cast<std::ptrdiff_t>(triangles.size() / 2);
+  std::nth_element(triangles.begin(), middle, triangles.end(),
+                   [&](int a, int b) { return surface.facet_length(a) < surface.facet_length(b); });
+  const FacetScale scale = scale_at(vertex);
+  Place place;
+  place.vertex = vertex;
+  place.triangle = *middle;
+  place.length = scale.length;
+  place.modulus = scale.material.modulus;
+  places_.push_back(std::move(place));
+}
+
+template <class PositionOf>
+ForceErrorMeasurement::Positions ForceErrorMeasurement::points(const Place& place, PositionOf position) const {
+  const ContactSurface& surface = source_.surface;
+  const auto normal = [&](int t) -> Vector3 {
+    const Triangle& v = surface.triangle(t);
+    return (position(v[1]) - position(v[0])).cross(position(v[2]) - position(v[0])).normalized();
+  };
+  const Triangle& corners = surface.triangle(place.triangle);
+  const auto at = static_cast<std::size_t>(std::find(corners.begin(), corners.end(), place.vertex) - corners.begin());
+  const Vector3 a = position(corners[at]), b = position(corners[(at + 1) % 3]), c = position(corners[(at + 2) % 3]);
+  Vector3 mean = Vector3::Zero();
+  for (const int t : surface.triangles_at(place.vertex)) mean += normal(t);
+  const Vector3 outward = normal(place.triangle);
+  return {{{a, mean.normalized()}, {0.5 * (a + b), outward}, {(a + b + c) / 3.0, outward}}};
+}
+
+PALPATE_INLINE std::vector<double> ForceErrorMeasurement::depths() const {
+  std::vector<double> depths;
+  for (const double part : {1.0 / 32.0, 1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0})
+    depths.push_back(part * source_.radius);
+  return depths;
+}
+
+PALPATE_INLINE void ForceErrorMeasurement::press_given(HapticServo& servo) {
+  const auto position = [&](int v) -> Vector3 { return source_.origin + source_.surface.position(v); };
+  for (Place& place : places_) {
+    const Positions at = points(place, position);
+    for (std::size_t p = 0; p < at.size(); ++p)
+      place.given[p] = press_point(servo, source_.radius, at[p], depths());
+  }
+}
+
+PALPATE_INLINE void ForceErrorMeasurement::press_reference(const SetupLimits& limits) {
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  try {
+    make_reference(limits);
+  } catch (const SetupError& error) {
+    if (error.kind() == SetupErrorKind::cancelled) throw;
+    report_.remark = error.what();
+    places_.clear();
+  }
+#else
+  make_reference(limits);
+#endif
+}
+
+PALPATE_INLINE void ForceErrorMeasurement::make_reference(const SetupLimits& limits) {
+  constexpr double edges_per_radius = 6.0, growth = 0.5, reach = 0.9;
+  constexpr int capacity = 256;
+  auto copy = tetrahedral_copy(source_.body.mesh(), [&](Index e) { return source_.body.elasticity_of(e); });
+  if (!copy) {
+    report_.remark = "the fine mesh is made of tetrahedra, and this element cannot be divided into these";
+    places_.clear();
+    return;
+  }
+  edge_ = source_.radius / edges_per_radius;
+  for (const Place& place : places_) edge_ = std::min(edge_, 0.5 * place.length);
+  PointCloud cloud;
+  Scene scene;
+  std::optional<where::PointSet> touched;
+  std::vector<Positions> at;  // of the same points on the body without loads
+  const auto position = [&](int v) -> Vector3 {
+    return source_.body.positions()[static_cast<std::size_t>(source_.nodes[static_cast<std::size_t>(v)])];
+  };
+  for (const Place& place : places_) {
+    at.push_back(points(place, position));
+    for (const SurfacePoint& point : at.back()) {
+      cloud.points.push_back(point.position);
+      where::PointSet near = where::sphere(point.position, reach * source_.radius + 2.0 * edge_);
+      touched = touched ? *touched || near : near;
+    }
+  }
+  scene.touch(*touched);
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::vector<NodeId> fixed;
+    for (std::size_t i = 0; i < copy->nodes.size(); ++i)
+      if (copy->nodes[i] >= 0 && source_.conditions.is_constrained(static_cast<Index>(3 * i + c)))
+        fixed.push_back(copy->nodes[i]);
+    if (fixed.empty()) continue;
+    const std::string name = std::string("fixed ") + "xyz"[c];
+    copy->mesh.groups.get_or_add(name, 0).nodes = fixed;
+    Components components{};
+    components[c] = 0.0;
+    scene.prescribe(name, components);
+  }
+  copy->mesh.groups.tidy();
+  Mesh<Tet4> fine = refine_near(copy->mesh, RefineTarget(std::move(cloud)), {edge_, growth});
+  report_.nodes = fine.node_count();
+  const std::span<const Matrix6> elasticities = source_.body.elasticities();
+  ReferenceTissue tissue(std::move(fine), {elasticities.begin(), elasticities.end()}, scene,
+                         {.progress = limits.progress, .memory_limit = limits.memory});
+  HapticServo servo(tissue, SphereTool{source_.radius}, rigid_press_options(capacity));
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    for (std::size_t p = 0; p < MissingDepth::positions; ++p)
+      places_[i].reference[p] = press_point(servo, source_.radius, at[i][p], depths());
+  summarise();
+}
+
+/// The fine mesh is too soft by 0.12 (edge / contact radius)^1.75, give or take a half of that: measured against Tet10 on
+/// meshes with edges half as long.
+PALPATE_INLINE double ForceErrorMeasurement::own_error(double depth) const {
+  return 0.12 * std::pow(edge_ / std::sqrt(source_.radius * depth), 1.75);
+}
+
+PALPATE_INLINE MissingDepth ForceErrorMeasurement::missing(const Place& place) const {
+  constexpr double least_doubt = 0.01;  // of the force: contact is solved to 1e-3, the supports are as far as they are
+  MissingDepth result;
+  result.facet_length = place.length;
+  const std::vector<double> depth = depths();
+  for (std::size_t p = 0; p < MissingDepth::positions; ++p)
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+      const auto [force, indentation, local] = place.given[p][i];
+      const double own = own_error(depth[i]), truth = place.reference[p][i].force * (1.0 + own);
+      if (!(truth > 0.0)) continue;
+      auto& levels = result.levels[p];
+      if (!(force > 1e-3 * truth))
+        result.unseen[p] = truth;
+      else if (levels.empty() || force > levels.back().force)
+        levels.push_back({force, (force / truth - 1.0) * indentation + local,
+                          (0.5 * own * force / truth + least_doubt) * indentation});
+    }
+  return result;
+}
+
+PALPATE_INLINE void ForceErrorMeasurement::summarise() {
+  constexpr std::size_t eighth = 2;
+  double squares = 0.0;
+  for (const Place& place : places_) {
+    report_.facet += place.length / static_cast<double>(places_.size());
+    for (std::size_t p = 0; p < MissingDepth::positions; ++p) {
+      const double truth = place.reference[p][eighth].force * (1.0 + own_error(depths()[eighth]));
+      const double error = place.given[p][eighth].force / truth - 1.0;
+      squares += error * error / static_cast<double>(MissingDepth::positions * places_.size());
+      if (std::abs(error) > std::abs(report_.largest)) report_.largest = error;
+    }
+  }
+  report_.typical = std::sqrt(squares);
+  report_.places = static_cast<int>(places_.size());
+}
+
+/// Places differ although their facets are of equal length: a part of the largest difference between a place and the
+/// others is added to its doubt.
+PALPATE_INLINE void ForceErrorMeasurement::add_spread(std::vector<MissingDepth>& places) {
+  constexpr double part = 0.3;
+  const std::vector<MissingDepth> measured = places;
+  for (MissingDepth& place : places)
+    for (std::size_t p = 0; p < MissingDepth::positions; ++p)
+      for (MissingDepth::Level& level : place.levels[p]) {
+        double largest = 0.0;
+        for (const MissingDepth& other : measured)
+          largest = std::max(largest, std::abs(other.at(p, level.force).missing - level.missing));
+        level.doubt += part * largest;
+      }
+}
+
+/// A vertex has the values of the nearest place.
+PALPATE_INLINE std::shared_ptr<const ForceAccuracy> ForceErrorMeasurement::take() const {
+  if (report_.places == 0) return nullptr;
+  const ContactSurface& surface = source_.surface;
+  std::vector<MissingDepth> errors;
+  for (const Place& place : places_) errors.push_back(missing(place));
+  add_spread(errors);
+  std::vector<ForceAccuracy::Vertex> vertices;
+  for (int v = 0; v < surface.vertex_count(); ++v) {
+    const auto distance = [&](const Place& p) { return (surface.position(p.vertex) - surface.position(v)).squaredNorm(); };
+    const auto place = std::min_element(places_.begin(), places_.end(),
+                                        [&](const Place& a, const Place& b) { return distance(a) < distance(b); });
+    const FacetScale own = scale_at(v);
+    const bool known = own.material.modulus > 0.0 && place->modulus > 0.0;
+    vertices.push_back({static_cast<int>(place - places_.begin()), own.length > 0.0 ? own.length : place->length,
+                        known ? place->modulus / own.material.modulus : 1.0});
+  }
+  return std::make_shared<const ForceAccuracy>(source_.radius, std::move(errors), std::move(vertices));
+}
+
+PALPATE_INLINE void report_accuracy(const AccuracyReport& accuracy, SetupReport& report) {
+  constexpr double flagged = 0.1, wanted = 0.05, order = 1.5;
+  report.accuracy = accuracy;
+  if (accuracy.places == 0 || !(accuracy.typical > flagged)) return;
+  const auto percent = [](double part) { return number(std::round(100.0 * part)) + " %"; };
+  const double edge = accuracy.facet * std::pow(wanted / accuracy.typical, 1.0 / order);
+  report.set(SetupFlag::coarse_contact,
+             "the facets, " + number(std::round(1e4 * accuracy.facet) / 10.0) + " mm long, are too long for a sphere of " +
+                 number(1e3 * accuracy.radius) + " mm: pressed in by an eighth of its radius, its force is in error by " +
+                 percent(accuracy.typical) + ", at one place by " + percent(accuracy.largest) +
+                 "; refine_near with an edge of about " + number(std::round(1e4 * edge) / 10.0) + " mm");
+}
+
+}}  // namespace palpate

@@ -1,0 +1,29 @@
+// A body of any shipped element as linear tetrahedra.
+#pragma once
+
+#include <palpate/element/tet4.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/mesh_ref.hpp>
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// The same body in linear tetrahedra, with the same corner nodes on its surface.
+struct TetrahedralCopy {
+  Mesh<Tet4> mesh;            ///< regions: material of every element; no groups
+  std::vector<NodeId> nodes;  ///< node of `mesh` for every node of the body, -1 if it has none
+};
+
+/// Tet4 stays as it is, Tet10 becomes one or, where an edge of the body is curved, eight tetrahedra; Hex8 and Hex20 become twelve around a node in their middle, with
+/// edges through the least node of every face so that neighbours conform. Empty for other elements. `material` gives the
+/// material of an element. O(elements), allocates.
+std::optional<TetrahedralCopy> tetrahedral_copy(const MeshRef& mesh, const std::function<int(Index)>& material);
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/static/detail/tetrahedral_copy.ipp>
+#endif

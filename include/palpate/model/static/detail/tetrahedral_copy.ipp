@@ -1,0 +1,121 @@
+// Definitions of tetrahedral_copy.hpp.
+#pragma once
+
+#include <palpate/model/static/detail/tetrahedral_copy.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+namespace detail {
+
+/// Collects the tetrahedra of a copy and the nodes that they use.
+class TetrahedralCopyMaker {
+ public:
+  explicit TetrahedralCopyMaker(const MeshRef& mesh) : mesh_(mesh) {
+    copy_.nodes.assign(static_cast<std::size_t>(mesh.node_count), -1);
+  }
+
+  NodeId node(NodeId of_body) {
+    NodeId& id = copy_.nodes[static_cast<std::size_t>(of_body)];
+    if (id < 0) id = add(position(of_body));
+    return id;
+  }
+  NodeId add(const Vector3& position) {
+    copy_.mesh.positions.push_back(position);
+    return static_cast<NodeId>(copy_.mesh.positions.size()) - 1;
+  }
+  void add_element(const std::array<NodeId, 4>& nodes, int material) {
+    copy_.mesh.elements.push_back(nodes);
+    copy_.mesh.regions.push_back(material);
+    materials_ = std::max(materials_, material + 1);
+  }
+  Vector3 position(NodeId of_body) const { return Vector3(mesh_.position(of_body)); }
+
+  /// The element as a tetrahedron.
+  void whole(const NodeId* nodes, int material) {
+    add_element({node(nodes[0]), node(nodes[1]), node(nodes[2]), node(nodes[3])}, material);
+  }
+  /// One tetrahedron per corner, and four around the shortest diagonal of the octahedron between the middles.
+  void eight(const NodeId* nodes, int material) {
+    constexpr std::array<std::array<std::size_t, 2>, 3> diagonals{{{4, 9}, {5, 7}, {6, 8}}};
+    constexpr std::array<std::array<std::size_t, 4>, 3> around{{{6, 7, 8, 5}, {8, 9, 6, 4}, {5, 9, 7, 4}}};
+    std::array<NodeId, 10> ids{};
+    for (std::size_t a = 0; a < 10; ++a) ids[a] = node(nodes[a]);
+    const auto length = [&](std::size_t i) {
+      return (position(nodes[diagonals[i][0]]) - position(nodes[diagonals[i][1]])).squaredNorm();
+    };
+    std::size_t shortest = 0;
+    for (const std::size_t i : {std::size_t{1}, std::size_t{2}})
+      if (length(i) < length(shortest)) shortest = i;
+    constexpr std::array<std::array<std::size_t, 4>, 4> corners{{{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}}};
+    for (const auto& [a, b, c, d] : corners) add_element({ids[a], ids[b], ids[c], ids[d]}, material);
+    for (std::size_t i = 0; i < 4; ++i)
+      add_element({ids[diagonals[shortest][0]], ids[around[shortest][i]], ids[around[shortest][(i + 1) % 4]],
+                   ids[diagonals[shortest][1]]},
+                  material);
+  }
+  /// Whether the middle nodes of a quadratic tetrahedron are in the middle of its edges.
+  bool is_straight(const NodeId* nodes) const {
+    constexpr double allowed = 1e-3;  // of the length of the edge
+    constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const Vector3 a = position(nodes[edges[i][0]]), b = position(nodes[edges[i][1]]);
+      if ((position(nodes[4 + i]) - 0.5 * (a + b)).norm() > allowed * (b - a).norm()) return false;
+    }
+    return true;
+  }
+  /// Two triangles of every face, and a node in the middle.
+  void twelve(const NodeId* nodes, int material) {
+    Vector3 middle = Vector3::Zero();
+    for (int a = 0; a < 8; ++a) middle += position(nodes[a]) / 8.0;
+    const NodeId centre = add(middle);
+    for (int f = 0; f < mesh_.element.face_count; ++f) {
+      const std::span<const int> face = mesh_.element.local_face(f);
+      std::array<NodeId, 4> corner{};
+      for (std::size_t i = 0; i < 4; ++i) corner[i] = nodes[face[i]];
+      std::rotate(corner.begin(), std::min_element(corner.begin(), corner.end()), corner.end());
+      for (std::size_t i = 1; i < 3; ++i)
+        add_element({node(corner[0]), node(corner[i + 1]), node(corner[i]), centre}, material);
+    }
+  }
+
+  TetrahedralCopy take() {
+    copy_.mesh.region_names.clear();
+    for (int m = 0; m < materials_; ++m) copy_.mesh.region_names.push_back(std::to_string(m));
+    return std::move(copy_);
+  }
+
+ private:
+  const MeshRef& mesh_;
+  TetrahedralCopy copy_;
+  int materials_ = 0;
+};
+
+}  // namespace detail
+
+PALPATE_INLINE std::optional<TetrahedralCopy> tetrahedral_copy(const MeshRef& mesh,
+                                                               const std::function<int(Index)>& material) {
+  const ElementLayout& element = mesh.element;
+  const bool one_kind = element.small_face.nodes == 0;
+  const bool tet4 = element.nodes == 4 && element.face_count == 4, tet10 = element.nodes == 10 && element.face_count == 4;
+  const bool hexahedron = one_kind && element.face_count == 6 && ((element.nodes == 8 && element.face.nodes == 4) ||
+                                                                  (element.nodes == 20 && element.face.nodes == 8));
+  if (!tet4 && !tet10 && !hexahedron) return std::nullopt;
+  detail::TetrahedralCopyMaker maker(mesh);
+  bool straight = true;
+  for (Index e = 0; e < mesh.element_count && tet10 && straight; ++e) straight = maker.is_straight(mesh.nodes_of(e));
+  for (Index e = 0; e < mesh.element_count; ++e) {
+    const NodeId* nodes = mesh.nodes_of(e);
+    if (tet4 || (tet10 && straight)) maker.whole(nodes, material(e));
+    if (tet10 && !straight) maker.eight(nodes, material(e));
+    if (hexahedron) maker.twelve(nodes, material(e));
+  }
+  return maker.take();
+}
+
+}}  // namespace palpate

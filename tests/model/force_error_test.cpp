@@ -1,0 +1,183 @@
+// The error bar of a force: measured at set-up, given in every tick, compared with finer meshes.
+#include <palpate/element/hex8.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/element/tet10.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/mesh/generators_box.hpp>
+#include <palpate/mesh/promote.hpp>
+#include <palpate/mesh/refine_near.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/testing/allocation_counter.hpp>
+
+#include "catch.hpp"
+
+#include <cmath>
+
+using namespace palpate;
+
+namespace {
+
+const Vector3 force_error_block{0.06, 0.06, 0.04};
+
+Mesh<Tet4> block_with_cells(int cells) {
+  return box_tet4(force_error_block, {cells, cells, cells / 2});
+}
+
+LinearElastic soft_material(double modulus = 5e3) {
+  return {.youngs_modulus = modulus, .poisson_ratio = 0.4, .density = 1000.0};
+}
+
+struct BarredPress {
+  double force = 0.0;
+  ForceError error;
+  Status status;
+};
+
+/// A sphere pressed to a depth over a point of the top.
+template <class Model>
+BarredPress hold_over(Model& model, double radius, double x, double y, double depth) {
+  ServoOptions options;
+  options.coupling_stiffness = infinity;
+  options.contact.capacity = 200;
+  HapticServo servo(model, SphereTool{radius}, options);
+  ToolState state;
+  BarredPress press;
+  for (int i = 0; i <= 60; ++i) {
+    state.time += 1e-3;
+    state.position = {x, y, force_error_block.z() + radius - depth * std::min(1.0, i / 20.0)};
+    press.status = servo.tick(state).status;
+  }
+  press.force = servo.contact_force().z();
+  press.error = servo.force_error();
+  return press;
+}
+
+template <class E>
+HapticFEModel<E, LinearElastic> barred_model(const Mesh<E>& mesh, double radius, double modulus = 5e3,
+                                             const SetupOptions& options = {}) {
+  Scene scene;
+  scene.fix("z0").touch("z1", {.radius = radius});
+  return {mesh, scene, soft_material(modulus), options};
+}
+
+/// Tet10 on a mesh refined near a point of the top.
+double force_on_fine_mesh(double radius, double x, double y, double depth) {
+  const Vector3 point(x, y, force_error_block.z());
+  const auto mesh = promote<Tet10>(refine_near(block_with_cells(10), PointCloud{{point}}, {radius / 5.0, 0.5}));
+  Scene scene;
+  scene.fix("z0").touch(where::sphere(point, radius));
+  HapticFEModel<Tet10, LinearElastic> model(mesh, scene, soft_material());
+  return hold_over(model, radius, x, y, depth).force;
+}
+
+}  // namespace
+
+TEST_CASE("the error bar contains the force on a fine mesh, and the expected error points there", "[force_error]") {
+  const double radius = 6e-3;
+  auto model = barred_model<Smoothed<Tet4>>(copy_mesh<Smoothed<Tet4>>(block_with_cells(10)), radius);
+  REQUIRE(model.report().accuracy.places == 3);
+  double before = 0.0, after = 0.0;
+  for (const auto& [x, y] : {std::pair{0.03, 0.03}, std::pair{0.0271, 0.0334}, std::pair{0.033, 0.027}})
+    for (const double depth : {radius / 8.0, radius / 4.0}) {
+      const double truth = force_on_fine_mesh(radius, x, y, depth);
+      const BarredPress press = hold_over(model, radius, x, y, depth);
+      CAPTURE(x, y, depth, truth, press.force, press.error.expected, press.error.bound);
+      CHECK(std::abs(press.force - truth) <= press.error.bound);
+      CHECK(press.error.bound < 2.0 * press.force);
+      before += std::pow(press.force / truth - 1.0, 2);
+      after += std::pow((press.force - press.error.expected) / truth - 1.0, 2);
+    }
+  CHECK(after < 0.25 * before);
+}
+
+TEST_CASE("coarse facets are flagged in the report and in ticks, fine ones are not", "[force_error]") {
+  const Mesh<Tet4> given = block_with_cells(10);
+  auto coarse = barred_model<Tet4>(given, 6e-3);
+  CHECK(coarse.report().has(SetupFlag::coarse_contact));
+  CHECK(coarse.report().accuracy.typical > 0.2);
+  CHECK(hold_over(coarse, 6e-3, 0.03, 0.03, 1e-3).status.has(StatusFlag::coarse_contact));
+  const double radius = 25e-3;  // four facets
+  auto fine = barred_model<Tet10>(promote<Tet10>(given), radius);
+  CHECK_FALSE(fine.report().has(SetupFlag::coarse_contact));
+  CHECK(fine.report().accuracy.typical < 0.05);
+  const BarredPress press = hold_over(fine, radius, 0.03, 0.03, radius / 8.0);
+  CHECK_FALSE(press.status.has(StatusFlag::coarse_contact));
+  CHECK(press.error.bound < 0.1 * press.force);
+}
+
+TEST_CASE("relative errors do not depend on the modulus", "[force_error]") {
+  const Mesh<Tet4> given = block_with_cells(8);
+  auto soft = barred_model<Tet4>(given, 8e-3), stiff = barred_model<Tet4>(given, 8e-3, 5e5);
+  const BarredPress a = hold_over(soft, 8e-3, 0.03, 0.03, 1e-3), b = hold_over(stiff, 8e-3, 0.03, 0.03, 1e-3);
+  CHECK(b.force == Approx(100.0 * a.force).epsilon(1e-5));
+  CHECK(b.error.expected == Approx(100.0 * a.error.expected).epsilon(1e-2));
+  CHECK(stiff.report().accuracy.typical == Approx(soft.report().accuracy.typical).epsilon(1e-2));
+}
+
+TEST_CASE("hexahedra are measured with a fine mesh of tetrahedra", "[force_error]") {
+  auto model = barred_model<Hex8>(box_hex8(force_error_block, {10, 10, 5}), 6e-3);
+  CHECK(model.report().accuracy.places == 3);
+  const double truth = force_on_fine_mesh(6e-3, 0.031, 0.028, 1e-3);
+  const BarredPress press = hold_over(model, 6e-3, 0.031, 0.028, 1e-3);
+  CHECK(std::abs(press.force - truth) <= press.error.bound);
+  CHECK(press.error.expected > 0.0);
+}
+
+TEST_CASE("without a radius nothing is measured, and the bound is infinite", "[force_error]") {
+  const Mesh<Tet4> given = block_with_cells(8);
+  Scene scene;
+  scene.fix("z0").touch("z1");
+  HapticFEModel<Tet4, LinearElastic> model(given, scene, soft_material());
+  CHECK(model.report().accuracy.places == 0);
+  CHECK(std::isinf(hold_over(model, 8e-3, 0.03, 0.03, 1e-3).error.bound));
+  auto off = barred_model<Tet4>(given, 8e-3, 5e3, {.accuracy_places = 0});
+  CHECK(off.report().accuracy.places == 0);
+  CHECK_THROWS_AS(Scene().touch("z1", {.radius = -1.0}), SetupError);
+  CHECK_THROWS_AS(Scene().touch("z1", {.radius = std::nan("")}), SetupError);
+  CHECK(Scene().touch("a", {.radius = 2e-3}).touch("b", {.radius = 1e-3}).touch("c").touch_radius() == 1e-3);
+}
+
+TEST_CASE("a measurement that does not fit into the memory is reported, and the model works without", "[force_error]") {
+  const Mesh<Tet4> given = block_with_cells(8);
+  const auto fits = [&](std::size_t limit) {
+    try {
+      barred_model<Tet4>(given, 8e-3, 5e3, {.memory_limit = limit, .accuracy_places = 0});
+      return true;
+    } catch (const SetupError& e) {
+      REQUIRE(e.kind() == SetupErrorKind::too_large);
+      return false;
+    }
+  };
+  std::size_t limit = 500'000;  // the least in steps of a tenth that the model itself needs
+  while (!fits(limit)) limit += limit / 10;
+  auto limited = barred_model<Tet4>(given, 8e-3, 5e3, {.memory_limit = limit});
+  CHECK(limited.report().accuracy.places == 0);
+  CHECK_FALSE(limited.report().accuracy.remark.empty());
+  CHECK(hold_over(limited, 8e-3, 0.03, 0.03, 1e-3).force > 0.0);
+}
+
+TEST_CASE("a measurement can be cancelled", "[force_error]") {
+  const auto cancel = [](const Progress& p) { return p.stage != "accuracy"; };
+  try {
+    barred_model<Tet4>(block_with_cells(8), 8e-3, 5e3, {.progress = cancel});
+    FAIL("not cancelled");
+  } catch (const SetupError& e) {
+    CHECK(e.kind() == SetupErrorKind::cancelled);
+  }
+}
+
+TEST_CASE("the error bar allocates nothing in a tick", "[force_error][allocation]") {
+  auto model = barred_model<Tet4>(block_with_cells(8), 8e-3);
+  HapticServo servo(model, SphereTool{8e-3});
+  ToolState state;
+  const auto tick_at = [&](int i) {
+    state.time += 1e-3;
+    state.position = {0.03 + 1e-5 * i, 0.03, force_error_block.z() + 8e-3 - 2e-3 * std::sin(0.05 * i)};
+    servo.tick(state);
+  };
+  for (int i = 0; i < 10; ++i) tick_at(i);
+  const testing::AllocationScope heap;
+  for (int i = 10; i < 200; ++i) tick_at(i);
+  CHECK(heap.allocations() == 0);
+}
