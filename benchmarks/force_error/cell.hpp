@@ -64,4 +64,7 @@ std::vector<std::array<double, depths.size()>> truth(const Case& test);
 template <class E>
 Answer answer(const Case& test);
 
+/// Ticks of two models of a block, with and without errors, in turn; prints the time of a tick.
+void print_tick_cost();
+
 }  // namespace force_error

@@ -206,7 +206,7 @@ PALPATE_INLINE double ForceErrorMeasurement::own_error(double depth) const {
 }
 
 PALPATE_INLINE MissingDepth ForceErrorMeasurement::missing(const Place& place) const {
-  constexpr double least_doubt = 0.01;  // of the force: contact is solved to 1e-3, the supports are as far as they are
+  constexpr double least_doubt = 0.02;  // of the force: places with the same facets differ by that
   MissingDepth result;
   result.facet_length = place.length;
   const std::vector<double> depth = depths();

@@ -1,0 +1,73 @@
+#include <palpate/element/smoothed.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/mesh/generators_box.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "cell.hpp"
+
+namespace force_error {
+namespace {
+
+using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic>;
+
+/// Seconds per tick of a sphere that slides over the block, in batches of ten ticks.
+class Slide {
+ public:
+  Slide(Model& model, double radius, double depth) : servo_(model, SphereTool{radius}), radius_(radius), depth_(depth) {}
+
+  void batch() {
+    constexpr int ticks = 10;
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < ticks; ++i, ++count_) {
+      const double angle = 1e-3 * count_;
+      state_.time += 1e-3;
+      state_.position = {0.05 + 0.02 * std::cos(angle), 0.05 + 0.02 * std::sin(angle), 0.08 + radius_ - depth_};
+      servo_.tick(state_);
+      contacts_ += static_cast<long>(servo_.contacts().size());
+    }
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    seconds_.push_back(passed.count() / ticks);
+  }
+  double percentile(double part) {
+    std::sort(seconds_.begin(), seconds_.end());
+    return seconds_[static_cast<std::size_t>(part * static_cast<double>(seconds_.size() - 1))];
+  }
+  double mean_contacts() const { return static_cast<double>(contacts_) / count_; }
+
+ private:
+  HapticServo servo_;
+  ToolState state_;
+  double radius_, depth_;
+  int count_ = 0;
+  long contacts_ = 0;
+  std::vector<double> seconds_;
+};
+
+}  // namespace
+
+void print_tick_cost() {
+  const auto mesh = copy_mesh<Smoothed<Tet4>>(box_tet4(Vector3(0.1, 0.1, 0.08), {16, 16, 12}));
+  std::printf("\ntime of a tick without and with errors, in turn, batches of ten [us]\n");
+  for (const double radius : {8e-3, 20e-3, 40e-3}) {
+    Scene scene;
+    scene.fix("z0").touch("z1", {.radius = radius});
+    const LinearElastic material{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1000.0};
+    Model plain(mesh, scene, material, {.accuracy_places = 0}), barred(mesh, scene, material);
+    Slide without(plain, radius, radius / 8.0), with(barred, radius, radius / 8.0);
+    for (int i = 0; i < 5000; ++i) {
+      without.batch();
+      with.batch();
+    }
+    std::printf("  radius %2.0f mm, %4.1f contacts: p50 %.3f and %.3f (%+.3f), p99 %.3f and %.3f\n", 1e3 * radius,
+                with.mean_contacts(), 1e6 * without.percentile(0.5), 1e6 * with.percentile(0.5),
+                1e6 * (with.percentile(0.5) - without.percentile(0.5)), 1e6 * without.percentile(0.99),
+                1e6 * with.percentile(0.99));
+  }
+}
+
+}  // namespace force_error
