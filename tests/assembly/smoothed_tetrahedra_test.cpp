@@ -143,3 +143,50 @@ TEST_CASE("smoothed tetrahedra do not allocate", "[assembly][smoothed][allocatio
   force.evaluate(u, f, report);
   CHECK(scope.allocations() == 0);
 }
+
+TEMPLATE_TEST_CASE("smoothed tetrahedra that follow cuts are those made anew", "[assembly][smoothed][cut]", float,
+                   double) {
+  auto body = distorted<NeoHookean>(0.45);
+  SmoothedTetrahedra<NeoHookean, TestType> followed(body);
+  testing::Random random(31);
+  auto& mesh = body.rest.mesh;
+  std::vector<char> gone(mesh.elements.size(), 0);
+  for (int cut = 0; cut < 12; ++cut) {
+    // Elements leave, and some of the elements around nodes get copies of these.
+    for (std::size_t e = 0; e < gone.size(); ++e) gone[e] = gone[e] || random.uniform(0.0, 1.0) < 0.06;
+    for (int k = 0; k < 4; ++k) {
+      const auto node = static_cast<NodeId>(random.uniform(0.0, static_cast<double>(mesh.node_count()) - 1e-9));
+      const auto copy = static_cast<NodeId>(mesh.node_count());
+      mesh.positions.push_back(mesh.position(Index{node}));
+      for (auto& nodes : mesh.elements)
+        if (random.uniform(0.0, 1.0) < 0.5) std::ranges::replace(nodes, node, copy);
+    }
+    followed.follow(mesh, [&](Index e) { return gone[static_cast<std::size_t>(e)] != 0; });
+    auto left = body;
+    left.rest.mesh.elements.clear();
+    left.rest.mesh.regions.clear();
+    for (std::size_t e = 0; e < gone.size(); ++e)
+      if (gone[e] == 0) {
+        left.rest.mesh.elements.push_back(mesh.elements[e]);
+        left.rest.mesh.regions.push_back(mesh.region(static_cast<Index>(e)));
+      }
+    SmoothedTetrahedra<NeoHookean, TestType> anew(left);
+    REQUIRE(followed.size() == 3 * mesh.node_count());
+    REQUIRE(anew.size() == followed.size());
+    const VectorX u = random_displacement(anew.size(), 0.002);
+    VectorX f(anew.size()), expected(anew.size());
+    DeformationReport report, wanted;
+    const double rounding = 30.0 * static_cast<double>(std::numeric_limits<TestType>::epsilon());
+    const double energy = anew.evaluate(u, expected, wanted);
+    CHECK(std::abs(followed.evaluate(u, f, report) - energy) <= rounding * energy);
+    CHECK((f - expected).norm() <= rounding * expected.norm());
+    CHECK(report.smallest_volume_ratio == wanted.smallest_volume_ratio);
+    CHECK(report.inverted == wanted.inverted);
+  }
+  for (char& g : gone) g = 1;
+  followed.follow(mesh, [](Index) { return true; });
+  VectorX f(followed.size());
+  DeformationReport report;
+  CHECK(followed.evaluate(VectorX::Zero(followed.size()), f, report) == 0.0);
+  CHECK(f.norm() == 0.0);
+}

@@ -91,3 +91,64 @@ TEST_CASE("one tool touches the tissue while another cuts it", "[cut][blade]") {
   CHECK(session.servo().blade(1)->area() > 0.0);
   CHECK(tissue.cut_report().cuts > 0);
 }
+
+TEST_CASE("an undercut costs toughness times its area", "[cut][blade][extreme][F3]") {
+  const Mesh<Tet4> mesh = box_tet4({0.06, 0.06, 0.03}, {8, 8, 4}, BoxSplit::six);
+  Cut tissue(mesh, Scene().fix("z0").touch("surface"), {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1000.0});
+  HapticServo servo(tissue, BladeTool{.edge = {0.0, 0.04, 0.0}, .toughness = 50.0});
+  constexpr double threshold = 50.0 * 0.04;
+  double hand_work = 0.0, most = 0.0;
+  Vector3 force = Vector3::Zero();
+  ToolState s;
+  int tick = 0;
+  const auto move = [&](const Vector3& to, int ticks) {
+    const Vector3 step = (to - s.position) / ticks;
+    for (int i = 0; i < ticks; ++i, ++tick) {
+      s.position += step;
+      s.time = 1e-3 * tick;
+      const Vector3 now = (servo.tick(s), servo.contact_force());
+      hand_work -= 0.5 * (force + now).dot(step);
+      force = now;
+      most = std::max(most, force.norm());
+      if (tick % 16 == 0) tissue.process_cuts();
+    }
+  };
+  s.position = {-0.004, 0.03, 0.0201};
+  move({0.044, 0.03, 0.0201}, 960);
+  const BladeCut& blade = *servo.blade();
+  const double stretch = threshold / 500.0;  // of the coupling
+  CHECK(blade.edge()[0] == Approx(0.044 - stretch).margin(1e-4));
+  CHECK(most == Approx(threshold));
+  CHECK(blade.area() == Approx(0.04 * blade.edge()[0]).epsilon(0.05));  // by samples along the edge
+  CHECK(blade.work() == Approx(50.0 * blade.area()));
+  CHECK(hand_work - 0.5 * threshold * stretch == Approx(blade.work()).epsilon(0.05));
+  // The faces that it opened have that area as seen from above, within an element.
+  while (tissue.process_cuts()) {}
+  const auto opened = [&] {
+    double area = 0.0;
+    tissue.read([&](const auto& topology, const auto&) {
+      const Mesh<Tet4> whole = mesh;
+      for (Index e = 0; e < mesh.element_count(); ++e)
+        for (std::size_t f = 0; f < 4; ++f) {
+          const auto nodes = face_ids<Tet4>(whole, e, f);
+          const Vector3 a = whole.position(nodes[0]), b = whole.position(nodes[1]), c = whole.position(nodes[2]);
+          const double up = 0.5 * cross(Vector3(b - a), Vector3(c - a))[2];
+          bool inside = topology.neighbour(e, f) < 0;
+          for (const Vector3& x : {a, b, c}) inside = inside && x[2] > 1e-6 && x[2] < 0.03 - 1e-6;
+          if (inside && up > 0.0) area += up;
+        }
+    });
+    return area;
+  };
+  const double area = blade.area();
+  CHECK(opened() > 0.7 * area);
+  CHECK(opened() < 1.3 * area);
+  // Back through the slit, and in again, for nothing; up through the flap at the same price.
+  move({-0.004, 0.03, 0.0201}, 960);
+  move({0.044, 0.03, 0.0201}, 960);
+  CHECK(blade.area() == Approx(area).epsilon(0.03));
+  move({0.044, 0.03, 0.035}, 480);
+  CHECK(blade.area() > area + 0.04 * 0.008);
+  CHECK(blade.work() == Approx(50.0 * blade.area()));
+  CHECK(most < threshold * 1.001);
+}

@@ -186,12 +186,20 @@ TEST_CASE("burning and slitting under a tool: forces continue, and end as in a m
   const Vector3 half = Vector3(0.5 * size[0], -1.0, 0.5 * size[2]);
   const Index nodes = tissue.displacement().size();
   tissue.cut(BladeSweep{half, half + Vector3(0, 2, 0), half + Vector3(0, 0, 1), half + Vector3(0, 2, 1)});
+  largest_jump = 0.0;
+  ticks(32);  // the next step, and one more
+  const double first_jump = largest_jump;
+  ticks(64);
+  const Vector3 early = last;
   ticks(600);
   CHECK(tissue.displacement().size() > nodes);
   INFO("largest jump " << largest_jump << " of " << whole << ", force " << last[2] << " after " << expected[2]);
   CHECK(last[2] < expected[2]);
   CHECK(last[2] > 0.05 * whole);
-  CHECK(largest_jump < 0.6 * whole);  // how far a force swings at first depends on when the thread has the new factor
+  // The lips open while the forces stay for a step, so the first change is too large; then there is little to do.
+  INFO("first jump " << first_jump << ", after four more steps " << early[2]);
+  CHECK(first_jump < 0.3 * whole);
+  CHECK((early - last).norm() < 0.05 * whole);
   largest_jump = 0.0;
   ticks(200);
   CHECK(largest_jump < 0.01 * whole);  // then it is steady

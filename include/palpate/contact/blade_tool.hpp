@@ -6,16 +6,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A sharp edge with its middle at the tool's position. Its directions are fixed in the world: it does not rotate with
-/// the device. For a tissue that can be cut (TissueModel: try_cut).
+/// A sharp edge with its middle at the tool's position. Its direction is fixed in the world: it does not rotate with
+/// the device. It cuts the surface that it sweeps, in any direction across itself; motion along itself, and in a slit
+/// that it has cut, has no resistance. For a tissue that can be cut (TissueModel: try_cut).
 struct BladeTool {
-  Vector3 edge{0.0, 0.01, 0.0};     ///< from one end of the edge to the other [m]
-  Vector3 forward{0.0, 0.0, -1.0};  ///< cutting direction; backward motion has no resistance
-  double toughness = 100.0;         ///< work per area of new slit [J/m^2]; about 50 to 500 for soft tissues
-  double cut_spacing = 1e-3;        ///< path of the edge between two cut requests [m]
+  Vector3 edge{0.0, 0.01, 0.0};  ///< from one end of the edge to the other [m]
+  double toughness = 100.0;      ///< work per area of new slit [J/m^2]; about 50 to 500 for soft tissues
+  double cut_spacing = 1e-3;     ///< path of the edge between two cut requests [m]
 
-  /// Throws bad_argument for an edge or forward direction of zero length, an edge parallel to the forward direction, a
-  /// cut spacing that is not positive, a toughness below zero, and values that are not finite.
+  /// Throws bad_argument for an edge of zero length, a cut spacing that is not positive, a toughness below zero, and
+  /// values that are not finite.
   void require_valid() const;
 };
 

@@ -10,6 +10,7 @@
 #include <palpate/cut/detail/cut_surface.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
 #include <palpate/cut/detail/cut_view.hpp>
+#include <palpate/cut/detail/slit_sides.hpp>
 #include <palpate/cut/detail/swept_faces.hpp>
 #include <palpate/model/moving/moving_tissue.hpp>
 
@@ -30,9 +31,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// numbers never change, so contact forces continue across a cut. While an order is open, ticks report degraded_model.
 ///
 /// A step after a cut uses the factor of an earlier body, extended to the new nodes (CutFactor), until a thread has
-/// computed the present one: it may take more iterations. Compliances stay those of the set-up, new vertices have that
-/// of a neighbour: steady forces are right, changes between two steps are predicted less well. A step that applies a
-/// cut allocates, and takes O(elements) in addition.
+/// computed the present one: it may take more iterations. Compliances stay those of the set-up; the lips of slits are
+/// separated (VertexCompliance). Steady forces are right, changes between two steps are predicted less well. A step
+/// that applies a cut allocates, and takes O(elements) in addition; where a tool presses beside a new slit, and without
+/// inertia, it finds two equilibria.
 ///
 /// Fragments that a cut detaches stay where they were, without forces; tools do not touch them. Threads: as
 /// MovingTissue; `try_cut` belongs to the thread that ticks, `cut`, `cut_report` and `read` may be called from any
@@ -70,6 +72,7 @@ class CuttableMovingTissue : public MovingTissue {
     const std::scoped_lock lock(changes());
     if (const CutOrders::Taken taken = orders_.take(); taken.count > 0) orders_.done(taken);
     body_ = whole_;
+    edges_.clear();
     similar_.resize(known_);
     cut_motion_->restart(body_->topology);
     change_surface();
@@ -170,7 +173,7 @@ class CuttableMovingTissue : public MovingTissue {
   void apply(const CutOrders::Taken& taken) {
     const auto start = std::chrono::steady_clock::now();
     const TopologyChange<E> change = body_->topology.apply(
-        combined(taken, body_->topology, inverse(to_world()), [&](NodeId node) { return position(node); }));
+        combined(taken, body_->topology, inverse(to_world()), [&](NodeId node) { return position(node); }, edges_));
     if (change.empty()) return;
     body_->surface.update(body_->topology, change);
     cut_motion_->follow(body_->topology);
@@ -200,6 +203,9 @@ class CuttableMovingTissue : public MovingTissue {
     if (tools_.radii.smallest > 0.0 &&
         erase_stretched(positions, ContactSamples::maximum_subdivision * tools_.radii.smallest, triangles, elements))
       made.status.set(StatusFlag::degraded_model);
+    std::vector<NodeId> origin;
+    for (const NodeId node : made.nodes) origin.push_back(body_->topology.origin_of(node));
+    made.side = slit_sides(surface.triangles(), origin);
     made.surface = ContactSurface(std::move(positions), std::move(triangles));
     made.surface.set_materials(elastic_body().contact_materials(elements));
     if (tools_.radii.smallest > 0.0)
@@ -229,6 +235,7 @@ class CuttableMovingTissue : public MovingTissue {
   std::vector<int> similar_;  // per vertex
   Tools tools_;
   CutOrders orders_;
+  RestingEdges edges_;
   CutReport report_;
   std::atomic<bool> failed_{false};
   std::uint64_t seen_ = 0;  // number of the surface that the session uses

@@ -47,6 +47,7 @@ class BatchedEnergyForces final : public EnergyForces {
     return force_.evaluate(u, f, report);
   }
   double rounding() const noexcept override { return static_cast<double>(std::numeric_limits<S>::epsilon()); }
+  const Force& force() const noexcept { return force_; }
 
  private:
   Force force_;

@@ -12,6 +12,7 @@
 #include <palpate/mesh/mesh.hpp>
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct StrainDomain {
   double volume = 0.0;  ///< [m^3]
   int region = 0;
   StrainPart part = StrainPart::deviatoric;
+  std::array<NodeId, 2> ends{};  ///< of the edge, ascending; or -1 and the node
 
   /// Mean strain under nodal displacements u, 3 per node of the mesh [m].
   Vector6 strain(const VectorX& u) const noexcept;
@@ -59,7 +61,7 @@ class StrainDomains {
       collect_shares(mesh, around, i);
       for (auto first = shares_.begin(); first != shares_.end();) {
         const auto last = std::find_if(first, shares_.end(), [&](const Share& s) { return !s.same_domain(*first); });
-        add_domain(mesh, {first, last});
+        add_domain(mesh, i, {first, last});
         first = last;
       }
     }
@@ -77,11 +79,12 @@ class StrainDomains {
             {element_.data() + e, element_start_[i + 1] - e},
             volume_[i],
             region_[i],
-            part_[i]};
+            part_[i],
+            ends_[i]};
   }
   std::size_t bytes() const noexcept {
     return node_.size() * (sizeof(NodeId) + sizeof(Vector3)) + element_.size() * sizeof(NodeId) +
-           volume_.size() * (sizeof(double) + sizeof(int) + sizeof(StrainPart) + 2 * sizeof(std::size_t));
+           volume_.size() * (sizeof(double) + sizeof(int) + sizeof(StrainPart) + 2 * sizeof(NodeId) + 2 * sizeof(std::size_t));
   }
 
  private:
@@ -115,7 +118,8 @@ class StrainDomains {
     std::ranges::sort(shares_);
   }
 
-  void add_domain(const Mesh<E>& mesh, std::span<const Share> shares) {
+  /// `node` has the lowest id of the domain's edge, or is its node.
+  void add_domain(const Mesh<E>& mesh, Index node, std::span<const Share> shares) {
     const bool of_node = shares.front().other < 0;
     const double part = of_node ? 1.0 / 4.0 : 1.0 / 6.0;
     double volume = 0.0;
@@ -127,6 +131,8 @@ class StrainDomains {
     volume_.push_back(volume);
     region_.push_back(shares.front().region);
     part_.push_back(of_node ? StrainPart::volumetric : StrainPart::deviatoric);
+    const auto own = static_cast<NodeId>(node), other = shares.front().other;
+    ends_.push_back({std::min(own, other), std::max(own, other)});
     node_start_.push_back(node_.size());
     element_start_.push_back(element_.size());
   }
@@ -164,6 +170,7 @@ class StrainDomains {
   std::vector<double> volume_;
   std::vector<int> region_;
   std::vector<StrainPart> part_;
+  std::vector<std::array<NodeId, 2>> ends_;
   std::vector<PointGeometry<E>> geometry_;  // during construction only
   std::vector<std::size_t> place_;          // position of a node in node_
   std::vector<Share> shares_;

@@ -92,13 +92,7 @@ struct TetrahedronBatches {
   template <LinearTetrahedron E>
   explicit TetrahedronBatches(const Mesh<E>& mesh) {
     for (const ElementBlock& block : element_blocks(mesh, elements_per_block, N)) add_block(mesh, block);
-    first_copy.assign(static_cast<std::size_t>(mesh.node_count()) + 1, 0);
-    for (NodeId node : nodes) ++first_copy[static_cast<std::size_t>(node) + 1];
-    std::partial_sum(first_copy.begin(), first_copy.end(), first_copy.begin());
-    std::vector<Index> next(first_copy.begin(), first_copy.end() - 1);
-    copies.resize(nodes.size());
-    for (std::size_t r = 0; r < nodes.size(); ++r)
-      copies[static_cast<std::size_t>(next[static_cast<std::size_t>(nodes[r])]++)] = static_cast<std::int32_t>(r);
+    list_copies(mesh.node_count());
   }
 
   Index node_count() const noexcept { return static_cast<Index>(first_copy.size()) - 1; }
@@ -119,6 +113,32 @@ struct TetrahedronBatches {
   }
   static void clear_lane(Triple<Lanes<S, N>>& v, int lane) noexcept {
     for (Lanes<S, N>* x : {&v.x, &v.y, &v.z}) x->set(lane, S(0));
+  }
+  /// Takes in the nodes of a mesh whose elements have kept their ids and shapes. `changed(batch)` is true for batches
+  /// with elements that were removed, or have other nodes. O(rows), and O(elements) of their blocks.
+  template <LinearTetrahedron E, class Changed>
+  void reconnect(const Mesh<E>& mesh, Changed&& changed) {
+    std::vector<NodeId> rows;
+    rows.reserve(nodes.size() + 64);
+    for (TetrahedronBlock& block : blocks) {
+      const auto old = nodes.begin() + block.first_row;
+      std::vector<NodeId> local;
+      for (Index b = block.first_batch; b < block.first_batch + block.batch_count && local.empty(); ++b)
+        if (changed(b)) local = nodes_of(mesh, block);
+      block.first_row = static_cast<Index>(rows.size());
+      if (local.empty()) {  // no change, or no element is left
+        rows.insert(rows.end(), old, old + block.row_count);
+        continue;
+      }
+      block.row_count = static_cast<Index>(local.size());
+      rows.insert(rows.end(), local.begin(), local.end());
+      for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b)
+        for (int lane = 0; lane < N; ++lane)
+          set_rows(batches[static_cast<std::size_t>(b)], lane, mesh,
+                   elements[static_cast<std::size_t>(b)][static_cast<std::size_t>(lane)], local);
+    }
+    nodes.swap(rows);
+    list_copies(mesh.node_count());
   }
 
   /// Displacements of a block's nodes minus that of its first node: single precision then keeps the digits of strain
@@ -183,6 +203,15 @@ struct TetrahedronBatches {
         }
     }
   }
+  void list_copies(Index node_count) {
+    first_copy.assign(static_cast<std::size_t>(node_count) + 1, 0);
+    for (NodeId node : nodes) ++first_copy[static_cast<std::size_t>(node) + 1];
+    std::partial_sum(first_copy.begin(), first_copy.end(), first_copy.begin());
+    std::vector<Index> next(first_copy.begin(), first_copy.end() - 1);
+    copies.resize(nodes.size());
+    for (std::size_t r = 0; r < nodes.size(); ++r)
+      copies[static_cast<std::size_t>(next[static_cast<std::size_t>(nodes[r])]++)] = static_cast<std::int32_t>(r);
+  }
   template <class E>
   static std::vector<NodeId> nodes_of(const Mesh<E>& mesh, const ElementBlock& block) {
     std::vector<NodeId> local;
@@ -191,6 +220,15 @@ struct TetrahedronBatches {
     std::ranges::sort(local);
     local.erase(std::unique(local.begin(), local.end()), local.end());
     return local;
+  }
+  /// Of the elements that are left.
+  template <class E>
+  std::vector<NodeId> nodes_of(const Mesh<E>& mesh, const TetrahedronBlock& block) const {
+    ElementBlock left;
+    for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b)
+      for (const NodeId e : elements[static_cast<std::size_t>(b)])
+        if (e >= 0) left.elements.push_back(e);
+    return nodes_of(mesh, left);
   }
   template <class E>
   static void set_lane(TetrahedronBatch<S, N>& batch, int lane, const Mesh<E>& mesh, Index e,
@@ -202,9 +240,16 @@ struct TetrahedronBatches {
       batch.gradient[a].z.set(lane, static_cast<S>(g.gradient(a + 1, 2)));
     }
     batch.volume.set(lane, static_cast<S>(g.volume));
-    for (int a = 0; a < 4; ++a)
-      batch.row[a][lane] =
-          static_cast<std::uint16_t>(4 * (std::ranges::lower_bound(local, mesh.element_node(e, a)) - local.begin()));
+    set_rows(batch, lane, mesh, e, local);
+  }
+  /// `e` is -1 for an empty lane.
+  template <class E>
+  static void set_rows(TetrahedronBatch<S, N>& batch, int lane, const Mesh<E>& mesh, Index e,
+                       const std::vector<NodeId>& local) {
+    for (int a = 0; a < 4; ++a) {
+      const auto at = e < 0 ? 0 : std::ranges::lower_bound(local, mesh.element_node(e, a)) - local.begin();
+      batch.row[a][lane] = static_cast<std::uint16_t>(4 * at);
+    }
   }
 };
 

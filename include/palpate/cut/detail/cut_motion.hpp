@@ -3,10 +3,13 @@
 
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/cut/detail/cut_factor.hpp>
+#include <palpate/cut/detail/cut_forces.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
 #include <palpate/integrator/detail/requirements.hpp>
+#include <palpate/local/mass.hpp>
 #include <palpate/model/moving/quasi_newton.hpp>
 
+#include <array>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -42,6 +45,12 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
     load_ = whole.load;
     factor_ = std::make_shared<CutFactor>(std::make_shared<RenewableFactor>(
         whole, assemble_stiffness<E>(body_.rest, limits_), std::vector<NodeId>{}, StiffnessAt(), limits_));
+    for (Index e = 0; e < body_.rest.mesh.element_count(); ++e) {
+      const auto volumes = lumped_element_mass<E>(element_nodes<E>(body_.rest.mesh, e));
+      auto& mass = element_mass_.emplace_back();
+      for (int a = 0; a < E::nodes; ++a)
+        mass[static_cast<std::size_t>(a)] = body_.rest.density[body_.rest.region_of(e)] * volumes[a];
+    }
     restart(topology);
     if (parameters_.settle) motion_->settle();
   }
@@ -65,6 +74,7 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
   }
   void restart(const CutTopology<E>& whole) override {
     factor_->restart();
+    forces_ = {};
     make(whole, VectorX::Zero(3 * whole.mesh().node_count()));
     motion_->set_load(load_);
     was_cut_ = false;
@@ -75,7 +85,8 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
   MotionStep step(double h) noexcept override {
     was_cut_ = false;
     MotionStep done = motion_->step(h);
-    if (Index& worst = done.deformation.worst_element; worst >= 0) worst = elements_[static_cast<std::size_t>(worst)];
+    if (Index& worst = done.deformation.worst_element; worst >= 0 && !forces_.keeps_ids)
+      worst = elements_[static_cast<std::size_t>(worst)];
     return done;
   }
   /// Right after a cut there is no step to correct; without inertia the next one forgets it.
@@ -114,7 +125,7 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
     HyperelasticBody<E, M> rest = part(topology.mesh(), elements);
     cut->body.conditions = conditions(topology, origin, u);
     cut->body.load = VectorX::Zero(u.size());
-    cut->body.lumped = lumped_mass(rest.rest);
+    cut->body.lumped = mass_of(topology.mesh(), elements);
     cut->nodal_mass = LinearTetrahedron<E> ? cut->body.lumped : nodal_mass(rest.rest);
     cut->body.pattern = block_pattern(rest.rest.mesh);
     cut->body.positions = rest.rest.mesh.positions;
@@ -124,11 +135,22 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
     body.load = cut->body.load;
     body.lumped = cut->body.lumped;
     body.positions = cut->body.positions;
-    motion_ = std::make_unique<QuasiNewtonMotion>(
-        std::move(body), detail::make_energy_forces<S>(std::move(rest), limits_), factor_, parameters_);
+    CutForces<E, M, S> forces = forces_.after(topology, std::move(rest), limits_);
+    // A part of a body has at most the rounding errors of all of it.
+    const RoundingErrors* const errors = motion_ ? &motion_->rounding_errors() : nullptr;
+    motion_ = std::make_unique<QuasiNewtonMotion>(std::move(body), forces.take(), factor_, parameters_, errors);
+    forces_ = std::move(forces);
     cut_ = std::move(cut);
     origin_ = std::move(origin);
     elements_ = std::move(elements);
+  }
+  /// Lumped mass of elements, which keep their shapes.
+  VectorX mass_of(const Mesh<E>& mesh, const std::vector<Index>& elements) const {
+    VectorX mass = VectorX::Zero(mesh.node_count());
+    for (const Index e : elements)
+      for (int a = 0; a < E::nodes; ++a)
+        mass[mesh.element_node(e, a)] += element_mass_[static_cast<std::size_t>(e)][static_cast<std::size_t>(a)];
+    return mass;
   }
   /// Some elements, with all nodes.
   HyperelasticBody<E, M> part(const Mesh<E>& mesh, const std::vector<Index>& elements) const {
@@ -169,10 +191,12 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
   SetupLimits limits_;
   HyperelasticBody<E, M> body_;  // before any cut
   VectorX prescribed_, load_;    // of the nodes before any cut
+  std::vector<std::array<double, static_cast<std::size_t>(E::nodes)>> element_mass_;  // lumped [kg]
   std::shared_ptr<CutFactor> factor_;
   std::shared_ptr<const CutBody> cut_;
   std::vector<NodeId> origin_;   // node before any cut of every node; -1 without support
   std::vector<Index> elements_;  // that remain
+  CutForces<E, M, S> forces_;  // of the motion
   std::unique_ptr<QuasiNewtonMotion> motion_;
   bool was_cut_ = false;  // since the last step
 };

@@ -84,6 +84,7 @@ class CutProcess {
     auto physics = std::make_unique<CutPhysics<E>>(physics_->body, boundary, scene);
     CutSystem<E> fresh(topology_, *physics, kept_nodes(), limits_);
     renewal_.reset();
+    swept_.resize(0);
     physics_.swap(physics);
     take_over(std::move(fresh));
   }
@@ -103,6 +104,7 @@ class CutProcess {
       std::swap(resting_, resting);
       throw;
     }
+    edges_.clear();
     const CutReport before = std::exchange(report_, CutReport{});
     report_.kept = system_.kept();
     report_.error = before.error;
@@ -170,10 +172,20 @@ class CutProcess {
     return nodes;
   }
 
-  /// All orders as faces and elements. Blades cut the deformed body.
+  /// All orders as faces and elements. Blades cut the deformed body. Where cuts displace it too far for linear
+  /// elasticity, they cut it as it was deformed before.
   CutOrder order_of(const CutOrders::Taken& taken, const Eigen::Isometry3d& local) {
-    if (!taken.sweeps.empty() && std::exchange(is_due(Check::inside), false)) system_.recover();
-    return combined(taken, topology_, local, [&](NodeId node) { return position(node); });
+    if (!taken.sweeps.empty()) {
+      if (std::exchange(is_due(Check::inside), false)) system_.recover();
+      if (swept_.size() == 0 || report_.displacement <= largest_linear_displacement) swept_ = system_.displacement();
+    }
+    const auto swept = [&](NodeId node) {
+      NodeId known = node;
+      while (3 * Index{known} >= swept_.size()) known = topology_.copied_from(known);
+      return Vector3(topology_.mesh().position(node) +
+                     (resting_.rests(node) ? resting_.displacement(node) : node_vector(swept_, known)));
+    };
+    return combined(taken, topology_, local, swept, edges_);
   }
 
   /// Updates the compliance and publishes it. Makes a new factor if the update is not positive definite to working
@@ -324,6 +336,8 @@ class CutProcess {
   Publish publish_to_;
   CutSystem<E> system_;
   RestingNodes resting_;
+  RestingEdges edges_;
+  VectorX swept_;    // displacement of the nodes through which blades cut
   double diagonal_;  // of the bounding box [m]
   CutReport report_;
   std::shared_ptr<CutContact> contact_;  // of the last cut

@@ -8,9 +8,11 @@
 #include <palpate/core/types.hpp>
 #include <palpate/cut/detail/cut_orders.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/detail/resting_edges.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 #include <palpate/mesh/mesh.hpp>
 
+#include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -45,15 +47,58 @@ std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const Blade
   return open;
 }
 
-/// Waiting orders as one, with the faces that their sweeps open. `local` maps the world to the frame of the mesh;
-/// `position` as above.
+/// The faces between elements that a body moved over an edge that stayed in place: the line between their centres
+/// crosses the edge while the nodes move from `before(node)` to `after(node)`. O(elements).
+template <Element E, class Before, class After>
+void add_faces_moved_over(const CutTopology<E>& topology, const RestingEdge& edge, Before&& before, After&& after,
+                          std::vector<ElementFace>& open) {
+  const Mesh<E>& mesh = topology.mesh();
+  const auto centre = [&](Index e, auto&& position) {
+    Vector3 sum = Vector3::Zero();
+    for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)]) sum += position(node);
+    return Vector3(sum / E::nodes);
+  };
+  Box near;
+  near.include(edge.a);
+  near.include(edge.b);
+  for (Index e = 0; e < mesh.element_count(); ++e) {
+    if (topology.is_removed(e)) continue;
+    Box own;
+    for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)])
+      for (const Vector3& x : {before(node), after(node)}) own.include(x);
+    const Vector3 from = centre(e, before), to = centre(e, after);
+    const double reach = 2.0 * (own.high - own.low).norm();
+    if (from == to || !(near.squared_distance(to) <= reach * reach)) continue;
+    for (std::size_t f = 0; f < E::faces.size(); ++f)
+      if (const Index other = topology.neighbour(e, f); other >= 0)
+        if (edge.is_crossed(from, centre(other, before), to, centre(other, after)))
+          open.push_back({e, static_cast<int>(f)});
+  }
+}
+
+/// Waiting orders as one, with the faces that their sweeps open, and those that have moved over the edge of a blade
+/// between two sweeps. `local` maps the world to the frame of the mesh; `position` as above.
 template <Element E, class Position>
 CutOrder combined(const CutOrders::Taken& taken, const CutTopology<E>& topology, const Eigen::Isometry3d& local,
-                  Position&& position) {
+                  Position&& position, RestingEdges& edges) {
   CutOrder all = taken.order;
   for (const BladeSweep& s : taken.sweeps) {
-    const auto faces = swept_faces(topology, {local * s.a0, local * s.b0, local * s.a1, local * s.b1}, position);
+    const BladeSweep own{local * s.a0, local * s.b0, local * s.a1, local * s.b1};
+    if (const auto* positions = edges.find(s)) {
+      const auto before = [&](NodeId node) {
+        NodeId known = node;
+        while (static_cast<std::size_t>(known) >= positions->size()) known = topology.copied_from(known);
+        return (*positions)[static_cast<std::size_t>(known)];
+      };
+      add_faces_moved_over(topology, {own.a0, own.b0}, before, position, all.open);
+    }
+    const auto faces = swept_faces(topology, own, position);
     all.open.insert(all.open.end(), faces.begin(), faces.end());
+  }
+  if (!taken.sweeps.empty()) {
+    std::vector<Vector3> positions;
+    for (NodeId node = 0; node < topology.mesh().node_count(); ++node) positions.push_back(position(node));
+    edges.rest(taken.sweeps, std::move(positions));
   }
   return all;
 }

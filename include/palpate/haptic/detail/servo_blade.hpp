@@ -18,7 +18,6 @@ class ServoBlade {
   /// along the swept surface once the path since the last request reaches the cut spacing.
   void follow(const Vector3& hand, bool restart, const TissueView& tissue) noexcept;
   /// The position of the hand is lost: no force.
-  /// The hand is lost: no force.
   void lift() noexcept;
   void reset() noexcept;
 
@@ -30,7 +29,7 @@ class ServoBlade {
   static constexpr int samples = 8;  // along the edge
 
   double width_inside(const TissueView& tissue) const noexcept;
-  bool order_cut(const TissueView& tissue) noexcept;
+  bool order_cut(const Vector3& to, const TissueView& tissue, double least) noexcept;
 
   BladeCut cut_;
   Vector3 force_ = Vector3::Zero(), ordered_ = Vector3::Zero();

@@ -1,6 +1,7 @@
 // Definitions of servo_blade.hpp.
 #pragma once
 
+#include <palpate/contact/detail/blade_inside.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/haptic/detail/servo_blade.hpp>
 
@@ -9,9 +10,13 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE void ServoBlade::follow(const Vector3& hand, bool restart, const TissueView& tissue) noexcept {
   status_ = {};
   if (restart) cut_.lift();
+  const Vector3 before = cut_.edge();
   force_ = cut_.advance(hand, restart ? 0.0 : width_inside(tissue));
   if (restart) ordered_ = cut_.edge();
-  if (!order_cut(tissue)) status_.set(StatusFlag::degraded_model);
+  if (!restart && cut_.cut_from() != before) {  // through a slit, or out of the tissue: no cut between
+    if (order_cut(before, tissue, 1e-3 * cut_.tool().cut_spacing)) ordered_ = cut_.cut_from();
+  }
+  if (!order_cut(cut_.edge(), tissue, cut_.tool().cut_spacing)) status_.set(StatusFlag::degraded_model);
 }
 
 PALPATE_INLINE void ServoBlade::lift() noexcept {
@@ -33,20 +38,18 @@ PALPATE_INLINE double ServoBlade::width_inside(const TissueView& tissue) const n
   int inside = 0;
   for (int k = 0; k < samples; ++k) {
     const Vector3 x = cut_.edge() + ((k + 0.5) / samples - 0.5) * edge;
-    if (tissue.contact_surface().is_inside(to_model * x)) ++inside;
+    if (is_in_tissue(tissue.contact_surface(), to_model * x, cut_.tool().cut_spacing)) ++inside;
   }
   return edge.norm() * inside / samples;
 }
 
-/// Requests a cut along the surface swept since the last request; false when the tissue cannot accept it yet.
-PALPATE_INLINE bool ServoBlade::order_cut(const TissueView& tissue) noexcept {
-  const BladeTool& tool = cut_.tool();
-  const Vector3 path = cut_.edge() - ordered_;
-  if (path.dot(tool.forward) < 0.0) ordered_ = cut_.edge();  // back through the slit
-  if (path.norm() < tool.cut_spacing) return true;
-  const Vector3 half = 0.5 * tool.edge;
-  if (!tissue.try_cut({ordered_ - half, ordered_ + half, cut_.edge() - half, cut_.edge() + half})) return false;
-  ordered_ = cut_.edge();
+/// Requests a cut along the surface swept since the last request to an edge at `to`, unless its path is shorter than
+/// `least`; false when the tissue cannot accept it yet.
+PALPATE_INLINE bool ServoBlade::order_cut(const Vector3& to, const TissueView& tissue, double least) noexcept {
+  if ((to - ordered_).norm() < least) return true;
+  const Vector3 half = 0.5 * cut_.tool().edge;
+  if (!tissue.try_cut({ordered_ - half, ordered_ + half, to - half, to + half})) return false;
+  ordered_ = to;
   return true;
 }
 

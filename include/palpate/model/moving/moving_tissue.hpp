@@ -137,6 +137,7 @@ class MovingTissue : public ModelBase {
   struct CutVertices {
     std::vector<NodeId> nodes;  ///< of every vertex
     std::vector<int> similar;   ///< per vertex the vertex of the set-up whose compliance it has
+    std::vector<double> side;   ///< per vertex, of a slit: 1 on one lip, -1 on the other one, 0 far away
     ContactSurface surface;
     std::shared_ptr<ContactProblem> contact;  ///< for a session to continue with
     Status status;                            ///< of ticks on this surface, in addition to those of the steps
@@ -184,7 +185,7 @@ class MovingTissue : public ModelBase {
     std::uint64_t number = 0;                      // of the surface: changes before it
     std::shared_ptr<ContactProblem> contact;
   };
-  /// A view of all vertices, without surface and data of a step.
+  /// A view of all vertices, without surface, data of a step and room for the compliance near the contacts.
   View make_view() const;
 
   static std::size_t vertex(int v) noexcept { return static_cast<std::size_t>(v); }
@@ -205,6 +206,8 @@ class MovingTissue : public ModelBase {
     into.item[into.count++] = v;
   }
   void start_secants();
+  bool presses_beside_slit() const noexcept;
+  void move_under_part_of_forces(Forces& part) noexcept;
   /// The displacement of the vertices.
   void find_moved(std::vector<Vector3>& moved) const noexcept;
 
@@ -223,6 +226,7 @@ class MovingTissue : public ModelBase {
   View changed_;                               // of the newest surface, when it has changed
   std::vector<Vector3> moved_, moved_before_;  // of the vertices, after the last step and the one before
   bool loads_changed_ = false;                 // since the last step: displacements then changed for other reasons
+  bool was_slit_ = false;                      // since the last step
   Forces used_;
   std::uint64_t steps_ = 0;
   std::mutex changes_;

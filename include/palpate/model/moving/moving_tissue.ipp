@@ -61,6 +61,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   triangles_ = touchable.triangles;
   if (motion_->is_static()) start_secants();
   View view = make_view();
+  view.near = {nodes_.size(), most_near, most_pressed};
   update_view(view);
   view.surface = ContactSurface(view.free, triangles_);
   view.surface.set_unloaded(unloaded());
@@ -87,7 +88,6 @@ PALPATE_INLINE MovingTissue::View MovingTissue::make_view() const {
   view.rotation.resize(vertices);
   if (motion_->is_static())
     for (SecantTerms::Term& term : view.secants.term) term.resize(vertices);
-  view.near = {vertices, most_near, most_pressed};
   view.compliance = compliance_;
   view.requested.assign(vertices, ~std::uint64_t{0});
   view.required.assign(vertices, 0);
@@ -103,8 +103,10 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   add(pressing_.front(), 1.0, full_);
   add(used_, -1.0, full_);
   const bool corrected = full_.isZero(0.0) || motion_->correct(full_) || steps_ == 0;
-  const Forces before = used_;
+  Forces before = used_;
   used_ = pressing_.front();
+  if (std::exchange(was_slit_, false) && motion_->is_static() && presses_beside_slit())
+    move_under_part_of_forces(before);
   full_ = load_;
   add(used_, 1.0, full_);
   motion_->set_load(full_);
@@ -124,6 +126,27 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   publish(status);
   ++steps_;
   return done;
+}
+
+PALPATE_INLINE bool MovingTissue::presses_beside_slit() const noexcept {
+  const auto last = used_.item.begin() + static_cast<std::ptrdiff_t>(used_.count);
+  return std::any_of(used_.item.begin(), last,
+                     [&](const VertexForce& f) { return compliance_.is_beside_slit(vertex(f)); });
+}
+
+/// A body with a slit under the tool has another compliance. Two equilibria, under a part of the tool forces and under
+/// all of them, give it in the direction of the forces.
+PALPATE_INLINE void MovingTissue::move_under_part_of_forces(Forces& part) noexcept {
+  constexpr double fraction = 0.5;
+  part = used_;
+  for (std::size_t k = 0; k < part.count; ++k)
+    part.item[k].force = ModelVector(fraction * used_.item[k].force.in_model_axes());
+  full_ = load_;
+  add(part, 1.0, full_);
+  motion_->set_load(full_);
+  motion_->step(step_);
+  find_moved(moved_);
+  loads_changed_ = false;
 }
 
 PALPATE_INLINE void MovingTissue::set_conditions(const Scene& scene) {
@@ -182,6 +205,7 @@ PALPATE_INLINE void MovingTissue::restart() {
   used_ = {};
   secants_.clear();
   find_moved(moved_);
+  was_slit_ = false;
   steps_ = 0;
   publish({});
 }
@@ -195,9 +219,11 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
   applied_.swap(applied);
   load_.swap(load);
   full_ = load_;
-  mass_ = mass;
   rotations_ = std::move(rotations);
-  compliance_ = VertexCompliance(compliance_, std::move(surface.similar));
+  was_slit_ = was_slit_ || mass.size() > mass_.size();
+  loads_changed_ = true;  // a cut moves vertices, too
+  mass_ = mass;
+  compliance_ = VertexCompliance(compliance_, std::move(surface.similar), std::move(surface.side));
   nodes_ = std::move(surface.nodes);
   rest_.clear();
   for (const NodeId node : nodes_) rest_.push_back(positions[static_cast<std::size_t>(node)]);
@@ -316,7 +342,12 @@ PALPATE_INLINE void MovingTissue::update_view(View& view) const noexcept {
 
 PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {
   View& view = views_.back();
-  if (view.number != changed_.number) view = changed_;  // a view from before a cut
+  if (view.number != changed_.number) {  // a view from before a cut
+    NearCompliance near = std::move(view.near);
+    view = changed_;
+    near.resize(nodes_.size(), most_near, most_pressed);
+    view.near = std::move(near);
+  }
   update_view(view);
   view.surface.move_to(view.free, ++views_made_);
   view.status = status | changed_.status;

@@ -19,6 +19,13 @@ class NearCompliance {
   NearCompliance(std::size_t vertices, std::size_t rows, std::size_t columns)
       : rows_{vertices, rows}, columns_{vertices, columns}, block_(rows_.most * columns_.most) {}
 
+  /// For a surface of another number of vertices; nothing is known until `set`. Allocates only where it needs more.
+  void resize(std::size_t vertices, std::size_t rows, std::size_t columns) {
+    rows_.resize(vertices, rows);
+    columns_.resize(vertices, columns);
+    if (rows_.most * columns_.most > block_.size()) block_.resize(rows_.most * columns_.most);
+  }
+
   /// Memory of the blocks of such an object.
   static double bytes(std::size_t vertices, std::size_t rows, std::size_t columns) noexcept {
     return static_cast<double>(std::min(vertices, rows) * std::min(vertices, columns) * sizeof(Matrix3));
@@ -46,6 +53,12 @@ class NearCompliance {
     List() = default;
     List(std::size_t vertices, std::size_t largest)
         : most(std::min(vertices, largest)), slot(vertices, -1), listed(most) {}
+    void resize(std::size_t vertices, std::size_t largest) {
+      most = std::min(vertices, largest);
+      count = 0;
+      slot.assign(vertices, -1);
+      listed.resize(most);
+    }
     void set(std::span<const int> vertices) noexcept {
       for (std::size_t k = 0; k < count; ++k) slot[at(listed[k])] = -1;
       count = std::min(vertices.size(), most);

@@ -53,9 +53,10 @@ class QuasiNewtonMotion final : public TissueMotion {
   /// Largest relative residual of a step that counts as converged.
   static constexpr double tolerable_residual = 0.05;
 
-  /// Starts at rest with zero displacement. `body.elastic` is not used. Throws bad_density, bad_argument.
+  /// Starts at rest with zero displacement. `body.elastic` is not used. Rounding errors are measured unless they are
+  /// known. Throws bad_density, bad_argument.
   QuasiNewtonMotion(DeformableBody body, std::unique_ptr<EnergyForces> forces, std::shared_ptr<StepFactor> factor,
-                    const QuasiNewtonParameters& parameters);
+                    const QuasiNewtonParameters& parameters, const RoundingErrors* rounding_errors = nullptr);
 
   MotionStep step(double h) noexcept override;
   bool correct(const VectorX& more) noexcept override;
@@ -76,6 +77,7 @@ class QuasiNewtonMotion final : public TissueMotion {
 
   /// Of the last step.
   const QuasiNewtonReport& report() const noexcept { return report_; }
+  const RoundingErrors& rounding_errors() const noexcept { return floor_; }
   /// Number of factors taken from the second thread so far.
   long renewals() const noexcept { return factor_->renewals(); }
 

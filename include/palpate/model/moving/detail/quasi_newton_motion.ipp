@@ -36,7 +36,8 @@ PALPATE_INLINE void QuasiNewtonParameters::require_divisible(bool viscous) const
 
 PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::unique_ptr<EnergyForces> forces,
                                                     std::shared_ptr<StepFactor> factor,
-                                                    const QuasiNewtonParameters& parameters)
+                                                    const QuasiNewtonParameters& parameters,
+                                                    const RoundingErrors* rounding_errors)
     : parameters_(parameters),
       body_(std::move(body)),
       forces_(std::move(forces)),
@@ -64,7 +65,7 @@ PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::un
   parameters.require_usable();
   require_mass(body_);
   for (Index dof = 0; dof < inertia_.size(); ++dof) inertia_[dof] = body_.lumped[dof / 3];
-  floor_ = forces_->rounding_errors(body_.positions);
+  floor_ = rounding_errors != nullptr ? *rounding_errors : forces_->rounding_errors(body_.positions);
 }
 
 PALPATE_INLINE bool QuasiNewtonMotion::set_length(double h) noexcept {
