@@ -16,7 +16,7 @@ namespace {
 using StrokedLinear = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
 using StrokedMoving = HapticFEModel<Smoothed<Tet4>, NeoHookean, Cuttable<Implicit<QuasiNewton<>>>>;
 
-/// Cuts in strokes of a length from x = -0.01 to 0.09 at a height, or back; `apply` is called after each.
+/// Cuts from x = -0.01 to 0.09 at a height, each sweep of this length; `apply` is called after each.
 template <class Model, class Apply>
 void stroke(Model& model, double height, double length, Apply&& apply) {
   const auto count = static_cast<int>(std::lround(0.1 / length));
@@ -35,7 +35,7 @@ TEST_CASE("short strokes sever a body that sags, as one sweep does", "[cut][stro
       StrokedLinear tissue(box_tet4({0.08, 0.03, 0.08}, {10, 4, 10}, BoxSplit::six),
                            Scene().fix("z1").touch("z0").gravity({0, 0, -9.81}),
                            {.youngs_modulus = youngs_modulus, .poisson_ratio = 0.4, .density = 1000.0});
-      INFO("sag " << tissue.displacement().cwiseAbs().maxCoeff() << ", strokes of " << length);
+      INFO("sag " << tissue.displacement().cwiseAbs().maxCoeff() << ", length of a sweep " << length);
       stroke(tissue, 0.031, length, [&](int) {
         while (tissue.process_cuts()) {}
       });
