@@ -5,6 +5,8 @@
 #include <palpate/element/smoothed.hpp>
 #include <palpate/mesh/promote.hpp>
 
+#include <palpate/model/static/measured_force_error.hpp>
+
 #include "press.hpp"
 
 namespace force_error {
@@ -23,7 +25,8 @@ template <class E>
 Answer answer(const Case& test) {
   Scene scene;
   scene.fix(test.body.fixed).touch(test.body.touched, {.radius = test.radius});
-  HapticFEModel<E, LinearElastic> model(mesh_for<E>(test.body), scene, materials_of(test));
+  HapticFEModel<E, LinearElastic> model(mesh_for<E>(test.body), scene, materials_of(test),
+                                        {.force_error = measured_force_error()});
   Answer answer;
   answer.presses.resize(test.places.size());
   answer.setup_seconds = model.report().total_seconds();

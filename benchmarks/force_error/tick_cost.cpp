@@ -2,6 +2,7 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/model/static/measured_force_error.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -57,7 +58,7 @@ void print_tick_cost() {
     Scene scene;
     scene.fix("z0").touch("z1", {.radius = radius});
     const LinearElastic material{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1000.0};
-    Model plain(mesh, scene, material, {.accuracy_places = 0}), barred(mesh, scene, material);
+    Model plain(mesh, scene, material), barred(mesh, scene, material, {.force_error = measured_force_error()});
     Slide without(plain, radius, radius / 8.0), with(barred, radius, radius / 8.0);
     for (int i = 0; i < 5000; ++i) {
       without.batch();

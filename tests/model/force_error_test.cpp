@@ -8,6 +8,7 @@
 #include <palpate/mesh/promote.hpp>
 #include <palpate/mesh/refine_near.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/model/static/measured_force_error.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
 #include "catch.hpp"
@@ -55,7 +56,7 @@ BarredPress hold_over(Model& model, double radius, double x, double y, double de
 
 template <class E>
 HapticFEModel<E, LinearElastic> barred_model(const Mesh<E>& mesh, double radius, double modulus = 5e3,
-                                             const SetupOptions& options = {}) {
+                                             const SetupOptions& options = {.force_error = measured_force_error()}) {
   Scene scene;
   scene.fix("z0").touch("z1", {.radius = radius});
   return {mesh, scene, soft_material(modulus), options};
@@ -131,8 +132,13 @@ TEST_CASE("without a radius nothing is measured, and the bound is infinite", "[f
   HapticFEModel<Tet4, LinearElastic> model(given, scene, soft_material());
   CHECK(model.report().accuracy.places == 0);
   CHECK(std::isinf(hold_over(model, 8e-3, 0.03, 0.03, 1e-3).error.bound));
-  auto off = barred_model<Tet4>(given, 8e-3, 5e3, {.accuracy_places = 0});
+  HapticFEModel<Tet4, LinearElastic> asked(given, scene, soft_material(), {.force_error = measured_force_error()});
+  CHECK(asked.report().accuracy.places == 0);
+  CHECK_FALSE(asked.report().accuracy.remark.empty());
+  auto off = barred_model<Tet4>(given, 8e-3, 5e3, {});
   CHECK(off.report().accuracy.places == 0);
+  CHECK(std::isinf(hold_over(off, 8e-3, 0.03, 0.03, 1e-3).error.bound));
+  CHECK_THROWS_AS(measured_force_error(0), SetupError);
   CHECK_THROWS_AS(Scene().touch("z1", {.radius = -1.0}), SetupError);
   CHECK_THROWS_AS(Scene().touch("z1", {.radius = std::nan("")}), SetupError);
   CHECK(Scene().touch("a", {.radius = 2e-3}).touch("b", {.radius = 1e-3}).touch("c").touch_radius() == 1e-3);
@@ -142,7 +148,7 @@ TEST_CASE("a measurement that does not fit into the memory is reported, and the 
   const Mesh<Tet4> given = block_with_cells(8);
   const auto fits = [&](std::size_t limit) {
     try {
-      barred_model<Tet4>(given, 8e-3, 5e3, {.memory_limit = limit, .accuracy_places = 0});
+      barred_model<Tet4>(given, 8e-3, 5e3, {.memory_limit = limit});
       return true;
     } catch (const SetupError& e) {
       REQUIRE(e.kind() == SetupErrorKind::too_large);
@@ -151,7 +157,7 @@ TEST_CASE("a measurement that does not fit into the memory is reported, and the 
   };
   std::size_t limit = 500'000;  // the least in steps of a tenth that the model itself needs
   while (!fits(limit)) limit += limit / 10;
-  auto limited = barred_model<Tet4>(given, 8e-3, 5e3, {.memory_limit = limit});
+  auto limited = barred_model<Tet4>(given, 8e-3, 5e3, {.memory_limit = limit, .force_error = measured_force_error()});
   CHECK(limited.report().accuracy.places == 0);
   CHECK_FALSE(limited.report().accuracy.remark.empty());
   CHECK(hold_over(limited, 8e-3, 0.03, 0.03, 1e-3).force > 0.0);
@@ -160,7 +166,7 @@ TEST_CASE("a measurement that does not fit into the memory is reported, and the 
 TEST_CASE("a measurement can be cancelled", "[force_error]") {
   const auto cancel = [](const Progress& p) { return p.stage != "accuracy"; };
   try {
-    barred_model<Tet4>(block_with_cells(8), 8e-3, 5e3, {.progress = cancel});
+    barred_model<Tet4>(block_with_cells(8), 8e-3, 5e3, {.progress = cancel, .force_error = measured_force_error()});
     FAIL("not cancelled");
   } catch (const SetupError& e) {
     CHECK(e.kind() == SetupErrorKind::cancelled);

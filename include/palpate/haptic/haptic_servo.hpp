@@ -109,6 +109,7 @@ class HapticServo {
 
  private:
   friend class HapticSession;
+  friend class ForceErrorMeasurement;
   HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options,
               std::vector<EnergyTank> energies);
 

@@ -10,7 +10,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// Error of the contact force because of the mesh, for the sphere that touches according to the scene (TouchOptions). Errors
 /// are relative to the force on a fine mesh; positive: the force is too large.
 struct AccuracyReport {
-  double radius = 0.0;   ///< of the sphere [m]; 0: the scene does not name one
+  double radius = 0.0;   ///< of the sphere [m]
   int places = 0;        ///< where it was measured; 0: not measured, for the reason in `remark`
   double typical = 0.0;  ///< root mean square of the errors at a depth of an eighth of the radius
   double largest = 0.0;  ///< the largest of them, with its sign

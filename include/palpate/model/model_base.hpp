@@ -7,6 +7,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/admission_policy.hpp>
 #include <palpate/mesh/scene.hpp>
+#include <palpate/model/force_error_options.hpp>
 #include <palpate/model/setup_report.hpp>
 #include <palpate/model/static/detail/contact_compliance.hpp>
 
@@ -30,15 +31,13 @@ struct SetupOptions {
       std::numeric_limits<std::size_t>::max();  ///< [bytes]; more is refused as too_large before it is allocated
   AdmissionPolicy admission{};
 
-  // For static models. Other solvers ignore the first two and refuse the last.
+  // For static models. Other solvers ignore the first three and refuse the last.
   int compliance_slots = 256;  ///< vertices whose compliance a solver keeps that does not store all columns
   /// When such a solver computes a column. `automatic` decides by the count of numbers that a column reads, so the
   /// decision is the same on every machine: above 100 000 (some 50 us) a background thread computes it. The report
   /// states which.
   ColumnFill columns = ColumnFill::automatic;
-  /// Places of the touchable surface where the error of forces is measured, if the scene names the radius of a tool
-  /// (TouchOptions). Costs about as much as the set-up itself for three; 0: nothing is measured.
-  int accuracy_places = 3;
+  ForceErrorOptions force_error{};  ///< `measured_force_error()`: ticks give the error of their forces
   std::string cache_file{};  ///< stores the prepared system for the next set-up; empty: none. See docs/cache.md
 };
 

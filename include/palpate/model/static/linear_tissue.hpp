@@ -79,7 +79,7 @@ class LinearTissue : public ModelBase, public StillTissue {
  private:
   void prepare_contact(const Touchable& touchable, bool eager, const SetupOptions& options);
   /// Measures the error of forces on the tool that the scene names. What makes it impossible is reported only.
-  void measure_force_error(const SetupOptions& options);
+  void measure_force_error(const ForceErrorOptions& options);
   /// Kept dof of every touchable dof, -1 when it is prescribed.
   std::vector<Index> kept_index() const;
   /// Computes a few columns to measure the compliance of the surface and the time per column; starts a background

@@ -3,12 +3,13 @@
 
 #include <palpate/model/static/linear_tissue.hpp>
 
+#include <palpate/contact/tissue_view.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/model/admission_report.hpp>
 #include <palpate/model/detail/elastic_body.hpp>
 #include <palpate/model/detail/stage_timer.hpp>
 #include <palpate/model/detail/touchable.hpp>
-#include <palpate/model/static/detail/measure_force_error.hpp>
+#include <palpate/model/static/detail/force_error_source.hpp>
 #include <palpate/model/static/detail/statics.hpp>
 
 #include <algorithm>
@@ -73,23 +74,20 @@ void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, Mak
   statics_->set_conditions(this->scene(), gravity(), reporting_to(report));
   shell_nodes_ = touchable.shell_nodes;
   prepare_contact(touchable, recipe.eager, options);
-  if (this->scene().touch_radius() > 0.0 && options.accuracy_places > 0) measure_force_error(options);
+  if (options.force_error.measure != nullptr) measure_force_error(options.force_error);
 }
 
 template <std::floating_point Scalar>
-void LinearTissue<Scalar>::measure_force_error(const SetupOptions& options) {
+void LinearTissue<Scalar>::measure_force_error(const ForceErrorOptions& options) {
   const StageTimer timer(setup_report(), "accuracy");
   limits().advance("accuracy", 0.0);
   const double radius = scene().touch_radius();
-  ForceErrorMeasurement measurement({elastic_body(), statics_->conditions(), touchable_nodes(), surface_,
-                                     to_world().translation(), radius, options.accuracy_places});
-  if (measurement.is_possible()) {
-    HapticServo servo(*this, SphereTool{radius}, rigid_press_options(0));
-    measurement.press_given(servo);
-    measurement.press_reference(limits());
-    surface_.set_force_accuracy(measurement.take());
-  }
-  report_accuracy(measurement.report(), setup_report());
+  if (radius > 0.0)
+    surface_.set_force_accuracy(options.measure({elastic_body(), statics_->conditions(), touchable_nodes(), surface_,
+                                                 to_world().translation(), radius, options.places},
+                                                TissueView(*this), limits(), setup_report()));
+  else
+    setup_report().accuracy.remark = "the scene does not give the radius of the tool: touch(where, {.radius = ...})";
 }
 
 template <std::floating_point Scalar>

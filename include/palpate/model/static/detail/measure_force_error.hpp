@@ -3,7 +3,8 @@
 
 #include <palpate/contact/force_accuracy.hpp>
 #include <palpate/model/accuracy_report.hpp>
-#include <palpate/model/detail/elastic_body.hpp>
+#include <palpate/model/setup_report.hpp>
+#include <palpate/model/static/detail/force_error_source.hpp>
 #include <palpate/model/static/detail/pressed_points.hpp>
 
 #include <memory>
@@ -11,17 +12,6 @@
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-/// Input of a measurement. Keeps references.
-struct ForceErrorSource {
-  const ElasticBody& body;
-  const EssentialConditions& conditions;
-  const std::vector<NodeId>& nodes;  ///< of the vertices of the touchable surface
-  const ContactSurface& surface;     ///< touchable, under its loads
-  Vector3 origin;                    ///< of the frame of the surface, in the frame of the tools [m]
-  double radius;                     ///< of the sphere that touches [m]
-  int places;                        ///< where it is pressed
-};
 
 /// Presses a sphere into the tissue at some places of its surface, far from each other: over a vertex, an edge and a
 /// facet, to depths of a 32nd to a half of its radius; then into Smoothed<Tet4> tissue on a mesh with edges of at most
@@ -33,8 +23,8 @@ class ForceErrorMeasurement {
 
   /// Places where a sphere can be pressed; without any, `report` has the reason.
   bool is_possible() const noexcept { return !places_.empty(); }
-  /// Presses the tissue as given, through a servo that was made for it with `rigid_press_options`.
-  void press_given(HapticServo& servo);
+  /// Presses the tissue as given.
+  void press_given(const TissueView& tissue);
   /// Makes the fine tissue and presses it. If it cannot be made, `report` has the reason. Throws cancelled.
   void press_reference(const SetupLimits& limits);
   /// The errors, one per vertex; null when nothing was measured.
@@ -69,6 +59,10 @@ class ForceErrorMeasurement {
   double edge_ = 0.0;  // of the fine mesh at the places [m]
   AccuracyReport report_;
 };
+
+/// The measurement of `measured_force_error`. Throws cancelled.
+std::shared_ptr<const ForceAccuracy> measure_force_error(const ForceErrorSource& source, const TissueView& tissue,
+                                                         const SetupLimits& limits, SetupReport& report);
 
 /// Enters the findings in a report; flags errors above a tenth of the force, with the length of facets that would do.
 void report_accuracy(const AccuracyReport& accuracy, SetupReport& report);

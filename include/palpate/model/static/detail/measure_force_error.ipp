@@ -124,7 +124,8 @@ PALPATE_INLINE std::vector<double> ForceErrorMeasurement::depths() const {
   return depths;
 }
 
-PALPATE_INLINE void ForceErrorMeasurement::press_given(HapticServo& servo) {
+PALPATE_INLINE void ForceErrorMeasurement::press_given(const TissueView& tissue) {
+  HapticServo servo(tissue, ToolList(SphereTool{source_.radius}), rigid_press_options(0), {});
   const auto position = [&](int v) -> Vector3 { return source_.origin + source_.surface.position(v); };
   for (Place& place : places_) {
     const Positions at = points(place, position);
@@ -274,6 +275,18 @@ PALPATE_INLINE std::shared_ptr<const ForceAccuracy> ForceErrorMeasurement::take(
                         known ? place->modulus / own.material.modulus : 1.0});
   }
   return std::make_shared<const ForceAccuracy>(source_.radius, std::move(errors), std::move(vertices));
+}
+
+PALPATE_INLINE std::shared_ptr<const ForceAccuracy> measure_force_error(const ForceErrorSource& source,
+                                                                        const TissueView& tissue,
+                                                                        const SetupLimits& limits, SetupReport& report) {
+  ForceErrorMeasurement measurement(source);
+  if (measurement.is_possible()) {
+    measurement.press_given(tissue);
+    measurement.press_reference(limits);
+  }
+  report_accuracy(measurement.report(), report);
+  return measurement.take();
 }
 
 PALPATE_INLINE void report_accuracy(const AccuracyReport& accuracy, SetupReport& report) {

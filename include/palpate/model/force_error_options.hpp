@@ -1,0 +1,27 @@
+// Whether the error of contact forces is measured at set-up.
+#pragma once
+
+#include <palpate/core/config.hpp>
+
+#include <memory>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+class ForceAccuracy;
+class TissueView;
+struct ForceErrorSource;
+struct SetupLimits;
+struct SetupReport;
+
+/// Measures errors and enters them in the report; null when it was not possible.
+using MeasureForceError = std::shared_ptr<const ForceAccuracy> (*)(const ForceErrorSource&, const TissueView&,
+                                                                   const SetupLimits&, SetupReport&);
+
+/// By default nothing is measured and nothing is compiled. `measured_force_error()` of
+/// model/static/measured_force_error.hpp is the option that measures.
+struct ForceErrorOptions {
+  int places = 0;                       ///< of the touchable surface where a sphere is pressed
+  MeasureForceError measure = nullptr;  ///< null: nothing is measured
+};
+
+}}  // namespace palpate

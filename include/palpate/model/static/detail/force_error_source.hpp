@@ -1,0 +1,22 @@
+// Input of a measurement of the error of contact forces.
+#pragma once
+
+#include <palpate/contact/contact_surface.hpp>
+#include <palpate/model/detail/elastic_body.hpp>
+
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Keeps references.
+struct ForceErrorSource {
+  const ElasticBody& body;
+  const EssentialConditions& conditions;
+  const std::vector<NodeId>& nodes;  ///< of the vertices of the touchable surface
+  const ContactSurface& surface;     ///< touchable, under its loads
+  Vector3 origin;                    ///< of the frame of the surface, in the frame of the tools [m]
+  double radius;                     ///< of the sphere that touches [m]
+  int places;                        ///< where it is pressed
+};
+
+}}  // namespace palpate
