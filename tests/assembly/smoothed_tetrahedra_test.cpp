@@ -144,7 +144,7 @@ TEST_CASE("smoothed tetrahedra do not allocate", "[assembly][smoothed][allocatio
   CHECK(scope.allocations() == 0);
 }
 
-TEMPLATE_TEST_CASE("smoothed tetrahedra that follow cuts are those made anew", "[assembly][smoothed][cut]", float,
+TEMPLATE_TEST_CASE("smoothed tetrahedra that follow cuts equal new ones", "[assembly][smoothed][cut]", float,
                    double) {
   auto body = distorted<NeoHookean>(0.45);
   SmoothedTetrahedra<NeoHookean, TestType> followed(body);
@@ -170,14 +170,14 @@ TEMPLATE_TEST_CASE("smoothed tetrahedra that follow cuts are those made anew", "
         left.rest.mesh.elements.push_back(mesh.elements[e]);
         left.rest.mesh.regions.push_back(mesh.region(static_cast<Index>(e)));
       }
-    SmoothedTetrahedra<NeoHookean, TestType> anew(left);
+    SmoothedTetrahedra<NeoHookean, TestType> rebuilt(left);
     REQUIRE(followed.size() == 3 * mesh.node_count());
-    REQUIRE(anew.size() == followed.size());
-    const VectorX u = random_displacement(anew.size(), 0.002);
-    VectorX f(anew.size()), expected(anew.size());
+    REQUIRE(rebuilt.size() == followed.size());
+    const VectorX u = random_displacement(rebuilt.size(), 0.002);
+    VectorX f(rebuilt.size()), expected(rebuilt.size());
     DeformationReport report, wanted;
     const double rounding = 30.0 * static_cast<double>(std::numeric_limits<TestType>::epsilon());
-    const double energy = anew.evaluate(u, expected, wanted);
+    const double energy = rebuilt.evaluate(u, expected, wanted);
     CHECK(std::abs(followed.evaluate(u, f, report) - energy) <= rounding * energy);
     CHECK((f - expected).norm() <= rounding * expected.norm());
     CHECK(report.smallest_volume_ratio == wanted.smallest_volume_ratio);

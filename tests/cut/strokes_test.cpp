@@ -1,4 +1,4 @@
-// Many short strokes of a blade, through bodies that move while they are cut.
+// Many short strokes with a blade, through bodies that move while they are cut.
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/cut/cuttable_moving.hpp>
 #include <palpate/element/smoothed.hpp>

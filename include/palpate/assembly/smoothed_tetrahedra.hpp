@@ -55,7 +55,7 @@ class SmoothedTetrahedra {
 
   /// Follows a cut: `mesh` has the elements of the constructor, some with other nodes (copies of nodes, at the same
   /// places), and those with gone(element) are removed. Only what the cut changes is computed again; the forces are
-  /// those of an object made anew, up to the order of sums. Allocates, O(elements), a tenth of making it anew.
+  /// those of a new object, up to the order of sums. Allocates, O(elements), a tenth of the cost of a new one.
   template <class Gone>
   void follow(const Mesh<Smoothed<Tet4>>& mesh, Gone&& gone) {
     std::vector<char> changed(layout_.batches.size(), 0);

@@ -53,7 +53,7 @@ class StrainAverages {
   /// Follows a cut: the domains `changed`, ascending, lose elements or are divided. `after(ends, element)` has the ends
   /// of an edge of an element after the cut, `none` for an element that is gone. Domains keep their numbers, the
   /// further parts of divided ones follow: moved(element, from, to) is called for their elements. `volume` of elements
-  /// by place; `share` of an element in a domain. Every domain is as if made anew. O(pairs).
+  /// by place; `share` of an element in a domain. Every domain is as in a new object. O(pairs).
   template <class After, class Moved>
   void follow(const std::vector<std::int32_t>& changed, const std::vector<double>& volume, double share, After&& after,
               Moved&& moved) {

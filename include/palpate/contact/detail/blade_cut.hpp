@@ -10,7 +10,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// length of the edge in the tissue, in any direction, and then advances under exactly that force. The work done is
 /// therefore toughness times the area cut, up to rounding, and no motion of the hand gains energy (Griffith's balance
 /// for a sharp cut, as used for haptics by Mahvash and Hayward 2001). In slits that it has cut the edge slides without
-/// resistance, and is held across them by the same threshold; a part of the edge that is outside a slit cuts.
+/// resistance, and resists motion across them up to the same threshold; a part of the edge that is outside a slit cuts.
 /// The flanks have no friction and do not push the tissue aside. World frame.
 class BladeCut {
  public:

@@ -70,10 +70,10 @@ PALPATE_INLINE Vector3 BladeCut::advance(const Vector3& hand, double width) noex
   if (!inside_) enter(along);
   const bool slid = slide(target, along, width) || slack_ > 0.0;
   const Vector3 pull = target - place_;
-  const double distance = pull.norm(), held = std::min(slack_, distance);
+  const double distance = pull.norm(), elastic = std::min(slack_, distance);
   const Vector3 ahead = distance > 0.0 ? Vector3(pull / distance) : Vector3(Vector3::Zero());
-  const double path = std::max(0.0, distance - held - tool_.toughness * width / stiffness_);
-  Vector3 across = place_ + held * ahead;
+  const double path = std::max(0.0, distance - elastic - tool_.toughness * width / stiffness_);
+  Vector3 across = place_ + elastic * ahead;
   if (slid) cut_from_ = across + along * direction_;
   if (path > 0.0) {
     across += path * ahead;

@@ -14,7 +14,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The forces of the elements that a cut leaves, made anew after every cut.
+/// The forces of the elements that a cut leaves, evaluated again after every cut.
 template <Element E, HyperelasticMaterial M, class S>
 class CutForces {
  public:
