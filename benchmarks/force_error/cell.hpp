@@ -33,8 +33,8 @@ struct TestPlace {
 struct Case {
   const TestBody& body;
   double poisson_ratio = 0.0;
-  double radius = 0.0;             ///< of the sphere [m]
-  std::vector<TestPlace> places;   ///< none of them is one where the library measures
+  double radius = 0.0;            ///< of the sphere [m]
+  std::vector<TestPlace> places;  ///< none of them is one where the library measures
 };
 
 /// Depths of the presses, relative to the radius.

@@ -16,8 +16,7 @@
 
 #include "cell.hpp"
 
-namespace force_error {
-namespace {
+namespace force_error { namespace {
 
 /// Faces of the touched group that have all neighbours in it, away from its rim by `margin` [m].
 std::vector<TestPlace> places_on(const TestBody& body, double margin, unsigned seed, std::size_t count) {
@@ -40,8 +39,8 @@ std::vector<TestPlace> places_on(const TestBody& body, double margin, unsigned s
       t = 1.0 - t;
     }
     const Vector3 point = a + s * (b - a) + t * (c - a);
-    const bool near_rim = std::any_of(outside.begin(), outside.end(),
-                                      [&](const Vector3& p) { return (p - point).norm() < margin; });
+    const bool near_rim =
+        std::any_of(outside.begin(), outside.end(), [&](const Vector3& p) { return (p - point).norm() < margin; });
     if (!near_rim) places.push_back({point, (b - a).cross(c - a).normalized()});
   }
   return places;
@@ -105,8 +104,8 @@ void report(const Case& test, const std::vector<std::array<double, depths.size()
     const Measured m = measure(truth, answer, d);
     const double ratio = m.expected / m.real;
     std::array<char, 120> name{};
-    std::snprintf(name.data(), name.size(), "%-10s %-9s nu %-6.4g R/h %-4.2g d/R %-6.4g", test.body.name.c_str(), element,
-                  test.poisson_ratio, per_facet, depths[d]);
+    std::snprintf(name.data(), name.size(), "%-10s %-9s nu %-6.4g R/h %-4.2g d/R %-6.4g", test.body.name.c_str(),
+                  element, test.poisson_ratio, per_facet, depths[d]);
     std::printf("%s true %6.1f %%, expected %6.1f %% (%.2f), bound %6.1f %%, inside %d of %zu, corrected %5.1f %%%s\n",
                 name.data(), 100.0 * m.real, 100.0 * m.expected, ratio, 100.0 * m.bound, m.inside, truth.size(),
                 100.0 * m.corrected, m.flagged ? ", locking flagged" : "");
@@ -156,7 +155,9 @@ int main(int argc, char** argv) {
         Case test{body, poisson_ratio, per_facet * facet, {}};
         test.places = places_on(body, std::min(1.5 * facet + 0.5 * test.radius, 0.02), 7, 4);
         const auto exact = truth(test);
-        const auto add = [&](const char* element, const Answer& a) { report(test, exact, element, a, per_facet, sum, cells); };
+        const auto add = [&](const char* element, const Answer& a) {
+          report(test, exact, element, a, per_facet, sum, cells);
+        };
         add("Smoothed", answer<Smoothed<Tet4>>(test));
         add("Tet4", answer<Tet4>(test));
         add("Tet10", answer<Tet10>(test));

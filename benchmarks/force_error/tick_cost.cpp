@@ -19,7 +19,8 @@ using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic>;
 /// Seconds per tick of a sphere that slides over the block, in batches of ten ticks.
 class Slide {
  public:
-  Slide(Model& model, double radius, double depth) : servo_(model, SphereTool{radius}), radius_(radius), depth_(depth) {}
+  Slide(Model& model, double radius, double depth)
+      : servo_(model, SphereTool{radius}), radius_(radius), depth_(depth) {}
 
   void batch() {
     constexpr int ticks = 10;

@@ -27,7 +27,8 @@ std::vector<std::array<double, depths.size()>> truth(const Case& test) {
   const Mesh<Tet10> mesh = promote<Tet10>(refine_near(test.body.tetrahedra, cloud, {test.radius / 5.0, 0.5}));
   HapticFEModel<Tet10, LinearElastic> model(mesh, scene, materials_of(test));
   std::vector<std::array<double, depths.size()>> forces(test.places.size());
-  press(model, test, 512, [&](std::size_t i, std::size_t d, const HapticServo&, double force) { forces[i][d] = force; });
+  press(model, test, 512,
+        [&](std::size_t i, std::size_t d, const HapticServo&, double force) { forces[i][d] = force; });
   return forces;
 }
 

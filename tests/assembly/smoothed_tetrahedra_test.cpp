@@ -144,8 +144,7 @@ TEST_CASE("smoothed tetrahedra do not allocate", "[assembly][smoothed][allocatio
   CHECK(scope.allocations() == 0);
 }
 
-TEMPLATE_TEST_CASE("smoothed tetrahedra that follow cuts equal new ones", "[assembly][smoothed][cut]", float,
-                   double) {
+TEMPLATE_TEST_CASE("smoothed tetrahedra that follow cuts equal new ones", "[assembly][smoothed][cut]", float, double) {
   auto body = distorted<NeoHookean>(0.45);
   SmoothedTetrahedra<NeoHookean, TestType> followed(body);
   testing::Random random(31);

@@ -36,7 +36,8 @@ Contact contact_at(const Triangle& vertices, const std::array<double, 3>& weight
 }
 
 const ForceAccuracy& accuracy_of_one_place() {
-  static const ForceAccuracy accuracy(0.01, {three_depths(5e-3)}, std::vector<ForceAccuracy::Vertex>(4, {0, 5e-3, 1.0}));
+  static const ForceAccuracy accuracy(0.01, {three_depths(5e-3)},
+                                      std::vector<ForceAccuracy::Vertex>(4, {0, 5e-3, 1.0}));
   return accuracy;
 }
 
@@ -72,7 +73,8 @@ TEST_CASE("the position over a facet follows from the loads of the vertices", "[
   CHECK(expected_of({contact_at({0, 1, 2}, {1.0, 0.0, 0.0}, 1.0), other}) == Approx(excess(1e-3)));
 }
 
-TEST_CASE("the bound contains the expected error, and is infinite for a sphere that was not measured", "[force_error]") {
+TEST_CASE("the bound contains the expected error, and is infinite for a sphere that was not measured",
+          "[force_error]") {
   const std::vector<Contact> contacts{contact_at({0, 1, 2}, {1.0, 0.0, 0.0}, 1.0)};
   const ForceAccuracy& accuracy = accuracy_of_one_place();
   const ForceError error = accuracy.error(sphere_with_force(0.01, 1.0), 0, contacts, 0.01);

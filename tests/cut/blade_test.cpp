@@ -94,7 +94,8 @@ TEST_CASE("one tool touches the tissue while another cuts it", "[cut][blade]") {
 
 TEST_CASE("an undercut costs toughness times its area", "[cut][blade][extreme][F3]") {
   const Mesh<Tet4> mesh = box_tet4({0.06, 0.06, 0.03}, {8, 8, 4}, BoxSplit::six);
-  Cut tissue(mesh, Scene().fix("z0").touch("surface"), {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1000.0});
+  Cut tissue(mesh, Scene().fix("z0").touch("surface"),
+             {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1000.0});
   HapticServo servo(tissue, BladeTool{.edge = {0.0, 0.04, 0.0}, .toughness = 50.0});
   constexpr double threshold = 50.0 * 0.04;
   double hand_work = 0.0, most = 0.0;

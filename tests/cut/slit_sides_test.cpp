@@ -7,8 +7,8 @@ using namespace palpate;
 
 namespace {
 
-/// A strip of squares, two triangles each, of `rows` x 7 vertices; between columns 2 and 3 it may be slit: then column 2
-/// has copies, which belong to the right part.
+/// A strip of squares, two triangles each, of `rows` x 7 vertices; between columns 2 and 3 it may be slit: then column
+/// 2 has copies, which belong to the right part.
 struct SlitStrip {
   std::vector<Triangle> triangles;
   std::vector<NodeId> origin;

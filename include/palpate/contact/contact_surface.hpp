@@ -128,7 +128,7 @@ class ContactSurface {
   std::uint64_t revision_ = 0;
   std::vector<ContactSurface> body_;  // with the shell; none or one
   Unloaded unloaded_;
-  std::vector<ContactMaterial> materials_;     // per triangle, or empty
+  std::vector<ContactMaterial> materials_;  // per triangle, or empty
   std::shared_ptr<const ForceAccuracy> accuracy_;
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20, or one of these:
   static constexpr int no_neighbour = -1, several_neighbours = -2;

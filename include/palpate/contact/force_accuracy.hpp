@@ -17,8 +17,8 @@ struct ForceError {
 };
 
 /// What a sphere misses at one place of a mesh that is too coarse for it: the difference in depth, at equal force,
-/// between the facets and a fine mesh. Measured with the sphere over a vertex, the middle of an edge and the middle of a
-/// facet: the error differs between them.
+/// between the facets and a fine mesh. Measured with the sphere over a vertex, the middle of an edge and the middle of
+/// a facet: the error differs between them.
 struct MissingDepth {
   static constexpr std::size_t positions = 3;  ///< vertex, edge, facet
   struct Level {
@@ -38,8 +38,8 @@ struct MissingDepth {
 /// set-up; a tick only reads.
 ///
 /// A vertex has the values of a place near it, scaled by the length of its facets: where facets are long compared with
-/// the contact radius a they show nothing of the dent, where they are short the error is of second order, so the missing
-/// depth is taken proportional to h^2 / (h^2 + (2 a)^2). What LocalIndentation adds in a tick is not missing.
+/// the contact radius a they show nothing of the dent, where they are short the error is of second order, so the
+/// missing depth is taken proportional to h^2 / (h^2 + (2 a)^2). What LocalIndentation adds in a tick is not missing.
 class ForceAccuracy {
  public:
   /// A vertex of the surface.

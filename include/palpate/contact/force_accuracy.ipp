@@ -81,15 +81,14 @@ PALPATE_INLINE ForceError ForceAccuracy::error(const ContactTool& tool, int numb
   if (loads.vertex[0] < 0 || !(depth > 0.0)) return {};
   const std::array<double, 3> part{loads.share[0] - loads.share[1], 2.0 * (loads.share[1] - loads.share[2]),
                                    3.0 * loads.share[2]};
-  const double at = force * tool.radius / radius_;                  // same contact radius
+  const double at = force * tool.radius / radius_;                          // same contact radius
   const double contact = 4.0 * tool.radius * std::min(depth, tool.radius);  // square of its diameter
   const auto hidden = [&](double facet) { return facet * facet / (facet * facet + contact); };
   double missing = -tool.local_compliance * force, doubt = 0.0;
   for (std::size_t k = 0; k < 3 && loads.vertex[k] >= 0; ++k) {
     const Vertex& vertex = vertices_[static_cast<std::size_t>(loads.vertex[k])];
     const MissingDepth& place = places_[static_cast<std::size_t>(vertex.place)];
-    const double scale =
-        loads.share[k] * vertex.softness * hidden(vertex.facet_length) / hidden(place.facet_length);
+    const double scale = loads.share[k] * vertex.softness * hidden(vertex.facet_length) / hidden(place.facet_length);
     double largest = 0.0;
     for (std::size_t p = 0; p < MissingDepth::positions; ++p) {
       const MissingDepth::Level level = place.at(p, at);

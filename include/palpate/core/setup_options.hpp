@@ -10,9 +10,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// Progress of a set-up.
 struct Progress {
-  std::string_view
-      stage;              ///< "admission", "assembly", "factorisation", "condensation", "compliance", "checks", "accuracy",
-                          ///< "cache"
+  std::string_view stage;  ///< "admission", "assembly", "factorisation", "condensation", "compliance", "checks",
+                           ///< "accuracy", "cache"
   double fraction = 0.0;  ///< of this stage, 0 ... 1
 };
 

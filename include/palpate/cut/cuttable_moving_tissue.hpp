@@ -172,8 +172,8 @@ class CuttableMovingTissue : public MovingTissue {
   }
   void apply(const CutOrders::Taken& taken) {
     const auto start = std::chrono::steady_clock::now();
-    const TopologyChange<E> change = body_->topology.apply(
-        combined(taken, body_->topology, inverse(to_world()), [&](NodeId node) { return position(node); }, edges_));
+    const TopologyChange<E> change = body_->topology.apply(combined(
+        taken, body_->topology, inverse(to_world()), [&](NodeId node) { return position(node); }, edges_));
     if (change.empty()) return;
     body_->surface.update(body_->topology, change);
     cut_motion_->follow(body_->topology);

@@ -31,8 +31,8 @@ using Components = std::array<std::optional<double>, 3>;
 
 /// What will touch a part of a scene.
 struct TouchOptions {
-  /// Radius of the smallest sphere that will touch [m]; 0: not known. A static model measures the error of the forces on
-  /// that sphere if its options say so (model/static/measured_force_error.hpp).
+  /// Radius of the smallest sphere that will touch [m]; 0: not known. A static model measures the error of the forces
+  /// on that sphere if its options say so (model/static/measured_force_error.hpp).
   double radius = 0.0;
 };
 

@@ -7,8 +7,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Error of the contact force because of the mesh, for the sphere that touches according to the scene (TouchOptions). Errors
-/// are relative to the force on a fine mesh; positive: the force is too large.
+/// Error of the contact force because of the mesh, for the sphere that touches according to the scene (TouchOptions).
+/// Errors are relative to the force on a fine mesh; positive: the force is too large.
 struct AccuracyReport {
   double radius = 0.0;   ///< of the sphere [m]
   int places = 0;        ///< where it was measured; 0: not measured, for the reason in `remark`

@@ -38,7 +38,7 @@ struct SetupOptions {
   /// states which.
   ColumnFill columns = ColumnFill::automatic;
   ForceErrorOptions force_error{};  ///< `measured_force_error()`: ticks give the error of their forces
-  std::string cache_file{};  ///< stores the prepared system for the next set-up; empty: none. See docs/cache.md
+  std::string cache_file{};         ///< stores the prepared system for the next set-up; empty: none. See docs/cache.md
 };
 
 /// The part of HapticFEModel that does not depend on element, material or solver. Base of all models.

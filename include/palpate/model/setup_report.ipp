@@ -37,9 +37,9 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const SetupReport& r)
     out << "  compliance of a vertex at its first contact: " << number(1e6 * r.column_seconds)
         << (r.asynchronous_columns ? " us, in a background thread\n" : " us, in the tick\n");
   if (r.accuracy.places > 0)
-    out << "  force error of a sphere of " << number(1e3 * r.accuracy.radius) << " mm, pressed in by an eighth of that: "
-        << number(100.0 * r.accuracy.typical) << " % typically, " << number(100.0 * r.accuracy.largest)
-        << " % at most, at " << r.accuracy.places << " places\n";
+    out << "  force error of a sphere of " << number(1e3 * r.accuracy.radius)
+        << " mm, pressed in by an eighth of that: " << number(100.0 * r.accuracy.typical) << " % typically, "
+        << number(100.0 * r.accuracy.largest) << " % at most, at " << r.accuracy.places << " places\n";
   else if (!r.accuracy.remark.empty())
     out << "  force error: not measured, " << r.accuracy.remark << '\n';
   if (!r.cache.file.empty()) out << "  cache: " << r.cache << '\n';

@@ -95,7 +95,8 @@ class StrainAverages {
   template <class Visit>
   void for_each_pair(Visit&& visit) const {
     for (std::size_t d = 0; d + 1 < lists_.first.size(); ++d)
-      for (std::size_t k = lists_.first[d]; k < lists_.first[d + 1]; ++k) visit(static_cast<std::int32_t>(d), lists_.element[k]);
+      for (std::size_t k = lists_.first[d]; k < lists_.first[d + 1]; ++k)
+        visit(static_cast<std::int32_t>(d), lists_.element[k]);
   }
 
   /// Weighted means of tensors, rows of `row_size`, over the domains of batch b; the identity in empty lanes.

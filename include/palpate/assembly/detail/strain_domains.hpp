@@ -84,7 +84,8 @@ class StrainDomains {
   }
   std::size_t bytes() const noexcept {
     return node_.size() * (sizeof(NodeId) + sizeof(Vector3)) + element_.size() * sizeof(NodeId) +
-           volume_.size() * (sizeof(double) + sizeof(int) + sizeof(StrainPart) + 2 * sizeof(NodeId) + 2 * sizeof(std::size_t));
+           volume_.size() *
+               (sizeof(double) + sizeof(int) + sizeof(StrainPart) + 2 * sizeof(NodeId) + 2 * sizeof(std::size_t));
   }
 
  private:
@@ -137,7 +138,8 @@ class StrainDomains {
     element_start_.push_back(element_.size());
   }
 
-  /// Appends the nodes of a domain and their mean gradients; `share` is the part of an element per volume of the domain.
+  /// Appends the nodes of a domain and their mean gradients; `share` is the part of an element per volume of the
+  /// domain.
   void add_gradients(const Mesh<E>& mesh, std::span<const Share> shares, double share) {
     number_nodes(mesh, shares);
     gradient_.resize(node_.size(), Vector3::Zero());

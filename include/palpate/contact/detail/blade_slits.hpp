@@ -22,7 +22,7 @@ class BladeSlits {
   struct Slide {
     int strip = -1;  ///< -1: none leads nearer
     Vector3 to;
-    double fresh = 0.0;  ///< part of the edge outside what was cut, 0 to 1
+    double fresh = 0.0;            ///< part of the edge outside what was cut, 0 to 1
     double low = 0.0, high = 0.0;  ///< of the strip with the edge [m]
   };
 

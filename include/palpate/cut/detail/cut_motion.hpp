@@ -189,14 +189,14 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
 
   QuasiNewtonParameters parameters_;
   SetupLimits limits_;
-  HyperelasticBody<E, M> body_;  // before any cut
-  VectorX prescribed_, load_;    // of the nodes before any cut
+  HyperelasticBody<E, M> body_;                                                       // before any cut
+  VectorX prescribed_, load_;                                                         // of the nodes before any cut
   std::vector<std::array<double, static_cast<std::size_t>(E::nodes)>> element_mass_;  // lumped [kg]
   std::shared_ptr<CutFactor> factor_;
   std::shared_ptr<const CutBody> cut_;
   std::vector<NodeId> origin_;   // node before any cut of every node; -1 without support
   std::vector<Index> elements_;  // that remain
-  CutForces<E, M, S> forces_;  // of the motion
+  CutForces<E, M, S> forces_;    // of the motion
   std::unique_ptr<QuasiNewtonMotion> motion_;
   bool was_cut_ = false;  // since the last step
 };

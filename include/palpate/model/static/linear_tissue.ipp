@@ -69,8 +69,8 @@ void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, Mak
   const ScopedIdTranslation translation(original_ids());
   SetupReport& report = setup_report();
   elastic_body().report_locking(report);
-  statics_ = std::make_unique<Statics>(elastic_body(), this->scene(), touchable.nodes, make_stiffness, recipe,
-                                       limits(), options.cache_file, report);
+  statics_ = std::make_unique<Statics>(elastic_body(), this->scene(), touchable.nodes, make_stiffness, recipe, limits(),
+                                       options.cache_file, report);
   statics_->set_conditions(this->scene(), gravity(), reporting_to(report));
   shell_nodes_ = touchable.shell_nodes;
   prepare_contact(touchable, recipe.eager, options);
@@ -137,8 +137,8 @@ template <std::floating_point Scalar>
 void LinearTissue<Scalar>::prepare_contact(const Touchable& touchable, bool eager, const SetupOptions& options) {
   const StageTimer timer(setup_report(), "compliance");
   const int vertices = static_cast<int>(touchable_nodes().size());
-  compliance_ =
-      ContactCompliance<Scalar>(statics_->system(), kept_index(), eager ? vertices : options.compliance_slots, limits());
+  compliance_ = ContactCompliance<Scalar>(statics_->system(), kept_index(), eager ? vertices : options.compliance_slots,
+                                          limits());
   if (eager)
     for (int v = 0; v < vertices; ++v) {
       if (v % 64 == 0) limits().advance("compliance", static_cast<double>(v) / static_cast<double>(vertices));

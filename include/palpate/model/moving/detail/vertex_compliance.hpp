@@ -11,12 +11,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A WarpedCompliance C0, and vertices that cuts have created or uncovered: each has the compliance of a similar vertex,
-/// and once more on its diagonal where several have the same, because they move apart. Beside a slit it is C0_ij + s_i
-/// s_j C0_ij, with s = 1 on one lip, -1 on the other one, and less away from them: a lip moves twice as far as before
-/// under its own forces and not at all under those of the opposite lip, while equal forces on both have the same effect
-/// as before. For a symmetric body cut in half that is the method of images. Steps in equilibrium make up for the
-/// difference from the body that is left (MovingTissue). Copies share the matrix.
+/// A WarpedCompliance C0, and vertices that cuts have created or uncovered: each has the compliance of a similar
+/// vertex, and once more on its diagonal where several have the same, because they move apart. Beside a slit it is
+/// C0_ij + s_i s_j C0_ij, with s = 1 on one lip, -1 on the other one, and less away from them: a lip moves twice as far
+/// as before under its own forces and not at all under those of the opposite lip, while equal forces on both have the
+/// same effect as before. For a symmetric body cut in half that is the method of images. Steps in equilibrium make up
+/// for the difference from the body that is left (MovingTissue). Copies share the matrix.
 class VertexCompliance {
  public:
   VertexCompliance() = default;

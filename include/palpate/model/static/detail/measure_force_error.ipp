@@ -129,8 +129,7 @@ PALPATE_INLINE void ForceErrorMeasurement::press_given(const TissueView& tissue)
   const auto position = [&](int v) -> Vector3 { return source_.origin + source_.surface.position(v); };
   for (Place& place : places_) {
     const Positions at = points(place, position);
-    for (std::size_t p = 0; p < at.size(); ++p)
-      place.given[p] = press_point(servo, source_.radius, at[p], depths());
+    for (std::size_t p = 0; p < at.size(); ++p) place.given[p] = press_point(servo, source_.radius, at[p], depths());
   }
 }
 
@@ -200,8 +199,8 @@ PALPATE_INLINE void ForceErrorMeasurement::make_reference(const SetupLimits& lim
   summarise();
 }
 
-/// The fine mesh is too soft by 0.12 (edge / contact radius)^1.75, give or take a half of that: measured against Tet10 on
-/// meshes with edges half as long.
+/// The fine mesh is too soft by 0.12 (edge / contact radius)^1.75, give or take a half of that: measured against Tet10
+/// on meshes with edges half as long.
 PALPATE_INLINE double ForceErrorMeasurement::own_error(double depth) const {
   return 0.12 * std::pow(edge_ / std::sqrt(source_.radius * depth), 1.75);
 }
@@ -266,7 +265,9 @@ PALPATE_INLINE std::shared_ptr<const ForceAccuracy> ForceErrorMeasurement::take(
   add_spread(errors);
   std::vector<ForceAccuracy::Vertex> vertices;
   for (int v = 0; v < surface.vertex_count(); ++v) {
-    const auto distance = [&](const Place& p) { return (surface.position(p.vertex) - surface.position(v)).squaredNorm(); };
+    const auto distance = [&](const Place& p) {
+      return (surface.position(p.vertex) - surface.position(v)).squaredNorm();
+    };
     const auto place = std::min_element(places_.begin(), places_.end(),
                                         [&](const Place& a, const Place& b) { return distance(a) < distance(b); });
     const FacetScale own = scale_at(v);
@@ -279,7 +280,8 @@ PALPATE_INLINE std::shared_ptr<const ForceAccuracy> ForceErrorMeasurement::take(
 
 PALPATE_INLINE std::shared_ptr<const ForceAccuracy> measure_force_error(const ForceErrorSource& source,
                                                                         const TissueView& tissue,
-                                                                        const SetupLimits& limits, SetupReport& report) {
+                                                                        const SetupLimits& limits,
+                                                                        SetupReport& report) {
   ForceErrorMeasurement measurement(source);
   if (measurement.is_possible()) {
     measurement.press_given(tissue);
@@ -295,11 +297,12 @@ PALPATE_INLINE void report_accuracy(const AccuracyReport& accuracy, SetupReport&
   if (accuracy.places == 0 || !(accuracy.typical > flagged)) return;
   const auto percent = [](double part) { return number(std::round(100.0 * part)) + " %"; };
   const double edge = accuracy.facet * std::pow(wanted / accuracy.typical, 1.0 / order);
-  report.set(SetupFlag::coarse_contact,
-             "the facets, " + number(std::round(1e4 * accuracy.facet) / 10.0) + " mm long, are too long for a sphere of " +
-                 number(1e3 * accuracy.radius) + " mm: pressed in by an eighth of its radius, its force is in error by " +
-                 percent(accuracy.typical) + ", at one place by " + percent(accuracy.largest) +
-                 "; refine_near with an edge of about " + number(std::round(1e4 * edge) / 10.0) + " mm");
+  report.set(SetupFlag::coarse_contact, "the facets, " + number(std::round(1e4 * accuracy.facet) / 10.0) +
+                                            " mm long, are too long for a sphere of " + number(1e3 * accuracy.radius) +
+                                            " mm: pressed in by an eighth of its radius, its force is in error by " +
+                                            percent(accuracy.typical) + ", at one place by " +
+                                            percent(accuracy.largest) + "; refine_near with an edge of about " +
+                                            number(std::round(1e4 * edge) / 10.0) + " mm");
 }
 
 }}  // namespace palpate

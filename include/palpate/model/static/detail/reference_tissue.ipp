@@ -26,8 +26,8 @@ PALPATE_INLINE ReferenceTissue::ReferenceTissue(Mesh<Tet4> mesh, std::vector<Mat
   Body<E> body{copy_mesh<E>(mesh), std::move(elasticity), std::vector<double>(regions, 0.0),
                std::vector<Vector6>(regions, Vector6::Zero())};
   admitted.body = std::make_unique<ElementBody<E>>(std::move(body));
-  set_up(scene, std::move(admitted), detail::make_stiffness<E, Assembled>,
-         solver_recipe<Condensed<SelectiveInverse>>(), options);
+  set_up(scene, std::move(admitted), detail::make_stiffness<E, Assembled>, solver_recipe<Condensed<SelectiveInverse>>(),
+         options);
 }
 
 }}  // namespace palpate

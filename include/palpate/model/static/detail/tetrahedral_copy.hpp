@@ -17,9 +17,9 @@ struct TetrahedralCopy {
   std::vector<NodeId> nodes;  ///< node of `mesh` for every node of the body, -1 if it has none
 };
 
-/// Tet4 stays as it is, Tet10 becomes one or, where an edge of the body is curved, eight tetrahedra; Hex8 and Hex20 become twelve around a node in their middle, with
-/// edges through the least node of every face so that neighbours conform. Empty for other elements. `material` gives the
-/// material of an element. O(elements), allocates.
+/// Tet4 stays as it is, Tet10 becomes one or, where an edge of the body is curved, eight tetrahedra; Hex8 and Hex20
+/// become twelve around a node in their middle, with edges through the least node of every face so that neighbours
+/// conform. Empty for other elements. `material` gives the material of an element. O(elements), allocates.
 std::optional<TetrahedralCopy> tetrahedral_copy(const MeshRef& mesh, const std::function<int(Index)>& material);
 
 }}  // namespace palpate

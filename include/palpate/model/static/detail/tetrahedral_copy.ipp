@@ -52,7 +52,8 @@ class TetrahedralCopyMaker {
     std::size_t shortest = 0;
     for (const std::size_t i : {std::size_t{1}, std::size_t{2}})
       if (length(i) < length(shortest)) shortest = i;
-    constexpr std::array<std::array<std::size_t, 4>, 4> corners{{{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}}};
+    constexpr std::array<std::array<std::size_t, 4>, 4> corners{
+        {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}}};
     for (const auto& [a, b, c, d] : corners) add_element({ids[a], ids[b], ids[c], ids[d]}, material);
     for (std::size_t i = 0; i < 4; ++i)
       add_element({ids[diagonals[shortest][0]], ids[around[shortest][i]], ids[around[shortest][(i + 1) % 4]],
@@ -102,9 +103,11 @@ PALPATE_INLINE std::optional<TetrahedralCopy> tetrahedral_copy(const MeshRef& me
                                                                const std::function<int(Index)>& material) {
   const ElementLayout& element = mesh.element;
   const bool one_kind = element.small_face.nodes == 0;
-  const bool tet4 = element.nodes == 4 && element.face_count == 4, tet10 = element.nodes == 10 && element.face_count == 4;
-  const bool hexahedron = one_kind && element.face_count == 6 && ((element.nodes == 8 && element.face.nodes == 4) ||
-                                                                  (element.nodes == 20 && element.face.nodes == 8));
+  const bool tet4 = element.nodes == 4 && element.face_count == 4,
+             tet10 = element.nodes == 10 && element.face_count == 4;
+  const bool hexahedron =
+      one_kind && element.face_count == 6 &&
+      ((element.nodes == 8 && element.face.nodes == 4) || (element.nodes == 20 && element.face.nodes == 8));
   if (!tet4 && !tet10 && !hexahedron) return std::nullopt;
   detail::TetrahedralCopyMaker maker(mesh);
   bool straight = true;
