@@ -1,6 +1,7 @@
 // Definitions of tetrahedral_copy.hpp.
 #pragma once
 
+#include <palpate/mesh/detail/eight_tetrahedra.hpp>
 #include <palpate/model/static/detail/tetrahedral_copy.hpp>
 
 #include <algorithm>
@@ -40,32 +41,17 @@ class TetrahedralCopyMaker {
   void whole(const NodeId* nodes, int material) {
     add_element({node(nodes[0]), node(nodes[1]), node(nodes[2]), node(nodes[3])}, material);
   }
-  /// One tetrahedron per corner, and four around the shortest diagonal of the octahedron between the middles.
   void eight(const NodeId* nodes, int material) {
-    constexpr std::array<std::array<std::size_t, 2>, 3> diagonals{{{4, 9}, {5, 7}, {6, 8}}};
-    constexpr std::array<std::array<std::size_t, 4>, 3> around{{{6, 7, 8, 5}, {8, 9, 6, 4}, {5, 9, 7, 4}}};
-    std::array<NodeId, 10> ids{};
-    for (std::size_t a = 0; a < 10; ++a) ids[a] = node(nodes[a]);
-    const auto length = [&](std::size_t i) {
-      return (position(nodes[diagonals[i][0]]) - position(nodes[diagonals[i][1]])).squaredNorm();
-    };
-    std::size_t shortest = 0;
-    for (const std::size_t i : {std::size_t{1}, std::size_t{2}})
-      if (length(i) < length(shortest)) shortest = i;
-    constexpr std::array<std::array<std::size_t, 4>, 4> corners{
-        {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}}};
-    for (const auto& [a, b, c, d] : corners) add_element({ids[a], ids[b], ids[c], ids[d]}, material);
-    for (std::size_t i = 0; i < 4; ++i)
-      add_element({ids[diagonals[shortest][0]], ids[around[shortest][i]], ids[around[shortest][(i + 1) % 4]],
-                   ids[diagonals[shortest][1]]},
-                  material);
+    ElementNodes<Tet10> x;
+    for (int a = 0; a < Tet10::nodes; ++a) x.row(a) = position(nodes[a]).transpose();
+    for (const auto& [a, b, c, d] : eight_tetrahedra(x))
+      add_element({node(nodes[a]), node(nodes[b]), node(nodes[c]), node(nodes[d])}, material);
   }
   /// Whether the middle nodes of a quadratic tetrahedron are in the middle of its edges.
   bool is_straight(const NodeId* nodes) const {
     constexpr double allowed = 1e-3;  // of the length of the edge
-    constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      const Vector3 a = position(nodes[edges[i][0]]), b = position(nodes[edges[i][1]]);
+    for (std::size_t i = 0; i < Tet10::edges.size(); ++i) {
+      const Vector3 a = position(nodes[Tet10::edges[i][0]]), b = position(nodes[Tet10::edges[i][1]]);
       if ((position(nodes[4 + i]) - 0.5 * (a + b)).norm() > allowed * (b - a).norm()) return false;
     }
     return true;
