@@ -10,6 +10,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE MissingDepth::Level MissingDepth::at(std::size_t position, double force) const noexcept {
   const std::vector<Level>& known = levels[position];
+  if (known.empty()) return {force, 0.0, infinity};
   Level low{};
   for (const Level& high : known) {
     if (force <= high.force) {
@@ -18,7 +19,7 @@ PALPATE_INLINE MissingDepth::Level MissingDepth::at(std::size_t position, double
     }
     low = high;
   }
-  const double t = low.force > 0.0 ? force / low.force : 0.0;
+  const double t = force / low.force;
   return {force, t * low.missing, t * low.doubt};
 }
 
@@ -92,15 +93,17 @@ PALPATE_INLINE ForceError ForceAccuracy::error(const ContactTool& tool, int numb
     double largest = 0.0;
     for (std::size_t p = 0; p < MissingDepth::positions; ++p) {
       const MissingDepth::Level level = place.at(p, at);
-      missing += scale * part[p] * level.missing;
-      doubt += loads.share[k] * part[p] * level.doubt;
+      if (part[p] > 0.0) {
+        missing += scale * part[p] * level.missing;
+        doubt += loads.share[k] * part[p] * level.doubt;
+      }
       largest = std::max(largest, std::abs(level.missing));
     }
     doubt += scale * position_doubt * largest;
   }
   const double relative = std::max(missing / depth, -0.9);
   const double expected = force * relative / (1.0 + relative);
-  return {expected, std::abs(expected) + force * std::min(doubt / depth, 1.0)};
+  return {expected, std::abs(expected) + force * doubt / depth};
 }
 
 }}  // namespace palpate

@@ -228,16 +228,23 @@ PALPATE_INLINE MissingDepth ForceErrorMeasurement::missing(const Place& place) c
 PALPATE_INLINE void ForceErrorMeasurement::summarise() {
   constexpr std::size_t eighth = 2;
   double squares = 0.0;
+  int compared = 0;
   for (const Place& place : places_) {
     report_.facet += place.length / static_cast<double>(places_.size());
     for (std::size_t p = 0; p < MissingDepth::positions; ++p) {
       const double truth = place.reference[p][eighth].force * (1.0 + own_error(depths()[eighth]));
+      if (!(truth > 0.0)) continue;
       const double error = place.given[p][eighth].force / truth - 1.0;
-      squares += error * error / static_cast<double>(MissingDepth::positions * places_.size());
+      squares += error * error;
+      ++compared;
       if (std::abs(error) > std::abs(report_.largest)) report_.largest = error;
     }
   }
-  report_.typical = std::sqrt(squares);
+  if (compared == 0) {
+    report_.remark = "the sphere does not press the fine mesh at any of the places";
+    return;
+  }
+  report_.typical = std::sqrt(squares / compared);
   report_.places = static_cast<int>(places_.size());
 }
 
