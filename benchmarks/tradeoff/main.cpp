@@ -3,6 +3,7 @@
 // result.
 //   bench_tradeoff [MESH --fix GROUP --touch GROUP] [--scene palpate|retract|grasp] [--budget-us N] [--out FOLDER]
 //                  [--youngs PA] [--poisson NU] [--only WORD] [--full]
+//                  [--edge RADII]      of elements under the spheres where the mesh is refined near them (0.2)
 //                  [--docs FILE]      also writes into a document, between <!-- tradeoff SCENE --> and <!-- end -->
 #include <cstdio>
 #include <exception>
@@ -51,6 +52,9 @@ int main(int argc, char** argv) try {
   const double budget = 1e-6 * std::stod(bench::option(argc, argv, "--budget-us", "50"));
   if (!(budget > 0.0))
     raise(SetupErrorKind::bad_argument, "the budget is not positive", "Give microseconds: --budget-us 50");
+  const double edge = std::stod(bench::option(argc, argv, "--edge", "0.2"));
+  if (!(edge >= 0.02 && edge <= 2.0))
+    raise(SetupErrorKind::bad_argument, "edges under the sphere of " + number(edge) + " radii", "Give 0.02 to 2");
   std::filesystem::create_directories(out);
   const bool full = bench::has_option(argc, argv, "--full");
   const std::int64_t start = platform::wall_ns();
@@ -59,7 +63,7 @@ int main(int argc, char** argv) try {
               .reference = full ? make_direct_reference(scene, 0.15) : make_reference(scene, 0.15),
               // curves are measured by pressing along the normal: not valid for lifting and pinching a lobe
               .stiffening = scene.name == "palpate" ? measure_stiffening(scene) : Stiffening{},
-              .near = refine_near(scene, 0.2 * scene.radius),
+              .near = refine_near(scene, edge * scene.radius),
               .all = refined(scene.mesh, full),
               .full = full};
   std::printf(

@@ -4,6 +4,8 @@
 #include <palpate/model/moving/detail/near_compliance.hpp>
 #include <palpate/model/moving/quasi_newton.hpp>
 
+#include <palpate/testing/random.hpp>
+
 #include <array>
 
 #include "catch.hpp"
@@ -33,11 +35,50 @@ TEST_CASE("the compliance near contacts is known for listed pairs only, as many 
   CHECK(near.find(3, 3) == nullptr);
 }
 
+TEST_CASE("the displacement near contacts is the sum over the forces, if all blocks are known", "[model]") {
+  testing::Random random(3);
+  NearCompliance near(6, 4, 3);
+  near.set(std::array{0, 1, 2, 5}, std::array{4, 0, 5}, [&](int, int) {
+    Matrix3 c;
+    for (Index k = 0; k < 9; ++k) c.data()[k] = random.uniform(-1.0, 1.0);
+    return c;
+  });
+  std::vector<VertexForce> forces;
+  Vector3 u;
+  REQUIRE(near.multiply(5, forces, u));
+  CHECK(u == Vector3::Zero());
+  for (const int j : {5, 4, 0, 5})
+    forces.push_back({j, ModelVector(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0))});
+  for (const int i : {0, 1, 2, 5}) {
+    Vector3 sum = Vector3::Zero();
+    for (const VertexForce& f : forces) sum += *near.find(i, f.vertex) * f.force.in_model_axes();
+    REQUIRE(near.multiply(i, forces, u));
+    CHECK((u - sum).norm() < 1e-15);
+  }
+  CHECK_FALSE(near.multiply(3, forces, u));
+  forces.push_back({1, ModelVector(1.0, 0.0, 0.0)});
+  CHECK_FALSE(near.multiply(5, forces, u));
+}
+
+namespace {
+
+using NearTissue = HapticFEModel<Tet4, NeoHookean, Implicit<QuasiNewton<double>>>;
+static_assert(detail::HasOwnDisplacement<NearTissue>);
+
+/// Its compliance is another one than that of the class that sums displacements.
+struct StifferNearTissue : NearTissue {
+  using NearTissue::NearTissue;
+  Matrix3 compliance(int i, int j) const noexcept { return 0.5 * NearTissue::compliance(i, j); }
+};
+static_assert(!detail::HasOwnDisplacement<StifferNearTissue>);
+
+}  // namespace
+
 TEST_CASE("a tick gets the same compliance whether the stepping thread evaluated it or not", "[model][moving]") {
   const auto mesh = box_tet4({0.04, 0.04, 0.02}, {6, 6, 3}, BoxSplit::six);
   const Scene scene = Scene().fix("z0").touch("z1");
-  HapticFEModel<Tet4, NeoHookean, Implicit<QuasiNewton<double>>> tissue(
-      mesh, scene, {.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0}, {}, {.inertia = false});
+  NearTissue tissue(mesh, scene, {.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0}, {},
+                    {.inertia = false});
   HapticServo servo(tissue, SphereTool{.radius = 6e-3});
   for (int k = 0; k < 200; ++k) {
     const ToolState s{.position = {0.02, 0.02, 0.026 - 4e-5 * std::min(k, 100)}, .time = 1e-3 * k};
@@ -46,6 +87,13 @@ TEST_CASE("a tick gets the same compliance whether the stepping thread evaluated
   }
   REQUIRE(servo.contact_force().norm() > 1e-3);
   const int vertices = tissue.contact_surface().vertex_count();
+  for (int i = 0; i < vertices; ++i) {
+    const ServoSnapshot pressed = servo.read_snapshot();
+    Vector3 sum = Vector3::Zero();
+    for (const VertexForce& f : pressed.vertex_forces())
+      sum += tissue.compliance(i, f.vertex) * f.force.in_model_axes();
+    REQUIRE((tissue.displacement_of(i, pressed.vertex_forces()) - sum).norm() < 1e-12 * sum.norm());
+  }
   std::vector<Matrix3> listed;
   for (int i = 0; i < vertices; ++i)
     for (int j = 0; j < vertices; ++j) listed.push_back(tissue.compliance(i, j));

@@ -112,6 +112,12 @@ concept HasOutOfDateScale = requires { &T::compliance; } &&
                              (requires { &T::compliance_floor; } &&
                               OutOfDate<decltype(&T::compliance), decltype(&T::compliance_floor)>));
 
+/// Whether a tissue sums C_ij f_j itself, with the compliance that it has.
+template <class T>
+concept HasOwnDisplacement = requires(const T& constant, std::span<const VertexForce> forces) {
+  { constant.displacement_of(0, forces) } noexcept -> std::same_as<Vector3>;
+} && !OutOfDate<decltype(&T::compliance), decltype(&T::displacement_of)>;
+
 /// Whether a tissue, or the one that it wraps, changes the compliance of a class from which it has its surface.
 template <class T>
 concept HasOutOfDateMaterials = (requires { &T::compliance; &T::contact_surface; } &&
@@ -130,7 +136,9 @@ concept HasOutOfDateMaterials = (requires { &T::compliance; &T::contact_surface;
 /// a tissue whose compliance never changes.
 /// - `compliance_bound(j)` is an upper bound of the displacement [m/N] of any vertex per unit force on j.
 /// - `compliance_floor()` is a tiny compliance that prevents division by zero at a fixed vertex.
-/// A class that inherits these four and changes `compliance` must also define the other three. If it inherits
+/// A tissue may also have `displacement_of(i, forces)`, the sum of C_ij f_j as a Vector3, where it is faster than the
+/// same sum with `compliance`. A class that changes `compliance` and inherits this function does without it.
+/// A class that inherits the first four and changes `compliance` must also define the other three. If it inherits
 /// `contact_surface`, too, the materials of that surface are not used.
 ///
 /// Hooks. A tissue must have all of them, so that none is forgotten; one that returns NoHook is never called.

@@ -68,6 +68,10 @@ struct TissueCalls {
   }
   /// With Eigen's product: it writes in packets as large as those that the caller reads.
   static void displacement(const void* t, int vertex, std::span<const VertexForce> forces, Vector3& out) noexcept {
+    if constexpr (HasOwnDisplacement<T>) {
+      out = of(t).displacement_of(vertex, forces);
+      return;
+    }
     Vector3 u(0.0, 0.0, 0.0);
     for (const VertexForce& f : forces) {
       Read c = of(t).compliance(vertex, f.vertex);

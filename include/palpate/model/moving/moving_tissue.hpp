@@ -110,6 +110,8 @@ class MovingTissue : public ModelBase {
     const Matrix3* ready = view.near.find(i, j);
     return ready != nullptr ? *ready : evaluate(view, i, j);
   }
+  /// Displacement of a vertex under forces [m]: with `compliance`, but several times as fast.
+  Vector3 displacement_of(int i, std::span<const VertexForce> forces) const noexcept;
   std::uint64_t compliance_revision() const noexcept { return revision_; }
   /// Number of surfaces taken so far.
   std::uint64_t updates() const noexcept { return revision_; }

@@ -266,6 +266,16 @@ PALPATE_INLINE Matrix3 MovingTissue::evaluate(const View& view, int i, int j) co
   return rotated + view.secants(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
 }
 
+PALPATE_INLINE Vector3 MovingTissue::displacement_of(int i, std::span<const VertexForce> forces) const noexcept {
+  const View& view = views_.front();
+  list(i, revision_, view.requested, near_);
+  Vector3 u;
+  if (view.near.multiply(i, forces, u)) return u;
+  u.setZero();
+  for (const VertexForce& f : forces) u += compliance(i, f.vertex) * f.force.in_model_axes();
+  return u;
+}
+
 PALPATE_INLINE void MovingTissue::take_surface() noexcept {
   if (!views_.update()) return;
   ++revision_;

@@ -1,6 +1,7 @@
 // The compliance near the contacts, ready for a tick.
 #pragma once
 
+#include <palpate/concepts/vertex_force.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
@@ -17,13 +18,13 @@ class NearCompliance {
   NearCompliance() = default;
   /// For a surface of `vertices`, at most that many rows and columns. The only allocation.
   NearCompliance(std::size_t vertices, std::size_t rows, std::size_t columns)
-      : rows_{vertices, rows}, columns_{vertices, columns}, block_(rows_.most * columns_.most) {}
+      : rows_{vertices, rows}, columns_{vertices, columns}, block_(room()) {}
 
   /// For a surface of another number of vertices; nothing is known until `set`. Allocates only where it needs more.
   void resize(std::size_t vertices, std::size_t rows, std::size_t columns) {
     rows_.resize(vertices, rows);
     columns_.resize(vertices, columns);
-    if (rows_.most * columns_.most > block_.size()) block_.resize(rows_.most * columns_.most);
+    if (room() > block_.size()) block_.resize(room());
   }
 
   /// Memory of the blocks of such an object.
@@ -40,6 +41,27 @@ class NearCompliance {
     for (std::size_t i = 0; i < rows_.count; ++i)
       for (std::size_t j = 0; j < columns_.count; ++j)
         block_[i * columns_.most + j] = evaluate(rows_.listed[i], columns_.listed[j]);
+  }
+
+  /// Sum of C_ij f_j over the forces; false when one of the blocks is not known.
+  bool multiply(int i, std::span<const VertexForce> forces, Vector3& sum) const noexcept {
+    const int a = rows_.slot[at(i)];
+    if (a < 0) return false;
+    using Column = Eigen::Map<const Eigen::Vector4d>;  // and one entry of the next column
+    const double* const row = block_[at(a) * columns_.most].data();
+    Eigen::Vector4d x = Eigen::Vector4d::Zero(), y = x,
+                    z = x;  // independent sums: a product does not wait for the last
+    for (const VertexForce& f : forces) {
+      const int b = columns_.slot[at(f.vertex)];
+      if (b < 0) return false;
+      const double* const c = row + 9 * b;
+      const double* const force = f.force.in_model_axes().data();
+      x += force[0] * Column(c);
+      y += force[1] * Column(c + 3);
+      z += force[2] * Column(c + 6);
+    }
+    sum = (x + y + z).head<3>();
+    return true;
   }
 
   /// C_ij; null when it is not known.
@@ -72,6 +94,8 @@ class NearCompliance {
     std::vector<int> listed = {};  // the first `count`
   };
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+  /// One block more than are used: `multiply` reads beyond a column.
+  std::size_t room() const noexcept { return rows_.most * columns_.most + 1; }
 
   List rows_, columns_;
   std::vector<Matrix3> block_;  // row i at i * columns_.most: a tick sums over the columns
