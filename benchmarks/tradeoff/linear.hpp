@@ -105,6 +105,12 @@ class LinearContender : public Contender {
   LinearContender(const Bench& bench, const std::string& mesh, const std::string& kept,
                   const SetupOptions& options = {})
       : LinearContender(bench, mesh, kept, options, [](Model& model) -> Model& { return model; }) {}
+  LinearContender(const Bench& bench, const std::function<Model()>& make)
+      : bench_(bench),
+        model_(make()),
+        tissue_(model_),
+        rendered_(model_, bench_.scene),
+        u_(3 * model_.mesh().node_count()) {}
 
   std::span<const Vector3> tick(std::span<const Vector3> centres) override { return rendered_.tick(centres); }
   VectorX displacement() override {
@@ -141,8 +147,7 @@ inline const char* kept_name(const std::string& group) {
 /// An entry for one composition; `element` and `policy` are their C++ names.
 template <class E, class Policy>
 Entry linear_entry(const Bench& bench, const std::string& element, const std::string& policy, const std::string& mesh,
-                   const std::string& kept,
-                   const SetupOptions& options = {.columns = ColumnFill::synchronous}) {
+                   const std::string& kept, const SetupOptions& options = {.columns = ColumnFill::synchronous}) {
   Entry entry;
   Description& d = entry.description;
   const bool condensed = policy.starts_with("Condensed");

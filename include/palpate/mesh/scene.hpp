@@ -6,6 +6,7 @@
 #include <palpate/mesh/where.hpp>
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -116,6 +117,8 @@ class Scene {
   double touch_radius() const noexcept { return touch_radius_; }
   const Vector3& gravity() const noexcept { return gravity_; }
 
+  /// The same scene with every selection of nodes replaced by what `change` makes of it.
+  Scene with_selections(const std::function<Selection(const Selection&)>& change) const;
   /// The same scene for an admitted mesh, see `mapped` of a Selection.
   Scene mapped(const std::vector<NodeId>& map, const Vector3& origin) const;
 

@@ -105,8 +105,12 @@ PALPATE_INLINE Selection mapped(const Selection& selection, const std::vector<No
 }
 
 PALPATE_INLINE Scene Scene::mapped(const std::vector<NodeId>& map, const Vector3& origin) const {
+  return with_selections([&](const Selection& selection) { return palpate::mapped(selection, map, origin); });
+}
+
+PALPATE_INLINE Scene Scene::with_selections(const std::function<Selection(const Selection&)>& change) const {
   Scene s = *this;
-  const auto renew = [&](Selection& selection) { selection = palpate::mapped(selection, map, origin); };
+  const auto renew = [&](Selection& selection) { selection = change(selection); };
   for (auto& c : s.prescribed_) renew(c.where);
   for (auto& c : s.tractions_) renew(c.where);
   for (auto& c : s.pressures_) renew(c.where);

@@ -1,0 +1,56 @@
+// A static model whose mesh is refined until the error of its contact forces is small enough.
+#pragma once
+
+#include <palpate/element/smoothed.hpp>
+#include <palpate/element/tet10.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/promote.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/model/static/detail/accuracy_search.hpp>
+#include <palpate/model/static/measured_force_error.hpp>
+
+#include <concepts>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// A model, and what was done for its accuracy.
+template <class Model>
+struct RefinedModel {
+  Model model;
+  Mesh<Tet4> mesh;  ///< of the model, in the frame of the mesh as given
+  Scene scene;      ///< the same scene for that mesh: listed nodes have become groups, for `set_conditions`
+  AccuracySearchReport search;
+};
+
+/// Makes a static model on a mesh that is refined near the touchable surface until the measured error of the contact
+/// force is within the goal, or the goal's budget is used up: look at `search.reached()`. The scene gives the radius of
+/// the sphere that touches (TouchOptions). The first mesh has the edges that sufficed on an elastic block
+/// (AccuracySearch); each further one follows from the errors measured so far. Listed nodes of the scene become groups
+/// first, which gain the new nodes between them. Each mesh costs the set-up of a model with `measured_force_error`; one
+/// or two are typical. For Tet4, Smoothed<Tet4> and Tet10. Throws bad_argument for a goal out of range and for a scene
+/// without that radius, and the errors of refine_near and of the model.
+template <class Model, class Materials>
+RefinedModel<Model> refine_to_accuracy(const Mesh<Tet4>& mesh, const Scene& scene, const Materials& materials,
+                                       const AccuracyGoal& goal = {}, SetupOptions options = {}) {
+  using E = typename Model::ElementType;
+  constexpr bool quadratic = std::same_as<E, Tet10>;
+  static_assert(quadratic || std::same_as<E, Tet4> || std::same_as<E, Smoothed<Tet4>>,
+                "palpate: refine_to_accuracy divides tetrahedra: choose Tet4, Smoothed<Tet4> or Tet10");
+  AccuracySearch search(mesh, scene, goal);
+  options.force_error = measured_force_error(goal.places);
+  for (;;) {
+    Model model = [&] {
+      if constexpr (quadratic)
+        return Model(promote<Tet10>(search.mesh()), search.scene(), materials, options);
+      else
+        return Model(search.mesh(), search.scene(), materials, options);
+    }();
+    if (!search.refine(model.report().accuracy, model.report().total_seconds()))
+      return {std::move(model), search.mesh(), search.scene(), search.report()};
+  }
+}
+
+}}  // namespace palpate

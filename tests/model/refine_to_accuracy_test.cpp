@@ -1,0 +1,155 @@
+#include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/mesh/generators_box.hpp>
+#include <palpate/mesh/refine_near.hpp>
+#include <palpate/model/static/linear_tissue.hpp>
+#include <palpate/model/static/refine_to_accuracy.hpp>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "catch.hpp"
+#include "refused.hpp"
+
+using namespace palpate;
+
+namespace {
+
+using AccurateBlock = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
+constexpr LinearElastic accurate_material{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1000.0};
+constexpr double accurate_radius = 0.01;
+const Vector3 accurate_centre(0.03, 0.03, 0.03);
+
+Mesh<Tet4> coarse_block() {
+  return box_tet4({0.06, 0.06, 0.03}, {5, 5, 3}, BoxSplit::six);
+}
+
+std::vector<NodeId> nodes_at_bottom(const Mesh<Tet4>& mesh) {
+  std::vector<NodeId> nodes;
+  for (NodeId i = 0; i < mesh.node_count(); ++i)
+    if (mesh.position(i).z() < 1e-9) nodes.push_back(i);
+  return nodes;
+}
+
+Scene pressed_block(const Mesh<Tet4>& mesh) {
+  return Scene().fix(nodes_at_bottom(mesh)).touch(where::sphere(accurate_centre, 0.014), {.radius = accurate_radius});
+}
+
+/// Force on a sphere pressed by an eighth of its radius into the middle of the top [N].
+template <class Model>
+double force_on_block(Model& model) {
+  ServoOptions rigid;
+  rigid.coupling_stiffness = infinity;
+  rigid.contact.capacity = 256;
+  HapticServo servo(model, SphereTool{.radius = accurate_radius}, rigid);
+  for (int k = 0; k <= 60; ++k) {
+    ToolState state;
+    state.position = accurate_centre + accurate_radius * (1.0 - 0.125 * std::min(1.0, k / 20.0)) * Vector3::UnitZ();
+    state.time = 1e-3 * k;
+    servo.tick(state);
+  }
+  return servo.contact_force().z();
+}
+
+}  // namespace
+
+TEST_CASE("a mesh is refined until the force error is within the goal", "[model][refine_to_accuracy]") {
+  const Mesh<Tet4> mesh = coarse_block();
+  AccurateBlock given(mesh, pressed_block(mesh), accurate_material);
+  auto refined =
+      refine_to_accuracy<AccurateBlock>(mesh, pressed_block(mesh), accurate_material, {.error = 0.08, .places = 1});
+  INFO(refined.search);
+  CHECK(refined.search.reached());
+  CHECK(refined.search.steps.back().error <= 0.08);
+  CHECK(refined.model.report().accuracy.typical == refined.search.steps.back().error);
+  CHECK(refined.mesh.node_count() == refined.search.steps.back().nodes);
+  CHECK(refined.mesh.node_count() > mesh.node_count());
+  // The truth: quadratic elements, smaller still.
+  const Scene& scene = refined.scene;
+  const Mesh<Tet4> finer =
+      refine_near(refined.mesh, where::sphere(accurate_centre, 0.2 * accurate_radius), {0.08 * accurate_radius, 0.5});
+  HapticFEModel<Tet10, LinearElastic, Condensed<SelectiveInverse>> exact(promote<Tet10>(finer), scene,
+                                                                         accurate_material);
+  const double truth = force_on_block(exact);
+  CHECK(force_on_block(given) > 1.25 * truth);
+  CHECK(std::abs(force_on_block(refined.model) / truth - 1.0) < 0.08);
+  std::ostringstream text;
+  text << refined.search;
+  CHECK(text.str().find("force error wanted: 8 %") != std::string::npos);
+  CHECK(text.str().find("not reached") == std::string::npos);
+}
+
+TEST_CASE("listed nodes gain the new nodes between them when a mesh is refined for accuracy",
+          "[model][refine_to_accuracy]") {
+  const Mesh<Tet4> mesh = box_tet4({0.02, 0.02, 0.01}, {2, 2, 1}, BoxSplit::six);  // elements as large as the block
+  const Scene scene = Scene().fix(nodes_at_bottom(mesh)).touch("z1", {.radius = 0.01});
+  const auto refined = refine_to_accuracy<AccurateBlock>(mesh, scene, accurate_material, {.error = 0.5, .places = 1});
+  const auto bottom = static_cast<Index>(nodes_at_bottom(refined.mesh).size());
+  REQUIRE(bottom > static_cast<Index>(nodes_at_bottom(mesh).size()));
+  CHECK(refined.model.report().free_dofs == 3 * (refined.mesh.node_count() - bottom));
+}
+
+TEST_CASE("a goal beyond the budget is reported, with the most accurate mesh within it",
+          "[model][refine_to_accuracy]") {
+  const Mesh<Tet4> mesh = coarse_block();
+  const auto small =
+      refine_to_accuracy<AccurateBlock>(mesh, pressed_block(mesh), accurate_material,
+                                        {.error = 0.02, .most_nodes = mesh.node_count() + 100, .places = 1});
+  CHECK_FALSE(small.search.reached());
+  CHECK(small.search.steps.back().error > 0.02);
+  CHECK(small.mesh.node_count() <= mesh.node_count() + 100);
+  CHECK(small.mesh.node_count() > mesh.node_count() + 30);
+  CHECK(small.search.why_not.find("nodes") != std::string::npos);
+}
+
+TEST_CASE("a search for accuracy follows the order of convergence that it observes, and ends in time",
+          "[model][refine_to_accuracy]") {
+  const Mesh<Tet4> mesh = coarse_block();
+  AccuracyReport report;
+  const auto measured = [&](double error) -> const AccuracyReport& {
+    report.places = 1;
+    report.typical = report.largest = error;
+    return report;
+  };
+  AccuracySearch search(mesh, pressed_block(mesh), {.error = 0.1, .most_seconds = 10.0});
+  const Index first = search.mesh().node_count();
+  REQUIRE(search.refine(measured(0.2), 1.0));
+  const Index second = search.mesh().node_count();
+  CHECK(second > first);
+  CHECK(search.report().steps.front().nodes == first);
+  REQUIRE(search.refine(measured(0.12), 2.0));
+  CHECK(search.mesh().node_count() > second);
+  CHECK_FALSE(search.refine(measured(0.11), 3.0));  // 6 s are spent, and another 6 s expected
+  CHECK(search.report().why_not.find("10 s") != std::string::npos);
+  CHECK_FALSE(search.report().reached());
+
+  AccuracySearch blind(mesh, pressed_block(mesh), {});
+  report.places = 0;
+  report.remark = "no reason";
+  CHECK_FALSE(blind.refine(report, 1.0));
+  CHECK(blind.report().why_not.find("no reason") != std::string::npos);
+}
+
+TEST_CASE("a search for accuracy refuses goals out of range and a tool of unknown radius",
+          "[model][refine_to_accuracy]") {
+  const Mesh<Tet4> mesh = coarse_block();
+  const auto refuse = [&](const Scene& scene, const AccuracyGoal& goal) {
+    CHECK_REFUSED(SetupErrorKind::bad_argument, AccuracySearch(mesh, scene, goal));
+  };
+  const Scene scene = pressed_block(mesh);
+  refuse(Scene().fix("z0").touch("z1"), {});
+  refuse(scene, {.error = 0.0});
+  refuse(scene, {.error = std::numeric_limits<double>::quiet_NaN()});
+  refuse(scene, {.error = 2.0});
+  refuse(scene, {.most_nodes = 10});
+  refuse(scene, {.most_seconds = 0.0});
+}
+
+TEST_CASE("a mesh that is fine enough stays as it is", "[model][refine_to_accuracy]") {
+  const Mesh<Tet4> mesh = box_tet4({0.02, 0.02, 0.01}, {10, 10, 5}, BoxSplit::six);
+  const Scene scene = Scene().fix("z0").touch("z1", {.radius = 0.02});
+  const auto refined = refine_to_accuracy<AccurateBlock>(mesh, scene, accurate_material, {.error = 0.2, .places = 1});
+  CHECK(refined.search.reached());
+  CHECK(refined.mesh.node_count() == mesh.node_count());
+}
