@@ -138,7 +138,7 @@ PALPATE_INLINE bool MovingTissue::presses_beside_slit() const noexcept {
 /// A body with a slit under the tool has another compliance. Two equilibria, under a part of the tool forces and under
 /// all of them, give it in the direction of the forces.
 PALPATE_INLINE void MovingTissue::move_under_part_of_forces(Forces& part) noexcept {
-  constexpr double fraction = 0.5;
+  constexpr double fraction = 0.85;  // the tangent near the present forces is wanted
   part = used_;
   for (std::size_t k = 0; k < part.count; ++k)
     part.item[k].force = ModelVector(fraction * used_.item[k].force.in_model_axes());
