@@ -33,8 +33,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// A step after a cut uses the factor of an earlier body, extended to the new nodes (CutFactor), until a thread has
 /// computed the present one: it may take more iterations. Compliances stay those of the set-up; the lips of slits are
 /// separated (VertexCompliance). Steady forces are right, changes between two steps are predicted less well. A step
-/// that applies a cut allocates, and takes O(elements) in addition; where a tool presses beside a new slit, and without
-/// inertia, it finds two equilibria.
+/// that applies a cut allocates, takes O(elements) in addition, and ends at the tolerance or after a few iterations:
+/// the next step continues, and a residual above 5 % is flagged (solver_not_converged).
 ///
 /// Fragments that a cut detaches stay where they were, without forces; tools do not touch them. Threads: as
 /// MovingTissue; `try_cut` belongs to the thread that ticks, `cut`, `cut_report` and `read` may be called from any

@@ -212,7 +212,7 @@ class MovingTissue : public ModelBase {
   /// Divides forces on vertices that the last change of the surface has split.
   void divide(Forces& forces) const noexcept;
   bool presses_beside_slit() const noexcept;
-  void move_under_part_of_forces(Forces& part) noexcept;
+  void record_response(Forces& part, const MotionStep& done) noexcept;
   /// The displacement of the vertices.
   void find_moved(std::vector<Vector3>& moved) const noexcept;
 
@@ -224,6 +224,7 @@ class MovingTissue : public ModelBase {
   VectorX mass_;            // per node [kg]
   VectorX applied_, load_;  // of the scene without and with gravity [N]
   VectorX full_;
+  VectorX response_;  // of a body that is cut
   VertexCompliance compliance_;
   SecantCompliance secants_;
   std::vector<NodeId> nodes_;                  // of every vertex

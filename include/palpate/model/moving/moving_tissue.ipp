@@ -106,8 +106,7 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   Forces before = used_;
   used_ = pressing_.front();
   divide(used_);
-  if (std::exchange(was_slit_, false) && motion_->is_static() && presses_beside_slit())
-    move_under_part_of_forces(before);
+  const bool was_slit = std::exchange(was_slit_, false);
   full_ = load_;
   add(used_, 1.0, full_);
   motion_->set_load(full_);
@@ -121,6 +120,7 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
       secants_.record({before.item.data(), before.count}, {used_.item.data(), used_.count}, moved_before_, moved_,
                       done.relative_residual);
     loads_changed_ = false;
+    if (was_slit && presses_beside_slit()) record_response(before, done);
   }
   Status status = done.status;
   if (!corrected) status.set(StatusFlag::degraded_model);
@@ -135,19 +135,18 @@ PALPATE_INLINE bool MovingTissue::presses_beside_slit() const noexcept {
                      [&](const VertexForce& f) { return compliance_.is_beside_slit(vertex(f)); });
 }
 
-/// A body with a slit under the tool has another compliance. Two equilibria, under a part of the tool forces and under
-/// all of them, give it in the direction of the forces.
-PALPATE_INLINE void MovingTissue::move_under_part_of_forces(Forces& part) noexcept {
-  constexpr double fraction = 0.85;  // the tangent near the present forces is wanted
+/// A body with a slit under the tool has another compliance. The iterations of the step have found it near the
+/// direction of the forces.
+PALPATE_INLINE void MovingTissue::record_response(Forces& part, const MotionStep& done) noexcept {
+  constexpr double fraction = 0.85;
+  full_.setZero();
+  add(used_, 1.0 - fraction, full_);
+  if (!done.taken || !motion_->respond_here(full_, response_)) return;
   part = used_;
   for (std::size_t k = 0; k < part.count; ++k)
     part.item[k].force = ModelVector(fraction * used_.item[k].force.in_model_axes());
-  full_ = load_;
-  add(part, 1.0, full_);
-  motion_->set_load(full_);
-  motion_->step(step_);
-  find_moved(moved_);
-  loads_changed_ = false;
+  for (std::size_t i = 0; i < moved_.size(); ++i) moved_before_[i] = moved_[i] - node_vector(response_, nodes_[i]);
+  secants_.record({part.item.data(), part.count}, {used_.item.data(), used_.count}, moved_before_, moved_, 0.0);
 }
 
 PALPATE_INLINE void MovingTissue::set_conditions(const Scene& scene) {
@@ -220,6 +219,7 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
   applied_.swap(applied);
   load_.swap(load);
   full_ = load_;
+  response_ = VectorX::Zero(load_.size());
   rotations_ = std::move(rotations);
   was_slit_ = was_slit_ || mass.size() > mass_.size();
   loads_changed_ = true;  // a cut moves vertices, too
