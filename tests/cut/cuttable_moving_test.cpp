@@ -205,31 +205,31 @@ TEST_CASE("a slit under a pressing tool: from the next step on the force is near
       Smooth tissue(block(), constrained_block(), flesh, {}, {.inertia = false});
       HapticServo servo(tissue, SphereTool{radius}, stiff_device());
       double time = 0.0, next = 0.0;
-      std::vector<double> felt;
+      std::vector<double> forces;
       const auto ticks = [&](int count) {
         for (int k = 0; k < count; ++k, time += 1e-3) {
           if (time >= next - 1e-9) {
-            if (!felt.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(wait));
+            if (!forces.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(wait));
             next += tissue.background_work().next;
           }
           ToolState state;
           state.time = time;
-          state.position = Vector3(0.5 * size[0] + beside, 0.5 * size[1],
-                                   size[2] + radius - std::min(0.005, 0.02 * time));
-          felt.push_back(servo.tick(state).force()[2]);
+          state.position =
+              Vector3(0.5 * size[0] + beside, 0.5 * size[1], size[2] + radius - std::min(0.005, 0.02 * time));
+          forces.push_back(servo.tick(state).force()[2]);
         }
       };
       ticks(600);
-      const double before = felt.back();
-      felt.clear();
+      const double before = forces.back();
+      forces.clear();
       const Vector3 half = Vector3(0.5 * size[0], -1.0, 0.5 * size[2]);
       const Index nodes = tissue.displacement().size();
       tissue.cut(BladeSweep{half, half + Vector3(0, 2, 0), half + Vector3(0, 0, 1), half + Vector3(0, 2, 1)});
       ticks(160);
-      const std::vector<double> first = felt;
+      const std::vector<double> first = forces;
       ticks(400);
       CHECK(tissue.displacement().size() > nodes);
-      const double after = felt.back();
+      const double after = forces.back();
       CHECK(after < 0.99 * before);
       double farthest = 0.0;
       for (const double f : first) farthest = std::max(farthest, std::min(std::abs(f - before), std::abs(f - after)));
