@@ -33,8 +33,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// A step after a cut uses the factor of an earlier body, extended to the new nodes (CutFactor), until a thread has
 /// computed the present one: it may take more iterations. Compliances stay those of the set-up; the lips of slits are
 /// separated (VertexCompliance). Steady forces are right, changes between two steps are predicted less well. A step
-/// that applies a cut allocates, and takes O(elements) in addition; where a tool presses beside a new slit, and without
-/// inertia, it finds two equilibria.
+/// that applies a cut allocates, takes O(elements) in addition, and ends at the tolerance or after a few iterations:
+/// the next step continues, and a residual above 5 % is flagged (solver_not_converged).
 ///
 /// Fragments that a cut detaches stay where they were, without forces; tools do not touch them. Threads: as
 /// MovingTissue; `try_cut` belongs to the thread that ticks, `cut`, `cut_report` and `read` may be called from any
@@ -206,12 +206,24 @@ class CuttableMovingTissue : public MovingTissue {
     std::vector<NodeId> origin;
     for (const NodeId node : made.nodes) origin.push_back(body_->topology.origin_of(node));
     made.side = slit_sides(surface.triangles(), origin);
+    made.parent = parents();
     made.surface = ContactSurface(std::move(positions), std::move(triangles));
     made.surface.set_materials(elastic_body().contact_materials(elements));
     if (tools_.radii.smallest > 0.0)
       made.contact = std::make_shared<ContactProblem>(made.surface, tools_.radii, tools_.contact);
     const CutBody& body = cut_motion_->body();
     MovingTissue::change_surface(std::move(made), body.nodal_mass, body.body.pattern, body.body.positions);
+  }
+  /// Per vertex the vertex of the node that its node was split from, or -1.
+  std::vector<int> parents() const {
+    const std::vector<NodeId>& nodes = body_->surface.nodes();
+    std::vector<int> at(static_cast<std::size_t>(body_->topology.mesh().node_count()), -1), parent;
+    for (std::size_t v = 0; v < nodes.size(); ++v) at[static_cast<std::size_t>(nodes[v])] = static_cast<int>(v);
+    for (const NodeId node : nodes) {
+      const NodeId from = body_->topology.copied_from(node);
+      parent.push_back(from == node ? -1 : at[static_cast<std::size_t>(from)]);
+    }
+    return parent;
   }
   /// For new vertices the vertex of the set-up that was split, or the nearest one in the body at rest.
   void find_similar() {

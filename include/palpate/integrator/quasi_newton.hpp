@@ -73,13 +73,18 @@ class QuasiNewtonMethod {
   template <QuasiNewtonProblem P>
   QuasiNewtonReport solve(P& problem, VectorX& x, const QuasiNewtonLimits& limits) noexcept;
 
+  /// d = inverse of the second derivative times r, as known from H and the pairs. One solve.
+  template <QuasiNewtonProblem P>
+  void respond(P& problem, const VectorX& r, VectorX& d) noexcept {
+    find_direction(problem, r, d);
+  }
+
   double potential() const noexcept { return potential_; }
   VectorX& residual() noexcept { return residual_; }
 
  private:
-  /// direction_ = inverse of the second derivative times residual_.
   template <class P>
-  void find_direction(P& problem) noexcept;
+  void find_direction(P& problem, const VectorX& r, VectorX& d) noexcept;
   template <class P>
   bool search(P& problem, VectorX& x, double slope, QuasiNewtonReport& report) noexcept;
   /// Stores the change of x and of the residual, unless the curvature is not positive.
@@ -112,29 +117,29 @@ QuasiNewtonReport QuasiNewtonMethod::solve(P& problem, VectorX& x, const QuasiNe
 
 template <QuasiNewtonProblem P>
 bool QuasiNewtonMethod::iterate(P& problem, VectorX& x, QuasiNewtonReport& report) noexcept {
-  find_direction(problem);
+  find_direction(problem, residual_, direction_);
   ++report.iterations;
   double slope = residual_.dot(direction_);
   if (!(slope > 0.0) && count_ > 0) {  // stale pairs
     forget();
-    find_direction(problem);
+    find_direction(problem, residual_, direction_);
     slope = residual_.dot(direction_);
   }
   return slope > 0.0 && slope < infinity && search(problem, x, slope, report);
 }
 
 template <class P>
-void QuasiNewtonMethod::find_direction(P& problem) noexcept {
-  work_ = residual_;
+void QuasiNewtonMethod::find_direction(P& problem, const VectorX& r, VectorX& d) noexcept {
+  work_ = r;
   for (int k = 0; k < count_; ++k) {
     const Index p = newest(k);
     weight_[p] = curvature_[p] * steps_.col(p).dot(work_);
     work_ -= weight_[p] * changes_.col(p);
   }
-  problem.precondition(work_, direction_);
+  problem.precondition(work_, d);
   for (int k = static_cast<int>(count_) - 1; k >= 0; --k) {
     const Index p = newest(k);
-    direction_ += (weight_[p] - curvature_[p] * changes_.col(p).dot(direction_)) * steps_.col(p);
+    d += (weight_[p] - curvature_[p] * changes_.col(p).dot(d)) * steps_.col(p);
   }
 }
 

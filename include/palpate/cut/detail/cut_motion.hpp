@@ -69,6 +69,7 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
     }
     make(topology, u);
     motion_->set_state(u, v);
+    motion_->shorten_step();
     factor_->follow(cut_);
     was_cut_ = true;
   }
@@ -93,6 +94,7 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
   bool correct(const VectorX& more) noexcept override { return was_cut_ ? is_static() : motion_->correct(more); }
   bool prepare_response(double h) noexcept override { return motion_->prepare_response(h); }
   bool respond(const VectorX& forces, VectorX& u) noexcept override { return motion_->respond(forces, u); }
+  bool respond_here(const VectorX& forces, VectorX& u) noexcept override { return motion_->respond_here(forces, u); }
   bool is_static() const noexcept override { return motion_->is_static(); }
   const VectorX& displacement() const noexcept override { return motion_->displacement(); }
   const VectorX& velocity() const noexcept override { return motion_->velocity(); }

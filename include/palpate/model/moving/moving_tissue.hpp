@@ -140,6 +140,7 @@ class MovingTissue : public ModelBase {
     std::vector<NodeId> nodes;  ///< of every vertex
     std::vector<int> similar;   ///< per vertex the vertex of the set-up whose compliance it has
     std::vector<double> side;   ///< per vertex, of a slit: 1 on one lip, -1 on the other one, 0 far away
+    std::vector<int> parent;    ///< per vertex the vertex whose node its node was split from, -1 without one
     ContactSurface surface;
     std::shared_ptr<ContactProblem> contact;  ///< for a session to continue with
     Status status;                            ///< of ticks on this surface, in addition to those of the steps
@@ -173,6 +174,7 @@ class MovingTissue : public ModelBase {
     std::size_t count = 0;
     VertexList<most_pressed> pressed;  // of the rows of the tick, also of those without force
     VertexList<most_near> near;        // whose displacement was requested
+    std::uint64_t number = 0;          // of the surface of the tick
   };
   struct View {
     std::vector<Vector3> free;
@@ -208,8 +210,11 @@ class MovingTissue : public ModelBase {
     into.item[into.count++] = v;
   }
   void start_secants();
+  void find_shares(const CutVertices& surface);
+  /// Divides forces on vertices that the last change of the surface has split.
+  void divide(Forces& forces) const noexcept;
   bool presses_beside_slit() const noexcept;
-  void move_under_part_of_forces(Forces& part) noexcept;
+  void record_response(Forces& part, const MotionStep& done) noexcept;
   /// The displacement of the vertices.
   void find_moved(std::vector<Vector3>& moved) const noexcept;
 
@@ -221,6 +226,7 @@ class MovingTissue : public ModelBase {
   VectorX mass_;            // per node [kg]
   VectorX applied_, load_;  // of the scene without and with gravity [N]
   VectorX full_;
+  VectorX response_;  // of a body that is cut
   VertexCompliance compliance_;
   SecantCompliance secants_;
   std::vector<NodeId> nodes_;                  // of every vertex
@@ -229,6 +235,11 @@ class MovingTissue : public ModelBase {
   std::vector<Vector3> moved_, moved_before_;  // of the vertices, after the last step and the one before
   bool loads_changed_ = false;                 // since the last step: displacements then changed for other reasons
   bool was_slit_ = false;                      // since the last step
+  struct Share {
+    int parent, vertex;
+    double share;  // of the force on the parent
+  };
+  std::vector<Share> shares_;  // of vertices that the last change of the surface has made, sorted by parent
   Forces used_;
   std::uint64_t steps_ = 0;
   std::mutex changes_;

@@ -105,8 +105,8 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   const bool corrected = full_.isZero(0.0) || motion_->correct(full_) || steps_ == 0;
   Forces before = used_;
   used_ = pressing_.front();
-  if (std::exchange(was_slit_, false) && motion_->is_static() && presses_beside_slit())
-    move_under_part_of_forces(before);
+  divide(used_);
+  const bool was_slit = std::exchange(was_slit_, false);
   full_ = load_;
   add(used_, 1.0, full_);
   motion_->set_load(full_);
@@ -120,6 +120,7 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
       secants_.record({before.item.data(), before.count}, {used_.item.data(), used_.count}, moved_before_, moved_,
                       done.relative_residual);
     loads_changed_ = false;
+    if (was_slit && presses_beside_slit()) record_response(before, done);
   }
   Status status = done.status;
   if (!corrected) status.set(StatusFlag::degraded_model);
@@ -134,19 +135,18 @@ PALPATE_INLINE bool MovingTissue::presses_beside_slit() const noexcept {
                      [&](const VertexForce& f) { return compliance_.is_beside_slit(vertex(f)); });
 }
 
-/// A body with a slit under the tool has another compliance. Two equilibria, under a part of the tool forces and under
-/// all of them, give it in the direction of the forces.
-PALPATE_INLINE void MovingTissue::move_under_part_of_forces(Forces& part) noexcept {
-  constexpr double fraction = 0.5;
+/// A body with a slit under the tool has another compliance. The iterations of the step have found it near the
+/// direction of the forces.
+PALPATE_INLINE void MovingTissue::record_response(Forces& part, const MotionStep& done) noexcept {
+  constexpr double fraction = 0.85;
+  full_.setZero();
+  add(used_, 1.0 - fraction, full_);
+  if (!done.taken || !motion_->respond_here(full_, response_)) return;
   part = used_;
   for (std::size_t k = 0; k < part.count; ++k)
     part.item[k].force = ModelVector(fraction * used_.item[k].force.in_model_axes());
-  full_ = load_;
-  add(part, 1.0, full_);
-  motion_->set_load(full_);
-  motion_->step(step_);
-  find_moved(moved_);
-  loads_changed_ = false;
+  for (std::size_t i = 0; i < moved_.size(); ++i) moved_before_[i] = moved_[i] - node_vector(response_, nodes_[i]);
+  secants_.record({part.item.data(), part.count}, {used_.item.data(), used_.count}, moved_before_, moved_, 0.0);
 }
 
 PALPATE_INLINE void MovingTissue::set_conditions(const Scene& scene) {
@@ -219,10 +219,12 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
   applied_.swap(applied);
   load_.swap(load);
   full_ = load_;
+  response_ = VectorX::Zero(load_.size());
   rotations_ = std::move(rotations);
   was_slit_ = was_slit_ || mass.size() > mass_.size();
   loads_changed_ = true;  // a cut moves vertices, too
   mass_ = mass;
+  find_shares(surface);
   compliance_ = VertexCompliance(compliance_, std::move(surface.similar), std::move(surface.side));
   nodes_ = std::move(surface.nodes);
   rest_.clear();
@@ -234,6 +236,39 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
   changed_.surface = std::move(surface.surface);
   changed_.status = surface.status;
   changed_.contact = std::move(surface.contact);
+}
+
+/// In proportion to the masses of the nodes: the area that a vertex stands for is divided like the elements around it.
+PALPATE_INLINE void MovingTissue::find_shares(const CutVertices& surface) {
+  const std::size_t known = nodes_.size();
+  const auto mass = [&](int v) { return mass_[Index{surface.nodes[vertex(v)]}]; };
+  shares_.clear();
+  for (std::size_t v = known; v < surface.parent.size(); ++v)
+    if (surface.parent[v] >= 0 && vertex(surface.parent[v]) < known)
+      shares_.push_back({surface.parent[v], static_cast<int>(v), 0.0});
+  std::ranges::stable_sort(shares_, {}, &Share::parent);
+  for (auto first = shares_.begin(); first != shares_.end();) {
+    const auto last = std::find_if(first, shares_.end(), [&](const Share& s) { return s.parent != first->parent; });
+    double all = mass(first->parent);
+    for (auto s = first; s != last; ++s) all += mass(s->vertex);
+    for (; first != last; ++first) first->share = all > 0.0 ? mass(first->vertex) / all : 0.0;
+  }
+}
+
+PALPATE_INLINE void MovingTissue::divide(Forces& forces) const noexcept {
+  if (forces.number == changed_.number) return;
+  const std::size_t count = forces.count;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto parts = std::ranges::equal_range(shares_, forces.item[k].vertex, {}, &Share::parent);
+    const Vector3 whole = forces.item[k].force.in_model_axes();
+    double left = 1.0;
+    for (const Share& s : parts) {
+      if (forces.count == most_forces) break;
+      forces.item[forces.count++] = {s.vertex, ModelVector(s.share * whole)};
+      left -= s.share;
+    }
+    forces.item[k].force = ModelVector(left * whole);
+  }
 }
 
 PALPATE_INLINE SolveReport MovingTissue::displacement_with(std::span<const VertexForce>, VectorX& u) noexcept {
@@ -302,6 +337,7 @@ PALPATE_INLINE void MovingTissue::end_tick(std::span<const VertexForce> forces) 
       out.item[out.count++] = f;
     else
       ticked_.set(StatusFlag::degraded_model);
+  out.number = views_.front().number;
   out.pressed = pressed_;
   out.near = near_;
   pressing_.publish();

@@ -40,6 +40,9 @@ class TissueMotion {
   /// Displacement u [m] that `forces` [N] add at the end of a step, to first order. Returns false when it was not
   /// found.
   virtual bool respond(const VectorX& forces, VectorX& u) noexcept = 0;
+  /// The same from the state after the last step, from what its iterations found. Bounded, no allocation. False when it
+  /// is not known.
+  virtual bool respond_here(const VectorX&, VectorX&) noexcept { return false; }
   /// Whether every step ends in the equilibrium of its loads, so that the displacement is a function of the loads
   /// alone.
   virtual bool is_static() const noexcept { return false; }

@@ -65,10 +65,14 @@ class QuasiNewtonMotion final : public TissueMotion {
   bool is_static() const noexcept override { return !parameters_.inertia && !forces_->has_history(); }
   const VectorX& displacement() const noexcept override { return u_; }
   const VectorX& velocity() const noexcept override { return v_; }
+  bool respond_here(const VectorX& forces, VectorX& u) noexcept override;
   void rest_at(const VectorX& u) override;
   /// Sets displacement [m] and velocity [m/s]; prescribed components take their prescribed values at rest. Throws as
   /// rest_at.
   void set_state(const VectorX& u, const VectorX& v);
+  /// The next step ends at the tolerance or after a few iterations, and the one after it continues from there. For a
+  /// body that was cut just now.
+  void shorten_step() noexcept { shorten_ = true; }
   void set_load(const VectorX& load) override;
   void set_prescribed(const VectorX& values) override;
 
@@ -100,6 +104,8 @@ class QuasiNewtonMotion final : public TissueMotion {
   static constexpr int most_support_parts = 64;
   /// A step of so many iterations needs no other factor.
   static constexpr int few_iterations = 2;
+  /// Iterations of a shortened step.
+  static constexpr int most_shortened = 6;
   void accept() noexcept;
 
   QuasiNewtonParameters parameters_;
@@ -111,7 +117,7 @@ class QuasiNewtonMotion final : public TissueMotion {
   VectorX inertia_;  // mass per dof
   VectorX u_, v_, a_, load_, step_load_;
   VectorX trial_, velocity_, acceleration_, force_, inertial_, damping_, full_, other_;
-  VectorX x_, kept_load_;
+  VectorX x_, kept_load_, kept_free_;
   DeformationReport deformation_;
   /// Forces at u_, while they are known.
   struct Known {
@@ -126,6 +132,7 @@ class QuasiNewtonMotion final : public TissueMotion {
   RoundingErrors floor_;
   double length_ = 0.0;  // of the factor; infinite: without inertia
   bool stepped_ = false;
+  bool shorten_ = false;  // the next step
 };
 
 }}  // namespace palpate

@@ -60,6 +60,7 @@ PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::un
       other_(u_),
       x_(body_.conditions.free_count()),
       kept_load_(u_),
+      kept_free_(x_),
       known_{u_, 0.0, {}, false},
       prescribed_(body_.conditions.prescribed) {
   parameters.require_usable();
@@ -102,13 +103,15 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
     if (!(method_.start(*this, x_) <= still)) start_at_state();
   }
   if (!move_supports()) return done;
+  const bool shorten = std::exchange(shorten_, false);
+  const int most = shorten ? std::min(parameters_.maximum_iterations, most_shortened) : parameters_.maximum_iterations;
   // Also below the tolerance every step reduces the residual, so that a force at rest keeps no error and the change of
   // a step stays larger than its error.
   report_ = method_.solve(*this, x_,
-                          {.maximum_iterations = parameters_.maximum_iterations,
+                          {.maximum_iterations = most,
                            .tolerance = parameters_.tolerance,
                            .maximum_evaluations = 3 * parameters_.maximum_iterations,
-                           .reduction = 0.1,
+                           .reduction = shorten ? 1.0 : 0.1,
                            .enough = 0.05});
   if (!(method_.potential() < infinity) || !all_finite(method_.residual())) return done;
   accept();
@@ -168,6 +171,16 @@ PALPATE_INLINE bool QuasiNewtonMotion::respond(const VectorX& forces, VectorX& u
   if (length_ == 0.0) return false;
   factor_->solve(forces, u);
   return true;
+}
+
+PALPATE_INLINE bool QuasiNewtonMotion::respond_here(const VectorX& forces, VectorX& u) noexcept {
+  if (!stepped_) return false;
+  const FlushDenormals flush;
+  body_.conditions.gather(forces, kept_free_);
+  method_.respond(*this, kept_free_, x_);
+  u.setZero();
+  body_.conditions.scatter(x_, u);
+  return all_finite(x_);
 }
 
 PALPATE_INLINE void QuasiNewtonMotion::rest_at(const VectorX& u) {
