@@ -135,18 +135,21 @@ PALPATE_INLINE double ContactProblem::indentation(std::size_t t, const ContactTo
 PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, std::size_t t,
                                                       const ContactTool& tool) const noexcept {
   const int number = static_cast<int>(t);
-  if (!tool.active || !candidates_.has_any(number)) return {0.0, 0.0};
+  if (!tool.active || !candidates_.has_any(number)) return {0.0, 0.0, 0.0, {0.0}};
   const ContactSurface& surface = tissue.contact_surface();
   const ForceAccuracy* accuracy = surface.force_accuracy();
-  if (accuracy == nullptr || !tissue.has_contact_materials()) return {};
   const double force = tool.force.norm();
+  if (accuracy == nullptr || !tissue.has_contact_materials()) return {0.0, infinity, force};
   if (!(force > 0.0)) {
     const auto closest = surface.closest(tool.proxy);
     return closest.distance < tool.radius ? accuracy->error_without_force(surface.triangle(closest.triangle)[0])
-                                          : ForceError{0.0, 0.0};
+                                          : ForceError{0.0, 0.0, 0.0, {0.0}};
   }
   ForceError error = accuracy->error(tool, number, rows_.contacts(), indentation(t, tool));
-  error.bound += missing_depth() * force;
+  error.force = force;
+  error.parts.mesh = error.bound;
+  error.parts.merged = missing_depth() * force;
+  error.bound = error.parts.sum();
   return error;
 }
 

@@ -264,9 +264,11 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   forces_[i] = gates_[i].apply(force, torque, input.now(), time, input.readable(), input.restarted());
   if (energy != nullptr) energy->gave(forces_[i].force());
   forces_[i].status |= input.status() | shared | limited | problem_.status_of(i, tool);
-  errors_[i] = problem_.force_error(tissue_, i, tool);
+  errors_[i] =
+      blades_[i] ? ForceError{0.0, infinity, blades_[i]->force().norm()} : problem_.force_error(tissue_, i, tool);
   if (errors_[i].bound > detail::flagged_error * tool.force.norm() && errors_[i].bound < infinity)
     forces_[i].status.set(StatusFlag::coarse_contact);
+  forces_[i].error = errors_[i];
 }
 
 PALPATE_INLINE void HapticServo::publish() noexcept {
