@@ -144,6 +144,10 @@ int main(int argc, char** argv) {
   TestBody block{"block", "z0", "z1", box_tet4(Vector3(0.1, 0.1, 0.08), {10, 10, 8}), {}, 1.0};
   block.hexahedra = box_hex8(Vector3(0.1, 0.1, 0.08), {10, 10, 8});
   bodies.push_back(std::move(block));
+  const Vector3 thin(0.1, 0.06, 0.015);  // fixed at one end
+  TestBody lobe{"thin lobe", "x0", "z1", box_tet4(thin, {20, 12, 3}), {}, 1.0};
+  lobe.hexahedra = box_hex8(thin, {20, 12, 3});
+  bodies.push_back(std::move(lobe));
   const std::vector<double> poisson_ratios = quick ? std::vector{0.45} : std::vector{0.3, 0.4, 0.45, 0.49, 0.4999},
                             radii = quick ? std::vector{0.5, 1.5, 4.0} : std::vector{0.2, 0.5, 1.0, 2.0, 5.0};
   Sum sum;
