@@ -18,14 +18,22 @@
 
 namespace force_error { namespace {
 
-/// Faces of the touched group that have all neighbours in it, away from its rim by `margin` [m].
+/// Points on the touched group, away from its rim by `margin` [m]. Of the faces outside, those on the opposite side of
+/// a thin body do not count.
 std::vector<TestPlace> places_on(const TestBody& body, double margin, unsigned seed, std::size_t count) {
   const Mesh<Tet4>& mesh = body.tetrahedra;
   const auto boundary = extract_boundary<Tet4>(mesh);
   const auto faces = resolve_faces(mesh, boundary, body.touched);
+  const auto normal = [&](const BoundaryFace& f) -> Vector3 {
+    const Vector3 a = mesh.position(f.nodes[0]);
+    return (mesh.position(f.nodes[1]) - a).cross(mesh.position(f.nodes[2]) - a).normalized();
+  };
+  Vector3 mean = Vector3::Zero();
+  for (const BoundaryFace& f : faces) mean += normal(f) / static_cast<double>(faces.size());
   std::vector<Vector3> outside;
   for (const BoundaryFace& f : boundary)
-    if (std::none_of(faces.begin(), faces.end(), [&](const BoundaryFace& g) { return g.key() == f.key(); }))
+    if (normal(f).dot(mean) > -0.5 &&
+        std::none_of(faces.begin(), faces.end(), [&](const BoundaryFace& g) { return g.key() == f.key(); }))
       outside.push_back((mesh.position(f.nodes[0]) + mesh.position(f.nodes[1]) + mesh.position(f.nodes[2])) / 3.0);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
