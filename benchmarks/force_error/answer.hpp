@@ -38,7 +38,8 @@ Answer answer(const Case& test) {
   answer.remark = accuracy.remark;
   press(model, test, 0, [&](std::size_t i, std::size_t d, const HapticServo& servo, double force) {
     const ForceError error = servo.force_error();
-    answer.presses[i][d] = {force, error.expected, error.bound, model.report().has(SetupFlag::locking)};
+    answer.presses[i][d] = {force, error.expected, error.parts.mesh + error.parts.merged,
+                            model.report().has(SetupFlag::locking)};
   });
   return answer;
 }

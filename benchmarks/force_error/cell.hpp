@@ -44,7 +44,7 @@ inline constexpr std::array<double, 3> depths{1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0};
 struct Press {
   double force = 0.0;     ///< [N]
   double expected = 0.0;  ///< [N] ForceError
-  double bound = 0.0;     ///< [N] ForceError
+  double bound = 0.0;     ///< [N] ForceError, without the part for large strain: the truth is linear, too
   bool flagged = false;   ///< coarse_contact, or locking reported by the set-up
 };
 

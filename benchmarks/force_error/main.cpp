@@ -18,14 +18,22 @@
 
 namespace force_error { namespace {
 
-/// Faces of the touched group that have all neighbours in it, away from its rim by `margin` [m].
+/// Points on the touched group, away from its rim by `margin` [m]. Of the faces outside, those on the opposite side of
+/// a thin body do not count.
 std::vector<TestPlace> places_on(const TestBody& body, double margin, unsigned seed, std::size_t count) {
   const Mesh<Tet4>& mesh = body.tetrahedra;
   const auto boundary = extract_boundary<Tet4>(mesh);
   const auto faces = resolve_faces(mesh, boundary, body.touched);
+  const auto normal = [&](const BoundaryFace& f) -> Vector3 {
+    const Vector3 a = mesh.position(f.nodes[0]);
+    return (mesh.position(f.nodes[1]) - a).cross(mesh.position(f.nodes[2]) - a).normalized();
+  };
+  Vector3 mean = Vector3::Zero();
+  for (const BoundaryFace& f : faces) mean += normal(f) / static_cast<double>(faces.size());
   std::vector<Vector3> outside;
   for (const BoundaryFace& f : boundary)
-    if (std::none_of(faces.begin(), faces.end(), [&](const BoundaryFace& g) { return g.key() == f.key(); }))
+    if (normal(f).dot(mean) > -0.5 &&
+        std::none_of(faces.begin(), faces.end(), [&](const BoundaryFace& g) { return g.key() == f.key(); }))
       outside.push_back((mesh.position(f.nodes[0]) + mesh.position(f.nodes[1]) + mesh.position(f.nodes[2])) / 3.0);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -144,6 +152,10 @@ int main(int argc, char** argv) {
   TestBody block{"block", "z0", "z1", box_tet4(Vector3(0.1, 0.1, 0.08), {10, 10, 8}), {}, 1.0};
   block.hexahedra = box_hex8(Vector3(0.1, 0.1, 0.08), {10, 10, 8});
   bodies.push_back(std::move(block));
+  const Vector3 thin(0.1, 0.06, 0.015);  // fixed at one end
+  TestBody lobe{"thin lobe", "x0", "z1", box_tet4(thin, {20, 12, 3}), {}, 1.0};
+  lobe.hexahedra = box_hex8(thin, {20, 12, 3});
+  bodies.push_back(std::move(lobe));
   const std::vector<double> poisson_ratios = quick ? std::vector{0.45} : std::vector{0.3, 0.4, 0.45, 0.49, 0.4999},
                             radii = quick ? std::vector{0.5, 1.5, 4.0} : std::vector{0.2, 0.5, 1.0, 2.0, 5.0};
   Sum sum;

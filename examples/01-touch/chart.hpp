@@ -82,6 +82,13 @@ class Chart {
     for (const Vector2& p : points) body_ += text("%.1f,%.1f ", place_x(p[0]), place_y(p[1]));
     body_ += "'/>";
   }
+  /// The area between two lines with the same x.
+  void band(const std::vector<Vector2>& low, const std::vector<Vector2>& high, const char* style) {
+    body_ += text("<polygon class='band %s' points='", style);
+    for (const Vector2& p : low) body_ += text("%.1f,%.1f ", place_x(p[0]), place_y(p[1]));
+    for (std::size_t i = high.size(); i-- > 0;) body_ += text("%.1f,%.1f ", place_x(high[i][0]), place_y(high[i][1]));
+    body_ += "'/>";
+  }
   void bar(double from, double to, double value, const char* style) {
     const double x = place_x(from) + 0.5, top = place_y(value);
     body_ += text("<rect class='%s' x=%.1f width=%.1f y=%.1f height=%.1f />", style, x, place_x(to) - x - 0.5, top,

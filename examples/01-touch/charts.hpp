@@ -44,15 +44,36 @@ inline std::string latency_chart(const LoopReport& loop) {
   return chart.svg();
 }
 
+/// Where the force is, by its estimated error: bands of consecutive ticks whose error was measured.
+inline void add_error_bands(Chart& chart, const std::vector<RecordedTick>& ticks, double top) {
+  const std::size_t step = std::max<std::size_t>(1, ticks.size() / 800);
+  std::vector<Vector2> low, high;
+  const auto finish = [&] {
+    if (low.size() > 1) chart.band(low, high, "blue");
+    low.clear();
+    high.clear();
+  };
+  for (std::size_t i = 0; i < ticks.size(); i += step) {
+    const double force = ticks[i].force.norm(), bound = ticks[i].error_bound;
+    if (!(force > 0.0 && bound < infinity)) {
+      finish();
+      continue;
+    }
+    low.push_back({ticks[i].state.time, std::max(0.0, force - bound)});
+    high.push_back({ticks[i].state.time, std::min(top, force + bound)});
+  }
+  finish();
+}
+
 inline Charts make_charts(const Organ& organ, const Recording& session, const Plan& plan) {
   std::vector<Vector2> force, depth, curve;
-  double peak = 0.0, deepest = 0.0;
+  double upper = 0.0, deepest = 0.0;
   for (const RecordedTick& tick : session.ticks) {
     const double f = tick.force.norm(), d = 1e3 * penetration(organ, tick.state.position);
     force.push_back({tick.state.time, f});
     depth.push_back({tick.state.time, d});
     curve.push_back({d, f});
-    peak = std::max(peak, f);
+    upper = std::max(upper, tick.error_bound < f ? f + tick.error_bound : f);
     deepest = std::max(deepest, d);
   }
   const auto tick_at = [&](double share) {
@@ -69,9 +90,10 @@ inline Charts make_charts(const Organ& organ, const Recording& session, const Pl
     return from;
   };
 
-  const Axis time{"time [s]", 0.0, plan.seconds}, newton = from_zero("force [N]", peak);
+  const Axis time{"time [s]", 0.0, plan.seconds}, newton = from_zero("force [N]", upper);
   Chart of_force("Force over time", time, newton),
       of_depth("Penetration over time", time, {"penetration [mm]", -15.0, 10.0});
+  add_error_bands(of_force, session.ticks, newton.high);
   of_force.line(thinned(force, 0, force.size()), "blue");
   of_depth.line(thinned(depth, 0, depth.size()), "grey");
   of_force.cursor("now");

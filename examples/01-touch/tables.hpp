@@ -67,6 +67,12 @@ inline std::string loop_table(const LoopReport& r) {
   return out;
 }
 
+inline std::string error_text(const ForceErrorReport& r) {
+  if (r.contact == 0) return "not measured";
+  return text("at most %.3f N (%.0f %% of %.2f N); above %.0f %% in %.0f %% of the ticks in contact", r.largest.bound,
+              100.0 * r.largest.relative(), r.largest.force, 100.0 * r.allowed, 100.0 * r.share_over());
+}
+
 inline std::string loop_facts(const LoopReport& r) {
   const RealtimeGrant& g = r.real_time;
   std::string grant = !g.requested ? "not requested" : g.fifo ? "SCHED_FIFO granted" : "normal scheduling";
@@ -77,6 +83,7 @@ inline std::string loop_facts(const LoopReport& r) {
                                       : text(", as fast as possible; simulated at %g Hz", r.rate))},
                {"missed periods", std::to_string(r.missed_deadlines)},
                {"peak force", text("%.3f N", r.peak_force)},
+               {"error of the force", error_text(r.errors)},
                {"real time", grant},
                {"cost of the clock", seconds_text(r.clock_cost) + " in every compute time"}});
 }

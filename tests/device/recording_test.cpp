@@ -71,6 +71,7 @@ bool same_bits(double a, double b) {
 
 bool same(const RecordedTick& a, const RecordedTick& b) {
   bool equal = same_bits(a.state.time, b.state.time) && a.state.buttons == b.state.buttons &&
+               same_bits(a.expected_error, b.expected_error) && same_bits(a.error_bound, b.error_bound) &&
                a.state.valid == b.state.valid && a.status == b.status;
   for (int i = 0; i < 3; ++i)
     equal = equal && same_bits(a.state.position[i], b.state.position[i]) &&
@@ -103,6 +104,8 @@ std::vector<RecordedTick> random_ticks(int count) {
     for (double& x : t.state.velocity) x = value();
     for (double& x : t.state.orientation) x = value();
     for (double& x : t.force) x = value();
+    t.expected_error = value();
+    t.error_bound = value();
     t.state.buttons = static_cast<std::uint32_t>(random.bits());
     t.state.valid = random.uniform() < 0.5;
     for (int bit = 0; bit < status_flag_count; ++bit)
@@ -129,7 +132,9 @@ struct HostileLocale {
 };
 
 const std::string header = std::string(recording_header) + '\n';
-const std::string row = "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n";
+const std::string row = "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0,0,inf\n";
+const std::string old_header = std::string(recording_header_without_errors) + '\n';
+const std::string old_row = "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n";
 
 }  // namespace
 
@@ -229,9 +234,13 @@ TEST_CASE("files that are not recordings are refused with file and line",
       {header + "\n\n", ":3: ", "at least one tick"},
       {header + row + "0,0,0\n", ":3: ", "a position"},
       {header + "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0\n", ":2: ", "a status"},
-      {header + row.substr(0, row.size() - 1) + ",1\n", ":2: ", "17 fields"},
-      {header + row.substr(0, row.size() - 1) + ",\n", ":2: ", "17 fields"},
-      {header + "0,1,5,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n", ":2: ", "17 fields"},  // decimal comma
+      {header + old_row, ":2: ", "an expected error"},
+      {header + row.substr(0, row.size() - 1) + ",1\n", ":2: ", "19 fields"},
+      {header + row.substr(0, row.size() - 1) + ",\n", ":2: ", "19 fields"},
+      {old_header + row, ":2: ", "17 fields"},
+      {old_header + old_row.substr(0, old_row.size() - 1) + ",\n", ":2: ", "17 fields"},
+      {old_header + "0,1,5,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n", ":2: ", "17 fields"},  // decimal comma
+      {old_header.substr(0, old_header.size() - 1) + ",expected_error\n" + row, ":1: ", "header"},
       {header + "0;0;0;0;nan;nan;nan;1;0;0;0;0;1;0;0;0;0\n", ":2: ", "time as a number"},
       {header + row + "x,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n", ":3: ", "time as a number, found 'x'"},
       {header + "1e400,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n", ":2: ", "time"},
@@ -241,8 +250,8 @@ TEST_CASE("files that are not recordings are refused with file and line",
       {header + "0,0,0,0,nan,nan,nan,1,0,0,0,-1,1,0,0,0,0\n", ":2: ", "buttons"},
       {header + "0,0,0,0,nan,nan,nan,1,0,0,0,4294967296,1,0,0,0,0\n", ":2: ", "buttons"},
       {header + "0,0,0,0,nan,nan,nan,1,0,0,0,0,2,0,0,0,0\n", ":2: ", "valid"},
-      {header + "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0," + std::to_string(1u << status_flag_count) + "\n", ":2: ",
-       "a status"},
+      {header + "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0," + std::to_string(1u << status_flag_count) + "\n",
+       ":2: ", "a status"},
       {header + std::string(1000, '\x01') + "\n", ":2: ", "time"},
   };
   const TemporaryFile file("bad.csv");
@@ -269,6 +278,32 @@ TEST_CASE("files with any line ends, also without the last one, are read", "[dev
     file.write(text);
     CHECK(read_recording(file.path).size() == 2);
   }
+}
+
+TEST_CASE("a recording without errors, as earlier versions wrote it, is read", "[device][recording]") {
+  const TemporaryFile file("old.csv");
+  REQUIRE(old_header == "time,x,y,z,vx,vy,vz,qw,qx,qy,qz,buttons,valid,fx,fy,fz,status\n");
+  file.write(old_header + "1,2,3,4,nan,nan,nan,1,0,0,0,5,1,6,7,8,2\n" + old_row);
+  const auto ticks = read_recording(file.path);
+  REQUIRE(ticks.size() == 2);
+  CHECK(ticks[0].force == Vector3(6, 7, 8));
+  CHECK(ticks[0].status.has(StatusFlag::saturated));
+  CHECK(ticks[0].expected_error == 0.0);
+  CHECK(std::isinf(ticks[0].error_bound));
+}
+
+TEST_CASE("a recorder keeps the error of every force", "[device][recording][force_error]") {
+  MockDevice stylus(trajectory::poke());
+  Recorder recorder(stylus, 4);
+  recorder.start();
+  recorder.read();
+  GatedForce force = gated(Vector3(1, 0, 0));
+  force.error = {0.25, 0.5, 1.0, {0.5}};
+  recorder.write(force);
+  recorder.read();
+  CHECK(recorder.ticks()[0].expected_error == 0.25);
+  CHECK(recorder.ticks()[0].error_bound == 0.5);
+  CHECK(std::isinf(recorder.ticks()[1].error_bound));  // nothing written
 }
 
 TEST_CASE("every truncated file is refused or read as complete ticks", "[device][recording][extreme][C1]") {

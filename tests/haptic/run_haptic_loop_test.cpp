@@ -65,7 +65,59 @@ LoopOptions unpaced(double seconds) {
   return options;
 }
 
+/// A wall whose force has a bound of 0.2 N, known from the 1000th tick on.
+struct WallWithError {
+  SpringServo wall;
+  GatedForce force;
+  std::span<const GatedForce> tick(std::span<const ToolState> tools) noexcept {
+    force = wall.tick(tools).front();
+    const double length = force.force().norm();
+    force.error = {0.1, wall.ticks > 1000 ? 0.2 : infinity, length, {0.15, 0.0, 0.0, 0.05}};
+    return {&force, 1};
+  }
+};
+
 }  // namespace
+
+TEST_CASE("the report of a loop counts the ticks whose error was above the allowed part of the force",
+          "[haptic][loop][force_error]") {
+  MockDevice stylus(trajectory::poke({.times = 3}));
+  Recorder recorder(stylus, 4000);
+  WallWithError servo;
+  LoopOptions options = unpaced(3.0);  // ends above the wall
+  options.force_error = 0.15;
+  const LoopReport report = run_haptic_loop(recorder, servo, options);
+  std::uint64_t contact = 0, over = 0, unknown = 0;
+  double at_largest = 0.0;
+  for (const RecordedTick& tick : recorder.ticks()) {
+    const double force = tick.force.norm();
+    if (!(force > 0.0)) continue;
+    const bool known = tick.error_bound < infinity;
+    unknown += !known;
+    contact += known;
+    if (!known) continue;
+    over += 0.2 > 0.15 * force;
+    if (at_largest == 0.0) at_largest = force;
+  }
+  REQUIRE(over > 0);
+  REQUIRE(over < contact);
+  CHECK(unknown > 0);
+  CHECK(report.errors.contact == contact);
+  CHECK(report.errors.over == over);
+  CHECK(report.errors.unknown == unknown);
+  CHECK(report.errors.share_over() == static_cast<double>(over) / static_cast<double>(contact));
+  CHECK(report.errors.largest.bound == 0.2);
+  CHECK(report.errors.largest.force == at_largest);
+  CHECK(report.devices.front().errors.over == over);
+  std::ostringstream text;
+  text << report;
+  CHECK_THAT(text.str(), test::contains("bound above 15 % in"));
+  CHECK_THAT(text.str(), test::contains("largest 0.2 N"));
+  CHECK_THAT(text.str(), test::contains("mesh 0.15 N, linearity 0.05 N"));
+  CHECK_THAT(text.str(), test::contains("not measured in"));
+  options.force_error = 0.0;
+  CHECK_REFUSED(SetupErrorKind::bad_argument, run_haptic_loop(recorder, servo, options));
+}
 
 TEST_CASE("10 000 ticks in simulated time", "[haptic][loop]") {
   MockDevice stylus(trajectory::poke({.times = 3}));

@@ -92,6 +92,37 @@ TEST_CASE("the error bar contains the force on a fine mesh, and the expected err
   CHECK(after < 0.25 * before);
 }
 
+TEST_CASE("the corrected force is nearer to that on a fine mesh, within the bound", "[force_error][corrected]") {
+  const double radius = 6e-3;
+  auto model = barred_model<Smoothed<Tet4>>(copy_mesh<Smoothed<Tet4>>(block_with_cells(10)), radius);
+  ServoOptions options;
+  options.coupling_stiffness = infinity;
+  options.force_limits = ForceLimits{.peak_force = 1e6, .slew_rate = 1e9};
+  options.contact.capacity = 200;
+  options.corrected_force = true;
+  HapticServo servo(model, SphereTool{radius}, options);
+  double given = 0.0, corrected = 0.0;
+  for (const auto& [x, y] : {std::pair{0.03, 0.03}, std::pair{0.0271, 0.0334}})
+    for (const double depth : {radius / 8.0, radius / 4.0}) {
+      servo.reset();
+      ToolState state;
+      GatedForce force;
+      for (int i = 0; i <= 60; ++i) {
+        state.time += 1e-3;
+        state.position = {x, y, force_error_block.z() + radius - depth * std::min(1.0, i / 20.0)};
+        force = servo.tick(state);
+      }
+      const double truth = force_on_fine_mesh(radius, x, y, depth);
+      CAPTURE(x, y, depth, truth, force.force()[2], servo.contact_force()[2]);
+      CHECK(std::abs(force.force()[2] - truth) <= force.error.bound);
+      CHECK(force.error.expected == 0.0);
+      CHECK(force.error.force == Approx(force.force().norm()).epsilon(1e-9));
+      given += std::pow(servo.contact_force()[2] / truth - 1.0, 2);
+      corrected += std::pow(force.force()[2] / truth - 1.0, 2);
+    }
+  CHECK(corrected < 0.25 * given);
+}
+
 TEST_CASE("coarse facets are flagged in the report and in ticks, fine ones are not", "[force_error]") {
   const Mesh<Tet4> given = block_with_cells(10);
   auto coarse = barred_model<Tet4>(given, 6e-3);

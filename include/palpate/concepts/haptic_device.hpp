@@ -2,6 +2,7 @@
 // library boundaries.
 #pragma once
 
+#include <palpate/concepts/force_error.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
@@ -44,6 +45,7 @@ class GatedForce {
   const Vector3& force() const noexcept { return force_; }    ///< [N]
   const Vector3& torque() const noexcept { return torque_; }  ///< [N m]
   Status status;
+  ForceError error;  ///< of the contact force from which it was made
 
  private:
   friend class ForceGate;

@@ -58,11 +58,12 @@ class ContactProblem {
   Status status_of(std::size_t t, const ContactTool& tool) const noexcept { return local_.status(t, tool); }
   /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m].
   double indentation(std::size_t t, const ContactTool& tool) const noexcept;
-  /// Estimated error of the force of a tool in the last tick: from the mesh, as measured at set-up, and from contact
-  /// points without a row. The bound is infinite where nothing was measured. No allocation.
+  /// Estimated error of the force of a tool in the last tick: from the mesh, as measured at set-up, from the linear
+  /// model, and from what was omitted in the tick. The bound is infinite where nothing was measured, and while a column
+  /// of the compliance is missing: what an assumed one does to the force has no bound. No allocation; O(contacts).
   ForceError force_error(const TissueView& tissue, std::size_t t, const ContactTool& tool) const noexcept;
   /// Penetration of the deepest contact point that has no row because more points press than the capacity, relative to
-  /// the deepest push: of the order of the relative error of the force. 0 when every point has a row.
+  /// the deepest push. The force is too small by that part of the true force, or less. 0 when every point has a row.
   double missing_depth() const noexcept;
   /// Whether a tool grasps a point.
   bool is_holding(std::size_t tool) const noexcept { return grasps_[tool].sample >= 0; }
@@ -90,6 +91,8 @@ class ContactProblem {
   void solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;
   void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
   void share_rows(Tools tools) noexcept;
+  void add_model_errors(const ContactSurface& surface, std::size_t t, const ContactTool& tool,
+                        ForceError& error) const noexcept;
   inline void note_pressing(Candidate& c) noexcept;
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
@@ -107,6 +110,7 @@ class ContactProblem {
   std::array<Grasp, maximum_tools> grasps_{};
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   std::array<int, maximum_tools> pressing_of_{};  // per tool
+  bool late_ = false;                             // a column of the compliance is missing
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
   double feedback_ = 0.0;
   double floor_ = 0.0;

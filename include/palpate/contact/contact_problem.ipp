@@ -7,6 +7,7 @@
 #include <palpate/core/setup_error.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -131,22 +132,49 @@ PALPATE_INLINE double ContactProblem::indentation(std::size_t t, const ContactTo
   return force > 0.0 ? std::max(0.0, rows_.push_work(static_cast<int>(t)) / force - tool.compliance * force) : 0.0;
 }
 
+/// The strain follows from the force on a fine mesh.
+PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, std::size_t t,
+                                                     const ContactTool& tool, ForceError& error) const noexcept {
+  const LinearModelError& model = surface.model_error();
+  SphereIndentation sphere{error.force - error.expected, indentation(t, tool), tool.radius};
+  if (!(sphere.depth > 0.0 && model.body_size > 0.0)) return;
+  double sum = 0.0;
+  for (const Contact& c : rows_.contacts()) {
+    if (c.tool != static_cast<int>(t) || c.force == 0.0) continue;
+    if (sum == 0.0) {
+      const ContactMaterial material = surface.material(surface.triangles_at(c.vertices[0]).front());
+      sphere.modulus = material.modulus;
+      sphere.poisson_ratio = material.poisson_ratio;
+    }
+    sphere.support = std::min(sphere.support, model.supports[static_cast<std::size_t>(c.vertices[0])]);
+    sum += std::abs(c.force) + c.friction.norm();
+  }
+  error.parts.linearity = error.force * linearity_error(sphere, model.body_size);
+  error.parts.storage = model.storage * sum * sum / sphere.depth;
+  error.parts.conditioning = model.conditioning * sum * sum / sphere.depth;
+}
+
 /// A sphere without force may have entered a facet between contact points.
 PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, std::size_t t,
                                                       const ContactTool& tool) const noexcept {
   const int number = static_cast<int>(t);
-  if (!tool.active || !candidates_.has_any(number)) return {0.0, 0.0};
+  if (!tool.active || !candidates_.has_any(number)) return {0.0, 0.0, 0.0, {0.0}};
   const ContactSurface& surface = tissue.contact_surface();
   const ForceAccuracy* accuracy = surface.force_accuracy();
-  if (accuracy == nullptr || !tissue.has_contact_materials()) return {};
   const double force = tool.force.norm();
+  if (accuracy == nullptr || !tissue.has_contact_materials()) return {0.0, infinity, force};
   if (!(force > 0.0)) {
     const auto closest = surface.closest(tool.proxy);
     return closest.distance < tool.radius ? accuracy->error_without_force(surface.triangle(closest.triangle)[0])
-                                          : ForceError{0.0, 0.0};
+                                          : ForceError{0.0, 0.0, 0.0, {0.0}};
   }
   ForceError error = accuracy->error(tool, number, rows_.contacts(), indentation(t, tool));
-  error.bound += missing_depth() * force;
+  error.force = force;
+  error.parts.mesh = error.bound;
+  add_model_errors(surface, t, tool, error);
+  error.parts.late = late_ ? infinity : 0.0;
+  error.parts.merged = force * missing_depth() / (1.0 - missing_depth());
+  error.bound = error.parts.sum();
   return error;
 }
 
@@ -232,6 +260,7 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
       c.lift();  // only rows carry forces
   }
   if (rows_.count() == 0) rows_.apply(tools, displacement_);
+  late_ = false;
   int built = 0;
   for (;; built = rows_.count()) {
     if (built > 0 || rows_.count() == 0) add_violated(tissue, tools, built);
@@ -240,7 +269,9 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
       status.set(StatusFlag::solver_not_converged);
       break;
     }
-    status |= rows_.require_columns(tissue);
+    const Status columns = rows_.require_columns(tissue);
+    status |= columns;
+    late_ = columns.has(StatusFlag::degraded_model);
     rows_.build(tissue, candidates_.samples(), tools, floor_, built);
     if (!rows_.solve()) status.set(StatusFlag::solver_not_converged);
     rows_.apply(tools, displacement_);

@@ -3,6 +3,7 @@
 
 #include <palpate/contact/detail/bvh.hpp>
 #include <palpate/contact/force_accuracy.hpp>
+#include <palpate/contact/linear_model_error.hpp>
 
 #include <memory>
 #include <string>
@@ -62,6 +63,9 @@ class ContactSurface {
   /// Sets the errors that were measured on this surface; null: none were.
   void set_force_accuracy(std::shared_ptr<const ForceAccuracy> accuracy) noexcept { accuracy_ = std::move(accuracy); }
   const ForceAccuracy* force_accuracy() const noexcept { return accuracy_.get(); }
+  /// Sets what is known about the other errors of a linear model.
+  void set_model_error(LinearModelError error) noexcept { model_error_ = std::move(error); }
+  const LinearModelError& model_error() const noexcept { return model_error_; }
   /// sqrt(2 area): of half a square, the side of that square [m].
   double facet_length(int t) const noexcept;
 
@@ -130,6 +134,7 @@ class ContactSurface {
   Unloaded unloaded_;
   std::vector<ContactMaterial> materials_;  // per triangle, or empty
   std::shared_ptr<const ForceAccuracy> accuracy_;
+  LinearModelError model_error_;
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20, or one of these:
   static constexpr int no_neighbour = -1, several_neighbours = -2;
 };

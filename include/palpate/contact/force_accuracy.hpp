@@ -1,6 +1,7 @@
 // How far contact forces are off because of the mesh, as measured at set-up.
 #pragma once
 
+#include <palpate/concepts/force_error.hpp>
 #include <palpate/contact/contact.hpp>
 #include <palpate/core/types.hpp>
 
@@ -9,12 +10,6 @@
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-/// Estimated error of the contact force of a tool.
-struct ForceError {
-  double expected = 0.0;    ///< [N] excess over the force on a fine mesh: force - expected is closer to the truth
-  double bound = infinity;  ///< [N] estimated bound of the difference from the truth; infinity: nothing was measured
-};
 
 /// What a sphere misses at one place of a mesh that is too coarse for it: the difference in depth, at equal force,
 /// between the facets and a fine mesh. Measured with the sphere over a vertex, the middle of an edge and the middle of

@@ -67,7 +67,8 @@ PALPATE_INLINE ForceAccuracy::Loads ForceAccuracy::largest_loads(int number,
 
 PALPATE_INLINE ForceError ForceAccuracy::error_without_force(int vertex) const noexcept {
   const MissingDepth& place = places_[static_cast<std::size_t>(vertices_[static_cast<std::size_t>(vertex)].place)];
-  return {0.0, *std::max_element(place.unseen.begin(), place.unseen.end())};
+  const double unseen = *std::max_element(place.unseen.begin(), place.unseen.end());
+  return {0.0, unseen, 0.0, {unseen}};
 }
 
 /// The shares of the three largest loads, descending, are barycentric coordinates of the sphere over a facet: (1, 0, 0)

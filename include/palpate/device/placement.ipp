@@ -48,7 +48,9 @@ PALPATE_INLINE Vector3 Placement::torque_to_device(const Vector3& torque) const 
 }
 
 PALPATE_INLINE GatedForce Placement::to_device(const GatedForce& scene) const noexcept {
-  return {force_to_device(scene.force()), torque_to_device(scene.torque()), scene.status};
+  GatedForce device(force_to_device(scene.force()), torque_to_device(scene.torque()), scene.status);
+  device.error = scene.error * force_scale;
+  return device;
 }
 
 PALPATE_INLINE DeviceLimits Placement::limits_in_scene(const DeviceLimits& device) const noexcept {

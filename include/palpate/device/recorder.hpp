@@ -29,17 +29,23 @@ struct RecordedTick {
   ToolState state;
   Vector3 force = Vector3::Zero();  ///< [N] as passed to write
   Status status;                    ///< of the tick, if the loop noted it, and of the write
+  double expected_error = 0.0;      ///< [N] ForceError::expected of the contact force
+  double error_bound = infinity;    ///< [N] ForceError::bound; infinity: nothing was measured, or not recorded
 };
 
 /// First line of a recording. SI units; valid is 0 or 1; buttons and status are bit masks.
-inline constexpr std::string_view recording_header = "time,x,y,z,vx,vy,vz,qw,qx,qy,qz,buttons,valid,fx,fy,fz,status";
+inline constexpr std::string_view recording_header =
+    "time,x,y,z,vx,vy,vz,qw,qx,qy,qz,buttons,valid,fx,fy,fz,status,expected_error,error_bound";
+/// That of a recording without errors, by versions before 0.2; it is read, too.
+inline constexpr std::string_view recording_header_without_errors =
+    recording_header.substr(0, recording_header.find(",expected_error"));
 
 /// Writes a recording as CSV: every number reads back bitwise equal (a NaN as a NaN), in any locale. Throws
 /// SetupError(bad_file) when the file cannot be written.
 void write_recording(const std::string& path, std::span<const RecordedTick> ticks);
 
 /// A HapticDevice that forwards all calls to another one and keeps the last `capacity` ticks. The memory is allocated
-/// and touched at construction; a tick copies 150 bytes into it. The device must outlive the recorder.
+/// and touched at construction; a tick copies 170 bytes into it. The device must outlive the recorder.
 template <HapticDevice Device>
 class Recorder {
  public:
@@ -60,6 +66,8 @@ class Recorder {
     if (count_ == 0) return status;
     RecordedTick& tick = newest();
     tick.force = force.force();
+    tick.expected_error = force.error.expected;
+    tick.error_bound = force.error.bound;
     tick.status |= status;
     return status;
   }

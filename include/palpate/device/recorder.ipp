@@ -44,7 +44,10 @@ inline void append_tick(std::string& text, const RecordedTick& tick) {
   for (double q : s.orientation) add(q);
   text += ',' + std::to_string(s.buttons) + (s.valid ? ",1" : ",0");
   for (double f : tick.force) add(f);
-  text += ',' + std::to_string(tick.status.bits()) + '\n';
+  text += ',' + std::to_string(tick.status.bits());
+  add(tick.expected_error);
+  add(tick.error_bound);
+  text += '\n';
 }
 
 }}}  // namespace palpate::detail

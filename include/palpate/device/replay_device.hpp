@@ -15,7 +15,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Reads a file written by write_recording. Throws SetupError(bad_file) naming file and line.
+/// Reads a file written by write_recording, also by an earlier version, which recorded no errors of forces. Throws
+/// SetupError(bad_file) naming file and line.
 std::vector<RecordedTick> read_recording(const std::string& path);
 
 /// A HapticDevice that returns the states of a recording one by one, including time stamps, and the last one as invalid

@@ -24,7 +24,9 @@ class RecordingReader {
   std::vector<RecordedTick> ticks() {
     std::vector<RecordedTick> all;
     next_line();
-    if (line_ != recording_header) refuse("the header " + std::string(recording_header), line_.substr(0, 60));
+    has_errors_ = line_ == recording_header;
+    if (!has_errors_ && line_ != recording_header_without_errors)
+      refuse("the header " + std::string(recording_header), line_.substr(0, 60));
     while (next_line())
       if (!line_.empty()) all.push_back(tick());
     if (all.empty()) refuse("at least one tick", "none");
@@ -56,7 +58,11 @@ class RecordingReader {
     const std::uint32_t bits = mask("a status", (1u << status_flag_count) - 1u);
     for (int bit = 0; bit < status_flag_count; ++bit)
       if ((bits >> bit & 1u) != 0u) t.status.set(static_cast<StatusFlag>(1u << bit));
-    if (!at_end_) refuse("17 fields", "more");
+    if (has_errors_) {
+      t.expected_error = real("an expected error");
+      t.error_bound = real("a bound of the error");
+    }
+    if (!at_end_) refuse(has_errors_ ? "19 fields" : "17 fields", "more");
     return t;
   }
 
@@ -106,7 +112,7 @@ class RecordingReader {
   std::string_view text_, line_, rest_;
   std::string path_;
   int line_number_ = 0;
-  bool at_end_ = false;
+  bool at_end_ = false, has_errors_ = false;
 };
 
 }}}  // namespace palpate::detail

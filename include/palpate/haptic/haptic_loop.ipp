@@ -109,6 +109,7 @@ PALPATE_INLINE void HapticLoop::State::run() {
       run_unpaced();
     silence();  // the other thread may call stop() much later
     report.elapsed = 1e-9 * static_cast<double>(platform::wall_ns() - start);
+    for (const DeviceReport& own : report.devices) report.errors.count(own.errors);
   }
   const std::lock_guard lock(mutex);
   running.store(false, std::memory_order_release);
@@ -159,6 +160,7 @@ PALPATE_INLINE void HapticLoop::State::tick(double seconds) noexcept {
     const double length = given.force().norm();
     DeviceReport& own = report.devices[i];
     own.status.count(status);
+    own.errors.count(given.error);
     own.peak_force = std::max(own.peak_force, length);
     longest = std::max(longest, length);
     any |= status;
@@ -186,6 +188,8 @@ PALPATE_INLINE LoopReport HapticLoop::State::fresh_report() const {
   fresh.rate = rate;
   fresh.paced = options.paced;
   fresh.devices.resize(devices.all().size());
+  fresh.errors.allowed = options.force_error;
+  for (DeviceReport& own : fresh.devices) own.errors.allowed = options.force_error;
   return fresh;
 }
 
@@ -235,6 +239,9 @@ PALPATE_INLINE void HapticLoop::require_startable(const LoopOptions& options) co
   if (!(options.duration > 0.0 && (options.duration <= 1e8 || options.duration == infinity)))
     raise(SetupErrorKind::bad_argument, "the duration of a haptic loop is " + number(options.duration) + " s",
           "Give a positive number of seconds, up to 1e8, or none");
+  if (!(options.force_error > 0.0))
+    raise(SetupErrorKind::bad_argument, "the allowed error of the force is " + number(options.force_error),
+          "Give a part of the force, 0.1 is typical");
   if (state_->started)
     raise(SetupErrorKind::bad_argument, "the haptic loop was started already, and not stopped", "Call stop() first");
 }

@@ -70,10 +70,12 @@ class HapticServo {
   std::span<const ToolContact> contacts() const noexcept { return newest_->tool_contacts(); }
   /// Position of the tool on the surface, or the middle of a blade's edge, world frame [m]. For the tick's own thread.
   Vector3 proxy(std::size_t tool = 0) const noexcept;
-  /// Contact force, or cutting force of a blade, before the gate, world frame [N]. For the tick's own thread.
+  /// Contact force, or cutting force of a blade, before the gate and without ServoOptions::corrected_force, world frame
+  /// [N]. For the tick's own thread.
   Vector3 contact_force(std::size_t tool = 0) const noexcept;
   /// Estimated error of the contact force: of the mesh, as measured at set-up for the tool that Scene::touch names, and
-  /// of contacts left out. Its bound is infinite where nothing was measured. For the tick's own thread.
+  /// of contacts left out; of the corrected force, if ServoOptions::corrected_force. Its bound is infinite where
+  /// nothing was measured. For the tick's own thread.
   ForceError force_error(std::size_t tool = 0) const noexcept { return errors_[tool]; }
   /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m]. For the
   /// tick's own thread.
@@ -123,6 +125,7 @@ class HapticServo {
   bool is_on_the_way(std::size_t i) const noexcept;
   bool place_lost_tools() noexcept;
   void recover(std::size_t i) noexcept;
+  double estimate_error(std::size_t i) noexcept;
   void pass(std::size_t i, Status shared) noexcept;
   void publish() noexcept;
 
@@ -138,6 +141,7 @@ class HapticServo {
   std::vector<GatedForce> forces_;
   std::vector<ForceError> errors_;
   double stale_tissue_after_;
+  bool corrected_force_;
   std::uint64_t updates_ = 0;
   bool started_ = false;
   TripleBuffer<Snapshot> snapshots_;

@@ -62,7 +62,8 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
       energies_(std::move(energies)),
       forces_(tools.size()),
       errors_(tools.size()),
-      stale_tissue_after_(options.stale_tissue_after) {
+      stale_tissue_after_(options.stale_tissue_after),
+      corrected_force_(options.corrected_force) {
   if (tissue_.contact_surface().triangles().empty())
     raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
           "Name a surface group with Scene::touch");
@@ -244,6 +245,19 @@ PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
     inputs_[i].note_outside(problem_.contacts(), contact_tools_[i]);
 }
 
+/// Updates the error of a tool's force; returns the factor of the force. The bound stays: it was measured for the force
+/// without correction, and the expected error may be too large.
+PALPATE_INLINE double HapticServo::estimate_error(std::size_t i) noexcept {
+  ForceError& error = errors_[i];
+  error = blades_[i] ? ForceError{0.0, infinity, blades_[i]->force().norm()}
+                     : problem_.force_error(tissue_, i, contact_tools_[i]);
+  if (!corrected_force_ || error.expected == 0.0 || !(error.bound < infinity) || contact_tools_[i].grasping) return 1.0;
+  const double factor = 1.0 - error.expected / error.force, before = error.force;
+  error.expected = 0.0;
+  error.force = factor * before;
+  return factor;
+}
+
 /// Passes the contact force through the energy tank and the gate; the tank then receives the gate's output.
 PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   const ContactTool& tool = contact_tools_[i];
@@ -252,8 +266,9 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   const Eigen::Isometry3d& pose = tissue_.to_world();
   Vector3 force(0.0, 0.0, 0.0), torque(0.0, 0.0, 0.0);
   if (blades_[i]) force = blades_[i]->force();
-  if (tool.active) force = rotation_of(pose) * tool.force;
-  if (tool.active && input.rotates()) torque = rotation_of(pose) * tool.torque;
+  const double factor = estimate_error(i);
+  if (tool.active) force = factor * (rotation_of(pose) * tool.force);
+  if (tool.active && input.rotates()) torque = factor * (rotation_of(pose) * tool.torque);
   Status limited = blades_[i] ? blades_[i]->status() : Status{};
   if (energy != nullptr) {
     if (!input.readable() || input.restarted()) energy->forget();
@@ -264,9 +279,11 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   forces_[i] = gates_[i].apply(force, torque, input.now(), time, input.readable(), input.restarted());
   if (energy != nullptr) energy->gave(forces_[i].force());
   forces_[i].status |= input.status() | shared | limited | problem_.status_of(i, tool);
-  errors_[i] = problem_.force_error(tissue_, i, tool);
-  if (errors_[i].bound > detail::flagged_error * tool.force.norm() && errors_[i].bound < infinity)
-    forces_[i].status.set(StatusFlag::coarse_contact);
+  const ForceError& error = errors_[i];
+  const auto is_large = [&](double part) { return part > detail::flagged_error * error.force && part < infinity; };
+  if (is_large(error.parts.mesh)) forces_[i].status.set(StatusFlag::coarse_contact);
+  if (is_large(error.parts.linearity)) forces_[i].status.set(StatusFlag::large_displacement);
+  forces_[i].error = error;
 }
 
 PALPATE_INLINE void HapticServo::publish() noexcept {

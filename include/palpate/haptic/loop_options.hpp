@@ -22,6 +22,7 @@ struct LoopOptions {
   double duration = infinity;  ///< [s]; without one a loop runs until it is stopped or `progress` ends it
   bool paced = true;           ///< false: rate * duration ticks as fast as they go, for devices in simulated time
   bool real_time = false;      ///< request SCHED_FIFO and locked memory; not if unpaced: it would starve other threads
+  double force_error = 0.1;    ///< largest bound of ForceError, relative to the force, that the report accepts
   int cpu = -1;                ///< pin the thread to this processor
   /// Called at most 10 times per second, in the caller's thread; false ends the loop.
   std::function<bool(const LoopProgress&)> progress{};

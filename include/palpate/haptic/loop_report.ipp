@@ -11,6 +11,47 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+PALPATE_INLINE void ForceErrorReport::count(const ForceError& error) noexcept {
+  if (!(error.force > 0.0)) return;
+  if (!(error.bound < infinity)) {
+    ++unknown;
+    return;
+  }
+  ++contact;
+  if (error.bound > allowed * error.force) ++over;
+  if (error.bound > largest.bound) largest = error;
+}
+
+PALPATE_INLINE void ForceErrorReport::count(const ForceErrorReport& other) noexcept {
+  contact += other.contact;
+  over += other.over;
+  unknown += other.unknown;
+  if (other.largest.bound > largest.bound) largest = other.largest;
+}
+
+PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const ForceErrorReport& r) {
+  if (r.contact == 0)
+    return out << (r.unknown > 0 ? "error of the force: not measured" : "error of the force: no contact");
+  std::array<char, 200> line{};
+  std::snprintf(
+      line.data(), line.size(),
+      "error of the force: bound above %.0f %% in %.1f %% of %llu ticks in contact; largest %.3g N (%.0f %% of "
+      "%.3g N)",
+      100.0 * r.allowed, 100.0 * r.share_over(), static_cast<unsigned long long>(r.contact), r.largest.bound,
+      100.0 * r.largest.relative(), r.largest.force);
+  out << line.data();
+  const auto values = r.largest.parts.values();
+  const char* before = ": ";
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] > 0.01 * r.largest.bound)) continue;
+    std::snprintf(line.data(), line.size(), "%s%s %.3g N", before, ForceErrorParts::names[i].data(), values[i]);
+    out << line.data();
+    before = ", ";
+  }
+  if (r.unknown > 0) out << "; not measured in " << r.unknown << " ticks";
+  return out;
+}
+
 PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const LoopReport& r) {
   std::array<char, 160> line{};
   std::string text;
@@ -29,11 +70,14 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const LoopReport& r) 
   if (r.paced) row("wake-up lateness", r.lateness);
   print("  missed deadlines %llu, peak force %.3f N, clock reading %.2f us\n",
         static_cast<unsigned long long>(r.missed_deadlines), r.peak_force, 1e6 * r.clock_cost);
-  out << text << "  status: " << r.status;
+  out << text;
+  if (r.errors.contact > 0) out << "  " << r.errors << '\n';
+  out << "  status: " << r.status;
   for (std::size_t i = 0; r.devices.size() > 1 && i < r.devices.size(); ++i) {
     text.clear();
     print("\n  device %d: peak force %.3f N, status: ", static_cast<int>(i), r.devices[i].peak_force);
     out << text << r.devices[i].status;
+    if (r.devices[i].errors.contact > 0) out << "\n    " << r.devices[i].errors;
   }
   text = "\n  real time: ";
   const RealtimeGrant& g = r.real_time;

@@ -15,6 +15,7 @@ struct SessionOptions {
   std::optional<ForceLimits> force_limits{};     ///< default ForceLimits::from(each device, rate)
   ContactParameters contact{};                   ///< includes friction
   double stale_tissue_after = 0.5;  ///< [s] without update of a tissue that moves by itself until forces fade
+  bool corrected_force = false;     ///< subtracts ForceError::expected from the force, where it is known
   std::uint32_t grasp_buttons = 0;  ///< while one of these is pressed, the tool grasps the point it touched
   bool limit_energy = false;        ///< an EnergyTank per tool, EnergyLimits::from its device
 };

@@ -79,6 +79,7 @@ PALPATE_INLINE ServoOptions servo_options(const std::vector<DeviceLimits>& devic
   o.force_limits = options.force_limits;
   o.contact = options.contact;
   o.stale_tissue_after = options.stale_tissue_after;
+  o.corrected_force = options.corrected_force;
   o.grasp_buttons = options.grasp_buttons;
   return o;
 }

@@ -80,10 +80,12 @@ class LinearTissue : public ModelBase, public StillTissue {
   void prepare_contact(const Touchable& touchable, bool eager, const SetupOptions& options);
   /// Measures the error of forces on the tool that the scene names. What makes it impossible is reported only.
   void measure_force_error(const ForceErrorOptions& options);
+  /// Errors of the forces that do not come from the mesh.
+  LinearModelError model_error() const;
   /// Kept dof of every touchable dof, -1 when it is prescribed.
   std::vector<Index> kept_index() const;
-  /// Computes a few columns to measure the compliance of the surface and the time per column; starts a background
-  /// thread when that is to compute the other columns.
+  /// Computes a few columns to measure the compliance of the surface and the time per column; decides whether a
+  /// background thread is to compute the others.
   void sample_columns(ColumnFill fill);
   /// Whether the three solves for a vertex would delay a tick.
   bool is_column_late() const;

@@ -75,6 +75,7 @@ void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, Mak
   shell_nodes_ = touchable.shell_nodes;
   prepare_contact(touchable, recipe.eager, options);
   if (options.force_error.measure != nullptr) measure_force_error(options.force_error);
+  if (report.asynchronous_columns) compliance_.fill_asynchronously();  // the measurement needs all columns
 }
 
 template <std::floating_point Scalar>
@@ -82,12 +83,45 @@ void LinearTissue<Scalar>::measure_force_error(const ForceErrorOptions& options)
   const StageTimer timer(setup_report(), "accuracy");
   limits().advance("accuracy", 0.0);
   const double radius = scene().touch_radius();
+  surface_.set_model_error(model_error());
   if (radius > 0.0)
     surface_.set_force_accuracy(options.measure({elastic_body(), statics_->conditions(), touchable_nodes(), surface_,
                                                  to_world().translation(), radius, options.places},
                                                 TissueView(*this), limits(), setup_report()));
   else
     setup_report().accuracy.remark = "the scene does not give the radius of the tool: touch(where, {.radius = ...})";
+}
+
+/// A solve loses the digits of the condition number, if that is known, and what the probe solve lost. The columns have
+/// their error relative to the largest displacement.
+template <std::floating_point Scalar>
+LinearModelError LinearTissue<Scalar>::model_error() const {
+  constexpr double unit_roundoff = 0.5 * std::numeric_limits<double>::epsilon();
+  constexpr double stored = std::same_as<Scalar, float> ? 0.5 * std::numeric_limits<float>::epsilon() : 0.0;
+  double largest = 0.0;
+  for (int v = 0; v < surface_.vertex_count(); ++v) largest = std::max(largest, compliance_.bound(v));
+  const double lost = std::max(report().probe_error, unit_roundoff * report().condition_estimate);
+  LinearModelError error{std::sqrt(3.0) * stored * largest, lost * largest, 0.0, {}};
+  Vector3 low = Vector3::Constant(infinity), high = -low;
+  std::vector<Vector3> constrained;
+  const auto& positions = elastic_body().positions();
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    low = low.cwiseMin(positions[i]);
+    high = high.cwiseMax(positions[i]);
+    const Index first = 3 * static_cast<Index>(i);
+    const EssentialConditions& conditions = statics_->conditions();
+    if (conditions.is_constrained(first) || conditions.is_constrained(first + 1) ||
+        conditions.is_constrained(first + 2))
+      constrained.push_back(positions[i]);
+  }
+  error.body_size = (high - low).maxCoeff();
+  for (const NodeId node : touchable_nodes()) {
+    double square = infinity;
+    for (const Vector3& p : constrained)
+      square = std::min(square, (p - positions[static_cast<std::size_t>(node)]).squaredNorm());
+    error.supports.push_back(std::sqrt(square));
+  }
+  return error;
 }
 
 template <std::floating_point Scalar>
@@ -186,7 +220,6 @@ void LinearTissue<Scalar>::sample_columns(ColumnFill fill) {
   compliance_.assume(softest / std::sqrt(3.0));
   setup_report().asynchronous_columns =
       fill == ColumnFill::asynchronous || (fill == ColumnFill::automatic && is_column_late());
-  if (setup_report().asynchronous_columns) compliance_.fill_asynchronously();
 }
 
 template <std::floating_point Scalar>
