@@ -27,7 +27,7 @@ struct RefinedModel {
 
 /// Makes a static model on a mesh that is refined near the touchable surface until the measured error of the contact
 /// force is within the goal, or the goal's budget is used up: look at `search.reached()`. The scene gives the radius of
-/// the sphere that touches (TouchOptions). The first mesh has the edges that sufficed on an elastic block
+/// the sphere that touches (TouchOptions). The first mesh has the edges that sufficed on an organ
 /// (AccuracySearch); each further one follows from the errors measured so far. Listed nodes of the scene become groups
 /// first, which gain the new nodes between them. Each mesh costs the set-up of a model with `measured_force_error`; one
 /// or two are typical. For Tet4, Smoothed<Tet4> and Tet10. Throws bad_argument for a goal out of range and for a scene

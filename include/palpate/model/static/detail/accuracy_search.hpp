@@ -40,8 +40,8 @@ struct AccuracySearchReport {
 };
 std::ostream& operator<<(std::ostream& out, const AccuracySearchReport& r);
 
-/// The meshes of refine_to_accuracy, one after the other. The first edge is 0.22 radii for an error of 5 % and
-/// proportional to error^(1/2.3) for others: measured with Smoothed<Tet4> on a block and on an organ.
+/// The meshes of refine_to_accuracy, one after the other. The first edge is 0.28 radii for an error of 5 % and
+/// proportional to error^(1/1.75) for others: measured with Smoothed<Tet4> on the shipped organ.
 class AccuracySearch {
  public:
   /// Throws bad_argument and the errors of refine_near.

@@ -16,7 +16,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE AccuracySearch::AccuracySearch(const Mesh<Tet4>& mesh, const Scene& scene, const AccuracyGoal& goal)
     : goal_(goal), given_(mesh) {
-  constexpr double edge_at_five_percent = 0.22, order = 2.3;
+  constexpr double edge_at_five_percent = 0.28, order = 1.75;
   if (!(goal.error >= 1e-3 && goal.error <= 1.0))
     raise(SetupErrorKind::bad_argument, "the wanted error of forces is " + number(goal.error),
           "It is relative: 0.05 for 5 %; 0.001 to 1");
