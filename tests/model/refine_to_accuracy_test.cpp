@@ -68,7 +68,7 @@ TEST_CASE("a mesh is refined until the force error is within the goal", "[model]
   // The truth: quadratic elements, smaller still.
   const Scene& scene = refined.scene;
   const Mesh<Tet4> finer =
-      refine_near(refined.mesh, where::sphere(accurate_centre, 0.2 * accurate_radius), {0.08 * accurate_radius, 0.5});
+      refine_near(refined.mesh, where::sphere(accurate_centre, 0.2 * accurate_radius), {0.12 * accurate_radius, 0.6});
   HapticFEModel<Tet10, LinearElastic, Condensed<SelectiveInverse>> exact(promote<Tet10>(finer), scene,
                                                                          accurate_material);
   const double truth = force_on_block(exact);
@@ -80,11 +80,30 @@ TEST_CASE("a mesh is refined until the force error is within the goal", "[model]
   CHECK(text.str().find("not reached") == std::string::npos);
 }
 
+TEST_CASE("an error measured against a reference made of the mesh before refinement is the same",
+          "[model][refine_to_accuracy]") {
+  const Mesh<Tet4> mesh = coarse_block();
+  const AccuracySearch search(mesh, pressed_block(mesh), {.error = 0.1});
+  REQUIRE(search.mesh().node_count() > mesh.node_count());
+  const auto measured = [&](const MeshRef* coarse) {
+    SetupOptions options;
+    options.force_error = measured_force_error(1);
+    options.force_error.coarse = coarse;
+    return AccurateBlock(search.mesh(), search.scene(), accurate_material, options).report().accuracy;
+  };
+  const auto coarse = search.coarse();
+  REQUIRE(coarse);
+  const AccuracyReport whole = measured(nullptr), from_coarse = measured(&*coarse);
+  CHECK(from_coarse.nodes < whole.nodes);
+  REQUIRE(whole.typical > 0.01);
+  CHECK(std::abs(from_coarse.typical - whole.typical) < 0.015);
+}
+
 TEST_CASE("listed nodes gain the new nodes between them when a mesh is refined for accuracy",
           "[model][refine_to_accuracy]") {
   const Mesh<Tet4> mesh = box_tet4({0.02, 0.02, 0.01}, {2, 2, 1}, BoxSplit::six);  // elements as large as the block
   const Scene scene = Scene().fix(nodes_at_bottom(mesh)).touch("z1", {.radius = 0.01});
-  const auto refined = refine_to_accuracy<AccurateBlock>(mesh, scene, accurate_material, {.error = 0.5, .places = 1});
+  const auto refined = refine_to_accuracy<AccurateBlock>(mesh, scene, accurate_material, {.error = 0.2, .places = 1});
   const auto bottom = static_cast<Index>(nodes_at_bottom(refined.mesh).size());
   REQUIRE(bottom > static_cast<Index>(nodes_at_bottom(mesh).size()));
   CHECK(refined.model.report().free_dofs == 3 * (refined.mesh.node_count() - bottom));

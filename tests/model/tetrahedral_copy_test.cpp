@@ -5,6 +5,7 @@
 #include <palpate/element/tri3.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/promote.hpp>
+#include <palpate/mesh/refine_near.hpp>
 #include <palpate/mesh/surface.hpp>
 #include <palpate/model/static/detail/tetrahedral_copy.hpp>
 
@@ -13,6 +14,7 @@
 #include "catch.hpp"
 
 #include <cmath>
+#include <numeric>
 
 using namespace palpate;
 
@@ -88,4 +90,38 @@ TEST_CASE("an element of another kind has no copy", "[tetrahedral_copy]") {
   MeshRef other = mesh_ref(mesh);
   other.element.nodes = 6;
   CHECK_FALSE(tetrahedral_copy(other, [](Index) { return 0; }));
+}
+
+TEST_CASE("a refined body is copied as the tetrahedra that were refined, in its own frame", "[tetrahedral_copy]") {
+  Mesh<Tet4> coarse = box_tet4(copied_size, copied_cells);
+  coarse.region_names = {"left", "right"};
+  coarse.regions.assign(coarse.elements.size(), 0);
+  for (Index e = 0; e < coarse.element_count(); ++e)
+    coarse.regions[static_cast<std::size_t>(e)] = coarse.position(coarse.element_node(e, 0)).x() > 0.1 ? 1 : 0;
+  Mesh<Tet4> fine = refine_near(coarse, PointCloud{{Vector3(0.05, 0.05, 0.0)}}, {0.02, 0.5});
+  REQUIRE(fine.node_count() > coarse.node_count());
+  for (Vector3& p : fine.positions) p -= Vector3(0.15, 0.1, 0.05);
+  const auto material = [&](Index e) { return 5 + fine.region(e); };
+  std::vector<NodeId> map(fine.positions.size());
+  std::iota(map.begin(), map.end(), 0);
+  const auto copy = coarse_copy(mesh_ref(coarse), mesh_ref(fine), map, material);
+  REQUIRE(copy);
+  REQUIRE(copy->mesh.element_count() == coarse.element_count());
+  for (Index e = 0; e < coarse.element_count(); ++e) {
+    REQUIRE(copy->mesh.region(e) == 5 + coarse.region(e));
+    for (int a = 0; a < 4; ++a)
+      REQUIRE(copy->mesh.element_node(e, a) == copy->nodes[static_cast<std::size_t>(coarse.element_node(e, a))]);
+  }
+  for (Index i = 0; i < fine.node_count(); ++i) {
+    const NodeId node = copy->nodes[static_cast<std::size_t>(i)];
+    REQUIRE((node >= 0) == (i < coarse.node_count()));
+    if (node >= 0) REQUIRE(copy->mesh.position(node) == fine.position(i));
+  }
+  // Not the mesh that was refined, and a region with two materials.
+  const Mesh<Tet4> other = box_tet4(copied_size + Vector3(0.01, 0.0, 0.0), copied_cells);
+  CHECK_FALSE(coarse_copy(mesh_ref(other), mesh_ref(fine), map, material));
+  Mesh<Tet4> moved = coarse;
+  moved.positions[3].z() += 1e-4;
+  CHECK_FALSE(coarse_copy(mesh_ref(moved), mesh_ref(fine), map, material));
+  CHECK_FALSE(coarse_copy(mesh_ref(coarse), mesh_ref(fine), map, [](Index e) { return static_cast<int>(e % 2); }));
 }

@@ -10,6 +10,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 class ForceAccuracy;
 class TissueView;
 struct ForceErrorSource;
+struct MeshRef;
 struct SetupLimits;
 struct SetupReport;
 
@@ -22,6 +23,9 @@ using MeasureForceError = std::shared_ptr<const ForceAccuracy> (*)(const ForceEr
 struct ForceErrorOptions {
   int places = 0;                       ///< of the touchable surface where a sphere is pressed
   MeasureForceError measure = nullptr;  ///< null: nothing is measured
+  /// The tetrahedra that refine_near refined to the mesh of the model: the reference is then made from them, with fewer
+  /// nodes. Null: from the mesh of the model. Must live during the set-up.
+  const MeshRef* coarse = nullptr;
 };
 
 }}  // namespace palpate

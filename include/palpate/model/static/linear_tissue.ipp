@@ -85,9 +85,10 @@ void LinearTissue<Scalar>::measure_force_error(const ForceErrorOptions& options)
   const double radius = scene().touch_radius();
   surface_.set_model_error(model_error());
   if (radius > 0.0)
-    surface_.set_force_accuracy(options.measure({elastic_body(), statics_->conditions(), touchable_nodes(), surface_,
-                                                 to_world().translation(), radius, options.places},
-                                                TissueView(*this), limits(), setup_report()));
+    surface_.set_force_accuracy(
+        options.measure({elastic_body(), statics_->conditions(), touchable_nodes(), surface_, to_world().translation(),
+                         radius, options.places, node_map(), options.coarse},
+                        TissueView(*this), limits(), setup_report()));
   else
     setup_report().accuracy.remark = "the scene does not give the radius of the tool: touch(where, {.radius = ...})";
 }

@@ -14,7 +14,7 @@ PALPATE_INLINE ForceErrorOptions measured_force_error(int places) {
   if (places < 1)
     raise(SetupErrorKind::bad_argument, "the force error is to be measured at " + std::to_string(places) + " places",
           "Give one or more; three are typical");
-  return {places, &measure_force_error};
+  return {places, &measure_force_error, nullptr};
 }
 
 }}  // namespace palpate

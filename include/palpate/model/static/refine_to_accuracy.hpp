@@ -40,7 +40,9 @@ RefinedModel<Model> refine_to_accuracy(const Mesh<Tet4>& mesh, const Scene& scen
   static_assert(quadratic || std::same_as<E, Tet4> || std::same_as<E, Smoothed<Tet4>>,
                 "palpate: refine_to_accuracy divides tetrahedra: choose Tet4, Smoothed<Tet4> or Tet10");
   AccuracySearch search(mesh, scene, goal);
+  const auto coarse = search.coarse();
   options.force_error = measured_force_error(goal.places);
+  options.force_error.coarse = coarse ? &*coarse : nullptr;
   for (;;) {
     Model model = [&] {
       if constexpr (quadratic)

@@ -3,11 +3,13 @@
 
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/mesh_ref.hpp>
 #include <palpate/mesh/refine_target.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/accuracy_report.hpp>
 
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,6 +52,8 @@ class AccuracySearch {
   /// The present mesh, and the scene for it.
   const Mesh<Tet4>& mesh() const noexcept { return mesh_; }
   const Scene& scene() const noexcept { return scene_; }
+  /// The mesh as given, for ForceErrorOptions::coarse; empty if it has fibres, which a reference does not divide.
+  std::optional<MeshRef> coarse() const;
   /// Takes the error measured on the present mesh and the time of that set-up [s]. True: `mesh` is a finer one now.
   bool refine(const AccuracyReport& measured, double seconds);
   const AccuracySearchReport& report() const noexcept { return report_; }

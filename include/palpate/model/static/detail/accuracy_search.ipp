@@ -79,6 +79,11 @@ PALPATE_INLINE std::vector<RefineTarget> AccuracySearch::touched(double edge) co
   return targets;
 }
 
+PALPATE_INLINE std::optional<MeshRef> AccuracySearch::coarse() const {
+  if (given_.has_fibres()) return std::nullopt;
+  return mesh_ref(given_);
+}
+
 /// False when the number of nodes does not allow a mesh that is clearly finer than the present one.
 PALPATE_INLINE bool AccuracySearch::make_mesh(double edge) {
   constexpr double growth = 0.5, coarser = 1.15, least_change = 0.95;

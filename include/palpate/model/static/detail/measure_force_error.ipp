@@ -150,7 +150,10 @@ PALPATE_INLINE void ForceErrorMeasurement::press_reference(const SetupLimits& li
 PALPATE_INLINE void ForceErrorMeasurement::make_reference(const SetupLimits& limits) {
   constexpr double edges_per_radius = 6.0, growth = 0.5, reach = 0.9;
   constexpr int capacity = 256;
-  auto copy = tetrahedral_copy(source_.body.mesh(), [&](Index e) { return source_.body.elasticity_of(e); });
+  const auto elasticity = [&](Index e) { return source_.body.elasticity_of(e); };
+  std::optional<TetrahedralCopy> copy;
+  if (source_.coarse != nullptr) copy = coarse_copy(*source_.coarse, source_.body.mesh(), source_.node_map, elasticity);
+  if (!copy) copy = tetrahedral_copy(source_.body.mesh(), elasticity);
   if (!copy) {
     report_.remark = "the fine mesh is made of tetrahedra, and this element cannot be divided into these";
     places_.clear();

@@ -22,6 +22,13 @@ struct TetrahedralCopy {
 /// conform. Empty for other elements. `material` gives the material of an element. O(elements), allocates.
 std::optional<TetrahedralCopy> tetrahedral_copy(const MeshRef& mesh, const std::function<int(Index)>& material);
 
+/// The same of the tetrahedra that refine_near refined to the mesh of the body. `node_map` gives the body's node for
+/// every node of the refined mesh, -1 for none; the first nodes of that are the nodes of `coarse`. Empty if that is not
+/// so, or if a region of the body has several materials.
+std::optional<TetrahedralCopy> coarse_copy(const MeshRef& coarse, const MeshRef& body,
+                                           const std::vector<NodeId>& node_map,
+                                           const std::function<int(Index)>& material);
+
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

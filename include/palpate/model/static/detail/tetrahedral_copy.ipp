@@ -107,4 +107,52 @@ PALPATE_INLINE std::optional<TetrahedralCopy> tetrahedral_copy(const MeshRef& me
   return maker.take();
 }
 
+namespace detail {
+
+/// The material of every region, -1 for none; empty when a region has several.
+PALPATE_INLINE std::vector<int> materials_of_regions(const MeshRef& body, const std::function<int(Index)>& material) {
+  std::vector<int> materials(body.region_names.size(), -1);
+  for (Index e = 0; e < body.element_count; ++e) {
+    int& own = materials[static_cast<std::size_t>(body.region(e))];
+    if (own >= 0 && own != material(e)) return {};
+    own = material(e);
+  }
+  return materials;
+}
+
+/// Whether the nodes of `coarse` are nodes of the body, apart from a translation.
+PALPATE_INLINE bool has_nodes_of(const MeshRef& body, const MeshRef& coarse, const std::vector<NodeId>& node_map) {
+  constexpr double rounding = 1e-9;
+  const auto point = [](const MeshRef& mesh, Index i) -> Vector3 { return Vector3::Map(mesh.position(i)); };
+  if (static_cast<Index>(node_map.size()) < coarse.node_count || coarse.node_count == 0 || node_map[0] < 0)
+    return false;
+  const Vector3 shift = point(body, node_map[0]) - point(coarse, 0);
+  for (Index i = 0; i < coarse.node_count; ++i) {
+    const NodeId node = node_map[static_cast<std::size_t>(i)];
+    if (node < 0 || (point(body, node) - point(coarse, i) - shift).norm() > rounding * (1.0 + shift.norm()))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace detail
+
+PALPATE_INLINE std::optional<TetrahedralCopy> coarse_copy(const MeshRef& coarse, const MeshRef& body,
+                                                          const std::vector<NodeId>& node_map,
+                                                          const std::function<int(Index)>& material) {
+  const std::vector<int> materials = detail::materials_of_regions(body, material);
+  const auto same_names = [&] { return std::ranges::equal(coarse.region_names, body.region_names); };
+  if (materials.empty() || !same_names() || !detail::has_nodes_of(body, coarse, node_map)) return std::nullopt;
+  auto copy = tetrahedral_copy(coarse, [&](Index e) { return materials[static_cast<std::size_t>(coarse.region(e))]; });
+  if (!copy) return std::nullopt;
+  std::vector<NodeId> nodes(static_cast<std::size_t>(body.node_count), -1);
+  for (Index i = 0; i < coarse.node_count; ++i) {
+    const NodeId own = copy->nodes[static_cast<std::size_t>(i)], node = node_map[static_cast<std::size_t>(i)];
+    nodes[static_cast<std::size_t>(node)] = own;
+    if (own >= 0) copy->mesh.positions[static_cast<std::size_t>(own)] = Vector3::Map(body.position(node));
+  }
+  copy->nodes = std::move(nodes);
+  return copy;
+}
+
 }}  // namespace palpate
