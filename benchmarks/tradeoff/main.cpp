@@ -77,6 +77,7 @@ int main(int argc, char** argv) try {
     const auto picture = std::filesystem::path(document).replace_filename("tradeoff-" + scene.name + ".svg");
     write_picture(bench, rows, budget, picture.string());
   }
+  if (scene.name == "palpate") std::printf("\n%s", suggestion(scene, budget).c_str());
   std::printf("\n%s\nwritten after %.0f s: %s.html, %s.csv\n", advice(rows, budget).c_str(),
               1e-9 * static_cast<double>(platform::wall_ns() - start), base.c_str(), base.c_str());
   const auto is_bad = [](const Row& r) { return r.verdict.starts_with("NOT"); };
