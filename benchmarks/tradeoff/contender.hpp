@@ -122,5 +122,7 @@ void write_csv(const std::vector<Row>& rows, const std::string& path);
 void write_page(const Bench& bench, const std::vector<Row>& rows, double budget, const std::string& path);
 /// The most accurate compositions within the budget, as C++ code to paste.
 std::string advice(const std::vector<Row>& rows, double budget);
+/// The advice of `suggest` on the scene, with the figures of its candidates.
+std::string suggestion(const PressScene& scene, double budget);
 
 }  // namespace tradeoff

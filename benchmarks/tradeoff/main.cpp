@@ -1,8 +1,9 @@
 // Speed against accuracy: compositions of element, mesh, material, kinematics, solver, condensation and scalar, and
 // methods in use elsewhere, pressed by the same spheres and compared with the same reference. Every row checks its own
 // result.
-//   bench_tradeoff [MESH --fix GROUP --touch GROUP] [--scene palpate|retract|grasp] [--budget-us N] [--out FOLDER]
+//   bench_tradeoff [MESH] [--fix PART] [--touch PART] [--scene palpate|retract|grasp] [--budget-us N] [--out FOLDER]
 //                  [--youngs PA] [--poisson NU] [--only WORD] [--full]
+//                  PART: a group, "z<0.01", "box x0 y0 z0 x1 y1 z1" or "sphere x y z r" [m]; chosen when not given
 //                  [--edge RADII]      of elements under the spheres where the mesh is refined near them (0.2)
 //                  [--docs FILE]      also writes into a document, between <!-- tradeoff SCENE --> and <!-- end -->
 #include <cstdio>
@@ -11,7 +12,6 @@
 #include <fstream>
 
 #include "../common/document.hpp"
-#include "../common/row.hpp"
 #include "direct_reference.hpp"
 #include "page.hpp"
 
@@ -21,17 +21,6 @@
 namespace {
 
 using namespace tradeoff;
-
-SceneOptions scene_options(int argc, char** argv) {
-  SceneOptions o;
-  if (argc > 1 && std::string_view(argv[1]).substr(0, 2) != "--") o.mesh = argv[1];
-  o.constrained = bench::option(argc, argv, "--fix", "");
-  o.touched = bench::option(argc, argv, "--touch", "");
-  o.kind = bench::option(argc, argv, "--scene", "palpate");
-  o.youngs_modulus = std::stod(bench::option(argc, argv, "--youngs", number(o.youngs_modulus)));
-  o.poisson_ratio = std::stod(bench::option(argc, argv, "--poisson", number(o.poisson_ratio)));
-  return o;
-}
 
 /// The mesh refined everywhere, with the groups used by scenes; the given mesh when that would be too many elements.
 Mesh<Tet4> refined(const Mesh<Tet4>& mesh, bool full) {
@@ -48,17 +37,12 @@ void print(const Row& r) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  const std::string out = bench::option(argc, argv, "--out", "."), only = bench::option(argc, argv, "--only", "");
-  const double budget = 1e-6 * std::stod(bench::option(argc, argv, "--budget-us", "50"));
-  if (!(budget > 0.0))
-    raise(SetupErrorKind::bad_argument, "the budget is not positive", "Give microseconds: --budget-us 50");
-  const double edge = std::stod(bench::option(argc, argv, "--edge", "0.2"));
-  if (!(edge >= 0.02 && edge <= 2.0))
-    raise(SetupErrorKind::bad_argument, "edges under the sphere of " + number(edge) + " radii", "Give 0.02 to 2");
-  std::filesystem::create_directories(out);
-  const bool full = bench::has_option(argc, argv, "--full");
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  const auto [scene_options, budget, edge, out, only, document, full] = parse_arguments(words);
   const std::int64_t start = platform::wall_ns();
-  const PressScene scene = make_scene(scene_options(argc, argv));
+  const PressScene scene = make_scene(scene_options);  // before anything is written or measured
+  std::printf("%s", scene.remark.c_str());
+  std::filesystem::create_directories(out);
   Bench bench{.scene = scene,
               .reference = full ? make_direct_reference(scene, 0.15) : make_reference(scene, 0.15),
               // curves are measured by pressing along the normal: not valid for lifting and pinching a lobe
@@ -89,11 +73,12 @@ int main(int argc, char** argv) try {
   const std::string base = out + "/tradeoff-" + scene.name;
   write_csv(rows, base + ".csv");
   write_page(bench, rows, budget, base + ".html");
-  if (const std::string document = bench::option(argc, argv, "--docs", ""); !document.empty()) {
+  if (!document.empty()) {
     bench::put_in_document(document, "tradeoff " + scene.name, summary(bench, rows, budget));
     const auto picture = std::filesystem::path(document).replace_filename("tradeoff-" + scene.name + ".svg");
     write_picture(bench, rows, budget, picture.string());
   }
+  if (scene.name == "palpate") std::printf("\n%s", suggestion(scene, budget).c_str());
   std::printf("\n%s\nwritten after %.0f s: %s.html, %s.csv\n", advice(rows, budget).c_str(),
               1e-9 * static_cast<double>(platform::wall_ns() - start), base.c_str(), base.c_str());
   const auto is_bad = [](const Row& r) { return r.verdict.starts_with("NOT"); };

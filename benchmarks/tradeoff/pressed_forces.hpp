@@ -91,13 +91,15 @@ class PressedEquilibrium {
     pressed_->place(std::move(centres));
     EquilibriumReport report;
     for (const double share : {0.05, 1.0}) {  // soft contact first determines the pressed nodes
-      pressed_->soften(share);
+      pressed_->soften(share < 1.0 ? share : stiffer_);
       report = body_.step(
           0.0, {.newton = {.maximum_iterations = 60, .tolerance = share < 1.0 ? 1e-3 : 1e-6}, .smallest_step = 0.5});
       iterations += report.iterations;
     }
     if (!report.converged || report.deformation.inverted > 0) raise(SetupErrorKind::not_converged, describe(report));
   }
+  /// Doubles the contact stiffness from now on.
+  void stiffen() noexcept { stiffer_ *= 2.0; }
   const VectorX& displacement() const noexcept { return body_.displacement(); }
   std::vector<Vector3> forces_on_spheres() const { return pressed_->forces_on_spheres(body_.displacement()); }
   double largest_depth() const { return pressed_->largest_depth(body_.displacement()); }
@@ -124,6 +126,7 @@ class PressedEquilibrium {
   }
 
   PressedForces* pressed_ = nullptr;
+  double stiffer_ = 1.0;
   Equilibrium body_;
 };
 

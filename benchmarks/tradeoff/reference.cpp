@@ -40,6 +40,10 @@ std::vector<Pressed> press(const PressScene& scene, DeformableBody body, const s
   std::vector<Pressed> all;
   for (const double depth : depths(scene)) {
     equilibrium.move_to(scene.centres(depth));
+    for (int i = 0; i < 4 && !(equilibrium.largest_depth() < 2e-2 * scene.small); ++i) {
+      equilibrium.stiffen();
+      equilibrium.move_to(scene.centres(depth));
+    }
     all.push_back({equilibrium.forces_on_spheres(), equilibrium.displacement().head(3 * scene.mesh.node_count())});
     require_balance(all.back(), equilibrium.support(), depth);
     if (!(equilibrium.largest_depth() < 2e-2 * scene.small))

@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "patches.hpp"
+
 namespace tradeoff {
 namespace {
 
@@ -121,22 +123,17 @@ double volume_of(const Mesh<Tet4>& mesh, const std::vector<std::array<NodeId, 3>
 
 PressScene make_scene(const SceneOptions& options) {
   const bool organ = options.mesh.empty();
-  if (!organ && options.kind != "palpate")
-    raise(SetupErrorKind::bad_argument, "the scene '" + options.kind + "' supports only the organ of palpate",
-          "Give no mesh, or --scene palpate");
   PressScene scene;
   scene.name = options.kind;
   scene.mesh = io::read_mesh<Tet4>(organ ? PALPATE_BENCH_DATA "/organ.msh" : options.mesh);
-  const std::string constrained = organ ? "ligament" : options.constrained, touched = organ ? "front" : options.touched;
   const auto boundary = extract_boundary<Tet4>(scene.mesh);
-  if (constrained.empty() || touched.empty()) {
-    std::string known;
-    for (const Group& g : scene.mesh.groups.all()) known += " '" + g.name + "'";
-    raise(SetupErrorKind::bad_argument, "the constrained and touchable groups are not given",
-          "Give --fix <group> --touch <group>; the mesh has" + (known.empty() ? " none" : known));
-  }
-  const auto wide =
-      resolve_faces(scene.mesh, boundary, constrained == touched ? Selection(std::string(surface_group)) : touched);
+  const Patches patches = organ ? Patches{"ligament", "front", {}}
+                                : choose_patches(scene.mesh, boundary, options.constrained, options.touched);
+  scene.remark = patches.remark;
+  const Selection constrained = selection_of(patches.constrained, scene.mesh),
+                  touched = selection_of(patches.touched, scene.mesh);
+  const auto wide = resolve_faces(
+      scene.mesh, boundary, patches.constrained == patches.touched ? Selection(std::string(surface_group)) : touched);
   const auto touched_nodes = resolve_nodes(scene.mesh, boundary, touched);
   const auto constrained_nodes = resolve_nodes(scene.mesh, boundary, constrained);
   std::vector<BoundaryFace> constrained_faces;

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "arguments.hpp"
+
 namespace tradeoff {
 
 using namespace palpate;
@@ -34,6 +36,7 @@ struct PressScene {
   double small = 0.0, large = 0.0;  ///< depths of the holds [m]
   double speed = 0.02;              ///< speed between the holds [m/s]
   double reach = 0.0;               ///< largest distance of a contact from `point` [m]
+  std::string remark;               ///< which parts were chosen because none were given
 
   /// The scene with supports, touchable at the group `touched`.
   Scene scene(const std::string& touched) const {
@@ -46,13 +49,6 @@ struct PressScene {
     for (const Sphere& b : spheres) c.push_back(b.touching + depth * b.towards);
     return c;
   }
-};
-
-/// Options of a scene from the command line.
-struct SceneOptions {
-  std::string mesh, constrained, touched;  ///< file and groups; empty: the organ of palpate and its groups
-  std::string kind = "palpate";     ///< palpate, retract or grasp
-  double youngs_modulus = 5e3, poisson_ratio = 0.45, density = 1060.0;
 };
 
 /// palpate: a sphere pressed into the middle of the touchable group, in the organ over its stiff lesion; retract: a

@@ -31,6 +31,12 @@ class ForceErrorMeasurement {
   std::shared_ptr<const ForceAccuracy> take() const;
   const AccuracyReport& report() const noexcept { return report_; }
 
+  /// The points of the places over vertices, in the frame of the tools.
+  std::vector<SurfacePoint> points() const;
+  /// The report on another tissue of the same body, pressed at the same points; after `press_reference`. Valid for
+  /// tissues that are not displaced by loads.
+  AccuracyReport compared(const TissueView& tissue) const;
+
  private:
   using Positions = std::array<SurfacePoint, MissingDepth::positions>;
   using Presses = std::array<std::vector<PressedPoint>, MissingDepth::positions>;

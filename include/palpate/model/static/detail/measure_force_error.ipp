@@ -251,6 +251,22 @@ PALPATE_INLINE void ForceErrorMeasurement::summarise() {
   report_.places = static_cast<int>(places_.size());
 }
 
+PALPATE_INLINE std::vector<SurfacePoint> ForceErrorMeasurement::points() const {
+  std::vector<SurfacePoint> result;
+  const auto position = [&](int v) -> Vector3 { return source_.origin + source_.surface.position(v); };
+  for (const Place& place : places_) result.push_back(points(place, position).front());
+  return result;
+}
+
+PALPATE_INLINE AccuracyReport ForceErrorMeasurement::compared(const TissueView& tissue) const {
+  ForceErrorMeasurement other(*this);
+  other.report_.typical = other.report_.largest = other.report_.facet = 0.0;
+  other.report_.places = 0;
+  other.press_given(tissue);
+  other.summarise();
+  return other.report_;
+}
+
 /// Places differ although their facets are of equal length: a part of the largest difference between a place and the
 /// others is added to its doubt.
 PALPATE_INLINE void ForceErrorMeasurement::add_spread(std::vector<MissingDepth>& places) {

@@ -1,0 +1,81 @@
+// Sets up and measures the compositions among which `suggest` chooses.
+#pragma once
+
+#include <palpate/model/static/detail/measure_force_error.hpp>
+#include <palpate/model/static/suggest.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// p99 of the processor time of ticks in which the sphere of a servo, made with `rigid_press_options`, presses these
+/// points by up to half of its radius [s].
+double pressing_tick_seconds(HapticServo& servo, double radius, const std::vector<SurfacePoint>& points);
+
+/// Measures candidates until the time is over. Keeps references.
+class CandidateMaker {
+ public:
+  /// Throws bad_argument.
+  CandidateMaker(const Mesh<Tet4>& mesh, const Scene& scene, const RegionMaterials<LinearElastic>& materials,
+                 const SuggestBudget& budget);
+  CandidateMaker(const CandidateMaker&) = delete;
+  CandidateMaker& operator=(const CandidateMaker&) = delete;
+  ~CandidateMaker();
+
+  /// Every candidate once. Throws the errors of the set-up of Tet4 on the mesh as given.
+  std::vector<SuggestedModel> make_all();
+  /// Of the fine tissue, or why it was not made.
+  const std::string& reference_remark() const noexcept { return reference_remark_; }
+  /// Since the construction [s].
+  double seconds() const noexcept;
+
+ private:
+  struct Base;
+  /// Set-up times of the candidate measured last, for predictions.
+  struct Cost {
+    double nodes = 0.0, touched = 0.0;        // counts
+    double of_nodes = 0.0, of_touched = 0.0;  // of its stages [s]
+  };
+  struct Pending {
+    SuggestedModel model;
+    double nodes = 0.0, touched = 0.0;
+    std::function<void(SuggestedModel&)> measure;
+  };
+
+  void make_base(SuggestedModel& model);
+  /// Runs `work`; an error becomes the remark.
+  template <class Work>
+  void attempt(SuggestedModel& model, Work work);
+  template <class E>
+  Pending pending(const char* element, double edge);
+  template <class E>
+  void measure(SuggestedModel& model, const Mesh<E>& mesh);
+  template <class Tissue>
+  void enter(SuggestedModel& model, Tissue& tissue);
+  /// Measures it, or leaves it out because of its predicted time.
+  void finish(Pending& pending);
+  /// Time of its set-up [s].
+  double predicted(const Pending& pending) const;
+  std::vector<double> edges() const;
+  /// Cancels what runs longer than this [s], and what runs when the time is over.
+  ProgressCallback within(double seconds) const;
+
+  const Mesh<Tet4>& mesh_;
+  Scene scene_;
+  const RegionMaterials<LinearElastic>& materials_;
+  SuggestBudget budget_;
+  std::int64_t start_;
+  std::unique_ptr<Base> base_;
+  Cost cost_;
+  std::string reference_remark_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/static/detail/candidate_maker.ipp>
+#endif

@@ -1,0 +1,277 @@
+// Definitions of candidate_maker.hpp.
+#pragma once
+
+#include <palpate/model/static/detail/candidate_maker.hpp>
+
+#include <palpate/core/platform.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/element/tet10.hpp>
+#include <palpate/mesh/promote.hpp>
+#include <palpate/mesh/selection.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <type_traits>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+namespace detail {
+
+/// The supports and the touchable part of a scene, without its loads.
+inline Scene scene_at_rest(const Scene& scene) {
+  Scene rest;
+  for (const auto& [where, values] : scene.prescribed()) {
+    Components zero{};
+    for (std::size_t c = 0; c < 3; ++c)
+      if (values[c]) zero[c] = 0.0;
+    rest.prescribe(where, zero);
+  }
+  for (const Selection& part : scene.touched()) rest.touch(part, {.radius = scene.touch_radius()});
+  return rest;
+}
+
+/// A model whose body and supports can be measured.
+class PressableTissue : public HapticFEModel<Tet4, LinearElastic> {
+ public:
+  using HapticFEModel::HapticFEModel;
+
+  ForceErrorSource source(int places) {
+    conditions_ = elastic_body().conditions(scene());
+    return {elastic_body(),          conditions_, touchable_nodes(), contact_surface(), to_world().translation(),
+            scene().touch_radius(), places};
+  }
+
+ private:
+  EssentialConditions conditions_;
+};
+
+}  // namespace detail
+
+PALPATE_INLINE double pressing_tick_seconds(HapticServo& servo, double radius,
+                                            const std::vector<SurfacePoint>& points) {
+  constexpr int ticks = 600, rounds = 2;
+  constexpr double two_pi = 6.283185307179586, waves = 1.0;
+  double best = infinity;  // of the rounds: other programs only make ticks longer
+  std::vector<std::int64_t> times;
+  times.reserve(ticks);
+  for (int round = 0; round < rounds; ++round) {
+    times.clear();
+    servo.reset();
+    ToolState state;
+    for (int i = 0; i < ticks; ++i) {
+      const SurfacePoint& point = points[static_cast<std::size_t>(i) * points.size() / ticks];
+      const double depth = radius * (0.2 - 0.3 * std::cos(two_pi * waves * i * static_cast<double>(points.size()) / ticks));
+      state.time += 1e-3;
+      state.position = point.position + (radius - depth) * point.outward;
+      const std::int64_t before = platform::compute_ns();
+      servo.tick(state);
+      times.push_back(platform::compute_ns() - before);
+    }
+    const auto p99 = times.begin() + ticks * 99 / 100;
+    std::nth_element(times.begin(), p99, times.end());
+    best = std::min(best, 1e-9 * static_cast<double>(*p99));
+  }
+  return best;
+}
+
+/// The model of Tet4 on the mesh as given, and the errors measured from it.
+struct CandidateMaker::Base {
+  detail::PressableTissue tissue;
+  ForceErrorMeasurement errors;
+
+  Base(const Mesh<Tet4>& mesh, const Scene& scene, const RegionMaterials<LinearElastic>& materials, int places,
+       const SetupOptions& options)
+      : tissue(mesh, scene, materials, options), errors(tissue.source(places)) {}
+};
+
+PALPATE_INLINE CandidateMaker::CandidateMaker(const Mesh<Tet4>& mesh, const Scene& scene,
+                                              const RegionMaterials<LinearElastic>& materials,
+                                              const SuggestBudget& budget)
+    : mesh_(mesh),
+      scene_(detail::scene_at_rest(scene)),
+      materials_(materials),
+      budget_(budget),
+      start_(platform::wall_ns()) {
+  const auto require = [](bool good, const char* what) {
+    if (!good) raise(SetupErrorKind::bad_argument, std::string(what) + " of the budget is out of range");
+  };
+  require(budget.tick_seconds > 0.0, "the time of a tick");
+  require(budget.setup_seconds > 0.0, "the time of the set-up");
+  require(budget.error >= 0.0, "the error");
+  require(budget.seconds > 0.0, "the time for the suggestion");
+  require(budget.places > 0, "the number of places");
+  if (!(scene.touch_radius() > 0.0))
+    raise(SetupErrorKind::bad_argument, "the scene does not give the radius of the tool",
+          "Give it: touch(where, {.radius = 4e-3})");
+}
+
+PALPATE_INLINE CandidateMaker::~CandidateMaker() = default;
+
+PALPATE_INLINE double CandidateMaker::seconds() const noexcept {
+  return 1e-9 * static_cast<double>(platform::wall_ns() - start_);
+}
+
+PALPATE_INLINE ProgressCallback CandidateMaker::within(double most) const {
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  const double end = std::min(seconds() + most, budget_.seconds);
+  return [this, end](const Progress&) { return seconds() < end; };
+#else
+  (void)most;
+  return {};
+#endif
+}
+
+template <class Tissue>
+void CandidateMaker::enter(SuggestedModel& model, Tissue& tissue) {
+  const SetupReport& report = tissue.report();
+  model.nodes = report.nodes;
+  model.kept_dofs = report.kept_dofs;
+  model.bytes = report.stiffness_bytes + report.solver_bytes + report.compliance_bytes;
+  const TissueView view(tissue);
+  HapticServo servo(tissue, SphereTool{scene_.touch_radius()}, rigid_press_options(0));
+  model.tick = pressing_tick_seconds(servo, scene_.touch_radius(), base_->errors.points());
+  if (!reference_remark_.empty()) {
+    model.remark = reference_remark_;
+    return;
+  }
+  model.error = base_->errors.compared(view).typical;
+  model.measured = true;
+}
+
+/// Tet4 on the mesh as given, and the fine tissue.
+PALPATE_INLINE void CandidateMaker::make_base(SuggestedModel& model) {
+  const double before = seconds();
+  base_ = std::make_unique<Base>(mesh_, scene_, materials_, budget_.places, SetupOptions{});
+  model.setup = seconds() - before;
+  if (base_->errors.is_possible()) {
+    const TissueView view(base_->tissue);
+    base_->errors.press_given(view);
+#if defined(PALPATE_HAS_EXCEPTIONS)
+    try {
+      base_->errors.press_reference({.progress = within(budget_.seconds)});
+    } catch (const SetupError& error) {
+      if (error.kind() != SetupErrorKind::cancelled) throw;
+      reference_remark_ = "the tissue on a fine mesh, for comparison, takes longer than the suggestion may";
+    }
+#else
+    base_->errors.press_reference({});
+#endif
+  }
+  if (reference_remark_.empty()) reference_remark_ = base_->errors.report().remark;
+  if (base_->errors.is_possible()) enter(model, base_->tissue);
+  model.remark = reference_remark_;
+}
+
+template <class E>
+void CandidateMaker::measure(SuggestedModel& model, const Mesh<E>& mesh) {
+  using Model = HapticFEModel<std::conditional_t<std::same_as<E, Tet4>, Smoothed<Tet4>, E>, LinearElastic>;
+  const double before = seconds();
+  Model tissue(mesh, scene_, materials_, SetupOptions{.progress = within(budget_.setup_seconds)});
+  model.setup += seconds() - before;
+  enter(model, tissue);
+  cost_ = {static_cast<double>(model.nodes), static_cast<double>(tissue.touchable_nodes().size())};
+  for (const auto& [stage, time] : tissue.report().seconds)
+    (stage == "condensation" || stage == "compliance" ? cost_.of_touched : cost_.of_nodes) += time;
+}
+
+/// Elimination grows a little faster than the nodes, the stored compliance with the square of the touchable ones:
+/// estimates from below.
+PALPATE_INLINE double CandidateMaker::predicted(const Pending& p) const {
+  if (!(cost_.nodes > 0.0)) return p.model.setup;
+  return p.model.setup + cost_.of_nodes * std::pow(p.nodes / cost_.nodes, 1.2) +
+         cost_.of_touched * std::pow(p.touched / cost_.touched, 2.0);
+}
+
+template <class Work>
+void CandidateMaker::attempt(SuggestedModel& model, Work work) {
+  const double before = seconds();
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  try {
+    work();
+  } catch (const SetupError& error) {
+    model.setup = seconds() - before;
+    model.remark = error.kind() != SetupErrorKind::cancelled ? error.what()
+                   : seconds() < budget_.seconds             ? "its set-up takes longer than the budget"
+                                                             : "the time for the suggestion is over";
+  }
+#else
+  work();
+#endif
+}
+
+/// A candidate with its mesh, E: Tet4 for Smoothed<Tet4>.
+template <class E>
+CandidateMaker::Pending CandidateMaker::pending(const char* element, double edge) {
+  constexpr Index most_nodes_factor = 20, least_most_nodes = 20000;
+  Pending p;
+  p.model.element = element;
+  p.model.edge = edge;
+  attempt(p.model, [&] {
+    const double before = seconds();
+    Mesh<Tet4> near = mesh_;
+    if (edge > 0.0)
+      near = refine_near_touched(mesh_, scene_, edge,
+                                 {.most_nodes = std::max(most_nodes_factor * mesh_.node_count(), least_most_nodes)});
+    Mesh<E> mesh;
+    if constexpr (std::same_as<E, Tet10>)
+      mesh = promote<Tet10>(near);
+    else
+      mesh = std::move(near);
+    p.model.setup = seconds() - before;
+    p.model.nodes = mesh.node_count();
+    const auto boundary = extract_boundary<E>(mesh);
+    p.nodes = static_cast<double>(mesh.node_count());
+    for (const Selection& part : scene_.touched())
+      p.touched += static_cast<double>(nodes_of(resolve_faces(mesh, boundary, part)).size());
+    p.measure = [this, kept = std::move(mesh)](SuggestedModel& model) { measure(model, kept); };
+  });
+  return p;
+}
+
+PALPATE_INLINE void CandidateMaker::finish(Pending& p) {
+  constexpr double sure = 1.5;  // of the prediction
+  if (!p.measure) return;
+  const double left = budget_.seconds - seconds(), expected = predicted(p);
+  if (left <= 0.0) {
+    p.model.remark = "not tried: the time for the suggestion is over";
+  } else if (expected > sure * std::min(left, budget_.setup_seconds)) {
+    p.model.setup = expected;
+    p.model.remark = "not tried: its set-up is predicted to take " + number(std::round(10.0 * expected) / 10.0) + " s";
+  } else {
+    attempt(p.model, [&] { p.measure(p.model); });
+  }
+}
+
+/// Fractions of the radius that are shorter than the edges of the facets as given.
+PALPATE_INLINE std::vector<double> CandidateMaker::edges() const {
+  std::vector<double> edges;
+  for (const double parts : {2.0, 3.0, 5.0})
+    if (const double edge = scene_.touch_radius() / parts; edge < 0.8 * base_->errors.report().facet)
+      edges.push_back(edge);
+  return edges;
+}
+
+/// Those that are set up soonest first.
+PALPATE_INLINE std::vector<SuggestedModel> CandidateMaker::make_all() {
+  std::vector<SuggestedModel> models(1);
+  models.front().element = "Tet4";
+  make_base(models.front());
+  if (!reference_remark_.empty()) return models;
+  Pending smoothed = pending<Tet4>("Smoothed<Tet4>", 0.0);
+  finish(smoothed);
+  models.push_back(std::move(smoothed.model));
+  std::vector<Pending> others;
+  for (const double edge : edges()) others.push_back(pending<Tet4>("Smoothed<Tet4>", edge));
+  others.push_back(pending<Tet10>("Tet10", 0.0));
+  std::ranges::sort(others, {}, [this](const Pending& p) { return predicted(p); });
+  for (Pending& p : others) {
+    finish(p);
+    models.push_back(std::move(p.model));
+  }
+  return models;
+}
+
+}}  // namespace palpate

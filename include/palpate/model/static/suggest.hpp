@@ -1,0 +1,75 @@
+// Advice before a model is made: the element and the mesh for linear tissue that a tool presses, within a budget.
+#pragma once
+
+#include <palpate/assembly/detail/region_materials.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/refine_near.hpp>
+#include <palpate/mesh/scene.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// What a suggested composition may cost. All positive; infinity: any.
+struct SuggestBudget {
+  double tick_seconds = 500e-6;  ///< 99 of 100 ticks, while the tool presses
+  double setup_seconds = 5.0;
+  double error = 0.0;    ///< wanted error of the force, relative; 0: as small as possible
+  double seconds = 5.0;  ///< for the suggestion itself: what would end later is not tried, or cancelled
+  int places = 3;        ///< of the touchable surface where the tool is pressed
+};
+
+/// A composition of element and mesh with `Condensed<SelectiveInverse>`, and what was measured of it.
+struct SuggestedModel {
+  std::string element;     ///< "Tet4", "Smoothed<Tet4>" or "Tet10"
+  double edge = 0.0;       ///< of `refine_near_touched` [m]; 0: the mesh as given
+  bool measured = false;   ///< else `remark` has the reason, and the figures below may be 0
+  double error = 0.0;      ///< AccuracyReport::typical, against a fine mesh
+  double tick = 0.0;       ///< p99 of the processor time of ticks that press by half of the radius [s]
+  double setup = 0.0;      ///< of the set-up, refinement included [s]
+  std::size_t bytes = 0;   ///< of stiffness, solver and compliance
+  Index nodes = 0, kept_dofs = 0;
+  std::string remark;      ///< why it was not measured, or is not within the budget
+
+  std::string name() const;
+};
+
+/// The advice of `suggest`.
+struct Suggestion {
+  std::vector<SuggestedModel> candidates;
+  std::optional<std::size_t> chosen;  ///< empty: none is within the tick and the set-up of the budget
+  bool within_error = false;          ///< whether the chosen one has the wanted error
+  std::string reason;                 ///< one sentence
+  double seconds = 0.0;               ///< that the suggestion took
+
+  /// C++ code that makes the chosen model of `mesh`, `scene` and `material`; a comment when none is chosen.
+  std::string code() const;
+};
+
+/// The mesh with edges of at most `edge` [m] on the touchable part of a scene, longer ones with the distance. Throws
+/// unsupported for a scene that selects by lists of nodes, as new nodes are in no list; the errors of `refine_near`.
+Mesh<Tet4> refine_near_touched(const Mesh<Tet4>& mesh, const Scene& scene, double edge,
+                               const RefineNearOptions& options = {});
+
+/// Which of Tet4, Smoothed<Tet4> and Tet10 on the mesh as given, and Smoothed<Tet4> on meshes refined near the
+/// touchable part, presses most accurately within the budget on this machine. Each is set up, pressed at the same
+/// points as one tissue on a fine mesh (detail/measure_force_error.hpp), and its ticks are timed; one whose set-up is
+/// predicted to exceed the budget by far, from those before it, is left out. If an error is wanted, the one with the shortest set-up among those with that error is chosen; else, and if none has it, that with
+/// the least error. Loads and prescribed displacements of the scene are left out: the tool presses the body at rest.
+///
+/// Valid for tools that press; what lifts or pulls a part needs large strain (docs/choosing.md). Throws bad_argument
+/// for a budget out of range, or a scene without the radius of the tool (TouchOptions); the errors of a set-up.
+Suggestion suggest(const Mesh<Tet4>& mesh, const Scene& scene, const RegionMaterials<LinearElastic>& materials,
+                   const SuggestBudget& budget = {});
+Suggestion suggest(const Mesh<Tet4>& mesh, const Scene& scene, const LinearElastic& material,
+                   const SuggestBudget& budget = {});
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/static/suggest.ipp>
+#endif
