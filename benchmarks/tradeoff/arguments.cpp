@@ -34,7 +34,8 @@ void require_mesh(const Arguments& a) {
     refuse("there is no scene '" + scene.kind + "'", "There are palpate, retract and grasp");
   if (scene.mesh.empty()) {
     if (!scene.constrained.empty() || !scene.touched.empty())
-      refuse("--fix and --touch are parts of a mesh, and no mesh is given", "Name its file: tradeoff liver.msh --fix ...");
+      refuse("--fix and --touch are parts of a mesh, and no mesh is given",
+             "Name its file: tradeoff liver.msh --fix ...");
     return;
   }
   if (scene.kind != "palpate")
@@ -46,7 +47,9 @@ void require_mesh(const Arguments& a) {
 
 Arguments parse_arguments(std::span<const std::string> words) {
   Arguments a;
-  const auto keep = [](std::string& where) { return [&where](const std::string&, const std::string& v) { where = v; }; };
+  const auto keep = [](std::string& where) {
+    return [&where](const std::string&, const std::string& v) { where = v; };
+  };
   const std::map<std::string, std::function<void(const std::string&, const std::string&)>> options{
       {"--fix", keep(a.scene.constrained)},
       {"--touch", keep(a.scene.touched)},

@@ -125,8 +125,8 @@ std::string outermost(const Mesh<Tet4>& mesh, const std::vector<BoundaryFace>& b
   return std::string(1, static_cast<char>('x' + axis)) + (side > 0 ? '>' : '<') + number(side * bound);
 }
 
-Patches choose_patches(const Mesh<Tet4>& mesh, const std::vector<BoundaryFace>& boundary, const std::string& constrained,
-                       const std::string& touched) {
+Patches choose_patches(const Mesh<Tet4>& mesh, const std::vector<BoundaryFace>& boundary,
+                       const std::string& constrained, const std::string& touched) {
   Patches p{constrained, touched, {}};
   const auto nodes = [&](const std::string& text) { return resolve_nodes(mesh, boundary, selection_of(text, mesh)); };
   const auto tell = [&](const char* option, const char* what, const std::string& text) {
@@ -149,7 +149,8 @@ Patches choose_patches(const Mesh<Tet4>& mesh, const std::vector<BoundaryFace>& 
       std::ranges::copy_if(f.nodes, std::back_inserter(free),
                            [&](NodeId i) { return !std::ranges::binary_search(fixed, i); });
     if (free.empty())
-      raise(SetupErrorKind::bad_argument, "all nodes of --touch \"" + p.touched + "\" are fixed by --fix \"" + p.constrained + '"',
+      raise(SetupErrorKind::bad_argument,
+            "all nodes of --touch \"" + p.touched + "\" are fixed by --fix \"" + p.constrained + '"',
             "Give --fix and --touch");
   }
   return p;

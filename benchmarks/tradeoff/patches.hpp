@@ -35,7 +35,7 @@ struct Patches {
 /// to the constrained one, along the axis in which that is farthest from the middle of the body; constrained opposite
 /// to what is touched when that is given. Throws the errors of `selection_of` and of resolving; bad_argument when every
 /// touchable node would be constrained.
-Patches choose_patches(const Mesh<Tet4>& mesh, const std::vector<BoundaryFace>& boundary, const std::string& constrained,
-                       const std::string& touched);
+Patches choose_patches(const Mesh<Tet4>& mesh, const std::vector<BoundaryFace>& boundary,
+                       const std::string& constrained, const std::string& touched);
 
 }  // namespace tradeoff

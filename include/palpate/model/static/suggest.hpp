@@ -25,15 +25,15 @@ struct SuggestBudget {
 
 /// A composition of element and mesh with `Condensed<SelectiveInverse>`, and what was measured of it.
 struct SuggestedModel {
-  std::string element;     ///< "Tet4", "Smoothed<Tet4>" or "Tet10"
-  double edge = 0.0;       ///< of `refine_near_touched` [m]; 0: the mesh as given
-  bool measured = false;   ///< else `remark` has the reason, and the figures below may be 0
-  double error = 0.0;      ///< AccuracyReport::typical, against a fine mesh
-  double tick = 0.0;       ///< p99 of the processor time of ticks that press by half of the radius [s]
-  double setup = 0.0;      ///< of the set-up, refinement included [s]
-  std::size_t bytes = 0;   ///< of stiffness, solver and compliance
+  std::string element;    ///< "Tet4", "Smoothed<Tet4>" or "Tet10"
+  double edge = 0.0;      ///< of `refine_near_touched` [m]; 0: the mesh as given
+  bool measured = false;  ///< else `remark` has the reason, and the figures below may be 0
+  double error = 0.0;     ///< AccuracyReport::typical, against a fine mesh
+  double tick = 0.0;      ///< p99 of the processor time of ticks that press by half of the radius [s]
+  double setup = 0.0;     ///< of the set-up, refinement included [s]
+  std::size_t bytes = 0;  ///< of stiffness, solver and compliance
   Index nodes = 0, kept_dofs = 0;
-  std::string remark;      ///< why it was not measured, or is not within the budget
+  std::string remark;  ///< why it was not measured, or is not within the budget
 
   std::string name() const;
 };
@@ -58,8 +58,9 @@ Mesh<Tet4> refine_near_touched(const Mesh<Tet4>& mesh, const Scene& scene, doubl
 /// Which of Tet4, Smoothed<Tet4> and Tet10 on the mesh as given, and Smoothed<Tet4> on meshes refined near the
 /// touchable part, presses most accurately within the budget on this machine. Each is set up, pressed at the same
 /// points as one tissue on a fine mesh (detail/measure_force_error.hpp), and its ticks are timed; one whose set-up is
-/// predicted to exceed the budget by far, from those before it, is left out. If an error is wanted, the one with the shortest set-up among those with that error is chosen; else, and if none has it, that with
-/// the least error. Loads and prescribed displacements of the scene are left out: the tool presses the body at rest.
+/// predicted to exceed the budget by far is left out. If an error is wanted, the one with the shortest set-up among
+/// those with that error is chosen; else, and if none has it, that with the least error. Loads and prescribed
+/// displacements of the scene are left out: the tool presses the body at rest.
 ///
 /// Valid for tools that press; what lifts or pulls a part needs large strain (docs/choosing.md). Throws bad_argument
 /// for a budget out of range, or a scene without the radius of the tool (TouchOptions); the errors of a set-up.

@@ -31,7 +31,8 @@ inline std::string percent_text(double part) {
 /// What a candidate exceeds; empty: nothing.
 inline std::string excess(const SuggestedModel& model, const SuggestBudget& budget) {
   if (model.tick > budget.tick_seconds)
-    return "a tick takes " + rounded(1e6 * model.tick, "us") + ", more than " + rounded(1e6 * budget.tick_seconds, "us");
+    return "a tick takes " + rounded(1e6 * model.tick, "us") + ", more than " +
+           rounded(1e6 * budget.tick_seconds, "us");
   if (model.setup > budget.setup_seconds)
     return "the set-up takes " + rounded(model.setup, "s") + ", more than " + rounded(budget.setup_seconds, "s");
   return {};
@@ -70,7 +71,9 @@ inline std::string reason_for(const Suggestion& s, const SuggestBudget& budget) 
   if (!s.chosen) {
     const auto fastest = best_of(
         s.candidates, [](const SuggestedModel& m) { return m.measured; },
-        [&](const SuggestedModel& m) { return std::max(m.tick / budget.tick_seconds, m.setup / budget.setup_seconds); });
+        [&](const SuggestedModel& m) {
+          return std::max(m.tick / budget.tick_seconds, m.setup / budget.setup_seconds);
+        });
     if (!fastest) return "nothing could be measured: " + s.candidates.front().remark;
     const SuggestedModel& m = s.candidates[*fastest];
     return "nothing is within the budget; nearest is " + m.name() + ": " + m.remark;
@@ -94,7 +97,7 @@ PALPATE_INLINE std::string SuggestedModel::name() const {
 PALPATE_INLINE std::string Suggestion::code() const {
   if (!chosen) return "// " + reason + "\n";
   const SuggestedModel& m = candidates[*chosen];
-  const std::string mesh = m.edge > 0.0            ? "refine_near_touched(mesh, scene, " + number(m.edge) + ")"
+  const std::string mesh = m.edge > 0.0           ? "refine_near_touched(mesh, scene, " + number(m.edge) + ")"
                            : m.element == "Tet10" ? "promote<Tet10>(mesh)"
                                                   : "mesh";
   return "// " + reason + "\nusing Model = HapticFEModel<" + m.element +

@@ -35,7 +35,7 @@ class CandidateMaker {
 
  private:
   struct Base;
-  /// Set-up times of the candidate measured last, for predictions.
+  /// Set-up times of a candidate on the mesh as given, for predictions.
   struct Cost {
     double nodes = 0.0, touched = 0.0;        // counts
     double of_nodes = 0.0, of_touched = 0.0;  // of its stages [s]
@@ -70,7 +70,7 @@ class CandidateMaker {
   SuggestBudget budget_;
   std::int64_t start_;
   std::unique_ptr<Base> base_;
-  Cost cost_;
+  Cost tet4_, smoothed_;
   std::string reference_remark_;
 };
 

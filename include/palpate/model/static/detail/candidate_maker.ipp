@@ -40,6 +40,7 @@ class PressableTissue : public HapticFEModel<Tet4, LinearElastic> {
 
   ForceErrorSource source(int places) {
     conditions_ = elastic_body().conditions(scene());
+<<<<<<< HEAD
     return {elastic_body(),
             conditions_,
             touchable_nodes(),
@@ -49,6 +50,10 @@ class PressableTissue : public HapticFEModel<Tet4, LinearElastic> {
             places,
             node_map(),
             nullptr};
+=======
+    return {elastic_body(),         conditions_, touchable_nodes(), contact_surface(), to_world().translation(),
+            scene().touch_radius(), places};
+>>>>>>> dev-e
   }
 
  private:
@@ -70,8 +75,13 @@ PALPATE_INLINE double pressing_tick_seconds(HapticServo& servo, double radius,
     ToolState state;
     for (int i = 0; i < ticks; ++i) {
       const SurfacePoint& point = points[static_cast<std::size_t>(i) * points.size() / ticks];
+<<<<<<< HEAD
       const double depth =
           radius * (0.2 - 0.3 * std::cos(two_pi * waves * i * static_cast<double>(points.size()) / ticks));
+=======
+      const double wave = waves * i * static_cast<double>(points.size()) / ticks;
+      const double depth = radius * (0.2 - 0.3 * std::cos(two_pi * wave));
+>>>>>>> dev-e
       state.time += 1e-3;
       state.position = point.position + (radius - depth) * point.outward;
       const std::int64_t before = platform::compute_ns();
@@ -138,6 +148,12 @@ void CandidateMaker::enter(SuggestedModel& model, Tissue& tissue) {
   model.nodes = report.nodes;
   model.kept_dofs = report.kept_dofs;
   model.bytes = report.stiffness_bytes + report.solver_bytes + report.compliance_bytes;
+  if (Cost& cost = model.element == "Tet4" ? tet4_ : smoothed_; cost.nodes == 0.0) {  // Smoothed<Tet4> is before Tet10
+    cost.nodes = static_cast<double>(model.nodes);
+    cost.touched = static_cast<double>(tissue.touchable_nodes().size());
+    for (const auto& [stage, time] : report.seconds)
+      (stage == "condensation" || stage == "compliance" ? cost.of_touched : cost.of_nodes) += time;
+  }
   const TissueView view(tissue);
   HapticServo servo(tissue, SphereTool{scene_.touch_radius()}, rigid_press_options(0));
   model.tick = pressing_tick_seconds(servo, scene_.touch_radius(), base_->errors.points());
@@ -180,17 +196,16 @@ void CandidateMaker::measure(SuggestedModel& model, const Mesh<E>& mesh) {
   Model tissue(mesh, scene_, materials_, SetupOptions{.progress = within(budget_.setup_seconds)});
   model.setup += seconds() - before;
   enter(model, tissue);
-  cost_ = {static_cast<double>(model.nodes), static_cast<double>(tissue.touchable_nodes().size())};
-  for (const auto& [stage, time] : tissue.report().seconds)
-    (stage == "condensation" || stage == "compliance" ? cost_.of_touched : cost_.of_nodes) += time;
 }
 
-/// Elimination grows a little faster than the nodes, the stored compliance with the square of the touchable ones:
-/// estimates from below.
+/// Elimination in three dimensions grows with the square of the nodes; storing the compliance of the touchable ones
+/// with the square of their number, eliminating it with the cube: between them. Tet10 is as sparse as Tet4,
+/// Smoothed<Tet4> is not.
 PALPATE_INLINE double CandidateMaker::predicted(const Pending& p) const {
-  if (!(cost_.nodes > 0.0)) return p.model.setup;
-  return p.model.setup + cost_.of_nodes * std::pow(p.nodes / cost_.nodes, 1.2) +
-         cost_.of_touched * std::pow(p.touched / cost_.touched, 2.0);
+  const Cost& known = p.model.element == "Tet10" ? tet4_ : smoothed_;
+  if (!(known.nodes > 0.0)) return p.model.setup;
+  return p.model.setup + known.of_nodes * std::pow(p.nodes / known.nodes, 2.0) +
+         known.of_touched * std::pow(p.touched / known.touched, 2.5);
 }
 
 template <class Work>
@@ -257,12 +272,11 @@ PALPATE_INLINE void CandidateMaker::finish(Pending& p) {
 PALPATE_INLINE std::vector<double> CandidateMaker::edges() const {
   std::vector<double> edges;
   for (const double parts : {2.0, 3.0, 5.0})
-    if (const double edge = scene_.touch_radius() / parts; edge < 0.8 * base_->errors.report().facet)
-      edges.push_back(edge);
+    if (const double edge = scene_.touch_radius() / parts; edge < base_->errors.report().facet) edges.push_back(edge);
   return edges;
 }
 
-/// Those that are set up soonest first.
+/// The mesh as given first: finer facets make more contacts and longer ticks. Then those that are set up soonest.
 PALPATE_INLINE std::vector<SuggestedModel> CandidateMaker::make_all() {
   std::vector<SuggestedModel> models(1);
   models.front().element = "Tet4";
@@ -273,8 +287,8 @@ PALPATE_INLINE std::vector<SuggestedModel> CandidateMaker::make_all() {
   models.push_back(std::move(smoothed.model));
   std::vector<Pending> others;
   for (const double edge : edges()) others.push_back(pending<Tet4>("Smoothed<Tet4>", edge));
-  others.push_back(pending<Tet10>("Tet10", 0.0));
   std::ranges::sort(others, {}, [this](const Pending& p) { return predicted(p); });
+  others.insert(others.begin(), pending<Tet10>("Tet10", 0.0));
   for (Pending& p : others) {
     finish(p);
     models.push_back(std::move(p.model));
