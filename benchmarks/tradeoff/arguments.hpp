@@ -14,7 +14,7 @@ struct SceneOptions {
   double youngs_modulus = 5e3, poisson_ratio = 0.45, density = 1060.0;
 };
 
-/// What the command line says. Files are not read yet.
+/// What the command line contains. Files are not read yet.
 struct Arguments {
   SceneOptions scene;
   double budget = 50e-6;  ///< time of a tick [s]

@@ -48,10 +48,10 @@ struct Description {
 /// A row of the table. Errors are relative; NaN when there is nothing to measure.
 struct Row : Description {
   Index nodes = 0, kept_dofs = 0;
-  double setup = 0.0, bytes = 0.0;                ///< [s], [bytes] at the peak of set-up
-  double p50 = 0.0, p99 = 0.0, worst = 0.0;       ///< time of a tick [s]
-  double update_p99 = 0.0, update_period = 0.0;   ///< [s]
-  double force_small = 0.0, force_large = 0.0;    ///< force error in holds
+  double setup = 0.0, bytes = 0.0;               ///< [s], [bytes] at the peak of set-up
+  double p50 = 0.0, p99 = 0.0, worst = 0.0;      ///< time of a tick [s]
+  double update_p99 = 0.0, update_period = 0.0;  ///< [s]
+  double force_small = 0.0, force_large = 0.0;   ///< force error in holds
   double in_motion = 0.0;  ///< root mean square force error in motion (of the largest force); column "in motion"
   double moved_small = 0.0, moved_large = 0.0;    ///< root mean square displacement error of all nodes
   double volume_small = 0.0, volume_large = 0.0;  ///< error of volume, relative to the volume displaced by the spheres

@@ -28,9 +28,9 @@ Mesh<Tet4> refined(const Mesh<Tet4>& mesh, bool full) {
 }
 
 void print(const Row& r) {
-  std::printf("%-100s set-up %8.4g ms  p99 %9.4g us  force %6.2f %% %6.2f %%  in motion %6.2f %%  %s%s\n", r.name().c_str(),
-              1e3 * r.setup, 1e6 * r.p99, 100.0 * r.force_small, 100.0 * r.force_large, 100.0 * r.in_motion,
-              r.verdict.c_str(), r.remark.empty() ? "" : (" (" + r.remark + ")").c_str());
+  std::printf("%-100s set-up %8.4g ms  p99 %9.4g us  force %6.2f %% %6.2f %%  in motion %6.2f %%  %s%s\n",
+              r.name().c_str(), 1e3 * r.setup, 1e6 * r.p99, 100.0 * r.force_small, 100.0 * r.force_large,
+              100.0 * r.in_motion, r.verdict.c_str(), r.remark.empty() ? "" : (" (" + r.remark + ")").c_str());
   std::fflush(stdout);
 }
 

@@ -89,7 +89,7 @@ TEST_CASE("selections of tradeoff are groups, half spaces, boxes and spheres", "
   CHECK_REFUSED(SetupErrorKind::empty_group, nodes_of_text(mesh, "z<-1"));
 }
 
-TEST_CASE("parts that are not named are chosen and told", "[tradeoff]") {
+TEST_CASE("parts that are not named are chosen and printed", "[tradeoff]") {
   const Mesh<Tet4> bar = bar_without_groups();
   const auto boundary = extract_boundary<Tet4>(bar);
   const auto both = tradeoff::choose_patches(bar, boundary, "", "");
@@ -106,24 +106,25 @@ TEST_CASE("parts that are not named are chosen and told", "[tradeoff]") {
 }
 
 TEST_CASE("chosen parts of a round body support it, and contain a twelfth of its surface", "[tradeoff]") {
-  const Mesh<Tet4> ball = sphere_tet4(0.05, 3);
-  const auto boundary = extract_boundary<Tet4>(ball);
+  const Mesh<Tet4> round_body = sphere_tet4(0.05, 3);
+  const auto boundary = extract_boundary<Tet4>(round_body);
   const auto area_of = [&](const Selection& part) {
     double sum = 0.0;
-    for (const auto& f : resolve_faces(ball, boundary, part)) {
-      const Vector3 &a = ball.position(f.nodes[0]), &b = ball.position(f.nodes[1]), &c = ball.position(f.nodes[2]);
+    for (const auto& f : resolve_faces(round_body, boundary, part)) {
+      const Vector3 &a = round_body.position(f.nodes[0]), &b = round_body.position(f.nodes[1]),
+                    &c = round_body.position(f.nodes[2]);
       sum += 0.5 * (b - a).cross(c - a).norm();
     }
     return sum;
   };
-  const auto parts = tradeoff::choose_patches(ball, boundary, "", "");
+  const auto parts = tradeoff::choose_patches(round_body, boundary, "", "");
   const double whole = area_of(std::string(surface_group));
   for (const std::string& part : {parts.constrained, parts.touched}) {
     CAPTURE(part);
-    const double share = area_of(tradeoff::selection_of(part, ball)) / whole;
+    const double share = area_of(tradeoff::selection_of(part, round_body)) / whole;
     CHECK(share >= 1.0 / 12.0);
     CHECK(share < 0.2);
   }
-  for (const NodeId i : nodes_of_text(ball, parts.constrained)) CHECK(ball.position(i).z() < 0.0);
-  for (const NodeId i : nodes_of_text(ball, parts.touched)) CHECK(ball.position(i).z() > 0.0);
+  for (const NodeId i : nodes_of_text(round_body, parts.constrained)) CHECK(round_body.position(i).z() < 0.0);
+  for (const NodeId i : nodes_of_text(round_body, parts.touched)) CHECK(round_body.position(i).z() > 0.0);
 }

@@ -1,4 +1,4 @@
-// Advice on element and mesh: really measured, the best within the budget, and said when nothing is.
+// Advice on element and mesh: really measured, the best within the budget, and reported when nothing is.
 #include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/mesh/generators_box.hpp>
@@ -96,13 +96,13 @@ TEST_CASE("suggest chooses the shortest set-up among those with the wanted error
   for (const SuggestedModel& m : s.candidates)
     if (m.error <= between) CHECK(chosen.setup <= m.setup);
   const Suggestion exact = suggest(suggest_block(), suggest_scene(), suggest_material(), ample(1e-9));
-  REQUIRE(exact.chosen);  // the nearest, and told
+  REQUIRE(exact.chosen);  // the nearest, and marked
   CHECK_FALSE(exact.within_error);
   CHECK(exact.reason.find("none has an error") != std::string::npos);
   for (const SuggestedModel& m : exact.candidates) CHECK(exact.candidates[*exact.chosen].error <= m.error);
 }
 
-TEST_CASE("suggest says that nothing is within a budget", "[suggest]") {
+TEST_CASE("suggest reports that nothing is within a budget", "[suggest]") {
   SuggestBudget budget = ample();
   budget.tick_seconds = 1e-9;
   const Suggestion slow = suggest(suggest_block(), suggest_scene(), suggest_material(), budget);

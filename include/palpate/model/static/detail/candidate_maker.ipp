@@ -40,7 +40,6 @@ class PressableTissue : public HapticFEModel<Tet4, LinearElastic> {
 
   ForceErrorSource source(int places) {
     conditions_ = elastic_body().conditions(scene());
-<<<<<<< HEAD
     return {elastic_body(),
             conditions_,
             touchable_nodes(),
@@ -50,10 +49,6 @@ class PressableTissue : public HapticFEModel<Tet4, LinearElastic> {
             places,
             node_map(),
             nullptr};
-=======
-    return {elastic_body(),         conditions_, touchable_nodes(), contact_surface(), to_world().translation(),
-            scene().touch_radius(), places};
->>>>>>> dev-e
   }
 
  private:
@@ -75,13 +70,8 @@ PALPATE_INLINE double pressing_tick_seconds(HapticServo& servo, double radius,
     ToolState state;
     for (int i = 0; i < ticks; ++i) {
       const SurfacePoint& point = points[static_cast<std::size_t>(i) * points.size() / ticks];
-<<<<<<< HEAD
-      const double depth =
-          radius * (0.2 - 0.3 * std::cos(two_pi * waves * i * static_cast<double>(points.size()) / ticks));
-=======
       const double wave = waves * i * static_cast<double>(points.size()) / ticks;
       const double depth = radius * (0.2 - 0.3 * std::cos(two_pi * wave));
->>>>>>> dev-e
       state.time += 1e-3;
       state.position = point.position + (radius - depth) * point.outward;
       const std::int64_t before = platform::compute_ns();
