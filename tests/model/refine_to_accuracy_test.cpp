@@ -17,6 +17,7 @@ using namespace palpate;
 namespace {
 
 using AccurateBlock = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
+using AccurateTet4 = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
 constexpr LinearElastic accurate_material{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1000.0};
 constexpr double accurate_radius = 0.01;
 const Vector3 accurate_centre(0.03, 0.03, 0.03);
@@ -120,6 +121,31 @@ TEST_CASE("a goal beyond the budget is reported, with the most accurate mesh wit
   CHECK(small.mesh.node_count() <= mesh.node_count() + 100);
   CHECK(small.mesh.node_count() > mesh.node_count() + 30);
   CHECK(small.search.why_not.find("nodes") != std::string::npos);
+}
+
+TEST_CASE("when a finer mesh cannot be set up, the model before it is returned", "[model][refine_to_accuracy]") {
+  const Mesh<Tet4> mesh = coarse_block();
+  int models = 0;
+  SetupOptions options;
+  options.progress = [&](const Progress& p) {
+    models += std::string_view(p.stage) == "accuracy" ? 1 : 0;
+    if (models > 1) raise(SetupErrorKind::too_large, "no room");
+    return true;
+  };
+  const auto limited = refine_to_accuracy<AccurateTet4>(mesh, pressed_block(mesh), accurate_material,
+                                                        {.error = 0.15, .places = 1}, options);
+  CHECK_FALSE(limited.search.reached());
+  CHECK(limited.search.why_not.find("no room") != std::string::npos);
+  CHECK(limited.search.steps.size() == 1);
+  CHECK(limited.model.report().accuracy.typical == limited.search.steps.front().error);
+}
+
+TEST_CASE("quadratic tetrahedra are refined for accuracy, too", "[model][refine_to_accuracy]") {
+  const Mesh<Tet4> mesh = coarse_block();
+  const auto refined = refine_to_accuracy<HapticFEModel<Tet10, LinearElastic, Condensed<SelectiveInverse>>>(
+      mesh, pressed_block(mesh), accurate_material, {.error = 0.2, .places = 1});
+  CHECK(refined.search.reached());
+  CHECK(refined.model.mesh().element_count() == refined.mesh.element_count());
 }
 
 TEST_CASE("a search for accuracy follows the order of convergence that it observes, and ends in time",

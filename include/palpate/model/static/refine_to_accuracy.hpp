@@ -12,6 +12,7 @@
 #include <palpate/model/static/measured_force_error.hpp>
 
 #include <concepts>
+#include <string>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -30,8 +31,10 @@ struct RefinedModel {
 /// the sphere that touches (TouchOptions). The first mesh has the edges that sufficed on an organ
 /// (AccuracySearch); each further one follows from the errors measured so far. Listed nodes of the scene become groups
 /// first, which gain the new nodes between them. Each mesh costs the set-up of a model with `measured_force_error`; one
-/// or two are typical. For Tet4, Smoothed<Tet4> and Tet10. Throws bad_argument for a goal out of range and for a scene
-/// without that radius, and the errors of refine_near and of the model.
+/// or two are typical. If the set-up on a further mesh fails, for example for lack of memory, the last model is
+/// returned; two are in memory meanwhile. The typical error is compared with the goal: single places may have a larger
+/// one. `options.force_error` is replaced. For Tet4, Smoothed<Tet4> and Tet10. Throws bad_argument for a goal out of
+/// range and for a scene without that radius, and the errors of refine_near and of the model.
 template <class Model, class Materials>
 RefinedModel<Model> refine_to_accuracy(const Mesh<Tet4>& mesh, const Scene& scene, const Materials& materials,
                                        const AccuracyGoal& goal = {}, SetupOptions options = {}) {
@@ -43,16 +46,32 @@ RefinedModel<Model> refine_to_accuracy(const Mesh<Tet4>& mesh, const Scene& scen
   const auto coarse = search.coarse();
   options.force_error = measured_force_error(goal.places);
   options.force_error.coarse = coarse ? &*coarse : nullptr;
-  for (;;) {
-    Model model = [&] {
-      if constexpr (quadratic)
-        return Model(promote<Tet10>(search.mesh()), search.scene(), materials, options);
-      else
-        return Model(search.mesh(), search.scene(), materials, options);
-    }();
-    if (!search.refine(model.report().accuracy, model.report().total_seconds()))
-      return {std::move(model), search.mesh(), search.scene(), search.report()};
+  const auto make = [&] {
+    if constexpr (quadratic)
+      return Model(promote<Tet10>(search.mesh()), search.scene(), materials, options);
+    else
+      return Model(search.mesh(), search.scene(), materials, options);
+  };
+  const auto result = [&](Model model) {
+    return RefinedModel<Model>{std::move(model), search.mesh(), search.scene(), search.report()};
+  };
+  RefinedModel<Model> best = result(make());
+  while (search.refine(best.model.report().accuracy, best.model.report().total_seconds())) {
+#if defined(PALPATE_HAS_EXCEPTIONS)
+    try {
+      best = result(make());
+    } catch (const SetupError& error) {
+      if (error.kind() == SetupErrorKind::cancelled) throw;
+      best.search = search.report();
+      best.search.why_not = std::string("the set-up on a finer mesh failed: ") + error.what();
+      return best;
+    }
+#else
+    best = result(make());
+#endif
   }
+  best.search = search.report();
+  return best;
 }
 
 }}  // namespace palpate

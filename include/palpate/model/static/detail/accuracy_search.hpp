@@ -19,7 +19,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 struct AccuracyGoal {
   double error = 0.05;         ///< AccuracyReport::typical that is wanted: relative, 0.001 to 1
   Index most_nodes = 20'000;   ///< of the mesh of linear tetrahedra
-  double most_seconds = 30.0;  ///< of set-up: no mesh is begun that would probably end later [s]
+  double most_seconds = 30.0;  ///< of set-up: no further mesh is begun that would probably end later [s]
   int places = 3;              ///< of measured_force_error
 };
 
