@@ -9,6 +9,7 @@
 #include <palpate/model/model_base.hpp>
 #include <palpate/model/moving/detail/near_compliance.hpp>
 #include <palpate/model/moving/detail/secant_compliance.hpp>
+#include <palpate/model/moving/detail/split_vertices.hpp>
 #include <palpate/model/moving/detail/vertex_compliance.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
 #include <palpate/model/detail/nodal_rotation.hpp>
@@ -210,9 +211,6 @@ class MovingTissue : public ModelBase {
     into.item[into.count++] = v;
   }
   void start_secants();
-  void find_shares(const CutVertices& surface);
-  /// Divides forces on vertices that the last change of the surface has split.
-  void divide(Forces& forces) const noexcept;
   bool presses_beside_slit() const noexcept;
   void record_response(Forces& part, const MotionStep& done) noexcept;
   /// The displacement of the vertices.
@@ -235,11 +233,7 @@ class MovingTissue : public ModelBase {
   std::vector<Vector3> moved_, moved_before_;  // of the vertices, after the last step and the one before
   bool loads_changed_ = false;                 // since the last step: displacements then changed for other reasons
   bool was_slit_ = false;                      // since the last step
-  struct Share {
-    int parent, vertex;
-    double share;  // of the force on the parent
-  };
-  std::vector<Share> shares_;  // of vertices that the last change of the surface has made, sorted by parent
+  detail::SplitVertices split_;                // of the last change of the surface
   Forces used_;
   std::uint64_t steps_ = 0;
   std::mutex changes_;

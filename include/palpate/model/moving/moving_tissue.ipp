@@ -105,7 +105,7 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   const bool corrected = full_.isZero(0.0) || motion_->correct(full_) || steps_ == 0;
   Forces before = used_;
   used_ = pressing_.front();
-  divide(used_);
+  if (used_.number != changed_.number) used_.count = split_.divide(used_.item, used_.count);
   const bool was_slit = std::exchange(was_slit_, false);
   full_ = load_;
   add(used_, 1.0, full_);
@@ -224,7 +224,8 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
   was_slit_ = was_slit_ || mass.size() > mass_.size();
   loads_changed_ = true;  // a cut moves vertices, too
   mass_ = mass;
-  find_shares(surface);
+  split_ = detail::SplitVertices(surface.parent, nodes_.size(),
+                                 [&](int v) { return mass_[Index{surface.nodes[vertex(v)]}]; });
   compliance_ = VertexCompliance(compliance_, std::move(surface.similar), std::move(surface.side));
   nodes_ = std::move(surface.nodes);
   rest_.clear();
@@ -236,39 +237,6 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
   changed_.surface = std::move(surface.surface);
   changed_.status = surface.status;
   changed_.contact = std::move(surface.contact);
-}
-
-/// In proportion to the masses of the nodes: the area that a vertex stands for is divided like the elements around it.
-PALPATE_INLINE void MovingTissue::find_shares(const CutVertices& surface) {
-  const std::size_t known = nodes_.size();
-  const auto mass = [&](int v) { return mass_[Index{surface.nodes[vertex(v)]}]; };
-  shares_.clear();
-  for (std::size_t v = known; v < surface.parent.size(); ++v)
-    if (surface.parent[v] >= 0 && vertex(surface.parent[v]) < known)
-      shares_.push_back({surface.parent[v], static_cast<int>(v), 0.0});
-  std::ranges::stable_sort(shares_, {}, &Share::parent);
-  for (auto first = shares_.begin(); first != shares_.end();) {
-    const auto last = std::find_if(first, shares_.end(), [&](const Share& s) { return s.parent != first->parent; });
-    double all = mass(first->parent);
-    for (auto s = first; s != last; ++s) all += mass(s->vertex);
-    for (; first != last; ++first) first->share = all > 0.0 ? mass(first->vertex) / all : 0.0;
-  }
-}
-
-PALPATE_INLINE void MovingTissue::divide(Forces& forces) const noexcept {
-  if (forces.number == changed_.number) return;
-  const std::size_t count = forces.count;
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto parts = std::ranges::equal_range(shares_, forces.item[k].vertex, {}, &Share::parent);
-    const Vector3 whole = forces.item[k].force.in_model_axes();
-    double left = 1.0;
-    for (const Share& s : parts) {
-      if (forces.count == most_forces) break;
-      forces.item[forces.count++] = {s.vertex, ModelVector(s.share * whole)};
-      left -= s.share;
-    }
-    forces.item[k].force = ModelVector(left * whole);
-  }
 }
 
 PALPATE_INLINE SolveReport MovingTissue::displacement_with(std::span<const VertexForce>, VectorX& u) noexcept {
