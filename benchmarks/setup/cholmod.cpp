@@ -26,14 +26,14 @@ struct Cholmod::Implementation {
 
 namespace {
 
-/// Limits BLAS and OpenMP to one thread. Returns the name of the BLAS.
-const char* use_one_thread() noexcept {
+/// Limits BLAS and OpenMP. Returns the name of the BLAS.
+const char* use_threads(int count) noexcept {
 #if defined(__ELF__)
   // CHOLMOD requests four threads regardless of the configured number; only zero active levels prevent that.
-  if (omp_set_max_active_levels != nullptr) omp_set_max_active_levels(0);
+  if (omp_set_max_active_levels != nullptr) omp_set_max_active_levels(count > 1 ? 1 : 0);
   if (openblas_set_num_threads != nullptr) {
-    openblas_set_num_threads(1);
-    return "OpenBLAS, one thread";
+    openblas_set_num_threads(count);
+    return count > 1 ? "OpenBLAS" : "OpenBLAS, one thread";
   }
 #endif
   return "the system's BLAS";
@@ -45,12 +45,15 @@ bool Cholmod::available() noexcept {
   return true;
 }
 const char* Cholmod::blas() noexcept {
-  return use_one_thread();
+  return use_threads(1);
+}
+void Cholmod::set_threads(int count) noexcept {
+  use_threads(count);
 }
 
 Cholmod::Cholmod(const palpate::SparseMatrix& lower) : implementation_(std::make_unique<Implementation>()) {
   static_assert(sizeof(SuiteSparse_long) == sizeof(palpate::Index));
-  use_one_thread();
+  use_threads(1);
   cholmod_common& c = implementation_->common;
   cholmod_l_start(&c);
   c.supernodal = CHOLMOD_SUPERNODAL;
@@ -113,6 +116,7 @@ bool Cholmod::available() noexcept {
 const char* Cholmod::blas() noexcept {
   return "";
 }
+void Cholmod::set_threads(int) noexcept {}
 Cholmod::Cholmod(const palpate::SparseMatrix&) {}
 Cholmod::~Cholmod() = default;
 double Cholmod::analysis_seconds() const noexcept {

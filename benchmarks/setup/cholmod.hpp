@@ -7,12 +7,14 @@
 
 namespace bench {
 
-/// One thread, METIS ordering, LL^T.
+/// METIS ordering, LL^T. One thread by default.
 class Cholmod {
  public:
   static bool available() noexcept;
   /// Name of the BLAS used for its dense operations.
   static const char* blas() noexcept;
+  /// For BLAS and OpenMP, from now on.
+  static void set_threads(int count) noexcept;
 
   /// Analyses the symmetric matrix with this lower triangle. `lower` must outlive this object.
   explicit Cholmod(const palpate::SparseMatrix& lower);

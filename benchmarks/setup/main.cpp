@@ -1,5 +1,6 @@
 // Set-up, stage by stage, on the standard block and on irregular bodies, compared with other implementations.
-//   bench_setup [--build <name of the flags>] [--csv <file to add rows to>] [--organ <organ.msh>] [--long]
+//   bench_setup [--build <name of the flags>] [--csv <file to add rows to>] [--organ <organ.msh>] [--long] [--threads:
+//   only these rows]
 #include "cholmod.hpp"
 #include "setup.hpp"
 
@@ -37,10 +38,15 @@ int main(int argc, char** argv) try {
   bench::RowFile rows(bench::option(argc, argv, "--csv", ""), bench::option(argc, argv, "--build", "this"));
   const std::string organ = bench::option(argc, argv, "--organ", PALPATE_BENCH_DATA "/organ.msh");
   setup::Session session{rows, bench::has_option(argc, argv, "--long")};
+  if (bench::has_option(argc, argv, "--threads")) {
+    setup::measure_threads(session);
+    return rows.failed() ? 1 : 0;
+  }
   setup::measure_machine(session);
   setup::measure_assembly(session);
   setup::measure_factorisation(session);
   setup::measure_irregular(session, organ.c_str());
+  setup::measure_threads(session);
   setup::measure_solves(session);
   setup::measure_condensation(session);
   setup::measure_memory(session);

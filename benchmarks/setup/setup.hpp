@@ -15,6 +15,7 @@ void measure_machine(Session& session);
 void measure_assembly(Session& session);
 void measure_factorisation(Session& session);
 void measure_irregular(Session& session, const char* organ_file);
+void measure_threads(Session& session);
 void measure_solves(Session& session);
 void measure_condensation(Session& session);
 void measure_memory(Session& session);

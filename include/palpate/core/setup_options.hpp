@@ -1,7 +1,7 @@
 // Options of set-up: progress, cancelling, memory limit.
 #pragma once
 
-#include <palpate/core/config.hpp>
+#include <palpate/core/executor.hpp>
 
 #include <functional>
 #include <string_view>
@@ -23,6 +23,7 @@ struct SetupLimits {
   ProgressCallback progress;                                     ///< empty: no reports
   std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< [bytes] largest amount a set-up may allocate in
                                                                  ///< one step for matrices
+  SetupThreads threads{1};
 
   /// Reports progress; throws SetupError(cancelled) if the callback returns false.
   void advance(std::string_view stage, double fraction) const;

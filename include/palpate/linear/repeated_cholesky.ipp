@@ -18,7 +18,7 @@ static_assert(LinearSolver<RepeatedCholesky>);
 struct RepeatedCholesky::Factor {
   Factor(const CholeskyAnalysis& analysis, FactorScalar scalar)
       : values(analysis.tree().factor_size + padding),
-        factorisation(analysis, values.data()),
+        factorisation(analysis, values.data(), SparseCholesky::pivot_threshold),
         sweeps(analysis.tree(), values.data(), analysis.front_count()) {
     std::fill_n(values.data() + values.size() - padding, padding, 0.0);
     if (scalar == FactorScalar::single_precision)
@@ -37,14 +37,14 @@ PALPATE_INLINE RepeatedCholesky::RepeatedCholesky(CholeskyAnalysis analysis, con
     : analysis_(std::move(analysis)) {
   const double more =
       scalar == FactorScalar::single_precision ? 4.0 * static_cast<double>(analysis_.tree().factor_size) : 0.0;
-  limits.require_memory(analysis_.peak_bytes() + more, "the sparse factor");
+  limits.require_memory(analysis_.repeated_peak_bytes() + more, "the sparse factor");
   factor_ = std::make_unique<Factor>(analysis_, scalar);
 }
 PALPATE_INLINE RepeatedCholesky::~RepeatedCholesky() = default;
 
 PALPATE_INLINE bool RepeatedCholesky::factorise(const SparseLower& lower) noexcept {
   factor_->factorisation.take(lower);
-  ready_ = factor_->factorisation.try_eliminate(SparseCholesky::pivot_threshold);
+  ready_ = factor_->factorisation.try_eliminate();
   if (ready_ && factor_->single) factor_->single->copy(factor_->values.data());
   return ready_;
 }

@@ -12,8 +12,12 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 class BinaryReader;
 class BinaryWriter;
+namespace detail {
+class ParallelFronts;
+}
 
-/// K = L L^T of a sparse SPD matrix, with every pivot checked. Factorisation allocates what the analysis predicted;
+/// K = L L^T of a sparse SPD matrix, with every pivot checked. Factorisation allocates what the analysis predicted; it
+/// uses the threads of the limits, and the factor is the same to the last bit for any number of threads.
 /// `solve_into` reads every entry of L twice and does not allocate. Copies share the factor; each owns its workspace,
 /// so two threads can solve simultaneously with a copy each.
 ///
@@ -87,6 +91,7 @@ class SparseCholesky {
 
   SparseCholesky(CholeskyAnalysis analysis, const Matrix& lower, MatrixX* schur, const SetupLimits& limits);
   static std::shared_ptr<Factor> allocate(const CholeskyAnalysis& analysis, bool interior);
+  static MatrixX complement(const CholeskyAnalysis& analysis, detail::ParallelFronts& fronts);
   void adopt(std::shared_ptr<Factor> made, CholeskyAnalysis analysis);
   void take_kept(VectorX& kept_load) noexcept;
   void give_kept(const VectorX& kept_answer) noexcept;

@@ -4,7 +4,8 @@
 #include <palpate/core/detail/binary_io.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/linear/detail/front_block_sweeps.hpp>
-#include <palpate/linear/detail/front_factorisation.hpp>
+#include <palpate/linear/detail/parallel_fronts.hpp>
+#include <palpate/linear/detail/pivot_check.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 
 #include <algorithm>
@@ -44,14 +45,39 @@ PALPATE_INLINE SparseCholesky::SparseCholesky(CholeskyAnalysis analysis, const M
     raise(SetupErrorKind::bad_argument, "the matrix does not have the analysed pattern",
           "Compress the matrix and analyse it again");
   limits.advance("factorisation", 0.0);
-  limits.require_memory(schur != nullptr ? analysis.interior_peak_bytes() : analysis.peak_bytes(), "the sparse factor");
+  const int threads = limits.threads.threads();
+  limits.require_memory(schur != nullptr ? analysis.interior_peak_bytes(threads) : analysis.peak_bytes(threads),
+                        "the sparse factor");
   auto made = allocate(analysis, schur != nullptr);
-  detail::FrontFactorisation factorisation(analysis, made->values.data());
-  factorisation.take(lower);
-  factorisation.eliminate(made->fronts, pivot_threshold, limits);
-  if (schur != nullptr) *schur = factorisation.schur(analysis.kept());
+  detail::FrontSystem system(analysis.tree(), made->values.data(), pivot_threshold);
+  system.take(lower);
+  detail::ParallelFronts fronts(system, made->fronts, analysis.pack_size(), limits);
+  fronts.run();
+  const detail::Front* const last = made->fronts > 0 ? &analysis.tree().fronts[made->fronts - 1] : nullptr;
+  detail::check_pivots(system.pivots, system.diagonal, analysis.tree().place_of_dof, analysis.node_of_dof(),
+                       last != nullptr ? last->first + last->pivots : 0, pivot_threshold);
+  if (schur != nullptr) *schur = complement(analysis, fronts);
   adopt(std::move(made), std::move(analysis));
   limits.advance("factorisation", 1.0);
+}
+
+/// The last front before its elimination: the Schur complement of the kept dofs in the given order.
+PALPATE_INLINE MatrixX SparseCholesky::complement(const CholeskyAnalysis& analysis, detail::ParallelFronts& fronts) {
+  const auto k = static_cast<Index>(analysis.kept().size());
+  if (k == 0) return {};
+  const detail::FrontTree& tree = analysis.tree();
+  const detail::LowerPanels shape = tree.fronts.back().panels();
+  detail::BigArray columns(shape.size());
+  const detail::FrontWork& front = fronts.assemble(tree.fronts.back(), columns.data());
+  const auto row = [&](Index i) { return front.row(tree.place_of_dof[analysis.kept()[static_cast<std::size_t>(i)]]); };
+  MatrixX complement(k, k);
+  double* const s = complement.data();
+  for (Index j = 0; j < k; ++j)
+    for (Index i = j; i < k; ++i) {
+      const Index a = row(i), b = row(j);
+      s[i + j * k] = s[j + i * k] = columns.data()[shape.at(std::max(a, b), std::min(a, b))];
+    }
+  return complement;
 }
 
 /// Allocates a factor without values; omits the last front when `interior` and there are kept dofs.

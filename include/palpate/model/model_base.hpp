@@ -30,6 +30,8 @@ struct SetupOptions {
   std::size_t memory_limit =
       std::numeric_limits<std::size_t>::max();  ///< [bytes]; more is refused as too_large before it is allocated
   AdmissionPolicy admission{};
+  /// A number of threads, 0 for as many as the machine has, or an executor. While a haptic loop runs, leave it a core.
+  SetupThreads threads{};
 
   // For static models. Other solvers ignore the first three and refuse the last.
   int compliance_slots = 256;  ///< vertices whose compliance a solver keeps that does not store all columns

@@ -11,7 +11,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE ModelBase::ModelBase(const SetupOptions& options) : limits_{options.progress, options.memory_limit} {}
+PALPATE_INLINE ModelBase::ModelBase(const SetupOptions& options)
+    : limits_{options.progress, options.memory_limit, options.threads} {}
 PALPATE_INLINE ModelBase::ModelBase(ModelBase&&) noexcept = default;
 PALPATE_INLINE ModelBase& ModelBase::operator=(ModelBase&&) noexcept = default;
 PALPATE_INLINE ModelBase::~ModelBase() = default;

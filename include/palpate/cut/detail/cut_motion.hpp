@@ -53,6 +53,7 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
     }
     restart(topology);
     if (parameters_.settle) motion_->settle();
+    limits_.threads = 1;  // beside a haptic loop from here on
   }
 
   void follow(const CutTopology<E>& topology) override {

@@ -76,6 +76,7 @@ class CutState {
         publish_to_(std::move(publish)),
         system_(topology_, *physics_, kept_nodes(), limits_),
         diagonal_(box_of(topology_.mesh().positions).size().norm()) {
+    limits_.threads = 1;  // beside a haptic loop from here on
     report_.kept = system_.kept();
     make_contact();
     publish_exactly();

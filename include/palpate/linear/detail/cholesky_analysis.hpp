@@ -33,10 +33,12 @@ class CholeskyAnalysis {
   double flops() const noexcept;
   /// Memory of a finished factor [bytes].
   double factor_bytes() const noexcept;
-  /// Peak memory of a factorisation, including the factor [bytes].
-  double peak_bytes() const noexcept;
-  /// Peak memory when the last front is returned as a Schur complement, including that [bytes].
-  double interior_peak_bytes() const noexcept;
+  /// Peak memory of a factorisation, including the factor [bytes]. Allocates: O(fronts).
+  double peak_bytes(int threads = 1) const;
+  /// Peak memory when the last front is returned as a Schur complement, including that [bytes]. Allocates: O(fronts).
+  double interior_peak_bytes(int threads = 1) const;
+  /// Peak memory of a RepeatedCholesky [bytes].
+  double repeated_peak_bytes() const noexcept;
   /// True when the matrix has the pattern that was analysed.
   bool fits(const SparseLower& lower) const noexcept;
 
@@ -50,7 +52,6 @@ class CholeskyAnalysis {
 
  private:
   struct Data;
-  Index side_size() const noexcept;
 
   std::shared_ptr<const Data> data_;
 };

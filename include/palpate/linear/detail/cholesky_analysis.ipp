@@ -6,6 +6,7 @@
 #include <palpate/linear/detail/front_tree_builder.hpp>
 #include <palpate/linear/detail/lower_panels.hpp>
 #include <palpate/linear/detail/nested_dissection.hpp>
+#include <palpate/linear/detail/parallel_fronts.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -66,15 +67,21 @@ PALPATE_INLINE double CholeskyAnalysis::flops() const noexcept {
 PALPATE_INLINE double CholeskyAnalysis::factor_bytes() const noexcept {
   return data_ ? sizeof(double) * static_cast<double>(data_->tree.factor_size) : 0.0;
 }
-PALPATE_INLINE double CholeskyAnalysis::peak_bytes() const noexcept {
+PALPATE_INLINE double CholeskyAnalysis::repeated_peak_bytes() const noexcept {
   if (!data_) return 0.0;
-  return factor_bytes() + sizeof(double) * static_cast<double>(data_->tree.workspace_size + side_size());
+  const Index side = data_->tree.workspace_size + pack_size() + 3 * size();
+  return factor_bytes() + sizeof(double) * static_cast<double>(side);
 }
-PALPATE_INLINE double CholeskyAnalysis::interior_peak_bytes() const noexcept {
-  if (!data_ || data_->kept.empty()) return peak_bytes();
-  const auto k = static_cast<Index>(data_->kept.size());
-  const Index last = std::max(data_->tree.workspace_size, k * k);
-  return factor_bytes() + sizeof(double) * static_cast<double>(last + side_size());
+PALPATE_INLINE double CholeskyAnalysis::peak_bytes(int threads) const {
+  if (!data_) return 0.0;
+  const double side = detail::ParallelFronts::peak_doubles(data_->tree, front_count(), pack_size(), threads);
+  return factor_bytes() + sizeof(double) * (side + 2.0 * static_cast<double>(size()));
+}
+PALPATE_INLINE double CholeskyAnalysis::interior_peak_bytes(int threads) const {
+  if (!data_ || data_->kept.empty()) return peak_bytes(threads);
+  const auto k = static_cast<double>(data_->kept.size());
+  const double side = detail::ParallelFronts::peak_doubles(data_->tree, front_count() - 1, pack_size(), threads);
+  return factor_bytes() + sizeof(double) * (std::max(side, k * k) + 2.0 * static_cast<double>(size()));
 }
 PALPATE_INLINE bool CholeskyAnalysis::fits(const SparseLower& lower) const noexcept {
   return data_ && data_->pattern == detail::hash_of_pattern(lower);
@@ -99,8 +106,4 @@ PALPATE_INLINE const detail::FrontTree& CholeskyAnalysis::tree() const noexcept 
 PALPATE_INLINE Index CholeskyAnalysis::pack_size() const noexcept {
   return 2 * (data_->tree.largest_front + 64) * detail::LowerPanels::width;
 }
-PALPATE_INLINE Index CholeskyAnalysis::side_size() const noexcept {
-  return pack_size() + 3 * size();
-}
-
 }}  // namespace palpate

@@ -1,6 +1,7 @@
 // Dense Cholesky of the pivot columns of a front, and the symmetric update of the other rows.
 #pragma once
 
+#include <palpate/linear/detail/front_team.hpp>
 #include <palpate/linear/detail/lower_panels.hpp>
 #include <palpate/linear/detail/tile.hpp>
 
@@ -54,35 +55,42 @@ inline void subtract_small(double* c, const LowerPanels& shape, Steps a, Index s
 }
 
 /// The same through packed copies, for operands that do not fit into the cache or span too many pages. `packed` holds
-/// 2 * (height + tile_rows) * steps doubles.
+/// 2 * (height + tile_rows) * steps doubles. A team shares the blocks; every entry is computed in the same way.
 template <Into Mode>
-inline void subtract_packed(double* c, const LowerPanels& shape, Steps a, Index steps, double* packed) noexcept {
+inline void subtract_packed(double* c, const LowerPanels& shape, Steps a, Index steps, double* packed,
+                            FrontTeam* team) noexcept {
   constexpr Index block = (LowerPanels::width * 5 / 3) / tile_rows * tile_rows;  // rows that stay in the cache
   double* const rows = packed;
   double* const columns = packed + (shape.height + tile_rows) * steps;
-  pack<tile_rows>(a.data, a.step, shape.height, steps, rows);
-  pack<tile_columns>(a.data, a.step, shape.columns, steps, columns);
-  for (Index top = 0; top < shape.height; top += block) {
-    const Index bottom = std::min(top + block, shape.height);
-    for (Index p = 0; p < shape.panels() && shape.panel_begin(p) < bottom; ++p) {
-      const Index begin = shape.panel_begin(p), end = begin + shape.panel_width(p), stride = shape.stride(p);
-      double* const panel = c + shape.offset(p) - begin;
-      for (Index j = begin; j < end && j < bottom; j += tile_columns)
-        for (Index i = std::max(top, j / tile_rows * tile_rows); i < bottom; i += tile_rows)
-          subtract_tile<Mode>((shape.height - i) / packet_size, steps, {rows + i * steps, tile_rows},
-                              {columns + j * steps, tile_columns}, panel + i + (j - begin) * stride, stride, end - j);
-    }
-  }
+  const Index blocks = (shape.height + block - 1) / block, column_blocks = (shape.columns + block - 1) / block;
+  share(team, blocks + column_blocks, [&](Index i) {
+    const Index top = (i < blocks ? i : i - blocks) * block, end = i < blocks ? shape.height : shape.columns;
+    if (i < blocks)
+      pack<tile_rows>(a.data + top, a.step, std::min(block, end - top), steps, rows + top * steps);
+    else
+      pack<tile_columns>(a.data + top, a.step, std::min(block, end - top), steps, columns + top * steps);
+  });
+  share(team, blocks * shape.panels(), [&](Index i) {
+    const Index top = i / shape.panels() * block, bottom = std::min(top + block, shape.height);
+    const Index p = i % shape.panels(), begin = shape.panel_begin(p), end = begin + shape.panel_width(p);
+    const Index stride = shape.stride(p);
+    double* const panel = c + shape.offset(p) - begin;
+    for (Index j = begin; j < end && j < bottom; j += tile_columns)
+      for (Index r = std::max(top, j / tile_rows * tile_rows); r < bottom; r += tile_rows)
+        subtract_tile<Mode>((shape.height - r) / packet_size, steps, {rows + r * steps, tile_rows},
+                            {columns + j * steps, tile_columns}, panel + r + (j - begin) * stride, stride, end - j);
+  });
 }
 
 /// Subtracts A A^T from a lower triangle; A has `steps` columns.
 template <Into Mode>
-inline void subtract_lower(double* c, const LowerPanels& shape, Steps a, Index steps, double* packed) noexcept {
+inline void subtract_lower(double* c, const LowerPanels& shape, Steps a, Index steps, double* packed,
+                           FrontTeam* team) noexcept {
   constexpr Index few_rows = 320, few_steps = 24;
   if (shape.height <= few_rows || steps <= few_steps)
     subtract_small<Mode>(c, shape, a, steps);
   else
-    subtract_packed<Mode>(c, shape, a, steps, packed);
+    subtract_packed<Mode>(c, shape, a, steps, packed, team);
 }
 
 inline constexpr Index column_block = 8;
@@ -145,9 +153,9 @@ inline void factor_trapezoid(double* a, Index stride, Index rows, Index columns,
 }
 
 /// Factorises the pivot columns of a front and writes -L21 L21^T to the lower triangle `update` of its `rows` other
-/// rows. `packed` is workspace.
+/// rows. `packed` is workspace. Without a team the calling thread does everything.
 inline void factor_front(double* front, Index pivots, Index rows, double* update, Index place, const PivotSink& sink,
-                         double* packed) noexcept {
+                         double* packed, FrontTeam* team = nullptr) noexcept {
   const LowerPanels shape = LowerPanels::of(pivots + rows, pivots), rest = LowerPanels::of(rows, rows);
   for (Index p = 0; p < shape.panels(); ++p) {
     const Index begin = shape.panel_begin(p), steps = shape.panel_width(p), stride = shape.stride(p);
@@ -155,13 +163,13 @@ inline void factor_front(double* front, Index pivots, Index rows, double* update
     factor_trapezoid(panel, stride, stride, steps, place + begin, sink);
     if (begin + steps < pivots)
       subtract_lower<Into::full>(front + shape.offset(p + 1), {stride - steps, pivots - begin - steps},
-                                 {panel + steps, stride}, steps, packed);
+                                 {panel + steps, stride}, steps, packed, team);
     if (rows == 0) continue;
     const Steps below{panel + (pivots - begin), stride};
     if (p == 0)
-      subtract_lower<Into::empty>(update, rest, below, steps, packed);
+      subtract_lower<Into::empty>(update, rest, below, steps, packed, team);
     else
-      subtract_lower<Into::full>(update, rest, below, steps, packed);
+      subtract_lower<Into::full>(update, rest, below, steps, packed, team);
   }
 }
 

@@ -1,10 +1,10 @@
 // Definitions of front_tree_builder.hpp.
 #pragma once
 
+#include <palpate/linear/detail/front_tasks.hpp>
 #include <palpate/linear/detail/front_tree_builder.hpp>
 
 #include <algorithm>
-#include <array>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
@@ -124,31 +124,19 @@ class FrontTreeBuilder {
     });
   }
 
-  /// Updates are stored in one workspace as two stacks that grow towards each other, one for odd and one for even
-  /// depth. So the update of a front never overlaps those of its children, which are freed before.
   void place_updates() {
     const Index count = tree_.fronts.size();
-    IndexedVector<char> odd(count, 0);
-    for (Index f = count - 1; f >= 0; --f)
-      if (tree_.fronts[f].parent >= 0) odd[f] = odd[tree_.fronts[f].parent] == 0 ? 1 : 0;
-    std::array<Index, 2> top{0, 0};
+    IndexedVector<Index> offset(count);
+    tree_.workspace_size = stack_updates(tree_.fronts, 0, count, offset);
     for (Index f = 0; f < count; ++f) {
       Front& front = tree_.fronts[f];
-      const Index size = front.update_panels().size();
-      Index& mine = top[odd[f] != 0 ? 1 : 0];
-      mine += size;
-      front.update = odd[f] != 0 ? -mine : mine - size;
-      tree_.workspace_size = std::max(tree_.workspace_size, top[0] + top[1]);
-      for (NodeId c = front.first_child; c >= 0; c = tree_.fronts[c].next_sibling)
-        top[odd[f] != 0 ? 0 : 1] -= tree_.fronts[c].update_panels().size();
+      front.update = offset[f];
       front.factor = tree_.factor_size;
       tree_.factor_size += front.panels().size();
       tree_.largest_front = std::max(tree_.largest_front, front.size());
       tree_.nonzeros += front.nonzeros();
       tree_.flops += front.flops();
     }
-    for (Index f = 0; f < count; ++f)
-      if (odd[f] != 0) tree_.fronts[f].update += tree_.workspace_size;
   }
 
   const NodeGraph& g_;

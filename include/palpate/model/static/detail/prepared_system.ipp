@@ -68,12 +68,25 @@ PALPATE_INLINE AnyStaticSystem SystemSource::make(SetupReport& report) const {
   const StageTimer timer(report, "checks");
   limits.advance("checks", 0.0);
   const FreeStiffness free(stiffness.view(), conditions);
-  report.probe_error = probe_error(free, system);
-  if (recipe.estimates_condition)
-    report.condition_estimate = free_norm(*stiffness.matrix(), conditions) * inverse_norm_estimate(system);
+  estimate_accuracy(free, system, report);
   require_softest_motion(free, system, report);
   judge(report);
   return system;
+}
+
+PALPATE_INLINE void SystemSource::estimate_accuracy(const FreeStiffness& free, AnyStaticSystem& system,
+                                                    SetupReport& report) const {
+  const auto probe = [&] { report.probe_error = probe_error(free, system); };
+  if (!recipe.estimates_condition) return probe();
+  const auto estimate = [&](AnyStaticSystem& by) {
+    report.condition_estimate = free_norm(*stiffness.matrix(), conditions) * inverse_norm_estimate(by);
+  };
+  if (limits.threads.threads() < 2 || system.bytes() < worth_a_thread) {
+    probe();
+    return estimate(system);
+  }
+  AnyStaticSystem other = system;  // shares the factor
+  limits.threads.run(2, [&](int task) { task == 0 ? probe() : estimate(other); });
 }
 
 PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system,

@@ -1,0 +1,134 @@
+// Factorisation and whole set-up by one and by two threads, compared with CHOLMOD on the same threads. Wall time.
+#include "../common/bodies.hpp"
+#include "../common/touching.hpp"
+#include "cholmod.hpp"
+#include "setup.hpp"
+
+#include <palpate/linear/sparse_cholesky.hpp>
+
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <memory>
+
+namespace setup {
+namespace {
+
+using namespace palpate;
+using bench::Cholmod;
+
+template <class Work>
+double wall_seconds(Work&& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Medians of three, in turns: first, second, first, ...
+template <class First, class Second>
+std::array<double, 2> in_turns(First&& first, Second&& second) {
+  std::array<std::vector<double>, 2> times;
+  for (int i = 0; i < 3; ++i) {
+    times[0].push_back(wall_seconds(first));
+    times[1].push_back(wall_seconds(second));
+  }
+  return {bench::percentile(std::move(times[0]), 0.5), bench::percentile(std::move(times[1]), 0.5)};
+}
+
+std::string same_bits(const VectorX& a, const VectorX& b) {
+  const auto bytes = sizeof(double) * static_cast<std::size_t>(a.size());
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), bytes) == 0 ? "" : "the bits depend on the threads";
+}
+
+void factorise(Session& session, const bench::SupportedBody& body, const std::string& where) {
+  const bench::System system(body);
+  const CholeskyAnalysis analysis(system.lower, system.layout);
+  std::array<SparseCholesky, 2> solvers;
+  const auto ours = [&](int threads) {
+    SparseCholesky& solver = solvers[static_cast<std::size_t>(threads) - 1];
+    solver = {};
+    SetupLimits limits;
+    limits.threads = threads;
+    solver = SparseCholesky(analysis, system.lower, limits);
+  };
+  const auto times = in_turns([&] { ours(1); }, [&] { ours(2); });
+  const VectorX b = bench::random_matrix(system.lower.rows(), 1);
+  VectorX x(b.size()), y(b.size());
+  solvers[0].solve_into(b, x);
+  solvers[1].solve_into(b, y);
+  std::string error = same_bits(x, y);
+  if (error.empty()) error = error_over(system.residual(x, b), 1e-10, "residual");
+  session.rows.add({.target = "v",
+                    .what = "numeric factorisation, one thread / two" + where,
+                    .figure = bench::milliseconds(times[1]),
+                    .baseline = bench::milliseconds(times[0]),
+                    .ratio = times[0] / times[1],
+                    .bound = bench::at_least(1.7),
+                    .error = error});
+  solvers = {};
+  if (!Cholmod::available())
+    return session.rows.skip("v", "two threads / CHOLMOD's" + where, "libsuitesparse-dev is not installed");
+  Cholmod cholmod(system.lower);
+  cholmod.factorise();  // the first call allocates
+  const auto theirs = in_turns(
+      [&] {
+        Cholmod::set_threads(1);
+        cholmod.factorise();
+      },
+      [&] {
+        Cholmod::set_threads(2);
+        cholmod.factorise();
+      });
+  Cholmod::set_threads(1);
+  for (const std::size_t i : {0, 1})
+    session.rows.add({.target = "v",
+                      .what = (i == 0 ? "one thread / CHOLMOD's" : "two threads / CHOLMOD's") + where,
+                      .figure = bench::milliseconds(times[i]),
+                      .baseline = bench::milliseconds(theirs[i]),
+                      .ratio = times[i] / theirs[i],
+                      .bound = bench::at_most(1.0),
+                      .error = ""});
+}
+
+void set_up(Session& session, const bench::SupportedBody& body, const std::string& where) {
+  using Model = bench::Touching::Model;
+  std::array<std::unique_ptr<Model>, 2> models;
+  const auto make = [&](int threads) {
+    std::unique_ptr<Model>& model = models[static_cast<std::size_t>(threads) - 1];
+    model.reset();
+    SetupOptions options;
+    options.threads = threads;
+    model = std::make_unique<Model>(body.mesh, body.scene(), bench::tissue, options);
+  };
+  const auto times = in_turns([&] { make(1); }, [&] { make(2); });
+  const std::vector<VertexForce> press{{0, ModelVector(Vector3(0.0, 0.0, -1.0))}};
+  VectorX one, two;
+  models[0]->displacement_with(press, one);
+  models[1]->displacement_with(press, two);
+  session.rows.add({.target = "v",
+                    .what = "whole set-up, one thread / two" + where,
+                    .figure = bench::milliseconds(times[1]),
+                    .baseline = bench::milliseconds(times[0]),
+                    .ratio = times[0] / times[1],
+                    .bound = body.mesh.element_count() > 100000 ? bench::at_least(1.7) : bench::Bound{},
+                    .error = same_bits(one, two)});
+}
+
+}  // namespace
+
+void measure_threads(Session& session) {
+  std::vector<int> sizes{16, 26};
+  if (session.long_run) sizes.insert(sizes.end(), {36, 55});
+  for (const int n : sizes) {
+    const bench::SupportedBody block = bench::touch_block(n, n);
+    const std::string where = ", block of " + std::to_string(block.mesh.element_count()) + " tets";
+    factorise(session, block, where);
+    set_up(session, block, where);
+  }
+  const bench::SupportedBody organ = bench::touch_organ(17);
+  const std::string where = ", organ-like, " + std::to_string(organ.mesh.element_count()) + " tets";
+  factorise(session, organ, where);
+  set_up(session, organ, where);
+}
+
+}  // namespace setup

@@ -1,0 +1,69 @@
+// Definitions of executor.hpp.
+#pragma once
+
+#include <palpate/core/executor.hpp>
+#include <palpate/core/platform.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE StartedThreads::StartedThreads(int threads) noexcept
+    : threads_(threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))) {}
+
+PALPATE_INLINE void StartedThreads::run(int count, const ExecutorTask& task) const {
+  std::atomic<int> next{1};
+  const auto work = [&] {
+    for (int i = next++; i < count; i = next++) task(i);
+  };
+  std::vector<std::thread> started;
+  started.reserve(static_cast<std::size_t>(std::max(0, count - 1)));
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  try {
+#endif
+    for (int i = 1; i < count; ++i) started.emplace_back(work);
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  } catch (const std::system_error&) {  // no more threads: the others do the work
+  }
+#endif
+  if (count > 0) task(0);
+  work();
+  for (std::thread& thread : started) thread.join();
+}
+
+PALPATE_INLINE void SetupThreads::run(int count, const ExecutorTask& task) const {
+  const std::uint64_t mode = platform::float_mode();
+  std::mutex mutex;
+  std::exception_ptr first;
+  const auto guarded = [&](int i) {
+    const std::uint64_t own = platform::float_mode();
+    platform::set_float_mode(mode);
+#if defined(PALPATE_HAS_EXCEPTIONS)
+    try {
+      task(i);
+    } catch (...) {
+      const std::scoped_lock lock(mutex);
+      if (!first) first = std::current_exception();
+    }
+#else
+    task(i);
+#endif
+    platform::set_float_mode(own);
+  };
+  if (executor_ != nullptr)
+    run_(executor_, count, guarded);
+  else
+    StartedThreads(count_).run(count, guarded);
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  if (first) std::rethrow_exception(first);
+#endif
+}
+
+}}  // namespace palpate
