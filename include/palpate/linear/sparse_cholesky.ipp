@@ -67,7 +67,7 @@ PALPATE_INLINE MatrixX SparseCholesky::complement(const CholeskyAnalysis& analys
   if (k == 0) return {};
   const detail::FrontTree& tree = analysis.tree();
   const detail::LowerPanels shape = tree.fronts.back().panels();
-  detail::BigArray columns(shape.size());
+  detail::BigArray columns(shape.size() + detail::Front::padding);
   const detail::FrontWork& front = fronts.assemble(tree.fronts.back(), columns.data());
   const auto row = [&](Index i) { return front.row(tree.place_of_dof[analysis.kept()[static_cast<std::size_t>(i)]]); };
   MatrixX complement(k, k);

@@ -31,6 +31,8 @@ struct Front {
   NodeId parent = -1, first_child = -1, next_sibling = -1;
 
   Index size() const noexcept { return pivots + rows; }
+  /// Zeros behind the columns of a front, which kernels read past their end.
+  static constexpr Index padding = LowerPanels::alignment;
   LowerPanels panels() const noexcept { return LowerPanels::of(pivots + rows, pivots); }
   LowerPanels update_panels() const noexcept { return LowerPanels::of(rows, rows); }
   double nonzeros() const noexcept {

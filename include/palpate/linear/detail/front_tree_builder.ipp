@@ -132,7 +132,7 @@ class FrontTreeBuilder {
       Front& front = tree_.fronts[f];
       front.update = offset[f];
       front.factor = tree_.factor_size;
-      tree_.factor_size += front.panels().size();
+      tree_.factor_size += front.panels().size() + Front::padding;
       tree_.largest_front = std::max(tree_.largest_front, front.size());
       tree_.nonzeros += front.nonzeros();
       tree_.flops += front.flops();

@@ -33,7 +33,8 @@ class FrontWork {
 
   /// Eliminates a front whose children are eliminated; its update of later fronts goes to `updates`.
   void eliminate(const FrontSystem& system, Index front, FrontTeam* team) noexcept;
-  /// Fills the pivot columns of a front before elimination with entries of the matrix and updates of the children.
+  /// Fills the pivot columns of a front before elimination, and the padding behind them, with entries of the matrix and
+  /// updates of the children.
   void assemble(const FrontSystem& system, const Front& front, double* columns, FrontTeam* team) noexcept;
   /// Row in the last front of a place in the elimination order.
   Index row(Index place) const noexcept { return local_[place]; }

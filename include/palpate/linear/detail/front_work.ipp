@@ -54,7 +54,7 @@ PALPATE_INLINE void FrontWork::assemble(const FrontSystem& system, const Front& 
                                         FrontTeam* team) noexcept {
   constexpr Index piece = Index{1} << 18;  // doubles: a huge page
   const LowerPanels shape = front.panels();
-  const Index size = shape.size();
+  const Index size = shape.size() + Front::padding;
   share(team, (size + piece - 1) / piece,
         [&](Index i) { std::fill(columns + i * piece, columns + std::min(size, (i + 1) * piece), 0.0); });
   number_rows(system.tree, front);
