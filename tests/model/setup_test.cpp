@@ -16,7 +16,37 @@ std::unique_ptr<AnyModel> model_of(const Mesh<Tet4>& mesh, const Scene& scene, c
   return make_model(PolicyName::condensed_inverse, mesh, scene, m, options);
 }
 
+/// Starts two threads and counts the calls.
+struct CountingPool {
+  int* calls;
+  int threads() const noexcept { return 2; }
+  void run(int count, const ExecutorTask& task) const {
+    ++*calls;
+    StartedThreads(2).run(count, task);
+  }
+};
+
 }  // namespace
+
+TEST_CASE("a set-up uses the given threads, and its results do not depend on them", "[model][threads]") {
+  const Mesh<Tet4> mesh = box_tet4(Vector3(0.1, 0.1, 0.1), {17, 17, 17});
+  const Scene scene = Scene().fix("z0").touch(nodes_where(mesh, [](const Vector3& p) {
+    return p.z() > 0.099 && p.head<2>().minCoeff() > 0.04 && p.head<2>().maxCoeff() < 0.06;
+  }));
+  int calls = 0;
+  CountingPool pool{&calls};
+  VectorX first, x;
+  const std::vector<VertexForce> press{{0, ModelVector(Vector3(0.1, 0.0, -0.2))}};
+  for (const SetupThreads& threads : {SetupThreads(1), SetupThreads(3), SetupThreads(pool)}) {
+    SetupOptions options;
+    options.threads = threads;
+    const auto model = model_of(mesh, scene, liver, options);
+    model->displacement_with(press, x);
+    if (first.size() == 0) first = x;
+    CHECK(x == first);
+  }
+  CHECK(calls == 2);  // factorisation, checks
+}
 
 TEST_CASE("the report counts and measures", "[model][report]") {
   for (PolicyName policy : all_policies) {
