@@ -62,9 +62,9 @@ class NewtonMethod {
       trial_ = x + length * step_;
       const double next = problem.evaluate(trial_, trial_residual_);
       const bool lower = next <= potential - 1e-4 * length * slope;
-      const bool nearer = next < infinity &&
-                          std::abs(next - potential) <= 1e-9 * (std::abs(next) + std::abs(potential)) &&
-                          trial_residual_.norm() < norm;
+      // a potential near zero may be the difference of large terms: its error is that of forces times displacements
+      const double lost = std::max(1e-9 * (std::abs(next) + std::abs(potential)), problem.rounding() * trial_.norm());
+      const bool nearer = next < infinity && std::abs(next - potential) <= lost && trial_residual_.norm() < norm;
       if (lower || nearer) {
         x.swap(trial_);
         residual_.swap(trial_residual_);
