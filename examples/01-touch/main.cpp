@@ -12,7 +12,7 @@
 //      (scene.hpp).
 //   2. HapticFEModel<Element, Material, Solver> computes everything that does not depend on the contact: it assembles
 //      the stiffness, condenses it to the touchable nodes and inverts the condensed matrix. This takes a second or two,
-//      once.
+//      once. Then it presses the probe into the organ and into a finer mesh, to measure how far forces are in error.
 //   3. HapticSession ticks in its own thread, once per millisecond, within the limits of the device. A tick takes some
 //      microseconds. It finds the contacts between sphere and surface, solves for the contact forces, and passes their
 //      sum through the force gate: the output is never NaN, never exceeds the limit of the device, and has no jumps.
@@ -74,7 +74,8 @@ int run_example(const Arguments& arguments) {
   const Plan plan{.seconds = arguments.seconds};
 
   const Mesh<Tet4> mesh = io::read_mesh<Tet4>(arguments.mesh);
-  Organ organ(mesh, make_scene(mesh), materials);
+  constexpr int places = 2;  // of the patch where the error of forces is measured: about a second
+  Organ organ(mesh, make_scene(mesh), materials, {.force_error = measured_force_error(places)});
   std::cout << organ.report();
 
   const TouchPath path(organ, plan);

@@ -79,6 +79,7 @@ inline std::string make_page(const Organ& organ, const TouchPath& path, const Re
                {"arrow", text("%.0f mm per newton", 1e3 * per_newton)},
                {"figures", figures(organ, session.loop)},
                {"force_chart", charts.force},
+               {"force_note", "The band is the error bar: " + error_text(session.loop.errors) + "."},
                {"depth_chart", charts.depth},
                {"curve_chart", charts.curve},
                {"latency_chart", charts.latency},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/palpate.hpp>
+#include <palpate/model/static/measured_force_error.hpp>
 
 #include <Eigen/QR>
 #include <Eigen/Geometry>
@@ -30,16 +31,17 @@ inline std::vector<NodeId> underside(const Mesh<Tet4>& mesh) {
   return nodes;
 }
 
+/// A 4 mm probe. The triangles of the patch are 4 mm long, too long for it: the set-up measures how far its forces are
+/// in error, and every tick has an error bar.
+inline constexpr SphereTool tool{.radius = 4e-3};
+
 /// Conditions refer to a named group of the mesh file or to a list of nodes. There is no gravity here: the mesh is the
 /// shape of the organ under its weight. (With gravity it would be flattened by another 2.8 mm.)
 inline Scene make_scene(const Mesh<Tet4>& mesh) {
   Scene scene;
-  scene.fix("ligament").fix(underside(mesh)).touch("front").render("surface");
+  scene.fix("ligament").fix(underside(mesh)).touch("front", {.radius = tool.radius}).render("surface");
   return scene;
 }
-
-/// A 4 mm probe. The triangles of the patch are 4 mm long, so their corners cause a small force ripple.
-inline constexpr SphereTool tool{.radius = 4e-3};
 
 /// How the tool moves; lengths in [m].
 struct Plan {

@@ -64,6 +64,8 @@ TEST_CASE("a mesh is refined until the force error is within the goal", "[model]
   CHECK(refined.search.reached());
   CHECK(refined.search.steps.back().error <= 0.08);
   CHECK(refined.model.report().accuracy.typical == refined.search.steps.back().error);
+  CHECK(refined.model.report().accuracy.wanted == 0.08);
+  CHECK_FALSE(refined.model.report().has(SetupFlag::accuracy_not_reached));
   CHECK(refined.mesh.node_count() == refined.search.steps.back().nodes);
   CHECK(refined.mesh.node_count() > mesh.node_count());
   // The truth: quadratic elements, smaller still.
@@ -121,6 +123,53 @@ TEST_CASE("a goal beyond the budget is reported, with the most accurate mesh wit
   CHECK(small.mesh.node_count() <= mesh.node_count() + 100);
   CHECK(small.mesh.node_count() > mesh.node_count() + 30);
   CHECK(small.search.why_not.find("nodes") != std::string::npos);
+}
+
+TEST_CASE("a force error above the wanted one is flagged with both figures, also below a tenth",
+          "[model][refine_to_accuracy]") {
+  Mesh<Tet4> mesh = coarse_block();
+  const Scene scene = name_listed_nodes(mesh, pressed_block(mesh));
+  mesh = refine_near_touched(mesh, scene, 0.3 * accurate_radius);
+  const auto made = [&](double wanted) {
+    SetupOptions options;
+    options.force_error = measured_force_error(1);
+    options.force_error.wanted = wanted;
+    return AccurateBlock(mesh, scene, accurate_material, options).report();
+  };
+  const SetupReport any = made(0.0);
+  const double reached = any.accuracy.typical;
+  CAPTURE(reached);
+  REQUIRE(reached > 0.01);
+  REQUIRE(reached < 0.1);
+  CHECK_FALSE(any.has(SetupFlag::coarse_contact));
+  CHECK_FALSE(any.has(SetupFlag::accuracy_not_reached));
+  CHECK_FALSE(made(1.001 * reached).has(SetupFlag::accuracy_not_reached));
+  const SetupReport missed = made(0.8 * reached);
+  CHECK(missed.has(SetupFlag::accuracy_not_reached));
+  CHECK(missed.accuracy.wanted == 0.8 * reached);
+  CHECK(missed.accuracy.typical == reached);
+  std::ostringstream text;
+  text << missed;
+  const auto percent = [](double part) { return number(std::round(1000.0 * part) / 10.0) + " %"; };
+  CHECK(text.str().find("the force error is " + percent(reached)) != std::string::npos);
+  CHECK(text.str().find(percent(0.8 * reached) + " is wanted") != std::string::npos);
+}
+
+TEST_CASE("a wanted force error is flagged where nothing can be measured, and when the budget ends first",
+          "[model][refine_to_accuracy]") {
+  const Mesh<Tet4> mesh = coarse_block();
+  SetupOptions options;
+  options.force_error = measured_force_error(1);
+  options.force_error.wanted = 0.05;
+  const Scene blind = Scene().fix("z0").touch("z1");
+  const SetupReport unknown = AccurateBlock(mesh, blind, accurate_material, options).report();
+  CHECK(unknown.accuracy.places == 0);
+  CHECK(unknown.has(SetupFlag::accuracy_not_reached));
+  const auto small =
+      refine_to_accuracy<AccurateBlock>(mesh, pressed_block(mesh), accurate_material,
+                                        {.error = 0.02, .most_nodes = mesh.node_count() + 100, .places = 1});
+  CHECK(small.model.report().has(SetupFlag::accuracy_not_reached));
+  CHECK(small.model.report().accuracy.wanted == 0.02);
 }
 
 TEST_CASE("when a finer mesh cannot be set up, the model before it is returned", "[model][refine_to_accuracy]") {

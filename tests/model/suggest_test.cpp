@@ -144,17 +144,20 @@ TEST_CASE("suggest refuses budgets and scenes that say too little", "[suggest]")
   CHECK_REFUSED(SetupErrorKind::unknown_group, advice(scene, {}));
 }
 
-TEST_CASE("lists of nodes cannot be refined, and the candidates on refined meshes say so", "[suggest]") {
+TEST_CASE("listed nodes become groups, which refinement completes", "[suggest]") {
   const Mesh<Tet4> block = suggest_block();
   Scene scene;
-  scene.fix(block.find_group("z0")->nodes).touch("z1", {.radius = suggest_radius});
-  CHECK_REFUSED(SetupErrorKind::unsupported, refine_near_touched(block, scene, 2e-3));
+  scene.fix(block.find_group("z0")->nodes)
+      .touch(where::sphere({0.015, 0.015, 0.02}, 0.009), {.radius = suggest_radius});
   const Suggestion s = suggest(block, scene, suggest_material(), ample());
+  CHECK(s.lists_nodes);
+  REQUIRE(s.candidates.size() == suggest_once().candidates.size());
+  for (std::size_t i = 0; i < s.candidates.size(); ++i)
+    CHECK(s.candidates[i].error == Approx(suggest_once().candidates[i].error).epsilon(1e-9));
   REQUIRE(s.chosen);
-  CHECK(s.candidates[*s.chosen].edge == 0.0);
-  const SuggestedModel& refined = find_suggested(s, "Smoothed<Tet4>", true);
-  CHECK_FALSE(refined.measured);
-  CHECK(refined.remark.find("lists of nodes") != std::string::npos);
+  const SuggestedModel& chosen = s.candidates[*s.chosen];
+  const bool refined = chosen.edge > 0.0 || chosen.element == "Tet10";
+  CHECK((s.code().find("scene = name_listed_nodes(mesh, scene)") != std::string::npos) == refined);
 }
 
 TEST_CASE("loads do not change what suggest measures", "[suggest]") {

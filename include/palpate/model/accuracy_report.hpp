@@ -16,6 +16,7 @@ struct AccuracyReport {
   double largest = 0.0;  ///< the largest of them, with its sign
   double facet = 0.0;    ///< mean length of the facets at the places [m]
   Index nodes = 0;       ///< of the fine mesh
+  double wanted = 0.0;   ///< ForceErrorOptions::wanted
   std::string remark;
 };
 

@@ -26,6 +26,9 @@ struct ForceErrorOptions {
   /// The tetrahedra that refine_near refined to the mesh of the model: the reference is then made from them, with fewer
   /// nodes. Null: from the mesh of the model. Must live during the set-up.
   const MeshRef* coarse = nullptr;
+  /// Error that is wanted, relative to the force: above it, and when nothing could be measured,
+  /// SetupFlag::accuracy_not_reached is set. 0: any. Nothing is refined: see refine_to_accuracy.
+  double wanted = 0.0;
 };
 
 }}  // namespace palpate

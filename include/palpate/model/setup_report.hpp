@@ -27,7 +27,8 @@ enum class SetupFlag : std::uint32_t {
   non_manifold = 1u << 8,      ///< more than two touchable triangles meet at an edge
   /// the loads of the scene alone displace parts of the body relative to each other by a tenth of its size
   large_displacement = 1u << 9,
-  coarse_contact = 1u << 10,  ///< the facets are too long for the sphere that will touch: see AccuracyReport
+  coarse_contact = 1u << 10,        ///< the facets are too long for the sphere that will touch: see AccuracyReport
+  accuracy_not_reached = 1u << 11,  ///< the force error is above the wanted one, or not known: see AccuracyReport
 };
 
 /// Sizes, memory [bytes], times [s] and findings of a set-up.
@@ -49,6 +50,8 @@ struct SetupReport {
   void set(SetupFlag flag, std::string remark);
   void clear(SetupFlag flag);
   bool has(SetupFlag flag) const noexcept { return (flags & static_cast<std::uint32_t>(flag)) != 0; }
+  /// Enters the wanted error of forces, 0: any; flags it if the one in `accuracy` is larger or not known.
+  void require_accuracy(double wanted);
   double total_seconds() const noexcept;
 };
 

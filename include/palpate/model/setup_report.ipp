@@ -4,6 +4,8 @@
 #include <palpate/model/setup_report.hpp>
 #include <palpate/core/setup_error.hpp>
 
+#include <cmath>
+
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE void SetupReport::set(SetupFlag flag, std::string remark) {
@@ -14,6 +16,15 @@ PALPATE_INLINE void SetupReport::set(SetupFlag flag, std::string remark) {
 PALPATE_INLINE void SetupReport::clear(SetupFlag flag) {
   flags &= ~static_cast<std::uint32_t>(flag);
   std::erase_if(remarks, [flag](const auto& remark) { return remark.first == flag; });
+}
+
+PALPATE_INLINE void SetupReport::require_accuracy(double wanted) {
+  accuracy.wanted = wanted;
+  const bool measured = accuracy.places > 0;
+  if (wanted == 0.0 || (measured && accuracy.typical <= wanted)) return;
+  const auto percent = [](double part) { return number(std::round(1000.0 * part) / 10.0) + " %"; };
+  set(SetupFlag::accuracy_not_reached, "the force error is " + (measured ? percent(accuracy.typical) : "not known") +
+                                           "; " + percent(wanted) + " is wanted");
 }
 
 PALPATE_INLINE double SetupReport::total_seconds() const noexcept {

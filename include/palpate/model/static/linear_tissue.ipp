@@ -91,6 +91,7 @@ void LinearTissue<Scalar>::measure_force_error(const ForceErrorOptions& options)
                         TissueView(*this), limits(), setup_report()));
   else
     setup_report().accuracy.remark = "the scene does not give the radius of the tool: touch(where, {.radius = ...})";
+  setup_report().require_accuracy(options.wanted);
 }
 
 /// A solve loses the digits of the condition number, if that is known, and what the probe solve lost. The columns have

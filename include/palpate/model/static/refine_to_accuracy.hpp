@@ -27,7 +27,8 @@ struct RefinedModel {
 };
 
 /// Makes a static model on a mesh that is refined near the touchable surface until the measured error of the contact
-/// force is within the goal, or the goal's budget is used up: look at `search.reached()`. The scene gives the radius of
+/// force is within the goal, or the goal's budget is used up: look at `search.reached()`, or at
+/// SetupFlag::accuracy_not_reached in the report of the model. The scene gives the radius of
 /// the sphere that touches (TouchOptions). The first mesh has the edges that sufficed on an organ
 /// (AccuracySearch); each further one follows from the errors measured so far. Listed nodes of the scene become groups
 /// first, which gain the new nodes between them. Each mesh costs the set-up of a model with `measured_force_error`; one
@@ -46,6 +47,7 @@ RefinedModel<Model> refine_to_accuracy(const Mesh<Tet4>& mesh, const Scene& scen
   const auto coarse = search.coarse();
   options.force_error = measured_force_error(goal.places);
   options.force_error.coarse = coarse ? &*coarse : nullptr;
+  options.force_error.wanted = goal.error;
   const auto make = [&] {
     if constexpr (quadratic)
       return Model(promote<Tet10>(search.mesh()), search.scene(), materials, options);

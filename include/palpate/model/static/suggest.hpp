@@ -5,7 +5,7 @@
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/mesh.hpp>
-#include <palpate/mesh/refine_near.hpp>
+#include <palpate/mesh/refine_near_touched.hpp>
 #include <palpate/mesh/scene.hpp>
 
 #include <optional>
@@ -44,23 +44,19 @@ struct Suggestion {
   std::optional<std::size_t> chosen;  ///< empty: none is within the tick and the set-up of the budget
   bool within_error = false;          ///< whether the chosen one has the wanted error
   std::string reason;                 ///< one sentence
+  bool lists_nodes = false;           ///< whether the scene does: they become groups first
   double seconds = 0.0;               ///< that the suggestion took
 
   /// C++ code that makes the chosen model of `mesh`, `scene` and `material`; a comment when none is chosen.
   std::string code() const;
 };
 
-/// The mesh with edges of at most `edge` [m] on the touchable part of a scene, longer ones with the distance. Throws
-/// unsupported for a scene that selects by lists of nodes, as new nodes are in no list; the errors of `refine_near`.
-Mesh<Tet4> refine_near_touched(const Mesh<Tet4>& mesh, const Scene& scene, double edge,
-                               const RefineNearOptions& options = {});
-
 /// Which of Tet4, Smoothed<Tet4> and Tet10 on the mesh as given, and Smoothed<Tet4> on meshes refined near the
 /// touchable part, presses most accurately within the budget on this machine. Each is set up, pressed at the same
 /// points as one tissue on a fine mesh (detail/measure_force_error.hpp), and its ticks are timed; one whose set-up is
 /// predicted to exceed the budget by far is left out. If an error is wanted, the one with the shortest set-up among
 /// those with that error is chosen; else, and if none has it, that with the least error. Loads and prescribed
-/// displacements of the scene are left out: the tool presses the body at rest.
+/// displacements of the scene are left out: the tool presses the body at rest. Listed nodes become groups first.
 ///
 /// Valid for tools that press; what lifts or pulls a part needs large strain (docs/choosing.md). Throws bad_argument
 /// for a budget out of range, or a scene without the radius of the tool (TouchOptions); the errors of a set-up.

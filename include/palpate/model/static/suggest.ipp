@@ -4,14 +4,12 @@
 #include <palpate/model/static/suggest.hpp>
 
 #include <palpate/core/setup_error.hpp>
-#include <palpate/mesh/selection.hpp>
 #include <palpate/model/static/detail/candidate_maker.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
-#include <variant>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -36,12 +34,6 @@ inline std::string excess(const SuggestedModel& model, const SuggestBudget& budg
   if (model.setup > budget.setup_seconds)
     return "the set-up takes " + rounded(model.setup, "s") + ", more than " + rounded(budget.setup_seconds, "s");
   return {};
-}
-
-inline bool needs_node_lists(const Scene& scene) {
-  const auto is_list = [](const Selection& s) { return std::holds_alternative<std::vector<NodeId>>(s); };
-  return std::ranges::any_of(scene.touched(), is_list) ||
-         std::ranges::any_of(scene.prescribed(), is_list, &Scene::Prescribed::where);
 }
 
 /// The best of the candidates that `allowed` admits; -1: none.
@@ -101,25 +93,16 @@ PALPATE_INLINE std::string Suggestion::code() const {
                            : m.element == "Tet10" ? "promote<Tet10>(mesh)"
                                                   : "mesh";
   return "// " + reason + "\nusing Model = HapticFEModel<" + m.element +
-         ", LinearElastic, Condensed<SelectiveInverse>>;\nModel model(" + mesh + ", scene, material);\n";
-}
-
-PALPATE_INLINE Mesh<Tet4> refine_near_touched(const Mesh<Tet4>& mesh, const Scene& scene, double edge,
-                                              const RefineNearOptions& options) {
-  constexpr double growth = 0.5;
-  if (detail::needs_node_lists(scene))
-    raise(SetupErrorKind::unsupported, "the scene selects by lists of nodes, which new nodes are not in",
-          "Name a group of the mesh, or give a set of points such as where::box");
-  const auto boundary = extract_boundary<Tet4>(mesh);
-  std::vector<RefineTarget> targets;
-  for (const Selection& part : scene.touched()) targets.push_back(nodes_of(resolve_faces(mesh, boundary, part)));
-  return refine_near(mesh, targets, {edge, growth}, options);
+         ", LinearElastic, Condensed<SelectiveInverse>>;\n" +
+         (lists_nodes && (m.edge > 0.0 || m.element == "Tet10") ? "scene = name_listed_nodes(mesh, scene);\n" : "") +
+         "Model model(" + mesh + ", scene, material);\n";
 }
 
 PALPATE_INLINE Suggestion suggest(const Mesh<Tet4>& mesh, const Scene& scene,
                                   const RegionMaterials<LinearElastic>& materials, const SuggestBudget& budget) {
   CandidateMaker maker(mesh, scene, materials, budget);
   Suggestion s;
+  s.lists_nodes = lists_nodes(scene);
   s.candidates = maker.make_all();
   detail::choose(s, budget);
   s.reason = detail::reason_for(s, budget);

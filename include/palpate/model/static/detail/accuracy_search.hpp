@@ -4,7 +4,6 @@
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/mesh_ref.hpp>
-#include <palpate/mesh/refine_target.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/accuracy_report.hpp>
 
@@ -59,9 +58,6 @@ class AccuracySearch {
   const AccuracySearchReport& report() const noexcept { return report_; }
 
  private:
-  void name_listed_nodes(const Scene& scene);
-  /// Where elements with this edge are wanted: of a set of points, only those on the surface.
-  std::vector<RefineTarget> touched(double edge) const;
   bool make_mesh(double edge);
   double next_edge() const;
   bool end(std::string why_not);

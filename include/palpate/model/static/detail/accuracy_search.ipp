@@ -4,8 +4,7 @@
 #include <palpate/model/static/detail/accuracy_search.hpp>
 
 #include <palpate/core/setup_error.hpp>
-#include <palpate/mesh/refine_near.hpp>
-#include <palpate/mesh/surface.hpp>
+#include <palpate/mesh/refine_near_touched.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -30,53 +29,8 @@ PALPATE_INLINE AccuracySearch::AccuracySearch(const Mesh<Tet4>& mesh, const Scen
           "touch(where, {.radius = ...})");
   report_.wanted = goal.error;
   report_.nodes_as_given = mesh.node_count();
-  name_listed_nodes(scene);
+  scene_ = name_listed_nodes(given_, scene);
   make_mesh(edge_at_five_percent * scene.touch_radius() * std::pow(goal.error / 0.05, 1.0 / order));
-}
-
-/// refine_near completes groups, but knows nothing of lists.
-PALPATE_INLINE void AccuracySearch::name_listed_nodes(const Scene& scene) {
-  int lists = 0;
-  scene_ = scene.with_selections([&](const Selection& selection) -> Selection {
-    const auto* nodes = std::get_if<std::vector<NodeId>>(&selection);
-    if (nodes == nullptr) return selection;
-    for (const NodeId node : *nodes)
-      if (node < 0 || Index{node} >= given_.node_count())
-        raise(SetupErrorKind::index_out_of_range,
-              "the scene names node " + std::to_string(node) + ", the mesh has " + std::to_string(given_.node_count()));
-    std::string name;
-    do name = "listed nodes " + std::to_string(++lists);
-    while (given_.groups.find(name) != nullptr);
-    given_.groups.get_or_add(name, 0).nodes = *nodes;
-    return name;
-  });
-  given_.groups.tidy();
-}
-
-PALPATE_INLINE std::vector<RefineTarget> AccuracySearch::touched(double edge) const {
-  constexpr double spacing = 0.7;  // edges
-  std::vector<RefineTarget> targets;
-  PointCloud cloud;
-  for (const Selection& selection : scene_.touched()) {
-    const auto* set = std::get_if<where::PointSet>(&selection);
-    if (set == nullptr) {
-      targets.push_back(std::visit([](const auto& s) { return RefineTarget(s); }, selection));
-      continue;
-    }
-    for (const BoundaryFace& face : extract_boundary<Tet4>(given_)) {
-      const Vector3 a = given_.position(face.nodes[0]), ab = given_.position(face.nodes[1]) - a,
-                    ac = given_.position(face.nodes[2]) - a;
-      const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
-      const int parts = static_cast<int>(std::ceil(longest / (spacing * edge)));
-      for (int i = 0; i <= parts; ++i)
-        for (int j = 0; i + j <= parts; ++j) {
-          const Vector3 p = a + (i * ab + j * ac) / parts;
-          if (set->contains(p)) cloud.points.push_back(p);
-        }
-    }
-  }
-  if (!cloud.points.empty()) targets.push_back(std::move(cloud));
-  return targets;
 }
 
 PALPATE_INLINE std::optional<MeshRef> AccuracySearch::coarse() const {
@@ -86,11 +40,11 @@ PALPATE_INLINE std::optional<MeshRef> AccuracySearch::coarse() const {
 
 /// False when the number of nodes does not allow a mesh that is clearly finer than the present one.
 PALPATE_INLINE bool AccuracySearch::make_mesh(double edge) {
-  constexpr double growth = 0.5, coarser = 1.15, least_change = 0.95;
+  constexpr double coarser = 1.15, least_change = 0.95;
   RefineNearReport done;
   for (;; edge *= coarser) {
     if (edge_ > 0.0 && edge > least_change * edge_) return false;
-    Mesh<Tet4> finer = refine_near(given_, touched(edge), {edge, growth}, {.most_nodes = goal_.most_nodes}, &done);
+    Mesh<Tet4> finer = refine_near_touched(given_, scene_, edge, {.most_nodes = goal_.most_nodes}, &done);
     if (!done.most_nodes_reached) {
       mesh_ = std::move(finer);
       edge_ = edge;

@@ -16,7 +16,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// points by up to half of its radius [s].
 double pressing_tick_seconds(HapticServo& servo, double radius, const std::vector<SurfacePoint>& points);
 
-/// Measures candidates until the time is over. Keeps references.
+/// Measures candidates until the time is over. Keeps a reference to the materials.
 class CandidateMaker {
  public:
   /// Throws bad_argument.
@@ -64,7 +64,7 @@ class CandidateMaker {
   /// Cancels what runs longer than this [s], and what runs when the time is over.
   ProgressCallback within(double seconds) const;
 
-  const Mesh<Tet4>& mesh_;
+  Mesh<Tet4> mesh_;  // without lists of nodes in the scene
   Scene scene_;
   const RegionMaterials<LinearElastic>& materials_;
   SuggestBudget budget_;

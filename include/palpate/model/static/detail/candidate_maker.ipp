@@ -99,7 +99,7 @@ PALPATE_INLINE CandidateMaker::CandidateMaker(const Mesh<Tet4>& mesh, const Scen
                                               const RegionMaterials<LinearElastic>& materials,
                                               const SuggestBudget& budget)
     : mesh_(mesh),
-      scene_(detail::scene_at_rest(scene)),
+      scene_(name_listed_nodes(mesh_, detail::scene_at_rest(scene))),
       materials_(materials),
       budget_(budget),
       start_(platform::wall_ns()) {
