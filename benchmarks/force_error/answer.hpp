@@ -8,6 +8,7 @@
 #include <palpate/model/static/measured_force_error.hpp>
 
 #include "press.hpp"
+#include "recovered_stress.hpp"
 
 namespace force_error {
 
@@ -20,6 +21,9 @@ auto mesh_for(const TestBody& body) {
   else
     return copy_mesh<E>(body.tetrahedra);
 }
+
+template <class E>
+inline constexpr bool has_recovery_estimate = std::same_as<E, Tet4> || std::same_as<E, Tet10>;
 
 template <class E>
 Answer answer(const Case& test) {
@@ -38,9 +42,12 @@ Answer answer(const Case& test) {
   answer.remark = accuracy.remark;
   press(model, test, 0, [&](std::size_t i, std::size_t d, const HapticServo& servo, double force) {
     const ForceError error = servo.force_error();
-    answer.presses[i][d] = {force, error.expected, error.parts.mesh + error.parts.merged,
-                            model.report().has(SetupFlag::locking)};
+    Press& press = answer.presses[i][d];
+    press = {force, error.expected, error.parts.mesh + error.parts.merged, model.report().has(SetupFlag::locking)};
+    if constexpr (has_recovery_estimate<E>) press.recovered = recovery_estimate(model, servo);
   });
+  answer.nodes_per_element = E::nodes;
+  answer.has_recovered = has_recovery_estimate<E>;
   return answer;
 }
 

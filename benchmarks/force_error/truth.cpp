@@ -15,7 +15,7 @@ RegionMaterials<LinearElastic> materials_of(const Case& test) {
   return materials;
 }
 
-std::vector<std::array<double, depths.size()>> truth(const Case& test) {
+Forces truth(const Case& test, double edges_per_radius) {
   PointCloud cloud;
   where::PointSet touched = where::sphere(test.places.front().point, 0.8 * test.radius);
   for (const TestPlace& place : test.places) {
@@ -24,9 +24,10 @@ std::vector<std::array<double, depths.size()>> truth(const Case& test) {
   }
   Scene scene;
   scene.fix(test.body.fixed).touch(touched);
-  const Mesh<Tet10> mesh = promote<Tet10>(refine_near(test.body.tetrahedra, cloud, {test.radius / 5.0, 0.5}));
+  const Mesh<Tet10> mesh =
+      promote<Tet10>(refine_near(test.body.tetrahedra, cloud, {test.radius / edges_per_radius, 0.5}));
   HapticFEModel<Tet10, LinearElastic> model(mesh, scene, materials_of(test));
-  std::vector<std::array<double, depths.size()>> forces(test.places.size());
+  Forces forces(test.places.size());
   press(model, test, 512,
         [&](std::size_t i, std::size_t d, const HapticServo&, double force) { forces[i][d] = force; });
   return forces;

@@ -182,7 +182,7 @@ TEST_CASE("when a finer mesh cannot be set up, the model before it is returned",
     return true;
   };
   const auto limited = refine_to_accuracy<AccurateTet4>(mesh, pressed_block(mesh), accurate_material,
-                                                        {.error = 0.15, .places = 1}, options);
+                                                        {.error = 0.08, .places = 1}, options);
   CHECK_FALSE(limited.search.reached());
   CHECK(limited.search.why_not.find("no room") != std::string::npos);
   CHECK(limited.search.steps.size() == 1);

@@ -8,6 +8,7 @@
 #include <palpate/model/static/detail/pressed_points.hpp>
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// Presses a sphere into the tissue at some places of its surface, far from each other: over a vertex, an edge and a
 /// facet, to depths of a 32nd to a half of its radius; then into Smoothed<Tet4> tissue on a mesh with edges of at most
-/// a sixth of the radius there, with the same supports. At equal depth the forces differ by the error of the mesh.
+/// a sixth of the radius there and at most a third of the body's thickness elsewhere, with the same supports. At equal
+/// depth the forces differ by the error of the mesh.
 class ForceErrorMeasurement {
  public:
   /// Chooses the places.
@@ -55,14 +57,15 @@ class ForceErrorMeasurement {
   template <class PositionOf>
   Positions points(const Place& place, PositionOf position) const;
   std::vector<double> depths() const;
+  std::optional<double> relative_missing(const Place& place, std::size_t position, std::size_t depth) const;
   MissingDepth missing(const Place& place) const;
   void make_reference(const SetupLimits& limits);
-  static void add_spread(std::vector<MissingDepth>& places);
   void summarise();
 
   ForceErrorSource source_;
   std::vector<Place> places_;
-  double edge_ = 0.0;  // of the fine mesh at the places [m]
+  double edge_ = 0.0;           // of the fine mesh at the places [m]
+  double bending_doubt_ = 0.0;  // of the force: of a body that is too thin and large for refine_through
   AccuracyReport report_;
 };
 
