@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/detail/bvh.hpp>
+#include <palpate/contact/detail/expected_surface.hpp>
 #include <palpate/contact/force_accuracy.hpp>
 #include <palpate/contact/linear_model_error.hpp>
 
@@ -75,6 +76,14 @@ class ContactSurface {
   /// The same for one of several copies of a surface that take turns: `revision` is a number of this state only.
   void move_to(std::span<const Vector3> positions, std::uint64_t revision) noexcept;
 
+  /// Sets where the vertices are under forces that act at present, for a tissue that moves: after every `move_to`.
+  /// Ticks search for contacts near these positions; without them, around the resting surface as far as the forces may
+  /// have moved it. Results are the same. Allocates at the first call; not while a tick runs.
+  void expect(std::span<const Vector3> positions, std::span<const VertexForce> forces) {
+    expected_.set(bvh_, triangles_, positions, forces);
+  }
+  const ExpectedSurface& expected() const noexcept { return expected_; }
+
   /// Adds the untouchable rest of the body's boundary, so that inside and outside are known beyond the touchable
   /// surface. An index v of a triangle is a vertex of this surface if v < vertex_count(), otherwise it means
   /// positions[v - vertex_count()] [m]. Allocates; for set-up.
@@ -130,6 +139,7 @@ class ContactSurface {
   int crowded_edges_ = 0;
   bool has_rim_ = false;
   std::uint64_t revision_ = 0;
+  ExpectedSurface expected_;
   std::vector<ContactSurface> body_;  // with the shell; none or one
   Unloaded unloaded_;
   std::vector<ContactMaterial> materials_;  // per triangle, or empty

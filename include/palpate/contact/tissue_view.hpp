@@ -53,6 +53,7 @@ struct TissueCalls {
     }
   }
   static void between(const void* t, const ContactSample& p, const ContactSample& q, double* out) noexcept {
+    if (p.weights[0] == 1.0 && q.weights[0] == 1.0) return compliance(t, p.vertices[0], q.vertices[0], out);
     for (int k = 0; k < 9; ++k) out[k] = 0.0;
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b) {

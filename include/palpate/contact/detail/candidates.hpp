@@ -50,11 +50,13 @@ struct Candidate {
 /// neighbour lists in molecular dynamics, Verlet 1967). While the last part of the margin is used up, the next list is
 /// built in parts, so that no tick has all of that work; leaps have it at once. A point is evaluated again only when
 /// that path could have closed its gap. The search on the resting surface reaches as far as the surface has moved
-/// (SurfaceDisplacement::reach). On facets that are too long for a sphere and have a known modulus (CoarseFacets) the
-/// points are not those of the lattice, between which the sphere would sink, but one per facet and sphere: the closest
-/// to the sphere's centre. It moves along the facet whenever it is evaluated, its stick anchor with it. A scan over all
-/// vertices, a few per tick, finds what moved farther than the search reaches. No allocation; work bounded by `maximum`
-/// and, when the list is rebuilt at once, by the samples of all triangles in reach: each is evaluated.
+/// (SurfaceDisplacement::reach); where a tissue
+/// that moves knows how the surface is deformed, the search is on that surface (ExpectedSurface). On facets that are
+/// too long for a sphere and have a known modulus (CoarseFacets) the points are not those of the lattice, between which
+/// the sphere would sink, but one per facet and sphere: the closest to the sphere's centre. It moves along the facet
+/// whenever it is evaluated, its stick anchor with it. A scan over all vertices, a few per tick, finds what moved
+/// farther than the search reaches. No allocation; work bounded by `maximum` and, when the list is rebuilt at once, by
+/// the samples of all triangles in reach: each is evaluated.
 class Candidates {
  public:
   /// Places the samples for spheres of these radii, `spacing` radii of the smallest apart; larger spheres use a level
@@ -123,6 +125,8 @@ class Candidates {
 
   /// Upper bound of the displacement of the surface near the tools, as far as it is known [m].
   double reach(const TissueView& tissue, SurfaceDisplacement& displacement) const noexcept;
+  /// The same for distances from where the surface is expected.
+  double reach_from_expected(const TissueView& tissue, SurfaceDisplacement& displacement) const noexcept;
 
   /// Checks the next few vertices of the scan.
   void look_round(const TissueView& tissue, std::span<const ContactTool> tools,
@@ -142,6 +146,8 @@ class Candidates {
   /// Moves a point that moves to the present closest point of its facet.
   void project(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
                Candidate& c) const noexcept;
+  inline static const Vector3& expected_position(const ContactSurface& surface, int vertex) noexcept;
+  inline static Vector3 expected_place(const ContactSurface& surface, const ContactSample& sample) noexcept;
   inline static double needed(const ContactTool& tool) noexcept;
   int level_of(const ContactTool& tool) const noexcept;
   int triangle_of(const ContactSurface& surface, int sample) const noexcept;
@@ -152,6 +158,7 @@ class Candidates {
     int count = 0, room = 0, kept = 0;                   // kept: points that press, before the others
     std::array<double, maximum_tools> range{}, built{};  // range: gaps up to which it was complete at travel `built`
     double reach = 0.0;                                  // of the surface, least in the search
+    double surface_built = 0.0;                          // travel of the surface when the search began
   };
   /// A search for the points of a list, tool by tool.
   struct Search {
@@ -176,6 +183,8 @@ class Candidates {
   bool is_loaded(int tool, int sample) const noexcept;
   void examine(const TissueView& tissue, const ContactTool& tool, int triangle, const Search& search, List& list,
                SurfaceDisplacement& displacement) noexcept;
+  inline static double least_gap(const ContactSurface& surface, const ContactTool& tool, const ContactSample& sample,
+                                 const Search& search) noexcept;
   void consider(const TissueView& tissue, const ContactTool& tool, Candidate& c, const Search& search, List& list,
                 SurfaceDisplacement& displacement) noexcept;
   bool faces_sphere(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
@@ -196,7 +205,11 @@ class Candidates {
   std::array<bool, maximum_tools> was_active_{};
   std::array<double, maximum_tools> travel_{};
   double surface_travel_ = 0.0;
-  double far_ = 0.0, far_last_round_ = 0.0;
+  /// Largest distances of vertices that the scan found outside the reach.
+  struct Far {
+    double rest = 0.0, expected = 0.0;
+  };
+  Far far_, far_last_round_;
   int next_ = 0;  // next vertex of the scan
 };
 

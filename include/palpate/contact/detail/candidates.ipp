@@ -43,7 +43,7 @@ PALPATE_INLINE void Candidates::reset() noexcept {
   search_.runs = search_.ends = false;
   list_.range.fill(0.0);
   list_.built.fill(0.0);
-  list_.reach = 0.0;
+  list_.reach = list_.surface_built = 0.0;
   leaves_ = 0;
   valid_ = is_new_ = lost_forces_ = false;
   revision_ = 0;
@@ -51,7 +51,8 @@ PALPATE_INLINE void Candidates::reset() noexcept {
   rotation_.fill(Matrix3::Zero());
   was_active_.fill(false);
   travel_.fill(0.0);
-  surface_travel_ = far_ = far_last_round_ = 0.0;
+  surface_travel_ = 0.0;
+  far_ = far_last_round_ = {};
   next_ = 0;
 }
 
@@ -65,6 +66,17 @@ inline Vector3 Candidates::rest(const ContactSurface& surface, const ContactSamp
   return sample.weights[0] * surface.position(sample.vertices[0]) +
          sample.weights[1] * surface.position(sample.vertices[1]) +
          sample.weights[2] * surface.position(sample.vertices[2]);
+}
+
+/// Where a vertex is expected; at rest where nothing is known.
+inline const Vector3& Candidates::expected_position(const ContactSurface& surface, int vertex) noexcept {
+  return surface.expected().is_known() ? surface.expected().position(vertex) : surface.position(vertex);
+}
+
+inline Vector3 Candidates::expected_place(const ContactSurface& surface, const ContactSample& sample) noexcept {
+  return sample.weights[0] * expected_position(surface, sample.vertices[0]) +
+         sample.weights[1] * expected_position(surface, sample.vertices[1]) +
+         sample.weights[2] * expected_position(surface, sample.vertices[2]);
 }
 
 inline void Candidates::place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept {
@@ -153,7 +165,7 @@ PALPATE_INLINE void Candidates::prepare(const TissueView& tissue, std::span<cons
   const double part = used(list_, tools);
   if (!(part > begin_used && part <= 1.0)) return;
   if (!search_.runs) begin(search_, next_list_, maximum() - static_cast<int>(loaded_.size()));
-  search_.reach = reach(tissue, displacement);
+  search_.reach = reach_from_expected(tissue, displacement);
   next_list_.reach = std::min(next_list_.reach, search_.reach);
   const double aim = leaves_ * (part - begin_used) / (end_used - begin_used);
   do {
@@ -209,14 +221,15 @@ PALPATE_INLINE void Candidates::look_round(const TissueView& tissue, std::span<c
     if (++next_ >= surface.vertex_count()) {
       next_ = 0;
       far_last_round_ = far_;
-      far_ = 0.0;
+      far_ = {};
     }
-    const double moved = displacement.at(tissue, next_).norm();
-    if (moved <= list_.reach) continue;
+    const double moved = displacement.deviation(tissue, next_);
+    if (moved <= list_.reach + surface_travel_ - list_.surface_built) continue;
     const Vector3 x = displacement.position(tissue, next_);
     for (std::size_t t = 0; t < tools.size(); ++t)
       if (tools[t].active && (x - tools[t].proxy).norm() < tools[t].radius + tools[t].half_length + list_.range[t]) {
-        far_ = std::max(far_, 1.1 * moved);
+        far_.rest = std::max(far_.rest, 1.1 * displacement.at(tissue, next_).norm());
+        far_.expected = std::max(far_.expected, 1.1 * moved);
         forget();
       }
   }
@@ -238,13 +251,15 @@ PALPATE_INLINE void Candidates::begin(Search& search, List& list, int room) cons
   list.count = list.kept = 0;
   list.room = room;
   list.reach = infinity;
+  list.surface_built = surface_travel_;
 }
 
 /// Searches the next leaf; false when none is left. The surface and the spheres may move between two calls: what is
 /// left out of the list is farther than its range at that time, and at travel `built` or later.
 PALPATE_INLINE bool Candidates::advance(const TissueView& tissue, std::span<const ContactTool> tools, Search& search,
                                         List& list, SurfaceDisplacement& displacement) noexcept {
-  const Bvh& bvh = tissue.contact_surface().bvh();
+  const ContactSurface& surface = tissue.contact_surface();
+  const Bvh& bvh = surface.expected().is_known() ? surface.expected().bvh() : surface.bvh();
   for (; search.tool < tools.size(); ++search.tool, search.descent.top = not_begun) {
     const std::size_t t = search.tool;
     const ContactTool& tool = tools[t];
@@ -267,23 +282,40 @@ PALPATE_INLINE bool Candidates::advance(const TissueView& tissue, std::span<cons
 PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactTool& tool, int triangle,
                                         const Search& search, List& list, SurfaceDisplacement& displacement) noexcept {
   const ContactSurface& surface = tissue.contact_surface();
-  Candidate c;
-  c.triangle = triangle;
-  c.tool = static_cast<int>(search.tool);
   if (facets_.is_local(tool, surface.triangle(triangle))) {
+    Candidate c;
+    c.triangle = triangle;
+    c.tool = static_cast<int>(search.tool);
     c.sample = samples_.count() + c.tool * static_cast<int>(surface.triangles().size()) + triangle;
     project(tissue, tool, displacement, c);
-    return consider(tissue, tool, c, search, list, displacement);
+    c.gap = least_gap(surface, tool, c.moving, search);
+    if (c.gap <= list.range[search.tool]) consider(tissue, tool, c, search, list, displacement);
+    return;
   }
   const int level = level_of(tool);
   const int first = samples_.first_of(triangle, level), end = samples_.first_of(triangle + 1, level);
   if (end - first > 8) {  // in a leaf whose other triangles are near
     Box box;
-    for (const int v : surface.triangle(triangle)) box.include(surface.position(v));
+    for (const int v : surface.triangle(triangle)) box.include(expected_position(surface, v));
     const double near = tool.radius + tool.core_radius() + list.range[search.tool] + search.reach;
     if (box.squared_distance(tool.middle()) > near * near) return;
   }
-  for (c.sample = first; c.sample < end; ++c.sample) consider(tissue, tool, c, search, list, displacement);
+  for (int sample = first; sample < end; ++sample) {
+    const double gap = least_gap(surface, tool, samples_[sample], search);
+    if (!(gap <= list.range[search.tool])) continue;
+    Candidate c;
+    c.sample = sample;
+    c.triangle = triangle;
+    c.tool = static_cast<int>(search.tool);
+    c.gap = gap;
+    consider(tissue, tool, c, search, list, displacement);
+  }
+}
+
+/// Lower bound of the gap of a point that is within the reach of the search from where it is expected.
+inline double Candidates::least_gap(const ContactSurface& surface, const ContactTool& tool, const ContactSample& sample,
+                                    const Search& search) noexcept {
+  return (expected_place(surface, sample) - tool.middle()).norm() - tool.core_radius() - tool.radius - search.reach;
 }
 
 PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const ContactTool> tools,
@@ -293,7 +325,7 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
   store_loaded();
   begin(search_, list_, maximum());
   keep_loaded(tissue, tools, displacement);
-  search_.reach = list_.reach = reach(tissue, displacement);
+  search_.reach = list_.reach = reach_from_expected(tissue, displacement);
   while (advance(tissue, tools, search_, list_, displacement)) continue;
   leaves_ = search_.leaves;
   search_.runs = false;
@@ -334,7 +366,12 @@ PALPATE_INLINE void Candidates::store_loaded() noexcept {
 }
 
 PALPATE_INLINE double Candidates::reach(const TissueView& tissue, SurfaceDisplacement& displacement) const noexcept {
-  return std::max({displacement.reach(tissue), far_, far_last_round_});
+  return std::max({displacement.reach(tissue), far_.rest, far_last_round_.rest});
+}
+
+PALPATE_INLINE double Candidates::reach_from_expected(const TissueView& tissue,
+                                                      SurfaceDisplacement& displacement) const noexcept {
+  return std::max({displacement.reach_from_expected(tissue), far_.expected, far_last_round_.expected});
 }
 
 /// Begins a new list with the points that press: they keep their forces however far the sphere still is from its goal.
@@ -358,15 +395,12 @@ PALPATE_INLINE bool Candidates::is_loaded(int tool, int sample) const noexcept {
   return std::binary_search(loaded_keys_.begin(), loaded_keys_.begin() + loaded_count_, key(tool, sample));
 }
 
-/// Adds a point to the list if it is near. Far points are not evaluated: their displacement would cost more than the
-/// rest of the search, and the reach of the surface is a bound for it, unless that is large. When the list is full, it
-/// is complete only up to the nearest point left out. Points that press stay.
+/// Adds a point with its least gap to the list if it is near. Far points are not evaluated: their displacement would
+/// cost more than the rest of the search, and the reach of the surface is a bound for it, unless that is large. When
+/// the list is full, it is complete only up to the nearest point left out. Points that press stay.
 PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const ContactTool& tool, Candidate& c,
                                          const Search& search, List& list, SurfaceDisplacement& displacement) noexcept {
   double& range = list.range[search.tool];
-  const Vector3 resting = rest(tissue.contact_surface(), sample_of(c));
-  c.gap = (resting - tool.middle()).norm() - tool.core_radius() - tool.radius - search.reach;
-  if (!(c.gap <= range)) return;
   const bool far = c.gap > 0.0 && search.reach <= 0.5 * tool.radius && list.count < list.room;
   c.evaluated = is_moving(c) || !far;
   if (c.evaluated)

@@ -43,10 +43,14 @@ class SurfaceDisplacement {
   /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
 
+  /// Distance of a vertex from where the surface is expected, or else from its place at rest [m].
+  double deviation(const TissueView& tissue, int vertex) noexcept;
   /// Displacement of the surface near the forces [m]: the smaller of a bound that is valid everywhere and twice the
   /// largest displacement of the loaded vertices. The latter is no bound for a part that rotates about another;
   /// `Candidates` searches for such parts.
   double reach(const TissueView& tissue) noexcept;
+  /// The same for deviations; the vertices whose forces are expected count, too.
+  double reach_from_expected(const TissueView& tissue) noexcept;
 
  private:
   std::vector<VertexForce> forces_;

@@ -59,6 +59,21 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::position(const TissueView& tissue, i
   return tissue.contact_surface().position(vertex) + at(tissue, vertex);
 }
 
+PALPATE_INLINE double SurfaceDisplacement::deviation(const TissueView& tissue, int vertex) noexcept {
+  const ExpectedSurface& expected = tissue.contact_surface().expected();
+  if (!expected.is_known()) return at(tissue, vertex).norm();
+  return (position(tissue, vertex) - expected.position(vertex)).norm();
+}
+
+PALPATE_INLINE double SurfaceDisplacement::reach_from_expected(const TissueView& tissue) noexcept {
+  const ExpectedSurface& expected = tissue.contact_surface().expected();
+  if (!expected.is_known()) return reach(tissue);
+  double loaded = 0.0;
+  for (const VertexForce& f : forces()) loaded = std::max(loaded, deviation(tissue, f.vertex));
+  for (const int v : expected.loaded()) loaded = std::max(loaded, deviation(tissue, v));
+  return 2.0 * loaded;
+}
+
 PALPATE_INLINE double SurfaceDisplacement::reach(const TissueView& tissue) noexcept {
   double bounded = 0.0, loaded = 0.0;
   for (const VertexForce& f : forces()) {

@@ -173,12 +173,12 @@ class MovingTissue : public ModelBase {
   struct Forces {
     std::array<VertexForce, most_forces> item{};
     std::size_t count = 0;
-    VertexList<most_pressed> pressed;  // of the rows of the tick, also of those without force
+    VertexList<most_pressed> pressed;  // of the rows since the last surface, also of those without force
     VertexList<most_near> near;        // whose displacement was requested
     std::uint64_t number = 0;          // of the surface of the tick
   };
   struct View {
-    std::vector<Vector3> free;
+    std::vector<Vector3> free, pressed;  // positions without and with the forces used_
     std::vector<Matrix3> rotation;
     SecantTerms secants;
     NearCompliance near;
@@ -186,7 +186,7 @@ class MovingTissue : public ModelBase {
     Status status;
     VertexCompliance compliance;
     mutable std::vector<std::uint64_t> requested;  // per vertex: the last surface for which it was requested
-    std::vector<std::uint64_t> required;           // per vertex: the last tick that required it
+    std::vector<std::uint64_t> required;           // the same for those required
     std::uint64_t number = 0;                      // of the surface: changes before it
     std::shared_ptr<ContactProblem> contact;
   };
@@ -211,6 +211,8 @@ class MovingTissue : public ModelBase {
     into.item[into.count++] = v;
   }
   void start_secants();
+  void list_every_vertex();
+  std::span<const int> near_vertices() const noexcept;
   bool presses_beside_slit() const noexcept;
   void record_response(Forces& part, const MotionStep& done) noexcept;
   /// The displacement of the vertices.
@@ -228,6 +230,7 @@ class MovingTissue : public ModelBase {
   VertexCompliance compliance_;
   SecantCompliance secants_;
   std::vector<NodeId> nodes_;                  // of every vertex
+  std::vector<int> every_;                     // vertex
   std::vector<Vector3> rest_;                  // of every vertex, without loads [m]
   View changed_;                               // of the newest surface, when it has changed
   std::vector<Vector3> moved_, moved_before_;  // of the vertices, after the last step and the one before
@@ -244,10 +247,9 @@ class MovingTissue : public ModelBase {
   std::vector<Triangle> triangles_;  // of the surface
   std::uint64_t views_made_ = 0;
   std::uint64_t revision_ = 0;
-  Status ticked_;  // of the last end_tick
-  VertexList<most_pressed> pressed_;
-  mutable VertexList<most_near> near_;  // since the surface was taken
-  std::uint64_t tick_ = 0;
+  Status ticked_;                     // of the last end_tick
+  VertexList<most_pressed> pressed_;  // since the surface was taken, as the next
+  mutable VertexList<most_near> near_;
 };
 
 }}  // namespace palpate

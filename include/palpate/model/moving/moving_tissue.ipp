@@ -10,6 +10,7 @@
 #include <palpate/model/detail/touchable.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -56,6 +57,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   motion_->rest_at(start_);  // the state that reset() restores
   nodes_ = touchable.nodes;
   for (const NodeId node : nodes_) rest_.push_back(elastic_body().positions()[static_cast<std::size_t>(node)]);
+  list_every_vertex();
   const double near_bytes = 3.0 * NearCompliance::bytes(nodes_.size(), most_near, most_pressed);  // one per view
   limits().require_memory(near_bytes, "the compliance near the contacts");
   triangles_ = touchable.triangles;
@@ -64,6 +66,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   view.near = {nodes_.size(), most_near, most_pressed};
   update_view(view);
   view.surface = ContactSurface(view.free, triangles_);
+  view.surface.expect(view.pressed, {});
   view.surface.set_unloaded(unloaded());
   view.surface.set_materials(elastic_body().contact_materials(touchable.elements));
   views_.fill(view);
@@ -72,6 +75,11 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   setup_report().free_dofs = conditions.free_count();
   setup_report().kept_dofs = 3 * setup_report().touchable_vertices;
   if (accepts_initial_strains_) report_displacement(elastic_body().positions(), start_, setup_report());
+}
+
+PALPATE_INLINE void MovingTissue::list_every_vertex() {
+  every_.resize(nodes_.size());
+  std::iota(every_.begin(), every_.end(), 0);
 }
 
 PALPATE_INLINE void MovingTissue::start_secants() {
@@ -85,12 +93,13 @@ PALPATE_INLINE MovingTissue::View MovingTissue::make_view() const {
   const std::size_t vertices = nodes_.size();
   View view;
   view.free.resize(vertices);
+  view.pressed.resize(vertices);
   view.rotation.resize(vertices);
   if (motion_->is_static())
     for (SecantTerms::Term& term : view.secants.term) term.resize(vertices);
   view.compliance = compliance_;
   view.requested.assign(vertices, ~std::uint64_t{0});
-  view.required.assign(vertices, 0);
+  view.required = view.requested;
   return view;
 }
 
@@ -230,11 +239,13 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
   nodes_ = std::move(surface.nodes);
   rest_.clear();
   for (const NodeId node : nodes_) rest_.push_back(positions[static_cast<std::size_t>(node)]);
+  list_every_vertex();
   if (motion_->is_static()) start_secants();
   const std::uint64_t number = changed_.number + 1;
   changed_ = make_view();
   changed_.number = number;
   changed_.surface = std::move(surface.surface);
+  changed_.surface.expect(rest_, {});
   changed_.status = surface.status;
   changed_.contact = std::move(surface.contact);
 }
@@ -259,7 +270,7 @@ PALPATE_INLINE void MovingTissue::prepare_tools(const ToolRadii&, const ContactP
 }
 
 PALPATE_INLINE Status MovingTissue::require_columns(std::span<const int> vertices) noexcept {
-  for (const int v : vertices) list(v, tick_, views_.front().required, pressed_);
+  for (const int v : vertices) list(v, revision_, views_.front().required, pressed_);
   return {};
 }
 
@@ -272,22 +283,23 @@ PALPATE_INLINE Matrix3 MovingTissue::evaluate(const View& view, int i, int j) co
 PALPATE_INLINE Vector3 MovingTissue::displacement_of(int i, std::span<const VertexForce> forces) const noexcept {
   const View& view = views_.front();
   list(i, revision_, view.requested, near_);
-  Vector3 u;
-  if (view.near.multiply(i, forces, u)) return u;
-  u.setZero();
-  for (const VertexForce& f : forces) u += compliance(i, f.vertex) * f.force.in_model_axes();
-  return u;
+  Vector3 u = Vector3::Zero(), unrotated = Vector3::Zero();
+  const auto row = static_cast<std::size_t>(i);
+  view.near.multiply(i, forces, u, [&](const VertexForce& f) {
+    const Vector3& force = f.force.in_model_axes();
+    unrotated += view.compliance.at_rest(row, vertex(f)) * (view.rotation[vertex(f)].transpose() * force);
+    view.secants.add(row, vertex(f), force, u);
+  });
+  return u + view.rotation[row] * unrotated;
 }
 
 PALPATE_INLINE void MovingTissue::take_surface() noexcept {
   if (!views_.update()) return;
   ++revision_;
-  near_.count = 0;
+  near_.count = pressed_.count = 0;
 }
 
 PALPATE_INLINE Status MovingTissue::begin_tick() noexcept {
-  ++tick_;
-  pressed_.count = 0;
   take_surface();
   Status status = views_.front().status | ticked_;
   if (slow_.load(std::memory_order_relaxed)) status.set(StatusFlag::slow_tissue);
@@ -349,9 +361,17 @@ PALPATE_INLINE void MovingTissue::update_view(View& view) const noexcept {
     moved = view.rotation[i] * moved;
     for (std::size_t k = 0; k < used_.count && view.secants.count > 0; ++k)
       moved += view.secants(i, vertex(used_.item[k])) * used_.item[k].force.in_model_axes();
-    view.free[i] = rest_[i] + node_vector(u, nodes_[i]) - moved;
+    view.pressed[i] = rest_[i] + node_vector(u, nodes_[i]);
+    view.free[i] = view.pressed[i] - moved;
   }
-  view.near.set(used_.near.all(), used_.pressed.all(), [&](int i, int j) { return evaluate(view, i, j); });
+  view.near.set(near_vertices(), used_.pressed.all(), [&](int i, int j) { return evaluate(view, i, j); });
+}
+
+/// The vertices whose displacement was requested; of a small surface all, since ticks look at further vertices in turn.
+PALPATE_INLINE std::span<const int> MovingTissue::near_vertices() const noexcept {
+  constexpr std::size_t most_blocks = 32768;
+  const std::size_t all = every_.size();
+  return all <= most_near && all * used_.pressed.count <= most_blocks ? std::span<const int>(every_) : used_.near.all();
 }
 
 PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {
@@ -364,6 +384,7 @@ PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {
   }
   update_view(view);
   view.surface.move_to(view.free, ++views_made_);
+  view.surface.expect(view.pressed, {used_.item.data(), used_.count});
   view.status = status | changed_.status;
   views_.publish();
   drawn_.back() = motion_->displacement();

@@ -43,25 +43,31 @@ class NearCompliance {
         block_[i * columns_.most + j] = evaluate(rows_.listed[i], columns_.listed[j]);
   }
 
-  /// Sum of C_ij f_j over the forces; false when one of the blocks is not known.
-  bool multiply(int i, std::span<const VertexForce> forces, Vector3& sum) const noexcept {
+  /// Adds C_ij f_j to `sum` for the forces whose blocks are known, and calls unknown(force) for the others.
+  template <class Unknown>
+  void multiply(int i, std::span<const VertexForce> forces, Vector3& sum, Unknown&& unknown) const noexcept {
     const int a = rows_.slot[at(i)];
-    if (a < 0) return false;
+    if (a < 0) {
+      for (const VertexForce& f : forces) unknown(f);
+      return;
+    }
     using Column = Eigen::Map<const Eigen::Vector4d>;  // and one entry of the next column
     const double* const row = block_[at(a) * columns_.most].data();
     Eigen::Vector4d x = Eigen::Vector4d::Zero(), y = x,
                     z = x;  // independent sums: a product does not wait for the last
     for (const VertexForce& f : forces) {
       const int b = columns_.slot[at(f.vertex)];
-      if (b < 0) return false;
+      if (b < 0) {
+        unknown(f);
+        continue;
+      }
       const double* const c = row + 9 * b;
       const double* const force = f.force.in_model_axes().data();
       x += force[0] * Column(c);
       y += force[1] * Column(c + 3);
       z += force[2] * Column(c + 6);
     }
-    sum = (x + y + z).head<3>();
-    return true;
+    sum += (x + y + z).head<3>();
   }
 
   /// C_ij; null when it is not known.

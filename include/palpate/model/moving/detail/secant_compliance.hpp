@@ -36,6 +36,13 @@ struct SecantTerms {
     }
     return sum;
   }
+  /// Adds the displacement of vertex i by these corrections under a force on vertex j to `u` [m].
+  void add(std::size_t i, std::size_t j, const Vector3& force, Vector3& u) const noexcept {
+    for (std::size_t k = 0; k < count; ++k) {
+      const Term& t = term[k];
+      u += t.s[j].dot(force) * t.a[i] - t.w[j].dot(force) * t.s[i];
+    }
+  }
   /// Upper bound of the magnitude of the corrections of vertex j.
   double bound(std::size_t j) const noexcept;
 };
