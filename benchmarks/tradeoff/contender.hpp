@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "../common/timing.hpp"
 #include "reference.hpp"
 
 namespace tradeoff {
@@ -15,6 +16,8 @@ class Contender {
   virtual ~Contender() = default;
   /// Advances one tick. Returns the forces on the spheres [N] for centres at these positions [m].
   virtual std::span<const Vector3> tick(std::span<const Vector3> centres) = 0;
+  /// Bound of the error of the force on a sphere in the last tick [N]; infinite: not measured.
+  virtual double force_error_bound(std::size_t) const { return infinity; }
   /// Period [s] of update(), which runs in a background thread; 0: no updates.
   virtual double update_period() const { return 0.0; }
   virtual void update() {}
@@ -56,6 +59,9 @@ struct Row : Description {
   double moved_small = 0.0, moved_large = 0.0;    ///< root mean square displacement error of all nodes
   double volume_small = 0.0, volume_large = 0.0;  ///< error of volume, relative to the volume displaced by the spheres
   double drift = 0.0;
+  /// Share of the ticks whose error bar contains the force of the reference, up to the hold at the small depth and of
+  /// all, and median of bound over force in the former; NaN: no error bar.
+  double bar_small = bench::unknown, bar_all = bench::unknown, bar_size = bench::unknown;
   double own_error = 0.0;
   std::string verdict;  ///< empty: finite, and own_error within its bound
   std::string remark;

@@ -31,6 +31,7 @@ class RenderedTissue {
     return forces_;
   }
   auto& servo() noexcept { return servo_; }
+  const auto& servo() const noexcept { return servo_; }
   std::span<const VertexForce> vertex_forces() { return servo_.read_snapshot().vertex_forces(); }
   /// Status flags of all ticks as text, without those of the gate.
   std::string remark() const {
@@ -113,6 +114,7 @@ class LinearContender : public Contender {
         u_(3 * model_.mesh().node_count()) {}
 
   std::span<const Vector3> tick(std::span<const Vector3> centres) override { return rendered_.tick(centres); }
+  double force_error_bound(std::size_t sphere) const override { return rendered_.servo().force_error(sphere).bound; }
   VectorX displacement() override {
     model_.displacement_with(rendered_.vertex_forces(), u_);
     return of_given_nodes(u_, model_.node_map(), bench_.scene.mesh.node_count());

@@ -80,6 +80,10 @@ void evaluate(const Bench& bench, Contender& contender, Row& row) {
   };
   const Reference& r = bench.reference;
   follow(motion.leave_small());
+  if (session.barred > 0) {
+    row.bar_small = static_cast<double>(session.contained) / session.barred;
+    row.bar_size = bench::percentile(session.bars, 0.5);
+  }
   hold(scene.small, r.displacement_small, r.volume_small, row.force_small, row.moved_small, row.volume_small);
   follow(motion.leave_large());
   hold(scene.large, r.displacement_large, r.volume_large, row.force_large, row.moved_large, row.volume_large);
@@ -93,6 +97,12 @@ void evaluate(const Bench& bench, Contender& contender, Row& row) {
   row.p99 = bench::percentile(session.ticks, 0.99);
   row.worst = std::ranges::max(session.ticks);
   row.remark = contender.remark();
+  if (session.barred > 0) {
+    row.bar_all = static_cast<double>(session.contained) / session.barred;
+    row.remark += (row.remark.empty() ? "" : "; ") +
+                  ("error bar of " + percent(row.bar_size) + " % contains the reference in " + percent(row.bar_small) +
+                   " % of the ticks at the small depth, " + percent(row.bar_all) + " % of all");
+  }
   if (!session.updates.empty()) {
     row.update_p99 = bench::percentile(session.updates, 0.99);
     row.update_period = contender.update_period();

@@ -126,14 +126,15 @@ Reference make(const PressScene& scene, double edge, bool direct) {
 
 Vector3 Reference::force(std::size_t sphere, double depth) const {
   if (depth <= 0.0) return Vector3::Zero();
-  std::size_t i = 1;
+  std::size_t i = 2;  // the first point is at depth 0
   while (i + 1 < curve.size() && curve[i].depth < depth) ++i;
   const Point &a = curve[i - 1], &b = curve[i];
-  if (a.depth == 0.0) return std::pow(depth / b.depth, 1.5) * b.force[sphere];
-  // interpolates F / d^1.5, which is nearly linear in d
-  const double t = (depth - a.depth) / (b.depth - a.depth);
-  return std::pow(depth, 1.5) *
-         ((1.0 - t) * std::pow(a.depth, -1.5) * a.force[sphere] + t * std::pow(b.depth, -1.5) * b.force[sphere]);
+  const Vector3 &low = a.force[sphere], &high = b.force[sphere];
+  // 1.5 for a half-space and 1 for bending: the length of the force divided by this power is the same at both points
+  double power = std::log(high.norm() / low.norm()) / std::log(b.depth / a.depth);
+  if (!std::isfinite(power)) power = 1.5;
+  const double t = std::clamp((depth - a.depth) / (b.depth - a.depth), 0.0, 1.0);
+  return std::pow(depth, power) * ((1.0 - t) * std::pow(a.depth, -power) * low + t * std::pow(b.depth, -power) * high);
 }
 
 Reference make_reference(const PressScene& scene, double edge) {

@@ -6,8 +6,6 @@
 
 #include <Eigen/Geometry>
 
-#include "patches.hpp"
-
 namespace tradeoff {
 namespace {
 
@@ -122,13 +120,20 @@ double volume_of(const Mesh<Tet4>& mesh, const std::vector<std::array<NodeId, 3>
 }
 
 PressScene make_scene(const SceneOptions& options) {
+  constexpr double organ_radius = 0.010;
+  const bool organ = options.mesh.empty();
+  Mesh<Tet4> mesh = io::read_mesh<Tet4>(organ ? PALPATE_BENCH_DATA "/organ.msh" : options.mesh);
+  if (organ) return make_scene(std::move(mesh), {"ligament", "front", {}}, organ_radius, options);
+  const Patches patches = choose_patches(mesh, extract_boundary<Tet4>(mesh), options.constrained, options.touched);
+  return make_scene(std::move(mesh), patches, 0.0, options);
+}
+
+PressScene make_scene(Mesh<Tet4> mesh, const Patches& patches, double radius, const SceneOptions& options) {
   const bool organ = options.mesh.empty();
   PressScene scene;
   scene.name = options.kind;
-  scene.mesh = io::read_mesh<Tet4>(organ ? PALPATE_BENCH_DATA "/organ.msh" : options.mesh);
+  scene.mesh = std::move(mesh);
   const auto boundary = extract_boundary<Tet4>(scene.mesh);
-  const Patches patches = organ ? Patches{"ligament", "front", {}}
-                                : choose_patches(scene.mesh, boundary, options.constrained, options.touched);
   scene.remark = patches.remark;
   const Selection constrained = selection_of(patches.constrained, scene.mesh),
                   touched = selection_of(patches.touched, scene.mesh);
@@ -150,8 +155,7 @@ PressScene make_scene(const SceneOptions& options) {
   }
   // The smallest sphere that the facets of this mesh resolve (docs/contact.md), pressed in by four fifths of its
   // radius.
-  scene.radius = 2.4 * mean_edge(scene.mesh, wide);
-  if (organ) scene.radius = 0.010;
+  scene.radius = radius > 0.0 ? radius : 2.4 * mean_edge(scene.mesh, wide);
   scene.small = 0.1 * scene.radius;
   scene.large = 0.8 * scene.radius;
   if (options.kind == "retract") {

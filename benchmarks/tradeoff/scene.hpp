@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "patches.hpp"
 
 namespace tradeoff {
 
@@ -54,6 +55,9 @@ struct PressScene {
 /// palpate: a sphere pressed into the middle of the touchable group, in the organ over its stiff lesion; retract: a
 /// sphere lifts the thin lobe of the organ; grasp: two spheres pinch it. Other meshes: palpate only. Throws SetupError.
 PressScene make_scene(const SceneOptions& options);
+
+/// The same on a mesh that is no file, with these parts and spheres of this radius [m]; 0: chosen.
+PressScene make_scene(Mesh<Tet4> mesh, const Patches& patches, double radius, const SceneOptions& options);
 
 /// A sphere that moves along the surface normal at a point of the surface.
 Sphere sphere_along_normal(const Mesh<Tet4>& mesh, const Vector3& point, double radius);

@@ -26,6 +26,8 @@ class Session {
   double squared_error = 0.0;          ///< sum over all milliseconds of motion [N^2]
   int samples = 0;
   bool finite = true;
+  int barred = 0, contained = 0;  ///< forces with an error bar in motion; those whose bar contains the reference
+  std::vector<double> bars;       ///< bounds of the error relative to the force, of the former
 
   const std::vector<Vector3>& force() const noexcept { return force_; }
 
@@ -46,6 +48,7 @@ class Session {
       next_tick_ = record ? time_ + spent : time_;  // in holds the duration is ignored
       pending_.assign(answer.begin(), answer.end());
       for (const Vector3& f : pending_) finite = finite && f.allFinite();
+      if (record) compare_bars(depth);
     }
     if (!pending_.empty() && next_tick_ <= time_ + period) {  // completed within this millisecond
       force_ = pending_;
@@ -87,6 +90,17 @@ class Session {
   }
 
  private:
+  /// Compares the error bars of the last tick with the reference, where that is computed: not at very small depths.
+  void compare_bars(double depth) {
+    if (depth < 0.5 * bench_.scene.small) return;
+    for (std::size_t b = 0; b < pending_.size(); ++b) {
+      const double bound = contender_.force_error_bound(b), force = pending_[b].norm();
+      if (!(bound < infinity) || !(force > 0.0)) continue;
+      ++barred;
+      contained += (pending_[b] - bench_.reference.force(b, depth)).norm() <= bound ? 1 : 0;
+      bars.push_back(bound / force);
+    }
+  }
   /// Number of milliseconds over which a force at rest must be constant.
   int window() const noexcept {
     const double three_updates = 3.0 * contender_.update_period() / period;

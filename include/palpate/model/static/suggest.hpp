@@ -14,11 +14,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// What a suggested composition may cost. All positive; infinity: any.
+/// What a suggested composition may cost. All positive; infinity: any. Times are processor times of a thread, which an
+/// idle machine needs.
 struct SuggestBudget {
   double tick_seconds = 500e-6;  ///< 99 of 100 ticks, while the tool presses
   double setup_seconds = 5.0;
-  double error = 0.0;    ///< wanted error of the force, relative; 0: as small as possible
+  double error = 0.0;    ///< wanted error of the force, relative, at all points; 0: as small as possible
   double seconds = 5.0;  ///< for the suggestion itself: what would end later is not tried, or cancelled
   int places = 3;        ///< of the touchable surface where the tool is pressed
 };
@@ -29,8 +30,9 @@ struct SuggestedModel {
   double edge = 0.0;      ///< of `refine_near_touched` [m]; 0: the mesh as given
   bool measured = false;  ///< else `remark` has the reason, and the figures below may be 0
   double error = 0.0;     ///< AccuracyReport::typical, against a fine mesh
+  double largest = 0.0;   ///< AccuracyReport::largest, without its sign: what is compared with the wanted error
   double tick = 0.0;      ///< p99 of the processor time of ticks that press by half of the radius [s]
-  double setup = 0.0;     ///< of the set-up, refinement included [s]
+  double setup = 0.0;     ///< processor time of the set-up, refinement included [s]
   std::size_t bytes = 0;  ///< of stiffness, solver and compliance
   Index nodes = 0, kept_dofs = 0;
   std::string remark;  ///< why it was not measured, or is not within the budget
@@ -45,7 +47,7 @@ struct Suggestion {
   bool within_error = false;          ///< whether the chosen one has the wanted error
   std::string reason;                 ///< one sentence
   bool lists_nodes = false;           ///< whether the scene does: they become groups first
-  double seconds = 0.0;               ///< that the suggestion took
+  double seconds = 0.0;               ///< processor time that the suggestion took
 
   /// C++ code that makes the chosen model of `mesh`, `scene` and `material`; a comment when none is chosen.
   std::string code() const;
@@ -54,8 +56,10 @@ struct Suggestion {
 /// Which of Tet4, Smoothed<Tet4> and Tet10 on the mesh as given, and Smoothed<Tet4> on meshes refined near the
 /// touchable part, presses most accurately within the budget on this machine. Each is set up, pressed at the same
 /// points as one tissue on a fine mesh (detail/measure_force_error.hpp), and its ticks are timed; one whose set-up is
-/// predicted to exceed the budget by far is left out. If an error is wanted, the one with the shortest set-up among
-/// those with that error is chosen; else, and if none has it, that with the least error. Loads and prescribed
+/// predicted to exceed the budget by far is left out. Their largest errors are compared: the error of coarse facets
+/// depends on where they are pressed, and typical ones of a few points rank them too high. If an error is wanted, the
+/// one with the shortest set-up among those with that error is chosen; else, and if none has it, that with the least
+/// error. Loads and prescribed
 /// displacements of the scene are left out: the tool presses the body at rest. Listed nodes become groups first.
 ///
 /// Valid for tools that press; what lifts or pulls a part needs large strain (docs/choosing.md). Throws bad_argument

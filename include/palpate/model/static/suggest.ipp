@@ -50,10 +50,10 @@ inline void choose(Suggestion& s, const SuggestBudget& budget) {
   const auto fits = [&](const SuggestedModel& m) { return m.measured && excess(m, budget).empty(); };
   if (budget.error > 0.0)
     s.chosen = best_of(
-        s.candidates, [&](const SuggestedModel& m) { return fits(m) && m.error <= budget.error; },
+        s.candidates, [&](const SuggestedModel& m) { return fits(m) && m.largest <= budget.error; },
         [](const SuggestedModel& m) { return m.setup; });
   s.within_error = s.chosen.has_value();
-  if (!s.chosen) s.chosen = best_of(s.candidates, fits, [](const SuggestedModel& m) { return m.error; });
+  if (!s.chosen) s.chosen = best_of(s.candidates, fits, [](const SuggestedModel& m) { return m.largest; });
   if (budget.error == 0.0) s.within_error = s.chosen.has_value();
   for (SuggestedModel& m : s.candidates)
     if (m.measured) m.remark = excess(m, budget);
@@ -71,7 +71,7 @@ inline std::string reason_for(const Suggestion& s, const SuggestBudget& budget) 
     return "nothing is within the budget; nearest is " + m.name() + ": " + m.remark;
   }
   const SuggestedModel& m = s.candidates[*s.chosen];
-  const std::string what = m.name() + ", with an error of " + percent_text(m.error) + ", a tick of " +
+  const std::string what = m.name() + ", with errors of at most " + percent_text(m.largest) + ", a tick of " +
                            rounded(1e6 * m.tick, "us") + " and a set-up of " + rounded(m.setup, "s");
   if (budget.error == 0.0) return "most accurate within the budget: " + what;
   return s.within_error ? "shortest set-up with an error of at most " + percent_text(budget.error) + ": " + what

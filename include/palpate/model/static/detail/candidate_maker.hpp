@@ -30,7 +30,7 @@ class CandidateMaker {
   std::vector<SuggestedModel> make_all();
   /// Of the fine tissue, or why it was not made.
   const std::string& reference_remark() const noexcept { return reference_remark_; }
-  /// Since the construction [s].
+  /// Processor time of this thread since the construction [s].
   double seconds() const noexcept;
 
  private:

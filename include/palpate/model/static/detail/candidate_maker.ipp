@@ -102,7 +102,7 @@ PALPATE_INLINE CandidateMaker::CandidateMaker(const Mesh<Tet4>& mesh, const Scen
       scene_(name_listed_nodes(mesh_, detail::scene_at_rest(scene))),
       materials_(materials),
       budget_(budget),
-      start_(platform::wall_ns()) {
+      start_(platform::compute_ns()) {
   const auto require = [](bool good, const char* what) {
     if (!good) raise(SetupErrorKind::bad_argument, std::string(what) + " of the budget is out of range");
   };
@@ -119,7 +119,7 @@ PALPATE_INLINE CandidateMaker::CandidateMaker(const Mesh<Tet4>& mesh, const Scen
 PALPATE_INLINE CandidateMaker::~CandidateMaker() = default;
 
 PALPATE_INLINE double CandidateMaker::seconds() const noexcept {
-  return 1e-9 * static_cast<double>(platform::wall_ns() - start_);
+  return 1e-9 * static_cast<double>(platform::compute_ns() - start_);
 }
 
 PALPATE_INLINE ProgressCallback CandidateMaker::within(double most) const {
@@ -141,8 +141,9 @@ void CandidateMaker::enter(SuggestedModel& model, Tissue& tissue) {
   if (Cost& cost = model.element == "Tet4" ? tet4_ : smoothed_; cost.nodes == 0.0) {  // Smoothed<Tet4> is before Tet10
     cost.nodes = static_cast<double>(model.nodes);
     cost.touched = static_cast<double>(tissue.touchable_nodes().size());
+    const double busy = std::min(1.0, model.setup / report.total_seconds());  // processor time per time of the stages
     for (const auto& [stage, time] : report.seconds)
-      (stage == "condensation" || stage == "compliance" ? cost.of_touched : cost.of_nodes) += time;
+      (stage == "condensation" || stage == "compliance" ? cost.of_touched : cost.of_nodes) += busy * time;
   }
   const TissueView view(tissue);
   HapticServo servo(tissue, SphereTool{scene_.touch_radius()}, rigid_press_options(0));
@@ -151,7 +152,9 @@ void CandidateMaker::enter(SuggestedModel& model, Tissue& tissue) {
     model.remark = reference_remark_;
     return;
   }
-  model.error = base_->errors.compared(view).typical;
+  const AccuracyReport errors = base_->errors.compared(view);
+  model.error = errors.typical;
+  model.largest = std::abs(errors.largest);
   model.measured = true;
 }
 
@@ -261,7 +264,7 @@ PALPATE_INLINE void CandidateMaker::finish(Pending& p) {
 /// Fractions of the radius that are shorter than the edges of the facets as given.
 PALPATE_INLINE std::vector<double> CandidateMaker::edges() const {
   std::vector<double> edges;
-  for (const double parts : {2.0, 3.0, 5.0})
+  for (const double parts : {2.0, 3.0, 4.0, 5.0})
     if (const double edge = scene_.touch_radius() / parts; edge < base_->errors.report().facet) edges.push_back(edge);
   return edges;
 }
