@@ -5,7 +5,7 @@
 
 namespace tradeoff {
 
-/// Like make_reference, but solves large strain on the fine mesh itself: takes 15 minutes instead of one.
+/// Like make_reference, but solves large strain on the fine mesh itself: takes some five minutes instead of one.
 Reference make_direct_reference(const PressScene& scene, double edge);
 
 }  // namespace tradeoff

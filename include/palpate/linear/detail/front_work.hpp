@@ -4,6 +4,7 @@
 #include <palpate/linear/detail/big_array.hpp>
 #include <palpate/linear/detail/front_kernels.hpp>
 #include <palpate/linear/detail/front_tree.hpp>
+#include <palpate/linear/detail/node_graph.hpp>
 
 #include <vector>
 
