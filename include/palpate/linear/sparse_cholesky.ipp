@@ -6,6 +6,7 @@
 #include <palpate/linear/detail/front_block_sweeps.hpp>
 #include <palpate/linear/detail/parallel_fronts.hpp>
 #include <palpate/linear/detail/pivot_check.hpp>
+#include <palpate/linear/detail/vector_kernels.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 
 #include <algorithm>
