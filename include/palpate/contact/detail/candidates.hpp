@@ -50,13 +50,12 @@ struct Candidate {
 /// neighbour lists in molecular dynamics, Verlet 1967). While the last part of the margin is used up, the next list is
 /// built in parts, so that no tick has all of that work; leaps have it at once. A point is evaluated again only when
 /// that path could have closed its gap. The search on the resting surface reaches as far as the surface has moved
-/// (SurfaceDisplacement::reach); where a tissue
-/// that moves knows how the surface is deformed, the search is on that surface (ExpectedSurface). On facets that are
-/// too long for a sphere and have a known modulus (CoarseFacets) the points are not those of the lattice, between which
-/// the sphere would sink, but one per facet and sphere: the closest to the sphere's centre. It moves along the facet
-/// whenever it is evaluated, its stick anchor with it. A scan over all vertices, a few per tick, finds what moved
-/// farther than the search reaches. No allocation; work bounded by `maximum` and, when the list is rebuilt at once, by
-/// the samples of all triangles in reach: each is evaluated.
+/// (SurfaceDisplacement::reach); where a tissue that moves knows how the surface is deformed, the search is on that
+/// surface (ExpectedSurface). On facets that are too long for a sphere and have a known modulus (CoarseFacets) the
+/// points are not those of the lattice, between which the sphere would sink, but one per facet and sphere: the closest
+/// to the sphere's centre. It moves along the facet whenever it is evaluated, its stick anchor with it. A scan over all
+/// vertices, a few per tick, finds what moved farther than the search reaches. No allocation; work bounded by `maximum`
+/// and, when the list is rebuilt at once, by the samples of all triangles in reach: each is evaluated.
 class Candidates {
  public:
   /// Places the samples for spheres of these radii, `spacing` radii of the smallest apart; larger spheres use a level
