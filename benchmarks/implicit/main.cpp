@@ -2,6 +2,7 @@
 // largest block at 1 kHz, and the drift of long motions; with --long over a million steps, and ten thousand blocks with
 // randomly displaced nodes.
 //   bench_implicit [--build <name of the flags>] [--csv <file to add rows to>] [--quick] [--long] [--energy STEPS]
+//                  [--scrambles RUNS]
 #include "drift.hpp"
 #include "implicit.hpp"
 
@@ -12,6 +13,10 @@ int main(int argc, char** argv) try {
   bench::RowFile rows(bench::option(argc, argv, "--csv", ""), bench::option(argc, argv, "--build", "this"));
   if (const int steps = std::stoi(bench::option(argc, argv, "--energy", "0")); steps > 0) {
     measure_energy_in_contact(rows, steps);
+    return rows.failed() ? 1 : 0;
+  }
+  if (const int runs = std::stoi(bench::option(argc, argv, "--scrambles", "0")); runs > 0) {
+    measure_implicit_scrambles(rows, runs);
     return rows.failed() ? 1 : 0;
   }
   implicit_path::measure_steps(rows, 10, 1e-3);
