@@ -53,6 +53,10 @@ PALPATE_INLINE ParallelFronts::ParallelFronts(FrontSystem& system, Index count, 
   const int threads = useful_threads(system.tree, division_, limits.threads.threads());
   workers_.resize(static_cast<std::size_t>(threads));
   updates_.resize(tasks);
+  // so that nothing is allocated where an exception could not be passed on
+  ready_.reserve(static_cast<std::size_t>(tasks));
+  unused_.reserve(static_cast<std::size_t>(tasks));
+  shared_.reserve(workers_.size());
   for (Index t = tasks - 1; t >= 0; --t) {
     waiting_[t] = division_.tasks[t].children;
     if (waiting_[t] == 0) ready_.push_back(t);
