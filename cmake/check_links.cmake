@@ -1,5 +1,5 @@
 # Checks README.md and the pages of docs: every link to a file of the project leads to a file, and its anchor to a
-# heading; every file named in code style exists; every `cmake/run <what>` is a command; every page is in the navigation
+# heading; every file named in code style, and every page named in a source, exists; every `cmake/run <what>` is a command; every page is in the navigation
 # of docs/mkdocs.yml, and every entry of it is a page. Links to other sites are not followed.
 #   cmake -P cmake/check_links.cmake
 cmake_minimum_required(VERSION 3.21)
@@ -110,6 +110,18 @@ foreach(page IN LISTS pages)
     string(REPLACE "-" "_" command "${command}")
     if(NOT run MATCHES "\ncmd_${command}\\(\\)")
       complain("${page}: no command cmake/run ${command}")
+    endif()
+  endforeach()
+endforeach()
+
+# Pages that sources name.
+file(GLOB_RECURSE sources RELATIVE ${root} ${root}/include/*.?pp ${root}/examples/*.?pp)
+foreach(source IN LISTS sources)
+  file(STRINGS ${root}/${source} lines REGEX "docs/[a-zA-Z_/-]+\\.(md|svg)")
+  foreach(line IN LISTS lines)
+    string(REGEX MATCH "docs/[a-zA-Z_/-]+\\.(md|svg)" page "${line}")
+    if(NOT EXISTS ${root}/${page})
+      complain("${source}: no page ${page}")
     endif()
   endforeach()
 endforeach()
