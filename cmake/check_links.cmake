@@ -1,6 +1,7 @@
 # Checks README.md and the pages of docs: every link to a file of the project leads to a file, and its anchor to a
-# heading; every file named in code style, and every page named in a source, exists; every `cmake/run <what>` is a command; every page is in the navigation
-# of docs/mkdocs.yml, and every entry of it is a page. Links to other sites are not followed.
+# heading; every file named in code style, and every page named in a source, exists; every `cmake/run <what>` is a
+# command; every page is in the navigation of docs/mkdocs.yml, and every entry of it is a page. Links to other sites are
+# not followed.
 #   cmake -P cmake/check_links.cmake
 cmake_minimum_required(VERSION 3.21)
 
