@@ -36,8 +36,8 @@ inline std::string stamp() {
 #endif
 }
 
-/// Replaces the text of a document between <!-- marker --> and <!-- end --> by the stamp and `text`. Throws bad_argument
-/// when the document lacks these lines.
+/// Replaces the text of a document between <!-- marker --> and <!-- end --> by the stamp and `text`. Throws
+/// bad_argument when the document lacks these lines.
 inline void put_in_document(const std::string& document, const std::string& marker, const std::string& text) {
   std::string all = contents(document);
   const std::string begin = "<!-- " + marker + " -->\n", end = "<!-- end -->";

@@ -1,8 +1,8 @@
-# cmake -DROOT= -DSOURCE= -P extract.cmake: writes every C++ block of README.md and the pages of docs into one source, each
-# as a function of its own (a block with main: as a namespace), with its lines numbered as in the page.
+# cmake -DROOT= -DSOURCE= -P extract.cmake: writes every C++ block of README.md and the pages of docs into one source,
+# each as a function of its own (a block with main: as a namespace), with its lines numbered as in the page.
 #
-# A block may be preceded by <!-- context: ... -->, C++ that a reader has written before: it opens the function. What most
-# blocks share, such as `mesh`, `scene`, `organ` and `session`, is in context.hpp.
+# A block may be preceded by <!-- context: ... -->, C++ that a reader has written before: it opens the function. What
+# most blocks share, such as `mesh`, `scene`, `organ` and `session`, is in context.hpp.
 cmake_minimum_required(VERSION 3.21)
 
 file(GLOB_RECURSE pages RELATIVE ${ROOT} ${ROOT}/docs/*.md)
@@ -54,8 +54,8 @@ foreach(page IN LISTS pages)
     if(code MATCHES "int main\\(")
       string(APPEND functions "namespace block_${blocks} {\n#line ${first} \"${ROOT}/${page}\"\n${code}\n}\n")
     else()
-      string(APPEND functions
-             "void block_${blocks}() {\n#line ${first} \"${ROOT}/${page}\"\n${context}\n{\n#line ${first} \"${ROOT}/${page}\"\n${code}\n}\n}\n")
+      set(place "#line ${first} \"${ROOT}/${page}\"")
+      string(APPEND functions "void block_${blocks}() {\n${place}\n${context}\n{\n${place}\n${code}\n}\n}\n")
     endif()
   endwhile()
 endforeach()
@@ -63,5 +63,6 @@ endforeach()
 if(blocks LESS 20)
   message(FATAL_ERROR "only ${blocks} blocks of C++ were found in the pages")
 endif()
-file(WRITE ${SOURCE} "// Made of the pages by tests/docs/extract.cmake.\n#include \"context.hpp\"\n${includes}\nusing namespace page;\n${functions}")
+file(WRITE ${SOURCE} "// Made of the pages by tests/docs/extract.cmake.\n#include \"context.hpp\"\n${includes}\n"
+                     "using namespace page;\n${functions}")
 message(STATUS "docs: ${blocks} blocks of C++ in ${SOURCE}")
