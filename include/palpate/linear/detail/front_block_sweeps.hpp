@@ -12,8 +12,8 @@ class FrontBlockSweeps {
   /// For up to `columns` right-hand sides at a time; the width is at most three packets.
   FrontBlockSweeps(const FrontTree& tree, const double* factor, Index columns);
 
-  /// Columns that a register holds: a block is a few of them wide.
-  static Index packet_size() noexcept { return processor_kernels().packet_size; }
+  /// A block is one to three times as wide [columns].
+  static Index width_step() noexcept { return processor_kernels().packet_size; }
   Index width() const noexcept { return width_; }
   /// The values at one place of the elimination order.
   double* row(Index place) noexcept { return values_.data() + place * width_; }

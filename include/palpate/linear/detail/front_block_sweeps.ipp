@@ -1,6 +1,7 @@
 // Definitions of front_block_sweeps.hpp.
 #pragma once
 
+#include <palpate/core/detail/packet.hpp>
 #include <palpate/linear/detail/front_block_sweeps.hpp>
 
 #include <algorithm>
@@ -9,8 +10,8 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Number of packets for `columns` right-hand sides, at most three.
 inline Index block_packets(Index columns) noexcept {
-  const Index of_packet = FrontBlockSweeps::packet_size();
-  return columns <= of_packet ? 1 : columns <= 2 * of_packet ? 2 : 3;
+  const Index step = FrontBlockSweeps::width_step();
+  return columns <= step ? 1 : columns <= 2 * step ? 2 : 3;
 }
 
 /// Copies whole packets; returns the end of the output. The runs are too short for memmove to be faster.
@@ -26,7 +27,7 @@ inline double* clear_packets(double* to, Index count) noexcept {
 PALPATE_INLINE FrontBlockSweeps::FrontBlockSweeps(const FrontTree& tree, const double* factor, Index columns)
     : tree_(tree),
       factor_(factor),
-      width_(block_packets(columns) * packet_size()),
+      width_(block_packets(columns) * width_step()),
       forward_(processor_kernels().forward[static_cast<std::size_t>(block_packets(columns) - 1)]),
       backward_(processor_kernels().backward[static_cast<std::size_t>(block_packets(columns) - 1)]),
       values_(width_ * tree.place_of_dof.size()),
@@ -85,7 +86,7 @@ PALPATE_INLINE void solve_block(const FrontTree& tree, const double* factor, Ind
   for (Index begin = 0; begin < b.cols();) {
     FrontBlockSweeps sweeps(tree, factor, b.cols() - begin);
     const Index enough =
-        sweeps.width() - FrontBlockSweeps::packet_size();  // fewer columns than this fit a narrower block
+        sweeps.width() - FrontBlockSweeps::width_step();  // fewer columns than this fit a narrower block
     for (; b.cols() - begin > enough; begin += sweeps.width())
       solve_columns(sweeps, tree, fronts, b, x, begin, std::min(sweeps.width(), b.cols() - begin));
   }
