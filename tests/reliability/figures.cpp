@@ -140,7 +140,7 @@ Figure anomalies(const Places& p) {
     if (line.compare(0, 3, "## ") == 0) inside = line.find("anomalies") != std::string::npos;
     if (inside && line.compare(0, 2, "| ") == 0 && line.compare(0, 3, "| |") != 0) ++rows;
   }
-  return {"R16", "known anomalies and limits", std::to_string(rows) + " listed in [soup.md](soup.md)"};
+  return {"R16", "known anomalies and limits", std::to_string(rows) + " listed in [soup.md](../soup.md)"};
 }
 
 Figure maps(const Places& p) {
@@ -176,7 +176,7 @@ std::vector<Figure> figures_of(const Places& p, const std::vector<TestResult>& r
   std::vector<Figure> all;
   all.push_back(bad_files(p, results));
   all.push_back({"R3", "fuzzed inputs per reader, reports of sanitizers",
-                 "run manually, see [the fuzzers](../tests/fuzz/README.md)"});
+                 "run manually, see [the fuzzers](../../tests/fuzz/README.md)"});
   all.push_back(
       from_other(p, "R4", "coverage of the gate: lines, branches, MC/DC", "sh tests/gate/coverage.sh", "TOTAL"));
   all.push_back(from_other(p, "R4 library", "coverage of the whole library by all tests: lines, branches",

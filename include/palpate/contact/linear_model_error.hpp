@@ -29,8 +29,8 @@ struct SphereIndentation {
 };
 
 /// Bound of the difference between the forces of linear and of Neo-Hookean tissue, relative to the force, as measured
-/// on blocks and a plate (docs/contact.md). The depth is divided into the indentation of a half-space under the force
-/// and the displacement of the body. The strain is larger where a support is near. About 30 ns.
+/// on blocks and a plate (docs/force-error.md). The depth is divided into the indentation of a half-space under the
+/// force and the displacement of the body. The strain is larger where a support is near. About 30 ns.
 double linearity_error(const SphereIndentation& sphere, double body_size) noexcept;
 
 }}  // namespace palpate
