@@ -56,6 +56,25 @@ foreach(room IN LISTS rooms)
   palpate_source(${room} ${taken})
 endforeach()
 
+# The dense kernels of the sparse solver are compiled for other processors too, and chosen at run time
+# (linear/detail/processor_kernels.hpp). At least -O2: inline functions of these sources must not be called, or they
+# could replace the same functions of other sources. Not on Windows, where g++ does not align the stack for AVX.
+set(kernel_sources "")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NOT WIN32
+   AND NOT CMAKE_OSX_ARCHITECTURES)
+  foreach(flags IN ITEMS "avx2 -mavx2 -mfma" "avx512 -mavx2 -mfma -mavx512f -mavx512dq -mavx512vl")
+    string(REPLACE " " ";" flags ${flags})
+    list(POP_FRONT flags name)
+    set(source ${PROJECT_BINARY_DIR}/compiled/kernels_${name}.cpp)
+    file(CONFIGURE OUTPUT ${source} @ONLY CONTENT "#define PALPATE_KERNEL_SET _${name}
+#include <palpate/linear/detail/kernels_here.hpp>
+const palpate::any_flags::Kernels palpate::any_flags::kernels_${name} = palpate::detail::kernels_here;
+")
+    set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-O2;${flags}")
+    list(APPEND kernel_sources ${source})
+  endforeach()
+endif()
+
 if(NOT sources)
   palpate_source(nothing version.hpp)
 endif()
@@ -65,7 +84,7 @@ file(WRITE ${PROJECT_BINARY_DIR}/compiled/units.txt "${lines}\n")  # for sh cmak
 
 # Static unless BUILD_SHARED_LIBS is set. As part of another project, or if PALPATE_BUILD_COMPILED is off, it is built
 # only when a target links it.
-add_library(palpate_compiled ${sources})
+add_library(palpate_compiled ${sources} ${kernel_sources})
 add_library(palpate::compiled ALIAS palpate_compiled)
 if(NOT PALPATE_BUILD_COMPILED)
   set_target_properties(palpate_compiled PROPERTIES EXCLUDE_FROM_ALL ON)
@@ -73,6 +92,9 @@ endif()
 set_target_properties(palpate_compiled PROPERTIES EXPORT_NAME compiled VERSION ${PROJECT_VERSION}
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} WINDOWS_EXPORT_ALL_SYMBOLS ON CXX_EXTENSIONS OFF)
 target_compile_definitions(palpate_compiled PUBLIC PALPATE_COMPILED)
+if(kernel_sources)
+  target_compile_definitions(palpate_compiled PRIVATE PALPATE_KERNELS_BY_PROCESSOR)
+endif()
 target_link_libraries(palpate_compiled PUBLIC palpate)
 # The including project may hide symbols by default; these are the interface of the library.
 set_target_properties(palpate_compiled PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)

@@ -127,7 +127,7 @@ void measure_irregular(Session& session, const char* organ_file) {
                         .figure = bench::with_unit(1e-9 * t.flops, "GFLOP"),
                         .baseline = bench::with_unit(1e-9 * t.cholmod_flops, "GFLOP"),
                         .ratio = t.flops / t.cholmod_flops,
-                        .bound = bench::at_most(1.3),
+                        .bound = bench::at_most(1.1),
                         .error = ""});
   };
   bench::SupportedBody organ{io::read_mesh<Tet4>(organ_file), {}, {}};

@@ -2,6 +2,7 @@
 #include <palpate/linear/detail/bipartite_cover.hpp>
 #include <palpate/linear/detail/cholesky_analysis.hpp>
 #include <palpate/linear/detail/elimination_tree.hpp>
+#include <palpate/linear/detail/flow_separator.hpp>
 #include <palpate/linear/detail/front_tree.hpp>
 #include <palpate/linear/detail/level_order.hpp>
 #include <palpate/linear/detail/nested_dissection.hpp>
@@ -151,6 +152,70 @@ TEST_CASE("a vertex cover covers every edge and is minimal", "[linear][ordering]
     }
     CHECK(size == smallest);
   }
+}
+
+TEST_CASE("a flow finds the smallest set between two ends", "[linear][ordering]") {
+  testing::Random random(13);
+  int joined = 0, blocked = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    constexpr NodeId n = 13, first = 3, last = 10;
+    const double density = random.uniform(0.1, 0.5);
+    std::vector<unsigned> near(n, 0);
+    NodeGraph g;
+    for (NodeId a = 0; a < n; ++a)
+      for (NodeId b = a + 1; b < n; ++b)
+        if ((a >= first || b < last) && random.uniform() < density) near[a] |= 1u << b, near[b] |= 1u << a;
+    const bool join = trial % 20 == 0;
+    if (join) near[0] |= 1u << (n - 1), near[n - 1] |= 1u;
+    g.start.push_back(0);
+    for (NodeId a = 0; a < n; ++a) {
+      for (NodeId b = 0; b < n; ++b)
+        if ((near[a] >> b & 1u) != 0) g.neighbour.push_back(b);
+      g.start.push_back(g.neighbour.size());
+    }
+    detail::PartLists lists;
+    lists.graph = &g;
+    lists.place.assign(n, {});
+    lists.side.assign(n, detail::side_first);
+    for (NodeId v = 0; v < n; ++v) lists.sorted[0].push_back(v), lists.place[v] = {{v, v, v}, 0};
+    const detail::Part all{0, n, 0};
+    detail::FlowSeparator flow(lists);
+    const std::array<Index, 3> sizes = flow.cut(all, 0, first, last);
+    if (join) {
+      ++joined;
+      CHECK(sizes == std::array<Index, 3>{n, 0, 0});
+      continue;
+    }
+    flow.mark(all, 0, first);
+    // Every set of inner nodes: reach as far as possible from the first nodes.
+    int smallest = last - first;
+    for (unsigned set = 0; set < 1u << (last - first); ++set) {
+      const unsigned removed = set << first;
+      unsigned reached = (1u << first) - 1, before = 0;
+      while (reached != before) {
+        before = reached;
+        for (NodeId v = 0; v < n; ++v)
+          if ((before >> v & 1u) != 0) reached |= near[v] & ~removed;
+      }
+      if ((reached >> last) == 0) smallest = std::min(smallest, std::popcount(set));
+    }
+    blocked += smallest > 0;
+    std::array<Index, 3> counted{};
+    for (detail::Side s : lists.side) ++counted[s];
+    CHECK(counted == sizes);
+    CHECK(sizes[2] == smallest);
+    bool separated = true;
+    for (NodeId v = 0; v < n; ++v) {
+      if (v < first) separated = separated && lists.side[v] == detail::side_first;
+      if (v >= last) separated = separated && lists.side[v] == detail::side_second;
+      for (NodeId u = 0; u < n; ++u)
+        separated = separated && !((near[v] >> u & 1u) != 0 && lists.side[v] == detail::side_first &&
+                                   lists.side[u] == detail::side_second);
+    }
+    CHECK(separated);
+  }
+  CHECK(joined == 20);
+  CHECK(blocked > 100);
 }
 
 TEST_CASE("row counts equal those of dense elimination", "[linear][ordering]") {

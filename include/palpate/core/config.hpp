@@ -16,8 +16,14 @@
 
 // A header x.hpp declares; x.ipp next to it defines everything that is not a template. In header-only use
 // (palpate::palpate), x.hpp includes x.ipp at its end and every definition is inline. The target palpate::compiled
-// defines PALPATE_COMPILED: its library contains the definitions, and programs that link to it do not compile them.
-#if defined(PALPATE_COMPILED)
+// defines PALPATE_COMPILED: its library contains the definitions, and programs that link to it do not compile them. Its
+// sources with kernels for other processors (linear/detail/processor_kernels.hpp) define PALPATE_KERNEL_SET, so that
+// their inline functions are not merged with those of other flags.
+#if defined(PALPATE_KERNEL_SET)
+#define PALPATE_HEADER_ONLY 0
+#define PALPATE_INLINE
+#define PALPATE_ABI_COMPILED PALPATE_KERNEL_SET
+#elif defined(PALPATE_COMPILED)
 #define PALPATE_HEADER_ONLY 0
 #define PALPATE_INLINE
 #define PALPATE_ABI_COMPILED _compiled
@@ -64,6 +70,5 @@
 #endif
 
 /// The finite element method for haptics.
-namespace palpate {
-inline namespace PALPATE_ABI PALPATE_ABI_TAG {}
-}  // namespace palpate
+namespace palpate { inline namespace PALPATE_ABI PALPATE_ABI_TAG {
+}}  // namespace palpate

@@ -137,7 +137,7 @@ class ExplicitMotion {
   template <class Gone>
   requires requires(Force& f, Gone gone) { f.remove_if(gone); }
   void remove_elements(Gone&& gone, const VectorX& nodal_mass) {
-    require_mass_left(nodal_mass);
+    require_mass_left(state_.mass, nodal_mass);
     force_.remove_if(gone);
     state_.mass = mass_of_dofs(nodal_mass);
     std::erase_if(state_.free, [&](Index dof) { return !(state_.mass[dof] > 0.0); });
@@ -243,17 +243,6 @@ class ExplicitMotion {
     keep();
   }
 
-  /// Throws if a node has become heavier, or has a negative mass.
-  void require_mass_left(const VectorX& mass) const {
-    if (3 * mass.size() != force_.size())
-      raise(SetupErrorKind::bad_argument,
-            "there are " + std::to_string(mass.size()) + " masses for " + std::to_string(force_.size() / 3) + " nodes");
-    for (Index i = 0; i < mass.size(); ++i)
-      if (!(mass[i] >= 0.0) || !(mass[i] <= state_.mass[3 * i] * (1.0 + 1e-9)))
-        raise(SetupErrorKind::bad_density,
-              "node " + std::to_string(i) + " has the mass " + number(mass[i]) + " after elements have left",
-              "Give lumped_mass(body, gone)");
-  }
   Status seen() const noexcept {
     Status status;
     if (state_.deformation.inverted > 0) status.set(StatusFlag::inverted);

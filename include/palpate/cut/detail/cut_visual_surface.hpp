@@ -61,6 +61,15 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
     detail::write_surface(moved_, triangles_, normals_, positions, normals);
     return true;
   }
+  /// Displacement of the last read_surface, 3 per node, also of those that cuts have created [m]; empty before the
+  /// first.
+  const VectorX& displacement() const noexcept { return displacement_; }
+  /// Values of a field with one per node at the points. Returns false and writes nothing when a length is wrong.
+  bool read_field(const VectorX& at_nodes, std::span<float> values) const noexcept {
+    if (at_nodes.size() < node_count_ || values.size() != nodes_.size()) return false;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(at_nodes[Index{nodes_[i]}]);
+    return true;
+  }
 
  private:
   using Flags = std::array<bool, E::faces.size()>;

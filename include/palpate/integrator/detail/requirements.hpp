@@ -12,6 +12,10 @@ void require_damping(double mass_damping, double stiffness_damping);
 /// Throws bad_argument for a vector that does not have one entry per dof.
 void require_entries(const VectorX& v, Index dofs);
 
+/// Checks the nodal masses [kg] that remain after elements have left, against `before` [kg], of every dof. Throws
+/// bad_argument for a wrong size, bad_density for a node that is heavier than before or has a negative mass.
+void require_mass_left(const VectorX& before, const VectorX& nodal_mass);
+
 /// Converts nodal masses to one mass per dof, three equal ones per node.
 VectorX mass_of_dofs(const VectorX& nodal_mass);
 

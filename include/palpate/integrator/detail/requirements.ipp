@@ -20,6 +20,17 @@ PALPATE_INLINE void require_entries(const VectorX& v, Index dofs) {
           "Give three entries per node");
 }
 
+PALPATE_INLINE void require_mass_left(const VectorX& before, const VectorX& nodal_mass) {
+  if (3 * nodal_mass.size() != before.size())
+    raise(SetupErrorKind::bad_argument, "there are " + std::to_string(nodal_mass.size()) + " masses for " +
+                                            std::to_string(before.size() / 3) + " nodes");
+  for (Index i = 0; i < nodal_mass.size(); ++i)
+    if (!(nodal_mass[i] >= 0.0) || !(nodal_mass[i] <= before[3 * i] * (1.0 + 1e-9)))
+      raise(SetupErrorKind::bad_density,
+            "node " + std::to_string(i) + " has the mass " + number(nodal_mass[i]) + " after elements have left",
+            "Give lumped_mass(body, gone)");
+}
+
 PALPATE_INLINE VectorX mass_of_dofs(const VectorX& nodal_mass) {
   VectorX mass(3 * nodal_mass.size());
   for (Index dof = 0; dof < mass.size(); ++dof) mass[dof] = nodal_mass[dof / 3];

@@ -2,24 +2,13 @@
 #pragma once
 
 #include <palpate/core/types.hpp>
+#include <palpate/linear/detail/kernel_types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// How a column-major array is read as an operand; `symmetric` reads only the lower half.
-enum class Read : unsigned char { plain, transposed, symmetric };
-
-struct Operand {
-  const double* data;
-  Index stride;  ///< distance between columns in memory
-  Read read = Read::plain;
-};
-
-/// A block of a column-major matrix; with `lower` only its lower half is written.
-struct Target {
-  double* data;
-  Index rows, columns, stride;
-  bool lower = false;
-};
+using any_flags::Operand;
+using any_flags::Read;
+using any_flags::Target;
 
 /// c = c + factor a b, where a has `depth` columns. The operands must not overlap c. Allocates its packed copies.
 void add_product(const Target& c, double factor, const Operand& a, const Operand& b, Index depth);

@@ -3,76 +3,16 @@
 
 #include <palpate/linear/detail/big_array.hpp>
 #include <palpate/linear/detail/dense_kernels.hpp>
-#include <palpate/linear/detail/lower_panels.hpp>
-#include <palpate/linear/detail/tile.hpp>
+#include <palpate/linear/detail/processor_kernels.hpp>
+#include <palpate/linear/detail/product_kernels.hpp>
 
 #include <algorithm>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Entry (i, s); for a transposed operand, entry (s, i).
-inline double entry(const Operand& m, Index i, Index s) noexcept {
-  const bool swap = m.read == Read::transposed || (m.read == Read::symmetric && i < s);
-  return swap ? m.data[s + i * m.stride] : m.data[i + s * m.stride];
-}
-
-inline Operand transposed(const Operand& m) noexcept {
-  if (m.read == Read::symmetric) return m;
-  return {m.data, m.stride, m.read == Read::plain ? Read::transposed : Read::plain};
-}
-
-/// Packs rows `first` ... of `steps` columns from `step` on, times a factor, in strips of `Height` rows, with zeros
-/// after the last row.
-template <int Height>
-inline void pack_operand(const Operand& m, double factor, Index first, Index count, Index step, Index steps,
-                         double* to) noexcept {
-  for (Index i = 0; i < count; i += Height, to += Height * steps) {
-    const Index valid = std::min<Index>(Height, count - i), row = first + i;
-    if (m.read == Read::plain && valid == Height) {
-      for (Index s = 0; s < steps; ++s) {
-        const double* const column = m.data + row + (step + s) * m.stride;
-        for (Index v = 0; v < Height; ++v) to[s * Height + v] = factor * column[v];
-      }
-      continue;
-    }
-    for (Index v = 0; v < Height; ++v)
-      for (Index s = 0; s < steps; ++s) to[s * Height + v] = v < valid ? factor * entry(m, row + v, step + s) : 0.0;
-  }
-}
-
-/// Subtracts left times right from one tile of c at (i, j); at an edge of c through a temporary copy.
-inline void subtract_tile_within(const Target& c, Index i, Index j, Index steps, const double* left,
-                                 const double* right) noexcept {
-  const Steps a{left, tile_rows}, b{right, tile_columns};
-  const bool whole = i + tile_rows <= c.rows && j + tile_columns <= c.columns;
-  if (whole && (!c.lower || i >= j + tile_columns - 1))
-    return subtract_tile<tile_packets, tile_columns, Into::full>(steps, a, b, 1, c.data + i + j * c.stride, c.stride,
-                                                                 tile_columns);
-  double tile[tile_rows * tile_columns];
-  subtract_tile<tile_packets, tile_columns, Into::empty>(steps, a, b, 1, tile, tile_rows, tile_columns);
-  for (Index q = j; q < std::min(j + tile_columns, c.columns); ++q)
-    for (Index p = c.lower ? std::max(i, q) : i; p < std::min(i + tile_rows, c.rows); ++p)
-      c.data[p + q * c.stride] += tile[(p - i) + (q - j) * tile_rows];
-}
-
 PALPATE_INLINE void add_product(const Target& c, double factor, const Operand& a, const Operand& b, Index depth) {
-  constexpr Index deep = LowerPanels::width;                       // steps at a time
-  constexpr Index block = (deep * 5 / 3) / tile_rows * tile_rows;  // rows that stay in the cache
-  const Index most = std::min(deep, depth);
-  const Operand b_transposed = transposed(b);
-  BigArray left((std::min(block, c.rows) + tile_rows) * most), right((c.columns + tile_columns) * most);
-  for (Index step = 0; step < depth; step += deep) {
-    const Index steps = std::min(deep, depth - step);
-    pack_operand<tile_columns>(b_transposed, 1.0, 0, c.columns, step, steps, right.data());
-    for (Index top = 0; top < c.rows; top += block) {
-      const Index bottom = std::min(top + block, c.rows);
-      pack_operand<tile_rows>(a, -factor, top, bottom - top, step, steps, left.data());
-      for (Index j = 0; j < c.columns && !(c.lower && j >= bottom); j += tile_columns)
-        for (Index i = top; i < bottom; i += tile_rows)
-          if (!c.lower || i + tile_rows > j)
-            subtract_tile_within(c, i, j, steps, left.data() + (i - top) * steps, right.data() + j * steps);
-    }
-  }
+  BigArray packed(product_workspace(c, depth));
+  processor_kernels().add_product({c, factor, a, b, depth, packed.data()});
 }
 
 PALPATE_INLINE MatrixX product(const MatrixX& a, const MatrixX& b) {

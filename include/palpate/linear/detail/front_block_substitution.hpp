@@ -1,7 +1,8 @@
 // Forward and backward substitution with the columns of one front, several right-hand sides simultaneously.
 #pragma once
 
-#include <palpate/linear/detail/front_substitution.hpp>
+#include <palpate/linear/detail/lower_panels.hpp>
+#include <palpate/linear/detail/tile.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 

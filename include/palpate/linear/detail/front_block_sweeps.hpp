@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/linear/detail/front_tree.hpp>
+#include <palpate/linear/detail/processor_kernels.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
@@ -11,6 +12,8 @@ class FrontBlockSweeps {
   /// For up to `columns` right-hand sides at a time; the width is at most three packets.
   FrontBlockSweeps(const FrontTree& tree, const double* factor, Index columns);
 
+  /// A block is one to three times as wide [columns].
+  static Index width_step() noexcept { return processor_kernels().packet_size; }
   Index width() const noexcept { return width_; }
   /// The values at one place of the elimination order.
   double* row(Index place) noexcept { return values_.data() + place * width_; }
@@ -19,12 +22,10 @@ class FrontBlockSweeps {
   void backward(const Front& f) noexcept;
 
  private:
-  using Substitution = void (*)(const double* l, const LowerPanels& shape, double* x) noexcept;
-
   const FrontTree& tree_;
   const double* factor_;
   Index width_;
-  Substitution forward_, backward_;  // for this width
+  any_flags::BlockSubstitution forward_, backward_;  // for this width
   VectorX values_, local_;
 };
 

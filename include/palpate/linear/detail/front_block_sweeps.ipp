@@ -1,7 +1,7 @@
 // Definitions of front_block_sweeps.hpp.
 #pragma once
 
-#include <palpate/linear/detail/front_block_substitution.hpp>
+#include <palpate/core/detail/packet.hpp>
 #include <palpate/linear/detail/front_block_sweeps.hpp>
 
 #include <algorithm>
@@ -10,7 +10,8 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Number of packets for `columns` right-hand sides, at most three.
 inline Index block_packets(Index columns) noexcept {
-  return columns <= packet_size ? 1 : columns <= 2 * packet_size ? 2 : 3;
+  const Index step = FrontBlockSweeps::width_step();
+  return columns <= step ? 1 : columns <= 2 * step ? 2 : 3;
 }
 
 /// Copies whole packets; returns the end of the output. The runs are too short for memmove to be faster.
@@ -26,13 +27,9 @@ inline double* clear_packets(double* to, Index count) noexcept {
 PALPATE_INLINE FrontBlockSweeps::FrontBlockSweeps(const FrontTree& tree, const double* factor, Index columns)
     : tree_(tree),
       factor_(factor),
-      width_(block_packets(columns) * packet_size),
-      forward_(width_ == packet_size       ? FrontBlock<1>::forward
-               : width_ == 2 * packet_size ? FrontBlock<2>::forward
-                                           : FrontBlock<3>::forward),
-      backward_(width_ == packet_size       ? FrontBlock<1>::backward
-                : width_ == 2 * packet_size ? FrontBlock<2>::backward
-                                            : FrontBlock<3>::backward),
+      width_(block_packets(columns) * width_step()),
+      forward_(processor_kernels().forward[static_cast<std::size_t>(block_packets(columns) - 1)]),
+      backward_(processor_kernels().backward[static_cast<std::size_t>(block_packets(columns) - 1)]),
       values_(width_ * tree.place_of_dof.size()),
       local_(width_ * (LowerPanels::padded(tree.largest_front) + LowerPanels::alignment)) {}
 
@@ -44,7 +41,7 @@ PALPATE_INLINE void FrontBlockSweeps::forward(const Front& f) noexcept {
   const LowerPanels shape = f.panels();
   double* const x = local_.data();
   clear_packets(copy_packets(row(f.first), f.pivots * width_, x), (shape.height - f.pivots) * width_);
-  forward_(factor_ + f.factor, shape, x);
+  forward_(factor_ + f.factor, shape.height, shape.columns, x);
   copy_packets(x, f.pivots * width_, row(f.first));
   const double* from = x + f.pivots * width_;
   for (Index r = f.run_begin; r < f.run_end; ++r) {
@@ -62,7 +59,7 @@ PALPATE_INLINE void FrontBlockSweeps::backward(const Front& f) noexcept {
   for (Index r = f.run_begin; r < f.run_end; ++r)
     to = copy_packets(row(tree_.runs[r].first), tree_.runs[r].count * width_, to);
   clear_packets(to, x + shape.height * width_ - to);
-  backward_(factor_ + f.factor, shape, x);
+  backward_(factor_ + f.factor, shape.height, shape.columns, x);
   copy_packets(x, f.pivots * width_, row(f.first));
 }
 
@@ -88,7 +85,8 @@ PALPATE_INLINE void solve_block(const FrontTree& tree, const double* factor, Ind
                                 MatrixX& x) {
   for (Index begin = 0; begin < b.cols();) {
     FrontBlockSweeps sweeps(tree, factor, b.cols() - begin);
-    const Index enough = sweeps.width() - packet_size;  // fewer columns than this fit a narrower block
+    const Index enough =
+        sweeps.width() - FrontBlockSweeps::width_step();  // fewer columns than this fit a narrower block
     for (; b.cols() - begin > enough; begin += sweeps.width())
       solve_columns(sweeps, tree, fronts, b, x, begin, std::min(sweeps.width(), b.cols() - begin));
   }

@@ -1,7 +1,7 @@
 // Dense Cholesky of the pivot columns of a front, and the symmetric update of the other rows.
 #pragma once
 
-#include <palpate/linear/detail/front_team.hpp>
+#include <palpate/linear/detail/kernel_types.hpp>
 #include <palpate/linear/detail/lower_panels.hpp>
 #include <palpate/linear/detail/tile.hpp>
 
@@ -152,24 +152,24 @@ inline void factor_trapezoid(double* a, Index stride, Index rows, Index columns,
   factor_few<column_block>(a, stride, rows, columns, place, sink);
 }
 
-/// Factorises the pivot columns of a front and writes -L21 L21^T to the lower triangle `update` of its `rows` other
-/// rows. `packed` is workspace. Without a team the calling thread does everything.
-inline void factor_front(double* front, Index pivots, Index rows, double* update, Index place, const PivotSink& sink,
-                         double* packed, FrontTeam* team = nullptr) noexcept {
+/// Factorises the pivot columns of a front and writes -L21 L21^T to the lower triangle `update` of its other rows.
+inline void factor_front(const any_flags::FrontJob& job) noexcept {
+  const Index pivots = job.pivots, rows = job.rows;
   const LowerPanels shape = LowerPanels::of(pivots + rows, pivots), rest = LowerPanels::of(rows, rows);
+  const PivotSink sink{job.pivot_values, job.diagonal, job.threshold};
   for (Index p = 0; p < shape.panels(); ++p) {
     const Index begin = shape.panel_begin(p), steps = shape.panel_width(p), stride = shape.stride(p);
-    double* const panel = front + shape.offset(p);
-    factor_trapezoid(panel, stride, stride, steps, place + begin, sink);
+    double* const panel = job.front + shape.offset(p);
+    factor_trapezoid(panel, stride, stride, steps, job.place + begin, sink);
     if (begin + steps < pivots)
-      subtract_lower<Into::full>(front + shape.offset(p + 1), {stride - steps, pivots - begin - steps},
-                                 {panel + steps, stride}, steps, packed, team);
+      subtract_lower<Into::full>(job.front + shape.offset(p + 1), {stride - steps, pivots - begin - steps},
+                                 {panel + steps, stride}, steps, job.packed, job.team);
     if (rows == 0) continue;
     const Steps below{panel + (pivots - begin), stride};
     if (p == 0)
-      subtract_lower<Into::empty>(update, rest, below, steps, packed, team);
+      subtract_lower<Into::empty>(job.update, rest, below, steps, job.packed, job.team);
     else
-      subtract_lower<Into::full>(update, rest, below, steps, packed, team);
+      subtract_lower<Into::full>(job.update, rest, below, steps, job.packed, job.team);
   }
 }
 

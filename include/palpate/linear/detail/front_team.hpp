@@ -3,7 +3,10 @@
 
 #include <palpate/core/types.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+namespace palpate {
+
+// The same type for all compiler flags: kernels for other processors (front_job.hpp) use it too.
+namespace any_flags {
 
 /// Distributes independent pieces of work.
 class FrontTeam {
@@ -11,16 +14,22 @@ class FrontTeam {
   /// Calls piece(0) ... piece(count - 1), each once or, after a cancellation, not at all, and returns when all have
   /// returned.
   template <class Piece>
-  void each(Index count, Piece& piece) noexcept {
-    run(count, &piece, [](void* p, Index i) { (*static_cast<Piece*>(p))(i); });
+  void each(std::int64_t count, Piece& piece) noexcept {
+    run(count, &piece, [](void* p, std::int64_t i) { (*static_cast<Piece*>(p))(i); });
   }
 
  protected:
   ~FrontTeam() = default;
 
  private:
-  virtual void run(Index count, void* piece, void (*call)(void*, Index)) noexcept = 0;
+  virtual void run(std::int64_t count, void* piece, void (*call)(void*, std::int64_t)) noexcept = 0;
 };
+
+}  // namespace any_flags
+
+inline namespace PALPATE_ABI { namespace detail {
+
+using any_flags::FrontTeam;
 
 /// The same, in the calling thread when there is no team.
 template <class Piece>
@@ -29,4 +38,5 @@ inline void share(FrontTeam* team, Index count, Piece&& piece) noexcept {
   for (Index i = 0; i < count; ++i) piece(i);
 }
 
-}}}  // namespace palpate::detail
+}}
+}  // namespace palpate::detail

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <palpate/linear/detail/big_array.hpp>
-#include <palpate/linear/detail/front_kernels.hpp>
 #include <palpate/linear/detail/front_tree.hpp>
 #include <palpate/linear/detail/node_graph.hpp>
+#include <palpate/linear/detail/processor_kernels.hpp>
 
 #include <vector>
 
@@ -59,6 +59,7 @@ class FrontWork {
   void add_child(const FrontSystem& system, const Child& child, Index begin, Index end, Column&& column) const noexcept;
   void add_column(const double* from, double* to, std::size_t r, std::size_t end, Index skip) const noexcept;
 
+  const any_flags::Kernels& kernels_;
   BigArray packed_;
   NodeVector local_;
   std::vector<Match> matched_;  // of the rows of all children to rows of the front

@@ -24,7 +24,7 @@ PALPATE_INLINE void FrontSystem::take(const SparseLower& lower) noexcept {
 }
 
 PALPATE_INLINE FrontWork::FrontWork(const FrontTree& tree, Index pack_size)
-    : packed_(pack_size), local_(tree.place_of_dof.size(), 0) {
+    : kernels_(processor_kernels()), packed_(pack_size), local_(tree.place_of_dof.size(), 0) {
   Index most_runs = 0, most_children = 0;
   for (const Front& front : tree.fronts) {
     Index runs = 0, children = 0;
@@ -39,11 +39,12 @@ PALPATE_INLINE FrontWork::FrontWork(const FrontTree& tree, Index pack_size)
 
 PALPATE_INLINE void FrontWork::eliminate(const FrontSystem& system, Index f, FrontTeam* team) noexcept {
   const Front& front = system.tree.fronts[f];
-  const PivotSink sink{const_cast<double*>(system.pivots.data()), system.diagonal.data(), system.threshold};
   double* const columns = system.factor + front.factor;
   double* const update = system.updates[f];
   assemble(system, front, columns, team);
-  factor_front(columns, front.pivots, front.rows, update, front.first, sink, packed_.data(), team);
+  kernels_.factor_front({columns, front.pivots, front.rows, update, front.first,
+                         const_cast<double*>(system.pivots.data()), system.diagonal.data(), system.threshold,
+                         packed_.data(), team});
   const LowerPanels shape = front.update_panels();
   add_children(
       system, front.pivots, front.size(),

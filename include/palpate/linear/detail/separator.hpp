@@ -2,35 +2,39 @@
 #pragma once
 
 #include <palpate/linear/detail/bipartite_cover.hpp>
+#include <palpate/linear/detail/flow_separator.hpp>
 #include <palpate/linear/detail/separator_refinement.hpp>
+#include <palpate/linear/detail/oriented_lists.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Cuts a part at a position of one of its sorted lists. Scans every position of every list in one sweep, then
-/// replaces the layer of nodes at the best positions by a minimum vertex cover of the cut edges. O(edges) plus the
-/// matching.
+/// replaces the layer of nodes at the best positions by a minimum vertex cover of the cut edges. In a large part, where
+/// most of the operations of a factorisation are, it also looks along oblique directions, and takes the smallest
+/// separator in a wide band about each cut. O(edges) plus the matching and the flow.
 class SeparatorFinder {
  public:
   explicit SeparatorFinder(PartLists& lists)
-      : lists_(lists), refinement_(lists), reach_(lists.graph->nodes()), number_(lists.graph->nodes(), -1) {}
+      : lists_(lists),
+        refinement_(lists),
+        flow_(lists),
+        reach_(lists.graph->nodes()),
+        number_(lists.graph->nodes(), -1) {}
 
   /// Fills `side` for the part and returns the number of nodes on the first side, on the second side and in the
   /// separator.
   std::array<Index, 3> cut(const Part& part) {
-    sweep(part);
-    std::array<Cut, dissection_axes> cuts = promising(part);
-    Cut best;
-    double thinnest = infinity;
-    for (const Cut& c : cuts) thinnest = std::min(thinnest, c.score);
-    for (Cut& c : cuts) {
-      if (c.score > worth_a_look * thinnest) continue;
-      c.score = separator_score(cover(part, c), part.size());
-      if (c.score < best.score) best = c;
-    }
-    if (best.position <= 0) return {part.size(), 0, 0};
-    const std::array<Index, 3> sizes = cover(part, best);
-    mark(part, best);
-    return part.size() < worth_refining ? sizes : refinement_.refine(part, sizes);
+    sizes_ = {part.size(), 0, 0};
+    lowest_ = lowest_cover_ = infinity;
+    const bool large = part.size() >= worth_refining;
+    look(part, large);
+    if (lowest_ == infinity || !large) return sizes_;
+    if (!lists_.graph->positions.empty())
+      for (const Directions& directions : oblique_directions()) {
+        const OrientedLists along(lists_, part, directions);
+        look(part, large);
+      }
+    return refinement_.refine(part, sizes_);
   }
 
  private:
@@ -42,7 +46,50 @@ class SeparatorFinder {
   using Ranks = std::array<NodeId, dissection_axes>;
   static constexpr double worth_a_look = 1.5;  // a cover is hardly ever smaller than its layer by a larger factor
   static constexpr Index worth_refining = 1500;
-  static constexpr double largest_bias = 0.2;  // cuts from 0.3 : 0.7 to 0.7 : 0.3
+  static constexpr double worth_widening = 1.15;  // a wide band seldom reduces a separator by a larger factor
+  static constexpr double largest_bias = 0.2;     // cuts from 0.3 : 0.7 to 0.7 : 0.3
+  static constexpr double widest_band = 0.15;     // of the nodes, on either side of a cut
+
+  /// Keeps the best separator along the present lists if it is better than those before.
+  void look(const Part& part, bool wide) {
+    sweep(part);
+    std::array<Cut, dissection_axes> cuts = promising(part);
+    double thinnest = infinity;
+    for (const Cut& c : cuts) thinnest = std::min(thinnest, c.score);
+    for (Cut& c : cuts) {
+      if (c.position <= 0 || c.score > worth_a_look * thinnest) continue;
+      const std::array<Index, 3> sizes = cover(part, c);
+      c.score = separator_score(sizes, part.size());
+      lowest_cover_ = std::min(lowest_cover_, c.score);
+      if (keep(part, sizes)) mark(part, c);
+    }
+    if (!wide) return;
+    for (const Cut& c : cuts)
+      if (c.position > 0 && c.score <= worth_widening * lowest_cover_) widen(part, c);
+  }
+
+  /// True when the separator is better than those before.
+  bool keep(const Part& part, const std::array<Index, 3>& sizes) noexcept {
+    const double score = separator_score(sizes, part.size());
+    if (score >= lowest_) return false;
+    lowest_ = score;
+    sizes_ = sizes;
+    return true;
+  }
+
+  /// The smallest separators in two bands about a cut.
+  void widen(const Part& part, const Cut& c) {
+    const auto axis = static_cast<std::size_t>(c.axis);
+    const auto all = static_cast<double>(part.size());
+    const Index outside = part.size() / 5;  // that any side keeps
+    for (const double width : {widest_band, 0.5 * widest_band}) {
+      const auto band = static_cast<Index>(width * all);
+      const Index first = std::max(outside, c.position - band);
+      const Index last = std::min(part.size() - outside, c.position + band);
+      const std::array<Index, 3> sizes = flow_.cut(part, axis, first, last);
+      if (sizes[1] > 0 && keep(part, sizes)) flow_.mark(part, axis, first);
+    }
+  }
 
   /// For every axis and cut position, counts the nodes before the cut with a neighbour behind it, and the reverse.
   void sweep(const Part& part) {
@@ -142,10 +189,14 @@ class SeparatorFinder {
 
   PartLists& lists_;
   SeparatorRefinement refinement_;
+  FlowSeparator flow_;
   IndexedVector<Ranks> reach_;  // per node, the greatest rank among itself and its neighbours
   std::array<NodeVector, dissection_axes> before_, behind_;
   BipartiteCover cover_;
   NodeVector left_, right_, number_;
+  std::array<Index, 3> sizes_{};    // of the best separator so far
+  double lowest_ = infinity;        // its score
+  double lowest_cover_ = infinity;  // the best score before widening
 };
 
 }}}  // namespace palpate::detail

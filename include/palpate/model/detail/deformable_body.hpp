@@ -51,6 +51,10 @@ void require_mass(const DeformableBody& body);
 
 namespace detail {
 
+/// Sets the nodal masses [kg] that remain after elements have left. Nodes that lose all mass are constrained at their
+/// displacement in u [m]. Returns the dofs of these nodes that were free.
+std::vector<Index> leave_mass(DeformableBody& body, const VectorX& nodal_mass, const VectorX& u);
+
 /// Everything except the forces and the mass.
 template <Element E>
 DeformableBody body_without_mass(const Body<E>& rest, const Scene& scene) {

@@ -77,7 +77,9 @@ class VisualSurface {
   /// A user-defined surface. Throws index_out_of_range for a triangle with a point that does not exist, non_finite for
   /// a point that is not finite, empty_mesh without triangles. O(points log elements), allocates.
   VisualSurface(Model& model, VisualMesh surface)
-      : model_(&model), surface_(checked(std::move(surface))), displacement_(3 * model.mesh().node_count()) {
+      : model_(&model),
+        surface_(checked(std::move(surface))),
+        displacement_(VectorX::Zero(3 * model.mesh().node_count())) {
     for (Vector3& x : surface_.positions) x -= model.origin();
     embed();
     normals_.resize(surface_.positions.size());
@@ -102,6 +104,20 @@ class VisualSurface {
     const Eigen::Isometry3d pose = model_->to_world();
     for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = pose * (surface_.positions[i] + displacement_at(i));
     detail::write_surface(moved_, surface_.triangles, normals_, positions, normals);
+    return true;
+  }
+  /// Displacement of the last read_surface, 3 per admitted node [m], to compute fields from; zero before the first.
+  const VectorX& displacement() const noexcept { return displacement_; }
+  /// Interpolates a field with one value per admitted node, such as StressField::von_mises_nodes, to the points.
+  /// Returns false and writes nothing when a length is wrong. No allocation, no lock.
+  bool read_field(const VectorX& at_nodes, std::span<float> values) const noexcept {
+    if (at_nodes.size() != model_->mesh().node_count() || values.size() != anchors_.size()) return false;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      double value = 0.0;
+      for (int a = 0; a < E::nodes; ++a)
+        value += anchors_[i].weights[a] * at_nodes[model_->mesh().element_node(anchors_[i].element, a)];
+      values[i] = static_cast<float>(value);
+    }
     return true;
   }
 

@@ -10,11 +10,11 @@
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/realtime.hpp>
-#include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/integrator/detail/implicit_step.hpp>
+#include <palpate/integrator/detail/kinetic_limit.hpp>
 #include <palpate/integrator/detail/requirements.hpp>
 #include <palpate/integrator/time_scheme.hpp>
 #include <palpate/linear/bounded_conjugate_gradient.hpp>
@@ -27,7 +27,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -53,7 +52,7 @@ class CorotatedMotion {
   /// strains, bad_density when a free node has no mass, bad_argument for options out of range.
   CorotatedMotion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene,
                   const CorotatedMotionOptions& options = {}, const SetupLimits& limits = {})
-      : options_(checked(options)),
+      : options_(valid(options)),
         tetrahedra_(body, limits),
         body_(checked(body.rest, scene, limits)),
         mass_(mass_of_dofs(body_.lumped)),
@@ -181,10 +180,13 @@ class CorotatedMotion {
   /// slower. Throws bad_argument or bad_density, without a change.
   template <class Gone>
   void remove_elements(Gone&& gone, const VectorX& nodal_mass, const VectorX& load) {
-    require_mass_left(nodal_mass, load);
+    require_entries(load, size());
+    require_mass_left(mass_, nodal_mass);
     tetrahedra_.remove_if(gone);
-    constrain_bare(nodal_mass);
-    body_.lumped = nodal_mass;
+    for (const Index dof : detail::leave_mass(body_, nodal_mass, u_)) {
+      bare_.push_back(dof);
+      constrained_dofs_.push_back(dof);
+    }
     mass_ = mass_of_dofs(nodal_mass);
     load_ = body_.load = load;
     if constexpr (requires { preconditioner_.change(body_); }) preconditioner_.change(body_);
@@ -216,14 +218,6 @@ class CorotatedMotion {
   }
 
  private:
-  static CorotatedMotionOptions checked(const CorotatedMotionOptions& o) {
-    require_damping(o.mass_damping, o.stiffness_damping);
-    if (o.solve.maximum_iterations < 1 || !(o.solve.tolerance >= 0.0 && o.solve.tolerance < 1.0) ||
-        o.precondition_every < 1 || o.maximum_linearisations < 1)
-      raise(SetupErrorKind::bad_argument, "options with which a step does no work",
-            "Give at least one of each, and a tolerance from 0 to less than 1");
-    return o;
-  }
   static bool is_implicit_euler(const TimeScheme& s) noexcept {
     return s.old_in_u == 0.0 && s.new_in_u == 1.0 && s.old_in_v == 0.0 && s.new_in_v == 1.0;
   }
@@ -232,32 +226,6 @@ class CorotatedMotion {
     DeformableBody body = detail::body_with_mass(rest, scene, limits);
     require_mass(body);
     return body;
-  }
-
-  void require_mass_left(const VectorX& mass, const VectorX& load) const {
-    if (3 * mass.size() != size() || load.size() != size())
-      raise(SetupErrorKind::bad_argument, std::to_string(mass.size()) + " masses and " + std::to_string(load.size()) +
-                                              " loads for " + std::to_string(size() / 3) + " nodes");
-    for (Index i = 0; i < mass.size(); ++i)
-      if (!(mass[i] >= 0.0) || !(mass[i] <= body_.lumped[i] * (1.0 + 1e-9)))
-        raise(SetupErrorKind::bad_density,
-              "node " + std::to_string(i) + " has the mass " + number(mass[i]) + " after elements were removed",
-              "Give lumped_mass(body, gone)");
-  }
-  /// Constrains the nodes that have no element left.
-  void constrain_bare(const VectorX& mass) {
-    EssentialConditions& c = body_.conditions;
-    for (Index dof = 0; dof < size(); ++dof) {
-      if (mass[dof / 3] > 0.0 || !(body_.lumped[dof / 3] > 0.0)) continue;
-      bare_.push_back(dof);
-      c.prescribed[dof] = u_[dof];
-      c.constrained[static_cast<std::size_t>(dof / 3)] = 7;
-      if (!c.is_constrained(dof)) constrained_dofs_.push_back(dof);
-      c.free_index[static_cast<std::size_t>(dof)] = -1;
-    }
-    std::erase_if(c.free_dofs, [&c](Index dof) { return c.is_constrained(dof); });
-    for (std::size_t i = 0; i < c.free_dofs.size(); ++i)
-      c.free_index[static_cast<std::size_t>(c.free_dofs[i])] = static_cast<Index>(i);
   }
 
   /// After this call the last step, if there was one, can no longer be corrected.
@@ -329,22 +297,8 @@ class CorotatedMotion {
   /// of the step falls from `highest`. Reduces the velocities so that kinetic and stored energy do not exceed those at
   /// the start and the work of the loads. A free body keeps its momentum.
   void limit_velocity(double highest) noexcept {
-    const double available = highest + load_.dot(trial_) - trial_energy_ + rounding(highest),
-                 kinetic = 0.5 * velocity_.dot(mass_.cwiseProduct(velocity_));
-    if (!(kinetic > available)) return;
-    Vector3 mean = Vector3::Zero();
-    double mass = 0.0;
-    if (constrained_dofs_.empty()) {
-      for (Index i = 0; i < size() / 3; ++i) {
-        mean += mass_[3 * i] * node_vector(velocity_, i);
-        mass += mass_[3 * i];
-      }
-      mean /= mass;
-    }
-    const double drift = 0.5 * mass * mean.squaredNorm(),
-                 scale = std::sqrt(std::max(0.0, available - drift) / (kinetic - drift));
-    for (Index i = 0; i < size() / 3; ++i)
-      set_node_vector(velocity_, i, mean + scale * (node_vector(velocity_, i) - mean));
+    limit_kinetic_energy(highest + load_.dot(trial_) - trial_energy_ + rounding(highest), mass_,
+                         constrained_dofs_.empty(), velocity_);
   }
   /// Linearises at the initial state of the step instead of the predicted one: from there the potential only falls.
   double return_to_start(DeformationReport& deformation) noexcept {

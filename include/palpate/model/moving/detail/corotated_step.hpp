@@ -20,6 +20,9 @@ struct CorotatedMotionOptions {
   int maximum_linearisations = 8;  ///< per step, when the check fails; one suffices except for extreme steps
 };
 
+/// The options. Throws bad_argument when a step would do no work, or could add energy.
+CorotatedMotionOptions valid(const CorotatedMotionOptions& options);
+
 /// Result of a step.
 struct CorotatedStep {
   bool taken = false;          ///< false: the length was not positive, or the result not finite; nothing has changed
@@ -31,3 +34,7 @@ struct CorotatedStep {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/detail/corotated_step.ipp>
+#endif

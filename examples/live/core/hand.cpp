@@ -1,0 +1,90 @@
+#include "hand.hpp"
+
+namespace live {
+
+namespace {
+constexpr double hover_height = 4e-3;  // [m]
+}
+
+void Hand::handle(const PointerEvent& event) {
+  switch (event.action) {
+    case PointerAction::orbit:
+      return camera_->orbit(event.x, event.y);
+    case PointerAction::pan:
+      return camera_->pan(event.x, event.y);
+    case PointerAction::zoom:
+      return camera_->zoom(event.amount);
+    case PointerAction::key:
+      return key(event.key);
+    default:
+      break;
+  }
+  if (tools_.empty() || still_) return;
+  Moved& tool = tools_[active_];
+  switch (event.action) {
+    case PointerAction::press:
+      return press(event);
+    case PointerAction::release:
+      pressed_ = false;
+      return hover(event);
+    case PointerAction::wheel:
+      tool.target += event.amount * camera_->forward();
+      return send(tool);
+    default:
+      break;
+  }
+  if (!pressed_) return hover(event);
+  tool.target = camera_->in_plane(event.x, event.y, tool.target);
+  send(tool);
+}
+
+/// A tool that grasps stays where it is.
+void Hand::hover(const PointerEvent& event) {
+  Moved& tool = tools_[active_];
+  if (tool.buttons != 0) return;
+  const Ray ray = camera_->ray(event.x, event.y);
+  if (const auto hit = look_().hit(ray))
+    tool.target = hit->point + (tool.radius + hover_height) * hit->normal;
+  else
+    tool.target = camera_->in_plane(event.x, event.y, tool.target);
+  send(tool);
+}
+
+void Hand::press(const PointerEvent& event) {
+  Moved& tool = tools_[active_];
+  pressed_ = true;
+  if (tool.buttons != 0) return;
+  const auto hit = look_().hit(camera_->ray(event.x, event.y));
+  if (!hit) return;
+  tool.target = hit->point + tool.radius * hit->normal;
+  send(tool, true);
+}
+
+void Hand::key(char key) {
+  if (tools_.empty()) return;
+  Moved& tool = tools_[active_];
+  switch (key) {
+    case '\t':
+      active_ = (active_ + 1) % tools_.size();
+      pressed_ = false;
+      return;
+    case 'H':
+      still_ = !still_;
+      return;
+    case 'G':
+      tool.buttons ^= 1u;
+      return send(tool);
+    case 'U':
+      unplugged_ = !unplugged_;
+      for (Moved& t : tools_) send(t);
+      return;
+    default:
+      return;
+  }
+}
+
+void Hand::send(Moved& tool, bool set_there) {
+  tool.device->move({tool.target, tool.buttons, set_there, !unplugged_});
+}
+
+}  // namespace live

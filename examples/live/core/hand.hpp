@@ -1,0 +1,53 @@
+// From the pointer to the tools.
+#pragma once
+
+#include "drawn_surface.hpp"
+#include "mouse_device.hpp"
+#include "pointer_script.hpp"
+
+#include <functional>
+#include <vector>
+
+namespace live {
+
+/// Moves tools with the pointer. Without a button the active tool hovers over the surface under the pointer; pressing
+/// the button sets it on the surface; dragging moves it in the plane of the picture; the wheel pushes it along the line
+/// of sight. Keys: Tab takes the next tool, G grasps or lets go, U unplugs the device or plugs it in, H keeps the tool
+/// where it is.
+class Hand {
+ public:
+  using Look = std::function<const DrawnSurface&()>;  ///< the surface at present
+
+  Hand(Camera& camera, Look look) : camera_(&camera), look_(std::move(look)) {}
+  /// A tool that the pointer moves; `radius`: how far its middle is from a surface that it touches [m].
+  void add(MouseDevice& device, const Vector3& start, double radius) { tools_.push_back({&device, start, radius}); }
+  void set_radius(std::size_t tool, double radius) { tools_[tool].radius = radius; }
+
+  void handle(const PointerEvent& event);
+  std::size_t active() const noexcept { return active_; }
+  bool keeps_still() const noexcept { return still_; }
+  bool grasps() const noexcept { return !tools_.empty() && tools_[active_].buttons != 0; }
+  bool unplugged() const noexcept { return unplugged_; }
+  /// Where the tools were asked to be [m].
+  const Vector3& target(std::size_t tool) const { return tools_[tool].target; }
+
+ private:
+  struct Moved {
+    MouseDevice* device;
+    Vector3 target;
+    double radius;
+    std::uint32_t buttons = 0;
+  };
+  void hover(const PointerEvent& event);
+  void press(const PointerEvent& event);
+  void key(char key);
+  void send(Moved& tool, bool set_there = false);
+
+  Camera* camera_;
+  Look look_;
+  std::vector<Moved> tools_;
+  std::size_t active_ = 0;
+  bool pressed_ = false, still_ = false, unplugged_ = false;
+};
+
+}  // namespace live

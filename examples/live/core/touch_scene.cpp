@@ -1,0 +1,47 @@
+#include "touch_scene.hpp"
+
+#include <algorithm>
+
+namespace live {
+
+const char* name_of(Composition c) {
+  switch (c) {
+    case Composition::tet4:
+      return "Tet4";
+    case Composition::smoothed:
+      return "Smoothed<Tet4>";
+    case Composition::tet10:
+      return "Tet10";
+    case Composition::quasi_newton:
+      return "QuasiNewton";
+    case Composition::cuttable:
+      return "Cuttable";
+    case Composition::beating:
+      return "Explicit";
+  }
+  return "";
+}
+
+std::vector<Tool> tuned_tools(const TouchScene& scene, const Tuning& tuning) {
+  std::vector<Tool> tools = scene.tools;
+  for (Tool& tool : tools) {
+    if (auto* sphere = std::get_if<SphereTool>(&tool)) sphere->radius *= tuning.radius;
+    if (auto* capsule = std::get_if<CapsuleTool>(&tool)) capsule->radius *= tuning.radius;
+  }
+  return tools;
+}
+
+SessionOptions tuned_session(const TouchScene& scene, const Tuning& tuning) {
+  SessionOptions options = scene.session;
+  options.contact.friction = tuning.friction;
+  options.coupling_stiffness = tuning.coupling;
+  return options;
+}
+
+double radius_of(const Tool& tool) {
+  if (const auto* sphere = std::get_if<SphereTool>(&tool)) return sphere->radius;
+  if (const auto* capsule = std::get_if<CapsuleTool>(&tool)) return capsule->radius;
+  return 1e-3;
+}
+
+}  // namespace live
