@@ -24,6 +24,8 @@ std::vector<NamedKernels> executable_kernels() {
 #if defined(PALPATE_KERNELS_BY_PROCESSOR)
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
     all.emplace_back("avx2", &any_flags::kernels_avx2);
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+    all.emplace_back("avx512", &any_flags::kernels_avx512);
 #endif
   return all;
 }

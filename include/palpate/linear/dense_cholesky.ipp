@@ -5,8 +5,9 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/detail/big_array.hpp>
-#include <palpate/linear/detail/front_kernels.hpp>
 #include <palpate/linear/detail/front_substitution.hpp>
+#include <palpate/linear/detail/lower_panels.hpp>
+#include <palpate/linear/detail/processor_kernels.hpp>
 #include <palpate/linear/detail/vector_kernels.hpp>
 
 #include <algorithm>
@@ -29,7 +30,8 @@ PALPATE_INLINE DenseCholesky::DenseCholesky(const MatrixX& matrix, const SetupLi
     std::copy(column + j, column + n, l + shape.at(j, j));
   }
   detail::BigArray packed(2 * (shape.height + 64) * detail::LowerPanels::width);
-  detail::factor_front(l, n, 0, nullptr, 0, {pivots.data(), diagonal.data(), pivot_threshold}, packed.data());
+  detail::processor_kernels().factor_front(
+      {l, n, 0, nullptr, 0, pivots.data(), diagonal.data(), pivot_threshold, packed.data(), nullptr});
   double worst = infinity;
   for (Index j = 0; j < n; ++j) {
     const double ratio = pivots.data()[j] / std::abs(diagonal.data()[j]);
