@@ -121,6 +121,26 @@ TEST_CASE("a fine surface follows an affine displacement exactly, on the body an
   }
 }
 
+TEST_CASE("a field of the nodes is interpolated to the points of a fine surface", "[model][visual]") {
+  Model model(block(), scene().gravity({0, 0, -9.81}), soft);
+  VisualSurface surface(model, fine_top(1e-3));
+  CHECK(surface.displacement().isZero(0.0));
+  const auto points = static_cast<std::size_t>(surface.point_count());
+  std::vector<float> positions(3 * points), normals(3 * points), values(points);
+  REQUIRE(surface.read_surface({}, positions, normals));
+  CHECK((surface.displacement() - model.displacement()).norm() <= 1e-12 * model.displacement().norm());
+  VectorX field(model.mesh().node_count());  // linear in space, so that it is exact, also above the body
+  for (NodeId i = 0; i < field.size(); ++i) field[i] = Vector3(3.0, -2.0, 5.0).dot(model.rest_position(i)) + 1.0;
+  REQUIRE(surface.read_field(field, values));
+  const VisualMesh given = fine_top(1e-3);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < points; ++i)
+    worst = std::max(worst, std::abs(values[i] - 1.0 - Vector3(3.0, -2.0, 5.0).dot(given.positions[i])));
+  CHECK(worst <= 1e-6);
+  CHECK_FALSE(surface.read_field(VectorX::Zero(3), values));
+  CHECK_FALSE(surface.read_field(field, positions));
+}
+
 TEST_CASE("the surface follows the pose, and arrays of wrong size are refused", "[model][visual]") {
   Model model(block(), scene(), soft);
   VisualSurface surface(model);

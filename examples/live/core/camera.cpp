@@ -21,9 +21,10 @@ Ray Camera::ray(double x, double y) const {
   return {eye(), (forward() + across).normalized()};
 }
 
-Vector3 Camera::in_plane(double x, double y, const Vector3& point) const {
+Vector3 Camera::in_plane(double x, double y, const Vector3& point, const Vector3& normal) const {
   const Ray r = ray(x, y);
-  return r.origin + ((point - r.origin).dot(forward()) / r.direction.dot(forward())) * r.direction;
+  if (std::abs(r.direction.dot(normal)) < 0.25) return in_plane(x, y, point);
+  return r.origin + ((point - r.origin).dot(normal) / r.direction.dot(normal)) * r.direction;
 }
 
 void Camera::orbit(double dx, double dy) {

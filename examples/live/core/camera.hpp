@@ -27,7 +27,9 @@ struct Camera {
   Vector3 eye() const { return target - distance * forward(); }
   Ray ray(double x, double y) const;
   /// The point on the ray through x, y that lies in the plane through `point` parallel to the picture.
-  Vector3 in_plane(double x, double y, const Vector3& point) const;
+  Vector3 in_plane(double x, double y, const Vector3& point) const { return in_plane(x, y, point, forward()); }
+  /// The same for the plane with this normal, unless it is seen nearly from its side.
+  Vector3 in_plane(double x, double y, const Vector3& point, const Vector3& normal) const;
 
   void orbit(double dx, double dy);
   void pan(double dx, double dy);

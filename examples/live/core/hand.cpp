@@ -34,7 +34,8 @@ void Hand::handle(const PointerEvent& event) {
       break;
   }
   if (!pressed_) return hover(event);
-  tool.target = camera_->in_plane(event.x, event.y, tool.target);
+  tool.target = tool.buttons != 0 ? camera_->in_plane(event.x, event.y, tool.target)
+                                  : camera_->in_plane(event.x, event.y, tool.target, tool.normal);
   send(tool);
 }
 
@@ -56,6 +57,7 @@ void Hand::press(const PointerEvent& event) {
   if (tool.buttons != 0) return;
   const auto hit = look_().hit(camera_->ray(event.x, event.y));
   if (!hit) return;
+  tool.normal = hit->normal;
   tool.target = hit->point + tool.radius * hit->normal;
   send(tool, true);
 }

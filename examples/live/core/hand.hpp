@@ -11,9 +11,9 @@
 namespace live {
 
 /// Moves tools with the pointer. Without a button the active tool hovers over the surface under the pointer; pressing
-/// the button sets it on the surface; dragging moves it in the plane of the picture; the wheel pushes it along the line
-/// of sight. Keys: Tab takes the next tool, G grasps or lets go, U unplugs the device or plugs it in, H keeps the tool
-/// where it is.
+/// the button sets it on the surface; the wheel pushes it in, along the normal; dragging moves it along the surface, in
+/// the tangent plane, so that it stays as deep. A tool that grasps moves in the plane of the picture. Keys: Tab takes
+/// the next tool, G grasps or lets go, U unplugs the device or plugs it in, H keeps the tool where it is.
 class Hand {
  public:
   using Look = std::function<const DrawnSurface&()>;  ///< the surface at present
@@ -37,6 +37,7 @@ class Hand {
     Vector3 target;
     double radius;
     std::uint32_t buttons = 0;
+    Vector3 normal = Vector3::UnitZ();  // of the surface where it was set on it
   };
   void hover(const PointerEvent& event);
   void press(const PointerEvent& event);

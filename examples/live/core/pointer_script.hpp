@@ -11,7 +11,7 @@ enum class PointerAction {
   move,     ///< to x, y
   press,    ///< the left button, at x, y: sets the tool on the surface
   release,  ///< lifts the tool
-  wheel,    ///< pushes the tool along the line of sight by `amount` [m]
+  wheel,    ///< pushes the tool into the surface by `amount` [m]
   orbit,    ///< moves the camera, by x, y
   pan,
   zoom,  ///< by `amount` steps
@@ -30,7 +30,7 @@ struct PointerEvent {
 /// and end gently:
 ///   0.2 move 0.5 0.4
 ///   0.5 press 0.5 0.4
-///   0.5..1.5 push 6          millimetres, along the line of sight
+///   0.5..1.5 push 6          millimetres, into the surface
 ///   1.5..2.5 drag 0.6 0.4    from where the pointer is
 ///   2.6 release
 ///   2.8 key G

@@ -60,6 +60,7 @@ void App::show_scene(TouchScene scene) {
 
 void App::build(Composition composition) {
   if (builder_.busy()) return;
+  panel_.refused.clear();
   building_ = composition;
   built_ = panel_.tuning;
   builder_.begin(stage_->scene(), composition, built_);
@@ -73,7 +74,6 @@ void App::finish_building() {
   try {
     stage_->touch(builder_.take(), panel_.tuning);
     panel_.composition = building_;
-    panel_.refused.clear();
     script_ = {};
     if (arguments_.script == "scene")
       script_ = PointerScript(stage_->scene().script);

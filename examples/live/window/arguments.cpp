@@ -55,6 +55,10 @@ std::optional<Arguments> read_arguments(int count, char** values) {
   const auto next = [&]() -> std::string { return i + 1 < count ? values[++i] : ""; };
   for (; i < count; ++i) {
     const std::string word = values[i];
+    if (word == "--help") {
+      std::cout << usage;
+      return {};
+    }
     double frames = 0.0;
     bool understood = true;
     if (const auto text = texts.find(word); text != texts.end())
