@@ -3,7 +3,9 @@
 #include "../common/touching.hpp"
 #include "cholmod.hpp"
 #include "setup.hpp"
+#include "work_and_span.hpp"
 
+#include <palpate/linear/detail/front_tree.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 
 #include <array>
@@ -40,6 +42,79 @@ std::string same_bits(const VectorX& a, const VectorX& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), bytes) == 0 ? "" : "the bits depend on the threads";
 }
 
+void inform(Session& session, std::string what, std::string figure, std::string baseline = "") {
+  session.rows.add({.target = "v",
+                    .what = std::move(what),
+                    .figure = std::move(figure),
+                    .baseline = std::move(baseline),
+                    .bound = {},
+                    .error = ""});
+}
+
+/// What more threads would give, and what limits them; for two threads compared with the measured time.
+void predict_threads(Session& session, const CholeskyAnalysis& analysis, const bench::System& system, double measured,
+                     const std::string& where) {
+  const std::vector<bench::FrontTime> times = bench::time_fronts(analysis, system.lower);
+  const double one = bench::predict(analysis, times, 1).seconds;
+  const double two = bench::predict(analysis, times, 2).seconds;
+  session.rows.add({.target = "v",
+                    .what = "two threads, predicted by work and span / measured" + where,
+                    .figure = bench::milliseconds(two),
+                    .baseline = bench::milliseconds(measured),
+                    .ratio = std::max(two / measured, measured / two),
+                    .bound = bench::at_most(1.1),
+                    .error = ""});
+  for (const int threads : {4, 8, 16, 1000}) {
+    const bench::Predicted p = bench::predict(analysis, times, threads);
+    inform(session, "predicted with " + std::to_string(threads) + " threads" + where,
+           bench::milliseconds(p.seconds) + ", speed-up " + bench::with_unit(one / p.seconds, ""),
+           "one front at a time " + bench::with_unit(100.0 * p.one_task, "%") + ", threads idle beside serial parts " +
+               bench::with_unit(100.0 * p.not_shared, "%"));
+  }
+}
+
+/// Operations, entries and time per level of the tree. By theory, in three dimensions each level of bisections has half
+/// of the operations of the one above it and 0.79 of its entries.
+void describe_levels(Session& session, const CholeskyAnalysis& analysis, const std::string& where) {
+  const auto& fronts = analysis.tree().fronts;
+  std::vector<int> depth(static_cast<std::size_t>(fronts.size()), 0);
+  std::vector<double> flops, entries;
+  for (Index f = fronts.size() - 1; f >= 0; --f) {
+    int& d = depth[static_cast<std::size_t>(f)];
+    if (fronts[f].parent >= 0) d = depth[static_cast<std::size_t>(fronts[f].parent)] + 1;
+    flops.resize(std::max(flops.size(), static_cast<std::size_t>(d) + 1), 0.0);
+    entries.resize(flops.size(), 0.0);
+    flops[static_cast<std::size_t>(d)] += fronts[f].flops();
+    entries[static_cast<std::size_t>(d)] += fronts[f].nonzeros();
+  }
+  std::string operations, fill;
+  for (std::size_t d = 0; d < std::min<std::size_t>(8, flops.size()); ++d) {
+    operations += (d == 0 ? "" : " ") + bench::with_unit(100.0 * flops[d] / analysis.flops(), "", 2);
+    fill += (d == 0 ? "" : " ") + bench::with_unit(100.0 * entries[d] / analysis.nonzeros(), "", 2);
+  }
+  inform(session, "levels of the tree from the root, % of the operations; of the entries" + where, operations, fill);
+}
+
+/// Growth from the body before, as an exponent of the number of elements. Nested dissection in three dimensions: 2 for
+/// operations, 4/3 for entries.
+void describe_growth(Session& session, const bench::SupportedBody& body, const CholeskyAnalysis& analysis,
+                     const std::string& where) {
+  struct Size {
+    double elements, flops, entries;
+  };
+  static Size before{};
+  const Size now{static_cast<double>(body.mesh.element_count()), analysis.flops(), analysis.nonzeros()};
+  inform(session, "operations; entries of the factor" + where, bench::with_unit(1e-9 * now.flops, "GFLOP"),
+         bench::megabytes(8.0 * now.entries));
+  if (before.elements > 0.0 && now.elements > before.elements) {
+    const double size = std::log(now.elements / before.elements);
+    inform(session, "exponent of growth of the operations (theory 2); of the entries (4/3)" + where,
+           bench::with_unit(std::log(now.flops / before.flops) / size, ""),
+           bench::with_unit(std::log(now.entries / before.entries) / size, ""));
+  }
+  before = now;
+}
+
 void factorise(Session& session, const bench::SupportedBody& body, const std::string& where) {
   const bench::System system(body);
   const CholeskyAnalysis analysis(system.lower, system.layout);
@@ -66,6 +141,9 @@ void factorise(Session& session, const bench::SupportedBody& body, const std::st
                     .bound = bench::at_least(1.7),
                     .error = error});
   solvers = {};
+  predict_threads(session, analysis, system, times[1], where);
+  describe_levels(session, analysis, where);
+  describe_growth(session, body, analysis, where);
   if (!Cholmod::available())
     return session.rows.skip("v", "two threads / CHOLMOD's" + where, "libsuitesparse-dev is not installed");
   Cholmod cholmod(system.lower);

@@ -218,6 +218,36 @@ TEST_CASE("a flow finds the smallest set between two ends", "[linear][ordering]"
   CHECK(blocked > 100);
 }
 
+TEST_CASE("the elimination order does not depend on the threads", "[linear][ordering][threads]") {
+  for (bool coordinates : {true, false}) {
+    SparseCase c = sphere_case(13);
+    if (!coordinates) c.layout.positions.clear();
+    const NodeGraph g = node_graph(c.lower, c.layout);
+    const detail::NodeVector one = nested_dissection(g);
+    REQUIRE(is_permutation(one, g.nodes()));
+    for (int threads : {2, 3, 7}) {
+      SetupLimits limits;
+      limits.threads = threads;
+      const detail::NodeVector several = nested_dissection(g, limits);
+      CHECK(std::equal(one.begin(), one.end(), several.begin(), several.end()));
+    }
+  }
+}
+
+TEST_CASE("a dissection by threads can be cancelled", "[linear][ordering][threads]") {
+  const SparseCase c = sphere_case(13);
+  const NodeGraph g = node_graph(c.lower, c.layout);
+  for (int threads : {1, 3})
+    for (int last : {1, 2}) {
+      int calls = 0;
+      SetupLimits limits;
+      limits.threads = threads;
+      limits.progress = [&](const Progress&) { return ++calls < last; };
+      if (threads == 1 || last == 1) CHECK_REFUSED(SetupErrorKind::cancelled, nested_dissection(g, limits));
+      CHECK(calls <= last);
+    }
+}
+
 TEST_CASE("row counts equal those of dense elimination", "[linear][ordering]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);

@@ -36,7 +36,7 @@ PALPATE_INLINE CholeskyAnalysis::CholeskyAnalysis(const SparseLower& lower, cons
                                                   const SetupLimits& limits) {
   limits.advance("factorisation", 0.0);
   const NodeGraph graph = node_graph(lower, layout);
-  const detail::EliminationTree tree = detail::elimination_tree(graph, nested_dissection(graph));
+  const detail::EliminationTree tree = detail::elimination_tree(graph, nested_dissection(graph, limits));
   auto made = std::make_shared<Data>();
   made->tree = detail::build_front_tree(graph, detail::find_supernodes(graph, tree), lower);
   made->kept = layout.kept;

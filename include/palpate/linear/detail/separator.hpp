@@ -6,6 +6,8 @@
 #include <palpate/linear/detail/separator_refinement.hpp>
 #include <palpate/linear/detail/oriented_lists.hpp>
 
+#include <cmath>
+
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Cuts a part at a position of one of its sorted lists. Scans every position of every list in one sweep, then
@@ -29,7 +31,7 @@ class SeparatorFinder {
     const bool large = part.size() >= worth_refining;
     look(part, large);
     if (lowest_ == infinity || !large) return sizes_;
-    if (!lists_.graph->positions.empty())
+    if (!is_small(part) && !lists_.graph->positions.empty())
       for (const Directions& directions : oblique_directions()) {
         const OrientedLists along(lists_, part, directions);
         look(part, large);
@@ -66,6 +68,11 @@ class SeparatorFinder {
     if (!wide) return;
     for (const Cut& c : cuts)
       if (c.position > 0 && c.score <= worth_widening * lowest_cover_) widen(part, c);
+  }
+
+  /// True when the separator is hardly larger than a plane across a cube of nodes: there is little to gain.
+  bool is_small(const Part& part) const noexcept {
+    return lowest_ <= 1.02 * std::pow(static_cast<double>(part.size()), 2.0 / 3.0);
   }
 
   /// True when the separator is better than those before.
