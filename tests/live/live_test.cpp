@@ -107,7 +107,7 @@ TEST_CASE("every scene renders the same forces with and without the window's par
   }
 }
 
-TEST_CASE("ticks of a live session allocate nothing, with the pointer and the log in use", "[live][allocation]") {
+TEST_CASE("ticks of a live session allocate nothing, with the pointer and the log in use", "[live]") {
   const live::TouchScene scene = live::make_scene("palpate");
   live::Stage stage(scene, live::Clock::simulated);
   stage.touch(first_organ(scene), quick_tuning(scene));
