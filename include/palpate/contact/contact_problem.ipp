@@ -162,13 +162,15 @@ PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, 
   const ContactSurface& surface = tissue.contact_surface();
   const ForceAccuracy* accuracy = surface.force_accuracy();
   const double force = tool.force.norm();
-  if (accuracy == nullptr || !tissue.has_contact_materials()) return {0.0, infinity, force};
+  if (!tissue.has_contact_materials()) return {0.0, infinity, force};
   if (!(force > 0.0)) {
+    if (accuracy == nullptr) return {0.0, infinity, 0.0};
     const auto closest = surface.closest(tool.proxy);
     return closest.distance < tool.radius ? accuracy->error_without_force(surface.triangle(closest.triangle)[0])
                                           : ForceError{0.0, 0.0, 0.0, {0.0}};
   }
-  ForceError error = accuracy->error(tool, number, rows_.contacts(), indentation(t, tool));
+  ForceError error = accuracy == nullptr ? ForceError{0.0, infinity, force}
+                                         : accuracy->error(tool, number, rows_.contacts(), indentation(t, tool));
   error.force = force;
   error.parts.mesh = error.bound;
   add_model_errors(surface, t, tool, error);

@@ -29,7 +29,7 @@ enum class StatusFlag : std::uint32_t {
   slow_tissue = 1u << 15,  ///< computing a tissue step takes longer than its time step: the tissue moves in slow motion
   coarse_contact = 1u << 16,  ///< the tool is smaller than the facets: its indentation is mostly estimated, or omitted;
                               ///< or the estimated error of the force is above a tenth of it
-  large_displacement = 1u << 17,  ///< loads displace the tissue too far for linear elasticity
+  large_displacement = 1u << 17,  ///< loads or a tool displace the tissue too far for linear elasticity
 };
 
 /// Number of flags that exist.

@@ -83,7 +83,6 @@ void LinearTissue<Scalar>::measure_force_error(const ForceErrorOptions& options)
   const StageTimer timer(setup_report(), "accuracy");
   limits().advance("accuracy", 0.0);
   const double radius = scene().touch_radius();
-  surface_.set_model_error(model_error());
   if (radius > 0.0)
     surface_.set_force_accuracy(
         options.measure({elastic_body(), statics_->conditions(), touchable_nodes(), surface_, to_world().translation(),
@@ -190,6 +189,7 @@ void LinearTissue<Scalar>::prepare_contact(const Touchable& touchable, bool eage
   surface_ = ContactSurface(positions, touchable.triangles);
   surface_.set_unloaded(unloaded());
   surface_.set_materials(elastic_body().contact_materials(touchable.elements));
+  surface_.set_model_error(model_error());
   moved_ = std::move(positions);
   for (const NodeId node : touchable.shell_nodes) moved_.push_back(deformed(node));
   surface_.add_shell(std::span(moved_).subspan(touchable.nodes.size()), touchable.shell);
