@@ -57,8 +57,9 @@ foreach(room IN LISTS rooms)
 endforeach()
 
 # The dense kernels of the sparse solver are compiled for other processors too, and chosen at run time
-# (linear/detail/processor_kernels.hpp). At least -O2: inline functions of these sources must not be called, or they
-# could replace the same functions of other sources. Not on Windows, where g++ does not align the stack for AVX.
+# (linear/detail/processor_kernels.hpp). At least -O2, so that functions of Eigen and the standard library are inlined:
+# the linker could choose a copy of one that is compiled for AVX for the whole program. Not on Windows, where g++ does
+# not align the stack for AVX.
 set(kernel_sources "")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NOT WIN32
    AND NOT CMAKE_OSX_ARCHITECTURES)
