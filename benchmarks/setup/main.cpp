@@ -1,6 +1,6 @@
 // Set-up, stage by stage, on the standard block and on irregular bodies, compared with other implementations.
-//   bench_setup [--build <name of the flags>] [--csv <file to add rows to>] [--organ <organ.msh>] [--long] [--threads:
-//   only these rows]
+//   bench_setup [--build <name of the flags>] [--csv <file to add rows to>] [--organ <organ.msh>] [--long]
+//               [--threads | --iterative: only these rows]
 #include "cholmod.hpp"
 #include "setup.hpp"
 
@@ -42,6 +42,10 @@ int main(int argc, char** argv) try {
     setup::measure_threads(session);
     return rows.failed() ? 1 : 0;
   }
+  if (bench::has_option(argc, argv, "--iterative")) {
+    setup::measure_iterative(session);
+    return rows.failed() ? 1 : 0;
+  }
   setup::measure_machine(session);
   setup::measure_assembly(session);
   setup::measure_factorisation(session);
@@ -50,6 +54,7 @@ int main(int argc, char** argv) try {
   setup::measure_solves(session);
   setup::measure_condensation(session);
   setup::measure_memory(session);
+  setup::measure_iterative(session);
   setup::measure_models(session, organ.c_str());
   return rows.failed() ? 1 : 0;
 } catch (const std::exception& e) {

@@ -19,6 +19,7 @@ void measure_threads(Session& session);
 void measure_solves(Session& session);
 void measure_condensation(Session& session);
 void measure_memory(Session& session);
+void measure_iterative(Session& session);
 void measure_models(Session& session, const char* organ_file);
 
 /// Empty when `value` is at most `allowed`; an error text otherwise.

@@ -18,8 +18,10 @@ Answer answer_of(const StaticProblem& problem) {
   RegionMaterials<LinearElastic> materials;
   for (std::size_t r = 0; r < problem.mesh.region_names.size(); ++r)
     materials.emplace_back(problem.mesh.region_names[r], problem.materials[r]);
+  SetupOptions options;
+  options.columns = ColumnFill::synchronous;  // all columns are read at once
   try {
-    HapticFEModel<Tet4, LinearElastic, Policy> model(problem.mesh, scene, materials);
+    HapticFEModel<Tet4, LinearElastic, Policy> model(problem.mesh, scene, materials, options);
     answer.displacement = model.displacement();
     answer.estimate = model.report().probe_error;
     answer.quality = model.report().worst_quality;

@@ -28,7 +28,7 @@ inline constexpr std::array all_policies{
 
 inline const char* name(PolicyName p) {
   constexpr std::array names{
-      "SparseCholesky",           "ConjugateGradient",           "WithAssembly<ConjugateGradient, Assembled>",
+      "SparseCholesky",           "ConjugateGradient",           "WithAssembly<ConjugateGradient, MatrixFree>",
       "SelectiveInverse",         "Condensed<SelectiveInverse>", "Condensed<SelectiveInverseFloat>",
       "Condensed<DenseCholesky>", "Condensed<ConjugateGradient>"};
   return names[static_cast<std::size_t>(p)];

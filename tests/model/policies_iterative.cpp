@@ -7,9 +7,9 @@ std::unique_ptr<AnyModel> make_conjugate_gradient(const Mesh<Tet4>& mesh, const 
   return std::make_unique<ModelOf<ConjugateGradient>>(mesh, scene, materials, options);
 }
 
-std::unique_ptr<AnyModel> make_assembled_conjugate_gradient(const Mesh<Tet4>& mesh, const Scene& scene,
-                                                            const Materials& materials, const SetupOptions& options) {
-  return std::make_unique<ModelOf<WithAssembly<ConjugateGradient, Assembled>>>(mesh, scene, materials, options);
+std::unique_ptr<AnyModel> make_matrix_free_conjugate_gradient(const Mesh<Tet4>& mesh, const Scene& scene,
+                                                              const Materials& materials, const SetupOptions& options) {
+  return std::make_unique<ModelOf<WithAssembly<ConjugateGradient, MatrixFree>>>(mesh, scene, materials, options);
 }
 
 }  // namespace test

@@ -23,7 +23,7 @@ class SparseCholesky;
 class StiffnessView;
 class Uncondensed;
 
-/// Conjugate gradients; matrix-free unless WithAssembly selects an assembly.
+/// Conjugate gradients on the stored stiffness, preconditioned by an incomplete factorisation.
 struct ConjugateGradient {};
 
 /// The stored inverse with the selective product. Scalar is the type that a tick reads; the inverse is always computed
@@ -42,7 +42,8 @@ struct Condensed {
                 "Condensed<ConjugateGradient>");
 };
 
-/// The same policy with another assembly: WithAssembly<ConjugateGradient, Assembled>.
+/// The same policy with another assembly. WithAssembly<ConjugateGradient, MatrixFree> stores no stiffness; its
+/// preconditioner is block Jacobi, with some ten times as many iterations.
 template <class Policy, class Assembly>
 struct WithAssembly {};
 
@@ -53,8 +54,7 @@ enum class DenseKind { inverse, inverse_float, cholesky, conjugate_gradient };
 template <std::floating_point S>
 inline constexpr DenseKind inverse_kind = std::same_as<S, float> ? DenseKind::inverse_float : DenseKind::inverse;
 
-Uncondensed make_iterative(const StiffnessView& k, const EssentialConditions& conditions, const DofLayout& layout,
-                           const SetupLimits& limits);
+Uncondensed make_iterative(const StiffnessView& k, const EssentialConditions& conditions, const DofLayout& layout);
 Uncondensed make_inverse(DenseKind kind, const BlockMatrix& k, const EssentialConditions& conditions,
                          const DofLayout& layout, const SetupLimits& limits);
 Uncondensed read_inverse(DenseKind kind, BinaryReader& in, const EssentialConditions& conditions,
@@ -95,7 +95,13 @@ struct SolverTraits<WithAssembly<ConjugateGradient, AssemblyPolicy>> {
                           const SetupLimits& limits);
 };
 template <>
-struct SolverTraits<ConjugateGradient> : SolverTraits<WithAssembly<ConjugateGradient, MatrixFree>> {};
+struct SolverTraits<ConjugateGradient> {
+  using Assembly = Assembled;
+  using Scalar = double;
+  static constexpr bool eager = false;
+  static Uncondensed make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+                          const SetupLimits& limits);
+};
 
 template <std::floating_point S>
 struct SolverTraits<BasicSelectiveInverse<S>> {

@@ -36,10 +36,16 @@ PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::read(BinaryReader& in, 
   return {SparseCholesky::read(in, CholeskyAnalysis(lower, layout, limits), false, limits), std::move(kept)};
 }
 
+PALPATE_INLINE Uncondensed SolverTraits<ConjugateGradient>::make(const BlockMatrix& k,
+                                                                 const EssentialConditions& conditions,
+                                                                 const DofLayout& layout, const SetupLimits& limits) {
+  return {IterativeSolver(FreeStiffness(k, conditions, limits), {}), layout.kept};
+}
+
 namespace detail {
 
 PALPATE_INLINE Uncondensed make_iterative(const StiffnessView& k, const EssentialConditions& conditions,
-                                          const DofLayout& layout, const SetupLimits&) {
+                                          const DofLayout& layout) {
   return {IterativeSolver(FreeStiffness(k, conditions), {}), layout.kept};
 }
 

@@ -4,12 +4,14 @@
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/detail/any_stiffness.hpp>
 #include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/detail/incomplete_cholesky.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
 #include <Eigen/SparseCore>
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -18,25 +20,31 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
-/// K restricted to the free dofs, as an operator with a block Jacobi preconditioner. Refers to `stiffness` and
-/// `conditions`, which must outlive it. Satisfies SpdOperator; owns two workspaces, so it must not be used from two
-/// threads simultaneously.
+/// K restricted to the free dofs, as a preconditioned operator. Refers to its arguments, which must outlive it.
+/// Satisfies SpdOperator; owns two workspaces, so it must not be used from two threads simultaneously. Copies share the
+/// preconditioner.
 class FreeStiffness {
  public:
   FreeStiffness() = default;
+  /// Preconditioned by the inverse of the 3 x 3 diagonal blocks (block Jacobi).
   FreeStiffness(StiffnessView stiffness, const EssentialConditions& conditions);
+  /// Preconditioned by an incomplete factorisation: some ten times fewer iterations. Throws as IncompleteCholesky does.
+  FreeStiffness(const BlockMatrix& stiffness, const EssentialConditions& conditions, const SetupLimits& limits);
 
   Index size() const noexcept { return conditions_ != nullptr ? conditions_->free_count() : 0; }
+  /// Of the preconditioner and the workspaces.
+  std::size_t bytes() const noexcept;
 
   /// y = K_ff x. No allocation.
   void apply(const VectorX& x, VectorX& y) const noexcept;
-  /// y = P^-1 x with P the 3 x 3 diagonal blocks. No allocation.
+  /// y = P^-1 x. No allocation.
   void precondition(const VectorX& x, VectorX& y) const noexcept;
 
  private:
   std::optional<StiffnessView> stiffness_;
   const EssentialConditions* conditions_ = nullptr;
-  std::vector<Matrix3> inverse_blocks_;
+  std::shared_ptr<const std::vector<Matrix3>> inverse_blocks_;
+  std::shared_ptr<const IncompleteCholesky> factor_;
   mutable VectorX in_, out_;
 };
 

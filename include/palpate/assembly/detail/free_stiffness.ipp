@@ -2,26 +2,34 @@
 #pragma once
 
 #include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/core/detail/small_matrix.hpp>
 
 #include <cmath>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE FreeStiffness::FreeStiffness(StiffnessView stiffness, const EssentialConditions& conditions)
+    : stiffness_(stiffness), conditions_(&conditions), in_(stiffness.size()), out_(stiffness.size()) {
+  std::vector<Matrix3> blocks = stiffness.diagonal_blocks();
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const unsigned fixed = conditions.constrained[i];
+    blocks[i] = inverse(detail::free_block(blocks[i].data(), fixed, fixed, true));
+  }
+  inverse_blocks_ = std::make_shared<const std::vector<Matrix3>>(std::move(blocks));
+}
+
+PALPATE_INLINE FreeStiffness::FreeStiffness(const BlockMatrix& stiffness, const EssentialConditions& conditions,
+                                            const SetupLimits& limits)
     : stiffness_(stiffness),
       conditions_(&conditions),
-      inverse_blocks_(stiffness.diagonal_blocks()),
+      factor_(std::make_shared<const IncompleteCholesky>(stiffness, conditions, limits)),
       in_(stiffness.size()),
-      out_(stiffness.size()) {
-  for (std::size_t i = 0; i < inverse_blocks_.size(); ++i) {
-    Matrix3& block = inverse_blocks_[i];
-    for (int c = 0; c < 3; ++c) {
-      if ((conditions.constrained[i] & (1u << c)) == 0) continue;
-      for (int d = 0; d < 3; ++d) block(c, d) = block(d, c) = 0.0;
-      block(c, c) = 1.0;
-    }
-    block = inverse(block);
-  }
+      out_(stiffness.size()) {}
+
+PALPATE_INLINE std::size_t FreeStiffness::bytes() const noexcept {
+  return (inverse_blocks_ ? inverse_blocks_->size() * sizeof(Matrix3) : 0) + (factor_ ? factor_->bytes() : 0) +
+         static_cast<std::size_t>(in_.size() + out_.size()) * sizeof(double);
 }
 
 PALPATE_INLINE void FreeStiffness::apply(const VectorX& x, VectorX& y) const noexcept {
@@ -32,12 +40,13 @@ PALPATE_INLINE void FreeStiffness::apply(const VectorX& x, VectorX& y) const noe
 
 PALPATE_INLINE void FreeStiffness::precondition(const VectorX& x, VectorX& y) const noexcept {
   conditions_->scatter(x, in_);
-  for (std::size_t i = 0; i < inverse_blocks_.size(); ++i) {
-    const Matrix3& m = inverse_blocks_[i];
-    const double* in = in_.data() + 3 * i;
-    double* out = out_.data() + 3 * i;
-    for (int c = 0; c < 3; ++c) out[c] = m(c, 0) * in[0] + m(c, 1) * in[1] + m(c, 2) * in[2];
-  }
+  if (factor_)
+    factor_->solve_into(in_, out_);
+  else
+    for (std::size_t i = 0; i < inverse_blocks_->size(); ++i) {
+      const auto node = static_cast<Index>(i);
+      set_node_vector(out_, node, (*inverse_blocks_)[i] * node_vector(in_, node));
+    }
   conditions_->gather(out_, y);
 }
 

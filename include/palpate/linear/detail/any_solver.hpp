@@ -33,6 +33,8 @@ class AnyOperator {
   }
 
   Index size() const noexcept { return op_ ? op_->size() : 0; }
+  /// What the operator reports; 0 when it reports nothing.
+  std::size_t bytes() const noexcept { return op_ ? op_->bytes() : 0; }
   void apply(const VectorX& x, VectorX& y) const noexcept { op_->apply(x, y); }
   void precondition(const VectorX& x, VectorX& y) const noexcept { op_->precondition(x, y); }
 
@@ -41,6 +43,7 @@ class AnyOperator {
     virtual ~Base() = default;
     virtual std::unique_ptr<Base> copy() const = 0;
     virtual Index size() const noexcept = 0;
+    virtual std::size_t bytes() const noexcept = 0;
     virtual void apply(const VectorX& x, VectorX& y) const noexcept = 0;
     virtual void precondition(const VectorX& x, VectorX& y) const noexcept = 0;
   };
@@ -49,6 +52,10 @@ class AnyOperator {
     explicit Holder(Op given) : op(std::move(given)) {}
     std::unique_ptr<Base> copy() const override { return std::make_unique<Holder>(op); }
     Index size() const noexcept override { return static_cast<Index>(op.size()); }
+    std::size_t bytes() const noexcept override {
+      if constexpr (requires { op.bytes(); }) return static_cast<std::size_t>(op.bytes());
+      return 0;
+    }
     void apply(const VectorX& x, VectorX& y) const noexcept override { op.apply(x, y); }
     void precondition(const VectorX& x, VectorX& y) const noexcept override { op.precondition(x, y); }
     Op op;

@@ -31,35 +31,35 @@
   PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, M, GIVEN, Condensed<SelectiveInverse>)
 
 /// All that is shipped for element E.
-#define PALPATE_SHIPPED_ELEMENT(PREFIX, E)                                                           \
-  PREFIX template class ElementBody<E>;                                                              \
-  PREFIX template class MatrixFreeStiffness<E>;                                                      \
-  PREFIX template void report_admission<E>(const Admitted<E>&, SetupReport&);                        \
-  PREFIX template BlockMatrix assemble_stiffness<E>(const Body<E>&, const SetupLimits&);             \
-  PALPATE_SHIPPED_MATERIAL(PREFIX, E, LinearElastic)                                                 \
-  PALPATE_SHIPPED_MATERIAL(PREFIX, E, TransverselyIsotropic)                                         \
-  PALPATE_SHIPPED_MATERIAL(PREFIX, E, Orthotropic)                                                   \
-  PREFIX template class HapticFEModel<E, LinearElastic, Condensed<SelectiveInverseFloat>>;           \
-  PREFIX template class HapticFEModel<E, LinearElastic, Condensed<DenseCholesky>>;                   \
-  PREFIX template class HapticFEModel<E, LinearElastic, Condensed<ConjugateGradient>>;               \
-  PREFIX template class HapticFEModel<E, LinearElastic, SparseCholesky>;                             \
-  PREFIX template class HapticFEModel<E, LinearElastic, ConjugateGradient>;                          \
-  PREFIX template class HapticFEModel<E, LinearElastic, WithAssembly<ConjugateGradient, Assembled>>; \
+#define PALPATE_SHIPPED_ELEMENT(PREFIX, E)                                                            \
+  PREFIX template class ElementBody<E>;                                                               \
+  PREFIX template class MatrixFreeStiffness<E>;                                                       \
+  PREFIX template void report_admission<E>(const Admitted<E>&, SetupReport&);                         \
+  PREFIX template BlockMatrix assemble_stiffness<E>(const Body<E>&, const SetupLimits&);              \
+  PALPATE_SHIPPED_MATERIAL(PREFIX, E, LinearElastic)                                                  \
+  PALPATE_SHIPPED_MATERIAL(PREFIX, E, TransverselyIsotropic)                                          \
+  PALPATE_SHIPPED_MATERIAL(PREFIX, E, Orthotropic)                                                    \
+  PREFIX template class HapticFEModel<E, LinearElastic, Condensed<SelectiveInverseFloat>>;            \
+  PREFIX template class HapticFEModel<E, LinearElastic, Condensed<DenseCholesky>>;                    \
+  PREFIX template class HapticFEModel<E, LinearElastic, Condensed<ConjugateGradient>>;                \
+  PREFIX template class HapticFEModel<E, LinearElastic, SparseCholesky>;                              \
+  PREFIX template class HapticFEModel<E, LinearElastic, ConjugateGradient>;                           \
+  PREFIX template class HapticFEModel<E, LinearElastic, WithAssembly<ConjugateGradient, MatrixFree>>; \
   PREFIX template class HapticFEModel<E, LinearElastic, SelectiveInverse>;
 
 /// All that is shipped for element E on a mesh of GIVEN, an element with the same nodes.
-#define PALPATE_SHIPPED_MESH(PREFIX, E, GIVEN)                                                              \
-  PREFIX template Admitted<E> admit<E, Mesh<GIVEN>>(const Mesh<GIVEN>&, const AdmissionPolicy&,             \
-                                                    const std::vector<std::string>&);                       \
-  PALPATE_SHIPPED_MATERIAL_ON(PREFIX, E, LinearElastic, GIVEN)                                              \
-  PALPATE_SHIPPED_MATERIAL_ON(PREFIX, E, TransverselyIsotropic, GIVEN)                                      \
-  PALPATE_SHIPPED_MATERIAL_ON(PREFIX, E, Orthotropic, GIVEN)                                                \
-  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, Condensed<SelectiveInverseFloat>)           \
-  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, Condensed<DenseCholesky>)                   \
-  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, Condensed<ConjugateGradient>)               \
-  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, SparseCholesky)                             \
-  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, ConjugateGradient)                          \
-  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, WithAssembly<ConjugateGradient, Assembled>) \
+#define PALPATE_SHIPPED_MESH(PREFIX, E, GIVEN)                                                               \
+  PREFIX template Admitted<E> admit<E, Mesh<GIVEN>>(const Mesh<GIVEN>&, const AdmissionPolicy&,              \
+                                                    const std::vector<std::string>&);                        \
+  PALPATE_SHIPPED_MATERIAL_ON(PREFIX, E, LinearElastic, GIVEN)                                               \
+  PALPATE_SHIPPED_MATERIAL_ON(PREFIX, E, TransverselyIsotropic, GIVEN)                                       \
+  PALPATE_SHIPPED_MATERIAL_ON(PREFIX, E, Orthotropic, GIVEN)                                                 \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, Condensed<SelectiveInverseFloat>)            \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, Condensed<DenseCholesky>)                    \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, Condensed<ConjugateGradient>)                \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, SparseCholesky)                              \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, ConjugateGradient)                           \
+  PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, WithAssembly<ConjugateGradient, MatrixFree>) \
   PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, LinearElastic, GIVEN, SelectiveInverse)
 
 #define PALPATE_SHIPPED_TET4(PREFIX) PALPATE_SHIPPED_ELEMENT(PREFIX, Tet4) PALPATE_SHIPPED_MESH(PREFIX, Tet4, Tet4)

@@ -92,7 +92,7 @@ PALPATE_INLINE void SystemSource::estimate_accuracy(const FreeStiffness& free, A
 PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system,
                                                          const SetupReport& report) const {
   const bool doubtful = report.probe_error > flagged_probe_error || report.condition_estimate > flagged_condition;
-  if (!recipe.estimates_condition || !doubtful) return;
+  if (!doubtful) return;
   const SoftestMotion softest = probe_softest_motion(free, system);
   if (!(softest.error > refused_softest_error)) return;
   SetupProblem p;

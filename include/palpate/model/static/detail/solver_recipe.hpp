@@ -21,8 +21,8 @@ template <class AssemblyPolicy>
 Uncondensed SolverTraits<WithAssembly<ConjugateGradient, AssemblyPolicy>>::make(const StiffnessView& k,
                                                                                 const EssentialConditions& conditions,
                                                                                 const DofLayout& layout,
-                                                                                const SetupLimits& limits) {
-  return detail::make_iterative(k, conditions, layout, limits);
+                                                                                const SetupLimits&) {
+  return detail::make_iterative(k, conditions, layout);
 }
 template <std::floating_point S>
 Uncondensed SolverTraits<BasicSelectiveInverse<S>>::make(const BlockMatrix& k, const EssentialConditions& conditions,
@@ -67,7 +67,8 @@ constexpr SolverRecipe solver_recipe() noexcept {
   SolverRecipe recipe{};
   recipe.scalar_bytes = sizeof(typename Traits::Scalar);
   recipe.eager = Traits::eager;
-  recipe.estimates_condition = stored && !std::same_as<Policy, WithAssembly<ConjugateGradient, Assembled>>;
+  recipe.estimates_condition = stored && !std::same_as<Policy, ConjugateGradient> &&
+                               !std::same_as<Policy, WithAssembly<ConjugateGradient, Assembled>>;
   recipe.make = [](const AnyStiffness& k, const EssentialConditions& conditions, const DofLayout& layout,
                    const SetupLimits& limits) {
     if constexpr (stored)
