@@ -8,7 +8,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// When to stop.
 struct ConjugateGradientParameters {
-  double tolerance = 1e-12;    ///< of the true relative residual, in the norms below
+  double tolerance = 1e-15;    ///< of the true relative residual, in the norms below
   int maximum_iterations = 0;  ///< 0: forty times the size, from 100 to 12,000
 };
 
@@ -20,8 +20,9 @@ struct ConjugateGradientParameters {
 /// - |r| <= tolerance |b| and |r|_P <= tolerance |b|_P, with |r|_P^2 = r . P^-1 r: the second norm also sees the soft
 ///   parts of a body with a large contrast of stiffness; or
 /// - a round no longer halves |r|_P: the best that rounding allows. This counts as converged when the backward error
-///   |r| / (|K| |x| + |b|) is within the tolerance, with a lower bound of |K| from one more product per round.
-/// The error of x can be larger than the residual by the condition of K: measure it with `probe_error`.
+///   |r| / (|K| |x| + |b|) is within 1e-12 or the tolerance, with a lower bound of |K| from one more product per round.
+/// The default goes on to the limit of rounding, because the error of x can be larger than the residual by the
+/// condition of K. `probe_error` measures it.
 class ConjugateGradientSolver {
  public:
   ConjugateGradientSolver() = default;

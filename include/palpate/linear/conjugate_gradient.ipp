@@ -44,8 +44,10 @@ PALPATE_INLINE SolveReport ConjugateGradientSolver::solve_into(const OperatorVie
   }
   x = best_;
   report.relative_residual = reached.plain / load.plain;
+  constexpr double attainable = 1e-12;
   const double scale = operator_norm_ * detail::norm(x) + load.plain;
-  report.converged = report.converged || (going && reached.plain <= parameters_.tolerance * scale);
+  report.converged =
+      report.converged || (going && reached.plain <= std::max(parameters_.tolerance, attainable) * scale);
   return report;
 }
 
