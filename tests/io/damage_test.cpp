@@ -29,12 +29,12 @@ bool is_gmsh(const std::string& format) {
 }
 
 const std::vector<std::pair<std::string, std::string>> spellings{
-    {"nan 1 1", not_finite},   {"NaN 1 1", not_finite},    {"inf 1 1", not_finite}, {"-infinity 1 1", not_finite},
-    {"1e400 1 1", not_finite}, {"1e-400 1 1", not_finite}, {"1e-310 1 1", good},    {"0x1p3 1 1", bad},
-    {"1,5 1 1", bad},          {"1 5 1 1", bad},           {"1.5 1", bad},          {"1.5d0 1 1", bad},
-    {"1.5x 1 1", bad},         {"1.5.0 1 1", bad},         {"--1.5 1 1", bad},      {"+-1.5 1 1", bad},
-    {"\"1.5\" 1 1", bad},      {"1.5 1 1 1", bad},         {"1e 1 1", bad},         {"- 1 1", bad},
-    {"\x01 1 1", bad},         {"\xff\xff 1 1", bad},      {"+1.5e+00 1. 1", good}, {"-1.5E3 -0 1", good},
+    {"nan 1 1", not_finite},   {"NaN 1 1", not_finite}, {"inf 1 1", not_finite}, {"-infinity 1 1", not_finite},
+    {"1e400 1 1", not_finite}, {"1e-400 1 1", good},    {"1e-310 1 1", good},    {"0x1p3 1 1", bad},
+    {"1,5 1 1", bad},          {"1 5 1 1", bad},        {"1.5 1", bad},          {"1.5d0 1 1", bad},
+    {"1.5x 1 1", bad},         {"1.5.0 1 1", bad},      {"--1.5 1 1", bad},      {"+-1.5 1 1", bad},
+    {"\"1.5\" 1 1", bad},      {"1.5 1 1 1", bad},      {"1e 1 1", bad},         {"- 1 1", bad},
+    {"\x01 1 1", bad},         {"\xff\xff 1 1", bad},   {"+1.5e+00 1. 1", good}, {"-1.5E3 -0 1", good},
     {"1.5\t1\v1 \r", good},
 };
 

@@ -69,7 +69,7 @@ PALPATE_COLD PALPATE_INLINE MeshFormat format_of(std::string_view text, const st
   TextReader in(text, name, {'\0', false});
   in.next_line();
   if (in.line().starts_with("# vtk DataFile")) return MeshFormat::vtk;
-  if (in.line() == "$MeshFormat" || in.line() == "$NOD") return MeshFormat::gmsh;
+  if (in.line() == "$MeshFormat" || in.line() == "$NOD" || in.line() == "$Comments") return MeshFormat::gmsh;
   while (in.line().starts_with('#') && in.next_line()) {}
   if (in.line().starts_with("*VERTICES") || in.line().starts_with("*INCLUDE")) return MeshFormat::veg;
   return detail::format_of_ending(name);

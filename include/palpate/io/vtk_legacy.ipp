@@ -114,8 +114,8 @@ inline void LegacyParser::read_points() {
   const Index count = numbers_.count("a number of points", 3);
   const NumberType& type = numbers_.read_type();
   in_.end_line("the number of points");
-  if (type.kind != NumberType::real)
-    in_.refuse(SetupErrorKind::unsupported, "points of type float or double", type.name);
+  if (type.kind == NumberType::text || type.bits == 1)
+    in_.refuse(SetupErrorKind::bad_file, "points of a type of numbers such as double", type.name);
   mesh_.positions.reserve(static_cast<std::size_t>(count));
   for (Index i = 0; i < count; ++i) {
     Vector3 x;
@@ -156,7 +156,7 @@ PALPATE_COLD inline const NumberType& LegacyParser::read_array_head(std::string_
   if (!same_word(in_.token(), keyword)) in_.refuse(SetupErrorKind::bad_file, keyword, in_quotes(in_.line()));
   const NumberType& type = numbers_.read_type();
   in_.end_line(keyword);
-  if (type.kind == NumberType::real || type.bits == 1)
+  if (type.kind == NumberType::real || type.kind == NumberType::text || type.bits == 1)
     in_.refuse(SetupErrorKind::bad_file, "a type of integers", type.name);
   return type;
 }
@@ -191,7 +191,7 @@ inline void LegacyParser::read_types() {
       in_.refuse(SetupErrorKind::unsupported, "a cell type of first or second order", {"'", wanted, "'"});
     const Index nodes = offsets_[static_cast<std::size_t>(c) + 1] - offsets_[static_cast<std::size_t>(c)];
     const ShapeFacts& shape = facts(types_.back()->shape);
-    if (nodes != shape.nodes)
+    if (types_.back()->repeats ? nodes < shape.nodes : nodes != shape.nodes)
       in_.refuse(SetupErrorKind::bad_file, {shape.nodes, " nodes for a ", shape.name}, {nodes, " in cell ", c});
   }
   numbers_.end("the cell types");
@@ -202,10 +202,13 @@ inline void LegacyParser::add_cells() {
   std::vector<NodeId> all;
   all.swap(mesh_.cell_nodes);
   for (std::size_t c = 0; c < types_.size(); ++c) {
-    mesh_.cell_nodes.insert(mesh_.cell_nodes.end(), all.begin() + offsets_[c], all.begin() + offsets_[c + 1]);
     const int region = attributes_.regions.empty() ? 0 : attributes_.regions[c];
     const std::uint32_t set = sets.find_or_add(mesh_, region);
-    mesh_.add_cell(static_cast<Index>(c), places_[c], types_[c]->shape, set, types_[c]->order);
+    const Index nodes = facts(types_[c]->shape).nodes;
+    for (Index a = offsets_[c]; a + nodes <= offsets_[c + 1]; ++a) {  // once, except for poly-lines and poly-vertices
+      mesh_.cell_nodes.insert(mesh_.cell_nodes.end(), all.begin() + a, all.begin() + a + nodes);
+      mesh_.add_cell(static_cast<Index>(c), places_[c], types_[c]->shape, set, types_[c]->order);
+    }
   }
 }
 

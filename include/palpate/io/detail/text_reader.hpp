@@ -70,7 +70,7 @@ class TextReader {
   Index count(std::string_view what, Index bytes_each);
 
   /// The next word as a finite decimal number. Refuses NaN, infinity and overflow as non_finite, hexadecimal and
-  /// decimal commas as bad_file.
+  /// decimal commas as bad_file. A number too small for a double is zero.
   double real(std::string_view what);
 
   /// Refuses if the current line contains another word.
