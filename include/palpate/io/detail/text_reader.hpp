@@ -14,6 +14,7 @@ std::string place_text(const std::string& file, Index place);
 struct TextSyntax {
   char comment = '\0';  ///< the rest of a line from here on is ignored
   bool commas = false;  ///< a comma separates words like a blank
+  bool fields = false;  ///< words are the texts between commas; an empty one is ","; exponents may begin with D
 };
 
 /// Reads a text that must outlive the reader. Blank lines, tabs, CRLF, a UTF-8 byte order mark and a missing last

@@ -1,0 +1,121 @@
+// Definitions of abaqus_sets.hpp.
+#pragma once
+
+#include <palpate/io/detail/abaqus_lines.hpp>
+#include <palpate/io/detail/abaqus_sets.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace io::abaqus {
+
+PALPATE_COLD PALPATE_INLINE void refuse_at(const TextReader& in, Index line, SetupErrorKind kind,
+                                           const Pieces& expected, const Pieces& found, const Pieces& hint) {
+  io::refuse(kind, {place_text(in.name(), line), ": expected ", joined(expected), ", found ", joined(found)},
+             joined(hint));
+}
+
+PALPATE_INLINE IdTable::IdTable(std::span<const Index> ids, std::span<const Index> lines, std::string_view of,
+                                const TextReader& in)
+    : what(of) {
+  sorted_.reserve(ids.size());
+  bool is_sorted = true;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    is_sorted = is_sorted && (i == 0 || ids[i - 1] < ids[i]);
+    sorted_.push_back({ids[i], static_cast<Index>(i)});
+  }
+  if (is_sorted) return;
+  sort_ranked(sorted_);
+  for (std::size_t i = 1; i < sorted_.size(); ++i)
+    if (sorted_[i - 1].key == sorted_[i].key)
+      refuse_at(in, lines[static_cast<std::size_t>(sorted_[i].id)], SetupErrorKind::bad_file,
+                {"every ", what, " id once"}, {what, " ", sorted_[i].key, " again"});
+}
+
+PALPATE_INLINE std::span<const Ranked> IdTable::from(Index id) const noexcept {
+  std::size_t low = 0, high = sorted_.size();
+  while (low < high) {
+    const std::size_t middle = low + (high - low) / 2;
+    if (sorted_[middle].key < id)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return std::span<const Ranked>(sorted_).subspan(low);
+}
+
+PALPATE_INLINE Index IdTable::find(Index id) const noexcept {
+  const std::span<const Ranked> rest = from(id);
+  return rest.empty() || rest.front().key != id ? -1 : rest.front().id;
+}
+
+PALPATE_COLD PALPATE_INLINE void Sets::open(const std::string& name, bool of_assembly, bool is_internal) {
+  const auto [known, is_new] =
+      by_name_.try_emplace(std::pair(of_assembly, upper(name)), static_cast<Index>(sets_.size()));
+  if (is_new) sets_.push_back({name, of_assembly, is_internal, {}});
+  definitions_.push_back({static_cast<std::size_t>(known->second), items_.size()});
+}
+
+PALPATE_INLINE void Sets::add_ids(Index first, Index last, Index step, Index line) {
+  const auto number = [](Index i) { return static_cast<int>(std::min<Index>(i, std::numeric_limits<int>::max())); };
+  items_.push_back({number(first), number(last), number(step), number(line)});
+}
+
+PALPATE_COLD PALPATE_INLINE void Sets::add_positions(std::size_t first, std::size_t last) {
+  items_.push_back({static_cast<int>(first), static_cast<int>(last), 0, 0});
+}
+
+PALPATE_COLD PALPATE_INLINE void Sets::add_set(Index set) {
+  items_.push_back({static_cast<int>(set), 0, -1, 0});
+}
+
+PALPATE_COLD PALPATE_INLINE Index Sets::find(std::string_view name, bool of_assembly) const {
+  const std::string key = upper(name);
+  auto found = by_name_.end();
+  if (of_assembly) found = by_name_.find(std::pair(true, key));
+  if (found == by_name_.end()) found = by_name_.find(std::pair(false, key));
+  return found == by_name_.end() ? -1 : found->second;
+}
+
+PALPATE_INLINE void Sets::add(std::vector<int>& members, const Item& item, const IdTable& ids, const TextReader& in,
+                              Index& memberships) {
+  const std::size_t before = members.size();
+  if (item.step < 0) {
+    const std::vector<int> other = sets_[static_cast<std::size_t>(item.first)].members;
+    check_memberships(in, memberships + static_cast<Index>(other.size()));
+    members.insert(members.end(), other.begin(), other.end());
+  } else if (item.step == 0) {
+    for (int i = item.first; i < item.last; ++i) members.push_back(i);
+  } else {
+    for (const Ranked& r : ids.from(item.first)) {
+      if (r.key > item.last) break;
+      if ((r.key - item.first) % item.step == 0)
+        members.push_back(static_cast<int>(r.id));
+      else
+        check_memberships(in, ++memberships);  // so that also the time is proportional to the size of the file
+    }
+    if (members.size() == before)
+      refuse_at(in, item.line, SetupErrorKind::index_out_of_range, {"the id of a ", ids.what, " of this file"},
+                {"'", item.first, "'"});
+  }
+  memberships += static_cast<Index>(members.size() - before);
+  check_memberships(in, memberships);
+}
+
+PALPATE_INLINE void Sets::resolve(const IdTable& ids, const TextReader& in, Index& memberships) {
+  for (std::size_t d = 0; d < definitions_.size(); ++d) {
+    std::vector<int>& members = sets_[definitions_[d].set].members;
+    const std::size_t end = d + 1 < definitions_.size() ? definitions_[d + 1].first_item : items_.size();
+    for (std::size_t i = definitions_[d].first_item; i < end; ++i) add(members, items_[i], ids, in, memberships);
+  }
+  for (Set& set : sets_) sort_unique(set.members);
+}
+
+PALPATE_COLD PALPATE_INLINE void check_memberships(const TextReader& in, Index memberships) {
+  const auto limit = static_cast<Index>(in.size());
+  if (memberships > limit)
+    in.refuse(SetupErrorKind::count_too_large, {"nodes, elements and faces in sets at most ", limit, " times"},
+              {memberships});
+}
+
+}}}  // namespace palpate::PALPATE_ABI::io::abaqus
