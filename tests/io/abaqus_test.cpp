@@ -138,7 +138,7 @@ TEST_CASE("Abaqus: regions are the solid sections, else the sets of the element 
   const auto sections = read_abaqus(text + "*Solid Section, elset=b, material=m\n1.\n*Shell Section, elset=face\n1.\n");
   CHECK(sections.region_names == std::vector<std::string>{"body", "b"});
   CHECK(sections.regions == std::vector<int>{0, 1});
-  CHECK(read_abaqus(text + "*Solid Section, elset=both\n*Solid Section, elset=b\n").region_names ==
+  CHECK(read_abaqus(text + "*SOLIDSECTION, elset=both\n*Solid Section, elset=b\n").region_names ==
         std::vector<std::string>{"both"});
 }
 

@@ -75,10 +75,10 @@ inline void Parser::read_section() {
   static constexpr std::array<Section, 20> sections{
       {{"NODE", &Parser::read_nodes},         {"ELEMENT", &Parser::read_elements},
        {"NSET", &Parser::read_definition},    {"ELSET", &Parser::read_definition},
-       {"SURFACE", &Parser::read_definition}, {"SOLID SECTION", &Parser::read_definition},
-       {"PART", &Parser::change_scope},       {"END PART", &Parser::change_scope},
-       {"ASSEMBLY", &Parser::change_scope},   {"END ASSEMBLY", &Parser::change_scope},
-       {"INSTANCE", &Parser::change_scope},   {"END INSTANCE", &Parser::change_scope},
+       {"SURFACE", &Parser::read_definition}, {"SOLIDSECTION", &Parser::read_definition},
+       {"PART", &Parser::change_scope},       {"ENDPART", &Parser::change_scope},
+       {"ASSEMBLY", &Parser::change_scope},   {"ENDASSEMBLY", &Parser::change_scope},
+       {"INSTANCE", &Parser::change_scope},   {"ENDINSTANCE", &Parser::change_scope},
        {"INCLUDE", &Parser::refuse_include},  {"SYSTEM", &Parser::refuse_generator},
        {"NGEN", &Parser::refuse_generator},   {"NFILL", &Parser::refuse_generator},
        {"NCOPY", &Parser::refuse_generator},  {"NMAP", &Parser::refuse_generator},
@@ -116,7 +116,7 @@ PALPATE_COLD inline void Parser::change_scope() {
     read_instance();
     scope_ = Scope::instance;
   } else {
-    scope_ = k == "ASSEMBLY" || k == "END INSTANCE" ? Scope::assembly : Scope::model;
+    scope_ = k == "ASSEMBLY" || k == "ENDINSTANCE" ? Scope::assembly : Scope::model;
   }
 }
 

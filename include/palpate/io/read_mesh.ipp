@@ -52,6 +52,9 @@ PALPATE_COLD inline MeshFormat format_of_ending(const std::string& name) {
 [[noreturn]] PALPATE_COLD inline void refuse_unknown(std::string_view text, const std::string& name) {
   TextReader in(text, name);
   in.next_line();
+  if (has_ending(name, ".vtu") || has_ending(name, ".feb"))
+    refuse(SetupErrorKind::unsupported, {name, ":1: expected a file without XML, found ", in_quotes(in.line())},
+           {"Call io::xml::read_mesh (palpate::xml_meshes), or convert it: meshio convert ", name, " converted.msh"});
   in.refuse(SetupErrorKind::bad_file, "a Gmsh, TetGen, legacy VTK, VegaFEM or Abaqus mesh", in_quotes(in.line()),
             {"meshio and gmsh convert others: meshio convert ", name, " converted.msh"});
 }

@@ -53,7 +53,7 @@ class Lines {
   /// Refuses a last line that is used and has no line end: it may be truncated.
   void need_whole_data() const;
 
-  std::string keyword;  ///< without the star
+  std::string keyword;  ///< in upper case, without the star and blanks
 
  private:
   struct Parameter {

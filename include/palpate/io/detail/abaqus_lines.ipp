@@ -3,6 +3,8 @@
 
 #include <palpate/io/detail/abaqus_lines.hpp>
 
+#include <algorithm>
+
 namespace palpate { inline namespace PALPATE_ABI { namespace io::abaqus {
 
 PALPATE_COLD PALPATE_INLINE std::string upper(std::string_view text) {
@@ -35,6 +37,7 @@ PALPATE_INLINE bool Lines::next_keyword() {
     if (in.line().front() == '*') {
       is_used_ = false;
       keyword = upper(in.token().substr(1));
+      keyword.erase(std::remove(keyword.begin(), keyword.end(), ' '), keyword.end());
       return true;
     }
     if (keyword.empty()) in.refuse(SetupErrorKind::bad_file, "a keyword such as *NODE", in_quotes(in.line()));

@@ -48,7 +48,8 @@ inline constexpr std::array element_types{
     ElementType{"B22", CellShape::line3},          ElementType{"B32", CellShape::line3},
 };
 
-/// First letters of types without a shape: springs, masses, connectors, couplings. They are skipped.
+/// First letters of types without a shape: springs, masses, connectors, couplings. They are skipped, as are the network
+/// elements D of CalculiX.
 inline constexpr std::array<std::string_view, 16> skipped_types{
     "MASS",  "ROTARYI", "HEATCAP", "SPRING", "DASHPOT", "CONN",  "GAP",  "DCOUP",
     "JOINT", "ITS",     "ITT",     "PIPE",   "ELBOW",   "FRAME", "R2D2", "RAX2"};
@@ -67,7 +68,7 @@ constexpr const ElementType* find_type(std::string_view name) noexcept {
 constexpr bool is_skipped(std::string_view name) noexcept {
   for (const std::string_view start : skipped_types)
     if (name.starts_with(start)) return true;
-  return false;
+  return name == "D";
 }
 
 /// Corners of face S1, S2 ... of a tetrahedron and a hexahedron, counterclockwise seen from outside.

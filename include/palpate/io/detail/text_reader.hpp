@@ -24,6 +24,9 @@ class TextReader {
  public:
   TextReader(std::string_view text, std::string name, TextSyntax syntax = {});
 
+  /// Reads another part of the same file, which begins in this line; messages contain its lines.
+  void restart(std::string_view text, Index first_line);
+
   /// Moves to the next line, blank or not; false at the end of the text.
   bool next_raw_line();
 

@@ -21,6 +21,13 @@ PALPATE_COLD PALPATE_INLINE TextReader::TextReader(std::string_view text, std::s
   if (text_.starts_with("\xEF\xBB\xBF")) next_ = 3;
 }
 
+PALPATE_INLINE void TextReader::restart(std::string_view text, Index first_line) {
+  text_ = text;
+  line_ = rest_ = {};
+  next_ = 0;
+  line_number_ = first_line - 1;
+}
+
 PALPATE_INLINE bool TextReader::next_raw_line() {
   line_ = rest_ = {};
   if (next_ >= text_.size()) return false;
