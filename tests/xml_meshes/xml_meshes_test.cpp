@@ -104,6 +104,8 @@ const std::vector<BadXml> bad_xml{
     {"febio 4.0", "elem id=\"9\"", "elem id=\"7\"", xml_bad},
     {"febio 4.0", "type=\"tet4\"", "type=\"tet15\"", xml_other},
     {"febio 4.0", "type=\"tet4\"", "type=\"quad4\"", xml_other},
+    {"febio 4.0", "type=\"tet4\"", "type=\"TET4G4\"", xml_good},
+    {"febio 4.0", "type=\"tet4\"", "type=\"tet\"", xml_other},
     {"febio 4.0", "type=\"tet4\"", "", xml_bad},
     {"febio 4.0", "<tri3 id=\"1\">10,40,20</tri3>", "<tri7 id=\"1\">10,40,20</tri7>", xml_other},
     {"febio 4.0", "<tri3 id=\"1\">10,40,20</tri3>", "<line2 id=\"1\">10,40</line2>", xml_bad},

@@ -8,6 +8,8 @@
 #include <palpate/io/xml/detail/febio_types.hpp>
 #include <palpate/io/xml/febio.hpp>
 
+#include <algorithm>
+
 namespace palpate { inline namespace PALPATE_ABI { namespace io::xml {
 
 namespace detail {
@@ -105,8 +107,12 @@ inline void FebioParser::read_nodes(pugi::xml_node nodes) {
 }
 
 inline CellShape FebioParser::shape_of(pugi::xml_node element, std::string_view type) {
-  for (const FebioType& known : febio_types)
-    if (vtk::same_word(known.name, type)) return known.shape;
+  for (const FebioType& known : febio_types) {
+    const std::string_view rule = type.substr(std::min(known.name.size(), type.size()));  // of integration, such as G8
+    const bool is_rule =
+        rule.empty() || vtk::same_word(rule.substr(0, 1), "g") || vtk::same_word(rule.substr(0, 1), "m");
+    if (is_rule && vtk::same_word(known.name, type.substr(0, known.name.size()))) return known.shape;
+  }
   document_.refuse(element, SetupErrorKind::unsupported, "elements tet4, tet10, hex8 or hex20", in_quotes(type),
                    "Convert or remove these elements in FEBio Studio");
 }
