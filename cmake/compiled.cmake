@@ -7,8 +7,9 @@
 set(palpate_units
   "contact_haptic contact/* haptic/*")  # one tick runs through both
 
-# Adapters of SDKs must be included after the header of the SDK, in the program that uses it.
-set(palpate_units_exclude "^device/(openhaptics|force_dimension|chai3d)\\.")
+# Adapters of SDKs must be included after the header of the SDK, in the program that uses it. Readers with other
+# libraries are palpate::xml_meshes.
+set(palpate_units_exclude "^device/(openhaptics|force_dimension|chai3d)\\.|^io/xml/")
 
 set(left "")
 set(sources "")

@@ -20,6 +20,11 @@ if(PALPATE_BUILD_COMPILED)
   install(EXPORT palpateCompiledTargets NAMESPACE palpate:: DESTINATION ${package_dir})
 endif()
 
+if(TARGET palpate_xml_meshes)
+  install(TARGETS palpate_xml_meshes EXPORT palpateXmlMeshesTargets)
+  install(EXPORT palpateXmlMeshesTargets NAMESPACE palpate:: DESTINATION ${package_dir})
+endif()
+
 configure_package_config_file(cmake/palpateConfig.cmake.in ${PROJECT_BINARY_DIR}/palpateConfig.cmake
                               INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_LIBDIR
                               NO_SET_AND_CHECK_MACRO)

@@ -87,6 +87,41 @@ $Elements
 $EndElements
 )";
 
+/// With ids that are not 1 ... n, a part, and sets of both levels.
+inline const std::string abaqus = R"(*Heading
+ two tetrahedra
+** the mesh
+*Part, name=Body
+*Node
+ 10, 0., 0., 0.
+ 20, 1., 0.
+ 40, 0., 1.D0, 0.
+ 30, , , 1.0E+00
+ 50, 1.5, 1., 1.
+*Element, type=C3D4H,
+ elset=tissue
+ 7, 10, 20, 40,
+    30
+ 9, 20, 40, 30, 50,
+*Elset, elset=_base_S1, internal
+ 7,
+*Nset, nset=some, generate
+ 20, 40, 10
+*Solid Section, elset=TISSUE, material=soft
+,
+*End Part
+*Assembly, name=Assembly
+*Instance, name=Body-1, part=Body
+*End Instance
+*Node
+ 1, 9., 9., 9.
+*Nset, nset=tip, instance=Body-1
+ 50,
+*Surface, type=ELEMENT, name=base
+ Body-1._base_S1, S1
+*End Assembly
+)";
+
 /// `text` with the first `from` replaced; fails the test if there is none.
 inline std::string with(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
@@ -113,6 +148,7 @@ inline const std::map<std::string, std::string>& samples() {
       {"vtk5", vtk(m, 5, false)},
       {"vtk5 binary", vtk(m, 5, true)},
       {"veg", veg(m)},
+      {"abaqus", abaqus},
   };
   return all;
 }
@@ -134,6 +170,7 @@ inline palpate::io::FileMesh parse_as(const std::string& format, std::string_vie
       if (name == "itself.veg") return "*INCLUDE itself.veg\n";
       palpate::raise(palpate::SetupErrorKind::bad_file, "no file " + name);
     });
+  if (format.starts_with("abaqus")) return palpate::io::abaqus::parse(text, "mesh");
   return gmsh::parse(text, "mesh");
 }
 

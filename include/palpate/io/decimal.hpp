@@ -10,8 +10,8 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// Sets `value` to the double that the whole of `token` represents. Returns invalid_argument if it is not a number
-/// (hexadecimal numbers and decimal commas are not accepted), result_out_of_range if it is outside the range of a
-/// double. "nan" and "inf" may be accepted.
+/// (hexadecimal numbers and decimal commas are not accepted), result_out_of_range if it is too large for a double. A
+/// number too small for a double is zero, with its sign. "nan" and "inf" may be accepted.
 std::errc parse_decimal(std::string_view token, double& value);
 
 /// A text that reads back as exactly `value`; the shortest one if the standard library supports it.

@@ -1,6 +1,7 @@
 // Reads a mesh from a file of any known format.
 #pragma once
 
+#include <palpate/io/abaqus.hpp>
 #include <palpate/io/decimal.hpp>
 #include <palpate/io/detail/gmsh_file.hpp>
 #include <palpate/io/detail/mesh_builder.hpp>
@@ -18,7 +19,7 @@ struct ReadOptions {
 };
 
 /// The file formats.
-enum class MeshFormat { gmsh, tetgen, vtk, veg, surface, unknown };
+enum class MeshFormat { gmsh, tetgen, vtk, veg, abaqus, surface, unknown };
 
 /// The format of a text: by its first word, else by the extension of its name.
 MeshFormat format_of(std::string_view text, const std::string& name);
@@ -37,8 +38,8 @@ Mesh<E> parse_mesh(std::string_view text, const std::string& name = "text", cons
 }
 
 /// Reads a file as a mesh of elements E: Gmsh MSH 1, 2.0 to 2.2 and 4.1, ASCII and binary; TetGen .node, .ele and .face
-/// (name any of them); legacy VTK, ASCII and binary; VegaFEM .veg. The format is detected from the content, then from
-/// the extension of the name.
+/// (name any of them); legacy VTK, ASCII and binary; VegaFEM .veg; Abaqus and CalculiX .inp. The format is detected
+/// from the content, then from the extension of the name.
 ///
 /// Nodes and elements keep the order of the file: with node ids 1 ... n, id k is node k - 1. Every tagged set of
 /// dimension 0 to 3 (physical group, boundary marker, region number, set of elements) becomes a group with its nodes,

@@ -18,7 +18,8 @@ PALPATE_COLD inline MeshFormat format_of_ending(const std::string& name) {
     std::string_view text;
     MeshFormat format;
   };
-  constexpr std::array<Ending, 14> endings{{{".msh", MeshFormat::gmsh},
+  constexpr std::array<Ending, 15> endings{{{".msh", MeshFormat::gmsh},
+                                            {".inp", MeshFormat::abaqus},
                                             {".vtk", MeshFormat::vtk},
                                             {".veg", MeshFormat::veg},
                                             {".node", MeshFormat::tetgen},
@@ -51,7 +52,10 @@ PALPATE_COLD inline MeshFormat format_of_ending(const std::string& name) {
 [[noreturn]] PALPATE_COLD inline void refuse_unknown(std::string_view text, const std::string& name) {
   TextReader in(text, name);
   in.next_line();
-  in.refuse(SetupErrorKind::bad_file, "a Gmsh, TetGen, legacy VTK or VegaFEM mesh", in_quotes(in.line()),
+  if (has_ending(name, ".vtu") || has_ending(name, ".feb"))
+    refuse(SetupErrorKind::unsupported, {name, ":1: expected a file without XML, found ", in_quotes(in.line())},
+           {"Call io::xml::read_mesh (palpate::xml_meshes), or convert it: meshio convert ", name, " converted.msh"});
+  in.refuse(SetupErrorKind::bad_file, "a Gmsh, TetGen, legacy VTK, VegaFEM or Abaqus mesh", in_quotes(in.line()),
             {"meshio and gmsh convert others: meshio convert ", name, " converted.msh"});
 }
 
@@ -69,9 +73,11 @@ PALPATE_COLD PALPATE_INLINE MeshFormat format_of(std::string_view text, const st
   TextReader in(text, name, {'\0', false});
   in.next_line();
   if (in.line().starts_with("# vtk DataFile")) return MeshFormat::vtk;
-  if (in.line() == "$MeshFormat" || in.line() == "$NOD") return MeshFormat::gmsh;
+  if (in.line() == "$MeshFormat" || in.line() == "$NOD" || in.line() == "$Comments") return MeshFormat::gmsh;
   while (in.line().starts_with('#') && in.next_line()) {}
+  if (in.line().starts_with('*') && detail::has_ending(name, ".inp")) return MeshFormat::abaqus;
   if (in.line().starts_with("*VERTICES") || in.line().starts_with("*INCLUDE")) return MeshFormat::veg;
+  if (in.line().starts_with('*')) return MeshFormat::abaqus;
   return detail::format_of_ending(name);
 }
 
@@ -83,6 +89,8 @@ PALPATE_INLINE FileMesh parse_file(std::string_view text, const std::string& nam
       return vtk::parse(text, name);
     case MeshFormat::veg:
       return veg::parse(text, name, detail::RefuseInclude{name});
+    case MeshFormat::abaqus:
+      return abaqus::parse(text, name);
     case MeshFormat::surface:
       detail::refuse_surface(name);
     default:

@@ -1,9 +1,8 @@
 // Definitions of vtk_legacy.hpp.
 #pragma once
 
-#include <palpate/io/detail/tag_sets.hpp>
 #include <palpate/io/detail/vtk_attributes.hpp>
-#include <palpate/io/detail/vtk_types.hpp>
+#include <palpate/io/detail/vtk_cells.hpp>
 #include <palpate/io/vtk_legacy.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
@@ -36,11 +35,9 @@ class LegacyParser {
 
   void read_offsets();
 
-  Index cell_count() const noexcept { return static_cast<Index>(places_.size()); }
+  Index cell_count() const noexcept { return static_cast<Index>(cells_.places.size()); }
 
   void read_types();
-
-  void add_cells();
 
   TextReader in_;
   NumberStream numbers_;
@@ -48,9 +45,7 @@ class LegacyParser {
   FileMesh mesh_;
   double version_ = 0.0;
   bool has_points_ = false, has_cells_ = false, has_types_ = false;
-  std::vector<Index> offsets_,
-      places_;  ///< per cell: start of its nodes in FileMesh::cell_nodes, and its place in the file
-  std::vector<const CellType*> types_;
+  Cells cells_;
 };
 
 inline FileMesh LegacyParser::parse() {
@@ -58,7 +53,7 @@ inline FileMesh LegacyParser::parse() {
   while (in_.next_line()) read_section();
   if (!has_types_) in_.refuse(SetupErrorKind::bad_file, "POINTS, CELLS and CELL_TYPES", "the end of the file");
   if (!numbers_.is_binary) in_.need_last_line_end();
-  add_cells();
+  add_cells(cells_, attributes_.regions, mesh_);
   return std::move(mesh_);
 }
 
@@ -114,8 +109,8 @@ inline void LegacyParser::read_points() {
   const Index count = numbers_.count("a number of points", 3);
   const NumberType& type = numbers_.read_type();
   in_.end_line("the number of points");
-  if (type.kind != NumberType::real)
-    in_.refuse(SetupErrorKind::unsupported, "points of type float or double", type.name);
+  if (type.kind == NumberType::text || type.bits == 1)
+    in_.refuse(SetupErrorKind::bad_file, "points of a type of numbers such as double", type.name);
   mesh_.positions.reserve(static_cast<std::size_t>(count));
   for (Index i = 0; i < count; ++i) {
     Vector3 x;
@@ -137,17 +132,17 @@ inline void LegacyParser::read_cells() {
   const Index count = numbers_.count("a number of cells", 2), total = numbers_.count("a number of numbers", 1);
   in_.end_line("the number of numbers");
   const NumberType& type = number_types[7];
-  offsets_.assign(1, 0);
+  cells_.offsets.assign(1, 0);
   for (Index c = 0, left = total; c < count; ++c) {
     if (!numbers_.is_binary) in_.need_more("a cell");
-    places_.push_back(in_.place());
+    cells_.places.push_back(in_.place());
     const Index nodes = numbers_.integer(type, "a number of nodes of a cell", 0, left - 1);
     for (Index a = 0; a < nodes; ++a) add_node(type);
-    offsets_.push_back(static_cast<Index>(mesh_.cell_nodes.size()));
+    cells_.offsets.push_back(static_cast<Index>(mesh_.cell_nodes.size()));
     left -= nodes + 1;
   }
   numbers_.end("the cells");
-  if (const Index found = offsets_.back() + count; found != total)
+  if (const Index found = cells_.offsets.back() + count; found != total)
     in_.refuse(SetupErrorKind::bad_file, {total, " numbers in CELLS"}, {found});
 }
 
@@ -156,7 +151,7 @@ PALPATE_COLD inline const NumberType& LegacyParser::read_array_head(std::string_
   if (!same_word(in_.token(), keyword)) in_.refuse(SetupErrorKind::bad_file, keyword, in_quotes(in_.line()));
   const NumberType& type = numbers_.read_type();
   in_.end_line(keyword);
-  if (type.kind == NumberType::real || type.bits == 1)
+  if (type.kind == NumberType::real || type.kind == NumberType::text || type.bits == 1)
     in_.refuse(SetupErrorKind::bad_file, "a type of integers", type.name);
   return type;
 }
@@ -166,16 +161,17 @@ inline void LegacyParser::read_offsets() {
   in_.end_line("the number of nodes");
   const NumberType& offset_type = read_array_head("OFFSETS");
   for (Index i = 0; i < count; ++i)
-    offsets_.push_back(numbers_.integer(offset_type, "an offset", i == 0 ? 0 : offsets_.back(), i == 0 ? 0 : total));
+    cells_.offsets.push_back(
+        numbers_.integer(offset_type, "an offset", i == 0 ? 0 : cells_.offsets.back(), i == 0 ? 0 : total));
   numbers_.end("the offsets");
-  if (count > 0 && offsets_.back() != total)
-    in_.refuse(SetupErrorKind::bad_file, {"a last offset of ", total}, {offsets_.back()});
-  if (count == 0) offsets_.assign(1, 0);
+  if (count > 0 && cells_.offsets.back() != total)
+    in_.refuse(SetupErrorKind::bad_file, {"a last offset of ", total}, {cells_.offsets.back()});
+  if (count == 0) cells_.offsets.assign(1, 0);
   const NumberType& node_type = read_array_head("CONNECTIVITY");
-  for (std::size_t c = 1; c < offsets_.size(); ++c) {
-    if (!numbers_.is_binary && offsets_[c] > offsets_[c - 1]) in_.need_more("a node");
-    places_.push_back(in_.place());
-    for (Index a = offsets_[c - 1]; a < offsets_[c]; ++a) add_node(node_type);
+  for (std::size_t c = 1; c < cells_.offsets.size(); ++c) {
+    if (!numbers_.is_binary && cells_.offsets[c] > cells_.offsets[c - 1]) in_.need_more("a node");
+    cells_.places.push_back(in_.place());
+    for (Index a = cells_.offsets[c - 1]; a < cells_.offsets[c]; ++a) add_node(node_type);
   }
   numbers_.end("the nodes of the cells");
 }
@@ -185,28 +181,9 @@ inline void LegacyParser::read_types() {
   const Index count = in_.integer("a number of cells", cell_count(), cell_count(), SetupErrorKind::bad_file);
   in_.end_line("the number of cells");
   for (Index c = 0; c < count; ++c) {
-    const Index wanted = numbers_.integer(number_types[7], "a cell type", 0, 255);
-    types_.push_back(find_cell_type(wanted));
-    if (types_.back() == nullptr)
-      in_.refuse(SetupErrorKind::unsupported, "a cell type of first or second order", {"'", wanted, "'"});
-    const Index nodes = offsets_[static_cast<std::size_t>(c) + 1] - offsets_[static_cast<std::size_t>(c)];
-    const ShapeFacts& shape = facts(types_.back()->shape);
-    if (nodes != shape.nodes)
-      in_.refuse(SetupErrorKind::bad_file, {shape.nodes, " nodes for a ", shape.name}, {nodes, " in cell ", c});
+    add_type(cells_, numbers_.integer(number_types[7], "a cell type", 0, 255), in_);
   }
   numbers_.end("the cell types");
-}
-
-inline void LegacyParser::add_cells() {
-  TagSets sets;
-  std::vector<NodeId> all;
-  all.swap(mesh_.cell_nodes);
-  for (std::size_t c = 0; c < types_.size(); ++c) {
-    mesh_.cell_nodes.insert(mesh_.cell_nodes.end(), all.begin() + offsets_[c], all.begin() + offsets_[c + 1]);
-    const int region = attributes_.regions.empty() ? 0 : attributes_.regions[c];
-    const std::uint32_t set = sets.find_or_add(mesh_, region);
-    mesh_.add_cell(static_cast<Index>(c), places_[c], types_[c]->shape, set, types_[c]->order);
-  }
 }
 
 }  // namespace detail

@@ -22,10 +22,12 @@ PALPATE_COLD inline void read_byte_order(TextReader& in, Format& format) {
     in.refuse(SetupErrorKind::bad_file, "the integer 1", in_quotes(raw));
 }
 
-/// Reads $MeshFormat; MSH 1 has none, and its $NOD remains the current line. Refuses MSH 3 and 4.0 as unsupported, with
-/// the command that converts them.
+/// Reads $MeshFormat, and $Comments before it; MSH 1 has none, and its $NOD remains the current line. Refuses MSH 3
+/// and 4.0 as unsupported, with the command that converts them.
 PALPATE_COLD inline Format read_format(TextReader& in) {
   in.need_line("$MeshFormat or $NOD");
+  for (; in.line() == "$Comments"; in.need_line("$MeshFormat or $NOD"))
+    while (in.line() != "$EndComments") in.need_line("$EndComments");
   if (in.line() == "$NOD") return {1, false, false};
   if (in.line() != "$MeshFormat") in.refuse(SetupErrorKind::bad_file, "$MeshFormat or $NOD", in_quotes(in.line()));
   in.need_line("a version number");

@@ -53,7 +53,7 @@ PALPATE_COLD inline void check_total(const TextReader& in, std::string_view what
 }
 
 /// A block of nodes: `dimension entity parametric count`, then `count` ids, then `count` positions each followed by
-/// `dimension` parameters if parametric.
+/// `dimension` parameters if parametric. In text the ids may be on any number of lines.
 inline void read_node_block(const Numbers& in, FileMesh& mesh) {
   in.begin("a block of nodes");
   const Index dimension = in.integer("a dimension", 0, 3);
@@ -62,10 +62,10 @@ inline void read_node_block(const Numbers& in, FileMesh& mesh) {
   const Index count = in.count("a number of nodes", 8, 32);
   in.end("a block of nodes");
   for (Index i = 0; i < count; ++i) {
-    in.begin("a node id");
+    in.begin_anywhere("a node id");
     mesh.node_tags.push_back(in.long_integer("a node id", 1, max_tag));
-    in.end("a node id");
   }
+  in.end("the node ids");
   for (Index i = 0; i < count; ++i) {
     in.begin("a position");
     mesh.positions.push_back(in.point());

@@ -42,6 +42,10 @@ class Numbers {
   void begin(std::string_view what) const {
     if (!is_binary_) in.need_line(what);
   }
+  /// The same where a record may begin on the line of the previous one.
+  void begin_anywhere(std::string_view what) const {
+    if (!is_binary_) in.need_more(what);
+  }
   void end(std::string_view what) const {
     if (!is_binary_) in.end_line(what);
   }

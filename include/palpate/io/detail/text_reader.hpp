@@ -14,6 +14,7 @@ std::string place_text(const std::string& file, Index place);
 struct TextSyntax {
   char comment = '\0';  ///< the rest of a line from here on is ignored
   bool commas = false;  ///< a comma separates words like a blank
+  bool fields = false;  ///< words are the texts between commas; an empty one is ","; exponents may begin with D
 };
 
 /// Reads a text that must outlive the reader. Blank lines, tabs, CRLF, a UTF-8 byte order mark and a missing last
@@ -22,6 +23,9 @@ struct TextSyntax {
 class TextReader {
  public:
   TextReader(std::string_view text, std::string name, TextSyntax syntax = {});
+
+  /// Reads another part of the same file, which begins in this line; messages contain its lines.
+  void restart(std::string_view text, Index first_line);
 
   /// Moves to the next line, blank or not; false at the end of the text.
   bool next_raw_line();
@@ -70,7 +74,7 @@ class TextReader {
   Index count(std::string_view what, Index bytes_each);
 
   /// The next word as a finite decimal number. Refuses NaN, infinity and overflow as non_finite, hexadecimal and
-  /// decimal commas as bad_file.
+  /// decimal commas as bad_file. A number too small for a double is zero.
   double real(std::string_view what);
 
   /// Refuses if the current line contains another word.

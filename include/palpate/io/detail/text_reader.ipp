@@ -4,6 +4,8 @@
 #include <palpate/io/decimal.hpp>
 #include <palpate/io/detail/text_reader.hpp>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -17,6 +19,13 @@ PALPATE_COLD PALPATE_INLINE std::string place_text(const std::string& file, Inde
 PALPATE_COLD PALPATE_INLINE TextReader::TextReader(std::string_view text, std::string name, TextSyntax syntax)
     : text_(text), name_(std::move(name)), syntax_(syntax) {
   if (text_.starts_with("\xEF\xBB\xBF")) next_ = 3;
+}
+
+PALPATE_INLINE void TextReader::restart(std::string_view text, Index first_line) {
+  text_ = text;
+  line_ = rest_ = {};
+  next_ = 0;
+  line_number_ = first_line - 1;
 }
 
 PALPATE_INLINE bool TextReader::next_raw_line() {
@@ -70,6 +79,13 @@ PALPATE_COLD PALPATE_INLINE void TextReader::need_last_line_end() const {
 PALPATE_INLINE std::string_view TextReader::token() {
   rest_ = trim(rest_);
   std::size_t end = 0;
+  if (syntax_.fields) {
+    end = std::min(rest_.find(','), rest_.size());
+    const std::string_view field = trim(rest_.substr(0, end));
+    const bool has_comma = end < rest_.size();
+    rest_.remove_prefix(has_comma ? end + 1 : end);
+    return field.empty() && has_comma ? std::string_view(",") : field;
+  }
   while (end < rest_.size() && !is_blank(rest_[end])) ++end;
   const std::string_view word = rest_.substr(0, end);
   rest_.remove_prefix(end);
@@ -95,6 +111,13 @@ PALPATE_INLINE double TextReader::real(std::string_view what) {
   std::string_view word = token();
   const std::string_view whole = word;
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+  std::array<char, 64> fortran{};
+  if (const std::size_t d = syntax_.fields ? word.find_first_of("dD") : word.npos;
+      d < word.size() && word.size() < 64) {
+    word.copy(fortran.data(), word.size());
+    fortran[d] = 'e';
+    word = {fortran.data(), word.size()};
+  }
   double value = 0.0;
   const std::errc error = parse_decimal(word, value);
   if (error == std::errc::invalid_argument) refuse(SetupErrorKind::bad_file, what, in_quotes(whole));

@@ -30,7 +30,7 @@ PALPATE_INLINE void AttributeReader::read_array(std::string_view name, const Num
   std::size_t rank = 0;
   while (rank < region_arrays.size() && region_arrays[rank] != name) ++rank;
   const bool is_region = of_cells_ && components == 1 && tuples == count_ && type.kind != NumberType::real &&
-                         type.bits > 1 && rank < region_rank_;
+                         type.kind != NumberType::text && type.bits > 1 && rank < region_rank_;
   if (tuples > 0 && components > static_cast<Index>(in_.bytes_left()) * 8 / tuples)
     in_.refuse(SetupErrorKind::count_too_large, "an array that fits into the file", {components, " x ", tuples});
   if (!is_region) return numbers_.skip(type, components * tuples);

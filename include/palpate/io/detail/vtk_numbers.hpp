@@ -5,9 +5,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
 
-/// A type of numbers in a file. Binary ones are big-endian; numbers of type `bit` are packed into bytes.
+/// A type of numbers in a file, or of strings. Binary ones are big-endian; numbers of type `bit` are packed into bytes.
 struct NumberType {
-  enum Kind { integer, unsigned_integer, real };
+  enum Kind { integer, unsigned_integer, real, text };
   std::string_view name;
   Kind kind;
   int bits;
@@ -30,6 +30,8 @@ inline constexpr std::array number_types{
     NumberType{"vtktypeuint64", NumberType::unsigned_integer, 64},
     NumberType{"float", NumberType::real, 32},
     NumberType{"double", NumberType::real, 64},
+    NumberType{"string", NumberType::text, 8},
+    NumberType{"utf8_string", NumberType::text, 8},
 };
 
 /// ASCII letters in lower case, independent of the locale.
@@ -51,13 +53,13 @@ class NumberStream {
   /// The next number of an integer type, between `low` and `high`.
   Index integer(const NumberType& type, std::string_view what, Index low, Index high);
 
-  /// The next number of a real type, finite.
+  /// The next number of any type but strings, finite.
   double real(const NumberType& type, std::string_view what);
 
   /// A count of items of `numbers` numbers each, at most as many as fit in the rest of the file.
   Index count(std::string_view what, Index numbers);
 
-  /// Skips `count` numbers.
+  /// Skips `count` numbers or strings.
   void skip(const NumberType& type, Index count);
 
   /// Refuses more words on the line where the numbers ended.
@@ -67,6 +69,9 @@ class NumberStream {
 
  private:
   static BinaryLayout layout_of(const NumberType& type);
+
+  /// A string is a line of its own, possibly blank; in binary data a length and its bytes.
+  void skip_string();
 
   TextReader& in_;
 };

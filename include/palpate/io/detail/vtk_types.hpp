@@ -10,9 +10,10 @@ struct CellType {
   int number;
   CellShape shape;
   NodeOrder order{};
+  bool repeats = false;  ///< any number of nodes: a cell of that shape begins at every node but the last ones
 };
 
-/// The types with a fixed number of nodes that are read (vtkCellType.h).
+/// The types that are read (vtkCellType.h).
 inline constexpr std::array cell_types{
     CellType{1, CellShape::point},
     CellType{3, CellShape::line2},
@@ -33,6 +34,8 @@ inline constexpr std::array cell_types{
     CellType{26, CellShape::prism15},
     CellType{14, CellShape::pyramid5},
     CellType{27, CellShape::pyramid13},
+    CellType{2, CellShape::point, {}, true},
+    CellType{4, CellShape::line2, {}, true},
 };
 
 /// The type of that number, or nullptr.

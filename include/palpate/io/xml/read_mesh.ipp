@@ -1,0 +1,32 @@
+// Definitions of read_mesh.hpp.
+#pragma once
+
+#include <palpate/io/xml/read_mesh.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace io::xml {
+
+inline bool is_xml(std::string_view text) noexcept {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != text.npos && text[first] == '<';
+}
+
+inline FileMesh parse_file(std::string_view text, const std::string& name) {
+  if (!is_xml(text)) return io::parse_file(text, name);
+  const std::size_t vtu = text.find("<VTKFile"), febio = text.find("<febio_spec");
+  if (vtu < febio) return parse_vtu(text, name);
+  if (febio < text.size()) return parse_febio(text, name);
+  TextReader in(text, name);
+  in.next_line();
+  in.refuse(SetupErrorKind::bad_file, "<VTKFile> or <febio_spec>", in_quotes(in.line()),
+            {"meshio and gmsh convert others: meshio convert ", name, " converted.msh"});
+}
+
+inline FileMesh read_file_mesh(const std::string& path) {
+  const std::string_view ending = ending_of(path);
+  const bool is_xml_file =
+      vtk::same_word(ending, ".vtu") || vtk::same_word(ending, ".feb") || vtk::same_word(ending, ".xml");
+  return is_xml_file ? xml::parse_file(read_file(path), path) : io::read_file_mesh(path);
+}
+
+}}}  // namespace palpate::PALPATE_ABI::io::xml
