@@ -7,8 +7,9 @@
 set(palpate_units
   "contact_haptic contact/* haptic/*")  # one tick runs through both
 
-# Adapters of SDKs must be included after the header of the SDK, in the program that uses it.
-set(palpate_units_exclude "^device/(openhaptics|force_dimension|chai3d)\\.")
+# Adapters of SDKs must be included after the header of the SDK, in the program that uses it. The C interface is a
+# library of its own (c_interface.cmake).
+set(palpate_units_exclude "^device/(openhaptics|force_dimension|chai3d)\\.|^c/")
 
 set(left "")
 set(sources "")
