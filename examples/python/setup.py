@@ -46,7 +46,7 @@ class BuildWithLibrary(build_ext):
 
 setup(
     ext_modules=[Extension(
-        "palpate._palpate", ["palpate/_palpate.cpp"], language="c++",
+        "palpate._palpate", ["src/palpate/_palpate.cpp"], language="c++",
         include_dirs=[str(SOURCE / "include"), *pybind11_include()],
         extra_compile_args=["-std=c++17", "-O2", "-fvisibility=hidden"],
         extra_link_args=["-Wl,-rpath,$ORIGIN"])],
