@@ -2,6 +2,7 @@
 #include <catch.hpp>
 
 #include <palpate/c/palpate.h>
+#include <palpate/testing/allocation_counter.hpp>
 
 #include "box.h"
 
@@ -325,4 +326,31 @@ TEST_CASE("each thread has its own last error, and success keeps it", "[c]") {
   CHECK(last().kind == PALPATE_INVALID_ARGUMENT);
   CHECK(std::string(palpate_error_name(77)) == "unknown");
   CHECK(std::string(palpate_error_name(PALPATE_OUT_OF_MEMORY)) == "out_of_memory");
+}
+
+TEST_CASE("memory that runs out is an error of the C interface, and everything is released", "[c]") {
+  Given given;
+  given.setup.threads = 1;
+  const MeshHandle mesh = given.mesh();
+  const SceneHandle scene = given.scene();
+  given.setup.materials = &given.material;
+  int failures = 0;
+  for (const std::uint64_t number : {0u, 1u, 3u, 10u, 30u, 100u, 300u, 1000u, 3000u}) {
+    auto* tissue = reinterpret_cast<palpate_tissue*>(1);
+    palpate_error error = PALPATE_OK;
+    {
+      const palpate::testing::FailingHeap heap(number);
+      error = palpate_tissue_create(mesh.get(), scene.get(), &given.setup, &tissue);
+    }
+    if (error == PALPATE_OK) {  // it made fewer allocations, or does without this one
+      palpate_tissue_destroy(tissue);
+      continue;
+    }
+    CAPTURE(number);
+    CHECK(error == PALPATE_OUT_OF_MEMORY);
+    CHECK(tissue == nullptr);
+    CHECK(last().kind == PALPATE_OUT_OF_MEMORY);
+    ++failures;
+  }
+  if (palpate::testing::allocations_are_counted()) CHECK(failures > 5);
 }
