@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 static int failures = 0;
 
@@ -204,6 +205,77 @@ static void test_cut(const char* policy) {
   palpate_tissue_destroy(tissue);
 }
 
+/* The background thread of a session moves the tissue: the dent appears in the displacement of the nodes. */
+static void test_background(void) {
+  palpate_tissue* tissue = box_tissue("smoothed_tet4/neo_hookean/quasi_newton");
+  palpate_session* session = NULL;
+  palpate_tool tool;
+  palpate_tool_state state;
+  palpate_tool_force force;
+  const clock_t start = clock();
+  double lowest = 0.0;
+  int tick = 0;
+  size_t i;
+  static double u[3 * BOX_NODES];
+  PALPATE_INIT(&tool);
+  tool.radius = 12e-3;
+  OK(palpate_session_create(tissue, &tool, 1, NULL, &session));
+  CHECK(palpate_session_work(session, NULL) == PALPATE_INVALID_ARGUMENT);
+  PALPATE_INIT(&state);
+  PALPATE_INIT(&force);
+  while (lowest > -5e-4 && (double)(clock() - start) / CLOCKS_PER_SEC < 20.0) {
+    set_height(&state, tick, 0.054 - 4e-5 * (tick < 100 ? tick : 100));
+    OK(palpate_session_tick(session, &state, 1, &force));
+    if (++tick % 100 != 0) continue;
+    OK(palpate_tissue_displacement(tissue, u, 3 * BOX_NODES));
+    for (i = 0; i < BOX_NODES; ++i)
+      if (u[3 * i + 2] < lowest) lowest = u[3 * i + 2];
+  }
+  CHECK(lowest <= -5e-4);
+  CHECK(palpate_tissue_displacement(tissue, u, 3 * BOX_NODES - 1) == PALPATE_INVALID_ARGUMENT);
+  palpate_session_destroy(session);
+  palpate_tissue_destroy(tissue);
+}
+
+/* A tissue that is moved and turned gives the turned force; gravity displaces it. */
+static void test_pose(void) {
+  static const double position[3] = {0.1, 0.2, 0.3}, turned[4] = {0.7071067811865476, 0.0, 0.7071067811865476, 0.0};
+  static const double gravity[3] = {0.0, 0.0, -9.81};
+  palpate_tissue* tissue = box_tissue("smoothed_tet4/linear/condensed");
+  palpate_session* session = NULL;
+  palpate_tool tool;
+  palpate_tool_state state;
+  palpate_tool_force force;
+  static double u[3 * BOX_NODES];
+  double expected;
+  int tick;
+  PALPATE_INIT(&tool);
+  tool.radius = 12e-3;
+  OK(palpate_session_create(tissue, &tool, 1, NULL, &session));
+  expected = press(session, 0);
+  OK(palpate_tissue_set_pose(tissue, position, turned)); /* z of the tissue is x of the world, x is -z */
+  OK(palpate_session_reset(session));
+  PALPATE_INIT(&state);
+  PALPATE_INIT(&force);
+  for (tick = 0; tick < 200; ++tick) {
+    set_height(&state, tick, 0.3 - 0.001);
+    state.position[0] = 0.1 + 0.054 - 4e-5 * (tick < 100 ? tick : 100);
+    state.position[1] = 0.2 - 0.002;
+    OK(palpate_session_tick(session, &state, 1, &force));
+  }
+  CHECK(fabs(force.contact_force[0] / expected - 1.0) < 1e-6);
+  OK(palpate_tissue_displacement(tissue, u, 3 * BOX_NODES));
+  CHECK(u[3 * BOX_NODES - 1] == 0.0);
+  OK(palpate_tissue_set_gravity(tissue, gravity));
+  OK(palpate_tissue_displacement(tissue, u, 3 * BOX_NODES));
+  CHECK(u[3 * BOX_NODES - 3] > 1e-5); /* down in the world is x of the tissue */
+  OK(palpate_tissue_reset(tissue));
+  OK(palpate_tissue_displacement(tissue, u, 3 * BOX_NODES));
+  CHECK(u[3 * BOX_NODES - 3] == 0.0);
+  palpate_session_destroy(session);
+  palpate_tissue_destroy(tissue);
+}
+
 static void test_file(const char* path) {
   palpate_mesh* mesh = NULL;
   size_t nodes = 0;
@@ -240,6 +312,8 @@ int main(int count, char** arguments) {
   }
   CHECK(palpate_policy_name(palpate_policy_count()) == NULL);
   test_cut("tet4/linear/cuttable_condensed");
+  test_background();
+  test_pose();
   if (count > 1) test_file(arguments[1]);
   if (failures == 0) printf("the C interface works\n");
   return failures;
