@@ -123,6 +123,64 @@ class Setup(unittest.TestCase):
         self.assertEqual(palpate.status_names(2), ["Saturated"])
 
 
+def box(nodes_per_cell):
+    """A box of 60 x 50 x 40 mm, fixed at the bottom: positions and cells of 4, 8, 10 or 20 nodes."""
+    n = np.array([6, 5, 4])
+    i, j, k = (a.ravel() for a in np.meshgrid(*(np.arange(m + 1) for m in n), indexing="ij"))
+    positions = 0.01 * np.column_stack([i, j, k]) - [0.03, 0.025, 0.0]
+    corner = np.arange(len(i)).reshape(n + 1)
+    steps = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    cells = np.column_stack([corner[a:a + n[0], b:b + n[1], c:c + n[2]].ravel() for a, b, c in steps])
+    if nodes_per_cell in (4, 10):  # six tetrahedra along the diagonal of a cube
+        parts = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]
+        cells = np.concatenate([cells[:, part] for part in parts])
+    edges = {10: [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
+             20: [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]}
+    if nodes_per_cell in edges:
+        ends = np.sort(np.stack([cells[:, edge] for edge in edges[nodes_per_cell]], axis=1), axis=2)
+        unique, number = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
+        cells = np.column_stack([cells, len(positions) + number.reshape(len(cells), -1)])
+        positions = np.concatenate([positions, positions[unique].mean(axis=1)])
+    return positions, cells
+
+
+class Policies(unittest.TestCase):
+    """Every composition of the library feels about the same box."""
+
+    def press(self, policy):
+        element = policy.split("/")[0]
+        positions, cells = box({"tet4": 4, "smoothed_tet4": 4, "tet10": 10, "hex20": 20}.get(element, 8))
+        mesh = palpate.Mesh(positions, cells)
+        mesh.add_group_in_box("bottom", (-1, -1, -1), (1, 1, 1e-6))
+        mesh.add_group_in_box("top", (-1, -1, 0.04 - 1e-6), (1, 1, 1))
+        tissue = palpate.Tissue(mesh, palpate.Scene().fix("bottom").touch("top"), policy, [LIVER], quasi_static=True)
+        moves = "quasi_newton" in policy
+        session = palpate.Session(tissue, [palpate.Sphere(12e-3)], manual_work=moves)
+        for k in range(150):
+            session.tick(1e-3, -2e-3, 0.054 - 4e-5 * min(k, 100), 1e-3 * k)
+            if moves:
+                session.work()
+        exact = 0
+        for k in range(150, 300):  # where columns come from a background thread, the first forces are approximate
+            exact = 0 if "DegradedModel" in palpate.status_names(session.status()) else exact + 1
+            if exact == 3:
+                break
+            time.sleep(0.02)
+            session.tick(1e-3, -2e-3, 0.050, 1e-3 * k)
+        session.read_surface()
+        self.assertLess(session.triangles.max(), len(session.vertices))
+        return session.contact_force()[2]
+
+    def test_all(self):
+        expected = self.press("hex20/linear/condensed")
+        forces = {policy: self.press(policy) for policy in palpate.policies()}
+        self.assertEqual(len(forces), 31)
+        for policy, force in forces.items():
+            with self.subTest(policy):
+                stiff = policy.startswith(("tet4/", "hex8/"))  # these lock
+                self.assertLess(abs(force / expected - 1), 1.0 if stiff else 0.25)
+
+
 class Stubs(unittest.TestCase):
     def test_stubs_list_what_there_is(self):
         stubs = ast.parse(pathlib.Path(palpate.__file__).with_name("_palpate.pyi").read_text(encoding="utf-8"))
