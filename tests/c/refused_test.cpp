@@ -328,6 +328,34 @@ TEST_CASE("each thread has its own last error, and success keeps it", "[c]") {
   CHECK(std::string(palpate_error_name(PALPATE_OUT_OF_MEMORY)) == "out_of_memory");
 }
 
+namespace {
+
+/// Blocks of the heap that this thread has allocated and not released.
+std::int64_t blocks() {
+  const palpate::testing::HeapCalls calls = palpate::testing::detail::heap_calls_now();
+  return static_cast<std::int64_t>(calls.allocations - calls.failed - calls.frees);
+}
+
+}  // namespace
+
+TEST_CASE("a destroyed tissue and session leave nothing on the heap", "[c]") {
+  Given given;
+  given.setup.threads = 1;
+  std::int64_t before = 0;
+  for (int time = 0; time < 2; ++time) {  // the first time may make what remains until the program ends
+    before = blocks();
+    const TissueHandle tissue = given.tissue();
+    const SessionHandle session = session_of(tissue.get());
+    palpate_tool_state state;
+    palpate_tool_force force;
+    PALPATE_INIT(&state);
+    PALPATE_INIT(&force);
+    palpate_session_tick(session.get(), &state, 1, &force);
+  }
+  const std::int64_t after = blocks();
+  CHECK(after == before);
+}
+
 TEST_CASE("memory that runs out is an error of the C interface, and everything is released", "[c]") {
   Given given;
   given.setup.threads = 1;
@@ -338,6 +366,7 @@ TEST_CASE("memory that runs out is an error of the C interface, and everything i
   for (const std::uint64_t number : {0u, 1u, 3u, 10u, 30u, 100u, 300u, 1000u, 3000u}) {
     auto* tissue = reinterpret_cast<palpate_tissue*>(1);
     palpate_error error = PALPATE_OK;
+    const std::int64_t before = blocks();
     {
       const palpate::testing::FailingHeap heap(number);
       error = palpate_tissue_create(mesh.get(), scene.get(), &given.setup, &tissue);
@@ -346,7 +375,9 @@ TEST_CASE("memory that runs out is an error of the C interface, and everything i
       palpate_tissue_destroy(tissue);
       continue;
     }
+    const std::int64_t after = blocks();
     CAPTURE(number);
+    CHECK(after == before);
     CHECK(error == PALPATE_OUT_OF_MEMORY);
     CHECK(tissue == nullptr);
     CHECK(last().kind == PALPATE_OUT_OF_MEMORY);
