@@ -8,8 +8,8 @@ set(palpate_units
   "contact_haptic contact/* haptic/*")  # one tick runs through both
 
 # Adapters of SDKs must be included after the header of the SDK, in the program that uses it. Readers with other
-# libraries are palpate::xml_meshes.
-set(palpate_units_exclude "^device/(openhaptics|force_dimension|chai3d)\\.|^io/xml/")
+# libraries are palpate::xml_meshes; the C interface is a library of its own (c_interface.cmake).
+set(palpate_units_exclude "^device/(openhaptics|force_dimension|chai3d)\\.|^io/xml/|^c/")
 
 set(left "")
 set(sources "")

@@ -25,6 +25,15 @@ if(TARGET palpate_xml_meshes)
   install(EXPORT palpateXmlMeshesTargets NAMESPACE palpate:: DESTINATION ${package_dir})
 endif()
 
+if(PALPATE_BUILD_C)
+  install(TARGETS palpate_c EXPORT palpateCTargets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} OPTIONAL
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} OPTIONAL
+          RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} OPTIONAL)
+  install(EXPORT palpateCTargets NAMESPACE palpate:: DESTINATION ${package_dir})
+  install(FILES include/palpate/c/palpate.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/c)
+endif()
+
 configure_package_config_file(cmake/palpateConfig.cmake.in ${PROJECT_BINARY_DIR}/palpateConfig.cmake
                               INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_LIBDIR
                               NO_SET_AND_CHECK_MACRO)
@@ -44,4 +53,7 @@ endfunction()
 palpate_pc(palpate DATADIR)
 if(PALPATE_BUILD_COMPILED)
   palpate_pc(palpate-compiled LIBDIR)
+endif()
+if(PALPATE_BUILD_C)
+  palpate_pc(palpate-c LIBDIR)
 endif()
