@@ -2,9 +2,8 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
+#include <palpate/core/spsc_ring.hpp>
 #include <palpate/device/mock_device.hpp>
-
-#include "ring.hpp"
 
 namespace live {
 
@@ -45,7 +44,7 @@ class MouseDevice {
   double now() const noexcept;
   void follow() noexcept;
 
-  Ring<PointerTarget, 1024> targets_;
+  SpscRing<PointerTarget, 1024> targets_;
   PointerTarget target_;
   Vector3 position_, velocity_ = Vector3::Zero();
   DeviceClock clock_;
