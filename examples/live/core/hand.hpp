@@ -11,9 +11,10 @@
 namespace live {
 
 /// Moves tools with the pointer. Without a button the active tool hovers over the surface under the pointer; pressing
-/// the button sets it on the surface; the wheel pushes it in, along the normal; dragging moves it along the surface, in
-/// the tangent plane, so that it stays as deep. A tool that grasps moves in the plane of the picture. Keys: Tab takes
-/// the next tool, G grasps or lets go, U unplugs the device or plugs it in, H keeps the tool where it is.
+/// the button sets it on the surface. While it is down, the tool moves as far as the pointer does: along the surface,
+/// in the tangent plane, so that it stays as deep; a tool that grasps in the plane of the picture, within its range of
+/// motion. So it never leaps to the pointer. The wheel pushes it away from the eye. Keys: Tab takes the next tool, G
+/// grasps or lets go, U unplugs the device or plugs it in, H keeps the tool where it is.
 class Hand {
  public:
   using Look = std::function<const DrawnSurface&()>;  ///< the surface at present
@@ -22,6 +23,8 @@ class Hand {
   /// A tool that the pointer moves; `radius`: how far its middle is from a surface that it touches [m].
   void add(MouseDevice& device, const Vector3& start, double radius) { tools_.push_back({&device, start, radius}); }
   void set_radius(std::size_t tool, double radius) { tools_[tool].radius = radius; }
+  /// How far a tool that grasps moves from where it took hold [m].
+  void set_range(double range) { range_ = range; }
 
   void handle(const PointerEvent& event);
   std::size_t active() const noexcept { return active_; }
@@ -37,17 +40,22 @@ class Hand {
     Vector3 target;
     double radius;
     std::uint32_t buttons = 0;
-    Vector3 normal = Vector3::UnitZ();  // of the surface where it was set on it
+    Vector3 normal = Vector3::UnitZ();     // of the surface where it was set on it
+    Vector3 grasped_at = Vector3::Zero();  // where it began to grasp
   };
   void hover(const PointerEvent& event);
   void press(const PointerEvent& event);
+  void drag(const PointerEvent& event);
   void key(char key);
+  void keep_in_range(Moved& tool) const;
   void send(Moved& tool, bool set_there = false);
 
   Camera* camera_;
   Look look_;
   std::vector<Moved> tools_;
   std::size_t active_ = 0;
+  double x_ = 0.5, y_ = 0.5;  // of the pointer
+  double range_ = infinity;
   bool pressed_ = false, still_ = false, unplugged_ = false;
 };
 

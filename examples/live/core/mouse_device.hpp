@@ -25,6 +25,7 @@ class MouseDevice {
  public:
   static constexpr double rate = 1000.0;     ///< [1/s]
   static constexpr double quickness = 60.0;  ///< [1/s] the tool is there after about 0.1 s
+  static constexpr double most_speed = 0.5;  ///< [m/s] as a quick hand: a pointer that leaps is followed, not its leap
 
   MouseDevice(const Vector3& start, DeviceClock clock);
 

@@ -37,6 +37,7 @@ struct TouchScene {
   std::vector<Tool> tools;
   std::vector<Vector3> starts;  ///< [m] of every tool
   SessionOptions session{};
+  double range = infinity;  ///< [m] how far a tool that grasps moves from where it took hold
   Camera camera{};
   std::string script;         ///< scripted input, see pointer_script.hpp
   std::string hidden_region;  ///< drawn inside the organ when the answer is revealed; empty: nothing is hidden
