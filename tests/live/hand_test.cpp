@@ -25,7 +25,7 @@ struct HandOnTable {
   HandOnTable() { hand.add(mouse, {0.0, 0.0, 0.05}, 5e-3); }
   void send(PointerAction action, double x, double y) { hand.handle({.action = action, .x = x, .y = y}); }
   void press_key(char key) { hand.handle({.action = PointerAction::key, .key = key}); }
-  const Vector3& target() const { return hand.target(0); }
+  Vector3 target() const { return hand.target(0); }
 };
 
 std::unique_ptr<live::Organ> organ_for(const live::TouchScene& scene, live::Composition composition) {
@@ -62,7 +62,7 @@ TEST_CASE("a drag moves the tool as far as the pointer, wherever the pointer is"
 
 TEST_CASE("a tool that grasps stays within its range of motion", "[live][hand]") {
   HandOnTable t;
-  t.hand.set_range(0.02);
+  t.hand.set_range({.radius = 0.02});
   t.send(PointerAction::press, 0.5, 0.5);
   const Vector3 grasped = t.target();
   t.press_key('G');
@@ -72,6 +72,18 @@ TEST_CASE("a tool that grasps stays within its range of motion", "[live][hand]")
     CHECK((t.target() - grasped).norm() <= 0.02 * (1.0 + 1e-12));
   }
   CHECK((t.target() - grasped).norm() > 0.0199);
+
+  // The pointer comes back: the tool too, although the pointer was far outside the range.
+  for (double x = 1.0; x > 0.505; x -= 0.01) {
+    t.send(PointerAction::move, x, 0.5);
+    t.hand.handle({.action = PointerAction::wheel, .amount = -2e-3});
+  }
+  CHECK((t.target() - grasped).norm() < 5e-3);
+
+  const live::MotionRange range{.radius = 0.03, .inward = -Vector3::UnitX(), .most_inward = 0.01};
+  CHECK((range.limited({0.0, 0.02, 0.0}) - Vector3(0.0, 0.02, 0.0)).norm() < 1e-15);
+  CHECK((range.limited({-0.02, 0.02, 0.0}) - Vector3(-0.01, 0.02, 0.0)).norm() < 1e-15);
+  CHECK((range.limited({0.06, 0.0, 0.0}) - Vector3(0.03, 0.0, 0.0)).norm() < 1e-15);
 }
 
 TEST_CASE("the mouse follows a pointer that leaps at the speed of a hand, without overshoot", "[live][hand]") {
@@ -110,7 +122,7 @@ TEST_CASE("a pad of the lobe is dragged through its range of motion: no element 
   CHECK(grasped >= 3);  // a group of vertices
   double least = 1.0, largest = 0.0;
   const Vector3 from = stage.hand().target(0);
-  for (const auto& [x, y] : {std::pair{0.66, 0.2}, {0.9, 0.5}, {0.66, 0.8}, {0.4, 0.5}}) {
+  for (const auto& [x, y] : {std::pair{0.66, 0.2}, {0.9, 0.3}, {0.9, 0.5}, {0.66, 0.8}, {0.4, 0.5}, {0.45, 0.25}}) {
     for (int k = 1; k <= 30; ++k) {  // there and back
       const double share = 1.0 - std::abs(k - 15) / 15.0;
       send(PointerAction::move, 0.66 + share * (x - 0.66), 0.50 + share * (y - 0.50));
@@ -119,7 +131,7 @@ TEST_CASE("a pad of the lobe is dragged through its range of motion: no element 
       largest = std::max(largest, (stage.hand().target(0) - from).norm());
     }
   }
-  CHECK(largest > 0.99 * scene.range);
+  CHECK(largest > 0.99 * scene.range.radius);
   CHECK(least > 0.0);
   stage.stop();
   CHECK(stage.rendered_force(0).isZero(0.0));

@@ -84,6 +84,7 @@ void Hand::key(char key) {
       still_ = !still_;
       return;
     case 'G':
+      tool.target = in_range(tool);
       tool.buttons ^= 1u;
       tool.grasped_at = tool.target;
       return send(tool);
@@ -96,14 +97,12 @@ void Hand::key(char key) {
   }
 }
 
-void Hand::keep_in_range(Moved& tool) const {
-  const Vector3 path = tool.target - tool.grasped_at;
-  if (tool.buttons != 0 && path.norm() > range_) tool.target = tool.grasped_at + range_ * path.normalized();
+Vector3 Hand::in_range(const Moved& tool) const {
+  return tool.buttons == 0 ? tool.target : Vector3(tool.grasped_at + range_.limited(tool.target - tool.grasped_at));
 }
 
 void Hand::send(Moved& tool, bool set_there) {
-  keep_in_range(tool);
-  tool.device->move({tool.target, tool.buttons, set_there, !unplugged_});
+  tool.device->move({in_range(tool), tool.buttons, set_there, !unplugged_});
 }
 
 }  // namespace live

@@ -4,6 +4,7 @@
 #include "drawn_surface.hpp"
 #include "mouse_device.hpp"
 #include "pointer_script.hpp"
+#include "touch_scene.hpp"
 
 #include <functional>
 #include <vector>
@@ -23,8 +24,8 @@ class Hand {
   /// A tool that the pointer moves; `radius`: how far its middle is from a surface that it touches [m].
   void add(MouseDevice& device, const Vector3& start, double radius) { tools_.push_back({&device, start, radius}); }
   void set_radius(std::size_t tool, double radius) { tools_[tool].radius = radius; }
-  /// How far a tool that grasps moves from where it took hold [m].
-  void set_range(double range) { range_ = range; }
+  /// How far a tool that grasps moves from where it took hold.
+  void set_range(const MotionRange& range) { range_ = range; }
 
   void handle(const PointerEvent& event);
   std::size_t active() const noexcept { return active_; }
@@ -32,12 +33,12 @@ class Hand {
   bool grasps() const noexcept { return !tools_.empty() && tools_[active_].buttons != 0; }
   bool unplugged() const noexcept { return unplugged_; }
   /// Where the tools were asked to be [m].
-  const Vector3& target(std::size_t tool) const { return tools_[tool].target; }
+  Vector3 target(std::size_t tool) const { return in_range(tools_[tool]); }
 
  private:
   struct Moved {
     MouseDevice* device;
-    Vector3 target;
+    Vector3 target;  // of the pointer; that of a tool that grasps ends at its range
     double radius;
     std::uint32_t buttons = 0;
     Vector3 normal = Vector3::UnitZ();     // of the surface where it was set on it
@@ -47,7 +48,7 @@ class Hand {
   void press(const PointerEvent& event);
   void drag(const PointerEvent& event);
   void key(char key);
-  void keep_in_range(Moved& tool) const;
+  Vector3 in_range(const Moved& tool) const;
   void send(Moved& tool, bool set_there = false);
 
   Camera* camera_;
@@ -55,7 +56,7 @@ class Hand {
   std::vector<Moved> tools_;
   std::size_t active_ = 0;
   double x_ = 0.5, y_ = 0.5;  // of the pointer
-  double range_ = infinity;
+  MotionRange range_;
   bool pressed_ = false, still_ = false, unplugged_ = false;
 };
 

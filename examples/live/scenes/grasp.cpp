@@ -23,8 +23,8 @@ TouchScene grasp_scene() {
   scene.tools = {SphereTool{.radius = 7e-3}, SphereTool{.radius = 7e-3}};
   scene.session.contact.friction = 0.4;
   scene.session.grasp_buttons = 1;
-  scene.session.contact.grasp_radius = 8e-3;
-  scene.range = 20e-3;
+  scene.session.contact.grasp_radius = 12e-3;
+  scene.range = {.radius = 12e-3};
   scene.starts = {{0.05, -0.05, 0.05}, {0.05, 0.05, 0.06}};
 
   // 2. The lobe can be touched on all sides.
