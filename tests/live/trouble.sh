@@ -33,10 +33,10 @@ done
 # Input as of a hand: the pointer moves in coarse steps, presses, pushes with the wheel, drags.
 hand() {
   cat > hand.sh <<'END'
-"$0" "$@" > output.txt 2>&1 &
+timeout 90 "$@" > output.txt 2>&1 &
 window=$!
-xdotool search --sync --onlyvisible --name palpate > /dev/null
-sleep 2.5
+timeout 30 xdotool search --sync --onlyvisible --name palpate > /dev/null
+sleep 6  # the set-up
 xdotool mousemove 400 420
 sleep 0.3
 xdotool mousedown 1
@@ -51,13 +51,10 @@ END
 }
 echo 'xdotool key Escape' > ending.sh
 hand --no-error-bars
-report "palpate: closed with Escape while it presses" "$code" 'peak force'
-echo 'xdotool search --name palpate windowquit' > ending.sh
-hand --no-error-bars
-report "palpate: its window is closed while it presses" "$code" 'peak force'
+report "palpate: closed with Escape while it presses" "$code" 'peak force 0.[0-9]*[1-9]'
 echo 'xdotool key u; sleep 0.5; xdotool key Escape' > ending.sh
 hand --no-error-bars
-report "palpate: unplugged while it presses, then closed" "$code" 'peak force'
+report "palpate: unplugged while it presses, then closed" "$code" 'peak force 0.[0-9]*[1-9]'
 
 printf '$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\nnonsense\n' > broken.msh
 screen "$live" broken.msh --seconds 3 --no-error-bars --screenshot refused.png > output.txt 2>&1
@@ -68,9 +65,9 @@ if [ $code -eq 2 ] && grep -q nothing.csv output.txt; then echo "a recording tha
   echo "a recording that does not exist: FAILED, exit code $code"
   failed=1
 fi
-screen "$live" --script scene --seconds 4 --record hand.csv --no-error-bars > output.txt 2>&1
-head -n 1500 hand.csv > lost.csv  # the device is lost in the middle of a press
-screen "$live" --device replay lost.csv --seconds 4 --no-error-bars > output.txt 2>&1
+screen "$live" --script scene --seconds 8 --record hand.csv --no-error-bars > output.txt 2>&1
+head -n 900 hand.csv > lost.csv  # the device is lost in the middle of a press
+screen "$live" --device replay lost.csv --seconds 10 --no-error-bars > output.txt 2>&1
 report "a device is lost while it presses" $? 'Disconnected'
 
 if [ "$minute" = --minute ]; then
