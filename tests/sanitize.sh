@@ -41,7 +41,7 @@ check address-devices "$undefined" "" device/chai3d_test.cpp device/force_dimens
 check address-faults "$undefined" "" haptic/faults_test.cpp
 check address-cut "$undefined" "" cut/cut_system_test.cpp cut/cuttable_tissue_test.cpp cut/leaving_elements_test.cpp
 check threads-cut "-fsanitize=thread" "" cut/cuttable_tissue_test.cpp
-check threads "-fsanitize=thread" "" haptic/triple_buffer_test.cpp haptic/lifetimes_test.cpp haptic/faults_test.cpp
+check threads "-fsanitize=thread" "" core/triple_buffer_test.cpp core/spsc_ring_test.cpp haptic/lifetimes_test.cpp haptic/faults_test.cpp
 
 cxx=
 for c in clang++-22 clang++-21 clang++-20; do

@@ -87,8 +87,9 @@ int run_example(const Arguments& arguments) {
     raise(SetupErrorKind::bad_argument, "the loop ended before the first picture", "Give more --seconds");
   const Index files = write_series(arguments.out, organ, pictures);
   const std::string report = (arguments.out / "report.html").string();
-  io::write_file(report, {make_page(organ, path, session, plan, pictures)});
-  io::write_file((arguments.out / "still.svg").string(), {draw_still(organ, path, pictures)});
+  const std::string still = draw_still(organ, path, pictures);
+  io::write_file(report, {make_page(organ, path, session, plan, pictures, still)});
+  io::write_file((arguments.out / "still.svg").string(), {still});
   std::cout << pictures.size() << " pictures; wrote " << report << " and " << (arguments.out / "touch.pvd").string()
             << " (" << files << " files)\n";
 

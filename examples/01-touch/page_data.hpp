@@ -23,17 +23,18 @@ class Packed {
   void add(const Vector3& v) {
     for (const double x : v) add(static_cast<float>(x));
   }
-  /// As a JSON string.
-  std::string json() const {
+  void add(std::string_view bytes) { bytes_ += bytes; }
+  std::string json() const { return '"' + base64() + '"'; }
+  std::string base64() const {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out = "\"";
+    std::string out;
     for (std::size_t i = 0; i < bytes_.size(); i += 3) {
       std::uint32_t three = 0;
       for (std::size_t k = 0; k < 3; ++k)
         three = three << 8 | (i + k < bytes_.size() ? static_cast<unsigned char>(bytes_[i + k]) : 0u);
       for (std::size_t k = 0; k < 4; ++k) out += i + k > bytes_.size() ? '=' : digits[three >> (18 - 6 * k) & 63u];
     }
-    return out + '"';
+    return out;
   }
 
  private:

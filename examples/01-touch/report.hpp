@@ -55,8 +55,15 @@ inline std::string figures(const Organ& organ, const LoopReport& loop) {
   return out;
 }
 
+inline std::string base64(std::string_view bytes) {
+  Packed packed;
+  packed.add(bytes);
+  return packed.base64();
+}
+
+/// `still`: an SVG, for browsers that cannot draw the organ.
 inline std::string make_page(const Organ& organ, const TouchPath& path, const Recording& session, const Plan& plan,
-                             const std::vector<Picture>& pictures) {
+                             const std::vector<Picture>& pictures, const std::string& still) {
   Vector3 low = organ.mesh().position(0), high = low;
   for (const Vector3& x : organ.mesh().positions) {
     low = low.cwiseMin(x);
@@ -70,6 +77,7 @@ inline std::string make_page(const Organ& organ, const TouchPath& path, const Re
   return fill(part("page.html"),
               {{"style", part("page.css")},
                {"script", part("viewer.js")},
+               {"still", "data:image/svg+xml;base64," + base64(still)},
                {"summary", text("A sphere of %g mm radius is pressed %g mm into a soft organ, moved %g mm across a "
                                 "stiffer lesion hidden %.0f mm below, and lifted. "
                                 "palpate computed the force in every millisecond.",

@@ -160,8 +160,21 @@ const canvas = element("organ"),
     preserveDrawingBuffer: true,
   });
 let draw = () => {};
-if (!gl) element("message").hidden = false;
-else draw = makeRenderer();
+const message = element("message"); // with a still picture; shown until, and unless, there is a renderer
+function showStill(on) {
+  message.hidden = !on;
+  element("view").classList.toggle("still", on);
+  canvas.hidden = on;
+  if (on) draw = () => {};
+}
+try {
+  if (gl) draw = makeRenderer();
+  showStill(!gl);
+} catch (error) {
+  console.error(error); // a driver that refuses the shaders
+  showStill(true);
+}
+canvas.addEventListener("webglcontextlost", () => showStill(true));
 
 function makeRenderer() {
   const shader = (type, source) => {

@@ -11,7 +11,7 @@
 //   window/         window, picture, panel
 //
 // Three threads: the haptic thread of HapticSession ticks at 1 kHz; a BackgroundWorker steps and cuts; this one draws.
-// None waits for another: the picture reads snapshots, the mouse and the ticks go through queues (core/ring.hpp).
+// None waits for another: the picture reads snapshots, the mouse and the ticks go through queues (SpscRing).
 #include "window/app.hpp"
 
 #include <iostream>

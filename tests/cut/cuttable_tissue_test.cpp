@@ -197,6 +197,32 @@ TEST_CASE("a cut under the tool: the force continues, and its rate of change is 
   CHECK((settled - last).norm() < 0.1 * last.norm());
 }
 
+TEST_CASE("the drawn surface distinguishes faces that a cut exposed from those of the uncut body",
+          "[cut][visual_surface]") {
+  Tissue tissue(slab(), constrained_below(), soft);
+  VisualSurface surface(tissue);
+  CHECK(std::ranges::count(surface.exposed(), 1) == 0);
+  const std::size_t whole = surface.triangles().size();
+  tissue.cut(slit_at(0.052, 0.012));
+  while (tissue.process_cuts()) {}
+  REQUIRE(surface.update());
+  REQUIRE(surface.exposed().size() == static_cast<std::size_t>(surface.point_count()));
+  std::size_t exposed = 0, mixed = 0;
+  for (const auto& t : surface.triangles()) {
+    int corners = 0;
+    for (const int p : t) corners += surface.exposed()[static_cast<std::size_t>(p)];
+    exposed += corners == 3 ? 1 : 0;
+    mixed += corners == 1 || corners == 2 ? 1 : 0;
+  }
+  CHECK(mixed == 0);
+  CHECK(exposed > 0);
+  CHECK(exposed % 2 == 0);  // both sides of every face of the slit
+  CHECK(surface.triangles().size() == whole + exposed);
+  tissue.reset();
+  REQUIRE(surface.update());
+  CHECK(std::ranges::count(surface.exposed(), 1) == 0);
+}
+
 TEST_CASE("reset under a tool and a renderer: no reference to deleted data", "[cut][extreme][F3]") {
   Tissue tissue(slab(), constrained_below(), soft);
   HapticServo servo(tissue, SphereTool{});

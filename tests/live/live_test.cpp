@@ -6,6 +6,11 @@
 
 #include "catch.hpp"
 
+#include <mutex>
+#include <optional>
+
+#include "live/lock_counter.hpp"
+
 using namespace palpate;
 
 namespace {
@@ -62,6 +67,42 @@ struct SteppedReplay {
   void stop() noexcept { replay.stop(); }
 };
 
+/// Replays a recording, and counts heap calls and locked mutexes from the end of the first read of a tick to the begin
+/// of the first write.
+class CountingReplay final : public live::AnyDevice {
+ public:
+  explicit CountingReplay(std::vector<RecordedTick> recording)
+      : replay_(std::move(recording), live::MouseDevice(Vector3::Zero(), DeviceClock::simulated).limits()) {}
+
+  ToolState read() noexcept override {
+    const ToolState state = replay_.read();
+    before_ = testing::AllocationScope();
+    locks_before_ = test::locks_of_thread();
+    return state;
+  }
+  Status write(const GatedForce& force) noexcept override {
+    if (before_) {
+      allocations += before_->allocations();
+      locks += test::locks_of_thread() - locks_before_;
+      largest = std::max(largest, force.force().norm());
+      ++ticks;
+    }
+    before_.reset();
+    return replay_.write(force);
+  }
+  DeviceLimits limits() const noexcept override { return replay_.limits(); }
+  void start() override { replay_.start(); }
+  void stop() noexcept override { replay_.stop(); }
+
+  std::uint64_t allocations = 0, locks = 0, ticks = 0;
+  double largest = 0.0;
+
+ private:
+  ReplayDevice replay_;
+  std::optional<testing::AllocationScope> before_;
+  std::uint64_t locks_before_ = 0;
+};
+
 bool same_bits(const Vector3& a, const Vector3& b) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
@@ -104,6 +145,39 @@ TEST_CASE("every scene renders the same forces with and without the window's par
     }
     CHECK(largest > 0.05);  // the script touches
     CHECK(largest <= DeviceLimits{}.peak_force * (1.0 + 1e-9));
+  }
+}
+
+TEST_CASE("ticks of every scene allocate nothing and lock nothing", "[live][allocation]") {
+  {
+    std::mutex any;
+    const std::uint64_t before = test::locks_of_thread();
+    const std::scoped_lock lock(any);
+    if (test::locks_are_counted) CHECK(test::locks_of_thread() == before + 1);
+  }
+  for (const std::string& name : live::scene_names()) {
+    INFO(name);
+    const live::TouchScene scene = live::make_scene(name);
+    std::vector<std::unique_ptr<live::AnyDevice>> devices;
+    std::vector<CountingReplay*> counters;
+    for (auto& ticks : play(scene, 3.0, false)) {
+      auto device = std::make_unique<CountingReplay>(std::move(ticks));
+      counters.push_back(device.get());
+      devices.push_back(std::move(device));
+    }
+    live::Stage stage(scene, live::Clock::simulated, std::move(devices));
+    stage.touch(first_organ(scene), quick_tuning(scene));
+    live::PointerScript nothing;
+    for (int k = 0; k < 30; ++k) stage.run(0.1, nothing);
+    double largest = 0.0;
+    for (const CountingReplay* c : counters) {
+      CHECK(c->ticks == 3000);
+      CHECK(c->allocations == 0);
+      CHECK(c->locks == 0);
+      largest = std::max(largest, c->largest);
+    }
+    CHECK(largest > 0.05);
+    stage.stop();
   }
 }
 

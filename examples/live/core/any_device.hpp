@@ -3,9 +3,8 @@
 
 #include <palpate/concepts/haptic_device.hpp>
 #include <palpate/core/platform.hpp>
+#include <palpate/core/spsc_ring.hpp>
 #include <palpate/device/recorder.hpp>
-
-#include "ring.hpp"
 
 namespace live {
 
@@ -84,7 +83,7 @@ class Tap {
   bool paced_;
   TickSample sample_;
   std::int64_t last_ = 0, started_ = 0;
-  Ring<TickSample, 8192> samples_;
+  SpscRing<TickSample, 8192> samples_;
 };
 
 static_assert(HapticDevice<AnyDevice> && HapticDevice<Tap>);

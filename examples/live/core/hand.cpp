@@ -20,22 +20,31 @@ void Hand::handle(const PointerEvent& event) {
       break;
   }
   if (tools_.empty() || still_) return;
-  Moved& tool = tools_[active_];
   switch (event.action) {
     case PointerAction::press:
-      return press(event);
+      press(event);
+      break;
     case PointerAction::release:
       pressed_ = false;
-      return hover(event);
-    case PointerAction::wheel:
+      hover(event);
+      break;
+    case PointerAction::wheel: {
+      Moved& tool = tools_[active_];
       tool.target += event.amount * camera_->forward();
       return send(tool);
+    }
     default:
-      break;
+      pressed_ ? drag(event) : hover(event);
   }
-  if (!pressed_) return hover(event);
-  tool.target = tool.buttons != 0 ? camera_->in_plane(event.x, event.y, tool.target)
-                                  : camera_->in_plane(event.x, event.y, tool.target, tool.normal);
+  x_ = event.x;
+  y_ = event.y;
+}
+
+void Hand::drag(const PointerEvent& event) {
+  Moved& tool = tools_[active_];
+  const Vector3 plane = tool.buttons != 0 ? camera_->forward() : tool.normal;
+  tool.target +=
+      camera_->in_plane(event.x, event.y, tool.target, plane) - camera_->in_plane(x_, y_, tool.target, plane);
   send(tool);
 }
 
@@ -55,6 +64,7 @@ void Hand::press(const PointerEvent& event) {
   Moved& tool = tools_[active_];
   pressed_ = true;
   if (tool.buttons != 0) return;
+  tool.normal = -camera_->forward();
   const auto hit = look_().hit(camera_->ray(event.x, event.y));
   if (!hit) return;
   tool.normal = hit->normal;
@@ -74,7 +84,9 @@ void Hand::key(char key) {
       still_ = !still_;
       return;
     case 'G':
+      tool.target = in_range(tool);
       tool.buttons ^= 1u;
+      tool.grasped_at = tool.target;
       return send(tool);
     case 'U':
       unplugged_ = !unplugged_;
@@ -85,8 +97,12 @@ void Hand::key(char key) {
   }
 }
 
+Vector3 Hand::in_range(const Moved& tool) const {
+  return tool.buttons == 0 ? tool.target : Vector3(tool.grasped_at + range_.limited(tool.target - tool.grasped_at));
+}
+
 void Hand::send(Moved& tool, bool set_there) {
-  tool.device->move({tool.target, tool.buttons, set_there, !unplugged_});
+  tool.device->move({in_range(tool), tool.buttons, set_there, !unplugged_});
 }
 
 }  // namespace live

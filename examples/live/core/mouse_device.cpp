@@ -50,6 +50,7 @@ double MouseDevice::now() const noexcept {
 void MouseDevice::follow() noexcept {
   constexpr double h = 1.0 / rate;
   velocity_ += h * quickness * (quickness * (target_.position - position_) - 2.0 * velocity_);
+  if (const double speed = velocity_.norm(); speed > most_speed) velocity_ *= most_speed / speed;
   position_ += h * velocity_;
 }
 

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
+#include <palpate/core/spsc_ring.hpp>
 #include <palpate/device/mock_device.hpp>
-
-#include "ring.hpp"
 
 namespace live {
 
@@ -26,6 +25,7 @@ class MouseDevice {
  public:
   static constexpr double rate = 1000.0;     ///< [1/s]
   static constexpr double quickness = 60.0;  ///< [1/s] the tool is there after about 0.1 s
+  static constexpr double most_speed = 0.5;  ///< [m/s] as a quick hand: a pointer that leaps is followed, not its leap
 
   MouseDevice(const Vector3& start, DeviceClock clock);
 
@@ -45,7 +45,7 @@ class MouseDevice {
   double now() const noexcept;
   void follow() noexcept;
 
-  Ring<PointerTarget, 1024> targets_;
+  SpscRing<PointerTarget, 1024> targets_;
   PointerTarget target_;
   Vector3 position_, velocity_ = Vector3::Zero();
   DeviceClock clock_;

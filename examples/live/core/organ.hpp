@@ -30,9 +30,12 @@ class Organ {
   /// The thread that does the same work in real time.
   virtual std::unique_ptr<BackgroundWorker> start_worker() = 0;
 
-  /// The surface under the forces of a snapshot, coloured by a field: displacement where there is no such field.
-  virtual void draw(const ServoSnapshot& snapshot, Field field, DrawnSurface& surface) = 0;
+  /// The surface under the forces of a snapshot, coloured by a field: displacement where there is no such field. Waits
+  /// for a cut in progress. False, with the surface in disorder, where there is none at present. In one thread.
+  virtual bool draw(const ServoSnapshot& snapshot, Field field, DrawnSurface& surface) = 0;
   virtual bool has(Field field) const = 0;
+  /// Least ratio of an element's volume to its volume at rest; negative: an element is inverted. Not beside `draw`.
+  virtual double least_volume_ratio(const ServoSnapshot& snapshot) = 0;
   virtual void write_vtu(const std::string& path, const ServoSnapshot& snapshot) = 0;
   /// Triangles around a region at rest, world frame [m].
   virtual DrawnSurface region(const std::string& name) const = 0;

@@ -65,19 +65,42 @@ class OrganOf final : public Organ {
   }
   auto report_slow(bool slow) noexcept { return model_.report_slow(slow); }
 
-  void draw(const ServoSnapshot& snapshot, Field field, DrawnSurface& surface) override {
-    if (drawn_.update() || surface.triangles.empty()) {
+  bool draw(const ServoSnapshot& snapshot, Field field, DrawnSurface& surface) override {
+    if (drawn_.update()) ++revision_;
+    if (surface.revision != revision_) {  // each of several surfaces follows at its own time
       surface.triangles = drawn_.triangles();
-      ++surface.revision;
+      surface.revision = revision_;
     }
     const auto points = static_cast<std::size_t>(drawn_.point_count());
     surface.positions.resize(3 * points);
     surface.normals.resize(3 * points);
     surface.values.resize(points);
-    if (!drawn_.read_surface(snapshot.vertex_forces(), surface.positions, surface.normals)) return;
-    drawn_.read_field(field_at_nodes(field), surface.values);
+    if (!drawn_.read_surface(snapshot.vertex_forces(), surface.positions, surface.normals)) return false;
+    if (!drawn_.read_field(field_at_nodes(field), surface.values)) return false;
+    if constexpr (requires { drawn_.exposed(); })
+      for (std::size_t i = 0; i < points; ++i)
+        if (drawn_.exposed()[i] != 0) surface.values[i] = DrawnSurface::wound;
+    return true;
   }
   bool has(Field field) const override { return linear_stress || field == Field::displacement; }
+
+  /// By the corners; of the mesh before cuts.
+  double least_volume_ratio(const ServoSnapshot& snapshot) override {
+    VectorX u;
+    model_.displacement_with(snapshot.vertex_forces(), u);
+    const auto& mesh = model_.mesh();
+    double least = infinity;
+    for (Index e = 0; e < mesh.element_count(); ++e) {
+      Matrix3 rest, now;
+      for (int k = 0; k < 3; ++k) {
+        const Index node = mesh.element_node(e, k + 1), first = mesh.element_node(e, 0);
+        rest.col(k) = mesh.position(static_cast<NodeId>(node)) - mesh.position(static_cast<NodeId>(first));
+        now.col(k) = rest.col(k) + u.template segment<3>(3 * node) - u.template segment<3>(3 * first);
+      }
+      least = std::min(least, now.determinant() / rest.determinant());
+    }
+    return least;
+  }
 
   void write_vtu(const std::string& path, const ServoSnapshot& snapshot) override {
     VectorX u;
@@ -145,6 +168,7 @@ class OrganOf final : public Organ {
 
   Model model_;
   VisualSurface<Model> drawn_;
+  unsigned long revision_ = 1;  // of the triangles
   std::function<Scene(double)> conditions_at_;
   Vector3 gravity_ = Vector3::Zero();
   double time_ = 0.0;

@@ -9,6 +9,7 @@ Stage::Stage(TouchScene scene, Clock clock, std::vector<std::unique_ptr<AnyDevic
       devices_(std::move(devices)),
       hand_(camera_, [this]() -> const DrawnSurface& { return look(); }),
       tools_(scene_.tools) {
+  hand_.set_range(scene_.range);
   if (devices_.size() > tools_.size())
     raise(SetupErrorKind::bad_argument, "there are more devices than tools in this scene", "Choose the scene grasp");
   mice_.resize(devices_.size());
@@ -45,11 +46,13 @@ void Stage::start(const Tuning& tuning) {
   const SessionOptions options = tuned_session(scene_, tuning);
   loop_ = clock_ == Clock::real ? start_real_time(*organ_, taps_, tools_, options)
                                 : start_virtual_time(*organ_, taps_, tools_, options);
+  if (clock_ == Clock::real) maker_ = std::make_unique<SurfaceMaker>(*organ_, snapshot(), field);
 }
 
 LoopReport Stage::stop() {
   if (!loop_) return {};
-  LoopReport report = loop_->stop();
+  LoopReport report = loop_->stop();  // the forces are zero first
+  maker_.reset();
   loop_.reset();
   return report;
 }
@@ -63,6 +66,7 @@ void Stage::run(double seconds, PointerScript& script) {
     });
   });
   fetch();
+  if (maker_) maker_->ask(snapshot(), field);
 }
 
 void Stage::fetch() {
@@ -70,8 +74,15 @@ void Stage::fetch() {
 }
 
 const DrawnSurface& Stage::look() {
+  if (maker_) return maker_->newest();
   if (organ_) organ_->draw(snapshot(), field, surface_);
   return surface_;
+}
+
+void Stage::write_vtu(const std::string& path) {
+  if (!organ_) return;
+  const auto write = [&] { organ_->write_vtu(path, snapshot()); };
+  maker_ ? maker_->between_surfaces(write) : write();
 }
 
 Vector3 Stage::rendered_force(std::size_t tool) const {

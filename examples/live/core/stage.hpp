@@ -4,6 +4,7 @@
 
 #include "hand.hpp"
 #include "loop.hpp"
+#include "surface_maker.hpp"
 #include "tick_log.hpp"
 
 #include <memory>
@@ -33,8 +34,11 @@ class Stage {
   /// Plays a script for so long, see Loop::run, and fetches the ticks.
   void run(double seconds, PointerScript& script);
   void fetch();  ///< the ticks so far
-  /// The surface and the contacts at present.
+  /// The surface at present; in real time the newest that is complete, so that nobody waits for a cut. Valid until the
+  /// next call.
   const DrawnSurface& look();
+  /// Uses the organ while it is not drawn.
+  void write_vtu(const std::string& path);
   const ServoSnapshot& snapshot() { return loop_ ? loop_->snapshot() : nothing_; }
 
   const TouchScene& scene() const noexcept { return scene_; }
@@ -65,6 +69,7 @@ class Stage {
   std::unique_ptr<Organ> organ_;
   std::vector<Tool> tools_;
   std::unique_ptr<Loop> loop_;
+  std::unique_ptr<SurfaceMaker> maker_;  // in real time
   ServoSnapshot nothing_;
   DrawnSurface surface_;
 };

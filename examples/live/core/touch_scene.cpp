@@ -22,6 +22,11 @@ const char* name_of(Composition c) {
   return "";
 }
 
+Vector3 MotionRange::limited(const Vector3& path) const {
+  const Vector3 within = path.norm() > radius ? Vector3(radius * path.normalized()) : path;
+  return within - std::max(0.0, inward.dot(within) - most_inward) * inward;
+}
+
 std::vector<Tool> tuned_tools(const TouchScene& scene, const Tuning& tuning) {
   std::vector<Tool> tools = scene.tools;
   for (Tool& tool : tools) {

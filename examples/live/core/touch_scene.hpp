@@ -27,6 +27,15 @@ struct Tissue {
   double density = 1060.0;  ///< [kg/m^3]
 };
 
+/// How far a tool that grasps moves from where it took hold.
+struct MotionRange {
+  double radius = infinity;          ///< [m] in all directions
+  Vector3 inward = Vector3::Zero();  ///< unit: into the organ
+  double most_inward = infinity;     ///< [m] in that direction
+
+  Vector3 limited(const Vector3& path) const;
+};
+
 struct TouchScene {
   std::string name;  ///< of --scene
   std::string text;  ///< one or two sentences for the panel
@@ -37,6 +46,7 @@ struct TouchScene {
   std::vector<Tool> tools;
   std::vector<Vector3> starts;  ///< [m] of every tool
   SessionOptions session{};
+  MotionRange range{};  ///< of a tool that grasps
   Camera camera{};
   std::string script;         ///< scripted input, see pointer_script.hpp
   std::string hidden_region;  ///< drawn inside the organ when the answer is revealed; empty: nothing is hidden

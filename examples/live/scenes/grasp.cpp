@@ -12,7 +12,9 @@ TouchScene grasp_scene() {
   TouchScene scene;
   scene.name = "grasp";
   scene.text =
-      "Two fingers. Push one against the lobe from above, take the other with Tab, and pinch it from the side.";
+      "Two fingers. Push one against the lobe from above, take the other with Tab, and pinch it from the side. With "
+      "key "
+      "G each holds a pad.";
 
   scene.mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   scene.tissues = {{.region = everywhere, .youngs_modulus = 5e3}};
@@ -21,6 +23,8 @@ TouchScene grasp_scene() {
   scene.tools = {SphereTool{.radius = 7e-3}, SphereTool{.radius = 7e-3}};
   scene.session.contact.friction = 0.4;
   scene.session.grasp_buttons = 1;
+  scene.session.contact.grasp_radius = 12e-3;
+  scene.range = {.radius = 12e-3};
   scene.starts = {{0.05, -0.05, 0.05}, {0.05, 0.05, 0.06}};
 
   // 2. The lobe can be touched on all sides.

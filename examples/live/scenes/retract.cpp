@@ -11,15 +11,19 @@ namespace live {
 TouchScene retract_scene() {
   TouchScene scene;
   scene.name = "retract";
-  scene.text = "Take the tip of the thin lobe with key G while the retractor touches it, and lift it by dragging.";
+  scene.text = "Take a pad of the thin lobe with key G while the retractor touches it, and lift it by dragging.";
 
   // 1. The same organ, with one material: the lump does not matter here.
   scene.mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   scene.tissues = {{.region = everywhere, .youngs_modulus = 5e3}};
 
-  // 2. The tool grasps the point it touches while button 1 is pressed (key G).
+  // 2. While button 1 is pressed (key G), the tool holds the vertices within 14 mm of the point that it touches: a
+  //    single one would be pulled out of the surface as a spike. It may be lifted by 30 mm. Pushed into the organ by
+  //    more than 12 mm the thin lobe would buckle.
   scene.tools = {SphereTool{.radius = 6e-3}};
   scene.session.grasp_buttons = 1;
+  scene.session.contact.grasp_radius = 14e-3;
+  scene.range = {.radius = 30e-3, .inward = -Vector3::UnitX(), .most_inward = 12e-3};
   scene.starts = {{0.08, -0.03, 0.06}};
 
   // 3. The lobe is free; the right half is supported by its ligament and by what it lies on.

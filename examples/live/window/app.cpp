@@ -6,6 +6,8 @@
 #include <palpate/io/file.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 
@@ -36,8 +38,13 @@ void App::open_scene(const std::string& name) {
                                        : make_own_scene(arguments_.mesh, arguments_.fix, arguments_.touch));
   } catch (const std::exception& error) {
     if (!stage_) show_scene(make_scene("palpate"));  // the message is in the window
-    panel_.refused = error.what();
+    refuse(error);
   }
+}
+
+/// The message stays in the window until something else is tried.
+void App::refuse(const std::exception& error) {
+  panel_.refused = last_refused_ = error.what();
 }
 
 void App::show_scene(TouchScene scene) {
@@ -81,7 +88,7 @@ void App::finish_building() {
       script_ = PointerScript(io::read_file(arguments_.script));
     if (touch_ready_ == 0.0) touch_ready_ = elapsed();
   } catch (const std::exception& error) {
-    panel_.refused = error.what();
+    refuse(error);
   }
 }
 
@@ -120,7 +127,7 @@ void App::key(char key) {
     if (key == 'L') panel_.picture.reveal = !panel_.picture.reveal;
     if (key == 'P') write_picture(file("picture.png"));
     if (key == 'V' && stage_->organ() != nullptr) {
-      stage_->organ()->write_vtu(file("organ.vtu"), stage_->snapshot());
+      stage_->write_vtu(file("organ.vtu"));
       panel_.news = "wrote " + file("organ.vtu");
     }
     if (key == 'R') {
@@ -155,6 +162,7 @@ void App::draw() {
       write_picture(arguments_.screenshot);
       pictured_ = true;
     }
+    film();
     window_.swap();
     obey(wishes);
   }
@@ -182,7 +190,7 @@ void App::obey(const PanelWishes& wishes) {
   try {
     stage_->retune(panel_.tuning);
   } catch (const std::exception& error) {
-    panel_.refused = error.what();
+    refuse(error);
   }
 }
 
@@ -227,6 +235,13 @@ void App::write_picture(const std::string& path) {
   panel_.news = "wrote " + path;
 }
 
+void App::film() {
+  if (arguments_.film.empty() || !stage_->running() || present() < 0.1 * filmed_) return;
+  std::array<char, 16> number{};
+  std::snprintf(number.data(), number.size(), "%04d.png", ++filmed_);
+  write_screenshot(arguments_.film + number.data(), window_.width(), window_.height());
+}
+
 void App::write_recordings() {
   if (arguments_.record.empty()) return;
   stage_->fetch();
@@ -234,6 +249,7 @@ void App::write_recordings() {
 }
 
 void App::report() const {
+  if (!last_refused_.empty()) std::cout << "refused: " << last_refused_ << '\n';
   std::cout << frames_ << " frames in " << elapsed() << " s; first frame after " << first_frame_ << " s, touch after "
             << touch_ready_ << " s; drawing " << 1e3 * drawing_ / static_cast<double>(frames_)
             << " ms per frame, longest frame " << 1e3 * longest_frame_ << " ms\n";

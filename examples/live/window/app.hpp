@@ -22,6 +22,7 @@ class App {
 
   void open_scene(const std::string& name);
   void show_scene(TouchScene scene);
+  void refuse(const std::exception& error);
   void build(Composition composition);
   void finish_building();
   void handle_input();
@@ -30,6 +31,7 @@ class App {
   void obey(const PanelWishes& wishes);
   void make_trouble();
   void write_picture(const std::string& path);
+  void film();
   void write_recordings();
   std::string file(const char* name) const;
   double elapsed() const { return std::chrono::duration<double>(Steady::now() - start_).count(); }
@@ -50,6 +52,8 @@ class App {
   long frames_ = 0;
   double first_frame_ = 0.0, touch_ready_ = 0.0, drawing_ = 0.0, longest_frame_ = 0.0, last_frame_ = 0.0;
   bool pictured_ = false;
+  int filmed_ = 0;  // frames
+  std::string last_refused_;
   LoopReport total_;
 };
 

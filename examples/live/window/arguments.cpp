@@ -18,6 +18,7 @@ constexpr const char* usage =
   --script FILE       scripted input instead of the mouse; "scene": that of the scene
   --seconds S, --frames N   close the window then
   --screenshot FILE   write the last frame as PNG; --at S: the one at S seconds
+  --film PREFIX       write ten frames a second as PNG, PREFIX0001.png and so on; with --virtual
   --record FILE       write all ticks as CSV, for --device replay FILE
   --out DIR           folder for what the keys R, P and V write
   --size WxH          of the window
@@ -47,8 +48,9 @@ bool read_device(const std::string& name, const std::function<std::string()>& ne
 std::optional<Arguments> read_arguments(int count, char** values) {
   Arguments a;
   const std::map<std::string, std::string*> texts{
-      {"--scene", &a.scene},   {"--fix", &a.fix},       {"--touch", &a.touch},           {"--solver", &a.composition},
-      {"--script", &a.script}, {"--record", &a.record}, {"--screenshot", &a.screenshot}, {"--out", &a.out}};
+      {"--scene", &a.scene},           {"--fix", &a.fix},       {"--touch", &a.touch},
+      {"--solver", &a.composition},    {"--script", &a.script}, {"--record", &a.record},
+      {"--screenshot", &a.screenshot}, {"--out", &a.out},       {"--film", &a.film}};
   const std::map<std::string, bool*> switches{
       {"--virtual", &a.virtual_time}, {"--reveal", &a.reveal}, {"--stress", &a.stress}, {"--trouble", &a.trouble}};
   int i = 1;

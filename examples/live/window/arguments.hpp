@@ -12,6 +12,7 @@ struct Arguments {
   std::string device = "mouse", replay;
   std::string script;  ///< a file, or "scene": that of the scene; empty: the mouse
   std::string screenshot, record, out = ".";
+  std::string film;             ///< prefix of PNG files, ten a second
   double seconds = 0.0;         ///< the window closes then; 0: never
   double screenshot_at = -1.0;  ///< [s] negative: at the end
   long frames = 0;              ///< the window closes then; 0: never

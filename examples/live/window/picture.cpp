@@ -160,8 +160,8 @@ void Picture::draw_spring(const Vector3& from, const Vector3& to) {
 
 void Picture::draw_forces(const ServoSnapshot& snapshot) {
   for (const ToolContact& contact : snapshot.tool_contacts()) {
-    paint(sphere_, placed(contact.point, Vector3::Constant(8e-4)), {orange});
-    if (contact.grasped) continue;  // three rows that pull against each other; the sum is drawn below
+    paint(sphere_, placed(contact.point, Vector3::Constant(contact.grasped ? 1.6e-3 : 8e-4)), {orange});
+    if (contact.grasped) continue;  // the points of a pad pull against each other; the sum is drawn below
     draw_arrow(contact.point, contact.force * contact.normal + contact.friction, 5e-4, {orange, 0.9});
   }
   for (std::size_t i = 0; i < snapshot.tool_count; ++i)

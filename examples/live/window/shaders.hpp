@@ -30,6 +30,7 @@ uniform sampler2D table;
 void main() {
   vec3 albedo = base;
   if (use_table > 0.5) albedo = texture(table, vec2(clamp((v - low) / (high - low), 0.002, 0.998), 0.5)).rgb;
+  if (use_table > 0.5 && v < -0.5) albedo = vec3(0.62, 0.07, 0.09);  // a wound
   albedo = pow(albedo, vec3(2.2));
   vec3 to_eye = normalize(eye - at), normal = normalize(n);
   if (!gl_FrontFacing) normal = -normal;

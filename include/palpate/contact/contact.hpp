@@ -30,6 +30,7 @@ struct ContactParameters {
   bool local_compliance = true;   ///< spheres smaller than facets get the dent that facets do not show
   double sample_spacing = 0.5;    ///< of contact points on the surface, in radii of the smallest tool
   double friction = 0.0;          ///< Coulomb's coefficient; 0 has no cost
+  double grasp_radius = 0.0;      ///< [m] a tool that grasps holds the vertices within it, up to eight; 0: one point
   int capacity = 0;               ///< of contacts of all tools; of more, evenly spread ones are kept (degraded_model);
                                   ///< 0: the default for the tools
 

@@ -65,8 +65,8 @@ class ContactProblem {
   /// Penetration of the deepest contact point that has no row because more points press than the capacity, relative to
   /// the deepest push. The force is too small by that part of the true force, or less. 0 when every point has a row.
   double missing_depth() const noexcept;
-  /// Whether a tool grasps a point.
-  bool is_holding(std::size_t tool) const noexcept { return grasps_[tool].sample >= 0; }
+  /// Whether a tool grasps a point or a pad.
+  bool is_holding(std::size_t tool) const noexcept { return grasps_[tool].holds_any(); }
 
  private:
   using Tools = ProxyMotion::Tools;

@@ -30,6 +30,9 @@ PALPATE_INLINE ContactParameters ContactProblem::checked(const ContactParameters
           "Below 0.4 the points under a sphere exceed the capacity, above 1 the sphere falls between them");
   if (!(p.friction >= 0.0 && p.friction <= 4.0))
     raise(SetupErrorKind::bad_argument, "the coefficient of friction is " + number(p.friction), "Give 0 to 4");
+  if (!(p.grasp_radius >= 0.0 && p.grasp_radius < infinity))
+    raise(SetupErrorKind::bad_argument, "the radius of a grasp is " + number(p.grasp_radius) + " m",
+          "Give the size of the tool's jaws, or 0 for one point");
   if (p.maximum_iterations < 1) raise(SetupErrorKind::bad_argument, "a tick needs at least one linearisation");
   if (p.capacity < 1 || p.capacity > maximum_capacity)
     raise(SetupErrorKind::bad_argument, "the capacity of a contact problem is " + std::to_string(p.capacity),
@@ -38,7 +41,7 @@ PALPATE_INLINE ContactParameters ContactProblem::checked(const ContactParameters
 }
 
 inline bool ContactProblem::is_grasped(const Candidate& c) const noexcept {
-  return c.sample == grasps_[at(c.tool)].sample;
+  return grasps_[at(c.tool)].holds(c, candidates_.sample_of(c));
 }
 
 /// Divides the rows among the tools that have contact points near them.
@@ -189,12 +192,7 @@ PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const Contact
   displacement_.move_to(fresh.displacement_);
   start_.move_to(fresh.start_);
   candidates_.move_to(fresh.candidates_, surface);
-  for (Grasp& g : grasps_) {
-    if (g.sample < 0) continue;
-    for (Candidate& c : g.rows)
-      if (!candidates_.move(c, fresh.candidates_.samples(), surface)) c.lift();
-    g.sample = g.rows[0].sample;
-  }
+  for (Grasp& g : grasps_) g.move_to(candidates_, fresh.candidates_.samples(), surface);
   rows_.move_to(fresh.rows_);
   pressing_count_ = violated_count_ = 0;
   feedback_ = 0.0;
@@ -208,18 +206,19 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   local_.reset();
   shares_.reset();
   proxies_ = {};
-  grasps_.fill({});
+  for (Grasp& g : grasps_) g.release();
   pressing_count_ = violated_count_ = 0;
   arrived_ = true;
   feedback_ = 0.0;
 }
 
-/// Grasps the nearest point for every tool that has just begun to grasp, and releases points.
+/// Grasps the nearest point, or the pad around it, for every tool that has just begun to grasp, and releases others.
+/// Pads leave half of the rows to points that press.
 PALPATE_INLINE void ContactProblem::grasp(const TissueView& tissue, Tools tools) noexcept {
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const ContactTool& tool = tools[t];
     Grasp& g = grasps_[t];
-    if (!tool.active || !tool.grasping) g = Grasp{};
+    if (!tool.active || !tool.grasping) g.release();
     if (!tool.active || !tool.grasping || g.requested) continue;
     g.requested = true;
     const Candidate* nearest = nullptr;
@@ -228,7 +227,12 @@ PALPATE_INLINE void ContactProblem::grasp(const TissueView& tissue, Tools tools)
       if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
       if (c.facing && c.gap <= Grasp::reach * tool.radius && (nearest == nullptr || c.gap < nearest->gap)) nearest = &c;
     }
-    if (nearest != nullptr) g.take(*nearest, tool);
+    if (nearest == nullptr) continue;
+    const int most = rows_.capacity() / (6 * static_cast<int>(tools.size()));
+    if (parameters_.grasp_radius > 0.0 && most > 2)
+      g.take_pad(tissue, candidates_, displacement_, *nearest, tool, parameters_.grasp_radius, most);
+    else
+      g.take(*nearest, tool);
   }
 }
 
@@ -252,8 +256,7 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
   predict_normals(iteration);
   rows_.clear();
   for (std::size_t t = 0; t < tools.size(); ++t)
-    for (Candidate& c : grasps_[t].rows)
-      if (is_holding(t)) rows_.add(tissue.contact_surface(), candidates_, c);
+    for (Candidate& c : grasps_[t].rows()) rows_.add(tissue.contact_surface(), candidates_, c);
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
     if (rows_.count() < rows_.capacity() && !is_grasped(c))

@@ -1,20 +1,39 @@
-// A point of the surface grasped by a tool.
+// What a tool grasps of the surface.
 #pragma once
 
 #include <palpate/contact/detail/candidates.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A point of the surface grasped by a tool, as three bilateral rows. The point has no unilateral row in addition.
-struct Grasp {
-  static constexpr double reach = 0.1;  ///< largest gap, in radii, of a point that can be grasped
+/// A point of the surface grasped by a tool, or a pad: a group of vertices. Every point has three bilateral rows and
+/// keeps its place on the tool. Points that the group moves have no unilateral row in addition.
+class Grasp {
+ public:
+  static constexpr double reach = 0.1;     ///< largest gap, in radii, of a point that can be grasped
+  static constexpr int most_points = 8;    ///< of a pad, the nearest ones
+  static constexpr int most_visited = 64;  ///< vertices in the search for them
 
   bool requested = false;  ///< since the tool began to grasp
-  int sample = -1;         ///< -1: no point was near enough
-  std::array<Candidate, 3> rows{};
+
+  bool holds_any() const noexcept { return count_ > 0; }
+  std::span<Candidate> rows() noexcept { return {rows_.data(), 3 * static_cast<std::size_t>(count_)}; }
+  /// Whether a point is grasped, or lies between grasped vertices.
+  bool holds(const Candidate& c, const ContactSample& sample) const noexcept;
 
   /// Grasps this point at its present place on the tool.
   void take(const Candidate& point, const ContactTool& tool) noexcept;
+  /// Grasps the corners of the point's triangle and the vertices within `radius` [m] of the point along the surface, at
+  /// most `most`, the nearest ones. No allocation; bounded work.
+  void take_pad(const TissueView& tissue, Candidates& candidates, SurfaceDisplacement& displacement,
+                const Candidate& point, const ContactTool& tool, double radius, int most) noexcept;
+  void release() noexcept;
+  /// Continues on another surface; points whose triangles no longer exist are released.
+  void move_to(const Candidates& candidates, const ContactSamples& before, const ContactSurface& surface) noexcept;
+
+ private:
+  std::array<Candidate, 3 * most_points> rows_{};
+  std::array<int, most_points> vertices_{};  // of a pad; -1: a point within a triangle
+  int count_ = 0;                            // points
 };
 
 }}  // namespace palpate

@@ -9,7 +9,7 @@
 #include <palpate/cut/cut_parameters.hpp>
 #include <palpate/cut/detail/cut_preparation.hpp>
 #include <palpate/cut/detail/cut_process.hpp>
-#include <palpate/haptic/detail/triple_buffer.hpp>
+#include <palpate/core/triple_buffer.hpp>
 #include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/model_base.hpp>
 

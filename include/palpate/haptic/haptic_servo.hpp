@@ -4,13 +4,13 @@
 #include <palpate/concepts/servo.hpp>
 #include <palpate/contact/coarse_facet_report.hpp>
 #include <palpate/contact/contact_problem.hpp>
+#include <palpate/core/triple_buffer.hpp>
 #include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/detail/servo_blade.hpp>
 #include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
 #include <palpate/haptic/tool_list.hpp>
 #include <palpate/haptic/detail/tool_input.hpp>
-#include <palpate/haptic/detail/triple_buffer.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

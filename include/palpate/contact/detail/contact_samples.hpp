@@ -47,6 +47,8 @@ class ContactSamples {
   /// The sample of a level nearest to a sample of another surface whose vertices have the same numbers; -1 when its
   /// triangles no longer exist. Checks the triangles around a vertex; no allocation.
   int nearest(const ContactSurface& surface, const ContactSample& wanted, int level = 0) const noexcept;
+  /// The first sample at a vertex; -1 at a vertex without triangles. Checks the triangles around it; no allocation.
+  int of_vertex(const ContactSurface& surface, int vertex) const noexcept;
   /// Number of the first sample of a triangle; those of triangle t end where those of t + 1 begin.
   int first_of(int t, int level = 0) const noexcept {
     return first_[static_cast<std::size_t>(level)][static_cast<std::size_t>(t)];

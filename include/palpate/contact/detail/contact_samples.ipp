@@ -158,6 +158,13 @@ PALPATE_INLINE int ContactSamples::nearest(const ContactSurface& surface, const 
   return best;
 }
 
+PALPATE_INLINE int ContactSamples::of_vertex(const ContactSurface& surface, int vertex) const noexcept {
+  for (const int t : surface.triangles_at(vertex))  // the samples of a triangle begin with those at its corners
+    for (int s = first_of(t); s < std::min(first_of(t) + 3, first_of(t + 1)); ++s)
+      if ((*this)[s].vertices[0] == vertex && (*this)[s].weights[0] == 1.0) return s;
+  return -1;
+}
+
 PALPATE_INLINE double longest_edge(const ContactSurface& surface) noexcept {
   double longest = 0.0;
   for (const Triangle& t : surface.triangles())

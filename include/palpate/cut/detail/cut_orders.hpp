@@ -3,7 +3,7 @@
 
 #include <palpate/contact/detail/blade_sweep.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/detail/spsc_ring.hpp>
+#include <palpate/core/spsc_ring.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 
 #include <atomic>

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct Cuttable;
 /// Positions, normals and triangles of a body that is cut, including detached fragments: the rendered faces of the
 /// scene (default: all) and all faces exposed by cuts. Cuts change points and triangles; `update` applies these
 /// changes, and between two calls of it points and triangles are constant. Refers to the model; one reader at a time.
+/// `update` and `read_surface` wait for a cut in progress: a renderer that must not wait calls them in another thread.
 template <class E, class M, class Inner>
 class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
  public:
@@ -28,8 +30,8 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
     const auto& boundary = model.boundary();
     rendered_ = model.rendered_nodes();
     model.read([&](const CutTopology<E>& topology, const auto&...) {
-      hidden_.assign(static_cast<std::size_t>(topology.mesh().element_count()), {});
-      for (const BoundaryFace& face : boundary) hide_unseen(topology, face);
+      kinds_.assign(static_cast<std::size_t>(topology.mesh().element_count()), {});
+      for (const BoundaryFace& face : boundary) note_kind(topology, face);
     });
     update();
   }
@@ -46,6 +48,9 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
 
   Index point_count() const noexcept { return static_cast<Index>(nodes_.size()); }
   const std::vector<std::array<int, 3>>& triangles() const noexcept { return triangles_; }
+  /// Per point, 1: on faces that cuts have exposed. Nodes on the rim of a wound have two points, so that no triangle
+  /// has points of both kinds.
+  const std::vector<std::uint8_t>& exposed() const noexcept { return exposed_; }
 
   /// As VisualSurface of other models; allocates. Also returns false when the model was reset since the last `update`,
   /// and for forces on vertices that no longer exist.
@@ -72,39 +77,46 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
   }
 
  private:
-  using Flags = std::array<bool, E::faces.size()>;
+  /// Of a face, should it be open.
+  enum class FaceKind : std::uint8_t { exposed, rendered, hidden };
+  using Kinds = std::array<FaceKind, E::faces.size()>;
 
-  /// Marks a face of the uncut body that the scene does not render.
-  void hide_unseen(const CutTopology<E>& topology, const BoundaryFace& face) {
-    if (rendered_.empty()) return;
-    if (std::ranges::all_of(face.nodes, [&](NodeId i) { return std::ranges::binary_search(rendered_, i); })) return;
+  /// Of a face of the uncut body: whether the scene renders it.
+  void note_kind(const CutTopology<E>& topology, const BoundaryFace& face) {
+    const auto seen = [&](NodeId i) { return std::ranges::binary_search(rendered_, i); };
+    const bool hidden = !rendered_.empty() && !std::ranges::all_of(face.nodes, seen);
     for (std::size_t local = 0; local < E::faces.size(); ++local) {
       const auto nodes = topology.face_nodes({face.element, static_cast<int>(local)});
       if (std::ranges::equal(nodes, face.nodes, {}, [&](NodeId i) { return topology.origin_of(i); }))
-        hidden_[static_cast<std::size_t>(face.element)][local] = true;
+        kinds_[static_cast<std::size_t>(face.element)][local] = hidden ? FaceKind::hidden : FaceKind::rendered;
     }
   }
 
   void collect(const CutTopology<E>& topology) {
     nodes_.clear();
     triangles_.clear();
-    std::vector<int> point(topology.mesh().positions.size(), -1);
-    const auto point_of = [&](NodeId i) {
-      int& p = point[static_cast<std::size_t>(i)];
+    exposed_.clear();
+    std::vector<int> point(2 * topology.mesh().positions.size(), -1);
+    const auto point_of = [&](NodeId i, bool exposed) {
+      int& p = point[2 * static_cast<std::size_t>(i) + (exposed ? 1 : 0)];
       if (p < 0) {
         p = static_cast<int>(nodes_.size());
         nodes_.push_back(i);
+        exposed_.push_back(exposed ? 1 : 0);
       }
       return p;
     };
     for (Index e = 0; e < topology.mesh().element_count(); ++e) {
       if (topology.is_removed(e)) continue;
       for (std::size_t local = 0; local < E::faces.size(); ++local) {
-        if (topology.neighbour(e, local) >= 0 || hidden_[static_cast<std::size_t>(e)][local]) continue;
+        const FaceKind kind = kinds_[static_cast<std::size_t>(e)][local];
+        if (topology.neighbour(e, local) >= 0 || kind == FaceKind::hidden) continue;
         const auto face = topology.face_nodes({e, static_cast<int>(local)});
         with_face_element<E>(face.size(), [&]<TriangulatedFace F>() {
           for (const auto& t : F::triangles) {
-            const auto at = [&](std::size_t k) { return point_of(face[static_cast<std::size_t>(t[k])]); };
+            const auto at = [&](std::size_t k) {
+              return point_of(face[static_cast<std::size_t>(t[k])], kind == FaceKind::exposed);
+            };
             triangles_.push_back({at(0), at(1), at(2)});
           }
         });
@@ -119,8 +131,9 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
 
   Model* model_;
   std::vector<NodeId> rendered_;  // sorted
-  std::vector<Flags> hidden_;     // per element and face
+  std::vector<Kinds> kinds_;      // per element and face
   std::vector<NodeId> nodes_;     // of the points
+  std::vector<std::uint8_t> exposed_;
   std::vector<std::array<int, 3>> triangles_;
   std::vector<Vector3> rest_, moved_, normals_;
   VectorX displacement_;

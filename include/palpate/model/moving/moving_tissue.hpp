@@ -5,7 +5,7 @@
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/contact_surface.hpp>
-#include <palpate/haptic/detail/triple_buffer.hpp>
+#include <palpate/core/triple_buffer.hpp>
 #include <palpate/model/model_base.hpp>
 #include <palpate/model/moving/detail/near_compliance.hpp>
 #include <palpate/model/moving/detail/secant_compliance.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact.hpp>
-#include <palpate/haptic/detail/triple_buffer.hpp>
+#include <palpate/core/triple_buffer.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/static/detail/quasi_non_linear.hpp>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
-#include <palpate/core/detail/spsc_ring.hpp>
+#include <palpate/core/spsc_ring.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/model/static/detail/compliance_columns.hpp>
 

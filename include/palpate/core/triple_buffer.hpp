@@ -9,7 +9,8 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Single writer, single reader, lock-free, never waits: the writer fills `back()` and publishes, the reader gets the
-/// newest complete value. Both sides own one slot, the third is exchanged atomically.
+/// newest complete value. Both sides own one slot, the third is exchanged atomically. Where every value counts, use
+/// SpscRing. O(1) per call, no copy.
 template <class T>
 class TripleBuffer {
  public:

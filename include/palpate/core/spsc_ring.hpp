@@ -9,11 +9,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Bounded first-in first-out queue: one thread pushes and one pops. Neither waits, locks or allocates.
+/// Bounded first-in first-out queue: one thread pushes and one pops (single producer, single consumer). Neither waits,
+/// locks or allocates, so one of them may be the haptic thread. The items are members: put a large ring on the heap.
+/// O(1) per call, one copy of an item, whose
+/// assignment must not throw or allocate. Where only the newest value counts, TripleBuffer is the better exchange.
 template <class T, std::size_t Capacity>
 class SpscRing {
  public:
-  /// False when it is full.
+  static_assert(Capacity > 0, "palpate: a ring needs room for one item");
+
+  /// Of the pushing thread. False, and nothing is stored, when it is full.
   bool push(const T& value) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (tail - head_.load(std::memory_order_acquire) == Capacity) return false;
@@ -21,7 +26,7 @@ class SpscRing {
     tail_.store(tail + 1, std::memory_order_release);
     return true;
   }
-  /// False when it is empty.
+  /// Of the popping thread. False, and `value` stays, when it is empty.
   bool pop(T& value) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (head == tail_.load(std::memory_order_acquire)) return false;
@@ -29,8 +34,10 @@ class SpscRing {
     head_.store(head + 1, std::memory_order_release);
     return true;
   }
-  /// To be called by the popping thread only.
+  /// Of the popping thread.
   bool empty() const noexcept { return head_.load(std::memory_order_relaxed) == tail_.load(std::memory_order_acquire); }
+
+  static constexpr std::size_t capacity() noexcept { return Capacity; }
 
  private:
   std::array<T, Capacity> items_{};

@@ -1,5 +1,5 @@
 // One writer, one reader: the newest complete value, in order.
-#include <palpate/haptic/detail/triple_buffer.hpp>
+#include <palpate/core/triple_buffer.hpp>
 
 #include <cstdint>
 #include <thread>
@@ -8,7 +8,7 @@
 
 using namespace palpate;
 
-TEST_CASE("the newest published value is read exactly once", "[haptic][triple_buffer]") {
+TEST_CASE("the newest published value is read exactly once", "[core][triple_buffer]") {
   TripleBuffer<int> buffer;
   CHECK_FALSE(buffer.update());
   CHECK(buffer.front() == 0);
@@ -35,7 +35,7 @@ TEST_CASE("the newest published value is read exactly once", "[haptic][triple_bu
   }
 }
 
-TEST_CASE("two threads: no torn value, none out of order, the last value is received", "[haptic][triple_buffer]") {
+TEST_CASE("two threads: no torn value, none out of order, the last value is received", "[core][triple_buffer]") {
   struct Value {
     std::array<std::uint64_t, 64> words{};
   };
