@@ -122,8 +122,6 @@ class HapticServo {
   void take_blade(ServoBlade& blade, std::size_t i, const ToolState& state) noexcept;
   bool is_lost(std::size_t i) noexcept;
   bool is_free(const Vector3& position, double depth) noexcept;
-  bool is_inside(const Vector3& position) noexcept;
-  bool has_passed(std::size_t i, bool converged) noexcept;
   bool push_out_passed_tools(Status solved) noexcept;
   bool sweep_lost_tools() noexcept;
   bool is_on_the_way(std::size_t i) const noexcept;

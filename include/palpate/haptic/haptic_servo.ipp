@@ -220,32 +220,12 @@ PALPATE_INLINE bool HapticServo::is_on_the_way(std::size_t i) const noexcept {
   return tool.active && detail::is_zero(tool.force) && (tool.target - tool.proxy).norm() > near * tool.radius;
 }
 
-/// Whether a position is behind the surface as forces deform it.
-PALPATE_INLINE bool HapticServo::is_inside(const Vector3& position) noexcept {
-  return problem_.closest(tissue_, position, std::abs(tissue_.contact_surface().closest(position).distance)).distance <
-         0.0;
-}
-
-/// Whether a tool that pressed is on the other side of the surface now: it is pushed from behind, or lost.
-PALPATE_INLINE bool HapticServo::has_passed(std::size_t i, bool converged) noexcept {
-  const ContactTool& tool = contact_tools_[i];
-  if (!tool.active || tool.grasping || !push_outs_[i].knows_contact()) return false;
-  if (push_outs_[i].holds() && push_outs_[i].has_given_way(tool)) return true;
-  if (!detail::is_zero(tool.force))
-    return problem_.share_from_behind(tissue_, i) > PushOut::least_share ||
-           (push_outs_[i].has_given_way(tool) && (!converged || is_inside(tool.proxy)));
-  const ContactSurface& surface = tissue_.contact_surface();
-  if (push_outs_[i].revision() != surface.revision()) return false;
-  const double depth = -surface.distance_of_body(tool.proxy);
-  return depth > 0.0 && !is_free(tool.proxy, depth);
-}
-
 /// Tools that have passed return to the last contact that was right; true if any of them was not held before.
 PALPATE_INLINE bool HapticServo::push_out_passed_tools(Status solved) noexcept {
   bool any = false;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    if (!has_passed(i, !solved.has(StatusFlag::solver_not_converged))) continue;
-    any = push_outs_[i].push_out(problem_, tissue_, contact_tools_) || any;
+    if (push_outs_[i].has_passed(problem_, tissue_, contact_tools_[i], !solved.has(StatusFlag::solver_not_converged)))
+      any = push_outs_[i].push_out(problem_, tissue_, contact_tools_) || any;
   }
   return any;
 }

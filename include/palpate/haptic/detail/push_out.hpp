@@ -14,13 +14,15 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// Everything runs in the tick: no throw, no allocation; a tick copies the points that press.
 class PushOut {
  public:
-  static constexpr double least_share = 0.1;  ///< of the force, from behind: with more the tool has passed
-
   /// `tool` is its number. Allocates for `capacity` contacts.
   PushOut(std::size_t tool, int capacity) : tool_(tool), pressing_(static_cast<std::size_t>(capacity)) {}
 
   /// After the tool's target was set: limits it while the tool is held. `restarted`: it was placed elsewhere.
   void begin_tick(const ContactProblem& problem, ContactTool& tool, bool restarted) noexcept;
+  /// Whether a tool that pressed is on the other side of the surface after a solution: facets push it from behind, the
+  /// tissue does not push it back any more and it is inside, or nothing presses it and it is inside.
+  bool has_passed(ContactProblem& problem, const TissueView& tissue, const ContactTool& tool,
+                  bool converged) const noexcept;
   /// Returns the tool to the remembered contact, and holds it there; false when it was held before.
   bool push_out(ContactProblem& problem, const TissueView& tissue, std::span<ContactTool> tools) noexcept;
   /// Remembers the contact if it is right.
@@ -37,39 +39,30 @@ class PushOut {
 
   /// Whether the device is no longer behind the place where the tool is held: farther beside it than its diameter.
   bool is_beside(const ContactTool& tool) const noexcept;
-  bool holds() const noexcept { return holds_; }
-  /// Whether the device went on, or the tool is held, but the tissue pushes back by much less: the tool may have
-  /// passed.
-  bool has_given_way(const ContactTool& tool) const noexcept {
-    if (holds_) return side_.dot(tool.force) < least_held * held_push_;
-    return count_ > 0 && is_deeper(tool) && push_of(tool) < least_push * push_of(contact_);
-  }
-  bool knows_contact() const noexcept { return count_ > 0; }
-  /// That of the surface in the remembered contact.
-  std::uint64_t revision() const noexcept { return revision_; }
   /// lost_contact in a tick in which the tool was held or lost.
   Status status() const noexcept { return status_; }
 
  private:
-  static constexpr double longest_path = 0.25;                  // of the device from the remembered contact, radii
-  static constexpr double step_back = 0.05;                     // radii
-  static constexpr double least_push = 0.5, least_held = 0.75;  // parts of the push that is expected
+  static constexpr double least_share = 0.1;    // of the force, from behind: with more the tool has passed
+  static constexpr double longest_path = 0.25;  // of the device from the remembered contact, radii
+  static constexpr double step_back = 0.05;     // radii
+  static constexpr double least_push = 0.5, least_held = 0.75, certain = 0.8;  // parts of an earlier push
   void forget() noexcept {
     count_ = 0;
     holds_ = false;
   }
   void limit(ContactTool& tool) noexcept;
-  /// Compared with the remembered contact.
-  bool is_deeper(const ContactTool& tool) const noexcept {
-    return contact_.force.dot(tool.target - contact_.target) < 0.0;
-  }
-  double push_of(const ContactTool& tool) const noexcept { return contact_.force.dot(tool.force); }
-  bool is_right(const ContactTool& tool, bool converged) const noexcept;
+  /// How far the device is from where it was in the remembered contact, along its force [m].
+  double retreat_of(const ContactTool& tool) const noexcept;
+  /// Force along that of the remembered contact [N].
+  double push_of(const ContactTool& tool) const noexcept;
+  bool is_right(ContactProblem& problem, const TissueView& tissue, const ContactTool& tool, bool converged) noexcept;
 
   std::size_t tool_;
   std::vector<Candidate> pressing_;
   std::size_t count_ = 0;
-  ContactTool contact_;  // as it was
+  ContactTool contact_;   // as it was
+  double certain_ = 0.0;  // its force, or a larger one since the tool was known to be outside [N]
   std::uint64_t revision_ = 0, moves_ = 0;
   bool holds_ = false;
   Vector3 side_ = Vector3::Zero();         // unit, the direction in which it is pushed out
