@@ -94,7 +94,7 @@ class MatrixFreeStiffness<E> : public SmoothedStiffness<E> {
   using SmoothedStiffness<E>::SmoothedStiffness;
 };
 
-/// Stores no matrix: about a third of the memory of Assembled; for iterative solvers.
+/// Stores no matrix, only the gradients and volumes of the elements; for iterative solvers.
 struct MatrixFree {
   template <Element E>
   using Operator = MatrixFreeStiffness<E>;

@@ -43,7 +43,7 @@ struct Condensed {
 };
 
 /// The same policy with another assembly. WithAssembly<ConjugateGradient, MatrixFree> stores no stiffness; its
-/// preconditioner is block Jacobi, with some ten times as many iterations.
+/// preconditioner is block Jacobi, with several times as many iterations.
 template <class Policy, class Assembly>
 struct WithAssembly {};
 

@@ -28,7 +28,7 @@ class FreeStiffness {
   FreeStiffness() = default;
   /// Preconditioned by the inverse of the 3 x 3 diagonal blocks (block Jacobi).
   FreeStiffness(StiffnessView stiffness, const EssentialConditions& conditions);
-  /// Preconditioned by an incomplete factorisation: some ten times fewer iterations. Throws as IncompleteCholesky does.
+  /// Preconditioned by an incomplete factorisation: several times fewer iterations. Throws as IncompleteCholesky does.
   FreeStiffness(const BlockMatrix& stiffness, const EssentialConditions& conditions, const SetupLimits& limits);
 
   Index size() const noexcept { return conditions_ != nullptr ? conditions_->free_count() : 0; }
