@@ -191,6 +191,14 @@ TEST_CASE("the condition estimate is within a factor of ten", "[linear][conditio
     CHECK(estimate <= 1.01 * exact * (1.0 + 1e-15 * exact));  // a lower bound up to rounding
     CHECK(estimate >= 0.1 * exact * (1.0 - 1e-15 * exact));
   }
+  for (double condition : {1e3, 1e6, 1e10}) {
+    const MatrixX m = with_condition(40, condition);
+    DenseCholesky solver(m, {});
+    const double estimate = condition_by_iteration(DenseOperator(m), solver);
+    INFO(condition << ": estimated " << estimate << " by iteration");
+    CHECK(estimate <= 1.01 * condition);
+    CHECK(estimate >= 0.1 * condition);
+  }
   const SparseMatrix lower = sphere_stiffness(2);
   const MatrixX k = full(lower);
   SparseCholesky solver(lower, {});

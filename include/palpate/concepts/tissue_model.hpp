@@ -128,7 +128,7 @@ concept HasOutOfDateMaterials = (requires { &T::compliance; &T::contact_surface;
 
 /// A tissue that can be touched. Vertices are those of `contact_surface()`, the surface at rest without tools.
 /// - `require_columns(vertices)` makes the compliance columns of these vertices available; the status reports what it
-/// could not do.
+/// could not do. A tick begins with an empty list: that is when the work of a background thread is taken over.
 /// - `to_world()` maps the frame of the surface to the world frame.
 /// - `compliance(i, j)` is the 3 x 3 displacement [m/N] of vertex i per force on vertex j, whose column was required: a
 /// matrix, or an Eigen expression that stays valid until the next `require_columns`.

@@ -81,6 +81,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   Status status;
   floor_ = tissue.compliance_floor();
   rounds_left_ = maximum_rounds;
+  status |= tissue.require_columns({});  // before the revision is read
   rows_.begin_tick(tissue.compliance_revision());
   displacement_.begin_tick(tissue.compliance_revision());
   ProxyMotion::slide(tools);
@@ -225,7 +226,7 @@ PALPATE_INLINE void ContactProblem::restore(const TissueView& tissue, std::span<
   candidates_.restore(static_cast<int>(t), pressing, rows_.tick());
   rows_.clear();
   for (std::size_t k = 0; k < tools.size(); ++k)
-    for (Candidate& c : grasps_[k].rows)
+    for (Candidate& c : grasps_[k].rows())
       if (is_holding(k)) rows_.add(surface, candidates_, c);
   for (Candidate& c : candidates_.items()) {
     c.row = -1;

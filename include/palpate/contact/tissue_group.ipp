@@ -90,8 +90,10 @@ PALPATE_INLINE std::size_t TissueGroup::forces_on(int member, std::span<const Ve
 
 PALPATE_INLINE Status TissueGroup::require_columns(std::span<const int> vertices) noexcept {
   Status status;
-  for (const Member& m : members_)
-    if (const std::span<const int> own = part_of(m, vertices); !own.empty()) status |= m.tissue.require_columns(own);
+  for (const Member& m : members_) {
+    const std::span<const int> own = part_of(m, vertices);
+    if (vertices.empty() || !own.empty()) status |= m.tissue.require_columns(own);
+  }
   return status;
 }
 PALPATE_INLINE void TissueGroup::prefetch(std::span<const int> vertices) noexcept {

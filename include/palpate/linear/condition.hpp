@@ -9,6 +9,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// a lower bound). Allocates; NaN when a solve is not finite.
 double inverse_norm_estimate(SolverView solver);
 
+/// Lower bound of |K|_2 |K^-1|_2 from ten steps of the power method and two of inverse iteration: for solvers whose
+/// solves are expensive. Usually within a factor 10. Allocates; NaN when a solve is not finite.
+double condition_by_iteration(const OperatorView& op, SolverView solver);
+
 /// Solves K x = K t for a fixed random t and returns |x - t| / |t|: the measured accuracy, independent of residuals.
 /// Infinity when the solution is not finite. Allocates.
 double probe_error(const OperatorView& op, SolverView solver);

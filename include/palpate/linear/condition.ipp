@@ -5,6 +5,7 @@
 #include <palpate/linear/detail/vector_kernels.hpp>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -55,6 +56,32 @@ inline double error_of_solve(const OperatorView& op, SolverView solver, const Ve
 }
 
 }  // namespace detail
+
+namespace detail {
+
+/// |A^n x| / |A^(n-1) x| for a random x: a lower bound of |A|_2.
+template <class Apply>
+double norm_by_iteration(Index size, int steps, Apply apply) {
+  VectorX x = random_answer(size), y(size);
+  double length = norm(x);
+  for (int step = 0; step < steps; ++step) {
+    for (Index i = 0; i < size; ++i) x.data()[i] /= length;
+    apply(x, y);
+    length = norm(y);
+    if (!(length > 0.0 && std::isfinite(length))) return std::numeric_limits<double>::quiet_NaN();
+    x.swap(y);
+  }
+  return length;
+}
+
+}  // namespace detail
+
+PALPATE_INLINE double condition_by_iteration(const OperatorView& op, SolverView solver) {
+  const Index n = solver.size();
+  if (n == 0) return 0.0;
+  return detail::norm_by_iteration(n, 10, [&](const VectorX& x, VectorX& y) { op.apply(x, y); }) *
+         detail::norm_by_iteration(n, 2, [&](const VectorX& x, VectorX& y) { solver.solve_into(x, y); });
+}
 
 PALPATE_INLINE double probe_error(const OperatorView& op, SolverView solver) {
   if (solver.size() == 0) return 0.0;

@@ -47,7 +47,9 @@ class ContactCompliance {
   bool has(int vertex) const noexcept { return slot_of_[static_cast<std::size_t>(vertex)] >= 0; }
 
   /// Makes the columns of these vertices available: immediately, with three solves for each missing one, or later by
-  /// the background thread. degraded_model when a column is missing, solver_not_converged when a solve failed.
+  /// the background thread. degraded_model when a column is missing, solver_not_converged when a solve failed. Takes
+  /// over what the thread has finished. A tick does so at its start, with an empty list: when a column arrives later in
+  /// the tick, values read before it were substitutes, so this is degraded_model, too.
   Status require(std::span<const int> vertices) noexcept;
 
   /// Announces vertices that may be required soon.
@@ -79,8 +81,8 @@ class ContactCompliance {
     return static_cast<std::size_t>(slot_of_[static_cast<std::size_t>(vertex)]);
   }
 
-  /// Takes the columns that the background thread has finished.
-  Status collect() noexcept;
+  /// Takes the columns that the background thread has finished; `arrived` tells whether there were any.
+  Status collect(bool& arrived) noexcept;
 
   /// Computes or requests a missing column, in the least recently used slot.
   Status obtain(int v) noexcept;

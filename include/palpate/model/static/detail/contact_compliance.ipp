@@ -39,7 +39,9 @@ void ContactCompliance<Scalar>::fill_asynchronously() {
 
 template <std::floating_point Scalar>
 Status ContactCompliance<Scalar>::require(std::span<const int> vertices) noexcept {
-  Status status = collect();
+  bool arrived = false;
+  Status status = collect(arrived);
+  if (arrived && !vertices.empty()) status.set(StatusFlag::degraded_model);
   ++clock_;
   for (int v : vertices)
     if (has(v)) last_used_[slot(v)] = clock_;
@@ -64,10 +66,11 @@ void ContactCompliance<Scalar>::assume(double own_compliance) noexcept {
 }
 
 template <std::floating_point Scalar>
-Status ContactCompliance<Scalar>::collect() noexcept {
+Status ContactCompliance<Scalar>::collect(bool& arrived) noexcept {
   Status status;
   ColumnOrder done;
   while (worker_ && worker_->take(done)) {
+    arrived = true;
     slot_of_[static_cast<std::size_t>(done.vertex)] = done.slot;
     ++revision_;
     ordered_[static_cast<std::size_t>(done.vertex)] = false;

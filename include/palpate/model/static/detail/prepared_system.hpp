@@ -23,8 +23,8 @@ struct EssentialConditions;
 struct SolverRecipe {
   std::string_view cache_name;  ///< empty: its systems cannot be stored
   std::size_t scalar_bytes = sizeof(double);
-  bool eager = false;                ///< all compliance is computed at set-up
-  bool estimates_condition = false;  ///< true when a few more solves are cheap
+  bool eager = false;      ///< all compliance is computed at set-up
+  bool iterative = false;  ///< every solve is expensive: the condition is estimated from fewer
   AnyStaticSystem (*make)(const AnyStiffness&, const EssentialConditions&, const DofLayout&, const SetupLimits&);
   /// Null when its systems cannot be stored. The matrix is the assembled stiffness.
   AnyStaticSystem (*read)(BinaryReader&, const BlockMatrix&, const EssentialConditions&, const DofLayout&,

@@ -77,7 +77,11 @@ PALPATE_INLINE AnyStaticSystem SystemSource::make(SetupReport& report) const {
 PALPATE_INLINE void SystemSource::estimate_accuracy(const FreeStiffness& free, AnyStaticSystem& system,
                                                     SetupReport& report) const {
   const auto probe = [&] { report.probe_error = probe_error(free, system); };
-  if (!recipe.estimates_condition) return probe();
+  if (recipe.iterative) {
+    probe();
+    report.condition_estimate = condition_by_iteration(free, system);
+    return;
+  }
   const auto estimate = [&](AnyStaticSystem& by) {
     report.condition_estimate = free_norm(*stiffness.matrix(), conditions) * inverse_norm_estimate(by);
   };

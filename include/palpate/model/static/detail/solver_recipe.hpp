@@ -59,6 +59,15 @@ concept CacheablePolicy = SolverPolicy<P> &&
   SolverTraits<P>::read(in, k, conditions, layout, limits).write(out);
 };
 
+namespace detail {
+
+template <class Policy>
+inline constexpr bool is_iterative = std::same_as<Policy, ConjugateGradient>;
+template <class Assembly>
+inline constexpr bool is_iterative<WithAssembly<ConjugateGradient, Assembly>> = true;
+
+}  // namespace detail
+
 /// The recipe of a policy.
 template <SolverPolicy Policy>
 constexpr SolverRecipe solver_recipe() noexcept {
@@ -67,8 +76,7 @@ constexpr SolverRecipe solver_recipe() noexcept {
   SolverRecipe recipe{};
   recipe.scalar_bytes = sizeof(typename Traits::Scalar);
   recipe.eager = Traits::eager;
-  recipe.estimates_condition = stored && !std::same_as<Policy, ConjugateGradient> &&
-                               !std::same_as<Policy, WithAssembly<ConjugateGradient, Assembled>>;
+  recipe.iterative = detail::is_iterative<Policy>;
   recipe.make = [](const AnyStiffness& k, const EssentialConditions& conditions, const DofLayout& layout,
                    const SetupLimits& limits) {
     if constexpr (stored)
