@@ -25,7 +25,7 @@ class PushOut {
                   bool converged) const noexcept;
   /// Returns the tool to the remembered contact, and holds it there; false when it was held before.
   bool push_out(ContactProblem& problem, const TissueView& tissue, std::span<ContactTool> tools) noexcept;
-  /// Remembers the contact if it is right and the tool is not held.
+  /// Remembers the contact if it is right.
   void end_tick(ContactProblem& problem, const TissueView& tissue, const ContactTool& tool, bool converged) noexcept;
   /// The contact is lost.
   void lose() noexcept {

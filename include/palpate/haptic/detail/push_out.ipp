@@ -1,7 +1,6 @@
 // Definitions of push_out.hpp.
 #pragma once
 
-#include <palpate/contact/detail/tool_placement.hpp>
 #include <palpate/haptic/detail/push_out.hpp>
 
 #include <algorithm>
@@ -11,15 +10,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Whether the core of a tool is behind the surface as forces deform it.
-inline bool is_inside(ContactProblem& problem, const TissueView& tissue, const ContactTool& tool) noexcept {
-  bool inside = false;
-  for_each_probe(tool, [&](const Vector3& probe) {
-    const Vector3 centre = tool.proxy + tool.rotation * probe;
-    const double distance = std::abs(tissue.contact_surface().closest(centre).distance);
-    inside = inside || problem.closest(tissue, centre, distance).distance < 0.0;
-  });
-  return inside;
+/// Whether a position is behind the surface as forces deform it.
+inline bool is_inside(ContactProblem& problem, const TissueView& tissue, const Vector3& position) noexcept {
+  const double distance = std::abs(tissue.contact_surface().closest(position).distance);
+  return problem.closest(tissue, position, distance).distance < 0.0;
 }
 
 }  // namespace detail
@@ -85,16 +79,17 @@ PALPATE_INLINE bool PushOut::has_passed(ContactProblem& problem, const TissueVie
   if (holds_ && side_.dot(tool.force) < least_held * held_push_) return true;
   if (!(tool.force.squaredNorm() > 0.0))
     return revision_ == tissue.contact_surface().revision() && tissue.contact_surface().is_inside(tool.proxy) &&
-           (problem.vertex_forces().empty() || detail::is_inside(problem, tissue, tool));
+           (problem.vertex_forces().empty() || detail::is_inside(problem, tissue, tool.proxy));
   if (problem.share_from_behind(tissue, tool_) > least_share) return true;
   if (!(push_of(tool) < least_push * contact_.force.norm())) return false;
-  return (!converged && retreat_of(tool) < 0.0) || detail::is_inside(problem, tissue, tool);
+  return (!converged && retreat_of(tool) < 0.0) || detail::is_inside(problem, tissue, tool.proxy);
 }
 
 /// Before a tool passes, the tissue pushes back less although the device does not retreat. Such a contact is right only
 /// where the tool is outside.
 PALPATE_INLINE bool PushOut::is_right(ContactProblem& problem, const TissueView& tissue, const ContactTool& tool,
                                       bool converged) noexcept {
+  if (holds_ && !converged) return false;
   const double force = tool.force.norm(), push = count_ > 0 ? push_of(tool) : force;
   const double path = (tool.target - contact_.target).norm();
   if (count_ == 0 || retreat_of(tool) > 0.5 * path) {
@@ -103,7 +98,7 @@ PALPATE_INLINE bool PushOut::is_right(ContactProblem& problem, const TissueView&
   }
   if (!converged && push < contact_.force.norm() && path < longest_path * tool.radius) return false;
   if (push < certain * certain_) {
-    if (detail::is_inside(problem, tissue, tool)) return false;
+    if (detail::is_inside(problem, tissue, tool.proxy)) return false;
     certain_ = force;
   }
   certain_ = std::max(certain_, force);
@@ -114,7 +109,6 @@ PALPATE_INLINE void PushOut::end_tick(ContactProblem& problem, const TissueView&
                                       bool converged) noexcept {
   if (pressing_.empty()) return;
   if (!(tool.force.squaredNorm() > 0.0) || tool.grasping) return forget();
-  if (holds_) return;
   if (problem.share_from_behind(tissue, tool_) > 0.0) {
     if (count_ == 0) status_.set(StatusFlag::lost_contact);
     return;
