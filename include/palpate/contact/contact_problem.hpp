@@ -40,17 +40,6 @@ class ContactProblem {
   /// for the old ones. No allocation.
   void move_to(ContactProblem& fresh, const ContactSurface& surface) noexcept;
 
-  /// Share of the force of a tool, after `solve`, that comes from points on facets that face away from it: of a sphere
-  /// that has passed through the surface all, in contact that is right none. O(contacts).
-  double share_from_behind(const TissueView& tissue, std::size_t t) noexcept;
-  /// Copies the points that press a tool; returns their number, at most that of `to`.
-  std::size_t copy_pressing(std::size_t t, std::span<Candidate> to) const noexcept;
-  /// Returns a tool to an earlier contact: `pressing` was copied then, and the caller has restored proxy, force and
-  /// target of the tool. The others keep their forces. Invalid after `move_to` (see `moves`). No allocation.
-  void restore(const TissueView& tissue, std::span<const ContactTool> tools, std::size_t t,
-               std::span<const Candidate> pressing) noexcept;
-  /// Number of calls of `move_to`.
-  std::uint64_t moves() const noexcept { return moves_; }
   /// Back to the state after construction: the next ticks are bitwise equal to the first ticks.
   void reset() noexcept;
 
@@ -125,7 +114,6 @@ class ContactProblem {
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
   double feedback_ = 0.0;
   double floor_ = 0.0;
-  std::uint64_t moves_ = 0;
 };
 
 }}  // namespace palpate

@@ -197,43 +197,6 @@ PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const Contact
   rows_.move_to(fresh.rows_);
   pressing_count_ = violated_count_ = 0;
   feedback_ = 0.0;
-  ++moves_;
-}
-
-PALPATE_INLINE double ContactProblem::share_from_behind(const TissueView& tissue, std::size_t t) noexcept {
-  double all = 0.0, behind = 0.0;
-  for (int i = 0; i < rows_.count(); ++i) {
-    const Candidate& c = rows_.candidate(i);
-    if (c.tool != static_cast<int>(t) || !(c.force > 0.0)) continue;
-    all += c.force;
-    if (candidates_.is_behind(tissue, displacement_, c)) behind += c.force;
-  }
-  return all > 0.0 ? behind / all : 0.0;
-}
-
-PALPATE_INLINE std::size_t ContactProblem::copy_pressing(std::size_t t, std::span<Candidate> to) const noexcept {
-  std::size_t count = 0;
-  for (int i = 0; i < rows_.count() && count < to.size(); ++i) {
-    const Candidate& c = rows_.candidate(i);
-    if (c.tool == static_cast<int>(t) && c.force > 0.0 && !c.grasped) to[count++] = c;
-  }
-  return count;
-}
-
-PALPATE_INLINE void ContactProblem::restore(const TissueView& tissue, std::span<const ContactTool> tools, std::size_t t,
-                                            std::span<const Candidate> pressing) noexcept {
-  const ContactSurface& surface = tissue.contact_surface();
-  candidates_.restore(static_cast<int>(t), pressing, rows_.tick());
-  rows_.clear();
-  for (std::size_t k = 0; k < tools.size(); ++k)
-    for (Candidate& c : grasps_[k].rows())
-      if (is_holding(k)) rows_.add(surface, candidates_, c);
-  for (Candidate& c : candidates_.items()) {
-    c.row = -1;
-    if (c.force > 0.0 && rows_.count() < rows_.capacity() && !is_grasped(c)) rows_.add(surface, candidates_, c);
-  }
-  rows_.restore(tools, displacement_);
-  arrived_ = false;
 }
 
 PALPATE_INLINE void ContactProblem::reset() noexcept {

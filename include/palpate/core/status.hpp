@@ -30,12 +30,10 @@ enum class StatusFlag : std::uint32_t {
   coarse_contact = 1u << 16,  ///< the tool is smaller than the facets: its indentation is mostly estimated, or omitted;
                               ///< or the estimated error of the force is above a tenth of it
   large_displacement = 1u << 17,  ///< loads or a tool displace the tissue too far for linear elasticity
-  lost_contact = 1u << 18,        ///< a tool passed through the surface: it is held on the side from which it pressed,
-                                  ///< or the force is not known
 };
 
 /// Number of flags that exist.
-inline constexpr int status_flag_count = 19;
+inline constexpr int status_flag_count = 18;
 
 /// A set of StatusFlag. Trivially copyable; no operation allocates.
 class Status {
@@ -63,8 +61,7 @@ constexpr std::string_view status_flag_name(int bit) {
   constexpr std::array<std::string_view, status_flag_count> names{
       "NonFiniteInput",     "Saturated",      "SlewLimited",   "Stale",        "DeadlineMissed", "Inverted",
       "SolverNotConverged", "EnergyInjected", "DegradedModel", "Disconnected", "Reacquired",     "Ramping",
-      "NonFiniteForce",     "StepRefused",    "EnergyGrew",    "SlowTissue",   "CoarseContact",  "LargeDisplacement",
-      "LostContact"};
+      "NonFiniteForce",     "StepRefused",    "EnergyGrew",    "SlowTissue",   "CoarseContact",  "LargeDisplacement"};
   return names[static_cast<std::size_t>(bit)];
 }
 

@@ -6,7 +6,6 @@
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/core/triple_buffer.hpp>
 #include <palpate/haptic/energy_tank.hpp>
-#include <palpate/haptic/detail/push_out.hpp>
 #include <palpate/haptic/detail/servo_blade.hpp>
 #include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
@@ -122,7 +121,6 @@ class HapticServo {
   void take_blade(ServoBlade& blade, std::size_t i, const ToolState& state) noexcept;
   bool is_lost(std::size_t i) noexcept;
   bool is_free(const Vector3& position, double depth) noexcept;
-  bool push_out_passed_tools(Status solved) noexcept;
   bool sweep_lost_tools() noexcept;
   bool is_on_the_way(std::size_t i) const noexcept;
   bool place_lost_tools() noexcept;
@@ -137,7 +135,6 @@ class HapticServo {
   ContactProblem problem_;
   CoarseFacetReport coarse_facets_;
   std::vector<ToolInput> inputs_;
-  std::vector<PushOut> push_outs_;
   std::vector<std::optional<ServoBlade>> blades_;  // only for tools that are blades
   std::vector<ForceGate> gates_;
   std::vector<EnergyTank> energies_;  // one per tool, or none at all

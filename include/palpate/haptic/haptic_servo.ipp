@@ -76,7 +76,6 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
     gates_.emplace_back(options.limits(i));
     const bool rotates = !blades_[i] && (contact_tools_[i].half_length > 0.0 || gates_[i].limits().peak_torque > 0.0);
     inputs_.emplace_back(static_cast<int>(i), rotates, options.grasp_buttons);
-    push_outs_.emplace_back(i, blades_[i] ? 0 : problem_.capacity());
   }
   Snapshot empty(problem_.capacity());
   empty.tool_count = tools.size();
@@ -102,15 +101,9 @@ PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const Too
   for (std::size_t i = 0; i < inputs_.size(); ++i) take(i, i < states.size() ? states[i] : detail::unreadable());
   note_updates();
   shared |= problem_.solve(tissue_, contact_tools_);
-  if (push_out_passed_tools(shared)) {
-    shared |= problem_.solve(tissue_, contact_tools_);
-    push_out_passed_tools(shared);  // those that pass again keep the contact from before
-  }
   if (sweep_lost_tools()) shared |= problem_.solve(tissue_, contact_tools_);
   if (place_lost_tools()) shared |= problem_.solve(tissue_, contact_tools_);
   for (std::size_t i = 0; i < inputs_.size(); ++i) recover(i);
-  for (std::size_t i = 0; i < inputs_.size(); ++i)
-    push_outs_[i].end_tick(problem_, tissue_, contact_tools_[i], !shared.has(StatusFlag::solver_not_converged));
   for (std::size_t i = 0; i < inputs_.size(); ++i) pass(i, shared);
   tissue_.end_tick(problem_.vertex_forces());
   publish();
@@ -122,7 +115,6 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
   started_ = false;
   updates_ = 0;
   for (ToolInput& input : inputs_) input.reset();
-  for (PushOut& push_out : push_outs_) push_out.reset();
   for (ContactTool& tool : contact_tools_) tool.reset();
   for (auto& blade : blades_)
     if (blade) blade->reset();
@@ -165,12 +157,6 @@ PALPATE_INLINE void HapticServo::note_updates() noexcept {
 PALPATE_INLINE void HapticServo::take(std::size_t i, const ToolState& state) noexcept {
   if (blades_[i]) return take_blade(*blades_[i], i, state);
   inputs_[i].take(state, tissue_.to_world(), tissue_.contact_surface(), problem_.contacts(), contact_tools_[i]);
-  push_outs_[i].begin_tick(problem_, contact_tools_[i], inputs_[i].restarted());
-  if (push_outs_[i].is_beside(contact_tools_[i]) && !tissue_.contact_surface().is_inside(inputs_[i].position())) {
-    inputs_[i].lose();
-    push_outs_[i].lose();
-    contact_tools_[i].lift();
-  }
   if (!energies_.empty()) energies_[i].rotated(gates_[i].last_torque().dot(inputs_[i].rotation()));
 }
 
@@ -220,16 +206,6 @@ PALPATE_INLINE bool HapticServo::is_on_the_way(std::size_t i) const noexcept {
   return tool.active && detail::is_zero(tool.force) && (tool.target - tool.proxy).norm() > near * tool.radius;
 }
 
-/// Tools that have passed return to the last contact that was right; true if any of them was not held before.
-PALPATE_INLINE bool HapticServo::push_out_passed_tools(Status solved) noexcept {
-  bool any = false;
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    if (push_outs_[i].has_passed(problem_, tissue_, contact_tools_[i], !solved.has(StatusFlag::solver_not_converged)))
-      any = push_outs_[i].push_out(problem_, tissue_, contact_tools_) || any;
-  }
-  return any;
-}
-
 /// Lost tools are swept again from where they were outside, and tools on the way the rest of it; true if there are any.
 PALPATE_INLINE bool HapticServo::sweep_lost_tools() noexcept {
   const ContactSurface& surface = tissue_.contact_surface();
@@ -263,12 +239,10 @@ PALPATE_INLINE bool HapticServo::place_lost_tools() noexcept {
 
 /// A tool that is lost even so is placed on the resting surface in the next tick, with the ramp.
 PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
-  if (is_lost(i)) {
+  if (is_lost(i))
     inputs_[i].lose();
-    push_outs_[i].lose();
-  } else if (!inputs_[i].is_passing()) {
+  else if (!inputs_[i].is_passing())
     inputs_[i].note_outside(problem_.contacts(), contact_tools_[i]);
-  }
 }
 
 /// Updates the error of a tool's force; returns the factor of the force. The bound stays: it was measured for the force
@@ -304,7 +278,7 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   const double time = tissue_.has_updates() ? input.stamp(stale_tissue_after_) : input.time();
   forces_[i] = gates_[i].apply(force, torque, input.now(), time, input.readable(), input.restarted());
   if (energy != nullptr) energy->gave(forces_[i].force());
-  forces_[i].status |= input.status() | push_outs_[i].status() | shared | limited | problem_.status_of(i, tool);
+  forces_[i].status |= input.status() | shared | limited | problem_.status_of(i, tool);
   const ForceError& error = errors_[i];
   const auto is_large = [&](double part) { return part > detail::flagged_error * error.force && part < infinity; };
   if (is_large(error.parts.mesh)) forces_[i].status.set(StatusFlag::coarse_contact);

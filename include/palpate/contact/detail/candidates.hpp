@@ -117,14 +117,6 @@ class Candidates {
   /// Evaluates a candidate at the present deformation and proxy.
   void evaluate(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
                 Candidate& c) noexcept;
-  /// Whether a point that presses a tool is on facets that face away from it, at rest and as they are deformed: the
-  /// tool has passed through them.
-  bool is_behind(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept {
-    return !c.grasped && !faces_sphere(tissue, displacement, c);
-  }
-  /// Returns the points of a tool to an earlier state: these press, and no others. `tick` is the last in which points
-  /// may have stuck. The next update rebuilds the list.
-  void restore(int tool, std::span<const Candidate> pressing, std::uint64_t tick) noexcept;
   /// Deformed position of a candidate's point [m].
   Vector3 position(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
   /// Sets the position of a candidate's point and updates its gap and normal.

@@ -188,25 +188,6 @@ PALPATE_INLINE Status Candidates::update(const TissueView& tissue, std::span<con
   return status;
 }
 
-PALPATE_INLINE void Candidates::restore(int tool, std::span<const Candidate> pressing, std::uint64_t tick) noexcept {
-  for (Candidate& c : items())
-    if (c.tool == tool) c.lift();
-  for (const Candidate& old : pressing) {
-    const std::span<Candidate> known = items();
-    auto at = std::find_if(known.begin(), known.end(),
-                           [&](const Candidate& c) { return c.tool == tool && c.sample == old.sample; });
-    if (at == known.end()) {
-      if (list_.count == maximum()) continue;
-      ++list_.count;
-    }
-    *at = old;
-    at->row = at->slot = -1;
-    at->history.known = 0;
-    if (at->stuck_tick != 0) at->stuck_tick = tick;
-  }
-  forget();
-}
-
 PALPATE_INLINE Vector3 Candidates::position(const TissueView& tissue, SurfaceDisplacement& displacement,
                                             const Candidate& c) const noexcept {
   const ContactSample& sample = sample_of(c);

@@ -68,10 +68,6 @@ class ContactRows {
 
   /// Writes the solution to rows, vertices and tools. Candidates get their forces; they stay where they are.
   void apply(std::span<ContactTool> tools, SurfaceDisplacement& displacement) noexcept;
-  /// Restores the forces that the candidates of the rows have, without a solution.
-  void restore(std::span<const ContactTool> tools, SurfaceDisplacement& displacement) noexcept;
-  /// Number of the tick, for `Candidate::stuck_tick`.
-  std::uint64_t tick() const noexcept { return tick_; }
   /// The longest displacement of a row's point from where its candidate is to the solution [m].
   double longest_path() const noexcept { return longest_path_; }
   /// Moves the candidates of the rows to the solution.

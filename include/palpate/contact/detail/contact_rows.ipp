@@ -316,23 +316,6 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
   longest_path_ = std::sqrt(longest);
 }
 
-PALPATE_INLINE void ContactRows::restore(std::span<const ContactTool> tools,
-                                         SurfaceDisplacement& displacement) noexcept {
-  displacement.clear();
-  problem_.resize(count_);
-  for (int i = 0; i < count_; ++i) {
-    Contact& row = rows_[at(i)];
-    const ContactTool& tool = tools[at(row.tool)];
-    reach(tool, *candidate_[at(i)], row);
-    problem_.lambda[at(i)] = row.force;
-    problem_.b[at(i)] = row.normal.dot(tool.target - row.rest) + row.offset;
-    const Vector3 total = row.total();
-    for (std::size_t a = 0; a < 3; ++a)
-      if (row.weights[a] > 0.0) displacement.add(row.vertices[a], -row.weights[a] * total, slot_[at(row.vertices[a])]);
-  }
-  for (const VertexForce& f : displacement.forces()) slot_[at(f.vertex)] = -1;
-}
-
 PALPATE_INLINE void ContactRows::place_points() noexcept {
   for (int i = 0; i < count_; ++i) candidate_[at(i)]->point = rows_[at(i)].point;
 }
