@@ -13,7 +13,7 @@ using namespace palpate;
 enum class PolicyName {
   sparse_cholesky,
   conjugate_gradient,
-  assembled_conjugate_gradient,
+  matrix_free_conjugate_gradient,
   selective_inverse,
   condensed_inverse,
   condensed_float,
@@ -22,7 +22,7 @@ enum class PolicyName {
 };
 
 inline constexpr std::array all_policies{
-    PolicyName::sparse_cholesky,    PolicyName::conjugate_gradient,          PolicyName::assembled_conjugate_gradient,
+    PolicyName::sparse_cholesky,    PolicyName::conjugate_gradient,          PolicyName::matrix_free_conjugate_gradient,
     PolicyName::selective_inverse,  PolicyName::condensed_inverse,           PolicyName::condensed_float,
     PolicyName::condensed_cholesky, PolicyName::condensed_conjugate_gradient};
 
@@ -37,7 +37,7 @@ inline const char* name(PolicyName p) {
 /// Relative accuracy to expect on a well conditioned body.
 inline double accuracy(PolicyName p) {
   if (p == PolicyName::condensed_float) return 1e-4;
-  const bool iterative = p == PolicyName::conjugate_gradient || p == PolicyName::assembled_conjugate_gradient ||
+  const bool iterative = p == PolicyName::conjugate_gradient || p == PolicyName::matrix_free_conjugate_gradient ||
                          p == PolicyName::condensed_conjugate_gradient;
   return iterative ? 1e-8 : 1e-11;
 }

@@ -25,7 +25,8 @@ TEST_CASE("the cache of a body is rejected for other fibres", "[model][cache][fi
   Scene scene;
   scene.fix("x0");
   const auto key_of = [&](const Body<Tet4>& body) {
-    return cache_key(body_key(body), conditions_of(body.mesh, scene), {}, assemble_stiffness<Tet4>(body, {}), "policy", 8);
+    return cache_key(body_key(body), conditions_of(body.mesh, scene), {}, assemble_stiffness<Tet4>(body, {}), "policy",
+                     8);
   };
   const CacheKey key = key_of(make_body(mesh, muscle));
   std::string why;

@@ -191,7 +191,7 @@ TEST_CASE("an element with other quadrature points is another element", "[model]
 }
 
 TEST_CASE("a solver with nothing to store is reported", "[model][cache]") {
-  for (PolicyName policy : {PolicyName::conjugate_gradient, PolicyName::assembled_conjugate_gradient}) {
+  for (PolicyName policy : {PolicyName::conjugate_gradient, PolicyName::matrix_free_conjugate_gradient}) {
     const CacheFolder folder;
     Setup setup;
     setup.policy = policy;

@@ -81,7 +81,7 @@ class ContactCompliance {
     return static_cast<std::size_t>(slot_of_[static_cast<std::size_t>(vertex)]);
   }
 
-  /// Takes the columns that the background thread has finished; `arrived` tells whether there were any.
+  /// Takes the columns that the background thread has finished; `arrived`: there was one.
   Status collect(bool& arrived) noexcept;
 
   /// Computes or requests a missing column, in the least recently used slot.
