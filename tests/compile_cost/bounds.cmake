@@ -12,7 +12,7 @@ set(readme_compiled_functions 1550)
 # recordings and the report of a loop; 15500 before factorisation by several threads; 16200 before the elimination order
 # by several threads with its minimum cuts, and the choice of kernels by processor; 16300 before pads that a tool grasps,
 # the incomplete factorisation and the condition of iterative solvers.
-set(readme_header_only_functions 16900)
+set(readme_header_only_functions 17100)
 set(mesh_only_compiled_percent 115)
 set(mesh_only_header_only_percent 180)
 set(mesh_only_compiled_functions 140)

@@ -56,7 +56,9 @@ struct SystemSource {
   /// Estimates by two threads when the system is large.
   void estimate_accuracy(const FreeStiffness& free, AnyStaticSystem& system, SetupReport& report) const;
   /// Flags or refuses the system by its measured accuracy.
-  static void judge(SetupReport& report);
+  void judge(SetupReport& report) const;
+  /// An estimate by iteration is a lower bound in the 2-norm, usually within a factor 10.
+  bool is_ill_conditioned(const SetupReport& report) const noexcept;
   /// Refuses a system whose softest motion is lost in rounding: a mechanism or near-mechanism that the geometric check
   /// does not find. Only checked when digits are lost.
   void require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system, const SetupReport& report) const;

@@ -95,7 +95,7 @@ PALPATE_INLINE void SystemSource::estimate_accuracy(const FreeStiffness& free, A
 
 PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system,
                                                          const SetupReport& report) const {
-  const bool doubtful = report.probe_error > flagged_probe_error || report.condition_estimate > flagged_condition;
+  const bool doubtful = report.probe_error > flagged_probe_error || is_ill_conditioned(report);
   if (!doubtful) return;
   const SoftestMotion softest = probe_softest_motion(free, system);
   if (!(softest.error > refused_softest_error)) return;
@@ -114,7 +114,11 @@ PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& fr
   raise(std::move(p));
 }
 
-PALPATE_INLINE void SystemSource::judge(SetupReport& report) {
+PALPATE_INLINE bool SystemSource::is_ill_conditioned(const SetupReport& report) const noexcept {
+  return report.condition_estimate > (recipe.iterative ? 0.1 : 1.0) * flagged_condition;
+}
+
+PALPATE_INLINE void SystemSource::judge(SetupReport& report) const {
   if (report.probe_error > refused_probe_error) {
     SetupProblem p;
     p.kind = SetupErrorKind::ill_conditioned;
@@ -129,7 +133,7 @@ PALPATE_INLINE void SystemSource::judge(SetupReport& report) {
   if (report.probe_error > flagged_probe_error)
     report.set(SetupFlag::ill_conditioned, "a solve with a known answer is wrong by " + number(report.probe_error) +
                                                " (relative): forces are no more accurate than that");
-  else if (report.condition_estimate > flagged_condition)
+  else if (is_ill_conditioned(report))
     report.set(SetupFlag::ill_conditioned,
                "the condition of the stiffness is about " + number(report.condition_estimate) +
                    ": a change of parameters in the last digits changes the forces noticeably");
