@@ -2,6 +2,10 @@
 
 namespace test {
 
+// Assembled is the default.
+static_assert(
+    std::derived_from<SolverTraits<WithAssembly<ConjugateGradient, Assembled>>, SolverTraits<ConjugateGradient>>);
+
 std::unique_ptr<AnyModel> make_conjugate_gradient(const Mesh<Tet4>& mesh, const Scene& scene,
                                                   const Materials& materials, const SetupOptions& options) {
   return std::make_unique<ModelOf<ConjugateGradient>>(mesh, scene, materials, options);

@@ -12,9 +12,8 @@ TouchScene grasp_scene() {
   TouchScene scene;
   scene.name = "grasp";
   scene.text =
-      "Two fingers. Push one against the lobe from above, take the other with Tab, and pinch it from the side. With "
-      "key "
-      "G each holds a pad.";
+      "Two fingers. Push one against the lobe from above, take the other with Tab, and pinch it from the side. "
+      "With key G each holds a pad.";
 
   scene.mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   scene.tissues = {{.region = everywhere, .youngs_modulus = 5e3}};

@@ -102,6 +102,8 @@ struct SolverTraits<ConjugateGradient> {
   static Uncondensed make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
                           const SetupLimits& limits);
 };
+template <>
+struct SolverTraits<WithAssembly<ConjugateGradient, Assembled>> : SolverTraits<ConjugateGradient> {};
 
 template <std::floating_point S>
 struct SolverTraits<BasicSelectiveInverse<S>> {
