@@ -56,6 +56,9 @@ class ContactProblem {
   ContactSurface::Closest closest(const TissueView& tissue, const Vector3& position, double distance) noexcept;
   /// What `solve` returned for all tools does not include this: coarse_contact of one tool.
   Status status_of(std::size_t t, const ContactTool& tool) const noexcept { return local_.status(t, tool); }
+  /// The share of a tool's contact force, 0 to 1, at points whose facets face away from it, at rest and deformed: they
+  /// push it out of the body on the wrong side. Grasped points do not count. No allocation; O(contacts).
+  double force_from_behind(const TissueView& tissue, std::size_t t) noexcept;
   /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m].
   double indentation(std::size_t t, const ContactTool& tool) const noexcept;
   /// Estimated error of the force of a tool in the last tick: from the mesh, as measured at set-up, from the linear

@@ -136,6 +136,17 @@ PALPATE_INLINE double ContactProblem::indentation(std::size_t t, const ContactTo
   return force > 0.0 ? std::max(0.0, rows_.push_work(static_cast<int>(t)) / force - tool.compliance * force) : 0.0;
 }
 
+PALPATE_INLINE double ContactProblem::force_from_behind(const TissueView& tissue, std::size_t t) noexcept {
+  double all = 0.0, behind = 0.0;
+  for (int i = 0; i < rows_.count(); ++i) {
+    const Candidate& c = rows_.candidate(i);
+    if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
+    all += c.force;
+    if (!candidates_.faces_sphere(tissue, displacement_, c)) behind += c.force;
+  }
+  return all > 0.0 ? behind / all : 0.0;
+}
+
 /// The strain follows from the force on a fine mesh.
 PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, std::size_t t,
                                                      const ContactTool& tool, ForceError& error) const noexcept {

@@ -30,10 +30,12 @@ enum class StatusFlag : std::uint32_t {
   coarse_contact = 1u << 16,  ///< the tool is smaller than the facets: its indentation is mostly estimated, or omitted;
                               ///< or the estimated error of the force is above a tenth of it
   large_displacement = 1u << 17,  ///< loads or a tool displace the tissue too far for linear elasticity
+  lost_contact = 1u << 18,  ///< the tool is inside the tissue: it passed through the surface, or entered where the
+                            ///< body cannot be touched; its force is zero, or points the wrong way
 };
 
 /// Number of flags that exist.
-inline constexpr int status_flag_count = 18;
+inline constexpr int status_flag_count = 19;
 
 /// A set of StatusFlag. Trivially copyable; no operation allocates.
 class Status {
@@ -61,7 +63,8 @@ constexpr std::string_view status_flag_name(int bit) {
   constexpr std::array<std::string_view, status_flag_count> names{
       "NonFiniteInput",     "Saturated",      "SlewLimited",   "Stale",        "DeadlineMissed", "Inverted",
       "SolverNotConverged", "EnergyInjected", "DegradedModel", "Disconnected", "Reacquired",     "Ramping",
-      "NonFiniteForce",     "StepRefused",    "EnergyGrew",    "SlowTissue",   "CoarseContact",  "LargeDisplacement"};
+      "NonFiniteForce",     "StepRefused",    "EnergyGrew",    "SlowTissue",   "CoarseContact",  "LargeDisplacement",
+      "LostContact"};
   return names[static_cast<std::size_t>(bit)];
 }
 

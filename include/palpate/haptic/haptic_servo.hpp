@@ -125,6 +125,7 @@ class HapticServo {
   bool is_on_the_way(std::size_t i) const noexcept;
   bool place_lost_tools() noexcept;
   void recover(std::size_t i) noexcept;
+  bool has_lost_contact(std::size_t i) noexcept;
   double estimate_error(std::size_t i) noexcept;
   void pass(std::size_t i, Status shared) noexcept;
   void publish() noexcept;
@@ -142,6 +143,7 @@ class HapticServo {
   std::vector<ForceError> errors_;
   double stale_tissue_after_;
   bool corrected_force_;
+  std::vector<char> lost_contact_;  // of each tool, in the last tick
   std::uint64_t updates_ = 0;
   bool started_ = false;
   TripleBuffer<Snapshot> snapshots_;

@@ -63,7 +63,8 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
       forces_(tools.size()),
       errors_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after),
-      corrected_force_(options.corrected_force) {
+      corrected_force_(options.corrected_force),
+      lost_contact_(tools.size(), false) {
   if (tissue_.contact_surface().triangles().empty())
     raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
           "Name a surface group with Scene::touch");
@@ -120,6 +121,7 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
     if (blade) blade->reset();
   for (ForceGate& gate : gates_) gate.reset();
   std::fill(errors_.begin(), errors_.end(), ForceError{});
+  std::fill(lost_contact_.begin(), lost_contact_.end(), false);
   tissue_.end_tick({});
   for (EnergyTank& energy : energies_) energy.reset();
   publish();
@@ -245,6 +247,19 @@ PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
     inputs_[i].note_outside(problem_.contacts(), contact_tools_[i]);
 }
 
+/// Whether a tool is inside the body without a force, or facets push that it has passed. It stays so until no facet
+/// does, and the tool is outside. For the end of a tick, after `recover`.
+PALPATE_INLINE bool HapticServo::has_lost_contact(std::size_t i) noexcept {
+  constexpr double most_from_behind = 0.1;
+  const ContactTool& tool = contact_tools_[i];
+  if (!tool.active) return false;
+  if (detail::is_zero(tool.force)) return inputs_[i].is_passing() || inputs_[i].is_lost();
+  if (problem_.force_from_behind(tissue_, i) > most_from_behind) return true;
+  if (!lost_contact_[i]) return false;
+  const double distance = tissue_.contact_surface().distance_of_body(tool.proxy);
+  return distance < 0.0 && !is_free(tool.proxy, -distance);
+}
+
 /// Updates the error of a tool's force; returns the factor of the force. The bound stays: it was measured for the force
 /// without correction, and the expected error may be too large.
 PALPATE_INLINE double HapticServo::estimate_error(std::size_t i) noexcept {
@@ -279,6 +294,8 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   forces_[i] = gates_[i].apply(force, torque, input.now(), time, input.readable(), input.restarted());
   if (energy != nullptr) energy->gave(forces_[i].force());
   forces_[i].status |= input.status() | shared | limited | problem_.status_of(i, tool);
+  lost_contact_[i] = !blades_[i] && has_lost_contact(i);
+  if (lost_contact_[i]) forces_[i].status.set(StatusFlag::lost_contact);
   const ForceError& error = errors_[i];
   const auto is_large = [&](double part) { return part > detail::flagged_error * error.force && part < infinity; };
   if (is_large(error.parts.mesh)) forces_[i].status.set(StatusFlag::coarse_contact);

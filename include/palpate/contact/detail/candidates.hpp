@@ -122,6 +122,9 @@ class Candidates {
   /// Sets the position of a candidate's point and updates its gap and normal.
   inline void place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept;
 
+  /// Whether the sphere is on the outer side of a facet with the point, at rest or deformed, where both are now.
+  bool faces_sphere(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
+
   /// Upper bound of the displacement of the surface near the tools, as far as it is known [m].
   double reach(const TissueView& tissue, SurfaceDisplacement& displacement) const noexcept;
   /// The same for distances from where the surface is expected.
@@ -186,7 +189,6 @@ class Candidates {
                                  const Search& search) noexcept;
   void consider(const TissueView& tissue, const ContactTool& tool, Candidate& c, const Search& search, List& list,
                 SurfaceDisplacement& displacement) noexcept;
-  bool faces_sphere(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
 
   double smallest_radius_;
   ContactSamples samples_;
