@@ -27,24 +27,27 @@ PALPATE_INLINE MissingDepth::Level MissingDepth::at(std::size_t position, double
 /// vertices the contact is so large that the position over a facet does not matter, and the rest is ignored.
 PALPATE_INLINE ForceAccuracy::Loads ForceAccuracy::largest_loads(int number,
                                                                  std::span<const Contact> contacts) noexcept {
-  constexpr int capacity = 24;
+  constexpr int capacity = 24, unused = -1;
+  constexpr std::size_t slots = 64;  // of a hash table from vertices to their numbers here
   std::array<int, capacity> vertices;
   std::array<double, capacity> loads;
+  std::array<signed char, slots> numbers;
+  numbers.fill(unused);
   int count = 0;
   for (const Contact& c : contacts) {
     if (c.tool != number || !(c.force > 0.0)) continue;
     for (std::size_t a = 0; a < 3; ++a) {
       if (!(c.weights[a] > 0.0)) continue;
-      int i = 0;
-      while (i < count && vertices[static_cast<std::size_t>(i)] != c.vertices[a]) ++i;
-      if (i == capacity) continue;
-      const auto at = static_cast<std::size_t>(i);
-      if (i == count) {
-        vertices[at] = c.vertices[a];
-        loads[at] = 0.0;
-        ++count;
+      auto slot = static_cast<std::size_t>(c.vertices[a]) % slots;
+      while (numbers[slot] != unused && vertices[static_cast<std::size_t>(numbers[slot])] != c.vertices[a])
+        slot = (slot + 1) % slots;
+      if (numbers[slot] == unused) {
+        if (count == capacity) continue;
+        vertices[static_cast<std::size_t>(count)] = c.vertices[a];
+        loads[static_cast<std::size_t>(count)] = 0.0;
+        numbers[slot] = static_cast<signed char>(count++);
       }
-      loads[at] += c.weights[a] * c.force;
+      loads[static_cast<std::size_t>(numbers[slot])] += c.weights[a] * c.force;
     }
   }
   Loads largest;
