@@ -19,6 +19,7 @@ class PalpateTest(ConanFile):
         toolchain = CMakeToolchain(self)
         if not self.dependencies["palpate"].options.get_safe("header_only", True):
             toolchain.cache_variables["PALPATE_TARGET"] = "palpate::compiled"
+        toolchain.user_presets_path = False
         toolchain.generate()
         CMakeDeps(self).generate()
 
