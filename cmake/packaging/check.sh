@@ -72,7 +72,7 @@ conan_packages() {
   for header_only in True False; do
     conan create "$root/cmake/packaging/conan" -pr:a "$build/conan/profile" -o "&:header_only=$header_only" --no-remote \
       > "$build/conan/$header_only.log" 2>&1 || { tail -n 50 "$build/conan/$header_only.log"; return 1; }
-    say "header_only=$header_only: $(tail -n 1 "$build/conan/$header_only.log")"
+    say "header_only=$header_only: $(grep . "$build/conan/$header_only.log" | tail -n 1)"
   done
 }
 
