@@ -8,7 +8,8 @@ if(CMAKE_VERSION VERSION_GREATER_EQUAL 3.23)
   install(TARGETS palpate EXPORT palpateTargets FILE_SET HEADERS)
 else()
   install(TARGETS palpate EXPORT palpateTargets)
-  install(DIRECTORY include/palpate DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.[hit]pp")
+  install(DIRECTORY include/palpate DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.[hit]pp"
+          PATTERN palpate/c EXCLUDE)
 endif()
 install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${package_dir})
 
@@ -35,18 +36,24 @@ if(PALPATE_BUILD_C)
 endif()
 
 configure_package_config_file(cmake/palpateConfig.cmake.in ${PROJECT_BINARY_DIR}/palpateConfig.cmake
-                              INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_LIBDIR
-                              NO_SET_AND_CHECK_MACRO)
+                              INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES ${PROJECT_BINARY_DIR}/palpateConfig.cmake ${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake
         DESTINATION ${package_dir})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/palpate)
 
-# pkg-config: paths are relative to the .pc file, so that the installed folder may be moved.
+# pkg-config: paths are relative to the .pc file, so that the installed folder may be moved. Absolute folders of the
+# installation are taken as they are.
 function(palpate_pc name folder)
   file(RELATIVE_PATH PALPATE_PC_TO_PREFIX ${CMAKE_INSTALL_FULL_${folder}}/pkgconfig ${CMAKE_INSTALL_PREFIX})
   string(REGEX REPLACE "/$" "" PALPATE_PC_TO_PREFIX "${PALPATE_PC_TO_PREFIX}")
+  foreach(used LIBDIR INCLUDEDIR)
+    set(PALPATE_PC_${used} "\${prefix}/${CMAKE_INSTALL_${used}}")
+    if(IS_ABSOLUTE "${CMAKE_INSTALL_${used}}")
+      set(PALPATE_PC_${used} ${CMAKE_INSTALL_${used}})
+    endif()
+  endforeach()
   configure_file(cmake/${name}.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_${folder}}/pkgconfig)
 endfunction()

@@ -11,6 +11,7 @@ file(RENAME ${PREFIX}-first ${PREFIX})
 # All headers must be installed, and no file may contain a path of the build machine.
 file(GLOB_RECURSE headers RELATIVE ${SOURCE}/include ${SOURCE}/include/palpate/*.hpp
      ${SOURCE}/include/palpate/*.ipp)
+list(FILTER headers EXCLUDE REGEX "^palpate/c/")
 foreach(header IN LISTS headers)
   if(NOT EXISTS ${PREFIX}/include/${header})
     message(FATAL_ERROR "${header} is not installed")
