@@ -68,15 +68,13 @@ class CoupledScene {
   }
 
   void step() {
-    for (std::size_t i = 0; i < size(); ++i) aim(i);
-
-    for (const GatedForce& force : servo_.tick(states_)) status_.count(force.status);
-
-    for (std::size_t i = 0; i < size(); ++i) push(i);
+    for (std::size_t i = 0; i < size(); ++i) hands_[i].start = rigid_.position(i);
     rigid_.step(dt);
-    for (std::size_t i = 0; i < size(); ++i) add_work(i);
-    tissue_.advance();  // corrects the tissue for these forces, then predicts its next step
     time_ += dt;
+    for (std::size_t i = 0; i < size(); ++i) aim(i);
+    for (const GatedForce& force : servo_.tick(states_)) status_.count(force.status);
+    for (std::size_t i = 0; i < size(); ++i) push(i);
+    tissue_.advance();  // corrects the tissue for these forces, then predicts its next step
   }
 
   Energy energy() const {
@@ -97,9 +95,8 @@ class CoupledScene {
 
  private:
   struct Hand {
-    Vector3 position = Vector3::Zero(), next = Vector3::Zero();
-    Vector3 force = Vector3::Zero(), damping = Vector3::Zero();  ///< in this step [N], the second is a part of the first
-    Vector3 start = Vector3::Zero();                             ///< of the instrument in this step
+    Vector3 position = Vector3::Zero(), next = Vector3::Zero();  ///< before and after the step
+    Vector3 start = Vector3::Zero();  ///< of the instrument, before the step
   };
 
   ToolList tools() const {
@@ -131,39 +128,33 @@ class CoupledScene {
     return made;
   }
 
-  /// The pose that the instrument would have after the step without tissue.
+  /// The pose after the step with the hand, but without tissue.
   void aim(std::size_t i) {
     const Instrument& b = instruments_[i];
-    Hand& hand = hands_[i];
-    hand.start = rigid_.position(i);
-    const btTransform free = rigid_.free_pose(i, dt);
+    const Hand& hand = hands_[i];
     ToolState& state = states_[i];
-    state.position = (b.mass / (dt * dt) * to_eigen(free.getOrigin()) + b.hand_stiffness * hand.next +
+    state.position = (b.mass / (dt * dt) * rigid_.position(i) + b.hand_stiffness * hand.next +
                       b.hand_damping / dt * (hand.start + hand.next - hand.position)) /
                      stiffness(i);
-    state.orientation = to_array(free.getRotation());
-    state.time = state.now = time_ + dt;
+    state.orientation = to_array(rigid_.pose(i).getRotation());
+    state.time = state.now = time_;
   }
-  /// Force and torque of the tissue, before the force gate, which protects motors and hands; and the force of the hand.
+  /// Applies the force of the tissue, before the force gate, which protects motors and hands, and that of the hand.
   void push(std::size_t i) {
     const Instrument& b = instruments_[i];
     Hand& hand = hands_[i];
     const Vector3 force = servo_.contact_force(i), torque = servo_.contact_torque(i);
     finite_ = finite_ && force.allFinite() && torque.allFinite();
-    const Vector3 end = states_[i].position + force / stiffness(i);
-    hand.damping = b.hand_damping / dt * ((hand.next - hand.position) - (end - hand.start));
-    hand.force = b.hand_stiffness > 0.0 ? Vector3(b.hand_stiffness * (hand.next - end) + hand.damping) : Vector3::Zero();
-    rigid_.push(i, force + hand.force, torque);
-    states_[i].valid = true;
-  }
-  void add_work(std::size_t i) {
-    Hand& hand = hands_[i];
-    const Vector3 moved = rigid_.position(i) - hand.start, path = hand.next - hand.position;
-    work_on_instruments_ +=
-        servo_.contact_force(i).dot(moved) + dt * servo_.contact_torque(i).dot(rigid_.angular_velocity(i));
-    sums_.work_of_hands += hand.force.dot(path);
-    sums_.lost_in_hands += hand.damping.dot(path - moved);
+    const Vector3 path = hand.next - hand.position;
+    const Vector3 end = states_[i].position + force / stiffness(i), moved = end - hand.start;
+    const Vector3 damping = b.hand_damping / dt * (path - moved);
+    const Vector3 hand_force = b.hand_stiffness * (hand.next - end) + damping;  // zero for a free instrument
+    rigid_.push(i, force + hand_force, torque, dt);
+    work_on_instruments_ += force.dot(moved) + dt * torque.dot(rigid_.angular_velocity(i));
+    sums_.work_of_hands += hand_force.dot(path);
+    sums_.lost_in_hands += damping.dot(path - moved);
     hand.position = hand.next;
+    states_[i].valid = true;
   }
 
   Tissue& tissue_;

@@ -71,18 +71,16 @@ class RigidWorld {
     return bodies_[i]->getAngularFactor().isZero() ? palpate::infinity : 1.0 / inverse.maxCoeff();
   }
 
-  /// Where an instrument would be after a step without forces other than its weight.
-  btTransform free_pose(std::size_t i, double dt) const {
-    btTransform free;
-    const Vector3 v = velocity(i) + dt * gravity_;
-    btTransformUtil::integrateTransform(pose(i), to_bullet(v), bodies_[i]->getAngularVelocity(),
-                                        static_cast<btScalar>(dt), free);
-    return free;
-  }
-  /// Force [N] and torque about the centre of mass [N m] for the next step.
-  void push(std::size_t i, const Vector3& force, const Vector3& torque) {
-    bodies_[i]->applyCentralForce(to_bullet(force));
-    bodies_[i]->applyTorque(to_bullet(torque));
+  /// Adds a force [N] and a torque about the centre of mass [N m] to the step that has just been taken: they change the
+  /// velocity by dt times the acceleration, and the pose by dt times that.
+  void push(std::size_t i, const Vector3& force, const Vector3& torque, double dt) {
+    btRigidBody& body = *bodies_[i];
+    const auto h = static_cast<btScalar>(dt);
+    const btVector3 velocity = h * body.getInvMass() * to_bullet(force);
+    const btVector3 spin = h * (body.getInvInertiaTensorWorld() * (to_bullet(torque) * body.getAngularFactor()));
+    btTransform moved;
+    btTransformUtil::integrateTransform(body.getWorldTransform(), velocity, spin, h, moved);
+    place(body, moved, body.getLinearVelocity() + velocity, body.getAngularVelocity() + spin);
   }
   /// One step of Bullet, with its contacts between instruments.
   void step(double dt) {
@@ -92,10 +90,8 @@ class RigidWorld {
   }
   /// Takes an instrument away and lets it fall from another position.
   void drop(std::size_t i, const Vector3& from) {
-    bodies_[i]->setWorldTransform(btTransform(btQuaternion::getIdentity(), to_bullet(from)));
-    bodies_[i]->setInterpolationWorldTransform(bodies_[i]->getWorldTransform());
-    bodies_[i]->setLinearVelocity(btVector3(0, 0, 0));
-    bodies_[i]->setAngularVelocity(btVector3(0, 0, 0));
+    const btVector3 zero(0, 0, 0);
+    place(*bodies_[i], btTransform(btQuaternion::getIdentity(), to_bullet(from)), zero, zero);
   }
 
   double kinetic_energy() const {
@@ -119,6 +115,13 @@ class RigidWorld {
   long collisions() const { return collisions_; }
 
  private:
+  static void place(btRigidBody& body, const btTransform& pose, const btVector3& velocity, const btVector3& spin) {
+    body.setWorldTransform(pose);
+    body.setInterpolationWorldTransform(pose);
+    body.setLinearVelocity(velocity);
+    body.setAngularVelocity(spin);
+    body.updateInertiaTensor();
+  }
   void add(const Instrument& instrument) {
     const auto radius = static_cast<btScalar>(instrument.radius);
     if (instrument.half_length > 0.0)
