@@ -86,8 +86,8 @@ class CoupledScene {
     const MeteredMotion& meter = dynamic_cast<const MeteredMotion&>(tissue_.motion());
     e.tissue_kinetic = meter.kinetic_energy();
     e.tissue_stored = meter.stored_energy();
-    e.lost_by_instruments = work_on_instruments_ + sums_.work_of_hands - sums_.lost_in_hands - e.kinetic - e.weight -
-                            e.springs;
+    e.lost_by_instruments =
+        work_on_instruments_ + sums_.work_of_hands - sums_.lost_in_hands - e.kinetic - e.weight - e.springs;
     e.lost_at_surface = -work_on_instruments_ - meter.work();
     e.lost_in_tissue = meter.work() - e.tissue_kinetic - e.tissue_stored;
     return e;
@@ -96,7 +96,7 @@ class CoupledScene {
  private:
   struct Hand {
     Vector3 position = Vector3::Zero(), next = Vector3::Zero();  ///< before and after the step
-    Vector3 start = Vector3::Zero();  ///< of the instrument, before the step
+    Vector3 start = Vector3::Zero();                             ///< of the instrument, before the step
   };
 
   ToolList tools() const {

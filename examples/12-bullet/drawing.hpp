@@ -12,21 +12,21 @@ namespace bullet_example {
 using touch::text;
 
 /// Instruments as spheres in a row, so that parts of them can be hidden.
-struct Ball {
+struct DrawnSphere {
   Vector3 centre;
   double radius;
 };
-inline std::vector<Ball> balls_of(const CoupledScene& scene) {
-  std::vector<Ball> balls;
+inline std::vector<DrawnSphere> spheres_of(const CoupledScene& scene) {
+  std::vector<DrawnSphere> spheres;
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const Instrument& b = scene.instrument(i);
     const Vector3 axis = to_eigen(scene.rigid().pose(i).getBasis().getColumn(2));
     const int steps = b.half_length > 0.0 ? 24 : 0;
     for (int k = 0; k <= steps; ++k)
-      balls.push_back({scene.rigid().position(i) + (steps == 0 ? 0.0 : 2.0 * k / steps - 1.0) * b.half_length * axis,
-                       b.radius});
+      spheres.push_back(
+          {scene.rigid().position(i) + (steps == 0 ? 0.0 : 2.0 * k / steps - 1.0) * b.half_length * axis, b.radius});
   }
-  return balls;
+  return spheres;
 }
 
 /// The boundary of the tissue as it is now.
@@ -59,19 +59,21 @@ inline std::string draw_view(Tissue& tissue, const CoupledScene& scene) {
                             x(t[0]), y(t[0]), x(t[1]), y(t[1]), x(t[2]), y(t[2]), static_cast<int>(235 * lit),
                             static_cast<int>(150 * lit), static_cast<int>(140 * lit)));
   }
-  for (const Ball& b : balls_of(scene))
+  for (const DrawnSphere& b : spheres_of(scene))
     parts.emplace_back(b.centre.dot(towards), text("<circle cx='%.1f' cy='%.1f' r='%.1f' fill='url(#steel)'/>",
                                                    x(b.centre), y(b.centre), 1e3 * b.radius));
   std::ranges::stable_sort(parts, {}, &std::pair<double, std::string>::first);
   const Vector3 middle = tissue.origin() + 0.02 * Vector3::UnitZ();
   std::string svg = text(
-      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='%.1f %.1f 190 130' width='760'><defs><radialGradient id='steel' "
-      "cx='.35' cy='.3'><stop offset='0' stop-color='#eef'/><stop offset='1' stop-color='#567'/></radialGradient></defs>"
-      "<rect x='%.1f' y='%.1f' width='190' height='130' fill='#fff'/>",
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='%.1f %.1f 190 145' width='760'><defs><radialGradient "
+      "id='steel' "
+      "cx='.35' cy='.3'><stop offset='0' stop-color='#eef'/><stop offset='1' "
+      "stop-color='#567'/></radialGradient></defs>"
+      "<rect x='%.1f' y='%.1f' width='190' height='145' fill='#fff'/>",
       x(middle) - 95.0, y(middle) - 75.0, x(middle) - 95.0, y(middle) - 75.0);
   for (const auto& part : parts) svg += part.second;
   return svg + text("<text x='%.1f' y='%.1f' font-size='5' font-family='sans-serif'>%.2f s</text></svg>\n",
-                    x(middle) - 90.0, y(middle) - 66.0, scene.time());
+                    x(middle) - 90.0, y(middle) - 68.0, scene.time());
 }
 
 /// The section at depth `at` [m]: outline of the tissue, circles of the instruments. Millimetres.
@@ -87,17 +89,20 @@ inline std::string draw_section(Tissue& tissue, const CoupledScene& scene, doubl
       lines += text("M%.2f %.2fL%.2f %.2f", 1e3 * cut[0].x(), -1e3 * cut[0].z(), 1e3 * cut[1].x(), -1e3 * cut[1].z());
   }
   std::string svg =
-      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='-10 -125 170 130' width='760'><rect x='-10' y='-125' width='170' "
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='-10 -125 170 130' width='760'><rect x='-10' y='-125' "
+      "width='170' "
       "height='130' fill='#fff'/>";
-  for (const Ball& b : balls_of(scene)) {
+  for (const DrawnSphere& b : spheres_of(scene)) {
     const double square = b.radius * b.radius - (b.centre.y() - at) * (b.centre.y() - at);
     if (square > 0.0)
       svg += text("<circle cx='%.2f' cy='%.2f' r='%.2f' fill='#9ab'/>", 1e3 * b.centre.x(), -1e3 * b.centre.z(),
                   1e3 * std::sqrt(square));
   }
   return svg + "<path d='" + lines + "' stroke='#a33' stroke-width='.6' fill='none' stroke-linecap='round'/>" +
-         text("<text x='-5' y='-118' font-size='5' font-family='sans-serif'>%.2f s, section at y = %.1f mm</text></svg>\n",
-              scene.time(), 1e3 * at);
+         text(
+             "<text x='-5' y='-118' font-size='5' font-family='sans-serif'>%.2f s, section at y = %.1f "
+             "mm</text></svg>\n",
+             scene.time(), 1e3 * at);
 }
 
 }  // namespace bullet_example

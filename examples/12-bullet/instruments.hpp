@@ -46,9 +46,7 @@ struct Instrument {
 class RigidWorld {
  public:
   RigidWorld(const std::vector<Instrument>& instruments, const Vector3& gravity)
-      : dispatcher_(&configuration_),
-        world_(&dispatcher_, &broadphase_, &solver_, &configuration_),
-        gravity_(gravity) {
+      : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &solver_, &configuration_), gravity_(gravity) {
     gContactBreakingThreshold = btScalar(5e-4);  // [m] the default, 20 mm, is larger than the instruments
     world_.setGravity(to_bullet(gravity));
     world_.getSolverInfo().m_restitutionVelocityThreshold = btScalar(0.02);  // [m/s]

@@ -2,20 +2,22 @@
 //
 //   example_12_bullet [--seconds S] [--out DIR]
 //
-// Bullet simulates rigid instruments: two balls that are dropped, a loose shaft, a hook that sweeps over the tissue and
-// pushes them about, and a probe that a hand presses into it. They touch each other by Bullet's contact solver. The
+// Bullet simulates rigid instruments: two spheres that are dropped, a loose shaft, a hook that sweeps over the tissue
+// and pushes them about, and a probe that a hand presses into it. They touch each other by Bullet's contact solver. The
 // tissue below is a moving model of palpate, which touches them by its own. README.md explains the coupling.
 //
 //   1. `RigidWorld` (instruments.hpp) is a plain btDiscreteDynamicsWorld.
-//   2. `CoupledScene` (coupled_scene.hpp) is the loop: in every millisecond HapticServo::tick computes the forces between
+//   2. `CoupledScene` (coupled_scene.hpp) is the loop: in every millisecond HapticServo::tick computes the forces
+//   between
 //      instruments and tissue, Bullet advances the instruments, and MovingTissue::advance the tissue.
-//   3. `MeteredMotion` (metered_motion.hpp) measures the energy of the tissue. `Energy` has a sum for every way in which
+//   3. `MeteredMotion` (metered_motion.hpp) measures the energy of the tissue. `Energy` has a sum for every way in
+//   which
 //      energy enters or is lost, and they are printed once per second.
 //   4. DIR/report.html has drawings, sections and energies.
 //
-// The example checks itself. The exit code is 0 when all forces were finite, no instrument was deeper in the tissue than
-// its radius or left it, instruments collided with each other, and no part of the scene gave out more energy than it
-// received; 1 when not, 2 when the arguments were refused.
+// The example checks itself. The exit code is 0 when all forces were finite, no instrument was deeper in the tissue
+// than its radius or left it, instruments collided with each other, and no part of the scene gave out more energy than
+// it received; 1 when not, 2 when the arguments were refused.
 #include "../common/page.hpp"
 #include "coupled_scene.hpp"
 #include "drawing.hpp"
@@ -32,7 +34,7 @@ const Vector3 size(0.132, 0.09, 0.03);  // [m] of the tissue; the last is the he
 constexpr double drop_every = 10.0, hook_period = 5.0, probe_period = 4.0;  // [s]
 constexpr double friction = 0.2;
 constexpr double allowed_gain = 0.005;  // of the energy that was lost
-enum : std::size_t { first_ball, second_ball, shaft, hook, probe };
+enum : std::size_t { first_sphere, second_sphere, shaft, hook, probe };
 
 /// Height of the surface at rest: a shallow bowl, so that what is dropped stays [m].
 double surface_at(double x, double y) {
@@ -59,20 +61,37 @@ Vector3 hook_at(double time) {
   return place(-0.045 + 0.027 * swing(time, hook_period), 0.0, 8.5e-3);
 }
 Vector3 probe_at(double time) {
-  return place(0.042, 0.0, 0.042 - 0.011 * swing(time, probe_period));
+  return place(0.042, 0.0, 0.042 - 0.010 * swing(time, probe_period));
 }
 
 std::vector<Instrument> make_instruments() {
   const btQuaternion lying(btVector3(1, 0, 0), static_cast<btScalar>(0.5 * std::numbers::pi));
   std::vector<Instrument> all(5);
-  all[first_ball] = {.name = "ball 1", .radius = 0.012, .mass = 7.2e-3, .position = place(0.0, 0.0, 0.037)};
-  all[second_ball] = {.name = "ball 2", .radius = 0.012, .mass = 7.2e-3, .position = place(0.008, 0.003, 0.075)};
-  all[shaft] = {.name = "shaft", .radius = 8e-3, .half_length = 0.02, .mass = 14e-3,
-                .position = place(-0.02, 0.0, 0.011), .rotation = lying};
-  all[hook] = {.name = "hook", .radius = 7e-3, .half_length = 0.015, .mass = 20e-3, .position = hook_at(0.0),
-               .rotation = lying, .upright = true, .hand_stiffness = 400.0, .hand_damping = 2.0};
-  all[probe] = {.name = "probe", .radius = 8e-3, .half_length = 0.03, .mass = 30e-3,
-                .position = probe_at(0.0), .upright = true, .hand_stiffness = 400.0, .hand_damping = 2.0};
+  all[first_sphere] = {.name = "sphere 1", .radius = 0.012, .mass = 7.2e-3, .position = place(0.0, 0.0, 0.037)};
+  all[second_sphere] = {.name = "sphere 2", .radius = 0.012, .mass = 7.2e-3, .position = place(0.008, 0.003, 0.075)};
+  all[shaft] = {.name = "shaft",
+                .radius = 8e-3,
+                .half_length = 0.02,
+                .mass = 14e-3,
+                .position = place(-0.02, 0.0, 0.011),
+                .rotation = lying};
+  all[hook] = {.name = "hook",
+               .radius = 7e-3,
+               .half_length = 0.015,
+               .mass = 20e-3,
+               .position = hook_at(0.0),
+               .rotation = lying,
+               .upright = true,
+               .hand_stiffness = 400.0,
+               .hand_damping = 2.0};
+  all[probe] = {.name = "probe",
+                .radius = 8e-3,
+                .half_length = 0.03,
+                .mass = 30e-3,
+                .position = probe_at(0.0),
+                .upright = true,
+                .hand_stiffness = 400.0,
+                .hand_damping = 2.0};
   return all;
 }
 
@@ -86,7 +105,7 @@ struct Watch {
   std::vector<Vector2> stored, put_in, lost;  ///< over time [s], [mJ]
 
   void look(const CoupledScene& scene) {
-    for (const Ball& b : balls_of(scene)) {
+    for (const DrawnSphere& b : spheres_of(scene)) {
       const double depth = surface_at(b.centre.x(), b.centre.y()) - (b.centre.z() - b.radius);
       deepest = std::max(deepest, depth / b.radius);
       inside = inside && b.centre.x() > 0.0 && b.centre.x() < size[0] && b.centre.y() > 0.0 && b.centre.y() < size[1];
@@ -147,7 +166,7 @@ int run(const Arguments& arguments) {
     scene.move_hand(hook, hook_at(time));
     scene.move_hand(probe, probe_at(time));
     if (k % std::lround(drop_every / scene.dt) == 0)
-      for (const std::size_t ball : {first_ball, second_ball}) scene.drop(ball, instruments[ball].position);
+      for (const std::size_t i : {first_sphere, second_sphere}) scene.drop(i, instruments[i].position);
     scene.step();
     watch.look(scene);
     if (k % 10 == 0) watch.account(time, scene.energy());
@@ -171,10 +190,11 @@ int run(const Arguments& arguments) {
       {"put in by hands, lost, stored",
        text("%.3f, %.3f, %.3f mJ", 1e3 * e.work_of_hands, 1e3 * e.lost(), 1e3 * e.total())},
       {"energy gained", text("%.5f mJ (allowed: %.3f mJ)", 1e3 * watch.gained, 1e3 * allowed_gain * e.lost())}};
-  example::write_page(arguments.out, "Instruments of Bullet on tissue of palpate",
-                      "Two balls are dropped, a hook sweeps a loose shaft over the tissue, a probe is pressed into it. "
-                      "Every drawing is followed by the section in the middle.",
-                      pictures, figures);
+  example::write_page(
+      arguments.out, "Instruments of Bullet on tissue of palpate",
+      "Two spheres are dropped, a hook sweeps a loose shaft over the tissue, a probe is pressed into it. "
+      "Every drawing is followed by the section in the middle.",
+      pictures, figures);
   example::print(figures);
   std::cout << "status: " << scene.status() << "\nwrote " << (arguments.out / "report.html").string() << '\n';
   const bool passes = scene.finite() && std::isfinite(e.total()) && watch.inside && watch.deepest < 1.0 &&
@@ -192,7 +212,8 @@ int main(int count, char** values) {
     const bool has_value = i + 1 < count;
     if (has_value && name == "--out") {
       arguments.out = values[i + 1];
-    } else if (!has_value || name != "--seconds" || io::parse_decimal(values[i + 1], arguments.seconds) != std::errc{} ||
+    } else if (!has_value || name != "--seconds" ||
+               io::parse_decimal(values[i + 1], arguments.seconds) != std::errc{} ||
                !(arguments.seconds >= 1.0 && arguments.seconds <= 3600.0)) {
       std::cerr << "usage: example_12_bullet [--seconds 1 ... 3600] [--out DIR]\n";
       return 2;

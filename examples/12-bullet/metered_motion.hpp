@@ -22,9 +22,9 @@ class MeteredMotion final : public palpate::TissueMotion {
     load_ = u_ = VectorX::Zero(mass_.size());
   }
 
-  double kinetic_energy() const { return kinetic_; }                  ///< [J]
-  double stored_energy() const { return elastic_->energy(u_); }       ///< [J]; evaluates all elements
-  double work() const { return work_; }                               ///< of the loads, which are those of the tools [J]
+  double kinetic_energy() const { return kinetic_; }             ///< [J]
+  double stored_energy() const { return elastic_->energy(u_); }  ///< [J]; evaluates all elements
+  double work() const { return work_; }                          ///< of the loads, which are those of the tools [J]
   const VectorX& final_displacement() const { return u_; }
 
   palpate::MotionStep step(double h) noexcept override {
