@@ -52,6 +52,7 @@ class CoupledScene {
   std::size_t size() const { return instruments_.size(); }
   const Instrument& instrument(std::size_t i) const { return instruments_[i]; }
   const RigidWorld& rigid() const { return rigid_; }
+  RigidWorld& rigid() { return rigid_; }
   const HapticServo& servo() const { return servo_; }
   const StatusCounters& status() const { return status_; }
   double time() const { return time_; }

@@ -53,10 +53,21 @@ class RigidWorld {
     for (const Instrument& i : instruments) add(i);
   }
   ~RigidWorld() {
-    for (const auto& body : bodies_) world_.removeRigidBody(body.get());
+    for (const auto* list : {&bodies_, &walls_})
+      for (const auto& body : *list) world_.removeRigidBody(body.get());
   }
   RigidWorld(const RigidWorld&) = delete;
   RigidWorld& operator=(const RigidWorld&) = delete;
+
+  /// A fixed plane, `inward` from which instruments stay.
+  void add_wall(const Vector3& point, const Vector3& inward) {
+    shapes_.push_back(
+        std::make_unique<btStaticPlaneShape>(to_bullet(inward), static_cast<btScalar>(inward.dot(point))));
+    btRigidBody::btRigidBodyConstructionInfo info(btScalar(0), nullptr, shapes_.back().get());
+    info.m_friction = info.m_restitution = btScalar(0.5);
+    walls_.push_back(std::make_unique<btRigidBody>(info));
+    world_.addRigidBody(walls_.back().get());
+  }
 
   std::size_t size() const { return bodies_.size(); }
   const btTransform& pose(std::size_t i) const { return bodies_[i]->getWorldTransform(); }
@@ -83,8 +94,11 @@ class RigidWorld {
   /// One step of Bullet, with its contacts between instruments.
   void step(double dt) {
     world_.stepSimulation(static_cast<btScalar>(dt), 0);
-    for (int k = 0; k < dispatcher_.getNumManifolds(); ++k)
-      if (dispatcher_.getManifoldByIndexInternal(k)->getNumContacts() > 0) ++collisions_;
+    for (int k = 0; k < dispatcher_.getNumManifolds(); ++k) {
+      const btPersistentManifold* pair = dispatcher_.getManifoldByIndexInternal(k);
+      if (pair->getNumContacts() > 0 && !pair->getBody0()->isStaticObject() && !pair->getBody1()->isStaticObject())
+        ++collisions_;
+    }
   }
   /// Takes an instrument away and lets it fall from another position.
   void drop(std::size_t i, const Vector3& from) {
@@ -145,7 +159,7 @@ class RigidWorld {
   btSequentialImpulseConstraintSolver solver_;
   btDiscreteDynamicsWorld world_;
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
-  std::vector<std::unique_ptr<btRigidBody>> bodies_;
+  std::vector<std::unique_ptr<btRigidBody>> bodies_, walls_;
   Vector3 gravity_;
   long collisions_ = 0;
 };
