@@ -7,17 +7,15 @@
 // tissue below is a moving model of palpate, which touches them by its own. README.md explains the coupling.
 //
 //   1. `RigidWorld` (instruments.hpp) is a plain btDiscreteDynamicsWorld.
-//   2. `CoupledScene` (coupled_scene.hpp) is the loop: in every millisecond HapticServo::tick computes the forces
-//   between
-//      instruments and tissue, Bullet advances the instruments, and MovingTissue::advance the tissue.
+//   2. `CoupledScene` (coupled_scene.hpp) is the loop. In every millisecond Bullet makes its step, HapticServo::tick
+//      computes the forces between instruments and tissue, and MovingTissue::advance moves the tissue.
 //   3. `MeteredMotion` (metered_motion.hpp) measures the energy of the tissue. `Energy` has a sum for every way in
-//   which
-//      energy enters or is lost, and they are printed once per second.
+//      which energy enters or is lost; they are printed once per second.
 //   4. DIR/report.html has drawings, sections and energies.
 //
 // The example checks itself. The exit code is 0 when all forces were finite, no instrument was deeper in the tissue
 // than its radius or left it, instruments collided with each other, and no part of the scene gave out more energy than
-// it received; 1 when not, 2 when the arguments were refused.
+// it received (`allowed_gain`); 1 when not, 2 when the arguments were refused.
 #include "../common/page.hpp"
 #include "coupled_scene.hpp"
 #include "drawing.hpp"
@@ -102,7 +100,7 @@ struct Watch {
   double gained = 0.0;   ///< [J] energy given out by a part of the scene that it had not received
   bool inside = true;    ///< no instrument has left the tissue
   std::array<double, 4> most_lost{};
-  std::vector<Vector2> stored, put_in, lost;  ///< over time [s], [mJ]
+  std::vector<Vector2> put_in, lost;  ///< over time [s], [mJ]
 
   void look(const CoupledScene& scene) {
     for (const DrawnSphere& b : spheres_of(scene)) {
@@ -121,7 +119,6 @@ struct Watch {
       sum += most_lost[i] - now[i];
     }
     gained = std::max(gained, sum);
-    stored.emplace_back(time, 1e3 * e.total());
     put_in.emplace_back(time, 1e3 * e.work_of_hands);
     lost.emplace_back(time, 1e3 * e.lost());
   }
@@ -144,64 +141,96 @@ struct Arguments {
   std::filesystem::path out = "build/bullet";
 };
 
-int run(const Arguments& arguments) {
-  Tissue tissue(make_bowl(), Scene().fix("z0").touch("z1"),
-                Elastic{{.youngs_modulus = 15e3, .poisson_ratio = 0.4, .density = 1000.0}}, {},
-                {.stiffness_damping = 5e-4, .solve = {.maximum_iterations = 100, .tolerance = 1e-3}});
-  const std::vector<Instrument> instruments = make_instruments();
-  CoupledScene scene(tissue, instruments, friction);
-  for (const int axis : {0, 1}) {  // the tissue lies in a tray with walls
-    scene.rigid().add_wall(Vector3::Zero(), Vector3::Unit(axis));
-    scene.rigid().add_wall(size, -Vector3::Unit(axis));
+Tissue make_tissue() {
+  return {make_bowl(),
+          Scene().fix("z0").touch("z1"),
+          Elastic{{.youngs_modulus = 15e3, .poisson_ratio = 0.4, .density = 1000.0}},
+          {},
+          {.stiffness_damping = 5e-4, .solve = {.maximum_iterations = 100, .tolerance = 1e-3}}};
+}
+
+/// The tissue lies in a tray: spheres that bounce away stay above it.
+void add_tray(RigidWorld& world) {
+  for (const int axis : {0, 1}) {
+    world.add_wall(Vector3::Zero(), Vector3::Unit(axis));
+    world.add_wall(size, -Vector3::Unit(axis));
   }
-  Watch watch;
-  std::vector<std::string> pictures;
-  std::filesystem::create_directories(arguments.out);
-  const auto draw = [&] {
+}
+
+/// What hands do in step k.
+void move_hands(CoupledScene& scene, long k) {
+  const double time = scene.dt * static_cast<double>(k);
+  scene.move_hand(hook, hook_at(time));
+  scene.move_hand(probe, probe_at(time));
+  if (k % std::lround(drop_every / scene.dt) == 0)
+    for (const std::size_t i : {first_sphere, second_sphere}) scene.drop(i, scene.instrument(i).position);
+}
+
+/// SVG elements of the page; each is also a file.
+struct Pictures {
+  std::filesystem::path folder;
+  std::vector<std::string> all{};
+
+  void add(Tissue& tissue, const CoupledScene& scene) {
     for (const std::string& svg : {draw_view(tissue, scene), draw_section(tissue, scene, 0.5 * size[1])}) {
-      pictures.push_back(svg);
-      io::write_file((arguments.out / text("picture_%02zu.svg", pictures.size())).string(), {svg});
+      all.push_back(svg);
+      io::write_file((folder / text("picture_%02zu.svg", all.size())).string(), {svg});
     }
-  };
-
-  print_header();
-  const auto steps = std::lround(arguments.seconds / scene.dt);
-  for (long k = 1; k <= steps && watch.is_sound(scene); ++k) {
-    const double time = scene.dt * static_cast<double>(k);
-    scene.move_hand(hook, hook_at(time));
-    scene.move_hand(probe, probe_at(time));
-    if (k % std::lround(drop_every / scene.dt) == 0)
-      for (const std::size_t i : {first_sphere, second_sphere}) scene.drop(i, instruments[i].position);
-    scene.step();
-    watch.look(scene);
-    if (k % 10 == 0) watch.account(time, scene.energy());
-    if (k % 1000 == 0) print_row(time, scene.energy(), watch.gained);
-    for (const long at : {60L, 82L, 110L, 160L, 2000L, 3610L, 30000L, steps})
-      if (k == at) draw();
   }
+};
 
-  const Energy e = scene.energy();
-  const double largest = std::ranges::max(watch.lost, {}, [](const Vector2& p) { return p[1]; })[1];
-  touch::Chart chart("energies", touch::from_zero("time [s]", arguments.seconds),
-                     touch::from_zero("energy put in (grey) and lost (blue) [mJ]", largest));
+std::string draw_energies(const Watch& watch, double seconds) {
+  const double most = std::max(watch.lost.back()[1], watch.put_in.back()[1]);
+  touch::Chart chart("energies", touch::from_zero("time [s]", seconds),
+                     touch::from_zero("put in by hands (grey), lost (blue) [mJ]", most));
   chart.line(watch.put_in, "grey");
   chart.line(watch.lost, "blue");
-  pictures.insert(pictures.begin(), chart.svg());
+  return chart.svg();
+}
+
+void report(const CoupledScene& scene, const Watch& watch, Pictures& pictures) {
+  const Energy e = scene.energy();
+  pictures.all.insert(pictures.all.begin(), draw_energies(watch, scene.time()));
   const example::Figures figures{
       {"precision of Bullet", sizeof(btScalar) == 8 ? "double" : "single"},
       {"instruments, largest force of the tissue on one", text("%zu, %.3f N", scene.size(), watch.force)},
       {"largest indentation, in radii", text("%.2f", watch.deepest)},
-      {"steps in which a pair of instruments touched", text("%ld", scene.rigid().collisions())},
+      {"pairs of instruments that touched, summed over steps", text("%ld", scene.rigid().collisions())},
       {"put in by hands, lost, stored",
        text("%.3f, %.3f, %.3f mJ", 1e3 * e.work_of_hands, 1e3 * e.lost(), 1e3 * e.total())},
       {"energy gained", text("%.5f mJ (allowed: %.3f mJ)", 1e3 * watch.gained, 1e3 * allowed_gain * e.lost())}};
   example::write_page(
-      arguments.out, "Instruments of Bullet on tissue of palpate",
+      pictures.folder, "Instruments of Bullet on tissue of palpate",
       "Two spheres are dropped, a hook sweeps a loose shaft over the tissue, a probe is pressed into it. "
       "Every drawing is followed by the section in the middle.",
-      pictures, figures);
+      pictures.all, figures);
   example::print(figures);
-  std::cout << "status: " << scene.status() << "\nwrote " << (arguments.out / "report.html").string() << '\n';
+  std::cout << "status: " << scene.status() << "\nwrote " << (pictures.folder / "report.html").string() << '\n';
+}
+
+int run(const Arguments& arguments) {
+  Tissue tissue = make_tissue();
+  CoupledScene scene(tissue, make_instruments(), friction);
+  add_tray(scene.rigid());
+  Watch watch;
+  Pictures pictures{arguments.out};
+  std::filesystem::create_directories(arguments.out);
+
+  print_header();
+  const long steps = std::lround(arguments.seconds / scene.dt);
+  for (long k = 1; k <= steps && watch.is_sound(scene); ++k) {
+    move_hands(scene, k);
+    scene.step();
+    watch.look(scene);
+    if (k % 10 == 0) watch.account(scene.time(), scene.energy());
+    if (k % 1000 == 0) print_row(scene.time(), scene.energy(), watch.gained);
+    for (const long at : {60L, 82L, 110L, 160L, 2000L, 3610L, 30000L, steps})
+      if (k == at) pictures.add(tissue, scene);
+  }
+  watch.account(scene.time(), scene.energy());
+
+  report(scene, watch, pictures);
+  const Energy e = scene.energy();
   const bool passes = watch.is_sound(scene) && std::isfinite(e.total()) && scene.rigid().collisions() > 0 &&
                       watch.gained < allowed_gain * e.lost();
   if (!passes) std::cerr << "a force was not finite, an instrument went through the tissue, or energy was gained\n";
