@@ -2,7 +2,7 @@
 //
 //   example_12_bullet [--seconds S] [--out DIR]
 //
-// Bullet simulates rigid instruments: two spheres that are dropped, a loose shaft, a hook that sweeps over the tissue
+// Bullet simulates rigid instruments: two spheres that are dropped, a free shaft, a hook that sweeps over the tissue
 // and pushes them about, and a probe that a hand presses into it. They touch each other by Bullet's contact solver. The
 // tissue below is a moving model of palpate, which touches them by its own. README.md explains the coupling.
 //
@@ -201,7 +201,7 @@ void report(const CoupledScene& scene, const Watch& watch, Pictures& pictures) {
       {"energy gained", text("%.5f mJ (allowed: %.3f mJ)", 1e3 * watch.gained, 1e3 * allowed_gain * e.lost())}};
   example::write_page(
       pictures.folder, "Instruments of Bullet on tissue of palpate",
-      "Two spheres are dropped, a hook sweeps a loose shaft over the tissue, a probe is pressed into it. "
+      "Two spheres are dropped, a hook sweeps a free shaft over the tissue, a probe is pressed into it. "
       "Every drawing is followed by the section in the middle.",
       pictures.all, figures);
   example::print(figures);
