@@ -7,7 +7,7 @@ cmake_minimum_required(VERSION 3.21)
 
 get_filename_component(root ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
 file(GLOB_RECURSE pages RELATIVE ${root} ${root}/docs/*.md)
-list(APPEND pages README.md tests/fuzz/README.md examples/data/README.md)
+list(APPEND pages README.md tests/fuzz/README.md examples/data/README.md examples/12-bullet/README.md)
 
 set(failed "")
 set(links 0)
