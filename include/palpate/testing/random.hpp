@@ -8,7 +8,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
-/// SplitMix64 (Steele, Lea and Flood 2014). The distributions of <random> differ between standard libraries; this
+/// SplitMix64 (Steele, Lea and Flood 2014). The distributions of `<random>` differ between standard libraries; this
 /// generator does not.
 class Random {
  public:

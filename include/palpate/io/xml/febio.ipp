@@ -14,7 +14,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io::xml {
 
 namespace detail {
 
-/// Parses one file: <Mesh> of specification 3 and 4, <Geometry> of 2.
+/// Parses one file: `<Mesh>` of specification 3 and 4, `<Geometry>` of 2.
 class FebioParser {
  public:
   FebioParser(std::string_view text, const std::string& name)

@@ -5,7 +5,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::xml {
 
-/// Reads a whole file with one <Piece>, of either byte order. Cells and regions are read as from legacy files, see
+/// Reads a whole file with one `<Piece>`, of either byte order. Cells and regions are read as from legacy files, see
 /// vtk_legacy.hpp. The compressors LZ4 and LZMA are refused, as are several pieces.
 ///
 /// Errors: bad_file, index_out_of_range, count_too_large, non_finite, unsupported, with file and line, in binary data

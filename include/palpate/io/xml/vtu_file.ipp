@@ -13,7 +13,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io::xml {
 
 namespace detail {
 
-/// Parses one file ("VTK File Formats", XML; <AppendedData> may contain any bytes and is cut off before).
+/// Parses one file ("VTK File Formats", XML; `<AppendedData>` may contain any bytes and is cut off before).
 class VtuParser {
  public:
   VtuParser(std::string_view text, const std::string& name, std::size_t appended)

@@ -22,7 +22,7 @@ inline constexpr std::array vtu_types{
     vtk::NumberType{"Float64", vtk::NumberType::real, 64},
 };
 
-/// Reads a <DataArray> number by number. The size is checked before anything is allocated.
+/// Reads a `<DataArray>` number by number. The size is checked before anything is allocated.
 class VtuArray {
  public:
   /// `count` numbers; refuses more and fewer.
