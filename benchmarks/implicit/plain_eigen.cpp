@@ -27,10 +27,9 @@ PlainEigenStep::PlainEigenStep(const Pressing& pressing, double tolerance) : tol
       b.col(3 * a + 1) << 0, n.y(), 0, n.x(), n.z(), 0;
       b.col(3 * a + 2) << 0, 0, n.z(), 0, n.y(), n.x();
     }
-    const double lambda = bench::tissue.lame_lambda(), mu = bench::tissue.shear_modulus();
-    Matrix6 d = Matrix6::Zero();
-    d.topLeftCorner<3, 3>().setConstant(lambda);
-    d.diagonal() << lambda + 2 * mu, lambda + 2 * mu, lambda + 2 * mu, mu, mu, mu;
+    const double mu = bench::tissue.shear_modulus();
+    Matrix6 d = Matrix6::Zero();  // the part of lambda follows the deformation, see add
+    d.diagonal() << 2 * mu, 2 * mu, 2 * mu, mu, mu, mu;
     element.stiffness = g.volume * b.transpose() * d * b;
     for (int i = 0; i < 12; ++i)
       for (int j = 0; j < 12; ++j) {
@@ -85,8 +84,12 @@ void PlainEigenStep::add(Element& e, const VectorX& predicted, VectorX& residual
   cofactor << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
   const double lambda = bench::tissue.lame_lambda(), mu = bench::tissue.shear_modulus();
   const Matrix3 stress = e.volume * (2.0 * mu * (f - r) + lambda * (f.determinant() - 1.0) * cofactor);
-  for (int a = 0; a < 4; ++a)
+  Eigen::Matrix<double, 12, 1> volume_change;
+  for (int a = 0; a < 4; ++a) {
     residual.segment<3>(3 * Index{e.nodes[static_cast<std::size_t>(a)]}) -= stress * e.gradient.row(a).transpose();
+    volume_change.segment<3>(3 * a) = cofactor * e.gradient.row(a).transpose();
+  }
+  rotated.noalias() += e.volume * lambda * volume_change * volume_change.transpose();
   double* const values = a_.valuePtr();
   for (int k = 0; k < 144; ++k)
     if (const Index at = e.place[static_cast<std::size_t>(k)]; at >= 0) values[at] += rotated.data()[k];

@@ -62,6 +62,14 @@ Vector3 probe_at(double time) {
   return place(0.042, 0.0, 0.042 - 0.010 * swing(time, probe_period));
 }
 
+/// An upright instrument in a hand.
+Instrument in_hand(Instrument instrument) {
+  instrument.upright = true;
+  instrument.hand_stiffness = 400.0;
+  instrument.hand_damping = 2.0;
+  return instrument;
+}
+
 std::vector<Instrument> make_instruments() {
   const btQuaternion lying(btVector3(1, 0, 0), static_cast<btScalar>(0.5 * std::numbers::pi));
   std::vector<Instrument> all(5);
@@ -73,23 +81,14 @@ std::vector<Instrument> make_instruments() {
                 .mass = 14e-3,
                 .position = place(-0.02, 0.0, 0.011),
                 .rotation = lying};
-  all[hook] = {.name = "hook",
-               .radius = 7e-3,
-               .half_length = 0.015,
-               .mass = 20e-3,
-               .position = hook_at(0.0),
-               .rotation = lying,
-               .upright = true,
-               .hand_stiffness = 400.0,
-               .hand_damping = 2.0};
-  all[probe] = {.name = "probe",
-                .radius = 8e-3,
-                .half_length = 0.03,
-                .mass = 30e-3,
-                .position = probe_at(0.0),
-                .upright = true,
-                .hand_stiffness = 400.0,
-                .hand_damping = 2.0};
+  all[hook] = in_hand({.name = "hook",
+                       .radius = 7e-3,
+                       .half_length = 0.015,
+                       .mass = 20e-3,
+                       .position = hook_at(0.0),
+                       .rotation = lying});
+  all[probe] =
+      in_hand({.name = "probe", .radius = 8e-3, .half_length = 0.03, .mass = 30e-3, .position = probe_at(0.0)});
   return all;
 }
 

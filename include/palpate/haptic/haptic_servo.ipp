@@ -247,8 +247,8 @@ PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
     inputs_[i].note_outside(problem_.contacts(), contact_tools_[i]);
 }
 
-/// Whether a tool is inside the body without a force, or facets push that it has passed. It stays so until no facet
-/// does, and the tool is outside. For the end of a tick, after `recover`.
+/// Whether a tool is inside the body without a force, or is pushed by facets that it has passed. Remains true until no
+/// such facet pushes and the tool is outside the deformed body. Call it at the end of a tick, after `recover`.
 PALPATE_INLINE bool HapticServo::has_lost_contact(std::size_t i) noexcept {
   constexpr double most_from_behind = 0.1;
   const ContactTool& tool = contact_tools_[i];

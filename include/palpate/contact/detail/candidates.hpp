@@ -122,7 +122,7 @@ class Candidates {
   /// Sets the position of a candidate's point and updates its gap and normal.
   inline void place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept;
 
-  /// Whether the sphere is on the outer side of a facet with the point, at rest or deformed, where both are now.
+  /// Whether the sphere is on the outer side of a facet that contains the point, at rest or deformed.
   bool faces_sphere(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
 
   /// Upper bound of the displacement of the surface near the tools, as far as it is known [m].

@@ -420,9 +420,8 @@ PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const Contact
   if (farthest.gap > c.gap) farthest = c;
 }
 
-/// Whether the sphere is on the outer side of a triangle that contains the point, either at rest or deformed: in a
-/// steep dent only the latter is true. For a point that the sphere reaches through a thin part from behind, both are
-/// false.
+/// In a steep dent the sphere is on the outer side of the deformed facet only. For a point that it reaches from behind,
+/// through a thin part, it is on neither.
 PALPATE_INLINE bool Candidates::faces_sphere(const TissueView& tissue, SurfaceDisplacement& displacement,
                                              const Candidate& c) const noexcept {
   const ContactSurface& surface = tissue.contact_surface();

@@ -43,6 +43,7 @@ class ToolInput {
   bool sweep_from_outside(const ContactSurface& surface, ContactTool& tool) noexcept;
   /// The tool has lost the surface: it is placed again in the next tick.
   void lose() noexcept;
+  /// Whether that happened in this tick.
   bool is_lost() const noexcept { return readable_ && !known_; }
   void reset() noexcept;
 
