@@ -23,7 +23,7 @@ namespace {
 using CorotatedMaterial = Corotational<LinearElastic>;
 using CorotatedBody = HyperelasticBody<Tet4, CorotatedMaterial>;
 template <class Preconditioner = BlockJacobi>
-using Implicit = CorotatedMotion<LinearElastic, double, Preconditioner>;
+using CorotatedSteps = CorotatedMotion<LinearElastic, double, Preconditioner>;
 using Explicit = ExplicitMotion<BatchedTetrahedra<NeoHookean>, CentralDifference>;
 
 const NeoHookean rubber{.youngs_modulus = 3e3, .poisson_ratio = 0.4, .density = 1000.0};
@@ -121,11 +121,11 @@ double difference_to_fresh(TimeScheme scheme) {
   std::vector<NodeId> number;
   const auto rest = without(mesh, gone, number);
   const Scene scene = Scene().gravity(gravity);
-  Implicit<Preconditioner> motion(corotated(mesh), scene, solved(scheme));
+  CorotatedSteps<Preconditioner> motion(corotated(mesh), scene, solved(scheme));
   motion.set_state(drawn_out(mesh), spinning(mesh));
   for (int k = 0; k < 20; ++k) REQUIRE(motion.step(1e-3).taken);
 
-  Implicit<Preconditioner> fresh(corotated(rest), scene, solved(scheme));
+  CorotatedSteps<Preconditioner> fresh(corotated(rest), scene, solved(scheme));
   fresh.set_state(pick(motion.displacement(), number), pick(motion.velocity(), number));
   const CutPhysics<Tet4> physics(corotated(mesh).rest, extract_boundary<Tet4>(mesh), scene);
   motion.remove_elements(is_gone, lumped_mass(corotated(mesh).rest, is_gone), physics.load_left(is_gone));

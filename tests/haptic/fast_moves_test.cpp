@@ -9,14 +9,14 @@ using namespace palpate;
 
 namespace {
 
-constexpr double length = 0.06, small_tip = 4e-3;
+constexpr double pad_length = 0.06, small_tip = 4e-3;
 
 test::Pad plate(double thickness) {
   Scene scene;
   scene.fix("x0").fix("x1").touch("surface");
-  return test::Pad(box_tet4(Vector3(length, length, thickness), {12, 12, thickness > 3e-3 ? 2 : 1}, BoxSplit::six),
-                   scene, LinearElastic{.youngs_modulus = 5e4, .poisson_ratio = 0.3},
-                   {.columns = ColumnFill::synchronous});
+  return test::Pad(
+      box_tet4(Vector3(pad_length, pad_length, thickness), {12, 12, thickness > 3e-3 ? 2 : 1}, BoxSplit::six), scene,
+      LinearElastic{.youngs_modulus = 5e4, .poisson_ratio = 0.3}, {.columns = ColumnFill::synchronous});
 }
 
 /// One straight move to a goal, from above (side 1) or below (-1).
@@ -31,7 +31,7 @@ struct Move {
     const double incline = random.uniform(0.0, 1.0), turn = random.uniform(0.0, 6.28);
     const Vector3 direction(std::sin(incline) * std::cos(turn), std::sin(incline) * std::sin(turn),
                             -side * std::cos(incline));
-    goal = Vector3(random.uniform(0.4, 0.6) * length, random.uniform(0.4, 0.6) * length,
+    goal = Vector3(random.uniform(0.4, 0.6) * pad_length, random.uniform(0.4, 0.6) * pad_length,
                    (side > 0.0 ? thickness : 0.0) + side * end * small_tip);
     // From anywhere within a tick's path, so that the ticks hit the plate at any distance from its surface.
     const double path = ((from_contact ? 0.9 : 2.2) - end) * small_tip / std::cos(incline);

@@ -16,17 +16,17 @@ constexpr double period = 1e-3;
 const Vector3 two_newtons(0.0, 0.0, 2.0);
 
 /// A gate with a clock: by default valid fresh input every millisecond.
-struct Session {
+struct GateSession {
   ForceGate gate;
   double now = 10.0;
 
-  explicit Session(const ForceLimits& limits = {}) : gate(limits) {}
+  explicit GateSession(const ForceLimits& limits = {}) : gate(limits) {}
   GatedForce tick(const Vector3& wanted, bool valid = true, bool restart = false) {
     now += period;
     return gate.apply(wanted, now, now, valid, restart);
   }
   /// Past the ramp.
-  Session& warm(const Vector3& wanted = two_newtons) {
+  GateSession& warm(const Vector3& wanted = two_newtons) {
     for (int i = 0; i < 40; ++i) tick(wanted);
     return *this;
   }
@@ -47,7 +47,7 @@ SetupErrorKind refusal(Change change) {
 }  // namespace
 
 TEST_CASE("the ramp starts at zero and rises monotonically to the wanted force", "[haptic][gate][extreme][D3]") {
-  Session s;
+  GateSession s;
   double before = 0.0;
   for (int i = 0; i < 60; ++i) {
     const GatedForce f = s.tick(two_newtons);
@@ -63,7 +63,7 @@ TEST_CASE("the ramp starts at zero and rises monotonically to the wanted force",
 }
 
 TEST_CASE("a huge force ramps as slowly as the peak force", "[haptic][gate][extreme][D3][D7]") {
-  Session s;
+  GateSession s;
   for (int i = 0; i < 34; ++i) {
     const GatedForce f = s.tick(Vector3(1e308, 1e308, -1e308));
     CHECK(f.status.has(StatusFlag::saturated));
@@ -72,7 +72,7 @@ TEST_CASE("a huge force ramps as slowly as the peak force", "[haptic][gate][extr
 }
 
 TEST_CASE("forces within the limits pass unchanged and unflagged", "[haptic][gate]") {
-  Session s;
+  GateSession s;
   s.warm();
   for (const Vector3& f : {Vector3(0, 0, 2), Vector3(0.1, -0.2, 1.5), Vector3(-0.0, 5e-324, 1.2), Vector3(3.2, 0, 0)}) {
     for (int i = 0; i < 5; ++i) s.tick(f);
@@ -83,7 +83,7 @@ TEST_CASE("forces within the limits pass unchanged and unflagged", "[haptic][gat
 }
 
 TEST_CASE("a force above the peak is shortened, direction kept", "[haptic][gate][extreme][D7]") {
-  Session s;
+  GateSession s;
   for (double size : {3.300001, 10.0, 1e10, 1e300}) {
     const Vector3 direction = Vector3(1, -2, 3).normalized();
     s.warm(size * direction);
@@ -97,7 +97,7 @@ TEST_CASE("a force above the peak is shortened, direction kept", "[haptic][gate]
 TEST_CASE("a force that is not finite gives zero immediately and a new ramp", "[haptic][gate][extreme][D1]") {
   for (double bad : {nan_value, infinity, -infinity})
     for (int axis = 0; axis < 3; ++axis) {
-      Session s;
+      GateSession s;
       s.warm();
       Vector3 wanted = two_newtons;
       wanted[axis] = bad;
@@ -112,7 +112,7 @@ TEST_CASE("a force that is not finite gives zero immediately and a new ramp", "[
 }
 
 TEST_CASE("invalid input gives zero in the same tick and a ramp on reconnect", "[haptic][gate][extreme][D6]") {
-  Session s;
+  GateSession s;
   s.warm();
   for (int i = 0; i < 3; ++i) {
     const GatedForce f = s.tick(two_newtons, false);
@@ -131,13 +131,13 @@ TEST_CASE("invalid input gives zero in the same tick and a ramp on reconnect", "
 }
 
 TEST_CASE("input that is valid in every other tick renders zero", "[haptic][gate][extreme][D6]") {
-  Session s;
+  GateSession s;
   s.warm();
   for (int i = 0; i < 100; ++i) CHECK(s.tick(two_newtons, i % 2 == 1).force() == Vector3::Zero());
 }
 
 TEST_CASE("restart ramps from zero, within the slew limit", "[haptic][gate][extreme][D2]") {
-  Session s;
+  GateSession s;
   s.warm(Vector3(0, 0, 3.3));
   const GatedForce f = s.tick(Vector3(0, 0, 3.3), true, true);
   CHECK_THAT(f.force()[2], WithinAbs(3.3 - 1.65, 1e-12));
@@ -149,7 +149,7 @@ TEST_CASE("stale input fades to exactly zero and recovers by the ramp", "[haptic
   enum class Clock { runs, stands, is_nan };
   const auto kind = GENERATE(Clock::runs, Clock::stands, Clock::is_nan);
   const bool nan_stamp = GENERATE(false, true);
-  Session s;
+  GateSession s;
   s.warm();
   const double stamp = nan_stamp ? nan_value : s.now;
   double before = 2.0;
@@ -174,7 +174,7 @@ TEST_CASE("stale input fades to exactly zero and recovers by the ramp", "[haptic
 }
 
 TEST_CASE("a huge force fades, too", "[haptic][gate][extreme][D5][D7]") {
-  Session s;
+  GateSession s;
   s.warm(Vector3(1e300, 0, 0));
   const double stamp = s.now;
   for (int i = 1; i <= 24; ++i) {
@@ -216,7 +216,7 @@ TEST_CASE("a stall reduces the gain for the time beyond stale_after, counts once
   };
   for (const Case& c :
        {Case{0.002, 1.0, false}, Case{0.005, 0.9, true}, Case{0.020, 0.15, true}, Case{0.200, 0.0, true}}) {
-    Session s;
+    GateSession s;
     s.warm(Vector3(0, 0, 3.0));
     int missed = 0;
     Vector3 before = s.gate.last_force();
@@ -237,7 +237,7 @@ TEST_CASE("a stall reduces the gain for the time beyond stale_after, counts once
 }
 
 TEST_CASE("the change per tick is limited, also with faulty clocks", "[haptic][gate][extreme][D2][D8]") {
-  Session s;
+  GateSession s;
   s.warm(Vector3(3.3, 0, 0));
   SECTION("a full reversal takes four ticks") {
     for (int i = 1; i <= 4; ++i) {
@@ -265,7 +265,7 @@ TEST_CASE("the change per tick is limited, also with faulty clocks", "[haptic][g
 }
 
 TEST_CASE("after a clock is set back the force returns within a ramp", "[haptic][gate][extreme][D5]") {
-  Session s;
+  GateSession s;
   s.warm();
   s.now = -1000.0;
   s.warm();
@@ -318,7 +318,7 @@ TEST_CASE("nothing is stale before the first stale_after has passed", "[haptic][
 
 TEST_CASE("an old stamp does not become fresh when invalid ones are in between", "[haptic][gate][extreme][D5]") {
   for (double other : {nan_value, infinity, 1e300}) {
-    Session s;
+    GateSession s;
     s.warm();
     for (int i = 0; i < 60; ++i) s.gate.apply(two_newtons, s.now, i % 2 == 0 ? other : s.now, true, false);
     INFO(other);
@@ -328,7 +328,7 @@ TEST_CASE("an old stamp does not become fresh when invalid ones are in between",
 
 TEST_CASE("a stall is detected after a clock reading that is not finite", "[haptic][gate][extreme][D5]") {
   for (double other : {nan_value, infinity, -infinity}) {
-    Session s;
+    GateSession s;
     s.warm();
     s.gate.apply(two_newtons, other, s.now + period, true, false);
     s.now += 0.1;
@@ -340,7 +340,7 @@ TEST_CASE("a stall is detected after a clock reading that is not finite", "[hapt
 }
 
 TEST_CASE("reset restores the initial state", "[haptic][gate]") {
-  Session s;
+  GateSession s;
   s.warm();
   s.gate.reset();
   CHECK(s.gate.last_force() == Vector3::Zero());

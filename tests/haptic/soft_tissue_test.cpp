@@ -51,7 +51,7 @@ ToolState above(int k, double depth, double aside = 0.0) {
 }
 
 /// Final state of a session of ticks with tissue steps in between.
-struct Session {
+struct SoftSession {
   Vector3 force = Vector3::Zero();  ///< before the gate [N]
   double largest_change = 0.0;      ///< of the force between two ticks after the first 50 [N]
   Status status;                    ///< of the last 100 ticks
@@ -59,9 +59,9 @@ struct Session {
 };
 
 template <class Depth>
-Session press(MovingTissue& tissue, int ticks, Depth depth, double from = 0.0) {
+SoftSession press(MovingTissue& tissue, int ticks, Depth depth, double from = 0.0) {
   HapticServo servo(tissue, SphereTool{.radius = sphere}, device());
-  Session s;
+  SoftSession s;
   double next = 0.0;
   Vector3 last = Vector3::Zero();
   for (int k = 0; k < ticks; ++k) {
@@ -90,7 +90,7 @@ TEST_CASE("the steady force does not depend on the step and equals that of the s
   std::vector<double> steady;
   for (const double h : {0.02, 0.01, 0.005, 0.001}) {
     Soft<NeoHookean> tissue(pad(), pad_scene(), NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(h));
-    const Session s = press(tissue, 2000, ramp);
+    const SoftSession s = press(tissue, 2000, ramp);
     steady.push_back(s.force[2]);
     CHECK(s.status.ok());
     CHECK(s.largest_change <= 0.1 * s.force[2]);
@@ -288,7 +288,7 @@ TEST_CASE("a viscoelastic tissue under a constant indentation relaxes to the slo
   for (const double h : {0.02, 0.01, 0.005}) {
     Soft<Viscoelastic<NeoHookean, 1>> tissue(pad(), pad_scene(), material, {}, with_step(h));
     early.push_back(press(tissue, 500, ramp).force[2]);
-    const Session s = press(tissue, 4000, [](double) { return ramp(1.0); });
+    const SoftSession s = press(tissue, 4000, [](double) { return ramp(1.0); });
     late.push_back(s.force[2]);
     CHECK(s.status.ok());
   }

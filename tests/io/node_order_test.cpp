@@ -20,7 +20,7 @@ using Table = Eigen::Matrix<double, R, C>;
 
 /// A hexahedron of 20 nodes in an order that no file format uses: corners in binary order, then the middles of the
 /// edges along z, y and x. Only the positions of its nodes matter here; its functions are all zero.
-struct Quad8 {
+struct ZeroQuad8 {
   static constexpr int nodes = 8;
   using Quadrature = user::TensorRule<2, 2>;
   static Table<8, 1> shape(const Vector2&) noexcept { return Table<8, 1>::Zero(); }
@@ -28,11 +28,11 @@ struct Quad8 {
   static Table<8, 2> reference_nodes() noexcept { return Table<8, 2>::Zero(); }
 };
 
-struct Hex20 {
+struct ReorderedHex20 {
   static constexpr int nodes = 20, order = 2;
   static constexpr double reference_volume = 8.0;
   static constexpr std::array<std::array<int, 8>, 6> faces{};
-  using Face = Quad8;
+  using Face = ZeroQuad8;
   using Quadrature = user::TensorRule<2, 3>;
   using MassQuadrature = user::TensorRule<2, 3>;
   static Table<20, 1> shape(const Vector3&) noexcept { return Table<20, 1>::Zero(); }
@@ -156,7 +156,7 @@ TEST_CASE("Every table of node orders is a permutation", "[io]") {
 }
 
 TEMPLATE_TEST_CASE("The node order of an element maps to VTK's and back", "[io]", Tet4, user::Tet10, user::Hex8,
-                   LastFirst, Hex20) {
+                   LastFirst, ReorderedHex20) {
   const auto from = io::element_order<TestType>();
   const auto back = io::vtk_order<TestType>();
   CHECK(is_permutation_of(from, from.size()));
@@ -175,9 +175,9 @@ TEST_CASE("Elements in VTK's own order need no permutation", "[io]") {
 }
 
 TEST_CASE("Mid-edge nodes of real files lie on their edges", "[io]") {
-  CHECK(mid_edge_error(build<Hex20>("msh2", gmsh_hex20)) < 1e-12);
-  CHECK(mid_edge_error(build<Hex20>("vtk2", vtk_hex20())) < 1e-12);
-  CHECK(build<Hex20>("msh2", gmsh_hex20).elements == build<Hex20>("vtk2", vtk_hex20()).elements);
+  CHECK(mid_edge_error(build<ReorderedHex20>("msh2", gmsh_hex20)) < 1e-12);
+  CHECK(mid_edge_error(build<ReorderedHex20>("vtk2", vtk_hex20())) < 1e-12);
+  CHECK(build<ReorderedHex20>("msh2", gmsh_hex20).elements == build<ReorderedHex20>("vtk2", vtk_hex20()).elements);
   const auto tet10 = build<user::Tet10>("tetgen", tetgen_tet10);
   CHECK(tet10.element_count() == 2);
   CHECK(tet10.find_group("surface 7")->faces == std::vector<std::vector<NodeId>>{{2, 0, 3, 9, 10, 12}});
@@ -200,7 +200,7 @@ TEST_CASE("A file written for Gmsh reads back for every element type", "[io]") {
   const auto tet10 = build<user::Tet10>("tetgen", tetgen_tet10);
   // Gmsh's last two edges are those of nodes 2 3 and 1 3.
   CHECK_THAT(there_and_back(tet10, user::Tet10{}), test::contains(" 11 2 1 1 1 4 8 3 11 12 14 10 9 13"));
-  there_and_back(build<Hex20>("msh2", gmsh_hex20), Hex20{});
+  there_and_back(build<ReorderedHex20>("msh2", gmsh_hex20), ReorderedHex20{});
 }
 
 TEST_CASE("VTK's voxel is a hexahedron with two pairs of corners swapped", "[io]") {

@@ -23,7 +23,7 @@ Linear cube(Relaxation relaxation) {
   return {LinearElastic{1e4, 0.45, 1000.0}, {{{share, tau}}}, relaxation};
 }
 
-std::vector<std::vector<double>> table(const std::string& name) {
+std::vector<std::vector<double>> rows_of_table(const std::string& name) {
   return test::read_rows(PALPATE_TEST_DATA "/oracle/K_viscoelastic_cube/" + name, 1);
 }
 
@@ -41,7 +41,7 @@ double free_side(const Linear& m, const Linear::SmallStrainHistory& history, dou
 }  // namespace
 
 TEST_CASE("relaxation after a sudden strain is exact for any step", "[material][viscoelastic][oracle]") {
-  const auto rows = table("closed_form_relaxation.csv");
+  const auto rows = rows_of_table("closed_form_relaxation.csv");
   REQUIRE(rows.size() == 18);
   const Vector6 shear = strain * Vector6::Unit(voigt::xy);
   for (const auto relaxation : {Relaxation::whole_stress, Relaxation::deviatoric}) {
@@ -66,7 +66,7 @@ TEST_CASE("with deviatoric relaxation free sides move with a different time cons
   const auto error = [&](int steps) {  // between two rows of the table
     Linear::SmallStrainHistory history;
     double time = 0.0, worst = 0.0;
-    for (const auto& row : table("closed_form_relaxation.csv")) {
+    for (const auto& row : rows_of_table("closed_form_relaxation.csv")) {
       const int count = row[0] == 0.0 ? 1 : steps;
       const double dt = (row[0] - time) / count;
       time = row[0];
@@ -84,7 +84,7 @@ TEST_CASE("with deviatoric relaxation free sides move with a different time cons
 }
 
 TEST_CASE("a ramp is exact for any step, creep is second order", "[material][viscoelastic][oracle]") {
-  const auto rows = table("closed_form_ramp_creep_harmonic.csv");
+  const auto rows = rows_of_table("closed_form_ramp_creep_harmonic.csv");
   REQUIRE(rows.size() == 18);
   const Linear m = cube(Relaxation::whole_stress);
   Linear::SmallStrainHistory sheared, pulled;

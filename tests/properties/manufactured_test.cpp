@@ -6,7 +6,8 @@
 #include "catch.hpp"
 
 using namespace palpate;
-using namespace accuracy;
+using accuracy::Manufactured, accuracy::manufactured_errors, accuracy::observed_order, accuracy::refined_cube,
+    accuracy::solve_static, accuracy::theoretical_orders;
 
 namespace {
 
@@ -17,7 +18,7 @@ void check_orders(int coarse) {
     const auto errors = [&](int n) {
       return manufactured_errors(refined_cube<E>(n, distorted), field, &solve_static<E>);
     };
-    const Errors before = errors(coarse), after = errors(2 * coarse);
+    const auto before = errors(coarse), after = errors(2 * coarse);
     const double displacement = observed_order(before.displacement, after.displacement, 2.0);
     const double energy = observed_order(before.energy, after.energy, 2.0);
     const auto [expected, expected_energy] = theoretical_orders<E>(distorted);

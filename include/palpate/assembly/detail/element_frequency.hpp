@@ -11,19 +11,21 @@
 #include <palpate/local/stiffness.hpp>
 #include <palpate/mesh/mesh.hpp>
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+namespace detail {
+/// Not a template: Eigen's solver takes seconds to compile for every size.
+double largest_symmetric_eigenvalue(const MatrixX& symmetric);
+}  // namespace detail
 
 /// Upper bound of omega^2 [1/s^2] of a body at rest with lumped mass (lumped_mass): the largest value of any single
 /// element (Irons and Treharne 1971). Up to twice the true value in good meshes, more with slivers. Valid with and
 /// without supports. 10 us per Tet4. Throws inverted_element or non_finite, bad_density where there is no mass.
 template <Element E>
 double element_frequency_bound(const Body<E>& body) {
-  using Matrix = Eigen::Matrix<double, 3 * E::nodes, 3 * E::nodes>;
   double largest = 0.0;
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
     const ElementNodes<E> x = element_nodes<E>(body.mesh, e);
@@ -31,10 +33,10 @@ double element_frequency_bound(const Body<E>& body) {
     const double density = body.density[body.region_of(e)];
     if (!is_positively_oriented<E>(x)) raise_element(SetupErrorKind::inverted_element, e, "has no positive volume");
     if (!(density > 0.0)) raise_element(SetupErrorKind::bad_density, e, "has no mass");
-    Matrix k = element_stiffness<E>(x, body.elasticity_of(e));
+    MatrixX k = element_stiffness<E>(x, body.elasticity_of(e));
     for (int i = 0; i < 3 * E::nodes; ++i)
       for (int j = 0; j < 3 * E::nodes; ++j) k(i, j) /= density * std::sqrt(volumes[i / 3] * volumes[j / 3]);
-    const double square = Eigen::SelfAdjointEigenSolver<Matrix>(k, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+    const double square = detail::largest_symmetric_eigenvalue(k);
     if (!std::isfinite(square)) raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
     largest = std::max(largest, square);
   }
@@ -42,3 +44,7 @@ double element_frequency_bound(const Body<E>& body) {
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/assembly/detail/element_frequency.ipp>
+#endif
