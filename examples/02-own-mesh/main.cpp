@@ -79,7 +79,8 @@ const char* advice(SetupErrorKind kind) {
              "admission.duplicate_nodes = Admission::repair welds them.";
     case SetupErrorKind::unconstrained:
       return "Fix at least three nodes of every piece that are not on one line: --fix with a group. If the mesh has\n"
-             "loose pieces, --largest-piece leaves them out: SetupOptions::admission.disconnected = Admission::repair.";
+             "several pieces, --largest-piece keeps the largest only: SetupOptions::admission.disconnected = "
+             "Admission::repair.";
     case SetupErrorKind::unknown_group:
     case SetupErrorKind::empty_group:
       return "Name one of the groups listed above, or leave --fix and --touch out.";
