@@ -23,5 +23,5 @@ class Stylus {
 };
 
 testing::Violations check(Stylus& stylus) {
-  return testing::device_laws(stylus);
+  return testing::device_laws(stylus, testing::default_probe<Stylus>());  // as without the second argument
 }
