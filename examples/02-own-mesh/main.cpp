@@ -1,6 +1,7 @@
 // Example 02: your own mesh.
 //
-//   example_02_own_mesh [FILE] [--scale METRES] [--fix GROUP] [--touch GROUP] [--radius METRES] [--out DIR]
+//   example_02_own_mesh [FILE] [--scale METRES] [--fix GROUP] [--touch GROUP] [--radius METRES] [--largest-piece]
+//                       [--out DIR]
 //
 // Reads a mesh file, reports its defects and what to do about them, and touches the body with a scripted sphere.
 // Without a file it uses the organ shipped with palpate. docs/from_images.md describes how to make such a file from a
@@ -24,6 +25,9 @@
 #include <palpate/io/vtu.hpp>
 #include <palpate/mesh/diagnose.hpp>
 #include <palpate/post/stress.hpp>
+#if OWN_MESH_XML
+#include <palpate/io/xml/read_mesh.hpp>
+#endif
 
 #include <filesystem>
 #include <iostream>
@@ -40,6 +44,10 @@ std::optional<Arguments> read_arguments(int count, char** values) {
     const std::string_view name = values[i];
     if (!name.starts_with("--")) {
       a.file = name;
+      continue;
+    }
+    if (name == "--largest-piece") {
+      a.largest_piece = true;
       continue;
     }
     if (++i == count) return {};
@@ -70,18 +78,43 @@ const char* advice(SetupErrorKind kind) {
       return "Parts that were meshed separately share no nodes. If they should be connected:\n"
              "admission.duplicate_nodes = Admission::repair welds them.";
     case SetupErrorKind::unconstrained:
-      return "Fix at least three nodes of every piece that are not on one line: --fix with a group.";
+      return "Fix at least three nodes of every piece that are not on one line: --fix with a group. If the mesh has\n"
+             "several pieces, --largest-piece keeps the largest only: SetupOptions::admission.disconnected = "
+             "Admission::repair.";
     case SetupErrorKind::unknown_group:
     case SetupErrorKind::empty_group:
       return "Name one of the groups listed above, or leave --fix and --touch out.";
     case SetupErrorKind::unsupported:
-      return "A surface has to be meshed first; a file of ten-node tetrahedra needs read_mesh<Tet10>, one of\n"
-             "hexahedra read_mesh<Hex8>.";
+      return "This program reads tetrahedra. In yours, a file of hexahedra needs read_mesh<Hex8>, one of ten-node\n"
+             "tetrahedra read_mesh<Tet10>.";
     case SetupErrorKind::bad_file:
       return "The message names the line, what was expected there and what was found: check it in the file.";
     default:
       return "docs/errors.md lists every kind of refusal.";
   }
+}
+
+Mesh<Tet4> read(const Arguments& arguments) {
+#if OWN_MESH_XML  // pugixml and zlib are installed: also VTU and FEBio
+  return io::xml::read_mesh<Tet4>(arguments.file, {.scale = arguments.scale});
+#else
+  return io::read_mesh<Tet4>(arguments.file, {.scale = arguments.scale});
+#endif
+}
+
+/// The size in millimetres, in which a wrong unit is seen at once, and the corners of the box [m].
+void print_size(const MeshDiagnosis& d) {
+  const Vector3 size = 1e3 * (d.box_max - d.box_min);
+  std::printf("size: %.3g x %.3g x %.3g mm, from %s to %s m\n", size.x(), size.y(), size.z(),
+              code_of(d.box_min).c_str(), code_of(d.box_max).c_str());
+}
+
+/// What this program did, to paste into another.
+void print_code(const Chosen& chosen, const Press& press) {
+  std::printf("the same as code:\n  %s\n", chosen.code.c_str());
+  std::printf("  MockDevice finger(trajectory::poke({.from = %s, .to = %s}));\n", code_of(press.above).c_str(),
+              code_of(press.deepest).c_str());
+  std::printf("  const SphereTool sphere{.radius = %.4g};\n", press.sphere.radius);
 }
 
 void print_groups(const Mesh<Tet4>& mesh) {
@@ -118,21 +151,25 @@ double touch(Organ& organ, const Press& press, VectorX& u) {
 }
 
 int run(const Arguments& arguments) {
-  const auto mesh = io::read_mesh<Tet4>(arguments.file, {.scale = arguments.scale});
+  const Mesh<Tet4> mesh = read(arguments);
   std::cout << arguments.file << '\n';
   print_groups(mesh);
   const MeshDiagnosis diagnosis = diagnose<Tet4>(mesh);
+  print_size(diagnosis);
   std::cout << describe(diagnosis) << '\n';
   print_quality(diagnosis);
 
   const Chosen chosen = choose(mesh, diagnosis, arguments);
   std::cout << "supports: " << chosen.constrained << "; touched: " << chosen.touched << '\n';
-  Organ organ(mesh, chosen.scene, {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
+  SetupOptions options;
+  if (arguments.largest_piece) options.admission.disconnected = Admission::repair;
+  Organ organ(mesh, chosen.scene, {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}, options);
   std::cout << organ.report();
 
   const Press press = plan_press(organ, arguments.radius);
   VectorX u;
   const double force = touch(organ, press, u);
+  print_code(chosen, press);
   StressField stress;
   recover_stress(organ.body(), u, stress);
   std::filesystem::create_directories(arguments.out);
@@ -150,7 +187,7 @@ int main(int count, char** values) {
   const auto arguments = read_arguments(count, values);
   if (!arguments) {
     std::cerr << "usage: example_02_own_mesh [FILE] [--scale METRES] [--fix GROUP] [--touch GROUP] [--radius METRES] "
-                 "[--out DIR]\n";
+                 "[--largest-piece] [--out DIR]\n";
     return 2;
   }
   try {

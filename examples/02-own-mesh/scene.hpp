@@ -4,7 +4,9 @@
 #include <palpate/mesh/diagnosis.hpp>
 #include <palpate/palpate.hpp>
 
+#include <cstdio>
 #include <optional>
+#include <string>
 
 namespace own_mesh {
 
@@ -16,13 +18,22 @@ struct Arguments {
   std::string out = "build/own_mesh";
   double scale = 1.0;   ///< unit of the file [m]
   double radius = 0.0;  ///< of the sphere [m]; 0: see plan_press
+  bool largest_piece = false;
 };
 
-/// A scene, and a description of what was chosen.
+/// A scene, a description of what was chosen, and the same as code.
 struct Chosen {
   Scene scene;
   std::string constrained, touched;
+  std::string code;
 };
+
+/// A point as code [m].
+inline std::string code_of(const Vector3& p) {
+  char text[96];
+  std::snprintf(text, sizeof text, "{%.4g, %.4g, %.4g}", p.x(), p.y(), p.z());
+  return text;
+}
 
 /// A point at a share of the height of the body (0 the lowest, 1 the highest point), z up.
 inline Vector3 at_height(const MeshDiagnosis& diagnosis, double share) {
@@ -42,6 +53,12 @@ inline Chosen choose(const Mesh<Tet4>& mesh, const MeshDiagnosis& diagnosis, con
   c.scene.fix(fix.empty() ? Selection(where::below(at_height(diagnosis, 0.1))) : Selection(fix));
   c.scene.touch(touch.empty() ? Selection(where::above(at_height(diagnosis, 0.5))) : Selection(touch))
       .render("surface");
+  const auto argument = [&](const std::string& group, const char* set, double share) {
+    return group.empty() ? "where::" + std::string(set) + "(" + code_of(at_height(diagnosis, share)) + ")"
+                         : "\"" + group + "\"";
+  };
+  c.code = "scene.fix(" + argument(fix, "below", 0.1) + ").touch(" + argument(touch, "above", 0.5) +
+           ").render(\"surface\");";
   return c;
 }
 

@@ -279,6 +279,44 @@ TEST_CASE("duplicate elements are refused or dropped", "[mesh][admission][extrem
   CHECK(admit<Tet4>(box, policy).mesh.element_count() == 41);
 }
 
+TEST_CASE("all pieces but the largest are dropped on request", "[mesh][admission]") {
+  // A small box before the large one: its elements and nodes come first.
+  Mesh<Tet4> two = box_tet4(Vector3(0.1, 0.1, 0.1), {1, 1, 1});
+  for (Vector3& x : two.positions) x.x() += 5.0;
+  const Mesh<Tet4> box = sound_box();
+  const auto nodes = static_cast<NodeId>(two.positions.size());
+  const auto elements = static_cast<Index>(two.elements.size());
+  two.groups.get_or_add("all", 3).elements = {0, elements, elements + 1};
+  two.positions.insert(two.positions.end(), box.positions.begin(), box.positions.end());
+  for (auto element : box.elements) {
+    for (NodeId& i : element) i += nodes;
+    two.elements.push_back(element);
+  }
+  two.elements.push_back(two.elements.back());  // its repair comes first
+  REQUIRE(box.elements.size() > static_cast<std::size_t>(elements));
+
+  AdmissionPolicy policy;
+  policy.duplicate_elements = Admission::repair;
+  CHECK(admit<Tet4>(two, policy).admitted.component_count == 2);
+  policy.disconnected = Admission::refuse;
+  CHECK_THAT(refused(SetupErrorKind::disconnected, [&] { admit<Tet4>(two, policy); }).hint,
+             contains("disconnected = Admission::repair"));
+
+  policy.disconnected = Admission::repair;
+  const auto a = admit<Tet4>(two, policy);
+  CHECK(a.diagnosis.component_count == 2);
+  CHECK(a.admitted.component_count == 1);
+  CHECK(a.mesh.positions == box.positions);
+  CHECK(a.mesh.elements == box.elements);
+  CHECK(a.node_map[0] == -1);
+  CHECK(a.node_map[static_cast<std::size_t>(nodes)] == 0);
+  CHECK(a.element_map[0] == -1);
+  CHECK(a.element_map[static_cast<std::size_t>(elements)] == 0);
+  CHECK(a.element_map.back() == -1);
+  CHECK(a.mesh.find_group("all")->elements == std::vector<Index>{0, 1});
+  CHECK(admit<Tet4>(box, policy).mesh.elements == box.elements);
+}
+
 TEST_CASE("orphans are dropped by default and groups are updated", "[mesh][admission][extreme][B6]") {
   Mesh<Tet4> box = sound_box();
   box.positions.insert(box.positions.begin(), Vector3(5, 5, 5));
@@ -387,7 +425,7 @@ TEST_CASE("millimetres are suspected above two metres", "[mesh][admission][extre
 }
 
 TEST_CASE("a repair that does not exist is refused", "[mesh][admission]") {
-  for (auto decision : {&AdmissionPolicy::poor_quality, &AdmissionPolicy::disconnected, &AdmissionPolicy::units}) {
+  for (auto decision : {&AdmissionPolicy::poor_quality, &AdmissionPolicy::units}) {
     AdmissionPolicy policy;
     policy.*decision = Admission::repair;
     refused(SetupErrorKind::unsupported, [&] { admit<Tet4>(sound_box(), policy); });

@@ -3,6 +3,7 @@
 
 #include <palpate/core/setup_error.hpp>
 #include <palpate/mesh/admission.hpp>
+#include <palpate/mesh/detail/components.hpp>
 #include <palpate/mesh/detail/duplicates.hpp>
 
 #include <algorithm>
@@ -79,6 +80,13 @@ inline int orientation_of(const Candidate& work, Index e, const MeshThresholds& 
   return orientation(work.shape_of(flat(work.mesh.positions), work.mesh.nodes_of(e)), thresholds);
 }
 
+/// `map`: the new number of every element, -1 for those to drop.
+inline void apply_element_map(Candidate& work, const std::vector<Index>& map) {
+  renumber_elements(work.mesh, map);
+  for (Index& e : work.element_map)
+    if (e >= 0) e = map[static_cast<std::size_t>(e)];
+}
+
 /// Drops flat and repeated elements if the policy requires it. Returns whether there were any.
 inline bool drop_elements(Candidate& work, const AdmissionPolicy& policy) {
   if (policy.duplicate_elements != Admission::repair && policy.degenerate != Admission::repair) return false;
@@ -91,8 +99,25 @@ inline bool drop_elements(Candidate& work, const AdmissionPolicy& policy) {
     map[static_cast<std::size_t>(e)] = repeated || flat ? -1 : next++;
   }
   if (next == work.mesh.element_count) return false;
-  renumber_elements(work.mesh, map);
-  for (Index& e : work.element_map) e = map[static_cast<std::size_t>(e)];
+  apply_element_map(work, map);
+  return true;
+}
+
+/// Drops the elements of all pieces but the one of most elements. Returns whether there were any.
+inline bool keep_largest_piece(Candidate& work) {
+  const MeshComponents components = connected_components(work.mesh.ref());
+  if (components.count < 2) return false;
+  const auto piece_of = [&](Index e) {
+    return static_cast<std::size_t>(components.of_node[static_cast<std::size_t>(*work.mesh.nodes_of(e))]);
+  };
+  std::vector<Index> size(static_cast<std::size_t>(components.count), 0);
+  for (Index e = 0; e < work.mesh.element_count; ++e) ++size[piece_of(e)];
+  const auto largest = static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
+  std::vector<Index> map(static_cast<std::size_t>(work.mesh.element_count), -1);
+  Index next = 0;
+  for (Index e = 0; e < work.mesh.element_count; ++e)
+    if (piece_of(e) == largest) map[static_cast<std::size_t>(e)] = next++;
+  apply_element_map(work, map);
   return true;
 }
 
@@ -123,6 +148,7 @@ inline bool repair(Candidate& work, const AdmissionPolicy& policy) {
   bool changed = false;
   if (policy.duplicate_nodes == Admission::repair) changed = weld(work, policy.thresholds) || changed;
   changed = drop_elements(work, policy) || changed;
+  if (policy.disconnected == Admission::repair) changed = keep_largest_piece(work) || changed;
   if (policy.inverted == Admission::repair) changed = reverse_inverted(work, policy.thresholds) || changed;
   if (policy.orphans == Admission::repair) changed = drop_orphans(work) || changed;
   return changed;

@@ -13,7 +13,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 enum class Admission { refuse, repair, accept };
 
 /// One decision per defect. Unusable indices, positions that are not finite, empty meshes and slivers below
-/// `thresholds.quality_floor` are always refused. There is no repair for poor_quality, disconnected and units.
+/// `thresholds.quality_floor` are always refused. There is no repair for poor_quality and units.
 struct AdmissionPolicy {
   Admission inverted = Admission::refuse;    ///< repair: node order mirrored (Tet4: two nodes swapped)
   Admission degenerate = Admission::refuse;  ///< repair: element dropped
@@ -21,7 +21,7 @@ struct AdmissionPolicy {
   Admission duplicate_nodes = Admission::refuse;     ///< repair: welded into the lowest of them
   Admission duplicate_elements = Admission::refuse;  ///< repair: all but the first dropped
   Admission orphans = Admission::repair;  ///< repair: node dropped. If accepted, it gives a zero row in the stiffness
-  Admission disconnected = Admission::accept;
+  Admission disconnected = Admission::accept;  ///< repair: all pieces but the one of most elements dropped
   Admission units = Admission::accept;
   MeshThresholds thresholds;
 };
@@ -58,8 +58,9 @@ inline constexpr std::array<AdmissionRule, 11> admission_rules{{
      "elements are of poor quality (mean ratio)", "Remesh, or poor_quality = Admission::accept"},
     {SetupErrorKind::orphan_node, &MeshDiagnosis::orphans, &AdmissionPolicy::orphans, true, true,
      "nodes belong to no element", "Drop them: orphans = Admission::repair"},
-    {SetupErrorKind::disconnected, &MeshDiagnosis::disconnected, &AdmissionPolicy::disconnected, true, false,
-     "components share no node (first node of each)", "Weld coincident nodes, or disconnected = Admission::accept"},
+    {SetupErrorKind::disconnected, &MeshDiagnosis::disconnected, &AdmissionPolicy::disconnected, true, true,
+     "components share no node (first node of each)",
+     "Weld coincident nodes, keep the largest piece: disconnected = Admission::repair, or Admission::accept"},
     {SetupErrorKind::suspicious_units, &MeshDiagnosis::units, &AdmissionPolicy::units, true, false,
      "mesh is larger than two metres across (diagonal [m])", "Positions are metres; scale millimetres by 0.001"},
 }};

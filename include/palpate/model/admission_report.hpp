@@ -35,10 +35,12 @@ void report_admission(const Admitted<E>& admitted, SetupReport& report) {
   const bool repaired = left.node_count != given.node_count || left.element_count != given.element_count ||
                         left.inverted.count != given.inverted.count;
   if (repaired)
-    report.set(SetupFlag::repaired, "admission repaired the mesh: " + std::to_string(given.orphans.count) +
-                                        " orphan nodes, " + std::to_string(given.inverted.count) + " inverted and " +
-                                        std::to_string(given.degenerate.count) +
-                                        " flat elements were found; ids are those of mesh(), see node_map()");
+    report.set(SetupFlag::repaired,
+               "admission repaired the mesh: " +
+                   (given.component_count > 1 ? std::to_string(given.component_count) + " pieces, " : "") +
+                   std::to_string(given.orphans.count) + " orphan nodes, " + std::to_string(given.inverted.count) +
+                   " inverted and " + std::to_string(given.degenerate.count) +
+                   " flat elements were found; ids are those of mesh(), see node_map()");
 }
 
 template <class E>

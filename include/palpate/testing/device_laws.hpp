@@ -32,6 +32,10 @@ struct DeviceProbe {
 /// Uses last_force() and, if they exist, last_torque() and unplug(bool).
 template <class Device>
 DeviceProbe<Device> default_probe() {
+  static_assert(
+      requires(const Device& device) { {device.last_force()}; },
+      "the laws compare commands with the force that the motors receive: give the device a function "
+      "`Vector3 last_force() const`, or pass a DeviceProbe");
   DeviceProbe<Device> probe;
   probe.rendered = [](const Device& device) -> Vector3 { return device.last_force(); };
   if constexpr (requires(const Device& device) { device.last_torque(); })
