@@ -3,6 +3,8 @@
 
 #include <palpate/post/error_estimate.hpp>
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -26,5 +28,16 @@ PALPATE_INLINE VectorX ErrorEstimate::size_ratio(double target, double most) con
       ratio[e] = std::clamp(std::pow(allowed / elements[e], 1.0 / order), 1.0 / most, most);  // NaN stays NaN
   return ratio;
 }
+
+namespace detail {
+
+PALPATE_INLINE std::vector<Matrix6> compliances_of(const std::vector<Matrix6>& elasticities) {
+  std::vector<Matrix6> inverses;
+  inverses.reserve(elasticities.size());
+  for (const Matrix6& d : elasticities) inverses.push_back(d.ldlt().solve(Matrix6::Identity()));
+  return inverses;
+}
+
+}  // namespace detail
 
 }}  // namespace palpate

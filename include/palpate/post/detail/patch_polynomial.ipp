@@ -5,6 +5,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <Eigen/QR>
+
+#include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -27,6 +30,49 @@ PALPATE_INLINE PatchFrame patch_frame(const std::vector<Vector3>& points) {
   else if (covariance.trace() > 0.0)
     frame.map /= std::sqrt(covariance.trace());
   return frame;
+}
+
+PALPATE_INLINE PatchPolynomial::PatchPolynomial(int degree, const PatchFrame& frame, const Vector3& node,
+                                                const std::vector<Vector3>& points, const StressColumns& stress,
+                                                int oversampling)
+    : terms_(degree == 1 ? 3 : most_terms), frame_(frame) {
+  constexpr double nearest = 0.01;      // keeps the weights finite
+  constexpr double least_pivot = 0.03;  // of the largest: smaller ones indicate linearly dependent terms
+  const auto count = static_cast<Index>(points.size());
+  VectorX weights(count);
+  MatrixX a(count, terms_);
+  for (Index i = 0; i < count; ++i) {
+    const Vector3& point = points[static_cast<std::size_t>(i)];
+    weights[i] = 1.0 / ((frame.map * (point - node)).norm() + nearest);
+    a.row(i) = powers(point).transpose();
+  }
+  weights /= weights.sum();
+  mean_ = stress * weights;
+  mean_powers_ = a.transpose() * weights;
+  const VectorX roots = weights.cwiseSqrt();
+  a = roots.asDiagonal() * (a.rowwise() - mean_powers_.transpose());
+  Eigen::CompleteOrthogonalDecomposition<MatrixX> fit;
+  fit.setThreshold(least_pivot);
+  fit.compute(a);
+  complete_ = fit.rank() == terms_ && count >= oversampling * (terms_ + 1);
+  const MatrixX differences = roots.asDiagonal() * (stress.colwise() - mean_).transpose();
+  slopes_ = fit.solve(differences);
+}
+
+PALPATE_INLINE Vector6 PatchPolynomial::operator()(const Vector3& x) const noexcept {
+  return mean_ + slopes_.transpose() * (powers(x) - mean_powers_);
+}
+
+/// x, y, z, and with degree 2 their products, weighted so that the norm of their factors does not depend on the axes.
+PALPATE_INLINE PatchPolynomial::Terms PatchPolynomial::powers(const Vector3& x) const noexcept {
+  const Vector3 y = frame_(x);
+  Terms p(terms_);
+  p.head<3>() = y;
+  if (terms_ == most_terms) {
+    const double weight = std::sqrt(2.0);
+    p.tail<6>() << y.cwiseAbs2(), weight * y[0] * y[1], weight * y[0] * y[2], weight * y[1] * y[2];
+  }
+  return p;
 }
 
 }}  // namespace palpate

@@ -82,7 +82,6 @@ class PatchRecovery {
   }
 
  private:
-  using Polynomial = PatchPolynomial<std::min(E::order, 2)>;
   static constexpr int most_rings = 3;
 
   /// Points of all elements, the same number in each, with their stress.
@@ -152,7 +151,7 @@ class PatchRecovery {
     patch.swap(grown);
   }
 
-  Polynomial through(Index node, const std::vector<NodeId>& patch, const Samples& samples) const {
+  PatchPolynomial through(Index node, const std::vector<NodeId>& patch, const Samples& samples) const {
     std::vector<Vector3> corner_points, points;
     StressColumns stress(6, static_cast<Index>(patch.size()) * samples.per_element);
     for (const NodeId e : patch) {
@@ -162,30 +161,31 @@ class PatchRecovery {
         points.push_back(samples.points[static_cast<std::size_t>(q)]);
       }
     }
-    return Polynomial(patch_frame(corner_points), mesh().position(node), points, stress, SamplingRule<E>::oversampling);
+    return PatchPolynomial(std::min(E::order, 2), patch_frame(corner_points), mesh().position(node), points, stress,
+                           SamplingRule<E>::oversampling);
   }
 
   /// Fits the polynomial to the elements at a corner; while these do not determine it, adds the elements around them.
   /// When the body has too few elements, uses the element's own quadrature points, with zero slope in undetermined
   /// directions.
-  Polynomial fit(Index node, int region) const {
+  PatchPolynomial fit(Index node, int region) const {
     std::vector<NodeId> patch;
     for (const NodeId e : around_.of(node))
       if (mesh().region(e) == region) patch.push_back(e);
     const std::vector<NodeId> smallest = patch;
     for (int ring = 1;; ++ring) {
-      Polynomial polynomial = through(node, patch, good_);
+      PatchPolynomial polynomial = through(node, patch, good_);
       if (polynomial.complete()) return polynomial;
       const std::size_t before = patch.size();
       if (ring < most_rings) grow(patch, region);
       if (patch.size() == before) break;
     }
     if (own_.per_element == 0) return through(node, patch, good_);
-    Polynomial polynomial = through(node, smallest, own_);
+    PatchPolynomial polynomial = through(node, smallest, own_);
     return polynomial.complete() ? polynomial : through(node, patch, own_);
   }
 
-  void add(Index node, int region, const Polynomial& polynomial) {
+  void add(Index node, int region, const PatchPolynomial& polynomial) {
     const Index k = nodal_.column(node, region);
     nodal_.stress.col(k) += polynomial(mesh().position(node));
     ++parts_[static_cast<std::size_t>(k)];
@@ -193,7 +193,7 @@ class PatchRecovery {
 
   /// Adds the value of the polynomial at its corner, and at the midside nodes of the edges that end there; a midside
   /// node gets two such values.
-  void spread(Index node, int region, const Polynomial& polynomial) {
+  void spread(Index node, int region, const PatchPolynomial& polynomial) {
     add(node, region, polynomial);
     if constexpr (QuadraticElement<E>) {
       std::vector<NodeId> middles;
