@@ -21,7 +21,8 @@ Entry to_accuracy(const Bench& bench, double error) {
   entry.make = [&bench, error] {
     return std::make_unique<LinearContender<Smoothed<Tet4>, Condensed<SelectiveInverse>>>(bench, [&] {
       Scene scene;
-      scene.fix(constrained_group).touch(near_group, {.radius = bench.scene.radius});
+      scene.fix(constrained_group)
+          .touch(near_group, {.radius = bench.scene.radius, .pinched = bench.scene.spheres.size() > 1});
       auto refined = refine_to_accuracy<Model>(bench.scene.mesh, scene, bench.scene.materials, {.error = error});
       std::fputs((std::ostringstream() << refined.search).str().c_str(), stdout);
       return std::move(refined.model);
